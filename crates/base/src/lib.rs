@@ -1,0 +1,14 @@
+//! What every other crate speaks: time as integers, frames, set-points, parameter errors.
+//!
+//! `no_std`; depends on nothing of servobench. Plain `f64` in SI, the unit in the doc of every item.
+#![cfg_attr(not(test), no_std)]
+
+mod frames;
+mod parameter;
+mod setpoint;
+mod time;
+
+pub use frames::{Abc, AlphaBeta, Dq, ElectricalAngle};
+pub use parameter::{ParamError, finite, non_negative, positive};
+pub use setpoint::Setpoint;
+pub use time::{Divider, Rate, RateError, Tick};

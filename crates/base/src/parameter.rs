@@ -1,0 +1,60 @@
+//! Parameters are checked where they enter; the error names the field, the value and the bound.
+use thiserror::Error;
+
+/// A parameter outside its bound.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[error("`{name}` must be {bound}, got {value}")]
+pub struct ParamError {
+    /// Field name as the user writes it.
+    pub name: &'static str,
+    /// Rejected value (SI).
+    pub value: f64,
+    /// What the value must be, in words: "finite and positive".
+    pub bound: &'static str,
+}
+
+/// Returns `value` when it is finite and above zero.
+///
+/// # Errors
+/// [`ParamError`] otherwise.
+pub const fn positive(name: &'static str, value: f64) -> Result<f64, ParamError> {
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err(ParamError { name, value, bound: "finite and positive" })
+    }
+}
+
+/// Returns `value` when it is finite and not below zero.
+///
+/// # Errors
+/// [`ParamError`] otherwise.
+pub const fn non_negative(name: &'static str, value: f64) -> Result<f64, ParamError> {
+    if value.is_finite() && value >= 0.0 {
+        Ok(value)
+    } else {
+        Err(ParamError { name, value, bound: "finite and not negative" })
+    }
+}
+
+/// Returns `value` when it is finite.
+///
+/// # Errors
+/// [`ParamError`] otherwise.
+pub const fn finite(name: &'static str, value: f64) -> Result<f64, ParamError> {
+    if value.is_finite() { Ok(value) } else { Err(ParamError { name, value, bound: "finite" }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn error_names_field_value_and_bound() {
+        let e = positive("mass", -1.0).unwrap_err();
+        assert_eq!(e.to_string(), "`mass` must be finite and positive, got -1");
+        assert_eq!(non_negative("viscous", f64::NAN).unwrap_err().bound, "finite and not negative");
+        assert!(finite("bias", f64::INFINITY).is_err());
+        assert_eq!(non_negative("viscous", 0.0), Ok(0.0));
+    }
+}

@@ -1,0 +1,1 @@
+//! Paths and programs that the tests of this folder share.
