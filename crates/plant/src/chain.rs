@@ -1,0 +1,166 @@
+//! A chain of lumped bodies: motor – (coupling, screw) – table – (flexure) – load.
+//!
+//! ```text
+//! F_link,i = c_i·(r_i·q_i − r_{i+1}·q_{i+1}) + d_i·(r_i·q̇_i − r_{i+1}·q̇_{i+1})
+//! m_i·q̈_i = u_i − b_i·q̇_i − f_i(q̇_i) − f0_i − r_i·F_link,i + r_i·F_link,i−1
+//! ```
+//! `q` is each body's own coordinate, `r·q` the axis coordinate: a rotary motor on a screw of lead `p` has
+//! `r = p/2π` (m/rad), every other body `r = 1`.
+use crate::friction::DryFriction;
+use crate::mechanics::BodyState;
+use servobench_base::{ParamError, finite, non_negative, positive};
+
+/// Whether a coordinate is a length or an angle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Coordinate {
+    /// Metres, newtons, kilograms.
+    Linear,
+    /// Radians, newton metres, kg·m².
+    Rotary,
+}
+
+/// One lumped body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    /// Name for recordings and models: `motor`, `table`, `load`.
+    pub name: &'static str,
+    /// Whether its own coordinate is a length or an angle.
+    pub coordinate: Coordinate,
+    /// Mass (kg) or inertia (kg·m²) in its own coordinate.
+    pub inertia: f64,
+    /// Axis coordinate per own coordinate, `r` (1, or m/rad).
+    pub transmission: f64,
+    /// Viscous friction against the ground, `b` (N·s/m or N·m·s/rad).
+    pub viscous: f64,
+    /// Coulomb and static friction against the ground.
+    pub dry: DryFriction,
+    /// Constant resisting force, `f0`: gravity on a vertical axis, asymmetry of the friction (N or N·m).
+    pub bias: f64,
+}
+
+/// Elastic coupling between two neighbours, in the axis coordinate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Link {
+    /// Stiffness, `c` (N/m or N·m/rad).
+    pub stiffness: f64,
+    /// Damping, `d` (N·s/m or N·m·s/rad).
+    pub damping: f64,
+}
+
+/// Bodies in order from the motor to the load, with a link between each pair of neighbours.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chain {
+    bodies: Vec<Body>,
+    links: Vec<Link>,
+}
+
+impl Chain {
+    /// Most bodies a chain can have.
+    pub const MAX_BODIES: usize = 4;
+
+    /// Checks every parameter.
+    ///
+    /// # Errors
+    /// [`ParamError`] names the first parameter out of its bound; `bodies` and `links` when their numbers do not fit.
+    pub fn new(bodies: Vec<Body>, links: Vec<Link>) -> Result<Self, ParamError> {
+        if bodies.is_empty() || bodies.len() > Self::MAX_BODIES {
+            return Err(ParamError {
+                name: "bodies",
+                value: bodies.len() as f64,
+                bound: "1 to 4 in number",
+            });
+        }
+        if links.len() + 1 != bodies.len() {
+            return Err(ParamError {
+                name: "links",
+                value: links.len() as f64,
+                bound: "one fewer than the bodies",
+            });
+        }
+        for body in &bodies {
+            positive("inertia", body.inertia)?;
+            positive("transmission", body.transmission)?;
+            non_negative("viscous", body.viscous)?;
+            finite("bias", body.bias)?;
+            body.dry.check()?;
+        }
+        for link in &links {
+            positive("stiffness", link.stiffness)?;
+            non_negative("damping", link.damping)?;
+        }
+        Ok(Self { bodies, links })
+    }
+
+    /// The bodies, the motor first.
+    #[must_use]
+    pub fn bodies(&self) -> &[Body] {
+        &self.bodies
+    }
+
+    /// The links; number i is between bodies i and i+1.
+    #[must_use]
+    pub fn links(&self) -> &[Link] {
+        &self.links
+    }
+
+    /// Effort on body `i` from its links, viscous friction and bias; neither actuation nor dry friction.
+    #[must_use]
+    pub fn passive_effort(&self, i: usize, states: &[BodyState]) -> f64 {
+        let body = &self.bodies[i];
+        let mut effort = -body.viscous * states[i].velocity - body.bias;
+        if i > 0 {
+            effort += body.transmission * self.link_force(i - 1, states);
+        }
+        if i < self.links.len() {
+            effort -= body.transmission * self.link_force(i, states);
+        }
+        effort
+    }
+
+    /// Force through link `i` in the axis coordinate, positive when body i pushes body i+1 forward.
+    fn link_force(&self, i: usize, states: &[BodyState]) -> f64 {
+        let (near, far, link) = (&self.bodies[i], &self.bodies[i + 1], &self.links[i]);
+        link.stiffness
+            * (near.transmission * states[i].position - far.transmission * states[i + 1].position)
+            + link.damping
+                * (near.transmission * states[i].velocity
+                    - far.transmission * states[i + 1].velocity)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn body(inertia: f64, transmission: f64) -> Body {
+        let (coordinate, dry) = (Coordinate::Linear, DryFriction::NONE);
+        Body { name: "motor", coordinate, inertia, transmission, viscous: 2.0, dry, bias: 0.5 }
+    }
+
+    #[test]
+    fn forces_through_a_screw_balance_in_power() {
+        let chain = Chain::new(
+            vec![body(1e-3, 0.01), body(10.0, 1.0)],
+            vec![Link { stiffness: 1e6, damping: 100.0 }],
+        )
+        .unwrap();
+        let states = [
+            BodyState { position: 1.0, velocity: 3.0 },
+            BodyState { position: 0.009, velocity: 0.02 },
+        ];
+        let force = 1e6 * (0.01 - 0.009) + 100.0 * (0.03 - 0.02);
+        let motor = chain.passive_effort(0, &states);
+        let table = chain.passive_effort(1, &states);
+        assert!((motor - (-2.0 * 3.0 - 0.5 - 0.01 * force)).abs() < 1e-9, "{motor}");
+        assert!((table - (-2.0 * 0.02 - 0.5 + force)).abs() < 1e-9, "{table}");
+    }
+
+    #[test]
+    fn negative_inertia_is_refused_by_name() {
+        let e = Chain::new(vec![body(-1.0, 1.0)], vec![]).unwrap_err();
+        assert_eq!(e.to_string(), "`inertia` must be finite and positive, got -1");
+        assert!(
+            Chain::new(vec![body(1.0, 1.0)], vec![Link { stiffness: 1.0, damping: 0.0 }]).is_err()
+        );
+    }
+}

@@ -1,0 +1,152 @@
+//! Mechanics behind one trait: what the closed loop sees of a simulated axis, whichever engine computes it.
+use crate::chain::Chain;
+use servobench_base::{ParamError, Setpoint};
+use thiserror::Error;
+
+/// Position and velocity of one body.
+///
+/// The motor's are in the motor's own coordinate (rad and rad/s for a rotary motor, m and m/s for a linear one), those
+/// of all other bodies in the axis coordinate (m or rad).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BodyState {
+    /// Position (m or rad).
+    pub position: f64,
+    /// Velocity (m/s or rad/s).
+    pub velocity: f64,
+}
+
+/// How the motor body is moved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Drive {
+    /// By an effort: a torque or a force.
+    Effort,
+    /// Exactly as prescribed, whatever force that takes. The closed forms of residual vibration need it.
+    Prescribed,
+}
+
+/// What moves the motor body from tick k to k+1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Actuation {
+    /// Torque (N·m) or force (N) in the motor's coordinate, constant over the tick. For [`Drive::Effort`].
+    Effort(f64),
+    /// Motion of the motor body at tick k **in the axis coordinate**; it goes on as [`Setpoint::after`] says until
+    /// tick k+1. For [`Drive::Prescribed`].
+    Motion(Setpoint),
+}
+
+/// Everything that acts on the mechanics from tick k to k+1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Input {
+    /// What the motor does.
+    pub actuation: Actuation,
+    /// Disturbing force or torque on the motor body, in the motor's coordinate (N or N·m).
+    pub motor_disturbance: f64,
+    /// Disturbing force or torque on the load, in the axis coordinate (N or N·m).
+    pub load_disturbance: f64,
+}
+
+/// A simulated axis.
+///
+/// `advance` goes from tick k to k+1; before the first call the state is that of tick 0. No heap allocation in either
+/// method.
+pub trait Mechanics: Send {
+    /// The bodies at the present tick: the motor first, the load last; one body is both.
+    fn bodies(&self) -> &[BodyState];
+
+    /// One base tick.
+    ///
+    /// # Errors
+    /// [`MechanicsError::Diverged`] or [`MechanicsError::Native`]; the mechanics must not be used afterwards.
+    fn advance(&mut self, input: &Input) -> Result<(), MechanicsError>;
+}
+
+/// What an engine simulates.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Model {
+    /// A chain of lumped bodies.
+    Chain(Chain),
+    /// A user's own MJCF file.
+    Mjcf(MjcfModel),
+}
+
+/// A user's own MJCF file and which of its parts are the axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MjcfModel {
+    /// The file's text.
+    pub xml: String,
+    /// Where it came from, for messages and for the files it includes.
+    pub path: std::path::PathBuf,
+    /// Joint whose coordinate is the motor's (hinge: rad, slide: m).
+    pub motor_joint: String,
+    /// Joint whose coordinate is the load's, in the axis coordinate.
+    pub load_joint: String,
+    /// Motor actuator (`<motor>`) that the drive's torque or force goes to.
+    pub actuator: String,
+}
+
+/// What it takes to build mechanics.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MechanicsSetup {
+    /// The bodies and their couplings.
+    pub model: Model,
+    /// How the motor body is moved.
+    pub drive: Drive,
+    /// Length of a base tick (s).
+    pub step: f64,
+    /// State of each body at tick 0; empty for all at rest at zero. For MJCF models: motor joint, then load joint.
+    pub initial: Vec<BodyState>,
+}
+
+/// Makes mechanics of one kind.
+pub trait Engine: Sync {
+    /// Name as scenario files write it.
+    fn name(&self) -> &'static str;
+
+    /// Builds the mechanics at tick 0.
+    ///
+    /// # Errors
+    /// [`MechanicsError`] when the model is wrong or needs what the engine does not have.
+    fn build(&self, setup: &MechanicsSetup) -> Result<Box<dyn Mechanics>, MechanicsError>;
+}
+
+/// Why an engine could not be built or could not go on.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum MechanicsError {
+    /// A parameter of the chain is out of its bound.
+    #[error(transparent)]
+    Parameter(#[from] ParamError),
+    /// The engine has no such thing.
+    #[error("engine `{engine}` does not support {what}; {way_out}")]
+    Unsupported {
+        /// Engine name.
+        engine: &'static str,
+        /// What was asked for.
+        what: String,
+        /// What to do instead.
+        way_out: String,
+    },
+    /// The model text is wrong.
+    #[error("engine `{engine}` cannot read the model: {message}")]
+    Model {
+        /// Engine name.
+        engine: &'static str,
+        /// The engine's own words.
+        message: String,
+    },
+    /// A state left the finite numbers, or the engine warned that it would.
+    #[error("engine `{engine}` diverged: {message}")]
+    Diverged {
+        /// Engine name.
+        engine: &'static str,
+        /// What was seen.
+        message: String,
+    },
+    /// The engine's library failed.
+    #[error("engine `{engine}` failed: {message}")]
+    Native {
+        /// Engine name.
+        engine: &'static str,
+        /// The library's own words.
+        message: String,
+    },
+}

@@ -1,0 +1,24 @@
+//! One recorded quantity.
+use servobench_base::Rate;
+
+/// What a channel is, before it has values.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ChannelSpec {
+    /// Name with its group in front: `load.position`, `current.q`.
+    pub name: String,
+    /// Unit symbol: `m`, `rad/s`, `N`, `A`; empty for a pure number.
+    pub unit: String,
+    /// Stage of the loop that writes it: `set-point`, `position loop`, `mechanics`.
+    pub writer: String,
+    /// How often the writer renews it; between renewals the value is held.
+    pub rate: Rate,
+}
+
+/// A channel and its values.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Channel {
+    /// What it is.
+    pub spec: ChannelSpec,
+    /// One value per recorded instant (SI).
+    pub values: Vec<f64>,
+}

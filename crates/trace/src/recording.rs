@@ -1,0 +1,95 @@
+//! A finished recording.
+use crate::channel::Channel;
+use servobench_base::Rate;
+
+/// What a recording is of.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct About {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Engine that computed the mechanics.
+    pub engine: String,
+    /// Unit of positions on the axis: `m` or `rad`.
+    pub axis_unit: String,
+    /// Names of the bodies, the motor first, the load last; one name when motor and load are one.
+    pub bodies: Vec<String>,
+}
+
+/// One move of the program, as planned.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Move {
+    /// What it is, in words: `move to 1 m, order 4`.
+    pub label: String,
+    /// Start of the profile (s).
+    pub start: f64,
+    /// End of the profile (s).
+    pub end: f64,
+    /// Position at the start (axis unit).
+    pub from: f64,
+    /// Target (axis unit).
+    pub to: f64,
+    /// Largest |velocity|, |acceleration|, |jerk|, |snap| of the profile, analytic (axis unit and s). Snap is infinite
+    /// in a jerk-limited profile, jerk too in an acceleration-limited one.
+    pub peaks: [f64; 4],
+    /// The limits it was planned with; `None` where the order has none.
+    pub limits: [Option<f64>; 4],
+    /// Start and length (s) of the part at constant velocity; length 0 without one.
+    pub cruise: (f64, f64),
+}
+
+/// Something that happened, for the user to know.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Event {
+    /// When it began (s).
+    pub start: f64,
+    /// When it ended (s); equal to `start` for an instant.
+    pub end: f64,
+    /// Stage of the loop that saw it.
+    pub source: String,
+    /// What it was, in words.
+    pub message: String,
+}
+
+/// Channels of equal length, sampled together; moves; events.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// What it is of.
+    pub about: About,
+    /// Rate of the recorded instants; instant k is at k/rate.
+    pub rate: Rate,
+    /// The channels.
+    pub channels: Vec<Channel>,
+    /// The moves in order of their start.
+    pub moves: Vec<Move>,
+    /// The events in order of their start.
+    pub events: Vec<Event>,
+}
+
+impl Recording {
+    /// Values of the channel `name`.
+    #[must_use]
+    pub fn channel(&self, name: &str) -> Option<&[f64]> {
+        self.channels
+            .iter()
+            .find(|channel| channel.spec.name == name)
+            .map(|channel| channel.values.as_slice())
+    }
+
+    /// Number of recorded instants.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.channels.first().map_or(0, |channel| channel.values.len())
+    }
+
+    /// Whether nothing was recorded.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Index of the first instant at or after `time` (s), at most [`Recording::len`].
+    #[must_use]
+    pub fn index_at(&self, time: f64) -> usize {
+        usize::try_from(self.rate.tick_at(time).0).unwrap_or(usize::MAX).min(self.len())
+    }
+}
