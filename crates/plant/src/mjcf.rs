@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 /// The chain as MJCF text. Joints are named after the bodies, the actuator is `motor_effort`, tendons are
 /// `link_0`, `link_1`, … With [`Drive::Prescribed`] there is no body 0: the world is the moving base.
 ///
-/// `step` is the tick length (s). The integrator is MuJoCo's RK4: the axis is smooth and its efforts are held, so each
+/// `step` is the tick length (s). The integrator is RK4: the axis is smooth and its efforts are held, so each
 /// tick is accurate to fifth order.
 #[must_use]
 pub fn chain_to_mjcf(chain: &Chain, drive: Drive, step: f64) -> String {
