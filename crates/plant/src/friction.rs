@@ -23,16 +23,6 @@ pub struct DryFriction {
     pub stribeck_velocity: f64,
 }
 
-/// State of the contact.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Contact {
-    /// At rest and held.
-    #[default]
-    Stuck,
-    /// Sliding, or free to.
-    Sliding,
-}
-
 /// What friction does to a body during one tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Grip {
@@ -78,20 +68,17 @@ impl DryFriction {
     }
 
     /// What friction does in the coming tick, given the velocity and the effort of everything else at its start.
-    pub fn grip(&self, contact: &mut Contact, velocity: f64, effort: f64) -> Grip {
+    #[must_use]
+    pub fn grip(&self, velocity: f64, effort: f64) -> Grip {
         if self.is_none() {
-            return Grip::Force(0.0);
+            Grip::Force(0.0)
+        } else if velocity != 0.0 {
+            Grip::Force(-self.sliding(velocity).copysign(velocity))
+        } else if effort.abs() <= self.breakaway {
+            Grip::Held
+        } else {
+            Grip::Force(-self.sliding(0.0).copysign(effort))
         }
-        if velocity == 0.0 {
-            if effort.abs() <= self.breakaway {
-                *contact = Contact::Stuck;
-                return Grip::Held;
-            }
-            *contact = Contact::Sliding;
-            return Grip::Force(-self.sliding(0.0).copysign(effort));
-        }
-        *contact = Contact::Sliding;
-        Grip::Force(-self.sliding(velocity).copysign(velocity))
     }
 
     /// Whether a body that slid with `before` and arrived with `after` came to rest within the tick; its velocity is
@@ -117,10 +104,8 @@ mod tests {
 
     #[test]
     fn a_body_at_rest_is_held_until_the_breakaway_force() {
-        let mut contact = Contact::Stuck;
-        assert_eq!(DRY.grip(&mut contact, 0.0, 3.0), Grip::Held);
-        assert_eq!(DRY.grip(&mut contact, 0.0, -3.1), Grip::Force(3.0));
-        assert_eq!(contact, Contact::Sliding);
+        assert_eq!(DRY.grip(0.0, 3.0), Grip::Held);
+        assert_eq!(DRY.grip(0.0, -3.1), Grip::Force(3.0));
     }
 
     #[test]

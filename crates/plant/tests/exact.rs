@@ -1,0 +1,200 @@
+//! The engine `exact` against closed forms.
+use servobench_base::Setpoint;
+use servobench_plant::{
+    Actuation, Body, BodyState, Chain, Coordinate, Drive, DryFriction, Engine, Exact, Input, Link,
+    Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Model,
+};
+
+const H: f64 = 1.0 / 16_000.0;
+
+fn body(name: &'static str, inertia: f64) -> Body {
+    Body {
+        name,
+        coordinate: Coordinate::Linear,
+        inertia,
+        transmission: 1.0,
+        viscous: 0.0,
+        dry: DryFriction::NONE,
+        bias: 0.0,
+    }
+}
+
+fn build(chain: Chain, drive: Drive, initial: Vec<BodyState>) -> Box<dyn Mechanics> {
+    Exact.build(&MechanicsSetup { model: Model::Chain(chain), drive, step: H, initial }).unwrap()
+}
+
+fn effort(effort: f64) -> Input {
+    Input { actuation: Actuation::Effort(effort), motor_disturbance: 0.0, load_disturbance: 0.0 }
+}
+
+/// Saarakkala/Hinkkanen: J_M = J_L = 0.005 kg·m², K_s = 700 N·m/rad.
+fn two_mass(damping: f64) -> Chain {
+    Chain::new(
+        vec![body("motor", 5e-3), body("load", 5e-3)],
+        vec![Link { stiffness: 700.0, damping }],
+    )
+    .unwrap()
+}
+
+/// Oracle: stretch s(t) = s0·e^(−σt)·(cos ω_d t + σ/ω_d·sin ω_d t), σ = d/(2·J_red), J_red = J/2.
+#[test]
+fn free_ring_down_follows_the_closed_form_for_ten_seconds() {
+    let (damping, reduced, stretch) = (0.01, 2.5e-3, 1e-3);
+    let sigma = damping / (2.0 * reduced);
+    let omega = (700.0_f64 / reduced - sigma * sigma).sqrt();
+    let mut axis = build(
+        two_mass(damping),
+        Drive::Effort,
+        vec![BodyState { position: stretch, velocity: 0.0 }, BodyState::default()],
+    );
+    for k in 1..=160_000 {
+        axis.advance(&effort(0.0)).unwrap();
+        let t = f64::from(k) * H;
+        let exact =
+            stretch * (-sigma * t).exp() * ((omega * t).cos() + sigma / omega * (omega * t).sin());
+        let [motor, load] = axis.bodies() else { panic!("two bodies") };
+        let found = motor.position - load.position;
+        // The transition matrix is right to a few 1e-16; that is a phase error of 1e-15 per tick at most.
+        assert!((found - exact).abs() < stretch * 1e-9, "tick {k}: {found} against {exact}");
+        assert!(
+            (motor.position + load.position - stretch).abs() < 1e-12,
+            "the centre of mass stays"
+        );
+    }
+}
+
+/// Oracle: a rigid body under constant force, viscous friction b: v = F/b·(1 − e^(−bt/m)), x = F/b·(t − m/b·(1 − e^(−bt/m))).
+#[test]
+fn one_body_with_viscous_friction_is_exact() {
+    let (m, b, force) = (95.1089, 203.5034, 120.0);
+    let chain =
+        Chain::new(vec![Body { viscous: b, bias: 20.0, ..body("motor", m) }], vec![]).unwrap();
+    let mut axis = build(chain, Drive::Effort, vec![]);
+    for _ in 0..16_000 {
+        axis.advance(&effort(force)).unwrap();
+    }
+    let decay = (-b / m).exp();
+    let (v, x) = (100.0 / b * (1.0 - decay), 100.0 / b * (1.0 - m / b * (1.0 - decay)));
+    let found = axis.bodies()[0];
+    // 16 000 roundings of numbers of order one.
+    assert!(
+        (found.velocity - v).abs() < 1e-11 && (found.position - x).abs() < 1e-11,
+        "{found:?} {v} {x}"
+    );
+}
+
+/// Oracle: rotary motor on a screw without stretch moves like one mass M + J/r² under the force τ/r.
+#[test]
+fn a_stiff_screw_moves_like_one_mass() {
+    let r = 10e-3 / (2.0 * std::f64::consts::PI);
+    let motor = Body { coordinate: Coordinate::Rotary, transmission: r, ..body("motor", 2e-4) };
+    let chain =
+        Chain::new(vec![motor, body("load", 40.0)], vec![Link { stiffness: 5e8, damping: 5e4 }])
+            .unwrap();
+    let mut axis = build(chain, Drive::Effort, vec![]);
+    for _ in 0..16_000 {
+        axis.advance(&effort(0.5)).unwrap();
+    }
+    let a = 0.5 / r / (40.0 + 2e-4 / (r * r));
+    let [motor, load] = axis.bodies() else { panic!("two bodies") };
+    assert!((load.velocity / a - 1.0).abs() < 1e-6, "{} {a}", load.velocity);
+    // The spring carries the load's acceleration: stretch = M·a/c.
+    assert!((r * motor.position - load.position - 40.0 * a / 5e8).abs() < 1e-12);
+}
+
+/// Oracle: undamped load behind a base with constant jerk from rest: with ω² = c/m,
+/// x − x_b = −(j/ω²)·(t − sin(ωt)/ω); the base's polynomial is part of the exact transition.
+#[test]
+fn a_prescribed_base_is_integrated_exactly() {
+    let (m, c, j) = (10.0, 6e5, 50.0);
+    let omega = (c / m as f64).sqrt();
+    let chain = Chain::new(
+        vec![body("motor", 20.0), body("load", m)],
+        vec![Link { stiffness: c, damping: 0.0 }],
+    )
+    .unwrap();
+    let mut axis = build(chain, Drive::Prescribed, vec![]);
+    let start = Setpoint { j, ..Setpoint::default() };
+    for k in 0..1_600 {
+        let motion = Actuation::Motion(start.after(f64::from(k) * H));
+        axis.advance(&Input { actuation: motion, motor_disturbance: 0.0, load_disturbance: 0.0 })
+            .unwrap();
+        let t = f64::from(k + 1) * H;
+        let [base, load] = axis.bodies() else { panic!("two bodies") };
+        let exact = -j / (omega * omega) * (t - (omega * t).sin() / omega);
+        let found = load.position - base.position;
+        assert!((found - exact).abs() < 1e-15, "tick {k}: {found} against {exact}");
+        assert!((base.position - j * t.powi(3) / 6.0).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn a_stuck_body_keeps_its_position_to_the_bit_while_its_neighbour_swings() {
+    let dry = DryFriction { coulomb: 50.0, breakaway: 80.0, stribeck_velocity: 1e-3 };
+    let chain = Chain::new(
+        vec![Body { dry, ..body("motor", 20.0) }, body("load", 10.0)],
+        vec![Link { stiffness: 6e5, damping: 0.0 }],
+    )
+    .unwrap();
+    // 1e-4 m of stretch is 60 N: below breakaway.
+    let mut axis = build(
+        chain,
+        Drive::Effort,
+        vec![
+            BodyState { position: 0.3, velocity: 0.0 },
+            BodyState { position: 0.3 + 1e-4, velocity: 0.0 },
+        ],
+    );
+    let omega = (6e5_f64 / 10.0).sqrt();
+    for k in 1..=100_000 {
+        axis.advance(&effort(0.0)).unwrap();
+        let [motor, load] = axis.bodies() else { panic!("two bodies") };
+        assert_eq!(motor.position.to_bits(), 0.3_f64.to_bits(), "tick {k}");
+        let exact = 0.3 + 1e-4 * (omega * f64::from(k) * H).cos();
+        assert!((load.position - exact).abs() < 1e-12, "tick {k}: {} {exact}", load.position);
+    }
+}
+
+/// Oracle: a body thrown with v0 against Coulomb friction stops after v0²·m/(2·f) and stays there.
+#[test]
+fn a_sliding_body_stops_where_coulomb_says() {
+    let dry = DryFriction { coulomb: 20.0, breakaway: 25.0, stribeck_velocity: 0.0 };
+    let chain = Chain::new(vec![Body { dry, ..body("motor", 4.0) }], vec![]).unwrap();
+    let mut axis = build(chain, Drive::Effort, vec![BodyState { position: 0.0, velocity: 0.5 }]);
+    for _ in 0..3_200 {
+        axis.advance(&effort(0.0)).unwrap();
+    }
+    let stop = axis.bodies()[0];
+    assert_eq!(stop.velocity.to_bits(), 0.0_f64.to_bits());
+    // Found to first order in the step: at most a·h² = 2e-8 m beyond.
+    assert!((stop.position - 0.5_f64.powi(2) * 4.0 / 40.0).abs() < 2e-8, "{}", stop.position);
+    axis.advance(&effort(24.9)).unwrap();
+    assert_eq!(axis.bodies()[0], stop, "below breakaway nothing moves");
+    axis.advance(&effort(25.1)).unwrap();
+    assert!(axis.bodies()[0].velocity > 0.0, "above it does");
+}
+
+#[test]
+fn an_mjcf_file_is_refused_with_a_way_out() {
+    let model = MjcfModel {
+        xml: "<mujoco/>".into(),
+        path: "axis.xml".into(),
+        motor_joint: "motor".into(),
+        load_joint: "load".into(),
+        actuator: "motor".into(),
+    };
+    let setup = MechanicsSetup {
+        model: Model::Mjcf(model),
+        drive: Drive::Effort,
+        step: H,
+        initial: vec![],
+    };
+    let error = Exact.build(&setup).err().unwrap();
+    assert!(error.to_string().contains("`mujoco` or `rapier`"), "{error}");
+}
+
+#[test]
+fn an_infinite_effort_ends_the_run() {
+    let mut axis = build(two_mass(0.0), Drive::Effort, vec![]);
+    assert!(matches!(axis.advance(&effort(f64::NAN)), Err(MechanicsError::Diverged { .. })));
+}
