@@ -107,7 +107,7 @@ fn a_stiff_screw_moves_like_one_mass() {
 #[test]
 fn a_prescribed_base_is_integrated_exactly() {
     let (m, c, j) = (10.0, 6e5, 50.0);
-    let omega = (c / m as f64).sqrt();
+    let omega = f64::sqrt(c / m);
     let chain = Chain::new(
         vec![body("motor", 20.0), body("load", m)],
         vec![Link { stiffness: c, damping: 0.0 }],
