@@ -1,2 +1,23 @@
-//! The developer commands.
-fn main() {}
+//! The developer commands, run as `cargo xtask <command>`.
+
+mod checks;
+mod command;
+mod demo;
+mod dist;
+mod failure;
+mod test;
+mod wheel;
+mod workspace;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match command::run(&arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("{failure}");
+            failure.exit_code()
+        }
+    }
+}

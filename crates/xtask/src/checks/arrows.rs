@@ -1,0 +1,124 @@
+//! Who may depend on whom among the crates of the workspace. The table is that of `docs/architecture.md`.
+use super::metadata::Metadata;
+
+/// What a crate may depend on, without the prefix `servobench-`.
+#[derive(Debug)]
+enum May {
+    /// On these only.
+    On(&'static [&'static str]),
+    /// On every crate.
+    OnAll,
+}
+
+/// The floor plan. Dev-dependencies are free: the oracle of a test may come from anywhere.
+const PLAN: [(&str, May); 20] = [
+    ("base", May::On(&[])),
+    ("motion", May::On(&["base"])),
+    ("cia402", May::On(&["base"])),
+    ("drive", May::On(&["base", "motion", "cia402"])),
+    ("plcopen", May::On(&["base", "motion", "cia402"])),
+    ("plant", May::On(&["base"])),
+    ("engine-mujoco", May::On(&["base", "plant"])),
+    ("engine-rapier", May::On(&["base", "plant"])),
+    ("engine-fmu", May::On(&["base", "plant"])),
+    ("trace", May::On(&["base"])),
+    ("metrics", May::On(&["base", "trace"])),
+    ("scenario", May::On(&["base"])),
+    (
+        "sim",
+        May::On(&[
+            "base", "motion", "cia402", "drive", "plcopen", "plant", "trace", "metrics", "scenario",
+        ]),
+    ),
+    ("suite", May::On(&["base", "sim", "scenario", "trace", "metrics"])),
+    ("report", May::On(&["base", "trace", "metrics"])),
+    ("view", May::On(&["base", "trace", "metrics"])),
+    ("fmu", May::On(&["base", "sim", "scenario"])),
+    ("cli", May::OnAll),
+    ("tests", May::OnAll),
+    ("xtask", May::On(&[])),
+];
+
+/// One line per arrow that the plan does not have.
+pub(super) fn findings(metadata: &Metadata) -> Vec<String> {
+    let mut findings = Vec::new();
+    for from in metadata.members() {
+        let Some(plan) = plan(&from.name) else {
+            findings.push(format!("crate `{}` is not in the plan of crates", from.name));
+            continue;
+        };
+        let May::On(allowed) = plan else { continue };
+        for to in metadata.needs(from).into_iter().filter(|to| metadata.is_member(to)) {
+            if !allowed.contains(&short(&to.name)) {
+                let list = if allowed.is_empty() { "none".into() } else { allowed.join(", ") };
+                let (from, to) = (&from.name, &to.name);
+                findings.push(format!("crate `{from}` must not depend on `{to}`; allowed: {list}"));
+            }
+        }
+    }
+    findings
+}
+
+fn plan(package: &str) -> Option<&'static May> {
+    PLAN.iter().find(|(name, _)| *name == short(package)).map(|(_, may)| may)
+}
+
+fn short(package: &str) -> &str {
+    package.strip_prefix("servobench-").unwrap_or(package)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::metadata::example::metadata;
+    use super::*;
+
+    #[test]
+    fn an_arrow_against_the_plan_is_found() {
+        let members = ["servobench-base", "servobench-plant", "servobench-drive"];
+        let arrows = [
+            ("servobench-plant", "servobench-base", None),
+            ("servobench-plant", "servobench-drive", None),
+        ];
+        let found = findings(&metadata(&members, &[], &arrows));
+        let wanted =
+            "crate `servobench-plant` must not depend on `servobench-drive`; allowed: base";
+        assert_eq!(found, [wanted]);
+    }
+
+    #[test]
+    fn tests_may_depend_on_anything_and_foreign_crates_are_no_arrows() {
+        let arrows = [
+            ("servobench-plant", "servobench-drive", Some("dev")),
+            ("servobench-plant", "libm", None),
+            ("servobench-cli", "servobench-plant", None),
+        ];
+        let members = ["servobench-plant", "servobench-drive", "servobench-cli"];
+        let none: [&str; 0] = [];
+        assert_eq!(findings(&metadata(&members, &[("libm", Some("MIT"))], &arrows)), none);
+    }
+
+    #[test]
+    fn a_build_dependency_counts() {
+        let arrows = [("servobench-base", "servobench-plant", Some("build"))];
+        let found = findings(&metadata(&["servobench-base", "servobench-plant"], &[], &arrows));
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].ends_with("allowed: none"), "{found:?}");
+    }
+
+    #[test]
+    fn a_crate_outside_the_plan_is_found() {
+        let found = findings(&metadata(&["servobench-utils"], &[], &[]));
+        assert_eq!(found, ["crate `servobench-utils` is not in the plan of crates"]);
+    }
+
+    #[test]
+    fn the_plan_has_no_circle() {
+        let mut below: Vec<&str> = Vec::new();
+        for (name, may) in &PLAN {
+            if let May::On(allowed) = may {
+                assert!(allowed.iter().all(|to| below.contains(to)), "`{name}` points upward");
+            }
+            below.push(name);
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! Which command the arguments ask for.
+use crate::failure::Failure;
+use crate::workspace::Workspace;
+use crate::{checks, demo, dist, test, wheel};
+
+/// Every command: arguments and what it does.
+const COMMANDS: [(&str, &str); 6] = [
+    ("setup", "fetch the MuJoCo library, once"),
+    ("demo", "set up, build, run the demo and compare its two moves"),
+    ("test [--without-mujoco]", "set up, then run every check and test that CI runs"),
+    ("checks", "check dependency arrows, licences and text"),
+    ("viewer", "fetch the Rerun viewer that `servobench view` opens, once"),
+    ("dist", "pack binary, library, models and scenarios into one archive"),
+];
+
+/// Runs the command that `arguments` name.
+///
+/// # Errors
+/// [`Failure::Usage`] when there is no such command, else what the command met.
+pub(crate) fn run(arguments: &[String]) -> Result<(), Failure> {
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    match arguments.as_slice() {
+        ["setup"] => {
+            let library = wheel::MUJOCO.ensure(&Workspace::find()?)?;
+            println!("{}", library.display());
+            Ok(())
+        }
+        ["demo"] => demo::run(&Workspace::find()?),
+        ["test"] => test::run(&Workspace::find()?, test::Engines::All),
+        ["test", "--without-mujoco"] => test::run(&Workspace::find()?, test::Engines::Embedded),
+        ["checks"] => checks::run(&Workspace::find()?),
+        ["viewer"] => {
+            let viewer = wheel::RERUN.ensure(&Workspace::find()?)?;
+            println!("{}", viewer.display());
+            Ok(())
+        }
+        ["dist"] => dist::run(&Workspace::find()?),
+        other => Err(Failure::Usage { given: other.join(" "), commands: listing() }),
+    }
+}
+
+fn listing() -> String {
+    COMMANDS.map(|(usage, meaning)| format!("  {usage:24} {meaning}")).join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wrong_usage_lists_every_command() {
+        for wrong in [vec![], vec!["tset".to_owned()], vec!["test".to_owned(), "--fast".to_owned()]]
+        {
+            let message = run(&wrong).unwrap_err().to_string();
+            for (usage, _) in COMMANDS {
+                assert!(message.contains(usage), "{message}");
+            }
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! `cargo xtask dist`: one archive that runs after unpacking anywhere.
+//!
+//! ```text
+//! servobench-<version>-<target>/bin/servobench              finds the library by $ORIGIN/../native/lib
+//!                              /native/lib/libmujoco.so.…
+//!                              /models /scenarios /docs README.md LICENSE-… NOTICE
+//!                              /licenses                    of everything that is in the binary
+//! ```
+use crate::checks::{Metadata, Package};
+use crate::failure::Failure;
+use crate::wheel;
+use crate::workspace::{Workspace, output, run as run_command};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// What is packed beside binary and library, as far as git tracks it.
+const TRACKED: [&str; 6] = ["models", "scenarios", "docs", "README.md", "LICENSE*", "NOTICE"];
+
+/// Builds, packs, unpacks elsewhere and runs the demo there.
+///
+/// # Errors
+/// [`Failure`] of the build, or of the unpacked program: then there is no archive.
+pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
+    let library = wheel::MUJOCO.ensure(workspace)?;
+    let mut build = workspace.cargo(["build", "--release", "--package", "servobench-cli"]);
+    run_command(build.args(["--features", "mujoco"]), 0)?;
+
+    let metadata = Metadata::read(workspace)?;
+    let cli = metadata.members().find(|package| package.name == "servobench-cli");
+    let version = cli.map_or("unknown", |package| &package.version);
+    let host = output(&mut workspace.command("rustc", ["--print", "host-tuple"]))?;
+    let name = format!("servobench-{version}-{}", host.trim());
+
+    let folder = workspace.target.join("dist");
+    fs::create_dir_all(&folder).map_err(Failure::file("create", &folder))?;
+    let room = tempfile::tempdir_in(&folder).map_err(Failure::file("write into", &folder))?;
+    let root = room.path().join(&name);
+    copy(&workspace.binary(), &root.join("bin/servobench"))?;
+    copy_into(&library, &root.join("native/lib"))?;
+    for licence in wheel::MUJOCO.licences(workspace) {
+        copy_into(&licence, &root.join("licenses/mujoco"))?;
+    }
+    for file in workspace.tracked(&TRACKED)? {
+        copy(&workspace.root.join(&file), &root.join(&file))?;
+    }
+    let others = metadata.closure(cli.into_iter());
+    let text = licence_texts(others.into_iter().filter(|package| !metadata.is_member(package)));
+    let file = root.join("licenses/rust-crates.txt");
+    fs::write(&file, text).map_err(Failure::file("write", &file))?;
+
+    let fresh = room.path().join("archive.tar.gz");
+    let mut pack = workspace.command("python3", ["-m", "tarfile", "--create"]);
+    run_command(pack.arg(&fresh).arg(&name).current_dir(room.path()), 0)?;
+    try_out(workspace, &fresh, &name)?;
+
+    let archive = folder.join(format!("{name}.tar.gz"));
+    fs::rename(&fresh, &archive).map_err(Failure::file("write", &archive))?;
+    println!("{}", archive.display());
+    Ok(())
+}
+
+/// Unpacks the archive where nothing of the workspace is near and runs the demo there on MuJoCo: only the packed
+/// library can serve it.
+fn try_out(workspace: &Workspace, archive: &Path, name: &str) -> Result<(), Failure> {
+    let temporary = std::env::temp_dir();
+    let room = tempfile::tempdir().map_err(Failure::file("write into", temporary))?;
+    let mut unpack = workspace.command("python3", ["-m", "tarfile", "--extract"]);
+    run_command(unpack.arg(archive).arg(room.path()), 0)?;
+    let root = room.path().join(name);
+    let mut demo = workspace.command(root.join("bin/servobench"), ["run", "--engine", "mujoco"]);
+    demo.arg("--out").arg(room.path().join("out"));
+    // `cargo run` names folders of the workspace in this variable.
+    run_command(demo.env_remove("LD_LIBRARY_PATH").current_dir(room.path()), 0)
+}
+
+/// The licence files of `packages`, each different text once, under the names of those that carry it.
+fn licence_texts<'a>(packages: impl Iterator<Item = &'a Package>) -> String {
+    let mut listing = String::from("Crates that the program contains or is built with:\n\n");
+    let mut texts: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for package in packages {
+        let licence = package.license.as_deref().unwrap_or("see below");
+        let _ = writeln!(listing, "{} {}: {licence}", package.name, package.version);
+        for file in licence_files(package) {
+            // Some crates carry pictures of their licences; what is no text is not copied.
+            if let Ok(text) = fs::read_to_string(&file) {
+                texts.entry(text).or_default().push(package.name.clone());
+            }
+        }
+    }
+    for (text, names) in texts {
+        let _ = write!(listing, "\n{:=<80}\n{}\n\n{}\n", "", names.join(", "), text.trim_end());
+    }
+    listing
+}
+
+fn licence_files(package: &Package) -> Vec<PathBuf> {
+    let Some(folder) = package.manifest_path.parent() else { return Vec::new() };
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let is_licence = |path: &PathBuf| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().to_uppercase();
+        path.is_file() && ["LICEN", "COPYING", "NOTICE"].iter().any(|start| name.starts_with(start))
+    };
+    let mut files: Vec<PathBuf> = entries.filter(is_licence).collect();
+    files.sort();
+    files
+}
+
+fn copy_into(file: &Path, folder: &Path) -> Result<(), Failure> {
+    copy(file, &folder.join(file.file_name().unwrap_or(file.as_os_str())))
+}
+
+/// Copies a file with its mode; makes the folders that it needs.
+fn copy(from: &Path, to: &Path) -> Result<(), Failure> {
+    if let Some(parent) = to.parent() {
+        fs::create_dir_all(parent).map_err(Failure::file("create", parent))?;
+    }
+    fs::copy(from, to).map(drop).map_err(Failure::file("copy", from))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_text_that_two_crates_share_is_printed_once_under_both_names() {
+        let room = tempfile::tempdir().unwrap();
+        let packages = ["alpha", "beta"].map(|name| {
+            let folder = room.path().join(name);
+            fs::create_dir(&folder).unwrap();
+            fs::write(folder.join("LICENSE-MIT"), "do as you like").unwrap();
+            fs::write(folder.join("README.md"), "not a licence").unwrap();
+            Package {
+                name: name.into(),
+                version: "1.2.3".into(),
+                license: Some("MIT".into()),
+                manifest_path: folder.join("Cargo.toml"),
+                ..Package::default()
+            }
+        });
+        let text = licence_texts(packages.iter());
+        assert!(text.contains("alpha 1.2.3: MIT\nbeta 1.2.3: MIT\n"), "{text}");
+        assert_eq!(text.matches("do as you like").count(), 1, "{text}");
+        assert!(text.contains("alpha, beta\n"), "{text}");
+        assert!(!text.contains("not a licence"), "{text}");
+    }
+}

@@ -1,0 +1,156 @@
+//! `cargo xtask test`: everything that CI runs, in order, up to the first failure.
+use crate::failure::Failure;
+use crate::wheel;
+use crate::workspace::{Workspace, run as run_command, shown};
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+/// Which engines are built and tested.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Engines {
+    /// Those that need a foreign library too.
+    All,
+    /// Only those that need none.
+    Embedded,
+}
+
+/// Scenarios and suites that the finished binary runs: arguments and expected exit code. Each writes into a folder of
+/// its own, see [`scenarios`].
+const SCENARIOS: [(&[&str], i32); 1] = [(&["run", "scenarios/"], 0)];
+
+/// One step.
+struct Step {
+    name: &'static str,
+    command: Command,
+    /// Exit code that it must have.
+    expected: i32,
+}
+
+impl Step {
+    fn new(name: &'static str, command: Command) -> Self {
+        Self { name, command, expected: 0 }
+    }
+}
+
+/// Sets up, then runs every step.
+///
+/// # Errors
+/// [`Failure::Fetch`] when the library of an engine cannot be had, [`Failure::Steps`] when a step fails.
+pub(crate) fn run(workspace: &Workspace, engines: Engines) -> Result<(), Failure> {
+    if engines == Engines::All {
+        wheel::MUJOCO.ensure(workspace)?;
+    }
+    run_steps(steps(workspace, engines)?)
+}
+
+fn steps(workspace: &Workspace, engines: Engines) -> Result<Vec<Step>, Failure> {
+    // Release for all: the binary, the tests and the documentation share what they compile.
+    let cargo = |subcommand: &[&str]| {
+        let mut command = workspace.cargo(subcommand);
+        command.args(["--release", "--workspace"]);
+        command.args(match engines {
+            Engines::All => ["--features", "servobench-cli/mujoco"],
+            Engines::Embedded => ["--exclude", "servobench-engine-mujoco"],
+        });
+        command
+    };
+    let itself = std::env::current_exe().map_err(Failure::file("find", "xtask"))?;
+    let mut lints = cargo(&["clippy", "--all-targets"]);
+    lints.args(["--", "-D", "warnings"]);
+    let mut documentation = cargo(&["doc", "--no-deps"]);
+    documentation.env("RUSTDOCFLAGS", "-D warnings");
+    let tests: &[&str] = if has_nextest(workspace) {
+        &["nextest", "run", "--no-fail-fast"]
+    } else {
+        &["test", "--no-fail-fast", "--lib", "--bins", "--tests"]
+    };
+    let mut steps = vec![
+        Step::new("format", workspace.cargo(["fmt", "--all", "--check"])),
+        Step::new("checks", workspace.command(itself, ["checks"])),
+        Step::new("lints", lints),
+        // The tests that leave the process run this binary.
+        Step::new("build", cargo(&["build"])),
+        Step::new("tests", cargo(tests)),
+        Step::new("documentation tests", cargo(&["test", "--doc"])),
+        Step::new("documentation", documentation),
+    ];
+    steps.extend(scenarios(workspace));
+    Ok(steps)
+}
+
+/// The scenarios and suites, each writing into `<target>/scenarios/<number>`.
+fn scenarios(workspace: &Workspace) -> impl Iterator<Item = Step> {
+    SCENARIOS.into_iter().enumerate().map(|(number, (arguments, expected))| {
+        let mut command = workspace.servobench(arguments);
+        command.arg("--out").arg(workspace.target.join("scenarios").join(number.to_string()));
+        Step { name: "scenarios", command, expected }
+    })
+}
+
+fn has_nextest(workspace: &Workspace) -> bool {
+    let mut command = workspace.cargo(["nextest", "--version"]);
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    command.status().is_ok_and(|status| status.success())
+}
+
+fn run_steps(steps: Vec<Step>) -> Result<(), Failure> {
+    let count = steps.len();
+    let mut steps = steps.into_iter().enumerate();
+    while let Some((passed, Step { name, mut command, expected })) = steps.next() {
+        let place = format!("[{}/{count}] {name}", passed + 1);
+        println!("{place}: {}", shown(&command));
+        let start = Instant::now();
+        let result = run_command(&mut command, expected);
+        let seconds = start.elapsed().as_secs_f64();
+        if let Err(failure) = result {
+            println!("{place} failed after {seconds:.1} s: {failure}");
+            let left: Vec<&str> = steps.map(|(_, step)| step.name).collect();
+            if !left.is_empty() {
+                println!("not run: {}", left.join(", "));
+            }
+            return Err(Failure::Steps { passed, not_run: left.len() });
+        }
+        println!("{place} passed in {seconds:.1} s");
+    }
+    println!("{count} passed, 0 failed");
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn step(name: &'static str, program: &str) -> Step {
+        Step::new(name, Command::new(program))
+    }
+
+    #[test]
+    fn the_first_failure_ends_the_run_and_is_counted() {
+        let steps =
+            vec![step("a", "true"), step("b", "false"), step("c", "true"), step("d", "true")];
+        let failure = run_steps(steps).unwrap_err();
+        assert_eq!(failure.to_string(), "1 passed, 1 failed, 2 not run");
+    }
+
+    #[test]
+    fn a_scenario_that_must_fail_has_to_end_with_its_exit_code() {
+        let ends_with = |code| {
+            let mut shell = Command::new("sh");
+            shell.args(["-c", "exit 4"]);
+            vec![Step { name: "limit", command: shell, expected: code }]
+        };
+        assert!(run_steps(ends_with(4)).is_ok());
+        assert!(run_steps(ends_with(0)).is_err());
+    }
+
+    #[test]
+    fn without_mujoco_no_step_names_its_feature() {
+        let nowhere = Workspace { root: ".".into(), target: "target".into() };
+        for (engines, named) in [(Engines::All, true), (Engines::Embedded, false)] {
+            let commands: Vec<String> =
+                steps(&nowhere, engines).unwrap().iter().map(|step| shown(&step.command)).collect();
+            assert_eq!(commands.iter().any(|c| c.contains("servobench-cli/mujoco")), named);
+            assert_eq!(commands.iter().any(|c| c.contains("--exclude")), !named);
+        }
+    }
+}
