@@ -1,12 +1,23 @@
 //! `Recording`: what a run leaves behind. Channels with unit, rate and writer, all sampled at one rate; the moves that
-//! were made; the events that happened.
+//! were made; the events that happened. As a file it is Parquet, which every data tool opens.
 //!
 //! A row is written at tick k **before** the integration to k+1, so all its values belong to the same instant.
 
 mod channel;
+mod envelope;
+mod error;
+mod header;
+mod read;
 mod recorder;
 mod recording;
+mod seal;
+mod write;
 
 pub use channel::{Channel, ChannelSpec};
+pub use envelope::envelope;
+pub use error::TraceError;
 pub use recorder::Recorder;
 pub use recording::{About, Event, Move, Recording};
+
+/// Column of a recording file that holds the instants (s).
+const TIME: &str = "time";

@@ -1,6 +1,6 @@
 //! A finished recording.
 use crate::channel::Channel;
-use servobench_base::Rate;
+use servobench_base::{Rate, Tick};
 
 /// What a recording is of.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -85,6 +85,12 @@ impl Recording {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// Time of the recorded instant `index` (s).
+    #[must_use]
+    pub fn time_of(&self, index: usize) -> f64 {
+        self.rate.time(Tick(index as u64))
     }
 
     /// Index of the first instant at or after `time` (s), at most [`Recording::len`].

@@ -1,0 +1,82 @@
+//! What can go wrong between a recording and its file.
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// Why a recording was not written or read.
+#[derive(Debug, Error)]
+pub enum TraceError {
+    /// The operating system refused.
+    #[error("cannot {action} `{}`: {source}", .path.display())]
+    Io {
+        /// What was tried: `create`, `write`, `rename`, `read`.
+        action: &'static str,
+        /// File or folder it was tried on.
+        path: PathBuf,
+        /// The system's reason.
+        source: std::io::Error,
+    },
+    /// The Parquet writer refused.
+    #[error("cannot encode `{}`: {reason}", .path.display())]
+    Encode {
+        /// File that was to be written.
+        path: PathBuf,
+        /// The writer's reason.
+        reason: String,
+    },
+    /// Two columns would have the same name.
+    #[error(
+        "channel `{name}` cannot be written: the name is taken by {by}; every channel needs its own name"
+    )]
+    NameTaken {
+        /// Name of the channel.
+        name: String,
+        /// What has the name already.
+        by: &'static str,
+    },
+    /// Channels differ in length.
+    #[error(
+        "channel `{name}` has {found} values where the first channel has {expected}; all channels are sampled together"
+    )]
+    UnequalLength {
+        /// Channel that differs.
+        name: String,
+        /// Number of its values.
+        found: usize,
+        /// Number of values in the first channel.
+        expected: usize,
+    },
+    /// The file is no Parquet file.
+    #[error("`{}` is not a Parquet file: {reason}", .path.display())]
+    NotParquet {
+        /// The file.
+        path: PathBuf,
+        /// What the decoder missed.
+        reason: String,
+    },
+    /// A Parquet file, but not one of ours, or not all of it.
+    #[error("`{}` is not a recording of servobench: it lacks {missing}", .path.display())]
+    Missing {
+        /// The file.
+        path: PathBuf,
+        /// What is missing: a metadata key or a column.
+        missing: String,
+    },
+    /// Written by another version.
+    #[error("`{}` has the recording format `{found}`, this build reads format `{known}`; use the servobench that wrote it", .path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// Format found in the file.
+        found: String,
+        /// Format this build reads and writes.
+        known: &'static str,
+    },
+    /// The file's content is not what was written.
+    #[error("`{}` is damaged or was edited: {reason}; write it again by running its scenario", .path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+}

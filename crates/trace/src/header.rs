@@ -1,0 +1,239 @@
+//! What a recording file says of itself: the file's key-value metadata.
+//!
+//! | key | value |
+//! |---|---|
+//! | `servobench.format` | version of this layout, [`FORMAT`] |
+//! | `servobench.recording` | JSON: all of a [`Recording`] but the values |
+//! | `servobench.seal` | digest of the whole file, see [`seal`](crate::seal) |
+use crate::channel::{Channel, ChannelSpec};
+use crate::recording::{About, Event, Move, Recording};
+use serde::{Deserialize, Serialize};
+use servobench_base::Rate;
+
+/// Version of the layout.
+pub(crate) const FORMAT: &str = "1";
+/// Key of the version.
+pub(crate) const FORMAT_KEY: &str = "servobench.format";
+/// Key of the JSON.
+pub(crate) const RECORDING_KEY: &str = "servobench.recording";
+
+/// The JSON.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Header {
+    scenario: String,
+    engine: String,
+    axis_unit: String,
+    bodies: Vec<String>,
+    /// Rate of the recorded instants (Hz).
+    rate: u32,
+    /// Number of recorded instants.
+    pub(crate) instants: usize,
+    channels: Vec<ChannelHeader>,
+    moves: Vec<MoveHeader>,
+    events: Vec<EventHeader>,
+}
+
+/// A channel without its values.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ChannelHeader {
+    name: String,
+    unit: String,
+    writer: String,
+    /// How often the writer renews it (Hz).
+    rate: u32,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MoveHeader {
+    label: String,
+    start: Number,
+    end: Number,
+    from: Number,
+    to: Number,
+    peaks: [Number; 4],
+    limits: [Option<Number>; 4],
+    cruise: (Number, Number),
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct EventHeader {
+    start: Number,
+    end: Number,
+    source: String,
+    message: String,
+}
+
+/// A number in JSON, which has no word for infinity: `"inf"`, `"-inf"` and `"NaN"` are written as text.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[serde(untagged)]
+enum Number {
+    Finite(f64),
+    Other(NotFinite),
+}
+
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+enum NotFinite {
+    #[serde(rename = "inf")]
+    Infinity,
+    #[serde(rename = "-inf")]
+    NegativeInfinity,
+    NaN,
+}
+
+impl From<f64> for Number {
+    fn from(value: f64) -> Self {
+        match value {
+            f64::INFINITY => Self::Other(NotFinite::Infinity),
+            f64::NEG_INFINITY => Self::Other(NotFinite::NegativeInfinity),
+            _ if value.is_nan() => Self::Other(NotFinite::NaN),
+            _ => Self::Finite(value),
+        }
+    }
+}
+
+impl From<Number> for f64 {
+    fn from(number: Number) -> Self {
+        match number {
+            Number::Finite(value) => value,
+            Number::Other(NotFinite::Infinity) => f64::INFINITY,
+            Number::Other(NotFinite::NegativeInfinity) => f64::NEG_INFINITY,
+            Number::Other(NotFinite::NaN) => f64::NAN,
+        }
+    }
+}
+
+impl From<&Move> for MoveHeader {
+    fn from(made: &Move) -> Self {
+        Self {
+            label: made.label.clone(),
+            start: made.start.into(),
+            end: made.end.into(),
+            from: made.from.into(),
+            to: made.to.into(),
+            peaks: made.peaks.map(Number::from),
+            limits: made.limits.map(|limit| limit.map(Number::from)),
+            cruise: (made.cruise.0.into(), made.cruise.1.into()),
+        }
+    }
+}
+
+impl From<MoveHeader> for Move {
+    fn from(made: MoveHeader) -> Self {
+        Self {
+            label: made.label,
+            start: made.start.into(),
+            end: made.end.into(),
+            from: made.from.into(),
+            to: made.to.into(),
+            peaks: made.peaks.map(f64::from),
+            limits: made.limits.map(|limit| limit.map(f64::from)),
+            cruise: (made.cruise.0.into(), made.cruise.1.into()),
+        }
+    }
+}
+
+impl From<&Event> for EventHeader {
+    fn from(event: &Event) -> Self {
+        Self {
+            start: event.start.into(),
+            end: event.end.into(),
+            source: event.source.clone(),
+            message: event.message.clone(),
+        }
+    }
+}
+
+impl From<EventHeader> for Event {
+    fn from(event: EventHeader) -> Self {
+        Self {
+            start: event.start.into(),
+            end: event.end.into(),
+            source: event.source,
+            message: event.message,
+        }
+    }
+}
+
+impl Header {
+    /// Header of `recording`.
+    pub(crate) fn of(recording: &Recording) -> Self {
+        let About { scenario, engine, axis_unit, bodies } = recording.about.clone();
+        let channels = recording.channels.iter().map(|channel| ChannelHeader {
+            name: channel.spec.name.clone(),
+            unit: channel.spec.unit.clone(),
+            writer: channel.spec.writer.clone(),
+            rate: channel.spec.rate.hertz(),
+        });
+        Self {
+            scenario,
+            engine,
+            axis_unit,
+            bodies,
+            rate: recording.rate.hertz(),
+            instants: recording.len(),
+            channels: channels.collect(),
+            moves: recording.moves.iter().map(MoveHeader::from).collect(),
+            events: recording.events.iter().map(EventHeader::from).collect(),
+        }
+    }
+
+    /// Names of the channels, in order.
+    pub(crate) fn columns(&self) -> impl Iterator<Item = &str> {
+        self.channels.iter().map(|channel| channel.name.as_str())
+    }
+
+    /// The recording without its values; `None` when a rate is zero.
+    pub(crate) fn into_recording(self) -> Option<Recording> {
+        let channels =
+            self.channels.into_iter().map(|ChannelHeader { name, unit, writer, rate }| {
+                let spec = ChannelSpec { name, unit, writer, rate: Rate::new(rate)? };
+                Some(Channel { spec, values: Vec::new() })
+            });
+        Some(Recording {
+            rate: Rate::new(self.rate)?,
+            channels: channels.collect::<Option<_>>()?,
+            moves: self.moves.into_iter().map(Move::from).collect(),
+            events: self.events.into_iter().map(Event::from).collect(),
+            about: About {
+                scenario: self.scenario,
+                engine: self.engine,
+                axis_unit: self.axis_unit,
+                bodies: self.bodies,
+            },
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn through_json(value: f64) -> f64 {
+        let text = serde_json::to_string(&Number::from(value)).unwrap();
+        f64::from(serde_json::from_str::<Number>(&text).unwrap())
+    }
+
+    #[test]
+    fn special_numbers_survive_json() {
+        for value in
+            [f64::INFINITY, f64::NEG_INFINITY, 0.0, -0.0, f64::MIN_POSITIVE, 5e-324, f64::MAX]
+        {
+            assert_eq!(through_json(value).to_bits(), value.to_bits(), "{value}");
+        }
+        assert!(through_json(f64::NAN).is_nan());
+    }
+
+    proptest! {
+        #[test]
+        fn every_finite_number_survives_json_to_the_bit(bits in any::<u64>()) {
+            let value = f64::from_bits(bits);
+            prop_assume!(!value.is_nan());
+            prop_assert_eq!(through_json(value).to_bits(), bits);
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! A digest over a whole file, stored in the file: damage is found before any decoder sees it.
+//!
+//! The seal is the XXH64 (seed 0) of all bytes of the file, its own 16 hexadecimal digits counted as zeros. It is the
+//! value of a key in the Parquet footer. There the key's text is followed by the two bytes that start the value in
+//! Thrift's compact protocol: field 2 − 1, type binary (`0x18`), and the length 16 (`0x10`).
+//! Source: Apache Thrift, *Thrift Compact protocol encoding*; Apache Parquet, *File Format* (footer length and `PAR1`
+//! in the last eight bytes).
+use std::hash::Hasher;
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use twox_hash::XxHash64;
+
+/// Key of the seal.
+pub(crate) const KEY: &str = "servobench.seal";
+/// Number of digits.
+const DIGITS: usize = 16;
+/// What stands in the place of the digits until the file is whole.
+pub(crate) const BLANK: &str = "0000000000000000";
+/// How a value of 16 bytes starts, after its key.
+const VALUE_START: [u8; 2] = [0x18, 0x10];
+
+/// Seals the file: computes the digest and writes it over the blank. Returns whether there was a place for it.
+pub(crate) fn apply(file: &mut (impl Read + Write + Seek)) -> io::Result<bool> {
+    let Some((start, _)) = find(file)? else { return Ok(false) };
+    let digits = digest(file, start)?;
+    file.seek(SeekFrom::Start(start))?;
+    file.write_all(digits.as_bytes())?;
+    Ok(true)
+}
+
+/// Whether the file has a seal and its bytes are those that were sealed.
+pub(crate) fn holds(file: &mut (impl Read + Seek)) -> io::Result<bool> {
+    let Some((start, digits)) = find(file)? else { return Ok(false) };
+    Ok(digest(file, start)?.as_bytes() == digits)
+}
+
+/// Offset of the digits in the file, and the digits.
+fn find(file: &mut (impl Read + Seek)) -> io::Result<Option<(u64, Vec<u8>)>> {
+    let len = file.seek(SeekFrom::End(0))?;
+    let Some(tail) = len.checked_sub(8) else { return Ok(None) };
+    file.seek(SeekFrom::Start(tail))?;
+    let mut footer_len = [0; 4];
+    file.read_exact(&mut footer_len)?;
+    let Some(start) = tail.checked_sub(u32::from_le_bytes(footer_len).into()) else {
+        return Ok(None);
+    };
+    file.seek(SeekFrom::Start(start))?;
+    let mut footer = Vec::new();
+    file.take(tail - start).read_to_end(&mut footer)?;
+    let mark = [KEY.as_bytes(), &VALUE_START].concat();
+    let at = footer.windows(mark.len() + DIGITS).rposition(|window| window.starts_with(&mark));
+    Ok(at.map(|at| at + mark.len()).map(|at| (start + at as u64, footer[at..at + DIGITS].to_vec())))
+}
+
+/// Digest of all bytes, the digits that start at `blank` counted as zeros.
+fn digest(file: &mut (impl Read + Seek), blank: u64) -> io::Result<String> {
+    let mut hash = XxHash64::with_seed(0);
+    file.rewind()?;
+    hash_all(file.take(blank), &mut hash)?;
+    hash.write(BLANK.as_bytes());
+    file.seek(SeekFrom::Start(blank + DIGITS as u64))?;
+    hash_all(file, &mut hash)?;
+    Ok(format!("{:016x}", hash.finish()))
+}
+
+fn hash_all(mut source: impl Read, hash: &mut XxHash64) -> io::Result<()> {
+    let mut block = vec![0; 1 << 18];
+    loop {
+        match source.read(&mut block)? {
+            0 => return Ok(()),
+            count => hash.write(&block[..count]),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Cursor;
+
+    /// A file as short as can be: four bytes, a footer with the blank seal, the footer's length and `PAR1`.
+    fn unsealed() -> Cursor<Vec<u8>> {
+        let footer = [&b"xy"[..], KEY.as_bytes(), &VALUE_START, BLANK.as_bytes(), b"z"].concat();
+        let len = u32::try_from(footer.len()).unwrap().to_le_bytes();
+        Cursor::new([b"PAR1", &footer[..], &len, b"PAR1"].concat())
+    }
+
+    /// Oracle: XXH64 over the file as it was before the digits replaced the zeros.
+    #[test]
+    fn the_seal_is_the_digest_of_the_file_with_zeros_in_its_place() {
+        let mut file = unsealed();
+        let expected = format!("{:016x}", XxHash64::oneshot(0, file.get_ref()));
+        assert!(!holds(&mut file).unwrap());
+        assert!(apply(&mut file).unwrap());
+        assert!(file.get_ref().windows(16).any(|window| window == expected.as_bytes()));
+        assert!(holds(&mut file).unwrap());
+    }
+
+    /// The value that the reference implementation (github.com/Cyan4973/xxHash) gives for no bytes.
+    #[test]
+    fn the_digest_is_xxh64() {
+        assert_eq!(XxHash64::oneshot(0, b""), 0xef46_db37_51d8_e999);
+    }
+
+    #[test]
+    fn one_bit_breaks_it() {
+        let mut file = unsealed();
+        apply(&mut file).unwrap();
+        for index in 0..file.get_ref().len() {
+            file.get_mut()[index] ^= 4;
+            assert!(!holds(&mut file).unwrap(), "byte {index}");
+            file.get_mut()[index] ^= 4;
+        }
+        assert!(holds(&mut file).unwrap());
+    }
+
+    #[test]
+    fn without_a_place_there_is_no_seal() {
+        for bytes in [&b""[..], b"PAR1", &[0xff; 40], &[0; 40]] {
+            assert!(!apply(&mut Cursor::new(bytes.to_vec())).unwrap());
+            assert!(!holds(&mut Cursor::new(bytes.to_vec())).unwrap());
+        }
+    }
+}
