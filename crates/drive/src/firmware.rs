@@ -192,6 +192,19 @@ impl Firmware {
         &self.telemetry
     }
 
+    /// The references at the present tick: between two turns of the position loop the held set-point goes on along its
+    /// own polynomial. This is what following errors are measured against; a reference that stands still while the
+    /// axis moves on would add an error of velocity × period.
+    #[must_use]
+    pub fn references(&self) -> (Setpoint, MotorReference) {
+        let since = self.params.position_every.ticks() - 1 - self.position_in;
+        if since == 0 {
+            return (self.telemetry.reference, self.telemetry.motor_reference);
+        }
+        let now = self.telemetry.reference.after(f64::from(since) * self.params.base_rate.period());
+        (now, self.params.feedforward.motor_reference(now))
+    }
+
     /// One base tick: runs the loops that are due and returns what goes to the power stage from now on.
     pub fn step(&mut self, setpoint: Setpoint, sensors: &Sensors) -> Command {
         if due(&mut self.position_in, self.params.position_every) {
@@ -347,6 +360,17 @@ mod tests {
             }
         }
         assert!((last - 243.45 * (160.18 * -0.02 * 32.0 / 16_000.0 - 0.02)).abs() < 1e-9, "{last}");
+    }
+
+    #[test]
+    fn references_go_on_between_two_turns_of_the_position_loop() {
+        let mut drive = Firmware::new(emps(), Setpoint::default()).unwrap();
+        for k in 0..40 {
+            let setpoint =
+                Setpoint { x: 0.1 * f64::from(k) / 16_000.0, v: 0.1, ..Setpoint::default() };
+            let _ = drive.step(setpoint, &Sensors::default());
+            assert!((drive.references().0.x - setpoint.x).abs() < 1e-18, "tick {k}");
+        }
     }
 
     #[test]

@@ -18,8 +18,8 @@ pub struct Scenario {
     pub engines: Vec<EngineName>,
     /// Base rate: one tick of mechanics.
     pub base_rate: Rate,
-    /// Length of the run (s).
-    pub duration: f64,
+    /// Length of the run (s); `None`: the program and half a second.
+    pub duration: Option<f64>,
     /// The mechanics.
     pub axis: Axis,
     /// What moves it.
@@ -36,8 +36,19 @@ pub struct Scenario {
     pub record: Record,
     /// What the measures need to know.
     pub measure: Measure,
-    /// Metric name to largest allowed value (SI), in the order of the file.
-    pub limits: Vec<(String, f64)>,
+    /// What makes it pass or fail, in the order of the file.
+    pub limits: Vec<Limit>,
+}
+
+/// Bounds of one metric (SI).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limit {
+    /// Name of the metric.
+    pub metric: String,
+    /// Smallest allowed value.
+    pub min: Option<f64>,
+    /// Largest allowed value.
+    pub max: Option<f64>,
 }
 
 /// Engines a scenario can name.

@@ -1,1 +1,17 @@
-//! placeholder
+//! The closed loop: builds it from a scenario and an engine, and runs it.
+//!
+//! [`Bench::run`] is the whole loop in one function, in execution order.
+
+mod bench;
+mod channels;
+mod disturbance;
+mod error;
+mod limits;
+mod power;
+mod program;
+mod run;
+
+pub use bench::Bench;
+pub use error::BuildError;
+pub use program::Program;
+pub use run::{Failure, Outcome};

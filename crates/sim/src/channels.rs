@@ -1,0 +1,185 @@
+//! The recorded channels: their names, units and writers, and the row of one tick.
+use crate::error::BuildError;
+use servobench_base::{Rate, Setpoint};
+use servobench_plant::BodyState;
+use servobench_trace::ChannelSpec;
+
+/// All that is known at tick k, before the integration to k+1.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Instant {
+    pub(crate) setpoint: Setpoint,
+    /// Bodies in the axis coordinate: motor, table (the middle one), load.
+    pub(crate) motor: BodyState,
+    pub(crate) table: BodyState,
+    pub(crate) load: BodyState,
+    pub(crate) reference: f64,
+    pub(crate) motor_reference: f64,
+    pub(crate) velocity_reference: f64,
+    pub(crate) effort_reference: f64,
+    pub(crate) effort: f64,
+    pub(crate) current: servobench_base::Dq,
+    pub(crate) current_reference: f64,
+    pub(crate) voltage: servobench_base::Dq,
+    pub(crate) output: f64,
+    /// Share of the ticks since the last row in which the voltage limit or the effort limit bound.
+    pub(crate) voltage_saturation: f64,
+    pub(crate) effort_saturation: f64,
+}
+
+/// Which channels an axis has.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Equipment {
+    /// Unit of positions on the axis, `m` or `rad`.
+    pub(crate) axis_unit: &'static str,
+    /// Unit of the motor's effort, `N` or `N m`.
+    pub(crate) effort_unit: &'static str,
+    /// Whether there is a body between motor and load.
+    pub(crate) table: bool,
+    /// What the firmware commands; `None` without firmware.
+    pub(crate) amplifier: Option<Amplifier>,
+}
+
+/// What the firmware commands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Amplifier {
+    /// The currents of a synchronous motor.
+    Current,
+    /// An ideal source.
+    Ideal,
+}
+
+/// Rates of the writers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct WriterRates {
+    pub(crate) base: Rate,
+    pub(crate) position: Rate,
+    pub(crate) velocity: Rate,
+    pub(crate) current: Rate,
+}
+
+const COUNT: usize = 27;
+
+/// Every channel there is, in the order of [`row`].
+fn all(equipment: &Equipment, rates: &WriterRates) -> [(bool, ChannelSpec); COUNT] {
+    let u = equipment.axis_unit;
+    let (e, drive) = (equipment.effort_unit, equipment.amplifier.is_some());
+    let current = equipment.amplifier == Some(Amplifier::Current);
+    let ideal = equipment.amplifier == Some(Amplifier::Ideal);
+    let per = |unit: &str, power: &str| format!("{unit}/s{power}");
+    let channel = |there: bool, name: &str, unit: String, writer: &str, rate: Rate| {
+        (there, ChannelSpec { name: name.into(), unit, writer: writer.into(), rate })
+    };
+    let setpoint = |name: &str, unit: String| channel(true, name, unit, "set-point", rates.base);
+    let mechanics =
+        |there: bool, name: &str, unit: String| channel(there, name, unit, "mechanics", rates.base);
+    let position_loop =
+        |name: &str, unit: String| channel(drive, name, unit, "position loop", rates.position);
+    let velocity_loop =
+        |name: &str, unit: String| channel(drive, name, unit, "velocity loop", rates.velocity);
+    let current_loop =
+        |name: &str, unit: &str| channel(current, name, unit.into(), "current loop", rates.current);
+    [
+        setpoint("setpoint.position", u.into()),
+        setpoint("setpoint.velocity", per(u, "")),
+        setpoint("setpoint.acceleration", per(u, "²")),
+        setpoint("setpoint.jerk", per(u, "³")),
+        setpoint("setpoint.snap", per(u, "⁴")),
+        mechanics(true, "motor.position", u.into()),
+        mechanics(true, "motor.velocity", per(u, "")),
+        mechanics(equipment.table, "table.position", u.into()),
+        mechanics(equipment.table, "table.velocity", per(u, "")),
+        mechanics(true, "load.position", u.into()),
+        mechanics(true, "load.velocity", per(u, "")),
+        position_loop("reference.position", u.into()),
+        position_loop("reference.motor_position", u.into()),
+        position_loop("velocity.reference", per(u, "")),
+        channel(true, "following_error.motor", u.into(), "measurement", rates.base),
+        channel(true, "following_error.load", u.into(), "measurement", rates.base),
+        velocity_loop("effort.reference", e.into()),
+        channel(drive, "effort.motor", e.into(), "power stage", rates.base),
+        channel(current, "current.d", "A".into(), "motor", rates.base),
+        channel(current, "current.q", "A".into(), "motor", rates.base),
+        current_loop("current.q_reference", "A"),
+        current_loop("voltage.d", "V"),
+        current_loop("voltage.q", "V"),
+        current_loop("voltage.magnitude", "V"),
+        channel(ideal, "command.output", "V".into(), "power stage", rates.base),
+        current_loop("saturation.voltage", ""),
+        channel(drive, "saturation.current", String::new(), "velocity loop", rates.velocity),
+    ]
+}
+
+/// The values of `now` in the order of [`all`].
+fn row(now: &Instant) -> [f64; COUNT] {
+    let Setpoint { x, v, a, j, s } = now.setpoint;
+    [
+        x,
+        v,
+        a,
+        j,
+        s,
+        now.motor.position,
+        now.motor.velocity,
+        now.table.position,
+        now.table.velocity,
+        now.load.position,
+        now.load.velocity,
+        now.reference,
+        now.motor_reference,
+        now.velocity_reference,
+        now.motor_reference - now.motor.position,
+        now.reference - now.load.position,
+        now.effort_reference,
+        now.effort,
+        now.current.d,
+        now.current.q,
+        now.current_reference,
+        now.voltage.d,
+        now.voltage.q,
+        now.voltage.magnitude(),
+        now.output,
+        now.voltage_saturation,
+        now.effort_saturation,
+    ]
+}
+
+/// The channels to keep and where they stand in a row.
+#[derive(Debug, Clone)]
+pub(crate) struct Selection {
+    pub(crate) specs: Vec<ChannelSpec>,
+    columns: Vec<usize>,
+    kept: Vec<f64>,
+}
+
+impl Selection {
+    /// Keeps the channels `wanted`, or all that the axis has when the list is empty.
+    pub(crate) fn new(
+        wanted: &[String],
+        equipment: &Equipment,
+        rates: &WriterRates,
+    ) -> Result<Self, BuildError> {
+        let there =
+            || all(equipment, rates).into_iter().enumerate().filter(|(_, (there, _))| *there);
+        if let Some(unknown) =
+            wanted.iter().find(|name| there().all(|(_, (_, spec))| spec.name != **name))
+        {
+            let available = there().map(|(_, (_, spec))| spec.name).collect();
+            return Err(BuildError::UnknownChannel { name: unknown.clone(), available });
+        }
+        let (columns, specs): (Vec<_>, Vec<_>) = there()
+            .filter(|(_, (_, spec))| wanted.is_empty() || wanted.contains(&spec.name))
+            .map(|(column, (_, spec))| (column, spec))
+            .unzip();
+        let kept = vec![0.0; columns.len()];
+        Ok(Self { specs, columns, kept })
+    }
+
+    /// The kept values of `now`.
+    pub(crate) fn pick(&mut self, now: &Instant) -> &[f64] {
+        let row = row(now);
+        for (kept, column) in self.kept.iter_mut().zip(&self.columns) {
+            *kept = row[*column];
+        }
+        &self.kept
+    }
+}

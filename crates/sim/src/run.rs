@@ -1,0 +1,143 @@
+//! The closed loop, in execution order.
+use crate::bench::Bench;
+use crate::channels::Instant;
+use crate::disturbance::effort_at;
+use servobench_base::Tick;
+use servobench_drive::{Command, Sensors};
+use servobench_plant::{Actuation, BodyState, Encoder, Input, MechanicsError};
+use servobench_scenario::DisturbedBody;
+use servobench_trace::Recording;
+
+/// What a run leaves behind.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// Everything up to the end, or up to the failure.
+    pub recording: Recording,
+    /// Why the run ended early.
+    pub failure: Option<Failure>,
+}
+
+/// Why a run ended early.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("at {time} s: {error}")]
+pub struct Failure {
+    /// When (s).
+    pub time: f64,
+    /// What the engine says.
+    pub error: MechanicsError,
+}
+
+/// How often a run reports its progress, in ticks.
+const PROGRESS_EVERY: u64 = 1 << 14;
+
+impl Bench {
+    /// Runs to the end; `progress` hears the share that is done, from 0 to 1.
+    ///
+    /// ```text
+    /// tick k:  sample → set-point → control → power stage → record → integrate to k+1
+    /// ```
+    ///
+    /// What is recorded together belongs to the same instant. Within control a slower loop's output reaches the faster
+    /// loop in the same tick; the voltage of the current loop goes out one period of that loop later. The power stage
+    /// takes the motor's position and velocity at k, and its mean torque over the tick drives the mechanics.
+    #[must_use]
+    pub fn run(mut self, progress: &mut dyn FnMut(f64)) -> Outcome {
+        let mut failure = None;
+        for k in 0..self.ticks {
+            let t = self.base_rate.time(Tick(k));
+
+            let (mut now, motor) = self.sample();
+            now.setpoint = self.program.at(t);
+            let command = self.control(t, motor, &mut now);
+            // The mean effort over the coming tick belongs into the row of this one; the current is the one at k.
+            now.current = self.power.current();
+            now.output = self.power.output(command);
+            now.effort = self.power.advance(command, motor, self.base_rate.period());
+            self.record(&mut now);
+            if k % PROGRESS_EVERY == 0 {
+                progress(k as f64 / self.ticks as f64);
+            }
+            if k + 1 == self.ticks {
+                break;
+            }
+            if let Err(error) = self.integrate(t, &now) {
+                failure = Some(Failure { time: t, error });
+                break;
+            }
+        }
+        self.watch.finish(self.base_rate.time(Tick(self.ticks - 1)), &mut self.recorder);
+        progress(1.0);
+        Outcome { recording: self.recorder.finish(), failure }
+    }
+
+    /// sample(k): the bodies in the axis coordinate, and the motor in its own.
+    fn sample(&self) -> (Instant, BodyState) {
+        let bodies = self.mechanics.bodies();
+        let own = bodies[0];
+        let motor = BodyState {
+            position: self.transmission * own.position,
+            velocity: self.transmission * own.velocity,
+        };
+        let load = if bodies.len() == 1 { motor } else { bodies[bodies.len() - 1] };
+        let table = if bodies.len() == 3 { bodies[1] } else { BodyState::default() };
+        (Instant { motor, table, load, ..Instant::default() }, own)
+    }
+
+    /// control(k): the firmware sees its sensors and the set-point. `motor` is in the motor's own coordinate.
+    fn control(&mut self, t: f64, motor: BodyState, now: &mut Instant) -> Command {
+        let Some(firmware) = &mut self.firmware else {
+            now.reference = now.setpoint.x;
+            now.motor_reference = now.setpoint.x;
+            return Command::Output(0.0);
+        };
+        let reading = self.motor_encoder.read(motor.position, motor.velocity);
+        let on_load =
+            |encoder: Encoder| encoder.read(now.load.position, now.load.velocity).position;
+        let sensors = Sensors {
+            motor_position: reading.position,
+            motor_velocity: reading.velocity,
+            load_position: self.load_encoder.map(on_load),
+            current: self.power.measured_current(motor),
+        };
+        let command = firmware.step(now.setpoint, &sensors);
+        let (telemetry, (reference, motor_reference)) =
+            (firmware.telemetry(), firmware.references());
+        now.reference = reference.x;
+        now.motor_reference = motor_reference.position;
+        now.velocity_reference = telemetry.velocity_reference;
+        now.effort_reference = telemetry.effort_reference;
+        now.current_reference = telemetry.current_reference;
+        now.voltage = telemetry.current.computed;
+        self.watch.tick(
+            t,
+            telemetry.current.saturated,
+            telemetry.effort_saturated,
+            &mut self.recorder,
+        );
+        command
+    }
+
+    /// record(k), when a row is due.
+    fn record(&mut self, now: &mut Instant) {
+        if self.ticks_to_row == 0 {
+            self.ticks_to_row = self.record_every;
+            (now.voltage_saturation, now.effort_saturation) = self.watch.shares();
+            self.recorder.push(self.selection.pick(now));
+        }
+        self.ticks_to_row -= 1;
+    }
+
+    /// Integrates the mechanics to k+1.
+    fn integrate(&mut self, t: f64, now: &Instant) -> Result<(), MechanicsError> {
+        let actuation = if self.prescribed {
+            Actuation::Motion(now.setpoint)
+        } else {
+            Actuation::Effort(now.effort)
+        };
+        self.mechanics.advance(&Input {
+            actuation,
+            motor_disturbance: effort_at(&self.disturbances, DisturbedBody::Motor, t),
+            load_disturbance: effort_at(&self.disturbances, DisturbedBody::Load, t),
+        })
+    }
+}
