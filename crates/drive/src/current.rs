@@ -85,11 +85,7 @@ impl Params {
     ///
     /// # Errors
     /// [`ParamError`] names the first argument that is not finite and positive.
-    pub fn from_bandwidth(
-        motor: MotorEstimate,
-        alpha: f64,
-        max_voltage: f64,
-    ) -> Result<Self, ParamError> {
+    pub fn from_bandwidth(motor: MotorEstimate, alpha: f64, max_voltage: f64) -> Result<Self, ParamError> {
         positive("current bandwidth", alpha)?;
         positive("resistance", motor.resistance)?;
         positive("inductance_d", motor.inductance.d)?;
@@ -110,17 +106,12 @@ pub fn step(p: &Params, x: &mut State, u: Input, h: f64) -> Output {
     let motor = &p.motor;
     let v = Dq {
         d: p.k_p.d * e.d + x.integral.d - u.omega_e * motor.inductance.q * i.q,
-        q: p.k_p.q * e.q
-            + x.integral.q
-            + u.omega_e * (motor.inductance.d * i.d + motor.flux_linkage),
+        q: p.k_p.q * e.q + x.integral.q + u.omega_e * (motor.inductance.d * i.d + motor.flux_linkage),
     };
     let computed = limit_d_first(v, p.max_voltage);
     x.integral.d += h * p.k_i.d * (e.d + (computed.d - v.d) / p.k_p.d);
     x.integral.q += h * p.k_i.q * (e.q + (computed.q - v.q) / p.k_p.q);
-    let voltage = core::mem::replace(
-        &mut x.pending,
-        computed.to_alpha_beta(u.theta.ahead(1.5 * h * u.omega_e)),
-    );
+    let voltage = core::mem::replace(&mut x.pending, computed.to_alpha_beta(u.theta.ahead(1.5 * h * u.omega_e)));
     Output { voltage, current: i, computed, saturated: computed != v }
 }
 
@@ -138,12 +129,8 @@ fn limit_d_first(v: Dq, max: f64) -> Dq {
 mod tests {
     use super::*;
 
-    const MOTOR: MotorEstimate = MotorEstimate {
-        pole_pairs: 3.0,
-        resistance: 3.6,
-        inductance: Dq { d: 36e-3, q: 51e-3 },
-        flux_linkage: 0.545,
-    };
+    const MOTOR: MotorEstimate =
+        MotorEstimate { pole_pairs: 3.0, resistance: 3.6, inductance: Dq { d: 36e-3, q: 51e-3 }, flux_linkage: 0.545 };
     const H: f64 = 1.0 / 16_000.0;
 
     /// Drives an R–L load at standstill, where each axis is exactly i(k+1) = a·i + (1 − a)/R·u.
@@ -154,15 +141,8 @@ mod tests {
         for k in 0..1_600 {
             let reference = Dq { d: 0.0, q: slope * f64::from(k) * H };
             let current = AlphaBeta { alpha: i.d, beta: i.q };
-            let out = step(
-                &p,
-                &mut x,
-                Input { reference, current, theta: ElectricalAngle(0.0), omega_e: 0.0 },
-                H,
-            );
-            for (i, u, l) in
-                [(&mut i.d, out.voltage.alpha, 36e-3), (&mut i.q, out.voltage.beta, 51e-3)]
-            {
+            let out = step(&p, &mut x, Input { reference, current, theta: ElectricalAngle(0.0), omega_e: 0.0 }, H);
+            for (i, u, l) in [(&mut i.d, out.voltage.alpha, 36e-3), (&mut i.q, out.voltage.beta, 51e-3)] {
                 let a = (-H * 3.6 / l).exp();
                 *i = a * *i + (1.0 - a) / 3.6 * u;
             }
@@ -175,11 +155,7 @@ mod tests {
     fn a_ramp_is_followed_one_over_alpha_late() {
         for alpha in [500.0, 2_000.0, 6_000.0] {
             // Forward Euler and the exact hold of R–L differ by h·R/2L of the gain.
-            assert!(
-                (ramp_lag(alpha) * alpha - 1.0).abs() < 5e-3,
-                "{alpha}: {}",
-                ramp_lag(alpha) * alpha
-            );
+            assert!((ramp_lag(alpha) * alpha - 1.0).abs() < 5e-3, "{alpha}: {}", ramp_lag(alpha) * alpha);
         }
     }
 
@@ -213,17 +189,9 @@ mod tests {
         let p = Params::from_bandwidth(MOTOR, 2_000.0, 1e6).unwrap();
         let mut x = State::default();
         let (theta, omega_e) = (ElectricalAngle(0.7), 2_000.0);
-        let input = Input {
-            reference: Dq { d: 1.0, q: 2.0 },
-            current: AlphaBeta::default(),
-            theta,
-            omega_e,
-        };
+        let input = Input { reference: Dq { d: 1.0, q: 2.0 }, current: AlphaBeta::default(), theta, omega_e };
         let computed = step(&p, &mut x, input, H).computed;
         let met = step(&p, &mut x, input, H).voltage.to_dq(theta.ahead(1.5 * H * omega_e));
-        assert!(
-            (met.d - computed.d).abs() < 1e-10 && (met.q - computed.q).abs() < 1e-10,
-            "{met:?} {computed:?}"
-        );
+        assert!((met.d - computed.d).abs() < 1e-10 && (met.q - computed.q).abs() < 1e-10, "{met:?} {computed:?}");
     }
 }

@@ -32,11 +32,7 @@ impl DelayLine {
             return Err(ParamError { name: "feedforward delay", value: delay, bound });
         }
         let whole = libm::ceil(periods - 1e-9);
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "from 0 to CAPACITY"
-        )]
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to CAPACITY")]
         let index = if whole > 0.0 { whole as usize } else { 0 };
         let rest = (index as f64 * period - delay).max(0.0);
         Ok(Self { kept: [start; Self::CAPACITY + 2], newest: 0, whole: index, rest })
@@ -47,11 +43,7 @@ impl DelayLine {
         let size = self.kept.len();
         self.newest = if self.newest + 1 == size { 0 } else { self.newest + 1 };
         self.kept[self.newest] = now;
-        let index = if self.newest >= self.whole {
-            self.newest - self.whole
-        } else {
-            self.newest + size - self.whole
-        };
+        let index = if self.newest >= self.whole { self.newest - self.whole } else { self.newest + size - self.whole };
         let earlier = self.kept[index];
         if self.rest == 0.0 { earlier } else { earlier.after(self.rest) }
     }
@@ -72,10 +64,7 @@ mod tests {
                 let found = line.push(start.after(t));
                 if k >= 30 {
                     let exact = start.after(t - delay);
-                    assert!(
-                        (found.x - exact.x).abs() < 1e-14 && (found.v - exact.v).abs() < 1e-13,
-                        "{delay} {k}"
-                    );
+                    assert!((found.x - exact.x).abs() < 1e-14 && (found.v - exact.v).abs() < 1e-13, "{delay} {k}");
                 }
             }
         }

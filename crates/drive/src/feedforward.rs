@@ -64,11 +64,7 @@ impl Params {
     /// [`ParamError`] names the first parameter out of its bound.
     pub fn check(&self) -> Result<(), ParamError> {
         if !(0.0..=1.0).contains(&self.velocity) {
-            return Err(ParamError {
-                name: "velocity feedforward",
-                value: self.velocity,
-                bound: "from 0 to 1",
-            });
+            return Err(ParamError { name: "velocity feedforward", value: self.velocity, bound: "from 0 to 1" });
         }
         non_negative("estimated coulomb", self.coulomb)?;
         servobench_base::finite("estimated bias", self.bias)?;
@@ -78,13 +74,7 @@ impl Params {
                 non_negative("estimated inertia", inertia)?;
                 non_negative("estimated viscous", viscous).map(|_| ())
             }
-            Model::TwoMass {
-                motor_inertia,
-                load_inertia,
-                stiffness,
-                motor_viscous,
-                load_viscous,
-            } => {
+            Model::TwoMass { motor_inertia, load_inertia, stiffness, motor_viscous, load_viscous } => {
                 non_negative("estimated motor_inertia", motor_inertia)?;
                 non_negative("estimated load_inertia", load_inertia)?;
                 positive("estimated stiffness", stiffness)?;
@@ -109,10 +99,7 @@ impl Params {
                     motor_viscous: k1,
                     load_viscous: k2,
                 } => {
-                    m1 * m2 / c * r.s
-                        + (m1 * k2 + m2 * k1) / c * r.j
-                        + (m1 + m2 + k1 * k2 / c) * r.a
-                        + (k1 + k2) * r.v
+                    m1 * m2 / c * r.s + (m1 * k2 + m2 * k1) / c * r.j + (m1 + m2 + k1 * k2 / c) * r.a + (k1 + k2) * r.v
                 }
             }
     }
@@ -122,10 +109,7 @@ impl Params {
     pub fn motor_reference(&self, r: Setpoint) -> MotorReference {
         match self.model {
             Model::TwoMass { load_inertia: m2, stiffness: c, load_viscous: k2, .. } => {
-                MotorReference {
-                    position: r.x + (m2 * r.a + k2 * r.v) / c,
-                    velocity: r.v + (m2 * r.j + k2 * r.a) / c,
-                }
+                MotorReference { position: r.x + (m2 * r.a + k2 * r.v) / c, velocity: r.v + (m2 * r.j + k2 * r.a) / c }
             }
             Model::Off | Model::Rigid { .. } => MotorReference { position: r.x, velocity: r.v },
         }
@@ -157,10 +141,7 @@ mod tests {
         let r = Setpoint { x: 0.3, v: 0.8, a: 4.0, j: -30.0, s: 900.0 };
         let m = LAMBRECHTS.motor_reference(r);
         let spring = 6e5 * (m.position - r.x);
-        assert!(
-            (spring - (10.0 * r.a + 10.0 * r.v)).abs() < 1e-9,
-            "a difference of 1e-5 m loses 5 digits: {spring}"
-        );
+        assert!((spring - (10.0 * r.a + 10.0 * r.v)).abs() < 1e-9, "a difference of 1e-5 m loses 5 digits: {spring}");
         let motor_acceleration = r.a + (10.0 * r.s + 10.0 * r.j) / 6e5;
         let effort = 20.0 * motor_acceleration + 10.0 * m.velocity + (10.0 * r.a + 10.0 * r.v);
         assert!((LAMBRECHTS.effort(r) - effort).abs() < 1e-12, "{} {effort}", LAMBRECHTS.effort(r));
@@ -187,9 +168,6 @@ mod tests {
     fn friction_is_compensated_in_the_direction_of_motion_only_while_moving() {
         let p = Params { model: Model::Off, coulomb: 20.0, bias: -3.0, ..LAMBRECHTS };
         let at = |v| p.effort(Setpoint { v, ..Setpoint::default() });
-        assert_eq!(
-            [at(0.0), at(0.1), at(-0.1)].map(f64::to_bits),
-            [-3.0_f64, 17.0, -23.0].map(f64::to_bits)
-        );
+        assert_eq!([at(0.0), at(0.1), at(-0.1)].map(f64::to_bits), [-3.0_f64, 17.0, -23.0].map(f64::to_bits));
     }
 }

@@ -9,9 +9,7 @@ use crate::current;
 use crate::delay::DelayLine;
 use crate::feedforward::{self, MotorReference};
 use crate::velocity;
-use servobench_base::{
-    AlphaBeta, Divider, Dq, ElectricalAngle, ParamError, Rate, Setpoint, non_negative, positive,
-};
+use servobench_base::{AlphaBeta, Divider, Dq, ElectricalAngle, ParamError, Rate, Setpoint, non_negative, positive};
 
 /// Which encoder closes the position loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -237,20 +235,17 @@ impl Firmware {
         let t = &mut self.telemetry;
         t.reference = reference;
         t.motor_reference = motor_reference;
-        t.velocity_reference =
-            p.position_gain * error + p.feedforward.velocity * motor_reference.velocity;
+        t.velocity_reference = p.position_gain * error + p.feedforward.velocity * motor_reference.velocity;
         t.feedforward = p.transmission * p.feedforward.effort(setpoint);
     }
 
     fn velocity_loop(&mut self, sensors: &Sensors) {
         let p = &self.params;
         let h = f64::from(p.velocity_every.ticks()) * p.base_rate.period();
-        let last =
-            self.last_position.replace(sensors.motor_position).unwrap_or(sensors.motor_position);
+        let last = self.last_position.replace(sensors.motor_position).unwrap_or(sensors.motor_position);
         let measured = sensors.motor_velocity.unwrap_or((sensors.motor_position - last) / h);
         // Backward Euler of the low-pass: stable for every time constant, and no filter at zero.
-        self.filtered_velocity +=
-            h / (h + p.velocity_filter_time) * (measured - self.filtered_velocity);
+        self.filtered_velocity += h / (h + p.velocity_filter_time) * (measured - self.filtered_velocity);
         let t = &mut self.telemetry;
         let input = velocity::Input {
             reference: t.velocity_reference / p.transmission,
@@ -269,10 +264,7 @@ impl Firmware {
         let input = current::Input {
             reference: Dq { d: 0.0, q: t.current_reference },
             current: sensors.current,
-            theta: ElectricalAngle::from_mechanical(
-                sensors.motor_position,
-                params.motor.pole_pairs,
-            ),
+            theta: ElectricalAngle::from_mechanical(sensors.motor_position, params.motor.pole_pairs),
             omega_e: params.motor.pole_pairs * self.filtered_velocity,
         };
         t.current = current::step(params, &mut self.current, input, h);
@@ -309,19 +301,10 @@ mod tests {
             position_gain: 160.18,
             feedback: Feedback::Motor,
             position_every: every,
-            velocity: velocity::Params {
-                k_p: 35.1507 * 243.45,
-                integral_time: None,
-                max_effort: 351.507,
-            },
+            velocity: velocity::Params { k_p: 35.1507 * 243.45, integral_time: None, max_effort: 351.507 },
             velocity_every: every,
             velocity_filter_time: 0.0,
-            feedforward: feedforward::Params {
-                velocity: 0.0,
-                model: feedforward::Model::Off,
-                coulomb: 0.0,
-                bias: 0.0,
-            },
+            feedforward: feedforward::Params { velocity: 0.0, model: feedforward::Model::Off, coulomb: 0.0, bias: 0.0 },
             reference_delay: 0.0,
             stage: Stage::Direct { gain: 35.1507 },
         }
@@ -331,18 +314,12 @@ mod tests {
     #[test]
     fn a_p_p_cascade_is_the_published_control_law() {
         let mut drive = Firmware::new(emps(), Setpoint::default()).unwrap();
-        let at = |x: f64| Sensors {
-            motor_position: x,
-            motor_velocity: Some(0.02),
-            ..Sensors::default()
-        };
+        let at = |x: f64| Sensors { motor_position: x, motor_velocity: Some(0.02), ..Sensors::default() };
         let setpoint = Setpoint { x: 8e-4, v: 0.1, ..Setpoint::default() };
         let law = |x: f64| 243.45 * (160.18 * (8e-4 - x) - 0.02);
         for k in 0..32 {
             let x = 5e-4 + 1e-6 * f64::from(k);
-            let Command::Output(u) = drive.step(setpoint, &at(x)) else {
-                panic!("an ideal amplifier")
-            };
+            let Command::Output(u) = drive.step(setpoint, &at(x)) else { panic!("an ideal amplifier") };
             let turn = f64::from(k / 16 * 16);
             assert!((u - law(5e-4 + 1e-6 * turn)).abs() < 1e-11, "tick {k}: {u}");
         }
@@ -366,8 +343,7 @@ mod tests {
     fn references_go_on_between_two_turns_of_the_position_loop() {
         let mut drive = Firmware::new(emps(), Setpoint::default()).unwrap();
         for k in 0..40 {
-            let setpoint =
-                Setpoint { x: 0.1 * f64::from(k) / 16_000.0, v: 0.1, ..Setpoint::default() };
+            let setpoint = Setpoint { x: 0.1 * f64::from(k) / 16_000.0, v: 0.1, ..Setpoint::default() };
             let _ = drive.step(setpoint, &Sensors::default());
             assert!((drive.references().0.x - setpoint.x).abs() < 1e-18, "tick {k}");
         }

@@ -54,11 +54,7 @@ impl Params {
             positive("velocity integral_time", integral_time)?;
         }
         if self.max_effort.is_nan() || self.max_effort <= 0.0 {
-            return Err(ParamError {
-                name: "max_effort",
-                value: self.max_effort,
-                bound: "positive",
-            });
+            return Err(ParamError { name: "max_effort", value: self.max_effort, bound: "positive" });
         }
         Ok(())
     }
@@ -87,14 +83,9 @@ mod tests {
     /// Speed after 40 ms of a 1 rad/s step with both poles at −ω_n: k_p = 2·J·ω_n, T_i = 2/ω_n. The plant
     /// `J·dω/dt = τ` is exact under a zero-order hold.
     fn speed_at_40_ms(h: f64) -> f64 {
-        let p =
-            Params { k_p: 2.0 * J * OMEGA_N, integral_time: Some(2.0 / OMEGA_N), max_effort: 1e3 };
+        let p = Params { k_p: 2.0 * J * OMEGA_N, integral_time: Some(2.0 / OMEGA_N), max_effort: 1e3 };
         let (mut x, mut omega) = (State::default(), 0.0);
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a small count"
-        )]
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
         for _ in 0..(0.04 / h).round() as u32 {
             let u = Input { reference: 1.0, velocity: omega, feedforward: 0.0 };
             omega += h / J * step(&p, &mut x, u, h).effort;
@@ -135,10 +126,7 @@ mod tests {
     #[test]
     fn errors_name_the_parameter() {
         let p = Params { k_p: 1.0, integral_time: Some(0.0), max_effort: 1.0 };
-        assert_eq!(
-            p.check().unwrap_err().to_string(),
-            "`velocity integral_time` must be finite and positive, got 0"
-        );
+        assert_eq!(p.check().unwrap_err().to_string(), "`velocity integral_time` must be finite and positive, got 0");
         assert!(Params { max_effort: f64::NAN, integral_time: None, ..p }.check().is_err());
     }
 }

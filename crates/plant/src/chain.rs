@@ -64,18 +64,10 @@ impl Chain {
     /// [`ParamError`] names the first parameter out of its bound; `bodies` and `links` when their numbers do not fit.
     pub fn new(bodies: Vec<Body>, links: Vec<Link>) -> Result<Self, ParamError> {
         if bodies.is_empty() || bodies.len() > Self::MAX_BODIES {
-            return Err(ParamError {
-                name: "bodies",
-                value: bodies.len() as f64,
-                bound: "1 to 4 in number",
-            });
+            return Err(ParamError { name: "bodies", value: bodies.len() as f64, bound: "1 to 4 in number" });
         }
         if links.len() + 1 != bodies.len() {
-            return Err(ParamError {
-                name: "links",
-                value: links.len() as f64,
-                bound: "one fewer than the bodies",
-            });
+            return Err(ParamError { name: "links", value: links.len() as f64, bound: "one fewer than the bodies" });
         }
         for body in &bodies {
             positive("inertia", body.inertia)?;
@@ -120,11 +112,8 @@ impl Chain {
     /// Force through link `i` in the axis coordinate, positive when body i pushes body i+1 forward.
     fn link_force(&self, i: usize, states: &[BodyState]) -> f64 {
         let (near, far, link) = (&self.bodies[i], &self.bodies[i + 1], &self.links[i]);
-        link.stiffness
-            * (near.transmission * states[i].position - far.transmission * states[i + 1].position)
-            + link.damping
-                * (near.transmission * states[i].velocity
-                    - far.transmission * states[i + 1].velocity)
+        link.stiffness * (near.transmission * states[i].position - far.transmission * states[i + 1].position)
+            + link.damping * (near.transmission * states[i].velocity - far.transmission * states[i + 1].velocity)
     }
 }
 
@@ -139,15 +128,9 @@ mod tests {
 
     #[test]
     fn forces_through_a_screw_balance_in_power() {
-        let chain = Chain::new(
-            vec![body(1e-3, 0.01), body(10.0, 1.0)],
-            vec![Link { stiffness: 1e6, damping: 100.0 }],
-        )
-        .unwrap();
-        let states = [
-            BodyState { position: 1.0, velocity: 3.0 },
-            BodyState { position: 0.009, velocity: 0.02 },
-        ];
+        let chain =
+            Chain::new(vec![body(1e-3, 0.01), body(10.0, 1.0)], vec![Link { stiffness: 1e6, damping: 100.0 }]).unwrap();
+        let states = [BodyState { position: 1.0, velocity: 3.0 }, BodyState { position: 0.009, velocity: 0.02 }];
         let force = 1e6 * (0.01 - 0.009) + 100.0 * (0.03 - 0.02);
         let motor = chain.passive_effort(0, &states);
         let table = chain.passive_effort(1, &states);
@@ -159,8 +142,6 @@ mod tests {
     fn negative_inertia_is_refused_by_name() {
         let e = Chain::new(vec![body(-1.0, 1.0)], vec![]).unwrap_err();
         assert_eq!(e.to_string(), "`inertia` must be finite and positive, got -1");
-        assert!(
-            Chain::new(vec![body(1.0, 1.0)], vec![Link { stiffness: 1.0, damping: 0.0 }]).is_err()
-        );
+        assert!(Chain::new(vec![body(1.0, 1.0)], vec![Link { stiffness: 1.0, damping: 0.0 }]).is_err());
     }
 }

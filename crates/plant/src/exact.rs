@@ -14,15 +14,18 @@
 //! Source: Åström & Wittenmark, *Computer-Controlled Systems*, 3rd ed., §2.3; Van Loan, IEEE TAC 23(3), 1978.
 use crate::chain::Chain;
 use crate::friction::Grip;
-use crate::mechanics::{
-    Actuation, BodyState, Drive, Engine, Input, Mechanics, MechanicsError, MechanicsSetup, Model,
-};
+use crate::mechanics::{Actuation, BodyState, Drive, Engine, Input, Mechanics, MechanicsError, MechanicsSetup, Model};
 use nalgebra::DMatrix;
 
 const NAME: &str = "exact";
 const MAX_BODIES: usize = Chain::MAX_BODIES;
-/// Stretches and velocities of the chain, then the derivatives of a prescribed base.
-const MAX_STATES: usize = 2 * MAX_BODIES - 1 + 4;
+/// Most rows: stretches and velocities of the chain, derivatives of a prescribed base, travel.
+const ROWS: usize = 2 * MAX_BODIES - 1 + 4 + 1;
+
+/// Number of states: stretches and velocities, and the four derivatives of a prescribed base.
+fn states(chain: &Chain, prescribed: bool) -> usize {
+    2 * chain.bodies().len() - 1 + if prescribed { 4 } else { 0 }
+}
 
 /// The engine `exact`.
 #[derive(Debug, Clone, Copy, Default)]
@@ -35,59 +38,50 @@ impl Engine for Exact {
 
     fn build(&self, setup: &MechanicsSetup) -> Result<Box<dyn Mechanics>, MechanicsError> {
         match &setup.model {
-            Model::Chain(chain) => Ok(Box::new(ExactChain::new(chain.clone(), setup))),
+            // Rows in use: stretches, velocities, base derivatives, travel. The next multiple of four fills registers.
+            Model::Chain(chain) => Ok(match states(chain, setup.drive == Drive::Prescribed) + 1 {
+                0..=4 => Box::new(ExactChain::<4>::new(chain.clone(), setup)),
+                5..=8 => Box::new(ExactChain::<8>::new(chain.clone(), setup)),
+                _ => Box::new(ExactChain::<ROWS>::new(chain.clone(), setup)),
+            }),
             Model::Mjcf(model) => Err(MechanicsError::Unsupported {
                 engine: NAME,
                 what: format!("MJCF files ({})", model.path.display()),
-                way_out:
-                    "choose the engine `mujoco` or `rapier`, or describe the axis by its bodies"
-                        .into(),
+                way_out: "choose the engine `mujoco` or `rapier`, or describe the axis by its bodies".into(),
             }),
         }
     }
 }
 
-/// `y(k+1) = Φ·y(k) + Γ·u(k)` for one set of stuck bodies; the last row of both gives the travel of body 0 in a tick.
-#[derive(Debug, Clone)]
-struct Hold {
-    phi: [[f64; MAX_STATES]; MAX_STATES],
-    gamma: [[f64; MAX_BODIES]; MAX_STATES],
-    travel_phi: [f64; MAX_STATES],
-    travel_gamma: [f64; MAX_BODIES],
-}
+/// `y(k+1) = Φ·y(k) + Γ·u(k)` for one set of stuck bodies, column by column: those of the states, then those of the
+/// efforts. The row after the states is the travel of body 0 in the tick.
+type Hold<const W: usize> = Vec<[f64; W]>;
 
-/// A chain under zero-order hold.
-struct ExactChain {
+/// A chain under zero-order hold, `W` rows wide.
+struct ExactChain<const W: usize> {
     chain: Chain,
     prescribed: bool,
     /// Tick length (s).
     step: f64,
-    /// Number of states in use.
-    states: usize,
     /// One entry for each set of stuck bodies, body i being bit i; only those that dry friction can reach are there.
-    holds: Vec<Option<Box<Hold>>>,
-    y: [f64; MAX_STATES],
+    holds: Vec<Option<Hold<W>>>,
+    y: [f64; W],
     bodies: Vec<BodyState>,
     any_dry: bool,
 }
 
-impl ExactChain {
+impl<const W: usize> ExactChain<W> {
     fn new(chain: Chain, setup: &MechanicsSetup) -> Self {
         let n = chain.bodies().len();
         let prescribed = setup.drive == Drive::Prescribed;
-        let states = 2 * n - 1 + if prescribed { 4 } else { 0 };
         let can_stick = chain.bodies().iter().enumerate().fold(0_usize, |set, (i, body)| {
             if body.dry.is_none() || (prescribed && i == 0) { set } else { set | 1 << i }
         });
         let holds = (0..1_usize << n)
-            .map(|stuck| {
-                (stuck & !can_stick == 0)
-                    .then(|| Box::new(hold(&chain, prescribed, setup.step, stuck)))
-            })
+            .map(|stuck| (stuck & !can_stick == 0).then(|| hold(&chain, prescribed, setup.step, stuck)))
             .collect();
-        let bodies: Vec<BodyState> =
-            (0..n).map(|i| setup.initial.get(i).copied().unwrap_or_default()).collect();
-        let mut y = [0.0; MAX_STATES];
+        let bodies: Vec<BodyState> = (0..n).map(|i| setup.initial.get(i).copied().unwrap_or_default()).collect();
+        let mut y = [0.0; W];
         let axis_position = |i: usize| chain.bodies()[i].transmission * bodies[i].position;
         for i in 1..n {
             y[i - 1] = axis_position(i - 1) - axis_position(i);
@@ -95,16 +89,7 @@ impl ExactChain {
         for i in 0..n {
             y[n - 1 + i] = setup.step * chain.bodies()[i].transmission * bodies[i].velocity;
         }
-        Self {
-            chain,
-            prescribed,
-            step: setup.step,
-            states,
-            holds,
-            y,
-            bodies,
-            any_dry: can_stick != 0,
-        }
+        Self { chain, prescribed, step: setup.step, holds, y, bodies, any_dry: can_stick != 0 }
     }
 
     /// Efforts that are constant over the tick, dry friction still missing.
@@ -136,7 +121,7 @@ impl ExactChain {
     }
 }
 
-impl Mechanics for ExactChain {
+impl<const W: usize> Mechanics for ExactChain<W> {
     fn bodies(&self) -> &[BodyState] {
         &self.bodies
     }
@@ -148,8 +133,7 @@ impl Mechanics for ExactChain {
             (Actuation::Effort(_), false) => {}
             (Actuation::Motion(now), true) => {
                 let h = self.step;
-                let derivatives =
-                    [h * now.v, h * h * now.a, h * h * h * now.j, h * h * h * h * now.s];
+                let derivatives = [h * now.v, h * h * now.a, h * h * h * now.j, h * h * h * h * now.s];
                 self.y[2 * n - 1..2 * n + 3].copy_from_slice(&derivatives);
                 self.y[n - 1] = derivatives[0];
                 base_position = Some(now.after(h).x);
@@ -158,9 +142,7 @@ impl Mechanics for ExactChain {
                 return Err(MechanicsError::Unsupported {
                     engine: NAME,
                     what: "an actuation other than the one it was built for".into(),
-                    way_out:
-                        "use efforts with `Drive::Effort` and motions with `Drive::Prescribed`"
-                            .into(),
+                    way_out: "use efforts with `Drive::Effort` and motions with `Drive::Prescribed`".into(),
                 });
             }
         }
@@ -173,20 +155,17 @@ impl Mechanics for ExactChain {
             });
         };
 
-        let y = &self.y[..self.states];
-        let advance = |row: &[f64; MAX_STATES], gamma: &[f64; MAX_BODIES]| {
-            let free: f64 = row.iter().zip(y).map(|(phi, y)| phi * y).sum();
-            let forced: f64 = gamma[..n].iter().zip(&u).map(|(gamma, u)| gamma * u).sum();
-            free + forced
-        };
-        let travel = advance(&hold.travel_phi, &hold.travel_gamma);
-        let mut next = [0.0; MAX_STATES];
-        for (i, next) in next[..self.states].iter_mut().enumerate() {
-            *next = advance(&hold.phi[i], &hold.gamma[i]);
+        let states = states(&self.chain, self.prescribed);
+        let mut next = [0.0; W];
+        for (column, factor) in hold.iter().zip(self.y[..states].iter().chain(&u)) {
+            for (next, entry) in next.iter_mut().zip(column) {
+                *next += entry * factor;
+            }
         }
+        let travel = std::mem::take(&mut next[states]);
 
-        let mut axis_position = base_position
-            .unwrap_or(self.chain.bodies()[0].transmission * self.bodies[0].position + travel);
+        let mut axis_position =
+            base_position.unwrap_or(self.chain.bodies()[0].transmission * self.bodies[0].position + travel);
         for i in 0..n {
             let body = &self.chain.bodies()[i];
             if i > 0 {
@@ -209,18 +188,15 @@ impl Mechanics for ExactChain {
         if total.is_finite() {
             Ok(())
         } else {
-            Err(MechanicsError::Diverged {
-                engine: NAME,
-                message: "a position or velocity is not finite".into(),
-            })
+            Err(MechanicsError::Diverged { engine: NAME, message: "a position or velocity is not finite".into() })
         }
     }
 }
 
 /// Transition over one tick while the bodies of the set `stuck` do not move.
-fn hold(chain: &Chain, prescribed: bool, h: f64, stuck: usize) -> Hold {
+fn hold<const W: usize>(chain: &Chain, prescribed: bool, h: f64, stuck: usize) -> Hold<W> {
     let n = chain.bodies().len();
-    let states = 2 * n - 1 + if prescribed { 4 } else { 0 };
+    let states = states(chain, prescribed);
     let (inputs, travel) = (n, states);
     let velocity = |i: usize| n - 1 + i;
     let moves = |i: usize| stuck & (1 << i) == 0;
@@ -253,8 +229,7 @@ fn hold(chain: &Chain, prescribed: bool, h: f64, stuck: usize) -> Hold {
             a[(velocity(i), link)] += sign * per_force * coupling.stiffness;
             for (end, side) in [(link, 1.0), (link + 1, -1.0)] {
                 if moves(end) {
-                    a[(velocity(i), velocity(end))] +=
-                        sign * side * per_force * coupling.damping / h;
+                    a[(velocity(i), velocity(end))] += sign * side * per_force * coupling.damping / h;
                 }
             }
         }
@@ -271,25 +246,8 @@ fn hold(chain: &Chain, prescribed: bool, h: f64, stuck: usize) -> Hold {
     }
 
     let e = a.exp();
-    let mut hold = Hold {
-        phi: [[0.0; MAX_STATES]; MAX_STATES],
-        gamma: [[0.0; MAX_BODIES]; MAX_STATES],
-        travel_phi: [0.0; MAX_STATES],
-        travel_gamma: [0.0; MAX_BODIES],
-    };
-    for row in 0..states {
-        for column in 0..states {
-            hold.phi[row][column] = e[(row, column)];
-        }
-        for input in 0..inputs {
-            hold.gamma[row][input] = e[(row, states + 1 + input)];
-        }
-    }
-    for column in 0..states {
-        hold.travel_phi[column] = e[(travel, column)];
-    }
-    for input in 0..inputs {
-        hold.travel_gamma[input] = e[(travel, states + 1 + input)];
-    }
-    hold
+    (0..states)
+        .chain(states + 1..size)
+        .map(|column| std::array::from_fn(|row| if row <= travel { e[(row, column)] } else { 0.0 }))
+        .collect()
 }

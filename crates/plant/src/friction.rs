@@ -42,11 +42,7 @@ impl DryFriction {
         non_negative("coulomb", self.coulomb)?;
         non_negative("stribeck_velocity", self.stribeck_velocity)?;
         if !(self.breakaway.is_finite() && self.breakaway >= self.coulomb) {
-            return Err(ParamError {
-                name: "static",
-                value: self.breakaway,
-                bound: "finite and at least `coulomb`",
-            });
+            return Err(ParamError { name: "static", value: self.breakaway, bound: "finite and at least `coulomb`" });
         }
         Ok(())
     }

@@ -16,8 +16,7 @@ pub fn voltage_limit(u_dc: f64) -> f64 {
 /// The voltage that comes out when `wanted` is asked for: shortened to the limit, direction kept.
 #[must_use]
 pub fn output(wanted: AlphaBeta, u_dc: f64) -> AlphaBeta {
-    let (limit, squared) =
-        (voltage_limit(u_dc), wanted.alpha * wanted.alpha + wanted.beta * wanted.beta);
+    let (limit, squared) = (voltage_limit(u_dc), wanted.alpha * wanted.alpha + wanted.beta * wanted.beta);
     if squared <= limit * limit {
         return wanted;
     }
@@ -35,9 +34,6 @@ mod tests {
         let within = AlphaBeta { alpha: 100.0, beta: -200.0 };
         assert_eq!(output(within, 540.0), within);
         let cut = output(AlphaBeta { alpha: 300.0, beta: 400.0 }, 540.0);
-        assert!(
-            (cut.alpha - 0.6 * limit).abs() < 1e-12 && (cut.beta - 0.8 * limit).abs() < 1e-12,
-            "{cut:?}"
-        );
+        assert!((cut.alpha - 0.6 * limit).abs() < 1e-12 && (cut.beta - 0.8 * limit).abs() < 1e-12, "{cut:?}");
     }
 }

@@ -17,8 +17,7 @@ pub use chain::{Body, Chain, Coordinate, Link};
 pub use exact::Exact;
 pub use friction::{DryFriction, Grip};
 pub use mechanics::{
-    Actuation, BodyState, Drive, Engine, Input, Mechanics, MechanicsError, MechanicsSetup,
-    MjcfModel, Model,
+    Actuation, BodyState, Drive, Engine, Input, Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Model,
 };
 pub use mjcf::chain_to_mjcf;
 pub use sensor::{Encoder, Reading};

@@ -21,10 +21,7 @@ pub fn chain_to_mjcf(chain: &Chain, drive: Drive, step: f64) -> String {
         let rotary = body.coordinate == Coordinate::Rotary;
         let (kind, mass) = if rotary { ("hinge", inertia * 1e3) } else { ("slide", inertia) };
         // A slide does not feel the rotational inertia, a hinge not the mass; both must be positive.
-        let (size, colour) = (
-            0.05,
-            ["0.45 0.50 0.55 1", "0.20 0.45 0.70 1", "0.90 0.55 0.15 1", "0.5 0.7 0.3 1"][i],
-        );
+        let (size, colour) = (0.05, ["0.45 0.50 0.55 1", "0.20 0.45 0.70 1", "0.90 0.55 0.15 1", "0.5 0.7 0.3 1"][i]);
         let diag = if rotary { inertia } else { inertia * 1e-3 };
         let z = 0.15 * i as f64;
         let _ = write!(
@@ -43,12 +40,7 @@ pub fn chain_to_mjcf(chain: &Chain, drive: Drive, step: f64) -> String {
         for (j, sign) in [(i, 1.0), (i + 1, -1.0)] {
             if j >= first {
                 let body = &chain.bodies()[j];
-                let _ = write!(
-                    joints,
-                    r#"<joint joint="{}" coef="{:?}"/>"#,
-                    body.name,
-                    sign * body.transmission
-                );
+                let _ = write!(joints, r#"<joint joint="{}" coef="{:?}"/>"#, body.name, sign * body.transmission);
             }
         }
         let (stiffness, damping) = (link.stiffness, link.damping);
@@ -60,17 +52,11 @@ pub fn chain_to_mjcf(chain: &Chain, drive: Drive, step: f64) -> String {
     }
     let motor = if first == 0 {
         let name = chain.bodies()[0].name;
-        format!(
-            "\n  <actuator>\n    <motor name=\"motor_effort\" joint=\"{name}\"/>\n  </actuator>"
-        )
+        format!("\n  <actuator>\n    <motor name=\"motor_effort\" joint=\"{name}\"/>\n  </actuator>")
     } else {
         String::new()
     };
-    let tendons = if tendons.is_empty() {
-        String::new()
-    } else {
-        format!("\n  <tendon>{tendons}\n  </tendon>")
-    };
+    let tendons = if tendons.is_empty() { String::new() } else { format!("\n  <tendon>{tendons}\n  </tendon>") };
     format!(
         r#"<mujoco model="servobench chain">
   <compiler angle="radian" inertiafromgeom="false"/>
@@ -99,10 +85,7 @@ mod tests {
             bias: 0.0,
         };
         Chain::new(
-            vec![
-                body("motor", Coordinate::Rotary, 1e-3, 0.01),
-                body("table", Coordinate::Linear, 20.0, 1.0),
-            ],
+            vec![body("motor", Coordinate::Rotary, 1e-3, 0.01), body("table", Coordinate::Linear, 20.0, 1.0)],
             vec![Link { stiffness: 1e8, damping: 2e3 }],
         )
         .unwrap()
@@ -111,14 +94,8 @@ mod tests {
     #[test]
     fn a_driven_chain_has_every_body_and_a_motor() {
         let xml = chain_to_mjcf(&screw_axis(), Drive::Effort, 1.0 / 16_000.0);
-        assert!(
-            xml.contains(r#"<joint name="motor" type="hinge" axis="1 0 0" damping="0.5"/>"#),
-            "{xml}"
-        );
-        assert!(
-            xml.contains(r#"<joint joint="motor" coef="0.01"/><joint joint="table" coef="-1.0"/>"#),
-            "{xml}"
-        );
+        assert!(xml.contains(r#"<joint name="motor" type="hinge" axis="1 0 0" damping="0.5"/>"#), "{xml}");
+        assert!(xml.contains(r#"<joint joint="motor" coef="0.01"/><joint joint="table" coef="-1.0"/>"#), "{xml}");
         assert!(xml.contains(r#"<motor name="motor_effort" joint="motor"/>"#), "{xml}");
     }
 
@@ -126,9 +103,6 @@ mod tests {
     fn a_prescribed_base_is_the_world() {
         let xml = chain_to_mjcf(&screw_axis(), Drive::Prescribed, 1.0 / 16_000.0);
         assert!(!xml.contains(r#"name="motor""#) && !xml.contains("<actuator>"), "{xml}");
-        assert!(
-            xml.contains(r#"springlength="0"><joint joint="table" coef="-1.0"/></fixed>"#),
-            "{xml}"
-        );
+        assert!(xml.contains(r#"springlength="0"><joint joint="table" coef="-1.0"/></fixed>"#), "{xml}");
     }
 }

@@ -72,15 +72,6 @@ impl Params {
             q: resistance * current.q + omega_e * (inductance.d * current.d + flux_linkage),
         }
     }
-
-    /// di/dt at `current` under `voltage` (A/s).
-    fn slope(&self, current: Dq, voltage: Dq, omega_e: f64) -> Dq {
-        let steady = self.steady_voltage(current, omega_e);
-        Dq {
-            d: (voltage.d - steady.d) / self.inductance.d,
-            q: (voltage.q - steady.q) / self.inductance.q,
-        }
-    }
 }
 
 /// Advances the currents by `h` (s) to tick k+1 and returns the mean torque over the tick (N·m).
@@ -92,16 +83,17 @@ pub fn step(p: &Params, x: &mut State, u: Input, h: f64) -> f64 {
     let middle = u.voltage.to_dq(u.theta.ahead(half));
     let voltage = Dq { d: sinc * middle.d, q: sinc * middle.q };
 
-    let slope = |i: Dq| p.slope(i, voltage, u.omega_e);
+    let per_inductance = Dq { d: 1.0 / p.inductance.d, q: 1.0 / p.inductance.q };
+    let slope = |i: Dq| {
+        let steady = p.steady_voltage(i, u.omega_e);
+        Dq { d: (voltage.d - steady.d) * per_inductance.d, q: (voltage.q - steady.q) * per_inductance.q }
+    };
     let ahead = |k: Dq, t: f64| Dq { d: x.current.d + t * k.d, q: x.current.q + t * k.q };
     let k1 = slope(x.current);
     let k2 = slope(ahead(k1, h / 2.0));
     let k3 = slope(ahead(k2, h / 2.0));
     let k4 = slope(ahead(k3, h));
-    let mean = Dq {
-        d: (k1.d + 2.0 * (k2.d + k3.d) + k4.d) / 6.0,
-        q: (k1.q + 2.0 * (k2.q + k3.q) + k4.q) / 6.0,
-    };
+    let mean = Dq { d: (k1.d + 2.0 * (k2.d + k3.d) + k4.d) / 6.0, q: (k1.q + 2.0 * (k2.q + k3.q) + k4.q) / 6.0 };
     let before = p.torque(x.current);
     x.current = ahead(mean, h);
     f64::midpoint(before, p.torque(x.current))
@@ -113,12 +105,8 @@ mod tests {
     use std::f64::consts::PI;
 
     /// Saarakkala/Hinkkanen, 2.2 kW.
-    const MOTOR: Params = Params {
-        pole_pairs: 3.0,
-        resistance: 3.6,
-        inductance: Dq { d: 36e-3, q: 51e-3 },
-        flux_linkage: 0.545,
-    };
+    const MOTOR: Params =
+        Params { pole_pairs: 3.0, resistance: 3.6, inductance: Dq { d: 36e-3, q: 51e-3 }, flux_linkage: 0.545 };
 
     /// Runs at constant speed with a voltage that is constant in the rotor frame, and returns current and last torque.
     fn run(p: &Params, omega_e: f64, voltage: Dq, h: f64, ticks: u32) -> (Dq, f64) {
@@ -140,10 +128,7 @@ mod tests {
         let (i, _) = run(&MOTOR, 0.0, Dq { d: 10.0, q: 20.0 }, h, 160);
         let lag = |u: f64, l: f64| u / 3.6 * (1.0 - (-0.01 * 3.6 / l).exp());
         // Runge–Kutta with h·R/L = 6e-3: (6e-3)⁵/120 per tick.
-        assert!(
-            (i.d - lag(10.0, 36e-3)).abs() < 1e-10 && (i.q - lag(20.0, 51e-3)).abs() < 1e-10,
-            "{i:?}"
-        );
+        assert!((i.d - lag(10.0, 36e-3)).abs() < 1e-10 && (i.q - lag(20.0, 51e-3)).abs() < 1e-10, "{i:?}");
     }
 
     /// Oracle: the Modelica Standard Library's `SM_PermanentMagnet` at 100 V, 100 A (RMS), 1500 rpm: 181.4 N·m, rotor
@@ -180,8 +165,7 @@ mod tests {
                 // The same staircase of voltages for every n: it changes every 125 µs.
                 let t = f64::from(k) * h;
                 let stair = (t / 125e-6 + 1e-9).floor() * 125e-6;
-                let voltage = Dq { d: 5.0, q: 90.0 + 1e4 * stair }
-                    .to_alpha_beta(ElectricalAngle(omega * stair));
+                let voltage = Dq { d: 5.0, q: 90.0 + 1e4 * stair }.to_alpha_beta(ElectricalAngle(omega * stair));
                 let theta = ElectricalAngle(omega * t);
                 let _ = step(&MOTOR, &mut x, Input { voltage, theta, omega_e: omega }, h);
             }

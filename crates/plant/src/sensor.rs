@@ -29,9 +29,7 @@ impl Encoder {
     pub fn read(&self, position: f64, velocity: f64) -> Reading {
         match self.increment {
             None => Reading { position, velocity: Some(velocity) },
-            Some(step) => {
-                Reading { position: libm::floor(position / step + 0.5) * step, velocity: None }
-            }
+            Some(step) => Reading { position: libm::floor(position / step + 0.5) * step, velocity: None },
         }
     }
 }
@@ -44,16 +42,9 @@ mod tests {
     fn a_resolution_rounds_to_the_nearest_increment_and_hides_the_velocity() {
         let encoder = Encoder { increment: Some(0.25) };
         for (position, read) in [(0.37, 0.25), (0.38, 0.5), (-0.12, 0.0), (-0.13, -0.25)] {
-            assert_eq!(
-                encoder.read(position, 1.0),
-                Reading { position: read, velocity: None },
-                "{position}"
-            );
+            assert_eq!(encoder.read(position, 1.0), Reading { position: read, velocity: None }, "{position}");
         }
-        assert_eq!(
-            Encoder::default().read(0.1, 2.0),
-            Reading { position: 0.1, velocity: Some(2.0) }
-        );
+        assert_eq!(Encoder::default().read(0.1, 2.0), Reading { position: 0.1, velocity: Some(2.0) });
         assert!(Encoder { increment: Some(0.0) }.check().is_err());
     }
 }

@@ -1,8 +1,8 @@
 //! The engine `exact` against closed forms.
 use servobench_base::Setpoint;
 use servobench_plant::{
-    Actuation, Body, BodyState, Chain, Coordinate, Drive, DryFriction, Engine, Exact, Input, Link,
-    Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Model,
+    Actuation, Body, BodyState, Chain, Coordinate, Drive, DryFriction, Engine, Exact, Input, Link, Mechanics,
+    MechanicsError, MechanicsSetup, MjcfModel, Model,
 };
 
 const H: f64 = 1.0 / 16_000.0;
@@ -29,11 +29,7 @@ fn effort(effort: f64) -> Input {
 
 /// Saarakkala/Hinkkanen: J_M = J_L = 0.005 kg·m², K_s = 700 N·m/rad.
 fn two_mass(damping: f64) -> Chain {
-    Chain::new(
-        vec![body("motor", 5e-3), body("load", 5e-3)],
-        vec![Link { stiffness: 700.0, damping }],
-    )
-    .unwrap()
+    Chain::new(vec![body("motor", 5e-3), body("load", 5e-3)], vec![Link { stiffness: 700.0, damping }]).unwrap()
 }
 
 /// Oracle: stretch s(t) = s0·e^(−σt)·(cos ω_d t + σ/ω_d·sin ω_d t), σ = d/(2·J_red), J_red = J/2.
@@ -50,16 +46,12 @@ fn free_ring_down_follows_the_closed_form_for_ten_seconds() {
     for k in 1..=160_000 {
         axis.advance(&effort(0.0)).unwrap();
         let t = f64::from(k) * H;
-        let exact =
-            stretch * (-sigma * t).exp() * ((omega * t).cos() + sigma / omega * (omega * t).sin());
+        let exact = stretch * (-sigma * t).exp() * ((omega * t).cos() + sigma / omega * (omega * t).sin());
         let [motor, load] = axis.bodies() else { panic!("two bodies") };
         let found = motor.position - load.position;
         // The transition matrix is right to a few 1e-16; that is a phase error of 1e-15 per tick at most.
         assert!((found - exact).abs() < stretch * 1e-9, "tick {k}: {found} against {exact}");
-        assert!(
-            (motor.position + load.position - stretch).abs() < 1e-12,
-            "the centre of mass stays"
-        );
+        assert!((motor.position + load.position - stretch).abs() < 1e-12, "the centre of mass stays");
     }
 }
 
@@ -67,8 +59,7 @@ fn free_ring_down_follows_the_closed_form_for_ten_seconds() {
 #[test]
 fn one_body_with_viscous_friction_is_exact() {
     let (m, b, force) = (95.1089, 203.5034, 120.0);
-    let chain =
-        Chain::new(vec![Body { viscous: b, bias: 20.0, ..body("motor", m) }], vec![]).unwrap();
+    let chain = Chain::new(vec![Body { viscous: b, bias: 20.0, ..body("motor", m) }], vec![]).unwrap();
     let mut axis = build(chain, Drive::Effort, vec![]);
     for _ in 0..16_000 {
         axis.advance(&effort(force)).unwrap();
@@ -77,10 +68,7 @@ fn one_body_with_viscous_friction_is_exact() {
     let (v, x) = (100.0 / b * (1.0 - decay), 100.0 / b * (1.0 - m / b * (1.0 - decay)));
     let found = axis.bodies()[0];
     // 16 000 roundings of numbers of order one.
-    assert!(
-        (found.velocity - v).abs() < 1e-11 && (found.position - x).abs() < 1e-11,
-        "{found:?} {v} {x}"
-    );
+    assert!((found.velocity - v).abs() < 1e-11 && (found.position - x).abs() < 1e-11, "{found:?} {v} {x}");
 }
 
 /// Oracle: rotary motor on a screw without stretch moves like one mass M + J/r² under the force τ/r.
@@ -88,9 +76,7 @@ fn one_body_with_viscous_friction_is_exact() {
 fn a_stiff_screw_moves_like_one_mass() {
     let r = 10e-3 / (2.0 * std::f64::consts::PI);
     let motor = Body { coordinate: Coordinate::Rotary, transmission: r, ..body("motor", 2e-4) };
-    let chain =
-        Chain::new(vec![motor, body("load", 40.0)], vec![Link { stiffness: 5e8, damping: 5e4 }])
-            .unwrap();
+    let chain = Chain::new(vec![motor, body("load", 40.0)], vec![Link { stiffness: 5e8, damping: 5e4 }]).unwrap();
     let mut axis = build(chain, Drive::Effort, vec![]);
     for _ in 0..16_000 {
         axis.advance(&effort(0.5)).unwrap();
@@ -108,17 +94,13 @@ fn a_stiff_screw_moves_like_one_mass() {
 fn a_prescribed_base_is_integrated_exactly() {
     let (m, c, j) = (10.0, 6e5, 50.0);
     let omega = f64::sqrt(c / m);
-    let chain = Chain::new(
-        vec![body("motor", 20.0), body("load", m)],
-        vec![Link { stiffness: c, damping: 0.0 }],
-    )
-    .unwrap();
+    let chain =
+        Chain::new(vec![body("motor", 20.0), body("load", m)], vec![Link { stiffness: c, damping: 0.0 }]).unwrap();
     let mut axis = build(chain, Drive::Prescribed, vec![]);
     let start = Setpoint { j, ..Setpoint::default() };
     for k in 0..1_600 {
         let motion = Actuation::Motion(start.after(f64::from(k) * H));
-        axis.advance(&Input { actuation: motion, motor_disturbance: 0.0, load_disturbance: 0.0 })
-            .unwrap();
+        axis.advance(&Input { actuation: motion, motor_disturbance: 0.0, load_disturbance: 0.0 }).unwrap();
         let t = f64::from(k + 1) * H;
         let [base, load] = axis.bodies() else { panic!("two bodies") };
         let exact = -j / (omega * omega) * (t - (omega * t).sin() / omega);
@@ -140,10 +122,7 @@ fn a_stuck_body_keeps_its_position_to_the_bit_while_its_neighbour_swings() {
     let mut axis = build(
         chain,
         Drive::Effort,
-        vec![
-            BodyState { position: 0.3, velocity: 0.0 },
-            BodyState { position: 0.3 + 1e-4, velocity: 0.0 },
-        ],
+        vec![BodyState { position: 0.3, velocity: 0.0 }, BodyState { position: 0.3 + 1e-4, velocity: 0.0 }],
     );
     let omega = (6e5_f64 / 10.0).sqrt();
     for k in 1..=100_000 {
@@ -183,12 +162,7 @@ fn an_mjcf_file_is_refused_with_a_way_out() {
         load_joint: "load".into(),
         actuator: "motor".into(),
     };
-    let setup = MechanicsSetup {
-        model: Model::Mjcf(model),
-        drive: Drive::Effort,
-        step: H,
-        initial: vec![],
-    };
+    let setup = MechanicsSetup { model: Model::Mjcf(model), drive: Drive::Effort, step: H, initial: vec![] };
     let error = Exact.build(&setup).err().unwrap();
     assert!(error.to_string().contains("`mujoco` or `rapier`"), "{error}");
 }

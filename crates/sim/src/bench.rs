@@ -6,9 +6,7 @@ use crate::power::PowerStage;
 use crate::program::Program;
 use servobench_base::{Dq, Rate, Setpoint};
 use servobench_drive::{self as drive, Firmware, current, feedforward, velocity};
-use servobench_plant::{
-    self as plant, BodyState, Chain, Encoder, Engine, Mechanics, MechanicsSetup, inverter, pmsm,
-};
+use servobench_plant::{self as plant, BodyState, Chain, Encoder, Engine, Mechanics, MechanicsSetup, inverter, pmsm};
 use servobench_scenario::{self as scenario, Scenario};
 use servobench_trace::{About, Recorder};
 
@@ -93,8 +91,7 @@ impl Bench {
             bodies,
         };
         let rows = usize::try_from(rows).unwrap_or(usize::MAX);
-        let mut recorder =
-            Recorder::new(about, scenario.record.rate, selection.specs.clone(), rows);
+        let mut recorder = Recorder::new(about, scenario.record.rate, selection.specs.clone(), rows);
         for made in program.moves(equipment.axis_unit) {
             recorder.note_move(made);
         }
@@ -124,20 +121,11 @@ fn check_memory(channels: usize, rows: u64, rate: Rate, duration: f64) -> Result
     if gigabytes <= RECORDING_LIMIT {
         return Ok(());
     }
-    Err(BuildError::TooLong {
-        channels,
-        rate: rate.hertz(),
-        duration,
-        gigabytes,
-        limit: RECORDING_LIMIT,
-    })
+    Err(BuildError::TooLong { channels, rate: rate.hertz(), duration, gigabytes, limit: RECORDING_LIMIT })
 }
 
 /// The mechanics at tick 0 and the names of its bodies.
-fn mechanics(
-    scenario: &Scenario,
-    engine: &dyn Engine,
-) -> Result<(Box<dyn Mechanics>, Vec<String>), BuildError> {
+fn mechanics(scenario: &Scenario, engine: &dyn Engine) -> Result<(Box<dyn Mechanics>, Vec<String>), BuildError> {
     let drive = match scenario.motor {
         scenario::Motor::Prescribed => plant::Drive::Prescribed,
         _ => plant::Drive::Effort,
@@ -160,10 +148,7 @@ fn mechanics(
     };
     let mut initial = vec![BodyState::default(); names.len()];
     if let Some(load) = initial.last_mut() {
-        *load = BodyState {
-            position: scenario.initial.load_position,
-            velocity: scenario.initial.load_velocity,
-        };
+        *load = BodyState { position: scenario.initial.load_position, velocity: scenario.initial.load_velocity };
     }
     if let [motor] = initial.as_mut_slice() {
         motor.position /= scenario.axis.transmission;

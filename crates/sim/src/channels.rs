@@ -70,14 +70,10 @@ fn all(equipment: &Equipment, rates: &WriterRates) -> [(bool, ChannelSpec); COUN
         (there, ChannelSpec { name: name.into(), unit, writer: writer.into(), rate })
     };
     let setpoint = |name: &str, unit: String| channel(true, name, unit, "set-point", rates.base);
-    let mechanics =
-        |there: bool, name: &str, unit: String| channel(there, name, unit, "mechanics", rates.base);
-    let position_loop =
-        |name: &str, unit: String| channel(drive, name, unit, "position loop", rates.position);
-    let velocity_loop =
-        |name: &str, unit: String| channel(drive, name, unit, "velocity loop", rates.velocity);
-    let current_loop =
-        |name: &str, unit: &str| channel(current, name, unit.into(), "current loop", rates.current);
+    let mechanics = |there: bool, name: &str, unit: String| channel(there, name, unit, "mechanics", rates.base);
+    let position_loop = |name: &str, unit: String| channel(drive, name, unit, "position loop", rates.position);
+    let velocity_loop = |name: &str, unit: String| channel(drive, name, unit, "velocity loop", rates.velocity);
+    let current_loop = |name: &str, unit: &str| channel(current, name, unit.into(), "current loop", rates.current);
     [
         setpoint("setpoint.position", u.into()),
         setpoint("setpoint.velocity", per(u, "")),
@@ -153,16 +149,9 @@ pub(crate) struct Selection {
 
 impl Selection {
     /// Keeps the channels `wanted`, or all that the axis has when the list is empty.
-    pub(crate) fn new(
-        wanted: &[String],
-        equipment: &Equipment,
-        rates: &WriterRates,
-    ) -> Result<Self, BuildError> {
-        let there =
-            || all(equipment, rates).into_iter().enumerate().filter(|(_, (there, _))| *there);
-        if let Some(unknown) =
-            wanted.iter().find(|name| there().all(|(_, (_, spec))| spec.name != **name))
-        {
+    pub(crate) fn new(wanted: &[String], equipment: &Equipment, rates: &WriterRates) -> Result<Self, BuildError> {
+        let there = || all(equipment, rates).into_iter().enumerate().filter(|(_, (there, _))| *there);
+        if let Some(unknown) = wanted.iter().find(|name| there().all(|(_, (_, spec))| spec.name != **name)) {
             let available = there().map(|(_, (_, spec))| spec.name).collect();
             return Err(BuildError::UnknownChannel { name: unknown.clone(), available });
         }

@@ -23,19 +23,8 @@ mod tests {
 
     #[test]
     fn a_step_lasts_as_long_as_it_says_and_a_sine_starts_at_zero() {
-        let step = Disturbance {
-            on: DisturbedBody::Load,
-            start: 0.5,
-            duration: 0.2,
-            effort: 7.0,
-            frequency: None,
-        };
-        let sine = Disturbance {
-            start: 0.0,
-            duration: f64::INFINITY,
-            frequency: Some(10.0),
-            ..step.clone()
-        };
+        let step = Disturbance { on: DisturbedBody::Load, start: 0.5, duration: 0.2, effort: 7.0, frequency: None };
+        let sine = Disturbance { start: 0.0, duration: f64::INFINITY, frequency: Some(10.0), ..step.clone() };
         let both = [step, sine];
         let at = |t| effort_at(&both, DisturbedBody::Load, t);
         assert!(at(0.0).abs() < 1e-15 && (at(0.025) - 7.0).abs() < 1e-12);

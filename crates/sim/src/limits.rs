@@ -47,21 +47,14 @@ impl LimitWatch {
 }
 
 impl Watch {
-    fn tick(
-        &mut self,
-        t: f64,
-        binds: bool,
-        (source, message): (&str, &str),
-        recorder: &mut Recorder,
-    ) {
+    fn tick(&mut self, t: f64, binds: bool, (source, message): (&str, &str), recorder: &mut Recorder) {
         self.bound_ticks += u32::from(binds);
         match (self.since, binds) {
             (None, true) => self.since = Some(t),
             (Some(start), false) => {
                 self.since = None;
                 self.events += 1;
-                let more =
-                    if self.events == MOST_EVENTS { "; later ones are not listed" } else { "" };
+                let more = if self.events == MOST_EVENTS { "; later ones are not listed" } else { "" };
                 if self.events <= MOST_EVENTS {
                     let (source, message) = (source.to_owned(), format!("{message}{more}"));
                     recorder.note_event(Event { start, end: t, source, message });

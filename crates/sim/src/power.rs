@@ -25,9 +25,9 @@ impl PowerStage {
     /// Stator current as the drive's sensors see it (A, peak).
     pub(crate) fn measured_current(&self, motor: BodyState) -> AlphaBeta {
         match self {
-            Self::Pmsm { params, state, .. } => state
-                .current
-                .to_alpha_beta(ElectricalAngle::from_mechanical(motor.position, params.pole_pairs)),
+            Self::Pmsm { params, state, .. } => {
+                state.current.to_alpha_beta(ElectricalAngle::from_mechanical(motor.position, params.pole_pairs))
+            }
             Self::Ideal { .. } | Self::Off => AlphaBeta::default(),
         }
     }

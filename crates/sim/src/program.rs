@@ -35,15 +35,9 @@ impl Program {
             match step {
                 Step::Wait(length) => program.end += length,
                 Step::Move(step) => {
-                    let profile = plan_move(step, position)
-                        .map_err(|error| BuildError::Plan { index, error })?;
+                    let profile = plan_move(step, position).map_err(|error| BuildError::Plan { index, error })?;
                     let limits = step.limits;
-                    program.moves.push(Planned {
-                        start: program.end,
-                        from: position,
-                        profile,
-                        limits,
-                    });
+                    program.moves.push(Planned { start: program.end, from: position, profile, limits });
                     position += profile.distance();
                     program.end += profile.duration();
                 }
@@ -130,12 +124,7 @@ mod tests {
 
     #[test]
     fn moves_follow_each_other_and_pauses_hold_the_target() {
-        let steps = [
-            Step::Wait(0.1),
-            to(Target::Absolute(1.0)),
-            Step::Wait(0.5),
-            to(Target::Relative(-1.0)),
-        ];
+        let steps = [Step::Wait(0.1), to(Target::Absolute(1.0)), Step::Wait(0.5), to(Target::Relative(-1.0))];
         let mut program = Program::plan(&steps).unwrap();
         // Lambrechts' move lasts 1.35 s each way.
         assert!((program.end() - (0.1 + 1.35 + 0.5 + 1.35)).abs() < 1e-12);

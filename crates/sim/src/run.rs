@@ -74,10 +74,8 @@ impl Bench {
     fn sample(&self) -> (Instant, BodyState) {
         let bodies = self.mechanics.bodies();
         let own = bodies[0];
-        let motor = BodyState {
-            position: self.transmission * own.position,
-            velocity: self.transmission * own.velocity,
-        };
+        let motor =
+            BodyState { position: self.transmission * own.position, velocity: self.transmission * own.velocity };
         let load = if bodies.len() == 1 { motor } else { bodies[bodies.len() - 1] };
         let table = if bodies.len() == 3 { bodies[1] } else { BodyState::default() };
         (Instant { motor, table, load, ..Instant::default() }, own)
@@ -91,8 +89,7 @@ impl Bench {
             return Command::Output(0.0);
         };
         let reading = self.motor_encoder.read(motor.position, motor.velocity);
-        let on_load =
-            |encoder: Encoder| encoder.read(now.load.position, now.load.velocity).position;
+        let on_load = |encoder: Encoder| encoder.read(now.load.position, now.load.velocity).position;
         let sensors = Sensors {
             motor_position: reading.position,
             motor_velocity: reading.velocity,
@@ -100,20 +97,14 @@ impl Bench {
             current: self.power.measured_current(motor),
         };
         let command = firmware.step(now.setpoint, &sensors);
-        let (telemetry, (reference, motor_reference)) =
-            (firmware.telemetry(), firmware.references());
+        let (telemetry, (reference, motor_reference)) = (firmware.telemetry(), firmware.references());
         now.reference = reference.x;
         now.motor_reference = motor_reference.position;
         now.velocity_reference = telemetry.velocity_reference;
         now.effort_reference = telemetry.effort_reference;
         now.current_reference = telemetry.current_reference;
         now.voltage = telemetry.current.computed;
-        self.watch.tick(
-            t,
-            telemetry.current.saturated,
-            telemetry.effort_saturated,
-            &mut self.recorder,
-        );
+        self.watch.tick(t, telemetry.current.saturated, telemetry.effort_saturated, &mut self.recorder);
         command
     }
 
@@ -129,11 +120,7 @@ impl Bench {
 
     /// Integrates the mechanics to k+1.
     fn integrate(&mut self, t: f64, now: &Instant) -> Result<(), MechanicsError> {
-        let actuation = if self.prescribed {
-            Actuation::Motion(now.setpoint)
-        } else {
-            Actuation::Effort(now.effort)
-        };
+        let actuation = if self.prescribed { Actuation::Motion(now.setpoint) } else { Actuation::Effort(now.effort) };
         self.mechanics.advance(&Input {
             actuation,
             motor_disturbance: effort_at(&self.disturbances, DisturbedBody::Motor, t),
