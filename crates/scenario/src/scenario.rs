@@ -321,6 +321,8 @@ pub struct MoveStep {
     pub limits: [f64; 4],
     /// Sampled plan with this sample time (s); `None` for the continuous one.
     pub sample_time: Option<f64>,
+    /// Slowed to last this long (s), every derivative in proportion; `None`: as fast as the limits allow.
+    pub duration: Option<f64>,
 }
 
 /// Where a move goes.

@@ -107,10 +107,11 @@ fn plan_move(step: &MoveStep, position: f64) -> Result<Profile, servobench_motio
         Target::Absolute(target) => target - position,
         Target::Relative(distance) => distance,
     };
-    match step.sample_time {
+    let profile = match step.sample_time {
         Some(sample_time) => Profile::plan_sampled(order, distance, &limits, sample_time),
         None => Profile::plan(order, distance, &limits),
-    }
+    }?;
+    step.duration.map_or(Ok(profile), |duration| profile.stretched_to(duration))
 }
 
 #[cfg(test)]
@@ -119,7 +120,7 @@ mod tests {
 
     fn to(target: Target) -> Step {
         let limits = [1.0, 5.0, 50.0, 1000.0];
-        Step::Move(MoveStep { target, order: 4, limits, sample_time: None })
+        Step::Move(MoveStep { target, order: 4, limits, sample_time: None, duration: None })
     }
 
     #[test]
