@@ -1,1 +1,77 @@
-//! placeholder
+//! Set-points over time: rest-to-rest moves of order 2 (trapezoid), 3 (jerk-limited) and 4 (snap-limited).
+//!
+//! ```
+//! use servobench_motion::{Limits, Order, Profile};
+//! let limits = Limits { velocity: 1.0, acceleration: 5.0, jerk: 50.0, snap: 1000.0 };
+//! let plan = Profile::plan_sampled(Order::Fourth, 1.0, &limits, 1e-3)?;
+//! assert_eq!(plan.samples().map(|samples| samples.total()), Some(1350));
+//! assert_eq!(plan.at(plan.duration()).x, 1.0);
+//! # Ok::<(), servobench_motion::PlanError>(())
+//! ```
+//!
+//! # A profile is a step through boxes
+//!
+//! A box of length T gives out the integral of its input over the last T seconds, `(1 − e^(−sT))/s`. A step of height
+//! `d` that passes the boxes `T1 … Tn` comes out as the move (n = 4 below):
+//!
+//! ```text
+//! x(s) = d/s·∏ (1 − e^(−s·T_k))/s,    final value, lim s·x(s):  |x| = d·T1·T2·T3·T4    after T = T1 + T2 + T3 + T4.
+//!
+//! Derivative n − m is what leaves box m, taken back by a factor (1 − e^(−s·T_k)) for every box behind it. What leaves
+//! box m rises to d·T1⋯Tm within T1 + … + Tm; a next box at least that long takes nothing back before. Therefore
+//!   j_peak = d·T1      a_peak = d·T1·T2      v_peak = d·T1·T2·T3      if  T1 ≤ T2,  T1+T2 ≤ T3,  T1+T2+T3 ≤ T4.
+//!
+//! Derivative n, m = 0, multiplied out: pulses ±d of length T1, one for each subset S of {T2 … Tn}, starting at ΣS with
+//! the sign (−1)^|S|. The same conditions keep them apart; between them lie dwells of three lengths:
+//!   t_d = T1    t_j = T2 − T1    t_a = T3 − T2 − T1    t_v = T4 − T3 − T2 − T1         T = 8t_d + 4t_j + 2t_a + t_v.
+//!
+//! In samples, n_k = T_k/Ts, the forward-Euler cascade has the same product:  x = d·Ts⁴·n1·n2·n3·n4.
+//! ```
+//!
+//! # The planner in one equation
+//!
+//! Box after box is made as short as the limits allow while the boxes behind it follow as short as their order
+//! permits, each the sum of its predecessors. With `P` the peak that the boxes before box k reach and `c` their sum, a
+//! quantity with the bound `B` (the distance, v, a, …) that leaves the i-th box behind box k peaks at
+//!
+//! ```text
+//! P·2^(i(i−1)/2)·T·(c + T)^i          hence T(c + T)^i = q = B/(P·2^(i(i−1)/2))       for the box length T = T_k
+//! ```
+//!
+//! Continuous: T is the smallest root over the bounds, at least c. Sampled: T is the smallest whole number of samples that
+//! reaches B, found by stepping an integer (a floating `ceil` of the root gives a sample too many whenever an exact
+//! whole number is missed by one rounding), and `d` is lowered so that B is met exactly before the next bound is
+//! looked at. That is the sequential rounding of Pietrusewicz, Waszczuk & Kubicki, *`MC_MoveAbsolute()` 4th Order
+//! Real-Time Trajectory Generation Function Algorithm and Implementation*, Applied Sciences 9 (2019), after
+//! Lambrechts, Boerlage & Steinbuch (2005). The one equation stands for these of the paper:
+//!
+//! | box | B = distance | B = v | B = a | B = j |
+//! |---|---|---|---|---|
+//! | T1 = t_d | (4)–(6), i = 3 | (9)–(11), i = 2 | (14)–(16), i = 1 | (19)–(21), i = 0 |
+//! | T2 | (23)–(25), i = 2 | (28)–(30), i = 1 | (33)–(35), i = 0 | |
+//! | T3 | (37)–(40), i = 1 | (43)–(45), i = 0 | | |
+//! | T4 | (47)–(49), i = 0 | | | |
+//!
+//! and the subset sum above for (50)–(54) and (63). Several are misprinted there; `tests/plans/paper.rs` holds them
+//! in corrected form, as the second planner that this one is compared with. The sign of the move is applied once,
+//! through `d`. Orders 2 and 3 are the same with two and three boxes. Order 3 is time-optimal; order 4 is not quite,
+//! since this shape brings the jerk to zero at peak velocity (up to 7.5 % of the time when there is no cruise).
+//!
+//! # Executing a plan
+//!
+//! [`Profile::at`] evaluates the exact polynomial, the zero-order hold of the highest derivative: a sampled move of N
+//! samples lands at sample N, without lag. Forward Euler, (72)–(75), lands on the same position after N + 3 samples
+//! at order 4 and lags by 1.5·Ts·v on the way.
+#![cfg_attr(not(test), no_std)]
+
+mod boxes;
+mod error;
+mod limits;
+mod profile;
+mod segment;
+mod stretch;
+
+pub use error::PlanError;
+pub use limits::{Limits, Order};
+pub use profile::{Peaks, Profile, Samples, Times};
+pub use segment::{Segment, Segments};

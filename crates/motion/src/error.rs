@@ -1,0 +1,77 @@
+//! Why a move cannot be planned.
+use servobench_base::ParamError;
+use thiserror::Error;
+
+/// A request that is refused, with what would be accepted.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum PlanError {
+    /// A distance, limit or time that is no number of the right sign.
+    #[error(transparent)]
+    Parameter(#[from] ParamError),
+    /// A value so large or small that the numbers of the plan would leave what `f64` represents well.
+    #[error("`{name}` must be between {lowest:e} and {highest:e} (SI), got {value:e}: {remedy}")]
+    OutOfRange {
+        /// Field name.
+        name: &'static str,
+        /// Rejected value (SI).
+        value: f64,
+        /// Smallest accepted magnitude (SI).
+        lowest: f64,
+        /// Largest accepted magnitude (SI).
+        highest: f64,
+        /// The way out, in words.
+        remedy: &'static str,
+    },
+    /// A sampled move with more samples than an `f64` counts exactly.
+    #[error(
+        "the move takes about {samples:.1e} samples at `sample_time` = {sample_time:e} s, more than 2^53 cannot be \
+         counted: take a longer sample time, a shorter distance or higher limits"
+    )]
+    TooManySamples {
+        /// Number of samples that the continuous move lasts.
+        samples: f64,
+        /// Requested sample time (s).
+        sample_time: f64,
+    },
+    /// A move asked to be faster than its limits allow.
+    #[error("`duration` must be at least {shortest} s, got {duration} s: stretch to a longer time or raise the limits")]
+    TooShort {
+        /// Requested duration (s).
+        duration: f64,
+        /// Duration of the move at its limits (s).
+        shortest: f64,
+    },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Limits, Order, Profile};
+
+    const LIMITS: Limits = Limits { velocity: 1.0, acceleration: 5.0, jerk: 50.0, snap: 1000.0 };
+
+    fn message(plan: &Result<Profile, PlanError>) -> String {
+        plan.as_ref().unwrap_err().to_string()
+    }
+
+    #[test]
+    fn every_refusal_names_field_value_bound_and_way_out() {
+        let slow = Limits { velocity: -1.0, ..LIMITS };
+        assert_eq!(message(&Profile::plan(Order::Fourth, 1.0, &slow)), "`velocity` must be positive, got -1");
+        let sharp = Limits { snap: 1e99, ..LIMITS };
+        assert_eq!(
+            message(&Profile::plan(Order::Fourth, 1.0, &sharp)),
+            "`snap` must be between 1e-30 and 1e30 (SI), got 1e99: correct its unit or plan a lower order"
+        );
+        assert_eq!(
+            message(&Profile::plan_sampled(Order::Third, 1.0, &LIMITS, 1e-20)),
+            "the move takes about 1.3e20 samples at `sample_time` = 1e-20 s, more than 2^53 cannot be counted: \
+             take a longer sample time, a shorter distance or higher limits"
+        );
+        let plan = Profile::plan(Order::Second, 1.0, &LIMITS).unwrap();
+        assert_eq!(
+            message(&plan.stretched_to(1.0)),
+            "`duration` must be at least 1.2 s, got 1 s: stretch to a longer time or raise the limits"
+        );
+    }
+}

@@ -1,0 +1,128 @@
+//! What a move may not exceed, and the order of the profile that respects it.
+use crate::PlanError;
+use servobench_base::{ParamError, positive};
+
+/// Order of a rest-to-rest profile: the derivative of position that is piecewise constant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Order {
+    /// Trapezoidal velocity: acceleration switches, jerk is not limited.
+    Second,
+    /// Jerk-limited ("S-curve"): jerk switches, snap is not limited.
+    Third,
+    /// Snap-limited: snap switches.
+    Fourth,
+}
+
+impl Order {
+    /// The derivative that is piecewise constant, and the number of boxes: 2, 3 or 4.
+    #[must_use]
+    pub const fn derivative(self) -> usize {
+        match self {
+            Self::Second => 2,
+            Self::Third => 3,
+            Self::Fourth => 4,
+        }
+    }
+}
+
+/// Limits of a move as magnitudes, in the axis unit (m or rad).
+///
+/// A profile of order n uses the first n of them and ignores the others. `f64::INFINITY` means "no limit" for all but
+/// the n-th, which the profile needs as its amplitude.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// Velocity (m/s or rad/s).
+    pub velocity: f64,
+    /// Acceleration (m/s² or rad/s²).
+    pub acceleration: f64,
+    /// Jerk (m/s³ or rad/s³).
+    pub jerk: f64,
+    /// Snap (m/s⁴ or rad/s⁴).
+    pub snap: f64,
+}
+
+/// Smallest and largest magnitude (SI) that a request may hold. Between them no product of four box lengths, limits
+/// or sample times leaves the normal range of `f64`, so that every plan is finite.
+pub(crate) const RANGE: (f64, f64) = (1e-30, 1e30);
+
+impl Limits {
+    /// No limit at all: the base for `Limits { velocity: 1.0, acceleration: 5.0, ..Limits::UNLIMITED }`.
+    pub const UNLIMITED: Self =
+        Self { velocity: f64::INFINITY, acceleration: f64::INFINITY, jerk: f64::INFINITY, snap: f64::INFINITY };
+
+    /// The limits under which the same continuous move lasts `factor` times as long: v/k, a/k², j/k³, s/k⁴.
+    #[must_use]
+    pub fn slowed(self, factor: f64) -> Self {
+        let k = factor;
+        Self {
+            velocity: self.velocity / k,
+            acceleration: self.acceleration / (k * k),
+            jerk: self.jerk / (k * k * k),
+            snap: self.snap / (k * k * k * k),
+        }
+    }
+
+    /// The limits that `order` uses, from its highest derivative down to velocity; the rest is infinite.
+    ///
+    /// # Errors
+    /// [`PlanError`] names the first limit that is not positive or out of range.
+    pub(crate) fn descending(&self, order: Order) -> Result<[f64; 4], PlanError> {
+        let n = order.derivative();
+        let named = [
+            ("velocity", self.velocity),
+            ("acceleration", self.acceleration),
+            ("jerk", self.jerk),
+            ("snap", self.snap),
+        ];
+        let mut bounds = [f64::INFINITY; 4];
+        for (k, (name, value)) in named.into_iter().enumerate().take(n) {
+            bounds[n - 1 - k] = if k + 1 == n {
+                in_range(name, positive(name, value)?, "correct its unit or plan a lower order")?
+            } else if value >= RANGE.0 {
+                value
+            } else if value > 0.0 {
+                in_range(name, value, "correct its unit")?
+            } else {
+                return Err(ParamError { name, value, bound: "positive" }.into());
+            };
+        }
+        Ok(bounds)
+    }
+}
+
+/// Returns `value` when its magnitude lies in [`RANGE`].
+///
+/// # Errors
+/// [`PlanError::OutOfRange`] otherwise.
+pub(crate) fn in_range(name: &'static str, value: f64, remedy: &'static str) -> Result<f64, PlanError> {
+    let (lowest, highest) = RANGE;
+    if (lowest..=highest).contains(&value.abs()) {
+        Ok(value)
+    } else {
+        Err(PlanError::OutOfRange { name, value, lowest, highest, remedy })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn descending_starts_at_the_highest_derivative_and_ignores_the_rest() {
+        let limits = Limits { velocity: 1.0, acceleration: 2.0, jerk: 3.0, snap: f64::NAN };
+        assert_eq!(limits.descending(Order::Third).unwrap()[..], [3.0, 2.0, 1.0, f64::INFINITY]);
+        assert_eq!(limits.descending(Order::Second).unwrap()[..2], [2.0, 1.0]);
+        assert!(limits.descending(Order::Fourth).is_err());
+    }
+
+    #[test]
+    fn only_the_highest_used_limit_must_be_finite() {
+        let jerk_only = Limits { jerk: 3.0, ..Limits::UNLIMITED };
+        assert!(jerk_only.descending(Order::Third).is_ok());
+        let e = jerk_only.descending(Order::Fourth).unwrap_err();
+        assert_eq!(e.to_string(), "`snap` must be finite and positive, got inf");
+        for bad in [0.0, -0.0, -1.0, f64::NAN, f64::NEG_INFINITY, 1e-31, f64::MIN_POSITIVE / 2.0] {
+            assert!(Limits { velocity: bad, ..jerk_only }.descending(Order::Third).is_err(), "{bad}");
+        }
+    }
+}

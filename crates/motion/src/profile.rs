@@ -1,0 +1,300 @@
+//! A planned rest-to-rest move: what it is made of, and the set-point at any time.
+use crate::boxes::{self, Grid};
+use crate::limits::in_range;
+use crate::{Limits, Order, PlanError, Segments, segment};
+use servobench_base::{Setpoint, finite, positive};
+
+/// A rest-to-rest move from 0 to [`distance`](Self::distance), in the axis unit (m or rad) and seconds from its start.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Profile {
+    order: Order,
+    distance: f64,
+    amplitude: f64,
+    /// Box lengths in `unit`; zero beyond the order.
+    boxes: [f64; 4],
+    /// Dwells `T_k − T_1 − … − T_(k−1)` in `unit`.
+    dwells: [f64; 4],
+    /// One second, or the sample time of a sampled plan (s): times are whole numbers of it, rounded once.
+    unit: f64,
+    sampled: bool,
+    duration: f64,
+    /// A switching instant that is nearer than this counts as reached (s).
+    tolerance: f64,
+    /// Starts of the segments of the first half of the move (s); infinite beyond the order.
+    starts: [f64; 8],
+    /// Their lengths (s).
+    lengths: [f64; 8],
+    /// Their states at the start.
+    anchors: [Setpoint; 8],
+}
+
+/// Times for which each derivative stays at its peak within one pulse of it (s), as the literature names them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Times {
+    /// Snap, order 4 only.
+    pub t_d: Option<f64>,
+    /// Jerk, orders 3 and 4.
+    pub t_j: Option<f64>,
+    /// Acceleration.
+    pub t_a: f64,
+    /// Velocity: the cruise.
+    pub t_v: f64,
+}
+
+/// Largest magnitudes over the move, in closed form (SI); infinite for the derivatives above the order, which are
+/// impulses.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Peaks {
+    /// Velocity (m/s or rad/s).
+    pub velocity: f64,
+    /// Acceleration (m/s² or rad/s²).
+    pub acceleration: f64,
+    /// Jerk (m/s³ or rad/s³).
+    pub jerk: f64,
+    /// Snap (m/s⁴ or rad/s⁴).
+    pub snap: f64,
+}
+
+/// The sample counts of a sampled plan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Samples {
+    /// Sample time (s).
+    pub time: f64,
+    /// Box lengths in samples; zero beyond the order.
+    pub boxes: [u64; 4],
+}
+
+impl Samples {
+    /// Number of samples of the whole move, at most 2⁵³.
+    #[must_use]
+    pub fn total(&self) -> u64 {
+        self.boxes.iter().sum()
+    }
+}
+
+impl Profile {
+    /// Plans a move of `distance` (m or rad; its sign is the direction) in continuous time.
+    ///
+    /// # Errors
+    /// [`PlanError`] when the distance is not finite, a used limit is not positive, or one of them lies outside
+    /// 1e-30 … 1e30 (SI). A distance of zero is a move of duration zero.
+    pub fn plan(order: Order, distance: f64, limits: &Limits) -> Result<Self, PlanError> {
+        let Request { distance, bounds } = Request::new(order, distance, limits)?;
+        let boxes =
+            if distance == 0.0 { None } else { boxes::lengths(&bounds[..=order.derivative()], Grid::Continuous) };
+        Ok(Self::from_boxes(order, distance, boxes.unwrap_or_default(), None))
+    }
+
+    /// Plans a move all of whose switching instants are whole multiples of `sample_time` (s).
+    ///
+    /// The end position is exact; the amplitude and the peaks are lowered, never raised, to make the times fit.
+    /// Executed by forward Euler with one amplitude per sample, or by the exact zero-order hold, the move lands
+    /// on `distance`; [`at`](Self::at) is the latter, and continuous between samples.
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan), for the sample time too, and [`PlanError::TooManySamples`] above 2⁵³ samples.
+    pub fn plan_sampled(order: Order, distance: f64, limits: &Limits, sample_time: f64) -> Result<Self, PlanError> {
+        let Request { distance, mut bounds } = Request::new(order, distance, limits)?;
+        let sample_time = in_range("sample_time", positive("sample_time", sample_time)?, "correct its unit")?;
+        if distance == 0.0 {
+            return Ok(Self::from_boxes(order, distance, [0.0; 4], Some(sample_time)));
+        }
+        // In units of the sample time: the k-th derivative times Ts^k.
+        let n = order.derivative();
+        let mut scale = 1.0;
+        for bound in bounds[..n].iter_mut().rev() {
+            scale *= sample_time;
+            *bound *= scale;
+        }
+        let Some(boxes) = boxes::lengths(&bounds[..=n], Grid::Whole) else {
+            let samples = Self::plan(order, distance, limits)?.duration / sample_time;
+            return Err(PlanError::TooManySamples { samples, sample_time });
+        };
+        Ok(Self::from_boxes(order, distance, boxes, Some(sample_time)))
+    }
+
+    /// The move of `distance` with these boxes, in seconds or in samples. The boxes fulfil the order conditions.
+    pub(crate) fn from_boxes(order: Order, distance: f64, boxes: [f64; 4], sample_time: Option<f64>) -> Self {
+        let n = order.derivative();
+        let unit = sample_time.unwrap_or(1.0);
+        let (mut dwells, mut sum) = ([0.0; 4], 0.0);
+        for (dwell, length) in dwells.iter_mut().zip(boxes).take(n) {
+            *dwell = length - sum;
+            sum += length;
+        }
+        let duration = sum * unit;
+        let mut profile = Self {
+            order,
+            distance,
+            amplitude: 0.0,
+            boxes,
+            dwells,
+            unit,
+            sampled: sample_time.is_some(),
+            duration,
+            // k·Ts against k/f is 1.5 ulp; a time found by subtracting is worse, which the sample grid can bear.
+            tolerance: (4.0 * f64::EPSILON * duration).max(sample_time.map_or(0.0, |t| 1e-9 * t)),
+            starts: [f64::INFINITY; 8],
+            lengths: [0.0; 8],
+            anchors: [Setpoint::default(); 8],
+        };
+        if sum > 0.0 {
+            profile.amplitude = boxes[..n].iter().rev().fold(distance, |peak, length| peak / (length * unit));
+            profile.fill_first_half();
+        }
+        profile
+    }
+
+    /// Segments and their start states up to the cruise, of which only the velocity is not zero: the residue that the
+    /// integration leaves in the acceleration would drift through a long cruise.
+    fn fill_first_half(&mut self) {
+        let n = self.order.derivative();
+        let cruise = (1 << (n - 1)) - 1;
+        let mut state = Setpoint::default();
+        for i in 0..=cruise {
+            let segment = segment::nth(self, i);
+            if i == cruise {
+                let v = self.distance / (self.boxes[n - 1] * self.unit);
+                state = Setpoint { x: v * (segment.start / 2.0), v, ..Setpoint::default() };
+            }
+            match self.order {
+                Order::Second => state.a = segment.value,
+                Order::Third => state.j = segment.value,
+                Order::Fourth => state.s = segment.value,
+            }
+            self.starts[i] = segment.start;
+            self.lengths[i] = segment.length;
+            self.anchors[i] = state;
+            state = state.after(segment.length);
+        }
+    }
+
+    /// The set-point `t` seconds after the start: at rest at 0 before it, at rest at exactly the distance from the end
+    /// on. A value that switches has its new value from the switching instant on.
+    ///
+    /// The polynomial is taken from the start of the segment, and from the end of the move for its second half
+    /// (x(t) = x_end − x(T − t)): no state is carried along, nothing drifts. A switching instant counts as reached
+    /// within 4 ulp of the duration, and of a sampled plan within 1e-9 samples: k·Ts always hits, however it was
+    /// rounded. NaN counts as before the start.
+    #[must_use]
+    #[inline]
+    pub fn at(&self, t: f64) -> Setpoint {
+        let reached = t + self.tolerance;
+        if reached >= self.duration {
+            return Setpoint::at_rest(self.distance);
+        }
+        if reached < 0.0 || t.is_nan() {
+            return Setpoint::at_rest(0.0);
+        }
+        let late = reached >= 0.5 * self.duration;
+        let (tau, reached) = if late { (self.duration - t, self.duration - reached) } else { (t, reached) };
+        let i = self.starts[1..].iter().filter(|start| **start <= reached).count();
+        let state = self.anchors[i].after((tau - self.starts[i]).max(0.0).min(self.lengths[i]));
+        if late {
+            // 0 − a and not −a: no negative zeros.
+            Setpoint { x: self.distance - state.x, a: 0.0 - state.a, s: 0.0 - state.s, ..state }
+        } else {
+            state
+        }
+    }
+
+    /// Order of the profile.
+    #[must_use]
+    pub const fn order(&self) -> Order {
+        self.order
+    }
+
+    /// Signed distance (m or rad).
+    #[must_use]
+    pub const fn distance(&self) -> f64 {
+        self.distance
+    }
+
+    /// Duration (s).
+    #[must_use]
+    pub const fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    /// The effective snap, jerk or acceleration by order (SI), signed by the direction: what the pulses reach, at most
+    /// the limit, `distance/∏ T_k`.
+    #[must_use]
+    pub const fn amplitude(&self) -> f64 {
+        self.amplitude
+    }
+
+    /// Box lengths `T1 … Tn` (s).
+    #[must_use]
+    pub fn boxes(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
+        self.boxes[..self.order.derivative()].iter().map(|length| length * self.unit)
+    }
+
+    /// Dwell of each derivative at its peak.
+    #[must_use]
+    pub fn times(&self) -> Times {
+        let [first, second, third, fourth] = self.dwells.map(|dwell| dwell * self.unit);
+        match self.order {
+            Order::Second => Times { t_d: None, t_j: None, t_a: first, t_v: second },
+            Order::Third => Times { t_d: None, t_j: Some(first), t_a: second, t_v: third },
+            Order::Fourth => Times { t_d: Some(first), t_j: Some(second), t_a: third, t_v: fourth },
+        }
+    }
+
+    /// Peak magnitudes: `|x|/T_n`, `|x|/(T_n·T_(n−1))`, …
+    #[must_use]
+    pub fn peaks(&self) -> Peaks {
+        let (mut peaks, mut peak) = ([f64::INFINITY; 4], self.distance.abs());
+        for (slot, length) in peaks.iter_mut().zip(self.boxes[..self.order.derivative()].iter().rev()) {
+            peak = if *length > 0.0 { peak / (length * self.unit) } else { 0.0 };
+            *slot = peak;
+        }
+        let [velocity, acceleration, jerk, snap] = peaks;
+        Peaks { velocity, acceleration, jerk, snap }
+    }
+
+    /// The sample counts; `None` for a continuous plan.
+    #[must_use]
+    pub fn samples(&self) -> Option<Samples> {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole numbers up to 2⁵³")]
+        self.sampled.then(|| Samples { time: self.unit, boxes: self.boxes.map(|count| count as u64) })
+    }
+
+    /// The segments with their highest derivative.
+    #[must_use]
+    pub const fn segments(&self) -> Segments<'_> {
+        Segments::of(self)
+    }
+
+    pub(crate) const fn unit(&self) -> f64 {
+        self.unit
+    }
+
+    pub(crate) const fn box_units(&self) -> &[f64; 4] {
+        &self.boxes
+    }
+
+    pub(crate) const fn dwell_units(&self) -> &[f64; 4] {
+        &self.dwells
+    }
+}
+
+/// A checked request.
+struct Request {
+    distance: f64,
+    /// Limits from the highest derivative down, then |distance|.
+    bounds: [f64; 5],
+}
+
+impl Request {
+    fn new(order: Order, distance: f64, limits: &Limits) -> Result<Self, PlanError> {
+        let mut bounds = [f64::INFINITY; 5];
+        bounds[..4].copy_from_slice(&limits.descending(order)?);
+        // Adding zero makes −0 a plain zero.
+        let mut distance = finite("distance", distance)? + 0.0;
+        if distance != 0.0 {
+            distance = in_range("distance", distance, "correct its unit, or ask for a distance of 0")?;
+        }
+        bounds[order.derivative()] = distance.abs();
+        Ok(Self { distance, bounds })
+    }
+}

@@ -1,0 +1,9 @@
+//! Plans against oracles that share no code with the planner.
+
+mod any_input;
+mod closed_forms;
+mod double_double;
+mod evaluation;
+mod paper;
+mod requests;
+mod sweep;
