@@ -386,3 +386,18 @@ pub struct Measure {
     /// Where to look for the residual mode (Hz); without it, everywhere.
     pub mode: Option<f64>,
 }
+
+impl EngineName {
+    /// Every engine, in the order in which tables list them.
+    pub const ALL: [Self; 3] = [Self::Exact, Self::Rapier, Self::Mujoco];
+
+    /// The name as scenario files write it.
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::Rapier => "rapier",
+            Self::Mujoco => "mujoco",
+        }
+    }
+}

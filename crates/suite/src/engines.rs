@@ -1,0 +1,56 @@
+//! Which engines this build has.
+use servobench_plant::Engine;
+use servobench_scenario::EngineName;
+use thiserror::Error;
+
+/// An engine as this build has it.
+#[derive(Clone, Copy)]
+pub struct Installed {
+    /// The engine.
+    pub engine: &'static dyn Engine,
+    /// Whether it can end the process that it runs in: it then runs in a worker process of its own.
+    pub isolated: bool,
+}
+
+/// The engines of this build; the command line fills it, since it alone has engine features.
+#[derive(Clone, Copy, Default)]
+pub struct Engines {
+    /// `exact`.
+    pub exact: Option<Installed>,
+    /// `rapier`.
+    pub rapier: Option<Installed>,
+    /// `mujoco`.
+    pub mujoco: Option<Installed>,
+}
+
+/// The build lacks an engine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error(
+    "this build has no engine `{name}`; build it in with `cargo build --release -p servobench-cli --features {name}` \
+     (for `mujoco` after `cargo xtask setup`), or choose one with `--engine`"
+)]
+pub struct EngineMissing {
+    /// Name of the engine, which is the name of the feature too.
+    pub name: &'static str,
+}
+
+impl Engines {
+    /// The engine `name`.
+    ///
+    /// # Errors
+    /// [`EngineMissing`] names the feature and the command.
+    pub fn get(&self, name: EngineName) -> Result<Installed, EngineMissing> {
+        let (installed, name) = match name {
+            EngineName::Exact => (self.exact, "exact"),
+            EngineName::Rapier => (self.rapier, "rapier"),
+            EngineName::Mujoco => (self.mujoco, "mujoco"),
+        };
+        installed.ok_or(EngineMissing { name })
+    }
+
+    /// Names of the engines that are there.
+    #[must_use]
+    pub fn names(&self) -> Vec<EngineName> {
+        EngineName::ALL.into_iter().filter(|name| self.get(*name).is_ok()).collect()
+    }
+}
