@@ -23,6 +23,38 @@ impl ElectricalAngle {
     pub fn ahead(self, angle: f64) -> Self {
         Self(self.0 + angle)
     }
+
+    /// The rotation of the rotor frame at this angle.
+    #[must_use]
+    pub fn rotation(self) -> Rotation {
+        let (sin, cos) = libm::sincos(self.0);
+        Rotation { sin, cos }
+    }
+}
+
+/// Sine and cosine of an electrical angle: computed once, used for every transformation at that angle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rotation {
+    /// Sine of the angle.
+    pub sin: f64,
+    /// Cosine of the angle.
+    pub cos: f64,
+}
+
+impl Default for Rotation {
+    fn default() -> Self {
+        Self { sin: 0.0, cos: 1.0 }
+    }
+}
+
+impl Rotation {
+    /// Further by `angle` (rad, electrical); cheapest for angles below π/4, which need no range reduction.
+    #[inline]
+    #[must_use]
+    pub fn ahead(self, angle: f64) -> Self {
+        let (sin, cos) = libm::sincos(angle);
+        Self { sin: self.sin * cos + self.cos * sin, cos: self.cos * cos - self.sin * sin }
+    }
 }
 
 /// Rotor frame: d along the magnet flux, q ahead of it by 90° electrical.
@@ -57,10 +89,11 @@ pub struct Abc {
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
 
 impl Dq {
-    /// To the stator frame at rotor angle `theta`.
+    /// To the stator frame, the rotor being at `rotor`.
+    #[inline]
     #[must_use]
-    pub fn to_alpha_beta(self, theta: ElectricalAngle) -> AlphaBeta {
-        let (sin, cos) = libm::sincos(theta.0);
+    pub fn to_alpha_beta(self, rotor: Rotation) -> AlphaBeta {
+        let Rotation { sin, cos } = rotor;
         AlphaBeta { alpha: self.d * cos - self.q * sin, beta: self.d * sin + self.q * cos }
     }
 
@@ -72,10 +105,11 @@ impl Dq {
 }
 
 impl AlphaBeta {
-    /// To the rotor frame at rotor angle `theta`.
+    /// To the rotor frame, the rotor being at `rotor`.
+    #[inline]
     #[must_use]
-    pub fn to_dq(self, theta: ElectricalAngle) -> Dq {
-        let (sin, cos) = libm::sincos(theta.0);
+    pub fn to_dq(self, rotor: Rotation) -> Dq {
+        let Rotation { sin, cos } = rotor;
         Dq { d: self.alpha * cos + self.beta * sin, q: -self.alpha * sin + self.beta * cos }
     }
 
@@ -107,16 +141,26 @@ mod tests {
         for k in 0..12 {
             let theta = f64::from(k) * 0.7;
             let abc = Abc { a: theta.cos(), b: (theta - third).cos(), c: (theta + third).cos() };
-            let dq = abc.to_alpha_beta().to_dq(ElectricalAngle(theta));
+            let dq = abc.to_alpha_beta().to_dq(ElectricalAngle(theta).rotation());
             assert!((dq.d - 1.0).abs() < 1e-15 * 8.0 && dq.q.abs() < 1e-15 * 8.0, "{dq:?}");
+        }
+    }
+
+    #[test]
+    fn two_turns_are_one() {
+        for (first, second) in [(0.3, 0.1), (-2.0, 3.0), (100.0, -0.7)] {
+            let (turned, at) =
+                (ElectricalAngle(first).rotation().ahead(second), ElectricalAngle(first + second).rotation());
+            // A handful of roundings of numbers of at most one, and one of the sum of the angles.
+            assert!((turned.sin - at.sin).abs() < 2e-14 && (turned.cos - at.cos).abs() < 2e-14, "{turned:?} {at:?}");
         }
     }
 
     proptest! {
         #[test]
         fn there_and_back_again(d in -1e3..1e3_f64, q in -1e3..1e3_f64, theta in -1e3..1e3_f64) {
-            let theta = ElectricalAngle(theta);
-            let back = Dq { d, q }.to_alpha_beta(theta).to_abc().to_alpha_beta().to_dq(theta);
+            let rotor = ElectricalAngle(theta).rotation();
+            let back = Dq { d, q }.to_alpha_beta(rotor).to_abc().to_alpha_beta().to_dq(rotor);
             // A dozen roundings of numbers up to 1.4e3.
             prop_assert!((back.d - d).abs() < 4e-12 && (back.q - q).abs() < 4e-12);
         }

@@ -23,6 +23,7 @@ impl Setpoint {
     }
 
     /// The set-point `t` seconds later while the snap stays what it is: exact, not an approximation.
+    #[inline]
     #[must_use]
     pub fn after(self, t: f64) -> Self {
         let Self { x, v, a, j, s } = self;

@@ -73,6 +73,7 @@ impl Rate {
     }
 
     /// Time of `tick` (s), correctly rounded as long as the counter is below 2⁵³.
+    #[inline]
     #[must_use]
     pub fn time(self, tick: Tick) -> f64 {
         tick.0 as f64 / f64::from(self.0.get())

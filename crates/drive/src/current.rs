@@ -9,7 +9,7 @@
 //! followed 1/α late, whatever the dead time in the loop. The voltage limit gives the d axis first call.
 //!
 //! The voltage computed at tick k is applied from k+1 to k+2: it is turned ahead by 1.5·h·ω to meet the rotor there.
-use servobench_base::{AlphaBeta, Dq, ElectricalAngle, ParamError, positive};
+use servobench_base::{AlphaBeta, Dq, ParamError, Rotation, positive};
 
 /// The motor as the firmware knows it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,8 +53,8 @@ pub struct Input {
     pub reference: Dq,
     /// Measured stator current (A, peak).
     pub current: AlphaBeta,
-    /// Measured rotor angle.
-    pub theta: ElectricalAngle,
+    /// Measured rotor.
+    pub rotor: Rotation,
     /// Measured electrical speed (rad/s).
     pub omega_e: f64,
 }
@@ -101,7 +101,7 @@ impl Params {
 
 /// Returns the voltage for tick k, then advances `x` by `h` (s) to tick k+1.
 pub fn step(p: &Params, x: &mut State, u: Input, h: f64) -> Output {
-    let i = u.current.to_dq(u.theta);
+    let i = u.current.to_dq(u.rotor);
     let e = Dq { d: u.reference.d - i.d, q: u.reference.q - i.q };
     let motor = &p.motor;
     let v = Dq {
@@ -111,7 +111,7 @@ pub fn step(p: &Params, x: &mut State, u: Input, h: f64) -> Output {
     let computed = limit_d_first(v, p.max_voltage);
     x.integral.d += h * p.k_i.d * (e.d + (computed.d - v.d) / p.k_p.d);
     x.integral.q += h * p.k_i.q * (e.q + (computed.q - v.q) / p.k_p.q);
-    let voltage = core::mem::replace(&mut x.pending, computed.to_alpha_beta(u.theta.ahead(1.5 * h * u.omega_e)));
+    let voltage = core::mem::replace(&mut x.pending, computed.to_alpha_beta(u.rotor.ahead(1.5 * h * u.omega_e)));
     Output { voltage, current: i, computed, saturated: computed != v }
 }
 
@@ -141,7 +141,7 @@ mod tests {
         for k in 0..1_600 {
             let reference = Dq { d: 0.0, q: slope * f64::from(k) * H };
             let current = AlphaBeta { alpha: i.d, beta: i.q };
-            let out = step(&p, &mut x, Input { reference, current, theta: ElectricalAngle(0.0), omega_e: 0.0 }, H);
+            let out = step(&p, &mut x, Input { reference, current, rotor: Rotation::default(), omega_e: 0.0 }, H);
             for (i, u, l) in [(&mut i.d, out.voltage.alpha, 36e-3), (&mut i.q, out.voltage.beta, 51e-3)] {
                 let a = (-H * 3.6 / l).exp();
                 *i = a * *i + (1.0 - a) / 3.6 * u;
@@ -175,7 +175,7 @@ mod tests {
         let input = Input {
             reference: Dq { d: 0.0, q: 100.0 },
             current: AlphaBeta::default(),
-            theta: ElectricalAngle(0.0),
+            rotor: Rotation::default(),
             omega_e: 0.0,
         };
         for _ in 0..160_000 {
@@ -188,10 +188,10 @@ mod tests {
     fn the_voltage_meets_the_rotor_one_and_a_half_ticks_later() {
         let p = Params::from_bandwidth(MOTOR, 2_000.0, 1e6).unwrap();
         let mut x = State::default();
-        let (theta, omega_e) = (ElectricalAngle(0.7), 2_000.0);
-        let input = Input { reference: Dq { d: 1.0, q: 2.0 }, current: AlphaBeta::default(), theta, omega_e };
+        let (rotor, omega_e) = (Rotation::default().ahead(0.7), 2_000.0);
+        let input = Input { reference: Dq { d: 1.0, q: 2.0 }, current: AlphaBeta::default(), rotor, omega_e };
         let computed = step(&p, &mut x, input, H).computed;
-        let met = step(&p, &mut x, input, H).voltage.to_dq(theta.ahead(1.5 * H * omega_e));
+        let met = step(&p, &mut x, input, H).voltage.to_dq(rotor.ahead(1.5 * H * omega_e));
         assert!((met.d - computed.d).abs() < 1e-10 && (met.q - computed.q).abs() < 1e-10, "{met:?} {computed:?}");
     }
 }

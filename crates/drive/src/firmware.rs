@@ -264,7 +264,7 @@ impl Firmware {
         let input = current::Input {
             reference: Dq { d: 0.0, q: t.current_reference },
             current: sensors.current,
-            theta: ElectricalAngle::from_mechanical(sensors.motor_position, params.motor.pole_pairs),
+            rotor: ElectricalAngle::from_mechanical(sensors.motor_position, params.motor.pole_pairs).rotation(),
             omega_e: params.motor.pole_pairs * self.filtered_velocity,
         };
         t.current = current::step(params, &mut self.current, input, h);

@@ -11,7 +11,7 @@
 //! The inverter holds its voltage in the stator frame, so in the rotor frame it turns backwards during a tick; its mean
 //! there is the vector at the middle of the tick, shortened by sinc(ωh/2). The currents take one step of the classic
 //! Runge–Kutta method with that mean; the torque is the mean of both ends. Second order in the tick.
-use servobench_base::{AlphaBeta, Dq, ElectricalAngle, ParamError, positive};
+use servobench_base::{AlphaBeta, Dq, ParamError, Rotation, positive};
 
 /// Parameters of the motor; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,8 +38,8 @@ pub struct State {
 pub struct Input {
     /// Stator voltage, held over the tick (V, peak, phase to neutral).
     pub voltage: AlphaBeta,
-    /// Rotor angle at tick k.
-    pub theta: ElectricalAngle,
+    /// Rotor at tick k.
+    pub rotor: Rotation,
     /// Mean electrical speed over the tick (rad/s).
     pub omega_e: f64,
 }
@@ -80,7 +80,7 @@ pub fn step(p: &Params, x: &mut State, u: Input, h: f64) -> f64 {
     // sinc to second order: the tick's turn is far below one radian in any sane set-up, and the rest of the scheme
     // is of second order too.
     let sinc = 1.0 - half * half / 6.0;
-    let middle = u.voltage.to_dq(u.theta.ahead(half));
+    let middle = u.voltage.to_dq(u.rotor.ahead(half));
     let voltage = Dq { d: sinc * middle.d, q: sinc * middle.q };
 
     let per_inductance = Dq { d: 1.0 / p.inductance.d, q: 1.0 / p.inductance.q };
@@ -102,6 +102,7 @@ pub fn step(p: &Params, x: &mut State, u: Input, h: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use servobench_base::ElectricalAngle;
     use std::f64::consts::PI;
 
     /// Saarakkala/Hinkkanen, 2.2 kW.
@@ -115,8 +116,8 @@ mod tests {
         for k in 0..ticks {
             let theta = ElectricalAngle(omega_e * f64::from(k) * h);
             // Held in the stator frame at the angle of the middle of the tick, as a drive with compensation does.
-            let voltage = voltage.to_alpha_beta(theta.ahead(omega_e * h / 2.0));
-            torque = step(p, &mut x, Input { voltage, theta, omega_e }, h);
+            let voltage = voltage.to_alpha_beta(theta.ahead(omega_e * h / 2.0).rotation());
+            torque = step(p, &mut x, Input { voltage, rotor: theta.rotation(), omega_e }, h);
         }
         (x.current, torque)
     }
@@ -165,9 +166,10 @@ mod tests {
                 // The same staircase of voltages for every n: it changes every 125 µs.
                 let t = f64::from(k) * h;
                 let stair = (t / 125e-6 + 1e-9).floor() * 125e-6;
-                let voltage = Dq { d: 5.0, q: 90.0 + 1e4 * stair }.to_alpha_beta(ElectricalAngle(omega * stair));
-                let theta = ElectricalAngle(omega * t);
-                let _ = step(&MOTOR, &mut x, Input { voltage, theta, omega_e: omega }, h);
+                let voltage =
+                    Dq { d: 5.0, q: 90.0 + 1e4 * stair }.to_alpha_beta(ElectricalAngle(omega * stair).rotation());
+                let rotor = ElectricalAngle(omega * t).rotation();
+                let _ = step(&MOTOR, &mut x, Input { voltage, rotor, omega_e: omega }, h);
             }
             x.current.q
         };

@@ -4,7 +4,7 @@ use crate::error::BuildError;
 use crate::limits::LimitWatch;
 use crate::power::PowerStage;
 use crate::program::Program;
-use servobench_base::{Dq, Rate, Setpoint};
+use servobench_base::{Dq, Rate, Rotation, Setpoint};
 use servobench_drive::{self as drive, Firmware, current, feedforward, velocity};
 use servobench_plant::{self as plant, BodyState, Chain, Encoder, Engine, Mechanics, MechanicsSetup, inverter, pmsm};
 use servobench_scenario::{self as scenario, Scenario};
@@ -214,7 +214,7 @@ fn power_stage(scenario: &Scenario) -> Result<(PowerStage, Encoder), BuildError>
             params.check()?;
             let encoder = encoder(motor.encoder)?;
             let (state, u_dc) = (pmsm::State::default(), scenario.drive.dc_link);
-            let stage = PowerStage::Pmsm { params, state, u_dc, last_speed: 0.0 };
+            let stage = PowerStage::Pmsm { params, state, u_dc, last_speed: 0.0, rotor: Rotation::default() };
             Ok((if on { stage } else { PowerStage::Off }, encoder))
         }
     }

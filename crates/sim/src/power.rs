@@ -1,5 +1,5 @@
 //! Power stage: from the drive's command to the effort on the motor body.
-use servobench_base::{AlphaBeta, Dq, ElectricalAngle};
+use servobench_base::{AlphaBeta, Dq, ElectricalAngle, Rotation};
 use servobench_drive::Command;
 use servobench_plant::{BodyState, inverter, pmsm};
 
@@ -14,6 +14,8 @@ pub(crate) enum PowerStage {
         u_dc: f64,
         /// Motor speed a tick ago (rad/s), to tell the mean over the coming tick.
         last_speed: f64,
+        /// Rotor at this tick.
+        rotor: Rotation,
     },
     /// Ideal source: effort = gain · output, |output| ≤ limit.
     Ideal { gain: f64, limit: f64 },
@@ -22,11 +24,12 @@ pub(crate) enum PowerStage {
 }
 
 impl PowerStage {
-    /// Stator current as the drive's sensors see it (A, peak).
-    pub(crate) fn measured_current(&self, motor: BodyState) -> AlphaBeta {
+    /// Stator current as the drive's sensors see it with the motor at `motor` (A, peak).
+    pub(crate) fn measured_current(&mut self, motor: BodyState) -> AlphaBeta {
         match self {
-            Self::Pmsm { params, state, .. } => {
-                state.current.to_alpha_beta(ElectricalAngle::from_mechanical(motor.position, params.pole_pairs))
+            Self::Pmsm { params, state, rotor, .. } => {
+                *rotor = ElectricalAngle::from_mechanical(motor.position, params.pole_pairs).rotation();
+                state.current.to_alpha_beta(*rotor)
             }
             Self::Ideal { .. } | Self::Off => AlphaBeta::default(),
         }
@@ -52,13 +55,13 @@ impl PowerStage {
     pub(crate) fn advance(&mut self, command: Command, motor: BodyState, h: f64) -> f64 {
         let output = self.output(command);
         match (self, command) {
-            (Self::Pmsm { params, state, u_dc, last_speed }, Command::Voltage(voltage)) => {
+            (Self::Pmsm { params, state, u_dc, last_speed, rotor }, Command::Voltage(voltage)) => {
                 // Straight on from the last two ticks: second order.
                 let mean_speed = motor.velocity + (motor.velocity - *last_speed) / 2.0;
                 *last_speed = motor.velocity;
                 let input = pmsm::Input {
                     voltage: inverter::output(voltage, *u_dc),
-                    theta: ElectricalAngle::from_mechanical(motor.position, params.pole_pairs),
+                    rotor: *rotor,
                     omega_e: params.pole_pairs * mean_speed,
                 };
                 pmsm::step(params, state, input, h)
