@@ -109,10 +109,13 @@ pub fn step(p: &Params, x: &mut State, u: Input, h: f64) -> Output {
         q: p.k_p.q * e.q + x.integral.q + u.omega_e * (motor.inductance.d * i.d + motor.flux_linkage),
     };
     let computed = limit_d_first(v, p.max_voltage);
-    x.integral.d += h * p.k_i.d * (e.d + (computed.d - v.d) / p.k_p.d);
-    x.integral.q += h * p.k_i.q * (e.q + (computed.q - v.q) / p.k_p.q);
+    let saturated = computed != v;
+    let windup =
+        if saturated { Dq { d: (v.d - computed.d) / p.k_p.d, q: (v.q - computed.q) / p.k_p.q } } else { Dq::default() };
+    x.integral.d += h * p.k_i.d * (e.d - windup.d);
+    x.integral.q += h * p.k_i.q * (e.q - windup.q);
     let voltage = core::mem::replace(&mut x.pending, computed.to_alpha_beta(u.rotor.ahead(1.5 * h * u.omega_e)));
-    Output { voltage, current: i, computed, saturated: computed != v }
+    Output { voltage, current: i, computed, saturated }
 }
 
 /// Cuts `v` to the circle of radius `max`; d keeps what it asks for as long as the circle allows.

@@ -67,6 +67,9 @@ struct ExactChain<const W: usize> {
     holds: Vec<Option<Hold<W>>>,
     y: [f64; W],
     bodies: Vec<BodyState>,
+    /// Own coordinate per axis coordinate, of each body; and velocity per travel in a tick.
+    per_axis: [f64; MAX_BODIES],
+    per_travel: [f64; MAX_BODIES],
     any_dry: bool,
 }
 
@@ -81,6 +84,11 @@ impl<const W: usize> ExactChain<W> {
             .map(|stuck| (stuck & !can_stick == 0).then(|| hold(&chain, prescribed, setup.step, stuck)))
             .collect();
         let bodies: Vec<BodyState> = (0..n).map(|i| setup.initial.get(i).copied().unwrap_or_default()).collect();
+        let (mut per_axis, mut per_travel) = ([0.0; MAX_BODIES], [0.0; MAX_BODIES]);
+        for (i, body) in chain.bodies().iter().enumerate() {
+            per_axis[i] = 1.0 / body.transmission;
+            per_travel[i] = 1.0 / (setup.step * body.transmission);
+        }
         let mut y = [0.0; W];
         let axis_position = |i: usize| chain.bodies()[i].transmission * bodies[i].position;
         for i in 1..n {
@@ -89,7 +97,7 @@ impl<const W: usize> ExactChain<W> {
         for i in 0..n {
             y[n - 1 + i] = setup.step * chain.bodies()[i].transmission * bodies[i].velocity;
         }
-        Self { chain, prescribed, step: setup.step, holds, y, bodies, any_dry: can_stick != 0 }
+        Self { chain, prescribed, step: setup.step, holds, y, bodies, per_axis, per_travel, any_dry: can_stick != 0 }
     }
 
     /// Efforts that are constant over the tick, dry friction still missing.
@@ -176,12 +184,12 @@ impl<const W: usize> Mechanics for ExactChain<W> {
                 next[n - 1 + i] = 0.0;
                 continue;
             }
-            let mut velocity = next[n - 1 + i] / (self.step * body.transmission);
+            let mut velocity = next[n - 1 + i] * self.per_travel[i];
             if body.dry.settle(self.bodies[i].velocity, velocity) {
                 velocity = 0.0;
                 next[n - 1 + i] = 0.0;
             }
-            self.bodies[i] = BodyState { position: axis_position / body.transmission, velocity };
+            self.bodies[i] = BodyState { position: axis_position * self.per_axis[i], velocity };
         }
         self.y = next;
         let total: f64 = self.bodies.iter().map(|body| body.position + body.velocity).sum();

@@ -3,23 +3,25 @@ use crate::channel::{Channel, ChannelSpec};
 use crate::recording::{About, Event, Move, Recording};
 use servobench_base::Rate;
 
+/// Rows that are collected before they go to the columns: a block stays in the first cache.
+const BLOCK: usize = 64;
+
 /// Takes one row per recorded instant.
 #[derive(Debug)]
 pub struct Recorder {
     recording: Recording,
+    /// Up to [`BLOCK`] rows, one after the other.
+    block: Vec<f64>,
 }
 
 impl Recorder {
     /// A recorder with room for `rows` rows; more rows work, but allocate.
     #[must_use]
     pub fn new(about: About, rate: Rate, channels: Vec<ChannelSpec>, rows: usize) -> Self {
-        let channels = channels
-            .into_iter()
-            .map(|spec| Channel { spec, values: Vec::with_capacity(rows) })
-            .collect();
-        Self {
-            recording: Recording { about, rate, channels, moves: Vec::new(), events: Vec::new() },
-        }
+        let block = Vec::with_capacity(BLOCK * channels.len());
+        let channels = channels.into_iter().map(|spec| Channel { spec, values: Vec::with_capacity(rows) }).collect();
+        let recording = Recording { about, rate, channels, moves: Vec::new(), events: Vec::new() };
+        Self { recording, block }
     }
 
     /// Appends one value to every channel, in the order of the channels.
@@ -27,14 +29,21 @@ impl Recorder {
     /// # Panics
     /// When `row` has not as many values as there are channels: the loop that writes it is wrong.
     pub fn push(&mut self, row: &[f64]) {
-        assert_eq!(
-            row.len(),
-            self.recording.channels.len(),
-            "a row has one value for each channel"
-        );
-        for (channel, value) in self.recording.channels.iter_mut().zip(row) {
-            channel.values.push(*value);
+        let width = self.recording.channels.len();
+        assert_eq!(row.len(), width, "a row has one value for each channel");
+        self.block.extend_from_slice(row);
+        if self.block.len() == BLOCK * width {
+            self.flush();
         }
+    }
+
+    /// Moves the block to the columns.
+    fn flush(&mut self) {
+        let width = self.recording.channels.len();
+        for (i, channel) in self.recording.channels.iter_mut().enumerate() {
+            channel.values.extend(self.block[i..].iter().step_by(width));
+        }
+        self.block.clear();
     }
 
     /// Notes a move.
@@ -50,7 +59,37 @@ impl Recorder {
     /// The recording, events in order of their start.
     #[must_use]
     pub fn finish(mut self) -> Recording {
+        if !self.block.is_empty() {
+            self.flush();
+        }
         self.recording.events.sort_by(|one, two| one.start.total_cmp(&two.start));
         self.recording
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_become_columns_whatever_their_number() {
+        let rate = Rate::new(1_000).unwrap();
+        let spec = |name: &str| ChannelSpec { name: name.into(), unit: "m".into(), writer: "test".into(), rate };
+        let about = || About {
+            scenario: "rows".into(),
+            engine: "none".into(),
+            axis_unit: "m".into(),
+            bodies: vec!["motor".into()],
+        };
+        for rows in [0_u32, 1, 63, 64, 65, 200] {
+            let mut recorder = Recorder::new(about(), rate, vec![spec("up"), spec("down")], 10);
+            for k in 0..rows {
+                recorder.push(&[f64::from(k), -f64::from(k)]);
+            }
+            let recording = recorder.finish();
+            let up: Vec<f64> = (0..rows).map(f64::from).collect();
+            let down: Vec<f64> = up.iter().map(|k| -k).collect();
+            assert_eq!((recording.channel("up"), recording.channel("down")), (Some(&up[..]), Some(&down[..])));
+        }
     }
 }
