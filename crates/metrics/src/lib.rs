@@ -1,1 +1,33 @@
-//! placeholder
+//! From a [`Recording`](servobench_trace::Recording) to numbers with units, and from these to a verdict.
+//!
+//! ```text
+//! measure(&recording, &question) → Metrics      judge(&[limit]) → Verdict
+//! ```
+//! Every metric has a stable name ([`Name`]) and one definition (`docs/metrics.md`). What cannot be measured is absent
+//! and says why ([`Absence`]); it is never zero, and a limit on it is missed.
+
+mod absence;
+mod compliance;
+mod effort;
+mod measure;
+mod metric;
+mod modal;
+mod name;
+mod quantity;
+mod settling;
+mod span;
+#[cfg(test)]
+mod synthetic;
+mod tracking;
+mod undamped;
+mod verdict;
+mod vibration;
+
+pub use absence::Absence;
+pub use measure::{Question, measure};
+pub use metric::{Metric, MetricSet, Metrics, MoveMetrics};
+pub use modal::{Mode, Signal, fit_mode};
+pub use name::{Name, UnknownMetric};
+pub use quantity::Quantity;
+pub use undamped::undamped_residual;
+pub use verdict::{Limit, Miss, Verdict};

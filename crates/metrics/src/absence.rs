@@ -1,0 +1,101 @@
+//! Why a metric has no value.
+use crate::quantity::Quantity;
+use thiserror::Error;
+
+/// Why a metric has no value. What is absent is never zero.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum Absence {
+    /// The recording lacks a channel.
+    #[error("the recording has no channel `{channel}`")]
+    NoChannel {
+        /// Missing channel.
+        channel: &'static str,
+    },
+    /// A channel holds something that is not a number.
+    #[error("`{channel}` is not finite at {time} s")]
+    NotFinite {
+        /// The channel.
+        channel: &'static str,
+        /// First instant at which it is not finite (s).
+        time: f64,
+    },
+    /// The metric is about a move, and there is none.
+    #[error("the program has no move")]
+    NoMove,
+    /// No instant of the recording lies in the part that the metric is about.
+    #[error("nothing was recorded {part}")]
+    NothingRecorded {
+        /// The part, in words.
+        part: &'static str,
+    },
+    /// The settling time needs a window.
+    #[error("no settling window is given (`measure.window`)")]
+    NoWindow,
+    /// The load was still outside its window.
+    #[error(
+        "`{label}` has not settled {} after the profile: {} from the target, window ±{}",
+        Quantity::new(*watched, "s"), Quantity::new(*deviation, unit), Quantity::new(*window, unit)
+    )]
+    NotSettled {
+        /// Label of the move.
+        label: String,
+        /// How long after the profile the recording watched (s).
+        watched: f64,
+        /// |deviation| from the target at the last exit that was seen (axis unit).
+        deviation: f64,
+        /// Window (axis unit).
+        window: f64,
+        /// Axis unit.
+        unit: String,
+    },
+    /// No move reaches constant velocity.
+    #[error("no move has a part at constant velocity")]
+    NoCruise,
+    /// No move is limited in this derivative.
+    #[error("no set-point is planned with a {derivative} limit")]
+    NoLimit {
+        /// `velocity`, `acceleration`, `jerk`, `snap`.
+        derivative: &'static str,
+    },
+    /// A limit is given for a derivative that the profile does not bound.
+    #[error("the {derivative} of `{label}` is not bounded")]
+    Unbounded {
+        /// `velocity`, `acceleration`, `jerk`, `snap`.
+        derivative: &'static str,
+        /// Label of the move.
+        label: String,
+    },
+    /// Two channels that belong together have different units.
+    #[error("`{one}` and `{two}` differ in unit")]
+    UnitsDiffer {
+        /// First channel.
+        one: &'static str,
+        /// Second channel.
+        two: &'static str,
+    },
+    /// The load is at rest, or drifts without oscillating.
+    #[error("the load does not oscillate")]
+    NoVibration,
+    /// The record holds too little of the oscillation.
+    #[error("{periods:.1} periods were recorded; a mode needs {needed} at least")]
+    TooShort {
+        /// Periods in the record.
+        periods: f64,
+        /// Periods that are needed.
+        needed: f64,
+    },
+    /// The motion is no sum of decaying modes.
+    #[error("decaying modes explain only {:.0} % of the motion after the profile", 100.0 * share)]
+    NotModal {
+        /// Share of the energy that the fitted modes explain, 0 to 1.
+        share: f64,
+    },
+    /// Nothing oscillates where the scenario says that the mode is.
+    #[error("no mode within {} % of {}", 100.0 * share, Quantity::new(*frequency, "Hz"))]
+    NotThere {
+        /// Where it was searched (Hz).
+        frequency: f64,
+        /// Half width of the search, relative.
+        share: f64,
+    },
+}

@@ -1,0 +1,103 @@
+//! What the program asks of motor and inverter: current, voltage, torque.
+use crate::absence::Absence;
+use crate::metric::MetricSet;
+use crate::name::Name;
+use crate::span::{channel, largest, root_mean, unit};
+use servobench_trace::Recording;
+use std::ops::Range;
+
+/// Peak value of a phase current; what |i_dq| is in the amplitude-invariant frame.
+const PEAK_CURRENT: &str = "Apk";
+/// Effective value of a phase current.
+const RMS_CURRENT: &str = "Arms";
+const EFFORT: &str = "effort.motor";
+
+/// Notes current, voltage and torque over `rows`.
+pub(crate) fn note(set: &mut MetricSet, recording: &Recording, rows: &Range<usize>) {
+    let peak = |squares: &Vec<f64>| largest(squares.iter().copied(), PART).map(f64::sqrt);
+    let current = vector_squared(recording, "current.d", "current.q", rows);
+    // A phase of amplitude |i_dq| has the effective value |i_dq|/√2.
+    let rms = |squares: &Vec<f64>| root_mean(squares.iter().map(|square| square / 2.0), PART);
+    set.note(Name::CurrentPeak, PEAK_CURRENT, current.as_ref().map_err(Clone::clone).and_then(peak));
+    set.note(Name::CurrentRms, RMS_CURRENT, current.as_ref().map_err(Clone::clone).and_then(rms));
+    let voltage = vector_squared(recording, "voltage.d", "voltage.q", rows);
+    set.note(Name::VoltagePeak, "V", voltage.as_ref().map_err(Clone::clone).and_then(peak));
+    for (name, share) in
+        [(Name::CurrentSaturationTime, "saturation.current"), (Name::VoltageSaturationTime, "saturation.voltage")]
+    {
+        set.note(name, "s", saturation_time(recording, share, rows));
+    }
+    let effort = channel(recording, EFFORT).map(|all| &all[rows.clone()]);
+    let peak = |all: &[f64]| largest(all.iter().map(|effort| effort.abs()), PART);
+    let rms = |all: &[f64]| root_mean(all.iter().map(|effort| effort * effort), PART);
+    set.note(Name::TorquePeak, unit(recording, EFFORT), effort.clone().and_then(peak));
+    set.note(Name::TorqueRms, unit(recording, EFFORT), effort.and_then(rms));
+}
+
+const PART: &str = "of motor and inverter";
+
+fn vector_squared(
+    recording: &Recording,
+    d: &'static str,
+    q: &'static str,
+    rows: &Range<usize>,
+) -> Result<Vec<f64>, Absence> {
+    let (d, q) = (channel(recording, d)?, channel(recording, q)?);
+    Ok(d[rows.clone()].iter().zip(&q[rows.clone()]).map(|(d, q)| d * d + q * q).collect())
+}
+
+/// Σ share·period: the channel holds which share of the control ticks since the last row was saturated.
+fn saturation_time(recording: &Recording, share: &'static str, rows: &Range<usize>) -> Result<f64, Absence> {
+    let shares = &channel(recording, share)?[rows.clone()];
+    if shares.is_empty() {
+        return Err(Absence::NothingRecorded { part: PART });
+    }
+    Ok(shares.iter().sum::<f64>() * recording.rate.period())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::Build;
+    use core::f64::consts::PI;
+
+    fn measured() -> MetricSet {
+        let recording = Build::new(10_000, 10_000)
+            .channel("current.d", "A", |t| -3.0 * (2.0 * PI * 10.0 * t).cos())
+            .channel("current.q", "A", |t| 3.0 * (2.0 * PI * 10.0 * t).sin())
+            .channel("voltage.d", "V", |_| 3.0)
+            .channel("voltage.q", "V", |t| if t < 0.5 { 4.0 } else { 0.0 })
+            .channel("saturation.voltage", "", |t| if t < 0.1 { 0.25 } else { 0.0 })
+            .channel("effort.motor", "N m", |t| -2.0 * (2.0 * PI * 3.0 * t).sin())
+            .finish();
+        let mut set = MetricSet::default();
+        note(&mut set, &recording, &(0..10_000));
+        set
+    }
+
+    /// A current vector of constant length 3 A is 3 A peak and 3/√2 A effective; a torque sine likewise.
+    #[test]
+    fn peak_and_effective_values_are_told_apart() {
+        let set = measured();
+        for (name, value, unit) in [
+            (Name::CurrentPeak, 3.0, "Apk"),
+            (Name::CurrentRms, 3.0 / 2_f64.sqrt(), "Arms"),
+            (Name::VoltagePeak, 5.0, "V"),
+            (Name::TorqueRms, 2_f64.sqrt(), "N m"),
+        ] {
+            let metric = set.get(name).unwrap();
+            assert!((metric.value - value).abs() < 1e-12 && metric.unit == unit, "{name}: {metric:?}");
+        }
+        // 3333 samples per period: the crest is met to (π/3333)²/2.
+        assert!((set.value(Name::TorquePeak).unwrap() - 2.0).abs() < 1e-6);
+    }
+
+    /// A quarter of the control ticks of 0.1 s is 25 ms.
+    #[test]
+    fn saturation_counts_control_ticks() {
+        let set = measured();
+        assert!((set.value(Name::VoltageSaturationTime).unwrap() - 0.025).abs() < 1e-12);
+        let why = set.absence(Name::CurrentSaturationTime).unwrap().to_string();
+        assert_eq!(why, "the recording has no channel `saturation.current`");
+    }
+}

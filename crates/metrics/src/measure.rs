@@ -1,0 +1,56 @@
+//! A recording to its metrics.
+use crate::absence::Absence;
+use crate::metric::{MetricSet, Metrics, MoveMetrics};
+use crate::span::{Phase, phases};
+use crate::vibration::Residual;
+use crate::{compliance, effort, settling, tracking};
+use servobench_trace::Recording;
+
+/// What a measurement needs to know besides the recording.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Question {
+    /// Settling window, ± around the target (axis unit). Without it there is no settling time.
+    pub window: Option<f64>,
+    /// From when on residual vibration is measured (s). Without it, from the end of the last profile.
+    pub from: Option<f64>,
+    /// Natural frequency of the mode that is asked for (Hz). Without it, the mode with the most energy is reported.
+    pub mode: Option<f64>,
+}
+
+/// Measures everything that the recording allows; what it does not allow is absent with the reason.
+/// The definitions are in `docs/metrics.md`.
+#[must_use]
+pub fn measure(recording: &Recording, question: &Question) -> Metrics {
+    let phases = phases(recording);
+    let mut run = MetricSet::default();
+    let mut moves = Vec::with_capacity(phases.len());
+    let mut residual = Residual::absent(&Absence::NoMove);
+    for phase in &phases {
+        residual = Residual::after(recording, phase, question.mode);
+        let made = phase.made;
+        let metrics = move_metrics(recording, phase, question, &residual);
+        moves.push(MoveMetrics { label: made.label.clone(), start: made.start, end: made.end, metrics });
+    }
+    if let Some(from) = question.from {
+        residual = Residual::from_time(recording, from, question.mode);
+    }
+    let all = 0..recording.len();
+    settling::note_worst(&mut run, recording, &moves);
+    tracking::note(&mut run, recording, all.clone(), &phases);
+    residual.note(&mut run, recording);
+    compliance::note(&mut run, &phases);
+    effort::note(&mut run, recording, &all);
+    Metrics { run, moves }
+}
+
+/// One move: its profile and what follows until the next. Torque, current and voltage are those of the profile.
+fn move_metrics(recording: &Recording, phase: &Phase<'_>, question: &Question, residual: &Residual) -> MetricSet {
+    let mut metrics = MetricSet::default();
+    let this = std::slice::from_ref(phase);
+    settling::note(&mut metrics, recording, phase, question.window);
+    tracking::note(&mut metrics, recording, phase.rows(), this);
+    residual.note(&mut metrics, recording);
+    compliance::note(&mut metrics, this);
+    effort::note(&mut metrics, recording, &phase.profile);
+    metrics
+}

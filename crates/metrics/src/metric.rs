@@ -1,0 +1,122 @@
+//! Metrics with their units, limits and verdicts.
+use crate::absence::Absence;
+use crate::name::Name;
+use crate::verdict::{Limit, Miss, Verdict};
+use std::collections::BTreeMap;
+
+/// A number with its unit, and how it stands against its limit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Metric {
+    /// Value (SI); always finite.
+    pub value: f64,
+    /// Unit symbol; empty for a pure number. `Apk` is a peak value, `Arms` an effective one.
+    pub unit: String,
+    /// Limit that it was judged against.
+    pub limit: Option<Limit>,
+    /// Whether it is within its limit; `None` before judgement or without a limit.
+    pub pass: Option<bool>,
+}
+
+/// Metrics by name, and the reasons of those that are absent.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct MetricSet {
+    present: BTreeMap<Name, Metric>,
+    absent: BTreeMap<Name, Absence>,
+}
+
+/// The metrics of one move.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MoveMetrics {
+    /// What the move is, in words.
+    pub label: String,
+    /// Start of the profile (s).
+    pub start: f64,
+    /// End of the profile (s).
+    pub end: f64,
+    /// Its metrics, under the names that they have for the run.
+    pub metrics: MetricSet,
+}
+
+/// All metrics of a run.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Metrics {
+    /// Metrics of the run as a whole.
+    pub run: MetricSet,
+    /// Metrics of each move, in the order of the moves.
+    pub moves: Vec<MoveMetrics>,
+}
+
+impl MetricSet {
+    /// The metric, when it could be measured.
+    #[must_use]
+    pub fn get(&self, name: Name) -> Option<&Metric> {
+        self.present.get(&name)
+    }
+
+    /// Value of the metric (SI), when it could be measured.
+    #[must_use]
+    pub fn value(&self, name: Name) -> Option<f64> {
+        self.get(name).map(|metric| metric.value)
+    }
+
+    /// Why the metric is absent; `None` when it is present or is not measured here at all.
+    #[must_use]
+    pub fn absence(&self, name: Name) -> Option<&Absence> {
+        self.absent.get(&name)
+    }
+
+    /// What was measured, in the order of [`Name`].
+    pub fn iter(&self) -> impl Iterator<Item = (Name, &Metric)> {
+        self.present.iter().map(|(name, metric)| (*name, metric))
+    }
+
+    /// What could not be measured and why, in the order of [`Name`].
+    pub fn absences(&self) -> impl Iterator<Item = (Name, &Absence)> {
+        self.absent.iter().map(|(name, absence)| (*name, absence))
+    }
+
+    /// Notes a metric, or why there is none.
+    pub(crate) fn note(&mut self, name: Name, unit: &str, result: Result<f64, Absence>) {
+        match result {
+            Ok(value) => {
+                let metric = Metric { value, unit: unit.to_owned(), limit: None, pass: None };
+                self.present.insert(name, metric);
+            }
+            Err(absence) => {
+                self.absent.insert(name, absence);
+            }
+        }
+    }
+}
+
+impl Metrics {
+    /// The metric of the run, when it could be measured.
+    #[must_use]
+    pub fn get(&self, name: Name) -> Option<&Metric> {
+        self.run.get(name)
+    }
+
+    /// Judges the metrics of the run by `limits`, and notes limit and result at each of them. A limit on a metric
+    /// that is absent is missed.
+    pub fn judge(&mut self, limits: &[Limit]) -> Verdict {
+        for metric in self.run.present.values_mut() {
+            (metric.limit, metric.pass) = (None, None);
+        }
+        let mut misses = Vec::new();
+        for limit in limits {
+            let Some(metric) = self.run.present.get_mut(&limit.metric) else {
+                let absence = self.run.absent.get(&limit.metric).cloned();
+                misses.push(Miss { limit: *limit, value: None, unit: String::new(), absence });
+                continue;
+            };
+            let within = limit.holds(metric.value);
+            metric.limit = Some(metric.limit.map_or(*limit, |other| other.and(limit)));
+            metric.pass = Some(metric.pass.unwrap_or(true) && within);
+            if !within {
+                let (value, unit) = (Some(metric.value), metric.unit.clone());
+                misses.push(Miss { limit: *limit, value, unit, absence: None });
+            }
+        }
+        Verdict { misses }
+    }
+}

@@ -1,0 +1,161 @@
+//! Numbers as an engineer reads them: three significant digits and an SI prefix.
+use std::fmt;
+
+/// A value in SI with its unit; displays as `8.30 µm`. A precision is a number of significant
+/// digits: `{:.5}` gives `8.3000 µm`. Width and alignment work as everywhere, to the right when not
+/// given.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quantity<'a> {
+    /// Value (SI).
+    pub value: f64,
+    /// Unit symbol: `m`, `rad/s`, `N m`, `Apk`; empty for a pure number.
+    pub unit: &'a str,
+}
+
+/// SI prefixes and their powers of ten.
+const PREFIXES: [(&str, i32); 8] = [("p", -12), ("n", -9), ("µ", -6), ("m", -3), ("", 0), ("k", 3), ("M", 6), ("G", 9)];
+const SIGNIFICANT: usize = 3;
+
+impl<'a> Quantity<'a> {
+    /// A value (SI) with its unit.
+    #[must_use]
+    pub const fn new(value: f64, unit: &'a str) -> Self {
+        Self { value, unit }
+    }
+
+    /// The text with `digits` significant digits, at least one.
+    fn text(&self, digits: usize) -> String {
+        let Self { value, unit } = *self;
+        let symbol = unit.replace(' ', "·");
+        let space = if unit.is_empty() { "" } else { " " };
+        if value == 0.0 {
+            return format!("0{space}{symbol}");
+        }
+        // The decimal point is moved in the rounded decimals: no second rounding, and 999.9 µm is 1.00 mm.
+        let scientific = format!("{value:.*e}", digits.saturating_sub(1));
+        let parts = scientific.split_once('e').and_then(|(m, e)| Some((m, e.parse::<i32>().ok()?)));
+        let Some((mantissa, exponent)) = parts else {
+            return format!("{value}{space}{symbol}"); // infinite or not a number
+        };
+        let Some((prefix, power)) = prefix(unit, exponent) else {
+            return format!("{scientific}{space}{symbol}");
+        };
+        format!("{}{space}{prefix}{symbol}", shifted(mantissa, exponent - power))
+    }
+}
+
+/// Prefix for a number of the decimal order `exponent`, `None` where scientific notation reads better.
+fn prefix(unit: &str, exponent: i32) -> Option<(&'static str, i32)> {
+    let first = unit.split(['/', ' ', '·']).next().unwrap_or_default();
+    let (lowest, highest) = match first {
+        "" | "1" => return (-4..6).contains(&exponent).then_some(("", 0)),
+        // A prefix on a power or on the kilogram would mean something else.
+        _ if first.ends_with(['²', '³', '⁴']) || first == "kg" => {
+            return (-4..6).contains(&exponent).then_some(("", 0));
+        }
+        // Nobody writes kilometres of travel, kiloseconds or kiloradians.
+        "m" | "s" | "rad" => (-12, 0),
+        _ => (-12, 9),
+    };
+    let power = (exponent.div_euclid(3) * 3).min(highest);
+    let readable = power >= lowest && exponent < highest + 6;
+    PREFIXES.iter().copied().find(|(_, p)| readable && *p == power)
+}
+
+/// `mantissa` (one digit before the point) with the point moved right by `places`.
+fn shifted(mantissa: &str, places: i32) -> String {
+    let (sign, mantissa) = mantissa.strip_prefix('-').map_or(("", mantissa), |rest| ("-", rest));
+    let digits: String = mantissa.chars().filter(char::is_ascii_digit).collect();
+    match usize::try_from(places) {
+        Ok(places) if places + 1 < digits.len() => {
+            format!("{sign}{}.{}", &digits[..=places], &digits[places + 1..])
+        }
+        Ok(places) => format!("{sign}{digits:0<width$}", width = places + 1),
+        Err(_) => {
+            let zeros = usize::try_from(-1 - places).unwrap_or_default();
+            format!("{sign}0.{:0<zeros$}{digits}", "")
+        }
+    }
+}
+
+impl fmt::Display for Quantity<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // `Formatter::pad` would cut the text at the precision.
+        let text = self.text(f.precision().unwrap_or(SIGNIFICANT));
+        let missing = f.width().unwrap_or(0).saturating_sub(text.chars().count());
+        let before = match f.align() {
+            Some(fmt::Alignment::Left) => 0,
+            Some(fmt::Alignment::Center) => missing / 2,
+            Some(fmt::Alignment::Right) | None => missing,
+        };
+        write!(f, "{:before$}{text}{:after$}", "", "", after = missing - before)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn show(value: f64, unit: &str) -> String {
+        Quantity::new(value, unit).to_string()
+    }
+
+    #[test]
+    fn reads_as_an_engineer_writes() {
+        for (value, unit, text) in [
+            (8.3e-6, "m", "8.30 µm"),
+            (-0.8141e-3, "m", "-814 µm"),
+            (6.3e-9, "m", "6.30 nm"),
+            (1.3, "s", "1.30 s"),
+            (0.05, "s", "50.0 ms"),
+            (0.0, "m", "0 m"),
+            (-0.0, "m", "0 m"),
+            (12.345, "N m", "12.3 N·m"),
+            (0.012345, "N m", "12.3 mN·m"),
+            (2346.0, "N", "2.35 kN"),
+            (1350.0, "m", "1350 m"),
+            (4.2, "Apk", "4.20 Apk"),
+            (84.22, "Hz", "84.2 Hz"),
+            (16e3, "Hz", "16.0 kHz"),
+            (5.0, "m/s²", "5.00 m/s²"),
+            (0.005, "kg·m²", "0.00500 kg·m²"),
+            (0.998, "", "0.998"),
+            (0.00169, "", "0.00169"),
+            (1.2e-7, "", "1.20e-7"),
+            (1e-16, "m", "1.00e-16 m"),
+            (3e9, "m", "3.00e9 m"),
+            (f64::INFINITY, "m", "inf m"),
+        ] {
+            assert_eq!(show(value, unit), text);
+        }
+    }
+
+    #[test]
+    fn rounding_up_takes_the_next_prefix() {
+        assert_eq!(show(999.96e-6, "m"), "1.00 mm");
+        assert_eq!(show(0.9996, "s"), "1.00 s");
+        assert_eq!(show(99.96e-6, "m"), "100 µm");
+    }
+
+    #[test]
+    fn precision_is_significant_digits_and_width_pads() {
+        let x = Quantity::new(0.8094e-3, "m");
+        assert_eq!(format!("{x:.5}"), "809.40 µm");
+        assert_eq!(format!("{x:>9}|{x:<9}|{x:^9}|"), "   809 µm|809 µm   | 809 µm  |");
+    }
+
+    proptest! {
+        /// Read back with the prefix, the text is the value to half a unit in the third digit.
+        #[test]
+        fn text_means_the_value(mantissa in 1.0..10.0_f64, power in -12..9_i32, negative: bool) {
+            let value = if negative { -1.0 } else { 1.0 } * mantissa * 10_f64.powi(power);
+            let text = show(value, "V");
+            let (number, unit) = text.split_once(' ').unwrap();
+            let scale = PREFIXES.iter().find(|(p, _)| format!("{p}V") == unit).unwrap().1;
+            let back = number.parse::<f64>().unwrap() * 10_f64.powi(scale);
+            prop_assert!((back - value).abs() <= 0.005_000_1 * 10_f64.powi(power), "{value} {text}");
+            prop_assert!((1.0..1000.0).contains(&number.parse::<f64>().unwrap().abs()));
+        }
+    }
+}

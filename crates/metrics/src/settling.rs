@@ -1,0 +1,232 @@
+//! Settling time, overshoot and what is left at rest: the load against its target.
+use crate::absence::Absence;
+use crate::metric::{MetricSet, MoveMetrics};
+use crate::name::Name;
+use crate::span::{Phase, channel, largest};
+use servobench_trace::Recording;
+
+const LOAD: &str = "load.position";
+/// The load must be seen inside the window for one part in so many of the time after the profile, or it has not settled:
+/// a vibration beyond the window passes through it, too.
+const DWELL: usize = 20;
+/// The mean over the last one of so many parts of the time after the profile is the error at rest.
+const REST: usize = 10;
+
+/// Notes duration, settling, overshoot and the error at rest of one move.
+pub(crate) fn note(set: &mut MetricSet, recording: &Recording, phase: &Phase<'_>, window: Option<f64>) {
+    let made = phase.made;
+    let length = made.end - made.start;
+    let load = channel(recording, LOAD);
+    let settling = load.clone().and_then(|load| settling_time(recording, load, phase, window));
+    let unit = recording.about.axis_unit.as_str();
+    set.note(Name::MoveTime, "s", Ok(length));
+    set.note(Name::SettlingTime, "s", settling.clone());
+    set.note(Name::MoveAndSettlingTime, "s", settling.map(|settling| length + settling));
+    set.note(Name::Overshoot, unit, load.clone().and_then(|load| overshoot(load, phase)));
+    set.note(Name::SteadyStateError, unit, load.and_then(|load| error_at_rest(load, phase)));
+}
+
+/// Notes the worst of `moves`. A move that is followed at once by the next has no time to settle and does not count.
+pub(crate) fn note_worst(set: &mut MetricSet, recording: &Recording, moves: &[MoveMetrics]) {
+    let unit = recording.about.axis_unit.as_str();
+    for (name, unit) in [
+        (Name::MoveTime, "s"),
+        (Name::SettlingTime, "s"),
+        (Name::MoveAndSettlingTime, "s"),
+        (Name::Overshoot, unit),
+        (Name::SteadyStateError, unit),
+    ] {
+        set.note(name, unit, worst(moves, name));
+    }
+}
+
+fn worst(moves: &[MoveMetrics], name: Name) -> Result<f64, Absence> {
+    let mut worst = Err(Absence::NoMove);
+    for (k, metrics) in moves.iter().map(|made| &made.metrics).enumerate() {
+        match (metrics.value(name), metrics.absence(name)) {
+            (Some(value), _) => {
+                if worst.as_ref().is_ok_and(|other: &f64| other.abs() >= value.abs()) {
+                    continue;
+                }
+                worst = Ok(value);
+            }
+            (None, Some(Absence::NothingRecorded { .. })) if k + 1 < moves.len() => {}
+            (None, Some(absence)) => return Err(absence.clone()),
+            (None, None) => {}
+        }
+    }
+    worst
+}
+
+/// Last exit from the window minus end of the profile; 0 when the load is inside before the profile ends and stays.
+fn settling_time(recording: &Recording, load: &[f64], phase: &Phase<'_>, window: Option<f64>) -> Result<f64, Absence> {
+    let window = window.ok_or(Absence::NoWindow)?;
+    if phase.after.is_empty() {
+        return Err(Absence::NothingRecorded { part: "between the profile and the next move" });
+    }
+    let made = phase.made;
+    let (period, deviation) = (recording.rate.period(), |row: usize| (load[row] - made.to).abs());
+    let Some(outside) = phase.rows().rev().find(|&row| deviation(row) > window) else {
+        return Ok(0.0);
+    };
+    let inside = phase.rows().end - 1 - outside;
+    let watched = phase.after.len();
+    if inside == 0 || inside * DWELL < watched {
+        return Err(Absence::NotSettled {
+            label: made.label.clone(),
+            watched: watched as f64 * period,
+            deviation: deviation(outside),
+            window,
+            unit: recording.about.axis_unit.clone(),
+        });
+    }
+    // The crossing lies between two rows; a straight line between them finds it.
+    let (before, after) = (deviation(outside), deviation(outside + 1));
+    let exit = (outside as f64 + (before - window) / (before - after)) * period;
+    Ok((exit - made.end).max(0.0))
+}
+
+/// Largest excursion beyond the target in the direction of the move.
+fn overshoot(load: &[f64], phase: &Phase<'_>) -> Result<f64, Absence> {
+    let (from, to) = (phase.made.from, phase.made.to);
+    let direction = if to < from { -1.0 } else { 1.0 };
+    let beyond = load[phase.rows()].iter().map(|x| direction * (x - to));
+    largest(beyond, "of the move").map(|beyond| beyond.max(0.0))
+}
+
+/// Target minus position, mean over the last tenth of the time before the next move.
+fn error_at_rest(load: &[f64], phase: &Phase<'_>) -> Result<f64, Absence> {
+    let rows = phase.after.clone();
+    if rows.is_empty() {
+        return Err(Absence::NothingRecorded { part: "between the profile and the next move" });
+    }
+    let count = rows.len().div_ceil(REST);
+    let last = &load[rows.end - count..rows.end];
+    Ok(last.iter().map(|x| phase.made.to - x).sum::<f64>() / count as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::span::phases;
+    use crate::synthetic::{Build, planned};
+    use core::f64::consts::PI;
+
+    const WINDOW: f64 = 10e-6;
+
+    fn of_first(recording: &Recording, window: Option<f64>) -> MetricSet {
+        let mut set = MetricSet::default();
+        note(&mut set, recording, &phases(recording)[0], window);
+        set
+    }
+
+    /// One move to 1 m that ends at 1 s; the load is `deviation(t)` beyond the target afterwards.
+    fn after_a_move(deviation: impl Fn(f64) -> f64) -> Recording {
+        Build::new(8000, 16_000)
+            .channel("load.position", "m", |t| if t < 1.0 { t } else { 1.0 + deviation(t - 1.0) })
+            .moves([planned(0.0, 1.0, 0.0, 1.0).made()])
+            .finish()
+    }
+
+    /// 1 mm·exp(−t/τ) leaves ±10 µm at τ·ln 100. A chord of an exponential over h lies (h/τ)²/8 = 5e-7 of the value
+    /// beside it, so the crossing is that far off times τ: 5e-9 s.
+    #[test]
+    fn an_exponential_settles_at_its_logarithm() {
+        let recording = after_a_move(|t| 1e-3 * (-t / 0.06).exp());
+        let set = of_first(&recording, Some(WINDOW));
+        let exact = 0.06 * 100_f64.ln();
+        assert!((set.value(Name::SettlingTime).unwrap() - exact).abs() < 6e-8);
+        assert!((set.value(Name::MoveAndSettlingTime).unwrap() - 1.0 - exact).abs() < 6e-8);
+    }
+
+    /// A decaying cosine enters the window many times; the last of its crests above 10 µm decides, not the first entry.
+    #[test]
+    fn the_last_exit_counts_not_the_first_entry() {
+        let (f, sigma) = (20.0, 8.0);
+        let deviation = |t: f64| 100e-6 * (-sigma * t).exp() * (2.0 * PI * f * t).cos();
+        let recording = after_a_move(deviation);
+        // By bisection on the closed form: the last crossing of |deviation| = 10 µm, in steps finer than the record's.
+        let steps = 1_000_000;
+        let last = (0..steps).rev().map(|k| f64::from(k) * 1e-6).find(|t| deviation(*t).abs() > WINDOW).unwrap();
+        let first_entry = (0..steps).map(|k| f64::from(k) * 1e-6).find(|t| deviation(*t).abs() < WINDOW).unwrap();
+        let settling = of_first(&recording, Some(WINDOW)).value(Name::SettlingTime).unwrap();
+        // The chord between rows 125 µs apart, on a curve of slope 1.3 mm/s: below 1 µs.
+        assert!((settling - last).abs() < 2e-6, "{settling} {last}");
+        assert!(settling > 20.0 * first_entry, "{settling} {first_entry}");
+    }
+
+    #[test]
+    fn inside_before_the_profile_ends_is_zero() {
+        let recording = after_a_move(|_| 1e-6);
+        assert_eq!(of_first(&recording, Some(0.1)).value(Name::SettlingTime), Some(0.0));
+    }
+
+    #[test]
+    fn what_never_settles_has_no_settling_time() {
+        let stays = after_a_move(|_| 20e-6);
+        let why = of_first(&stays, Some(WINDOW)).absence(Name::SettlingTime).unwrap().to_string();
+        assert_eq!(
+            why,
+            "`move to 1 m` has not settled 1.00 s after the profile: 20.0 µm from the target, window ±10.0 µm"
+        );
+        // Amplitude 10 % beyond the window: three quarters of the time inside, the end of the recording too.
+        let rings = after_a_move(|t| 11e-6 * (2.0 * PI * 20.0 * t).sin());
+        assert!(matches!(of_first(&rings, Some(WINDOW)).absence(Name::SettlingTime), Some(Absence::NotSettled { .. })));
+        assert_eq!(of_first(&rings, None).absence(Name::SettlingTime), Some(&Absence::NoWindow));
+        // The move does not depend on how it settles.
+        assert_eq!(of_first(&rings, None).value(Name::MoveTime), Some(1.0));
+    }
+
+    /// A step response of damping ratio ζ overshoots by exp(−πζ/√(1−ζ²)), here 0.3.
+    #[test]
+    fn overshoot_is_beyond_the_target_in_the_direction_of_the_move() {
+        let zeta = (10_f64 / 3.0).ln() / (PI * PI + (10_f64 / 3.0).ln().powi(2)).sqrt();
+        let (wn, root) = (100.0, (1.0 - zeta * zeta).sqrt());
+        let step = |t: f64| {
+            let (c, s) = ((wn * root * t).cos(), (wn * root * t).sin());
+            1.0 - (-zeta * wn * t).exp() * (c + zeta / root * s)
+        };
+        for (from, to) in [(0.0, 2e-3), (2e-3, 0.0), (0.0, -2e-3)] {
+            let recording = Build::new(100_000, 50_000)
+                .channel("load.position", "m", |t| from + (to - from) * step(t))
+                .moves([planned(0.0, 0.01, from, to).made()])
+                .finish();
+            let set = of_first(&recording, None);
+            // The crest is met to half a row: ½·(ω·h)²/4 relative.
+            assert!((set.value(Name::Overshoot).unwrap() - 0.6e-3).abs() < 1e-9, "{set:?}");
+            let rest = set.value(Name::SteadyStateError).unwrap();
+            assert!(rest.abs() < 1e-9, "{rest}");
+        }
+    }
+
+    #[test]
+    fn the_worst_move_stands_for_the_run() {
+        let slow = |t: f64| 1e-3 * (-t / 0.08).exp();
+        let recording = Build::new(1000, 6000)
+            .channel("load.position", "m", |t| match t {
+                0.0..1.0 => t,
+                1.0..3.0 => 1.0 + 1e-3 * (-(t - 1.0) / 0.04).exp(),
+                3.0..3.5 => 1.0 - 2.0 * (t - 3.0),
+                _ => slow(t - 3.5) - 2e-6,
+            })
+            .moves([planned(0.0, 1.0, 0.0, 1.0).made(), planned(3.0, 3.5, 1.0, 0.0).made()])
+            .finish();
+        let moves: Vec<_> = phases(&recording)
+            .iter()
+            .map(|phase| {
+                let mut metrics = MetricSet::default();
+                note(&mut metrics, &recording, phase, Some(WINDOW));
+                let made = phase.made;
+                MoveMetrics { label: made.label.clone(), start: made.start, end: made.end, metrics }
+            })
+            .collect();
+        let mut run = MetricSet::default();
+        note_worst(&mut run, &recording, &moves);
+        assert_eq!(run.value(Name::MoveTime), Some(1.0));
+        assert_eq!(run.value(Name::SettlingTime), moves[1].metrics.value(Name::SettlingTime));
+        assert!((run.value(Name::SettlingTime).unwrap() - 0.08 * (1e-3_f64 / 12e-6).ln()).abs() < 1e-5);
+        let longest = moves[0].metrics.value(Name::MoveAndSettlingTime);
+        assert_eq!(run.value(Name::MoveAndSettlingTime), longest, "1.18 s against 0.85 s");
+        assert!((run.value(Name::SteadyStateError).unwrap() - 2e-6).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,72 @@
+//! Which rows of a recording a metric is about.
+use crate::absence::Absence;
+use servobench_base::Tick;
+use servobench_trace::{Move, Recording};
+use std::ops::Range;
+
+/// A move and its rows.
+#[derive(Debug, Clone)]
+pub(crate) struct Phase<'a> {
+    /// The move.
+    pub(crate) made: &'a Move,
+    /// Rows from the start of the profile to just before its end.
+    pub(crate) profile: Range<usize>,
+    /// Rows from the end of the profile to just before the next move, or to the end of the recording.
+    pub(crate) after: Range<usize>,
+}
+
+impl Phase<'_> {
+    /// All rows of the move: profile and what follows.
+    pub(crate) fn rows(&self) -> Range<usize> {
+        self.profile.start..self.after.end
+    }
+}
+
+/// The moves of a recording with their rows.
+pub(crate) fn phases(recording: &Recording) -> Vec<Phase<'_>> {
+    let moves = recording.moves.iter().enumerate();
+    moves
+        .map(|(k, made)| {
+            let next = recording.moves.get(k + 1);
+            let start = recording.index_at(made.start);
+            let end = recording.index_at(made.end).max(start);
+            let stop = next.map_or(recording.len(), |next| recording.index_at(next.start)).max(end);
+            Phase { made, profile: start..end, after: end..stop }
+        })
+        .collect()
+}
+
+/// Values of a channel.
+///
+/// # Errors
+/// [`Absence::NoChannel`], [`Absence::NotFinite`].
+pub(crate) fn channel<'a>(recording: &'a Recording, name: &'static str) -> Result<&'a [f64], Absence> {
+    let values = recording.channel(name).ok_or(Absence::NoChannel { channel: name })?;
+    match values.iter().position(|value| !value.is_finite()) {
+        None => Ok(values),
+        Some(row) => Err(Absence::NotFinite { channel: name, time: recording.rate.time(Tick(row as u64)) }),
+    }
+}
+
+/// Unit of a channel; empty when the recording lacks it.
+pub(crate) fn unit<'a>(recording: &'a Recording, name: &str) -> &'a str {
+    let of = recording.channels.iter().find(|channel| channel.spec.name == name);
+    of.map_or("", |channel| channel.spec.unit.as_str())
+}
+
+/// Largest of `values`.
+///
+/// # Errors
+/// [`Absence::NothingRecorded`] when there are none.
+pub(crate) fn largest(values: impl Iterator<Item = f64>, part: &'static str) -> Result<f64, Absence> {
+    values.reduce(f64::max).ok_or(Absence::NothingRecorded { part })
+}
+
+/// Square root of the mean of `squares`.
+///
+/// # Errors
+/// [`Absence::NothingRecorded`] when there are none.
+pub(crate) fn root_mean(squares: impl Iterator<Item = f64>, part: &'static str) -> Result<f64, Absence> {
+    let (sum, count) = squares.fold((0.0, 0_u64), |(sum, count), square| (sum + square, count + 1));
+    if count == 0 { Err(Absence::NothingRecorded { part }) } else { Ok((sum / count as f64).sqrt()) }
+}

@@ -1,0 +1,80 @@
+//! Recordings with known answers, for the tests.
+use servobench_base::Rate;
+use servobench_trace::{About, Channel, ChannelSpec, Move, Recording};
+
+/// Builds a recording channel by channel.
+pub(crate) struct Build {
+    recording: Recording,
+    rows: usize,
+}
+
+impl Build {
+    /// `rows` rows at `hertz`.
+    pub(crate) fn new(hertz: u32, rows: usize) -> Self {
+        let about = About {
+            scenario: "synthetic".into(),
+            engine: "closed form".into(),
+            axis_unit: "m".into(),
+            bodies: vec!["motor".into(), "load".into()],
+        };
+        let rate = Rate::new(hertz).unwrap();
+        let recording = Recording { about, rate, channels: vec![], moves: vec![], events: vec![] };
+        Self { recording, rows }
+    }
+
+    /// Adds a channel that is `value(t)`.
+    pub(crate) fn channel(mut self, name: &str, unit: &str, value: impl Fn(f64) -> f64) -> Self {
+        let rate = self.recording.rate;
+        let spec = ChannelSpec { name: name.into(), unit: unit.into(), writer: "test".into(), rate };
+        let values = (0..self.rows).map(|k| value(k as f64 * rate.period())).collect();
+        self.recording.channels.push(Channel { spec, values });
+        self
+    }
+
+    /// Sets the moves.
+    pub(crate) fn moves(mut self, moves: impl IntoIterator<Item = Move>) -> Self {
+        self.recording.moves = moves.into_iter().collect();
+        self
+    }
+
+    /// The recording.
+    pub(crate) fn finish(self) -> Recording {
+        self.recording
+    }
+}
+
+/// A move under construction.
+pub(crate) struct Planned(Move);
+
+/// A move from `from` at `start` (s) to `to` at `end` (s), without cruise.
+pub(crate) fn planned(start: f64, end: f64, from: f64, to: f64) -> Planned {
+    Planned(Move {
+        label: format!("move to {to} m"),
+        start,
+        end,
+        from,
+        to,
+        peaks: [1.0, 5.0, 50.0, f64::INFINITY],
+        limits: [Some(1.0), Some(5.0), Some(50.0), None],
+        cruise: (start, 0.0),
+    })
+}
+
+impl Planned {
+    /// At constant velocity from `start` (s) for `length` (s).
+    pub(crate) fn cruising(mut self, start: f64, length: f64) -> Self {
+        self.0.cruise = (start, length);
+        self
+    }
+
+    /// With these peaks and limits.
+    pub(crate) fn bounded(mut self, peaks: [f64; 4], limits: [Option<f64>; 4]) -> Self {
+        (self.0.peaks, self.0.limits) = (peaks, limits);
+        self
+    }
+
+    /// The move.
+    pub(crate) fn made(self) -> Move {
+        self.0
+    }
+}

@@ -1,0 +1,160 @@
+//! Limits and what comes of them.
+use crate::absence::Absence;
+use crate::name::Name;
+use crate::quantity::Quantity;
+use std::fmt;
+
+/// Bounds of a metric (SI, inclusive).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limit {
+    /// The metric.
+    pub metric: Name,
+    /// Smallest value that passes.
+    pub min: Option<f64>,
+    /// Largest value that passes. Alone, it bounds the magnitude of a metric whose sign is a direction
+    /// ([`Name::is_signed`]).
+    pub max: Option<f64>,
+}
+
+/// A limit that was missed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Miss {
+    /// The limit.
+    pub limit: Limit,
+    /// Value (SI); `None` when the metric is absent.
+    pub value: Option<f64>,
+    /// Unit of the metric.
+    pub unit: String,
+    /// Why the metric is absent.
+    pub absence: Option<Absence>,
+}
+
+/// Whether every limit is kept.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Verdict {
+    /// The limits that were missed, in the order in which they were given.
+    pub misses: Vec<Miss>,
+}
+
+impl Limit {
+    /// A largest allowed value.
+    #[must_use]
+    pub const fn at_most(metric: Name, max: f64) -> Self {
+        Self { metric, min: None, max: Some(max) }
+    }
+
+    /// Both at once: the tighter bound on each side.
+    #[must_use]
+    pub(crate) fn and(&self, other: &Self) -> Self {
+        let tighter = |one: Option<f64>, two: Option<f64>, pick: fn(f64, f64) -> f64| match (one, two) {
+            (Some(one), Some(two)) => Some(pick(one, two)),
+            (one, two) => one.or(two),
+        };
+        let (min, max) = (tighter(self.min, other.min, f64::max), tighter(self.max, other.max, f64::min));
+        Self { metric: self.metric, min, max }
+    }
+
+    /// Whether `value` is within. A limit that is not a number is never kept.
+    #[must_use]
+    pub fn holds(&self, value: f64) -> bool {
+        let size = if self.metric.is_signed() && self.min.is_none() { value.abs() } else { value };
+        self.min.is_none_or(|min| value >= min) && self.max.is_none_or(|max| size <= max)
+    }
+}
+
+impl Verdict {
+    /// Whether every limit is kept.
+    #[must_use]
+    pub fn passed(&self) -> bool {
+        self.misses.is_empty()
+    }
+}
+
+/// `settling_time 35.2 ms, limit 20.0 ms`
+impl fmt::Display for Miss {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = self.limit.metric;
+        match (self.value, &self.absence) {
+            (Some(value), _) => {
+                write!(f, "{name} {}, limit ", Quantity::new(value, &self.unit))?;
+                let bound = |bound| Quantity::new(bound, &self.unit);
+                match (self.limit.min, self.limit.max) {
+                    (Some(min), Some(max)) => write!(f, "{} to {}", bound(min), bound(max)),
+                    (Some(min), None) => write!(f, "at least {}", bound(min)),
+                    (None, Some(max)) => write!(f, "{}", bound(max)),
+                    (None, None) => f.write_str("none"),
+                }
+            }
+            (None, Some(absence)) => write!(f, "{name} could not be measured: {absence}"),
+            (None, None) => write!(f, "{name} is not measured here"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::metric::Metrics;
+
+    fn measured() -> Metrics {
+        let mut metrics = Metrics::default();
+        metrics.run.note(Name::SettlingTime, "s", Ok(0.035));
+        metrics.run.note(Name::FollowingErrorCruiseLoad, "m", Ok(-0.8e-3));
+        metrics.run.note(Name::TorqueRms, "N", Err(Absence::NoChannel { channel: "effort.motor" }));
+        metrics
+    }
+
+    #[test]
+    fn bounds_are_inclusive() {
+        let limit = Limit { metric: Name::MoveTime, min: Some(1.0), max: Some(2.0) };
+        for (value, within) in [(1.0, true), (2.0, true), (0.999, false), (2.001, false), (f64::NAN, false)] {
+            assert_eq!(limit.holds(value), within, "{value}");
+        }
+    }
+
+    #[test]
+    fn a_largest_value_bounds_the_magnitude_of_a_signed_metric() {
+        let mut metrics = measured();
+        assert!(!metrics.judge(&[Limit::at_most(Name::FollowingErrorCruiseLoad, 0.5e-3)]).passed());
+        assert!(metrics.judge(&[Limit::at_most(Name::FollowingErrorCruiseLoad, 0.9e-3)]).passed());
+        let range = Limit { metric: Name::FollowingErrorCruiseLoad, min: Some(0.7e-3), max: Some(0.9e-3) };
+        assert!(!metrics.judge(&[range]).passed(), "a range means the signed value");
+    }
+
+    #[test]
+    fn a_limit_on_an_absent_metric_is_missed_with_the_reason() {
+        let limits = [
+            Limit::at_most(Name::SettlingTime, 0.02),
+            Limit::at_most(Name::TorqueRms, 10.0),
+            Limit::at_most(Name::Overshoot, 10.0),
+        ];
+        let mut metrics = measured();
+        let said: Vec<_> = metrics.judge(&limits).misses.iter().map(Miss::to_string).collect();
+        assert_eq!(
+            said,
+            [
+                "settling_time 35.0 ms, limit 20.0 ms",
+                "torque_rms could not be measured: the recording has no channel `effort.motor`",
+                "overshoot is not measured here",
+            ]
+        );
+        assert_eq!(metrics.get(Name::SettlingTime).unwrap().pass, Some(false));
+        assert_eq!(metrics.get(Name::SettlingTime).unwrap().limit, Some(limits[0]));
+    }
+
+    #[test]
+    fn two_limits_on_a_metric_are_noted_as_the_tighter_one() {
+        let mut metrics = measured();
+        let limits = [0.05, 0.02].map(|max| Limit::at_most(Name::SettlingTime, max));
+        assert_eq!(metrics.judge(&limits).misses.len(), 1);
+        let metric = metrics.get(Name::SettlingTime).unwrap();
+        assert_eq!((metric.limit, metric.pass), (Some(limits[1]), Some(false)));
+    }
+
+    #[test]
+    fn without_limits_everything_passes_and_nothing_is_judged() {
+        let mut metrics = measured();
+        assert!(metrics.judge(&[]).passed());
+        assert_eq!(metrics.get(Name::SettlingTime).unwrap().pass, None);
+    }
+}

@@ -1,0 +1,77 @@
+//! Residual vibration of the load: what is left when the set-point has come to rest.
+use crate::absence::Absence;
+use crate::metric::MetricSet;
+use crate::modal::{Mode, Signal, fit_mode};
+use crate::name::Name;
+use crate::span::{Phase, channel, root_mean};
+use servobench_trace::Recording;
+use std::ops::Range;
+
+const LOAD: &str = "load.position";
+
+/// Vibration over one stretch of the recording.
+#[derive(Debug, Clone)]
+pub(crate) struct Residual {
+    peak_to_peak: Result<f64, Absence>,
+    rms: Result<f64, Absence>,
+    mode: Result<Mode, Absence>,
+}
+
+impl Residual {
+    /// No vibration to measure, and why.
+    pub(crate) fn absent(why: &Absence) -> Self {
+        Self { peak_to_peak: Err(why.clone()), rms: Err(why.clone()), mode: Err(why.clone()) }
+    }
+
+    /// From the end of the profile to the next move.
+    pub(crate) fn after(recording: &Recording, phase: &Phase<'_>, mode: Option<f64>) -> Self {
+        Self::over(recording, &phase.after, phase.made.end, phase.made.to, mode)
+    }
+
+    /// From `time` (s) to the next move.
+    pub(crate) fn from_time(recording: &Recording, time: f64, mode: Option<f64>) -> Self {
+        let start = recording.index_at(time);
+        let next = recording.moves.iter().map(|made| recording.index_at(made.start)).find(|row| *row > start);
+        let rest = recording.channel(LOAD).and_then(|load| load.last()).copied().unwrap_or_default();
+        Self::over(recording, &(start..next.unwrap_or(recording.len())), time, rest, mode)
+    }
+
+    /// Over `rows`, as deviation from `rest` (axis unit), with the amplitude referred to the instant `zero` (s).
+    fn over(recording: &Recording, rows: &Range<usize>, zero: f64, rest: f64, mode: Option<f64>) -> Self {
+        let load = match channel(recording, LOAD) {
+            Ok(load) if !rows.is_empty() => &load[rows.clone()],
+            Ok(_) => return Self::absent(&Absence::NothingRecorded { part: "after the profile" }),
+            Err(why) => return Self::absent(&why),
+        };
+        let largest = load.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+        // Deviations of nanometres beside a position of a metre: subtract before anything else.
+        let deviation: Vec<f64> = load.iter().map(|x| x - rest).collect();
+        let (low, high) =
+            deviation.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
+        let mean = deviation.iter().sum::<f64>() / deviation.len() as f64;
+        let period = recording.rate.period();
+        let signal = Signal {
+            values: &deviation,
+            start: rows.start as f64 * period - zero,
+            step: period,
+            resolution: 8.0 * f64::EPSILON * largest,
+        };
+        Self {
+            peak_to_peak: Ok(high - low),
+            rms: root_mean(deviation.iter().map(|x| (x - mean) * (x - mean)), "after the profile"),
+            mode: fit_mode(&signal, mode),
+        }
+    }
+
+    /// Notes the six metrics.
+    pub(crate) fn note(&self, set: &mut MetricSet, recording: &Recording) {
+        let unit = recording.about.axis_unit.as_str();
+        let of_mode = |value: fn(&Mode) -> f64| self.mode.as_ref().map(value).map_err(Clone::clone);
+        set.note(Name::ResidualVibrationPp, unit, self.peak_to_peak.clone());
+        set.note(Name::ResidualVibrationRms, unit, self.rms.clone());
+        set.note(Name::ResidualVibrationAmplitude, unit, of_mode(|mode| mode.amplitude));
+        set.note(Name::ResidualVibrationFrequency, "Hz", of_mode(|mode| mode.frequency));
+        set.note(Name::ResidualVibrationDamping, "", of_mode(|mode| mode.damping));
+        set.note(Name::ResidualVibrationShare, "", of_mode(|mode| mode.share));
+    }
+}
