@@ -49,8 +49,7 @@ mod tests {
 
     #[test]
     fn wrong_usage_lists_every_command() {
-        for wrong in [vec![], vec!["tset".to_owned()], vec!["test".to_owned(), "--fast".to_owned()]]
-        {
+        for wrong in [vec![], vec!["tset".to_owned()], vec!["test".to_owned(), "--fast".to_owned()]] {
             let message = run(&wrong).unwrap_err().to_string();
             for (usage, _) in COMMANDS {
                 assert!(message.contains(usage), "{message}");

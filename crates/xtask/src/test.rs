@@ -126,8 +126,7 @@ mod tests {
 
     #[test]
     fn the_first_failure_ends_the_run_and_is_counted() {
-        let steps =
-            vec![step("a", "true"), step("b", "false"), step("c", "true"), step("d", "true")];
+        let steps = vec![step("a", "true"), step("b", "false"), step("c", "true"), step("d", "true")];
         let failure = run_steps(steps).unwrap_err();
         assert_eq!(failure.to_string(), "1 passed, 1 failed, 2 not run");
     }

@@ -69,10 +69,7 @@ pub(crate) const MUJOCO: Wheel = Wheel {
     ],
     licences: &[
         ("mujoco-3.17.0.dist-info/licenses/LICENSE", "licenses/LICENSE"),
-        (
-            "mujoco-3.17.0.dist-info/licenses/LICENSES_THIRD_PARTY.md",
-            "licenses/LICENSES_THIRD_PARTY.md",
-        ),
+        ("mujoco-3.17.0.dist-info/licenses/LICENSES_THIRD_PARTY.md", "licenses/LICENSES_THIRD_PARTY.md"),
     ],
     member: "mujoco/libmujoco.so.3.17.0",
     place: "lib/libmujoco.so.3.17.0",
@@ -148,9 +145,7 @@ impl Wheel {
         let found = sha256(&file).map_err(Failure::file("read", &file))?;
         if found != platform.sha256 {
             let (member, pinned) = (self.member, platform.sha256);
-            return Err(
-                self.failure(format!("its SHA-256 is {found}, pinned is {pinned}: {member}"))
-            );
+            return Err(self.failure(format!("its SHA-256 is {found}, pinned is {pinned}: {member}")));
         }
         let executable = fs::Permissions::from_mode(0o755);
         fs::set_permissions(&file, executable).map_err(Failure::file("change", &file))?;
@@ -194,9 +189,7 @@ impl Wheel {
 
     /// Runs a Python command; when it fails, the last line that names an error is the cause.
     fn python(&self, tool: &str, command: &mut Command) -> Result<(), Failure> {
-        let done = command
-            .output()
-            .map_err(|e| self.failure(format!("`python3` cannot be started: {e}")))?;
+        let done = command.output().map_err(|e| self.failure(format!("`python3` cannot be started: {e}")))?;
         if done.status.success() {
             return Ok(());
         }

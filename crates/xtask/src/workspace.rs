@@ -34,10 +34,7 @@ impl Workspace {
     }
 
     /// A command that runs the `servobench` binary of the release build.
-    pub(crate) fn servobench<I: AsRef<OsStr>>(
-        &self,
-        arguments: impl IntoIterator<Item = I>,
-    ) -> Command {
+    pub(crate) fn servobench<I: AsRef<OsStr>>(&self, arguments: impl IntoIterator<Item = I>) -> Command {
         self.command(self.binary(), arguments)
     }
 
@@ -93,24 +90,16 @@ pub(crate) fn run(command: &mut Command, expected: i32) -> Result<(), Failure> {
 /// # Errors
 /// [`Failure::Start`], [`Failure::Ended`], or [`Failure::Output`] when it printed other than UTF-8.
 pub(crate) fn output(command: &mut Command) -> Result<String, Failure> {
-    let done = command
-        .stderr(Stdio::inherit())
-        .output()
-        .map_err(|source| start_failure(command, source))?;
+    let done = command.stderr(Stdio::inherit()).output().map_err(|source| start_failure(command, source))?;
     if !done.status.success() {
         return Err(Failure::Ended { command: shown(command), status: done.status, expected: 0 });
     }
-    String::from_utf8(done.stdout)
-        .map_err(|e| Failure::Output { command: shown(command), why: e.to_string() })
+    String::from_utf8(done.stdout).map_err(|e| Failure::Output { command: shown(command), why: e.to_string() })
 }
 
 /// Reads the JSON that `command` printed.
-pub(crate) fn parse<'a, T: Deserialize<'a>>(
-    command: &Command,
-    text: &'a str,
-) -> Result<T, Failure> {
-    serde_json::from_str(text)
-        .map_err(|e| Failure::Output { command: shown(command), why: e.to_string() })
+pub(crate) fn parse<'a, T: Deserialize<'a>>(command: &Command, text: &'a str) -> Result<T, Failure> {
+    serde_json::from_str(text).map_err(|e| Failure::Output { command: shown(command), why: e.to_string() })
 }
 
 /// The command line as one would type it.

@@ -24,12 +24,7 @@ const PLAN: [(&str, May); 20] = [
     ("trace", May::On(&["base"])),
     ("metrics", May::On(&["base", "trace"])),
     ("scenario", May::On(&["base"])),
-    (
-        "sim",
-        May::On(&[
-            "base", "motion", "cia402", "drive", "plcopen", "plant", "trace", "metrics", "scenario",
-        ]),
-    ),
+    ("sim", May::On(&["base", "motion", "cia402", "drive", "plcopen", "plant", "trace", "metrics", "scenario"])),
     ("suite", May::On(&["base", "sim", "scenario", "trace", "metrics"])),
     ("report", May::On(&["base", "trace", "metrics"])),
     ("view", May::On(&["base", "trace", "metrics"])),
@@ -75,13 +70,9 @@ mod tests {
     #[test]
     fn an_arrow_against_the_plan_is_found() {
         let members = ["servobench-base", "servobench-plant", "servobench-drive"];
-        let arrows = [
-            ("servobench-plant", "servobench-base", None),
-            ("servobench-plant", "servobench-drive", None),
-        ];
+        let arrows = [("servobench-plant", "servobench-base", None), ("servobench-plant", "servobench-drive", None)];
         let found = findings(&metadata(&members, &[], &arrows));
-        let wanted =
-            "crate `servobench-plant` must not depend on `servobench-drive`; allowed: base";
+        let wanted = "crate `servobench-plant` must not depend on `servobench-drive`; allowed: base";
         assert_eq!(found, [wanted]);
     }
 

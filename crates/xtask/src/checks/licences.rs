@@ -35,15 +35,10 @@ fn finding(package: &Package) -> Option<String> {
         return Some(format!("dependency `{name}` {version} states no licence expression"));
     };
     match Expression::parse_mode(license, ParseMode::LAX) {
-        Ok(expression)
-            if expression.evaluate(|one| ALLOWED.contains(&one.to_string().as_str())) =>
-        {
-            None
+        Ok(expression) if expression.evaluate(|one| ALLOWED.contains(&one.to_string().as_str())) => None,
+        Ok(_) => {
+            Some(format!("dependency `{name}` {version} has the licence `{license}`; allowed: {}", ALLOWED.join(", ")))
         }
-        Ok(_) => Some(format!(
-            "dependency `{name}` {version} has the licence `{license}`; allowed: {}",
-            ALLOWED.join(", ")
-        )),
         Err(error) => {
             let reason = error.reason;
             Some(format!("dependency `{name}` {version} has the licence `{license}`: {reason}"))
@@ -80,10 +75,7 @@ mod tests {
         for licence in ["GPL-3.0-only", "MIT AND LGPL-2.1-only", "AGPL-3.0-or-later OR SSPL-1.0"] {
             let found = verdict(Some(licence));
             assert_eq!(found.len(), 1, "{licence}");
-            assert!(
-                found[0].contains("`foreign` 1.0.0") && found[0].contains(licence),
-                "{found:?}"
-            );
+            assert!(found[0].contains("`foreign` 1.0.0") && found[0].contains(licence), "{found:?}");
         }
     }
 

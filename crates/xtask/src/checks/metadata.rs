@@ -90,10 +90,7 @@ impl Metadata {
     }
 
     /// `roots` and everything that they need, directly or not, in the order of name and version.
-    pub(crate) fn closure<'a>(
-        &'a self,
-        roots: impl Iterator<Item = &'a Package>,
-    ) -> Vec<&'a Package> {
+    pub(crate) fn closure<'a>(&'a self, roots: impl Iterator<Item = &'a Package>) -> Vec<&'a Package> {
         let mut found = BTreeMap::new();
         let mut open: Vec<&Package> = roots.collect();
         while let Some(package) = open.pop() {

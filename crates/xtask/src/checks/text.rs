@@ -23,8 +23,7 @@ pub(super) fn findings(file: &Path, text: &str) -> Vec<String> {
             findings.push(format!("{place}: `{note}` belongs into an issue"));
         }
         if is_rust && SILENCERS.map(|s| s.concat()).iter().any(|silencer| line.contains(silencer)) {
-            findings
-                .push(format!("{place}: use `#[expect(…, reason = \"…\")]` instead of `allow`"));
+            findings.push(format!("{place}: use `#[expect(…, reason = \"…\")]` instead of `allow`"));
         }
     }
     findings
@@ -70,10 +69,7 @@ mod tests {
     fn notes_to_oneself_are_found_as_words_only() {
         for note in NOTES.map(|n| n.concat()) {
             assert_eq!(findings("a.toml".as_ref(), &format!("# {note}: later")).len(), 1, "{note}");
-            assert!(
-                findings("a.toml".as_ref(), &format!("METHOD_{note}S = 1")).is_empty(),
-                "{note}"
-            );
+            assert!(findings("a.toml".as_ref(), &format!("METHOD_{note}S = 1")).is_empty(), "{note}");
         }
     }
 

@@ -1,0 +1,42 @@
+//! What `MuJoCo` says goes to us, not to a file `MUJOCO_LOG.TXT` in the working folder.
+use mujoco_rs::prelude::{MjLogMessage, MjtLogLevel, log_config, set_log_config, set_log_handler};
+use std::cell::RefCell;
+use std::io::Write as _;
+use std::sync::Once;
+
+thread_local! {
+    /// The last warning on this thread.
+    static WARNING: RefCell<Option<String>> = const { RefCell::new(None) };
+}
+
+static INSTALL: Once = Once::new();
+
+/// Installs the handler; to be called before anything else of `MuJoCo`, as often as you like.
+pub(crate) fn install() {
+    #[expect(unsafe_code, reason = "the crate asks that no other thread uses MuJoCo meanwhile")]
+    // SAFETY: everything in this crate that calls MuJoCo comes through here first, and `call_once` holds every other
+    // thread until the handler is in place.
+    INSTALL.call_once(|| unsafe {
+        set_log_handler(receive);
+        // The crate has switched on messages about the timing of every step.
+        set_log_config(log_config().with_topics(0));
+    });
+}
+
+/// The last warning on this thread, if there was one since it was asked for.
+pub(crate) fn take_warning() -> Option<String> {
+    WARNING.take()
+}
+
+fn receive(message: &MjLogMessage) {
+    match message.level() {
+        MjtLogLevel::mjLOG_ERROR => {
+            // MuJoCo ends the process when this returns. When the line cannot be written, nothing is left to do.
+            drop(writeln!(std::io::stderr(), "mujoco: {}", message.subject()));
+        }
+        MjtLogLevel::mjLOG_WARNING => {
+            WARNING.set(Some(message.subject().trim().to_owned()));
+        }
+        MjtLogLevel::mjLOG_INFO | MjtLogLevel::mjLOG_DEBUG => {}
+    }
+}

@@ -1,0 +1,88 @@
+//! A model and its data, stepped so that nothing goes wrong in silence.
+use crate::{NAME, messages};
+use mujoco_rs::prelude::{MjData, MjModel, MjSpec, MjtDisableBit, MjtWarning};
+use mujoco_rs::wrappers::mj_auxiliary::MjVfs;
+use servobench_base::finite;
+use servobench_plant::{Actuation, BodyState, Input, MechanicsError};
+use std::path::Path;
+use std::sync::Arc;
+
+/// The data of one simulation.
+pub(crate) type Data = MjData<Arc<MjModel>>;
+
+/// Compiles MJCF text. `path` is where the text came from: what it includes is looked up beside it.
+pub(crate) fn compile(xml: &str, path: &Path) -> Result<MjModel, MechanicsError> {
+    messages::install();
+    let model_error = |message: String| MechanicsError::Model { engine: NAME, message };
+    if path.as_os_str().as_encoded_bytes().contains(&0) {
+        return Err(model_error("the path has a NUL character".into()));
+    }
+    let mut files = MjVfs::new();
+    files.add_from_buffer(path, xml.as_bytes()).map_err(|e| model_error(e.to_string()))?;
+    MjSpec::from_xml_vfs(path, &files)
+        .and_then(|mut spec| spec.compile_with_vfs(&files))
+        .map_err(|e| model_error(e.to_string()))
+}
+
+/// Starts a simulation of `model` with steps of `step` seconds and the flags `disable` switched off beside its own.
+pub(crate) fn start(mut model: MjModel, step: f64, disable: &[MjtDisableBit]) -> Result<Data, MechanicsError> {
+    let options = model.opt_mut();
+    options.timestep = step;
+    // A diverged step would otherwise start again from time zero, without a word.
+    for flag in disable.iter().chain([&MjtDisableBit::mjDSBL_AUTORESET]) {
+        options.disableflags |= *flag as i32;
+    }
+    MjData::try_new(Arc::new(model)).map_err(|e| MechanicsError::Native { engine: NAME, message: e.to_string() })
+}
+
+/// One step.
+///
+/// # Errors
+/// [`MechanicsError::Diverged`] or [`MechanicsError::Native`] when `MuJoCo` warned during the step.
+pub(crate) fn step(data: &mut Data) -> Result<(), MechanicsError> {
+    data.step();
+    if data.warning().iter().all(|warning| warning.number == 0) {
+        return Ok(());
+    }
+    Err(warned(data))
+}
+
+/// The error for the warnings that `data` holds.
+#[cold]
+fn warned(data: &Data) -> MechanicsError {
+    let happened = |kind: MjtWarning| data.warning()[kind as usize].number > 0;
+    let bad = [MjtWarning::mjWARN_BADQPOS, MjtWarning::mjWARN_BADQVEL, MjtWarning::mjWARN_BADQACC];
+    let message = messages::take_warning().unwrap_or_else(|| "a warning without words".into());
+    if bad.into_iter().any(happened) {
+        MechanicsError::Diverged { engine: NAME, message }
+    } else {
+        MechanicsError::Native { engine: NAME, message }
+    }
+}
+
+/// # Errors
+/// [`MechanicsError::Parameter`] names the first input that is not finite: `MuJoCo` would replace it by zero.
+pub(crate) fn check_input(input: &Input) -> Result<(), MechanicsError> {
+    match input.actuation {
+        Actuation::Effort(effort) => {
+            finite("effort", effort)?;
+        }
+        Actuation::Motion(now) => {
+            finite("set-point", now.x + now.v + now.a + now.j + now.s)?;
+        }
+    }
+    finite("motor_disturbance", input.motor_disturbance)?;
+    finite("load_disturbance", input.load_disturbance)?;
+    Ok(())
+}
+
+/// # Errors
+/// [`MechanicsError::Diverged`] when a state is not finite: `MuJoCo` itself looks only before the next step.
+pub(crate) fn check_states(bodies: &[BodyState]) -> Result<(), MechanicsError> {
+    let total: f64 = bodies.iter().map(|body| body.position + body.velocity).sum();
+    if total.is_finite() {
+        return Ok(());
+    }
+    let message = "a position or velocity is not finite; a higher base rate may help".into();
+    Err(MechanicsError::Diverged { engine: NAME, message })
+}

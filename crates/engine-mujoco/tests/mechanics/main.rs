@@ -1,0 +1,76 @@
+//! The engine against closed forms, the matrix exponential and the engine `exact`.
+
+mod base;
+mod failures;
+mod friction;
+mod mjcf;
+mod oscillator;
+
+use servobench_engine_mujoco::Mujoco;
+use servobench_plant::{
+    Actuation, Body, BodyState, Chain, Coordinate, Drive, DryFriction, Engine as _, Input, Link, Mechanics,
+    MechanicsSetup, Model,
+};
+use std::f64::consts::TAU;
+
+/// Tick length of a 16 kHz bench (s).
+const STEP: f64 = 1.0 / 16_000.0;
+
+/// A body without friction.
+fn body(name: &'static str, coordinate: Coordinate, inertia: f64) -> Body {
+    let (transmission, viscous, dry, bias) = (1.0, 0.0, DryFriction::NONE, 0.0);
+    Body { name, coordinate, inertia, transmission, viscous, dry, bias }
+}
+
+/// The two-mass drive of Saarakkala and Hinkkanen: 0.005 kg·m² on each side of 700 N·m/rad, here without damping.
+fn two_mass() -> Chain {
+    let rotary = |name| body(name, Coordinate::Rotary, 0.005);
+    let link = Link { stiffness: 700.0, damping: 0.0 };
+    Chain::new(vec![rotary("motor"), rotary("load")], vec![link]).unwrap()
+}
+
+/// 84.22 Hz: both masses swing against each other.
+fn free_omega() -> f64 {
+    (700.0_f64 * (2.0 / 0.005)).sqrt()
+}
+
+/// 59.55 Hz: the load swings against a held motor.
+fn held_omega() -> f64 {
+    (700.0_f64 / 0.005).sqrt()
+}
+
+fn setup(chain: Chain, drive: Drive, step: f64, initial: &[(f64, f64)]) -> MechanicsSetup {
+    let state = |&(position, velocity): &(f64, f64)| BodyState { position, velocity };
+    let initial = initial.iter().map(state).collect();
+    MechanicsSetup { model: Model::Chain(chain), drive, step, initial }
+}
+
+fn mujoco(chain: Chain, drive: Drive, step: f64, initial: &[(f64, f64)]) -> Box<dyn Mechanics> {
+    Mujoco.build(&setup(chain, drive, step, initial)).unwrap()
+}
+
+/// Drive effort and load disturbance.
+fn efforts(effort: f64, load_disturbance: f64) -> Input {
+    Input { actuation: Actuation::Effort(effort), motor_disturbance: 0.0, load_disturbance }
+}
+
+fn motion(setpoint: servobench_base::Setpoint) -> Input {
+    Input { actuation: Actuation::Motion(setpoint), motor_disturbance: 0.0, load_disturbance: 0.0 }
+}
+
+/// Ticks that a time takes.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small and positive")]
+fn ticks(time: f64, step: f64) -> usize {
+    (time / step).round() as usize
+}
+
+/// Observed order from the errors at a step and at half of it.
+fn order(error: impl Fn(f64) -> f64, step: f64) -> f64 {
+    (error(step) / error(step / 2.0)).log2()
+}
+
+#[test]
+fn the_reference_frequencies_are_those_of_the_publication() {
+    assert!((free_omega() / TAU - 84.22).abs() < 0.005);
+    assert!((held_omega() / TAU - 59.55).abs() < 0.005);
+}
