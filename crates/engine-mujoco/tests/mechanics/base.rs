@@ -104,8 +104,9 @@ fn residual(boxes: &[f64], frequency: f64) -> f64 {
     y.hypot(v / w)
 }
 
-/// Oracle: X·∏|sin(ωT/2)/(ωT/2)|; the bar is 1 %. The move of Lambrechts under a jerk and under a snap limit, at its
-/// own mode, which is beside a zero, and at frequencies where much is left.
+/// Oracle: X·∏|sin(ωT/2)/(ωT/2)|. The move of Lambrechts under a jerk and under a snap limit, at its own mode and at
+/// frequencies where much is left. The bench asks for 1 %; a base that is right in the mean only would be off by
+/// (ω·h)²/12 = 2e-5, and beside the zero at 39 Hz RK4's error of the frequency, 4.6e-10, counts 2600 times.
 #[test]
 fn residual_vibration_is_that_of_the_closed_form() {
     let jerk_limited = [1.0, 0.2, 0.1];
@@ -118,7 +119,7 @@ fn residual_vibration_is_that_of_the_closed_form() {
             let exact: f64 = boxes.iter().map(|&t| sinc(t).abs()).product();
             let measured = residual(boxes, frequency);
             let error = measured / exact - 1.0;
-            assert!(error.abs() < 0.01, "{frequency} Hz: {measured:e} instead of {exact:e}: {error:e}");
+            assert!(error.abs() < 1e-5, "{frequency} Hz: {measured:e} instead of {exact:e}: {error:e}");
         }
     }
 }
