@@ -105,6 +105,7 @@ impl Params {
     }
 
     /// Motion of the motor while the load moves as `r` says.
+    #[inline]
     #[must_use]
     pub fn motor_reference(&self, r: Setpoint) -> MotorReference {
         match self.model {

@@ -193,6 +193,7 @@ impl Firmware {
     /// The references at the present tick: between two turns of the position loop the held set-point goes on along its
     /// own polynomial. This is what following errors are measured against; a reference that stands still while the
     /// axis moves on would add an error of velocity × period.
+    #[inline]
     #[must_use]
     pub fn references(&self) -> (Setpoint, MotorReference) {
         let since = self.params.position_every.ticks() - 1 - self.position_in;
