@@ -1,5 +1,39 @@
 //! The scenario file: schema, quantities with units, diagnostics with spans, look-up in `models/`.
+//!
+//! ```text
+//! TOML → tree with places → laid on models → tables (`file`: quantities in SI) → `Scenario`
+//! ```
+//! The tables in `file` are the one description of the format: decoding, unknown keys, JSON Schema and the reference in
+//! `docs/scenario.md` follow from them.
 
+mod argument;
+mod channel;
+mod diagnostic;
+mod dimension;
+mod field;
+mod file;
+mod limits;
+mod list;
+mod load;
+mod models;
+mod nearest;
+mod physical;
+mod quantity;
+mod reading;
+mod resolve;
 mod scenario;
+mod schema;
+mod simple;
+mod source;
+mod table;
+mod tree;
+mod unit;
 
+pub use argument::{ArgumentError, Derivative, axis_quantity, time};
+pub use channel::CHANNELS;
+pub use diagnostic::{Diagnostic, Invalid, LoadError};
+pub use load::{Loaded, load, parse};
+pub use models::{embedded_demo, embedded_models};
 pub use scenario::*;
+pub use schema::json_schema;
+pub use source::{SourceId, Sources};

@@ -1,0 +1,106 @@
+//! Quantities on a command line: read and checked as in a scenario file.
+use crate::physical::{ACCELERATION, Coordinate, JERK, POSITION, Physical, SNAP, TIME, VELOCITY};
+use crate::reading::{self, ReadError, names, proposals};
+use crate::scenario::Motion;
+use thiserror::Error;
+
+/// A derivative of position with respect to time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Derivative {
+    /// Position or distance.
+    Position,
+    /// Velocity.
+    Velocity,
+    /// Acceleration.
+    Acceleration,
+    /// Jerk.
+    Jerk,
+    /// Snap.
+    Snap,
+}
+
+/// A quantity that is not what the argument needs.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("`{text}`: {message}")]
+pub struct ArgumentError {
+    /// What was written.
+    pub text: String,
+    /// What is wrong with it, and what to write instead.
+    pub message: String,
+}
+
+/// Reads a position or one of its derivatives (SI), on an axis that is linear or rotary, or either when `motion` is
+/// `None`; and says which it is.
+///
+/// # Errors
+/// [`ArgumentError`] for what is no quantity, has no unit or another dimension.
+pub fn axis_quantity(
+    derivative: Derivative,
+    motion: Option<Motion>,
+    text: &str,
+) -> Result<(f64, Motion), ArgumentError> {
+    let Coordinate { linear, rotary } = match derivative {
+        Derivative::Position => &POSITION,
+        Derivative::Velocity => &VELOCITY,
+        Derivative::Acceleration => &ACCELERATION,
+        Derivative::Jerk => &JERK,
+        Derivative::Snap => &SNAP,
+    };
+    match motion {
+        Some(Motion::Linear) => Ok((read(&[linear], text)?.0, Motion::Linear)),
+        Some(Motion::Rotary) => Ok((read(&[rotary], text)?.0, Motion::Rotary)),
+        None => {
+            let (value, which) = read(&[linear, rotary], text)?;
+            Ok((value, if which == 0 { Motion::Linear } else { Motion::Rotary }))
+        }
+    }
+}
+
+/// Reads a time (s).
+///
+/// # Errors
+/// As [`axis_quantity`].
+pub fn time(text: &str) -> Result<f64, ArgumentError> {
+    Ok(read(&[&TIME], text)?.0)
+}
+
+/// The value, and which of `candidates` it is.
+fn read(candidates: &[&Physical], text: &str) -> Result<(f64, usize), ArgumentError> {
+    let wrong = |message: String| ArgumentError { text: text.to_owned(), message };
+    reading::read(text, candidates).map(|(which, value)| (value, which)).map_err(|error| match error {
+        ReadError::NoQuantity(error) => wrong(format!("{}{}", error.message, after(&error.help))),
+        ReadError::NoUnit => {
+            wrong(format!("{} needs its unit; {}", names(candidates), proposals(text.trim(), candidates)))
+        }
+        ReadError::OtherDimension { is, help } => {
+            wrong(format!("{} is needed, this is {is}{}", names(candidates), after(help)))
+        }
+    })
+}
+
+/// Help as the end of a message.
+fn after(help: &str) -> String {
+    if help.is_empty() { String::new() } else { format!("; {help}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_quantity_says_whether_the_axis_is_linear_or_rotary() {
+        assert_eq!(axis_quantity(Derivative::Position, None, "250 mm"), Ok((0.25, Motion::Linear)));
+        let (angle, motion) = axis_quantity(Derivative::Position, None, "180 deg").unwrap();
+        assert!((angle - std::f64::consts::PI).abs() < 1e-15 && motion == Motion::Rotary);
+        assert_eq!(time("1 ms"), Ok(1e-3));
+    }
+
+    #[test]
+    fn what_is_wrong_is_said_with_the_way_out() {
+        let said = |text| axis_quantity(Derivative::Velocity, Some(Motion::Linear), text).unwrap_err().to_string();
+        assert_eq!(said("1"), "`1`: a velocity needs its unit; write \"1 m/s\"");
+        assert_eq!(said("1 m"), "`1 m`: a velocity is needed, this is a length (mm)");
+        assert_eq!(said("3000 rpm"), "`3000 rpm`: a velocity is needed, this is an angular velocity (rpm)");
+        assert!(said("1 m/sek").contains("unknown unit `sek`"), "{}", said("1 m/sek"));
+    }
+}

@@ -1,0 +1,101 @@
+//! What is wrong with a scenario, where, and what to do about it.
+use crate::scenario::Motion;
+use crate::source::{SourceId, Sources, Span};
+use std::fmt;
+use std::ops::Range;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// One mistake or doubt, at its place.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// File it is in.
+    pub source: SourceId,
+    /// Bytes of that file.
+    pub span: Range<usize>,
+    /// What is wrong, in a lower-case sentence.
+    pub message: String,
+    /// What to do about it.
+    pub help: Option<String>,
+}
+
+/// Why a scenario could not be loaded.
+#[derive(Debug, Error)]
+pub enum LoadError {
+    /// The scenario file cannot be read.
+    #[error("cannot read `{}`: {error}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        error: std::io::Error,
+    },
+    /// The file holds mistakes: all of them.
+    #[error("{0}")]
+    Invalid(Box<Invalid>),
+}
+
+/// Everything that is wrong with a scenario and the models it names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Invalid {
+    /// The mistakes, at least one, in the order of the files.
+    pub diagnostics: Vec<Diagnostic>,
+    /// What is doubtful besides.
+    pub warnings: Vec<Diagnostic>,
+    /// The files.
+    pub sources: Sources,
+}
+
+/// `axis.toml:12:9: message; help`, a line for each mistake.
+impl fmt::Display for Invalid {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, diagnostic) in self.diagnostics.iter().enumerate() {
+            let newline = if i == 0 { "" } else { "\n" };
+            write!(f, "{newline}{}", diagnostic.line(&self.sources))?;
+        }
+        Ok(())
+    }
+}
+
+impl Diagnostic {
+    /// The diagnostic in one line: `axis.toml:12:9: message; help`.
+    #[must_use]
+    pub fn line(&self, sources: &Sources) -> String {
+        let (line, column) = sources.line_and_column(self.source, self.span.start);
+        let name = sources.name(self.source);
+        let help = self.help.as_ref().map(|help| format!("; {help}")).unwrap_or_default();
+        format!("{name}:{line}:{column}: {}{help}", self.message)
+    }
+}
+
+/// Collects what is found while a scenario is read, and knows what a unit's meaning depends on.
+#[derive(Debug, Default)]
+pub(crate) struct Report {
+    pub(crate) errors: Vec<Diagnostic>,
+    pub(crate) warnings: Vec<Diagnostic>,
+    /// What is missing; not said of a file with wrong syntax, where it may well be there.
+    pub(crate) missing: Vec<Diagnostic>,
+    /// Coordinate of the axis, once known.
+    pub(crate) axis: Option<Motion>,
+    /// Coordinate of the motor, once known.
+    pub(crate) motor: Option<Motion>,
+}
+
+impl Report {
+    pub(crate) fn error(&mut self, span: Span, message: impl Into<String>, help: impl Into<String>) {
+        self.errors.push(diagnostic(span, message.into(), help.into()));
+    }
+
+    pub(crate) fn warning(&mut self, span: Span, message: impl Into<String>, help: impl Into<String>) {
+        self.warnings.push(diagnostic(span, message.into(), help.into()));
+    }
+
+    pub(crate) fn lacking(&mut self, span: Span, message: impl Into<String>, help: impl Into<String>) {
+        self.missing.push(diagnostic(span, message.into(), help.into()));
+    }
+}
+
+fn diagnostic(span: Span, message: String, help: String) -> Diagnostic {
+    let help = (!help.is_empty()).then_some(help);
+    Diagnostic { source: span.source, span: span.start..span.end, message, help }
+}

@@ -1,0 +1,262 @@
+//! What the value of a key may be: how it is read, what is said when it is wrong, and its JSON Schema.
+use crate::diagnostic::Report;
+use crate::physical::{Kind, Physical, RATIO};
+use crate::reading::{self, ReadError, names, proposals};
+use crate::source::{At, Span};
+use crate::tree::{Node, Number, Value};
+use serde_json::{Value as Json, json};
+use std::ops::Range;
+
+/// A type that keys can have.
+pub(crate) trait Field: Sized {
+    /// What one key demands beyond the type: a dimension, a bound.
+    type Spec: 'static;
+
+    /// Reads `node`; `path` is `drive.velocity.rate`. Says what is wrong and returns nothing when it is.
+    fn decode(path: &str, node: &Node, spec: &Self::Spec, report: &mut Report) -> Option<Self>;
+
+    /// JSON Schema of what [`Self::decode`] accepts.
+    fn schema(spec: &Self::Spec) -> Json;
+}
+
+/// The value of a key, if there is one.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Slot<T> {
+    /// The key is not in the file.
+    Absent,
+    /// It is, and what is wrong with it has been said.
+    Wrong(Span),
+    /// Its value.
+    Given(At<T>),
+}
+
+impl<T> Slot<T> {
+    pub(crate) fn given(&self) -> Option<&T> {
+        self.at().map(|at| &at.value)
+    }
+
+    pub(crate) fn at(&self) -> Option<&At<T>> {
+        if let Self::Given(at) = self { Some(at) } else { None }
+    }
+
+    /// The value of a key that may be left out.
+    ///
+    /// # Errors
+    /// [`Said`] when the value is wrong.
+    pub(crate) fn optional(&self) -> Result<Option<&T>, Said> {
+        match self {
+            Self::Absent => Ok(None),
+            Self::Wrong(_) => Err(Said),
+            Self::Given(at) => Ok(Some(&at.value)),
+        }
+    }
+
+    /// Where the value is, right or wrong.
+    pub(crate) fn span(&self) -> Option<Span> {
+        match self {
+            Self::Absent => None,
+            Self::Wrong(span) | Self::Given(At { span, .. }) => Some(*span),
+        }
+    }
+}
+
+/// Something is wrong and has been reported.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Said;
+
+/// Last part of a path.
+pub(crate) fn key(path: &str) -> &str {
+    path.rsplit('.').next().unwrap_or(path)
+}
+
+/// What a physical quantity must be beyond its dimension (SI).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Bound {
+    Positive,
+    NotNegative,
+    Any,
+    /// Both ends are allowed.
+    Within(f64, f64),
+}
+
+impl Bound {
+    fn holds(self, value: f64) -> bool {
+        match self {
+            Self::Positive => value > 0.0,
+            Self::NotNegative => value >= 0.0,
+            Self::Any => true,
+            Self::Within(low, high) => (low..=high).contains(&value),
+        }
+    }
+
+    fn words(self) -> String {
+        match self {
+            Self::Positive => "above zero".into(),
+            Self::NotNegative => "zero or more".into(),
+            Self::Any => "any".into(),
+            Self::Within(low, high) => format!("from {low} to {high}"),
+        }
+    }
+}
+
+/// What a physical key demands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Measure {
+    pub(crate) kind: Kind,
+    pub(crate) bound: Bound,
+    pub(crate) example: &'static str,
+}
+
+pub(crate) const fn positive(kind: Kind, example: &'static str) -> Measure {
+    Measure { kind, bound: Bound::Positive, example }
+}
+
+pub(crate) const fn not_negative(kind: Kind, example: &'static str) -> Measure {
+    Measure { kind, bound: Bound::NotNegative, example }
+}
+
+pub(crate) const fn any(kind: Kind, example: &'static str) -> Measure {
+    Measure { kind, bound: Bound::Any, example }
+}
+
+impl Measure {
+    fn is_ratio(&self) -> bool {
+        self.kind == Kind::Plain(&RATIO)
+    }
+}
+
+/// Number and unit; the unit itself is for `check` to judge.
+const QUANTITY_PATTERN: &str = r"^ *[-+]?([0-9]+[.]?[0-9]*|[.][0-9]+)([eE][-+]?[0-9]+)? *(1/)?[A-Za-z%°µμΩΩ(].*$";
+
+/// A physical quantity, in SI.
+impl Field for f64 {
+    type Spec = Measure;
+
+    fn decode(path: &str, node: &Node, spec: &Measure, report: &mut Report) -> Option<Self> {
+        let candidates = spec.kind.candidates(report.axis, report.motor);
+        let (_, value) = physical(path, node, &candidates, report)?;
+        if spec.bound.holds(value) {
+            return Some(value);
+        }
+        let message = format!("`{}` must be {}, got {}", key(path), spec.bound.words(), written(node));
+        report.error(node.span, message, "");
+        None
+    }
+
+    fn schema(spec: &Measure) -> Json {
+        if !spec.is_ratio() {
+            return json!({ "type": "string", "pattern": QUANTITY_PATTERN, "examples": [spec.example] });
+        }
+        let mut number = json!({ "type": "number" });
+        match spec.bound {
+            Bound::Positive => number["exclusiveMinimum"] = json!(0),
+            Bound::NotNegative => number["minimum"] = json!(0),
+            Bound::Within(low, high) => {
+                number["minimum"] = json!(low);
+                number["maximum"] = json!(high);
+            }
+            Bound::Any => {}
+        }
+        json!({ "anyOf": [number, { "type": "string", "pattern": "^ *[-+]?[0-9.]+ *%? *$" }] })
+    }
+}
+
+/// A quantity of one of two kinds: a gain per velocity or in volts per velocity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Either {
+    First(f64),
+    Second(f64),
+}
+
+/// What an [`Either`] demands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct EitherMeasure {
+    pub(crate) first: Kind,
+    pub(crate) second: Kind,
+    pub(crate) example: &'static str,
+}
+
+impl Field for Either {
+    type Spec = EitherMeasure;
+
+    fn decode(path: &str, node: &Node, spec: &EitherMeasure, report: &mut Report) -> Option<Self> {
+        let mut candidates = spec.first.candidates(report.axis, report.motor);
+        let firsts = candidates.len();
+        candidates.extend(spec.second.candidates(report.axis, report.motor));
+        let (which, value) = physical(path, node, &candidates, report)?;
+        if value > 0.0 {
+            return Some(if which < firsts { Self::First(value) } else { Self::Second(value) });
+        }
+        report.error(node.span, format!("`{}` must be above zero, got {}", key(path), written(node)), "");
+        None
+    }
+
+    fn schema(spec: &EitherMeasure) -> Json {
+        json!({ "type": "string", "pattern": QUANTITY_PATTERN, "examples": [spec.example] })
+    }
+}
+
+/// Reads a quantity that is one of `candidates`; returns which, and the value in the unit that it means.
+pub(crate) fn physical(
+    path: &str,
+    node: &Node,
+    candidates: &[&'static Physical],
+    report: &mut Report,
+) -> Option<(usize, f64)> {
+    let key = key(path);
+    let ratio = candidates.iter().position(|physical| **physical == RATIO);
+    match (&node.value, ratio) {
+        (Value::Number(number), Some(which)) => {
+            if number.value.is_finite() {
+                return Some((which, number.value));
+            }
+            report.error(node.span, format!("`{key}` must be finite, got {}", number.text), "");
+        }
+        (Value::Number(number), None) => {
+            let help = proposals(&number.text, candidates);
+            report.error(node.span, format!("`{key}` needs a unit, got the bare number {}", number.text), help);
+        }
+        (Value::Text(text), _) => match reading::read(text, candidates) {
+            Ok(read) => return Some(read),
+            Err(ReadError::NoQuantity(e)) => {
+                report.error(within(node.span, text, &e.at), format!("`{key}`: {}", e.message), e.help);
+            }
+            Err(ReadError::NoUnit) => {
+                let number = text.trim();
+                let message = format!("`{key}` needs a unit, got the bare number {number}");
+                report.error(node.span, message, proposals(number, candidates));
+            }
+            Err(ReadError::OtherDimension { is, help }) => {
+                let message = format!("`{key}` must be {}, but \"{text}\" is {is}", names(candidates));
+                report.error(node.span, message, help);
+            }
+        },
+        (other, _) => {
+            let message = format!("`{key}` must be {}, got {}", names(candidates), other.kind());
+            report.error(node.span, message, proposals("1", candidates));
+        }
+    }
+    None
+}
+
+/// The value as the file has it.
+pub(crate) fn written(node: &Node) -> String {
+    match &node.value {
+        Value::Text(text) => format!("\"{text}\""),
+        Value::Number(Number { text, .. }) => text.clone(),
+        Value::Bool(value) => value.to_string(),
+        other => other.kind().to_owned(),
+    }
+}
+
+/// The place of `part` of a text: exact when the file holds the text as it is, without escapes.
+fn within(span: Span, text: &str, part: &Range<usize>) -> Span {
+    if span.end - span.start == text.len() + 2 {
+        let start = span.start + 1;
+        // An empty part would point at nothing.
+        let end = part.end.max(part.start + 1).min(text.len() + 1);
+        Span { start: start + part.start, end: start + end, ..span }
+    } else {
+        span
+    }
+}

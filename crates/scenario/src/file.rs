@@ -1,0 +1,109 @@
+//! The tables of a scenario file, as written: every key optional, every quantity in SI, nothing decided yet.
+//!
+//! This is the one description of the format. Keys in the motor coordinate follow the motor (rad, N·m for a rotary
+//! one), those in the axis coordinate the load.
+
+mod axis;
+mod drive;
+mod motor;
+mod program;
+
+pub(crate) use axis::{Axis, Body, Mjcf};
+pub(crate) use drive::{Drive, Estimate, EstimatedMotor, Velocity, VelocityKind};
+pub(crate) use motor::{Encoder, Motor, MotorKind};
+pub(crate) use program::{Disturbance, ProgramStep, Setpoint};
+
+use crate::field::{not_negative, positive};
+use crate::limits::LimitTable;
+use crate::list::{Many, OneOrMany};
+use crate::physical::Kind::{Axis as InAxis, Plain};
+use crate::physical::{FREQUENCY, POSITION, TIME, VELOCITY};
+use crate::scenario::EngineName;
+use crate::simple::Choice;
+use crate::table::table;
+use servobench_base::Rate;
+
+impl Choice for EngineName {
+    const ALL: &'static [(&'static str, Self, &'static str)] = &[
+        ("exact", Self::Exact, "exact zero-order hold of the linear chain"),
+        ("rapier", Self::Rapier, "Rapier, in f64"),
+        ("mujoco", Self::Mujoco, "MuJoCo"),
+    ];
+}
+
+table! {
+    /// A scenario of servobench: an axis, a program of moves, what to measure and the limits that make it pass or fail.
+    /// Physical quantities are texts with a unit: "250 mm", "30 m/min", "8 kHz", "4.2 Arms".
+    pub(crate) struct File requires ["run", "axis", "motor"] {
+        /// Name in tables and results; the file's name unless given.
+        name: String = (),
+        /// What the scenario shows, in a sentence.
+        description: String = (),
+        /// Engine or engines to run it on; "exact" unless given.
+        engine: OneOrMany<EngineName> = (),
+        /// Time base of the run.
+        run: Run = (),
+        /// The mechanics.
+        axis: Axis = (),
+        /// What moves the axis.
+        motor: Motor = (),
+        /// The firmware of the drive.
+        drive: Drive = (),
+        /// What every move respects unless it says otherwise.
+        setpoint: Setpoint = (),
+        /// Moves and pauses, one after the other from time 0; `[[program]]` for each.
+        program: Many<ProgramStep> = (),
+        /// External forces and torques; `[[disturbance]]` for each.
+        disturbance: Many<Disturbance> = (),
+        /// Where the load is at time 0; the motor is at rest at zero.
+        initial: Initial = (),
+        /// What to record.
+        record: Record = (),
+        /// What the measures need to know.
+        measure: Measures = (),
+        /// Limits by metric: the largest allowed magnitude, or a range `{ min = …, max = … }`.
+        limits: LimitTable = (),
+    }
+}
+
+table! {
+    /// Time base of the run.
+    pub(crate) struct Run requires ["base_rate"] {
+        /// One tick of mechanics; every task rate divides it.
+        base_rate: Rate = "16 kHz",
+        /// Length of the run; the program and half a second unless given.
+        duration: f64 = positive(Plain(&TIME), "2 s"),
+    }
+}
+
+table! {
+    /// Where the load is at time 0; the motor is at rest at zero.
+    pub(crate) struct Initial {
+        /// Position of the load (axis coordinate).
+        load_position: f64 = crate::field::any(InAxis(&POSITION), "0.1 mm"),
+        /// Velocity of the load (axis coordinate).
+        load_velocity: f64 = crate::field::any(InAxis(&VELOCITY), "10 mm/s"),
+    }
+}
+
+table! {
+    /// What to record.
+    pub(crate) struct Record {
+        /// Rate of the recording; the base rate unless given. It divides the base rate.
+        rate: Rate = "4 kHz",
+        /// Channels to keep; all that the axis has unless given.
+        channels: OneOrMany<crate::channel::Channel> = (),
+    }
+}
+
+table! {
+    /// What the measures need to know.
+    pub(crate) struct Measures {
+        /// Settling window around the target, ± (axis coordinate). Without it there is no settling time.
+        window: f64 = positive(InAxis(&POSITION), "10 um"),
+        /// From when on residual vibration is measured in a scenario without moves.
+        from: f64 = not_negative(Plain(&TIME), "0.2 s"),
+        /// Where to look for the residual mode; everywhere unless given.
+        mode: f64 = positive(Plain(&FREQUENCY), "38.985 Hz"),
+    }
+}

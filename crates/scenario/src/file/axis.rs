@@ -1,0 +1,96 @@
+//! `[axis]`: the mechanics.
+use crate::field::{any, not_negative, positive};
+use crate::physical::Kind::{Axis as InAxis, Motor as InMotor, Plain};
+use crate::physical::{EFFORT, INERTIA, LEAD, MASS, RATIO, STIFFNESS, VELOCITY, VISCOUS};
+use crate::scenario::Motion;
+use crate::simple::Choice;
+use crate::table::table;
+
+impl Choice for Motion {
+    const ALL: &'static [(&'static str, Self, &'static str)] = &[
+        ("linear", Self::Linear, "the load moves along a line: m, N, kg"),
+        ("rotary", Self::Rotary, "the load turns: rad, N·m, kg·m²"),
+    ];
+}
+
+table! {
+    /// The mechanics: up to three bodies in a row, `motor_side` – `table` – `load`, or a user's own MJCF file.
+    pub(crate) struct Axis {
+        /// Name of an axis in `models/axes`, whose values the other keys override.
+        model: String = (),
+        /// Where the values come from.
+        source: String = (),
+        /// Whether the load moves along a line or turns.
+        motion: Motion = (),
+        /// Travel per revolution of a screw, pinion or pulley. Without it a linear axis has a linear motor.
+        lead: f64 = positive(Plain(&LEAD), "10 mm"),
+        /// Revolutions of the motor per revolution behind the gear; 1 unless given.
+        gear_ratio: f64 = positive(Plain(&RATIO), "5"),
+        /// What moves with the rotor, in the motor coordinate. The rotor's own inertia is added to it.
+        motor_side: MotorSide = (),
+        /// The body behind the coupling or screw (axis coordinate).
+        table: Body = (),
+        /// The body that the axis is to position (axis coordinate).
+        load: Body = (),
+        /// A user's own MJCF file instead of bodies.
+        mjcf: Mjcf = (),
+    }
+}
+
+table! {
+    /// What moves with the rotor, in the motor coordinate.
+    pub(crate) struct MotorSide {
+        /// Moment of inertia, for a rotary motor.
+        inertia: f64 = positive(Plain(&INERTIA), "0.00018 kg m2"),
+        /// Mass, for a linear motor.
+        mass: f64 = positive(Plain(&MASS), "20 kg"),
+        /// Viscous friction.
+        viscous: f64 = not_negative(InMotor(&VISCOUS), "0.001 Nm s/rad"),
+        /// Coulomb friction.
+        coulomb: f64 = not_negative(InMotor(&EFFORT), "0.05 Nm"),
+        /// Static (breakaway) friction, at least `coulomb`; equal to it unless given.
+        breakaway as "static": f64 = not_negative(InMotor(&EFFORT), "0.08 Nm"),
+        /// Velocity at which friction has mostly fallen from `static` to `coulomb`: exp(−(v/v_s)²). At once unless given.
+        stribeck_velocity: f64 = not_negative(InMotor(&VELOCITY), "10 rpm"),
+        /// Constant resisting force or torque: gravity, or friction that differs between the directions.
+        bias: f64 = any(InMotor(&EFFORT), "0.1 Nm"),
+    }
+}
+
+table! {
+    /// A body, in the axis coordinate.
+    pub(crate) struct Body {
+        /// Mass, on a linear axis.
+        mass: f64 = positive(Plain(&MASS), "40 kg"),
+        /// Moment of inertia, on a rotary axis.
+        inertia: f64 = positive(Plain(&INERTIA), "0.005 kg m2"),
+        /// Stiffness of the coupling to the body before it; rigid unless given.
+        stiffness: f64 = positive(InAxis(&STIFFNESS), "120 N/um"),
+        /// Damping of that coupling.
+        damping: f64 = not_negative(InAxis(&VISCOUS), "3000 N s/m"),
+        /// Viscous friction against the ground.
+        viscous: f64 = not_negative(InAxis(&VISCOUS), "200 N s/m"),
+        /// Coulomb friction against the ground.
+        coulomb: f64 = not_negative(InAxis(&EFFORT), "20 N"),
+        /// Static (breakaway) friction, at least `coulomb`; equal to it unless given.
+        breakaway as "static": f64 = not_negative(InAxis(&EFFORT), "35 N"),
+        /// Velocity at which friction has mostly fallen from `static` to `coulomb`: exp(−(v/v_s)²). At once unless given.
+        stribeck_velocity: f64 = not_negative(InAxis(&VELOCITY), "2 mm/s"),
+        /// Constant resisting force or torque: gravity, or friction that differs between the directions.
+        bias: f64 = any(InAxis(&EFFORT), "-3.2 N"),
+    }
+}
+
+table! {
+    /// A user's own MJCF file and which of its parts are the axis.
+    pub(crate) struct Mjcf requires ["file", "motor_joint", "load_joint", "actuator"] {
+        /// The file, relative to the file that names it.
+        file: String = (),
+        /// Joint whose coordinate is the motor's.
+        motor_joint: String = (),
+        /// Joint whose coordinate is the load's.
+        load_joint: String = (),
+        /// Motor actuator that the drive's torque or force goes to.
+        actuator: String = (),
+    }
+}

@@ -1,0 +1,79 @@
+//! `[motor]`: what moves the axis.
+use crate::field::{Either, EitherMeasure, positive};
+use crate::physical::Kind::{Motor as InMotor, Plain};
+use crate::physical::{
+    BACK_EMF, CURRENT, EFFORT, FLUX_LINKAGE, INDUCTANCE, INERTIA, MASS, POSITION, RESISTANCE, SOURCE_GAIN,
+    TORQUE_CONSTANT, VOLTAGE,
+};
+use crate::simple::Choice;
+use crate::table::table;
+
+/// What kind of motor it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum MotorKind {
+    /// Synchronous motor on an inverter.
+    Pmsm,
+    /// Ideal force or torque source.
+    IdealSource,
+    /// Follows the set-point.
+    Prescribed,
+}
+
+impl Choice for MotorKind {
+    const ALL: &'static [(&'static str, Self, &'static str)] = &[
+        ("pmsm", Self::Pmsm, "a permanent-magnet synchronous motor on an averaged inverter"),
+        ("ideal-source", Self::IdealSource, "effort = gain × output, the output saturating at `limit`"),
+        ("prescribed", Self::Prescribed, "the motor side follows the set-point exactly"),
+    ];
+}
+
+table! {
+    /// What moves the axis. Values of a synchronous motor are phase to neutral, flux linkage and currents are amplitudes
+    /// inside; units say what a value is: `Arms` or `Apk`.
+    pub(crate) struct Motor {
+        /// Name of a motor in `models/motors`, whose values the other keys override.
+        model: String = (),
+        /// Where the values come from.
+        source: String = (),
+        /// What kind of motor it is.
+        kind: MotorKind = (),
+        /// Pole pairs.
+        pole_pairs: u32 = 1..=1000,
+        /// Stator resistance, phase to neutral.
+        resistance: f64 = positive(Plain(&RESISTANCE), "0.36 Ohm"),
+        /// Inductance of both axes, phase to neutral.
+        inductance: f64 = positive(Plain(&INDUCTANCE), "0.2 mH"),
+        /// Inductance of the d axis, phase to neutral.
+        inductance_d: f64 = positive(Plain(&INDUCTANCE), "36 mH"),
+        /// Inductance of the q axis, phase to neutral.
+        inductance_q: f64 = positive(Plain(&INDUCTANCE), "51 mH"),
+        /// Flux linkage of the magnets, amplitude.
+        flux_linkage: f64 = positive(Plain(&FLUX_LINKAGE), "0.545 V s"),
+        /// Torque per current instead of the flux linkage: 1.5·p·ψ in Nm/Apk.
+        torque_constant: f64 = positive(Plain(&TORQUE_CONSTANT), "0.3 Nm/Arms"),
+        /// Back-EMF per speed, line to line, instead of the flux linkage: √3·p·ψ in Vpk per rad/s.
+        back_emf: f64 = positive(Plain(&BACK_EMF), "4.64 Vpk/krpm"),
+        /// Moment of inertia of the rotor.
+        inertia: f64 = positive(Plain(&INERTIA), "0.00018 kg m2"),
+        /// Mass of the moving part of a linear motor.
+        mass: f64 = positive(Plain(&MASS), "3 kg"),
+        /// Largest phase current.
+        max_current: f64 = positive(Plain(&CURRENT), "10 Arms"),
+        /// Force or torque per volt of an ideal source; without it the output is the force or torque itself.
+        gain: f64 = positive(InMotor(&SOURCE_GAIN), "35.1507 N/V"),
+        /// Largest output of an ideal source, in volts or as force or torque; unlimited unless given.
+        limit: Either = EitherMeasure { first: Plain(&VOLTAGE), second: InMotor(&EFFORT), example: "10 V" },
+        /// Encoder on the motor; ideal unless given.
+        encoder: Encoder = (),
+    }
+}
+
+table! {
+    /// Position encoder: give one of the two.
+    pub(crate) struct Encoder {
+        /// Increments per revolution: 1048576 for 20 bits.
+        counts_per_rev: u32 = 1..=u32::MAX,
+        /// One increment.
+        step: f64 = positive(InMotor(&POSITION), "0.1 um"),
+    }
+}

@@ -1,0 +1,74 @@
+//! `[setpoint]`, `[[program]]` and `[[disturbance]]`: what happens.
+use crate::field::{any, not_negative, positive};
+use crate::physical::Kind::{Axis as InAxis, Plain};
+use crate::physical::{ACCELERATION, FORCE, FREQUENCY, JERK, POSITION, SNAP, TIME, TORQUE, VELOCITY};
+use crate::scenario::DisturbedBody;
+use crate::simple::Choice;
+use crate::table::table;
+
+impl Choice for DisturbedBody {
+    const ALL: &'static [(&'static str, Self, &'static str)] =
+        &[("motor", Self::Motor, "the motor side"), ("load", Self::Load, "the last body")];
+}
+
+table! {
+    /// What every move respects unless it says otherwise.
+    pub(crate) struct Setpoint {
+        /// Order of the profile: 2 limits velocity and acceleration, 3 jerk too, 4 snap too.
+        order: u32 = 2..=4,
+        /// Largest velocity.
+        velocity: f64 = positive(InAxis(&VELOCITY), "30 m/min"),
+        /// Largest acceleration.
+        acceleration: f64 = positive(InAxis(&ACCELERATION), "5 m/s2"),
+        /// Largest jerk.
+        jerk: f64 = positive(InAxis(&JERK), "50 m/s3"),
+        /// Largest snap.
+        snap: f64 = positive(InAxis(&SNAP), "1000 m/s4"),
+        /// Sample time of the plan, a whole number of base ticks; continuous unless given.
+        sample_time: f64 = positive(Plain(&TIME), "1 ms"),
+    }
+}
+
+table! {
+    /// A move or a pause: give one of `move_to`, `move_by` and `wait`. The other keys override `[setpoint]`.
+    pub(crate) struct ProgramStep {
+        /// Moves to a position.
+        move_to: f64 = any(InAxis(&POSITION), "250 mm"),
+        /// Moves by a distance from the last target.
+        move_by: f64 = any(InAxis(&POSITION), "-250 mm"),
+        /// Waits.
+        wait: f64 = not_negative(Plain(&TIME), "0.2 s"),
+        /// Order of the profile.
+        order: u32 = 2..=4,
+        /// Largest velocity.
+        velocity: f64 = positive(InAxis(&VELOCITY), "30 m/min"),
+        /// Largest acceleration.
+        acceleration: f64 = positive(InAxis(&ACCELERATION), "5 m/s2"),
+        /// Largest jerk.
+        jerk: f64 = positive(InAxis(&JERK), "50 m/s3"),
+        /// Largest snap.
+        snap: f64 = positive(InAxis(&SNAP), "1000 m/s4"),
+        /// Sample time of the plan, a whole number of base ticks.
+        sample_time: f64 = positive(Plain(&TIME), "1 ms"),
+        /// Slows the move to last this long, every derivative in proportion; as fast as the limits allow unless given.
+        duration: f64 = positive(Plain(&TIME), "1.5 s"),
+    }
+}
+
+table! {
+    /// An external force or torque: a step, or a sine with `frequency`.
+    pub(crate) struct Disturbance requires ["on"] {
+        /// Body it acts on.
+        on: DisturbedBody = (),
+        /// First instant; 0 unless given.
+        start: f64 = not_negative(Plain(&TIME), "0.5 s"),
+        /// How long it lasts; to the end unless given.
+        duration: f64 = positive(Plain(&TIME), "0.2 s"),
+        /// Amplitude, where the body moves along a line.
+        force: f64 = any(Plain(&FORCE), "200 N"),
+        /// Amplitude, where the body turns.
+        torque: f64 = any(Plain(&TORQUE), "2 Nm"),
+        /// Frequency of a sine that starts at zero.
+        frequency: f64 = positive(Plain(&FREQUENCY), "40 Hz"),
+    }
+}

@@ -1,0 +1,112 @@
+//! Keys that hold several values, or one of several types.
+use crate::diagnostic::Report;
+use crate::field::{Bound, Field, Measure, key};
+use crate::physical::{Kind, RATIO, TIME};
+use crate::source::At;
+use crate::tree::{Node, Value};
+use serde_json::{Value as Json, json};
+
+/// One value or a list of them.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct OneOrMany<T>(pub(crate) Vec<At<T>>);
+
+impl<T: Field> Field for OneOrMany<T> {
+    type Spec = T::Spec;
+
+    fn decode(path: &str, node: &Node, spec: &T::Spec, report: &mut Report) -> Option<Self> {
+        let Value::Array(items) = &node.value else {
+            let value = T::decode(path, node, spec, report)?;
+            return Some(Self(vec![At { value, span: node.span }]));
+        };
+        if items.is_empty() {
+            report.error(node.span, format!("`{}` must not be empty", key(path)), "");
+            return None;
+        }
+        decode_items(path, items, spec, report).map(Self)
+    }
+
+    fn schema(spec: &T::Spec) -> Json {
+        let one = T::schema(spec);
+        json!({ "anyOf": [one, { "type": "array", "minItems": 1, "items": one }] })
+    }
+}
+
+/// A list; of tables it is written `[[name]]`.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Many<T>(pub(crate) Vec<At<T>>);
+
+impl<T: Field> Field for Many<T> {
+    type Spec = T::Spec;
+
+    fn decode(path: &str, node: &Node, spec: &T::Spec, report: &mut Report) -> Option<Self> {
+        match &node.value {
+            Value::Array(items) => decode_items(path, items, spec, report).map(Self),
+            other => {
+                let help = match other {
+                    Value::Table(_) => format!("write `[[{path}]]`"),
+                    _ => String::new(),
+                };
+                report.error(node.span, format!("`{}` must be a list, got {}", key(path), other.kind()), help);
+                None
+            }
+        }
+    }
+
+    fn schema(spec: &T::Spec) -> Json {
+        json!({ "type": "array", "items": T::schema(spec) })
+    }
+}
+
+/// Reads every item, so that the mistakes of all are found.
+fn decode_items<T: Field>(path: &str, items: &[Node], spec: &T::Spec, report: &mut Report) -> Option<Vec<At<T>>> {
+    let all: Vec<Option<At<T>>> = items
+        .iter()
+        .map(|item| T::decode(path, item, spec, report).map(|value| At { value, span: item.span }))
+        .collect();
+    all.into_iter().collect()
+}
+
+/// A share from 0 to 1; `true` is all of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Share(pub(crate) f64);
+
+const SHARE: Measure = Measure { kind: Kind::Plain(&RATIO), bound: Bound::Within(0.0, 1.0), example: "0.95" };
+
+impl Field for Share {
+    type Spec = ();
+
+    fn decode(path: &str, node: &Node, (): &(), report: &mut Report) -> Option<Self> {
+        match node.value {
+            Value::Bool(all) => Some(Self(f64::from(u8::from(all)))),
+            _ => f64::decode(path, node, &SHARE, report).map(Self),
+        }
+    }
+
+    fn schema((): &()) -> Json {
+        json!({ "anyOf": [{ "type": "boolean" }, f64::schema(&SHARE)] })
+    }
+}
+
+/// A time, or what the tool computes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum AutoTime {
+    Auto,
+    Time(f64),
+}
+
+const DELAY: Measure = Measure { kind: Kind::Plain(&TIME), bound: Bound::NotNegative, example: "125 us" };
+
+impl Field for AutoTime {
+    type Spec = ();
+
+    fn decode(path: &str, node: &Node, (): &(), report: &mut Report) -> Option<Self> {
+        match node.value.as_text() {
+            Some("auto") => Some(Self::Auto),
+            _ => f64::decode(path, node, &DELAY, report).map(Self::Time),
+        }
+    }
+
+    fn schema((): &()) -> Json {
+        json!({ "anyOf": [{ "const": "auto" }, f64::schema(&DELAY)] })
+    }
+}

@@ -1,0 +1,101 @@
+//! From a file or a text to a scenario, or to everything that is wrong with it.
+use crate::diagnostic::{Diagnostic, Invalid, LoadError, Report};
+use crate::field::{Field, Slot};
+use crate::file::File;
+use crate::models::lay_on_models;
+use crate::resolve;
+use crate::scenario::{Motion, Scenario};
+use crate::simple::Choice;
+use crate::source::{At, Place, SourceId, Sources, Span};
+use crate::tree::{self, Node, Table, Value};
+use std::ops::Range;
+use std::path::Path;
+
+/// A scenario and what is worth knowing about its files.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Loaded {
+    /// The scenario.
+    pub scenario: Scenario,
+    /// What is doubtful in it.
+    pub warnings: Vec<Diagnostic>,
+    /// The files it came from.
+    pub sources: Sources,
+}
+
+/// Loads the scenario file at `path`; models are looked up in `models/` beside it, in up to four folders above, and
+/// among the embedded ones.
+///
+/// # Errors
+/// [`LoadError::Read`] when the file cannot be read, [`LoadError::Invalid`] with every mistake in it.
+pub fn load(path: &Path) -> Result<Loaded, LoadError> {
+    let text = std::fs::read_to_string(path).map_err(|error| LoadError::Read { path: path.to_owned(), error })?;
+    let folder = path.parent().unwrap_or_else(|| Path::new(""));
+    let mut loaded = parse(&path.display().to_string(), &text, Some(folder))?;
+    loaded.scenario.path = Some(path.to_owned());
+    Ok(loaded)
+}
+
+/// Reads a scenario from `text`; `name` stands for the file in messages, and its stem names a scenario that has no name
+/// of its own. Models are looked up from `folder` as [`load`] does; without one among the embedded models only.
+///
+/// # Errors
+/// [`LoadError::Invalid`] with every mistake in it.
+pub fn parse(name: &str, text: &str, folder: Option<&Path>) -> Result<Loaded, LoadError> {
+    let mut sources = Sources::default();
+    let place = folder.map_or_else(|| Place::Embedded("".into()), |folder| Place::Folder(folder.to_owned()));
+    let id = sources.add(name.to_owned(), text.to_owned(), place);
+
+    let mut syntax = Report::default();
+    let mut parsed = tree::parse(id, text, &mut syntax);
+    let mut broken: Vec<(SourceId, Range<usize>)> = parsed.broken.drain(..).map(|line| (id, line)).collect();
+    let mut report = Report::default();
+    broken.extend(lay_on_models(&mut parsed.table, &mut sources, &mut report, &mut syntax));
+
+    (report.axis, report.motor) = motions(&parsed.table);
+    let root = Node { value: Value::Table(parsed.table), span: Span::new(id, &(0..0)) };
+    let scenario =
+        File::decode("", &root, &(), &mut report).and_then(|file| resolve::scenario(&file, &sources, &mut report));
+
+    let diagnostics = all_errors(syntax, &mut report, &broken);
+    let warnings = in_order(report.warnings);
+    match scenario {
+        Some(mut scenario) if diagnostics.is_empty() => {
+            if scenario.name.is_empty() {
+                scenario.name = Path::new(name).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            }
+            Ok(Loaded { scenario, warnings, sources })
+        }
+        _ => Err(LoadError::Invalid(Box::new(Invalid { diagnostics, warnings, sources }))),
+    }
+}
+
+/// Everything that is wrong. On lines with wrong syntax only that is said, and nothing is missing from a file that
+/// could not be read completely.
+fn all_errors(syntax: Report, report: &mut Report, broken: &[(SourceId, Range<usize>)]) -> Vec<Diagnostic> {
+    let mut all = syntax.errors;
+    let is_whole = |one: &Diagnostic| {
+        !broken
+            .iter()
+            .any(|(source, line)| *source == one.source && one.span.start <= line.end && line.start <= one.span.end)
+    };
+    all.extend(std::mem::take(&mut report.errors).into_iter().filter(is_whole));
+    if broken.is_empty() {
+        all.append(&mut report.missing);
+    }
+    in_order(all)
+}
+
+fn in_order(mut all: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    all.sort_by_key(|one| (one.source, one.span.start));
+    all.dedup();
+    all
+}
+
+/// Coordinates of axis and motor, on which the meaning of units depends, before anything else is read.
+fn motions(root: &Table) -> (Option<Motion>, Option<Motion>) {
+    let Some(axis) = root.get("axis").and_then(|node| node.value.as_table()) else { return (None, None) };
+    let text = axis.get("motion").and_then(|node| node.value.as_text());
+    let motion = Motion::ALL.iter().find(|(name, ..)| Some(*name) == text).map(|(_, motion, _)| *motion);
+    let lead = axis.get("lead").map_or(Slot::Absent, |node| Slot::Given(At { value: (), span: node.span }));
+    (motion, motion.map(|motion| resolve::motor_motion(motion, &lead)))
+}

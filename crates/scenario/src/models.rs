@@ -1,0 +1,189 @@
+//! Motors, drives and axes by name: beside the scenario, above it, or embedded.
+use crate::diagnostic::Report;
+use crate::nearest::suggestion;
+use crate::source::{Place, Sources};
+use crate::tree::{self, Node, Table, Value};
+use include_dir::{Dir, include_dir};
+use std::collections::BTreeSet;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+static MODELS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../models");
+static DEMO: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../scenarios/demo");
+
+/// Tables that can name a model, and the folders of `models/` that hold them.
+const MODELLED: [(&str, &str); 3] = [("axis", "axes"), ("motor", "motors"), ("drive", "drives")];
+
+/// How many folders above the scenario's own are searched for `models/`.
+const LEVELS: usize = 4;
+
+/// Before the names of embedded files in messages.
+const EMBEDDED: &str = "<embedded>";
+
+/// The demo's scenarios as they are in `scenarios/demo`: file name and text, in the order of names.
+#[must_use]
+pub fn embedded_demo() -> Vec<(&'static str, &'static str)> {
+    texts(&DEMO, "toml")
+}
+
+/// The embedded models: path within `models/` and text, in the order of paths.
+#[must_use]
+pub fn embedded_models() -> Vec<(&'static str, &'static str)> {
+    let mut all: Vec<_> = MODELS.dirs().flat_map(|folder| texts(folder, "toml")).collect();
+    all.sort_unstable();
+    all
+}
+
+fn texts(folder: &'static Dir<'static>, extension: &str) -> Vec<(&'static str, &'static str)> {
+    let wanted = folder.files().filter(|file| file.path().extension().is_some_and(|own| own == extension));
+    let mut all: Vec<_> = wanted.filter_map(|file| Some((file.path().to_str()?, file.contents_utf8()?))).collect();
+    all.sort_unstable();
+    all
+}
+
+/// A model file.
+struct Model {
+    name: String,
+    text: String,
+    place: Place,
+}
+
+/// Lays each table of `root` that names a model on top of it. Syntax errors of model files go to `syntax`; returns the
+/// lines that they are on.
+pub(crate) fn lay_on_models(
+    root: &mut Table,
+    sources: &mut Sources,
+    report: &mut Report,
+    syntax: &mut Report,
+) -> Vec<(crate::SourceId, Range<usize>)> {
+    let mut broken = Vec::new();
+    for (key, folder) in MODELLED {
+        let Some(Node { value: Value::Table(table), .. }) = root.get_mut(key) else { continue };
+        let Some(Node { value: Value::Text(name), span }) = table.get("model") else { continue };
+        let (name, span) = (name.clone(), *span);
+        let model = match find(folder, &name, sources.place(span.source)) {
+            Ok(model) => model,
+            Err((message, help)) => {
+                report.error(span, message, help);
+                continue;
+            }
+        };
+        let id = sources.add(model.name, model.text, model.place);
+        let text = sources.text(id).to_owned();
+        let parsed = tree::parse(id, &text, syntax);
+        broken.extend(parsed.broken.into_iter().map(|line| (id, line)));
+        let mut below = parsed.table;
+        if let Some(entry) = below.entries.iter().find(|entry| entry.key == "model") {
+            report.error(entry.key_span, "a model cannot stand on another model", "give its values here");
+        }
+        below.overlay(std::mem::take(table));
+        *table = below;
+    }
+    broken
+}
+
+/// Finds a model; otherwise says why not and what to do.
+fn find(folder: &str, name: &str, place: Option<&Place>) -> Result<Model, (String, String)> {
+    if name.is_empty() || !name.chars().all(|c| c.is_ascii_alphanumeric() || "-_.".contains(c)) || name.starts_with('.')
+    {
+        return Err((
+            format!("`{name}` is no name of a model"),
+            "letters, digits, `-`, `_` and `.` make a name".into(),
+        ));
+    }
+    let file_name = format!("{name}.toml");
+    let folders: Vec<PathBuf> = match place {
+        Some(Place::Folder(base)) => upwards(base).map(|above| above.join("models").join(folder)).collect(),
+        _ => Vec::new(),
+    };
+    for folder in &folders {
+        let path = folder.join(&file_name);
+        if !path.is_file() {
+            continue;
+        }
+        let name = path.display().to_string();
+        return match std::fs::read_to_string(&path) {
+            Ok(text) => Ok(Model { name, text, place: Place::Folder(folder.clone()) }),
+            Err(error) => Err((format!("cannot read `{name}`: {error}"), String::new())),
+        };
+    }
+    let path = Path::new(folder).join(&file_name);
+    if let Some(text) = MODELS.get_file(&path).and_then(include_dir::File::contents_utf8) {
+        let name = format!("{EMBEDDED}/models/{}", path.display());
+        return Ok(Model { name, text: text.to_owned(), place: Place::Embedded(folder.into()) });
+    }
+    let known = known(folder, &folders);
+    Err((
+        format!("there is no model `{name}` in `models/{folder}`"),
+        suggestion(name, known.iter().map(String::as_str)),
+    ))
+}
+
+/// The folder itself and those above it.
+fn upwards(base: &Path) -> impl Iterator<Item = PathBuf> {
+    std::iter::successors(Some(base.to_owned()), |folder| {
+        let mut above = folder.clone();
+        if folder.file_name().is_some() {
+            above.pop();
+        } else if folder.has_root() {
+            return None;
+        } else {
+            above.push("..");
+        }
+        Some(above)
+    })
+    .take(LEVELS + 1)
+}
+
+/// Names of the models of one kind.
+fn known(folder: &str, folders: &[PathBuf]) -> BTreeSet<String> {
+    let on_disk = folders.iter().filter_map(|folder| std::fs::read_dir(folder).ok()).flatten().flatten();
+    let embedded = MODELS.get_dir(folder).into_iter().flat_map(Dir::files).map(|file| file.path().to_owned());
+    on_disk
+        .map(|entry| entry.path())
+        .chain(embedded)
+        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+        .filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned()))
+        .collect()
+}
+
+/// Reads the text of `file`, which a file at `place` names; its path for messages and for what it includes in turn.
+pub(crate) fn read_beside(file: &str, place: &Place) -> Result<(PathBuf, String), String> {
+    match place {
+        Place::Folder(folder) => {
+            let path = folder.join(file);
+            match std::fs::read_to_string(&path) {
+                Ok(text) => Ok((path, text)),
+                Err(error) => Err(format!("cannot read `{}`: {error}", path.display())),
+            }
+        }
+        Place::Embedded(folder) => {
+            let path = folder.join(file);
+            let text = MODELS.get_file(&path).and_then(include_dir::File::contents_utf8);
+            match text {
+                Some(text) => Ok((Path::new(EMBEDDED).join("models").join(path), text.to_owned())),
+                None => Err(format!("there is no embedded file `{}`", path.display())),
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folders_above_are_searched_also_from_relative_paths() {
+        let all = |base: &str| upwards(Path::new(base)).map(|path| path.display().to_string()).collect::<Vec<_>>();
+        assert_eq!(all("scenarios/demo"), ["scenarios/demo", "scenarios", "", "..", "../.."]);
+        assert_eq!(all("../x"), ["../x", "..", "../..", "../../..", "../../../.."]);
+        assert_eq!(all("/a/b"), ["/a/b", "/a", "/"]);
+    }
+
+    #[test]
+    fn names_cannot_leave_the_folder() {
+        for name in ["", "../motors/x", "a/b", ".hidden", "/etc/passwd", "C:x"] {
+            assert!(find("motors", name, None).is_err_and(|(message, _)| message.contains("no name of a model")));
+        }
+    }
+}

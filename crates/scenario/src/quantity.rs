@@ -1,0 +1,305 @@
+//! Quantities as text: a number and a unit, `"30 m/min"`.
+//!
+//! ```text
+//! quantity = number [unit]
+//! unit     = factor { ("·" | "*" | space) factor } { "/" (factor | "(" product ")") }
+//! factor   = symbol [power]          m2  m^2  m²  s-1  s^-1  s⁻¹  1
+//! ```
+//! A product after a quotient ("N/m s") would be read in two ways and is refused.
+use crate::dimension::Dimension;
+use crate::unit::{similar_symbol, unit};
+use std::ops::Range;
+use winnow::ascii::digit1;
+use winnow::combinator::{alt, delimited, opt, preceded, repeat, separated};
+use winnow::error::{ContextError, ErrMode};
+use winnow::prelude::*;
+use winnow::stream::LocatingSlice;
+use winnow::token::{one_of, take_while};
+
+/// A number in SI with its dimension.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Quantity {
+    pub(crate) value: f64,
+    pub(crate) dimension: Dimension,
+    /// Whether there is a unit at all.
+    pub(crate) has_unit: bool,
+}
+
+/// What is wrong with a text that should be a quantity.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct QuantityError {
+    /// Bytes of the text.
+    pub(crate) at: Range<usize>,
+    pub(crate) message: String,
+    pub(crate) help: String,
+}
+
+/// A symbol with its power and its place.
+#[derive(Debug, Clone, PartialEq)]
+struct Factor {
+    symbol: String,
+    power: i32,
+    at: Range<usize>,
+}
+
+type Input<'i> = LocatingSlice<&'i str>;
+type Res<T> = Result<T, ErrMode<ContextError>>;
+
+/// Largest power of a unit: the snap of a pendulum has fewer.
+const MAX_POWER: i32 = 9;
+
+/// Reads `text`.
+///
+/// # Errors
+/// [`QuantityError`] says where and what, and what to write instead when that can be told.
+pub(crate) fn parse(text: &str) -> Result<Quantity, QuantityError> {
+    let mut input = LocatingSlice::new(text);
+    let wrong = |at: usize, message: &str, help: &str| {
+        let end = text[at..].chars().next().map_or(at, |c| at + c.len_utf8());
+        Err(QuantityError { at: at..end, message: message.to_owned(), help: help.to_owned() })
+    };
+    let number = match spaced(number).parse_next(&mut input) {
+        Ok(number) => number,
+        Err(_) if is_non_finite(text) => return wrong(0, "the number must be finite", ""),
+        Err(_) => return wrong(0, "a quantity begins with a number", "write as in \"250 mm\""),
+    };
+    if input.starts_with(',') {
+        return wrong(at(&input, text), "the decimal sign is a point", "");
+    }
+    let factors = match opt(spaced(unit_expression)).parse_next(&mut input) {
+        Ok(factors) => factors.unwrap_or_default(),
+        Err(_) => Vec::new(),
+    };
+    if !input.is_empty() {
+        let place = at(&input, text);
+        if text[..place].contains('/') {
+            let help = "write \"N s/m\" or \"N/(m s)\", whichever is meant";
+            return wrong(place, "a unit ends with its quotient", help);
+        }
+        return wrong(place, "this is no unit", "write as in \"250 mm\", \"30 m/min\" or \"0.5 kg m2\"");
+    }
+    evaluate(text, number, &factors)
+}
+
+fn evaluate(text: &str, number: &str, factors: &[Factor]) -> Result<Quantity, QuantityError> {
+    let (mut numerator, mut denominator, mut tens) = (1.0, 1.0, 0);
+    let mut dimension = Dimension::ONE;
+    for Factor { symbol, power, at } in factors {
+        let Some(unit) = unit(symbol) else {
+            let help = similar_symbol(symbol).map(|near| format!("did you mean `{near}`?"));
+            return Err(QuantityError {
+                at: at.clone(),
+                message: format!("unknown unit `{symbol}`"),
+                help: help.unwrap_or_default(),
+            });
+        };
+        if power.abs() > MAX_POWER {
+            let message = format!("the power of `{symbol}` must be from -{MAX_POWER} to {MAX_POWER}");
+            return Err(QuantityError { at: at.clone(), message, help: String::new() });
+        }
+        let (above, below) =
+            if *power < 0 { (unit.denominator, unit.numerator) } else { (unit.numerator, unit.denominator) };
+        numerator *= above.powi(power.abs());
+        denominator *= below.powi(power.abs());
+        tens += unit.power * power;
+        dimension = dimension.times(unit.dimension, *power);
+    }
+    let value = with_power_of_ten(number, tens) * numerator / denominator;
+    let is_zero = number.bytes().take_while(|b| !matches!(b, b'e' | b'E')).all(|b| !(b'1'..=b'9').contains(&b));
+    if value.is_finite() && (value != 0.0 || is_zero) {
+        return Ok(Quantity { value, dimension, has_unit: !factors.is_empty() });
+    }
+    let message = if value == 0.0 { "the number is too small" } else { "the number is too large" };
+    Err(QuantityError { at: 0..text.len(), message: message.to_owned(), help: String::new() })
+}
+
+/// `number · 10^tens`, rounded once.
+fn with_power_of_ten(number: &str, tens: i32) -> f64 {
+    let (mantissa, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
+    // An exponent beyond 32 bits makes an infinity or a zero of its own.
+    let exponent = exponent.parse::<i32>().map(|exponent| exponent.saturating_add(tens));
+    let text = exponent.map_or_else(|_| number.to_owned(), |exponent| format!("{mantissa}e{exponent}"));
+    text.parse().unwrap_or(f64::NAN)
+}
+
+fn is_non_finite(text: &str) -> bool {
+    let text = text.trim_start().trim_start_matches(['+', '-']).to_ascii_lowercase();
+    text.starts_with("nan") || text.starts_with("inf")
+}
+
+fn at(input: &Input<'_>, text: &str) -> usize {
+    text.len() - input.len()
+}
+
+fn spaced<'i, T>(
+    parser: impl Parser<Input<'i>, T, ErrMode<ContextError>>,
+) -> impl Parser<Input<'i>, T, ErrMode<ContextError>> {
+    delimited(spaces, parser, spaces)
+}
+
+fn spaces(input: &mut Input<'_>) -> Res<()> {
+    take_while(0.., |c: char| c.is_whitespace()).void().parse_next(input)
+}
+
+/// Digits with a point and an exponent; the exponent only when it is one ("2 e" is a number and a unit).
+fn number<'i>(input: &mut Input<'i>) -> Res<&'i str> {
+    let sign = || opt(one_of(['+', '-']));
+    let mantissa = alt(((digit1, opt(('.', opt(digit1)))).void(), ('.', digit1).void()));
+    (sign(), mantissa, opt((one_of(['e', 'E']), sign(), digit1))).take().parse_next(input)
+}
+
+fn unit_expression(input: &mut Input<'_>) -> Res<Vec<Factor>> {
+    let mut factors = product(input)?;
+    let below = alt((delimited((spaces, '(', spaces), product, (spaces, ')')), factor.map(|factor| vec![factor])));
+    let quotients: Vec<Vec<Factor>> = repeat(0.., preceded((spaces, '/', spaces), below)).parse_next(input)?;
+    factors.extend(quotients.into_iter().flatten().map(|factor| Factor { power: -factor.power, ..factor }));
+    Ok(factors)
+}
+
+fn product(input: &mut Input<'_>) -> Res<Vec<Factor>> {
+    let sign = (spaces, one_of(['·', '*', '\u{22c5}']), spaces).void();
+    let gap = take_while(1.., |c: char| c.is_whitespace()).void();
+    separated(1.., factor, alt((sign, gap))).parse_next(input)
+}
+
+fn factor(input: &mut Input<'_>) -> Res<Factor> {
+    let letters = take_while(1.., |c: char| c.is_alphabetic() || matches!(c, '%' | '°'));
+    let one = "1".map(|one| (one, None));
+    let ((symbol, power), at) = alt(((letters, opt(power)), one)).with_span().parse_next(input)?;
+    Ok(Factor { symbol: symbol.to_owned(), power: power.unwrap_or(1), at })
+}
+
+fn power(input: &mut Input<'_>) -> Res<i32> {
+    let plain = preceded(opt('^'), (opt('-'), digit1).take().map(saturating));
+    let raised = take_while(1.., |c| raised_digit(c).is_some())
+        .map(|text: &str| saturating(&text.chars().filter_map(raised_digit).collect::<String>()));
+    alt((plain, raised)).parse_next(input)
+}
+
+/// An integer that is cut to 32 bits: far beyond [`MAX_POWER`] anyway.
+fn saturating(text: &str) -> i32 {
+    text.parse().unwrap_or(if text.starts_with('-') { -i32::MAX } else { i32::MAX })
+}
+
+fn raised_digit(c: char) -> Option<char> {
+    let raised = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻".chars().position(|raised| raised == c)?;
+    "0123456789-".chars().nth(raised)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dimension::Dimension as D;
+    use proptest::prelude::*;
+    use std::f64::consts::{PI, SQRT_2};
+
+    /// Oracle: the same value as Rust reads it from the decimal text on the right.
+    #[test]
+    fn quantities_are_si_numbers_to_the_bit() {
+        let velocity = D::METRE.times(D::SECOND, -1);
+        let jerk = D::METRE.times(D::SECOND, -3);
+        let inertia = D::KILOGRAM.times(D::METRE, 2);
+        for (text, value, dimension) in [
+            ("250 mm", 0.25, D::METRE),
+            ("250mm", 0.25, D::METRE),
+            (" 0.1 um ", 1e-7, D::METRE),
+            ("0.1 \u{b5}m", 1e-7, D::METRE),
+            ("0.1 \u{3bc}m", 1e-7, D::METRE),
+            ("30 m/min", 0.5, velocity),
+            ("-30 m / min", -0.5, velocity),
+            ("36 km/h", 10.0, velocity),
+            ("8 kHz", 8000.0, D::HERTZ),
+            ("50 m/s3", 50.0, jerk),
+            ("50 m/s^3", 50.0, jerk),
+            ("50 m/s³", 50.0, jerk),
+            ("50 m s-3", 50.0, jerk),
+            ("50 m·s⁻³", 50.0, jerk),
+            ("50 m/s/s/s", 50.0, jerk),
+            ("50 m/(s s2)", 50.0, jerk),
+            ("50000 mm s^-3", 50.0, jerk),
+            ("1.27 Nm", 1.27, D::NEWTON_METRE),
+            ("1.27 N m", 1.27, D::NEWTON_METRE),
+            ("127 N cm", 1.27, D::NEWTON_METRE),
+            ("0.00018 kg m2", 0.00018, inertia),
+            ("1.8e-4 kg·m²", 0.00018, inertia),
+            ("1.8 kg cm2", 0.00018, inertia),
+            ("160.18 1/s", 160.18, D::ONE.times(D::SECOND, -1)),
+            ("243.45 V s/m", 243.45, D::VOLT.times(D::SECOND, 1).times(D::METRE, -1)),
+            ("5 %", 0.05, D::ONE),
+            ("12.5", 12.5, D::ONE),
+            ("1e3 s", 1000.0, D::SECOND),
+            (".5 s", 0.5, D::SECOND),
+            ("5. s", 5.0, D::SECOND),
+            ("0 mm", 0.0, D::METRE),
+        ] {
+            let read = parse(text).unwrap_or_else(|e| panic!("{text}: {}", e.message));
+            assert_eq!((read.value.to_bits(), read.dimension), (f64::to_bits(value), dimension), "{text}: {read:?}");
+        }
+    }
+
+    #[test]
+    fn factors_that_are_no_powers_of_ten() {
+        for (text, value) in [
+            ("3000 rpm", 100.0 * PI),
+            ("3 krpm", 100.0 * PI),
+            ("90 deg", PI / 2.0),
+            ("90°", PI / 2.0),
+            ("1 rev", 2.0 * PI),
+            ("4.2 Arms", 4.2 * SQRT_2),
+            ("1 Apk", 1.0),
+            ("2 Nm/Arms", SQRT_2),
+            ("3600 arcsec", PI / 180.0),
+        ] {
+            let read = parse(text).unwrap().value;
+            // One rounding for each of the two factors and their product.
+            assert!((read / value - 1.0).abs() < 4e-16, "{text}: {read}");
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_is_pointed_at() {
+        for (text, at, message, help) in [
+            ("", 0..0, "a quantity begins with a number", "write as in \"250 mm\""),
+            ("mm", 0..1, "a quantity begins with a number", "write as in \"250 mm\""),
+            ("nan mm", 0..1, "the number must be finite", ""),
+            ("-inf mm", 0..1, "the number must be finite", ""),
+            ("1e999 mm", 0..8, "the number is too large", ""),
+            ("1e-320 nm", 0..9, "the number is too small", ""),
+            ("1,5 mm", 1..2, "the decimal sign is a point", ""),
+            ("8 khz", 2..5, "unknown unit `khz`", "did you mean `kHz`?"),
+            ("8 m/sek", 4..7, "unknown unit `sek`", "did you mean `s`?"),
+            ("8 m10", 2..5, "the power of `m` must be from -9 to 9", ""),
+            ("8 m999999999999", 2..15, "the power of `m` must be from -9 to 9", ""),
+            ("8 N/m s", 6..7, "a unit ends with its quotient", "write \"N s/m\" or \"N/(m s)\", whichever is meant"),
+            ("8 m; s", 3..4, "this is no unit", "write as in \"250 mm\", \"30 m/min\" or \"0.5 kg m2\""),
+            ("8 /s", 2..3, "this is no unit", "write as in \"250 mm\", \"30 m/min\" or \"0.5 kg m2\""),
+        ] {
+            let e = parse(text).unwrap_err();
+            assert_eq!((e.at, e.message.as_str(), e.help.as_str()), (at, message, help), "{text}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn any_text_is_read_or_refused(text in "\\PC*") {
+            if let Err(e) = parse(&text) {
+                prop_assert!(text.get(e.at).is_some(), "a place in the text");
+            }
+        }
+
+        #[test]
+        fn near_quantities_are_read_or_refused(text in "[-+0-9.eE ]{0,8}[mskNAVH1%°µ·*/^()2³⁻ -]{0,12}") {
+            if let Ok(quantity) = parse(&text) {
+                prop_assert!(quantity.value.is_finite());
+            }
+        }
+
+        /// Oracle: Rust's own reading of the number with the exponent of the prefix.
+        #[test]
+        fn prefixes_round_once(mantissa in 1u32..1_000_000, exponent in -9i32..9) {
+            let read = parse(&format!("{mantissa}e{exponent} um")).unwrap().value;
+            let exact: f64 = format!("{mantissa}e{}", exponent - 6).parse().unwrap();
+            prop_assert_eq!(read.to_bits(), exact.to_bits());
+        }
+    }
+}

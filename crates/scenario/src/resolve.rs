@@ -1,0 +1,159 @@
+//! From the tables of a file to a [`Scenario`]: defaults, derived values, and the rules that concern several keys.
+
+mod axis;
+mod drive;
+mod estimate;
+mod motor;
+mod program;
+
+use crate::diagnostic::Report;
+use crate::field::Slot;
+use crate::file::{File, MotorKind};
+use crate::scenario::{EngineName, Initial, Limit, Measure, Record, Scenario};
+use crate::source::{At, SourceId, Sources, Span};
+use servobench_base::Rate;
+
+pub(crate) use axis::motor_motion;
+
+/// Everything that the report does not object to; `None` as soon as a part cannot be had.
+pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> Option<Scenario> {
+    let run = file.run.given();
+    let base_rate = run.and_then(|run| run.base_rate.given().copied());
+    let axis = file.axis.given();
+    let motor = file.motor.given();
+    let is_prescribed = motor.is_some_and(|motor| motor.kind.given() == Some(&MotorKind::Prescribed));
+
+    let moved = axis.zip(motor).and_then(|(axis, motor)| axis::resolve(axis, motor, sources, report));
+    let source = motor.and_then(|motor| motor::resolve(motor, report));
+    let drive = drive::resolve(file, &drive::Known { base_rate, axis: moved.as_ref(), motor: source.as_ref() }, report);
+    let program = program::steps(file, base_rate, report);
+    let disturbances = program::disturbances(file, report);
+    let record = record(file, base_rate, report);
+    let limits = limits(file, report);
+    if is_prescribed && let Some(span) = file.drive.span() {
+        report.warning(span, "`drive` is not used: the motor follows the set-point exactly", "");
+    }
+
+    let engines = match &file.engine {
+        Slot::Absent => vec![EngineName::Exact],
+        Slot::Wrong(_) => return None,
+        Slot::Given(engines) => distinct(&engines.value.0, report),
+    };
+    Some(Scenario {
+        name: file.name.given().cloned().unwrap_or_default(),
+        description: file.description.given().cloned().unwrap_or_default(),
+        path: None,
+        engines,
+        base_rate: base_rate?,
+        duration: run.and_then(|run| run.duration.given().copied()),
+        axis: moved?,
+        motor: source?,
+        drive: drive?,
+        program: program?,
+        disturbances: disturbances?,
+        initial: file.initial.given().map_or_else(Initial::default, |initial| Initial {
+            load_position: initial.load_position.given().copied().unwrap_or_default(),
+            load_velocity: initial.load_velocity.given().copied().unwrap_or_default(),
+        }),
+        record: record?,
+        measure: file.measure.given().map_or_else(Measure::default, |measure| Measure {
+            window: measure.window.given().copied(),
+            from: measure.from.given().copied(),
+            mode: measure.mode.given().copied(),
+        }),
+        limits,
+    })
+}
+
+fn distinct(engines: &[At<EngineName>], report: &mut Report) -> Vec<EngineName> {
+    let mut all = Vec::new();
+    for engine in engines {
+        if all.contains(&engine.value) {
+            report.error(engine.span, "this engine is named twice", "");
+        } else {
+            all.push(engine.value);
+        }
+    }
+    all
+}
+
+fn record(file: &File, base_rate: Option<Rate>, report: &mut Report) -> Option<Record> {
+    let Some(record) = file.record.given() else { return Some(Record { rate: base_rate?, channels: Vec::new() }) };
+    let rate = match record.rate {
+        Slot::Absent => base_rate,
+        _ => task_rate(&record.rate, base_rate, report),
+    };
+    let channels = record.channels.given().map(|names| names.0.iter().map(|name| name.value.0.to_owned()).collect());
+    Some(Record { rate: rate?, channels: channels.unwrap_or_default() })
+}
+
+/// Metrics that need a window around the target.
+const IN_A_WINDOW: [&str; 2] = ["settling_time", "move_and_settling_time"];
+
+fn limits(file: &File, report: &mut Report) -> Vec<Limit> {
+    let Some(limits) = file.limits.given() else { return Vec::new() };
+    let has_window = file.measure.given().is_some_and(|measure| measure.window.span().is_some());
+    for limit in &limits.0 {
+        if !has_window && IN_A_WINDOW.contains(&limit.value.metric.as_str()) {
+            let message = format!("`{}` needs a settling window", limit.value.metric);
+            report.error(limit.span, message, "give `window` in `[measure]`");
+        }
+    }
+    limits.0.iter().map(|limit| limit.value.clone()).collect()
+}
+
+/// The value of a key that must be there.
+fn need<T: Clone>(slot: &Slot<T>, path: &str, key: &str, header: Span, report: &mut Report) -> Option<T> {
+    if matches!(slot, Slot::Absent) {
+        report.missing(path, key, header);
+    }
+    slot.given().cloned()
+}
+
+/// A task rate that must divide the base rate.
+fn task_rate(slot: &Slot<Rate>, base_rate: Option<Rate>, report: &mut Report) -> Option<Rate> {
+    let rate = slot.at()?;
+    match base_rate?.divider(rate.value) {
+        Ok(_) => Some(rate.value),
+        Err(why) => {
+            report.error(rate.span, why.to_string(), "change it or `run.base_rate`");
+            None
+        }
+    }
+}
+
+/// Which of several ways to say one thing a file uses.
+enum Way {
+    /// None.
+    None,
+    /// The one with this index.
+    Use(usize),
+    /// Several at once, which has been said.
+    Contradiction,
+}
+
+/// Picks among keys that say the same thing. What the scenario says displaces what a model says; within one file only
+/// one may be there.
+fn one_way(keys: &[(&str, Option<Span>)], report: &mut Report) -> Way {
+    let there = || keys.iter().enumerate().filter_map(|(i, (key, span))| Some((i, *key, (*span)?)));
+    let Some(first_source) = there().map(|(.., span)| span.source).min() else { return Way::None };
+    let mut ours = there().filter(|(.., span)| span.source == first_source);
+    match (ours.next(), ours.next()) {
+        (Some((_, first, _)), Some((_, second, span))) => {
+            report.error(span, format!("`{first}` and `{second}` say the same thing"), "give one of them");
+            Way::Contradiction
+        }
+        (Some((i, ..)), None) => Way::Use(i),
+        (None, _) => Way::None,
+    }
+}
+
+/// Objects to keys that have no meaning here, as far as the scenario itself gives them: a model may know more than is
+/// used of it.
+fn refuse(keys: &[(&str, Option<Span>)], why: &str, help: &str, report: &mut Report) {
+    for (key, span) in keys {
+        if let Some(span) = span.filter(|span| span.source == SourceId::SCENARIO) {
+            report.error(span, format!("`{key}` {why}"), help);
+        }
+    }
+}

@@ -1,0 +1,261 @@
+//! `[axis]` to bodies: transmission, rigid couplings merged, the rotor added.
+use crate::diagnostic::Report;
+use crate::field::Slot;
+use crate::file;
+use crate::file::MotorKind;
+use crate::models::read_beside;
+use crate::resolve::need;
+use crate::scenario::{Axis, AxisMechanics, Body, Coupling, Mjcf, Motion};
+use crate::source::{Sources, Span};
+use std::f64::consts::TAU;
+
+/// Inertia of a motor body that follows a prescribed motion: it does not matter, but engines want one.
+const PRESCRIBED_INERTIA: f64 = 1.0;
+
+pub(super) fn resolve(axis: &file::Axis, motor: &file::Motor, sources: &Sources, report: &mut Report) -> Option<Axis> {
+    let motion = need(&axis.motion, "axis", "motion", axis.span, report);
+    let transmission = transmission(axis, motion, report);
+    let motor_motion = motor_motion(motion?, &axis.lead);
+    if motor_motion == Motion::Linear && motor.kind.given() == Some(&MotorKind::Pmsm) {
+        let help = "give the travel per revolution of the motor";
+        report.missing_with_help("axis", "lead", axis.span, help);
+    }
+    let mechanics = match axis.mjcf.given() {
+        Some(mjcf) => {
+            no_bodies_besides(axis, report);
+            if let Some(span) = motor.inertia.span().or(motor.mass.span()) {
+                report.warning(
+                    span,
+                    "the rotor's inertia is not used",
+                    "the MJCF file holds it, as `armature` for example",
+                );
+            }
+            mjcf_file(mjcf, sources, report).map(AxisMechanics::Mjcf)
+        }
+        None if axis.mjcf.span().is_some() => None,
+        None => bodies(axis, motor, motor_motion, transmission, report).map(AxisMechanics::Bodies),
+    };
+    Some(Axis { motion: motion?, motor_motion, transmission: transmission?, mechanics: mechanics? })
+}
+
+/// Coordinate of the motor: a linear axis without a lead has a linear motor.
+pub(crate) fn motor_motion<T>(axis: Motion, lead: &Slot<T>) -> Motion {
+    if axis == Motion::Linear && matches!(lead, Slot::Absent) { Motion::Linear } else { Motion::Rotary }
+}
+
+/// Axis coordinate per motor coordinate.
+fn transmission(axis: &file::Axis, motion: Option<Motion>, report: &mut Report) -> Option<f64> {
+    let gear = axis.gear_ratio.optional().ok().map(|ratio| ratio.copied().unwrap_or(1.0));
+    match (motion?, &axis.lead) {
+        (Motion::Rotary, lead) => {
+            if let Some(span) = lead.span() {
+                report.error(span, "a rotary axis has no `lead`", "give `gear_ratio`");
+            }
+            Some(1.0 / gear?)
+        }
+        (Motion::Linear, Slot::Given(lead)) => Some(lead.value / TAU / gear?),
+        (Motion::Linear, Slot::Wrong(_)) => None,
+        (Motion::Linear, Slot::Absent) => {
+            if let Some(span) = axis.gear_ratio.span() {
+                report.error(span, "a linear axis with a linear motor has no `gear_ratio`", "give the `lead` too");
+            }
+            Some(1.0)
+        }
+    }
+}
+
+fn no_bodies_besides(axis: &file::Axis, report: &mut Report) {
+    for (key, span) in
+        [("motor_side", axis.motor_side.span()), ("table", axis.table.span()), ("load", axis.load.span())]
+    {
+        if let Some(span) = span {
+            report.error(span, format!("`{key}` and `mjcf` cannot be together"), "the MJCF file holds all bodies");
+        }
+    }
+}
+
+fn mjcf_file(mjcf: &file::Mjcf, sources: &Sources, report: &mut Report) -> Option<Mjcf> {
+    let file = mjcf.file.at()?;
+    let Some(place) = sources.place(file.span.source) else {
+        report.error(file.span, "a scenario without a folder cannot name files", "");
+        return None;
+    };
+    let (path, xml) = match read_beside(&file.value, place) {
+        Ok(found) => found,
+        Err(why) => {
+            report.error(file.span, why, "the path is relative to this file");
+            return None;
+        }
+    };
+    let text = |slot: &Slot<String>| slot.given().cloned();
+    let (motor_joint, load_joint) = (text(&mjcf.motor_joint)?, text(&mjcf.load_joint)?);
+    Some(Mjcf { xml, path, motor_joint, load_joint, actuator: text(&mjcf.actuator)? })
+}
+
+/// Dry friction of one body and where it is written.
+struct Dry {
+    coulomb: f64,
+    breakaway: f64,
+    stribeck_velocity: f64,
+    span: Option<Span>,
+}
+
+fn bodies(
+    axis: &file::Axis,
+    motor: &file::Motor,
+    motor_motion: Motion,
+    transmission: Option<f64>,
+    report: &mut Report,
+) -> Option<Vec<Body>> {
+    let first = motor_side(axis, motor, motor_motion, report);
+    let others: Vec<_> = [("table", &axis.table), ("load", &axis.load)]
+        .into_iter()
+        .filter(|(_, slot)| slot.span().is_some())
+        .map(|(name, slot)| slot.given().and_then(|body| self::body(name, body, axis.motion.given().copied(), report)))
+        .collect();
+    let mut chain = vec![first?];
+    for other in others {
+        let (other, span) = other?;
+        let Some(last) = chain.last_mut() else { continue };
+        if other.coupling.is_some() {
+            chain.push(other);
+        } else if last.name == "motor" {
+            merge(last, &other, transmission?, span, report);
+        } else {
+            merge(last, &other, 1.0, span, report);
+            last.name = other.name;
+        }
+    }
+    if let Some(motor_body) = chain.first_mut().filter(|body| body.inertia == 0.0) {
+        if motor.kind.given() != Some(&MotorKind::Prescribed) {
+            let key = if motor_motion == Motion::Rotary { "inertia" } else { "mass" };
+            let help = format!("give `{key}` in `[axis.motor_side]` or in `[motor]`");
+            report.lacking(axis.span, "nothing moves with the motor", help);
+            return None;
+        }
+        motor_body.inertia = PRESCRIBED_INERTIA;
+    }
+    Some(chain)
+}
+
+/// The motor's body in its own coordinate, rotor included; without inertia when none is given.
+fn motor_side(axis: &file::Axis, motor: &file::Motor, motion: Motion, report: &mut Report) -> Option<Body> {
+    let rotor = inertia(&motor.mass, &motor.inertia, motion, "motor", report);
+    let Some(side) = axis.motor_side.given() else {
+        return match axis.motor_side {
+            Slot::Wrong(_) => None,
+            _ => Some(plain("motor", rotor?)),
+        };
+    };
+    let own = inertia(&side.mass, &side.inertia, motion, "motor", report);
+    let dry = dry_friction(&side.coulomb, &side.breakaway, &side.stribeck_velocity, report);
+    let (viscous, bias, dry) = (or_zero(&side.viscous)?, or_zero(&side.bias)?, dry?);
+    Some(Body { viscous, bias, ..plain("motor", rotor? + own?) }.with_friction(&dry))
+}
+
+fn body(name: &'static str, body: &file::Body, motion: Option<Motion>, report: &mut Report) -> Option<(Body, Span)> {
+    let inertia = motion.and_then(|motion| inertia(&body.mass, &body.inertia, motion, "axis", report));
+    if inertia == Some(0.0) {
+        let key = if motion == Some(Motion::Rotary) { "inertia" } else { "mass" };
+        report.missing(&format!("axis.{name}"), key, body.span);
+        return None;
+    }
+    let dry = dry_friction(&body.coulomb, &body.breakaway, &body.stribeck_velocity, report);
+    if let (Slot::Absent, Some(span)) = (&body.stiffness, body.damping.span()) {
+        report.error(
+            span,
+            "`damping` belongs to a coupling that has no `stiffness`",
+            "without one the coupling is rigid",
+        );
+        return None;
+    }
+    let damping = or_zero(&body.damping);
+    let stiffness = body.stiffness.optional().ok()?;
+    let coupling = stiffness.zip(damping).map(|(stiffness, damping)| Coupling { stiffness: *stiffness, damping });
+    damping?;
+    let (viscous, bias, dry) = (or_zero(&body.viscous)?, or_zero(&body.bias)?, dry?);
+    let span = dry.span.unwrap_or(body.span);
+    Some((Body { coupling, viscous, bias, ..plain(name, inertia?) }.with_friction(&dry), span))
+}
+
+fn plain(name: &'static str, inertia: f64) -> Body {
+    Body {
+        name,
+        inertia,
+        coupling: None,
+        viscous: 0.0,
+        coulomb: 0.0,
+        breakaway: 0.0,
+        stribeck_velocity: 0.0,
+        bias: 0.0,
+    }
+}
+
+impl Body {
+    fn with_friction(self, dry: &Dry) -> Self {
+        Self { coulomb: dry.coulomb, breakaway: dry.breakaway, stribeck_velocity: dry.stribeck_velocity, ..self }
+    }
+}
+
+/// Value of a key that is zero unless given.
+fn or_zero(slot: &Slot<f64>) -> Option<f64> {
+    slot.optional().ok().map(|value| value.copied().unwrap_or_default())
+}
+
+/// Mass or moment of inertia, whichever the coordinate has; 0 when neither is given.
+fn inertia(mass: &Slot<f64>, inertia: &Slot<f64>, motion: Motion, of: &str, report: &mut Report) -> Option<f64> {
+    let (fitting, other, right, wrong) = match motion {
+        Motion::Linear => (mass, inertia, "mass", "inertia"),
+        Motion::Rotary => (inertia, mass, "inertia", "mass"),
+    };
+    if let Some(span) = other.span() {
+        let moves = if motion == Motion::Linear { "moves along a line" } else { "turns" };
+        report.error(span, format!("the {of} {moves} and has no `{wrong}`"), format!("give its `{right}`"));
+        return None;
+    }
+    or_zero(fitting)
+}
+
+fn dry_friction(
+    coulomb: &Slot<f64>,
+    breakaway: &Slot<f64>,
+    stribeck_velocity: &Slot<f64>,
+    report: &mut Report,
+) -> Option<Dry> {
+    let coulomb = or_zero(coulomb);
+    let given = breakaway.at();
+    if let (Some(coulomb), Some(given)) = (coulomb, given)
+        && given.value < coulomb
+    {
+        let message = format!("`static` is {}, below `coulomb`, which is {coulomb} (SI)", given.value);
+        report.error(given.span, message, "friction at rest is at least that of sliding");
+        return None;
+    }
+    if let (Slot::Absent, Some(span)) = (breakaway, stribeck_velocity.span()) {
+        report.warning(span, "`stribeck_velocity` does nothing without `static`", "");
+    }
+    let coulomb = coulomb?;
+    let breakaway = breakaway.optional().ok()?.copied().unwrap_or(coulomb);
+    Some(Dry { coulomb, breakaway, stribeck_velocity: or_zero(stribeck_velocity)?, span: given.map(|at| at.span) })
+}
+
+/// Adds a rigidly coupled body to the one before it, whose coordinate moves the axis by `ratio`.
+fn merge(into: &mut Body, body: &Body, ratio: f64, span: Span, report: &mut Report) {
+    let has_stribeck = |body: &Body| body.breakaway > body.coulomb;
+    let own_velocity = body.stribeck_velocity / ratio;
+    // Two curves of different width do not add up to a third.
+    let differ = (into.stribeck_velocity - own_velocity).abs() > 1e-9 * into.stribeck_velocity.max(own_velocity);
+    if has_stribeck(into) && has_stribeck(body) && differ {
+        let message =
+            format!("`{}` and `{}` are coupled rigidly but differ in Stribeck velocity", into.name, body.name);
+        report.error(span, message, "give static friction on one of them, or a `stiffness` between them");
+    }
+    if has_stribeck(body) {
+        into.stribeck_velocity = own_velocity;
+    }
+    into.inertia += ratio * ratio * body.inertia;
+    into.viscous += ratio * ratio * body.viscous;
+    into.coulomb += ratio * body.coulomb;
+    into.breakaway += ratio * body.breakaway;
+    into.bias += ratio * body.bias;
+}

@@ -1,0 +1,151 @@
+//! `[motor]`: one set of parameters from whichever a data sheet gives.
+use crate::diagnostic::Report;
+use crate::field::{Either, Slot};
+use crate::file;
+use crate::file::MotorKind;
+use crate::resolve::{Way, need, one_way, refuse};
+use crate::scenario::{Encoder, IdealSource, Motion, Motor, Pmsm};
+use crate::source::Span;
+use std::f64::consts::TAU;
+
+const SQRT_3: f64 = 1.732_050_807_568_877_2;
+
+type Keys<'a> = [(&'a str, Option<Span>)];
+
+pub(super) fn resolve(motor: &file::Motor, report: &mut Report) -> Option<Motor> {
+    let kind = need(&motor.kind, "motor", "kind", motor.span, report)?;
+    let electrical: &Keys<'_> = &[
+        ("pole_pairs", motor.pole_pairs.span()),
+        ("resistance", motor.resistance.span()),
+        ("inductance", motor.inductance.span()),
+        ("inductance_d", motor.inductance_d.span()),
+        ("inductance_q", motor.inductance_q.span()),
+        ("flux_linkage", motor.flux_linkage.span()),
+        ("torque_constant", motor.torque_constant.span()),
+        ("back_emf", motor.back_emf.span()),
+        ("max_current", motor.max_current.span()),
+    ];
+    let ideal: &Keys<'_> = &[("gain", motor.gain.span()), ("limit", motor.limit.span())];
+    let encoder = encoder(&motor.encoder, report);
+    match kind {
+        MotorKind::Pmsm => {
+            refuse(ideal, "belongs to an ideal source, this is a synchronous motor", "", report);
+            pmsm(motor, encoder, report).map(Motor::Pmsm)
+        }
+        MotorKind::IdealSource => {
+            refuse(electrical, "belongs to a synchronous motor, this is an ideal source", "", report);
+            ideal_source(motor, encoder, report).map(Motor::IdealSource)
+        }
+        MotorKind::Prescribed => {
+            let why = "means nothing for a motor that follows the set-point exactly";
+            refuse(electrical, why, "", report);
+            refuse(ideal, why, "", report);
+            refuse(&[("encoder", motor.encoder.span())], why, "", report);
+            Some(Motor::Prescribed)
+        }
+    }
+}
+
+fn pmsm(motor: &file::Motor, encoder: Option<Encoder>, report: &mut Report) -> Option<Pmsm> {
+    let header = motor.span;
+    let pole_pairs = need(&motor.pole_pairs, "motor", "pole_pairs", header, report);
+    let resistance = need(&motor.resistance, "motor", "resistance", header, report);
+    let inductances = inductances(motor, report);
+    let flux_linkage = flux_linkage(motor, pole_pairs, report);
+    let max_current = need(&motor.max_current, "motor", "max_current", header, report);
+    let (inductance_d, inductance_q) = inductances?;
+    Some(Pmsm {
+        pole_pairs: pole_pairs?,
+        resistance: resistance?,
+        inductance_d,
+        inductance_q,
+        flux_linkage: flux_linkage?,
+        max_current: max_current?,
+        encoder: encoder?,
+    })
+}
+
+fn inductances(motor: &file::Motor, report: &mut Report) -> Option<(f64, f64)> {
+    let per_axis = motor.inductance_d.span().or(motor.inductance_q.span());
+    match one_way(&[("inductance", motor.inductance.span()), ("inductance_d", per_axis)], report) {
+        Way::Use(0) => motor.inductance.given().map(|both| (*both, *both)),
+        Way::Contradiction => None,
+        Way::Use(_) => {
+            let d = need(&motor.inductance_d, "motor", "inductance_d", motor.span, report);
+            let q = need(&motor.inductance_q, "motor", "inductance_q", motor.span, report);
+            d.zip(q)
+        }
+        Way::None => {
+            let help = "or `inductance_d` and `inductance_q`";
+            report.missing_with_help("motor", "inductance", motor.span, help);
+            None
+        }
+    }
+}
+
+/// ψ from what is given: itself, `K_t = 1.5·p·ψ` per ampere of amplitude, or `K_e = √3·p·ψ` line to line.
+fn flux_linkage(motor: &file::Motor, pole_pairs: Option<u32>, report: &mut Report) -> Option<f64> {
+    let ways = [
+        ("flux_linkage", motor.flux_linkage.span()),
+        ("torque_constant", motor.torque_constant.span()),
+        ("back_emf", motor.back_emf.span()),
+    ];
+    let p = pole_pairs.map(f64::from);
+    match one_way(&ways, report) {
+        Way::Use(0) => motor.flux_linkage.given().copied(),
+        Way::Use(1) => Some(motor.torque_constant.given()? / (1.5 * p?)),
+        Way::Use(_) => Some(motor.back_emf.given()? / (SQRT_3 * p?)),
+        Way::Contradiction => None,
+        Way::None => {
+            let help = "or `torque_constant`, or `back_emf`";
+            report.missing_with_help("motor", "flux_linkage", motor.span, help);
+            None
+        }
+    }
+}
+
+fn ideal_source(motor: &file::Motor, encoder: Option<Encoder>, report: &mut Report) -> Option<IdealSource> {
+    let gain = motor.gain.optional().ok()?.copied();
+    let limit = match (&motor.limit, gain) {
+        (Slot::Absent, _) => f64::INFINITY,
+        (Slot::Wrong(_), _) => return None,
+        (Slot::Given(limit), _) => match (limit.value, gain) {
+            (Either::First(volts), Some(_)) => volts,
+            (Either::Second(effort), gain) => effort / gain.unwrap_or(1.0),
+            (Either::First(_), None) => {
+                report.error(limit.span, "a `limit` in volts needs a `gain`", "give force or torque per volt");
+                return None;
+            }
+        },
+    };
+    Some(IdealSource { gain: gain.unwrap_or(1.0), limit, encoder: encoder? })
+}
+
+fn encoder(slot: &Slot<file::Encoder>, report: &mut Report) -> Option<Encoder> {
+    let Some(encoder) = slot.optional().ok()? else { return Some(Encoder { resolution: None }) };
+    resolution(&encoder.step, &encoder.counts_per_rev, report.motor, report)
+}
+
+/// One increment, however it is given.
+pub(super) fn resolution(
+    step: &Slot<f64>,
+    counts_per_rev: &Slot<u32>,
+    motion: Option<Motion>,
+    report: &mut Report,
+) -> Option<Encoder> {
+    let ways = [("step", step.span()), ("counts_per_rev", counts_per_rev.span())];
+    let resolution = match one_way(&ways, report) {
+        Way::None => None,
+        Way::Contradiction => return None,
+        Way::Use(0) => Some(*step.given()?),
+        Way::Use(_) => {
+            let counts = counts_per_rev.at()?;
+            if motion == Some(Motion::Linear) {
+                report.error(counts.span, "what moves along a line has no `counts_per_rev`", "give one `step`");
+                return None;
+            }
+            Some(TAU / f64::from(counts.value))
+        }
+    };
+    Some(Encoder { resolution })
+}

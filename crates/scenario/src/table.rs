@@ -1,0 +1,185 @@
+//! Tables of a scenario file, each described once: from the description follow the struct, its decoding, the unknown
+//! keys, the JSON Schema and the reference in `docs/scenario.md`.
+use crate::diagnostic::Report;
+use crate::field::{Field, Slot};
+use crate::nearest::suggestion;
+use crate::source::{At, Span};
+use crate::tree::{Node, Table, Value};
+use serde_json::{Map, Value as Json, json};
+
+/// Describes a table.
+///
+/// ```text
+/// table! {
+///     /// What it is.
+///     pub(crate) struct Name requires ["key"] {
+///         /// What the key means.
+///         key: Type = specification,
+///         /// A key that Rust cannot spell.
+///         field as "static": Type = specification,
+///     }
+/// }
+/// ```
+/// Each key becomes a field `Slot<Type>`; the struct also knows the `span` of its header.
+macro_rules! table {
+    (
+        $(#[doc = $table_doc:literal])+
+        pub(crate) struct $table:ident $(requires [$($required:literal),+])? {
+            $(
+                $(#[doc = $doc:literal])+
+                $field:ident $(as $name:literal)? : $type:ty = $spec:expr,
+            )+
+        }
+    ) => {
+        $(#[doc = $table_doc])+
+        #[derive(Debug, Clone, PartialEq)]
+        pub(crate) struct $table {
+            /// Header of the table.
+            pub(crate) span: $crate::source::Span,
+            $(
+                $(#[doc = $doc])+
+                pub(crate) $field: $crate::field::Slot<$type>,
+            )+
+        }
+
+        impl $crate::field::Field for $table {
+            type Spec = ();
+
+            fn decode(
+                path: &str,
+                node: &$crate::tree::Node,
+                (): &(),
+                report: &mut $crate::diagnostic::Report,
+            ) -> Option<Self> {
+                let keys = [$($crate::table::key_name!($field $(as $name)?),)+];
+                let required: &[&str] = &[$($($required),+)?];
+                let mut open = $crate::table::OpenTable::new(path, node, &keys, required, report)?;
+                Some(Self {
+                    span: node.span,
+                    $($field: {
+                        let spec: <$type as $crate::field::Field>::Spec = $spec;
+                        open.field($crate::table::key_name!($field $(as $name)?), &spec)
+                    },)+
+                })
+            }
+
+            fn schema((): &()) -> serde_json::Value {
+                let required: &[&str] = &[$($($required),+)?];
+                $crate::table::object_schema(
+                    &[$($table_doc,)+],
+                    required,
+                    vec![$((
+                        $crate::table::key_name!($field $(as $name)?),
+                        &[$($doc,)+] as &[&str],
+                        {
+                            let spec: <$type as $crate::field::Field>::Spec = $spec;
+                            <$type as $crate::field::Field>::schema(&spec)
+                        },
+                    ),)+],
+                )
+            }
+        }
+    };
+}
+
+/// Name of a field in files.
+macro_rules! key_name {
+    ($field:ident) => {
+        stringify!($field)
+    };
+    ($field:ident as $name:literal) => {
+        $name
+    };
+}
+
+pub(crate) use key_name;
+pub(crate) use table;
+
+/// A table that is being read.
+pub(crate) struct OpenTable<'a> {
+    path: &'a str,
+    table: &'a Table,
+    report: &'a mut Report,
+}
+
+impl<'a> OpenTable<'a> {
+    /// Opens the table `node`; reports every key that is not among `keys` and those of `required` that are missing.
+    pub(crate) fn new(
+        path: &'a str,
+        node: &'a Node,
+        keys: &[&str],
+        required: &[&str],
+        report: &'a mut Report,
+    ) -> Option<Self> {
+        let Value::Table(table) = &node.value else {
+            let message = format!("`{path}` must be a table, got {}", node.value.kind());
+            report.error(node.span, message, format!("write `[{path}]`"));
+            return None;
+        };
+        for entry in &table.entries {
+            if !keys.contains(&entry.key.as_str()) {
+                let message = format!("unknown key `{}`{}", entry.key, of(path));
+                report.error(entry.key_span, message, suggestion(&entry.key, keys.iter().copied()));
+            }
+        }
+        for key in required {
+            if table.get(key).is_none() {
+                report.missing(path, key, node.span);
+            }
+        }
+        Some(Self { path, table, report })
+    }
+
+    /// Reads one key.
+    pub(crate) fn field<T: Field>(&mut self, key: &str, spec: &T::Spec) -> Slot<T> {
+        let Some(node) = self.table.get(key) else { return Slot::Absent };
+        let path = if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) };
+        match T::decode(&path, node, spec, self.report) {
+            Some(value) => Slot::Given(At { value, span: node.span }),
+            None => Slot::Wrong(node.span),
+        }
+    }
+}
+
+fn of(path: &str) -> String {
+    if path.is_empty() { String::new() } else { format!(" in `{path}`") }
+}
+
+impl Report {
+    /// Says that the table `path`, whose header is at `span`, lacks `key`.
+    pub(crate) fn missing(&mut self, path: &str, key: &str, span: Span) {
+        self.missing_with_help(path, key, span, "");
+    }
+
+    /// Like [`Self::missing`], with what to do about it.
+    pub(crate) fn missing_with_help(&mut self, path: &str, key: &str, span: Span, help: &str) {
+        let message = match path {
+            "" => format!("missing table `[{key}]`"),
+            _ => format!("missing `{key}` in `{path}`"),
+        };
+        self.lacking(span, message, help);
+    }
+}
+
+/// Joins the lines of a doc comment.
+fn joined(doc: &[&str]) -> String {
+    doc.iter().map(|line| line.trim()).collect::<Vec<_>>().join(" ")
+}
+
+pub(crate) fn object_schema(doc: &[&str], required: &[&str], keys: Vec<(&'static str, &[&str], Json)>) -> Json {
+    let mut properties = Map::new();
+    for (name, doc, mut schema) in keys {
+        schema["description"] = Json::String(joined(doc));
+        properties.insert(name.to_owned(), schema);
+    }
+    let mut schema = json!({
+        "type": "object",
+        "description": joined(doc),
+        "additionalProperties": false,
+        "properties": properties,
+    });
+    if !required.is_empty() {
+        schema["required"] = json!(required);
+    }
+    schema
+}

@@ -1,0 +1,236 @@
+//! TOML as a tree in which every key and value knows its file and its bytes.
+use crate::diagnostic::Report;
+use crate::source::{SourceId, Span};
+use std::ops::Range;
+use toml::de::{DeTable, DeValue};
+
+/// A value.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Value {
+    Table(Table),
+    Array(Vec<Node>),
+    Text(String),
+    Number(Number),
+    Bool(bool),
+    /// A date or time: valid TOML that no scenario needs.
+    Date,
+}
+
+/// A bare number.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Number {
+    /// As it is written.
+    pub(crate) text: String,
+    pub(crate) value: f64,
+    /// When it is written as an integer and fits.
+    pub(crate) whole: Option<i64>,
+}
+
+/// A value with its place; a table's place is its header.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Node {
+    pub(crate) value: Value,
+    pub(crate) span: Span,
+}
+
+/// Entries in the order of the file.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Table {
+    pub(crate) entries: Vec<Entry>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Entry {
+    pub(crate) key: String,
+    pub(crate) key_span: Span,
+    pub(crate) node: Node,
+}
+
+impl Table {
+    pub(crate) fn get(&self, key: &str) -> Option<&Node> {
+        self.entries.iter().find(|entry| entry.key == key).map(|entry| &entry.node)
+    }
+
+    pub(crate) fn get_mut(&mut self, key: &str) -> Option<&mut Node> {
+        self.entries.iter_mut().find(|entry| entry.key == key).map(|entry| &mut entry.node)
+    }
+
+    /// Lays `over` on this table: its values win, tables merge key by key.
+    pub(crate) fn overlay(&mut self, over: Self) {
+        for entry in over.entries {
+            let Some(below) = self.entries.iter_mut().find(|below| below.key == entry.key) else {
+                self.entries.push(entry);
+                continue;
+            };
+            below.key_span = entry.key_span;
+            below.node.span = entry.node.span;
+            match (&mut below.node.value, entry.node.value) {
+                (Value::Table(below), Value::Table(over)) => below.overlay(over),
+                (below, over) => *below = over,
+            }
+        }
+    }
+}
+
+impl Value {
+    pub(crate) fn as_table(&self) -> Option<&Table> {
+        if let Self::Table(table) = self { Some(table) } else { None }
+    }
+
+    pub(crate) fn as_text(&self) -> Option<&str> {
+        if let Self::Text(text) = self { Some(text) } else { None }
+    }
+
+    /// What it is, in words.
+    pub(crate) fn kind(&self) -> &'static str {
+        match self {
+            Self::Table(_) => "a table",
+            Self::Array(_) => "a list",
+            Self::Text(_) => "a text",
+            Self::Number(_) => "a number",
+            Self::Bool(_) => "true or false",
+            Self::Date => "a date",
+        }
+    }
+}
+
+/// A parsed file and the lines on which its syntax is wrong: whatever else is said of those would mislead.
+#[derive(Debug)]
+pub(crate) struct Parsed {
+    pub(crate) table: Table,
+    pub(crate) broken: Vec<Range<usize>>,
+}
+
+/// Parses as much as there is; every syntax error goes to `report`.
+pub(crate) fn parse(source: SourceId, text: &str, report: &mut Report) -> Parsed {
+    let (root, errors) = DeTable::parse_recoverable(text);
+    let mut broken: Vec<Range<usize>> = Vec::new();
+    let mut places: Vec<_> = errors.iter().map(|error| (error.span().unwrap_or(0..0), error)).collect();
+    places.sort_by_key(|(span, _)| span.start);
+    for (span, error) in places {
+        let line = line_around(text, span.start);
+        // What follows the first error of a line is mostly its consequence.
+        if broken.contains(&line) {
+            continue;
+        }
+        broken.push(line);
+        report.error(Span::new(source, &span), error.message(), syntax_help(error.message()));
+    }
+    Parsed { table: table(source, root.get_ref()), broken }
+}
+
+fn syntax_help(message: &str) -> &'static str {
+    if message.contains("must be quoted") { "write texts and quantities as in \"250 mm\"" } else { "" }
+}
+
+fn line_around(text: &str, at: usize) -> Range<usize> {
+    let bytes = text.as_bytes();
+    let at = at.min(bytes.len());
+    let start = bytes[..at].iter().rposition(|&b| b == b'\n').map_or(0, |i| i + 1);
+    let end = bytes[at..].iter().position(|&b| b == b'\n').map_or(bytes.len(), |i| at + i);
+    start..end
+}
+
+fn table(source: SourceId, from: &DeTable<'_>) -> Table {
+    let mut entries: Vec<Entry> = from
+        .iter()
+        .map(|(key, value)| Entry {
+            key: key.get_ref().to_string(),
+            key_span: Span::new(source, &key.span()),
+            node: Node { value: self::value(source, value.get_ref()), span: Span::new(source, &value.span()) },
+        })
+        .collect();
+    entries.sort_by_key(|entry| entry.key_span);
+    Table { entries }
+}
+
+fn value(source: SourceId, from: &DeValue<'_>) -> Value {
+    match from {
+        DeValue::Table(from) => Value::Table(table(source, from)),
+        DeValue::Array(from) => Value::Array(
+            from.iter()
+                .map(|item| Node { value: value(source, item.get_ref()), span: Span::new(source, &item.span()) })
+                .collect(),
+        ),
+        DeValue::String(text) => Value::Text(text.to_string()),
+        DeValue::Boolean(value) => Value::Bool(*value),
+        DeValue::Datetime(_) => Value::Date,
+        DeValue::Float(number) => {
+            let text = number.as_str().to_owned();
+            Value::Number(Number { value: text.parse().unwrap_or(f64::NAN), text, whole: None })
+        }
+        DeValue::Integer(number) => {
+            let text = number.as_str().to_owned();
+            let whole = i64::from_str_radix(&text, number.radix()).ok();
+            // An integer beyond 64 bits is far outside of every bound, wherever it stands.
+            Value::Number(Number { value: whole.map_or(f64::INFINITY, |whole| whole as f64), text, whole })
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::Sources;
+
+    fn parsed(text: &str) -> (Parsed, Report) {
+        let mut report = Report::default();
+        (parse(Sources::default().scenario(), text, &mut report), report)
+    }
+
+    #[test]
+    fn entries_keep_the_order_of_the_file() {
+        let (parsed, _) = parsed("b = 1\na = 2\n[z]\n[y]\n");
+        let keys: Vec<_> = parsed.table.entries.iter().map(|entry| entry.key.as_str()).collect();
+        assert_eq!(keys, ["b", "a", "z", "y"]);
+    }
+
+    #[test]
+    fn an_overlay_merges_tables_and_keeps_what_it_does_not_name() {
+        let (mut below, _) = parsed("a = 1\n[t]\nx = 1\ny = 2\n");
+        let (over, _) = parsed("[t]\ny = 3\nz = 4\n");
+        below.table.overlay(over.table);
+        let t = below.table.get("t").and_then(|node| node.value.as_table()).unwrap();
+        let numbers: Vec<_> = t
+            .entries
+            .iter()
+            .map(|entry| match &entry.node.value {
+                Value::Number(number) => (entry.key.as_str(), number.whole.unwrap()),
+                other => panic!("{other:?}"),
+            })
+            .collect();
+        assert_eq!(numbers, [("x", 1), ("y", 3), ("z", 4)]);
+        assert!(below.table.get("a").is_some());
+    }
+
+    #[test]
+    fn every_line_with_wrong_syntax_is_reported_once() {
+        let (parsed, report) = parsed("a = \nb = 2\na = 3\nq = 1e\nn = 5 mm\n");
+        let said: Vec<_> = report.errors.iter().map(|e| (e.span.start, e.message.as_str())).collect();
+        assert_eq!(
+            said,
+            [
+                (4, "string values must be quoted, expected literal string"),
+                (11, "duplicate key"),
+                (23, "invalid exponent, expected digits"),
+                (28, "string values must be quoted, expected literal string"),
+            ]
+        );
+        assert_eq!(parsed.broken.len(), 4);
+    }
+
+    #[test]
+    fn bottomless_nesting_is_refused() {
+        let (deep, wide) = (".a".repeat(100_000), "[".repeat(100_000));
+        for text in [format!("a{deep} = 1\n"), format!("[a{deep}]\n"), format!("a = {wide}")] {
+            assert!(!parsed(&text).1.errors.is_empty());
+        }
+    }
+
+    #[test]
+    fn an_integer_beyond_64_bits_is_infinite() {
+        let (parsed, _) = parsed("a = 99999999999999999999\n");
+        let Some(Value::Number(number)) = parsed.table.get("a").map(|node| &node.value) else { panic!() };
+        assert!(number.whole.is_none() && number.value.is_infinite());
+    }
+}
