@@ -1,2 +1,40 @@
-//! The command.
-fn main() {}
+//! The `servobench` command: arguments, printing, exit codes. It computes nothing.
+
+mod args;
+mod commands;
+mod diagnostics;
+mod engines;
+mod exit;
+mod output;
+mod progress;
+mod sources;
+
+use args::{Cli, Command};
+use clap::Parser;
+use exit::{CliError, Exit};
+use std::panic::catch_unwind;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    // A panic is a defect of ours; it must not end the program with a code that means something else.
+    catch_unwind(|| dispatch(&cli.command)).unwrap_or(Exit::Run).into()
+}
+
+fn dispatch(command: &Command) -> Exit {
+    let done = match command {
+        Command::Run(args) => commands::run(args),
+        Command::Check(args) => commands::check(args),
+        Command::Schema => commands::schema(),
+        Command::Plan(args) => commands::plan(args),
+        Command::Compare(args) => commands::compare(args),
+        Command::View(args) => commands::view(args),
+        Command::Worker(args) => commands::worker(args),
+    };
+    done.unwrap_or_else(|error| {
+        if !matches!(error, CliError::Output(_)) {
+            eprintln!("servobench: {error}");
+        }
+        error.exit()
+    })
+}

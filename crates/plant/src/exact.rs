@@ -110,7 +110,9 @@ impl<const W: usize> ExactChain<W> {
             u[0] += effort;
         }
         u[0] += input.motor_disturbance;
-        u[self.bodies.len() - 1] += input.load_disturbance;
+        // In the axis coordinate: on a single rotary body behind a screw it acts through the transmission.
+        let last = self.bodies.len() - 1;
+        u[last] += self.chain.bodies()[last].transmission * input.load_disturbance;
         u
     }
 
@@ -185,7 +187,7 @@ impl<const W: usize> Mechanics for ExactChain<W> {
                 continue;
             }
             let mut velocity = next[n - 1 + i] * self.per_travel[i];
-            if body.dry.settle(self.bodies[i].velocity, velocity) {
+            if !(self.prescribed && i == 0) && body.dry.settle(self.bodies[i].velocity, velocity) {
                 velocity = 0.0;
                 next[n - 1 + i] = 0.0;
             }

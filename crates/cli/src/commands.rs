@@ -1,0 +1,16 @@
+//! The commands, one module each.
+mod check;
+mod compare;
+mod plan;
+mod run;
+mod schema;
+mod view;
+mod worker;
+
+pub(crate) use check::check;
+pub(crate) use compare::compare;
+pub(crate) use plan::plan;
+pub(crate) use run::run;
+pub(crate) use schema::schema;
+pub(crate) use view::view;
+pub(crate) use worker::worker;

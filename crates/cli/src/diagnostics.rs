@@ -1,0 +1,40 @@
+//! Mistakes of a scenario file, shown at their place.
+use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic, NamedSource, Report, Severity};
+use servobench_scenario::{Diagnostic, Sources};
+use std::io::IsTerminal;
+
+/// Columns that a diagnostic is laid out for.
+const WIDTH: usize = 80;
+
+/// The diagnostics as a person reads them, one after the other.
+pub(crate) fn render(diagnostics: &[Diagnostic], sources: &Sources, severity: Severity) -> String {
+    let theme = if std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none() {
+        GraphicalTheme::unicode()
+    } else {
+        GraphicalTheme::unicode_nocolor()
+    };
+    let handler = GraphicalReportHandler::new_themed(theme).with_width(WIDTH).with_context_lines(1).with_links(false);
+    diagnostics
+        .iter()
+        .map(|diagnostic| {
+            let mut text = String::new();
+            let report = report(diagnostic, sources, severity);
+            match handler.render_report(&mut text, report.as_ref()) {
+                Ok(()) => text,
+                // A span that cannot be drawn is still named by its line.
+                Err(_) => diagnostic.line(sources),
+            }
+        })
+        .collect()
+}
+
+fn report(diagnostic: &Diagnostic, sources: &Sources, severity: Severity) -> Report {
+    let (name, text) = (sources.name(diagnostic.source), sources.text(diagnostic.source));
+    let mut shown = MietteDiagnostic::new(diagnostic.message.clone())
+        .with_severity(severity)
+        .with_label(LabeledSpan::new_with_span(None, diagnostic.span.clone()));
+    if let Some(help) = &diagnostic.help {
+        shown = shown.with_help(help.clone());
+    }
+    Report::new(shown).with_source_code(NamedSource::new(name, text.to_owned()))
+}

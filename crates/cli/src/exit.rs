@@ -1,0 +1,95 @@
+//! How the program ends.
+//!
+//! | code | meaning |
+//! |---|---|
+//! | 0 | all passed |
+//! | 2 | the input is wrong: usage, scenario, model |
+//! | 3 | a run could not be carried out: engine missing, diverged, native failure, no disk |
+//! | 4 | a limit was missed |
+//!
+//! 1 is never ours: it is what a native library ends a process with.
+use servobench_suite::RunError;
+use std::process::ExitCode;
+use thiserror::Error;
+
+/// The exit codes. A run of several scenarios ends with the worst: 2 before 3 before 4 before 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Exit {
+    /// All passed.
+    Passed,
+    /// The input is wrong.
+    Input,
+    /// A run could not be carried out.
+    Run,
+    /// A limit was missed.
+    Limit,
+}
+
+/// Why a command could not do what it was asked to.
+#[derive(Debug, Error)]
+pub(crate) enum CliError {
+    /// The input is wrong; the message says where and why.
+    #[error("{0}")]
+    Input(String),
+    /// Something outside the input failed.
+    #[error("{0}")]
+    Run(String),
+    /// Whoever reads our output went away; there is nobody to tell.
+    #[error("standard output: {0}")]
+    Output(std::io::Error),
+}
+
+impl Exit {
+    /// The code.
+    pub(crate) const fn code(self) -> u8 {
+        match self {
+            Self::Passed => 0,
+            Self::Input => 2,
+            Self::Run => 3,
+            Self::Limit => 4,
+        }
+    }
+
+    /// The worse of two ends.
+    pub(crate) fn worse(self, other: Self) -> Self {
+        let rank = |exit| match exit {
+            Self::Passed => 0,
+            Self::Limit => 1,
+            Self::Run => 2,
+            Self::Input => 3,
+        };
+        if rank(other) > rank(self) { other } else { self }
+    }
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        exit.code().into()
+    }
+}
+
+impl CliError {
+    /// What the program ends with.
+    pub(crate) const fn exit(&self) -> Exit {
+        match self {
+            Self::Input(_) => Exit::Input,
+            Self::Run(_) => Exit::Run,
+            // As if everything had been read.
+            Self::Output(_) => Exit::Passed,
+        }
+    }
+}
+
+impl From<std::io::Error> for CliError {
+    fn from(error: std::io::Error) -> Self {
+        Self::Output(error)
+    }
+}
+
+/// What a run without a verdict ends the program with.
+pub(crate) const fn of_run_error(error: &RunError) -> Exit {
+    match error {
+        RunError::Input(_) => Exit::Input,
+        RunError::EngineMissing(_) | RunError::Failed(_) => Exit::Run,
+    }
+}

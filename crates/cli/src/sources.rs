@@ -1,0 +1,98 @@
+//! Scenario files: from files, from folders, or the demo that is embedded.
+use crate::diagnostics::render;
+use crate::exit::CliError;
+use miette::Severity;
+use servobench_scenario::{LoadError, Loaded};
+use servobench_suite::Source;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+/// The scenario files that `paths` name; folders are searched for `.toml` files, sorted by path. Folders called
+/// `models` hold no scenarios.
+pub(crate) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
+    let mut files = Vec::new();
+    for path in paths {
+        if path.is_dir() {
+            let before = files.len();
+            search(path, &mut files)?;
+            if files.len() == before {
+                return Err(CliError::Input(format!("there is no scenario (`*.toml`) in `{}`", path.display())));
+            }
+        } else {
+            files.push(path.clone());
+        }
+    }
+    Ok(files)
+}
+
+fn search(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), CliError> {
+    let wrong = |error: std::io::Error| CliError::Input(format!("cannot read `{}`: {error}", folder.display()));
+    let mut entries = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(wrong)? {
+        entries.push(entry.map_err(wrong)?.path());
+    }
+    entries.sort();
+    for entry in entries {
+        if entry.is_dir() && entry.file_name() != Some(OsStr::new("models")) {
+            search(&entry, files)?;
+        } else if entry.extension() == Some(OsStr::new("toml")) {
+            files.push(entry);
+        }
+    }
+    Ok(())
+}
+
+/// Loads every file; the mistakes of all of them are reported together, and warnings go to standard error.
+pub(crate) fn load(paths: &[PathBuf]) -> Result<Vec<Source>, CliError> {
+    let loaded = files(paths)?.into_iter().map(|path| shown(servobench_scenario::load(&path)));
+    collect(loaded)
+}
+
+/// The embedded demo.
+pub(crate) fn demo() -> Result<Vec<Source>, CliError> {
+    let demo = servobench_scenario::embedded_demo();
+    collect(demo.into_iter().map(|(name, text)| shown(servobench_scenario::parse(name, text, None))))
+}
+
+/// Reads a scenario called `name` from its text; `path` is the file it is from.
+pub(crate) fn parse(name: &str, text: &str, path: Option<&Path>) -> Result<Loaded, CliError> {
+    let file = path.map_or_else(|| format!("{name}.toml"), |path| path.display().to_string());
+    let mut loaded = shown(servobench_scenario::parse(&file, text, path.and_then(Path::parent)))?;
+    name.clone_into(&mut loaded.scenario.name);
+    loaded.scenario.path = path.map(Path::to_owned);
+    Ok(loaded)
+}
+
+fn collect(loaded: impl Iterator<Item = Result<Loaded, CliError>>) -> Result<Vec<Source>, CliError> {
+    let (mut sources, mut mistakes) = (Vec::new(), Vec::new());
+    for loaded in loaded {
+        match loaded {
+            Ok(loaded) => {
+                let text = loaded.sources.text(loaded.sources.scenario()).to_owned();
+                sources.push(Source { scenario: loaded.scenario, text });
+            }
+            Err(error) => mistakes.push(error.to_string()),
+        }
+    }
+    if mistakes.is_empty() { Ok(sources) } else { Err(CliError::Input(mistakes.join("\n"))) }
+}
+
+/// Prints the warnings and renders the mistakes.
+fn shown(loaded: Result<Loaded, LoadError>) -> Result<Loaded, CliError> {
+    match loaded {
+        Ok(loaded) => {
+            if !loaded.warnings.is_empty() {
+                eprint!("{}", render(&loaded.warnings, &loaded.sources, Severity::Warning));
+            }
+            Ok(loaded)
+        }
+        Err(LoadError::Invalid(invalid)) => {
+            let count = invalid.diagnostics.len();
+            let plural = if count == 1 { "mistake" } else { "mistakes" };
+            let name = invalid.sources.name(invalid.sources.scenario());
+            let mistakes = render(&invalid.diagnostics, &invalid.sources, Severity::Error);
+            Err(CliError::Input(format!("{name}: {count} {plural}\n{mistakes}")))
+        }
+        Err(error @ LoadError::Read { .. }) => Err(CliError::Input(error.to_string())),
+    }
+}

@@ -1,0 +1,99 @@
+//! Whole runs against published numbers and closed forms.
+use servobench_metrics::Name;
+use servobench_plant::Exact;
+use servobench_tests::{engines, measured, run, scenario, scenario_file, value};
+use std::f64::consts::PI;
+
+/// Oracle: e = v/kp + (Fv·v + Fc·sgn(v) + offset)/(gτ·kp·kv), with the published parameters of the EMPS axis
+/// (Janot, Gautier, Brunot 2019): +0.80945 mm and −0.81407 mm at ±0.12468 m/s.
+#[test]
+fn emps_follows_at_its_published_error() {
+    let emps = scenario_file("emps.toml");
+    let recording = run(&emps, &Exact);
+    let error = recording.channel("following_error.motor").unwrap();
+    let v: f64 = 0.12468;
+    for (made, sign) in recording.moves.iter().zip([1.0_f64, -1.0]) {
+        let friction = 203.5034 * sign * v + 20.3935 * sign - 3.1648;
+        let closed_form = sign * v / 160.18 + friction / (35.1507 * 160.18 * 243.45);
+        let cruise = recording.index_at(made.cruise.0 + 0.9 * made.cruise.1);
+        let found = error[cruise];
+        assert!((found / closed_form - 1.0).abs() < 2e-3, "{sign}: {found} m against {closed_form} m");
+        assert!((closed_form.abs() * 1e3 - if sign > 0.0 { 0.80945 } else { 0.81407 }).abs() < 5e-6);
+    }
+}
+
+/// Oracle: ω = √(K·(1/J_M + 1/J_L)) free, √(K/J_L) with the motor held; K = 700 N·m/rad, J = 0.005 kg·m² each: 84.22 Hz
+/// and 59.55 Hz.
+#[test]
+fn the_two_mass_drive_rings_at_its_two_frequencies_on_every_engine() {
+    for (file, frequency) in [("two-mass-ring-down.toml", 84.22), ("two-mass-held.toml", 59.55)] {
+        let two_mass = scenario_file(file);
+        for engine in engines() {
+            let metrics = measured(&two_mass, &run(&two_mass, engine));
+            let found = value(&metrics, Name::ResidualVibrationFrequency);
+            assert!((found / frequency - 1.0).abs() < 2e-3, "{file} on {}: {found} Hz", engine.name());
+        }
+    }
+}
+
+/// A load of 10 kg on an undamped spring behind a base that makes Lambrechts' 1 m move exactly.
+fn behind_prescribed_base(order: u32, frequency: f64) -> String {
+    let stiffness = 10.0 * (2.0 * PI * frequency).powi(2);
+    format!(
+        r#"
+[run]
+base_rate = "16 kHz"
+duration = "2.6 s"
+[axis]
+motion = "linear"
+[axis.motor_side]
+mass = "20 kg"
+[axis.load]
+mass = "10 kg"
+stiffness = "{stiffness} N/m"
+[motor]
+kind = "prescribed"
+[setpoint]
+order = {order}
+velocity = "1 m/s"
+acceleration = "5 m/s2"
+jerk = "50 m/s3"
+snap = "1000 m/s4"
+[[program]]
+move_to = "1 m"
+"#
+    )
+}
+
+/// Oracle: a mode ω behind a base that follows the profile exactly rings with X·∏|sin(ωT_k/2)/(ωT_k/2)|, T_k the box
+/// lengths: v/a-type times 1 s, 0.2 s, 0.1 s (and 0.05 s), since every bound is reached.
+#[test]
+fn residual_vibration_is_that_of_the_closed_form() {
+    let mut large = 0;
+    for (order, boxes) in [(3, &[1.0, 0.2, 0.1][..]), (4, &[1.0, 0.2, 0.1, 0.05])] {
+        for frequency in [38.985, 3.3, 7.3, 12.7] {
+            let asked = scenario(&behind_prescribed_base(order, frequency));
+            let metrics = measured(&asked, &run(&asked, &Exact));
+            let found = value(&metrics, Name::ResidualVibrationAmplitude);
+            let sinc = |t: &f64| ((PI * frequency * t).sin() / (PI * frequency * t)).abs();
+            let closed_form: f64 = boxes.iter().map(sinc).product();
+            large += u32::from(closed_form > 10e-6);
+            assert!(
+                (found / closed_form - 1.0).abs() < 1e-2,
+                "order {order}, {frequency} Hz: {found} m against {closed_form} m"
+            );
+        }
+    }
+    assert_eq!(large, 6, "three frequencies of each order leave more than 10 µm");
+}
+
+/// Oracle: published with the system: 0.2419 µm jerk-limited, 0.0063 µm snap-limited at 38.985 Hz.
+#[test]
+fn lambrechts_published_residuals_are_met() {
+    for (order, published, digits) in [(3, 0.2419e-6, 5e-11), (4, 0.0063e-6, 5e-11)] {
+        let asked = scenario(&behind_prescribed_base(order, 6e4_f64.sqrt() / (2.0 * PI)));
+        let metrics = measured(&asked, &run(&asked, &Exact));
+        let found = value(&metrics, Name::ResidualVibrationAmplitude);
+        assert!((found - published).abs() < digits + 1e-2 * published, "order {order}: {found}");
+    }
+}
