@@ -1,0 +1,129 @@
+//! The bodies of a chain in Rapier: each slides along an axis of its own.
+//!
+//! Rapier takes a force on a body only through a changed body, and a changed body makes it rebuild its active set, half
+//! as long again as the whole step. What it takes for nothing is gravity. So three lumps share a scene, each free along
+//! one of its axes, and the scene's gravity holds the acceleration of each along its axis. A rotary lump slides too, one
+//! metre for each radian, its inertia being its mass: nothing wraps, and there is no quaternion to be normalised.
+//!
+//! Rapier's coordinate of a lump is counted from a whole number, its centre, that follows the lump in steps of about
+//! [`SPAN`]. At 3000 rpm a coordinate that grew without bound would lose 1e-8 rad in ten seconds to rounding.
+use crate::scene;
+use rapier3d_f64::prelude::{LockedAxes, MassProperties, PhysicsWorld, RigidBodyBuilder, RigidBodyHandle, Vector};
+use servobench_plant::{BodyState, Chain, MechanicsError};
+
+/// Lumps to a scene: one to an axis.
+const PER_SCENE: usize = 3;
+/// A lump farther than this from its centre gets a new one (m or rad).
+const SPAN: f64 = 4.0;
+
+/// Where the bodies are, each in its own coordinate.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Positions<const N: usize> {
+    /// Whole numbers that Rapier's coordinates are counted from (m or rad).
+    pub(crate) centre: [f64; N],
+    /// Rapier's coordinates (m or rad).
+    pub(crate) from_centre: [f64; N],
+}
+
+/// The lumps of one chain.
+pub(crate) struct Lumps {
+    scenes: Vec<PhysicsWorld>,
+    members: Vec<Lump>,
+    /// Ticks per second (Hz).
+    rate: f64,
+}
+
+/// One lump.
+struct Lump {
+    /// Its number in the chain.
+    body: usize,
+    scene: usize,
+    /// Its axis of the scene: 0, 1, 2.
+    axis: usize,
+    handle: RigidBodyHandle,
+    /// Velocity in Rapier (m/s or rad/s).
+    velocity: f64,
+}
+
+impl Lumps {
+    /// Bodies `first` and up of `chain`, in these states.
+    pub(crate) fn new<const N: usize>(
+        chain: &Chain,
+        first: usize,
+        initial: &[BodyState; N],
+        step: f64,
+    ) -> Result<(Self, Positions<N>), MechanicsError> {
+        let count = N - first;
+        let mut scenes: Vec<PhysicsWorld> = (0..count.div_ceil(PER_SCENE)).map(|_| scene::empty(step)).collect();
+        let mut positions = Positions { centre: [0.0; N], from_centre: [0.0; N] };
+        let mut members = Vec::with_capacity(count);
+        for (i, body) in (first..N).enumerate() {
+            let (scene, axis) = (i / PER_SCENE, i % PER_SCENE);
+            let BodyState { position, velocity } = initial[body];
+            positions.centre[body] = position.round();
+            positions.from_centre[body] = position - position.round();
+            let inertia = chain.bodies()[body].inertia;
+            let rigid = RigidBodyBuilder::dynamic()
+                .locked_axes(LockedAxes::all() ^ LockedAxes::from_bits_truncate(1 << axis))
+                .additional_mass_properties(MassProperties::new(Vector::ZERO, inertia, Vector::splat(inertia)))
+                .translation(along(axis, positions.from_centre[body]))
+                .linvel(along(axis, velocity))
+                .can_sleep(false);
+            let handle = scenes[scene].bodies.insert(rigid);
+            members.push(Lump { body, scene, axis, handle, velocity });
+        }
+        for scene in &mut scenes {
+            scene::take_in(scene)?;
+        }
+        Ok((Self { scenes, members, rate: 1.0 / step }, positions))
+    }
+
+    /// One tick of Rapier in which the lumps move with `velocities`; these and `positions` become what Rapier made of
+    /// them. Whether a lump got a new centre.
+    #[inline]
+    pub(crate) fn drift<const N: usize>(
+        &mut self,
+        velocities: &mut [f64; N],
+        positions: &mut Positions<N>,
+    ) -> Result<bool, MechanicsError> {
+        for lump in &self.members {
+            let acceleration = (velocities[lump.body] - lump.velocity) * self.rate;
+            self.scenes[lump.scene].gravity[lump.axis] = acceleration;
+        }
+        for scene in &mut self.scenes {
+            scene::step(scene)?;
+        }
+        let mut recentred = false;
+        for lump in &mut self.members {
+            let rigid = &self.scenes[lump.scene].bodies[lump.handle];
+            lump.velocity = rigid.linvel()[lump.axis];
+            velocities[lump.body] = lump.velocity;
+            let position = rigid.translation()[lump.axis];
+            positions.from_centre[lump.body] = position;
+            if position.abs() > SPAN {
+                // Both sums are exact: whole numbers, and a difference to the nearest one.
+                positions.centre[lump.body] += position.round();
+                positions.from_centre[lump.body] = position - position.round();
+                let translation = along(lump.axis, positions.from_centre[lump.body]);
+                self.scenes[lump.scene].bodies[lump.handle].set_translation(translation, false);
+                recentred = true;
+            }
+        }
+        Ok(recentred)
+    }
+
+    /// Stops a body in Rapier too, if it moves there.
+    pub(crate) fn stop(&mut self, body: usize) {
+        if let Some(lump) = self.members.iter_mut().find(|lump| lump.body == body && lump.velocity != 0.0) {
+            lump.velocity = 0.0;
+            self.scenes[lump.scene].bodies[lump.handle].set_linvel(Vector::ZERO, false);
+        }
+    }
+}
+
+/// A vector along one axis of a scene.
+fn along(axis: usize, value: f64) -> Vector {
+    let mut vector = Vector::ZERO;
+    vector[axis] = value;
+    vector
+}
