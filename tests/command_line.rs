@@ -108,7 +108,9 @@ fn wrong_input_ends_with_2_before_anything_runs() {
     let output = servobench(&["run", work.path().to_str().unwrap(), "--out", out.to_str().unwrap()]);
     assert_eq!(code(&output), 2, "{}", said(&output));
     assert!(!out.exists(), "nothing is written when the input is wrong");
-    for wrong in [&["run", "no-such-file.toml"][..], &["run", "--no-such-flag"], &["fly"], &[], &["compare", "one.toml"]] {
+    for wrong in
+        [&["run", "no-such-file.toml"][..], &["run", "--no-such-flag"], &["fly"], &[], &["compare", "one.toml"]]
+    {
         assert_eq!(code(&servobench(wrong)), 2, "{wrong:?}");
     }
 }
@@ -150,8 +152,7 @@ fn an_engine_that_the_build_lacks_is_named_with_feature_and_command() {
     let work = folder(&[("slide.toml", SLIDE)]);
     let file = work.path().join("slide.toml");
     let out = work.path().join("out");
-    let output =
-        servobench(&["run", file.to_str().unwrap(), "--engine", "mujoco", "--out", out.to_str().unwrap()]);
+    let output = servobench(&["run", file.to_str().unwrap(), "--engine", "mujoco", "--out", out.to_str().unwrap()]);
     assert_eq!(code(&output), 3);
     assert!(said(&output).contains("--features mujoco"), "{}", said(&output));
 }
@@ -226,7 +227,8 @@ fn plan_writes_tables_and_drawings_and_refuses_what_is_missing() {
     let last: Vec<f64> = table.lines().last().unwrap().split(',').map(|cell| cell.parse().unwrap()).collect();
     assert!((last[1] + std::f64::consts::FRAC_PI_2).abs() < 1e-15, "{last:?}");
     assert!(std::fs::read_to_string(svg).unwrap().starts_with("<svg"));
-    let output = servobench(&["plan", "--order", "3", "--distance", "1", "--velocity", "1 m/s", "--acceleration", "1 m/s2"]);
+    let output =
+        servobench(&["plan", "--order", "3", "--distance", "1", "--velocity", "1 m/s", "--acceleration", "1 m/s2"]);
     assert_eq!(code(&output), 2);
     assert!(said(&output).contains("\"1 mm\" or \"1 deg\""), "{}", said(&output));
 }
@@ -247,9 +249,9 @@ fn compare_says_in_words_which_wins_and_writes_one_recording() {
         ]);
         assert_eq!(code(&output), 0, "{}", said(&output));
         assert!(said(&output).contains("residual vibration"), "{}", said(&output));
-        let recordings = std::fs::read_dir(&out).unwrap().filter(|entry| {
-            entry.as_ref().unwrap().path().extension().is_some_and(|extension| extension == "rrd")
-        });
+        let recordings = std::fs::read_dir(&out)
+            .unwrap()
+            .filter(|entry| entry.as_ref().unwrap().path().extension().is_some_and(|extension| extension == "rrd"));
         assert_eq!(recordings.count(), 1);
     }
 }

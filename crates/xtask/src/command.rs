@@ -1,13 +1,14 @@
 //! Which command the arguments ask for.
 use crate::failure::Failure;
 use crate::workspace::Workspace;
-use crate::{checks, demo, dist, test, wheel};
+use crate::{bench, checks, demo, dist, test, wheel};
 
 /// Every command: arguments and what it does.
-const COMMANDS: [(&str, &str); 6] = [
+const COMMANDS: [(&str, &str); 7] = [
     ("setup", "fetch the MuJoCo library, once"),
     ("demo", "set up, build, run the demo and compare its two moves"),
     ("test [--without-mujoco]", "set up, then run every check and test that CI runs"),
+    ("bench [--json]", "measure a tick of the closed loop on every engine"),
     ("checks", "check dependency arrows, licences and text"),
     ("viewer", "fetch the Rerun viewer that `servobench view` opens, once"),
     ("dist", "pack binary, library, models and scenarios into one archive"),
@@ -28,6 +29,8 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), Failure> {
         ["demo"] => demo::run(&Workspace::find()?),
         ["test"] => test::run(&Workspace::find()?, test::Engines::All),
         ["test", "--without-mujoco"] => test::run(&Workspace::find()?, test::Engines::Embedded),
+        ["bench"] => bench::run(&Workspace::find()?, false),
+        ["bench", "--json"] => bench::run(&Workspace::find()?, true),
         ["checks"] => checks::run(&Workspace::find()?),
         ["viewer"] => {
             let viewer = wheel::RERUN.ensure(&Workspace::find()?)?;

@@ -1,5 +1,6 @@
 //! The developer commands, run as `cargo xtask <command>`.
 
+mod bench;
 mod checks;
 mod command;
 mod demo;

@@ -16,7 +16,12 @@ pub(crate) enum Engines {
 
 /// Scenarios and suites that the finished binary runs: arguments and expected exit code. Each writes into a folder of
 /// its own, see [`scenarios`].
-const SCENARIOS: [(&[&str], i32); 1] = [(&["run", "scenarios/"], 0)];
+const SCENARIOS: [(&[&str], i32); 2] =
+    [(&["run", "scenarios/", "--quiet"], 0), (&["run", "tests/scenarios/", "--quiet"], 4)];
+
+/// The same for a build without MuJoCo, which some scenarios name: the demo runs on the engines that are there.
+const EMBEDDED_SCENARIOS: [(&[&str], i32); 2] =
+    [(&["run", "--quiet"], 0), (&["run", "tests/scenarios/", "--quiet"], 4)];
 
 /// One step.
 struct Step {
@@ -49,7 +54,7 @@ fn steps(workspace: &Workspace, engines: Engines) -> Result<Vec<Step>, Failure> 
         let mut command = workspace.cargo(subcommand);
         command.args(["--release", "--workspace"]);
         command.args(match engines {
-            Engines::All => ["--features", "servobench-cli/mujoco"],
+            Engines::All => ["--features", "servobench-cli/mujoco,servobench-tests/mujoco"],
             Engines::Embedded => ["--exclude", "servobench-engine-mujoco"],
         });
         command
@@ -74,13 +79,17 @@ fn steps(workspace: &Workspace, engines: Engines) -> Result<Vec<Step>, Failure> 
         Step::new("documentation tests", cargo(&["test", "--doc"])),
         Step::new("documentation", documentation),
     ];
-    steps.extend(scenarios(workspace));
+    steps.extend(scenarios(workspace, engines));
     Ok(steps)
 }
 
 /// The scenarios and suites, each writing into `<target>/scenarios/<number>`.
-fn scenarios(workspace: &Workspace) -> impl Iterator<Item = Step> {
-    SCENARIOS.into_iter().enumerate().map(|(number, (arguments, expected))| {
+fn scenarios(workspace: &Workspace, engines: Engines) -> impl Iterator<Item = Step> {
+    let all = match engines {
+        Engines::All => SCENARIOS,
+        Engines::Embedded => EMBEDDED_SCENARIOS,
+    };
+    all.into_iter().enumerate().map(|(number, (arguments, expected))| {
         let mut command = workspace.servobench(arguments);
         command.arg("--out").arg(workspace.target.join("scenarios").join(number.to_string()));
         Step { name: "scenarios", command, expected }
@@ -148,7 +157,7 @@ mod tests {
         for (engines, named) in [(Engines::All, true), (Engines::Embedded, false)] {
             let commands: Vec<String> =
                 steps(&nowhere, engines).unwrap().iter().map(|step| shown(&step.command)).collect();
-            assert_eq!(commands.iter().any(|c| c.contains("servobench-cli/mujoco")), named);
+            assert_eq!(commands.iter().any(|c| c.contains("servobench-cli/mujoco,servobench-tests/mujoco")), named);
             assert_eq!(commands.iter().any(|c| c.contains("--exclude")), !named);
         }
     }

@@ -6,6 +6,7 @@ use serde_json::json;
 use servobench_base::Setpoint;
 use servobench_metrics::Quantity;
 use servobench_motion::{Limits, Order, Profile};
+use servobench_report::{Panel, PlanDrawing};
 use servobench_scenario::{ArgumentError, Derivative, Motion, axis_quantity, time};
 use std::io::Write;
 
@@ -87,9 +88,7 @@ impl Planned {
     /// Peaks of the same derivatives.
     fn peaks(&self) -> impl Iterator<Item = f64> {
         let peaks = self.profile.peaks();
-        [peaks.velocity, peaks.acceleration, peaks.jerk, peaks.snap]
-            .into_iter()
-            .take(self.profile.order().derivative())
+        [peaks.velocity, peaks.acceleration, peaks.jerk, peaks.snap].into_iter().take(self.profile.order().derivative())
     }
 
     /// Times of a table or a drawing: the samples of a sampled plan, otherwise equally spaced.
@@ -115,16 +114,8 @@ fn table(planned: &Planned) -> String {
         line(format!("{} samples of {}", samples.total(), seconds(samples.time)));
     }
     line(String::new());
-    let times = profile.times();
-    for (name, meaning, value) in [
-        ("t_d", "snap at its peak", times.t_d),
-        ("t_j", "jerk at its peak", times.t_j),
-        ("t_a", "acceleration at its peak", Some(times.t_a)),
-        ("t_v", "velocity at its peak", Some(times.t_v)),
-    ] {
-        if let Some(value) = value {
-            line(format!("{name}  {:>12}   {meaning}", seconds(value)));
-        }
+    for (name, meaning, value) in dwells(profile) {
+        line(format!("{name}  {:>12}   {meaning}", seconds(value)));
     }
     line(String::new());
     line(format!("{:<13} {:>16} {:>16} {:>9}", "", "peak", "limit", "of limit"));
@@ -141,6 +132,19 @@ fn table(planned: &Planned) -> String {
         line(format!("{:>12} {:>12}  {value}", seconds(segment.start), seconds(segment.length)));
     }
     text
+}
+
+/// How long each derivative stays at its peak within one pulse of it: name in the literature, meaning, time (s).
+fn dwells(profile: &Profile) -> impl Iterator<Item = (&'static str, &'static str, f64)> {
+    let times = profile.times();
+    [
+        ("t_d", "snap at its peak", times.t_d),
+        ("t_j", "jerk at its peak", times.t_j),
+        ("t_a", "acceleration at its peak", Some(times.t_a)),
+        ("t_v", "velocity at its peak", Some(times.t_v)),
+    ]
+    .into_iter()
+    .filter_map(|(name, meaning, value)| Some((name, meaning, value?)))
 }
 
 fn seconds(value: f64) -> String {
@@ -162,15 +166,10 @@ fn json_text(planned: &Planned) -> Result<String, CliError> {
         "peaks": NAMES[1..].iter().zip(planned.peaks()).map(|(name, peak)| ((*name).to_owned(), json!(peak)))
             .collect::<serde_json::Map<_, _>>(),
     });
-    let times = profile.times();
     let effective = ["", "", "acceleration_effective", "jerk_effective", "snap_effective"];
     plan[effective[profile.order().derivative()]] = json!(profile.amplitude());
-    for (name, value) in
-        [("t_d", times.t_d), ("t_j", times.t_j), ("t_a", Some(times.t_a)), ("t_v", Some(times.t_v))]
-    {
-        if let Some(value) = value {
-            plan[name] = json!(value);
-        }
+    for (name, _, value) in dwells(profile) {
+        plan[name] = json!(value);
     }
     if let Some(samples) = profile.samples() {
         plan["sample_time_s"] = json!(samples.time);
@@ -182,7 +181,8 @@ fn json_text(planned: &Planned) -> Result<String, CliError> {
 
 fn csv(planned: &Planned) -> String {
     let unit = planned.unit;
-    let mut text = format!("time_s,position_{unit},velocity_{unit}_s,acceleration_{unit}_s2,jerk_{unit}_s3,snap_{unit}_s4\n");
+    let mut text =
+        format!("time_s,position_{unit},velocity_{unit}_s,acceleration_{unit}_s2,jerk_{unit}_s3,snap_{unit}_s4\n");
     for t in planned.times() {
         let Setpoint { x, v, a, j, s } = planned.profile.at(t);
         text.push_str(&format!("{t},{x},{v},{a},{j},{s}\n"));
@@ -191,6 +191,28 @@ fn csv(planned: &Planned) -> String {
 }
 
 fn svg(planned: &Planned) -> String {
-    let _ = planned;
-    String::new()
+    let Planned { profile, unit, .. } = planned;
+    let n = profile.order().derivative();
+    // Switching instants too, so that the staircase of the highest derivative stands upright.
+    let mut times = planned.times();
+    times.extend(profile.segments().map(|segment| segment.start));
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    let setpoints: Vec<Setpoint> = times.iter().map(|t| profile.at(*t)).collect();
+    let columns: [Vec<f64>; 5] = [
+        setpoints.iter().map(|at| at.x).collect(),
+        setpoints.iter().map(|at| at.v).collect(),
+        setpoints.iter().map(|at| at.a).collect(),
+        setpoints.iter().map(|at| at.j).collect(),
+        setpoints.iter().map(|at| at.s).collect(),
+    ];
+    let units: Vec<String> = (0..=n).map(|i| planned.unit_of(i)).collect();
+    let limits: Vec<Option<f64>> =
+        std::iter::once(None).chain(planned.limits().map(|limit| limit.is_finite().then_some(limit))).collect();
+    let panels: Vec<Panel> = (0..=n)
+        .map(|i| Panel { name: NAMES[i], unit: &units[i], values: &columns[i], limit: limits[i], held: i == n })
+        .collect();
+    let title = format!("{} in {}, order {n}", Quantity::new(profile.distance(), unit), seconds(profile.duration()));
+    let subtitle: Vec<_> = dwells(profile).map(|(name, _, value)| format!("{name} = {}", seconds(value))).collect();
+    PlanDrawing { title: &title, subtitle: &subtitle.join("   "), times: &times, panels: &panels }.to_svg()
 }

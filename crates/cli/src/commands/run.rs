@@ -21,7 +21,8 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
 
     let progress = Progress::new(jobs.len(), args.quiet);
     let workers = args.jobs.map_or_else(cores, usize::from);
-    let ended = for_each_in_parallel(&jobs, workers, |_, job| one(job, &engines, &worker, args.rrd, &args.out, &progress));
+    let ended =
+        for_each_in_parallel(&jobs, workers, |_, job| one(job, &engines, &worker, args.rrd, &args.out, &progress));
     progress.finish();
 
     let exit = ended.iter().fold(Exit::Passed, |worst, (_, exit)| worst.worse(*exit));

@@ -27,6 +27,7 @@ const PLAN: [(&str, May); 16] = [
     ("view", May::On(&["base", "trace", "metrics"])),
     ("cli", May::OnAll),
     ("tests", May::OnAll),
+    ("features", May::On(&[])),
     ("xtask", May::On(&[])),
 ];
 

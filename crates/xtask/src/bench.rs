@@ -1,0 +1,22 @@
+//! `cargo xtask bench`: cost of a tick of the closed loop on every engine, beside the bare engine step.
+use crate::failure::Failure;
+use crate::wheel;
+use crate::workspace::{Workspace, run as run_command};
+
+/// Sets up what can be had, and measures; a missing library is only said.
+///
+/// # Errors
+/// [`Failure`] of the build or of the run.
+pub(crate) fn run(workspace: &Workspace, json: bool) -> Result<(), Failure> {
+    let mut bench = workspace.cargo(["bench", "--quiet", "--package", "servobench-tests", "--bench", "closed_loop"]);
+    match wheel::MUJOCO.ensure(workspace) {
+        Ok(_) => {
+            bench.args(["--features", "mujoco"]);
+        }
+        Err(failure) => eprintln!("{failure}; the embedded engines are measured"),
+    }
+    if json {
+        bench.args(["--", "--json"]);
+    }
+    run_command(&mut bench, 0)
+}
