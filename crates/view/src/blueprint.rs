@@ -1,0 +1,91 @@
+//! Which view stands where.
+use crate::catalogue::Page;
+use crate::happenings::Happenings;
+use crate::layout::{Layout, Node, View};
+use crate::plan::PlannedPlot;
+use crate::scale::nice_below;
+use crate::scene::Scene;
+use rerun::blueprint::components::{BackgroundKind, ContainerKind, Corner2D, LinkAxis};
+use rerun::datatypes::{TimeInt, TimeRange, TimeRangeBoundary};
+use rerun::external::re_sdk_types::blueprint::archetypes::{
+    Background, EyeControls3D, LineGrid3D, PlotLegend, TextLogColumns, TimeAxis,
+};
+use rerun::external::re_sdk_types::blueprint::datatypes::{TextLogColumn, TextLogColumnKind};
+
+/// The layout for what was planned.
+pub(crate) fn layout(
+    plots: &[PlannedPlot<'_>],
+    scene: Option<&Scene>,
+    happenings: &Happenings,
+    duration: f64,
+) -> Layout {
+    let on = |page: Page| plots.iter().filter(move |plot| plot.page == page).map(|plot| (1.0, plot_view(plot)));
+    let mut left: Vec<(f32, Node)> = Vec::new();
+    left.extend(scene.map(|scene| (1.5, scene_view(scene))));
+    left.extend(on(Page::Motion));
+    left.extend(happenings_view(happenings).map(|node| (0.75, node)));
+    let right = on(Page::Errors).collect();
+    let columns = [(0.45, left), (0.55, right)]
+        .into_iter()
+        .filter_map(|(share, parts)| Some((share, Node::of(ContainerKind::Vertical, None, parts)?)));
+    let pages = [
+        Node::of(ContainerKind::Horizontal, Some("Axis"), columns.collect()),
+        Node::of(ContainerKind::Vertical, Some("Set-point"), on(Page::SetPoint).collect()),
+        Node::of(ContainerKind::Vertical, Some("Inverter"), on(Page::Electrical).collect()),
+    ];
+    let pages: Vec<_> = pages.into_iter().flatten().map(|page| (1.0, page)).collect();
+    let root = Node::of(ContainerKind::Tabs, None, pages);
+    let root = root.unwrap_or_else(|| Node::View(View::new("TextLog", "Nothing was recorded", Vec::new())));
+    Layout { root, playback_speed: playback_speed(duration) }
+}
+
+/// Slow motion in which a run of `duration` (s) lasts six to fifteen seconds, so that the eye can follow a vibration;
+/// longer runs play in real time.
+fn playback_speed(duration: f64) -> f64 {
+    if duration > 0.0 { nice_below(duration / 6.0).min(1.0) } else { 1.0 }
+}
+
+fn happenings_view(happenings: &Happenings) -> Option<Node> {
+    let mut strip = Vec::new();
+    if !happenings.lanes.is_empty() {
+        strip.push((0.4, Node::View(View::new("StateTimeline", "Moves and events", happenings.lanes.clone()))));
+    }
+    if !happenings.logs.is_empty() {
+        let columns = [TextLogColumnKind::LogLevel, TextLogColumnKind::Body];
+        let columns = columns.map(|kind| TextLogColumn { kind, visible: true.into() });
+        let columns = TextLogColumns::new().with_text_log_columns(columns);
+        let view = View::new("TextLog", "Log", happenings.logs.clone());
+        strip.push((0.6, Node::View(view.with("TextLogColumns", &columns))));
+    }
+    Node::of(ContainerKind::Horizontal, None, strip)
+}
+
+fn plot_view(plot: &PlannedPlot<'_>) -> Node {
+    let shown = plot.series.iter().filter(|series| series.shown).map(|series| series.path.clone());
+    let axis = match plot.own_time {
+        None => TimeAxis::new().with_link(LinkAxis::LinkToGlobal),
+        Some((from, to)) => {
+            TimeAxis::new().with_link(LinkAxis::Independent).with_view_range(TimeRange { start: at(from), end: at(to) })
+        }
+    };
+    let corner = if plot.ends_high { Corner2D::RightBottom } else { Corner2D::RightTop };
+    let legend = PlotLegend::new().with_corner(corner);
+    let view = View::new("TimeSeries", plot.title.clone(), shown.collect());
+    Node::View(view.with("TimeAxis", &axis).with("PlotLegend", &legend))
+}
+
+/// A boundary at `seconds`.
+fn at(seconds: f64) -> TimeRangeBoundary {
+    #[expect(clippy::cast_possible_truncation, reason = "saturates, 292 years from the start of the run")]
+    let nanoseconds = (seconds * 1e9).round() as i64;
+    TimeRangeBoundary::Absolute(TimeInt(nanoseconds))
+}
+
+fn scene_view(scene: &Scene) -> Node {
+    let eye = EyeControls3D::new().with_position(scene.eye).with_look_target(scene.target).with_eye_up([0.0, 0.0, 1.0]);
+    let mut view = View::new("3D", scene.title.clone(), scene.roots.clone());
+    view.recursive = true;
+    let background = Background::new(BackgroundKind::SolidColor).with_color([28, 31, 36]);
+    let view = view.with("Background", &background);
+    Node::View(view.with("EyeControls3D", &eye).with("LineGrid3D", &LineGrid3D::new().with_visible(false)))
+}

@@ -1,0 +1,115 @@
+//! Everything together: what is logged and how it is arranged.
+use crate::blueprint;
+use crate::curves;
+use crate::error::ViewError;
+use crate::happenings::{self, Happenings};
+use crate::layout::Layout;
+use crate::options::ViewOptions;
+use crate::plan::{self, PlannedPlot};
+use crate::run::Run;
+use crate::scene::Scene;
+use rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
+use servobench_trace::Recording;
+use std::fs;
+use std::path::Path;
+
+/// Application id of all our recordings: the viewer keeps one blueprint for them.
+const APPLICATION: &str = "servobench";
+
+/// One run, or several over each other, ready for any Rerun stream: a file, or a viewer that is open.
+#[derive(Debug)]
+pub struct Presentation<'a> {
+    name: String,
+    runs: Vec<Run<'a>>,
+    plots: Vec<PlannedPlot<'a>>,
+    scene: Option<Scene>,
+    max_instants: usize,
+}
+
+impl<'a> Presentation<'a> {
+    /// One run. Entities are `/position/load`, `/current/q`, `/axis/motor` and so on.
+    #[must_use]
+    pub fn of_run(recording: &'a Recording, options: &ViewOptions) -> Self {
+        let name = format!("{} on {}", recording.about.scenario, recording.about.engine);
+        Self::plan(name, vec![Run { label: None, recording }], options)
+    }
+
+    /// Several runs over each other, time 0 on time 0. Entities are `/jerk/position/load`, `/snap/position/load` and so
+    /// on for runs labelled `jerk` and `snap`; a plot shows the same curve of every run.
+    ///
+    /// # Errors
+    /// [`ViewError::TooFewRuns`]; [`ViewError::Label`] for a label that is empty, reserved or used twice.
+    pub fn of_comparison(runs: &[(&'a str, &'a Recording)], options: &ViewOptions) -> Result<Self, ViewError> {
+        if runs.len() < 2 {
+            return Err(ViewError::TooFewRuns { found: runs.len() });
+        }
+        for (index, (label, _)) in runs.iter().enumerate() {
+            let reason = if label.is_empty() {
+                "is empty"
+            } else if label.starts_with("__") || ["limit", "window"].contains(label) {
+                "is reserved"
+            } else if runs[..index].iter().any(|(other, _)| other == label) {
+                "an earlier run has already"
+            } else {
+                continue;
+            };
+            return Err(ViewError::Label { number: index + 1, label: (*label).to_owned(), reason });
+        }
+        let name = runs.iter().map(|(label, _)| *label).collect::<Vec<_>>().join(" against ");
+        let runs = runs.iter().map(|(label, recording)| Run { label: Some(label), recording });
+        Ok(Self::plan(name, runs.collect(), options))
+    }
+
+    fn plan(name: String, runs: Vec<Run<'a>>, options: &ViewOptions) -> Self {
+        let plots = plan::plots(&runs, options);
+        let scene = Scene::of(&runs, options);
+        Self { name, runs, plots, scene, max_instants: options.max_instants }
+    }
+
+    /// How the viewer arranges it.
+    #[must_use]
+    pub fn blueprint(&self) -> Layout {
+        let duration = self.runs.iter().map(Run::end).fold(0.0, f64::max);
+        blueprint::layout(&self.plots, self.scene.as_ref(), &Happenings::of(&self.runs), duration)
+    }
+
+    /// Logs curves, 3D view, moves and events.
+    ///
+    /// # Errors
+    /// [`ViewError::Rerun`].
+    pub fn log(&self, stream: &RecordingStream) -> Result<(), ViewError> {
+        self.log_all(stream).map_err(ViewError::rerun("log the recording"))
+    }
+
+    fn log_all(&self, stream: &RecordingStream) -> RecordingStreamResult<()> {
+        for plot in &self.plots {
+            curves::log(stream, plot, self.max_instants)?;
+        }
+        if let Some(scene) = &self.scene {
+            scene.log(stream, &self.runs)?;
+        }
+        self.runs.iter().enumerate().try_for_each(|(index, run)| happenings::log(stream, run, index))
+    }
+
+    /// Writes an `.rrd` file: blueprint and data. The file appears when it is whole.
+    ///
+    /// # Errors
+    /// [`ViewError::Rerun`] and [`ViewError::Io`].
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<(), ViewError> {
+        let path = path.as_ref();
+        let builder = RecordingStreamBuilder::new(APPLICATION).recording_name(self.name.as_str());
+        let (stream, storage) = builder.enabled(true).memory().map_err(ViewError::rerun("open a stream"))?;
+        self.blueprint().send(&stream)?;
+        self.log(&stream)?;
+        stream.flush_blocking().map_err(ViewError::rerun("flush the stream"))?;
+        let bytes = storage.drain_as_bytes().map_err(ViewError::rerun("encode the file"))?;
+        let io = |source| ViewError::Io { path: path.to_path_buf(), source };
+        let partial = path.with_extension(format!("{}.partial", std::process::id()));
+        let written = fs::write(&partial, bytes).and_then(|()| fs::rename(&partial, path));
+        if written.is_err() {
+            // The first error is the one to report; a partial file that cannot be removed either changes nothing.
+            fs::remove_file(&partial).ok();
+        }
+        written.map_err(io)
+    }
+}

@@ -1,0 +1,50 @@
+//! One run of a presentation.
+use rerun::{EntityPath, EntityPathPart};
+use servobench_trace::{Channel, Recording};
+
+/// A recording and the place of its entities.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Run<'a> {
+    /// First part of its entity paths; `None` for the only run.
+    pub(crate) label: Option<&'a str>,
+    /// What was recorded.
+    pub(crate) recording: &'a Recording,
+}
+
+impl<'a> Run<'a> {
+    /// Entity path of `parts` in this run.
+    pub(crate) fn path(&self, parts: &[&str]) -> EntityPath {
+        let parts = self.label.iter().chain(parts);
+        EntityPath::new(parts.map(|part| EntityPathPart::new(*part)).collect())
+    }
+
+    /// The first of the channels `names` that was recorded.
+    pub(crate) fn first_of(&self, names: &[&str]) -> Option<&'a Channel> {
+        let named = |name: &&str| self.recording.channels.iter().find(|channel| channel.spec.name == **name);
+        names.iter().find_map(named)
+    }
+
+    /// Time from which residual vibration is shown (s): the end of the last profile, or else `otherwise`.
+    pub(crate) fn residual_start(&self, otherwise: Option<f64>) -> Option<f64> {
+        self.recording.moves.iter().map(|made| made.end).reduce(f64::max).or(otherwise)
+    }
+
+    /// Time of the last instant (s).
+    pub(crate) fn end(&self) -> f64 {
+        self.recording.time_of(self.recording.len().saturating_sub(1))
+    }
+
+    /// Smallest and largest finite value of all of `channels` that were recorded.
+    pub(crate) fn range(&self, channels: &[&str]) -> Option<(f64, f64)> {
+        range(channels.iter().filter_map(|name| self.recording.channel(name)).flatten())
+    }
+}
+
+/// Smallest and largest finite value.
+pub(crate) fn range<'v>(values: impl IntoIterator<Item = &'v f64>) -> Option<(f64, f64)> {
+    let finite = values.into_iter().filter(|value| value.is_finite());
+    finite.fold(None, |range, value| {
+        let (low, high) = range.unwrap_or((*value, *value));
+        Some((low.min(*value), high.max(*value)))
+    })
+}

@@ -1,0 +1,25 @@
+//! Colours and widths, the same in every view. They can be told apart on a dark and on a light background.
+
+/// Red, green, blue.
+pub(crate) type Rgb = [u8; 3];
+
+/// What was asked for.
+pub(crate) const REFERENCE: Rgb = [175, 175, 175];
+/// Motor side.
+pub(crate) const MOTOR: Rgb = [66, 135, 245];
+/// A body between motor and load.
+pub(crate) const TABLE: Rgb = [46, 184, 150];
+/// Load side.
+pub(crate) const LOAD: Rgb = [245, 140, 40];
+/// A second quantity beside the main one.
+pub(crate) const AUXILIARY: Rgb = [160, 110, 230];
+/// A bound.
+pub(crate) const LIMIT: Rgb = [225, 70, 80];
+
+/// One colour per run of a comparison; starts again after the last.
+const RUNS: [Rgb; 6] = [LOAD, [40, 180, 220], [160, 110, 230], [110, 190, 70], [230, 90, 160], [190, 160, 60]];
+
+/// Colour of a run in a comparison.
+pub(crate) fn of_run(index: usize) -> Rgb {
+    RUNS[index % RUNS.len()]
+}

@@ -1,0 +1,316 @@
+//! What a file holds, read back with Rerun's own decoder.
+#[path = "../examples/two_mass/axis.rs"]
+mod axis;
+
+use axis::{Case, run};
+use rerun::blueprint::components::QueryExpression;
+use rerun::components::Name;
+use rerun::external::re_log_encoding::DecoderApp;
+use rerun::external::re_sdk_types::blueprint::archetypes::{ViewBlueprint, ViewContents};
+use rerun::log::{Chunk, LogMsg};
+use rerun::{Scalars, StoreKind};
+use servobench_base::{Rate, Tick};
+use servobench_trace::Recording;
+use servobench_view::{ViewError, ViewOptions, write_comparison_rrd, write_rrd};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+/// Longer than what is kept of a curve, so that thinning is at work.
+const MAX_INSTANTS: usize = 2_000;
+
+fn example(order: u8) -> Recording {
+    run(Case { name: "example", order, rotary: false, duration: 1.5 })
+}
+
+fn options() -> ViewOptions {
+    ViewOptions { max_instants: MAX_INSTANTS, ..ViewOptions::default() }
+}
+
+/// What was read back.
+#[derive(Default)]
+struct Content {
+    /// Entities with data, static or over time.
+    entities: BTreeSet<String>,
+    /// Time (ns) and value of each curve.
+    curves: BTreeMap<String, Vec<(i64, f64)>>,
+    /// Timelines of the data.
+    timelines: BTreeSet<String>,
+    /// Titles of the blueprint's views.
+    titles: BTreeSet<String>,
+    /// Entities that the blueprint's views ask for.
+    queries: BTreeSet<String>,
+}
+
+fn read(path: &Path) -> Content {
+    let mut content = Content::default();
+    for message in DecoderApp::decode_eager(BufReader::new(File::open(path).unwrap())).unwrap() {
+        let LogMsg::ArrowMsg(store, message) = message.unwrap() else { continue };
+        let chunk = Chunk::from_arrow_msg(&message).unwrap();
+        if store.kind() == StoreKind::Blueprint {
+            let titles = chunk.iter_component::<Name>(ViewBlueprint::descriptor_display_name().component);
+            content.titles.extend(titles.flat_map(|names| names.as_slice().to_vec()).map(|name| name.to_string()));
+            let queries = chunk.iter_component::<QueryExpression>(ViewContents::descriptor_query().component);
+            let queries = queries.flat_map(|queries| queries.as_slice().to_vec());
+            content.queries.extend(queries.map(|query| query.0.trim_start_matches("+ ").to_owned()));
+            continue;
+        }
+        let entity = chunk.entity_path().to_string();
+        if entity.starts_with("/__") {
+            continue;
+        }
+        content.timelines.extend(chunk.timelines().keys().map(ToString::to_string));
+        let values = chunk.iter_slices::<f64>(Scalars::descriptor_scalars().component).map(|value| value[0]);
+        if let Some(times) = chunk.timelines().get(&"time".into()) {
+            let curve = content.curves.entry(entity.clone()).or_default();
+            curve.extend(times.times_raw().iter().copied().zip(values));
+        }
+        content.entities.insert(entity);
+    }
+    content.curves.retain(|_, curve| !curve.is_empty());
+    content
+}
+
+fn written(recording: &Recording, options: &ViewOptions) -> Content {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.rrd");
+    write_rrd(recording, &path, options).unwrap();
+    assert_eq!(folder.path().read_dir().unwrap().count(), 1, "nothing is left beside the file");
+    read(&path)
+}
+
+/// Every entity that a view asks for exists; a view that asks for all below an entity asks for something.
+fn assert_views_are_fed(content: &Content) {
+    for query in &content.queries {
+        let found = query.strip_suffix("/**").map_or_else(
+            || content.entities.contains(query),
+            |root| content.entities.iter().any(|entity| entity.starts_with(root)),
+        );
+        assert!(found, "a view asks for {query}, which was not logged");
+    }
+}
+
+#[test]
+fn a_run_is_all_there_on_one_timeline() {
+    let content = written(&example(3), &options());
+    assert_eq!(content.timelines, BTreeSet::from(["time".to_owned()]));
+    for entity in [
+        "/position/load",
+        "/position/motor",
+        "/position/reference",
+        "/velocity/load",
+        "/following_error/load",
+        "/following_error/motor",
+        "/residual_vibration/load",
+        "/effort/motor",
+        "/current/q",
+        "/current/q\\ reference",
+        "/voltage/magnitude",
+        "/saturation/voltage",
+        "/setpoint_snap/snap",
+    ] {
+        assert!(content.curves.contains_key(entity), "{entity} is missing in {:?}", content.curves.keys());
+    }
+    for entity in ["/axis/motor", "/axis/load", "/axis/bed", "/axis/spring/load", "/axis/reference", "/moves", "/log"] {
+        assert!(content.entities.contains(entity), "{entity} is missing in {:?}", content.entities);
+    }
+    for title in ["Position (m)", "Following error (µm)", "Residual vibration after the last move (µm)", "Current (A)"]
+    {
+        assert!(content.titles.contains(title), "{title} is missing in {:?}", content.titles);
+    }
+    assert_views_are_fed(&content);
+}
+
+/// Oracle: the recording itself. The curve is thinned, its extremes are not, in value and in time.
+#[test]
+fn thinning_keeps_the_extremes_at_their_instants() {
+    let recording = example(3);
+    let content = written(&recording, &options());
+    for (entity, channel, factor) in [
+        ("/following_error/load", "following_error.load", 1e6),
+        ("/velocity/load", "load.velocity", 1.0),
+        ("/current/q", "current.q", 1.0),
+    ] {
+        let curve = &content.curves[entity];
+        let values = recording.channel(channel).unwrap();
+        assert!(values.len() > MAX_INSTANTS && curve.len() <= MAX_INSTANTS, "{entity}: {}", curve.len());
+        for sign in [1.0, -1.0] {
+            let first_largest =
+                (0..values.len()).rev().max_by(|a, b| (sign * values[*a]).total_cmp(&(sign * values[*b])));
+            let at = first_largest.unwrap();
+            #[expect(clippy::cast_possible_truncation, reason = "seconds of a short run in nanoseconds")]
+            let nanoseconds = (recording.rate.time(Tick(at as u64)) * 1e9).round() as i64;
+            assert!(
+                curve
+                    .iter()
+                    .any(|(time, value)| *time == nanoseconds
+                        && (value - factor * values[at]).abs() <= 1e-12 * value.abs()),
+                "{entity} lost {} at {nanoseconds} ns",
+                values[at]
+            );
+        }
+        assert!(curve.windows(2).all(|pair| pair[0].0 < pair[1].0), "{entity} runs forward");
+    }
+}
+
+#[test]
+fn a_short_run_is_not_thinned() {
+    let recording = example(3);
+    let content = written(&recording, &ViewOptions::default());
+    let instants = recording.len();
+    assert!(instants > 20_000 && content.curves["/position/load"].len() <= 20_000);
+    let content = written(&recording, &ViewOptions { max_instants: instants, ..options() });
+    assert_eq!(content.curves["/position/load"].len(), instants);
+}
+
+#[test]
+fn residual_vibration_starts_at_the_end_of_the_last_profile() {
+    let mut recording = example(4);
+    let start = |recording: &Recording, options: &ViewOptions| {
+        written(recording, options).curves.get("/residual_vibration/load").map(|curve| curve[0].0)
+    };
+    assert_eq!(start(&recording, &options()), Some(1_350_000_000));
+    recording.moves.clear();
+    assert_eq!(start(&recording, &options()), None);
+    assert_eq!(start(&recording, &ViewOptions { residual_from: Some(0.5), ..options() }), Some(500_000_000));
+}
+
+#[test]
+fn limits_are_lines_where_they_can_be_seen_and_words_where_not() {
+    let recording = example(3);
+    let limits = |current, effort| ViewOptions {
+        limits: vec![("current.q".into(), current), ("effort.motor".into(), effort)],
+        window: Some(5e-6),
+        ..options()
+    };
+    let content = written(&recording, &limits(5.0, 9_000.0));
+    let line = |entity: &str| content.curves[entity].iter().map(|(_, value)| *value).collect::<Vec<_>>();
+    assert_eq!(line("/limit/current/upper"), [5.0, 5.0]);
+    assert_eq!(line("/limit/current/lower"), [-5.0, -5.0]);
+    assert_eq!(line("/window/residual_vibration/upper"), [5.0, 5.0]);
+    assert!(!content.entities.contains("/limit/effort/upper"));
+    assert!(content.titles.contains("Effort of the motor (N), limit ±9000"), "{:?}", content.titles);
+    // The voltage limit is a recorded channel, here far above the voltage.
+    assert!(content.titles.contains("Voltage (V), limit 311.8"), "{:?}", content.titles);
+    assert_views_are_fed(&content);
+}
+
+#[test]
+fn runs_of_a_comparison_lie_over_each_other() {
+    let (jerk, snap) = (example(3), example(4));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("compare.rrd");
+    write_comparison_rrd(&[("jerk", &jerk), ("snap", &snap)], &path, &options()).unwrap();
+    let content = read(&path);
+    for entity in ["position/load", "following_error/load", "residual_vibration/load", "current/q"] {
+        for run in ["jerk", "snap"] {
+            assert!(content.curves.contains_key(&format!("/{run}/{entity}")), "/{run}/{entity}");
+            assert!(content.queries.contains(&format!("/{run}/{entity}")), "no view shows /{run}/{entity}");
+        }
+    }
+    assert_eq!(content.curves["/jerk/position/load"][0].0, 0);
+    assert_eq!(content.curves["/snap/position/load"][0].0, 0);
+    assert_views_are_fed(&content);
+}
+
+#[test]
+fn any_channel_may_be_missing() {
+    let whole = example(3);
+    for missing in 0..whole.channels.len() {
+        let mut recording = whole.clone();
+        let name = recording.channels.remove(missing).spec.name;
+        let content = written(&recording, &options());
+        assert!(!content.curves.is_empty(), "without {name}");
+        assert_views_are_fed(&content);
+    }
+    for kept in 0..whole.channels.len() {
+        let mut recording = whole.clone();
+        recording.channels = vec![recording.channels.swap_remove(kept)];
+        assert_views_are_fed(&written(&recording, &options()));
+    }
+}
+
+#[test]
+fn nothing_recorded_is_no_error() {
+    let mut recording = example(3);
+    recording.channels.iter_mut().for_each(|channel| channel.values.clear());
+    assert_views_are_fed(&written(&recording, &options()));
+    recording.channels.clear();
+    recording.moves.clear();
+    recording.events.clear();
+    assert!(written(&recording, &options()).entities.is_empty());
+}
+
+#[test]
+fn what_is_not_finite_is_left_out() {
+    let mut recording = example(3);
+    for channel in &mut recording.channels {
+        channel.values[100] = f64::NAN;
+        channel.values[200] = f64::INFINITY;
+    }
+    let content = written(&recording, &ViewOptions { max_instants: usize::MAX, ..options() });
+    assert_eq!(content.curves["/position/load"].len(), recording.len() - 2);
+    assert!(content.curves.values().flatten().all(|(_, value)| value.is_finite()));
+    assert!(
+        content.titles.contains("Position (m)"),
+        "an infinite value must not choose the unit: {:?}",
+        content.titles
+    );
+}
+
+#[test]
+fn a_rotary_axis_and_an_axis_at_rest_have_a_3d_view() {
+    let rotary = written(&run(Case { name: "turntable", order: 4, rotary: true, duration: 1.5 }), &options());
+    assert!(rotary.entities.contains("/axis/shaft") && rotary.titles.contains("Position (rad)"));
+    let mut recording = example(3);
+    recording.channels.iter_mut().for_each(|channel| channel.values.fill(0.0));
+    assert!(written(&recording, &options()).entities.contains("/axis/load"));
+}
+
+#[test]
+fn labels_and_numbers_of_runs_are_checked() {
+    let recording = example(3);
+    let refusal = |runs: &[(&str, &Recording)]| {
+        let folder = tempfile::tempdir().unwrap();
+        write_comparison_rrd(runs, folder.path().join("no.rrd"), &options()).unwrap_err().to_string()
+    };
+    assert_eq!(
+        refusal(&[("one", &recording)]),
+        "a comparison needs at least two runs, got 1; a single run is written by `write_rrd`"
+    );
+    assert_eq!(
+        refusal(&[("one", &recording), ("one", &recording)]),
+        "run 2 of the comparison has the label `one`, which an earlier run has already; give every run its own short label"
+    );
+    assert!(refusal(&[("", &recording), ("one", &recording)]).contains("which is empty"));
+    assert!(refusal(&[("limit", &recording), ("one", &recording)]).contains("which is reserved"));
+}
+
+#[test]
+fn a_missing_folder_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("none/run.rrd");
+    let error = write_rrd(&example(3), &path, &options()).unwrap_err();
+    assert!(matches!(&error, ViewError::Io { path: named, .. } if *named == path), "{error}");
+}
+
+/// 60 s at 16 kHz and 22 channels: the file must stay one that opens at once.
+#[test]
+fn a_long_run_makes_a_small_file() {
+    let mut recording = example(3);
+    for channel in &mut recording.channels {
+        channel.spec.rate = Rate::new(16_000).unwrap();
+        let once = channel.values.clone();
+        (0..39).for_each(|_| channel.values.extend_from_slice(&once));
+    }
+    assert_eq!(recording.len(), 960_000);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("long.rrd");
+    write_rrd(&recording, &path, &ViewOptions::default()).unwrap();
+    let size = std::fs::metadata(&path).unwrap().len();
+    assert!(size < 15_000_000, "{size} bytes");
+    // As long as the file has a curve per channel, and each is bounded, this bound is that of any longer run.
+    let content = read(&path);
+    assert!(content.curves.values().all(|curve| curve.len() <= 20_000));
+}
