@@ -19,6 +19,9 @@ pub enum Absence {
         /// First instant at which it is not finite (s).
         time: f64,
     },
+    /// The values are finite, but what is made of them is not.
+    #[error("the values are too large to compute with")]
+    Overflow,
     /// The metric is about a move, and there is none.
     #[error("the program has no move")]
     NoMove,

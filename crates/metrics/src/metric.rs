@@ -78,6 +78,9 @@ impl MetricSet {
     /// Notes a metric, or why there is none.
     pub(crate) fn note(&mut self, name: Name, unit: &str, result: Result<f64, Absence>) {
         match result {
+            Ok(value) if !value.is_finite() => {
+                self.absent.insert(name, Absence::Overflow);
+            }
             Ok(value) => {
                 let metric = Metric { value, unit: unit.to_owned(), limit: None, pass: None };
                 self.present.insert(name, metric);

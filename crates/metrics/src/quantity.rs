@@ -23,6 +23,20 @@ impl<'a> Quantity<'a> {
         Self { value, unit }
     }
 
+    /// Symbol with the prefix that suits an axis up to `largest` (SI), and how much of the plain unit (SI) it is: `mm` and
+    /// 0.001 for 0.25 m.
+    #[must_use]
+    pub fn axis_unit(largest: f64, unit: &str) -> (String, f64) {
+        let symbol = unit.replace(' ', "·");
+        let exponent = format!("{largest:.2e}").split_once('e').and_then(|(_, e)| e.parse().ok());
+        match exponent.and_then(|exponent| prefix(unit, exponent)) {
+            Some((prefix, power)) if largest != 0.0 && largest.is_finite() => {
+                (format!("{prefix}{symbol}"), format!("1e{power}").parse().unwrap_or(1.0))
+            }
+            _ => (symbol, 1.0),
+        }
+    }
+
     /// The text with `digits` significant digits, at least one.
     fn text(&self, digits: usize) -> String {
         let Self { value, unit } = *self;
@@ -136,6 +150,14 @@ mod tests {
         assert_eq!(show(999.96e-6, "m"), "1.00 mm");
         assert_eq!(show(0.9996, "s"), "1.00 s");
         assert_eq!(show(99.96e-6, "m"), "100 µm");
+    }
+
+    #[test]
+    fn an_axis_has_one_prefix() {
+        assert_eq!(Quantity::axis_unit(0.25, "m"), ("mm".into(), 1e-3));
+        assert_eq!(Quantity::axis_unit(0.999_99, "m/s"), ("m/s".into(), 1.0));
+        assert_eq!(Quantity::axis_unit(1000.0, "m/s⁴"), ("m/s⁴".into(), 1.0));
+        assert_eq!(Quantity::axis_unit(0.0, "N m"), ("N·m".into(), 1.0));
     }
 
     #[test]

@@ -152,6 +152,14 @@ mod tests {
     }
 
     #[test]
+    fn a_value_that_overflows_is_absent() {
+        let mut metrics = measured();
+        metrics.run.note(Name::CurrentPeak, "Apk", Ok(f64::INFINITY));
+        assert_eq!(metrics.get(Name::CurrentPeak), None);
+        assert_eq!(metrics.run.absence(Name::CurrentPeak), Some(&Absence::Overflow));
+    }
+
+    #[test]
     fn without_limits_everything_passes_and_nothing_is_judged() {
         let mut metrics = measured();
         assert!(metrics.judge(&[]).passed());

@@ -144,7 +144,8 @@ fn fewer_than_two_periods_are_refused() {
 
 #[test]
 fn rest_and_drift_are_no_vibration() {
-    let cases: [(&str, fn(f64) -> f64); 5] = [
+    type Case = (&'static str, fn(f64) -> f64);
+    let cases: [Case; 5] = [
         ("rest", |_| 3e-6),
         ("one bit", |t| if t > 0.1 { 1e-16 } else { 0.0 }),
         ("straight line", |t| 1e-5 * t),

@@ -1,0 +1,21 @@
+//! Why a report could not be written.
+use thiserror::Error;
+
+/// Why a report could not be written or read.
+#[derive(Debug, Error)]
+pub enum ReportError {
+    /// The results are no JSON of this schema.
+    #[error("the results are not as docs/results.schema.json says: {0}")]
+    Json(#[from] serde_json::Error),
+    /// The results have another schema.
+    #[error("the results have schema `{found}`; this version reads `{expected}`")]
+    Schema {
+        /// Schema of the file.
+        found: String,
+        /// Schema that this version reads.
+        expected: &'static str,
+    },
+    /// The JUnit report could not be written.
+    #[error("the JUnit report could not be written: {0}")]
+    Junit(#[from] quick_junit::SerializeError),
+}

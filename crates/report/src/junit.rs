@@ -1,0 +1,81 @@
+//! JUnit XML for continuous integration.
+use crate::error::ReportError;
+use crate::metric_table::metric_table;
+use crate::results::{Outcome, Results, RunResult};
+use crate::style::Style;
+use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
+
+/// One test case for each scenario and engine. A missed limit is a failure, a run that could not be carried out is an
+/// error; the metrics are the case's output. Times of test cases are wall-clock times by custom, and results hold
+/// none: they are left out.
+///
+/// # Errors
+/// [`ReportError::Junit`].
+pub fn junit(results: &Results) -> Result<String, ReportError> {
+    let mut suite = TestSuite::new("servobench");
+    suite.add_test_cases(results.scenarios.iter().map(case));
+    let mut report = Report::new("servobench");
+    report.add_test_suite(suite);
+    Ok(report.to_string()?)
+}
+
+fn case(run: &RunResult) -> TestCase {
+    let reason = run.reason.clone().unwrap_or_default();
+    let mut case = TestCase::new(format!("{} [{}]", run.name, run.engine), status(run, &reason));
+    case.set_classname(run.file.as_deref().unwrap_or("servobench"));
+    if !run.metrics.is_empty() {
+        case.set_system_out(metric_table(run, Style::default()));
+    }
+    case
+}
+
+fn status(run: &RunResult, reason: &str) -> TestCaseStatus {
+    let (kind, what) = match run.verdict {
+        Outcome::Passed => return TestCaseStatus::success(),
+        Outcome::Failed => (NonSuccessKind::Failure, "limit missed"),
+        Outcome::Error => (NonSuccessKind::Error, "run not carried out"),
+    };
+    let missed = run.metrics.iter().filter(|(_, metric)| metric.pass == Some(false)).count();
+    let message = match (run.verdict, missed) {
+        (Outcome::Failed, 1) => "1 limit missed".to_owned(),
+        (Outcome::Failed, count) => format!("{count} limits missed"),
+        _ => reason.to_owned(),
+    };
+    let mut status = TestCaseStatus::non_success(kind);
+    status.set_type(what).set_message(message).set_description(reason.replace("; ", "\n"));
+    status
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples;
+
+    #[test]
+    fn reads_back_with_failures_and_errors_told_apart() {
+        let xml = junit(&samples::results()).unwrap();
+        let report = Report::deserialize_from_str(&xml).unwrap();
+        assert_eq!((report.tests, report.failures, report.errors), (4, 1, 1));
+        let cases = &report.test_suites[0].test_cases;
+        let names: Vec<_> = cases.iter().map(|case| case.name.as_str()).collect();
+        assert_eq!(names[0], "lambrechts-jerk [exact]");
+        assert_eq!(
+            cases[0].classname.as_ref().map(quick_junit::XmlString::as_str),
+            Some("scenarios/lambrechts-jerk.toml")
+        );
+        assert!(matches!(cases[0].status, TestCaseStatus::Success { .. }));
+        let TestCaseStatus::NonSuccess { kind, message, description, .. } = &cases[1].status else { panic!("missed") };
+        assert_eq!(*kind, NonSuccessKind::Failure);
+        assert_eq!(message.as_ref().unwrap().as_str(), "3 limits missed");
+        let lines: Vec<_> = description.as_ref().unwrap().as_str().lines().collect();
+        assert_eq!(lines[1], "residual_vibration_pp 8.30 µm, limit 2.00 µm");
+        let TestCaseStatus::NonSuccess { kind, message, .. } = &cases[3].status else { panic!("broken") };
+        assert_eq!(*kind, NonSuccessKind::Error);
+        assert!(message.as_ref().unwrap().as_str().starts_with("the mechanics diverged at 0.123 s"));
+    }
+
+    #[test]
+    fn two_reports_are_the_same_bytes() {
+        assert_eq!(junit(&samples::results()).unwrap(), junit(&samples::results()).unwrap());
+    }
+}

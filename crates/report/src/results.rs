@@ -1,0 +1,348 @@
+//! `results.json`: what a run gave, for machines. The schema is in `docs/results.schema.json`.
+use crate::error::ReportError;
+use crate::ordered::Ordered;
+use serde::{Deserialize, Serialize};
+use servobench_metrics::{Limit, Metric, MetricSet, Metrics, MoveMetrics, Name, Verdict};
+use servobench_trace::{Event, Recording};
+
+/// Name and version of the schema.
+pub const SCHEMA_NAME: &str = "servobench-results/1";
+
+/// The results of several runs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Results {
+    /// [`SCHEMA_NAME`].
+    pub schema: String,
+    /// Program and version that wrote them.
+    pub generator: String,
+    /// The runs in the order in which they were asked for.
+    pub scenarios: Vec<RunResult>,
+}
+
+/// What came of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Outcome {
+    /// Every limit is kept.
+    Passed,
+    /// A limit is missed.
+    Failed,
+    /// The run could not be carried out.
+    Error,
+}
+
+/// One scenario on one engine.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunResult {
+    /// Name of the scenario.
+    pub name: String,
+    /// File of the scenario, as it was given; `null` for an embedded one.
+    pub file: Option<String>,
+    /// Engine that computed the mechanics.
+    pub engine: String,
+    /// What came of it.
+    pub verdict: Outcome,
+    /// Simulated time (s).
+    pub duration: f64,
+    /// Missed limits or the error, in words; `null` when it passed.
+    pub reason: Option<String>,
+    /// Metrics by name; with those that have a limit but could not be measured.
+    pub metrics: Ordered<MetricResult>,
+    /// Metrics that could not be measured, and why.
+    pub absent: Ordered<String>,
+    /// The moves.
+    pub moves: Vec<MoveResult>,
+    /// What happened: limits that bound, warnings.
+    pub events: Vec<EventResult>,
+    /// File of the recording, beside the results; `null` when none was written.
+    pub recording: Option<String>,
+}
+
+/// A metric.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MetricResult {
+    /// Value (SI); `null` when it could not be measured.
+    pub value: Option<f64>,
+    /// Unit symbol; empty for a pure number.
+    pub unit: String,
+    /// Largest allowed value; `null` without one.
+    pub limit: Option<f64>,
+    /// Smallest allowed value; left out without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limit_min: Option<f64>,
+    /// Whether the limit is kept; `null` without a limit.
+    pub pass: Option<bool>,
+}
+
+/// A move.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MoveResult {
+    /// What it is, in words.
+    pub label: String,
+    /// Start of the profile (s).
+    pub start: f64,
+    /// End of the profile (s).
+    pub end: f64,
+    /// Its metrics by name.
+    pub metrics: Ordered<MetricResult>,
+}
+
+/// Something that happened.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EventResult {
+    /// When it began (s).
+    pub start: f64,
+    /// When it ended (s).
+    pub end: f64,
+    /// Stage of the loop that saw it.
+    pub source: String,
+    /// What it was, in words.
+    pub message: String,
+}
+
+/// Which run it is.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct RunIdentity {
+    /// Name of the scenario.
+    pub name: String,
+    /// File of the scenario.
+    pub file: Option<String>,
+    /// Engine.
+    pub engine: String,
+    /// File of the recording.
+    pub recording: Option<String>,
+}
+
+impl Results {
+    /// The results of these runs.
+    #[must_use]
+    pub fn new(scenarios: Vec<RunResult>) -> Self {
+        let generator = concat!("servobench ", env!("CARGO_PKG_VERSION")).to_owned();
+        Self { schema: SCHEMA_NAME.to_owned(), generator, scenarios }
+    }
+
+    /// As JSON, numbers in the shortest form that reads back to the same bits.
+    ///
+    /// # Errors
+    /// [`ReportError::Json`].
+    pub fn to_json(&self) -> Result<String, ReportError> {
+        Ok(serde_json::to_string_pretty(self)? + "\n")
+    }
+
+    /// Reads what [`Results::to_json`] wrote.
+    ///
+    /// # Errors
+    /// [`ReportError::Json`], [`ReportError::Schema`].
+    pub fn from_json(text: &str) -> Result<Self, ReportError> {
+        let results: Self = serde_json::from_str(text)?;
+        if results.schema == SCHEMA_NAME {
+            Ok(results)
+        } else {
+            Err(ReportError::Schema { found: results.schema, expected: SCHEMA_NAME })
+        }
+    }
+
+    /// Number of runs with this outcome.
+    #[must_use]
+    pub fn count(&self, outcome: Outcome) -> usize {
+        self.scenarios.iter().filter(|run| run.verdict == outcome).count()
+    }
+}
+
+impl RunResult {
+    /// A run that was judged.
+    #[must_use]
+    pub fn judged(run: RunIdentity, recording: &Recording, metrics: &Metrics, verdict: &Verdict) -> Self {
+        let misses: Vec<_> = verdict.misses.iter().map(ToString::to_string).collect();
+        let passed = verdict.passed();
+        let mut result = Self::of(run, Some(recording), metrics);
+        result.verdict = if passed { Outcome::Passed } else { Outcome::Failed };
+        result.reason = (!passed).then(|| misses.join("; "));
+        let unmeasured = verdict.misses.iter().filter(|miss| miss.value.is_none());
+        let unmeasured = unmeasured.map(|miss| (miss.limit.metric.to_string(), MetricResult::missing(&miss.limit)));
+        result.metrics = result.metrics.into_iter().chain(unmeasured).collect();
+        result
+    }
+
+    /// A run that could not be carried out, with what was recorded until then.
+    #[must_use]
+    pub fn error(run: RunIdentity, recording: Option<&Recording>, metrics: &Metrics, reason: String) -> Self {
+        Self { reason: Some(reason), ..Self::of(run, recording, metrics) }
+    }
+
+    fn of(run: RunIdentity, recording: Option<&Recording>, metrics: &Metrics) -> Self {
+        let events = recording.map(|recording| recording.events.as_slice()).unwrap_or_default();
+        Self {
+            name: run.name,
+            file: run.file,
+            engine: run.engine,
+            verdict: Outcome::Error,
+            duration: recording.map_or(0.0, |recording| recording.len() as f64 / f64::from(recording.rate.hertz())),
+            reason: None,
+            metrics: of_set(&metrics.run),
+            absent: metrics.run.absences().map(|(name, why)| (name.to_string(), why.to_string())).collect(),
+            moves: metrics.moves.iter().map(MoveResult::from).collect(),
+            events: events.iter().map(EventResult::from).collect(),
+            recording: run.recording,
+        }
+    }
+
+    /// Value (SI) and unit of a metric, when it was measured.
+    #[must_use]
+    pub fn metric(&self, name: Name) -> Option<(f64, &str)> {
+        let metric = self.metrics.get(name.as_str())?;
+        Some((metric.value?, metric.unit.as_str()))
+    }
+}
+
+impl MetricResult {
+    fn missing(limit: &Limit) -> Self {
+        Self { value: None, unit: String::new(), limit: limit.max, limit_min: limit.min, pass: Some(false) }
+    }
+}
+
+impl From<&Metric> for MetricResult {
+    fn from(metric: &Metric) -> Self {
+        Self {
+            value: Some(metric.value),
+            unit: metric.unit.clone(),
+            limit: metric.limit.and_then(|limit| limit.max),
+            limit_min: metric.limit.and_then(|limit| limit.min),
+            pass: metric.pass,
+        }
+    }
+}
+
+impl From<&MoveMetrics> for MoveResult {
+    fn from(made: &MoveMetrics) -> Self {
+        Self { label: made.label.clone(), start: made.start, end: made.end, metrics: of_set(&made.metrics) }
+    }
+}
+
+impl From<&Event> for EventResult {
+    fn from(event: &Event) -> Self {
+        Self { start: event.start, end: event.end, source: event.source.clone(), message: event.message.clone() }
+    }
+}
+
+fn of_set(set: &MetricSet) -> Ordered<MetricResult> {
+    set.iter().map(|(name, metric)| (name.to_string(), metric.into())).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples;
+    use serde_json::{Value, json};
+    use servobench_base::Rate;
+    use servobench_metrics::{Question, measure};
+    use servobench_trace::{About, Channel, ChannelSpec, Move};
+
+    /// What is wrong, and how to make it so.
+    type Spoiled = (&'static str, fn(&mut Value));
+
+    fn validator() -> jsonschema::Validator {
+        let schema = serde_json::from_str(include_str!("../../../docs/results.schema.json")).unwrap();
+        jsonschema::validator_for(&schema).unwrap()
+    }
+
+    fn value(results: &Results) -> Value {
+        serde_json::from_str(&results.to_json().unwrap()).unwrap()
+    }
+
+    /// A recording of one move with a ramp as following error, judged by two limits of which one cannot be measured.
+    fn judged() -> RunResult {
+        let rate = Rate::new(1000).unwrap();
+        let spec = ChannelSpec { name: "following_error.load".into(), unit: "m".into(), writer: "test".into(), rate };
+        let recording = Recording {
+            about: About {
+                scenario: "ramp".into(),
+                engine: "exact".into(),
+                axis_unit: "m".into(),
+                bodies: vec!["load".into()],
+            },
+            rate,
+            channels: vec![Channel { spec, values: (0..1000).map(|k| f64::from(k) * 0.1e-6).collect() }],
+            moves: vec![Move {
+                label: "move to 1 m".into(),
+                start: 0.0,
+                end: 0.5,
+                from: 0.0,
+                to: 1.0,
+                peaks: [2.0, 8.0, f64::INFINITY, f64::INFINITY],
+                limits: [Some(2.5), Some(8.0), None, None],
+                cruise: (0.2, 0.0),
+            }],
+            events: vec![Event { start: 0.1, end: 0.1, source: "test".into(), message: "an event".into() }],
+        };
+        let mut metrics = measure(&recording, &Question::default());
+        let limits = [Limit::at_most(Name::FollowingErrorPeakLoad, 0.1e-3), Limit::at_most(Name::SettlingTime, 0.1)];
+        let verdict = metrics.judge(&limits);
+        let run = RunIdentity { name: "ramp".into(), engine: "exact".into(), ..RunIdentity::default() };
+        RunResult::judged(run, &recording, &metrics, &verdict)
+    }
+
+    #[test]
+    fn results_are_as_the_schema_says() {
+        let mut results = samples::results();
+        results.scenarios.push(judged());
+        let errors: Vec<_> = validator().iter_errors(&value(&results)).map(|error| error.to_string()).collect();
+        assert!(errors.is_empty(), "{errors:#?}");
+    }
+
+    #[test]
+    fn the_schema_refuses_what_is_wrong() {
+        let right = value(&samples::results());
+        let wrong: [Spoiled; 6] = [
+            ("another version", |v| v["schema"] = json!("servobench-results/2")),
+            ("no verdict", |v| drop(v["scenarios"][0].as_object_mut().unwrap().remove("verdict"))),
+            ("a verdict of its own", |v| v["scenarios"][0]["verdict"] = json!("maybe")),
+            ("passed with a reason", |v| v["scenarios"][0]["reason"] = json!("why")),
+            ("a metric without unit", |v| {
+                drop(v["scenarios"][0]["metrics"]["move_time"].as_object_mut().unwrap().remove("unit"));
+            }),
+            ("a field nobody knows", |v| v["scenarios"][0]["host"] = json!("here")),
+        ];
+        for (what, spoil) in wrong {
+            let mut value = right.clone();
+            spoil(&mut value);
+            assert!(!validator().is_valid(&value), "{what}");
+        }
+        assert!(validator().is_valid(&right));
+    }
+
+    #[test]
+    fn a_judged_run_holds_every_limit() {
+        let run = judged();
+        assert_eq!(run.verdict, Outcome::Failed);
+        assert!((run.duration - 1.0).abs() < 1e-15);
+        let peak = run.metrics.get("following_error_peak_load").unwrap();
+        assert_eq!((peak.limit, peak.pass), (Some(0.1e-3), Some(true)));
+        let settling = run.metrics.get("settling_time").unwrap();
+        assert_eq!((settling.value, settling.limit, settling.pass), (None, Some(0.1), Some(false)));
+        let why = "settling_time could not be measured: the recording has no channel `load.position`";
+        assert_eq!(run.reason.as_deref(), Some(why));
+        assert_eq!(run.moves[0].metrics.get("setpoint_velocity_ratio").unwrap().value, Some(0.8));
+        assert_eq!(run.events.len(), 1);
+    }
+
+    #[test]
+    fn json_reads_back_to_the_same_bits_and_keeps_the_order() {
+        let results = Results::new(vec![judged(), samples::snap()]);
+        let text = results.to_json().unwrap();
+        let back = Results::from_json(&text).unwrap();
+        assert_eq!(back, results);
+        assert_eq!(back.to_json().unwrap(), text);
+        let names: Vec<_> = back.scenarios[1].metrics.iter().map(|(name, _)| name.to_owned()).collect();
+        let order: Vec<_> = results.scenarios[1].metrics.iter().map(|(name, _)| name.to_owned()).collect();
+        assert_eq!(names, order);
+    }
+
+    #[test]
+    fn another_schema_is_refused() {
+        let text = samples::results().to_json().unwrap().replace(SCHEMA_NAME, "servobench-results/2");
+        let e = Results::from_json(&text).unwrap_err().to_string();
+        assert_eq!(e, "the results have schema `servobench-results/2`; this version reads `servobench-results/1`");
+        assert!(matches!(Results::from_json("{}"), Err(ReportError::Json(_))));
+    }
+}

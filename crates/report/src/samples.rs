@@ -1,0 +1,106 @@
+//! Results for the tests: the move of Lambrechts under two limits, a run that missed limits, one that broke off.
+use crate::results::{EventResult, MetricResult, Outcome, Results, RunResult};
+use servobench_metrics::Name;
+
+/// A metric without a limit.
+fn free(name: Name, value: f64, unit: &str) -> (String, MetricResult) {
+    let metric = MetricResult { value: Some(value), unit: unit.into(), limit: None, limit_min: None, pass: None };
+    (name.to_string(), metric)
+}
+
+/// A metric with a largest value.
+fn limited(name: Name, value: Option<f64>, unit: &str, limit: f64) -> (String, MetricResult) {
+    let pass = Some(value.is_some_and(|value| value <= limit));
+    (name.to_string(), MetricResult { value, unit: unit.into(), limit: Some(limit), limit_min: None, pass })
+}
+
+/// A run that passed, with these metrics.
+pub(crate) fn run(name: &str, engine: &str, metrics: impl IntoIterator<Item = (String, MetricResult)>) -> RunResult {
+    RunResult {
+        name: name.into(),
+        file: Some(format!("scenarios/{name}.toml")),
+        engine: engine.into(),
+        verdict: Outcome::Passed,
+        duration: 2.0,
+        reason: None,
+        metrics: metrics.into_iter().collect(),
+        absent: [("current_peak".to_owned(), "the recording has no channel `current.d`".to_owned())]
+            .into_iter()
+            .collect(),
+        moves: vec![],
+        events: vec![],
+        recording: Some(format!("{name}.{engine}.parquet")),
+    }
+}
+
+/// A run with these numbers: move, settling (s), error, peak-to-peak (m), frequency (Hz), damping, force (N).
+pub(crate) fn of_numbers(name: &str, numbers: [f64; 8]) -> RunResult {
+    let [time, settling, error, vibration, frequency, damping, peak, rms] = numbers;
+    run(
+        name,
+        "exact",
+        [
+            free(Name::MoveTime, time, "s"),
+            free(Name::SettlingTime, settling, "s"),
+            free(Name::MoveAndSettlingTime, time + settling, "s"),
+            free(Name::FollowingErrorPeakLoad, error, "m"),
+            free(Name::ResidualVibrationPp, vibration, "m"),
+            free(Name::ResidualVibrationAmplitude, vibration / 2.0, "m"),
+            free(Name::ResidualVibrationFrequency, frequency, "Hz"),
+            free(Name::ResidualVibrationDamping, damping, ""),
+            free(Name::TorquePeak, peak, "N"),
+            free(Name::TorqueRms, rms, "N"),
+        ],
+    )
+}
+
+/// The jerk-limited move.
+pub(crate) fn jerk() -> RunResult {
+    of_numbers("lambrechts-jerk", [1.3, 0.004, 3.1e-6, 3.4e-6, 38.985, 0.0021, 170.0, 61.2])
+}
+
+/// The snap-limited move.
+pub(crate) fn snap() -> RunResult {
+    of_numbers("lambrechts-snap", [1.35, 0.0, 0.73e-6, 0.21e-6, 38.985, 0.0021, 169.0, 60.0])
+}
+
+/// A run that missed three limits, one of them because it could not be measured.
+pub(crate) fn missed() -> RunResult {
+    let mut run = run(
+        "feed-axis-reversal-at-low-speed-with-stick-slip",
+        "mujoco",
+        [
+            free(Name::MoveTime, 0.5, "s"),
+            limited(Name::SettlingTime, Some(0.0352), "s", 0.02),
+            limited(Name::FollowingErrorPeakLoad, Some(45.1e-6), "m", 50e-6),
+            limited(Name::ResidualVibrationPp, Some(8.3e-6), "m", 2e-6),
+            limited(Name::CurrentPeak, None, "", 10.0),
+        ],
+    );
+    run.verdict = Outcome::Failed;
+    run.reason = Some(
+        "settling_time 35.2 ms, limit 20.0 ms; residual_vibration_pp 8.30 µm, limit 2.00 µm; current_peak could not \
+         be measured: the recording has no channel `current.d`"
+            .into(),
+    );
+    run.events =
+        vec![EventResult { start: 0.1, end: 0.2, source: "velocity loop".into(), message: "torque limit".into() }];
+    run
+}
+
+/// A run that broke off.
+pub(crate) fn broken() -> RunResult {
+    let mut run = run("two-mass", "rapier", []);
+    run.verdict = Outcome::Error;
+    run.reason = Some(
+        "the mechanics diverged at 0.123 s: the position of `load` is not finite; take a smaller step than 1.00 ms"
+            .into(),
+    );
+    run.absent = [].into_iter().collect();
+    run
+}
+
+/// All of them.
+pub(crate) fn results() -> Results {
+    Results::new(vec![jerk(), missed(), snap(), broken()])
+}

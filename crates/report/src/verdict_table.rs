@@ -1,0 +1,197 @@
+//! The table at the end of a run: what failed first, each missed limit below its run.
+use crate::results::{MetricResult, Outcome, Results, RunResult};
+use crate::style::{Ink, Style};
+use crate::text::{elided, widest, wrapped};
+use servobench_metrics::{Name, Quantity};
+
+/// Numbers that every row shows, with their headings.
+const COLUMNS: [(&str, Name); 4] = [
+    ("MOVE", Name::MoveTime),
+    ("SETTLING", Name::SettlingTime),
+    ("FOLLOWING", Name::FollowingErrorPeakLoad),
+    ("VIBRATION", Name::ResidualVibrationPp),
+];
+/// `-814 µrad` fits.
+const NUMBER: usize = 9;
+const VERDICT: usize = 7;
+const INDENT: usize = VERDICT + 2;
+/// A scenario's name is elided to this rather than making the table wider than the terminal.
+const SHORTEST_NAME: usize = 12;
+
+/// Runs with their verdicts and main numbers: failures and errors first, with the limits missed and the reasons; then
+/// what passed; then the count. MOVE is the set-point's duration, FOLLOWING the peak following error of the load,
+/// VIBRATION peak-to-peak after the move.
+#[must_use]
+pub fn verdict_table(results: &Results, style: Style) -> String {
+    let runs = &results.scenarios;
+    let engine = widest(runs.iter().map(|run| run.engine.as_str())).max("ENGINE".len());
+    let fixed = INDENT + 2 + engine + 1 + COLUMNS.len() * (NUMBER + 1);
+    let widest_name = widest(runs.iter().map(|run| run.name.as_str())).max("SCENARIO".len());
+    let name = widest_name.min(style.width.saturating_sub(fixed)).max(SHORTEST_NAME);
+    let mut table = String::new();
+    let titles = COLUMNS.map(|(title, _)| format!(" {title:>NUMBER$}")).concat();
+    let heading = format!("{:VERDICT$}  {:name$}  {:engine$} {titles}", "VERDICT", "SCENARIO", "ENGINE");
+    line(&mut table, &style.paint(Ink::Heading, &heading));
+    for run in in_order(runs) {
+        row(&mut table, run, name, engine, style);
+    }
+    line(&mut table, "");
+    line(&mut table, &summary(results, style));
+    table
+}
+
+/// Errors and failures first, otherwise as they came.
+fn in_order(runs: &[RunResult]) -> impl Iterator<Item = &RunResult> {
+    [Outcome::Error, Outcome::Failed, Outcome::Passed]
+        .into_iter()
+        .flat_map(|outcome| runs.iter().filter(move |run| run.verdict == outcome))
+}
+
+fn row(table: &mut String, run: &RunResult, name: usize, engine: usize, style: Style) {
+    let (word, ink) = match run.verdict {
+        Outcome::Passed => ("passed", Ink::Good),
+        Outcome::Failed => ("FAILED", Ink::Bad),
+        Outcome::Error => ("ERROR", Ink::Bad),
+    };
+    let verdict = style.paint(ink, &format!("{word:VERDICT$}"));
+    let mut text = format!("{verdict}  {:name$}  {:engine$} ", elided(&run.name, name), run.engine);
+    for (_, metric) in COLUMNS {
+        let cell = run.metric(metric).map_or("–".into(), |(value, unit)| Quantity::new(value, unit).to_string());
+        let missed = run.metrics.get(metric.as_str()).is_some_and(|metric| metric.pass == Some(false));
+        let cell = format!("{cell:>NUMBER$}");
+        text.push(' ');
+        text.push_str(&if missed { style.paint(Ink::Bad, &cell) } else { cell });
+    }
+    line(table, text.trim_end());
+    match run.verdict {
+        Outcome::Passed => {}
+        Outcome::Failed => missed_limits(table, run, style),
+        Outcome::Error => {
+            for part in wrapped(run.reason.as_deref().unwrap_or_default(), style.width.saturating_sub(INDENT)) {
+                line(table, &format!("{:INDENT$}{part}", ""));
+            }
+        }
+    }
+}
+
+fn missed_limits(table: &mut String, run: &RunResult, style: Style) {
+    let missed: Vec<_> = run.metrics.iter().filter(|(_, metric)| metric.pass == Some(false)).collect();
+    let name = widest(missed.iter().map(|(name, _)| *name));
+    for (metric_name, metric) in missed {
+        let Some(value) = metric.value else {
+            let why = run.absent.get(metric_name).map_or("it is not measured here", String::as_str);
+            let text = format!("{metric_name} could not be measured: {why}");
+            for (k, part) in wrapped(&text, style.width.saturating_sub(INDENT + 2)).iter().enumerate() {
+                line(table, &format!("{:INDENT$}{}{part}", "", if k == 0 { "" } else { "  " }));
+            }
+            continue;
+        };
+        let value_text = style.paint(Ink::Bad, &format!("{:>NUMBER$}", Quantity::new(value, &metric.unit)));
+        let text = format!("{:INDENT$}{metric_name:name$}  {value_text}  {}", "", missed_bound(metric, value));
+        line(table, text.trim_end());
+    }
+}
+
+/// `limit 20.0 ms, 76 % over`
+fn missed_bound(metric: &MetricResult, value: f64) -> String {
+    let bound = |bound: f64| Quantity::new(bound, &metric.unit);
+    let below = metric.limit_min.filter(|min| value < *min);
+    let (words, limit) = match (below, metric.limit) {
+        (Some(min), _) => (format!("limit at least {}", bound(min)), min),
+        (None, Some(max)) => (format!("limit {}", bound(max)), max),
+        (None, None) => return String::new(),
+    };
+    let size = if below.is_some() { value } else { value.abs() };
+    let share = 100.0 * (size / limit - 1.0);
+    match share {
+        _ if limit <= 0.0 || !share.is_finite() => words,
+        share if below.is_some() => format!("{words}, {} under", percent(-share)),
+        // Several times over is easier to grasp than a thousand per cent.
+        share if share >= 200.0 => format!("{words}, {:.1} times as much", size / limit),
+        share => format!("{words}, {} over", percent(share)),
+    }
+}
+
+/// Two digits, and no miss looks like none.
+fn percent(share: f64) -> String {
+    if share < 0.1 { "less than 0.1 %".into() } else { format!("{:.2} %", Quantity::new(share, "")) }
+}
+
+fn summary(results: &Results, style: Style) -> String {
+    let runs = results.scenarios.len();
+    let mut text = format!("{runs} run{}: ", if runs == 1 { "" } else { "s" });
+    let parts: Vec<_> = [
+        (Outcome::Error, "could not be carried out", Ink::Bad),
+        (Outcome::Failed, "failed", Ink::Bad),
+        (Outcome::Passed, "passed", Ink::Good),
+    ]
+    .into_iter()
+    .map(|(outcome, word, ink)| (results.count(outcome), word, ink))
+    .filter(|(count, ..)| *count > 0)
+    .map(|(count, word, ink)| style.paint(ink, &format!("{count} {word}")))
+    .collect();
+    text.push_str(&parts.join(", "));
+    text
+}
+
+fn line(table: &mut String, text: &str) {
+    table.push_str(text);
+    table.push('\n');
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples;
+
+    #[test]
+    fn at_eighty_columns() {
+        let table = verdict_table(&samples::results(), Style::default());
+        insta::assert_snapshot!(table, @r#"
+        VERDICT  SCENARIO                ENGINE       MOVE  SETTLING FOLLOWING VIBRATION
+        ERROR    two-mass                rapier          –         –         –         –
+                 the mechanics diverged at 0.123 s: the position of `load` is not
+                 finite; take a smaller step than 1.00 ms
+        FAILED   feed-axis-r…stick-slip  mujoco     500 ms   35.2 ms   45.1 µm   8.30 µm
+                 settling_time            35.2 ms  limit 20.0 ms, 76 % over
+                 residual_vibration_pp    8.30 µm  limit 2.00 µm, 4.2 times as much
+                 current_peak could not be measured: the recording has no channel
+                   `current.d`
+        passed   lambrechts-jerk         exact      1.30 s   4.00 ms   3.10 µm   3.40 µm
+        passed   lambrechts-snap         exact      1.35 s       0 s    730 nm    210 nm
+
+        4 runs: 1 could not be carried out, 1 failed, 2 passed
+        "#);
+        assert!(table.lines().all(|line| line.chars().count() <= 80), "{table}");
+    }
+
+    #[test]
+    fn a_wide_terminal_shows_whole_names() {
+        let table = verdict_table(&samples::results(), Style { width: 120, colour: false });
+        assert!(table.contains("feed-axis-reversal-at-low-speed-with-stick-slip"), "{table}");
+    }
+
+    #[test]
+    fn colours_only_when_asked_for() {
+        let plain = verdict_table(&samples::results(), Style::default());
+        let coloured = verdict_table(&samples::results(), Style { width: 80, colour: true });
+        assert!(!plain.contains('\x1b') && coloured.contains("\x1b[1;31mFAILED"), "{coloured}");
+        let mut bare = coloured;
+        for code in ["\x1b[0m", "\x1b[1m", "\x1b[2m", "\x1b[32m", "\x1b[1;31m"] {
+            bare = bare.replace(code, "");
+        }
+        assert_eq!(bare, plain);
+    }
+
+    #[test]
+    fn how_far_beyond_a_limit() {
+        let metric =
+            |limit_min, limit| MetricResult { value: None, unit: "s".into(), limit, limit_min, pass: Some(false) };
+        assert_eq!(missed_bound(&metric(None, Some(0.02)), 0.0352), "limit 20.0 ms, 76 % over");
+        assert_eq!(missed_bound(&metric(None, Some(0.02)), -0.0352), "limit 20.0 ms, 76 % over");
+        assert_eq!(missed_bound(&metric(None, Some(0.02)), 0.1), "limit 20.0 ms, 5.0 times as much");
+        assert_eq!(missed_bound(&metric(None, Some(0.02)), 0.020_000_1), "limit 20.0 ms, less than 0.1 % over");
+        assert_eq!(missed_bound(&metric(Some(1.0), Some(2.0)), 0.9), "limit at least 1.00 s, 10 % under");
+        assert_eq!(missed_bound(&metric(None, Some(0.0)), 0.9), "limit 0 s");
+    }
+}
