@@ -16,20 +16,10 @@ fn main() {
 /// Damped oscillations of different frequencies: smooth and never repeating, as the signals of an axis are.
 fn recording() -> Recording {
     let rate = Rate::new(16_000).expect("not zero");
-    let spec = |k| ChannelSpec {
-        name: format!("channel.{k}"),
-        unit: "m".into(),
-        writer: "bench".into(),
-        rate,
-    };
-    let about = About {
-        scenario: "bench".into(),
-        engine: "none".into(),
-        axis_unit: "m".into(),
-        bodies: vec!["motor".into()],
-    };
-    let mut recorder =
-        Recorder::new(about, rate, (0..CHANNELS).map(spec).collect(), INSTANTS as usize);
+    let spec = |k| ChannelSpec { name: format!("channel.{k}"), unit: "m".into(), writer: "bench".into(), rate };
+    let about =
+        About { scenario: "bench".into(), engine: "none".into(), axis_unit: "m".into(), bodies: vec!["motor".into()] };
+    let mut recorder = Recorder::new(about, rate, (0..CHANNELS).map(spec).collect(), INSTANTS as usize);
     let mut row = vec![0.0; CHANNELS as usize];
     for instant in 0..INSTANTS {
         let t = f64::from(instant) * rate.period();
@@ -51,11 +41,7 @@ fn write(bencher: Bencher) {
     let path = folder.path().join("run.parquet");
     bencher.counter(raw_size()).bench(|| recording.write_parquet(&path).expect("writes"));
     let size = std::fs::metadata(&path).expect("was written").len();
-    println!(
-        "{:.1} MB on disk for {:.1} MB of values",
-        size as f64 / 1e6,
-        f64::from(8 * INSTANTS * CHANNELS) / 1e6
-    );
+    println!("{:.1} MB on disk for {:.1} MB of values", size as f64 / 1e6, f64::from(8 * INSTANTS * CHANNELS) / 1e6);
 }
 
 #[divan::bench(sample_count = 5)]

@@ -56,12 +56,7 @@ impl Recording {
     #[must_use]
     pub fn envelope(&self, name: &str, buckets: usize) -> Option<Vec<(f64, f64)>> {
         let values = self.channel(name)?;
-        Some(
-            envelope(values, buckets)
-                .into_iter()
-                .map(|index| (self.time_of(index), values[index]))
-                .collect(),
-        )
+        Some(envelope(values, buckets).into_iter().map(|index| (self.time_of(index), values[index])).collect())
     }
 }
 

@@ -24,9 +24,7 @@ pub enum TraceError {
         reason: String,
     },
     /// Two columns would have the same name.
-    #[error(
-        "channel `{name}` cannot be written: the name is taken by {by}; every channel needs its own name"
-    )]
+    #[error("channel `{name}` cannot be written: the name is taken by {by}; every channel needs its own name")]
     NameTaken {
         /// Name of the channel.
         name: String,

@@ -149,12 +149,7 @@ impl From<&Event> for EventHeader {
 
 impl From<EventHeader> for Event {
     fn from(event: EventHeader) -> Self {
-        Self {
-            start: event.start.into(),
-            end: event.end.into(),
-            source: event.source,
-            message: event.message,
-        }
+        Self { start: event.start.into(), end: event.end.into(), source: event.source, message: event.message }
     }
 }
 
@@ -188,11 +183,10 @@ impl Header {
 
     /// The recording without its values; `None` when a rate is zero.
     pub(crate) fn into_recording(self) -> Option<Recording> {
-        let channels =
-            self.channels.into_iter().map(|ChannelHeader { name, unit, writer, rate }| {
-                let spec = ChannelSpec { name, unit, writer, rate: Rate::new(rate)? };
-                Some(Channel { spec, values: Vec::new() })
-            });
+        let channels = self.channels.into_iter().map(|ChannelHeader { name, unit, writer, rate }| {
+            let spec = ChannelSpec { name, unit, writer, rate: Rate::new(rate)? };
+            Some(Channel { spec, values: Vec::new() })
+        });
         Some(Recording {
             rate: Rate::new(self.rate)?,
             channels: channels.collect::<Option<_>>()?,
@@ -220,9 +214,7 @@ mod tests {
 
     #[test]
     fn special_numbers_survive_json() {
-        for value in
-            [f64::INFINITY, f64::NEG_INFINITY, 0.0, -0.0, f64::MIN_POSITIVE, 5e-324, f64::MAX]
-        {
+        for value in [f64::INFINITY, f64::NEG_INFINITY, 0.0, -0.0, f64::MIN_POSITIVE, 5e-324, f64::MAX] {
             assert_eq!(through_json(value).to_bits(), value.to_bits(), "{value}");
         }
         assert!(through_json(f64::NAN).is_nan());

@@ -26,16 +26,12 @@ impl Recording {
         let io = |source| TraceError::Io { action: "read", path: path.into(), source };
         let mut file = File::open(path).map_err(io)?;
         let own_cursor = File::open(path).map_err(io)?;
-        let reader = SerializedFileReader::new(own_cursor).map_err(|error| {
-            TraceError::NotParquet { path: path.into(), reason: error.to_string() }
-        })?;
+        let reader = SerializedFileReader::new(own_cursor)
+            .map_err(|error| TraceError::NotParquet { path: path.into(), reason: error.to_string() })?;
         let metadata = reader.metadata().file_metadata();
         let header = header(metadata, path)?;
         let schema = metadata.schema_descr();
-        let indices = header
-            .columns()
-            .map(|name| column(schema, name, path))
-            .collect::<Result<Vec<_>, _>>()?;
+        let indices = header.columns().map(|name| column(schema, name, path)).collect::<Result<Vec<_>, _>>()?;
         if !seal::holds(&mut file).map_err(io)? {
             let reason = format!("its bytes do not match its `{}`", seal::KEY);
             return Err(TraceError::Damaged { path: path.into(), reason });
@@ -46,11 +42,10 @@ impl Recording {
             reason: format!("a rate in `{RECORDING_KEY}` is 0 Hz"),
         })?;
         for (channel, index) in recording.channels.iter_mut().zip(indices) {
-            channel.values =
-                values(&reader, index, instants).map_err(|error| TraceError::Damaged {
-                    path: path.into(),
-                    reason: format!("column `{}`: {error}", channel.spec.name),
-                })?;
+            channel.values = values(&reader, index, instants).map_err(|error| TraceError::Damaged {
+                path: path.into(),
+                reason: format!("column `{}`: {error}", channel.spec.name),
+            })?;
         }
         Ok(recording)
     }
@@ -92,11 +87,7 @@ fn column(schema: &SchemaDescriptor, name: &str, path: &Path) -> Result<usize, T
 }
 
 /// All values of a column that has `instants` of them.
-fn values(
-    reader: &SerializedFileReader<File>,
-    column: usize,
-    instants: usize,
-) -> Result<Vec<f64>, ParquetError> {
+fn values(reader: &SerializedFileReader<File>, column: usize, instants: usize) -> Result<Vec<f64>, ParquetError> {
     let mut values = Vec::with_capacity(instants);
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group)?;
@@ -108,9 +99,6 @@ fn values(
     if values.len() == instants {
         Ok(values)
     } else {
-        Err(ParquetError::General(format!(
-            "it has {} values, {instants} were written",
-            values.len()
-        )))
+        Err(ParquetError::General(format!("it has {} values, {instants} were written", values.len())))
     }
 }

@@ -69,10 +69,7 @@ impl Recording {
     /// Values of the channel `name`.
     #[must_use]
     pub fn channel(&self, name: &str) -> Option<&[f64]> {
-        self.channels
-            .iter()
-            .find(|channel| channel.spec.name == name)
-            .map(|channel| channel.values.as_slice())
+        self.channels.iter().find(|channel| channel.spec.name == name).map(|channel| channel.values.as_slice())
     }
 
     /// Number of recorded instants.

@@ -50,10 +50,7 @@ impl Recording {
         for channel in &self.channels {
             let (name, found, expected) = (&channel.spec.name, channel.values.len(), self.len());
             if name == TIME {
-                return Err(TraceError::NameTaken {
-                    name: name.clone(),
-                    by: "the column of instants",
-                });
+                return Err(TraceError::NameTaken { name: name.clone(), by: "the column of instants" });
             }
             if !taken.insert(name) {
                 return Err(TraceError::NameTaken { name: name.clone(), by: "another channel" });
@@ -71,8 +68,7 @@ impl Recording {
             move |source| TraceError::Io { action, path, source }
         };
         let create = File::options().read(true).write(true).create_new(true).open(partial);
-        let mut buffered =
-            BufWriter::with_capacity(1 << 20, create.map_err(io("create", partial))?);
+        let mut buffered = BufWriter::with_capacity(1 << 20, create.map_err(io("create", partial))?);
         let encode = |reason| TraceError::Encode { path: path.to_path_buf(), reason };
         self.encode(&mut buffered).map_err(|error| match error {
             ParquetError::External(cause) => match cause.downcast() {
@@ -92,8 +88,8 @@ impl Recording {
 
     /// The file's bytes, not yet sealed.
     fn encode(&self, sink: impl Write + Send) -> ParquetResult<()> {
-        let text = serde_json::to_string(&Header::of(self))
-            .map_err(|error| ParquetError::General(error.to_string()))?;
+        let text =
+            serde_json::to_string(&Header::of(self)).map_err(|error| ParquetError::General(error.to_string()))?;
         let metadata = vec![
             KeyValue::new(FORMAT_KEY.into(), FORMAT.to_owned()),
             KeyValue::new(seal::KEY.into(), seal::BLANK.to_owned()),
@@ -127,8 +123,7 @@ impl Recording {
     }
 
     fn schema(&self) -> ParquetResult<TypePtr> {
-        let names = std::iter::once(TIME)
-            .chain(self.channels.iter().map(|channel| channel.spec.name.as_str()));
+        let names = std::iter::once(TIME).chain(self.channels.iter().map(|channel| channel.spec.name.as_str()));
         let column = |name| {
             let column = Type::primitive_type_builder(name, PhysicalType::DOUBLE);
             column.with_repetition(Repetition::REQUIRED).build().map(Arc::new)
@@ -138,14 +133,9 @@ impl Recording {
     }
 }
 
-fn write_column<W: Write + Send>(
-    group: &mut SerializedRowGroupWriter<'_, W>,
-    values: &[f64],
-) -> ParquetResult<()> {
+fn write_column<W: Write + Send>(group: &mut SerializedRowGroupWriter<'_, W>, values: &[f64]) -> ParquetResult<()> {
     let Some(mut column) = group.next_column()? else {
-        return Err(ParquetError::General(
-            "the schema has fewer columns than the recording".into(),
-        ));
+        return Err(ParquetError::General("the schema has fewer columns than the recording".into()));
     };
     column.typed::<DoubleType>().write_batch(values, None, None)?;
     column.close()

@@ -33,8 +33,12 @@ fn one_move() -> impl Strategy<Value = Move> {
 }
 
 fn event() -> impl Strategy<Value = Event> {
-    (number(), number(), any::<String>(), any::<String>())
-        .prop_map(|(start, end, source, message)| Event { start, end, source, message })
+    (number(), number(), any::<String>(), any::<String>()).prop_map(|(start, end, source, message)| Event {
+        start,
+        end,
+        source,
+        message,
+    })
 }
 
 fn spec() -> impl Strategy<Value = ChannelSpec> {
@@ -55,23 +59,12 @@ fn channels() -> impl Strategy<Value = Vec<Channel>> {
 }
 
 fn any_recording() -> impl Strategy<Value = Recording> {
-    let about = (
-        any::<String>(),
-        any::<String>(),
-        any::<String>(),
-        prop::collection::vec(any::<String>(), 0..3),
-    );
+    let about = (any::<String>(), any::<String>(), any::<String>(), prop::collection::vec(any::<String>(), 0..3));
     let moves = prop::collection::vec(one_move(), 0..3);
     let events = prop::collection::vec(event(), 0..3);
     (about, rate(), channels(), moves, events).prop_map(|(about, rate, channels, moves, events)| {
         let (scenario, engine, axis_unit, bodies) = about;
-        Recording {
-            about: About { scenario, engine, axis_unit, bodies },
-            rate,
-            channels,
-            moves,
-            events,
-        }
+        Recording { about: About { scenario, engine, axis_unit, bodies }, rate, channels, moves, events }
     })
 }
 
@@ -79,14 +72,9 @@ fn any_recording() -> impl Strategy<Value = Recording> {
 fn assert_same(one: &Recording, two: &Recording) {
     assert_eq!(one, two);
     // The shortest text that reads back as the same f64 tells all of them apart, zeros too.
-    assert_eq!(
-        format!("{:?}{:?}", one.moves, one.events),
-        format!("{:?}{:?}", two.moves, two.events)
-    );
+    assert_eq!(format!("{:?}{:?}", one.moves, one.events), format!("{:?}{:?}", two.moves, two.events));
     for (one, two) in one.channels.iter().zip(&two.channels) {
-        let bits = |channel: &Channel| {
-            channel.values.iter().map(|value| value.to_bits()).collect::<Vec<_>>()
-        };
+        let bits = |channel: &Channel| channel.values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
         assert_eq!(bits(one), bits(two), "{}", one.spec.name);
     }
 }
@@ -116,12 +104,7 @@ fn small(instants: u32) -> Recording {
             limits: [Some(1.0), Some(5.0), Some(50.0), None],
             cruise: (0.3, 0.7),
         }],
-        events: vec![Event {
-            start: 0.25,
-            end: 0.5,
-            source: "drive".into(),
-            message: "current limit".into(),
-        }],
+        events: vec![Event { start: 0.25, end: 0.5, source: "drive".into(), message: "current limit".into() }],
     }
 }
 
@@ -231,32 +214,21 @@ fn a_foreign_parquet_file_is_told_what_it_lacks() {
     let path = folder.path().join("foreign.parquet");
     let refusal = |keys: &[(&str, &str)]| {
         let schema = parse_message_type("message other { required double x; }").unwrap();
-        let keys = keys
-            .iter()
-            .map(|(key, value)| KeyValue::new((*key).into(), (*value).to_owned()))
-            .collect();
+        let keys = keys.iter().map(|(key, value)| KeyValue::new((*key).into(), (*value).to_owned())).collect();
         let properties = WriterProperties::builder().set_key_value_metadata(Some(keys)).build();
         let file = fs::File::create(&path).unwrap();
         SerializedFileWriter::new(file, schema.into(), properties.into()).unwrap().close().unwrap();
         Recording::read_parquet(&path).unwrap_err()
     };
-    let lacks = |missing: &str| {
-        format!("`{}` is not a recording of servobench: it lacks {missing}", path.display())
-    };
+    let lacks = |missing: &str| format!("`{}` is not a recording of servobench: it lacks {missing}", path.display());
     assert_eq!(refusal(&[]).to_string(), lacks("the key `servobench.format` in its file metadata"));
     let format = ("servobench.format", "1");
-    assert_eq!(
-        refusal(&[format]).to_string(),
-        lacks("the key `servobench.recording` in its file metadata")
-    );
+    assert_eq!(refusal(&[format]).to_string(), lacks("the key `servobench.recording` in its file metadata"));
     let json = r#"{"scenario":"s","engine":"e","axis_unit":"m","bodies":[],"rate":1,"instants":0,"channels":[{"name":"y","unit":"m","writer":"w","rate":1}],"moves":[],"events":[]}"#;
     let keys = [format, ("servobench.recording", json)];
     assert_eq!(refusal(&keys).to_string(), lacks("the column `y` of type DOUBLE, without nulls"));
     let damage = refusal(&[format, ("servobench.recording", "{}")]).to_string();
-    assert!(
-        damage.contains("`servobench.recording` cannot be read: missing field `scenario`"),
-        "{damage}"
-    );
+    assert!(damage.contains("`servobench.recording` cannot be read: missing field `scenario`"), "{damage}");
     assert!(
         matches!(refusal(&[("servobench.format", "2")]), TraceError::Format { found, known: "1", .. } if found == "2")
     );
