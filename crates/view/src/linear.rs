@@ -124,7 +124,9 @@ fn log_ruler(stream: &RecordingStream, run: &Run<'_>, scene: &Scene) -> Recordin
     let ticks = positions
         .iter()
         .map(|position| [[scene.place(*position), -0.155, -0.06], [scene.place(*position), -0.10, -0.06]]);
-    let labels = positions.iter().map(|position| format!("{} {}", scale.show(*position), scale.unit));
+    // Six decimals hide the rounding of a nice number and keep ticks of a short move far from zero apart.
+    let number = |position: &f64| (position * scale.factor * 1e6).round() / 1e6;
+    let labels = positions.iter().map(|position| format!("{} {}", number(position), scale.unit));
     let ruler = LineStrips3D::new(ticks)
         .with_colors([style::REFERENCE])
         .with_radii([0.002])

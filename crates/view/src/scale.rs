@@ -27,9 +27,16 @@ impl Scale {
         scale(*PREFIXES.iter().rev().find(fits).unwrap_or(&PREFIXES[0]))
     }
 
-    /// A value (SI) in this unit, to six decimals at most.
+    /// A value (SI) in this unit, to four significant digits.
     pub(crate) fn show(&self, value: f64) -> f64 {
-        (value * self.factor * 1e6).round() / 1e6
+        let shown = value * self.factor;
+        let places = 3.0 - shown.abs().log10().floor();
+        if !places.is_finite() {
+            return shown;
+        }
+        // Dividing by a whole power of ten gives the nearest number to the decimal one; multiplying by 0.1 does not.
+        let (shift, power) = (places.abs(), 10_f64.powf(places.abs()).round());
+        if places >= 0.0 && shift <= 300.0 { (shown * power).round() / power } else { (shown / power).round() * power }
     }
 
     /// `name (unit)`, or the name alone for a pure number.
@@ -68,6 +75,23 @@ mod tests {
             ("m", 0.0, 1.0, "m"),
         ] {
             assert_eq!(Scale::for_peak(unit, peak), Scale { factor, unit: shown.into() }, "{peak} {unit}");
+        }
+    }
+
+    #[test]
+    fn four_digits_are_shown() {
+        let show = |value, factor| Scale { factor, unit: String::new() }.show(value).to_string();
+        for (value, factor, shown) in [
+            (18.809_04, 1.0, "18.81"),
+            (5e-6, 1e6, "5"),
+            (311.769_145, 1.0, "311.8"),
+            (0.3, 1e3, "300"),
+            (9_000.0, 1.0, "9000"),
+            (123_456.0, 1.0, "123500"),
+            (-0.012_345, 1.0, "-0.01235"),
+            (0.0, 1e6, "0"),
+        ] {
+            assert_eq!(show(value, factor), shown, "{value}");
         }
     }
 
