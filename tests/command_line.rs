@@ -98,7 +98,7 @@ fn a_missed_limit_ends_with_4_and_is_named() {
     let work = tempfile::tempdir().unwrap();
     let output = servobench(&["run", "tests/scenarios/must-fail.toml", "--out", work.path().to_str().unwrap()]);
     assert_eq!(code(&output), 4, "{}", said(&output));
-    assert!(said(&output).contains("settling_time"), "{}", said(&output));
+    assert!(said(&output).contains("following_error_cruise_load"), "{}", said(&output));
 }
 
 #[test]

@@ -181,13 +181,13 @@ fn json_text(planned: &Planned) -> Result<String, CliError> {
 
 fn csv(planned: &Planned) -> String {
     let unit = planned.unit;
-    let mut text =
-        format!("time_s,position_{unit},velocity_{unit}_s,acceleration_{unit}_s2,jerk_{unit}_s3,snap_{unit}_s4\n");
-    for t in planned.times() {
+    let heading =
+        format!("time_s,position_{unit},velocity_{unit}_s,acceleration_{unit}_s2,jerk_{unit}_s3,snap_{unit}_s4");
+    let rows = planned.times().into_iter().map(|t| {
         let Setpoint { x, v, a, j, s } = planned.profile.at(t);
-        text.push_str(&format!("{t},{x},{v},{a},{j},{s}\n"));
-    }
-    text
+        format!("{t},{x},{v},{a},{j},{s}")
+    });
+    std::iter::once(heading).chain(rows).collect::<Vec<_>>().join("\n") + "\n"
 }
 
 fn svg(planned: &Planned) -> String {
