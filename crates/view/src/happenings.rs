@@ -21,7 +21,7 @@ struct Span<'a> {
 }
 
 impl Happenings {
-    /// Entities that [`log`](Self::log) would write for `runs`.
+    /// Entities that [`log`] would write for `runs`.
     pub(crate) fn of(runs: &[Run<'_>]) -> Self {
         let mut happenings = Self::default();
         for run in runs {
