@@ -6,7 +6,8 @@ use divan::Bencher;
 use rapier3d_f64::prelude::*;
 use servobench_engine_rapier::Rapier;
 use servobench_plant::{
-    Actuation, Body, Chain, Coordinate, Drive, DryFriction, Engine, Input, Link, Mechanics, MechanicsSetup, Model,
+    Actuation, Body, Chain, Coordinate, Drive, DryFriction, Engine, Input, Link, Mechanics, MechanicsSetup, MjcfModel,
+    Model,
 };
 use std::hint::black_box;
 
@@ -70,6 +71,31 @@ impl Bare {
     }
 }
 
+/// A table of 20 kg on a slide and a load of 10 kg on a slide of the table's.
+const NESTED: &str = r#"<mujoco><option gravity="0 0 0"/><worldbody>
+  <body><joint name="motor" type="slide" axis="1 0 0" damping="10"/>
+    <inertial pos="0 0 0" mass="20" diaginertia="1 1 1"/>
+    <body><joint name="load" type="slide" axis="1 0 0" stiffness="6e5" damping="500"/>
+      <inertial pos="0 0 0" mass="10" diaginertia="1 1 1"/></body></body>
+  </worldbody><actuator><motor name="motor" joint="motor"/></actuator></mujoco>"#;
+
+/// The bodies and joints of [`NESTED`].
+fn bare_multibody() -> Bare {
+    let mut bare = Bare::new(1);
+    let scene = &mut bare.scenes[0];
+    scene.bodies = RigidBodySet::new();
+    let mut parent = scene.bodies.insert(RigidBodyBuilder::fixed());
+    for mass in [20.0, 10.0] {
+        let mass = MassProperties::new(Vector::ZERO, mass, Vector::ONE);
+        let body = RigidBodyBuilder::dynamic().additional_mass_properties(mass).can_sleep(false);
+        let child = scene.bodies.insert(body);
+        let slide = GenericJointBuilder::new(JointAxesMask::all() ^ JointAxesMask::LIN_X);
+        scene.multibody_joints.insert(parent, child, slide, true).unwrap();
+        parent = child;
+    }
+    bare
+}
+
 fn torque(k: u32) -> f64 {
     f64::from(k % 7) - 3.0
 }
@@ -86,6 +112,33 @@ fn a_bare_step(bencher: Bencher, bodies: usize) {
 #[divan::bench(args = [1, 2, 3, 4], sample_count = 400, sample_size = 500)]
 fn advance(bencher: Bencher, bodies: usize) {
     let (mut axis, mut k) = (build(&chain(bodies, DryFriction::NONE)), 0_u32);
+    bencher.bench_local(|| {
+        k = k.wrapping_add(1);
+        let actuation = Actuation::Effort(black_box(torque(k)));
+        axis.advance(&Input { actuation, motor_disturbance: 0.0, load_disturbance: 0.0 }).unwrap();
+    });
+}
+
+#[divan::bench(sample_count = 400, sample_size = 500)]
+fn a_bare_multibody_step(bencher: Bencher) {
+    let (mut bare, mut k) = (bare_multibody(), 0_u32);
+    bencher.bench_local(|| {
+        k = k.wrapping_add(1);
+        bare.step(black_box(torque(k)));
+    });
+}
+
+#[divan::bench(sample_count = 400, sample_size = 500)]
+fn advance_mjcf(bencher: Bencher) {
+    let model = Model::Mjcf(MjcfModel {
+        xml: NESTED.into(),
+        path: "nested.xml".into(),
+        motor_joint: "motor".into(),
+        load_joint: "load".into(),
+        actuator: "motor".into(),
+    });
+    let setup = MechanicsSetup { model, drive: Drive::Effort, step: H, initial: vec![] };
+    let (mut axis, mut k) = (Rapier.build(&setup).unwrap(), 0_u32);
     bencher.bench_local(|| {
         k = k.wrapping_add(1);
         let actuation = Actuation::Effort(black_box(torque(k)));

@@ -1,0 +1,270 @@
+//! A mechanism from an MJCF file as a Rapier multibody: reduced coordinates, so joints neither drift nor give.
+//!
+//! ```text
+//! (M + h/2·D)·v(k+½) = (M − h/2·D)·v(k−½) + h·Q(k)       Rapier's: M(q), gravity, Coriolis forces; ours are in Q
+//! q(k+1) = q(k) + h·v(k+½)                               Rapier's
+//! v(k+1) = v(k+½) + h/2·a(k+1)                           ours, for who reads it: a(k+1) = a(k) + M⁻¹·ΔQ
+//! ```
+//! This is half kick – drift – half kick with the two half kicks between drifts done at once: `Q(k)` holds springs and
+//! tendons at q(k) and the mean of the efforts before and after tick k; the first kick is half as strong. Joint dampers
+//! are D. Rapier's own joint damping is that of backward Euler, of first order, but half of it there and half of it in Q
+//! is the trapezoidal rule. A tendon's damper takes the velocity v(k) and is explicit.
+//!
+//! Second order, but Coriolis forces are taken at v(k−½): of first order. Dry friction (`frictionloss`) is Rapier's own,
+//! a bound on what it takes to stop the joint.
+//!
+//! Rapier takes forces on bodies only, and every changed body costs it a rebuilt active set. Its joint springs act where
+//! `Q` does and cost nothing: one of stiffness 2⁻¹⁰⁰ that is at rest at 2¹⁰⁰·Q pulls with Q, exactly.
+mod assembly;
+
+use crate::mjcf::{Axis, Mechanism, MjcfRefusal, Tendon};
+use crate::scene::{self, diverged};
+use crate::wrong_actuation;
+use assembly::assemble;
+use nalgebra::DVector;
+use rapier3d_f64::prelude::{Multibody, MultibodyIndex, MultibodyJointSet, PhysicsWorld, Vector};
+use servobench_plant::{Actuation, BodyState, Input, Mechanics, MechanicsError};
+use std::f64::consts::TAU;
+
+/// 2¹⁰⁰: how far off a spring's rest position is per unit of effort.
+const FAR: f64 = 1_267_650_600_228_229_401_496_703_205_376.0;
+/// A joint with dry friction that is slower than this is at rest (m/s or rad/s): what Rapier's solver leaves of zero.
+const REST: f64 = 1e-12;
+
+/// A mechanism in Rapier.
+pub(crate) struct Linkage {
+    world: PhysicsWorld,
+    multibody: MultibodyIndex,
+    /// m/s².
+    gravity: Vector,
+    /// Tick length (s).
+    step: f64,
+    joints: Vec<Coordinate>,
+    tendons: Vec<Tendon>,
+    axis: Axis,
+    /// Efforts of the last tick on motor joint and load joint (N or N·m).
+    last: [f64; 2],
+    /// Whether no tick has passed.
+    fresh: bool,
+    /// One number for each joint.
+    work: DVector<f64>,
+    bodies: Vec<BodyState>,
+}
+
+/// A joint and its coordinate.
+#[derive(Debug, Clone, Copy)]
+struct Coordinate {
+    /// Number of its link in the multibody.
+    link: usize,
+    /// Rapier's number of its axis: 0 for a slide along x, 3 for a hinge about x.
+    axis: usize,
+    /// N/m or N·m/rad.
+    stiffness: f64,
+    /// m or rad.
+    spring_rest: f64,
+    /// N·s/m or N·m·s/rad.
+    damping: f64,
+    /// Dry friction (N or N·m).
+    friction: f64,
+    /// Rapier's coordinate (m or rad).
+    position: f64,
+    /// Whole turns that Rapier's coordinate does not hold.
+    turns: f64,
+    /// Velocity at the tick (m/s or rad/s).
+    velocity: f64,
+    /// Rapier's velocity: that of the last drift (m/s or rad/s).
+    drift: f64,
+    /// Effort in the last kick, without the damper's (N or N·m).
+    effort: f64,
+}
+
+/// Why a mechanism could not be put into Rapier.
+#[derive(Debug)]
+pub(crate) enum LinkageError {
+    /// There is something in the file that it cannot be.
+    Refused(Vec<MjcfRefusal>),
+    /// Rapier failed.
+    Engine(MechanicsError),
+}
+
+/// Whether the mechanism can be put into Rapier.
+pub(crate) fn check(mechanism: &Mechanism) -> Result<(), Vec<MjcfRefusal>> {
+    match assemble(mechanism, 1.0) {
+        Err(LinkageError::Refused(refusals)) => Err(refusals),
+        Err(LinkageError::Engine(error)) => Err(vec![MjcfRefusal::Unreadable { message: error.to_string() }]),
+        Ok(_) => Ok(()),
+    }
+}
+
+impl Linkage {
+    /// The mechanism with motor joint and load joint in the given states; the rest of it at rest at zero.
+    pub(crate) fn new(
+        mechanism: &Mechanism,
+        axis: Axis,
+        step: f64,
+        initial: &[BodyState],
+    ) -> Result<Self, LinkageError> {
+        let (mut world, multibody, mut joints) = assemble(mechanism, step)?;
+        for (joint, state) in [axis.motor, axis.load].into_iter().zip(initial) {
+            let joint = &mut joints[joint];
+            (joint.position, joint.velocity, joint.drift) = (state.position, state.velocity, state.velocity);
+        }
+        let links = links(&mut world.multibody_joints, multibody).map_err(LinkageError::Engine)?;
+        links.apply_displacements(&joints.iter().map(|joint| joint.position).collect::<Vec<_>>());
+        for (velocity, joint) in links.generalized_velocity_mut().iter_mut().zip(&joints) {
+            *velocity = joint.drift;
+        }
+        scene::take_in(&mut world).map_err(LinkageError::Engine)?;
+        let mut linkage = Self {
+            world,
+            multibody,
+            gravity: mechanism.gravity,
+            step,
+            work: DVector::zeros(joints.len()),
+            joints,
+            tendons: mechanism.tendons.clone(),
+            axis,
+            last: [0.0; 2],
+            fresh: true,
+            bodies: vec![BodyState::default(); if axis.motor == axis.load { 1 } else { 2 }],
+        };
+        linkage.publish();
+        Ok(linkage)
+    }
+
+    /// Efforts of springs and of tendons' dampers on each joint, into `work`.
+    fn passive(&mut self) {
+        for (effort, joint) in self.work.iter_mut().zip(&self.joints) {
+            *effort = -joint.stiffness * (joint.coordinate() - joint.spring_rest);
+        }
+        for tendon in &self.tendons {
+            let (mut stretch, mut rate) = (-tendon.rest, 0.0);
+            for &(joint, coefficient) in &tendon.terms {
+                stretch += coefficient * self.joints[joint].coordinate();
+                rate += coefficient * self.joints[joint].velocity;
+            }
+            let force = tendon.stiffness * stretch + tendon.damping * rate;
+            for &(joint, coefficient) in &tendon.terms {
+                self.work[joint] -= coefficient * force;
+            }
+        }
+    }
+
+    /// Kick and drift by Rapier; `share` is the part of a kick.
+    fn kick_and_drift(&mut self, share: f64) -> Result<(), MechanicsError> {
+        let links = links(&mut self.world.multibody_joints, self.multibody)?;
+        for (i, joint) in self.joints.iter().enumerate() {
+            let damping = share * joint.damping / 2.0;
+            links.damping_mut()[i] = damping;
+            links.frictions_mut()[i] = share * joint.friction;
+            let effort = joint.effort - damping * joint.drift;
+            if let Some(link) = links.link_mut(joint.link) {
+                link.joint.set_spring(joint.axis, 1.0 / FAR, effort * FAR);
+            }
+        }
+        self.world.gravity = self.gravity * share;
+        scene::step(&mut self.world)
+    }
+
+    /// Reads what Rapier made of the coordinates, and takes whole turns out of them.
+    fn read(&mut self, share: f64) -> Result<(), MechanicsError> {
+        let links = links(&mut self.world.multibody_joints, self.multibody)?;
+        self.work.fill(0.0);
+        let mut turned = false;
+        for (i, joint) in self.joints.iter_mut().enumerate() {
+            let Some(link) = links.link(joint.link) else { continue };
+            joint.position = link.joint().coords()[joint.axis];
+            let drift = links.generalized_velocity()[i];
+            let acceleration = (drift - joint.drift) / (share * self.step);
+            joint.drift = drift;
+            joint.velocity = drift + self.step / 2.0 * acceleration;
+            if joint.axis != 0 && joint.position.abs() > TAU {
+                let turns = (joint.position / TAU).round();
+                joint.turns += turns;
+                joint.position -= turns * TAU;
+                self.work[i] = -turns * TAU;
+                turned = true;
+            }
+        }
+        if turned {
+            links.apply_displacements(self.work.as_slice());
+            for joint in &mut self.joints {
+                if let Some(link) = links.link(joint.link) {
+                    joint.position = link.joint().coords()[joint.axis];
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Velocities at the tick: `read` took the acceleration for constant; this adds what the efforts have changed since.
+    fn correct_velocities(&mut self, now: [f64; 2], share: f64) -> Result<(), MechanicsError> {
+        self.passive();
+        self.work[self.axis.motor] += now[0];
+        self.work[self.axis.load] += now[1];
+        for (change, joint) in self.work.iter_mut().zip(&self.joints) {
+            let rise = 2.0 * (joint.velocity - joint.drift);
+            *change -= joint.effort / share + joint.damping * rise;
+        }
+        let links = links(&mut self.world.multibody_joints, self.multibody)?;
+        if !links.inv_augmented_mass().solve_mut(&mut self.work) {
+            return Err(diverged());
+        }
+        for (i, (change, joint)) in self.work.iter().zip(&mut self.joints).enumerate() {
+            if joint.friction > 0.0 && joint.drift.abs() < REST {
+                (joint.velocity, joint.drift) = (0.0, 0.0);
+                links.generalized_velocity_mut()[i] = 0.0;
+            } else {
+                joint.velocity += self.step / 2.0 * change;
+            }
+        }
+        Ok(())
+    }
+
+    fn publish(&mut self) {
+        for (body, joint) in self.bodies.iter_mut().zip([self.axis.motor, self.axis.load]) {
+            let joint = &self.joints[joint];
+            *body = BodyState { position: joint.coordinate(), velocity: joint.velocity };
+        }
+    }
+}
+
+impl Mechanics for Linkage {
+    fn bodies(&self) -> &[BodyState] {
+        &self.bodies
+    }
+
+    fn advance(&mut self, input: &Input) -> Result<(), MechanicsError> {
+        let Actuation::Effort(effort) = input.actuation else { return Err(wrong_actuation()) };
+        let now = [effort + input.motor_disturbance, input.load_disturbance];
+        let share = if std::mem::take(&mut self.fresh) { 0.5 } else { 1.0 };
+        self.passive();
+        for (effort, joint) in self.work.iter().zip(&mut self.joints) {
+            joint.effort = share * effort;
+        }
+        for (i, joint) in [self.axis.motor, self.axis.load].into_iter().enumerate() {
+            self.joints[joint].effort += f64::midpoint(self.last[i], now[i]);
+        }
+        self.last = now;
+        self.kick_and_drift(share)?;
+        self.read(share)?;
+        self.correct_velocities(now, share)?;
+        self.publish();
+        let total: f64 = self.joints.iter().map(|joint| joint.position + joint.velocity).sum();
+        if total.is_finite() { Ok(()) } else { Err(diverged()) }
+    }
+}
+
+impl Coordinate {
+    /// m or rad.
+    fn coordinate(&self) -> f64 {
+        self.turns * TAU + self.position
+    }
+}
+
+/// The multibody; Rapier keeps it as long as nobody removes a joint.
+fn links(joints: &mut MultibodyJointSet, multibody: MultibodyIndex) -> Result<&mut Multibody, MechanicsError> {
+    joints
+        .get_multibody_mut(multibody)
+        .ok_or_else(|| MechanicsError::Native { engine: crate::NAME, message: "the multibody is gone".into() })
+}

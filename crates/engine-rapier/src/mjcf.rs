@@ -1,0 +1,10 @@
+//! A user's own MJCF file: what of MJCF is simulated, and what a file says.
+mod contact;
+mod grammar;
+mod mass;
+mod mechanism;
+mod refusal;
+mod scan;
+
+pub(crate) use mechanism::{Axis, Freedom, Joint, Mechanism, Tendon};
+pub use refusal::MjcfRefusal;

@@ -1,0 +1,259 @@
+//! What an MJCF file of the subset says, resolved: links with their joints, tendons, motors.
+use super::contact::possible_contacts;
+use super::mass::mass_properties;
+use super::refusal::{MjcfRefusal, list};
+use super::scan::{line, scan};
+use mjcf_rs::Model;
+use mjcf_rs::body::{Joint as MjcfJoint, JointType};
+use mjcf_rs::extras::ActuatorKind;
+use mjcf_rs::glam::{DQuat, DVec3};
+use rapier3d_f64::math::Pose;
+use rapier3d_f64::prelude::{MassProperties, Vector};
+use roxmltree::{Document, Node};
+use servobench_plant::MjcfModel;
+use std::path::Path;
+
+/// A mechanism.
+#[derive(Debug, Clone)]
+pub(crate) struct Mechanism {
+    /// m/s².
+    pub(crate) gravity: Vector,
+    /// In the order of the file: a parent before its children.
+    pub(crate) links: Vec<Link>,
+    pub(crate) tendons: Vec<Tendon>,
+    motors: Vec<Motor>,
+}
+
+/// A body and how it hangs on its parent.
+#[derive(Debug, Clone)]
+pub(crate) struct Link {
+    /// Number of the parent; the world without.
+    pub(crate) parent: Option<usize>,
+    /// Place in the parent when the joint is at zero.
+    pub(crate) pose: Pose,
+    pub(crate) mass: MassProperties,
+    /// Rigid without.
+    pub(crate) joint: Option<Joint>,
+}
+
+/// Whether a joint slides or turns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Freedom {
+    /// m, N.
+    Slide,
+    /// rad, N·m.
+    Hinge,
+}
+
+/// A joint with one degree of freedom.
+#[derive(Debug, Clone)]
+pub(crate) struct Joint {
+    name: Option<String>,
+    pub(crate) freedom: Freedom,
+    /// Frame in the link whose x is the axis and whose origin a hinge turns about.
+    pub(crate) frame: Pose,
+    /// N·s/m or N·m·s/rad.
+    pub(crate) damping: f64,
+    /// N/m or N·m/rad.
+    pub(crate) stiffness: f64,
+    /// Where the spring is at rest (m or rad).
+    pub(crate) spring_rest: f64,
+    /// Dry friction (N or N·m).
+    pub(crate) friction: f64,
+    /// Inertia of the joint's own (kg or kg·m²).
+    pub(crate) armature: f64,
+}
+
+/// Spring and damper along `Σ coefficient·coordinate`.
+#[derive(Debug, Clone)]
+pub(crate) struct Tendon {
+    /// Number of the joint, coefficient.
+    pub(crate) terms: Vec<(usize, f64)>,
+    pub(crate) stiffness: f64,
+    pub(crate) damping: f64,
+    /// Length at which the spring is at rest.
+    pub(crate) rest: f64,
+}
+
+/// A `<motor>`.
+#[derive(Debug, Clone)]
+struct Motor {
+    name: Option<String>,
+    joint: Option<String>,
+    gear: f64,
+}
+
+/// The joints of the axis, by their number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Axis {
+    pub(crate) motor: usize,
+    pub(crate) load: usize,
+}
+
+impl Mechanism {
+    /// Reads a file's text.
+    pub(crate) fn read(xml: &str) -> Result<Self, Vec<MjcfRefusal>> {
+        let unreadable = |error: &dyn std::fmt::Display| vec![MjcfRefusal::Unreadable { message: error.to_string() }];
+        let document = Document::parse(xml).map_err(|error| unreadable(&error))?;
+        let refusals = scan(&document);
+        if !refusals.is_empty() {
+            return Err(refusals);
+        }
+        // The folder is that of included files, and <include> is none of the subset.
+        let model = Model::from_str(xml, Path::new("")).map_err(|error| unreadable(&error))?;
+        Self::resolve(&model, document.root_element())
+    }
+
+    fn resolve(model: &Model, root: Node) -> Result<Self, Vec<MjcfRefusal>> {
+        let mut refusals = vec![];
+        let off = |node: Node| node.has_tag_name("flag") && node.attribute("contact") == Some("disable");
+        if !root.descendants().any(off) {
+            refusals.extend(possible_contacts(model));
+        }
+        let mut links = vec![];
+        for (_, entry) in model.bodies_iter() {
+            let body = &entry.body;
+            let name = || body.name.clone().unwrap_or_else(|| "(without a name)".into());
+            if body.joints.len() > 1 {
+                refusals.push(MjcfRefusal::SeveralJoints { body: name(), joints: body.joints.len() });
+            }
+            let mass = mass_properties(body, &model.compiler).unwrap_or_else(|refusal| {
+                refusals.push(refusal);
+                MassProperties::default()
+            });
+            links.push(Link {
+                parent: entry.parent.and_then(|parent| parent.checked_sub(1)),
+                pose: body.pose,
+                mass,
+                joint: body.joints.first().map(|joint| Joint::new(joint, root, &mut refusals)),
+            });
+        }
+        let names: Vec<Option<&str>> =
+            links.iter().filter_map(|link| link.joint.as_ref()).map(|joint| joint.name.as_deref()).collect();
+        let tendons = root
+            .descendants()
+            .filter(|node| node.has_tag_name("fixed"))
+            .filter_map(|node| Tendon::new(node, &names, &mut refusals))
+            .collect();
+        let motors = model
+            .actuators
+            .iter()
+            .filter(|actuator| actuator.kind == ActuatorKind::Motor)
+            .map(|motor| Motor { name: motor.name.clone(), joint: motor.joint.clone(), gear: motor.gear[0] })
+            .collect();
+        let gravity = Vector::from_array(model.option.gravity);
+        if refusals.is_empty() { Ok(Self { gravity, links, tendons, motors }) } else { Err(refusals) }
+    }
+
+    /// The joints in order, each with its link's number.
+    pub(crate) fn joints(&self) -> impl Iterator<Item = (usize, &Joint)> {
+        self.links.iter().enumerate().filter_map(|(i, link)| link.joint.as_ref().map(|joint| (i, joint)))
+    }
+
+    /// Finds the parts that are the axis.
+    pub(crate) fn axis(&self, file: &MjcfModel) -> Result<Axis, Vec<MjcfRefusal>> {
+        let mut refusals = vec![];
+        let names = || self.joints().filter_map(|(_, joint)| joint.name.as_deref());
+        let mut joint = |name: &str| {
+            let found = self.joints().position(|(_, joint)| joint.name.as_deref() == Some(name));
+            if found.is_none() {
+                refusals.push(MjcfRefusal::Unknown { what: "joint", name: name.into(), known: list(names()) });
+            }
+            found
+        };
+        let (motor, load) = (joint(&file.motor_joint), joint(&file.load_joint));
+        let named = |motor: &&Motor| motor.name.as_deref() == Some(&file.actuator);
+        let wrong = match self.motors.iter().find(named) {
+            None => {
+                let known = list(self.motors.iter().filter_map(|motor| motor.name.as_deref()));
+                refusals.push(MjcfRefusal::Unknown { what: "motor", name: file.actuator.clone(), known });
+                None
+            }
+            Some(motor) if motor.joint.as_deref() != Some(&file.motor_joint) => {
+                Some(format!("acts on joint {}", list(motor.joint.as_deref())))
+            }
+            Some(motor) if motor.gear == 0.0 => Some("has no gear".into()),
+            Some(_) => None,
+        };
+        if let Some(what) = wrong {
+            let (actuator, joint) = (file.actuator.clone(), file.motor_joint.clone());
+            refusals.push(MjcfRefusal::Actuator { actuator, what, joint });
+        }
+        match (motor, load) {
+            (Some(motor), Some(load)) if refusals.is_empty() => Ok(Axis { motor, load }),
+            _ => Err(refusals),
+        }
+    }
+
+    /// Name of joint `i`, for messages.
+    pub(crate) fn joint_name(&self, i: usize) -> String {
+        let named = self.joints().nth(i).and_then(|(_, joint)| joint.name.clone());
+        named.unwrap_or_else(|| "(without a name)".into())
+    }
+}
+
+impl Joint {
+    fn new(joint: &MjcfJoint, root: Node, refusals: &mut Vec<MjcfRefusal>) -> Self {
+        let axis = DVec3::from_array(joint.axis);
+        if axis.length() < 1e-10 {
+            let zero = |node: &Node| node.has_tag_name("joint") && node.attribute("name") == joint.name.as_deref();
+            refusals.push(MjcfRefusal::Value {
+                line: root.descendants().find(zero).map_or(1, line),
+                element: "joint",
+                attribute: "axis".into(),
+                value: format!("{} {} {}", axis.x, axis.y, axis.z),
+                supported: "a direction".into(),
+            });
+        }
+        let turn = DQuat::from_rotation_arc(DVec3::X, axis.normalize_or(DVec3::X));
+        Self {
+            name: joint.name.clone(),
+            freedom: if joint.type_ == JointType::Slide { Freedom::Slide } else { Freedom::Hinge },
+            frame: Pose::from_parts(DVec3::from_array(joint.pos), turn),
+            damping: joint.damping,
+            stiffness: joint.stiffness,
+            spring_rest: joint.springref,
+            friction: joint.frictionloss,
+            armature: joint.armature,
+        }
+    }
+}
+
+impl Tendon {
+    /// mjcf-rs keeps the terms of a tendon but not its spring and damper; both are read here.
+    fn new(node: Node, joints: &[Option<&str>], refusals: &mut Vec<MjcfRefusal>) -> Option<Self> {
+        let number = |attribute: &str| node.attribute(attribute).and_then(|value| value.trim().parse::<f64>().ok());
+        let (stiffness, damping) = (number("stiffness").unwrap_or(0.0), number("damping").unwrap_or(0.0));
+        let rest = number("springlength");
+        if stiffness > 0.0 && rest.is_none() {
+            let attribute = "springlength";
+            refusals.push(MjcfRefusal::Missing { line: line(node), element: "fixed", attribute });
+            return None;
+        }
+        // To MuJoCo this one value says: as long as at the start.
+        if rest == Some(-1.0) {
+            refusals.push(MjcfRefusal::Value {
+                line: line(node),
+                element: "fixed",
+                attribute: "springlength".into(),
+                value: "-1".into(),
+                supported: "a length other than -1".into(),
+            });
+            return None;
+        }
+        let mut terms = vec![];
+        for term in node.children().filter(Node::is_element) {
+            let name = term.attribute("joint").unwrap_or_default();
+            let coefficient = term.attribute("coef").map_or(Some(1.0), |value| value.trim().parse().ok());
+            if let (Some(joint), Some(coefficient)) =
+                (joints.iter().position(|joint| *joint == Some(name)), coefficient)
+            {
+                terms.push((joint, coefficient));
+            } else {
+                let known = list(joints.iter().copied().flatten());
+                refusals.push(MjcfRefusal::Unknown { what: "joint", name: name.into(), known });
+            }
+        }
+        Some(Self { terms, stiffness, damping, rest: rest.unwrap_or(0.0) })
+    }
+}

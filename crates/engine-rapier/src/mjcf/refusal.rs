@@ -1,0 +1,126 @@
+//! Why an MJCF file is refused.
+use thiserror::Error;
+
+/// One thing in an MJCF file that the engine `rapier` does not simulate, by its name.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum MjcfRefusal {
+    /// The text is no XML, or no MJCF.
+    #[error("{message}")]
+    Unreadable {
+        /// The reader's own words.
+        message: String,
+    },
+    /// An element outside the subset.
+    #[error("line {line}: `<{element}>` in `<{parent}>` is not simulated; there can be {supported}")]
+    Element {
+        /// Line in the file, from 1.
+        line: u32,
+        /// The element.
+        element: String,
+        /// The element that it stands in.
+        parent: &'static str,
+        /// What may stand there.
+        supported: String,
+    },
+    /// An attribute outside the subset.
+    #[error("line {line}: attribute `{attribute}` of `<{element}>` is not simulated; it can have {supported}")]
+    Attribute {
+        /// Line in the file, from 1.
+        line: u32,
+        /// The element.
+        element: &'static str,
+        /// The attribute.
+        attribute: String,
+        /// The attributes that it may have.
+        supported: String,
+    },
+    /// A value outside the subset.
+    #[error("line {line}: `{attribute}=\"{value}\"` of `<{element}>` is not simulated; it must be {supported}")]
+    Value {
+        /// Line in the file, from 1.
+        line: u32,
+        /// The element.
+        element: &'static str,
+        /// The attribute.
+        attribute: String,
+        /// Its value.
+        value: String,
+        /// What it may be.
+        supported: String,
+    },
+    /// An attribute without which the engine would have to guess.
+    #[error("line {line}: `<{element}>` needs the attribute `{attribute}`")]
+    Missing {
+        /// Line in the file, from 1.
+        line: u32,
+        /// The element.
+        element: &'static str,
+        /// The attribute.
+        attribute: &'static str,
+    },
+    /// Several joints in one body.
+    #[error("body `{body}` has {joints} joints; one is simulated: give each further joint a body of its own")]
+    SeveralJoints {
+        /// Name of the body.
+        body: String,
+        /// Number of its joints.
+        joints: usize,
+    },
+    /// Two geoms that could touch.
+    #[error(
+        "geoms of body `{first}` and body `{second}` could touch, and contacts are not simulated; \
+         set contype=\"0\" conaffinity=\"0\" on one of them, exclude the pair, \
+         or switch contacts off by <option><flag contact=\"disable\"/></option>"
+    )]
+    Contact {
+        /// Name of one body.
+        first: String,
+        /// Name of the other.
+        second: String,
+    },
+    /// A body whose mass or inertia no body can have.
+    #[error("body `{body}` has {what}; it must be {bound}")]
+    Mass {
+        /// Name of the body.
+        body: String,
+        /// The quantity and its value.
+        what: String,
+        /// What it must be.
+        bound: &'static str,
+    },
+    /// A joint that moves no inertia.
+    #[error("joint `{joint}` moves nothing that has {what}; give its body an <inertial> or a geom with mass")]
+    Massless {
+        /// Name of the joint.
+        joint: String,
+        /// Mass, or inertia about the axis.
+        what: &'static str,
+    },
+    /// A name that nothing has.
+    #[error("there is no {what} `{name}`; there is {known}")]
+    Unknown {
+        /// Kind of element: `joint`, `motor`.
+        what: &'static str,
+        /// The name.
+        name: String,
+        /// The names that there are.
+        known: String,
+    },
+    /// An actuator that cannot bring the drive's effort to the motor joint.
+    #[error("motor `{actuator}` {what}; it must act on joint `{joint}` with a gear other than zero")]
+    Actuator {
+        /// Name of the actuator.
+        actuator: String,
+        /// What is wrong.
+        what: String,
+        /// The motor joint.
+        joint: String,
+    },
+}
+
+/// The names in a list for a message.
+pub(crate) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    let names: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
+    if names.is_empty() { "none".into() } else { names.join(", ") }
+}
