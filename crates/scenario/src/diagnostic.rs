@@ -75,6 +75,8 @@ pub(crate) struct Report {
     pub(crate) warnings: Vec<Diagnostic>,
     /// What is missing; not said of a file with wrong syntax, where it may well be there.
     pub(crate) missing: Vec<Diagnostic>,
+    /// Tables whose model was not found: what they lack may well be in it.
+    pub(crate) without_model: Vec<&'static str>,
     /// Coordinate of the axis, once known.
     pub(crate) axis: Option<Motion>,
     /// Coordinate of the motor, once known.
@@ -90,8 +92,12 @@ impl Report {
         self.warnings.push(diagnostic(span, message.into(), help.into()));
     }
 
-    pub(crate) fn lacking(&mut self, span: Span, message: impl Into<String>, help: impl Into<String>) {
-        self.missing.push(diagnostic(span, message.into(), help.into()));
+    /// Notes that something is missing which the table `path` could hold.
+    pub(crate) fn lacking(&mut self, path: &str, span: Span, message: impl Into<String>, help: impl Into<String>) {
+        let table = path.split('.').next().unwrap_or(path);
+        if !self.without_model.contains(&table) {
+            self.missing.push(diagnostic(span, message.into(), help.into()));
+        }
     }
 }
 

@@ -101,7 +101,7 @@ table! {
     pub(crate) struct Measures {
         /// Settling window around the target, ± (axis coordinate). Without it there is no settling time.
         window: f64 = positive(InAxis(&POSITION), "10 um"),
-        /// From when on residual vibration is measured in a scenario without moves.
+        /// From when on residual vibration is measured; from the end of the last profile unless given.
         from: f64 = not_negative(Plain(&TIME), "0.2 s"),
         /// Where to look for the residual mode; everywhere unless given.
         mode: f64 = positive(Plain(&FREQUENCY), "38.985 Hz"),

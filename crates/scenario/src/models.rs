@@ -65,6 +65,7 @@ pub(crate) fn lay_on_models(
             Ok(model) => model,
             Err((message, help)) => {
                 report.error(span, message, help);
+                report.without_model.push(key);
                 continue;
             }
         };

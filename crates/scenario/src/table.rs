@@ -157,7 +157,7 @@ impl Report {
             "" => format!("missing table `[{key}]`"),
             _ => format!("missing `{key}` in `{path}`"),
         };
-        self.lacking(span, message, help);
+        self.lacking(path, span, message, help);
     }
 }
 
@@ -168,6 +168,8 @@ fn joined(doc: &[&str]) -> String {
 
 pub(crate) fn object_schema(doc: &[&str], required: &[&str], keys: Vec<(&'static str, &[&str], Json)>) -> Json {
     let mut properties = Map::new();
+    // A JSON object has no order, a description does: `x-order` is for documentation.
+    let order: Vec<&str> = keys.iter().map(|(name, ..)| *name).collect();
     for (name, doc, mut schema) in keys {
         schema["description"] = Json::String(joined(doc));
         properties.insert(name.to_owned(), schema);
@@ -177,6 +179,7 @@ pub(crate) fn object_schema(doc: &[&str], required: &[&str], keys: Vec<(&'static
         "description": joined(doc),
         "additionalProperties": false,
         "properties": properties,
+        "x-order": order,
     });
     if !required.is_empty() {
         schema["required"] = json!(required);

@@ -103,31 +103,95 @@ pub(crate) struct Parsed {
 
 /// Parses as much as there is; every syntax error goes to `report`.
 pub(crate) fn parse(source: SourceId, text: &str, report: &mut Report) -> Parsed {
-    let (root, errors) = DeTable::parse_recoverable(text);
+    let (table, errors) = parse_to_the_end(source, text);
     let mut broken: Vec<Range<usize>> = Vec::new();
-    let mut places: Vec<_> = errors.iter().map(|error| (error.span().unwrap_or(0..0), error)).collect();
-    places.sort_by_key(|(span, _)| span.start);
-    for (span, error) in places {
-        let line = line_around(text, span.start);
+    for SyntaxError { span, message } in errors {
+        let lines = lines_around(text, &span);
         // What follows the first error of a line is mostly its consequence.
-        if broken.contains(&line) {
+        if broken.iter().any(|other| other.start <= lines.start && lines.end <= other.end) {
             continue;
         }
-        broken.push(line);
-        report.error(Span::new(source, &span), error.message(), syntax_help(error.message()));
+        broken.push(lines);
+        let quoted = message.contains("must be quoted");
+        let help = if quoted { "write texts and quantities as in \"250 mm\"" } else { "" };
+        report.error(Span::new(source, &span), message, help);
     }
-    Parsed { table: table(source, root.get_ref()), broken }
+    Parsed { table, broken }
 }
 
-fn syntax_help(message: &str) -> &'static str {
-    if message.contains("must be quoted") { "write texts and quantities as in \"250 mm\"" } else { "" }
+#[derive(Debug, Clone, PartialEq)]
+struct SyntaxError {
+    span: Range<usize>,
+    message: String,
 }
 
-fn line_around(text: &str, at: usize) -> Range<usize> {
+/// The parser gives up at a key without a value; it is then shown the text without that line.
+const MAX_GIVEN_UP: usize = 64;
+
+fn parse_to_the_end(source: SourceId, text: &str) -> (Table, Vec<SyntaxError>) {
+    let mut text = text.to_owned();
+    let mut given_up = Vec::new();
+    loop {
+        let (root, errors) = DeTable::parse_recoverable(&text);
+        let table = table(source, root.get_ref());
+        let mut errors: Vec<SyntaxError> = errors
+            .iter()
+            .map(|error| SyntaxError { span: error.span().unwrap_or_default(), message: error.message().to_owned() })
+            .collect();
+        errors.sort_by_key(|error| error.span.start);
+        let stop = errors.iter().find(|error| error.message.starts_with("key with no value")).cloned();
+        let line = stop.as_ref().map(|stop| lines_around(&text, &stop.span));
+        if let (Some(stop), Some(line), true) = (stop, line, given_up.len() < MAX_GIVEN_UP) {
+            // Spaces keep every other byte where it is.
+            text.replace_range(line.clone(), &" ".repeat(line.len()));
+            given_up.push(stop);
+            continue;
+        }
+        errors.extend(given_up);
+        let mut errors = at_the_opening(errors, &table);
+        errors.sort_by_key(|error| error.span.start);
+        return (table, errors);
+    }
+}
+
+/// A list or table that is not closed swallows the lines after it: one error at its opening bracket stands for all that
+/// come of it, and covers them.
+fn at_the_opening(errors: Vec<SyntaxError>, table: &Table) -> Vec<SyntaxError> {
+    let unclosed = |error: &SyntaxError| {
+        let is_value = ["unclosed array,", "unclosed inline table"].iter().any(|m| error.message.starts_with(m));
+        is_value.then(|| widest_value_up_to(error.span.start, table)).flatten()
+    };
+    let swallowed: Vec<Span> = errors.iter().filter_map(unclosed).collect();
+    let is_free =
+        |error: &SyntaxError| !swallowed.iter().any(|span| (span.start..=span.end).contains(&error.span.start));
+    let mut kept: Vec<SyntaxError> = errors.into_iter().filter(is_free).collect();
+    kept.extend(
+        swallowed
+            .iter()
+            .map(|span| SyntaxError { span: span.start..span.end, message: "this bracket is not closed".to_owned() }),
+    );
+    kept
+}
+
+/// The widest list or inline table that ends at `end`.
+fn widest_value_up_to(end: usize, table: &Table) -> Option<Span> {
+    table
+        .entries
+        .iter()
+        .filter_map(|entry| match &entry.node.value {
+            Value::Array(_) | Value::Table(_) if entry.node.span.end == end => Some(entry.node.span),
+            Value::Table(inner) => widest_value_up_to(end, inner),
+            _ => None,
+        })
+        .min_by_key(|span| span.start)
+}
+
+/// The range with its lines completed on both sides.
+fn lines_around(text: &str, range: &Range<usize>) -> Range<usize> {
     let bytes = text.as_bytes();
-    let at = at.min(bytes.len());
-    let start = bytes[..at].iter().rposition(|&b| b == b'\n').map_or(0, |i| i + 1);
-    let end = bytes[at..].iter().position(|&b| b == b'\n').map_or(bytes.len(), |i| at + i);
+    let (first, last) = (range.start.min(bytes.len()), range.end.min(bytes.len()));
+    let start = bytes[..first].iter().rposition(|&b| b == b'\n').map_or(0, |i| i + 1);
+    let end = bytes[last..].iter().position(|&b| b == b'\n').map_or(bytes.len(), |i| last + i);
     start..end
 }
 
@@ -217,6 +281,24 @@ mod tests {
             ]
         );
         assert_eq!(parsed.broken.len(), 4);
+    }
+
+    fn places(text: &str) -> Vec<(usize, String)> {
+        parsed(text).1.errors.into_iter().map(|error| (error.span.start, error.message)).collect()
+    }
+
+    #[test]
+    fn a_bracket_that_is_not_closed_is_one_error_at_its_place() {
+        let said = "this bracket is not closed".to_owned();
+        assert_eq!(places("[a]\nx = [1, 2\ny = 3\n[b]\nz = 4\n"), [(8, said.clone())]);
+        assert_eq!(places("[a]\nx = { b = 1\ny = 3\n"), [(8, said)]);
+    }
+
+    #[test]
+    fn errors_after_a_key_without_value_are_found_too() {
+        let said: Vec<usize> = places("a b = 1\nc = \nd e\nf = 1e\n").into_iter().map(|(at, _)| at).collect();
+        assert_eq!(said, [2, 12, 15, 23]);
+        assert!(parsed("a b = 1\n[t]\nc = 2\n").0.table.get("t").is_some());
     }
 
     #[test]

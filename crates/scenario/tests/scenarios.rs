@@ -1,9 +1,20 @@
-//! The files of the repository: every scenario and model loads, and the schema describes them.
-use servobench_scenario::load;
+//! The files of the repository: every scenario and model loads, and the schema and its reference describe them.
+//!
+//! `SERVOBENCH_WRITE_DOCS=1 cargo test -p servobench-scenario` writes `docs/scenario.schema.json` and the tables of
+//! `docs/scenario.md` anew.
+use serde_json::{Value as Json, json};
+use servobench_scenario::{AxisMechanics, Motor, embedded_demo, embedded_models, json_schema, load, parse};
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+
+const WRITE_DOCS: &str = "SERVOBENCH_WRITE_DOCS";
 
 fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn read(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
 /// Every scenario file of the repository.
@@ -15,15 +26,240 @@ fn scenarios() -> Vec<PathBuf> {
         .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
         .collect();
     all.sort();
-    assert!(all.len() >= 15, "{all:?}");
+    assert!(all.len() >= 14, "{all:?}");
     all
 }
 
 #[test]
-fn every_scenario_loads_without_a_warning() {
+fn every_scenario_loads_without_a_warning_and_says_what_it_shows() {
     for path in scenarios() {
         let loaded = load(&path).unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(loaded.warnings, [], "{}", path.display());
-        assert!(!loaded.scenario.description.is_empty(), "{} says nothing", path.display());
+        assert!(!loaded.scenario.description.is_empty(), "{} has no description", path.display());
+        assert!(!loaded.scenario.limits.is_empty(), "{} cannot fail", path.display());
+        let text = read(&path);
+        let (pointer, rest) = text.split_once('\n').unwrap();
+        let schema = path.parent().unwrap().join(pointer.strip_prefix("#:schema ").unwrap());
+        assert!(schema.is_file(), "{} points at {}", path.display(), schema.display());
+        assert!(rest.starts_with("# "), "{} begins without a comment", path.display());
+    }
+}
+
+#[test]
+fn the_embedded_demo_needs_no_folder() {
+    let demo = embedded_demo();
+    assert_eq!(demo.iter().map(|(name, _)| *name).collect::<Vec<_>>(), ["jerk.toml", "snap.toml"]);
+    for (name, text) in demo {
+        let embedded = parse(name, text, None).unwrap_or_else(|e| panic!("{e}")).scenario;
+        let on_disk = load(&repository().join("scenarios/demo").join(name)).unwrap().scenario;
+        assert_eq!(embedded, servobench_scenario::Scenario { path: None, ..on_disk }, "{name}");
+    }
+}
+
+/// Each model stands in for the one of a scenario that has the others.
+#[test]
+fn every_model_is_complete_and_says_where_its_values_come_from() {
+    let models = embedded_models();
+    assert!(models.len() >= 10, "{models:?}");
+    for (path, text) in models {
+        assert!(text.starts_with("# ") && text.contains("\nsource = \""), "{path} says no source");
+        let (folder, file) = path.split_once('/').unwrap();
+        let name = file.strip_suffix(".toml").unwrap();
+        let (mut axis, mut motor, mut drive) =
+            ("model = \"ball-screw\"", "model = \"wittenstein-premo-1f\"", "model = \"servo-16khz\"");
+        let own = format!("model = \"{name}\"");
+        match folder {
+            "axes" => axis = &own,
+            "motors" => motor = &own,
+            "drives" => drive = &own,
+            other => panic!("{other} holds no models"),
+        }
+        // An ideal source moves along the line, and speaks volts to the drive of the same bench.
+        if ["axes/lambrechts.toml", "axes/emps.toml", "motors/emps.toml", "drives/emps.toml"].contains(&path) {
+            motor = "model = \"emps\"";
+            axis = if folder == "axes" { &own } else { "model = \"emps\"" };
+        }
+        let text = format!("[run]\nbase_rate = \"16 kHz\"\n[axis]\n{axis}\n[motor]\n{motor}\n[drive]\n{drive}\n");
+        let loaded = parse(path, &text, None).unwrap_or_else(|e| panic!("{path}: {e}"));
+        let unused = loaded.warnings.iter().filter(|warning| !warning.message.contains("current loop is not used"));
+        assert_eq!(unused.count(), 0, "{path}: {:?}", loaded.warnings);
+    }
+}
+
+/// Oracle: the published numbers of the reference, computed by hand from the data sheets.
+#[test]
+fn peak_and_effective_values_of_the_motors() {
+    let pmsm = |name: &str| {
+        let text = format!(
+            "[run]\nbase_rate = \"16 kHz\"\n[axis]\nmodel = \"ball-screw\"\n[motor]\nmodel = \"{name}\"\n[drive]\n\
+             model = \"servo-16khz\"\n"
+        );
+        match parse("motor.toml", &text, None).unwrap().scenario.motor {
+            Motor::Pmsm(motor) => motor,
+            other => panic!("{other:?}"),
+        }
+    };
+    let torque_constant = |name| 1.5 * f64::from(pmsm(name).pole_pairs) * pmsm(name).flux_linkage;
+    let near = |a: f64, b: f64, digits: i32| (a - b).abs() <= 0.5 * 10_f64.powi(-digits);
+    // Teknic: 4.64 Vpk/krpm line to line are 6.395 mVs and 0.0384 Nm/Apk.
+    assert!(near(pmsm("teknic-m2310p").flux_linkage, 6.395e-3, 6));
+    assert!(near(torque_constant("teknic-m2310p"), 0.0384, 4));
+    // WITTENSTEIN: 31.1 Vrms/krpm and 0.51 Nm/Arms are printed side by side (10 % tolerance is usual; these agree to 1 %).
+    let per_effective_ampere = torque_constant("wittenstein-premo-1f") * 2_f64.sqrt();
+    assert!((per_effective_ampere / 0.51 - 1.0).abs() < 0.01, "{per_effective_ampere}");
+    assert!(near(pmsm("wittenstein-premo-1f").max_current, 18.81, 2));
+    // Modelica: 112.3 V effective per phase at 50 Hz.
+    let back_emf = pmsm("msl-sm-permanent-magnet").flux_linkage * 2.0 * std::f64::consts::PI * 50.0 / 2_f64.sqrt();
+    assert!(near(back_emf, 112.3, 6), "{back_emf}");
+    assert!(near(pmsm("msl-sm-permanent-magnet").inductance_d * 100.0 * std::f64::consts::PI, 0.4, 9));
+}
+
+/// Oracle: the published modes, from `√(c/m)/2π` and `√(c·(1/m1 + 1/m2))/2π`.
+#[test]
+fn modes_of_the_published_axes() {
+    let modes = |file: &str| {
+        let scenario = load(&repository().join("scenarios").join(file)).unwrap().scenario;
+        let AxisMechanics::Bodies(bodies) = scenario.axis.mechanics else { panic!("bodies") };
+        let [motor, load] = bodies.as_slice() else { panic!("two bodies") };
+        let stiffness = load.coupling.unwrap().stiffness;
+        let hertz = |inverse: f64| (stiffness * inverse).sqrt() / std::f64::consts::TAU;
+        (hertz(1.0 / load.inertia), hertz(1.0 / load.inertia + 1.0 / motor.inertia))
+    };
+    for (file, held, free) in [("lambrechts-snap.toml", 38.985, 47.746), ("two-mass.toml", 59.55, 84.22)] {
+        let (own_held, own_free) = modes(file);
+        assert!((own_held / held - 1.0).abs() < 1e-4 && (own_free / free - 1.0).abs() < 1e-4, "{own_held} {own_free}");
+    }
+}
+
+#[test]
+fn the_schema_in_the_repository_is_that_of_the_program() {
+    let path = repository().join("docs/scenario.schema.json");
+    if std::env::var_os(WRITE_DOCS).is_some() {
+        std::fs::write(&path, serde_json::to_string_pretty(&json_schema()).unwrap() + "\n").unwrap();
+    }
+    let written: Json = serde_json::from_str(&read(&path)).unwrap();
+    assert!(written == json_schema(), "run the tests of this crate with {WRITE_DOCS}=1");
+}
+
+#[test]
+fn the_schema_accepts_every_scenario_and_refuses_mistakes() {
+    let validator = jsonschema::validator_for(&json_schema()).unwrap();
+    for path in scenarios() {
+        let scenario = as_json(&read(&path));
+        let errors: Vec<_> = validator.iter_errors(&scenario).map(|e| format!("{} {e}", e.instance_path())).collect();
+        assert_eq!(errors, [""; 0], "{}", path.display());
+    }
+    let right = as_json(&read(&repository().join("scenarios/feed-axis-move.toml")));
+    for (pointer, wrong) in [
+        ("/setpoint/velocity", json!(30)),
+        ("/setpoint/order", json!(5)),
+        ("/engine", json!("mujocco")),
+        ("/program/0/move_to", json!("far")),
+        ("/limits/settling_time", json!({ "most": "1 s" })),
+        ("/run", json!({})),
+        ("/drive", json!({ "colour": "red" })),
+    ] {
+        let mut scenario = right.clone();
+        *scenario.pointer_mut(pointer).unwrap() = wrong;
+        assert!(!validator.is_valid(&scenario), "{pointer}");
+    }
+}
+
+/// The TOML text as the JSON that a schema sees.
+fn as_json(text: &str) -> Json {
+    fn convert(value: &toml::Value) -> Json {
+        match value {
+            toml::Value::String(text) => json!(text),
+            toml::Value::Integer(number) => json!(number),
+            toml::Value::Float(number) => json!(number),
+            toml::Value::Boolean(value) => json!(value),
+            toml::Value::Datetime(date) => json!(date.to_string()),
+            toml::Value::Array(items) => items.iter().map(convert).collect(),
+            toml::Value::Table(table) => table.iter().map(|(key, value)| (key.clone(), convert(value))).collect(),
+        }
+    }
+    convert(&toml::Value::Table(text.parse().unwrap()))
+}
+
+#[test]
+fn the_example_of_the_reference_loads() {
+    let text = read(&repository().join("docs/scenario.md"));
+    let example = text.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+    let loaded = parse("example.toml", example, None).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(loaded.warnings, []);
+}
+
+const BEGIN: &str = "<!-- generated: keys -->\n";
+const END: &str = "<!-- end of generated keys -->\n";
+
+#[test]
+fn the_reference_lists_every_key() {
+    let path = repository().join("docs/scenario.md");
+    let text = read(&path);
+    let (before, rest) = text.split_once(BEGIN).unwrap();
+    let (written, after) = rest.split_once(END).unwrap();
+    let mut tables = String::new();
+    describe("", &json_schema(), &mut tables);
+    if std::env::var_os(WRITE_DOCS).is_some() {
+        std::fs::write(&path, format!("{before}{BEGIN}{tables}{END}{after}")).unwrap();
+    } else {
+        assert!(written == tables, "run the tests of this crate with {WRITE_DOCS}=1");
+    }
+}
+
+/// The tables of the schema as Markdown, each before those inside it.
+fn describe(path: &str, table: &Json, out: &mut String) {
+    let is_array = table["type"] == "array";
+    let object = if is_array { &table["items"] } else { table };
+    let in_order = object["x-order"].as_array().unwrap().iter().map(|key| key.as_str().unwrap());
+    let properties: Vec<(&str, &Json)> = in_order.map(|key| (key, &object["properties"][key])).collect();
+    let title = match (path, is_array) {
+        ("", _) => "Top level".to_owned(),
+        (_, true) => format!("`[[{path}]]`"),
+        (_, false) => format!("`[{path}]`"),
+    };
+    let text = |value: &Json| value["description"].as_str().unwrap().to_owned();
+    let _ = write!(out, "\n### {title}\n\n{}\n\n| key | value | meaning |\n|---|---|---|\n", text(object));
+    let is_table = |value: &Json| value["properties"].is_object() || value["items"]["properties"].is_object();
+    for (key, value) in &properties {
+        if !is_table(value) {
+            let _ = writeln!(out, "| `{key}` | {} | {} |", kind(value), text(value));
+        }
+    }
+    for (key, value) in properties {
+        if is_table(value) {
+            let below = if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
+            describe(&below, value, out);
+        }
+    }
+}
+
+fn is_percentage(value: &Json) -> bool {
+    value["type"] == "string" && value["pattern"].is_string() && value["examples"].is_null()
+}
+
+/// What a value may be, in a few characters.
+fn kind(value: &Json) -> String {
+    if let Some(example) = value["examples"][0].as_str() {
+        return format!("`\"{example}\"`");
+    }
+    if let Some(constant) = value["const"].as_str() {
+        return format!("`\"{constant}\"`");
+    }
+    for several in ["oneOf", "anyOf"] {
+        if let Some(all) = value[several].as_array() {
+            // A number may also be written in percent, which is not worth saying each time.
+            let is_said = |one: &&Json| one["type"] != "array" && !is_percentage(one);
+            let kinds: Vec<String> = all.iter().filter(is_said).map(kind).collect();
+            let more = if all.iter().any(|one| one["type"] == "array") { ", or a list" } else { "" };
+            return if kinds.len() > 8 { format!("a name{more}") } else { format!("{}{more}", kinds.join(", ")) };
+        }
+    }
+    match value["type"].as_str().unwrap() {
+        "boolean" => "`true`, `false`".into(),
+        "integer" => format!("{} to {}", value["minimum"], value["maximum"]),
+        "object" => "`{ min = …, max = … }`".into(),
+        "string" => "text".into(),
+        other => other.to_owned(),
     }
 }

@@ -130,7 +130,9 @@ fn bodies(
         if motor.kind.given() != Some(&MotorKind::Prescribed) {
             let key = if motor_motion == Motion::Rotary { "inertia" } else { "mass" };
             let help = format!("give `{key}` in `[axis.motor_side]` or in `[motor]`");
-            report.lacking(axis.span, "nothing moves with the motor", help);
+            if !report.without_model.contains(&"motor") {
+                report.lacking("axis", axis.span, "nothing moves with the motor", help);
+            }
             return None;
         }
         motor_body.inertia = PRESCRIBED_INERTIA;

@@ -71,7 +71,7 @@ fn step(
         }
         Way::Contradiction => return None,
         Way::None => {
-            report.lacking(step.span, "this step does nothing", "give `move_to`, `move_by` or `wait`");
+            report.lacking("program", step.span, "this step does nothing", "give `move_to`, `move_by` or `wait`");
             return None;
         }
     };
@@ -106,6 +106,12 @@ fn profile(
     let Some(order_value) = order.given().and_then(|order| u8::try_from(*order).ok()) else {
         if matches!(order, Slot::Absent) {
             said.missing("order", header, "2, 3 or 4", report);
+        }
+        // Whatever the order is, it limits these.
+        for (key, slot) in LIMITS.into_iter().zip(slots).take(2) {
+            if matches!(slot, Slot::Absent) {
+                said.missing(key, header, "every move needs it", report);
+            }
         }
         return None;
     };

@@ -1,0 +1,302 @@
+//! What a scenario becomes: derived gains, merged bodies, overridden models.
+use servobench_scenario::{
+    AxisMechanics, Body, EffortFeedforward, EngineName, Feedback, Limit, Motion, Motor, Scenario, Step, Target, parse,
+};
+use std::f64::consts::{PI, TAU};
+use std::path::Path;
+
+fn scenario(text: &str) -> Scenario {
+    parse("test.toml", text, None).unwrap_or_else(|e| panic!("{e}")).scenario
+}
+
+fn bodies(scenario: &Scenario) -> &[Body] {
+    match &scenario.axis.mechanics {
+        AxisMechanics::Bodies(bodies) => bodies,
+        AxisMechanics::Mjcf(_) => panic!("bodies"),
+    }
+}
+
+/// Equal but for a few roundings.
+fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-14 * a.abs().max(b.abs())
+}
+
+const SCREW: &str = r#"
+[run]
+base_rate = "16 kHz"
+[axis]
+motion = "linear"
+lead = "10 mm"
+[axis.motor_side]
+inertia = "1e-4 kg m2"
+viscous = "1e-3 Nm s/rad"
+coulomb = "0.05 Nm"
+[axis.table]
+mass = "30 kg"
+viscous = "100 N s/m"
+coulomb = "20 N"
+static = "32 N"
+stribeck_velocity = "2 mm/s"
+bias = "9.81 N"
+[axis.load]
+mass = "10 kg"
+stiffness = "2 N/um"
+damping = "50 N s/m"
+[motor]
+model = "wittenstein-premo-1f"
+encoder = { counts_per_rev = 1048576 }
+[drive]
+model = "servo-16khz"
+load_encoder = { step = "0.1 um" }
+position_feedback = "load"
+"#;
+
+/// Oracle: by hand. r = 10 mm/2π; J = rotor + motor side + r²·table.
+#[test]
+fn a_rigid_body_is_reflected_through_the_screw() {
+    let scenario = scenario(SCREW);
+    let r = 0.01 / TAU;
+    assert!(same(scenario.axis.transmission, r));
+    assert_eq!((scenario.axis.motion, scenario.axis.motor_motion), (Motion::Linear, Motion::Rotary));
+    let [motor, load] = bodies(&scenario) else { panic!("the table is merged") };
+    assert_eq!((motor.name, load.name), ("motor", "load"));
+    assert!(same(motor.inertia, 1.57e-4 + 1e-4 + r * r * 30.0));
+    assert!(same(motor.viscous, 1e-3 + r * r * 100.0));
+    assert!(same(motor.coulomb, 0.05 + r * 20.0));
+    assert!(same(motor.breakaway, 0.05 + r * 32.0));
+    assert!(same(motor.stribeck_velocity, 0.002 / r));
+    assert!(same(motor.bias, r * 9.81));
+    let coupling = load.coupling.unwrap();
+    assert!(same(coupling.stiffness, 2e6) && same(coupling.damping, 50.0));
+}
+
+/// Oracle: by hand, in the axis coordinate: J/r², τ/r.
+#[test]
+fn the_estimate_is_the_plant_as_two_masses() {
+    let scenario = scenario(SCREW);
+    let (r, estimate) = (0.01 / TAU, &scenario.drive.estimate);
+    assert!(same(estimate.motor_inertia, (1.57e-4 + 1e-4) / (r * r) + 30.0));
+    assert!(same(estimate.motor_viscous, 1e-3 / (r * r) + 100.0));
+    assert!(same(estimate.coulomb, 0.05 / r + 20.0));
+    assert!(same(estimate.bias, 9.81));
+    assert!(same(estimate.load_inertia, 10.0) && same(estimate.stiffness, 2e6));
+    assert!(estimate.load_viscous == 0.0 && estimate.motor.is_some());
+}
+
+#[test]
+fn three_bodies_are_split_at_the_softest_coupling() {
+    let stiff_table = SCREW.replace("viscous = \"100", "stiffness = \"43 N/um\"\nviscous = \"100");
+    let first = scenario(&stiff_table);
+    assert_eq!(bodies(&first).len(), 3);
+    assert!(same(first.drive.estimate.load_inertia, 10.0) && same(first.drive.estimate.stiffness, 2e6));
+    let soft_table = SCREW.replace("viscous = \"100", "stiffness = \"1 N/um\"\nviscous = \"100");
+    let second = scenario(&soft_table);
+    assert!(same(second.drive.estimate.load_inertia, 40.0) && same(second.drive.estimate.stiffness, 1e6));
+}
+
+/// Oracle: the rules of `docs/scenario.md` by hand: J·ω at the motor, 4/ω, K_v = ω.
+#[test]
+fn gains_follow_from_bandwidths() {
+    let scenario = scenario(SCREW);
+    let r = 0.01 / TAU;
+    let inertia = 1.57e-4 + 1e-4 + r * r * 40.0;
+    let (velocity, position) = (&scenario.drive.velocity, &scenario.drive.position);
+    assert!(same(velocity.gain, inertia * TAU * 60.0), "{}", velocity.gain);
+    assert!(same(velocity.integral_time.unwrap(), 4.0 / (TAU * 60.0)));
+    assert!(same(position.gain, TAU * 12.0));
+    assert_eq!((velocity.rate.hertz(), position.rate.hertz()), (8_000, 4_000));
+    let current = scenario.drive.current.as_ref().unwrap();
+    assert!(same(current.bandwidth, TAU * 1200.0) && current.gain.is_none() && current.integral_time.is_none());
+}
+
+/// A wrong belief of the inertia reaches the gain: the firmware knows its estimate only.
+#[test]
+fn an_estimate_overrides_single_values() {
+    let right = scenario(SCREW);
+    let wrong = scenario(&format!("{SCREW}[drive.estimate]\nload_inertia = \"20 kg\"\nmotor.resistance = \"2 Ohm\"\n"));
+    let r = 0.01 / TAU;
+    // The difference of two nearly equal gains loses a digit or two.
+    let difference = wrong.drive.velocity.gain - right.drive.velocity.gain;
+    assert!((difference / (r * r * 10.0 * TAU * 60.0) - 1.0).abs() < 1e-12, "{difference}");
+    assert!(same(wrong.drive.estimate.motor_inertia, right.drive.estimate.motor_inertia));
+    let (Motor::Pmsm(plant), believed) = (&wrong.motor, wrong.drive.estimate.motor.as_ref().unwrap()) else { panic!() };
+    assert!(same(believed.resistance, 2.0) && same(plant.resistance, 1.615), "the motor itself is what it is");
+    assert!(same(believed.flux_linkage, plant.flux_linkage));
+}
+
+#[test]
+fn limits_of_the_motor_and_its_encoder() {
+    let scenario = scenario(SCREW);
+    let Motor::Pmsm(motor) = &scenario.motor else { panic!("a synchronous motor") };
+    assert!(same(motor.max_current, 13.3 * 2_f64.sqrt()), "effective becomes peak");
+    assert!(same(scenario.drive.max_effort, 1.5 * 4.0 * motor.flux_linkage * motor.max_current));
+    assert!(same(motor.encoder.resolution.unwrap(), TAU / 1_048_576.0));
+    assert!(same(scenario.drive.load_encoder.unwrap().resolution.unwrap(), 1e-7));
+    assert_eq!(scenario.drive.position_feedback, Feedback::Load);
+    assert!(same(scenario.drive.dc_link, 560.0) && scenario.drive.enabled);
+}
+
+/// Oracle: the published law, u = k_v·(k_p·e − v) volts and 35.1507 newtons per volt.
+#[test]
+fn the_emps_controller_in_newtons() {
+    let text =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/emps.toml")).unwrap();
+    let scenario = scenario(&text);
+    let drive = &scenario.drive;
+    assert!(same(drive.velocity.gain, 35.1507 * 243.45) && same(drive.position.gain, 160.18));
+    assert_eq!((drive.velocity.integral_time, drive.current.is_none()), (None, true));
+    assert!(same(drive.max_effort, 351.507));
+    assert!(drive.feedforward.velocity == 0.0 && drive.feedforward.effort == EffortFeedforward::Off);
+    let Motor::IdealSource(source) = &scenario.motor else { panic!("an ideal source") };
+    assert!(same(source.gain, 35.1507) && same(source.limit, 10.0));
+    let [body] = bodies(&scenario) else { panic!("one body") };
+    assert!(same(body.inertia, 95.1089) && same(body.viscous, 203.5034) && same(body.bias, -3.1648));
+    assert!(same(body.coulomb, 20.3935) && same(body.breakaway, body.coulomb), "no static friction: as Coulomb");
+    assert_eq!(scenario.engines, [EngineName::Exact, EngineName::Rapier, EngineName::Mujoco]);
+}
+
+#[test]
+fn what_the_scenario_says_displaces_what_the_model_says() {
+    let own = SCREW
+        .replace("encoder = { counts", "torque_constant = \"0.5 Nm/Apk\"\nmax_current = \"5 Apk\"\nencoder = { counts")
+        .replace("load_encoder", "velocity.gain = \"0.2 Nm s/rad\"\nload_encoder");
+    let scenario = scenario(&own);
+    let Motor::Pmsm(motor) = &scenario.motor else { panic!("a synchronous motor") };
+    assert!(same(motor.flux_linkage, 0.5 / 6.0), "instead of the model's back-EMF");
+    assert!(same(motor.max_current, 5.0) && same(motor.resistance, 1.615));
+    assert!(same(scenario.drive.velocity.gain, 0.2), "instead of the model's bandwidth");
+    assert_eq!(scenario.drive.velocity.rate.hertz(), 8_000, "the rest of the sub-table stays");
+}
+
+#[test]
+fn models_beside_the_scenario_come_before_embedded_ones() {
+    let folder = tempfile::tempdir().unwrap();
+    let deep = folder.path().join("a/b");
+    std::fs::create_dir_all(&deep).unwrap();
+    std::fs::create_dir_all(folder.path().join("models/drives")).unwrap();
+    let mine =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/drives/servo-16khz.toml"))
+            .unwrap()
+            .replace("560 V", "48 V");
+    std::fs::write(folder.path().join("models/drives/servo-16khz.toml"), mine).unwrap();
+    let loaded = parse("test.toml", SCREW, Some(&deep)).unwrap();
+    assert!(same(loaded.scenario.drive.dc_link, 48.0));
+    let names: Vec<_> = loaded.sources.ids().map(|id| loaded.sources.name(id).to_owned()).collect();
+    assert_eq!(names.len(), 3, "the scenario, the motor, the drive: {names:?}");
+    assert_eq!(names[1], "<embedded>/models/motors/wittenstein-premo-1f.toml");
+}
+
+#[test]
+fn moves_take_what_they_do_not_say_from_the_set_point() {
+    let text = format!(
+        "{SCREW}{}",
+        r#"
+[setpoint]
+order = 4
+velocity = "30 m/min"
+acceleration = "5 m/s2"
+jerk = "50 m/s3"
+snap = "1000 m/s4"
+sample_time = "1 ms"
+[[program]]
+move_to = "250 mm"
+[[program]]
+wait = "0.2 s"
+[[program]]
+move_by = "-50 mm"
+order = 3
+velocity = "100 mm/s"
+duration = "2 s"
+"#
+    );
+    // The third step leaves `snap` unused, which is worth a warning.
+    let loaded = parse("test.toml", &text, None).unwrap();
+    assert_eq!(loaded.warnings.len(), 1, "{:?}", loaded.warnings);
+    let [Step::Move(first), Step::Wait(pause), Step::Move(second)] = loaded.scenario.program.as_slice() else {
+        panic!()
+    };
+    assert_eq!((first.target, first.order, first.duration), (Target::Absolute(0.25), 4, None));
+    assert_eq!(first.limits.map(f64::to_bits), [0.5, 5.0, 50.0, 1000.0].map(f64::to_bits));
+    assert_eq!(first.sample_time, Some(0.001));
+    assert!(same(*pause, 0.2));
+    assert_eq!((second.target, second.order, second.duration), (Target::Relative(-0.05), 3, Some(2.0)));
+    assert_eq!(second.limits.map(f64::to_bits), [0.1, 5.0, 50.0, f64::INFINITY].map(f64::to_bits));
+}
+
+#[test]
+fn limits_keep_their_order_and_their_meaning() {
+    let text = format!(
+        "{SCREW}{}",
+        r#"
+[limits]
+torque_peak = "5 Nm"
+current_peak = "10 Arms"
+current_rms = "10 Arms"
+following_error_cruise_load = { min = "-1 mm", max = "0.5 mm" }
+residual_vibration_damping = "5 %"
+setpoint_jerk_ratio = 1
+"#
+    );
+    let limit = |metric: &str, min, max| Limit { metric: metric.to_owned(), min, max: Some(max) };
+    let limits = scenario(&text).limits;
+    assert!(same(limits[2].max.unwrap(), 10.0), "an effective value is judged as one");
+    assert!(same(limits[1].max.unwrap(), 10.0 * 2_f64.sqrt()), "a peak as one");
+    assert_eq!(limits[0], limit("torque_peak", None, 5.0));
+    assert_eq!(
+        limits[3..],
+        [
+            limit("following_error_cruise_load", Some(-1e-3), 5e-4),
+            limit("residual_vibration_damping", None, 0.05),
+            limit("setpoint_jerk_ratio", None, 1.0),
+        ]
+    );
+}
+
+const RING_DOWN: &str = r#"
+[run]
+base_rate = "16 kHz"
+[axis]
+model = "two-mass"
+gear_ratio = 5
+[motor]
+model = "saarakkala-2.2kw"
+[drive]
+enabled = false
+[initial]
+load_position = "90 deg"
+load_velocity = "60 rpm"
+"#;
+
+#[test]
+fn a_drive_that_is_off_needs_no_loops() {
+    let scenario = scenario(RING_DOWN);
+    assert!(!scenario.drive.enabled && scenario.drive.current.is_none());
+    assert!(same(scenario.initial.load_position, PI / 2.0) && same(scenario.initial.load_velocity, TAU));
+    assert!(same(scenario.axis.transmission, 0.2));
+    assert_eq!((scenario.duration, scenario.record.rate.hertz(), scenario.name.as_str()), (None, 16_000, "test"));
+    assert!(same(scenario.drive.estimate.motor_inertia, 0.005 * 25.0), "a rotor behind a gear weighs its square");
+}
+
+#[test]
+fn a_prescribed_motor_needs_neither_drive_nor_inertia() {
+    let scenario = scenario(
+        "[run]\nbase_rate = \"16 kHz\"\n[axis]\nmotion = \"linear\"\n[axis.load]\nmass = \"10 kg\"\nstiffness = \"6e5 N/m\"\n\
+         [motor]\nkind = \"prescribed\"\n",
+    );
+    assert_eq!((scenario.motor, scenario.axis.motor_motion), (Motor::Prescribed, Motion::Linear));
+}
+
+#[test]
+fn a_users_own_mjcf_is_read_beside_the_file_that_names_it() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/own-mjcf.toml");
+    let scenario = servobench_scenario::load(&path).unwrap().scenario;
+    let AxisMechanics::Mjcf(mjcf) = &scenario.axis.mechanics else { panic!("MJCF") };
+    assert!(
+        mjcf.xml.contains("<mujoco model=\"swaying load\">") && mjcf.path.ends_with("models/axes/swaying-load.xml")
+    );
+    assert_eq!(
+        (mjcf.motor_joint.as_str(), mjcf.load_joint.as_str(), mjcf.actuator.as_str()),
+        ("carriage", "load", "force")
+    );
+    assert!(same(scenario.drive.velocity.gain, 30.0 * TAU * 15.0), "from the estimate");
+}
