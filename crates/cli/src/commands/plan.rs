@@ -147,8 +147,10 @@ fn dwells(profile: &Profile) -> impl Iterator<Item = (&'static str, &'static str
     .filter_map(|(name, meaning, value)| Some((name, meaning, value?)))
 }
 
+/// To the nanosecond: a plan is read to be typed in somewhere else.
 fn seconds(value: f64) -> String {
-    Quantity::new(value, "s").to_string()
+    let text = format!("{value:.9}");
+    format!("{} s", text.trim_end_matches('0').trim_end_matches('.'))
 }
 
 fn json_text(planned: &Planned) -> Result<String, CliError> {
@@ -214,5 +216,5 @@ fn svg(planned: &Planned) -> String {
         .collect();
     let title = format!("{} in {}, order {n}", Quantity::new(profile.distance(), unit), seconds(profile.duration()));
     let subtitle: Vec<_> = dwells(profile).map(|(name, _, value)| format!("{name} = {}", seconds(value))).collect();
-    PlanDrawing { title: &title, subtitle: &subtitle.join("   "), times: &times, panels: &panels }.to_svg()
+    PlanDrawing { title: &title, subtitle: &subtitle.join(",  "), times: &times, panels: &panels }.to_svg()
 }
