@@ -73,8 +73,8 @@ fn steps(workspace: &Workspace, engines: Engines) -> Result<Vec<Step>, Failure> 
         Step::new("format", workspace.cargo(["fmt", "--all", "--check"])),
         Step::new("checks", workspace.command(itself, ["checks"])),
         Step::new("lints", lints),
-        // The tests that leave the process run this binary.
-        Step::new("build", cargo(&["build"])),
+        // Builds the program too, which the scenarios run. A build step of its own would choose other features for some
+        // dependencies, without those of the tests, and compile Rerun twice.
         Step::new("tests", cargo(tests)),
         Step::new("documentation tests", cargo(&["test", "--doc"])),
         Step::new("documentation", documentation),
