@@ -34,22 +34,22 @@ pub enum Absence {
     /// The settling time needs a window.
     #[error("no settling window is given (`measure.window`)")]
     NoWindow,
-    /// The load was still outside its window.
+    /// The load was outside its window when the recording ended, or shortly before.
     #[error(
-        "`{label}` has not settled {} after the profile: {} from the target, window ±{}",
-        Quantity::new(*watched, "s"), Quantity::new(*deviation, unit), Quantity::new(*window, unit)
+        "`{label}` has not settled: the load left its window of ±{} again {} after the profile, of {} recorded",
+        Quantity::new(*window, unit), Quantity::new(*exit, "s"), Quantity::new(*watched, "s")
     )]
     NotSettled {
         /// Label of the move.
         label: String,
-        /// How long after the profile the recording watched (s).
-        watched: f64,
-        /// |deviation| from the target at the last exit that was seen (axis unit).
-        deviation: f64,
         /// Window (axis unit).
         window: f64,
         /// Axis unit.
         unit: String,
+        /// Last instant at which the load was seen outside, after the profile (s).
+        exit: f64,
+        /// How long after the profile the recording watched (s).
+        watched: f64,
     },
     /// No move reaches constant velocity.
     #[error("no move has a part at constant velocity")]

@@ -112,8 +112,12 @@ fn starts(signal: &Signal<'_>, span: f64, near: Option<f64>) -> Vec<f64> {
     let trend = bare.and_then(|bare| with_tail(&bare, &coarse).filter(|with| with.energy <= WORTH * bare.energy));
     let mut values = signal.values.to_vec();
     for (component, coefficients) in trend.iter().flat_map(Fit::parts) {
-        if let Component::Tail { rate } = component {
-            subtract_tail(&mut values, signal, &coarse, rate, coefficients[0]);
+        match component {
+            // What is over within two coarse values says little about the record between them.
+            Component::Tail { rate } if rate * coarse.step < 0.5 => {
+                subtract_tail(&mut values, signal, &coarse, rate, coefficients[0]);
+            }
+            _ => {}
         }
     }
     let mean = values.iter().sum::<f64>() / values.len() as f64;

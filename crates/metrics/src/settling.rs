@@ -74,10 +74,10 @@ fn settling_time(recording: &Recording, load: &[f64], phase: &Phase<'_>, window:
     if inside == 0 || inside * DWELL < watched {
         return Err(Absence::NotSettled {
             label: made.label.clone(),
-            watched: watched as f64 * period,
-            deviation: deviation(outside),
             window,
             unit: recording.about.axis_unit.clone(),
+            exit: outside as f64 * period - made.end,
+            watched: watched as f64 * period,
         });
     }
     // The crossing lies between two rows; a straight line between them finds it.
@@ -165,10 +165,9 @@ mod tests {
     fn what_never_settles_has_no_settling_time() {
         let stays = after_a_move(|_| 20e-6);
         let why = of_first(&stays, Some(WINDOW)).absence(Name::SettlingTime).unwrap().to_string();
-        assert_eq!(
-            why,
-            "`move to 1 m` has not settled 1.00 s after the profile: 20.0 µm from the target, window ±10.0 µm"
-        );
+        let expected = "`move to 1 m` has not settled: the load left its window of ±10.0 µm again 1.00 s after the profile, \
+                        of 1.00 s recorded";
+        assert_eq!(why, expected);
         // Amplitude 10 % beyond the window: three quarters of the time inside, the end of the recording too.
         let rings = after_a_move(|t| 11e-6 * (2.0 * PI * 20.0 * t).sin());
         assert!(matches!(of_first(&rings, Some(WINDOW)).absence(Name::SettlingTime), Some(Absence::NotSettled { .. })));

@@ -48,7 +48,9 @@ impl Residual {
         let deviation: Vec<f64> = load.iter().map(|x| x - rest).collect();
         let (low, high) =
             deviation.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
-        let mean = deviation.iter().sum::<f64>() / deviation.len() as f64;
+        // From the first value on, so that a load at rest has no RMS of rounding.
+        let first = deviation.first().copied().unwrap_or_default();
+        let mean = first + deviation.iter().map(|x| x - first).sum::<f64>() / deviation.len() as f64;
         let period = recording.rate.period();
         let signal = Signal {
             values: &deviation,

@@ -207,6 +207,18 @@ fn ring_down_without_a_move() {
     assert!(metrics.run.get(Name::ResidualVibrationPp).is_none());
 }
 
+/// A load that stands still does not vibrate, to the bit.
+#[test]
+fn a_load_at_rest_has_no_vibration() {
+    let mut still = recording(&jerk_limited(), 100.0);
+    still.channels[0].values.fill(0.1 + 0.2);
+    let metrics = measure(&still, &Question::default());
+    assert_eq!(metrics.run.value(Name::ResidualVibrationPp), Some(0.0));
+    assert_eq!(metrics.run.value(Name::ResidualVibrationRms), Some(0.0));
+    let why = metrics.run.absence(Name::ResidualVibrationAmplitude).unwrap().to_string();
+    assert_eq!(why, "the load does not oscillate");
+}
+
 #[test]
 fn an_empty_recording_has_reasons_only() {
     let mut empty = recording(&jerk_limited(), 100.0);

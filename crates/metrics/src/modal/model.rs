@@ -86,8 +86,8 @@ impl Component {
     pub(crate) fn moved(self, step: &[f64], series: &Series) -> Self {
         let (length, interval) = (series.length(), series.step);
         match self {
-            // A tail lasts for a few values at least; one that grows takes over from a drift, tenfold at most.
-            Self::Tail { rate } => Self::Tail { rate: (rate + step[0]).clamp(-2.3 / length, 0.5 / interval) },
+            // A tail that grows takes over from a drift; tenfold at most.
+            Self::Tail { rate } => Self::Tail { rate: (rate + step[0]).clamp(-2.3 / length, 10.0 / interval) },
             Self::Oscillation { decay, frequency } => Self::Oscillation {
                 decay: (decay + step[0]).clamp(-20.0 / length, 10.0 / interval),
                 frequency: (frequency + step[1]).clamp(1.0 / length, 0.98 * PI / interval),

@@ -11,8 +11,8 @@ const FAINT: f64 = 0.02;
 const EQUAL: f64 = 1e-9;
 
 /// Frequencies (Hz) of the highest peaks between `low` and `high` of `values` with steps of `step` (s): of the bare
-/// record, in which a mode that dies early shows best; under a Hann window, in which a lasting mode stands out from a
-/// drift; and, there, of the velocity, in which a fast mode stands out from a slow one. Equal ones once.
+/// record, in which a mode that dies early shows best, and under a Hann window, in which a lasting mode stands out from
+/// a drift; of the position, and of the velocity, in which a fast mode stands out from a slow one. Equal ones once.
 pub(crate) fn peaks(values: &[f64], step: f64, low: f64, high: f64) -> Vec<f64> {
     let length = (2 * values.len()).next_power_of_two();
     let resolution = 1.0 / (length as f64 * step);
@@ -21,17 +21,18 @@ pub(crate) fn peaks(values: &[f64], step: f64, low: f64, high: f64) -> Vec<f64> 
     let hann = |k: usize| 0.5 - 0.5 * libm::cos(2.0 * PI * (k as f64 + 0.5) / count);
     let windowed = magnitudes(values.iter().enumerate().map(|(k, y)| hann(k) * y), length);
     let inside = |k: usize| (low..=high).contains(&(k as f64 * resolution));
-    let mut found = Vec::with_capacity(3);
-    let mut add = |bin: Option<usize>| {
-        let frequency = bin.map(|bin| bin as f64 * resolution);
-        if let Some(f) = frequency.filter(|f| !found.iter().any(|other: &f64| (other - f).abs() < 2.0 * resolution)) {
-            found.push(f);
+    let mut found: Vec<f64> = Vec::with_capacity(4);
+    for magnitudes in [&windowed, &bare] {
+        let largest = magnitudes.iter().enumerate().filter(|(k, _)| inside(*k)).fold(0.0, |m: f64, (_, x)| m.max(*x));
+        let loud = |k: usize| inside(k) && magnitudes[k] >= FAINT * largest;
+        for bin in [highest(magnitudes, inside, |_| 1.0), highest(magnitudes, loud, |k| k as f64)].into_iter().flatten()
+        {
+            let frequency = bin as f64 * resolution;
+            if !found.iter().any(|other| (other - frequency).abs() < 2.0 * resolution) {
+                found.push(frequency);
+            }
         }
-    };
-    add(highest(&windowed, inside, |_| 1.0));
-    add(highest(&bare, inside, |_| 1.0));
-    let faint = FAINT * windowed.iter().enumerate().filter(|(k, _)| inside(*k)).fold(0.0, |m: f64, (_, x)| m.max(*x));
-    add(highest(&windowed, |k| inside(k) && windowed[k] >= faint, |k| k as f64));
+    }
     found
 }
 
