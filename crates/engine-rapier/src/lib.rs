@@ -92,6 +92,9 @@ fn build_mjcf(file: &MjcfModel, setup: &MechanicsSetup) -> Result<Box<dyn Mechan
         });
     }
     let refused = |refusals: Vec<MjcfRefusal>| {
+        if let [MjcfRefusal::Unreadable { message }] = &refusals[..] {
+            return MechanicsError::Model { engine: NAME, message: format!("{}: {message}", file.path.display()) };
+        }
         let all: Vec<String> = refusals.iter().map(ToString::to_string).collect();
         MechanicsError::Unsupported {
             engine: NAME,

@@ -100,7 +100,7 @@ pub enum MjcfRefusal {
     /// A name that nothing has.
     #[error("there is no {what} `{name}`; there is {known}")]
     Unknown {
-        /// Kind of element: `joint`, `motor`.
+        /// What it would be the name of: joint, motor, default class.
         what: &'static str,
         /// The name.
         name: String,

@@ -2,6 +2,7 @@
 mod agreement;
 mod geoms;
 mod hinges;
+mod mujoco;
 mod refusals;
 mod slides;
 mod subset;

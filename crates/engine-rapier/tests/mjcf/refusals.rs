@@ -221,6 +221,8 @@ fn the_engine_says_the_same_and_names_the_file() {
         error.contains("axis.xml: line ") && error.contains("`<equality>`") && error.contains("`mujoco`"),
         "{error}"
     );
+    let error = Rapier.build(&setup(Drive::Effort, "<mujoco>")).err().unwrap();
+    assert!(matches!(&error, MechanicsError::Model { message, .. } if message.starts_with("axis.xml: ")), "{error}");
     let error = Rapier.build(&setup(Drive::Prescribed, &world(BODY))).err().unwrap().to_string();
     assert!(error.contains("a prescribed motion of an MJCF model"), "{error}");
 }
