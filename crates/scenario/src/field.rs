@@ -42,11 +42,11 @@ impl<T> Slot<T> {
     /// The value of a key that may be left out.
     ///
     /// # Errors
-    /// [`Said`] when the value is wrong.
-    pub(crate) fn optional(&self) -> Result<Option<&T>, Said> {
+    /// [`Reported`] when the value is wrong.
+    pub(crate) fn optional(&self) -> Result<Option<&T>, Reported> {
         match self {
             Self::Absent => Ok(None),
-            Self::Wrong(_) => Err(Said),
+            Self::Wrong(_) => Err(Reported),
             Self::Given(at) => Ok(Some(&at.value)),
         }
     }
@@ -62,7 +62,7 @@ impl<T> Slot<T> {
 
 /// Something is wrong and has been reported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Said;
+pub(crate) struct Reported;
 
 /// Last part of a path.
 pub(crate) fn key(path: &str) -> &str {

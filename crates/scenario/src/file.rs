@@ -13,7 +13,8 @@ pub(crate) use drive::{Drive, Estimate, EstimatedMotor, Velocity, VelocityKind};
 pub(crate) use motor::{Encoder, Motor, MotorKind};
 pub(crate) use program::{Disturbance, ProgramStep, Setpoint};
 
-use crate::field::{not_negative, positive};
+use crate::channel::Channel;
+use crate::field::{any, not_negative, positive};
 use crate::limits::LimitTable;
 use crate::list::{Many, OneOrMany};
 use crate::physical::Kind::{Axis as InAxis, Plain};
@@ -80,9 +81,9 @@ table! {
     /// Where the load is at time 0; the motor is at rest at zero.
     pub(crate) struct Initial {
         /// Position of the load (axis coordinate).
-        load_position: f64 = crate::field::any(InAxis(&POSITION), "0.1 mm"),
+        load_position: f64 = any(InAxis(&POSITION), "0.1 mm"),
         /// Velocity of the load (axis coordinate).
-        load_velocity: f64 = crate::field::any(InAxis(&VELOCITY), "10 mm/s"),
+        load_velocity: f64 = any(InAxis(&VELOCITY), "10 mm/s"),
     }
 }
 
@@ -92,7 +93,7 @@ table! {
         /// Rate of the recording; the base rate unless given. It divides the base rate.
         rate: Rate = "4 kHz",
         /// Channels to keep; all that the axis has unless given.
-        channels: OneOrMany<crate::channel::Channel> = (),
+        channels: OneOrMany<Channel> = (),
     }
 }
 

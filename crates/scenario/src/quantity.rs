@@ -45,7 +45,7 @@ struct Factor {
 type Input<'i> = LocatingSlice<&'i str>;
 type Res<T> = Result<T, ErrMode<ContextError>>;
 
-/// Largest power of a unit: the snap of a pendulum has fewer.
+/// Largest power of a unit; no quantity here goes beyond s⁻⁴.
 const MAX_POWER: i32 = 9;
 
 /// Reads `text`.
@@ -66,13 +66,10 @@ pub(crate) fn parse(text: &str) -> Result<Quantity, QuantityError> {
     if input.starts_with(',') {
         return wrong(at(&input, text), "the decimal sign is a point", "");
     }
-    let factors = match opt(spaced(unit_expression)).parse_next(&mut input) {
-        Ok(factors) => factors.unwrap_or_default(),
-        Err(_) => Vec::new(),
-    };
-    if !input.is_empty() {
+    let factors = opt(spaced(unit_expression)).parse_next(&mut input).ok().flatten().unwrap_or_default();
+    if let Some(next) = input.chars().next() {
         let place = at(&input, text);
-        if text[..place].contains('/') {
+        if text[..place].contains('/') && (next.is_alphabetic() || "·*(".contains(next)) {
             let help = "write \"N s/m\" or \"N/(m s)\", whichever is meant";
             return wrong(place, "a unit ends with its quotient", help);
         }
@@ -272,6 +269,7 @@ mod tests {
             ("8 m999999999999", 2..15, "the power of `m` must be from -9 to 9", ""),
             ("8 N/m s", 6..7, "a unit ends with its quotient", "write \"N s/m\" or \"N/(m s)\", whichever is meant"),
             ("8 m; s", 3..4, "this is no unit", "write as in \"250 mm\", \"30 m/min\" or \"0.5 kg m2\""),
+            ("8 m/s ?", 6..7, "this is no unit", "write as in \"250 mm\", \"30 m/min\" or \"0.5 kg m2\""),
             ("8 /s", 2..3, "this is no unit", "write as in \"250 mm\", \"30 m/min\" or \"0.5 kg m2\""),
         ] {
             let e = parse(text).unwrap_err();

@@ -1,6 +1,6 @@
 //! `[drive]`: loops, with gains derived from bandwidths.
 use crate::diagnostic::Report;
-use crate::field::{Either, Said, Slot};
+use crate::field::{Either, Reported, Slot};
 use crate::file;
 use crate::file::{File, VelocityKind};
 use crate::list::{AutoTime, Share};
@@ -142,9 +142,9 @@ fn max_effort(drive: &file::Drive, motor: Option<&Motor>, report: &mut Report) -
     }
 }
 
-fn load_encoder(drive: &file::Drive, report: &mut Report) -> Result<Option<Encoder>, Said> {
+fn load_encoder(drive: &file::Drive, report: &mut Report) -> Result<Option<Encoder>, Reported> {
     let Some(encoder) = drive.load_encoder.optional()? else { return Ok(None) };
-    resolution(&encoder.step, &encoder.counts_per_rev, report.axis, report).ok_or(Said).map(Some)
+    resolution(&encoder.step, &encoder.counts_per_rev, report.axis, report).ok_or(Reported).map(Some)
 }
 
 fn position_feedback(drive: &file::Drive, report: &mut Report) -> Option<Feedback> {
@@ -218,11 +218,11 @@ fn current(
     known: &Known<'_>,
     is_used: bool,
     report: &mut Report,
-) -> Result<Option<CurrentLoop>, Said> {
+) -> Result<Option<CurrentLoop>, Reported> {
     let Some(given) = drive.current.optional()? else {
         if is_used && known.motor.is_some() {
             report.missing("drive", "current", drive.span);
-            return Err(Said);
+            return Err(Reported);
         }
         return Ok(None);
     };
@@ -233,10 +233,10 @@ fn current(
     let gain = match one_way(&[("bandwidth", given.bandwidth.span()), ("gain_d", by_gain)], report) {
         Way::Use(0) => None,
         Way::Use(_) => Some(pair(("gain_d", &given.gain_d), ("gain_q", &given.gain_q), path, header, report)?),
-        Way::Contradiction => return Err(Said),
+        Way::Contradiction => return Err(Reported),
         Way::None => {
             report.missing_with_help(path, "bandwidth", header, "or `gain_d` and `gain_q`");
-            return Err(Said);
+            return Err(Reported);
         }
     };
     let times = [("integral_time_d", &given.integral_time_d), ("integral_time_q", &given.integral_time_q)];
@@ -251,7 +251,7 @@ fn current(
         (Some((_, q)), Some(Motor::Pmsm(motor))) => Some(q / motor.inductance_q),
         (Some(_), _) => None,
     };
-    Ok(Some(CurrentLoop { rate: rate.ok_or(Said)?, bandwidth: bandwidth.ok_or(Said)?, gain, integral_time }))
+    Ok(Some(CurrentLoop { rate: rate.ok_or(Reported)?, bandwidth: bandwidth.ok_or(Reported)?, gain, integral_time }))
 }
 
 /// Two keys that go together.
@@ -261,10 +261,10 @@ fn pair(
     path: &str,
     header: Span,
     report: &mut Report,
-) -> Result<(f64, f64), Said> {
+) -> Result<(f64, f64), Reported> {
     let d = need(d, path, d_key, header, report);
     let q = need(q, path, q_key, header, report);
-    d.zip(q).ok_or(Said)
+    d.zip(q).ok_or(Reported)
 }
 
 fn velocity(
@@ -327,7 +327,7 @@ fn velocity_gain(gain: &Slot<Either>, motor: Option<&Motor>, report: &mut Report
 }
 
 /// Integral time of a PI: as given, or 4/ω with the bandwidth `omega`; `None` for a P.
-fn integral_time(given: &file::Velocity, omega: Option<f64>, report: &mut Report) -> Result<Option<f64>, Said> {
+fn integral_time(given: &file::Velocity, omega: Option<f64>, report: &mut Report) -> Result<Option<f64>, Reported> {
     let kind = given.kind.optional()?.copied().unwrap_or(VelocityKind::Pi);
     let time = given.integral_time.optional()?.copied();
     match (kind, time, omega) {
@@ -335,7 +335,7 @@ fn integral_time(given: &file::Velocity, omega: Option<f64>, report: &mut Report
         (VelocityKind::P, Some(_), _) => {
             let span = given.integral_time.span().unwrap_or(given.span);
             report.error(span, "a P loop has no `integral_time`", "write `kind = \"pi\"` or leave it out");
-            Err(Said)
+            Err(Reported)
         }
         (VelocityKind::Pi, Some(time), _) => Ok(Some(time)),
         (VelocityKind::Pi, None, Some(omega)) => Ok(Some(4.0 / omega)),
@@ -345,7 +345,7 @@ fn integral_time(given: &file::Velocity, omega: Option<f64>, report: &mut Report
                 let help = "it cannot be derived: the drive knows no inertia of this axis";
                 report.missing_with_help("drive.velocity", "integral_time", given.span, help);
             }
-            Err(Said)
+            Err(Reported)
         }
     }
 }

@@ -1,0 +1,112 @@
+//! Names of keys, values and models; values of the wrong type.
+use crate::{after, mistakes};
+use servobench_scenario::{LoadError, Sources, parse};
+use std::path::Path;
+
+#[test]
+fn unknown_keys_get_the_nearest_valid_name() {
+    let cases = [
+        ("damping = ", "dampign = ", "11:1: unknown key `dampign` in `axis.table`; did you mean `damping`?"),
+        ("[drive.position]", "[drive.postion]", "31:8: unknown key `postion` in `drive`; did you mean `position`?"),
+        ("[measure]", "[mesure]", "47:2: unknown key `mesure`; did you mean `measure`?"),
+        (
+            "settling_time = ",
+            "setling_time = ",
+            "50:1: there is no metric `setling_time`; did you mean `settling_time`?",
+        ),
+        ("engine = \"exact\"", "engine = \"exakt\"", "2:10: `engine` has no value \"exakt\"; did you mean `exact`?"),
+        (
+            "kind = \"pmsm\"",
+            "kind = \"dc\"",
+            "16:8: `kind` has no value \"dc\"; known here: `pmsm`, `ideal-source`, `prescribed`",
+        ),
+    ];
+    for (old, new, said) in cases {
+        assert!(after(old, new).contains(&said.to_owned()), "{new}: {:#?}", after(old, new));
+    }
+    let colour = after("engine = \"exact\"", "engine = \"exact\"\n[drive.current]\ncolour = 1");
+    assert!(colour[0].contains("unknown key `colour` in `drive.current`; known here: `rate`, "), "{colour:?}");
+}
+
+#[test]
+fn names_of_models_and_channels() {
+    let model = after("[motor]\nkind = \"pmsm\"", "[motor]\nmodel = \"saarakala-2.2kw\"\nkind = \"pmsm\"");
+    assert_eq!(
+        model,
+        ["16:9: there is no model `saarakala-2.2kw` in `models/motors`; did you mean `saarakkala-2.2kw`?"]
+    );
+    let path = after("[motor]\nkind = \"pmsm\"", "[motor]\nmodel = \"../x\"\nkind = \"pmsm\"");
+    assert_eq!(path, ["16:9: `../x` is no name of a model; letters, digits, `-`, `_` and `.` make a name"]);
+    let channel = after("[measure]", "[record]\nchannels = [\"load.position\", \"load.veloctiy\"]\n[measure]");
+    assert_eq!(channel, ["48:30: `channels` has no value \"load.veloctiy\"; did you mean `load.velocity`?"]);
+}
+
+/// What a table lacks may be in the model that was not found.
+#[test]
+fn a_model_that_is_not_found_is_the_only_mistake() {
+    let text = "[run]\nbase_rate = \"16 kHz\"\n[axis]\nmodel = \"x\"\n[motor]\nmodel = \"y\"\n[drive]\nmodel = \"z\"\n";
+    let said = mistakes(text);
+    assert!(said.len() == 3 && said.iter().all(|line| line.contains("there is no model")), "{said:#?}");
+}
+
+#[test]
+fn wrong_types() {
+    let cases = [
+        (
+            "velocity = true",
+            "velocity = \"yes\"",
+            "35:13: `velocity`: a quantity begins with a number; write as in \"250 mm\"",
+        ),
+        ("engine = \"exact\"", "engine = []", "2:10: `engine` must not be empty"),
+        (
+            "pole_pairs = 4",
+            "pole_pairs = \"4\"",
+            "17:14: `pole_pairs` must be a whole number from 1 to 1000, got \"4\"",
+        ),
+        ("mass = \"40 kg\"", "mass = [1, 2]", "9:8: `mass` must be a mass, got a list; write \"1 kg\""),
+        ("[[program]]", "[program]", "42:1: `program` must be a list, got a table; write `[[program]]`"),
+        (
+            "description = \"an elastic axis\"",
+            "description = 1979-05-27",
+            "1:15: `description` must be a text, got a date",
+        ),
+        (
+            "[drive.current]\nrate = \"16 kHz\"\nbandwidth = \"1 kHz\"",
+            "current = 5",
+            "25:11: `drive.current` must be a table, got a number; write `[drive.current]`",
+        ),
+    ];
+    for (old, new, said) in cases {
+        assert!(after(old, new).contains(&said.to_owned()), "{new}: {:#?}", after(old, new));
+    }
+}
+
+#[test]
+fn errors_in_a_model_point_into_the_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let motors = folder.path().join("models/motors");
+    std::fs::create_dir_all(&motors).unwrap();
+    std::fs::write(
+        motors.join("mine.toml"),
+        "kind = \"pmsm\"\npole_pairs = 4\ninertia = \"1 kg m2\"\nresistance = 1.6\ninductence = \"1 mH\"\n",
+    )
+    .unwrap();
+    let text = "[run]\nbase_rate = \"16 kHz\"\n[axis]\nmotion = \"rotary\"\n[motor]\nmodel = \"mine\"\nmax_current = \"1 A\"\n";
+    let Err(LoadError::Invalid(invalid)) = parse("axis.toml", text, Some(folder.path())) else { panic!("is wrong") };
+    let said: Vec<_> = invalid.diagnostics.iter().map(|one| at(&invalid.sources, one)).collect();
+    assert_eq!(
+        said,
+        [
+            ("axis.toml", 5, "missing `inductance` in `motor`"),
+            ("axis.toml", 5, "missing `flux_linkage` in `motor`"),
+            ("axis.toml", 7, "`max_current` must be a current (Arms or Apk), but \"1 A\" is a current (A)"),
+            ("mine.toml", 4, "`resistance` needs a unit, got the bare number 1.6"),
+            ("mine.toml", 5, "unknown key `inductence` in `motor`"),
+        ]
+    );
+}
+
+fn at<'a>(sources: &'a Sources, one: &'a servobench_scenario::Diagnostic) -> (&'a str, usize, &'a str) {
+    let name = Path::new(sources.name(one.source)).file_name().unwrap().to_str().unwrap();
+    (name, sources.line_and_column(one.source, one.span.start).0, &one.message)
+}

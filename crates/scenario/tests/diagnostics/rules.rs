@@ -1,0 +1,197 @@
+//! What is missing, what contradicts, what does not fit together; several mistakes at once.
+use crate::{AXIS, after, mistakes, warnings};
+use servobench_scenario::LoadError;
+use std::path::Path;
+
+#[test]
+fn a_move_without_any_limit_is_told_all_that_it_needs() {
+    let bare = AXIS.replace("order = 3\nvelocity = \"30 m/min\"\nacceleration = \"6 m/s2\"\njerk = \"200 m/s3\"\n", "");
+    assert_eq!(
+        mistakes(&bare),
+        [
+            "38:1: missing `order` in `setpoint`; 2, 3 or 4",
+            "38:1: missing `velocity` in `setpoint`; every move needs it",
+            "38:1: missing `acceleration` in `setpoint`; every move needs it",
+        ]
+    );
+}
+
+#[test]
+fn what_is_missing_is_said_at_the_header_of_its_table() {
+    let cases = [
+        ("base_rate = \"16 kHz\"\n", "3:1: missing `base_rate` in `run`"),
+        ("motion = \"linear\"\n", "5:1: missing `motion` in `axis`"),
+        ("lead = \"10 mm\"\n", "5:1: missing `lead` in `axis`; give the travel per revolution of the motor"),
+        ("mass = \"40 kg\"\n", "8:1: missing `mass` in `axis.table`"),
+        ("resistance = \"1.6 Ohm\"\n", "15:1: missing `resistance` in `motor`"),
+        ("inductance = \"3.5 mH\"\n", "15:1: missing `inductance` in `motor`; or `inductance_d` and `inductance_q`"),
+        (
+            "flux_linkage = \"0.06 V s\"\n",
+            "15:1: missing `flux_linkage` in `motor`; or `torque_constant`, or `back_emf`",
+        ),
+        ("max_current = \"13.3 Arms\"\n", "15:1: missing `max_current` in `motor`"),
+        ("dc_link = \"320 V\"\n", "23:1: missing `dc_link` in `drive`"),
+        ("[drive.current]\nrate = \"16 kHz\"\nbandwidth = \"1 kHz\"\n", "23:1: missing `current` in `drive`"),
+        ("bandwidth = \"60 Hz\"\n", "28:1: missing `bandwidth` in `drive.velocity`; or `gain`"),
+        ("rate = \"4 kHz\"\n", "31:1: missing `rate` in `drive.position`"),
+        ("jerk = \"200 m/s3\"\n", "41:1: missing `jerk` in `setpoint`; a move of order 3 needs it"),
+        ("order = 3\n", "41:1: missing `order` in `setpoint`; 2, 3 or 4"),
+        ("move_to = \"250 mm\"\n", "42:1: this step does nothing; give `move_to`, `move_by` or `wait`"),
+        ("on = \"load\"\n", "44:1: missing `on` in `disturbance`"),
+        ("force = \"100 N\"\n", "44:1: missing `force` in `disturbance`"),
+        ("window = \"10 um\"\n", "49:1: `settling_time` needs a settling window; give `window` in `[measure]`"),
+    ];
+    for (gone, said) in cases {
+        assert!(after(gone, "").contains(&said.to_owned()), "{gone}: {:#?}", after(gone, ""));
+    }
+    assert_eq!(
+        mistakes(""),
+        ["1:1: missing table `[run]`", "1:1: missing table `[axis]`", "1:1: missing table `[motor]`"]
+    );
+}
+
+#[test]
+fn order_four_needs_snap() {
+    assert_eq!(after("order = 3", "order = 4"), ["42:1: missing `snap` in `setpoint`; a move of order 4 needs it"]);
+}
+
+#[test]
+fn task_rates_that_do_not_divide_the_base_rate() {
+    let said = "3000 Hz does not divide the base rate 16000 Hz; 2000 Hz and 3200 Hz do; change it or `run.base_rate`";
+    assert_eq!(after("rate = \"4 kHz\"", "rate = \"3 kHz\""), [format!("32:8: {said}")]);
+    assert_eq!(after("[measure]", "[record]\nrate = \"3 kHz\"\n[measure]"), [format!("48:8: {said}")]);
+    let sample = after("jerk = \"200 m/s3\"", "jerk = \"200 m/s3\"\nsample_time = \"0.3 ms\"");
+    assert_eq!(sample, ["42:15: `sample_time` is 4.8000 base ticks, not a whole number; 312.5 us fits"]);
+}
+
+#[test]
+fn contradictions() {
+    let cases = [
+        (
+            "gain = \"80 1/s\"",
+            "gain = \"80 1/s\"\nbandwidth = \"10 Hz\"",
+            "33:8: `bandwidth` and `gain` say the same thing; give one of them",
+        ),
+        (
+            "move_to = \"250 mm\"",
+            "move_to = \"250 mm\"\nwait = \"1 s\"",
+            "44:8: `move_to` and `wait` in one step; write two steps",
+        ),
+        (
+            "mass = \"40 kg\"",
+            "inertia = \"40 kg m2\"",
+            "9:11: the axis moves along a line and has no `inertia`; give its `mass`",
+        ),
+        ("inertia = \"1.57 kg cm2\"", "mass = \"1 kg\"", "21:8: the motor turns and has no `mass`; give its `inertia`"),
+        (
+            "force = \"100 N\"",
+            "torque = \"1 Nm\"",
+            "46:10: the load moves along a line and feels no `torque`; give a `force`",
+        ),
+        (
+            "dc_link = \"320 V\"",
+            "dc_link = \"320 V\"\nmax_force = \"9 N\"",
+            "25:13: a motor that turns has no `max_force`; give `max_torque`",
+        ),
+        (
+            "dc_link = \"320 V\"",
+            "dc_link = \"320 V\"\nmax_torque = \"9 Nm\"",
+            "25:14: `max_torque` is more than the motor gives, 6.77125 N m; that is 1.5·p·ψ·`max_current`",
+        ),
+        (
+            "dc_link = \"320 V\"",
+            "dc_link = \"320 V\"\nposition_feedback = \"load\"",
+            "25:21: there is no encoder on the load; add `[drive.load_encoder]`",
+        ),
+        (
+            "stiffness = \"43 N/um\"\n",
+            "",
+            "10:11: `damping` belongs to a coupling that has no `stiffness`; without one the coupling is rigid",
+        ),
+        (
+            "rate = \"8 kHz\"",
+            "rate = \"8 kHz\"\nkind = \"p\"\nintegral_time = \"1 ms\"",
+            "31:17: a P loop has no `integral_time`; write `kind = \"pi\"` or leave it out",
+        ),
+        (
+            "bandwidth = \"60 Hz\"",
+            "gain = \"2 V s/rad\"",
+            "30:8: a gain in volts belongs to an ideal source; give torque per velocity",
+        ),
+        (
+            "kind = \"pmsm\"",
+            "kind = \"pmsm\"\ngain = \"1 Nm/V\"",
+            "17:8: `gain` belongs to an ideal source, this is a synchronous motor",
+        ),
+        ("engine = \"exact\"", "engine = [\"exact\", \"rapier\", \"exact\"]", "2:30: this engine is named twice"),
+        (
+            "settling_time = \"50 ms\"",
+            "settling_time = { min = \"1 s\", max = \"50 ms\" }",
+            "50:17: `settling_time` has a `min` above its `max`",
+        ),
+        (
+            "settling_time = \"50 ms\"",
+            "settling_time = {}",
+            "50:17: `settling_time` has no bound; give `min`, `max` or both",
+        ),
+        (
+            "[measure]",
+            "[axis.mjcf]\nfile = \"a.xml\"\nmotor_joint = \"a\"\nload_joint = \"b\"\nactuator = \"c\"\n[measure]",
+            "8:1: `table` and `mjcf` cannot be together; the MJCF file holds all bodies",
+        ),
+    ];
+    for (old, new, said) in cases {
+        assert!(after(old, new).contains(&said.to_owned()), "{new}: {:#?}", after(old, new));
+    }
+    let pause = after("move_to = \"250 mm\"", "wait = \"1 s\"\nvelocity = \"1 m/s\"");
+    assert_eq!(pause, ["44:12: a pause has no `velocity`"]);
+    let rigid = AXIS.replace("stiffness = \"43 N/um\"\ndamping = \"1659 N s/m\"\n", "");
+    let said = "34:10: the axis is rigid: there are no two masses; write \"rigid\", or give `stiffness` and \
+                `load_inertia` in `[drive.estimate]`";
+    assert_eq!(mistakes(&rigid), [said]);
+}
+
+#[test]
+fn every_mistake_of_a_file_is_reported_in_one_go_in_its_order() {
+    let text = AXIS
+        .replace("mass = \"40 kg\"", "mass = 40")
+        .replace("damping", "dampign")
+        .replace("resistance = \"1.6 Ohm\"\n", "")
+        .replace("rate = \"8 kHz\"", "rate = \"7 kHz\"")
+        .replace("order = 3", "order = 4")
+        .replace("window", "windwo");
+    let said = mistakes(&text);
+    let lines: Vec<_> = said.iter().map(|line| line.split(':').next().unwrap()).collect();
+    assert_eq!(lines, ["9", "11", "15", "28", "41", "47", "49"], "{said:#?}");
+}
+
+#[test]
+fn wrong_syntax_is_said_without_its_consequences() {
+    let text = AXIS
+        .replace("mass = \"40 kg\"", "mass = 40 kg")
+        .replace("dc_link", "dc link")
+        .replace("order = 3", "order = 7");
+    assert_eq!(
+        mistakes(&text),
+        [
+            "9:8: string values must be quoted, expected literal string; write texts and quantities as in \"250 mm\"",
+            "24:4: key with no value, expected `=`",
+            "38:9: `order` must be a whole number from 2 to 4, got 7",
+        ]
+    );
+}
+
+#[test]
+fn what_is_doubtful_is_a_warning() {
+    let unused = AXIS.replace("order = 3", "order = 2");
+    assert_eq!(warnings(&unused), ["41:8: `jerk` is not used by a move of order 2"]);
+    let narrow = AXIS.replace("static = \"32 N\"\n", "");
+    assert_eq!(warnings(&narrow), ["13:21: `stribeck_velocity` does nothing without `static`"]);
+}
+
+#[test]
+fn a_file_that_is_not_there_is_an_error_of_its_own() {
+    let error = servobench_scenario::load(Path::new("no/such/file.toml")).unwrap_err();
+    assert!(matches!(error, LoadError::Read { .. }));
+    assert!(error.to_string().starts_with("cannot read `no/such/file.toml`: "), "{error}");
+}
