@@ -83,7 +83,7 @@ fn a_run_that_keeps_its_limits_ends_with_0_and_writes_results_and_recording() {
     let results = json(&std::fs::read(out.join("results.json")).unwrap());
     let scenario = &results["scenarios"][0];
     assert_eq!((&scenario["name"], &scenario["engine"]), (&"slide".into(), &"exact".into()));
-    assert_eq!(scenario["verdict"], "passed");
+    assert_eq!((&scenario["verdict"], &scenario["duration"]), (&"passed".into(), &0.4.into()), "{scenario}");
     let metric = &scenario["metrics"]["following_error_peak_load"];
     assert_eq!((&metric["unit"], &metric["pass"]), (&"m".into(), &true.into()), "{metric}");
     assert!(metric["value"].as_f64().unwrap() < 1e-3);

@@ -42,7 +42,7 @@ pub struct RunResult {
     pub engine: String,
     /// What came of it.
     pub verdict: Outcome,
-    /// Simulated time (s).
+    /// Simulated time, from tick 0 to the last recorded instant (s).
     pub duration: f64,
     /// Missed limits or the error, in words; `null` when it passed.
     pub reason: Option<String>,
@@ -177,7 +177,8 @@ impl RunResult {
             file: run.file,
             engine: run.engine,
             verdict: Outcome::Error,
-            duration: recording.map_or(0.0, |recording| recording.len() as f64 / f64::from(recording.rate.hertz())),
+            // N + 1 instants from tick 0 to tick N.
+            duration: recording.map_or(0.0, |recording| recording.time_of(recording.len().saturating_sub(1))),
             reason: None,
             metrics: of_set(&metrics.run),
             absent: metrics.run.absences().map(|(name, why)| (name.to_string(), why.to_string())).collect(),
@@ -262,7 +263,7 @@ mod tests {
                 bodies: vec!["load".into()],
             },
             rate,
-            channels: vec![Channel { spec, values: (0..1000).map(|k| f64::from(k) * 0.1e-6).collect() }],
+            channels: vec![Channel { spec, values: (0..=1000).map(|k| f64::from(k) * 0.1e-6).collect() }],
             moves: vec![Move {
                 label: "move to 1 m".into(),
                 start: 0.0,
@@ -315,7 +316,8 @@ mod tests {
     fn a_judged_run_holds_every_limit() {
         let run = judged();
         assert_eq!(run.verdict, Outcome::Failed);
-        assert!((run.duration - 1.0).abs() < 1e-15);
+        // Instants 0 to 1000 at 1 kHz.
+        assert_eq!(run.duration.to_bits(), 1.0_f64.to_bits());
         let peak = run.metrics.get("following_error_peak_load").unwrap();
         assert_eq!((peak.limit, peak.pass), (Some(0.1e-3), Some(true)));
         let settling = run.metrics.get("settling_time").unwrap();
