@@ -1,4 +1,5 @@
-//! Channels that a recording can have.
+//! Channels that a recording can have. Names and order are those of the crate `sim`; `tests/channels.rs` holds them
+//! together.
 use crate::simple::Choice;
 
 /// A channel of the recording, by its name.
