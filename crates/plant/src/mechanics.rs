@@ -47,8 +47,8 @@ pub struct Input {
 
 /// A simulated axis.
 ///
-/// `advance` goes from tick k to k+1; before the first call the state is that of tick 0. No heap allocation in either
-/// method.
+/// `advance` goes from tick k to k+1; before the first call the state is that of tick 0. Neither method allocates memory;
+/// what a foreign engine does inside its own step is its own (Rapier allocates in each).
 pub trait Mechanics: Send {
     /// The bodies at the present tick: the motor first, the load last; one body is both.
     fn bodies(&self) -> &[BodyState];

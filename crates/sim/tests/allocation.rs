@@ -1,0 +1,54 @@
+//! A tick of the closed loop on the engine `exact` allocates nothing.
+use servobench_plant::Exact;
+use servobench_sim::Bench;
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::path::Path;
+
+thread_local! {
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+}
+
+/// Counts the calling thread's allocations; growing a block is one too.
+struct Counting;
+
+#[expect(unsafe_code, reason = "an allocator is unsafe by contract; this one only counts and passes on")]
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.with(|count| count.set(count.get() + 1));
+        // SAFETY: the caller's promises are passed on unchanged.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        // SAFETY: as above.
+        unsafe { System.dealloc(memory, layout) }
+    }
+}
+
+#[global_allocator]
+static COUNTING: Counting = Counting;
+
+/// Allocations and rows of a run of the scenario `file` that lasts `duration` (s), once it is built.
+fn allocations(file: &str, duration: f64) -> (u64, usize) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(file);
+    let mut scenario = servobench_scenario::load(&path).unwrap().scenario;
+    scenario.duration = Some(duration);
+    let bench = Bench::new(&scenario, &Exact).unwrap();
+    let before = ALLOCATIONS.get();
+    let outcome = bench.run(&mut |_| {});
+    let count = ALLOCATIONS.get() - before;
+    assert!(outcome.failure.is_none() && outcome.recording.events.is_empty(), "{file}: an event has words of its own");
+    (count, outcome.recording.len())
+}
+
+/// Oracle: a run of 1.2 s allocates as often as one of 0.3 s. A synchronous motor whose table sticks and slips, an ideal
+/// source behind two bodies, a prescribed motion.
+#[test]
+fn ticks_allocate_nothing() {
+    for file in ["feed-axis-stick-slip.toml", "lambrechts-snap.toml", "vibration-snap.toml"] {
+        let ((short, few), (long, many)) = (allocations(file, 0.3), allocations(file, 1.2));
+        assert!(few > 4_000 && many > 3 * few, "{file}: {few} and {many} rows");
+        assert_eq!(short, long, "{file}: {} rows more", many - few);
+    }
+}
