@@ -11,7 +11,7 @@ enum May {
 }
 
 /// The floor plan, lower floors first. Dev-dependencies are free: the oracle of a test may come from anywhere.
-const PLAN: [(&str, May); 17] = [
+const PLAN: [(&str, May); 18] = [
     ("base", May::On(&[])),
     ("motion", May::On(&["base"])),
     ("drive", May::On(&["base", "motion"])),
@@ -28,6 +28,7 @@ const PLAN: [(&str, May); 17] = [
     ("cli", May::OnAll),
     ("tests", May::OnAll),
     ("features", May::On(&[])),
+    ("fuzz", May::On(&[])),
     ("xtask", May::On(&[])),
 ];
 

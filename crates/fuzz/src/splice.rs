@@ -1,0 +1,202 @@
+//! Inputs that are almost right: real files, cut into words and put together wrongly.
+//!
+//! Random bytes never get past the outermost parser. A real file with a few words changed does, and what is wrong with it
+//! is found, or missed, deep inside.
+use bolero::Driver;
+use bolero::generator::ValueGenerator;
+use std::borrow::Cow;
+use std::ops::Bound::{Excluded, Included};
+use std::ops::Range;
+
+/// Files of bytes.
+#[derive(Debug, Clone)]
+pub struct Splice {
+    /// The words of each.
+    files: Vec<Vec<Vec<u8>>>,
+    /// Words to put in.
+    dictionary: Vec<Vec<u8>>,
+}
+
+/// Files of text; see [`Splice::text`].
+#[derive(Debug, Clone)]
+pub struct SplicedText(Splice);
+
+type Words<'a> = Vec<Cow<'a, [u8]>>;
+
+/// No input has more words, so that doubling cannot fill the memory.
+const MOST_WORDS: usize = 1 << 14;
+
+impl Splice {
+    /// Of files of bytes, each byte a word.
+    ///
+    /// # Panics
+    /// When there is no file or no word to put in.
+    #[must_use]
+    pub fn bytes(files: &[&[u8]], dictionary: &[&[u8]]) -> Self {
+        assert!(!files.is_empty() && !dictionary.is_empty(), "there is nothing to splice");
+        let bytes = |file: &&[u8]| file.iter().map(|byte| vec![*byte]).collect();
+        Self { files: files.iter().map(bytes).collect(), dictionary: dictionary.iter().map(|w| w.to_vec()).collect() }
+    }
+
+    /// Of texts: a word is a number, a name, or any other character.
+    ///
+    /// # Panics
+    /// When there is no file or no word to put in.
+    #[must_use]
+    pub fn text(files: &[&str], dictionary: &[&str]) -> SplicedText {
+        assert!(!files.is_empty() && !dictionary.is_empty(), "there is nothing to splice");
+        let words = |file: &&str| words(file).into_iter().map(|word| word.as_bytes().to_vec()).collect();
+        let dictionary = dictionary.iter().map(|word| word.as_bytes().to_vec()).collect();
+        SplicedText(Self { files: files.iter().map(words).collect(), dictionary })
+    }
+}
+
+/// Numbers and names whole, anything else by the character.
+fn words(text: &str) -> Vec<&str> {
+    let in_word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '-' | '+');
+    let mut words = vec![];
+    let mut rest = text;
+    while let Some(first) = rest.chars().next() {
+        let end = if in_word(first) { rest.find(|c| !in_word(c)).unwrap_or(rest.len()) } else { first.len_utf8() };
+        let (word, after) = rest.split_at(end);
+        words.push(word);
+        rest = after;
+    }
+    words
+}
+
+impl ValueGenerator for Splice {
+    type Output = Vec<u8>;
+
+    fn generate<D: Driver>(&self, driver: &mut D) -> Option<Vec<u8>> {
+        let mut words: Words =
+            self.files[below(driver, self.files.len())?].iter().map(|w| Cow::Borrowed(&w[..])).collect();
+        for _ in 0..below(driver, 9)? {
+            self.change(&mut words, driver)?;
+            words.truncate(MOST_WORDS);
+        }
+        Some(words.concat())
+    }
+}
+
+impl ValueGenerator for SplicedText {
+    type Output = String;
+
+    fn generate<D: Driver>(&self, driver: &mut D) -> Option<String> {
+        self.0.generate(driver).map(|bytes| String::from_utf8_lossy(&bytes).into_owned())
+    }
+}
+
+impl Splice {
+    /// Makes one change.
+    fn change<'a, D: Driver>(&'a self, words: &mut Words<'a>, driver: &mut D) -> Option<()> {
+        let at = range(words, driver)?;
+        match below(driver, 9)? {
+            0 => drop(words.drain(at)),
+            1 => words.truncate(at.start),
+            2 => {
+                let moved: Words = words.drain(at).collect();
+                let to = below(driver, words.len() + 1)?;
+                words.splice(to..to, moved);
+            }
+            3 => {
+                let copy = words[at].to_vec();
+                let to = below(driver, words.len() + 1)?;
+                words.splice(to..to, copy);
+            }
+            4 => {
+                let times = 2 << below(driver, 7)?;
+                let copies: Words = words[at.clone()].iter().cycle().take(times * at.len()).cloned().collect();
+                words.splice(at, copies);
+            }
+            5 => {
+                let other = &self.files[below(driver, self.files.len())?];
+                let from = range(other, driver)?;
+                words.splice(at, other[from].iter().map(|w| Cow::Borrowed(&w[..])));
+            }
+            6 => {
+                let Some(word) = words.get_mut(at.start).filter(|word| !word.is_empty()) else { return Some(()) };
+                let byte = below(driver, word.len())?;
+                word.to_mut()[byte] = driver.produce()?;
+            }
+            // The change that gets furthest, so twice as often.
+            _ => {
+                let word = &self.dictionary[below(driver, self.dictionary.len())?];
+                let at = if driver.produce()? { at.start..at.start } else { at };
+                words.splice(at, [Cow::Borrowed(&word[..])]);
+            }
+        }
+        Some(())
+    }
+}
+
+/// A word, some words in a row, or whole lines.
+fn range<D: Driver>(words: &[impl AsRef<[u8]>], driver: &mut D) -> Option<Range<usize>> {
+    let start = below(driver, words.len() + 1)?;
+    let ends_line = |word: &&[u8]| *word == b"\n";
+    let mut lines = words[start..].iter().map(AsRef::as_ref);
+    let len = match below(driver, 4)? {
+        0 | 1 => 1,
+        2 => 1 + below(driver, 40)?,
+        _ => lines.position(|word| ends_line(&word)).map_or(1, |at| at + 1),
+    };
+    Some(start..words.len().min(start + len))
+}
+
+/// A number below `bound`, which is not zero.
+fn below<D: Driver>(driver: &mut D, bound: usize) -> Option<usize> {
+    driver.gen_usize(Included(&0), Excluded(&bound))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::seeded::Seeded;
+    use bolero::TestTarget;
+    use std::collections::BTreeSet;
+    use std::sync::Mutex;
+
+    #[test]
+    fn a_text_is_its_words() {
+        let text = "gain = \"1.5e-3 µm/s2\"\n[a.b]";
+        let expected = ["gain", " ", "=", " ", "\"", "1.5e-3", " ", "µm", "/", "s2", "\"", "\n", "[", "a.b", "]"];
+        assert_eq!(words(text), expected);
+        assert_eq!(words(text).concat(), text);
+    }
+
+    /// What each kind of change makes of three words, among the inputs of one sweep.
+    #[test]
+    fn every_kind_of_change_happens() {
+        let seen = Mutex::new(BTreeSet::new());
+        let texts = Splice::text(&["a b\nc", "z"], &["0"]);
+        TestTarget::new(Seeded { inputs: 50_000 }).with_generator(texts).for_each(|text: &String| {
+            seen.lock().unwrap().insert(text.clone());
+        });
+        let seen = seen.into_inner().unwrap();
+        for (change, text) in [
+            ("none", "a b\nc"),
+            ("a word cut", " b\nc"),
+            ("a line cut", "c"),
+            ("the end cut", "a b"),
+            ("a word moved", "a \ncb"),
+            ("a word copied", "a bb\nc"),
+            ("a line doubled", "a b\na b\nc"),
+            ("a word repeated", "a bbbbbbbb\nc"),
+            ("a word of another file", "a z\nc"),
+            ("a byte changed", "a b\n\u{fffd}"),
+            ("a word put in", "a 0b\nc"),
+            ("a word replaced", "a 0\nc"),
+        ] {
+            assert!(seen.contains(text), "{change}: {text:?}");
+        }
+    }
+
+    #[test]
+    fn no_input_fills_the_memory() {
+        let long = "a ".repeat(MOST_WORDS / 2);
+        let longest = 1 + MOST_WORDS * "four".len();
+        let texts = Splice::text(&[&long], &["four"]);
+        let property = move |text: &String| assert!(text.len() <= longest);
+        TestTarget::new(Seeded { inputs: 200 }).with_generator(texts).for_each(property);
+    }
+}
