@@ -1,22 +1,25 @@
 //! Cost of a tick of the whole closed loop on every engine, and of the bare engine step, in one run.
 //!
 //! `cargo xtask bench [--json]`. The loop: 16 kHz current control of a synchronous motor, two bodies, 20 recorded
-//! channels. Rounds of all candidates alternate, so that a busy machine slows all of them; the least of each counts.
-use servobench_plant::{Engine, Exact};
+//! channels. The bare step goes through the same motion of the same model: the engine's own library and nothing of ours.
+//!
+//! Short rounds of all candidates alternate, so that a busy machine slows all of them; the least of each counts.
+use servobench_plant::{BodyState, Engine, Exact, Input, Mechanics, MechanicsError, MechanicsSetup};
 use servobench_scenario::Scenario;
 use servobench_sim::Bench;
 use servobench_tests::scenario;
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
-/// Simulated time of one round (s), and rounds.
-const SECONDS: u32 = 1;
-const ROUNDS: usize = 40;
+const ROUNDS: usize = 300;
 const BASE_RATE: f64 = 16_000.0;
 const CHANNELS: usize = 20;
 
+/// A quarter of a second in the middle of which the axis cruises.
 const AXIS: &str = r#"
 [run]
 base_rate = "16 kHz"
+duration = "0.25 s"
 [axis]
 model = "two-mass"
 [motor]
@@ -38,78 +41,119 @@ effort = "two-mass"
 [setpoint]
 order = 4
 velocity = "100 rad/s"
-acceleration = "500 rad/s2"
-jerk = "2e4 rad/s3"
-snap = "1e6 rad/s4"
+acceleration = "1500 rad/s2"
+jerk = "6e4 rad/s3"
+snap = "6e6 rad/s4"
 [[program]]
-move_to = "60 rad"
+move_to = "15 rad"
 "#;
 
-/// What is measured: a name, and one round of it that returns nanoseconds per tick.
-type Candidate = (String, Box<dyn FnMut() -> f64>);
+/// What is measured: one round of it returns nanoseconds per tick.
+struct Candidate {
+    name: String,
+    round: Box<dyn FnMut() -> f64>,
+    best: f64,
+}
+
+/// One engine in the report (ns per tick).
+struct Line {
+    engine: &'static str,
+    tick: f64,
+    /// The bare step, of engines that have one.
+    bare: Option<f64>,
+    /// The loop on `exact` with the bare step after each tick, of no effect: what no coupling could be cheaper than.
+    in_turn: Option<f64>,
+}
 
 fn main() {
     let json = std::env::args().any(|argument| argument == "--json");
     let mut candidates = candidates();
-    let mut best = vec![f64::INFINITY; candidates.len()];
     for _ in 0..ROUNDS {
-        for ((_, round), best) in candidates.iter_mut().zip(&mut best) {
-            *best = best.min(round());
+        for candidate in &mut candidates {
+            candidate.best = candidate.best.min((candidate.round)());
         }
     }
-    let named: Vec<(&str, f64)> = candidates.iter().map(|(name, _)| name.as_str()).zip(best).collect();
-    report(&named, json);
+    let of = |wanted: String| candidates.iter().find(|candidate| candidate.name == wanted).map(|found| found.best);
+    let lines: Vec<Line> = servobench_tests::engines()
+        .into_iter()
+        .map(Engine::name)
+        .filter_map(|engine| {
+            let tick = of(engine.to_owned())?;
+            Some(Line { engine, tick, bare: of(format!("bare {engine}")), in_turn: of(format!("{engine} in turn")) })
+        })
+        .collect();
+    if json { print_json(&lines) } else { print_table(&lines) }
 }
 
-fn report(best: &[(&str, f64)], json: bool) {
-    let of = |wanted: &str| best.iter().find(|(name, _)| *name == wanted).map(|(_, ns)| *ns);
-    let exact = of("exact").unwrap_or(f64::NAN);
-    let mut lines = Vec::new();
-    for engine in servobench_tests::engines() {
-        let (name, bare) = (engine.name(), of(&format!("bare {}", engine.name())));
-        let Some(tick) = of(name) else { continue };
-        let real_time = 1e9 / BASE_RATE / tick;
-        let above = bare.map(|bare| tick - bare - exact);
-        lines.push((name, tick, real_time, bare, above));
+fn exact_tick(lines: &[Line]) -> f64 {
+    lines.iter().find(|line| line.engine == Exact.name()).map_or(f64::NAN, |line| line.tick)
+}
+
+fn print_json(lines: &[Line]) {
+    let number = |value: Option<f64>| value.map_or("null".to_owned(), |value| format!("{value:.1}"));
+    let exact = exact_tick(lines);
+    let engines: Vec<String> = lines
+        .iter()
+        .map(|line| {
+            format!(
+                "{{\"engine\":\"{}\",\"ns_per_tick\":{:.1},\"times_real_time\":{:.1},\"bare_step_ns\":{},\
+                 \"above_bare_and_exact_ns\":{},\"above_bare_and_exact_in_turn_ns\":{}}}",
+                line.engine,
+                line.tick,
+                1e9 / BASE_RATE / line.tick,
+                number(line.bare),
+                number(line.bare.map(|bare| line.tick - bare - exact)),
+                number(line.in_turn.map(|in_turn| line.tick - in_turn)),
+            )
+        })
+        .collect();
+    println!("{{\"base_rate_hz\":{BASE_RATE},\"channels\":{CHANNELS},\"engines\":[{}]}}", engines.join(","));
+}
+
+fn print_table(lines: &[Line]) {
+    let number = |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.0} ns"));
+    let exact = exact_tick(lines);
+    println!("{:8} {:>9} {:>12} {:>10} {:>19} {:>9}", "", "", "", "", "above bare + exact", "");
+    println!(
+        "{:8} {:>9} {:>12} {:>10} {:>9} {:>9}",
+        "engine", "ns/tick", "× real time", "bare step", "apart", "in turn"
+    );
+    for line in lines {
+        println!(
+            "{:8} {:>9.0} {:>12.0} {:>10} {:>9} {:>9}",
+            line.engine,
+            line.tick,
+            1e9 / BASE_RATE / line.tick,
+            number(line.bare),
+            number(line.bare.map(|bare| line.tick - bare - exact)),
+            number(line.in_turn.map(|in_turn| line.tick - in_turn)),
+        );
     }
-    if json {
-        let engines: Vec<String> = lines
-            .iter()
-            .map(|(name, tick, real_time, bare, above)| {
-                let number = |value: &Option<f64>| value.map_or("null".to_owned(), |value| format!("{value:.1}"));
-                let (bare, above) = (number(bare), number(above));
-                format!(
-                    "{{\"engine\":\"{name}\",\"ns_per_tick\":{tick:.1},\"times_real_time\":{real_time:.1},\
-                     \"bare_step_ns\":{bare},\"above_bare_and_exact_ns\":{above}}}"
-                )
-            })
-            .collect();
-        println!("{{\"base_rate_hz\":{BASE_RATE},\"channels\":{CHANNELS},\"engines\":[{}]}}", engines.join(","));
-        return;
-    }
-    println!("{:8} {:>9} {:>12} {:>10} {:>22}", "engine", "ns/tick", "× real time", "bare step", "above bare + exact");
-    for (name, tick, real_time, bare, above) in lines {
-        let number = |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.0} ns"));
-        println!("{name:8} {tick:>9.0} {real_time:>12.0} {:>10} {:>22}", number(bare), number(above));
-    }
+    println!("apart: both measured alone, each with the caches to itself; in turn: one after the other at every tick");
 }
 
 fn candidates() -> Vec<Candidate> {
     let axis = with_twenty_channels(scenario(AXIS));
-    let mut all: Vec<Candidate> = Vec::new();
+    let motion = Arc::new(Motion::of(&scenario(AXIS)));
+    let mut all = Vec::new();
     for engine in servobench_tests::engines() {
-        let axis = axis.clone();
-        all.push((engine.name().to_owned(), Box::new(move || loop_round(&axis, engine))));
+        let looped = axis.clone();
+        all.push(candidate(engine.name().into(), move || loop_round(&looped, engine)));
+        let Some(bare) = bare_step(engine.name()) else { continue };
+        let alone = Arc::clone(&motion);
+        all.push(candidate(format!("bare {}", engine.name()), move || bare_round(&alone, bare)));
+        let (looped, in_turn) = (axis.clone(), InTurn { bare, motion: Arc::clone(&motion) });
+        all.push(candidate(format!("{} in turn", engine.name()), move || loop_round(&looped, &in_turn)));
     }
-    all.push(("bare rapier".into(), bare_rapier()));
-    #[cfg(feature = "mujoco")]
-    all.push(("bare mujoco".into(), bare_mujoco()));
     all
+}
+
+fn candidate(name: String, round: impl FnMut() -> f64 + 'static) -> Candidate {
+    Candidate { name, round: Box::new(round), best: f64::INFINITY }
 }
 
 /// Keeps the first twenty channels of those that the axis has.
 fn with_twenty_channels(mut axis: Scenario) -> Scenario {
-    axis.duration = Some(f64::from(SECONDS));
     let recording = servobench_tests::run(&axis, &Exact);
     let names = recording.channels.iter().map(|channel| channel.spec.name.clone());
     axis.record.channels = names.take(CHANNELS).collect();
@@ -126,24 +170,108 @@ fn loop_round(axis: &Scenario, engine: &dyn Engine) -> f64 {
     elapsed.as_secs_f64() * 1e9 / outcome.recording.len() as f64
 }
 
-/// A round of bare steps (ns each).
-fn round_of(mut step: impl FnMut() + 'static) -> Box<dyn FnMut() -> f64> {
-    let steps = SECONDS * 16_000;
-    Box::new(move || {
-        let start = Instant::now();
-        for _ in 0..steps {
-            step();
-        }
-        start.elapsed().as_secs_f64() * 1e9 / f64::from(steps)
-    })
+fn bare_round(motion: &Arc<Motion>, bare: Bare) -> f64 {
+    let mut step = bare(motion);
+    let ticks = motion.efforts.len();
+    let start = Instant::now();
+    for k in 0..ticks {
+        step(k);
+    }
+    start.elapsed().as_secs_f64() * 1e9 / ticks as f64
 }
 
-/// Two bodies in a scene like that of the engine, and nothing of ours.
-fn bare_rapier() -> Box<dyn FnMut() -> f64> {
+/// The motion of the loop, for the bare steps to go through.
+struct Motion {
+    setup: MechanicsSetup,
+    /// Effort on the motor at each tick (N·m).
+    efforts: Vec<f64>,
+    /// Mean accelerations of motor and load over each tick (rad/s²).
+    accelerations: Vec<[f64; 2]>,
+}
+
+impl Motion {
+    fn of(axis: &Scenario) -> Self {
+        let recording = servobench_tests::run(axis, &Exact);
+        let values = |name: &str| recording.channel(name).unwrap_or_else(|| panic!("no channel {name}"));
+        let (motor, load) = (values("motor.velocity"), values("load.velocity"));
+        let mean = |v: &[f64], k: usize| v.get(k + 1).map_or(0.0, |next| (next - v[k]) * BASE_RATE);
+        let accelerations = (0..motor.len()).map(|k| [mean(motor, k), mean(load, k)]).collect();
+        Self { setup: setup_of(axis), efforts: values("effort.motor").to_vec(), accelerations }
+    }
+}
+
+/// What the loop asks an engine to build.
+fn setup_of(axis: &Scenario) -> MechanicsSetup {
+    struct Listener(Mutex<Option<MechanicsSetup>>);
+    impl Engine for Listener {
+        fn name(&self) -> &'static str {
+            Exact.name()
+        }
+        fn build(&self, setup: &MechanicsSetup) -> Result<Box<dyn Mechanics>, MechanicsError> {
+            self.0.lock().unwrap_or_else(|error| panic!("{error}")).replace(setup.clone());
+            Exact.build(setup)
+        }
+    }
+    let listener = Listener(Mutex::new(None));
+    drop(Bench::new(axis, &listener));
+    let heard = listener.0.into_inner().unwrap_or_else(|error| panic!("{error}"));
+    heard.unwrap_or_else(|| panic!("the loop built no mechanics"))
+}
+
+/// `exact`, and a bare step of another engine after each tick.
+struct InTurn {
+    bare: Bare,
+    motion: Arc<Motion>,
+}
+
+struct InTurnMechanics {
+    exact: Box<dyn Mechanics>,
+    step: Step,
+    k: usize,
+}
+
+impl Engine for InTurn {
+    fn name(&self) -> &'static str {
+        Exact.name()
+    }
+
+    fn build(&self, setup: &MechanicsSetup) -> Result<Box<dyn Mechanics>, MechanicsError> {
+        Ok(Box::new(InTurnMechanics { exact: Exact.build(setup)?, step: (self.bare)(&self.motion), k: 0 }))
+    }
+}
+
+impl Mechanics for InTurnMechanics {
+    fn bodies(&self) -> &[BodyState] {
+        self.exact.bodies()
+    }
+
+    fn advance(&mut self, input: &Input) -> Result<(), MechanicsError> {
+        (self.step)(self.k);
+        self.k += 1;
+        self.exact.advance(input)
+    }
+}
+
+/// Tick k of a bare engine.
+type Step = Box<dyn FnMut(usize) + Send>;
+/// Builds a bare engine at tick 0.
+type Bare = fn(&Arc<Motion>) -> Step;
+
+fn bare_step(engine: &str) -> Option<Bare> {
+    match engine {
+        "rapier" => Some(bare_rapier),
+        #[cfg(feature = "mujoco")]
+        "mujoco" => Some(bare_mujoco),
+        _ => None,
+    }
+}
+
+/// Two bodies in a scene like that of the engine.
+fn bare_rapier(motion: &Arc<Motion>) -> Step {
     use rapier3d_f64::prelude::{LockedAxes, MassProperties, PhysicsWorld, RigidBodyBuilder, Vector};
     let mut scene = PhysicsWorld::new();
     let parameters = &mut scene.integration_parameters;
-    parameters.dt = 1.0 / BASE_RATE;
+    parameters.dt = motion.setup.step;
     parameters.num_solver_iterations = 1;
     parameters.num_internal_stabilization_iterations = 0;
     parameters.max_ccd_substeps = 0;
@@ -154,20 +282,20 @@ fn bare_rapier() -> Box<dyn FnMut() -> f64> {
         let body = RigidBodyBuilder::dynamic().locked_axes(LockedAxes::all() ^ free).additional_mass_properties(mass);
         scene.bodies.insert(body.can_sleep(false));
     }
-    let mut k = 0_u32;
-    round_of(move || {
-        k = k.wrapping_add(1);
-        scene.gravity = Vector::splat(f64::from(k % 7) - 3.0);
+    let motion = Arc::clone(motion);
+    Box::new(move |k| {
+        let [motor, load] = motion.accelerations[k];
+        scene.gravity = Vector::new(motor, load, 0.0);
         scene.step();
     })
 }
 
-/// The generated model of the same axis, stepped by `mj_step` alone.
+/// The generated model of the same axis.
 #[cfg(feature = "mujoco")]
-fn bare_mujoco() -> Box<dyn FnMut() -> f64> {
+fn bare_mujoco(motion: &Arc<Motion>) -> Step {
     use mujoco_rs::prelude::{MjData, MjModel, MjtDisableBit};
-    use servobench_plant::{Drive, chain_to_mjcf};
-    let xml = chain_to_mjcf(&two_mass(), Drive::Effort, 1.0 / BASE_RATE);
+    let servobench_plant::Model::Chain(chain) = &motion.setup.model else { panic!("the axis is no chain") };
+    let xml = servobench_plant::chain_to_mjcf(chain, motion.setup.drive, motion.setup.step);
     let mut model = MjModel::from_xml_string(&xml).unwrap_or_else(|error| panic!("{error}"));
     for unused in [
         MjtDisableBit::mjDSBL_CONSTRAINT,
@@ -178,23 +306,10 @@ fn bare_mujoco() -> Box<dyn FnMut() -> f64> {
     ] {
         model.opt_mut().disableflags |= unused as i32;
     }
-    let mut data = MjData::new(std::sync::Arc::new(model));
-    data.qfrc_applied_mut()[0] = 1e-3;
-    round_of(move || data.step())
-}
-
-#[cfg(feature = "mujoco")]
-fn two_mass() -> servobench_plant::Chain {
-    use servobench_plant::{Body, Chain, Coordinate, DryFriction, Link};
-    let body = |name| Body {
-        name,
-        coordinate: Coordinate::Rotary,
-        inertia: 5e-3,
-        transmission: 1.0,
-        viscous: 0.0,
-        dry: DryFriction::NONE,
-        bias: 0.0,
-    };
-    Chain::new(vec![body("motor"), body("load")], vec![Link { stiffness: 700.0, damping: 0.01 }])
-        .unwrap_or_else(|error| panic!("{error}"))
+    let mut data = MjData::new(Arc::new(model));
+    let motion = Arc::clone(motion);
+    Box::new(move |k| {
+        data.qfrc_applied_mut()[0] = motion.efforts[k];
+        data.step();
+    })
 }

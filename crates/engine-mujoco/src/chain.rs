@@ -6,6 +6,7 @@ use crate::base::BaseTick;
 use crate::simulation::{self, Data};
 use crate::wrong_actuation;
 use mujoco_rs::prelude::MjtDisableBit;
+use servobench_base::Setpoint;
 use servobench_plant::{
     Actuation, BodyState, Chain, Drive, Grip, Input, Mechanics, MechanicsError, MechanicsSetup, chain_to_mjcf,
 };
@@ -43,81 +44,105 @@ impl MujocoChain {
         for (i, q) in (first..).zip(data.qpos_mut()) {
             *q = bodies[i].position - base / chain.bodies()[i].transmission;
         }
+        for (body, v) in bodies[first..].iter().zip(data.qvel_mut()) {
+            *v = body.velocity;
+        }
         Ok(Self { chain, data, first, step: setup.step, bodies })
     }
 
-    /// How the base moves in this tick.
-    fn base(&self, actuation: Actuation) -> Result<BaseTick, MechanicsError> {
+    /// How the base moves in this tick, when it does.
+    fn base(&self, actuation: Actuation) -> Result<Option<BaseTick>, MechanicsError> {
         match (actuation, self.first) {
-            (Actuation::Effort(_), 0) => Ok(BaseTick::default()),
-            (Actuation::Motion(now), 1) => Ok(BaseTick::new(now, self.step)),
+            (Actuation::Effort(_), 0) => Ok(None),
+            (Actuation::Motion(now), 1) => Ok(Some(BaseTick::new(now, self.step))),
             _ => Err(wrong_actuation()),
         }
     }
 
-    /// What drive and disturbances do to body `i`, in its own coordinate (N or N·m).
-    fn external_effort(&self, i: usize, input: &Input) -> f64 {
-        let mut effort = 0.0;
-        if i == 0 {
-            effort += input.motor_disturbance;
-            if let Actuation::Effort(drive) = input.actuation {
-                effort += drive;
-            }
+    /// Drive and disturbances, each body in its own coordinate (N or N·m).
+    fn external_efforts(&self, input: &Input) -> [f64; Chain::MAX_BODIES] {
+        let mut efforts = [0.0; Chain::MAX_BODIES];
+        let last = self.bodies.len() - 1;
+        efforts[0] = input.motor_disturbance;
+        if let Actuation::Effort(drive) = input.actuation {
+            efforts[0] += drive;
         }
-        if i + 1 == self.bodies.len() {
-            effort += self.chain.bodies()[i].transmission * input.load_disturbance;
-        }
-        effort
+        efforts[last] += self.chain.bodies()[last].transmission * input.load_disturbance;
+        efforts
     }
 
-    /// Sets forces, velocities and positions of the tick; returns the set of bodies that friction holds, body i being
-    /// bit i.
-    fn apply(&mut self, input: &Input, base: &BaseTick) -> u32 {
+    /// Sets the forces of the tick; returns the set of bodies that friction holds, body i being bit i.
+    fn apply(&mut self, input: &Input) -> u32 {
         let mut held = 0;
-        for i in self.first..self.bodies.len() {
-            let (body, dof, velocity) = (&self.chain.bodies()[i], i - self.first, self.bodies[i].velocity);
-            let external = self.external_effort(i, input);
-            let mut effort = external - body.bias;
-            if !body.dry.is_none() {
-                let others = self.chain.passive_effort(i, &self.bodies) + external;
-                match body.dry.grip(velocity, others) {
-                    Grip::Held => {
-                        // No net effort: the body stays where it is during the step but for what its neighbours'
-                        // motion within the tick adds, which `read` takes back.
-                        effort -= others;
-                        held |= 1 << i;
-                    }
-                    Grip::Force(friction) => effort += friction,
-                }
+        let external = self.external_efforts(input);
+        let bodies = external.iter().zip(self.chain.bodies()).enumerate().skip(self.first);
+        for ((i, (external, body)), force) in bodies.zip(self.data.qfrc_applied_mut()) {
+            *force = external - body.bias;
+            if body.dry.is_none() {
+                continue;
             }
-            let (m, b, r) = (body.inertia, body.viscous, body.transmission);
-            self.data.qfrc_applied_mut()[dof] = effort + base.mean_force(m, b, r);
-            self.data.qvel_mut()[dof] = velocity - base.start.v / r;
-            self.data.qpos_mut()[dof] += base.half_shift(m, b, r);
+            let others = self.chain.passive_effort(i, &self.bodies) + external;
+            match body.dry.grip(self.bodies[i].velocity, others) {
+                Grip::Held => {
+                    // No net effort: the body stays where it is during the step but for what its neighbours' motion
+                    // within the tick adds, which `read` takes back.
+                    *force -= others;
+                    held |= 1 << i;
+                }
+                Grip::Force(friction) => *force += friction,
+            }
         }
         held
     }
 
-    /// Takes over the state at the end of the tick.
-    fn read(&mut self, held: u32, base: &BaseTick) {
-        if self.first == 1 {
-            let r = self.chain.bodies()[0].transmission;
-            self.bodies[0] = BodyState { position: base.end.x / r, velocity: base.end.v / r };
-        }
-        for i in self.first..self.bodies.len() {
-            let (body, dof) = (&self.chain.bodies()[i], i - self.first);
+    /// Goes over to the moving base: velocities relative to it, its inertial forces, the first half of the shifts.
+    fn mount(&mut self, base: &BaseTick) {
+        for (dof, body) in self.chain.bodies()[1..].iter().enumerate() {
             let (m, b, r) = (body.inertia, body.viscous, body.transmission);
-            let state = &mut self.bodies[i];
-            let q = &mut self.data.qpos_mut()[dof];
+            self.data.qfrc_applied_mut()[dof] += base.mean_force(m, b, r);
+            self.data.qvel_mut()[dof] = self.bodies[dof + 1].velocity - base.start.v / r;
+            self.data.qpos_mut()[dof] += base.half_shift(m, b, r);
+        }
+    }
+
+    /// The second half of the shifts; the base itself has arrived.
+    fn shift(&mut self, base: &BaseTick) {
+        let (motor, others) = (&self.chain.bodies()[0], &self.chain.bodies()[1..]);
+        self.bodies[0] =
+            BodyState { position: base.end.x / motor.transmission, velocity: base.end.v / motor.transmission };
+        for (body, q) in others.iter().zip(self.data.qpos_mut()) {
+            *q += base.half_shift(body.inertia, body.viscous, body.transmission);
+        }
+    }
+
+    /// Takes over the state at the end of the tick, `MuJoCo`'s being relative to a base at `end`.
+    fn read(&mut self, held: u32, end: Setpoint) {
+        // Bodies that `MuJoCo` has moved on, though friction holds or has stopped them.
+        let mut at_rest = held;
+        let moved = self.data.qpos().iter().zip(self.data.qvel());
+        let bodies = self.chain.bodies().iter().zip(&mut self.bodies).enumerate().skip(self.first);
+        for ((i, (body, state)), (q, v)) in bodies.zip(moved) {
             if held & (1 << i) != 0 {
-                *q = state.position - base.end.x / r;
                 continue;
             }
-            *q += base.half_shift(m, b, r);
-            state.position = *q + base.end.x / r;
-            let velocity = self.data.qvel()[dof] + base.end.v / r;
-            let stopped = body.dry.settle(state.velocity, velocity);
-            state.velocity = if stopped { 0.0 } else { velocity };
+            let before = state.velocity;
+            *state = BodyState { position: q + end.x / body.transmission, velocity: v + end.v / body.transmission };
+            if body.dry.settle(before, state.velocity) {
+                state.velocity = 0.0;
+                at_rest |= 1 << i;
+            }
+        }
+        if at_rest != 0 {
+            self.put_at_rest(at_rest, end);
+        }
+    }
+
+    /// Tells `MuJoCo` which bodies are at rest, and where.
+    fn put_at_rest(&mut self, at_rest: u32, end: Setpoint) {
+        for i in (self.first..self.bodies.len()).filter(|i| at_rest & (1 << i) != 0) {
+            let (dof, r) = (i - self.first, self.chain.bodies()[i].transmission);
+            self.data.qpos_mut()[dof] = self.bodies[i].position - end.x / r;
+            self.data.qvel_mut()[dof] = self.bodies[i].velocity - end.v / r;
         }
     }
 }
@@ -130,9 +155,15 @@ impl Mechanics for MujocoChain {
     fn advance(&mut self, input: &Input) -> Result<(), MechanicsError> {
         simulation::check_input(input)?;
         let base = self.base(input.actuation)?;
-        let held = self.apply(input, &base);
+        let held = self.apply(input);
+        if let Some(base) = &base {
+            self.mount(base);
+        }
         simulation::step(&mut self.data)?;
-        self.read(held, &base);
+        if let Some(base) = &base {
+            self.shift(base);
+        }
+        self.read(held, base.map_or(Setpoint::default(), |base| base.end));
         simulation::check_states(&self.bodies)
     }
 }

@@ -63,14 +63,19 @@ fn warned(data: &Data) -> MechanicsError {
 /// # Errors
 /// [`MechanicsError::Parameter`] names the first input that is not finite: `MuJoCo` would replace it by zero.
 pub(crate) fn check_input(input: &Input) -> Result<(), MechanicsError> {
-    match input.actuation {
-        Actuation::Effort(effort) => {
-            finite("effort", effort)?;
-        }
-        Actuation::Motion(now) => {
-            finite("set-point", now.x + now.v + now.a + now.j + now.s)?;
-        }
-    }
+    let drive = match input.actuation {
+        Actuation::Effort(effort) => effort,
+        Actuation::Motion(now) => now.x + now.v + now.a + now.j + now.s,
+    };
+    // One test for all of them: a sum with something that is not finite is not finite.
+    if (drive + input.motor_disturbance + input.load_disturbance).is_finite() { Ok(()) } else { name_input(drive, input) }
+}
+
+/// Which input is not finite; none, when only their sum is too large.
+#[cold]
+fn name_input(drive: f64, input: &Input) -> Result<(), MechanicsError> {
+    let name = if matches!(input.actuation, Actuation::Effort(_)) { "effort" } else { "set-point" };
+    finite(name, drive)?;
     finite("motor_disturbance", input.motor_disturbance)?;
     finite("load_disturbance", input.load_disturbance)?;
     Ok(())
