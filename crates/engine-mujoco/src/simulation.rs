@@ -68,7 +68,11 @@ pub(crate) fn check_input(input: &Input) -> Result<(), MechanicsError> {
         Actuation::Motion(now) => now.x + now.v + now.a + now.j + now.s,
     };
     // One test for all of them: a sum with something that is not finite is not finite.
-    if (drive + input.motor_disturbance + input.load_disturbance).is_finite() { Ok(()) } else { name_input(drive, input) }
+    if (drive + input.motor_disturbance + input.load_disturbance).is_finite() {
+        Ok(())
+    } else {
+        name_input(drive, input)
+    }
 }
 
 /// Which input is not finite; none, when only their sum is too large.
