@@ -1,22 +1,29 @@
-//! A user's own MJCF file: two joints and one motor of it are the axis, the rest is simulated along with them.
+//! A user's own MJCF file: some joints and one motor of it are the axis, the rest is simulated along with them.
 use crate::simulation::{self, Data};
 use crate::{NAME, wrong_actuation};
 use mujoco_rs::prelude::{MjModel, MjtBias, MjtDisableBit, MjtDyn, MjtGain, MjtJoint, MjtObjBase, MjtTrn};
-use servobench_plant::{Actuation, BodyState, Drive, Input, Mechanics, MechanicsError, MechanicsSetup, MjcfModel};
+use servobench_plant::{
+    Actuation, BodyState, Coordinate, Drive, Input, LoadCoordinate, Mechanics, MechanicsError, MechanicsSetup,
+    MjcfModel, PosedJoint,
+};
+use std::iter::successors;
 
 /// A model with a motor joint and a load joint.
 pub(crate) struct MujocoMjcf {
     data: Data,
-    motor: Motor,
-    /// Motor joint, then load joint; one joint can be both.
+    actuator: Motor,
+    /// Every joint of the model, by its id.
     joints: Vec<Joint>,
+    /// Id of the motor joint.
+    motor: usize,
+    load: LoadCoordinate,
+    /// Motor, then load; one body when one joint is both.
     bodies: Vec<BodyState>,
 }
 
-/// A joint with one degree of freedom.
+/// Where a joint is in the arrays; of one with several degrees of freedom, its first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Joint {
-    id: usize,
     /// Index of its position.
     qpos: usize,
     /// Index of its velocity and of forces on it.
@@ -46,28 +53,46 @@ impl MujocoMjcf {
         }
         let model = simulation::compile(&file.xml, &file.path)?;
         let named = |kind, what, name: &str| find(&model, kind, what, name, file);
-        let motor = joint(&model, named(MjtObjBase::mjOBJ_JOINT, "joint", &file.motor_joint)?)?;
-        let load = joint(&model, named(MjtObjBase::mjOBJ_JOINT, "joint", &file.load_joint)?)?;
+        let motor = named(MjtObjBase::mjOBJ_JOINT, "joint", &file.motor_joint)?;
+        let load = named(MjtObjBase::mjOBJ_JOINT, "joint", &file.load_joint)?;
+        single(&model, motor)?;
+        let load = (load, single(&model, load)?);
         let actuator = named(MjtObjBase::mjOBJ_ACTUATOR, "actuator", &file.actuator)?;
         let actuator = plain_motor(&model, actuator, motor)?;
+        let addresses = model.jnt_qposadr().iter().zip(model.jnt_dofadr());
+        let joints = addresses.map(|(qpos, dof)| Joint { qpos: index(*qpos), dof: index(*dof) }).collect();
 
-        let mut joints = vec![motor, load];
-        joints.dedup();
         let mut data = simulation::start(model, setup.step, &[])?;
-        for (joint, state) in joints.iter().zip(&setup.initial) {
-            data.qpos_mut()[joint.qpos] = state.position;
-            data.qvel_mut()[joint.dof] = state.velocity;
-        }
-        let bodies = vec![BodyState::default(); joints.len()];
-        let mut mechanics = Self { data, motor: actuator, joints, bodies };
+        let load = load_coordinate(&mut data, motor, load);
+        let mut bodies = vec![BodyState::default(); if load.joint() == motor { 1 } else { 2 }];
+        bodies.iter_mut().zip(&setup.initial).for_each(|(body, initial)| *body = *initial);
+        let mut mechanics = Self { data, actuator, joints, motor, load, bodies };
+        mechanics.start();
         mechanics.read();
         Ok(mechanics)
     }
 
+    /// Puts the model into the states of the bodies; what is neither motor nor load stays where it is.
+    fn start(&mut self) {
+        let [motor, load] = [self.motor, self.load.joint()].map(|id| self.joints[id]);
+        let (data, joints) = (&mut self.data, &self.joints);
+        data.qpos_mut()[motor.qpos] = self.bodies[0].position;
+        data.qvel_mut()[motor.dof] = self.bodies[0].velocity;
+        if let Some(body) = self.bodies.get(1) {
+            let position = self.load.own(body.position, |id| data.qpos()[joints[id].qpos]);
+            let velocity = self.load.own(body.velocity, |id| data.qvel()[joints[id].dof]);
+            data.qpos_mut()[load.qpos] = position;
+            data.qvel_mut()[load.dof] = velocity;
+        }
+    }
+
     fn read(&mut self) {
-        for (joint, body) in self.joints.iter().zip(&mut self.bodies) {
-            body.position = self.data.qpos()[joint.qpos];
-            body.velocity = self.data.qvel()[joint.dof];
+        let (positions, velocities, joints) = (self.data.qpos(), self.data.qvel(), &self.joints);
+        let position = |id: usize| positions[joints[id].qpos];
+        let velocity = |id: usize| velocities[joints[id].dof];
+        self.bodies[0] = BodyState { position: position(self.motor), velocity: velocity(self.motor) };
+        if let Some(body) = self.bodies.get_mut(1) {
+            *body = BodyState { position: self.load.of(position), velocity: self.load.of(velocity) };
         }
     }
 }
@@ -80,14 +105,13 @@ impl Mechanics for MujocoMjcf {
     fn advance(&mut self, input: &Input) -> Result<(), MechanicsError> {
         simulation::check_input(input)?;
         let Actuation::Effort(effort) = input.actuation else { return Err(wrong_actuation()) };
-        self.data.ctrl_mut()[self.motor.ctrl] = self.motor.ctrl(effort)?;
+        self.data.ctrl_mut()[self.actuator.ctrl] = self.actuator.ctrl(effort)?;
         let forces = self.data.qfrc_applied_mut();
-        for joint in &self.joints {
-            forces[joint.dof] = 0.0;
+        forces[self.joints[self.motor].dof] = 0.0;
+        for (id, share) in self.load.terms() {
+            forces[self.joints[id].dof] = share * input.load_disturbance;
         }
-        let (first, last) = (self.joints[0], self.joints[self.joints.len() - 1]);
-        forces[first.dof] += input.motor_disturbance;
-        forces[last.dof] += input.load_disturbance;
+        forces[self.joints[self.motor].dof] += input.motor_disturbance;
         simulation::step(&mut self.data)?;
         self.read();
         simulation::check_states(&self.bodies)
@@ -127,20 +151,45 @@ fn find(model: &MjModel, kind: MjtObjBase, what: &str, name: &str, file: &MjcfMo
     Err(MechanicsError::Model { engine: NAME, message })
 }
 
-fn joint(model: &MjModel, id: usize) -> Result<Joint, MechanicsError> {
-    if !matches!(model.jnt_type()[id], MjtJoint::mjJNT_SLIDE | MjtJoint::mjJNT_HINGE) {
-        let name = model.id_to_name(MjtObjBase::mjOBJ_JOINT, id).unwrap_or_default();
-        return Err(MechanicsError::Unsupported {
-            engine: NAME,
-            what: format!("joint `{name}`, which has several degrees of freedom"),
-            way_out: "name a slide or a hinge".into(),
-        });
+/// Slide or hinge; `None` for a joint with several degrees of freedom.
+fn kind(model: &MjModel, joint: usize) -> Option<Coordinate> {
+    match model.jnt_type()[joint] {
+        MjtJoint::mjJNT_SLIDE => Some(Coordinate::Linear),
+        MjtJoint::mjJNT_HINGE => Some(Coordinate::Rotary),
+        MjtJoint::mjJNT_FREE | MjtJoint::mjJNT_BALL => None,
     }
-    Ok(Joint { id, qpos: index(model.jnt_qposadr()[id]), dof: index(model.jnt_dofadr()[id]) })
+}
+
+/// What kind of joint it is, when it has one degree of freedom.
+fn single(model: &MjModel, joint: usize) -> Result<Coordinate, MechanicsError> {
+    kind(model, joint).ok_or_else(|| MechanicsError::Unsupported {
+        engine: NAME,
+        what: format!(
+            "joint `{}`, which has several degrees of freedom",
+            model.id_to_name(MjtObjBase::mjOBJ_JOINT, joint).unwrap_or_default()
+        ),
+        way_out: "name a slide or a hinge".into(),
+    })
+}
+
+/// The load's coordinate, from the id of the motor joint and id and kind of the load joint; `data` is in the reference
+/// pose.
+fn load_coordinate(data: &mut Data, motor: usize, load: (usize, Coordinate)) -> LoadCoordinate {
+    data.kinematics();
+    let (model, axes) = (data.model(), data.xaxis());
+    let posed = |id: usize, kind| PosedJoint { number: id, kind, axis: axes[id] };
+    // Ids go up the tree, and within a body from the joint next to the parent to the one next to the body.
+    let below = |joint: usize| {
+        let parent = |body: &usize| (*body > 0).then(|| index(model.body_parentid()[*body]));
+        let bodies: Vec<usize> = successors(Some(index(model.jnt_bodyid()[joint])), parent).collect();
+        let carries = |id: &usize| bodies.contains(&index(model.jnt_bodyid()[*id]));
+        (0..joint).filter(carries).filter_map(|id| Some(posed(id, kind(model, id)?))).collect::<Vec<_>>()
+    };
+    LoadCoordinate::new(posed(load.0, load.1), &below(load.0), &below(motor))
 }
 
 /// Actuator `id`, when it is a motor on `joint` without dynamics of its own.
-fn plain_motor(model: &MjModel, id: usize, joint: Joint) -> Result<Motor, MechanicsError> {
+fn plain_motor(model: &MjModel, id: usize, joint: usize) -> Result<Motor, MechanicsError> {
     let name = model.id_to_name(MjtObjBase::mjOBJ_ACTUATOR, id).unwrap_or_default().to_owned();
     let unsupported = |what: String| MechanicsError::Unsupported {
         engine: NAME,
@@ -148,7 +197,7 @@ fn plain_motor(model: &MjModel, id: usize, joint: Joint) -> Result<Motor, Mechan
         way_out: "use a `<motor>` on the motor joint".into(),
     };
     let on_joint = matches!(model.actuator_trntype()[id], MjtTrn::mjTRN_JOINT | MjtTrn::mjTRN_JOINTINPARENT);
-    if !on_joint || index(model.actuator_trnid()[id][0]) != joint.id {
+    if !on_joint || index(model.actuator_trnid()[id][0]) != joint {
         return Err(unsupported("does not act on the motor joint".into()));
     }
     if model.actuator_dyntype()[id] != MjtDyn::mjDYN_NONE
@@ -168,7 +217,7 @@ fn plain_motor(model: &MjModel, id: usize, joint: Joint) -> Result<Motor, Mechan
     let limits = [
         (clamps && model.actuator_ctrllimited()[ctrl], model.actuator_ctrlrange()[ctrl], effort_per_ctrl),
         (model.actuator_forcelimited()[id], model.actuator_forcerange()[id], gear),
-        (model.jnt_actfrclimited()[joint.id], model.jnt_actfrcrange()[joint.id], 1.0),
+        (model.jnt_actfrclimited()[joint], model.jnt_actfrcrange()[joint], 1.0),
     ];
     let mut range = [f64::NEG_INFINITY, f64::INFINITY];
     for (_, [a, b], scale) in limits.into_iter().filter(|(limited, ..)| *limited) {

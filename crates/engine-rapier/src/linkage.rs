@@ -42,7 +42,7 @@ pub(crate) struct Linkage {
     joints: Vec<Coordinate>,
     tendons: Vec<Tendon>,
     axis: Axis,
-    /// Efforts of the last tick on motor joint and load joint (N or N·m).
+    /// Efforts of the last tick on motor joint and load (N or N·m).
     last: [f64; 2],
     /// Whether no tick has passed.
     fresh: bool,
@@ -97,7 +97,7 @@ pub(crate) fn check(mechanism: &Mechanism) -> Result<(), Vec<MjcfRefusal>> {
 }
 
 impl Linkage {
-    /// The mechanism with motor joint and load joint in the given states; the rest of it at rest at zero.
+    /// The mechanism with motor and load in the given states; the rest of it at rest at zero.
     pub(crate) fn new(
         mechanism: &Mechanism,
         axis: Axis,
@@ -105,9 +105,13 @@ impl Linkage {
         initial: &[BodyState],
     ) -> Result<Self, LinkageError> {
         let (mut world, multibody, mut joints) = assemble(mechanism, step)?;
-        for (joint, state) in [axis.motor, axis.load].into_iter().zip(initial) {
-            let joint = &mut joints[joint];
-            (joint.position, joint.velocity, joint.drift) = (state.position, state.velocity, state.velocity);
+        let mut bodies = vec![BodyState::default(); if axis.motor == axis.load.joint() { 1 } else { 2 }];
+        bodies.iter_mut().zip(initial).for_each(|(body, initial)| *body = *initial);
+        joints[axis.motor].start(bodies[0]);
+        if let Some(load) = bodies.get(1) {
+            let position = axis.load.own(load.position, |joint| joints[joint].position);
+            let velocity = axis.load.own(load.velocity, |joint| joints[joint].velocity);
+            joints[axis.load.joint()].start(BodyState { position, velocity });
         }
         let links = links(&mut world.multibody_joints, multibody).map_err(LinkageError::Engine)?;
         links.apply_displacements(&joints.iter().map(|joint| joint.position).collect::<Vec<_>>());
@@ -123,10 +127,10 @@ impl Linkage {
             work: DVector::zeros(joints.len()),
             joints,
             tendons: mechanism.tendons.clone(),
-            axis,
             last: [0.0; 2],
             fresh: true,
-            bodies: vec![BodyState::default(); if axis.motor == axis.load { 1 } else { 2 }],
+            axis,
+            bodies,
         };
         linkage.publish();
         Ok(linkage)
@@ -201,7 +205,9 @@ impl Linkage {
     fn correct_velocities(&mut self, now: [f64; 2], share: f64) -> Result<(), MechanicsError> {
         self.passive();
         self.work[self.axis.motor] += now[0];
-        self.work[self.axis.load] += now[1];
+        for (joint, share) in self.axis.load.terms() {
+            self.work[joint] += share * now[1];
+        }
         for (change, joint) in self.work.iter_mut().zip(&self.joints) {
             let rise = 2.0 * (joint.velocity - joint.drift);
             *change -= joint.effort / share + joint.damping * rise;
@@ -222,9 +228,12 @@ impl Linkage {
     }
 
     fn publish(&mut self) {
-        for (body, joint) in self.bodies.iter_mut().zip([self.axis.motor, self.axis.load]) {
-            let joint = &self.joints[joint];
-            *body = BodyState { position: joint.coordinate(), velocity: joint.velocity };
+        let (joints, load) = (&self.joints, &self.axis.load);
+        let motor = &joints[self.axis.motor];
+        self.bodies[0] = BodyState { position: motor.coordinate(), velocity: motor.velocity };
+        if let Some(body) = self.bodies.get_mut(1) {
+            body.position = load.of(|joint| joints[joint].coordinate());
+            body.velocity = load.of(|joint| joints[joint].velocity);
         }
     }
 }
@@ -242,8 +251,10 @@ impl Mechanics for Linkage {
         for (effort, joint) in self.work.iter().zip(&mut self.joints) {
             joint.effort = share * effort;
         }
-        for (i, joint) in [self.axis.motor, self.axis.load].into_iter().enumerate() {
-            self.joints[joint].effort += f64::midpoint(self.last[i], now[i]);
+        let [motor, load] = std::array::from_fn(|i| f64::midpoint(self.last[i], now[i]));
+        self.joints[self.axis.motor].effort += motor;
+        for (joint, share) in self.axis.load.terms() {
+            self.joints[joint].effort += share * load;
         }
         self.last = now;
         self.kick_and_drift(share)?;
@@ -256,6 +267,11 @@ impl Mechanics for Linkage {
 }
 
 impl Coordinate {
+    /// Sets the state at tick 0.
+    fn start(&mut self, state: BodyState) {
+        (self.position, self.velocity, self.drift) = (state.position, state.velocity, state.velocity);
+    }
+
     /// m or rad.
     fn coordinate(&self) -> f64 {
         self.turns * TAU + self.position

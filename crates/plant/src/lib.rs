@@ -8,6 +8,7 @@ mod chain;
 mod exact;
 mod friction;
 pub mod inverter;
+mod load_coordinate;
 mod mechanics;
 mod mjcf;
 pub mod pmsm;
@@ -16,6 +17,7 @@ mod sensor;
 pub use chain::{Body, Chain, Coordinate, Link};
 pub use exact::Exact;
 pub use friction::{DryFriction, Grip};
+pub use load_coordinate::{LoadCoordinate, PosedJoint};
 pub use mechanics::{
     Actuation, BodyState, Drive, Engine, Input, Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Model,
 };

@@ -78,7 +78,8 @@ pub struct MjcfModel {
     pub path: std::path::PathBuf,
     /// Joint whose coordinate is the motor's (hinge: rad, slide: m).
     pub motor_joint: String,
-    /// Joint whose coordinate is the load's, in the axis coordinate.
+    /// Joint of the load, whose position in the axis coordinate is that of [`LoadCoordinate`](crate::LoadCoordinate):
+    /// joints between it and the body that carries both motor and load count too.
     pub load_joint: String,
     /// Motor actuator (`<motor>`) that the drive's torque or force goes to.
     pub actuator: String,
@@ -93,7 +94,7 @@ pub struct MechanicsSetup {
     pub drive: Drive,
     /// Length of a base tick (s).
     pub step: f64,
-    /// State of each body at tick 0; empty for all at rest at zero. For MJCF models: motor joint, then load joint.
+    /// State of each body at tick 0; empty for all at rest at zero. For MJCF models: motor, then load.
     pub initial: Vec<BodyState>,
 }
 

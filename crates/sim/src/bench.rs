@@ -143,7 +143,8 @@ fn mechanics(scenario: &Scenario, engine: &dyn Engine) -> Result<(Box<dyn Mechan
                 load_joint: mjcf.load_joint.clone(),
                 actuator: mjcf.actuator.clone(),
             };
-            (plant::Model::Mjcf(model), vec!["motor".into(), "load".into()])
+            let names = if model.motor_joint == model.load_joint { &["motor"][..] } else { &["motor", "load"] };
+            (plant::Model::Mjcf(model), names.iter().map(|name| (*name).to_owned()).collect())
         }
     };
     let mut initial = vec![BodyState::default(); names.len()];

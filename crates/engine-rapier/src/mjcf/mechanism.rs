@@ -10,7 +10,7 @@ use mjcf_rs::glam::{DQuat, DVec3};
 use rapier3d_f64::math::Pose;
 use rapier3d_f64::prelude::{MassProperties, Vector};
 use roxmltree::{Document, Node};
-use servobench_plant::MjcfModel;
+use servobench_plant::{Coordinate, LoadCoordinate, MjcfModel, PosedJoint};
 use std::path::Path;
 
 /// A mechanism.
@@ -84,10 +84,10 @@ struct Motor {
 }
 
 /// The joints of the axis, by their number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Axis {
     pub(crate) motor: usize,
-    pub(crate) load: usize,
+    pub(crate) load: LoadCoordinate,
 }
 
 impl Mechanism {
@@ -180,9 +180,34 @@ impl Mechanism {
             refusals.push(MjcfRefusal::Actuator { actuator, what, joint });
         }
         match (motor, load) {
-            (Some(motor), Some(load)) if refusals.is_empty() => Ok(Axis { motor, load }),
+            (Some(motor), Some(load)) if refusals.is_empty() => {
+                Ok(Axis { motor, load: self.load_coordinate(motor, load) })
+            }
             _ => Err(refusals),
         }
+    }
+
+    /// The load's coordinate, from the numbers of the motor joint and the load joint.
+    fn load_coordinate(&self, motor: usize, load: usize) -> LoadCoordinate {
+        // Of each link how it is turned in the world, and the joints that move it; of each joint those that it stands on.
+        let mut ways: Vec<(DQuat, Vec<PosedJoint>)> = vec![];
+        let mut joints: Vec<(PosedJoint, Vec<PosedJoint>)> = vec![];
+        for link in &self.links {
+            let (turn, mut way) = link.parent.map_or_else(Default::default, |parent| ways[parent].clone());
+            let turn = turn * link.pose.rotation;
+            if let Some(joint) = &link.joint {
+                let axis = turn * joint.frame.rotation * DVec3::X;
+                let kind = match joint.freedom {
+                    Freedom::Slide => Coordinate::Linear,
+                    Freedom::Hinge => Coordinate::Rotary,
+                };
+                let posed = PosedJoint { number: joints.len(), kind, axis: axis.to_array() };
+                joints.push((posed, way.clone()));
+                way.push(posed);
+            }
+            ways.push((turn, way));
+        }
+        LoadCoordinate::new(joints[load].0, &joints[load].1, &joints[motor].1)
     }
 
     /// Name of joint `i`, for messages.

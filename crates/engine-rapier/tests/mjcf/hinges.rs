@@ -95,7 +95,7 @@ fn coriolis_forces_are_of_first_order() {
     )
     .replace(r#"gravity="0 0 0""#, r#"gravity="0 0 -9.81""#);
     let at_end = |ticks: u32| {
-        let mut axis = build(&xml, "load", 0.5 / f64::from(ticks), vec![state(1.2, 0.0), state(-0.7, 0.0)]);
+        let mut axis = build(&xml, "load", 0.5 / f64::from(ticks), vec![state(1.2, 0.0), state(0.5, 0.0)]);
         for _ in 0..ticks {
             axis.advance(&effort(0.0)).unwrap();
         }
@@ -103,14 +103,14 @@ fn coriolis_forces_are_of_first_order() {
     };
     // Energy 1/2·v² of both masses and their heights.
     let energy = |[first, second]: [BodyState; 2]| {
-        let (a, b) = (first.position, first.position + second.position);
-        let (va, vb) = (first.velocity, first.velocity + second.velocity);
+        let (a, b) = (first.position, second.position);
+        let (va, vb) = (first.velocity, second.velocity);
         let across = 0.5 * va * a.cos() + 0.4 * vb * b.cos();
         let up = 0.5 * va * a.sin() + 0.4 * vb * b.sin();
         let heights = -2.0 * 0.5 * a.cos() - (0.5 * a.cos() + 0.4 * b.cos());
         0.5 * 2.0 * (0.5 * va).powi(2) + 0.5 * (across * across + up * up) + 9.81 * heights
     };
-    let start = energy([state(1.2, 0.0), state(-0.7, 0.0)]);
+    let start = energy([state(1.2, 0.0), state(0.5, 0.0)]);
     let errors = [2_000, 4_000, 8_000].map(|ticks| (energy(at_end(ticks)) - start).abs());
     for pair in errors.windows(2) {
         let order = (pair[0] / pair[1]).log2();

@@ -88,7 +88,8 @@ table! {
         file: String = (),
         /// Joint whose coordinate is the motor's.
         motor_joint: String = (),
-        /// Joint whose coordinate is the load's.
+        /// Joint of the load. The load's position takes in the joints of the same kind that this one stands on, down to
+        /// the body that carries motor and load.
         load_joint: String = (),
         /// Motor actuator that the drive's torque or force goes to.
         actuator: String = (),
