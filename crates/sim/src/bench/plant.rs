@@ -1,0 +1,106 @@
+//! The plant of a scenario: mechanics, power stage and sensors. Nothing here knows of the firmware.
+use crate::error::BuildError;
+use crate::power::PowerStage;
+use servobench_base::{Dq, Rotation};
+use servobench_plant::{self as plant, BodyState, Chain, Encoder, Engine, Mechanics, MechanicsSetup, pmsm};
+use servobench_scenario::{self as scenario, Scenario};
+
+/// The mechanics at tick 0 and the names of its bodies.
+pub(super) fn mechanics(
+    scenario: &Scenario,
+    engine: &dyn Engine,
+) -> Result<(Box<dyn Mechanics>, Vec<String>), BuildError> {
+    let drive = match scenario.motor {
+        scenario::Motor::Prescribed => plant::Drive::Prescribed,
+        _ => plant::Drive::Effort,
+    };
+    let (model, names) = match &scenario.axis.mechanics {
+        scenario::AxisMechanics::Bodies(bodies) => {
+            let names: Vec<String> = bodies.iter().map(|body| body.name.to_owned()).collect();
+            (plant::Model::Chain(chain(&scenario.axis, bodies)?), names)
+        }
+        scenario::AxisMechanics::Mjcf(mjcf) => {
+            let model = plant::MjcfModel {
+                xml: mjcf.xml.clone(),
+                path: mjcf.path.clone(),
+                motor_joint: mjcf.motor_joint.clone(),
+                load_joint: mjcf.load_joint.clone(),
+                actuator: mjcf.actuator.clone(),
+            };
+            let names = if model.motor_joint == model.load_joint { &["motor"][..] } else { &["motor", "load"] };
+            (plant::Model::Mjcf(model), names.iter().map(|name| (*name).to_owned()).collect())
+        }
+    };
+    let mut initial = vec![BodyState::default(); names.len()];
+    if let Some(load) = initial.last_mut() {
+        *load = BodyState { position: scenario.initial.load_position, velocity: scenario.initial.load_velocity };
+    }
+    if let [motor] = initial.as_mut_slice() {
+        motor.position /= scenario.axis.transmission;
+        motor.velocity /= scenario.axis.transmission;
+    }
+    let setup = MechanicsSetup { model, drive, step: scenario.base_rate.period(), initial };
+    Ok((engine.build(&setup)?, names))
+}
+
+fn chain(axis: &scenario::Axis, bodies: &[scenario::Body]) -> Result<Chain, BuildError> {
+    let coordinate = |motion| match motion {
+        scenario::Motion::Linear => plant::Coordinate::Linear,
+        scenario::Motion::Rotary => plant::Coordinate::Rotary,
+    };
+    let links = bodies
+        .iter()
+        .filter_map(|body| body.coupling)
+        .map(|coupling| plant::Link { stiffness: coupling.stiffness, damping: coupling.damping })
+        .collect();
+    let bodies = bodies
+        .iter()
+        .enumerate()
+        .map(|(i, body)| plant::Body {
+            name: body.name,
+            coordinate: coordinate(if i == 0 { axis.motor_motion } else { axis.motion }),
+            inertia: body.inertia,
+            transmission: if i == 0 { axis.transmission } else { 1.0 },
+            viscous: body.viscous,
+            dry: plant::DryFriction {
+                coulomb: body.coulomb,
+                breakaway: body.breakaway,
+                stribeck_velocity: body.stribeck_velocity,
+            },
+            bias: body.bias,
+        })
+        .collect();
+    Ok(Chain::new(bodies, links)?)
+}
+
+pub(super) fn encoder(encoder: scenario::Encoder) -> Result<Encoder, BuildError> {
+    let encoder = Encoder { increment: encoder.resolution };
+    encoder.check()?;
+    Ok(encoder)
+}
+
+/// The power stage and the encoder on the motor.
+pub(super) fn power_stage(scenario: &Scenario) -> Result<(PowerStage, Encoder), BuildError> {
+    let on = scenario.drive.enabled;
+    match &scenario.motor {
+        scenario::Motor::Prescribed => Ok((PowerStage::Off, Encoder::default())),
+        scenario::Motor::IdealSource(source) => {
+            let encoder = encoder(source.encoder)?;
+            let stage = PowerStage::Ideal { gain: source.gain, limit: source.limit };
+            Ok((if on { stage } else { PowerStage::Off }, encoder))
+        }
+        scenario::Motor::Pmsm(motor) => {
+            let params = pmsm::Params {
+                pole_pairs: f64::from(motor.pole_pairs),
+                resistance: motor.resistance,
+                inductance: Dq { d: motor.inductance_d, q: motor.inductance_q },
+                flux_linkage: motor.flux_linkage,
+            };
+            params.check()?;
+            let encoder = encoder(motor.encoder)?;
+            let (state, u_dc) = (pmsm::State::default(), scenario.drive.dc_link);
+            let stage = PowerStage::Pmsm { params, state, u_dc, last_speed: 0.0, rotor: Rotation::default() };
+            Ok((if on { stage } else { PowerStage::Off }, encoder))
+        }
+    }
+}
