@@ -8,7 +8,7 @@ mod parameter;
 mod setpoint;
 mod time;
 
-pub use frames::{Abc, AlphaBeta, Dq, ElectricalAngle, Rotation};
+pub use frames::{AlphaBeta, Dq, ElectricalAngle, Rotation};
 pub use parameter::{ParamError, finite, non_negative, positive};
 pub use setpoint::Setpoint;
-pub use time::{Divider, Rate, RateError, Tick};
+pub use time::{Countdown, Divider, Rate, RateError, Tick};

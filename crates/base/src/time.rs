@@ -16,6 +16,12 @@ pub struct Rate(NonZeroU32);
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Divider(NonZeroU32);
 
+/// Counts down to a task's next turn; the state that goes with its [`Divider`]. The first turn is at once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Countdown {
+    ticks_left: u32,
+}
+
 /// Why a rate or a time does not fit the grid of base ticks.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum RateError {
@@ -37,7 +43,18 @@ pub enum RateError {
         /// Nearest higher rate that divides the base rate (Hz).
         above: u32,
     },
+    /// A task runs at most once per base tick.
+    #[error("{task} Hz is faster than the base rate {base} Hz")]
+    TooFast {
+        /// Rejected task rate (Hz).
+        task: u32,
+        /// Base rate (Hz).
+        base: u32,
+    },
 }
+
+/// Roundings that a time may have gone through before [`Rate::tick_at`] sees it, in units of its last place.
+const ROUNDINGS: f64 = 8.0;
 
 impl Rate {
     /// A rate of `hz` hertz; `None` for zero.
@@ -79,26 +96,31 @@ impl Rate {
         tick.0 as f64 / f64::from(self.0.get())
     }
 
-    /// First tick at or after `seconds`; times within 1e-9 of a tick count as that tick, negative times as tick 0.
+    /// First tick at or after `seconds`; negative times count as tick 0. A time counts as the tick before it when it is
+    /// later by rounding only: by at most 1e-9 of a tick, or by eight units in the last place of a long time.
     #[must_use]
     pub fn tick_at(self, seconds: f64) -> Tick {
         let ticks = seconds * f64::from(self.0.get());
+        let rounding = libm::fmax(1e-9, ROUNDINGS * f64::EPSILON * ticks);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, which is meant")]
-        Tick(libm::ceil(ticks - 1e-9 * libm::fmax(1.0, libm::fabs(ticks))) as u64)
+        Tick(libm::ceil(ticks - rounding) as u64)
     }
 
     /// How many ticks of this base rate one period of `task` lasts.
     ///
     /// # Errors
-    /// [`RateError::NotDividing`] names the nearest rates that fit.
+    /// [`RateError::TooFast`]; [`RateError::NotDividing`] names the nearest rates that fit.
     pub fn divider(self, task: Rate) -> Result<Divider, RateError> {
         let (base, wanted) = (self.hertz(), task.hertz());
-        if wanted <= base && base.is_multiple_of(wanted) {
+        if wanted > base {
+            return Err(RateError::TooFast { task: wanted, base });
+        }
+        if base.is_multiple_of(wanted) {
             return Ok(Divider(NonZeroU32::new(base / wanted).unwrap_or(NonZeroU32::MIN)));
         }
         let divides = |hz: &u32| base.is_multiple_of(*hz);
-        let below = (1..=wanted.min(base)).rev().find(divides).unwrap_or(1);
-        let above = (wanted.min(base)..=base).find(divides).unwrap_or(base);
+        let below = (1..wanted).rev().find(divides).unwrap_or(1);
+        let above = (wanted..base).find(divides).unwrap_or(base);
         Err(RateError::NotDividing { task: wanted, base, below, above })
     }
 }
@@ -110,10 +132,27 @@ impl Divider {
         self.0.get()
     }
 
-    /// Whether the task runs at `tick`.
+    /// Whether each turn of this task coincides with one of `faster`.
     #[must_use]
-    pub const fn is_due(self, tick: Tick) -> bool {
-        tick.0.is_multiple_of(self.0.get() as u64)
+    pub const fn is_multiple_of(self, faster: Self) -> bool {
+        self.0.get().is_multiple_of(faster.0.get())
+    }
+}
+
+impl Countdown {
+    /// Counts this tick; whether it is the task's turn. To be called once per tick with the task's own divider.
+    #[inline]
+    pub const fn is_due(&mut self, every: Divider) -> bool {
+        let due = self.ticks_left == 0;
+        self.ticks_left = if due { every.ticks() - 1 } else { self.ticks_left - 1 };
+        due
+    }
+
+    /// Ticks since the last turn; 0 at the turn itself.
+    #[inline]
+    #[must_use]
+    pub const fn since(self, every: Divider) -> u32 {
+        every.ticks() - 1 - self.ticks_left
     }
 }
 
@@ -135,7 +174,8 @@ mod tests {
     fn a_task_that_does_not_fit_names_its_neighbours() {
         let e = hz(16_000).divider(hz(3_000)).unwrap_err();
         assert_eq!(e.to_string(), "3000 Hz does not divide the base rate 16000 Hz; 2000 Hz and 3200 Hz do");
-        assert!(hz(16_000).divider(hz(32_000)).is_err());
+        let e = hz(16_000).divider(hz(32_000)).unwrap_err();
+        assert_eq!(e.to_string(), "32000 Hz is faster than the base rate 16000 Hz");
     }
 
     #[test]
@@ -151,5 +191,33 @@ mod tests {
         assert_eq!(hz(1_000).tick_at(0.1 + 0.2), Tick(300));
         assert_eq!(hz(1_000).tick_at(0.300_1), Tick(301));
         assert_eq!(hz(1_000).tick_at(-1.0), Tick(0));
+    }
+
+    /// An hour at 16 kHz holds 5.8e7 ticks: its rounding is 1e-8 of a tick, a hundredth of a tick is not.
+    #[test]
+    fn tick_at_forgives_no_more_after_an_hour() {
+        let hour = 3600.0_f64;
+        assert_eq!(hz(16_000).tick_at(hour.next_up().next_up()), Tick(16_000 * 3600));
+        assert_eq!(hz(16_000).tick_at(hour + 0.01 / 16e3), Tick(16_000 * 3600 + 1));
+    }
+
+    /// Oracle: turns are at the multiples of the divider.
+    #[test]
+    fn a_countdown_is_due_at_every_multiple_of_its_divider() {
+        for ticks in [1, 2, 5, 16] {
+            let every = hz(16_000).divider(hz(16_000 / ticks)).unwrap();
+            let mut countdown = Countdown::default();
+            for k in 0..40 {
+                assert_eq!(countdown.is_due(every), k % every.ticks() == 0, "tick {k} of every {every:?}");
+                assert_eq!(countdown.since(every), k % every.ticks());
+            }
+        }
+    }
+
+    #[test]
+    fn turns_coincide_when_one_period_holds_the_other_a_whole_number_of_times() {
+        let every = |rate| hz(12_000).divider(hz(rate)).unwrap();
+        assert!(every(2_000).is_multiple_of(every(6_000)) && every(2_000).is_multiple_of(every(2_000)));
+        assert!(!every(4_000).is_multiple_of(every(6_000)) && !every(6_000).is_multiple_of(every(2_000)));
     }
 }

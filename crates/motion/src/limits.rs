@@ -14,6 +14,17 @@ pub enum Order {
 }
 
 impl Order {
+    /// The order whose `derivative` is piecewise constant, the inverse of [`Order::derivative`]; `None` but for 2, 3, 4.
+    #[must_use]
+    pub const fn from_derivative(derivative: u8) -> Option<Self> {
+        match derivative {
+            2 => Some(Self::Second),
+            3 => Some(Self::Third),
+            4 => Some(Self::Fourth),
+            _ => None,
+        }
+    }
+
     /// The derivative that is piecewise constant, and the number of boxes: 2, 3 or 4.
     #[must_use]
     pub const fn derivative(self) -> usize {
@@ -49,18 +60,6 @@ impl Limits {
     /// No limit at all: the base for `Limits { velocity: 1.0, acceleration: 5.0, ..Limits::UNLIMITED }`.
     pub const UNLIMITED: Self =
         Self { velocity: f64::INFINITY, acceleration: f64::INFINITY, jerk: f64::INFINITY, snap: f64::INFINITY };
-
-    /// The limits under which the same continuous move lasts `factor` times as long: v/k, a/k², j/k³, s/k⁴.
-    #[must_use]
-    pub fn slowed(self, factor: f64) -> Self {
-        let k = factor;
-        Self {
-            velocity: self.velocity / k,
-            acceleration: self.acceleration / (k * k),
-            jerk: self.jerk / (k * k * k),
-            snap: self.snap / (k * k * k * k),
-        }
-    }
 
     /// The limits that `order` uses, from its highest derivative down to velocity; the rest is infinite.
     ///
@@ -113,6 +112,15 @@ mod tests {
         assert_eq!(limits.descending(Order::Third).unwrap()[..], [3.0, 2.0, 1.0, f64::INFINITY]);
         assert_eq!(limits.descending(Order::Second).unwrap()[..2], [2.0, 1.0]);
         assert!(limits.descending(Order::Fourth).is_err());
+    }
+
+    #[test]
+    fn an_order_is_known_by_its_derivative() {
+        for derivative in 0..=u8::MAX {
+            let order = Order::from_derivative(derivative);
+            assert_eq!(order.is_some(), (2..=4).contains(&derivative), "{derivative}");
+            assert!(order.is_none_or(|order| order.derivative() == usize::from(derivative)), "{order:?}");
+        }
     }
 
     #[test]
