@@ -95,15 +95,18 @@ fn build_mjcf(file: &MjcfModel, setup: &MechanicsSetup) -> Result<Box<dyn Mechan
         if let [MjcfRefusal::Unreadable { message }] = &refusals[..] {
             return MechanicsError::Model { engine: NAME, message: format!("{}: {message}", file.path.display()) };
         }
-        let all: Vec<String> = refusals.iter().map(ToString::to_string).collect();
-        MechanicsError::Unsupported {
+        MechanicsError::Refused {
             engine: NAME,
-            what: format!("{}: {}", file.path.display(), all.join("; ")),
-            way_out: "change the file, choose the engine `mujoco`, or describe the axis by its bodies".into(),
+            path: file.path.clone(),
+            refusals: refusals.iter().map(Into::into).collect(),
+            way_out: "change the file, choose the engine `mujoco`, or describe the axis by its bodies",
         }
     };
     let mechanism = Mechanism::read(&file.xml).map_err(refused)?;
-    let axis = mechanism.axis(file).map_err(refused)?;
+    let axis = mechanism.axis(file).map_err(|mut refusals| {
+        refusals.extend(linkage::check(&mechanism).err().unwrap_or_default());
+        refused(refusals)
+    })?;
     match Linkage::new(&mechanism, axis, setup.step, &setup.initial) {
         Ok(linkage) => Ok(Box::new(linkage)),
         Err(LinkageError::Refused(refusals)) => Err(refused(refusals)),
@@ -111,22 +114,12 @@ fn build_mjcf(file: &MjcfModel, setup: &MechanicsSetup) -> Result<Box<dyn Mechan
     }
 }
 
-/// Says all that this engine would refuse in an MJCF file, without running it.
+/// Says all that this engine refuses in the text of an MJCF file, whatever of it is the axis.
 ///
 /// # Errors
 /// Every [`MjcfRefusal`] that can be found in one go.
 pub fn check_mjcf(xml: &str) -> Result<(), Vec<MjcfRefusal>> {
     linkage::check(&Mechanism::read(xml)?)
-}
-
-/// [`check_mjcf`], and whether the joints and the motor of the axis are there.
-///
-/// # Errors
-/// Every [`MjcfRefusal`] that can be found in one go.
-pub fn check_mjcf_model(file: &MjcfModel) -> Result<(), Vec<MjcfRefusal>> {
-    let mechanism = Mechanism::read(&file.xml)?;
-    mechanism.axis(file)?;
-    linkage::check(&mechanism)
 }
 
 /// The actuation is not the one that the mechanics were built for.

@@ -12,6 +12,7 @@ mod load_coordinate;
 mod mechanics;
 mod mjcf;
 pub mod pmsm;
+mod refusal;
 mod sensor;
 
 pub use chain::{Body, Chain, Coordinate, Link};
@@ -22,4 +23,5 @@ pub use mechanics::{
     Actuation, BodyState, Drive, Engine, Input, Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Model,
 };
 pub use mjcf::chain_to_mjcf;
+pub use refusal::{Refusal, RefusedAt};
 pub use sensor::{Encoder, Reading};

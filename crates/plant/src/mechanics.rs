@@ -1,6 +1,8 @@
 //! Mechanics behind one trait: what the closed loop sees of a simulated axis, whichever engine computes it.
 use crate::chain::Chain;
+use crate::refusal::{Refusal, in_one_line};
 use servobench_base::{ParamError, Setpoint};
+use std::path::PathBuf;
 use thiserror::Error;
 
 /// Position and velocity of one body.
@@ -75,7 +77,7 @@ pub struct MjcfModel {
     /// The file's text.
     pub xml: String,
     /// Where it came from, for messages and for the files it includes.
-    pub path: std::path::PathBuf,
+    pub path: PathBuf,
     /// Joint whose coordinate is the motor's (hinge: rad, slide: m).
     pub motor_joint: String,
     /// Joint of the load, whose position in the axis coordinate is that of [`LoadCoordinate`](crate::LoadCoordinate):
@@ -125,6 +127,18 @@ pub enum MechanicsError {
         what: String,
         /// What to do instead.
         way_out: String,
+    },
+    /// There is something in a user's own MJCF file that the engine does not simulate: all of it.
+    #[error("engine `{engine}` refuses {}: {}; {way_out}", path.display(), in_one_line(refusals))]
+    Refused {
+        /// Engine name.
+        engine: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// What is refused, at least one thing.
+        refusals: Vec<Refusal>,
+        /// What to do instead.
+        way_out: &'static str,
     },
     /// The model text is wrong.
     #[error("engine `{engine}` cannot read the model: {message}")]

@@ -2,7 +2,9 @@
 use super::{STEP, efforts, free_omega, motion, ticks};
 use servobench_base::Setpoint;
 use servobench_engine_mujoco::Mujoco;
-use servobench_plant::{BodyState, Drive, Engine as _, Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Model};
+use servobench_plant::{
+    BodyState, Drive, Engine as _, Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Model, Refusal, RefusedAt,
+};
 use std::fs;
 use std::path::Path;
 
@@ -113,17 +115,19 @@ fn included_files_are_found_beside_the_model() {
 fn unknown_names_are_answered_with_the_known_ones() {
     let wrong = MjcfModel { motor_joint: "shatf".into(), ..model(two_mass(MOTOR)) };
     let error = build(wrong, vec![]).err().unwrap().to_string();
-    let wanted = "axis.xml has no joint `shatf`; there is `shaft`, `output`, `socket`";
-    assert!(error.ends_with(wanted), "{error}");
-    let wrong = MjcfModel { actuator: "motor".into(), ..model(two_mass(MOTOR)) };
-    let error = build(wrong, vec![]).err().unwrap().to_string();
-    assert!(error.ends_with("axis.xml has no actuator `motor`; there is `servo`"), "{error}");
+    let wanted = "axis.xml: there is no joint `shatf`; there is `shaft`, `output`, `socket`; change";
+    assert!(error.contains(wanted), "{error}");
+    let wrong = MjcfModel { load_joint: "socket".into(), actuator: "motor".into(), ..model(two_mass(MOTOR)) };
+    let Some(MechanicsError::Refused { refusals, .. }) = build(wrong, vec![]).err() else { panic!("two mistakes") };
+    let named = |name: &str, message: &str| Refusal { place: RefusedAt::Name(name.into()), message: message.into() };
+    let load = named("socket", "joint `socket` has several degrees of freedom; name a slide or a hinge");
+    assert_eq!(refusals, [load, named("motor", "there is no actuator `motor`; there is `servo`")]);
 }
 
 #[test]
 fn what_cannot_be_the_axis_is_refused_with_the_way_out() {
     for (actuator, load_joint, wanted) in [
-        (MOTOR, "socket", "joint `socket`, which has several degrees of freedom"),
+        (MOTOR, "socket", "joint `socket` has several degrees of freedom"),
         (r#"<motor name="servo" joint="output"/>"#, "output", "does not act on the motor joint"),
         (r#"<motor name="servo" tendon="clutch"/>"#, "output", "does not act on the motor joint"),
         (r#"<position name="servo" joint="shaft"/>"#, "output", "is more than a motor"),
@@ -131,7 +135,7 @@ fn what_cannot_be_the_axis_is_refused_with_the_way_out() {
     ] {
         let wrong = MjcfModel { load_joint: load_joint.into(), ..model(two_mass(actuator)) };
         let error = build(wrong, vec![]).err().unwrap();
-        assert!(matches!(error, MechanicsError::Unsupported { .. }), "{error}");
+        assert!(matches!(error, MechanicsError::Refused { .. }), "{error}");
         assert!(error.to_string().contains(wanted), "{error}");
     }
 }

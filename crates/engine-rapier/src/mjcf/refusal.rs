@@ -1,4 +1,5 @@
 //! Why an MJCF file is refused.
+use servobench_plant::{Refusal, RefusedAt};
 use thiserror::Error;
 
 /// One thing in an MJCF file that the engine `rapier` does not simulate, by its name.
@@ -117,6 +118,26 @@ pub enum MjcfRefusal {
         /// The motor joint.
         joint: String,
     },
+}
+
+impl From<&MjcfRefusal> for Refusal {
+    fn from(refusal: &MjcfRefusal) -> Self {
+        let place = match refusal {
+            MjcfRefusal::Element { line, .. }
+            | MjcfRefusal::Attribute { line, .. }
+            | MjcfRefusal::Value { line, .. }
+            | MjcfRefusal::Missing { line, .. } => RefusedAt::Line(*line),
+            MjcfRefusal::Unknown { name, .. } | MjcfRefusal::Actuator { actuator: name, .. } => {
+                RefusedAt::Name(name.clone())
+            }
+            MjcfRefusal::Unreadable { .. }
+            | MjcfRefusal::SeveralJoints { .. }
+            | MjcfRefusal::Contact { .. }
+            | MjcfRefusal::Mass { .. }
+            | MjcfRefusal::Massless { .. } => RefusedAt::File,
+        };
+        Self { place, message: refusal.to_string() }
+    }
 }
 
 /// The names in a list for a message.

@@ -1,8 +1,8 @@
 //! Everything that is refused, by its name, and all of it in one go.
 use super::{H, effort, file, state, try_build, world};
 use servobench_base::Setpoint;
-use servobench_engine_rapier::{MjcfRefusal, Rapier, check_mjcf, check_mjcf_model};
-use servobench_plant::{Actuation, Drive, Engine, Input, MechanicsError, MechanicsSetup, Model};
+use servobench_engine_rapier::{MjcfRefusal, Rapier, check_mjcf};
+use servobench_plant::{Actuation, Drive, Engine, Input, MechanicsError, MechanicsSetup, Model, Refusal, RefusedAt};
 
 /// A slide with 1 kg.
 const BODY: &str = r#"<body name="b"><joint name="m" type="slide" axis="1 0 0"/>
@@ -197,30 +197,38 @@ fn what_is_no_mjcf_is_refused() {
 
 #[test]
 fn the_parts_of_the_axis_must_be_there() {
-    let check = |xml: &str, change: fn(&mut servobench_plant::MjcfModel)| {
+    let refused = |xml: &str, change: fn(&mut servobench_plant::MjcfModel)| {
         let mut model = file(xml, "m");
         change(&mut model);
-        let all = check_mjcf_model(&model).unwrap_err();
-        all.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+        match try_build(model, H, vec![]).err() {
+            Some(MechanicsError::Refused { refusals, .. }) => refusals,
+            other => panic!("{other:?}"),
+        }
     };
+    let named = |name: &str, message: &str| Refusal { place: RefusedAt::Name(name.into()), message: message.into() };
     let xml = world(BODY);
-    assert_eq!(check(&xml, |model| model.load_joint = "q".into()), "there is no joint `q`; there is `m`");
-    assert_eq!(check(&xml, |model| model.actuator = "v".into()), "there is no motor `v`; there is `u`");
-    let idle = world(BODY).replace("gravity", "integrator").replace("<motor", "<motor gear='0'");
-    assert!(check(&idle, |_| {}).starts_with("motor `u` has no gear"), "{}", check(&idle, |_| {}));
+    let load = refused(&xml, |model| model.load_joint = "q".into());
+    assert_eq!(load, [named("q", "there is no joint `q`; there is `m`")]);
+    let motor = refused(&xml, |model| model.actuator = "v".into());
+    assert_eq!(motor, [named("v", "there is no motor `v`; there is `u`")]);
+    let idle = refused(&world(BODY).replace("gravity", "integrator").replace("<motor", "<motor gear='0'"), |_| {});
+    assert!(idle[0].message.starts_with("motor `u` has no gear") && idle[0].place == RefusedAt::Name("u".into()));
     let other = world(&format!("{BODY}{}", BODY.replace("\"m\"", "\"q\""))).replace("joint=\"m\"/>", "joint=\"q\"/>");
-    assert!(check(&other, |_| {}).starts_with("motor `u` acts on joint `q`; it must act on joint `m`"));
+    assert!(refused(&other, |_| {})[0].message.starts_with("motor `u` acts on joint `q`; it must act on joint `m`"));
+    let light = world(&BODY.replace("mass=\"1\"", "mass=\"0\""));
+    let both = refused(&light, |model| model.actuator = "v".into());
+    assert_eq!(both.iter().map(|one| &one.place).collect::<Vec<_>>(), [&RefusedAt::Name("v".into()), &RefusedAt::File]);
 }
 
 #[test]
 fn the_engine_says_the_same_and_names_the_file() {
     let setup =
         |drive, xml: &str| MechanicsSetup { model: Model::Mjcf(file(xml, "m")), drive, step: H, initial: vec![] };
-    let error = Rapier.build(&setup(Drive::Effort, &beside("<equality/>"))).err().unwrap().to_string();
-    assert!(
-        error.contains("axis.xml: line ") && error.contains("`<equality>`") && error.contains("`mujoco`"),
-        "{error}"
-    );
+    let error = Rapier.build(&setup(Drive::Effort, &beside("\n<equality/>"))).err().unwrap();
+    let text = error.to_string();
+    assert!(text.contains("axis.xml: line 4: `<equality>`") && text.contains("`mujoco`"), "{text}");
+    let MechanicsError::Refused { refusals, .. } = error else { panic!("{text}") };
+    assert_eq!(refusals[0].place, RefusedAt::Line(4));
     let error = Rapier.build(&setup(Drive::Effort, "<mujoco>")).err().unwrap();
     assert!(matches!(&error, MechanicsError::Model { message, .. } if message.starts_with("axis.xml: ")), "{error}");
     let error = Rapier.build(&setup(Drive::Prescribed, &world(BODY))).err().unwrap().to_string();

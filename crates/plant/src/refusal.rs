@@ -1,0 +1,26 @@
+//! What an engine refuses in a user's own MJCF file, and where to look.
+
+/// One thing in a user's own MJCF file, or in what is said of it, that an engine does not simulate.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Refusal {
+    /// Where to look.
+    pub place: RefusedAt,
+    /// What it is, in words.
+    pub message: String,
+}
+
+/// Where to look for what is refused.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum RefusedAt {
+    /// On this line of the file, from 1.
+    Line(u32),
+    /// At this name of a joint or an actuator, given beside the file.
+    Name(String),
+    /// In the file as a whole.
+    File,
+}
+
+/// The refusals in one line.
+pub(crate) fn in_one_line(refusals: &[Refusal]) -> String {
+    refusals.iter().map(|refusal| refusal.message.as_str()).collect::<Vec<_>>().join("; ")
+}
