@@ -14,11 +14,8 @@ pub(crate) fn make_folder(folder: &Path) -> Result<(), CliError> {
 
 /// Writes the whole file or nothing.
 pub(crate) fn write_file(path: &Path, text: &str) -> Result<(), CliError> {
-    let failed = |error: std::io::Error| CliError::Run(format!("cannot write `{}`: {error}", path.display()));
-    let mut unfinished = path.as_os_str().to_owned();
-    unfinished.push(".part");
-    std::fs::write(&unfinished, text).map_err(failed)?;
-    std::fs::rename(&unfinished, path).map_err(failed)
+    servobench_trace::write_whole(path, text)
+        .map_err(|error| CliError::Run(format!("cannot write `{}`: {error}", path.display())))
 }
 
 /// Writes the recording of `job` into `folder`, for the Rerun viewer too when `rrd` says so. A recording that cannot be

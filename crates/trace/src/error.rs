@@ -8,9 +8,9 @@ pub enum TraceError {
     /// The operating system refused.
     #[error("cannot {action} `{}`: {source}", .path.display())]
     Io {
-        /// What was tried: `create`, `write`, `rename`, `read`.
+        /// What was tried: `create`, `write`, `put in its place`, `read`.
         action: &'static str,
-        /// File or folder it was tried on.
+        /// File it was tried on.
         path: PathBuf,
         /// The system's reason.
         source: std::io::Error,

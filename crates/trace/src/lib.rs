@@ -11,6 +11,7 @@ mod read;
 mod recorder;
 mod recording;
 mod seal;
+mod whole_file;
 mod write;
 
 pub use channel::{Channel, ChannelSpec};
@@ -18,6 +19,7 @@ pub use envelope::envelope;
 pub use error::TraceError;
 pub use recorder::Recorder;
 pub use recording::{About, Event, Move, Recording};
+pub use whole_file::write_whole;
 
 /// Column of a recording file that holds the instants (s).
 const TIME: &str = "time";

@@ -2,6 +2,7 @@
 use crate::error::TraceError;
 use crate::header::{FORMAT, FORMAT_KEY, Header, RECORDING_KEY};
 use crate::recording::Recording;
+use crate::whole_file::Unfinished;
 use crate::{TIME, seal};
 use parquet::basic::{Compression, Encoding, Repetition, Type as PhysicalType, ZstdLevel};
 use parquet::data_type::DoubleType;
@@ -11,13 +12,9 @@ use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{Type, TypePtr};
 use std::collections::HashSet;
-use std::ffi::OsString;
-use std::fs::{self, File};
 use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
-use std::process;
+use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Instants per row group: what a reader such as `DuckDB` hands to one thread, and 1 MiB per column.
 const ROW_GROUP: usize = 1 << 17;
@@ -26,8 +23,8 @@ impl Recording {
     /// Writes the recording as a Parquet file: the column `time` (s), one column per channel (SI, f64), and in the
     /// file's key-value metadata all the rest. Nothing is lost: [`Recording::read_parquet`] gives back every bit.
     ///
-    /// The same recording gives the same bytes. The file appears under its name only when it is whole: it is
-    /// written beside it as `.NAME.….partial` and then renamed.
+    /// The same recording gives the same bytes. The file appears when it is whole, as [`write_whole`](crate::write_whole)
+    /// does it.
     ///
     /// # Errors
     /// [`TraceError::NameTaken`] and [`TraceError::UnequalLength`] before anything is written; [`TraceError::Io`]
@@ -35,13 +32,23 @@ impl Recording {
     pub fn write_parquet(&self, path: impl AsRef<Path>) -> Result<(), TraceError> {
         let path = path.as_ref();
         self.check_columns()?;
-        let partial = partial_path(path);
-        let written = self.write_file(path, &partial);
-        if written.is_err() {
-            // The first error is the one to report; a partial file that cannot be removed either changes nothing.
-            fs::remove_file(&partial).ok();
+        let io = |action| move |source| TraceError::Io { action, path: path.to_path_buf(), source };
+        let encode = |reason| TraceError::Encode { path: path.to_path_buf(), reason };
+        let mut unfinished = Unfinished::create(path).map_err(io("create"))?;
+        let mut buffered = BufWriter::with_capacity(1 << 20, &mut unfinished.file);
+        self.encode(&mut buffered).map_err(|error| match error {
+            ParquetError::External(cause) => match cause.downcast() {
+                Ok(source) => io("write")(*source),
+                Err(cause) => encode(cause.to_string()),
+            },
+            error => encode(error.to_string()),
+        })?;
+        buffered.flush().map_err(io("write"))?;
+        drop(buffered);
+        if !seal::apply(&mut unfinished.file).map_err(io("write"))? {
+            return Err(encode("the encoder left no place for the seal".into()));
         }
-        written
+        unfinished.finish().map_err(io("put in its place"))
     }
 
     /// Every channel can be a column: names differ, lengths do not.
@@ -60,30 +67,6 @@ impl Recording {
             }
         }
         Ok(())
-    }
-
-    fn write_file(&self, path: &Path, partial: &Path) -> Result<(), TraceError> {
-        let io = |action, path: &Path| {
-            let path = path.to_path_buf();
-            move |source| TraceError::Io { action, path, source }
-        };
-        let create = File::options().read(true).write(true).create_new(true).open(partial);
-        let mut buffered = BufWriter::with_capacity(1 << 20, create.map_err(io("create", partial))?);
-        let encode = |reason| TraceError::Encode { path: path.to_path_buf(), reason };
-        self.encode(&mut buffered).map_err(|error| match error {
-            ParquetError::External(cause) => match cause.downcast() {
-                Ok(source) => io("write", partial)(*source),
-                Err(cause) => encode(cause.to_string()),
-            },
-            error => encode(error.to_string()),
-        })?;
-        let unbuffered = buffered.into_inner().map_err(std::io::IntoInnerError::into_error);
-        let mut file = unbuffered.map_err(io("write", partial))?;
-        if !seal::apply(&mut file).map_err(io("write", partial))? {
-            return Err(encode("the encoder left no place for the seal".into()));
-        }
-        drop(file);
-        fs::rename(partial, path).map_err(io("rename to its place", partial))
     }
 
     /// The file's bytes, not yet sealed.
@@ -139,13 +122,4 @@ fn write_column<W: Write + Send>(group: &mut SerializedRowGroupWriter<'_, W>, va
     };
     column.typed::<DoubleType>().write_batch(values, None, None)?;
     column.close()
-}
-
-/// A name beside `path` that no other writer uses: unique within the process by the counter, across them by its id.
-fn partial_path(path: &Path) -> PathBuf {
-    static COUNTER: AtomicU64 = AtomicU64::new(0);
-    let mut name = OsString::from(".");
-    name.push(path.file_name().unwrap_or_default());
-    name.push(format!(".{}-{}.partial", process::id(), COUNTER.fetch_add(1, Ordering::Relaxed)));
-    path.with_file_name(name)
 }

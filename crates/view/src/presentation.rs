@@ -10,7 +10,6 @@ use crate::run::Run;
 use crate::scene::Scene;
 use rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 use servobench_trace::Recording;
-use std::fs;
 use std::path::Path;
 
 /// Application id of all our recordings: the viewer keeps one blueprint for them.
@@ -103,13 +102,6 @@ impl<'a> Presentation<'a> {
         self.log(&stream)?;
         stream.flush_blocking().map_err(ViewError::rerun("flush the stream"))?;
         let bytes = storage.drain_as_bytes().map_err(ViewError::rerun("encode the file"))?;
-        let io = |source| ViewError::Io { path: path.to_path_buf(), source };
-        let partial = path.with_extension(format!("{}.partial", std::process::id()));
-        let written = fs::write(&partial, bytes).and_then(|()| fs::rename(&partial, path));
-        if written.is_err() {
-            // The first error is the one to report; a partial file that cannot be removed either changes nothing.
-            fs::remove_file(&partial).ok();
-        }
-        written.map_err(io)
+        servobench_trace::write_whole(path, bytes).map_err(|source| ViewError::Io { path: path.to_path_buf(), source })
     }
 }

@@ -1,0 +1,137 @@
+//! Files that are there whole or not at all.
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::process;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Writes the file `path`, whole or not at all: `bytes` go to a file of another name beside it, which then takes its
+/// place. Several writers of one path, in one process or in many, do not disturb each other; the last one stays.
+///
+/// # Errors
+/// Those of the operating system. An older file of that name is then as it was, and nothing is left beside it.
+pub fn write_whole(path: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> io::Result<()> {
+    let mut unfinished = Unfinished::create(path.as_ref())?;
+    unfinished.file.write_all(bytes.as_ref())?;
+    unfinished.finish()
+}
+
+/// A file that gets its name when it is finished. Dropped before that, it is gone.
+#[derive(Debug)]
+pub(crate) struct Unfinished {
+    /// For writing and reading.
+    pub(crate) file: File,
+    path: PathBuf,
+    target: PathBuf,
+    is_finished: bool,
+}
+
+impl Unfinished {
+    /// An empty file that will be `target`.
+    pub(crate) fn create(target: &Path) -> io::Result<Self> {
+        static COUNTER: AtomicU64 = AtomicU64::new(0);
+        loop {
+            let path = partial_path(target, COUNTER.fetch_add(1, Ordering::Relaxed));
+            match File::options().read(true).write(true).create_new(true).open(&path) {
+                Ok(file) => return Ok(Self { file, path, target: target.to_path_buf(), is_finished: false }),
+                // Left by a process of the same id that was killed, or being written from another machine.
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+                Err(error) => return Err(error),
+            }
+        }
+    }
+
+    /// Puts the file in its place.
+    pub(crate) fn finish(mut self) -> io::Result<()> {
+        fs::rename(&self.path, &self.target)?;
+        self.is_finished = true;
+        Ok(())
+    }
+}
+
+impl Drop for Unfinished {
+    fn drop(&mut self) {
+        if !self.is_finished {
+            // An error has been reported already; a file that cannot be removed either changes nothing.
+            fs::remove_file(&self.path).ok();
+        }
+    }
+}
+
+/// A name beside `target` that no other writer uses: unique within the process by the number, across them by its id.
+fn partial_path(target: &Path, number: u64) -> PathBuf {
+    let mut name = OsString::from(".");
+    name.push(target.file_name().unwrap_or_default());
+    name.push(format!(".{}-{number}.partial", process::id()));
+    target.with_file_name(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        let mut names: Vec<_> = entries.collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_file_that_is_not_finished_leaves_the_old_one_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("results.json");
+        write_whole(&path, "old").unwrap();
+        let mut unfinished = Unfinished::create(&path).unwrap();
+        unfinished.file.write_all(b"half of the n").unwrap();
+        assert_eq!(names(folder.path()).len(), 2);
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        drop(unfinished);
+        assert_eq!(names(folder.path()), ["results.json"]);
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+    }
+
+    #[test]
+    fn a_target_that_cannot_be_replaced_leaves_nothing_beside_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let taken = folder.path().join("taken");
+        fs::create_dir_all(taken.join("by a folder")).unwrap();
+        assert!(write_whole(&taken, "text").is_err());
+        assert_eq!(names(folder.path()), ["taken"]);
+    }
+
+    /// What killed processes of the same id left does not matter.
+    #[test]
+    fn names_that_are_taken_are_passed_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("results.json");
+        for number in 0..1000 {
+            fs::write(partial_path(&path, number), "left").unwrap();
+        }
+        write_whole(&path, "whole").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"whole");
+        assert_eq!(names(folder.path()).len(), 1001);
+    }
+
+    /// Whoever reads finds one of the texts, never a mixture and never a part.
+    #[test]
+    fn writers_of_one_path_do_not_disturb_each_other() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("results.json");
+        let texts: Vec<String> = (1..=4_usize).map(|k| k.to_string().repeat(100_000 * k)).collect();
+        std::thread::scope(|scope| {
+            for text in &texts {
+                let path = &path;
+                scope.spawn(move || (0..20).for_each(|_| write_whole(path, text).unwrap()));
+            }
+            for _ in 0..50 {
+                match fs::read_to_string(&path) {
+                    Ok(found) => assert!(texts.contains(&found), "{} bytes", found.len()),
+                    Err(error) => assert_eq!(error.kind(), ErrorKind::NotFound),
+                }
+            }
+        });
+        assert_eq!(names(folder.path()), ["results.json"]);
+    }
+}
