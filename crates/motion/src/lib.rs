@@ -67,11 +67,13 @@
 mod boxes;
 mod error;
 mod limits;
+mod piece;
 mod profile;
 mod segment;
 mod stretch;
 
 pub use error::PlanError;
 pub use limits::{Limits, Order};
+pub use piece::Piece;
 pub use profile::{Peaks, Profile, Samples, Times};
 pub use segment::{Segment, Segments};

@@ -1,7 +1,7 @@
 //! A planned rest-to-rest move: what it is made of, and the set-point at any time.
 use crate::boxes::{self, Grid};
 use crate::limits::in_range;
-use crate::{Limits, Order, PlanError, Segments, segment};
+use crate::{Limits, Order, Piece, PlanError, Segments, segment};
 use servobench_base::{Setpoint, finite, positive};
 
 /// A rest-to-rest move from 0 to [`distance`](Self::distance), in the axis unit (m or rad) and seconds from its start.
@@ -179,22 +179,41 @@ impl Profile {
     #[must_use]
     #[inline]
     pub fn at(&self, t: f64) -> Setpoint {
-        let reached = t + self.tolerance;
-        if reached >= self.duration {
-            return Setpoint::at_rest(self.distance);
+        self.piece(t).at(t)
+    }
+
+    /// The polynomial that [`at`](Self::at) evaluates at `t` (s).
+    #[must_use]
+    pub fn piece(&self, t: f64) -> Piece {
+        let Self { tolerance, duration, distance, .. } = *self;
+        let reached = t + tolerance;
+        if reached >= duration {
+            return Piece::at_rest(distance);
         }
         if reached < 0.0 || t.is_nan() {
-            return Setpoint::at_rest(0.0);
+            return Piece { tolerance, until: 0.0, ..Piece::at_rest(0.0) };
         }
-        let late = reached >= 0.5 * self.duration;
-        let (tau, reached) = if late { (self.duration - t, self.duration - reached) } else { (t, reached) };
-        let i = self.starts[1..].iter().filter(|start| **start <= reached).count();
-        let state = self.anchors[i].after((tau - self.starts[i]).max(0.0).min(self.lengths[i]));
-        if late {
-            // 0 − a and not −a: no negative zeros.
-            Setpoint { x: self.distance - state.x, a: 0.0 - state.a, s: 0.0 - state.s, ..state }
+        let half = 0.5 * duration;
+        let is_late = reached >= half;
+        let nearer = if is_late { duration - reached } else { reached };
+        // The segment, and the starts on both sides of it that are the nearest.
+        let (mut i, mut before, mut after) = (0, 0.0_f64, half);
+        for start in &self.starts[1..] {
+            if *start <= nearer {
+                i += 1;
+                before = before.max(*start);
+            } else {
+                after = after.min(*start);
+            }
+        }
+        let (anchor, start, length) = (self.anchors[i], self.starts[i], self.lengths[i]);
+        if is_late {
+            // Passed from its end to its start, which belongs to it; but for the first segment, as the end of the move
+            // is at rest.
+            let until = if i == 0 { 0.0 } else { (-before).next_up() };
+            Piece { anchor, start, length, origin: duration, sign: -1.0, base: distance, tolerance, until }
         } else {
-            state
+            Piece { anchor, start, length, origin: 0.0, sign: 1.0, base: 0.0, tolerance, until: after }
         }
     }
 

@@ -47,6 +47,31 @@ fn every_derivative_is_the_slope_of_the_one_below() {
     }
 }
 
+/// Whoever keeps a piece as long as it holds gets the set-points of whoever looks it up at every instant, to the bit: at
+/// every switching instant, at the floats beside it, within the tolerance of it and anywhere; and no piece ends early.
+#[test]
+fn a_piece_holds_exactly_as_long_as_it_is_the_one() {
+    let mut random = Random::seeded(7);
+    for plan in sampled_plans(65).take(sweep_size() / 20) {
+        let edges = plan.segments().flat_map(|segment| [segment.start, segment.start + 0.5 * segment.length]);
+        let edges: Vec<f64> = edges.chain([plan.duration()]).collect();
+        let rounding = 5.0 * f64::EPSILON * plan.duration();
+        let beside = edges.iter().flat_map(|t| [*t, t.next_up(), t.next_down(), t + rounding, t - rounding]);
+        let mut times: Vec<f64> = beside.chain((0..20).map(|_| random.unit() * plan.duration())).collect();
+        times.sort_by(f64::total_cmp);
+        let (mut piece, mut looked_up) = (plan.piece(-1.0), 0);
+        for t in times {
+            if !piece.holds(t) {
+                piece = plan.piece(t);
+                looked_up += 1;
+            }
+            assert_eq!(values(piece.at(t)).map(f64::to_bits), values(plan.at(t)).map(f64::to_bits), "{plan:?} at {t}");
+        }
+        // One for each segment, one more where the middle of the move cuts one in two, and the rest at the end.
+        assert!(looked_up <= plan.segments().count() + 2, "{plan:?}: {looked_up}");
+    }
+}
+
 #[test]
 fn no_instant_exceeds_a_peak_or_leaves_the_way() {
     let mut random = Random::seeded(6);

@@ -1,0 +1,61 @@
+//! One polynomial of a profile.
+use servobench_base::Setpoint;
+
+/// The polynomial that holds at one time of a [`Profile`](crate::Profile) and for a while after it.
+///
+/// Whoever asks for set-points in the order of time keeps it as long as it [`holds`](Self::holds), instead of having
+/// it looked up at each instant by [`Profile::at`](crate::Profile::at); the set-points are the same to the bit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Piece {
+    pub(crate) anchor: Setpoint,
+    /// Where the polynomial is anchored and how far it goes (s from `origin`, in the direction of `sign`).
+    pub(crate) start: f64,
+    pub(crate) length: f64,
+    /// 0 and 1, or the end of the move and −1: x(t) = `base` + `sign`·polynomial(`sign`·(t − `origin`)).
+    pub(crate) origin: f64,
+    pub(crate) sign: f64,
+    pub(crate) base: f64,
+    /// A switching instant that is nearer than this counts as reached (s).
+    pub(crate) tolerance: f64,
+    /// The next switching instant (s from `origin`).
+    pub(crate) until: f64,
+}
+
+impl Piece {
+    /// At rest at `x`, for ever.
+    #[must_use]
+    pub const fn at_rest(x: f64) -> Self {
+        Self {
+            anchor: Setpoint::at_rest(x),
+            start: 0.0,
+            length: 0.0,
+            origin: 0.0,
+            sign: 1.0,
+            base: 0.0,
+            tolerance: 0.0,
+            until: f64::INFINITY,
+        }
+    }
+
+    /// Whether it is still the one at `t` (s), a time not before the one that it was looked up for.
+    #[inline]
+    #[must_use]
+    pub fn holds(&self, t: f64) -> bool {
+        t + self.tolerance - self.origin < self.until
+    }
+
+    /// The set-point at `t` (s), a time at which it holds.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, t: f64) -> Setpoint {
+        let since = self.sign * (t - self.origin) - self.start;
+        let state = self.anchor.after(since.max(0.0).min(self.length));
+        // The sum makes plain zeros of negative ones.
+        Setpoint {
+            x: self.base + self.sign * state.x,
+            a: 0.0 + self.sign * state.a,
+            s: 0.0 + self.sign * state.s,
+            ..state
+        }
+    }
+}
