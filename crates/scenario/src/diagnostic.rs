@@ -58,6 +58,11 @@ impl fmt::Display for Invalid {
 }
 
 impl Diagnostic {
+    pub(crate) fn new(span: Span, message: String, help: String) -> Self {
+        let help = (!help.is_empty()).then_some(help);
+        Self { source: span.source, span: span.start..span.end, message, help }
+    }
+
     /// The diagnostic in one line: `axis.toml:12:9: message; help`.
     #[must_use]
     pub fn line(&self, sources: &Sources) -> String {
@@ -85,23 +90,18 @@ pub(crate) struct Report {
 
 impl Report {
     pub(crate) fn error(&mut self, span: Span, message: impl Into<String>, help: impl Into<String>) {
-        self.errors.push(diagnostic(span, message.into(), help.into()));
+        self.errors.push(Diagnostic::new(span, message.into(), help.into()));
     }
 
     pub(crate) fn warning(&mut self, span: Span, message: impl Into<String>, help: impl Into<String>) {
-        self.warnings.push(diagnostic(span, message.into(), help.into()));
+        self.warnings.push(Diagnostic::new(span, message.into(), help.into()));
     }
 
     /// Notes that something is missing which the table `path` could hold.
     pub(crate) fn lacking(&mut self, path: &str, span: Span, message: impl Into<String>, help: impl Into<String>) {
         let table = path.split('.').next().unwrap_or(path);
         if !self.without_model.contains(&table) {
-            self.missing.push(diagnostic(span, message.into(), help.into()));
+            self.missing.push(Diagnostic::new(span, message.into(), help.into()));
         }
     }
-}
-
-fn diagnostic(span: Span, message: String, help: String) -> Diagnostic {
-    let help = (!help.is_empty()).then_some(help);
-    Diagnostic { source: span.source, span: span.start..span.end, message, help }
 }

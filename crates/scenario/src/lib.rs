@@ -18,6 +18,7 @@ mod load;
 mod models;
 mod nearest;
 mod physical;
+mod place;
 mod quantity;
 mod reading;
 mod resolve;

@@ -4,7 +4,7 @@ use crate::field::{Field, Slot};
 use crate::file::File;
 use crate::models::lay_on_models;
 use crate::resolve;
-use crate::scenario::{Motion, Scenario};
+use crate::scenario::{AxisMechanics, Motion, Scenario};
 use crate::simple::Choice;
 use crate::source::{At, Place, SourceId, Sources, Span};
 use crate::tree::{self, Node, Table, Value};
@@ -20,6 +20,10 @@ pub struct Loaded {
     pub warnings: Vec<Diagnostic>,
     /// The files it came from.
     pub sources: Sources,
+    /// What the files say, the scenario laid on its models.
+    pub(crate) root: Node,
+    /// The MJCF file that it names.
+    pub(crate) mjcf: Option<SourceId>,
 }
 
 /// Loads the scenario file at `path`; models are looked up in `models/` beside it, in up to four folders above, and
@@ -63,7 +67,13 @@ pub fn parse(name: &str, text: &str, folder: Option<&Path>) -> Result<Loaded, Lo
             if scenario.name.is_empty() {
                 scenario.name = Path::new(name).file_stem().unwrap_or_default().to_string_lossy().into_owned();
             }
-            Ok(Loaded { scenario, warnings, sources })
+            let mjcf = match &scenario.axis.mechanics {
+                AxisMechanics::Mjcf(mjcf) => {
+                    Some(sources.add(mjcf.path.display().to_string(), mjcf.xml.clone(), Place::Embedded("".into())))
+                }
+                AxisMechanics::Bodies(_) => None,
+            };
+            Ok(Loaded { scenario, warnings, sources, root, mjcf })
         }
         _ => Err(LoadError::Invalid(Box::new(Invalid { diagnostics, warnings, sources }))),
     }
