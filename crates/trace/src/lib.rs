@@ -19,7 +19,7 @@ pub use envelope::envelope;
 pub use error::TraceError;
 pub use recorder::Recorder;
 pub use recording::{About, Event, Move, Recording};
-pub use whole_file::write_whole;
+pub use whole_file::{stream_whole, write_whole};
 
 /// Column of a recording file that holds the instants (s).
 const TIME: &str = "time";

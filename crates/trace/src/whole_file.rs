@@ -1,7 +1,7 @@
 //! Files that are there whole or not at all.
 use std::ffi::OsString;
 use std::fs::{self, File};
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -12,9 +12,23 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// # Errors
 /// Those of the operating system. An older file of that name is then as it was, and nothing is left beside it.
 pub fn write_whole(path: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> io::Result<()> {
-    let mut unfinished = Unfinished::create(path.as_ref())?;
-    unfinished.file.write_all(bytes.as_ref())?;
-    unfinished.finish()
+    stream_whole(path, |file| file.write_all(bytes.as_ref()))
+}
+
+/// Writes what `write` gives out, whole or not at all, as [`write_whole`] does it: for files larger than memory.
+///
+/// # Errors
+/// Those of `write` and of the operating system, as in [`write_whole`].
+pub fn stream_whole<E: From<io::Error>>(
+    path: impl AsRef<Path>,
+    write: impl FnOnce(&mut BufWriter<&File>) -> Result<(), E>,
+) -> Result<(), E> {
+    let unfinished = Unfinished::create(path.as_ref())?;
+    let mut buffered = BufWriter::new(&unfinished.file);
+    write(&mut buffered)?;
+    buffered.flush()?;
+    drop(buffered);
+    Ok(unfinished.finish()?)
 }
 
 /// A file that gets its name when it is finished. Dropped before that, it is gone.
@@ -90,6 +104,21 @@ mod tests {
         drop(unfinished);
         assert_eq!(names(folder.path()), ["results.json"]);
         assert_eq!(fs::read(&path).unwrap(), b"old");
+    }
+
+    #[test]
+    fn a_stream_that_breaks_off_leaves_the_old_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("plan.csv");
+        write_whole(&path, "old").unwrap();
+        let broken = stream_whole(&path, |file| {
+            file.write_all(&vec![b'x'; 100_000])?;
+            Err(io::Error::other("enough"))
+        });
+        assert_eq!(broken.unwrap_err().to_string(), "enough");
+        assert_eq!((names(folder.path()), fs::read(&path).unwrap()), (vec!["plan.csv".to_owned()], b"old".to_vec()));
+        stream_whole(&path, |file| (0..1000).try_for_each(|k| writeln!(file, "{k}"))).unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap().lines().last(), Some("999"));
     }
 
     #[test]
