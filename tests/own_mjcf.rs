@@ -55,6 +55,7 @@ fn build(engine: &dyn Engine, xml: &str, initial: &[BodyState]) -> Box<dyn Mecha
         motor_joint: "motor".into(),
         load_joint: "load".into(),
         actuator: "drive".into(),
+        transmission: 1.0,
     });
     let setup = MechanicsSetup { model, drive: Drive::Effort, step: H, initial: initial.to_vec() };
     engine.build(&setup).unwrap_or_else(|error| panic!("{error}"))

@@ -4,7 +4,6 @@
 //! the tick. Behind a prescribed base its coordinates are relative to the base, else the base rests at zero.
 use crate::base::BaseTick;
 use crate::simulation::{self, Data};
-use crate::wrong_actuation;
 use mujoco_rs::prelude::MjtDisableBit;
 use servobench_base::Setpoint;
 use servobench_plant::{
@@ -55,7 +54,7 @@ impl MujocoChain {
         match (actuation, self.first) {
             (Actuation::Effort(_), 0) => Ok(None),
             (Actuation::Motion(now), 1) => Ok(Some(BaseTick::new(now, self.step))),
-            _ => Err(wrong_actuation()),
+            _ => Err(MechanicsError::wrong_actuation(crate::NAME)),
         }
     }
 

@@ -32,23 +32,10 @@ impl Engine for Mujoco {
     }
 
     fn build(&self, setup: &MechanicsSetup) -> Result<Box<dyn Mechanics>, MechanicsError> {
-        servobench_base::positive("step", setup.step)?;
-        for state in &setup.initial {
-            servobench_base::finite("initial position", state.position)?;
-            servobench_base::finite("initial velocity", state.velocity)?;
-        }
+        setup.check()?;
         match &setup.model {
             Model::Chain(chain) => Ok(Box::new(chain::MujocoChain::new(chain.clone(), setup)?)),
             Model::Mjcf(model) => Ok(Box::new(mjcf::MujocoMjcf::new(model, setup)?)),
         }
-    }
-}
-
-/// The actuation is not the one that the mechanics were built for.
-fn wrong_actuation() -> MechanicsError {
-    MechanicsError::Unsupported {
-        engine: NAME,
-        what: "an actuation other than the one it was built for".into(),
-        way_out: "use efforts with `Drive::Effort` and motions with `Drive::Prescribed`".into(),
     }
 }

@@ -1,8 +1,8 @@
 //! A user's own MJCF file: some joints and one motor of it are the axis, the rest is simulated along with them.
 mod parts;
 
+use crate::NAME;
 use crate::simulation::{self, Data};
-use crate::{NAME, wrong_actuation};
 use parts::{Joint, Motor, Parts, joints, load_coordinate};
 use servobench_plant::{
     Actuation, BodyState, Drive, Input, LoadCoordinate, Mechanics, MechanicsError, MechanicsSetup, MjcfModel,
@@ -17,6 +17,8 @@ pub(crate) struct MujocoMjcf {
     /// Id of the motor joint.
     motor: usize,
     load: LoadCoordinate,
+    /// Load coordinate per coordinate of the load joint: the transmission when one joint is both motor and load.
+    load_per_joint: f64,
     /// Motor, then load; one body when one joint is both.
     bodies: Vec<BodyState>,
 }
@@ -37,7 +39,8 @@ impl MujocoMjcf {
         let load = load_coordinate(&mut data, motor, load);
         let mut bodies = vec![BodyState::default(); if load.joint() == motor { 1 } else { 2 }];
         bodies.iter_mut().zip(&setup.initial).for_each(|(body, initial)| *body = *initial);
-        let mut mechanics = Self { data, actuator, joints, motor, load, bodies };
+        let load_per_joint = if bodies.len() == 1 { file.transmission } else { 1.0 };
+        let mut mechanics = Self { data, actuator, joints, motor, load, load_per_joint, bodies };
         mechanics.start();
         mechanics.read();
         Ok(mechanics)
@@ -75,12 +78,12 @@ impl Mechanics for MujocoMjcf {
 
     fn advance(&mut self, input: &Input) -> Result<(), MechanicsError> {
         simulation::check_input(input)?;
-        let Actuation::Effort(effort) = input.actuation else { return Err(wrong_actuation()) };
+        let Actuation::Effort(effort) = input.actuation else { return Err(MechanicsError::wrong_actuation(NAME)) };
         self.data.ctrl_mut()[self.actuator.ctrl] = self.actuator.ctrl(effort)?;
         let forces = self.data.qfrc_applied_mut();
         forces[self.joints[self.motor].dof] = 0.0;
         for (id, share) in self.load.terms() {
-            forces[self.joints[id].dof] = share * input.load_disturbance;
+            forces[self.joints[id].dof] = share * self.load_per_joint * input.load_disturbance;
         }
         forces[self.joints[self.motor].dof] += input.motor_disturbance;
         simulation::step(&mut self.data)?;

@@ -136,6 +136,7 @@ fn advance_mjcf(bencher: Bencher) {
         motor_joint: "motor".into(),
         load_joint: "load".into(),
         actuator: "motor".into(),
+        transmission: 1.0,
     });
     let setup = MechanicsSetup { model, drive: Drive::Effort, step: H, initial: vec![] };
     let (mut axis, mut k) = (Rapier.build(&setup).unwrap(), 0_u32);

@@ -7,11 +7,11 @@
 //! ```
 //! Second order, with damping and behind a prescribed base too; a mode of ω rings by (ω·h)²/24 too fast and keeps its
 //! amplitude. Source: Hairer, Lubich & Wanner, *Geometric Numerical Integration*, 2nd ed., §I.1.4 (Störmer–Verlet).
+use crate::NAME;
 use crate::half_kick::HalfKick;
 use crate::lumps::{Lumps, Positions};
 use crate::scene::diverged;
-use crate::{NAME, wrong_actuation};
-use servobench_base::{ParamError, Setpoint};
+use servobench_base::Setpoint;
 use servobench_plant::{
     Actuation, BodyState, Chain, Drive, DryFriction, Grip, Input, Mechanics, MechanicsError, MechanicsSetup,
 };
@@ -48,10 +48,6 @@ struct Parameters<const N: usize> {
 
 impl<const N: usize> LumpChain<N> {
     pub(crate) fn new(chain: &Chain, setup: &MechanicsSetup) -> Result<Self, MechanicsError> {
-        if !(setup.initial.is_empty() || setup.initial.len() == N) {
-            let bound = "empty or one for each body";
-            return Err(ParamError { name: "initial", value: setup.initial.len() as f64, bound }.into());
-        }
         let prescribed = setup.drive == Drive::Prescribed;
         check_stability(chain, prescribed, setup.step)?;
         let bodies: [BodyState; N] = std::array::from_fn(|i| setup.initial.get(i).copied().unwrap_or_default());
@@ -143,10 +139,12 @@ impl<const N: usize> Mechanics for LumpChain<N> {
         match (&input.actuation, self.prescribed) {
             (Actuation::Effort(effort), false) => constant[0] = *effort,
             (Actuation::Motion(now), true) => self.follow(now),
-            (Actuation::Effort(_), true) | (Actuation::Motion(_), false) => return Err(wrong_actuation()),
+            (Actuation::Effort(_), true) | (Actuation::Motion(_), false) => {
+                return Err(MechanicsError::wrong_actuation(NAME));
+            }
         }
         constant[0] += input.motor_disturbance;
-        constant[N - 1] += input.load_disturbance;
+        constant[N - 1] += self.parameters.transmission[N - 1] * input.load_disturbance;
 
         let mut efforts = self.with_passive(&constant);
         let before = self.velocities;

@@ -66,11 +66,7 @@ impl Engine for Rapier {
     }
 
     fn build(&self, setup: &MechanicsSetup) -> Result<Box<dyn Mechanics>, MechanicsError> {
-        servobench_base::positive("step", setup.step)?;
-        for state in &setup.initial {
-            servobench_base::finite("initial position", state.position)?;
-            servobench_base::finite("initial velocity", state.velocity)?;
-        }
+        setup.check()?;
         match &setup.model {
             Model::Chain(chain) => Ok(match chain.bodies().len() {
                 1 => Box::new(LumpChain::<1>::new(chain, setup)?),
@@ -120,13 +116,4 @@ fn build_mjcf(file: &MjcfModel, setup: &MechanicsSetup) -> Result<Box<dyn Mechan
 /// Every [`MjcfRefusal`] that can be found in one go.
 pub fn check_mjcf(xml: &str) -> Result<(), Vec<MjcfRefusal>> {
     linkage::check(&Mechanism::read(xml)?)
-}
-
-/// The actuation is not the one that the mechanics were built for.
-fn wrong_actuation() -> MechanicsError {
-    MechanicsError::Unsupported {
-        engine: NAME,
-        what: "an actuation other than the one it was built for".into(),
-        way_out: "use efforts with `Drive::Effort` and motions with `Drive::Prescribed`".into(),
-    }
 }

@@ -19,7 +19,6 @@ mod assembly;
 
 use crate::mjcf::{Axis, Mechanism, MjcfRefusal, Tendon};
 use crate::scene::{self, diverged};
-use crate::wrong_actuation;
 use assembly::assemble;
 use nalgebra::DVector;
 use rapier3d_f64::prelude::{Multibody, MultibodyIndex, MultibodyJointSet, PhysicsWorld, Vector};
@@ -244,8 +243,10 @@ impl Mechanics for Linkage {
     }
 
     fn advance(&mut self, input: &Input) -> Result<(), MechanicsError> {
-        let Actuation::Effort(effort) = input.actuation else { return Err(wrong_actuation()) };
-        let now = [effort + input.motor_disturbance, input.load_disturbance];
+        let Actuation::Effort(effort) = input.actuation else {
+            return Err(MechanicsError::wrong_actuation(crate::NAME));
+        };
+        let now = [effort + input.motor_disturbance, self.axis.load_per_joint * input.load_disturbance];
         let share = if std::mem::take(&mut self.fresh) { 0.5 } else { 1.0 };
         self.passive();
         for (effort, joint) in self.work.iter().zip(&mut self.joints) {

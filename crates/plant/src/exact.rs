@@ -37,6 +37,7 @@ impl Engine for Exact {
     }
 
     fn build(&self, setup: &MechanicsSetup) -> Result<Box<dyn Mechanics>, MechanicsError> {
+        setup.check()?;
         match &setup.model {
             // Rows in use: stretches, velocities, base derivatives, travel. The next multiple of four fills registers.
             Model::Chain(chain) => Ok(match states(chain, setup.drive == Drive::Prescribed) + 1 {
@@ -149,11 +150,7 @@ impl<const W: usize> Mechanics for ExactChain<W> {
                 base_position = Some(now.after(h).x);
             }
             (Actuation::Effort(_), true) | (Actuation::Motion(_), false) => {
-                return Err(MechanicsError::Unsupported {
-                    engine: NAME,
-                    what: "an actuation other than the one it was built for".into(),
-                    way_out: "use efforts with `Drive::Effort` and motions with `Drive::Prescribed`".into(),
-                });
+                return Err(MechanicsError::wrong_actuation(NAME));
             }
         }
         let mut u = self.efforts(input);

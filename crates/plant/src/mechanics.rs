@@ -1,7 +1,7 @@
 //! Mechanics behind one trait: what the closed loop sees of a simulated axis, whichever engine computes it.
 use crate::chain::Chain;
 use crate::refusal::{Refusal, in_one_line};
-use servobench_base::{ParamError, Setpoint};
+use servobench_base::{ParamError, Setpoint, finite, positive};
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -85,6 +85,9 @@ pub struct MjcfModel {
     pub load_joint: String,
     /// Motor actuator (`<motor>`) that the drive's torque or force goes to.
     pub actuator: String,
+    /// Axis coordinate per motor coordinate: where one joint is both motor and load, an effort on the load acts through
+    /// it.
+    pub transmission: f64,
 }
 
 /// What it takes to build mechanics.
@@ -98,6 +101,30 @@ pub struct MechanicsSetup {
     pub step: f64,
     /// State of each body at tick 0; empty for all at rest at zero. For MJCF models: motor, then load.
     pub initial: Vec<BodyState>,
+}
+
+impl MechanicsSetup {
+    /// Checks what every engine needs; each of them asks for it in [`Engine::build`].
+    ///
+    /// # Errors
+    /// [`ParamError`] names the first field that is wrong.
+    pub fn check(&self) -> Result<(), ParamError> {
+        positive("step", self.step)?;
+        let (most, bound) = match &self.model {
+            Model::Chain(chain) => (chain.bodies().len(), "none, or one for each body"),
+            Model::Mjcf(file) if file.motor_joint == file.load_joint => (1, "none, or one: one joint is both"),
+            Model::Mjcf(_) => (2, "none, or those of motor and load"),
+        };
+        let count = self.initial.len();
+        if count != 0 && count != most {
+            return Err(ParamError { name: "initial", value: count as f64, bound });
+        }
+        for state in &self.initial {
+            finite("initial position", state.position)?;
+            finite("initial velocity", state.velocity)?;
+        }
+        Ok(())
+    }
 }
 
 /// Makes mechanics of one kind.
@@ -164,4 +191,16 @@ pub enum MechanicsError {
         /// The library's own words.
         message: String,
     },
+}
+
+impl MechanicsError {
+    /// The actuation is not the one that the mechanics of `engine` were built for.
+    #[must_use]
+    pub fn wrong_actuation(engine: &'static str) -> Self {
+        Self::Unsupported {
+            engine,
+            what: "an actuation other than the one it was built for".into(),
+            way_out: "use efforts with `Drive::Effort` and motions with `Drive::Prescribed`".into(),
+        }
+    }
 }

@@ -161,6 +161,7 @@ fn an_mjcf_file_is_refused_with_a_way_out() {
         motor_joint: "motor".into(),
         load_joint: "load".into(),
         actuator: "motor".into(),
+        transmission: 1.0,
     };
     let setup = MechanicsSetup { model: Model::Mjcf(model), drive: Drive::Effort, step: H, initial: vec![] };
     let error = Exact.build(&setup).err().unwrap();

@@ -44,6 +44,7 @@ fn model(xml: String) -> MjcfModel {
         motor_joint: "shaft".into(),
         load_joint: "output".into(),
         actuator: "servo".into(),
+        transmission: 1.0,
     }
 }
 

@@ -88,6 +88,8 @@ struct Motor {
 pub(crate) struct Axis {
     pub(crate) motor: usize,
     pub(crate) load: LoadCoordinate,
+    /// Load coordinate per coordinate of the load joint: the transmission when one joint is both motor and load.
+    pub(crate) load_per_joint: f64,
 }
 
 impl Mechanism {
@@ -181,7 +183,8 @@ impl Mechanism {
         }
         match (motor, load) {
             (Some(motor), Some(load)) if refusals.is_empty() => {
-                Ok(Axis { motor, load: self.load_coordinate(motor, load) })
+                let load_per_joint = if motor == load { file.transmission } else { 1.0 };
+                Ok(Axis { motor, load: self.load_coordinate(motor, load), load_per_joint })
             }
             _ => Err(refusals),
         }

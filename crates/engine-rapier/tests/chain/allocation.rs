@@ -85,6 +85,7 @@ fn a_tick_of_an_mjcf_file_allocates_what_the_bare_step_does() {
         motor_joint: "m".into(),
         load_joint: "load".into(),
         actuator: "u".into(),
+        transmission: 1.0,
     });
     let setup = MechanicsSetup { model, drive: Drive::Effort, step: H, initial: vec![] };
     let found = per_tick(Rapier.build(&setup).unwrap().as_mut());

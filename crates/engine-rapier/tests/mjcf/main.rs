@@ -23,6 +23,7 @@ fn file(xml: &str, load: &str) -> MjcfModel {
         motor_joint: "m".into(),
         load_joint: load.into(),
         actuator: "u".into(),
+        transmission: 1.0,
     }
 }
 

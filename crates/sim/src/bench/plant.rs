@@ -26,6 +26,7 @@ pub(super) fn mechanics(
                 motor_joint: mjcf.motor_joint.clone(),
                 load_joint: mjcf.load_joint.clone(),
                 actuator: mjcf.actuator.clone(),
+                transmission: scenario.axis.transmission,
             };
             let names = if model.motor_joint == model.load_joint { &["motor"][..] } else { &["motor", "load"] };
             (plant::Model::Mjcf(model), names.iter().map(|name| (*name).to_owned()).collect())
@@ -79,8 +80,8 @@ pub(super) fn encoder(encoder: scenario::Encoder) -> Result<Encoder, BuildError>
     Ok(encoder)
 }
 
-/// The power stage and the encoder on the motor.
-pub(super) fn power_stage(scenario: &Scenario) -> Result<(PowerStage, Encoder), BuildError> {
+/// The power stage with the motor at `speed` (its own coordinate, per second), and the encoder on the motor.
+pub(super) fn power_stage(scenario: &Scenario, speed: f64) -> Result<(PowerStage, Encoder), BuildError> {
     let on = scenario.drive.enabled;
     match &scenario.motor {
         scenario::Motor::Prescribed => Ok((PowerStage::Off, Encoder::default())),
@@ -99,7 +100,7 @@ pub(super) fn power_stage(scenario: &Scenario) -> Result<(PowerStage, Encoder), 
             params.check()?;
             let encoder = encoder(motor.encoder)?;
             let (state, u_dc) = (pmsm::State::default(), scenario.drive.dc_link);
-            let stage = PowerStage::Pmsm { params, state, u_dc, last_speed: 0.0, rotor: Rotation::default() };
+            let stage = PowerStage::Pmsm { params, state, u_dc, last_speed: speed, rotor: Rotation::default() };
             Ok((if on { stage } else { PowerStage::Off }, encoder))
         }
     }
