@@ -5,6 +5,9 @@
 use servobench_base::Rate;
 use std::path::PathBuf;
 
+/// Longest run (s), 11.6 days. At the highest base rate its ticks are fewer than 2⁵³: the time of every tick is exact.
+pub const LONGEST_RUN: f64 = 1e6;
+
 /// One experiment: an axis, a program of moves, what to measure and the limits that make it pass or fail.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {

@@ -4,8 +4,9 @@ mod firmware;
 mod plant;
 
 use crate::channels::{Amplifier, Equipment, Selection, WriterRates};
-use crate::error::BuildError;
-use crate::limits::LimitWatch;
+use crate::disturbance::Disturbances;
+use crate::error::{BuildError, check_length};
+use crate::limit_watch::LimitWatch;
 use crate::power::PowerStage;
 use crate::program::Program;
 use servobench_base::{Rate, Setpoint};
@@ -33,7 +34,7 @@ pub struct Bench {
     pub(crate) transmission: f64,
     pub(crate) motor_encoder: Encoder,
     pub(crate) load_encoder: Option<Encoder>,
-    pub(crate) disturbances: Vec<scenario::Disturbance>,
+    pub(crate) disturbances: Disturbances,
     pub(crate) selection: Selection,
     pub(crate) recorder: Recorder,
     /// Base ticks from row to row, and to the next one.
@@ -51,10 +52,12 @@ impl Bench {
         let base_rate = scenario.base_rate;
         let program = Program::plan(&scenario.program)?;
         let duration = scenario.duration.unwrap_or(program.end() + TAIL);
+        check_length(None, duration)?;
         let ticks = base_rate.tick_at(duration).0 + 1;
+        let disturbances = Disturbances::new(&scenario.disturbances, base_rate, ticks)?;
 
         let (mechanics, bodies) = plant::mechanics(scenario, engine)?;
-        let (power, motor_encoder) = plant::power_stage(scenario)?;
+        let (power, motor_encoder) = plant::power_stage(scenario, mechanics.bodies()[0].velocity)?;
         let firmware = match scenario.motor {
             scenario::Motor::Prescribed => None,
             _ if !scenario.drive.enabled => None,
@@ -71,6 +74,9 @@ impl Bench {
         let equipment = Equipment {
             axis_unit: if rotary(scenario.axis.motion) { "rad" } else { "m" },
             effort_unit: if rotary(scenario.axis.motor_motion) { "N m" } else { "N" },
+            load_effort_unit: if rotary(scenario.axis.motion) { "N m" } else { "N" },
+            disturbed: [scenario::DisturbedBody::Motor, scenario::DisturbedBody::Load]
+                .map(|body| scenario.disturbances.iter().any(|disturbance| disturbance.on == body)),
             table: bodies.len() == 3,
             amplifier: match power {
                 PowerStage::Pmsm { .. } => Some(Amplifier::Current),
@@ -110,7 +116,7 @@ impl Bench {
             transmission: scenario.axis.transmission,
             motor_encoder,
             load_encoder,
-            disturbances: scenario.disturbances.clone(),
+            disturbances,
             selection,
             recorder,
             record_every,
@@ -125,5 +131,5 @@ fn check_memory(channels: usize, rows: u64, rate: Rate, duration: f64) -> Result
     if gigabytes <= RECORDING_LIMIT {
         return Ok(());
     }
-    Err(BuildError::TooLong { channels, rate: rate.hertz(), duration, gigabytes, limit: RECORDING_LIMIT })
+    Err(BuildError::TooMuchMemory { channels, rate: rate.hertz(), duration, gigabytes, limit: RECORDING_LIMIT })
 }

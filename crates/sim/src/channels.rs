@@ -21,6 +21,9 @@ pub(crate) struct Instant {
     pub(crate) current_reference: f64,
     pub(crate) voltage: servobench_base::Dq,
     pub(crate) output: f64,
+    /// External efforts over the coming tick: on the motor in its own coordinate, on the load in the axis coordinate.
+    pub(crate) motor_disturbance: f64,
+    pub(crate) load_disturbance: f64,
     /// Share of the ticks since the last row in which the voltage limit or the effort limit bound.
     pub(crate) voltage_saturation: f64,
     pub(crate) effort_saturation: f64,
@@ -35,6 +38,10 @@ pub(crate) struct Equipment {
     pub(crate) effort_unit: &'static str,
     /// Whether there is a body between motor and load.
     pub(crate) table: bool,
+    /// Unit of an effort on the load, `N` or `N m`.
+    pub(crate) load_effort_unit: &'static str,
+    /// Whether something disturbs the motor, and the load.
+    pub(crate) disturbed: [bool; 2],
     /// What the firmware commands; `None` without firmware.
     pub(crate) amplifier: Option<Amplifier>,
 }
@@ -57,7 +64,7 @@ pub(crate) struct WriterRates {
     pub(crate) current: Rate,
 }
 
-const COUNT: usize = 27;
+const COUNT: usize = 29;
 
 /// Every channel there is, in the order of [`row`].
 fn all(equipment: &Equipment, rates: &WriterRates) -> [(bool, ChannelSpec); COUNT] {
@@ -74,6 +81,9 @@ fn all(equipment: &Equipment, rates: &WriterRates) -> [(bool, ChannelSpec); COUN
     let position_loop = |name: &str, unit: String| channel(drive, name, unit, "position loop", rates.position);
     let velocity_loop = |name: &str, unit: String| channel(drive, name, unit, "velocity loop", rates.velocity);
     let current_loop = |name: &str, unit: &str| channel(current, name, unit.into(), "current loop", rates.current);
+    let [on_motor, on_load] = equipment.disturbed;
+    let disturbance =
+        |there: bool, name: &str, unit: &str| channel(there, name, unit.into(), "disturbance", rates.base);
     [
         setpoint("setpoint.position", u.into()),
         setpoint("setpoint.velocity", per(u, "")),
@@ -102,6 +112,8 @@ fn all(equipment: &Equipment, rates: &WriterRates) -> [(bool, ChannelSpec); COUN
         channel(ideal, "command.output", "V".into(), "power stage", rates.base),
         current_loop("saturation.voltage", ""),
         channel(drive, "saturation.current", String::new(), "velocity loop", rates.velocity),
+        disturbance(on_motor, "disturbance.motor", e),
+        disturbance(on_load, "disturbance.load", equipment.load_effort_unit),
     ]
 }
 
@@ -136,6 +148,8 @@ fn row(now: &Instant) -> [f64; COUNT] {
         now.output,
         now.voltage_saturation,
         now.effort_saturation,
+        now.motor_disturbance,
+        now.load_disturbance,
     ]
 }
 

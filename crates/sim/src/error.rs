@@ -2,6 +2,7 @@
 use servobench_base::{ParamError, RateError};
 use servobench_motion::PlanError;
 use servobench_plant::MechanicsError;
+use servobench_scenario::LONGEST_RUN;
 use thiserror::Error;
 
 /// Why a scenario could not be turned into a closed loop.
@@ -27,12 +28,42 @@ pub enum BuildError {
     /// The motor is fed back from a sensor that is not there, or the like.
     #[error("{0}")]
     Contradiction(&'static str),
+    /// The program, or the run, lasts longer than a run can.
+    #[error(
+        "{} would end at {end} s, a run lasts {limit} s at most; {}",
+        step.map_or("the run".into(), |index| format!("program step {}", index + 1)),
+        if step.is_some() { "wait less, or raise its limits" } else { "shorten its program or `run.duration`" }
+    )]
+    TooLong {
+        /// Number of the step of the program, from 0; `None` for the run itself.
+        step: Option<usize>,
+        /// When it would end (s).
+        end: f64,
+        /// Longest run (s).
+        limit: f64,
+    },
+    /// A disturbance that nothing would be seen of.
+    #[error(
+        "disturbance {} acts on no tick of the run, which ends at {end_of_run} s: it starts at {start} s and lasts \
+         {duration} s",
+        index + 1
+    )]
+    IdleDisturbance {
+        /// Number of the disturbance, from 0.
+        index: usize,
+        /// First instant (s).
+        start: f64,
+        /// How long (s).
+        duration: f64,
+        /// Last instant of the run (s).
+        end_of_run: f64,
+    },
     /// The recording would not fit in memory.
     #[error(
         "recording {channels} channels at {rate} Hz for {duration} s takes {gigabytes:.1} GB, more than {limit} GB; \
          lower `record.rate` or name fewer `record.channels`"
     )]
-    TooLong {
+    TooMuchMemory {
         /// Channels.
         channels: usize,
         /// Recording rate (Hz).
@@ -52,4 +83,12 @@ pub enum BuildError {
         /// What there is.
         available: Vec<String>,
     },
+}
+
+/// Whether the run, or the step of its program, ends at `end` (s) within the longest run.
+///
+/// # Errors
+/// [`BuildError::TooLong`] otherwise.
+pub(crate) fn check_length(step: Option<usize>, end: f64) -> Result<(), BuildError> {
+    if end <= LONGEST_RUN { Ok(()) } else { Err(BuildError::TooLong { step, end, limit: LONGEST_RUN }) }
 }

@@ -6,7 +6,7 @@ mod bench;
 mod channels;
 mod disturbance;
 mod error;
-mod limits;
+mod limit_watch;
 mod power;
 mod program;
 mod run;

@@ -1,7 +1,7 @@
 //! The program of moves as a set-point over time.
-use crate::error::BuildError;
+use crate::error::{BuildError, check_length};
 use servobench_base::Setpoint;
-use servobench_motion::{Limits, Order, Profile};
+use servobench_motion::{Limits, Order, Piece, Profile};
 use servobench_scenario::{MoveStep, Step, Target};
 use servobench_trace::Move;
 
@@ -15,35 +15,46 @@ struct Planned {
 }
 
 /// Moves and pauses, one after the other.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Program {
     moves: Vec<Planned>,
-    /// Index of the move that the last query was in or after.
-    current: usize,
     end: f64,
+    now: Now,
+}
+
+/// What the last query found; the next one is most likely the same.
+#[derive(Debug, Clone, Copy)]
+struct Now {
+    /// Index of the move, its start (s) and where it starts from; the move is over when the next one starts (s).
+    index: usize,
+    start: f64,
+    from: f64,
+    next_start: f64,
+    piece: Piece,
 }
 
 impl Program {
     /// Plans every move.
     ///
     /// # Errors
-    /// [`BuildError::Plan`] names the step.
+    /// [`BuildError::Plan`] and [`BuildError::TooLong`] name the step.
     pub fn plan(steps: &[Step]) -> Result<Self, BuildError> {
-        let mut program = Self::default();
-        let mut position = 0.0;
+        let (mut moves, mut end, mut position) = (Vec::new(), 0.0, 0.0);
         for (index, step) in steps.iter().enumerate() {
             match step {
-                Step::Wait(length) => program.end += length,
+                Step::Wait(length) => end += length,
                 Step::Move(step) => {
                     let profile = plan_move(step, position).map_err(|error| BuildError::Plan { index, error })?;
-                    let limits = step.limits;
-                    program.moves.push(Planned { start: program.end, from: position, profile, limits });
+                    moves.push(Planned { start: end, from: position, profile, limits: step.limits });
                     position += profile.distance();
-                    program.end += profile.duration();
+                    end += profile.duration();
                 }
             }
+            check_length(Some(index), end)?;
         }
-        Ok(program)
+        let next_start = if moves.is_empty() { f64::INFINITY } else { f64::NEG_INFINITY };
+        let now = Now { index: 0, start: 0.0, from: 0.0, next_start, piece: Piece::at_rest(0.0) };
+        Ok(Self { moves, end, now })
     }
 
     /// End of the last step (s).
@@ -53,16 +64,29 @@ impl Program {
     }
 
     /// Set-point at `t` (s). Queries must not go back in time.
+    #[inline]
     pub fn at(&mut self, t: f64) -> Setpoint {
-        while let Some(next) = self.moves.get(self.current + 1)
-            && t >= next.start
-        {
-            self.current += 1;
+        if t >= self.now.next_start || !self.now.piece.holds(t - self.now.start) {
+            self.look_up(t);
         }
-        let Some(planned) = self.moves.get(self.current) else { return Setpoint::default() };
-        let mut setpoint = planned.profile.at(t - planned.start);
-        setpoint.x += planned.from;
+        let mut setpoint = self.now.piece.at(t - self.now.start);
+        setpoint.x += self.now.from;
         setpoint
+    }
+
+    /// Finds what holds at `t` (s).
+    #[cold]
+    fn look_up(&mut self, t: f64) {
+        let later = self.now.index + 1..self.moves.len();
+        let index = later.take_while(|index| self.moves[*index].start <= t).last().unwrap_or(self.now.index);
+        let Some(Planned { start, from, profile, .. }) = self.moves.get(index) else { return };
+        let next_start = self.moves.get(index + 1).map_or(f64::INFINITY, |next| next.start);
+        self.now = Now { index, start: *start, from: *from, next_start, piece: profile.piece(t - start) };
+    }
+
+    /// How long each move lasts (s).
+    pub fn durations(&self) -> impl Iterator<Item = f64> {
+        self.moves.iter().map(|planned| planned.profile.duration())
     }
 
     /// What a recording says of the moves; `unit` is the axis unit.
@@ -118,9 +142,13 @@ fn plan_move(step: &MoveStep, position: f64) -> Result<Profile, servobench_motio
 mod tests {
     use super::*;
 
+    fn one_metre() -> MoveStep {
+        let (target, limits) = (Target::Relative(1.0), [1.0, 5.0, 50.0, 1000.0]);
+        MoveStep { target, order: 4, limits, sample_time: None, duration: None }
+    }
+
     fn to(target: Target) -> Step {
-        let limits = [1.0, 5.0, 50.0, 1000.0];
-        Step::Move(MoveStep { target, order: 4, limits, sample_time: None, duration: None })
+        Step::Move(MoveStep { target, ..one_metre() })
     }
 
     #[test]
@@ -136,5 +164,49 @@ mod tests {
         assert_eq!(program.at(9.0), Setpoint::at_rest(0.0));
         let cruise = program.moves("m").next().unwrap().cruise;
         assert!((cruise.0 - 0.45).abs() < 1e-12 && (cruise.1 - 0.65).abs() < 1e-12, "{cruise:?}");
+        assert!(program.durations().all(|duration| (duration - 1.35).abs() < 1e-12));
+        assert_eq!(program.durations().count(), 2);
+    }
+
+    /// Oracle: each move's own set-point, looked up at every instant. Moves without a pause between them, one of no
+    /// distance, and queries that skip whole moves.
+    #[test]
+    fn what_is_kept_from_query_to_query_is_what_a_look_up_finds() {
+        let to = |target| to(Target::Absolute(target));
+        let steps = [to(0.3), to(0.3), to(-0.2), Step::Wait(0.05), to(1.0)];
+        for skip in [1, 7, 5_000, 12_000] {
+            let mut program = Program::plan(&steps).unwrap();
+            for k in (0..60_000_u32).step_by(skip) {
+                let t = f64::from(k) / 16e3;
+                let made = program.moves.iter().take_while(|planned| planned.start <= t).last().unwrap();
+                let mut expected = made.profile.at(t - made.start);
+                expected.x += made.from;
+                let bits = |Setpoint { x, v, a, j, s }| [x, v, a, j, s].map(f64::to_bits);
+                assert_eq!(bits(program.at(t)), bits(expected), "every {skip} ticks, {t} s");
+            }
+        }
+    }
+
+    #[test]
+    fn without_a_move_the_axis_is_to_stay() {
+        let mut program = Program::plan(&[Step::Wait(0.5)]).unwrap();
+        assert!([0.0, 0.1, 7.0].iter().all(|t| program.at(*t) == Setpoint::at_rest(0.0)));
+        assert!((program.end() - 0.5).abs() < 1e-15);
+    }
+
+    /// The moves have no length in the scenario file: what they add up to is known here only.
+    #[test]
+    fn a_program_that_never_ends_is_refused_at_its_step() {
+        let slow = MoveStep { limits: [1e-9, 5.0, 50.0, 1000.0], ..one_metre() };
+        for (steps, end) in [
+            (vec![to(Target::Absolute(1.0)), Step::Move(slow)], "1000000001"),
+            (vec![Step::Wait(0.5), Step::Wait(1e16)], "1000000000000000"),
+            (vec![Step::Wait(0.5), Step::Wait(f64::INFINITY)], "inf"),
+            (vec![Step::Wait(0.5), Step::Wait(f64::NAN)], "NaN"),
+        ] {
+            let message = Program::plan(&steps).unwrap_err().to_string();
+            assert!(message.starts_with(&format!("program step 2 would end at {end}")), "{message}");
+            assert!(message.contains("a run lasts 1000000 s at most"), "{message}");
+        }
     }
 }

@@ -1,7 +1,6 @@
 //! The closed loop, in execution order.
 use crate::bench::Bench;
 use crate::channels::Instant;
-use crate::disturbance::effort_at;
 use servobench_base::Tick;
 use servobench_drive::{Command, Sensors};
 use servobench_plant::{Actuation, BodyState, Encoder, Input, MechanicsError};
@@ -39,12 +38,13 @@ impl Bench {
     ///
     /// What is recorded together belongs to the same instant. Within control a slower loop's output reaches the faster
     /// loop in the same tick; the voltage of the current loop goes out one period of that loop later. The power stage
-    /// takes the motor's position and velocity at k, and its mean torque over the tick drives the mechanics.
+    /// takes the motor's position and velocity at k, and its mean torque over the tick drives the mechanics; a disturbance
+    /// is held over the tick.
     #[must_use]
     pub fn run(mut self, progress: &mut dyn FnMut(f64)) -> Outcome {
-        let mut failure = None;
+        let (mut t, mut failure) = (0.0, None);
         for k in 0..self.ticks {
-            let t = self.base_rate.time(Tick(k));
+            t = self.base_rate.time(Tick(k));
 
             let (mut now, motor) = self.sample();
             now.setpoint = self.program.at(t);
@@ -53,6 +53,8 @@ impl Bench {
             now.current = self.power.current();
             now.output = self.power.output(command);
             now.effort = self.power.advance(command, motor, self.base_rate.period());
+            now.motor_disturbance = self.disturbances.effort_at(DisturbedBody::Motor, k);
+            now.load_disturbance = self.disturbances.effort_at(DisturbedBody::Load, k);
             self.record(&mut now);
             if k % PROGRESS_EVERY == 0 {
                 progress(k as f64 / self.ticks as f64);
@@ -60,12 +62,12 @@ impl Bench {
             if k + 1 == self.ticks {
                 break;
             }
-            if let Err(error) = self.integrate(t, &now) {
+            if let Err(error) = self.integrate(&now) {
                 failure = Some(Failure { time: t, error });
                 break;
             }
         }
-        self.watch.finish(self.base_rate.time(Tick(self.ticks - 1)), &mut self.recorder);
+        self.watch.finish(t, &mut self.recorder);
         progress(1.0);
         Outcome { recording: self.recorder.finish(), failure }
     }
@@ -119,12 +121,12 @@ impl Bench {
     }
 
     /// Integrates the mechanics to k+1.
-    fn integrate(&mut self, t: f64, now: &Instant) -> Result<(), MechanicsError> {
+    fn integrate(&mut self, now: &Instant) -> Result<(), MechanicsError> {
         let actuation = if self.prescribed { Actuation::Motion(now.setpoint) } else { Actuation::Effort(now.effort) };
         self.mechanics.advance(&Input {
             actuation,
-            motor_disturbance: effort_at(&self.disturbances, DisturbedBody::Motor, t),
-            load_disturbance: effort_at(&self.disturbances, DisturbedBody::Load, t),
+            motor_disturbance: now.motor_disturbance,
+            load_disturbance: now.load_disturbance,
         })
     }
 }
