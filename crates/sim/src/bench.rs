@@ -1,6 +1,7 @@
 //! From a scenario and an engine to everything that the loop needs.
 
 mod firmware;
+mod objections;
 mod plant;
 
 use crate::channels::{Amplifier, Equipment, Selection, WriterRates};
