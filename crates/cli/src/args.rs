@@ -1,7 +1,9 @@
 //! Arguments.
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use servobench_scenario::EngineName;
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// Closed-loop test bench for servo axes.
 #[derive(Debug, Parser)]
@@ -11,8 +13,8 @@ pub(crate) struct Cli {
     pub(crate) command: Command,
 }
 
-const AFTER_HELP: &str = "Exit codes: 0 all passed, 2 the input is wrong, 3 a run could not be carried out, \
-                          4 a limit was missed.";
+const AFTER_HELP: &str = "Exit codes: 0 all passed, 2 the input is wrong, 3 a run could not be carried out \
+                          or its results not be written, 4 a limit was missed.";
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
@@ -41,8 +43,8 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "DIR", default_value = "servobench-out")]
     pub(crate) out: PathBuf,
     /// Engine to use instead of the scenarios' own; may be given several times.
-    #[arg(long, value_name = "NAME")]
-    pub(crate) engine: Vec<Engine>,
+    #[arg(long, value_name = "NAME", value_parser = engine())]
+    pub(crate) engine: Vec<EngineName>,
     /// Write each recording for the Rerun viewer too.
     #[arg(long)]
     pub(crate) rrd: bool,
@@ -52,6 +54,9 @@ pub(crate) struct RunArgs {
     /// Scenarios at a time [default: one for each core].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub(crate) jobs: Option<u16>,
+    /// End the process of an isolated engine that makes no progress for this long.
+    #[arg(long, value_name = "TIME", value_parser = time, default_value = "5 min")]
+    pub(crate) worker_timeout: Duration,
     /// Say only what failed.
     #[arg(long, short)]
     pub(crate) quiet: bool,
@@ -107,11 +112,14 @@ pub(crate) struct CompareArgs {
     #[arg(long, value_enum, default_value_t = Equal::Limits)]
     pub(crate) equal: Equal,
     /// Engine to use instead of the first scenario's.
-    #[arg(long, value_name = "NAME")]
-    pub(crate) engine: Option<Engine>,
+    #[arg(long, value_name = "NAME", value_parser = engine())]
+    pub(crate) engine: Option<EngineName>,
     /// Folder for the comparison and its recording.
     #[arg(long, value_name = "DIR", default_value = "servobench-out")]
     pub(crate) out: PathBuf,
+    /// End the process of an isolated engine that makes no progress for this long.
+    #[arg(long, value_name = "TIME", value_parser = time, default_value = "5 min")]
+    pub(crate) worker_timeout: Duration,
 }
 
 /// What is equal in all runs of a comparison.
@@ -119,7 +127,7 @@ pub(crate) struct CompareArgs {
 pub(crate) enum Equal {
     /// Each scenario's own limits.
     Limits,
-    /// The duration: faster moves are slowed to the slowest.
+    /// The duration: faster moves are slowed to the slowest, and no longer judged by their limits.
     Duration,
 }
 
@@ -131,8 +139,8 @@ pub(crate) struct ViewArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct WorkerArgs {
-    #[arg(long)]
-    pub(crate) engine: Engine,
+    #[arg(long, value_parser = engine())]
+    pub(crate) engine: EngineName,
     #[arg(long)]
     pub(crate) recording: PathBuf,
     #[arg(long)]
@@ -143,23 +151,48 @@ pub(crate) struct WorkerArgs {
     pub(crate) durations: Vec<f64>,
 }
 
-/// An engine by name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Engine {
-    /// Exact zero-order hold of the linear chain.
-    Exact,
-    /// Rapier, embedded.
-    Rapier,
-    /// `MuJoCo`, in a worker process.
-    Mujoco,
+/// An engine by the name that scenario files give it.
+fn engine() -> impl TypedValueParser<Value = EngineName> {
+    let named = |name: &String| EngineName::ALL.into_iter().find(|engine| engine.as_str() == name);
+    PossibleValuesParser::new(EngineName::ALL.map(EngineName::as_str))
+        .try_map(move |name| named(&name).ok_or_else(|| format!("there is no engine `{name}`")))
 }
 
-impl From<Engine> for EngineName {
-    fn from(engine: Engine) -> Self {
-        match engine {
-            Engine::Exact => Self::Exact,
-            Engine::Rapier => Self::Rapier,
-            Engine::Mujoco => Self::Mujoco,
+/// A length of time, as "5 min".
+fn time(text: &str) -> Result<Duration, String> {
+    let seconds = servobench_scenario::time(text).map_err(|error| error.message)?;
+    match Duration::try_from_secs_f64(seconds) {
+        Ok(time) if !time.is_zero() => Ok(time),
+        _ => Err("it must be longer than nothing and shorter than an age".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_arguments_are_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn every_engine_has_its_name() {
+        for engine in EngineName::ALL {
+            let cli = Cli::try_parse_from(["servobench", "run", "--engine", engine.as_str()]).unwrap();
+            let Command::Run(args) = cli.command else { panic!("run") };
+            assert_eq!(args.engine, [engine]);
+        }
+    }
+
+    #[test]
+    fn times_have_units() {
+        let timeout = |text| Cli::try_parse_from(["servobench", "run", "--worker-timeout", text]);
+        let Command::Run(args) = timeout("90 s").unwrap().command else { panic!("run") };
+        assert_eq!(args.worker_timeout, Duration::from_secs(90));
+        for wrong in ["90", "90 m", "0 s", "-1 s", "1e30 s"] {
+            assert!(timeout(wrong).is_err(), "{wrong}");
         }
     }
 }

@@ -4,10 +4,11 @@
 //! |---|---|
 //! | 0 | all passed |
 //! | 2 | the input is wrong: usage, scenario, model |
-//! | 3 | a run could not be carried out: engine missing, diverged, native failure, no disk |
+//! | 3 | a run could not be carried out: engine missing, diverged, native failure; or what it gave could not be written |
 //! | 4 | a limit was missed |
 //!
-//! 1 is never ours: it is what a native library ends a process with.
+//! 1 is never ours: it is what a native library ends a process with. A reader that goes away (`| head`) changes nothing:
+//! the verdict keeps its code.
 use servobench_suite::RunError;
 use std::process::ExitCode;
 use thiserror::Error;
@@ -31,12 +32,9 @@ pub(crate) enum CliError {
     /// The input is wrong; the message says where and why.
     #[error("{0}")]
     Input(String),
-    /// Something outside the input failed.
+    /// A run, or something outside the input, failed.
     #[error("{0}")]
     Run(String),
-    /// Whoever reads our output went away; there is nobody to tell.
-    #[error("standard output: {0}")]
-    Output(std::io::Error),
 }
 
 impl Exit {
@@ -74,22 +72,11 @@ impl CliError {
         match self {
             Self::Input(_) => Exit::Input,
             Self::Run(_) => Exit::Run,
-            // As if everything had been read.
-            Self::Output(_) => Exit::Passed,
         }
-    }
-}
-
-impl From<std::io::Error> for CliError {
-    fn from(error: std::io::Error) -> Self {
-        Self::Output(error)
     }
 }
 
 /// What a run without a verdict ends the program with.
 pub(crate) const fn of_run_error(error: &RunError) -> Exit {
-    match error {
-        RunError::Input(_) => Exit::Input,
-        RunError::EngineMissing(_) | RunError::Failed(_) => Exit::Run,
-    }
+    if error.is_input() { Exit::Input } else { Exit::Run }
 }

@@ -2,16 +2,18 @@
 
 mod args;
 mod commands;
+mod console;
 mod diagnostics;
 mod engines;
 mod exit;
 mod output;
 mod progress;
 mod sources;
+mod workers;
 
 use args::{Cli, Command};
 use clap::Parser;
-use exit::{CliError, Exit};
+use exit::Exit;
 use std::panic::catch_unwind;
 use std::process::ExitCode;
 
@@ -32,9 +34,7 @@ fn dispatch(command: &Command) -> Exit {
         Command::Worker(args) => commands::worker(args),
     };
     done.unwrap_or_else(|error| {
-        if !matches!(error, CliError::Output(_)) {
-            eprintln!("servobench: {error}");
-        }
+        console::say(&format!("servobench: {error}\n"));
         error.exit()
     })
 }

@@ -1,4 +1,5 @@
 //! Progress of the runs: a bar on a terminal, plain lines otherwise.
+use crate::console::say;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -45,7 +46,7 @@ impl Progress {
         let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
         self.bar.set_message(format!("{done}/{} {id}", self.runs));
         if self.lines {
-            eprintln!("[{done}/{}] {id}: {words}", self.runs);
+            say(&format!("[{done}/{}] {id}: {words}\n", self.runs));
         }
     }
 

@@ -1,4 +1,5 @@
 //! Scenario files: from files, from folders, or the demo that is embedded.
+use crate::console::say;
 use crate::diagnostics::render;
 use crate::exit::CliError;
 use miette::Severity;
@@ -54,15 +55,6 @@ pub(crate) fn demo() -> Result<Vec<Source>, CliError> {
     collect(demo.into_iter().map(|(name, text)| shown(servobench_scenario::parse(name, text, None))))
 }
 
-/// Reads a scenario called `name` from its text; `path` is the file it is from.
-pub(crate) fn parse(name: &str, text: &str, path: Option<&Path>) -> Result<Loaded, CliError> {
-    let file = path.map_or_else(|| format!("{name}.toml"), |path| path.display().to_string());
-    let mut loaded = shown(servobench_scenario::parse(&file, text, path.and_then(Path::parent)))?;
-    name.clone_into(&mut loaded.scenario.name);
-    loaded.scenario.path = path.map(Path::to_owned);
-    Ok(loaded)
-}
-
 fn collect(loaded: impl Iterator<Item = Result<Loaded, CliError>>) -> Result<Vec<Source>, CliError> {
     let (mut sources, mut mistakes) = (Vec::new(), Vec::new());
     for loaded in loaded {
@@ -82,7 +74,7 @@ fn shown(loaded: Result<Loaded, LoadError>) -> Result<Loaded, CliError> {
     match loaded {
         Ok(loaded) => {
             if !loaded.warnings.is_empty() {
-                eprint!("{}", render(&loaded.warnings, &loaded.sources, Severity::Warning));
+                say(&render(&loaded.warnings, &loaded.sources, Severity::Warning));
             }
             Ok(loaded)
         }

@@ -20,8 +20,7 @@ pub fn junit(results: &Results) -> Result<String, ReportError> {
 }
 
 fn case(run: &RunResult) -> TestCase {
-    let reason = run.reason.clone().unwrap_or_default();
-    let mut case = TestCase::new(format!("{} [{}]", run.name, run.engine), status(run, &reason));
+    let mut case = TestCase::new(format!("{} [{}]", run.name, run.engine), status(run));
     case.set_classname(run.file.as_deref().unwrap_or("servobench"));
     if !run.metrics.is_empty() {
         case.set_system_out(metric_table(run, Style::default()));
@@ -29,7 +28,7 @@ fn case(run: &RunResult) -> TestCase {
     case
 }
 
-fn status(run: &RunResult, reason: &str) -> TestCaseStatus {
+fn status(run: &RunResult) -> TestCaseStatus {
     let (kind, what) = match run.verdict {
         Outcome::Passed => return TestCaseStatus::success(),
         Outcome::Failed => (NonSuccessKind::Failure, "limit missed"),
@@ -39,10 +38,10 @@ fn status(run: &RunResult, reason: &str) -> TestCaseStatus {
     let message = match (run.verdict, missed) {
         (Outcome::Failed, 1) => "1 limit missed".to_owned(),
         (Outcome::Failed, count) => format!("{count} limits missed"),
-        _ => reason.to_owned(),
+        _ => run.reasons.join("\n"),
     };
     let mut status = TestCaseStatus::non_success(kind);
-    status.set_type(what).set_message(message).set_description(reason.replace("; ", "\n"));
+    status.set_type(what).set_message(message).set_description(run.reasons.join("\n"));
     status
 }
 
@@ -69,9 +68,12 @@ mod tests {
         assert_eq!(message.as_ref().unwrap().as_str(), "3 limits missed");
         let lines: Vec<_> = description.as_ref().unwrap().as_str().lines().collect();
         assert_eq!(lines[1], "residual_vibration_pp 8.30 µm, limit 2.00 µm");
-        let TestCaseStatus::NonSuccess { kind, message, .. } = &cases[3].status else { panic!("broken") };
+        let TestCaseStatus::NonSuccess { kind, message, description, .. } = &cases[3].status else { panic!("broken") };
         assert_eq!(*kind, NonSuccessKind::Error);
-        assert!(message.as_ref().unwrap().as_str().starts_with("the mechanics diverged at 0.123 s"));
+        let whole =
+            "the mechanics diverged at 0.123 s: the position of `load` is not finite; take a smaller step than 1.00 ms";
+        assert_eq!(message.as_ref().unwrap().as_str(), whole);
+        assert_eq!(description.as_ref().unwrap().as_str(), whole, "a message of two parts is one line");
     }
 
     #[test]

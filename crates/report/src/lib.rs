@@ -1,29 +1,25 @@
 //! What a person or a machine reads of a run: tables, comparison in words, `results.json`, JUnit, the drawing of a plan.
 //!
-//! Everything is made from [`Results`], which hold nothing that differs between two runs of the same scenario: no
-//! wall-clock time, no host. So every text here is the same to the byte, too.
+//! What is said of runs is made from [`Results`], which hold nothing that differs between two runs of the same scenario:
+//! no wall-clock time, no host. So every text here is the same to the byte, too.
 
 mod compare;
 mod error;
 mod junit;
 mod metric_table;
 mod ordered;
-mod plan_drawing;
+mod plan;
 mod results;
 #[cfg(test)]
 mod samples;
 mod style;
 mod text;
-mod ticks;
 mod verdict_table;
 
 pub use compare::{Compared, Comparison};
 pub use error::ReportError;
 pub use junit::junit;
-pub use metric_table::metric_table;
-pub use ordered::Ordered;
-pub use plan_drawing::{Panel, PlanDrawing};
-pub use results::{EventResult, MetricResult, MoveResult, Outcome, Results, RunIdentity, RunResult, SCHEMA_NAME};
-pub use servobench_metrics::Quantity;
+pub use plan::PlannedMove;
+pub use results::{Outcome, Results, RunIdentity, RunResult};
 pub use style::Style;
 pub use verdict_table::verdict_table;

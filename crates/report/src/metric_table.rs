@@ -8,8 +8,7 @@ const VALUE: usize = 11;
 const USED: usize = 6;
 
 /// All metrics of a run with their limits and how much of these is used, then what could not be measured and why.
-#[must_use]
-pub fn metric_table(run: &RunResult, style: Style) -> String {
+pub(crate) fn metric_table(run: &RunResult, style: Style) -> String {
     let names = run.metrics.iter().map(|(name, _)| name).chain(run.absent.iter().map(|(name, _)| name));
     let name = widest(names).max("METRIC".len());
     let heading = format!("{:name$}  {:>VALUE$}  {:>VALUE$}  {:>USED$}", "METRIC", "VALUE", "LIMIT", "USED");

@@ -7,7 +7,7 @@ use std::marker::PhantomData;
 
 /// Values by name, in the order in which they were added.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Ordered<V>(Vec<(String, V)>);
+pub(crate) struct Ordered<V>(Vec<(String, V)>);
 
 impl<V> Default for Ordered<V> {
     fn default() -> Self {
@@ -17,19 +17,17 @@ impl<V> Default for Ordered<V> {
 
 impl<V> Ordered<V> {
     /// The value of `name`.
-    #[must_use]
-    pub fn get(&self, name: &str) -> Option<&V> {
+    pub(crate) fn get(&self, name: &str) -> Option<&V> {
         self.0.iter().find(|(other, _)| other == name).map(|(_, value)| value)
     }
 
     /// Names and values in order.
-    pub fn iter(&self) -> impl Iterator<Item = (&str, &V)> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (&str, &V)> {
         self.0.iter().map(|(name, value)| (name.as_str(), value))
     }
 
     /// Whether there is nothing.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 }

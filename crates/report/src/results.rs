@@ -6,12 +6,12 @@ use servobench_metrics::{Limit, Metric, MetricSet, Metrics, MoveMetrics, Name, V
 use servobench_trace::{Event, Recording};
 
 /// Name and version of the schema.
-pub const SCHEMA_NAME: &str = "servobench-results/1";
+const SCHEMA_NAME: &str = "servobench-results/1";
 
 /// The results of several runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Results {
-    /// [`SCHEMA_NAME`].
+    /// Name and version of the schema.
     pub schema: String,
     /// Program and version that wrote them.
     pub generator: String,
@@ -44,60 +44,60 @@ pub struct RunResult {
     pub verdict: Outcome,
     /// Simulated time, from tick 0 to the last recorded instant (s).
     pub duration: f64,
-    /// Missed limits or the error, in words; `null` when it passed.
-    pub reason: Option<String>,
+    /// Missed limits or the error, in words; empty when it passed.
+    pub reasons: Vec<String>,
     /// Metrics by name; with those that have a limit but could not be measured.
-    pub metrics: Ordered<MetricResult>,
+    pub(crate) metrics: Ordered<MetricResult>,
     /// Metrics that could not be measured, and why.
-    pub absent: Ordered<String>,
+    pub(crate) absent: Ordered<String>,
     /// The moves.
-    pub moves: Vec<MoveResult>,
+    pub(crate) moves: Vec<MoveResult>,
     /// What happened: limits that bound, warnings.
-    pub events: Vec<EventResult>,
+    pub(crate) events: Vec<EventResult>,
     /// File of the recording, beside the results; `null` when none was written.
     pub recording: Option<String>,
 }
 
 /// A metric.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct MetricResult {
+pub(crate) struct MetricResult {
     /// Value (SI); `null` when it could not be measured.
-    pub value: Option<f64>,
+    pub(crate) value: Option<f64>,
     /// Unit symbol; empty for a pure number.
-    pub unit: String,
+    pub(crate) unit: String,
     /// Largest allowed value; `null` without one.
-    pub limit: Option<f64>,
+    pub(crate) limit: Option<f64>,
     /// Smallest allowed value; left out without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub limit_min: Option<f64>,
+    pub(crate) limit_min: Option<f64>,
     /// Whether the limit is kept; `null` without a limit.
-    pub pass: Option<bool>,
+    pub(crate) pass: Option<bool>,
 }
 
 /// A move.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct MoveResult {
+pub(crate) struct MoveResult {
     /// What it is, in words.
-    pub label: String,
+    pub(crate) label: String,
     /// Start of the profile (s).
-    pub start: f64,
+    pub(crate) start: f64,
     /// End of the profile (s).
-    pub end: f64,
+    pub(crate) end: f64,
     /// Its metrics by name.
-    pub metrics: Ordered<MetricResult>,
+    pub(crate) metrics: Ordered<MetricResult>,
 }
 
 /// Something that happened.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct EventResult {
+pub(crate) struct EventResult {
     /// When it began (s).
-    pub start: f64,
+    pub(crate) start: f64,
     /// When it ended (s).
-    pub end: f64,
+    pub(crate) end: f64,
     /// Stage of the loop that saw it.
-    pub source: String,
+    pub(crate) source: String,
     /// What it was, in words.
-    pub message: String,
+    pub(crate) message: String,
 }
 
 /// Which run it is.
@@ -143,8 +143,7 @@ impl Results {
     }
 
     /// Number of runs with this outcome.
-    #[must_use]
-    pub fn count(&self, outcome: Outcome) -> usize {
+    pub(crate) fn count(&self, outcome: Outcome) -> usize {
         self.scenarios.iter().filter(|run| run.verdict == outcome).count()
     }
 }
@@ -153,11 +152,9 @@ impl RunResult {
     /// A run that was judged.
     #[must_use]
     pub fn judged(run: RunIdentity, recording: &Recording, metrics: &Metrics, verdict: &Verdict) -> Self {
-        let misses: Vec<_> = verdict.misses.iter().map(ToString::to_string).collect();
-        let passed = verdict.passed();
         let mut result = Self::of(run, Some(recording), metrics);
-        result.verdict = if passed { Outcome::Passed } else { Outcome::Failed };
-        result.reason = (!passed).then(|| misses.join("; "));
+        result.verdict = if verdict.passed() { Outcome::Passed } else { Outcome::Failed };
+        result.reasons = verdict.misses.iter().map(ToString::to_string).collect();
         let unmeasured = verdict.misses.iter().filter(|miss| miss.value.is_none());
         let unmeasured = unmeasured.map(|miss| (miss.limit.metric.to_string(), MetricResult::missing(&miss.limit)));
         result.metrics = result.metrics.into_iter().chain(unmeasured).collect();
@@ -167,7 +164,7 @@ impl RunResult {
     /// A run that could not be carried out, with what was recorded until then.
     #[must_use]
     pub fn error(run: RunIdentity, recording: Option<&Recording>, metrics: &Metrics, reason: String) -> Self {
-        Self { reason: Some(reason), ..Self::of(run, recording, metrics) }
+        Self { reasons: vec![reason], ..Self::of(run, recording, metrics) }
     }
 
     fn of(run: RunIdentity, recording: Option<&Recording>, metrics: &Metrics) -> Self {
@@ -179,7 +176,7 @@ impl RunResult {
             verdict: Outcome::Error,
             // N + 1 instants from tick 0 to tick N.
             duration: recording.map_or(0.0, |recording| recording.time_of(recording.len().saturating_sub(1))),
-            reason: None,
+            reasons: Vec::new(),
             metrics: of_set(&metrics.run),
             absent: metrics.run.absences().map(|(name, why)| (name.to_string(), why.to_string())).collect(),
             moves: metrics.moves.iter().map(MoveResult::from).collect(),
@@ -189,8 +186,7 @@ impl RunResult {
     }
 
     /// Value (SI) and unit of a metric, when it was measured.
-    #[must_use]
-    pub fn metric(&self, name: Name) -> Option<(f64, &str)> {
+    pub(crate) fn metric(&self, name: Name) -> Option<(f64, &str)> {
         let metric = self.metrics.get(name.as_str())?;
         Some((metric.value?, metric.unit.as_str()))
     }
@@ -294,11 +290,12 @@ mod tests {
     #[test]
     fn the_schema_refuses_what_is_wrong() {
         let right = value(&samples::results());
-        let wrong: [Spoiled; 6] = [
+        let wrong: [Spoiled; 7] = [
             ("another version", |v| v["schema"] = json!("servobench-results/2")),
             ("no verdict", |v| drop(v["scenarios"][0].as_object_mut().unwrap().remove("verdict"))),
             ("a verdict of its own", |v| v["scenarios"][0]["verdict"] = json!("maybe")),
-            ("passed with a reason", |v| v["scenarios"][0]["reason"] = json!("why")),
+            ("passed with a reason", |v| v["scenarios"][0]["reasons"] = json!(["why"])),
+            ("failed without a reason", |v| v["scenarios"][1]["reasons"] = json!([])),
             ("a metric without unit", |v| {
                 drop(v["scenarios"][0]["metrics"]["move_time"].as_object_mut().unwrap().remove("unit"));
             }),
@@ -323,7 +320,7 @@ mod tests {
         let settling = run.metrics.get("settling_time").unwrap();
         assert_eq!((settling.value, settling.limit, settling.pass), (None, Some(0.1), Some(false)));
         let why = "settling_time could not be measured: the recording has no channel `load.position`";
-        assert_eq!(run.reason.as_deref(), Some(why));
+        assert_eq!(run.reasons, [why]);
         assert_eq!(run.moves[0].metrics.get("setpoint_velocity_ratio").unwrap().value, Some(0.8));
         assert_eq!(run.events.len(), 1);
     }

@@ -22,7 +22,7 @@ pub(crate) fn run(name: &str, engine: &str, metrics: impl IntoIterator<Item = (S
         engine: engine.into(),
         verdict: Outcome::Passed,
         duration: 2.0,
-        reason: None,
+        reasons: vec![],
         metrics: metrics.into_iter().collect(),
         absent: [("current_peak".to_owned(), "the recording has no channel `current.d`".to_owned())]
             .into_iter()
@@ -78,11 +78,11 @@ pub(crate) fn missed() -> RunResult {
         ],
     );
     run.verdict = Outcome::Failed;
-    run.reason = Some(
-        "settling_time 35.2 ms, limit 20.0 ms; residual_vibration_pp 8.30 µm, limit 2.00 µm; current_peak could not \
-         be measured: the recording has no channel `current.d`"
-            .into(),
-    );
+    run.reasons = vec![
+        "settling_time 35.2 ms, limit 20.0 ms".into(),
+        "residual_vibration_pp 8.30 µm, limit 2.00 µm".into(),
+        "current_peak could not be measured: the recording has no channel `current.d`".into(),
+    ];
     run.events =
         vec![EventResult { start: 0.1, end: 0.2, source: "velocity loop".into(), message: "torque limit".into() }];
     run
@@ -92,10 +92,10 @@ pub(crate) fn missed() -> RunResult {
 pub(crate) fn broken() -> RunResult {
     let mut run = run("two-mass", "rapier", []);
     run.verdict = Outcome::Error;
-    run.reason = Some(
+    run.reasons = vec![
         "the mechanics diverged at 0.123 s: the position of `load` is not finite; take a smaller step than 1.00 ms"
             .into(),
-    );
+    ];
     run.absent = [].into_iter().collect();
     run
 }

@@ -67,7 +67,8 @@ fn row(table: &mut String, run: &RunResult, name: usize, engine: usize, style: S
         Outcome::Passed => {}
         Outcome::Failed => missed_limits(table, run, style),
         Outcome::Error => {
-            for part in wrapped(run.reason.as_deref().unwrap_or_default(), style.width.saturating_sub(INDENT)) {
+            let width = style.width.saturating_sub(INDENT);
+            for part in run.reasons.iter().flat_map(|reason| wrapped(reason, width)) {
                 line(table, &format!("{:INDENT$}{part}", ""));
             }
         }

@@ -1,29 +1,246 @@
 //! The same axis under different set-points: at equal limits, or slowed to equal duration.
-use crate::execute::RunError;
 use crate::job::Job;
+use servobench_scenario::{Drive, Scenario};
 use servobench_sim::{BuildError, Program};
+use thiserror::Error;
 
-/// Slows every move to the longest of its counterparts, so that all jobs make the same moves in the same time.
+/// Why scenarios cannot be compared.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum CompareError {
+    /// More than the set-point differs, so that the difference in the results says nothing of the set-points.
+    #[error(
+        "`{one}` and `{other}` differ in {}; a comparison is of one axis and one drive under different set-points",
+        parts.join(", ")
+    )]
+    Differ {
+        /// Name of the first scenario.
+        one: String,
+        /// Name of the scenario that differs from it.
+        other: String,
+        /// The parts of the scenarios that differ, as the file calls them.
+        parts: Vec<&'static str>,
+    },
+    /// Moves without a counterpart cannot have its duration.
+    #[error("`{one}` makes {moves} moves and `{other}` {other_moves}; equal durations need the same moves in each")]
+    Moves {
+        /// Name of the first scenario.
+        one: String,
+        /// Its moves.
+        moves: usize,
+        /// Name of the other.
+        other: String,
+        /// Its moves.
+        other_moves: usize,
+    },
+    /// A move cannot be planned.
+    #[error("`{scenario}`: {error}")]
+    Plan {
+        /// Name of the scenario.
+        scenario: String,
+        /// Why not.
+        error: BuildError,
+    },
+}
+
+/// Whether the jobs differ in nothing but their set-points. Free are the names, the program with its limits and how
+/// long it is recorded, which channels are kept, and the limits by which each run is judged on its own.
 ///
 /// # Errors
-/// [`RunError::Input`] when the programs differ in their number of moves, or a move cannot be planned.
-pub fn to_equal_duration(jobs: &mut [Job]) -> Result<(), RunError> {
-    let durations = jobs
-        .iter()
-        .map(|job| Ok(Program::plan(&job.scenario.program)?.moves("").map(|made| made.end - made.start).collect()))
-        .collect::<Result<Vec<Vec<f64>>, BuildError>>()?;
-    let moves = durations.iter().map(Vec::len).min().unwrap_or(0);
-    if let Some((job, _)) = jobs.iter().zip(&durations).find(|(_, durations)| durations.len() != moves) {
-        let words = format!(
-            "`{}` makes another number of moves than the others; equal durations need the same moves in each",
-            job.scenario.name
-        );
-        return Err(RunError::Input(words));
-    }
-    let longest: Vec<f64> =
-        (0..moves).map(|i| durations.iter().map(|durations| durations[i]).fold(0.0, f64::max)).collect();
-    for job in jobs {
-        job.slow_to(longest.clone());
+/// [`CompareError::Differ`] names the parts of the first job that differs from the first of all.
+pub fn only_setpoints_differ(jobs: &[Job]) -> Result<(), CompareError> {
+    let Some((one, others)) = jobs.split_first() else { return Ok(()) };
+    for other in others {
+        let parts = differences(&one.scenario, &other.scenario);
+        if !parts.is_empty() {
+            let (one, other) = (one.scenario.name.clone(), other.scenario.name.clone());
+            return Err(CompareError::Differ { one, other, parts });
+        }
     }
     Ok(())
+}
+
+/// What must be equal and is not. Every field is named: a new one must be thought of here.
+fn differences(one: &Scenario, other: &Scenario) -> Vec<&'static str> {
+    let Scenario {
+        name: _,
+        description: _,
+        path: _,
+        engines: _,
+        base_rate,
+        duration: _,
+        axis,
+        motor,
+        drive,
+        program: _,
+        disturbances,
+        initial,
+        record,
+        measure,
+        limits: _,
+    } = one;
+    let mut parts = Vec::new();
+    let mut compare = |part, is_equal: bool| {
+        if !is_equal {
+            parts.push(part);
+        }
+    };
+    compare("`run.base_rate`", *base_rate == other.base_rate);
+    compare("`axis`", *axis == other.axis);
+    compare("`motor`", *motor == other.motor);
+    let Drive {
+        enabled,
+        dc_link,
+        max_effort,
+        current,
+        velocity,
+        position,
+        feedforward,
+        estimate,
+        load_encoder,
+        position_feedback,
+    } = drive;
+    compare("`drive.enabled`", *enabled == other.drive.enabled);
+    compare("`drive.dc_link`", dc_link.to_bits() == other.drive.dc_link.to_bits());
+    compare("the effort limit of `drive`", max_effort.to_bits() == other.drive.max_effort.to_bits());
+    compare("`drive.current`", *current == other.drive.current);
+    compare("`drive.velocity`", *velocity == other.drive.velocity);
+    compare("`drive.position`", *position == other.drive.position);
+    compare("`drive.feedforward`", *feedforward == other.drive.feedforward);
+    compare("`drive.estimate`", *estimate == other.drive.estimate);
+    compare("`drive.load_encoder`", *load_encoder == other.drive.load_encoder);
+    compare("`drive.position_feedback`", *position_feedback == other.drive.position_feedback);
+    compare("`disturbance`", *disturbances == other.disturbances);
+    compare("`initial`", *initial == other.initial);
+    // A peak between two rows is not seen.
+    compare("`record.rate`", record.rate == other.record.rate);
+    compare("`measure`", *measure == other.measure);
+    parts
+}
+
+/// Slows every move to the longest of its counterparts, so that all jobs make the same moves in the same time. A job
+/// that is slowed loses its limits: they were made for another set-point.
+///
+/// # Errors
+/// [`CompareError::Moves`] when the programs differ in their number of moves, [`CompareError::Plan`].
+pub fn to_equal_duration(jobs: &mut [Job]) -> Result<(), CompareError> {
+    let durations = jobs.iter().map(durations).collect::<Result<Vec<_>, _>>()?;
+    let Some(first) = durations.first() else { return Ok(()) };
+    if let Some(k) = durations.iter().position(|durations| durations.len() != first.len()) {
+        let name = |k: usize| jobs[k].scenario.name.clone();
+        let (moves, other_moves) = (first.len(), durations[k].len());
+        return Err(CompareError::Moves { one: name(0), moves, other: name(k), other_moves });
+    }
+    let longest: Vec<f64> =
+        (0..first.len()).map(|i| durations.iter().map(|durations| durations[i]).fold(0.0, f64::max)).collect();
+    for (job, durations) in jobs.iter_mut().zip(&durations) {
+        if *durations != longest {
+            job.slow_to(longest.clone());
+            job.scenario.limits.clear();
+        }
+    }
+    Ok(())
+}
+
+/// How long each move lasts (s).
+fn durations(job: &Job) -> Result<Vec<f64>, CompareError> {
+    let program = Program::plan(&job.scenario.program)
+        .map_err(|error| CompareError::Plan { scenario: job.scenario.name.clone(), error })?;
+    Ok(program.durations().collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::{Source, jobs};
+    use servobench_scenario::EngineName;
+
+    const ONE: &str = r#"
+        [run]
+        base_rate = "4 kHz"
+        [axis]
+        motion = "linear"
+        [axis.motor_side]
+        mass = "20 kg"
+        [motor]
+        kind = "ideal-source"
+        [drive.velocity]
+        rate = "4 kHz"
+        bandwidth = "80 Hz"
+        [drive.position]
+        rate = "4 kHz"
+        gain = "60 1/s"
+        [setpoint]
+        order = 2
+        velocity = "0.5 m/s"
+        acceleration = "5 m/s2"
+        [[program]]
+        move_to = "50 mm"
+        [measure]
+        window = "10 um"
+        [record]
+        rate = "2 kHz"
+    "#;
+
+    /// Jobs of the texts, named `one`, `two`.
+    fn of(texts: [&str; 2]) -> Vec<Job> {
+        let sources = ["one", "two"].into_iter().zip(texts).map(|(name, text)| {
+            let scenario = servobench_scenario::parse(name, text, None).unwrap_or_else(|e| panic!("{e}")).scenario;
+            Source { scenario, text: text.to_owned() }
+        });
+        jobs(sources.collect(), &[EngineName::Exact])
+    }
+
+    #[test]
+    fn setpoints_names_and_limits_may_differ() {
+        let other = ONE.replace("5 m/s2", "2 m/s2").replace("[run]", "[run]\nduration = \"2 s\"").replace(
+            "rate = \"2 kHz\"",
+            "rate = \"2 kHz\"\nchannels = [\"load.position\"]\n[limits]\nmove_time = \"1 s\"",
+        );
+        assert_eq!(only_setpoints_differ(&of([ONE, &other])), Ok(()));
+    }
+
+    #[test]
+    fn whatever_else_differs_is_named() {
+        for (from, to, part) in [
+            ("4 kHz\"\n        [axis]", "8 kHz\"\n        [axis]", "`run.base_rate`"),
+            ("80 Hz", "81 Hz", "`drive.velocity`"),
+            ("60 1/s", "30 1/s", "`drive.position`"),
+            ("[drive.velocity]", "[drive.feedforward]\nvelocity = true\n[drive.velocity]", "`drive.feedforward`"),
+            ("kind = \"ideal-source\"", "kind = \"ideal-source\"\nencoder = { step = \"1 um\" }", "`motor`"),
+            ("10 um", "11 um", "`measure`"),
+            ("rate = \"2 kHz\"", "rate = \"1 kHz\"", "`record.rate`"),
+            ("[measure]", "[initial]\nload_position = \"1 um\"\n[measure]", "`initial`"),
+            (
+                "[measure]",
+                "[[disturbance]]\non = \"load\"\nforce = \"1 N\"\nstart = \"0 s\"\n[measure]",
+                "`disturbance`",
+            ),
+        ] {
+            assert!(ONE.contains(from), "{from}");
+            let error = only_setpoints_differ(&of([ONE, &ONE.replace(from, to)])).unwrap_err();
+            let CompareError::Differ { one, other, parts } = &error else { panic!("{error}") };
+            assert_eq!((one.as_str(), other.as_str(), parts.as_slice()), ("one", "two", [part].as_slice()));
+        }
+        // The mass is in the axis, and the gains that follow from it are not those of the other.
+        let error = only_setpoints_differ(&of([ONE, &ONE.replace("20 kg", "21 kg")])).unwrap_err().to_string();
+        assert!(error.starts_with("`one` and `two` differ in `axis`, `drive.velocity`, `drive.estimate`;"), "{error}");
+    }
+
+    #[test]
+    fn equal_durations_are_those_of_the_slower_move() {
+        let limited = format!("{ONE}\n[limits]\nmove_time = \"0.52 s\"");
+        let slow = limited.replace("0.5 m/s", "0.1 m/s");
+        let mut jobs = of([&limited, &slow]);
+        // 50 mm at 5 m/s²: the triangle lasts 2·√(0.05/5) s = 0.2 s; at 0.1 m/s the trapezoid 0.05/0.1 + 0.1/5 s.
+        to_equal_duration(&mut jobs).unwrap();
+        for job in &jobs {
+            let lasts = durations(job).unwrap();
+            assert_eq!(lasts.len(), 1);
+            assert!((lasts[0] - 0.52).abs() < 1e-12, "{lasts:?}");
+        }
+        assert_eq!(jobs.iter().map(|job| job.scenario.limits.len()).collect::<Vec<_>>(), [0, 1]);
+        let more = format!("{ONE}\n[[program]]\nmove_to = \"0 mm\"");
+        let error = to_equal_duration(&mut of([ONE, &more])).unwrap_err().to_string();
+        assert_eq!(error, "`one` makes 1 moves and `two` 2; equal durations need the same moves in each");
+    }
 }

@@ -26,12 +26,13 @@ pub struct Engines {
 /// The build lacks an engine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error(
-    "this build has no engine `{name}`; build it in with `cargo build --release -p servobench-cli --features {name}` \
-     (for `mujoco` after `cargo xtask setup`), or choose one with `--engine`"
+    "this build has no engine `{}`; build it in with `cargo build --release -p servobench-cli --features {}` (for \
+     `mujoco` after `cargo xtask setup`), or choose one with `--engine`",
+    name.as_str(), name.as_str()
 )]
 pub struct EngineMissing {
-    /// Name of the engine, which is the name of the feature too.
-    pub name: &'static str,
+    /// The engine; the feature has its name.
+    pub name: EngineName,
 }
 
 impl Engines {
@@ -40,10 +41,10 @@ impl Engines {
     /// # Errors
     /// [`EngineMissing`] names the feature and the command.
     pub fn get(&self, name: EngineName) -> Result<Installed, EngineMissing> {
-        let (installed, name) = match name {
-            EngineName::Exact => (self.exact, "exact"),
-            EngineName::Rapier => (self.rapier, "rapier"),
-            EngineName::Mujoco => (self.mujoco, "mujoco"),
+        let installed = match name {
+            EngineName::Exact => self.exact,
+            EngineName::Rapier => self.rapier,
+            EngineName::Mujoco => self.mujoco,
         };
         installed.ok_or(EngineMissing { name })
     }

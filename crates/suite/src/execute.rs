@@ -1,14 +1,13 @@
 //! Runs one job: here, or in a worker process when its engine can end the process.
-use crate::engines::{EngineMissing, Engines};
+use crate::engines::Engines;
+use crate::error::RunError;
 use crate::job::Job;
 use crate::worker::{self, WorkerCommand};
 use servobench_metrics::{Limit, Metrics, Name, Question, UnknownMetric, Verdict, measure};
 use servobench_plant::Engine;
 use servobench_scenario::Scenario;
-use servobench_sim::{Bench, BuildError};
+use servobench_sim::Bench;
 use servobench_trace::Recording;
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use thiserror::Error;
 
 /// What a run gave.
 #[derive(Debug)]
@@ -21,88 +20,48 @@ pub struct Report {
     pub outcome: Result<Verdict, RunError>,
 }
 
-/// Why a run has no verdict.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum RunError {
-    /// The scenario asks for what cannot be built: the input is wrong.
-    #[error("{0}")]
-    Input(String),
-    /// The build lacks the engine.
-    #[error(transparent)]
-    EngineMissing(#[from] EngineMissing),
-    /// The run ended early.
-    #[error("{0}")]
-    Failed(String),
-}
-
-impl From<BuildError> for RunError {
-    fn from(error: BuildError) -> Self {
-        match error {
-            // A library that does not load is not the scenario's fault.
-            BuildError::Mechanics(native @ servobench_plant::MechanicsError::Native { .. }) => {
-                Self::Failed(native.to_string())
-            }
-            other => Self::Input(other.to_string()),
-        }
-    }
-}
-
-impl From<UnknownMetric> for RunError {
-    fn from(error: UnknownMetric) -> Self {
-        Self::Input(error.to_string())
-    }
-}
+/// A recording, and why it ended early if it did.
+pub(crate) type Recorded = (Recording, Option<RunError>);
 
 /// Runs `job` and judges it; `progress` hears the share that is done, from 0 to 1.
+///
+/// A panic of the engine or of the measures goes through: [`map_in_parallel`](crate::map_in_parallel) keeps it from
+/// the other jobs.
 pub fn execute(job: &Job, engines: &Engines, worker: &WorkerCommand, progress: &mut dyn FnMut(f64)) -> Report {
-    let (recording, failure) = match recorded(job, engines, worker, progress) {
-        Ok((recording, failure)) => (recording, failure),
+    let ready = limits(&job.scenario).map_err(RunError::from);
+    let recorded = ready.and_then(|limits| Ok((limits, recorded(job, engines, worker, progress)?)));
+    let (limits, (recording, failure)) = match recorded {
+        Ok(recorded) => recorded,
         Err(error) => return Report { recording: None, metrics: Metrics::default(), outcome: Err(error) },
     };
-    let scenario = &job.scenario;
-    let question =
-        Question { window: scenario.measure.window, from: scenario.measure.from, mode: scenario.measure.mode };
-    let mut metrics = measure(&recording, &question);
-    let outcome = match (failure, limits(scenario)) {
-        (Some(failure), _) => Err(RunError::Failed(failure)),
-        (None, Err(unknown)) => Err(unknown.into()),
-        (None, Ok(limits)) => Ok(metrics.judge(&limits)),
-    };
+    let asked = &job.scenario.measure;
+    let mut metrics = measure(&recording, &Question { window: asked.window, from: asked.from, mode: asked.mode });
+    let outcome = failure.map_or_else(|| Ok(metrics.judge(&limits)), Err);
     Report { recording: Some(recording), metrics, outcome }
 }
 
-/// The recording of `job`, and why it ended early if it did.
 fn recorded(
     job: &Job,
     engines: &Engines,
     worker: &WorkerCommand,
     progress: &mut dyn FnMut(f64),
-) -> Result<(Recording, Option<String>), RunError> {
+) -> Result<Recorded, RunError> {
     let installed = engines.get(job.engine)?;
     if installed.isolated {
-        worker::call(worker, job, progress)
+        Ok(worker::call(worker, job, progress)?)
     } else {
         run_here(&job.scenario, installed.engine, progress)
     }
 }
 
-/// Runs in this process; a panic costs this run only.
+/// Runs in this process.
 pub(crate) fn run_here(
     scenario: &Scenario,
     engine: &dyn Engine,
     progress: &mut dyn FnMut(f64),
-) -> Result<(Recording, Option<String>), RunError> {
-    let run = AssertUnwindSafe(|| Bench::new(scenario, engine).map(|bench| bench.run(progress)));
-    match catch_unwind(run) {
-        Ok(Ok(outcome)) => Ok((outcome.recording, outcome.failure.map(|failure| failure.to_string()))),
-        Ok(Err(error)) => Err(error.into()),
-        Err(panic) => {
-            let words = panic.downcast_ref::<&str>().map(|words| (*words).to_owned());
-            let words = words.or_else(|| panic.downcast_ref::<String>().cloned());
-            let words = words.unwrap_or_else(|| "no message".into());
-            Err(RunError::Failed(format!("the run panicked (a defect of servobench): {words}")))
-        }
-    }
+) -> Result<Recorded, RunError> {
+    let outcome = Bench::new(scenario, engine)?.run(progress);
+    Ok((outcome.recording, outcome.failure.map(RunError::from)))
 }
 
 fn limits(scenario: &Scenario) -> Result<Vec<Limit>, UnknownMetric> {

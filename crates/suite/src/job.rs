@@ -1,5 +1,6 @@
 //! One scenario on one engine.
-use servobench_scenario::{EngineName, Scenario, Step};
+use servobench_scenario::{CHANNELS, EngineName, Scenario, Step};
+use servobench_sim::Program;
 use std::collections::HashMap;
 
 /// One scenario on one engine.
@@ -13,16 +14,36 @@ pub struct Job {
     pub text: String,
     /// The engine.
     pub engine: EngineName,
-    /// Durations that the moves are slowed to (s), one for each move; empty: as the scenario says. A worker process is
-    /// told them beside the text.
-    pub durations: Vec<f64>,
+    /// What [`Job::slow_to`] was told. A worker process is told it beside the text.
+    durations: Vec<f64>,
 }
+
+/// How long a run goes on after its program when the scenario does not say (s), as [`Scenario::duration`] has it.
+const TAIL: f64 = 0.5;
 
 impl Job {
     /// Slows the moves to `durations` (s), one for each move.
     pub fn slow_to(&mut self, durations: Vec<f64>) {
         slow_to(&mut self.scenario, &durations);
         self.durations = durations;
+    }
+
+    /// Durations that the moves are slowed to (s), one for each move; empty: as the scenario says.
+    pub(crate) fn durations(&self) -> &[f64] {
+        &self.durations
+    }
+
+    /// Memory that the recording takes (bytes), at most; 0 when the moves cannot be planned and nothing will be recorded.
+    #[must_use]
+    pub fn memory(&self) -> u64 {
+        const VALUE: f64 = size_of::<f64>() as f64;
+        let Scenario { duration, program, record, .. } = &self.scenario;
+        let Some(duration) = duration.or_else(|| Some(Program::plan(program).ok()?.end() + TAIL)) else { return 0 };
+        let channels = if record.channels.is_empty() { CHANNELS.len() } else { record.channels.len() };
+        let bytes = (duration * f64::from(record.rate.hertz()) + 1.0) * channels as f64 * VALUE;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates: more than there is")]
+        let bytes = bytes.ceil() as u64;
+        bytes
     }
 }
 
@@ -69,4 +90,48 @@ pub fn jobs(sources: Vec<Source>, engines: &[EngineName]) -> Vec<Job> {
 /// `name` with everything but letters, digits, `-`, `_` and `.` made a `-`.
 fn file_name(name: &str) -> String {
     name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn job(text: &str) -> Job {
+        let scenario = servobench_scenario::parse("test", text, None).unwrap_or_else(|e| panic!("{e}")).scenario;
+        jobs(vec![Source { scenario, text: text.to_owned() }], &[]).remove(0)
+    }
+
+    const TEXT: &str = r#"
+        engine = ["exact"]
+        [run]
+        base_rate = "1 kHz"
+        duration = "2 s"
+        [axis]
+        motion = "linear"
+        [axis.motor_side]
+        mass = "20 kg"
+        [motor]
+        kind = "prescribed"
+        [record]
+        channels = ["load.position", "motor.position"]
+    "#;
+
+    /// Instants 0 to 2000 at 1 kHz, two channels, eight bytes each.
+    #[test]
+    fn memory_is_that_of_the_recorded_values() {
+        assert_eq!(job(TEXT).memory(), 2001 * 2 * 8);
+        // Without a duration: a pause of 1 s and half a second.
+        let paused =
+            TEXT.replace("duration = \"2 s\"", "").replace("[record]", "[[program]]\nwait = \"1 s\"\n[record]");
+        assert_eq!(job(&paused).memory(), 1501 * 2 * 8);
+    }
+
+    #[test]
+    fn names_are_unique_and_fit_for_files() {
+        let scenario = Scenario { name: "a/b c".into(), ..job(TEXT).scenario };
+        let source = Source { scenario, text: String::new() };
+        let jobs = jobs(vec![source.clone(), source], &[EngineName::Exact, EngineName::Rapier]);
+        let ids: Vec<_> = jobs.iter().map(|job| job.id.as_str()).collect();
+        assert_eq!(ids, ["a-b-c.exact", "a-b-c.rapier", "a-b-c.exact.2", "a-b-c.rapier.2"]);
+    }
 }

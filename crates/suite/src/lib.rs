@@ -2,14 +2,20 @@
 
 mod compare;
 mod engines;
+mod error;
 mod execute;
 mod job;
+mod limits;
+mod panicked;
 mod pool;
 pub mod worker;
 
-pub use compare::to_equal_duration;
+pub use compare::{CompareError, only_setpoints_differ, to_equal_duration};
 pub use engines::{EngineMissing, Engines, Installed};
-pub use execute::{Report, RunError, execute};
+pub use error::RunError;
+pub use execute::{Report, execute};
 pub use job::{Job, Source, jobs};
-pub use pool::for_each_in_parallel;
-pub use worker::WorkerCommand;
+pub use limits::channel_limits;
+pub use panicked::Panicked;
+pub use pool::{AtATime, map_in_parallel};
+pub use worker::{WorkerCommand, WorkerError};

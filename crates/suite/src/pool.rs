@@ -1,45 +1,158 @@
-//! Several jobs at once, results in the order of the jobs.
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
+//! Several jobs at once, results in the order of the jobs; what one of them breaks is its own.
+use crate::panicked::{Panicked, caught};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
-/// Does `work` for every item on at most `workers` threads; which thread does what has no influence on the results.
-pub fn for_each_in_parallel<T, R, F>(items: &[T], workers: usize, work: F) -> Vec<R>
+/// How much may be under way at a time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct AtATime {
+    /// Jobs, at least one.
+    pub jobs: usize,
+    /// Memory of all of them together (bytes); a job that needs more runs alone.
+    pub memory: u64,
+}
+
+impl AtATime {
+    /// `jobs` jobs, and of memory as much as the largest single recording may take, so that the number of jobs does not
+    /// decide whether a suite fits in the machine.
+    #[must_use]
+    pub const fn jobs(jobs: usize) -> Self {
+        Self { jobs, memory: 4_000_000_000 }
+    }
+}
+
+/// What is under way and what is done.
+struct Desk<R> {
+    next: usize,
+    /// Memory of the jobs under way (bytes).
+    memory: u64,
+    done: Vec<(usize, Result<R, Panicked>)>,
+}
+
+/// Does `work` for every item, as many at once as `limit` allows when each needs the memory that `memory_of` says
+/// (bytes). Which thread does what, and when, has no influence on the results. A panic is the result of its item only.
+pub fn map_in_parallel<T, R>(
+    items: &[T],
+    limit: AtATime,
+    memory_of: impl Fn(&T) -> u64 + Sync,
+    work: impl Fn(&T) -> R + Sync,
+) -> Vec<Result<R, Panicked>>
 where
     T: Sync,
     R: Send,
-    F: Fn(usize, &T) -> R + Sync,
 {
-    let next = AtomicUsize::new(0);
-    let done = Mutex::new(Vec::with_capacity(items.len()));
+    let desk = Mutex::new(Desk { next: 0, memory: 0, done: Vec::with_capacity(items.len()) });
+    let returned = Condvar::new();
     thread::scope(|scope| {
-        for _ in 0..workers.clamp(1, items.len().max(1)) {
+        for _ in 0..limit.jobs.clamp(1, items.len().max(1)) {
             scope.spawn(|| {
-                while let index = next.fetch_add(1, Ordering::Relaxed)
-                    && let Some(item) = items.get(index)
-                {
-                    let result = work(index, item);
-                    done.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((index, result));
+                while let Some((index, item, memory)) = taken(items, &desk, &returned, limit.memory, &memory_of) {
+                    let result = caught(|| work(item));
+                    let mut desk = locked(&desk);
+                    desk.done.push((index, result));
+                    desk.memory -= memory;
+                    drop(desk);
+                    returned.notify_all();
                 }
             });
         }
     });
-    let mut done = done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let mut done = desk.into_inner().unwrap_or_else(PoisonError::into_inner).done;
     done.sort_unstable_by_key(|(index, _)| *index);
     done.into_iter().map(|(_, result)| result).collect()
+}
+
+/// The next item and its memory (bytes), as soon as that is free.
+fn taken<'a, T, R>(
+    items: &'a [T],
+    desk: &Mutex<Desk<R>>,
+    returned: &Condvar,
+    limit: u64,
+    memory_of: &impl Fn(&T) -> u64,
+) -> Option<(usize, &'a T, u64)> {
+    let mut desk = locked(desk);
+    let index = desk.next;
+    let item = items.get(index)?;
+    desk.next += 1;
+    // More than there is for all: it has to do with that, alone.
+    let memory = caught(|| memory_of(item)).unwrap_or(limit).min(limit);
+    let mut desk = returned
+        .wait_while(desk, |desk| desk.memory.saturating_add(memory) > limit)
+        .unwrap_or_else(PoisonError::into_inner);
+    desk.memory += memory;
+    Some((index, item, memory))
+}
+
+/// The lock is never held while foreign code runs that could leave a half-done change behind.
+fn locked<R>(desk: &Mutex<Desk<R>>) -> MutexGuard<'_, Desk<R>> {
+    desk.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::Barrier;
+    use std::sync::atomic::{AtomicU64, Ordering};
+
+    fn at_a_time(jobs: usize) -> AtATime {
+        AtATime { jobs, memory: 100 }
+    }
 
     #[test]
     fn results_stand_in_the_order_of_the_jobs_whatever_the_number_of_workers() {
         let items: Vec<u32> = (0..100).collect();
+        let squares: Vec<_> = items.iter().map(|item| Ok(item * item)).collect();
         for workers in [0, 1, 2, 7, 200] {
-            let squares = for_each_in_parallel(&items, workers, |index, item| (index, item * item));
-            assert!(squares.iter().enumerate().all(|(i, (index, square))| i == *index && *square == items[i].pow(2)));
+            assert_eq!(map_in_parallel(&items, at_a_time(workers), |_| 1, |item| item * item), squares, "{workers}");
         }
-        assert!(for_each_in_parallel(&[] as &[u32], 3, |_, item| *item).is_empty());
+        assert!(map_in_parallel(&[] as &[u32], at_a_time(3), |_| 1, |item| *item).is_empty());
+    }
+
+    #[test]
+    fn a_panic_costs_its_own_item_only() {
+        let items: Vec<u32> = (0..20).collect();
+        let halves = map_in_parallel(
+            &items,
+            at_a_time(3),
+            |_| 1,
+            |item| {
+                assert!(item % 5 != 0, "no half of {item}");
+                item / 2
+            },
+        );
+        for (item, half) in items.iter().zip(halves) {
+            let expected =
+                if item % 5 == 0 { Err(Panicked { words: format!("no half of {item}") }) } else { Ok(item / 2) };
+            assert_eq!(half, expected);
+        }
+    }
+
+    /// Items of 30, 60 and 250 bytes of 100: never more than 100 are granted at a time, and all get their turn.
+    #[test]
+    fn the_jobs_under_way_share_the_memory() {
+        let items: Vec<u64> = [30, 60, 250].into_iter().cycle().take(60).collect();
+        let (in_use, most) = (AtomicU64::new(0), AtomicU64::new(0));
+        let done = map_in_parallel(
+            &items,
+            at_a_time(8),
+            |item| *item,
+            |item| {
+                let granted = (*item).min(100);
+                let now = in_use.fetch_add(granted, Ordering::SeqCst) + granted;
+                most.fetch_max(now, Ordering::SeqCst);
+                thread::yield_now();
+                in_use.fetch_sub(granted, Ordering::SeqCst);
+            },
+        );
+        assert_eq!(done.len(), 60);
+        assert!(most.load(Ordering::SeqCst) <= 100, "{most:?}");
+    }
+
+    /// Two items that fit together do run together: each waits for the other.
+    #[test]
+    fn what_fits_runs_at_once() {
+        let both = Barrier::new(2);
+        let done = map_in_parallel(&[50, 50], at_a_time(2), |item| *item, |_| both.wait().is_leader());
+        assert_eq!(done.iter().filter(|leads| **leads == Ok(true)).count(), 1);
     }
 }

@@ -1,54 +1,54 @@
 //! `servobench compare`: the same axis under different set-points.
-use super::run::{cores, style, worker_command};
 use crate::args::{CompareArgs, Equal};
+use crate::console::{print, style};
 use crate::engines;
 use crate::exit::{CliError, Exit, of_run_error};
 use crate::output;
 use crate::progress::Progress;
 use crate::sources;
+use crate::workers;
+use servobench_metrics::{Metrics, Verdict};
 use servobench_report::{Compared, Comparison, Results, RunResult};
 use servobench_scenario::EngineName;
-use servobench_suite::{Job, Report, execute, for_each_in_parallel, jobs, to_equal_duration};
+use servobench_suite::{
+    CompareError, Job, Report, RunError, execute, jobs, map_in_parallel, only_setpoints_differ, to_equal_duration,
+};
 use servobench_trace::Recording;
-use std::io::Write;
+
+/// A run that came to its end.
+struct Run {
+    recording: Recording,
+    metrics: Metrics,
+    verdict: Verdict,
+}
 
 /// Runs the scenarios on one engine, says which wins by how much, and writes one recording of them all.
 pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
     let mut jobs = wanted_jobs(args)?;
+    let wrong = |error: CompareError| CliError::Input(error.to_string());
+    only_setpoints_differ(&jobs).map_err(wrong)?;
     if args.equal == Equal::Duration {
-        to_equal_duration(&mut jobs).map_err(|error| CliError::Input(error.to_string()))?;
+        to_equal_duration(&mut jobs).map_err(wrong)?;
     }
     let labels = labels(&jobs.iter().map(|job| job.scenario.name.as_str()).collect::<Vec<_>>());
     output::make_folder(&args.out)?;
-    let (engines, worker) = (engines::installed(), worker_command(&args.out)?);
-    let progress = Progress::new(jobs.len(), false);
-    let reports: Vec<Report> = for_each_in_parallel(&jobs, cores(), |_, job| {
-        let report = execute(job, &engines, &worker, &mut progress.of_run());
-        progress.ended(&job.id, if report.outcome.is_ok() { "done" } else { "could not be carried out" });
-        report
-    });
-    progress.finish();
-    for (job, report) in jobs.iter().zip(&reports) {
-        if let Err(error) = &report.outcome {
-            let words = format!("{} on {}: {error}", job.scenario.name, job.engine.as_str());
-            return Err(if of_run_error(error) == Exit::Input { CliError::Input(words) } else { CliError::Run(words) });
-        }
-    }
+    let runs = carried_out(args, &jobs)?;
 
-    let results: Vec<RunResult> = jobs.iter().zip(&reports).map(|(job, report)| output::result(job, report)).collect();
-    let recording = write_recording(args, &jobs, &labels, &reports)?;
+    let recording = write_recording(args, &jobs, &labels, &runs)?;
+    let results: Vec<RunResult> = jobs
+        .iter()
+        .zip(&runs)
+        .map(|(job, run)| {
+            let identity = output::identity(job, Some(recording.clone()));
+            RunResult::judged(identity, &run.recording, &run.metrics, &run.verdict)
+        })
+        .collect();
     let compared = labels.iter().zip(&results).map(|(label, result)| Compared { label, result }).collect();
-    let comparison = Comparison::new(compared);
-    let mut out = std::io::stdout();
-    writeln!(out, "{}", heading(args, &jobs))?;
-    writeln!(out)?;
-    writeln!(out, "{}", comparison.table(style()))?;
-    writeln!(out, "{}", comparison.words(style().width))?;
-    writeln!(out, "look at it: servobench view {recording}")?;
-    drop(comparison);
-    let text = Results::new(results).to_json().map_err(|error| CliError::Run(error.to_string()))?;
-    output::write_file(&args.out.join("comparison.json"), &text)?;
-    Ok(Exit::Passed)
+    let text = text_of(args, &jobs, &Comparison::new(compared), &recording);
+    let json = Results::new(results).to_json().map_err(|error| CliError::Run(error.to_string()))?;
+    output::write_file(&args.out.join(output::COMPARISON), &json)?;
+    print(&text)?;
+    Ok(if runs.iter().all(|run| run.verdict.passed()) { Exit::Passed } else { Exit::Limit })
 }
 
 /// Every scenario once, all on the same engine.
@@ -57,15 +57,49 @@ fn wanted_jobs(args: &CompareArgs) -> Result<Vec<Job>, CliError> {
     if sources.len() < 2 {
         return Err(CliError::Input("a comparison needs two scenarios at least".into()));
     }
-    let engine = args.engine.map(EngineName::from).or_else(|| sources[0].scenario.engines.first().copied());
-    let engine = engine.unwrap_or(EngineName::Exact);
-    if let Some(other) = sources.iter().find(|other| other.scenario.axis != sources[0].scenario.axis) {
-        let (one, two) = (&sources[0].scenario.name, &other.scenario.name);
-        return Err(CliError::Input(format!(
-            "`{one}` and `{two}` have different axes; a comparison is of one axis under different set-points"
-        )));
+    let engine = args.engine.or_else(|| sources[0].scenario.engines.first().copied());
+    Ok(jobs(sources, &[engine.unwrap_or(EngineName::Exact)]))
+}
+
+/// Runs all of them; without one of them there is no comparison.
+fn carried_out(args: &CompareArgs, jobs: &[Job]) -> Result<Vec<Run>, CliError> {
+    let (engines, worker) = (engines::installed(), workers::command(&args.out, args.worker_timeout)?);
+    let progress = Progress::new(jobs.len(), false);
+    let reports = map_in_parallel(jobs, workers::at_a_time(None), Job::memory, |job| {
+        let report = execute(job, &engines, &worker, &mut progress.of_run());
+        progress.ended(&job.id, if report.outcome.is_ok() { "done" } else { "could not be carried out" });
+        report
+    });
+    progress.finish();
+    let (mut runs, mut failures, mut exit) = (Vec::new(), Vec::new(), Exit::Passed);
+    for (job, report) in jobs.iter().zip(reports) {
+        match report.map_err(RunError::from).and_then(|Report { recording, metrics, outcome }| {
+            outcome.map(|verdict| recording.map(|recording| Run { recording, metrics, verdict }))
+        }) {
+            Ok(run) => runs.extend(run),
+            Err(error) => {
+                exit = exit.worse(of_run_error(&error));
+                failures.push(format!("{} on {}: {error}", job.scenario.name, job.engine.as_str()));
+            }
+        }
     }
-    Ok(jobs(sources, &[engine]))
+    match exit {
+        Exit::Passed => Ok(runs),
+        Exit::Input => Err(CliError::Input(failures.join("\n"))),
+        Exit::Run | Exit::Limit => Err(CliError::Run(failures.join("\n"))),
+    }
+}
+
+fn text_of(args: &CompareArgs, jobs: &[Job], comparison: &Comparison<'_>, recording: &str) -> String {
+    let style = style();
+    [
+        heading(args, jobs) + "\n\n",
+        comparison.table(style) + "\n",
+        comparison.words(style.width) + "\n",
+        comparison.missed(style.width),
+        format!("look at it: servobench view {}\n", args.out.join(recording).display()),
+    ]
+    .concat()
 }
 
 fn heading(args: &CompareArgs, jobs: &[Job]) -> String {
@@ -79,21 +113,14 @@ fn heading(args: &CompareArgs, jobs: &[Job]) -> String {
 }
 
 /// Writes the one recording in which the runs lie over each other, and returns its name.
-fn write_recording(
-    args: &CompareArgs,
-    jobs: &[Job],
-    labels: &[String],
-    reports: &[Report],
-) -> Result<String, CliError> {
-    let runs: Vec<(&str, &Recording)> = labels
-        .iter()
-        .zip(reports)
-        .filter_map(|(label, report)| Some((label.as_str(), report.recording.as_ref()?)))
-        .collect();
+fn write_recording(args: &CompareArgs, jobs: &[Job], labels: &[String], runs: &[Run]) -> Result<String, CliError> {
+    let labelled: Vec<(&str, &Recording)> =
+        labels.iter().map(String::as_str).zip(runs.iter().map(|run| &run.recording)).collect();
     let options = jobs.first().map(|job| output::view_options(&job.scenario)).unwrap_or_default();
-    let path = args.out.join(format!("{}.rrd", labels.join("-against-")));
-    servobench_view::write_comparison_rrd(&runs, &path, &options).map_err(|error| CliError::Run(error.to_string()))?;
-    Ok(path.display().to_string())
+    let name = format!("{}.rrd", labels.join("-against-"));
+    servobench_view::write_comparison_rrd(&labelled, args.out.join(&name), &options)
+        .map_err(|error| CliError::Run(error.to_string()))?;
+    Ok(name)
 }
 
 /// What tells the names apart: `lambrechts-jerk` and `lambrechts-snap` are `jerk` and `snap`.

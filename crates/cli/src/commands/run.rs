@@ -1,15 +1,15 @@
 //! `servobench run`: scenarios in, verdicts out.
 use crate::args::RunArgs;
+use crate::console::{print, style};
 use crate::engines;
 use crate::exit::{CliError, Exit, of_run_error};
 use crate::output;
 use crate::progress::Progress;
 use crate::sources;
-use servobench_report::{Outcome, Results, RunResult, Style, junit, verdict_table};
-use servobench_scenario::EngineName;
-use servobench_suite::{Engines, Job, WorkerCommand, execute, for_each_in_parallel, jobs};
-use std::io::{IsTerminal, Write};
-use std::num::NonZero;
+use crate::workers;
+use servobench_metrics::Metrics;
+use servobench_report::{Outcome, Results, RunResult, junit, verdict_table};
+use servobench_suite::{Engines, Job, Report, WorkerCommand, execute, jobs, map_in_parallel};
 use std::path::Path;
 
 /// Runs the scenarios, judges them and writes what came of them.
@@ -17,35 +17,45 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
     let engines = engines::installed();
     let jobs = wanted_jobs(args, &engines)?;
     output::make_folder(&args.out)?;
-    let worker = worker_command(&args.out)?;
+    let worker = workers::command(&args.out, args.worker_timeout)?;
 
     let progress = Progress::new(jobs.len(), args.quiet);
-    let workers = args.jobs.map_or_else(cores, usize::from);
-    let ended =
-        for_each_in_parallel(&jobs, workers, |_, job| one(job, &engines, &worker, args.rrd, &args.out, &progress));
+    let ended = map_in_parallel(&jobs, workers::at_a_time(args.jobs), Job::memory, |job| {
+        one(job, &engines, &worker, args.rrd, &args.out, &progress)
+    });
+    let ended: Vec<(RunResult, Exit)> = jobs
+        .iter()
+        .zip(ended)
+        .map(|(job, ended)| {
+            ended.unwrap_or_else(|panic| {
+                progress.ended(&job.id, words(Exit::Run));
+                let run = output::identity(job, None);
+                (RunResult::error(run, None, &Metrics::default(), panic.to_string()), Exit::Run)
+            })
+        })
+        .collect();
     progress.finish();
 
     let exit = ended.iter().fold(Exit::Passed, |worst, (_, exit)| worst.worse(*exit));
     let results = Results::new(ended.into_iter().map(|(result, _)| result).collect());
     let text = results.to_json().map_err(|error| CliError::Run(error.to_string()))?;
-    output::write_file(&args.out.join("results.json"), &text)?;
+    output::write_file(&args.out.join(output::RESULTS), &text)?;
     if let Some(path) = &args.junit {
         output::write_file(path, &junit(&results).map_err(|error| CliError::Run(error.to_string()))?)?;
     }
-    print(&results, args)?;
+    print(&text_of(&results, args))?;
     Ok(exit)
 }
 
 fn wanted_jobs(args: &RunArgs, engines: &Engines) -> Result<Vec<Job>, CliError> {
-    let asked: Vec<EngineName> = args.engine.iter().map(|engine| (*engine).into()).collect();
     if !args.scenarios.is_empty() {
-        return Ok(jobs(sources::load(&args.scenarios)?, &asked));
+        return Ok(jobs(sources::load(&args.scenarios)?, &args.engine));
     }
     let all = engines.names();
-    Ok(jobs(sources::demo()?, if asked.is_empty() { &all } else { &asked }))
+    Ok(jobs(sources::demo()?, if args.engine.is_empty() { &all } else { &args.engine }))
 }
 
-/// Runs one job and writes its recording.
+/// Runs one job and writes its recording. One that cannot be written takes the verdict away.
 fn one(
     job: &Job,
     engines: &Engines,
@@ -54,46 +64,42 @@ fn one(
     folder: &Path,
     progress: &Progress,
 ) -> (RunResult, Exit) {
-    let mut report = execute(job, engines, worker, &mut progress.of_run());
-    output::write_recording(job, &mut report, folder, rrd);
-    let (exit, words) = match &report.outcome {
-        Ok(verdict) if verdict.passed() => (Exit::Passed, "passed"),
-        Ok(_) => (Exit::Limit, "missed a limit"),
-        Err(error) => (of_run_error(error), "could not be carried out"),
-    };
-    progress.ended(&job.id, words);
-    (output::result(job, &report), exit)
-}
-
-fn print(results: &Results, args: &RunArgs) -> Result<(), CliError> {
-    let mut out = std::io::stdout();
-    if args.quiet {
-        for run in results.scenarios.iter().filter(|run| run.verdict != Outcome::Passed) {
-            let reason = run.reason.as_deref().unwrap_or_default();
-            writeln!(out, "{} on {}: {reason}", run.name, run.engine)?;
+    let Report { recording, metrics, outcome } = execute(job, engines, worker, &mut progress.of_run());
+    let written = recording.as_ref().map(|recording| output::write_recording(job, recording, folder, rrd));
+    let name = written.as_ref().and_then(|written| written.as_ref().ok().cloned());
+    let run = output::identity(job, name);
+    let failed =
+        |error: &dyn std::fmt::Display| RunResult::error(run.clone(), recording.as_ref(), &metrics, error.to_string());
+    let (result, exit) = match (&outcome, &recording, &written) {
+        (Err(error), ..) => (failed(error), of_run_error(error)),
+        (Ok(_), _, Some(Err(error))) => (failed(error), error.exit()),
+        (Ok(verdict), Some(recording), _) => {
+            let exit = if verdict.passed() { Exit::Passed } else { Exit::Limit };
+            (RunResult::judged(run.clone(), recording, &metrics, verdict), exit)
         }
-        return Ok(());
+        (Ok(_), None, _) => (failed(&"there is no recording"), Exit::Run),
+    };
+    progress.ended(&job.id, words(exit));
+    (result, exit)
+}
+
+/// What a progress line says of a run.
+const fn words(exit: Exit) -> &'static str {
+    match exit {
+        Exit::Passed => "passed",
+        Exit::Limit => "missed a limit",
+        Exit::Input | Exit::Run => "could not be carried out",
     }
-    write!(out, "{}", verdict_table(results, style()))?;
-    writeln!(out, "results and recordings: {}", args.out.display())?;
-    if args.rrd {
-        writeln!(out, "look at them: servobench view {}", args.out.display())?;
+}
+
+fn text_of(results: &Results, args: &RunArgs) -> String {
+    if args.quiet {
+        let bad = results.scenarios.iter().filter(|run| run.verdict != Outcome::Passed);
+        let lines = bad.map(|run| format!("{} on {}: {}\n", run.name, run.engine, run.reasons.join("; ")));
+        return lines.collect::<Vec<_>>().concat();
     }
-    Ok(())
-}
-
-/// How tables are shown on standard output.
-pub(super) fn style() -> Style {
-    let colour = std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
-    Style { colour, ..Style::default() }
-}
-
-/// How worker processes are started: this program again.
-pub(super) fn worker_command(folder: &Path) -> Result<WorkerCommand, CliError> {
-    let program = std::env::current_exe().map_err(|error| CliError::Run(format!("cannot find myself: {error}")))?;
-    Ok(WorkerCommand { program, folder: folder.to_owned() })
-}
-
-pub(super) fn cores() -> usize {
-    std::thread::available_parallelism().map_or(1, NonZero::get)
+    let out = args.out.display();
+    let mut parts = vec![verdict_table(results, style()), format!("results and recordings: {out}\n")];
+    parts.extend(args.rrd.then(|| format!("look at them: servobench view {out}\n")));
+    parts.concat()
 }

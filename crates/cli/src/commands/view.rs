@@ -1,11 +1,16 @@
 //! `servobench view`: opens a recording in the Rerun viewer.
 use crate::args::ViewArgs;
 use crate::exit::{CliError, Exit};
+use crate::output::{COMPARISON, RESULTS};
+use servobench_report::Results;
 use servobench_trace::Recording;
 use servobench_view::{ViewOptions, write_rrd};
 use std::ffi::OsStr;
+use std::fmt::Display;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::SystemTime;
 
 const HOW_TO_GET_IT: &str = "there is no Rerun viewer: `cargo xtask viewer` fetches one, and so does \
                              `pip install rerun-sdk==0.36.3`";
@@ -21,39 +26,55 @@ pub(crate) fn view(args: &ViewArgs) -> Result<Exit, CliError> {
     if status.success() { Ok(Exit::Passed) } else { Err(CliError::Run(format!("the viewer ended with {status}"))) }
 }
 
-/// The `.rrd` files behind `path`; a Parquet recording is turned into one beside it.
+/// The `.rrd` files behind `path`: a recording, or those that the results in a folder name.
 fn recordings(path: &Path) -> Result<Vec<PathBuf>, CliError> {
-    let wrong = |error: std::io::Error| CliError::Input(format!("cannot read `{}`: {error}", path.display()));
     if !path.is_dir() {
-        std::fs::metadata(path).map_err(wrong)?;
         return Ok(vec![as_rrd(path)?]);
     }
-    let mut files = Vec::new();
-    for entry in std::fs::read_dir(path).map_err(wrong)? {
-        files.push(entry.map_err(wrong)?.path());
+    let results = latest_results(path)?;
+    let wrong = |error: &dyn Display| CliError::Input(format!("cannot read `{}`: {error}", results.display()));
+    let text = std::fs::read_to_string(&results).map_err(|error| wrong(&error))?;
+    let results = Results::from_json(&text).map_err(|error| wrong(&error))?;
+    let mut names: Vec<String> = results.scenarios.into_iter().filter_map(|run| run.recording).collect();
+    // All runs of a comparison lie in one recording.
+    names.dedup();
+    if names.is_empty() {
+        return Err(CliError::Input(format!("no run in `{}` left a recording", path.display())));
     }
-    files.sort();
-    let is = |path: &Path, ending: &str| path.extension() == Some(OsStr::new(ending));
-    let mut found: Vec<PathBuf> = files.iter().filter(|path| is(path, "rrd")).cloned().collect();
-    for file in files.iter().filter(|path| is(path, "parquet")) {
-        if !found.contains(&file.with_extension("rrd")) {
-            found.push(as_rrd(file)?);
-        }
-    }
-    if found.is_empty() {
-        return Err(CliError::Input(format!("there is no recording in `{}`", path.display())));
-    }
-    Ok(found)
+    names.iter().map(|name| as_rrd(&path.join(name))).collect()
 }
 
+/// What `run` or `compare` wrote into `folder`, whichever came last.
+fn latest_results(folder: &Path) -> Result<PathBuf, CliError> {
+    let files = [RESULTS, COMPARISON].map(|name| folder.join(name));
+    let written = files.into_iter().filter_map(|file| Some((modified(&file).ok()?, file)));
+    written.max_by_key(|(when, _)| *when).map(|(_, file)| file).ok_or_else(|| {
+        CliError::Input(format!(
+            "there is no `{RESULTS}` and no `{COMPARISON}` in `{}`; name a recording, or a folder that `run` or \
+             `compare` wrote",
+            folder.display()
+        ))
+    })
+}
+
+/// The recording for the viewer: beside a Parquet file the `.rrd` that was made of it, or a new one when that is older.
 fn as_rrd(path: &Path) -> Result<PathBuf, CliError> {
+    let written =
+        modified(path).map_err(|error| CliError::Input(format!("cannot read `{}`: {error}", path.display())))?;
     if path.extension() != Some(OsStr::new("parquet")) {
         return Ok(path.to_owned());
     }
-    let recording = Recording::read_parquet(path).map_err(|error| CliError::Input(error.to_string()))?;
     let rrd = path.with_extension("rrd");
-    write_rrd(&recording, &rrd, &ViewOptions::default()).map_err(|error| CliError::Run(error.to_string()))?;
+    if !modified(&rrd).is_ok_and(|made| made >= written) {
+        let recording = Recording::read_parquet(path).map_err(|error| CliError::Input(error.to_string()))?;
+        write_rrd(&recording, &rrd, &ViewOptions::default()).map_err(|error| CliError::Run(error.to_string()))?;
+    }
     Ok(rrd)
+}
+
+/// When the file was written last.
+fn modified(path: &Path) -> io::Result<SystemTime> {
+    std::fs::metadata(path)?.modified()
 }
 
 /// The viewer on the search path, or the one that `cargo xtask viewer` put beside the build.

@@ -2,20 +2,23 @@
 use crate::args::WorkerArgs;
 use crate::engines;
 use crate::exit::{CliError, Exit};
-use crate::sources;
-use servobench_suite::{RunError, worker};
+use servobench_suite::worker::{Order, Served, serve};
 use std::io::Read;
 
-/// Runs the scenario that comes in on standard input.
+/// Runs the scenario that comes in on standard input; everything that is to be said of it is said by [`serve`].
 pub(crate) fn worker(args: &WorkerArgs) -> Result<Exit, CliError> {
     let mut text = String::new();
     std::io::stdin().read_to_string(&mut text).map_err(|error| CliError::Run(format!("standard input: {error}")))?;
-    let loaded = sources::parse(&args.name, &text, args.path.as_deref())?;
-    let served =
-        worker::serve(loaded.scenario, &args.durations, args.engine.into(), &engines::installed(), &args.recording);
-    match served {
-        Ok(()) => Ok(Exit::Passed),
-        Err(RunError::Input(words)) => Err(CliError::Input(words)),
-        Err(error) => Err(CliError::Run(error.to_string())),
-    }
+    let order = Order {
+        name: args.name.clone(),
+        path: args.path.clone(),
+        engine: args.engine,
+        durations: args.durations.clone(),
+        recording: args.recording.clone(),
+    };
+    Ok(match serve(&order, &text, &engines::installed(), std::io::stdout().lock()) {
+        Served::Done => Exit::Passed,
+        Served::Input => Exit::Input,
+        Served::Failed => Exit::Run,
+    })
 }

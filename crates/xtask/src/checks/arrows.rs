@@ -23,7 +23,7 @@ const PLAN: [(&str, May); 18] = [
     ("scenario", May::On(&["base"])),
     ("sim", May::On(&["base", "motion", "drive", "plant", "trace", "metrics", "scenario"])),
     ("suite", May::On(&["base", "plant", "sim", "scenario", "trace", "metrics"])),
-    ("report", May::On(&["base", "trace", "metrics"])),
+    ("report", May::On(&["base", "motion", "trace", "metrics"])),
     ("view", May::On(&["base", "trace", "metrics"])),
     ("cli", May::OnAll),
     ("tests", May::OnAll),

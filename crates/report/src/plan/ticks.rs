@@ -1,7 +1,7 @@
 //! Round numbers along an axis.
 
 /// Distance of round ticks (1, 2 or 5 times a power of ten) such that at most `count` fit in `span`.
-pub(crate) fn step(span: f64, count: f64) -> f64 {
+pub(super) fn step(span: f64, count: f64) -> f64 {
     let wanted = span / count;
     let exponent: i32 = format!("{wanted:e}").split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0);
     let power = |exponent: i32| format!("1e{exponent}").parse::<f64>().unwrap_or(1.0);
@@ -11,7 +11,7 @@ pub(crate) fn step(span: f64, count: f64) -> f64 {
 }
 
 /// Multiples of `step` from `low` to `high`, each with its label.
-pub(crate) fn ticks(low: f64, high: f64, step: f64) -> Vec<(f64, String)> {
+pub(super) fn ticks(low: f64, high: f64, step: f64) -> Vec<(f64, String)> {
     let exponent: i32 = format!("{step:e}").split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0);
     let decimals = usize::try_from(-exponent).unwrap_or(0);
     let (first, last) = ((low / step - 1e-9).ceil(), (high / step + 1e-9).floor());

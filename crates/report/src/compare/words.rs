@@ -1,0 +1,287 @@
+//! What the table says, in words.
+use super::relation::{Relation, percent};
+use super::{Compared, Comparison, Value, force_or_torque};
+use crate::text::wrapped;
+use servobench_metrics::{Name, Quantity};
+
+impl Comparison<'_> {
+    /// What the table says, in sentences of lines that fit `width`.
+    #[must_use]
+    pub fn words(&self, width: usize) -> String {
+        let sentences = match self.runs.as_slice() {
+            [] | [_] => vec!["There is nothing to compare.".to_owned()],
+            [one, two] => Pair::of(*one, *two).sentences(),
+            many => ranking(many),
+        };
+        wrapped(&sentences.join(" "), width).join("\n") + "\n"
+    }
+}
+
+/// Two runs: the one of which the sentences speak, and the other.
+struct Pair<'a> {
+    this: Compared<'a>,
+    other: Compared<'a>,
+}
+
+impl<'a> Pair<'a> {
+    /// Speaks of the run that leaves less vibration; of the second when that does not decide.
+    fn of(one: Compared<'a>, two: Compared<'a>) -> Self {
+        let vibration = |run: Compared<'_>| run.result.metric(Name::ResidualVibrationPp).map(|(value, _)| value);
+        match (vibration(one), vibration(two)) {
+            (Some(first), Some(second)) if Relation::of(first, second).is_more() => Self { this: one, other: two },
+            _ => Self { this: two, other: one },
+        }
+    }
+
+    /// Values of both, this run's first.
+    fn both(&self, name: Name) -> Option<(Value<'a>, Value<'a>)> {
+        Some((self.this.result.metric(name)?, self.other.result.metric(name)?))
+    }
+
+    /// How this run stands to the other.
+    fn relation(&self, name: Name) -> Option<Relation> {
+        self.both(name).map(|(this, other)| Relation::of(other.0, this.0))
+    }
+
+    fn sentences(&self) -> Vec<String> {
+        [self.vibration(), self.mode(), self.time(), self.settling(), self.costs(), self.conclusion()]
+            .into_iter()
+            .flatten()
+            .collect()
+    }
+
+    fn vibration(&self) -> Option<String> {
+        let (this, other) = (self.this.label, self.other.label);
+        let Some(((value, unit), (reference, _))) = self.both(Name::ResidualVibrationPp) else {
+            let without = [self.this, self.other];
+            let without = without.into_iter().find(|run| run.result.metric(Name::ResidualVibrationPp).is_none())?;
+            return Some(format!("The residual vibration of {} was not measured.", without.label));
+        };
+        let (value, reference_text) = (Quantity::new(value, unit), Quantity::new(reference, unit));
+        Some(match Relation::of(reference, value.value) {
+            Relation::Same => format!("{this} and {other} leave the same residual vibration within 1 %: {value}."),
+            relation => format!(
+                "{this} leaves {value} of residual vibration (peak-to-peak) where {other} leaves {reference_text}: \
+                 {relation}."
+            ),
+        })
+    }
+
+    /// At which frequency and damping the ratio holds.
+    fn mode(&self) -> Option<String> {
+        if matches!(self.relation(Name::ResidualVibrationPp), None | Some(Relation::Same)) {
+            return None;
+        }
+        let mode = |run: Compared<'_>| {
+            let (frequency, _) = run.result.metric(Name::ResidualVibrationFrequency)?;
+            Some((frequency, run.result.metric(Name::ResidualVibrationDamping)?.0))
+        };
+        let text = |(frequency, damping)| {
+            format!("{:.4} (ζ = {:.2})", Quantity::new(frequency, "Hz"), Quantity::new(damping, ""))
+        };
+        let holds = "the ratio holds for this mode, not for every other.";
+        Some(match (mode(self.this), mode(self.other)) {
+            (Some(this), Some(other)) if Relation::of(other.0, this.0) != Relation::Same => format!(
+                "They ring in different modes, {} at {} and {} at {}.",
+                self.this.label,
+                text(this),
+                self.other.label,
+                text(other)
+            ),
+            (_, Some(mode)) | (Some(mode), None) => format!("The load rings at {}; {holds}", text(mode)),
+            (None, None) => return None,
+        })
+    }
+
+    fn time(&self) -> Option<String> {
+        let ((this, unit), (other, _)) = self.both(Name::MoveTime)?;
+        Some(match Relation::of(other, this) {
+            Relation::Same => format!("Both moves take {}.", Quantity::new(this, unit)),
+            relation => format!(
+                "The move of {} takes {} ({:.2} %) {}.",
+                self.this.label,
+                Quantity::new((this - other).abs(), unit),
+                percent(other, this),
+                if relation.is_more() { "longer" } else { "less time" }
+            ),
+        })
+    }
+
+    fn settling(&self) -> Option<String> {
+        let name = Name::MoveAndSettlingTime;
+        if let Some(((this, unit), (other, _))) = self.both(name) {
+            return Some(match Relation::of(other, this) {
+                Relation::Same => format!("With settling, both take {}.", Quantity::new(this, unit)),
+                relation => format!(
+                    "With settling, it is in position {} ({:.2} %) {}.",
+                    Quantity::new((this - other).abs(), unit),
+                    percent(other, this),
+                    if relation.is_more() { "later" } else { "sooner" }
+                ),
+            });
+        }
+        None
+    }
+
+    /// Following error and effort.
+    fn costs(&self) -> Option<String> {
+        let unit = self.this.result.metric(Name::TorquePeak).map_or("", |(_, unit)| unit);
+        let effort = force_or_torque(unit);
+        let parts: Vec<_> = [
+            (Name::FollowingErrorPeakLoad, "peak following error".to_owned()),
+            (Name::TorquePeak, format!("peak {effort}")),
+            (Name::TorqueRms, format!("RMS {effort}")),
+        ]
+        .into_iter()
+        .filter_map(|(name, words)| Some((words, self.relation(name)?)))
+        .enumerate()
+        .map(|(k, (words, relation))| {
+            let verb = if k == 0 { " is" } else { "" };
+            let relation = if relation == Relation::Same { "the same".to_owned() } else { relation.to_string() };
+            format!("{words}{verb} {relation}")
+        })
+        .collect();
+        (!parts.is_empty()).then(|| format!("Its {}.", parts.join(", ")))
+    }
+
+    /// Who wins, if anyone does.
+    fn conclusion(&self) -> Option<String> {
+        let settled = |run: Compared<'_>| run.result.metric(Name::MoveAndSettlingTime).is_some();
+        match (settled(self.this), settled(self.other)) {
+            (true, false) => return Some(format!("{} wins: only it settles.", self.this.label)),
+            (false, true) => return Some(format!("{} wins: only it settles.", self.other.label)),
+            _ => {}
+        }
+        let vibration = self.relation(Name::ResidualVibrationPp)?;
+        let arrival = self.relation(Name::MoveAndSettlingTime).or_else(|| self.relation(Name::MoveTime))?;
+        let (this, other) = (self.this.label, self.other.label);
+        Some(match (vibration, arrival) {
+            (Relation::Same, Relation::Same) => format!("Between {this} and {other} there is nothing to choose."),
+            (Relation::Same, Relation::Less(_)) => format!("{this} wins: it arrives sooner at equal vibration."),
+            (Relation::Same, Relation::More(_)) => format!("{other} wins: it arrives sooner at equal vibration."),
+            (_, Relation::Same) => format!("{this} wins: it shakes its load less in the same time."),
+            (_, Relation::Less(_)) => format!("{this} wins: it shakes its load less and arrives sooner."),
+            (_, Relation::More(_)) => format!("{this} shakes its load less, {other} arrives sooner."),
+        })
+    }
+}
+
+/// More than two runs: each quantity from the best to the worst.
+fn ranking(runs: &[Compared<'_>]) -> Vec<String> {
+    let unit = runs.iter().find_map(|run| run.result.metric(Name::TorqueRms)).map_or("", |(_, unit)| unit);
+    [
+        ("Residual vibration (peak-to-peak)".to_owned(), Name::ResidualVibrationPp),
+        ("Move".to_owned(), Name::MoveTime),
+        ("Move with settling".to_owned(), Name::MoveAndSettlingTime),
+        ("Peak following error".to_owned(), Name::FollowingErrorPeakLoad),
+        (format!("RMS {}", force_or_torque(unit)), Name::TorqueRms),
+    ]
+    .into_iter()
+    .filter_map(|(words, name)| {
+        let mut ranked: Vec<_> = runs.iter().filter_map(|run| Some((run.label, run.result.metric(name)?))).collect();
+        ranked.sort_by(|one, two| one.1.0.abs().total_cmp(&two.1.0.abs()));
+        let (_, (best, _)) = *ranked.first()?;
+        let parts: Vec<_> = ranked.iter().map(|(label, value)| format!("{label} {}", against(best, *value))).collect();
+        Some(format!("{words}: {}.", parts.join(", ")))
+    })
+    .collect()
+}
+
+/// `1.35 s (3.8 % longer)`
+fn against(best: f64, (value, unit): Value<'_>) -> String {
+    let text = Quantity::new(value, unit).to_string();
+    match Relation::of(best, value) {
+        Relation::Same => text,
+        relation if unit == "s" => {
+            let relation = relation.to_string().replace("more", "longer").replace("as much", "as long");
+            format!("{text} ({relation})")
+        }
+        relation => format!("{text} ({relation})"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::RunResult;
+    use crate::samples::{jerk, of_numbers, snap};
+
+    fn words(one: &RunResult, two: &RunResult) -> String {
+        let runs = vec![Compared { label: "jerk", result: one }, Compared { label: "snap", result: two }];
+        Comparison::new(runs).words(76)
+    }
+
+    #[test]
+    fn words_of_two() {
+        insta::assert_snapshot!(words(&jerk(), &snap()), @r#"
+        snap leaves 210 nm of residual vibration (peak-to-peak) where jerk leaves
+        3.40 µm: 16 × less. The load rings at 38.98 Hz (ζ = 0.0021); the ratio holds
+        for this mode, not for every other. The move of snap takes 50.0 ms (3.8 %)
+        longer. With settling, it is in position 46.0 ms (3.5 %) later. Its peak
+        following error is 4.2 × less, peak force the same, RMS force 2.0 % less.
+        snap shakes its load less, jerk arrives sooner.
+        "#);
+    }
+
+    #[test]
+    fn three_are_ranked() {
+        let (jerk, snap) = (jerk(), snap());
+        let trapezoid = of_numbers("trapezoid", [1.2, 0.3, 90e-6, 41e-6, 38.985, 0.0021, 190.0, 60.3]);
+        let runs = vec![
+            Compared { label: "trapezoid", result: &trapezoid },
+            Compared { label: "jerk", result: &jerk },
+            Compared { label: "snap", result: &snap },
+        ];
+        let comparison = Comparison::new(runs);
+        insta::assert_snapshot!(comparison.words(76), @r#"
+        Residual vibration (peak-to-peak): snap 210 nm, jerk 3.40 µm (16 × as much),
+        trapezoid 41.0 µm (200 × as much). Move: trapezoid 1.20 s, jerk 1.30 s
+        (8.3 % longer), snap 1.35 s (13 % longer). Move with settling: jerk 1.30 s,
+        snap 1.35 s (3.5 % longer), trapezoid 1.50 s (15 % longer). Peak following
+        error: snap 730 nm, jerk 3.10 µm (4.2 × as much), trapezoid 90.0 µm
+        (120 × as much). RMS force: snap 60.0 N, trapezoid 60.3 N, jerk 61.2 N
+        (2.0 % more).
+        "#);
+    }
+
+    /// The order in which runs are given does not decide who wins.
+    #[test]
+    fn the_quieter_run_is_the_subject_whichever_comes_first() {
+        let (jerk, snap) = (jerk(), snap());
+        let runs = vec![Compared { label: "snap", result: &snap }, Compared { label: "jerk", result: &jerk }];
+        assert_eq!(Comparison::new(runs).words(76), words(&jerk, &snap));
+    }
+
+    #[test]
+    fn within_one_per_cent_nobody_wins() {
+        let one = of_numbers("one", [1.3, 0.1, 3e-6, 3.40e-6, 39.0, 0.002, 170.0, 60.0]);
+        let two = of_numbers("two", [1.309, 0.1, 3e-6, 3.42e-6, 39.0, 0.002, 170.0, 60.0]);
+        let text = words(&one, &two).replace('\n', " ");
+        assert!(text.contains("leave the same residual vibration within 1 %: 3.42 µm."), "{text}");
+        assert!(text.contains("Between snap and jerk there is nothing to choose."), "{text}");
+        assert!(!text.contains("wins") && !text.contains("less"), "{text}");
+    }
+
+    #[test]
+    fn each_outcome_has_its_conclusion() {
+        let conclusion = |time: f64, vibration: f64| {
+            let one = of_numbers("one", [1.0, 0.0, 3e-6, 1e-6, 39.0, 0.002, 170.0, 60.0]);
+            let two = of_numbers("two", [time, 0.0, 3e-6, vibration, 39.0, 0.002, 170.0, 60.0]);
+            let text = words(&one, &two).replace('\n', " ");
+            text.trim_end().rsplit_once(". ").unwrap().1.to_owned()
+        };
+        assert_eq!(conclusion(1.1, 0.5e-6), "snap shakes its load less, jerk arrives sooner.");
+        assert_eq!(conclusion(1.0, 0.5e-6), "snap wins: it shakes its load less in the same time.");
+        assert_eq!(conclusion(0.9, 0.5e-6), "snap wins: it shakes its load less and arrives sooner.");
+        assert_eq!(conclusion(0.9, 1e-6), "snap wins: it arrives sooner at equal vibration.");
+        assert_eq!(conclusion(1.1, 1e-6), "jerk wins: it arrives sooner at equal vibration.");
+        assert_eq!(conclusion(1.1, 2e-6), "jerk wins: it shakes its load less and arrives sooner.");
+    }
+
+    #[test]
+    fn a_run_that_never_settles_does_not_win() {
+        let (jerk, mut snap) = (jerk(), snap());
+        snap.metrics = snap.metrics.into_iter().filter(|(name, _)| !name.contains("settling")).collect();
+        assert!(words(&jerk, &snap).contains("jerk wins: only it settles."));
+    }
+}

@@ -1,0 +1,93 @@
+//! A rest-to-rest move on paper: for a person, as JSON, as a table of samples, as a drawing.
+mod axis;
+mod csv;
+mod curve;
+mod drawing;
+mod json;
+mod panel;
+mod table;
+mod ticks;
+
+use servobench_motion::{Limits, Profile};
+
+/// Names of position and its derivatives.
+const NAMES: [&str; 5] = ["position", "velocity", "acceleration", "jerk", "snap"];
+/// Equal steps in which a plan is shown that has no samples of its own.
+const STEPS: u32 = 1000;
+
+/// A planned move and what was asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlannedMove {
+    profile: Profile,
+    limits: Limits,
+    unit: &'static str,
+}
+
+impl PlannedMove {
+    /// The move `profile`, planned under `limits`; `unit` is that of positions, `m` or `rad`.
+    #[must_use]
+    pub const fn new(profile: Profile, limits: Limits, unit: &'static str) -> Self {
+        Self { profile, limits, unit }
+    }
+
+    /// Unit of the derivative `n` of position.
+    fn unit_of(&self, n: usize) -> String {
+        let power = ["", "/s", "/s²", "/s³", "/s⁴"][n];
+        format!("{}{power}", self.unit)
+    }
+
+    /// Limits of velocity, acceleration, jerk and snap that the order uses.
+    fn limits(&self) -> impl Iterator<Item = f64> {
+        let Limits { velocity, acceleration, jerk, snap } = self.limits;
+        [velocity, acceleration, jerk, snap].into_iter().take(self.profile.order().derivative())
+    }
+
+    /// Peaks of the same derivatives.
+    fn peaks(&self) -> impl Iterator<Item = f64> {
+        let peaks = self.profile.peaks();
+        [peaks.velocity, peaks.acceleration, peaks.jerk, peaks.snap].into_iter().take(self.profile.order().derivative())
+    }
+
+    /// How long each derivative stays at its peak within one pulse of it: name in the literature, meaning, time (s).
+    fn dwells(&self) -> impl Iterator<Item = (&'static str, &'static str, f64)> {
+        let times = self.profile.times();
+        [
+            ("t_d", "snap at its peak", times.t_d),
+            ("t_j", "jerk at its peak", times.t_j),
+            ("t_a", "acceleration at its peak", Some(times.t_a)),
+            ("t_v", "velocity at its peak", Some(times.t_v)),
+        ]
+        .into_iter()
+        .filter_map(|(name, meaning, value)| Some((name, meaning, value?)))
+    }
+
+    /// Times that cut the move into [`STEPS`] equal steps (s).
+    fn steps(&self) -> impl Iterator<Item = f64> {
+        (0..=STEPS).map(|k| self.profile.duration() * f64::from(k) / f64::from(STEPS))
+    }
+}
+
+/// To the nanosecond: a plan is read to be typed in somewhere else.
+fn seconds(value: f64) -> String {
+    let text = format!("{value:.9}");
+    format!("{} s", text.trim_end_matches('0').trim_end_matches('.'))
+}
+
+/// Moves for the tests.
+#[cfg(test)]
+mod moves {
+    use super::*;
+    use servobench_motion::Order;
+
+    const LAMBRECHTS: Limits = Limits { velocity: 1.0, acceleration: 5.0, jerk: 50.0, snap: 1000.0 };
+
+    /// 1 m under the limits of Lambrechts: 1.35 s at order 4, t_d = t_j = t_a = 0.05 s, t_v = 0.65 s.
+    pub(super) fn lambrechts(order: Order) -> PlannedMove {
+        PlannedMove::new(Profile::plan(order, 1.0, &LAMBRECHTS).unwrap(), LAMBRECHTS, "m")
+    }
+
+    /// The same with samples of `time` (s).
+    pub(super) fn sampled(time: f64) -> PlannedMove {
+        PlannedMove::new(Profile::plan_sampled(Order::Fourth, 1.0, &LAMBRECHTS, time).unwrap(), LAMBRECHTS, "m")
+    }
+}

@@ -1,0 +1,44 @@
+//! Why a run has no verdict.
+use crate::engines::EngineMissing;
+use crate::panicked::Panicked;
+use crate::worker::WorkerError;
+use servobench_metrics::UnknownMetric;
+use servobench_plant::MechanicsError;
+use servobench_sim::{BuildError, Failure};
+use thiserror::Error;
+
+/// Why a run has no verdict.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// The closed loop cannot be built.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// A limit is on a metric that there is not.
+    #[error(transparent)]
+    Metric(#[from] UnknownMetric),
+    /// The build lacks the engine.
+    #[error(transparent)]
+    EngineMissing(#[from] EngineMissing),
+    /// The run ended early.
+    #[error(transparent)]
+    Failed(#[from] Failure),
+    /// Something panicked.
+    #[error(transparent)]
+    Panicked(#[from] Panicked),
+    /// The worker process says why, or could not.
+    #[error(transparent)]
+    Worker(#[from] WorkerError),
+}
+
+impl RunError {
+    /// Whether the scenario is at fault: it asks for what cannot be built.
+    #[must_use]
+    pub const fn is_input(&self) -> bool {
+        match self {
+            // A library that does not load is not the scenario's fault.
+            Self::Build(BuildError::Mechanics(MechanicsError::Native { .. })) => false,
+            Self::Build(_) | Self::Metric(_) | Self::Worker(WorkerError::Input(_)) => true,
+            Self::EngineMissing(_) | Self::Failed(_) | Self::Panicked(_) | Self::Worker(_) => false,
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! What bounds the channels of an axis.
+use servobench_plant::inverter;
+use servobench_scenario::{Motor, Scenario};
+
+/// Channels with the largest magnitude that motor and drive allow them (SI); those without a bound are left out.
+#[must_use]
+pub fn channel_limits(scenario: &Scenario) -> Vec<(&'static str, f64)> {
+    let effort = ("effort.reference", scenario.drive.max_effort);
+    let limits = match &scenario.motor {
+        Motor::Pmsm(motor) => {
+            let voltage = inverter::voltage_limit(scenario.drive.dc_link);
+            vec![effort, ("current.q", motor.max_current), ("voltage.magnitude", voltage)]
+        }
+        Motor::IdealSource(source) => vec![effort, ("command.output", source.limit)],
+        Motor::Prescribed => Vec::new(),
+    };
+    limits.into_iter().filter(|(_, limit)| limit.is_finite()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_inverter_bounds_the_voltage_and_the_motor_its_current() {
+        let (_, demo) = servobench_scenario::embedded_demo().into_iter().next().unwrap();
+        let demo = servobench_scenario::parse("demo", demo, None).unwrap_or_else(|e| panic!("{e}")).scenario;
+        let limits = channel_limits(&demo);
+        let of = |name: &str| limits.iter().find(|(channel, _)| *channel == name).map(|(_, limit)| *limit);
+        // `dc_link = "320 V"`: 320 V/√3 without overmodulation; `max_torque = "6.09 Nm"`.
+        assert!((of("voltage.magnitude").unwrap() - 184.752_086).abs() < 1e-6, "{limits:?}");
+        assert_eq!((of("effort.reference"), limits.len()), (Some(6.09), 3));
+        let free = Scenario { motor: Motor::Prescribed, ..demo };
+        assert_eq!(channel_limits(&free), []);
+    }
+}

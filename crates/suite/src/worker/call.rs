@@ -1,0 +1,100 @@
+//! The caller's side.
+use super::listener::{Listener, Silence, end};
+use super::message::Message;
+use super::{WorkerCommand, WorkerError};
+use crate::execute::Recorded;
+use crate::job::Job;
+use servobench_trace::Recording;
+use std::io::{self, Write};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::thread;
+
+/// Runs `job` in a worker process.
+pub(crate) fn call(command: &WorkerCommand, job: &Job, progress: &mut dyn FnMut(f64)) -> Result<Recorded, WorkerError> {
+    let path = command.folder.join(format!("{}.{}.worker.parquet", job.id, std::process::id()));
+    let ended = converse(command, job, &path, progress);
+    let recording = Recording::read_parquet(&path);
+    // Nothing depends on the file any more; if it cannot be removed it is only in the way.
+    std::fs::remove_file(&path).ok();
+    match ended {
+        Ok(()) => Ok((recording?, None)),
+        Err(error @ WorkerError::Input(_)) => Err(error),
+        // As far as it came.
+        Err(error) => match recording {
+            Ok(recording) => Ok((recording, Some(error.into()))),
+            Err(_) => Err(error),
+        },
+    }
+}
+
+/// Starts the worker, feeds it and listens to it to its end.
+fn converse(
+    command: &WorkerCommand,
+    job: &Job,
+    recording: &Path,
+    progress: &mut dyn FnMut(f64),
+) -> Result<(), WorkerError> {
+    let cannot = |action| {
+        let program = command.program.clone();
+        move |source| WorkerError::Process { action, program, source }
+    };
+    let mut child = start(command, job, recording).map_err(cannot("start"))?;
+    let heard = hear(&mut child, command, job, progress);
+    if let Err(WorkerError::Stalled { .. }) = heard {
+        // One that ended in the meantime cannot be ended, which is as good.
+        child.kill().ok();
+        child.wait().map_err(cannot("wait for"))?;
+    }
+    heard
+}
+
+fn start(command: &WorkerCommand, job: &Job, recording: &Path) -> io::Result<Child> {
+    let mut worker = Command::new(&command.program);
+    worker.arg("worker").args(["--engine", job.engine.as_str(), "--name", &job.scenario.name]);
+    worker.arg("--recording").arg(recording);
+    if let Some(path) = &job.scenario.path {
+        worker.arg("--path").arg(path);
+    }
+    if !job.durations().is_empty() {
+        // The shortest decimal that reads back to the same bits.
+        let durations: Vec<String> = job.durations().iter().map(f64::to_string).collect();
+        worker.args(["--durations", &durations.join(",")]);
+    }
+    worker.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()
+}
+
+/// Feeds the worker, and passes its progress on until its last word and its end.
+fn hear(
+    child: &mut Child,
+    command: &WorkerCommand,
+    job: &Job,
+    progress: &mut dyn FnMut(f64),
+) -> Result<(), WorkerError> {
+    let cannot = |action, source| WorkerError::Process { action, program: command.program.clone(), source };
+    let stalled = |Silence| WorkerError::Stalled { patience: command.patience };
+    let (Some(mut stdin), Some(stdout), Some(stderr)) = (child.stdin.take(), child.stdout.take(), child.stderr.take())
+    else {
+        return Err(cannot("speak to", io::ErrorKind::BrokenPipe.into()));
+    };
+    let listener = Listener::new(stdout, stderr);
+    let text = job.text.clone();
+    // A worker that ends before it has read everything reports itself; one that reads nothing must not hold us up.
+    thread::spawn(move || stdin.write_all(text.as_bytes()).ok());
+    let mut last = None;
+    while let Some(message) = listener.next(command.patience).map_err(stalled)? {
+        match message {
+            Message::Progress(share) => progress(share),
+            end => last = Some(end),
+        }
+    }
+    let status = end(child, command.patience).map_err(|error| cannot("wait for", error))?.map_err(stalled)?;
+    match last {
+        Some(Message::Done) => Ok(()),
+        Some(Message::Input(why)) => Err(WorkerError::Input(why)),
+        Some(Message::Failed(why)) => Err(WorkerError::Failed(why)),
+        Some(Message::Progress(_)) | None => {
+            Err(WorkerError::Ended { status, last_words: listener.last_words(command.patience) })
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! What a worker says.
+use serde::{Deserialize, Serialize};
+
+/// One line of a worker's standard output.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Message {
+    /// Share that is done, from 0 to 1.
+    Progress(f64),
+    /// The last word: the recording is complete.
+    Done,
+    /// The last word: the input is wrong.
+    Input(String),
+    /// The last word: the run ended early.
+    Failed(String),
+}
+
+impl Message {
+    /// As one line.
+    pub(super) fn line(&self) -> serde_json::Result<String> {
+        Ok(serde_json::to_string(self)? + "\n")
+    }
+
+    /// What `line` says; nothing when a native library has written it.
+    pub(super) fn of(line: &str) -> Option<Self> {
+        serde_json::from_str(line.trim()).ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_message_is_one_line_that_reads_back() {
+        let why = "engine `mujoco`: \"half\n a µm\" too far".to_owned();
+        for (message, line) in [
+            (Message::Progress(0.25), "{\"progress\":0.25}\n"),
+            (Message::Done, "\"done\"\n"),
+            (Message::Input("no".into()), "{\"input\":\"no\"}\n"),
+            (Message::Failed(why), "{\"failed\":\"engine `mujoco`: \\\"half\\n a µm\\\" too far\"}\n"),
+        ] {
+            assert_eq!(message.line().unwrap(), line);
+            assert_eq!(Message::of(line), Some(message));
+        }
+        assert_eq!(Message::of("WARNING: a library speaks"), None);
+    }
+}

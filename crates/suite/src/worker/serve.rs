@@ -1,0 +1,84 @@
+//! The worker's side.
+use super::message::Message;
+use crate::engines::Engines;
+use crate::error::RunError;
+use crate::execute::run_here;
+use crate::job::slow_to;
+use crate::panicked::caught;
+use servobench_scenario::{EngineName, LoadError, Scenario};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// What a worker is told beside the text of the scenario.
+#[derive(Debug, Clone)]
+pub struct Order {
+    /// Name of the scenario.
+    pub name: String,
+    /// File that it came from: models are looked up from there.
+    pub path: Option<PathBuf>,
+    /// The engine.
+    pub engine: EngineName,
+    /// Durations that the moves are slowed to (s); empty: as they are.
+    pub durations: Vec<f64>,
+    /// Where the recording goes.
+    pub recording: PathBuf,
+}
+
+/// How a worker ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Served {
+    /// The recording is complete.
+    Done,
+    /// The input is wrong.
+    Input,
+    /// The run ended early; the recording is there as far as it came.
+    Failed,
+}
+
+/// Runs the scenario in `text` as `order` says, and tells the caller on `out`: progress, and at last how it ended.
+/// Warnings are not repeated: the caller has seen them.
+pub fn serve(order: &Order, text: &str, engines: &Engines, mut out: impl Write) -> Served {
+    // A caller that no longer listens has ended, and nobody needs this process any longer.
+    let mut say = |message: &Message| {
+        message.line().map_err(std::io::Error::from).and_then(|line| out.write_all(line.as_bytes())).ok();
+        out.flush().ok();
+    };
+    let mut progress = |share| say(&Message::Progress(share));
+    let ended =
+        caught(|| run(order, text, engines, &mut progress)).unwrap_or_else(|panic| Message::Failed(panic.to_string()));
+    say(&ended);
+    match ended {
+        Message::Done => Served::Done,
+        Message::Input(_) => Served::Input,
+        Message::Failed(_) | Message::Progress(_) => Served::Failed,
+    }
+}
+
+fn run(order: &Order, text: &str, engines: &Engines, progress: &mut dyn FnMut(f64)) -> Message {
+    let scenario = match read(order, text) {
+        Ok(scenario) => scenario,
+        Err(error) => return Message::Input(error.to_string()),
+    };
+    let installed = engines.get(order.engine).map_err(RunError::from);
+    let (recording, failure) = match installed.and_then(|installed| run_here(&scenario, installed.engine, progress)) {
+        Ok(recorded) => recorded,
+        Err(error) if error.is_input() => return Message::Input(error.to_string()),
+        Err(error) => return Message::Failed(error.to_string()),
+    };
+    match (failure, recording.write_parquet(&order.recording)) {
+        (Some(failure), _) => Message::Failed(failure.to_string()),
+        (None, Err(error)) => Message::Failed(error.to_string()),
+        (None, Ok(())) => Message::Done,
+    }
+}
+
+/// The scenario as the caller has it.
+fn read(order: &Order, text: &str) -> Result<Scenario, LoadError> {
+    let file = order.path.as_ref().map_or_else(|| format!("{}.toml", order.name), |path| path.display().to_string());
+    let folder = order.path.as_deref().and_then(Path::parent);
+    let mut scenario = servobench_scenario::parse(&file, text, folder)?.scenario;
+    scenario.name.clone_from(&order.name);
+    scenario.path.clone_from(&order.path);
+    slow_to(&mut scenario, &order.durations);
+    Ok(scenario)
+}

@@ -1,0 +1,100 @@
+//! The worker's side, called as a process would call it: what it says is what the same run here says of itself.
+use servobench_plant::Exact;
+use servobench_scenario::EngineName;
+use servobench_suite::worker::{Order, Served, serve};
+use servobench_suite::{Engines, Installed, Source, WorkerCommand, execute, jobs};
+use servobench_trace::Recording;
+use std::path::Path;
+
+const ENGINES: Engines =
+    Engines { exact: Some(Installed { engine: &Exact, isolated: false }), rapier: None, mujoco: None };
+
+/// With a bandwidth of 2 MHz at a rate of 1 kHz the axis leaves the finite numbers. The limit on jerk is not used: a
+/// warning.
+const WILD: &str = r#"
+[run]
+base_rate = "1 kHz"
+duration = "2 s"
+[axis]
+motion = "linear"
+[axis.motor_side]
+mass = "20 kg"
+[motor]
+kind = "ideal-source"
+[drive.velocity]
+rate = "1 kHz"
+bandwidth = "2 MHz"
+[drive.position]
+rate = "1 kHz"
+gain = "20 1/s"
+[setpoint]
+order = 2
+velocity = "1 m/s"
+acceleration = "1 m/s2"
+jerk = "1 m/s3"
+[[program]]
+move_to = "10 mm"
+"#;
+
+fn order(folder: &Path) -> Order {
+    Order {
+        name: "wild".into(),
+        path: None,
+        engine: EngineName::Exact,
+        durations: vec![],
+        recording: folder.join("wild.parquet"),
+    }
+}
+
+/// How it ended, and what it said last.
+fn served(order: &Order, text: &str) -> (Served, serde_json::Value) {
+    let mut out = Vec::new();
+    let end = serve(order, text, &ENGINES, &mut out);
+    let said = String::from_utf8(out).unwrap();
+    let last = said.lines().last().unwrap();
+    (end, serde_json::from_str(last).unwrap())
+}
+
+#[test]
+fn a_reason_and_a_recording_do_not_depend_on_where_the_run_happened() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario =
+        servobench_scenario::parse("wild.toml", WILD, None).unwrap_or_else(|error| panic!("{error}")).scenario;
+    let job = &jobs(vec![Source { scenario, text: WILD.into() }], &[])[0];
+    let nowhere = WorkerCommand { program: "none".into(), folder: "none".into(), patience: std::time::Duration::ZERO };
+    let here = execute(job, &ENGINES, &nowhere, &mut |_| {});
+    let reason = here.outcome.unwrap_err().to_string();
+    assert!(reason.contains("diverged"), "{reason}");
+
+    let order = order(folder.path());
+    let (end, said) = served(&order, WILD);
+    assert_eq!((end, &said), (Served::Failed, &serde_json::json!({ "failed": reason })));
+    let own = folder.path().join("here.parquet");
+    here.recording.unwrap().write_parquet(&own).unwrap();
+    assert!(std::fs::read(own).unwrap() == std::fs::read(&order.recording).unwrap(), "up to where it came");
+}
+
+#[test]
+fn a_run_that_comes_to_its_end_is_done() {
+    let folder = tempfile::tempdir().unwrap();
+    let order = Order { durations: vec![1.5], ..order(folder.path()) };
+    let (end, said) = served(&order, &WILD.replace("2 MHz", "20 Hz"));
+    assert_eq!((end, said), (Served::Done, "done".into()));
+    let recording = Recording::read_parquet(&order.recording).unwrap();
+    assert!((recording.moves[0].end - 1.5).abs() < 1e-12 && recording.about.scenario == "wild");
+}
+
+#[test]
+fn wrong_input_is_told_apart_from_a_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    let (end, said) = served(&order(folder.path()), &WILD.replace("20 kg", "-20 kg"));
+    assert_eq!(end, Served::Input);
+    assert!(said["input"].as_str().unwrap().contains("wild.toml:8:8"), "{said}");
+    // A move cannot be made in a hundredth of the time that its limits take.
+    let (end, said) = served(&Order { durations: vec![0.002], ..order(folder.path()) }, WILD);
+    assert_eq!(end, Served::Input);
+    assert!(said["input"].as_str().unwrap().contains("`duration`"), "{said}");
+    let (end, said) = served(&Order { engine: EngineName::Rapier, ..order(folder.path()) }, WILD);
+    assert_eq!(end, Served::Failed);
+    assert!(said["failed"].as_str().unwrap().contains("--features rapier"), "{said}");
+}
