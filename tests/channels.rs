@@ -1,16 +1,20 @@
 //! What a scenario can ask to record is what the loop records.
 use servobench_plant::Exact;
-use servobench_scenario::{CHANNELS, Scenario};
+use servobench_scenario::{CHANNELS, Disturbance, DisturbedBody, Scenario};
 use servobench_tests::{run, scenario_file};
 use std::collections::BTreeSet;
 
-/// The first ticks of axes that have everything between them: a synchronous motor with a table before the load, and an
-/// ideal source.
-fn axes() -> [Scenario; 2] {
-    ["demo/snap.toml", "lambrechts-snap.toml"].map(|file| {
+/// The first ticks of axes that have everything between them: a synchronous motor with a table before the load, an
+/// ideal source, a load that is pushed; and something that pushes the motor.
+fn axes() -> [Scenario; 3] {
+    ["demo/snap.toml", "lambrechts-snap.toml", "feed-axis-load-step.toml"].map(|file| {
         let mut scenario = scenario_file(file);
         scenario.duration = Some(1e-3);
         scenario.record.channels.clear();
+        if let Some(step) = scenario.disturbances.pop() {
+            let on = |on| Disturbance { on, start: 0.0, ..step.clone() };
+            scenario.disturbances = vec![on(DisturbedBody::Motor), on(DisturbedBody::Load)];
+        }
         scenario
     })
 }
@@ -42,4 +46,17 @@ fn each_channel_can_be_recorded_alone() {
             scenario.record.channels.clear();
         }
     }
+}
+
+/// Oracle: the scenario file, a step of 300 N from 0.2 s to 0.7 s.
+#[test]
+fn a_disturbance_is_recorded_in_the_rows_in_which_it_acts() {
+    let mut scenario = scenario_file("feed-axis-load-step.toml");
+    scenario.duration = Some(0.8);
+    let recording = run(&scenario, &Exact);
+    let force = recording.channel("disturbance.load").unwrap();
+    let acts = recording.index_at(0.2)..recording.index_at(0.7);
+    let expected = |row: usize| if acts.contains(&row) { 300.0_f64 } else { 0.0 };
+    assert!((0..recording.len()).all(|row| (force[row] - expected(row)).abs() < f64::MIN_POSITIVE));
+    assert!(recording.channel("disturbance.motor").is_none(), "nothing pushes the motor");
 }
