@@ -72,7 +72,7 @@ table! {
     pub(crate) struct Run requires ["base_rate"] {
         /// One tick of mechanics; every task rate divides it.
         base_rate: Rate = "16 kHz",
-        /// Length of the run; the program and half a second unless given.
+        /// Length of the run, 1e6 s at most; the program and half a second unless given.
         duration: f64 = positive(Plain(&TIME), "2 s"),
     }
 }

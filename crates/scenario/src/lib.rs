@@ -35,6 +35,10 @@ pub use channel::CHANNELS;
 pub use diagnostic::{Diagnostic, Invalid, LoadError};
 pub use load::{Loaded, load, parse};
 pub use models::{embedded_demo, embedded_models};
-pub use scenario::*;
+pub use scenario::{
+    Axis, AxisMechanics, Body, Coupling, CurrentLoop, Disturbance, DisturbedBody, Drive, EffortFeedforward, Encoder,
+    EngineName, Estimate, Feedback, Feedforward, IdealSource, Initial, LONGEST_RUN, Limit, Measure, Mjcf, Motion,
+    Motor, MoveStep, Pmsm, PositionLoop, Record, Scenario, SourceOutput, Step, Target, VelocityLoop,
+};
 pub use schema::json_schema;
 pub use source::{SourceId, Sources};

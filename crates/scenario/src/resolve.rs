@@ -1,6 +1,7 @@
 //! From the tables of a file to a [`Scenario`]: defaults, derived values, and the rules that concern several keys.
 
 mod axis;
+mod disturbance;
 mod drive;
 mod estimate;
 mod motor;
@@ -8,8 +9,8 @@ mod program;
 
 use crate::diagnostic::Report;
 use crate::field::Slot;
-use crate::file::{File, MotorKind};
-use crate::scenario::{EngineName, Initial, Limit, Measure, Record, Scenario};
+use crate::file::{File, MotorKind, Run};
+use crate::scenario::{EngineName, LONGEST_RUN, Limit, Measure, Record, Scenario};
 use crate::source::{At, SourceId, Sources, Span};
 use servobench_base::Rate;
 
@@ -27,7 +28,11 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
     let source = motor.and_then(|motor| motor::resolve(motor, report));
     let drive = drive::resolve(file, &drive::Known { base_rate, axis: moved.as_ref(), motor: source.as_ref() }, report);
     let program = program::steps(file, base_rate, report);
-    let disturbances = program::disturbances(file, report);
+    let duration = run.and_then(|run| duration(run, report));
+    let fixed = is_prescribed.then(|| disturbance::Fixed::of(moved.as_ref()));
+    let timing = disturbance::Timing { base_rate, duration };
+    let disturbances = disturbance::disturbances(file, &timing, fixed, report);
+    let initial = disturbance::initial(file, fixed, report);
     let record = record(file, base_rate, report);
     let limits = limits(file, report);
     if is_prescribed && let Some(span) = file.drive.span() {
@@ -45,16 +50,13 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
         path: None,
         engines,
         base_rate: base_rate?,
-        duration: run.and_then(|run| run.duration.given().copied()),
+        duration,
         axis: moved?,
         motor: source?,
         drive: drive?,
         program: program?,
         disturbances: disturbances?,
-        initial: file.initial.given().map_or_else(Initial::default, |initial| Initial {
-            load_position: initial.load_position.given().copied().unwrap_or_default(),
-            load_velocity: initial.load_velocity.given().copied().unwrap_or_default(),
-        }),
+        initial,
         record: record?,
         measure: file.measure.given().map_or_else(Measure::default, |measure| Measure {
             window: measure.window.given().copied(),
@@ -75,6 +77,15 @@ fn distinct(engines: &[At<EngineName>], report: &mut Report) -> Vec<EngineName> 
         }
     }
     all
+}
+
+/// Length of the run, when it is given (s).
+fn duration(run: &Run, report: &mut Report) -> Option<f64> {
+    let given = run.duration.at()?;
+    if given.value > LONGEST_RUN {
+        report.error(given.span, format!("a run lasts {LONGEST_RUN} s at most, got {} s", given.value), "");
+    }
+    Some(given.value)
 }
 
 fn record(file: &File, base_rate: Option<Rate>, report: &mut Report) -> Option<Record> {

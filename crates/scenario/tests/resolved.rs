@@ -1,6 +1,7 @@
 //! What a scenario becomes: derived gains, merged bodies, overridden models.
 use servobench_scenario::{
-    AxisMechanics, Body, EffortFeedforward, EngineName, Feedback, Limit, Motion, Motor, Scenario, Step, Target, parse,
+    AxisMechanics, Body, EffortFeedforward, EngineName, Feedback, Limit, Motion, Motor, MoveStep, Scenario,
+    SourceOutput, Step, Target, parse,
 };
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
@@ -149,10 +150,31 @@ fn the_emps_controller_in_newtons() {
     assert!(drive.feedforward.velocity == 0.0 && drive.feedforward.effort == EffortFeedforward::Off);
     let Motor::IdealSource(source) = &scenario.motor else { panic!("an ideal source") };
     assert!(same(source.gain, 35.1507) && same(source.limit, 10.0));
+    assert_eq!(source.output, SourceOutput::Voltage);
     let [body] = bodies(&scenario) else { panic!("one body") };
     assert!(same(body.inertia, 95.1089) && same(body.viscous, 203.5034) && same(body.bias, -3.1648));
     assert!(same(body.coulomb, 20.3935) && same(body.breakaway, body.coulomb), "no static friction: as Coulomb");
     assert_eq!(scenario.engines, [EngineName::Exact, EngineName::Rapier, EngineName::Mujoco]);
+}
+
+/// Oracle: 12 kHz ticks are 1/12000 s apart, whatever decimal fraction is typed for it; 16 000 samples of the typed time
+/// would be 6e-7 samples short, and set-points would switch a tick late.
+#[test]
+fn a_sample_time_is_whole_ticks_to_the_bit() {
+    for (typed, ticks) in
+        [("83.33333333 us", 1.0), ("0.0833333333333 ms", 1.0), ("249.9999999 us", 3.0), ("1 ms", 12.0)]
+    {
+        let text = format!(
+            "[run]\nbase_rate = \"12 kHz\"\n[axis]\nmotion = \"linear\"\n[motor]\nkind = \"prescribed\"\n\
+             [setpoint]\norder = 2\nvelocity = \"1 m/s\"\nacceleration = \"1 m/s2\"\nsample_time = \"{typed}\"\n\
+             [[program]]\nmove_to = \"1 m\"\n"
+        );
+        let scenario = scenario(&text);
+        let [Step::Move(MoveStep { sample_time: Some(time), .. })] = scenario.program.as_slice() else {
+            panic!("{:?}", scenario.program)
+        };
+        assert_eq!(time.to_bits(), f64::to_bits(ticks / 12e3), "{typed}: {time} s");
+    }
 }
 
 #[test]

@@ -72,17 +72,23 @@ impl Bench {
         }
 
         let rotary = |motion| motion == scenario::Motion::Rotary;
+        let effort_unit = if rotary(scenario.axis.motor_motion) { "N m" } else { "N" };
         let equipment = Equipment {
             axis_unit: if rotary(scenario.axis.motion) { "rad" } else { "m" },
-            effort_unit: if rotary(scenario.axis.motor_motion) { "N m" } else { "N" },
+            effort_unit,
             load_effort_unit: if rotary(scenario.axis.motion) { "N m" } else { "N" },
             disturbed: [scenario::DisturbedBody::Motor, scenario::DisturbedBody::Load]
                 .map(|body| scenario.disturbances.iter().any(|disturbance| disturbance.on == body)),
             table: bodies.len() == 3,
-            amplifier: match power {
-                PowerStage::Pmsm { .. } => Some(Amplifier::Current),
-                PowerStage::Ideal { .. } => Some(Amplifier::Ideal),
-                PowerStage::Off => None,
+            amplifier: match (&power, &scenario.motor) {
+                (PowerStage::Off, _) | (_, scenario::Motor::Prescribed) => None,
+                (_, scenario::Motor::Pmsm(_)) => Some(Amplifier::Current),
+                (_, scenario::Motor::IdealSource(source)) => Some(Amplifier::Ideal {
+                    output_unit: match source.output {
+                        scenario::SourceOutput::Voltage => "V",
+                        scenario::SourceOutput::Effort => effort_unit,
+                    },
+                }),
             },
         };
         let rates = WriterRates {

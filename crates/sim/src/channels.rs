@@ -51,8 +51,8 @@ pub(crate) struct Equipment {
 pub(crate) enum Amplifier {
     /// The currents of a synchronous motor.
     Current,
-    /// An ideal source.
-    Ideal,
+    /// An ideal source, whose output has this unit.
+    Ideal { output_unit: &'static str },
 }
 
 /// Rates of the writers.
@@ -71,7 +71,10 @@ fn all(equipment: &Equipment, rates: &WriterRates) -> [(bool, ChannelSpec); COUN
     let u = equipment.axis_unit;
     let (e, drive) = (equipment.effort_unit, equipment.amplifier.is_some());
     let current = equipment.amplifier == Some(Amplifier::Current);
-    let ideal = equipment.amplifier == Some(Amplifier::Ideal);
+    let output_unit = match equipment.amplifier {
+        Some(Amplifier::Ideal { output_unit }) => Some(output_unit),
+        _ => None,
+    };
     let per = |unit: &str, power: &str| format!("{unit}/s{power}");
     let channel = |there: bool, name: &str, unit: String, writer: &str, rate: Rate| {
         (there, ChannelSpec { name: name.into(), unit, writer: writer.into(), rate })
@@ -109,7 +112,13 @@ fn all(equipment: &Equipment, rates: &WriterRates) -> [(bool, ChannelSpec); COUN
         current_loop("voltage.d", "V"),
         current_loop("voltage.q", "V"),
         current_loop("voltage.magnitude", "V"),
-        channel(ideal, "command.output", "V".into(), "power stage", rates.base),
+        channel(
+            output_unit.is_some(),
+            "command.output",
+            output_unit.unwrap_or_default().into(),
+            "power stage",
+            rates.base,
+        ),
         current_loop("saturation.voltage", ""),
         channel(drive, "saturation.current", String::new(), "velocity loop", rates.velocity),
         disturbance(on_motor, "disturbance.motor", e),

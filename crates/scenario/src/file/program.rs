@@ -60,15 +60,15 @@ table! {
     pub(crate) struct Disturbance requires ["on"] {
         /// Body it acts on.
         on: DisturbedBody = (),
-        /// First instant; 0 unless given.
+        /// Start: it acts from the first tick that is not before it; 0 unless given.
         start: f64 = not_negative(Plain(&TIME), "0.5 s"),
-        /// How long it lasts; to the end unless given.
+        /// How long it lasts: it acts up to the last tick before its end; to the end of the run unless given.
         duration: f64 = positive(Plain(&TIME), "0.2 s"),
         /// Amplitude, where the body moves along a line.
         force: f64 = any(Plain(&FORCE), "200 N"),
         /// Amplitude, where the body turns.
         torque: f64 = any(Plain(&TORQUE), "2 Nm"),
-        /// Frequency of a sine that starts at zero.
+        /// Frequency of a sine that is zero at its first tick.
         frequency: f64 = positive(Plain(&FREQUENCY), "40 Hz"),
     }
 }

@@ -4,7 +4,7 @@ use crate::field::{Either, Slot};
 use crate::file;
 use crate::file::MotorKind;
 use crate::resolve::{Way, need, one_way, refuse};
-use crate::scenario::{Encoder, IdealSource, Motion, Motor, Pmsm};
+use crate::scenario::{Encoder, IdealSource, Motion, Motor, Pmsm, SourceOutput};
 use crate::source::Span;
 use std::f64::consts::TAU;
 
@@ -118,7 +118,8 @@ fn ideal_source(motor: &file::Motor, encoder: Option<Encoder>, report: &mut Repo
             }
         },
     };
-    Some(IdealSource { gain: gain.unwrap_or(1.0), limit, encoder: encoder? })
+    let output = if gain.is_some() { SourceOutput::Voltage } else { SourceOutput::Effort };
+    Some(IdealSource { gain: gain.unwrap_or(1.0), output, limit, encoder: encoder? })
 }
 
 fn encoder(slot: &Slot<file::Encoder>, report: &mut Report) -> Option<Encoder> {

@@ -1,12 +1,13 @@
-//! `[setpoint]`, `[[program]]` and `[[disturbance]]` to steps and efforts.
+//! `[setpoint]` and `[[program]]` to steps.
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
 use crate::file::File;
 use crate::resolve::{Way, one_way};
-use crate::scenario::{Disturbance, DisturbedBody, Motion, MoveStep, Step, Target};
+use crate::scenario::{LONGEST_RUN, MoveStep, Step, Target};
 use crate::source::{At, Span};
 use servobench_base::Rate;
+use std::collections::BTreeSet;
 
 /// Keys of the limits, velocity first.
 const LIMITS: [&str; 4] = ["velocity", "acceleration", "jerk", "snap"];
@@ -23,11 +24,12 @@ struct Profile<'a> {
 #[derive(Default)]
 struct Said {
     missing: Vec<&'static str>,
-    places: Vec<Span>,
+    places: BTreeSet<Span>,
 }
 
 pub(super) fn steps(file: &File, base_rate: Option<Rate>, report: &mut Report) -> Option<Vec<Step>> {
     let Some(program) = file.program.optional().ok()? else { return Some(Vec::new()) };
+    refuse_endless(&program.0, report);
     let mut said = Said::default();
     let steps: Vec<_> = program
         .0
@@ -35,6 +37,21 @@ pub(super) fn steps(file: &File, base_rate: Option<Rate>, report: &mut Report) -
         .map(|step| self::step(&step.value, file.setpoint.given(), base_rate, &mut said, report))
         .collect();
     steps.into_iter().collect()
+}
+
+/// Objects to the step whose pauses and given durations lead beyond the longest run. How long the other moves last is
+/// known when they are planned.
+fn refuse_endless(program: &[At<file::ProgramStep>], report: &mut Report) {
+    let mut end = 0.0;
+    for step in program {
+        let Some(length) = step.value.wait.at().or(step.value.duration.at()) else { continue };
+        end += length.value;
+        if end > LONGEST_RUN {
+            let message = format!("the program would last {end} s at least, a run lasts {LONGEST_RUN} s at most");
+            report.error(length.span, message, "");
+            return;
+        }
+    }
 }
 
 fn step(
@@ -152,9 +169,11 @@ fn either<'a, T>(own: &'a Slot<T>, default: Option<&'a Slot<T>>) -> &'a Slot<T> 
 
 /// A sample time that must be a whole number of base ticks.
 fn whole_ticks(time: At<f64>, base_rate: Option<Rate>, said: &mut Said, report: &mut Report) -> Option<f64> {
-    let ticks = time.value * f64::from(base_rate?.hertz());
+    let hertz = f64::from(base_rate?.hertz());
+    let ticks = time.value * hertz;
     if ticks.round() >= 1.0 && (ticks - ticks.round()).abs() <= 1e-9 * ticks {
-        return Some(time.value);
+        // Not as typed: what 83.33333333 us lacks of a tick at 12 kHz would add up over the samples of a move.
+        return Some(ticks.round() / hertz);
     }
     let in_microseconds = |ticks: f64| ticks * base_rate.map_or(0.0, Rate::period) * 1e6;
     let near = format!("{} us", in_microseconds(ticks.round().max(1.0)));
@@ -172,42 +191,8 @@ impl Said {
     }
 
     fn once(&mut self, place: Span, say: impl FnOnce(&mut Report), report: &mut Report) {
-        if !self.places.contains(&place) {
-            self.places.push(place);
+        if self.places.insert(place) {
             say(report);
         }
     }
-}
-
-pub(super) fn disturbances(file: &File, report: &mut Report) -> Option<Vec<Disturbance>> {
-    let Some(all) = file.disturbance.optional().ok()? else { return Some(Vec::new()) };
-    let resolved: Vec<_> = all.0.iter().map(|one| disturbance(&one.value, report)).collect();
-    resolved.into_iter().collect()
-}
-
-fn disturbance(given: &file::Disturbance, report: &mut Report) -> Option<Disturbance> {
-    let on = *given.on.given()?;
-    let (motion, body) = match on {
-        DisturbedBody::Motor => (report.motor?, "motor"),
-        DisturbedBody::Load => (report.axis?, "load"),
-    };
-    let (slot, other, right, wrong) = match motion {
-        Motion::Linear => (&given.force, &given.torque, "force", "torque"),
-        Motion::Rotary => (&given.torque, &given.force, "torque", "force"),
-    };
-    if let Some(span) = other.span() {
-        let moves = if motion == Motion::Linear { "moves along a line" } else { "turns" };
-        report.error(span, format!("the {body} {moves} and feels no `{wrong}`"), format!("give a `{right}`"));
-        return None;
-    }
-    if matches!(slot, Slot::Absent) {
-        report.missing("disturbance", right, given.span);
-    }
-    Some(Disturbance {
-        on,
-        start: given.start.given().copied().unwrap_or(0.0),
-        duration: given.duration.given().copied().unwrap_or(f64::INFINITY),
-        effort: *slot.given()?,
-        frequency: given.frequency.given().copied(),
-    })
 }

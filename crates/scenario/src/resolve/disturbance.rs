@@ -1,0 +1,119 @@
+//! `[[disturbance]]` and `[initial]`: what takes the axis from its way.
+use crate::diagnostic::Report;
+use crate::field::Slot;
+use crate::file;
+use crate::file::File;
+use crate::scenario::{Axis, AxisMechanics, Disturbance, DisturbedBody, Initial, Motion};
+use servobench_base::Rate;
+
+/// When ticks are and how long the run is (s), as far as the file says it.
+pub(super) struct Timing {
+    pub(super) base_rate: Option<Rate>,
+    pub(super) duration: Option<f64>,
+}
+
+/// What follows the set-point exactly, whatever acts on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Fixed {
+    /// The motor.
+    Motor,
+    /// The only body, which is motor and load.
+    Everything,
+}
+
+impl Fixed {
+    /// Of an axis whose motion is prescribed.
+    pub(super) fn of(axis: Option<&Axis>) -> Self {
+        let has_one_body = axis.is_some_and(|axis| match &axis.mechanics {
+            AxisMechanics::Bodies(bodies) => bodies.len() == 1,
+            AxisMechanics::Mjcf(mjcf) => mjcf.motor_joint == mjcf.load_joint,
+        });
+        if has_one_body { Self::Everything } else { Self::Motor }
+    }
+}
+
+/// What to do about a load that cannot move on its own.
+const GIVE_STIFFNESS: &str = "give `stiffness` in `[axis.load]`, or a motor that is not prescribed";
+
+pub(super) fn disturbances(
+    file: &File,
+    timing: &Timing,
+    fixed: Option<Fixed>,
+    report: &mut Report,
+) -> Option<Vec<Disturbance>> {
+    let Some(all) = file.disturbance.optional().ok()? else { return Some(Vec::new()) };
+    let resolved: Vec<_> = all.0.iter().map(|one| disturbance(&one.value, timing, fixed, report)).collect();
+    resolved.into_iter().collect()
+}
+
+fn disturbance(
+    given: &file::Disturbance,
+    timing: &Timing,
+    fixed: Option<Fixed>,
+    report: &mut Report,
+) -> Option<Disturbance> {
+    let on = given.on.at()?;
+    let (motion, body) = match on.value {
+        DisturbedBody::Motor => (report.motor?, "motor"),
+        DisturbedBody::Load => (report.axis?, "load"),
+    };
+    match (fixed, on.value) {
+        (Some(_), DisturbedBody::Motor) => {
+            report.error(on.span, "the motor follows the set-point exactly and feels no disturbance", "");
+        }
+        (Some(Fixed::Everything), DisturbedBody::Load) => {
+            let message = "the load is rigid with a motor that follows the set-point exactly and feels no disturbance";
+            report.error(on.span, message, GIVE_STIFFNESS);
+        }
+        (Some(Fixed::Motor) | None, _) => {}
+    }
+    let (slot, other, right, wrong) = match motion {
+        Motion::Linear => (&given.force, &given.torque, "force", "torque"),
+        Motion::Rotary => (&given.torque, &given.force, "torque", "force"),
+    };
+    if let Some(span) = other.span() {
+        let moves = if motion == Motion::Linear { "moves along a line" } else { "turns" };
+        report.error(span, format!("the {body} {moves} and feels no `{wrong}`"), format!("give a `{right}`"));
+        return None;
+    }
+    if matches!(slot, Slot::Absent) {
+        report.missing("disturbance", right, given.span);
+    }
+    refuse_idle(given, timing, report);
+    Some(Disturbance {
+        on: on.value,
+        start: given.start.given().copied().unwrap_or(0.0),
+        duration: given.duration.given().copied().unwrap_or(f64::INFINITY),
+        effort: *slot.given()?,
+        frequency: given.frequency.given().copied(),
+    })
+}
+
+/// Objects to a disturbance that acts on no tick of the run.
+fn refuse_idle(given: &file::Disturbance, timing: &Timing, report: &mut Report) {
+    if let (Some(start), Some(duration)) = (given.start.at(), timing.duration)
+        && start.value >= duration
+    {
+        report.error(start.span, format!("the run is over by then: it lasts {duration} s"), "");
+        return;
+    }
+    let (Some(duration), Some(base_rate)) = (given.duration.at(), timing.base_rate) else { return };
+    let start = given.start.given().copied().unwrap_or(0.0);
+    if base_rate.tick_at(start) == base_rate.tick_at(start + duration.value) {
+        let message =
+            format!("there is no tick between its start and its end, ticks are {} s apart", base_rate.period());
+        report.error(duration.span, message, "");
+    }
+}
+
+pub(super) fn initial(file: &File, fixed: Option<Fixed>, report: &mut Report) -> Initial {
+    let Some(initial) = file.initial.given() else { return Initial::default() };
+    for slot in [&initial.load_position, &initial.load_velocity] {
+        if let (Some(Fixed::Everything), Some(span)) = (fixed, slot.span()) {
+            let message = "the load is rigid with a motor that follows the set-point exactly, from zero";
+            report.error(span, message, GIVE_STIFFNESS);
+        }
+    }
+    let value = |slot: &Slot<f64>| slot.given().copied().unwrap_or_default();
+    Initial { load_position: value(&initial.load_position), load_velocity: value(&initial.load_velocity) }
+}

@@ -1,0 +1,78 @@
+//! The mechanics: bodies and what couples them.
+use std::path::PathBuf;
+
+/// Whether a coordinate is a length or an angle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Motion {
+    /// m, N, kg.
+    Linear,
+    /// rad, N·m, kg·m².
+    Rotary,
+}
+
+/// The mechanics of the axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// Coordinate of the load.
+    pub motion: Motion,
+    /// Coordinate of the motor.
+    pub motor_motion: Motion,
+    /// Axis coordinate per motor coordinate: lead/2π (m/rad), 1/gear ratio, or 1.
+    pub transmission: f64,
+    /// The bodies.
+    pub mechanics: AxisMechanics,
+}
+
+/// Where the bodies come from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum AxisMechanics {
+    /// Lumped bodies, the motor's first. Bodies that were coupled rigidly are merged already, the rotor's inertia is in.
+    Bodies(Vec<Body>),
+    /// A user's own MJCF file.
+    Mjcf(Mjcf),
+}
+
+/// One lumped body; in the motor coordinate for the first, in the axis coordinate for the others.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    /// `motor`, `table` or `load`.
+    pub name: &'static str,
+    /// Mass (kg) or inertia (kg·m²).
+    pub inertia: f64,
+    /// Coupling to the body before it (axis coordinate); `None` for the first body only.
+    pub coupling: Option<Coupling>,
+    /// Viscous friction (N·s/m or N·m·s/rad).
+    pub viscous: f64,
+    /// Coulomb friction (N or N·m).
+    pub coulomb: f64,
+    /// Breakaway friction, at least `coulomb` (N or N·m).
+    pub breakaway: f64,
+    /// Stribeck velocity (m/s or rad/s); 0 for an immediate step.
+    pub stribeck_velocity: f64,
+    /// Constant resisting effort (N or N·m).
+    pub bias: f64,
+}
+
+/// Spring and damper (axis coordinate).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coupling {
+    /// N/m or N·m/rad.
+    pub stiffness: f64,
+    /// N·s/m or N·m·s/rad.
+    pub damping: f64,
+}
+
+/// A user's own MJCF file and the parts of it that are the axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mjcf {
+    /// Text of the file.
+    pub xml: String,
+    /// The file.
+    pub path: PathBuf,
+    /// Motor joint.
+    pub motor_joint: String,
+    /// Load joint.
+    pub load_joint: String,
+    /// Actuator.
+    pub actuator: String,
+}
