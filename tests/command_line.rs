@@ -419,3 +419,16 @@ fn the_bare_demo_runs_on_the_embedded_engines() {
         assert_eq!(engines.iter().filter(|name| *name == engine).count(), 2, "{engines:?}");
     }
 }
+
+#[test]
+fn the_scenario_in_the_readme_passes() {
+    let readme = fs::read_to_string(repository().join("README.md")).unwrap();
+    let (_, rest) = readme.split_once("```toml\n").unwrap();
+    let (text, _) = rest.split_once("```").unwrap();
+    let lines = text.lines().filter(|line| !line.is_empty()).count();
+    assert!(lines <= 20, "the README promises a short scenario: {lines} lines");
+    let room = folder(&[("readme.toml", text)]);
+    let output =
+        servobench(&["run", room.path().join("readme.toml").to_str().unwrap(), "--out", room.path().to_str().unwrap()]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+}
