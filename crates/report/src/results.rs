@@ -161,10 +161,13 @@ impl RunResult {
         result
     }
 
-    /// A run that could not be carried out, with what was recorded until then.
+    /// A run that could not be carried out and why, with what was recorded and measured until then.
     #[must_use]
-    pub fn error(run: RunIdentity, recording: Option<&Recording>, metrics: &Metrics, reason: String) -> Self {
-        Self { reasons: vec![reason], ..Self::of(run, recording, metrics) }
+    pub fn error(run: RunIdentity, until_then: Option<(&Recording, &Metrics)>, reasons: Vec<String>) -> Self {
+        let nothing = Metrics::default();
+        let (recording, metrics) =
+            until_then.map_or((None, &nothing), |(recording, metrics)| (Some(recording), metrics));
+        Self { reasons, ..Self::of(run, recording, metrics) }
     }
 
     fn of(run: RunIdentity, recording: Option<&Recording>, metrics: &Metrics) -> Self {

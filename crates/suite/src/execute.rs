@@ -9,15 +9,24 @@ use servobench_scenario::Scenario;
 use servobench_sim::Bench;
 use servobench_trace::Recording;
 
-/// What a run gave.
+/// A run that came to its end.
 #[derive(Debug)]
-pub struct Report {
-    /// Everything recorded, as far as it came.
-    pub recording: Option<Recording>,
+pub struct Run {
+    /// Everything recorded.
+    pub recording: Recording,
     /// What was measured, judged.
     pub metrics: Metrics,
-    /// The verdict, or why there is none.
-    pub outcome: Result<Verdict, RunError>,
+    /// The verdict.
+    pub verdict: Verdict,
+}
+
+/// A run without a verdict.
+#[derive(Debug)]
+pub struct Broken {
+    /// Why there is none.
+    pub error: RunError,
+    /// What was recorded and measured until then.
+    pub until_then: Option<(Recording, Metrics)>,
 }
 
 /// A recording, and why it ended early if it did.
@@ -27,17 +36,24 @@ pub(crate) type Recorded = (Recording, Option<RunError>);
 ///
 /// A panic of the engine or of the measures goes through: [`map_in_parallel`](crate::map_in_parallel) keeps it from
 /// the other jobs.
-pub fn execute(job: &Job, engines: &Engines, worker: &WorkerCommand, progress: &mut dyn FnMut(f64)) -> Report {
-    let ready = limits(&job.scenario).map_err(RunError::from);
-    let recorded = ready.and_then(|limits| Ok((limits, recorded(job, engines, worker, progress)?)));
-    let (limits, (recording, failure)) = match recorded {
-        Ok(recorded) => recorded,
-        Err(error) => return Report { recording: None, metrics: Metrics::default(), outcome: Err(error) },
-    };
+///
+/// # Errors
+/// [`Broken`], with the recording as far as it came.
+pub fn execute(
+    job: &Job,
+    engines: &Engines,
+    worker: &WorkerCommand,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Run, Box<Broken>> {
+    let broken = |error, until_then| Box::new(Broken { error, until_then });
+    let limits = limits(&job.scenario).map_err(|error| broken(error.into(), None))?;
+    let (recording, failure) = recorded(job, engines, worker, progress).map_err(|error| broken(error, None))?;
     let asked = &job.scenario.measure;
     let mut metrics = measure(&recording, &Question { window: asked.window, from: asked.from, mode: asked.mode });
-    let outcome = failure.map_or_else(|| Ok(metrics.judge(&limits)), Err);
-    Report { recording: Some(recording), metrics, outcome }
+    match failure {
+        Some(failure) => Err(broken(failure, Some((recording, metrics)))),
+        None => Ok(Run { verdict: metrics.judge(&limits), recording, metrics }),
+    }
 }
 
 fn recorded(

@@ -13,7 +13,7 @@ pub mod worker;
 pub use compare::{CompareError, only_setpoints_differ, to_equal_duration};
 pub use engines::{EngineMissing, Engines, Installed};
 pub use error::RunError;
-pub use execute::{Report, execute};
+pub use execute::{Broken, Run, execute};
 pub use job::{Job, Source, jobs};
 pub use limits::channel_limits;
 pub use panicked::Panicked;

@@ -70,20 +70,22 @@ fn taken<'a, T, R>(
     limit: u64,
     memory_of: &impl Fn(&T) -> u64,
 ) -> Option<(usize, &'a T, u64)> {
-    let mut desk = locked(desk);
-    let index = desk.next;
+    let index = {
+        let mut desk = locked(desk);
+        desk.next += 1;
+        desk.next - 1
+    };
     let item = items.get(index)?;
-    desk.next += 1;
-    // More than there is for all: it has to do with that, alone.
+    // What needs more than there is for all has to do with that, alone.
     let memory = caught(|| memory_of(item)).unwrap_or(limit).min(limit);
     let mut desk = returned
-        .wait_while(desk, |desk| desk.memory.saturating_add(memory) > limit)
+        .wait_while(locked(desk), |desk| desk.memory.saturating_add(memory) > limit)
         .unwrap_or_else(PoisonError::into_inner);
     desk.memory += memory;
     Some((index, item, memory))
 }
 
-/// The lock is never held while foreign code runs that could leave a half-done change behind.
+/// The lock is never held while foreign code runs: nothing can be left half done.
 fn locked<R>(desk: &Mutex<Desk<R>>) -> MutexGuard<'_, Desk<R>> {
     desk.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -3,7 +3,7 @@
 //! ```text
 //! servobench worker --engine <name> --recording <file> --name <scenario> [--path <file>] [--durations <s>,<s>…]
 //! stdin:  text of the scenario
-//! stdout: one JSON value on each line: {"progress": 0.25} …, at the end "done", {"input": "<why>"} or {"failed": "<why>"}
+//! stdout: JSON lines, {"progress": 0.25} …, and at last {"end": "done" or {"input": "<why>"} or {"failed": "<why>"}}
 //! exit code: 0 done, 2 the input is wrong, 3 ended early (the recording is there as far as it came)
 //! ```
 //! What the worker says of its end is what the run is reported with, so that a reason does not depend on where a run
@@ -15,7 +15,8 @@ mod message;
 mod serve;
 
 pub(crate) use call::call;
-pub use serve::{Order, Served, serve};
+pub use message::End;
+pub use serve::{Order, serve};
 
 use servobench_trace::TraceError;
 use std::io;

@@ -2,7 +2,7 @@
 use servobench_plant::{BodyState, Engine, Input, Mechanics, MechanicsError, MechanicsSetup};
 use servobench_scenario::EngineName;
 use servobench_suite::{
-    AtATime, Engines, Installed, Job, Report, RunError, Source, WorkerCommand, WorkerError, execute, jobs,
+    AtATime, Broken, Engines, Installed, Job, RunError, Source, WorkerCommand, WorkerError, execute, jobs,
     map_in_parallel,
 };
 use std::path::Path;
@@ -77,8 +77,8 @@ fn an_engine_that_panics_costs_its_run_only() {
     let limit = AtATime { jobs: 2, memory: u64::MAX };
     let reports = map_in_parallel(&jobs, limit, Job::memory, |job| execute(job, &ENGINES, &worker, &mut |_| {}));
     for k in [0, 2] {
-        let report = reports[k].as_ref().unwrap();
-        assert!(report.outcome.is_ok() && report.recording.as_ref().unwrap().len() == 101);
+        let run = reports[k].as_ref().unwrap().as_ref().unwrap();
+        assert!(run.verdict.passed() && run.recording.len() == 101);
     }
     assert_eq!(reports[1].as_ref().unwrap_err().words, "tick 50 is too much");
 }
@@ -87,20 +87,21 @@ fn an_engine_that_panics_costs_its_run_only() {
 mod stub {
     use super::*;
 
-    /// The report of a worker that does as this shell script says.
-    fn report_of(script: &str, patience: Duration) -> Report {
+    /// What comes of a worker that does as this shell script says.
+    fn broken_by(script: &str, patience: Duration) -> Box<Broken> {
         let folder = tempfile::tempdir().unwrap();
         let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/stub/worker.sh");
         let command = WorkerCommand { patience, ..worker(&program, folder.path()) };
         let mut job = slide(&[EngineName::Mujoco]).remove(0);
         job.text = script.into();
-        let report = execute(&job, &ENGINES, &command, &mut |_| {});
+        let broken = execute(&job, &ENGINES, &command, &mut |_| {}).unwrap_err();
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "nothing stays behind");
-        report
+        assert!(broken.until_then.is_none());
+        broken
     }
 
     fn error_of(script: &str) -> RunError {
-        report_of(script, Duration::from_mins(1)).outcome.unwrap_err()
+        broken_by(script, Duration::from_mins(1)).error
     }
 
     #[test]
@@ -115,7 +116,7 @@ mod stub {
     #[test]
     fn a_worker_that_hangs_is_ended() {
         for hanging in ["exec sleep 3600", "echo '{\"progress\":0.5}'; exec sleep 3600", "exec >&-; exec sleep 3600"] {
-            let error = report_of(hanging, Duration::from_millis(100)).outcome.unwrap_err();
+            let error = broken_by(hanging, Duration::from_millis(100)).error;
             assert!(matches!(error, RunError::Worker(WorkerError::Stalled { .. })), "{hanging}: {error}");
             assert!(error.to_string().contains("no progress for 0.1 s"), "{error}");
         }
@@ -125,17 +126,17 @@ mod stub {
     #[test]
     fn the_reason_is_the_workers_last_word_alone() {
         let error = error_of(
-            "echo 'a warning' >&2; echo 'the library speaks'; echo '{\"failed\":\"at 0.1 s: too far\"}'; exit 3",
+            "echo 'a warning' >&2; echo 'the library speaks'; echo '{\"end\":{\"failed\":\"at 0.1 s: too far\"}}'; exit 3",
         );
         assert!(matches!(&error, RunError::Worker(WorkerError::Failed(why)) if why == "at 0.1 s: too far"), "{error}");
         assert_eq!(error.to_string(), "at 0.1 s: too far");
-        let error = error_of("echo '{\"input\":\"no joint `x`\"}'; exit 2");
+        let error = error_of("echo '{\"end\":{\"input\":\"no joint `x`\"}}'; exit 2");
         assert!(error.is_input() && error.to_string() == "no joint `x`", "{error}");
     }
 
     #[test]
     fn done_without_a_recording_is_not_done() {
-        let error = error_of("echo '\"done\"'");
+        let error = error_of("echo '{\"end\":\"done\"}'");
         assert!(matches!(error, RunError::Worker(WorkerError::Recording(_))), "{error}");
     }
 
@@ -143,8 +144,8 @@ mod stub {
     fn a_program_that_is_not_there_is_named() {
         let folder = tempfile::tempdir().unwrap();
         let command = worker(Path::new("/no/such/program"), folder.path());
-        let report = execute(&slide(&[EngineName::Mujoco])[0], &ENGINES, &command, &mut |_| {});
-        let said = report.outcome.unwrap_err().to_string();
+        let broken = execute(&slide(&[EngineName::Mujoco])[0], &ENGINES, &command, &mut |_| {}).unwrap_err();
+        let said = broken.error.to_string();
         assert!(said.starts_with("cannot start the worker `/no/such/program`: "), "{said}");
     }
 }

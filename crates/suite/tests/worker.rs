@@ -1,8 +1,8 @@
 //! The worker's side, called as a process would call it: what it says is what the same run here says of itself.
 use servobench_plant::Exact;
 use servobench_scenario::EngineName;
-use servobench_suite::worker::{Order, Served, serve};
-use servobench_suite::{Engines, Installed, Source, WorkerCommand, execute, jobs};
+use servobench_suite::worker::{End, Order, serve};
+use servobench_suite::{Broken, Engines, Installed, Source, WorkerCommand, execute, jobs};
 use servobench_trace::Recording;
 use std::path::Path;
 
@@ -46,13 +46,19 @@ fn order(folder: &Path) -> Order {
     }
 }
 
-/// How it ended, and what it said last.
-fn served(order: &Order, text: &str) -> (Served, serde_json::Value) {
+/// How it ended, which is what it said last.
+fn served(order: &Order, text: &str) -> End {
     let mut out = Vec::new();
     let end = serve(order, text, &ENGINES, &mut out);
     let said = String::from_utf8(out).unwrap();
-    let last = said.lines().last().unwrap();
-    (end, serde_json::from_str(last).unwrap())
+    let last: serde_json::Value = serde_json::from_str(said.lines().last().unwrap()).unwrap();
+    let expected = match &end {
+        End::Done => serde_json::json!({ "end": "done" }),
+        End::Input(why) => serde_json::json!({ "end": { "input": why } }),
+        End::Failed(why) => serde_json::json!({ "end": { "failed": why } }),
+    };
+    assert_eq!(last, expected);
+    end
 }
 
 #[test]
@@ -62,15 +68,14 @@ fn a_reason_and_a_recording_do_not_depend_on_where_the_run_happened() {
         servobench_scenario::parse("wild.toml", WILD, None).unwrap_or_else(|error| panic!("{error}")).scenario;
     let job = &jobs(vec![Source { scenario, text: WILD.into() }], &[])[0];
     let nowhere = WorkerCommand { program: "none".into(), folder: "none".into(), patience: std::time::Duration::ZERO };
-    let here = execute(job, &ENGINES, &nowhere, &mut |_| {});
-    let reason = here.outcome.unwrap_err().to_string();
+    let Broken { error, until_then } = *execute(job, &ENGINES, &nowhere, &mut |_| {}).unwrap_err();
+    let reason = error.to_string();
     assert!(reason.contains("diverged"), "{reason}");
 
     let order = order(folder.path());
-    let (end, said) = served(&order, WILD);
-    assert_eq!((end, &said), (Served::Failed, &serde_json::json!({ "failed": reason })));
+    assert_eq!(served(&order, WILD), End::Failed(reason));
     let own = folder.path().join("here.parquet");
-    here.recording.unwrap().write_parquet(&own).unwrap();
+    until_then.unwrap().0.write_parquet(&own).unwrap();
     assert!(std::fs::read(own).unwrap() == std::fs::read(&order.recording).unwrap(), "up to where it came");
 }
 
@@ -78,8 +83,7 @@ fn a_reason_and_a_recording_do_not_depend_on_where_the_run_happened() {
 fn a_run_that_comes_to_its_end_is_done() {
     let folder = tempfile::tempdir().unwrap();
     let order = Order { durations: vec![1.5], ..order(folder.path()) };
-    let (end, said) = served(&order, &WILD.replace("2 MHz", "20 Hz"));
-    assert_eq!((end, said), (Served::Done, "done".into()));
+    assert_eq!(served(&order, &WILD.replace("2 MHz", "20 Hz")), End::Done);
     let recording = Recording::read_parquet(&order.recording).unwrap();
     assert!((recording.moves[0].end - 1.5).abs() < 1e-12 && recording.about.scenario == "wild");
 }
@@ -87,14 +91,11 @@ fn a_run_that_comes_to_its_end_is_done() {
 #[test]
 fn wrong_input_is_told_apart_from_a_failure() {
     let folder = tempfile::tempdir().unwrap();
-    let (end, said) = served(&order(folder.path()), &WILD.replace("20 kg", "-20 kg"));
-    assert_eq!(end, Served::Input);
-    assert!(said["input"].as_str().unwrap().contains("wild.toml:8:8"), "{said}");
+    let end = served(&order(folder.path()), &WILD.replace("20 kg", "-20 kg"));
+    assert!(matches!(&end, End::Input(why) if why.contains("wild.toml:8:8")), "{end:?}");
     // A move cannot be made in a hundredth of the time that its limits take.
-    let (end, said) = served(&Order { durations: vec![0.002], ..order(folder.path()) }, WILD);
-    assert_eq!(end, Served::Input);
-    assert!(said["input"].as_str().unwrap().contains("`duration`"), "{said}");
-    let (end, said) = served(&Order { engine: EngineName::Rapier, ..order(folder.path()) }, WILD);
-    assert_eq!(end, Served::Failed);
-    assert!(said["failed"].as_str().unwrap().contains("--features rapier"), "{said}");
+    let end = served(&Order { durations: vec![0.002], ..order(folder.path()) }, WILD);
+    assert!(matches!(&end, End::Input(why) if why.contains("`duration`")), "{end:?}");
+    let end = served(&Order { engine: EngineName::Rapier, ..order(folder.path()) }, WILD);
+    assert!(matches!(&end, End::Failed(why) if why.contains("--features rapier")), "{end:?}");
 }

@@ -7,20 +7,12 @@ use crate::output;
 use crate::progress::Progress;
 use crate::sources;
 use crate::workers;
-use servobench_metrics::{Metrics, Verdict};
 use servobench_report::{Compared, Comparison, Results, RunResult};
 use servobench_scenario::EngineName;
 use servobench_suite::{
-    CompareError, Job, Report, RunError, execute, jobs, map_in_parallel, only_setpoints_differ, to_equal_duration,
+    CompareError, Job, Run, RunError, execute, jobs, map_in_parallel, only_setpoints_differ, to_equal_duration,
 };
 use servobench_trace::Recording;
-
-/// A run that came to its end.
-struct Run {
-    recording: Recording,
-    metrics: Metrics,
-    verdict: Verdict,
-}
 
 /// Runs the scenarios on one engine, says which wins by how much, and writes one recording of them all.
 pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
@@ -65,18 +57,16 @@ fn wanted_jobs(args: &CompareArgs) -> Result<Vec<Job>, CliError> {
 fn carried_out(args: &CompareArgs, jobs: &[Job]) -> Result<Vec<Run>, CliError> {
     let (engines, worker) = (engines::installed(), workers::command(&args.out, args.worker_timeout)?);
     let progress = Progress::new(jobs.len(), false);
-    let reports = map_in_parallel(jobs, workers::at_a_time(None), Job::memory, |job| {
-        let report = execute(job, &engines, &worker, &mut progress.of_run());
-        progress.ended(&job.id, if report.outcome.is_ok() { "done" } else { "could not be carried out" });
-        report
+    let ended = map_in_parallel(jobs, workers::at_a_time(None), Job::memory, |job| {
+        let ended = execute(job, &engines, &worker, &mut progress.of_run()).map_err(|broken| broken.error);
+        progress.ended(&job.id, if ended.is_ok() { "done" } else { "could not be carried out" });
+        ended
     });
     progress.finish();
     let (mut runs, mut failures, mut exit) = (Vec::new(), Vec::new(), Exit::Passed);
-    for (job, report) in jobs.iter().zip(reports) {
-        match report.map_err(RunError::from).and_then(|Report { recording, metrics, outcome }| {
-            outcome.map(|verdict| recording.map(|recording| Run { recording, metrics, verdict }))
-        }) {
-            Ok(run) => runs.extend(run),
+    for (job, ended) in jobs.iter().zip(ended) {
+        match ended.map_err(RunError::from).flatten() {
+            Ok(run) => runs.push(run),
             Err(error) => {
                 exit = exit.worse(of_run_error(&error));
                 failures.push(format!("{} on {}: {error}", job.scenario.name, job.engine.as_str()));

@@ -7,9 +7,8 @@ use crate::output;
 use crate::progress::Progress;
 use crate::sources;
 use crate::workers;
-use servobench_metrics::Metrics;
 use servobench_report::{Outcome, Results, RunResult, junit, verdict_table};
-use servobench_suite::{Engines, Job, Report, WorkerCommand, execute, jobs, map_in_parallel};
+use servobench_suite::{Broken, Engines, Job, Run, WorkerCommand, execute, jobs, map_in_parallel};
 use std::path::Path;
 
 /// Runs the scenarios, judges them and writes what came of them.
@@ -29,8 +28,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
         .map(|(job, ended)| {
             ended.unwrap_or_else(|panic| {
                 progress.ended(&job.id, words(Exit::Run));
-                let run = output::identity(job, None);
-                (RunResult::error(run, None, &Metrics::default(), panic.to_string()), Exit::Run)
+                (RunResult::error(output::identity(job, None), None, vec![panic.to_string()]), Exit::Run)
             })
         })
         .collect();
@@ -64,20 +62,28 @@ fn one(
     folder: &Path,
     progress: &Progress,
 ) -> (RunResult, Exit) {
-    let Report { recording, metrics, outcome } = execute(job, engines, worker, &mut progress.of_run());
-    let written = recording.as_ref().map(|recording| output::write_recording(job, recording, folder, rrd));
-    let name = written.as_ref().and_then(|written| written.as_ref().ok().cloned());
-    let run = output::identity(job, name);
-    let failed =
-        |error: &dyn std::fmt::Display| RunResult::error(run.clone(), recording.as_ref(), &metrics, error.to_string());
-    let (result, exit) = match (&outcome, &recording, &written) {
-        (Err(error), ..) => (failed(error), of_run_error(error)),
-        (Ok(_), _, Some(Err(error))) => (failed(error), error.exit()),
-        (Ok(verdict), Some(recording), _) => {
-            let exit = if verdict.passed() { Exit::Passed } else { Exit::Limit };
-            (RunResult::judged(run.clone(), recording, &metrics, verdict), exit)
+    let write = |recording| output::write_recording(job, recording, folder, rrd);
+    let (result, exit) = match execute(job, engines, worker, &mut progress.of_run()) {
+        Ok(Run { recording, metrics, verdict }) => match write(&recording) {
+            Ok(name) => {
+                let run = output::identity(job, Some(name));
+                let exit = if verdict.passed() { Exit::Passed } else { Exit::Limit };
+                (RunResult::judged(run, &recording, &metrics, &verdict), exit)
+            }
+            Err(error) => {
+                let (run, until_then) = (output::identity(job, None), Some((&recording, &metrics)));
+                (RunResult::error(run, until_then, vec![error.to_string()]), error.exit())
+            }
+        },
+        Err(broken) => {
+            let Broken { error, until_then } = *broken;
+            let mut reasons = vec![error.to_string()];
+            let name = until_then.as_ref().and_then(|(recording, _)| {
+                write(recording).map_err(|unwritten| reasons.push(unwritten.to_string())).ok()
+            });
+            let until_then = until_then.as_ref().map(|(recording, metrics)| (recording, metrics));
+            (RunResult::error(output::identity(job, name), until_then, reasons), of_run_error(&error))
         }
-        (Ok(_), None, _) => (failed(&"there is no recording"), Exit::Run),
     };
     progress.ended(&job.id, words(exit));
     (result, exit)

@@ -2,7 +2,7 @@
 use crate::args::WorkerArgs;
 use crate::engines;
 use crate::exit::{CliError, Exit};
-use servobench_suite::worker::{Order, Served, serve};
+use servobench_suite::worker::{End, Order, serve};
 use std::io::Read;
 
 /// Runs the scenario that comes in on standard input; everything that is to be said of it is said by [`serve`].
@@ -17,8 +17,8 @@ pub(crate) fn worker(args: &WorkerArgs) -> Result<Exit, CliError> {
         recording: args.recording.clone(),
     };
     Ok(match serve(&order, &text, &engines::installed(), std::io::stdout().lock()) {
-        Served::Done => Exit::Passed,
-        Served::Input => Exit::Input,
-        Served::Failed => Exit::Run,
+        End::Done => Exit::Passed,
+        End::Input(_) => Exit::Input,
+        End::Failed(_) => Exit::Run,
     })
 }

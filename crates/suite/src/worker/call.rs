@@ -1,6 +1,6 @@
 //! The caller's side.
 use super::listener::{Listener, Silence, end};
-use super::message::Message;
+use super::message::{End, Message};
 use super::{WorkerCommand, WorkerError};
 use crate::execute::Recorded;
 use crate::job::Job;
@@ -85,16 +85,14 @@ fn hear(
     while let Some(message) = listener.next(command.patience).map_err(stalled)? {
         match message {
             Message::Progress(share) => progress(share),
-            end => last = Some(end),
+            Message::End(end) => last = Some(end),
         }
     }
     let status = end(child, command.patience).map_err(|error| cannot("wait for", error))?.map_err(stalled)?;
     match last {
-        Some(Message::Done) => Ok(()),
-        Some(Message::Input(why)) => Err(WorkerError::Input(why)),
-        Some(Message::Failed(why)) => Err(WorkerError::Failed(why)),
-        Some(Message::Progress(_)) | None => {
-            Err(WorkerError::Ended { status, last_words: listener.last_words(command.patience) })
-        }
+        Some(End::Done) => Ok(()),
+        Some(End::Input(why)) => Err(WorkerError::Input(why)),
+        Some(End::Failed(why)) => Err(WorkerError::Failed(why)),
+        None => Err(WorkerError::Ended { status, last_words: listener.last_words(command.patience) }),
     }
 }

@@ -7,11 +7,19 @@ use serde::{Deserialize, Serialize};
 pub(super) enum Message {
     /// Share that is done, from 0 to 1.
     Progress(f64),
-    /// The last word: the recording is complete.
+    /// The last word.
+    End(End),
+}
+
+/// How a worker ends.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum End {
+    /// The recording is complete.
     Done,
-    /// The last word: the input is wrong.
+    /// The input is wrong: why.
     Input(String),
-    /// The last word: the run ended early.
+    /// The run ended early: why. The recording is there as far as it came.
     Failed(String),
 }
 
@@ -36,9 +44,12 @@ mod tests {
         let why = "engine `mujoco`: \"half\n a µm\" too far".to_owned();
         for (message, line) in [
             (Message::Progress(0.25), "{\"progress\":0.25}\n"),
-            (Message::Done, "\"done\"\n"),
-            (Message::Input("no".into()), "{\"input\":\"no\"}\n"),
-            (Message::Failed(why), "{\"failed\":\"engine `mujoco`: \\\"half\\n a µm\\\" too far\"}\n"),
+            (Message::End(End::Done), "{\"end\":\"done\"}\n"),
+            (Message::End(End::Input("no".into())), "{\"end\":{\"input\":\"no\"}}\n"),
+            (
+                Message::End(End::Failed(why)),
+                "{\"end\":{\"failed\":\"engine `mujoco`: \\\"half\\n a µm\\\" too far\"}}\n",
+            ),
         ] {
             assert_eq!(message.line().unwrap(), line);
             assert_eq!(Message::of(line), Some(message));

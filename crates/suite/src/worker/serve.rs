@@ -1,5 +1,5 @@
 //! The worker's side.
-use super::message::Message;
+use super::message::{End, Message};
 use crate::engines::Engines;
 use crate::error::RunError;
 use crate::execute::run_here;
@@ -24,51 +24,35 @@ pub struct Order {
     pub recording: PathBuf,
 }
 
-/// How a worker ends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Served {
-    /// The recording is complete.
-    Done,
-    /// The input is wrong.
-    Input,
-    /// The run ended early; the recording is there as far as it came.
-    Failed,
-}
-
 /// Runs the scenario in `text` as `order` says, and tells the caller on `out`: progress, and at last how it ended.
 /// Warnings are not repeated: the caller has seen them.
-pub fn serve(order: &Order, text: &str, engines: &Engines, mut out: impl Write) -> Served {
+pub fn serve(order: &Order, text: &str, engines: &Engines, mut out: impl Write) -> End {
     // A caller that no longer listens has ended, and nobody needs this process any longer.
     let mut say = |message: &Message| {
         message.line().map_err(std::io::Error::from).and_then(|line| out.write_all(line.as_bytes())).ok();
         out.flush().ok();
     };
-    let mut progress = |share| say(&Message::Progress(share));
-    let ended =
-        caught(|| run(order, text, engines, &mut progress)).unwrap_or_else(|panic| Message::Failed(panic.to_string()));
-    say(&ended);
-    match ended {
-        Message::Done => Served::Done,
-        Message::Input(_) => Served::Input,
-        Message::Failed(_) | Message::Progress(_) => Served::Failed,
-    }
+    let run = caught(|| run(order, text, engines, &mut |share| say(&Message::Progress(share))));
+    let end = run.unwrap_or_else(|panic| End::Failed(panic.to_string()));
+    say(&Message::End(end.clone()));
+    end
 }
 
-fn run(order: &Order, text: &str, engines: &Engines, progress: &mut dyn FnMut(f64)) -> Message {
+fn run(order: &Order, text: &str, engines: &Engines, progress: &mut dyn FnMut(f64)) -> End {
     let scenario = match read(order, text) {
         Ok(scenario) => scenario,
-        Err(error) => return Message::Input(error.to_string()),
+        Err(error) => return End::Input(error.to_string()),
     };
     let installed = engines.get(order.engine).map_err(RunError::from);
     let (recording, failure) = match installed.and_then(|installed| run_here(&scenario, installed.engine, progress)) {
         Ok(recorded) => recorded,
-        Err(error) if error.is_input() => return Message::Input(error.to_string()),
-        Err(error) => return Message::Failed(error.to_string()),
+        Err(error) if error.is_input() => return End::Input(error.to_string()),
+        Err(error) => return End::Failed(error.to_string()),
     };
     match (failure, recording.write_parquet(&order.recording)) {
-        (Some(failure), _) => Message::Failed(failure.to_string()),
-        (None, Err(error)) => Message::Failed(error.to_string()),
-        (None, Ok(())) => Message::Done,
+        (Some(failure), _) => End::Failed(failure.to_string()),
+        (None, Err(error)) => End::Failed(error.to_string()),
+        (None, Ok(())) => End::Done,
     }
 }
 
