@@ -1,7 +1,8 @@
 //! Keys that hold several values, or one of several types.
 use crate::diagnostic::Report;
-use crate::field::{Bound, Field, Measure, key};
+use crate::field::{Bound, Field, Measure, key, written};
 use crate::physical::{Kind, RATIO, TIME};
+use crate::quantity;
 use crate::source::At;
 use crate::tree::{Node, Value};
 use serde_json::{Value as Json, json};
@@ -76,8 +77,14 @@ impl Field for Share {
     type Spec = ();
 
     fn decode(path: &str, node: &Node, (): &(), report: &mut Report) -> Option<Self> {
-        match node.value {
-            Value::Bool(all) => Some(Self(f64::from(u8::from(all)))),
+        match &node.value {
+            Value::Bool(all) => Some(Self(f64::from(u8::from(*all)))),
+            Value::Text(text) if !quantity::begins_with_a_number(text) => {
+                let message =
+                    format!("`{}` must be true, false or a share from 0 to 1, got {}", key(path), written(node));
+                report.error(node.span, message, "");
+                None
+            }
             _ => f64::decode(path, node, &SHARE, report).map(Self),
         }
     }
@@ -102,6 +109,11 @@ impl Field for AutoTime {
     fn decode(path: &str, node: &Node, (): &(), report: &mut Report) -> Option<Self> {
         match node.value.as_text() {
             Some("auto") => Some(Self::Auto),
+            Some(text) if !quantity::begins_with_a_number(text) => {
+                let message = format!("`{}` must be \"auto\" or a time, got {}", key(path), written(node));
+                report.error(node.span, message, "");
+                None
+            }
             _ => f64::decode(path, node, &DELAY, report).map(Self::Time),
         }
     }

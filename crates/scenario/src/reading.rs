@@ -1,4 +1,5 @@
 //! Reading a quantity of a certain dimension, and what to say when it has another.
+use crate::dimension::Dimension;
 use crate::physical::{Physical, describe};
 use crate::quantity::{self, QuantityError};
 
@@ -23,7 +24,10 @@ pub(crate) enum ReadError {
 /// # Errors
 /// [`ReadError`] says what it is instead.
 pub(crate) fn read(text: &str, candidates: &[&Physical]) -> Result<(usize, f64), ReadError> {
-    let read = quantity::parse(text).map_err(ReadError::NoQuantity)?;
+    let read = quantity::parse(text).map_err(|error| {
+        let help = if error.is_shapeless { proposals("1", candidates) } else { error.help };
+        ReadError::NoQuantity(QuantityError { help, ..error })
+    })?;
     for (which, physical) in candidates.iter().enumerate() {
         if let Some((_, factor)) = physical.accepts.iter().find(|(accepted, _)| *accepted == read.dimension) {
             return Ok((which, read.value * factor));
@@ -32,17 +36,34 @@ pub(crate) fn read(text: &str, candidates: &[&Physical]) -> Result<(usize, f64),
     if !read.has_unit {
         return Err(ReadError::NoUnit);
     }
-    let bare = read.dimension.without_amplitude();
-    let lacks_amplitude = candidates
-        .iter()
-        .flat_map(|physical| physical.accepts)
-        .any(|(accepted, _)| accepted.without_amplitude() == bare);
-    let help = if lacks_amplitude {
-        "say whether the amplitude or the effective value is meant: `Apk` or `Arms`, `Vpk` or `Vrms`"
+    let (is, help) = other(read.dimension, candidates);
+    Err(ReadError::OtherDimension { is, help })
+}
+
+/// What a quantity of dimension `is` is, which is not among `wanted`; and what to do about it where engineers mean one of
+/// `wanted` by it.
+fn other(is: Dimension, wanted: &[&Physical]) -> (String, &'static str) {
+    let accepted = || wanted.iter().flat_map(|physical| physical.accepts).map(|(dimension, _)| *dimension);
+    let accepts = |dimension: Dimension| accepted().any(|own| own == dimension);
+    let per_second = Dimension::ONE.times(Dimension::SECOND, -1);
+    let angle_per_second = Dimension::RADIAN.times(Dimension::SECOND, -1);
+    if accepted().any(|own| own.without_amplitude() == is.without_amplitude()) {
+        return if is == is.without_amplitude() {
+            ("neither an amplitude nor an effective value".to_owned(), "write `Arms` or `Apk`, `Vrms` or `Vpk`")
+        } else {
+            ("an amplitude or an effective value".to_owned(), "plain `A` or `V` is wanted here")
+        };
+    }
+    let help = if is == Dimension::KILOGRAM && accepts(Dimension::METRE.times(Dimension::SECOND, -2)) {
+        "`g` is the gram; gravity is 9.80665 m/s2"
+    } else if is == per_second && accepts(Dimension::HERTZ) && accepts(angle_per_second) {
+        "write `rad/s` for the corner of a loop; its frequency in `Hz` is that over 2π"
+    } else if (is == per_second || is == Dimension::HERTZ) && accepts(angle_per_second) {
+        "an angle has a unit: write `rpm` for revolutions per minute, `rev/s` or `rad/s`"
     } else {
         ""
     };
-    Err(ReadError::OtherDimension { is: describe(read.dimension), help })
+    (describe(is), help)
 }
 
 /// `write "250 mm" or "250 deg"`
@@ -51,7 +72,8 @@ pub(crate) fn proposals(number: &str, candidates: &[&Physical]) -> String {
     let number = if is_finite { number.trim_start_matches('+') } else { "1" };
     let mut all: Vec<String> = Vec::new();
     for physical in candidates {
-        let proposal = format!("\"{number} {}\"", physical.unit);
+        let proposal =
+            if physical.unit.is_empty() { number.to_owned() } else { format!("\"{number} {}\"", physical.unit) };
         if !all.contains(&proposal) {
             all.push(proposal);
         }

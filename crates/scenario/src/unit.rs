@@ -80,15 +80,78 @@ pub(crate) fn unit(symbol: &str) -> Option<Unit> {
     })
 }
 
-/// The known symbol that was probably meant.
-pub(crate) fn similar_symbol(symbol: &str) -> Option<String> {
+/// Spellings that are no symbols here, and what to write instead. None of them is a slip that leads to another prefix.
+const SPELLINGS: [(&[&str], &str); 19] = [
+    (&["MM"], "did you mean `mm`?"),
+    (&["micron", "microns", "micrometer", "micrometre", "mu"], "did you mean `um`?"),
+    (&["meter", "metre", "meters", "metres"], "did you mean `m`?"),
+    (&["sec", "secs", "sek", "second", "seconds"], "did you mean `s`?"),
+    (&["msec", "millisecond", "milliseconds"], "did you mean `ms`?"),
+    (&["usec", "microsecond", "microseconds"], "did you mean `us`?"),
+    (&["minute", "minutes"], "did you mean `min`?"),
+    (&["hertz", "Hertz", "cps"], "did you mean `Hz`?"),
+    (&["newton", "Newton", "newtons"], "did you mean `N`?"),
+    (&["kilo", "kilos"], "did you mean `kg`?"),
+    (&["degree", "degrees"], "did you mean `deg`?"),
+    (&["r", "R", "turn", "turns", "U", "tr", "revs", "revolution", "revolutions"], "did you mean `rev`?"),
+    (&["rps"], "did you mean `rev/s`?"),
+    (&["upm", "Upm", "UPM"], "did you mean `rpm`?"),
+    (&["in", "inch", "inches"], "an inch is 25.4 mm"),
+    (&["ft", "foot", "feet"], "a foot is 304.8 mm"),
+    (&["lb", "lbs", "lbf"], "a pound is 0.45359237 kg, as a force 4.4482216152605 N"),
+    (&["kgf", "kp"], "the weight of 1 kg is 9.80665 N"),
+    (&["gn", "G", "gee", "grav"], "gravity is 9.80665 m/s2"),
+];
+
+/// What to write instead of an unknown symbol, when that can be told. A prefix that is not written is never proposed: a
+/// wrong guess would be wrong by a power of ten.
+pub(crate) fn hint(symbol: &str) -> Option<String> {
+    if let Some((_, help)) = SPELLINGS.iter().find(|(spellings, _)| spellings.contains(&symbol)) {
+        return Some((*help).to_owned());
+    }
+    run_together(symbol).or_else(|| of_other_case(symbol)).or_else(|| slip(symbol))
+}
+
+/// Every symbol, those without a prefix first.
+fn symbols() -> impl Iterator<Item = String> {
     let prefixed = UNITS.iter().filter(|(.., prefixes)| *prefixes).flat_map(|(name, ..)| {
         PREFIXES.iter().filter(|(prefix, _)| prefix.is_ascii()).map(move |(prefix, _)| format!("{prefix}{name}"))
     });
-    let mut all: Vec<String> = UNITS.iter().map(|(name, ..)| (*name).to_owned()).chain(prefixed).collect();
-    // Without case "mm" and "Mm" are one: keep the order of the table, and exact letters first.
-    all.sort_by_key(|name| !name.starts_with(symbol.chars().next().unwrap_or('m')));
-    nearest(symbol, all.iter().map(String::as_str)).map(str::to_owned)
+    UNITS.iter().map(|(name, ..)| (*name).to_owned()).chain(prefixed)
+}
+
+/// "khz": what differs in case only. A symbol without prefix comes first; of two prefixes the one that is written, and both
+/// when all letters are capitals, which say nothing of the prefix.
+fn of_other_case(symbol: &str) -> Option<String> {
+    let lower = symbol.to_lowercase();
+    let mut all: Vec<String> = symbols().filter(|known| known.to_lowercase() == lower).collect();
+    let as_written = |known: &String| known.chars().next() == symbol.chars().next();
+    if all.first().is_some_and(|first| UNITS.iter().any(|(name, ..)| name == first)) {
+        all.truncate(1);
+    } else if symbol != symbol.to_uppercase() && all.iter().any(as_written) {
+        all.retain(as_written);
+    }
+    let quoted: Vec<String> = all.iter().map(|known| format!("`{known}`")).collect();
+    (!quoted.is_empty()).then(|| format!("did you mean {}?", quoted.join(" or ")))
+}
+
+/// "Ns": two units without a space between them; where there are two ways to part them, both.
+fn run_together(symbol: &str) -> Option<String> {
+    let parted: Vec<String> = symbol
+        .char_indices()
+        .skip(1)
+        .map(|(at, _)| symbol.split_at(at))
+        .filter(|(first, second)| unit(first).is_some() && unit(second).is_some())
+        .map(|(first, second)| format!("`{first} {second}`"))
+        .collect();
+    (!parted.is_empty()).then(|| format!("write {}", parted.join(" or ")))
+}
+
+/// "rmp": a slip in a symbol without prefix, when both are long enough to tell.
+fn slip(symbol: &str) -> Option<String> {
+    let is_long = |name: &&str| name.chars().count() >= 3;
+    let long = UNITS.iter().map(|(name, ..)| *name).filter(is_long);
+    Some(symbol).filter(is_long).and_then(|symbol| nearest(symbol, long)).map(|near| format!("did you mean `{near}`?"))
 }
 
 #[cfg(test)]
@@ -119,8 +182,47 @@ mod tests {
     #[test]
     fn slips_of_case_are_understood() {
         for (wrong, right) in [("khz", "kHz"), ("RPM", "rpm"), ("Kg", "kg"), ("NM", "Nm"), ("arms", "Arms")] {
-            assert_eq!(similar_symbol(wrong).as_deref(), Some(right));
+            assert_eq!(hint(wrong), Some(format!("did you mean `{right}`?")));
         }
-        assert_eq!(similar_symbol("furlong"), None);
+        assert_eq!(hint("furlong"), None);
+    }
+
+    #[test]
+    fn a_prefix_is_never_guessed() {
+        assert_eq!(hint("MHZ").as_deref(), Some("did you mean `mHz` or `MHz`?"));
+        assert_eq!(hint("MS").as_deref(), Some("did you mean `ms` or `Ms`?"));
+        assert_eq!(hint("mHZ").as_deref(), Some("did you mean `mHz`?"));
+        for symbol in ["xm", "pm", "dm", "Tm"] {
+            assert_eq!(hint(symbol), None, "{symbol}");
+        }
+    }
+
+    #[test]
+    fn what_engineers_write_is_understood() {
+        for (spelling, help) in [
+            ("MM", "did you mean `mm`?"),
+            ("micron", "did you mean `um`?"),
+            ("in", "an inch is 25.4 mm"),
+            ("U", "did you mean `rev`?"),
+            ("gn", "gravity is 9.80665 m/s2"),
+            ("Ns", "write `N s`"),
+            ("kgm", "write `kg m`"),
+            ("kgcm", "write `kg cm`"),
+            ("Nmm", "write `N mm` or `Nm m`"),
+            ("Nms", "write `N ms` or `Nm s`"),
+            ("Vs", "write `V s`"),
+            ("arcmn", "did you mean `arcmin`?"),
+            ("rmp", "did you mean `rpm`?"),
+        ] {
+            assert_eq!(hint(spelling).as_deref(), Some(help), "{spelling}");
+        }
+        for (spellings, help) in SPELLINGS {
+            for spelling in spellings {
+                assert_eq!(unit(spelling), None, "`{spelling}` is a symbol");
+            }
+            if let Some(symbol) = help.strip_prefix("did you mean `").and_then(|rest| rest.strip_suffix("`?")) {
+                assert!(symbol.split('/').all(|symbol| unit(symbol).is_some()), "{symbol}");
+            }
+        }
     }
 }

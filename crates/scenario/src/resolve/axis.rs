@@ -4,6 +4,7 @@ use crate::field::Slot;
 use crate::file;
 use crate::file::MotorKind;
 use crate::models::read_beside;
+use crate::physical::EFFORT;
 use crate::resolve::need;
 use crate::scenario::{Axis, AxisMechanics, Body, Coupling, Mjcf, Motion};
 use crate::source::{Sources, Span};
@@ -150,7 +151,7 @@ fn motor_side(axis: &file::Axis, motor: &file::Motor, motion: Motion, report: &m
         };
     };
     let own = inertia(&side.mass, &side.inertia, motion, "motor", report);
-    let dry = dry_friction(&side.coulomb, &side.breakaway, &side.stribeck_velocity, report);
+    let dry = dry_friction(&side.coulomb, &side.breakaway, &side.stribeck_velocity, motion, report);
     let (viscous, bias, dry) = (or_zero(&side.viscous)?, or_zero(&side.bias)?, dry?);
     Some(Body { viscous, bias, ..plain("motor", rotor? + own?) }.with_friction(&dry))
 }
@@ -162,7 +163,8 @@ fn body(name: &'static str, body: &file::Body, motion: Option<Motion>, report: &
         report.missing(&format!("axis.{name}"), key, body.span);
         return None;
     }
-    let dry = dry_friction(&body.coulomb, &body.breakaway, &body.stribeck_velocity, report);
+    let dry =
+        motion.and_then(|motion| dry_friction(&body.coulomb, &body.breakaway, &body.stribeck_velocity, motion, report));
     if let (Slot::Absent, Some(span)) = (&body.stiffness, body.damping.span()) {
         report.error(
             span,
@@ -222,21 +224,29 @@ fn dry_friction(
     coulomb: &Slot<f64>,
     breakaway: &Slot<f64>,
     stribeck_velocity: &Slot<f64>,
+    motion: Motion,
     report: &mut Report,
 ) -> Option<Dry> {
-    let coulomb = or_zero(coulomb);
     let given = breakaway.at();
-    if let (Some(coulomb), Some(given)) = (coulomb, given)
-        && given.value < coulomb
+    if let (Some(sliding), Some(resting)) = (coulomb.at(), given)
+        && resting.value < sliding.value
     {
-        let message = format!("`static` is {}, below `coulomb`, which is {coulomb} (SI)", given.value);
-        report.error(given.span, message, "friction at rest is at least that of sliding");
+        let unit = if motion == Motion::Linear { EFFORT.linear.unit } else { EFFORT.rotary.unit };
+        let [above, below] = [sliding.value, resting.value].map(|effort| format!("{effort} {unit}"));
+        // What the scenario says is in question, not the model that it stands on.
+        let (span, message) = if sliding.span.source < resting.span.source {
+            (sliding.span, format!("`coulomb` is {above}, above `static`, which is {below}"))
+        } else {
+            (resting.span, format!("`static` is {below}, below `coulomb`, which is {above}"))
+        };
+        let both = if sliding.span.source == resting.span.source { "" } else { ": give both here" };
+        report.error(span, message, format!("friction at rest is at least that of sliding{both}"));
         return None;
     }
     if let (Slot::Absent, Some(span)) = (breakaway, stribeck_velocity.span()) {
         report.warning(span, "`stribeck_velocity` does nothing without `static`", "");
     }
-    let coulomb = coulomb?;
+    let coulomb = or_zero(coulomb)?;
     let breakaway = breakaway.optional().ok()?.copied().unwrap_or(coulomb);
     Some(Dry { coulomb, breakaway, stribeck_velocity: or_zero(stribeck_velocity)?, span: given.map(|at| at.span) })
 }

@@ -55,7 +55,12 @@ fn wrong_types() {
         (
             "velocity = true",
             "velocity = \"yes\"",
-            "35:13: `velocity`: a quantity begins with a number; write as in \"250 mm\"",
+            "35:12: `velocity` must be true, false or a share from 0 to 1, got \"yes\"",
+        ),
+        (
+            "velocity = true",
+            "velocity = true\ndelay = \"automatic\"",
+            "36:9: `delay` must be \"auto\" or a time, got \"automatic\"",
         ),
         ("engine = \"exact\"", "engine = []", "2:10: `engine` must not be empty"),
         (
@@ -99,7 +104,11 @@ fn errors_in_a_model_point_into_the_model() {
         [
             ("axis.toml", 5, "missing `inductance` in `motor`"),
             ("axis.toml", 5, "missing `flux_linkage` in `motor`"),
-            ("axis.toml", 7, "`max_current` must be a current (Arms or Apk), but \"1 A\" is a current (A)"),
+            (
+                "axis.toml",
+                7,
+                "`max_current` must be a current (Arms or Apk), but \"1 A\" is neither an amplitude nor an effective value"
+            ),
             ("mine.toml", 4, "`resistance` needs a unit, got the bare number 1.6"),
             ("mine.toml", 5, "unknown key `inductence` in `motor`"),
         ]

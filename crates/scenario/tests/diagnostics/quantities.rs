@@ -1,5 +1,5 @@
 //! Physical quantities: unit, dimension, spelling, bound.
-use crate::after;
+use crate::{after, mistakes};
 
 #[test]
 fn a_bare_number_is_told_its_unit() {
@@ -49,13 +49,20 @@ fn a_wrong_dimension_names_both() {
         (
             "bandwidth = \"60 Hz\"",
             "bandwidth = \"60 1/s\"",
-            "30:13: `bandwidth` must be a bandwidth (Hz or rad/s), but \"60 1/s\" is a position gain (1/s)",
+            "30:13: `bandwidth` must be a bandwidth (Hz or rad/s), but \"60 1/s\" is a position gain (1/s); write \
+             `rad/s` for the corner of a loop; its frequency in `Hz` is that over 2π",
         ),
         (
             "max_current = \"13.3 Arms\"",
             "max_current = \"13.3 A\"",
-            "22:15: `max_current` must be a current (Arms or Apk), but \"13.3 A\" is a current (A); say whether the \
-             amplitude or the effective value is meant: `Apk` or `Arms`, `Vpk` or `Vrms`",
+            "22:15: `max_current` must be a current (Arms or Apk), but \"13.3 A\" is neither an amplitude nor an effective \
+             value; write `Arms` or `Apk`, `Vrms` or `Vpk`",
+        ),
+        (
+            "dc_link = \"320 V\"",
+            "dc_link = \"230 Vrms\"",
+            "24:11: `dc_link` must be a voltage, but \"230 Vrms\" is an amplitude or an effective value; plain `A` or `V` is \
+             wanted here",
         ),
     ];
     for (old, new, said) in cases {
@@ -68,26 +75,47 @@ fn what_is_no_quantity_is_pointed_at_inside_the_text() {
     let cases = [
         ("mass = \"40 kg\"", "mass = \"40 Kg\"", "9:12: `mass`: unknown unit `Kg`; did you mean `kg`?"),
         ("mass = \"40 kg\"", "mass = \"nan kg\"", "9:9: `mass`: the number must be finite"),
-        (
-            "mass = \"40 kg\"",
-            "mass = \"forty kg\"",
-            "9:9: `mass`: a quantity begins with a number; write as in \"250 mm\"",
-        ),
+        ("mass = \"40 kg\"", "mass = \"forty kg\"", "9:9: `mass`: a quantity begins with a number; write \"1 kg\""),
         ("mass = \"40 kg\"", "mass = \"4,5 kg\"", "9:10: `mass`: the decimal sign is a point"),
         (
             "damping = \"1659 N s/m\"",
             "damping = \"1659 N/m s\"",
             "11:21: `damping`: a unit ends with its quotient; write \"N s/m\" or \"N/(m s)\", whichever is meant",
         ),
+        ("mass = \"40 kg\"", "mass = \"40 kg\\u0020?\"", "9:8: `mass`: this is no unit; write \"1 kg\""),
+    ];
+    for (old, new, said) in cases {
+        assert_eq!(after(old, new), [said], "{new}");
+    }
+}
+
+/// What is proposed must be right: a wrong guess of a prefix would be wrong by a power of ten.
+#[test]
+fn engineers_spellings_get_the_unit_that_is_meant() {
+    let cases = [
+        ("move_to = \"250 mm\"", "move_to = \"250 MM\"", "43:16: `move_to`: unknown unit `MM`; did you mean `mm`?"),
+        ("window = \"10 um\"", "window = \"10 micron\"", "48:14: `window`: unknown unit `micron`; did you mean `um`?"),
+        ("move_to = \"250 mm\"", "move_to = \"9.8 in\"", "43:16: `move_to`: unknown unit `in`; an inch is 25.4 mm"),
         (
-            "mass = \"40 kg\"",
-            "mass = \"40 kg\\u0020?\"",
-            "9:8: `mass`: this is no unit; write as in \"250 mm\", \"30 m/min\" or \"0.5 kg m2\"",
+            "acceleration = \"6 m/s2\"",
+            "acceleration = \"0.5 g\"",
+            "40:16: `acceleration` must be an acceleration, but \"0.5 g\" is a mass (kg); `g` is the gram; gravity is \
+             9.80665 m/s2",
+        ),
+        ("damping = \"1659 N s/m\"", "damping = \"1659 Ns/m\"", "11:17: `damping`: unknown unit `Ns`; write `N s`"),
+        (
+            "base_rate = \"16 kHz\"",
+            "base_rate = \"16 KHZ\"",
+            "4:17: `base_rate`: unknown unit `KHZ`; did you mean `kHz`?",
         ),
     ];
     for (old, new, said) in cases {
         assert_eq!(after(old, new), [said], "{new}");
     }
+    let turning = "[run]\nbase_rate = \"16 kHz\"\n[axis]\nmotion = \"rotary\"\n[setpoint]\nvelocity = \"3000 1/min\"\n";
+    let said = "6:12: `velocity` must be an angular velocity, but \"3000 1/min\" is a position gain (1/s); an angle has a \
+                unit: write `rpm` for revolutions per minute, `rev/s` or `rad/s`";
+    assert!(mistakes(turning).contains(&said.to_owned()), "{:#?}", mistakes(turning));
 }
 
 #[test]
@@ -119,7 +147,7 @@ fn numbers_out_of_their_bounds() {
         (
             "static = \"32 N\"",
             "static = \"15 N\"",
-            "13:10: `static` is 15, below `coulomb`, which is 20 (SI); friction at rest is at least that of sliding",
+            "13:10: `static` is 15 N, below `coulomb`, which is 20 N; friction at rest is at least that of sliding",
         ),
     ];
     for (old, new, said) in cases {
