@@ -1,12 +1,12 @@
 //! From a file or a text to a scenario, or to everything that is wrong with it.
 use crate::diagnostic::{Diagnostic, Invalid, LoadError, Report};
-use crate::field::{Field, Slot};
-use crate::file::File;
+use crate::field::Field;
+use crate::file::{File, MotorKind};
 use crate::models::lay_on_models;
 use crate::resolve;
 use crate::scenario::{AxisMechanics, Motion, Scenario};
 use crate::simple::Choice;
-use crate::source::{At, Place, SourceId, Sources, Span};
+use crate::source::{Place, SourceId, Sources, Span};
 use crate::tree::{self, Node, Table, Value};
 use std::ops::Range;
 use std::path::Path;
@@ -103,9 +103,30 @@ fn in_order(mut all: Vec<Diagnostic>) -> Vec<Diagnostic> {
 
 /// Coordinates of axis and motor, on which the meaning of units depends, before anything else is read.
 fn motions(root: &Table) -> (Option<Motion>, Option<Motion>) {
-    let Some(axis) = root.get("axis").and_then(|node| node.value.as_table()) else { return (None, None) };
-    let text = axis.get("motion").and_then(|node| node.value.as_text());
-    let motion = Motion::ALL.iter().find(|(name, ..)| Some(*name) == text).map(|(_, motion, _)| *motion);
-    let lead = axis.get("lead").map_or(Slot::Absent, |node| Slot::Given(At { value: (), span: node.span }));
-    (motion, motion.map(|motion| resolve::motor_motion(motion, &lead)))
+    let table = |key| root.get(key).and_then(|node: &Node| node.value.as_table());
+    let own = table("motor").and_then(motor_by_its_keys);
+    let Some(axis) = table("axis") else { return (None, own) };
+    let motion = named::<Motion>(axis, "motion");
+    (motion, motion.map(|motion| resolve::motor_motion(motion, axis.get("lead").is_some(), own)).or(own))
+}
+
+/// Whether a synchronous motor turns or is linear: its poles are counted in pairs around a shaft, or have a pitch along a
+/// line. What the scenario says displaces what the model says.
+fn motor_by_its_keys(motor: &Table) -> Option<Motion> {
+    if named(motor, "kind") != Some(MotorKind::Pmsm) {
+        return None;
+    }
+    let source = |key| motor.get(key).map(|node| node.span.source);
+    match (source("pole_pairs"), source("pole_pitch")) {
+        (None, None) => None,
+        (Some(_), None) => Some(Motion::Rotary),
+        (None, Some(_)) => Some(Motion::Linear),
+        (Some(pairs), Some(pitch)) => Some(if pitch < pairs { Motion::Linear } else { Motion::Rotary }),
+    }
+}
+
+/// One of a few names, as far as it is right.
+fn named<T: Choice>(table: &Table, key: &str) -> Option<T> {
+    let text = table.get(key).and_then(|node| node.value.as_text())?;
+    T::ALL.iter().find(|(name, ..)| *name == text).map(|(_, value, _)| *value)
 }

@@ -96,12 +96,22 @@ pub(crate) static FLUX_LINKAGE: Physical = physical(
 /// In N·m per ampere of amplitude.
 pub(crate) static TORQUE_CONSTANT: Physical =
     physical("a torque constant (Nm/Arms or Nm/Apk)", "Nm/Arms", &[(D::NEWTON_METRE.times(AMPERE_PEAK, -1), 1.0)]);
-/// In volts of amplitude per rad/s.
-pub(crate) static BACK_EMF: Physical = physical(
-    "a back-EMF constant (Vrms/krpm or Vpk/krpm, line to line)",
-    "Vrms/krpm",
-    &[(VOLT_PEAK.times(VELOCITY_R, -1), 1.0)],
-);
+/// In N per ampere of amplitude.
+pub(crate) static FORCE_CONSTANT: Physical =
+    physical("a force constant (N/Arms or N/Apk)", "N/Arms", &[(D::NEWTON.times(AMPERE_PEAK, -1), 1.0)]);
+/// In volts of amplitude per m/s or rad/s.
+pub(crate) static BACK_EMF: Coordinate = Coordinate {
+    linear: physical(
+        "a back-EMF constant (Vrms s/m or Vpk s/m, line to line)",
+        "Vrms s/m",
+        &[(VOLT_PEAK.times(VELOCITY_L, -1), 1.0)],
+    ),
+    rotary: physical(
+        "a back-EMF constant (Vrms/krpm or Vpk/krpm, line to line)",
+        "Vrms/krpm",
+        &[(VOLT_PEAK.times(VELOCITY_R, -1), 1.0)],
+    ),
+};
 pub(crate) static CURRENT_GAIN: Physical =
     physical("a current loop gain (V/A)", "V/A", &[(D::VOLT.times(D::AMPERE, -1), 1.0)]);
 
@@ -153,7 +163,7 @@ pub(crate) static SOURCE_GAIN: Coordinate = Coordinate {
 };
 
 /// Everything that has a name here, to name what a user wrote.
-static NAMED: [&Physical; 32] = [
+static NAMED: [&Physical; 34] = [
     &POSITION.linear,
     &POSITION.rotary,
     &TIME,
@@ -180,7 +190,9 @@ static NAMED: [&Physical; 32] = [
     &INDUCTANCE,
     &FLUX_LINKAGE,
     &TORQUE_CONSTANT,
-    &BACK_EMF,
+    &FORCE_CONSTANT,
+    &BACK_EMF.linear,
+    &BACK_EMF.rotary,
     &POSITION_GAIN,
     &VOLT_GAIN.linear,
     &VOLT_GAIN.rotary,

@@ -1,6 +1,6 @@
 //! What a scenario becomes: derived gains, merged bodies, overridden models.
 use servobench_scenario::{
-    AxisMechanics, Body, EffortFeedforward, EngineName, Feedback, Limit, Motion, Motor, MoveStep, Scenario,
+    AxisMechanics, Body, EffortFeedforward, EngineName, Feedback, Limit, Motion, Motor, MoveStep, Pmsm, Scenario,
     SourceOutput, Step, Target, parse,
 };
 use std::f64::consts::{PI, TAU};
@@ -135,6 +135,66 @@ fn limits_of_the_motor_and_its_encoder() {
     assert!(same(scenario.drive.load_encoder.unwrap().resolution.unwrap(), 1e-7));
     assert_eq!(scenario.drive.position_feedback, Feedback::Load);
     assert!(same(scenario.drive.dc_link, 560.0) && scenario.drive.enabled);
+}
+
+const LINEAR: &str = r#"
+[run]
+base_rate = "16 kHz"
+[axis]
+motion = "linear"
+[axis.motor_side]
+mass = "100 kg"
+[motor]
+kind = "pmsm"
+pole_pitch = "24 mm"
+resistance = "2 Ohm"
+inductance = "20 mH"
+force_constant = "80 N/Arms"
+mass = "5 kg"
+max_current = "10 Arms"
+[drive]
+model = "servo-16khz"
+"#;
+
+fn pmsm(text: &str) -> Pmsm {
+    let Motor::Pmsm(motor) = scenario(text).motor else { panic!("a synchronous motor") };
+    motor
+}
+
+/// Oracle: by hand. F = 3/2·(π/τ_p)·ψ·i with i an amplitude, and the power balance F·v = 3/2·e·i: at 1 m/s the EMF of a
+/// phase has the amplitude e = (π/τ_p)·ψ·1 m/s, √3 times that between two lines.
+#[test]
+fn a_linear_motor_by_any_of_its_constants() {
+    let motor = pmsm(LINEAR);
+    let per_amplitude = 80.0 / 2_f64.sqrt();
+    assert!(same(motor.electrical_ratio, PI / 0.024));
+    assert!(same(1.5 * PI / 0.024 * motor.flux_linkage, per_amplitude) && same(motor.effort_constant(), per_amplitude));
+    let scenario = scenario(LINEAR);
+    assert_eq!(scenario.axis.motor_motion, Motion::Linear);
+    assert!(same(scenario.axis.transmission, 1.0) && same(bodies(&scenario)[0].inertia, 105.0), "forcer and slide");
+    assert!(same(scenario.drive.max_effort, 800.0), "80 N/Arms times 10 Arms");
+    let emf = 3_f64.sqrt() * per_amplitude / 1.5;
+    let by_emf = pmsm(&LINEAR.replace("force_constant = \"80 N/Arms\"", &format!("back_emf = \"{emf} Vpk s/m\"")));
+    assert!(same(by_emf.flux_linkage, motor.flux_linkage), "{} {}", by_emf.flux_linkage, motor.flux_linkage);
+}
+
+/// A linear motor is a motor with one pole pair on a screw with a lead of two pole pitches.
+#[test]
+fn a_linear_motor_is_a_rotary_one_unrolled() {
+    let unrolled = LINEAR
+        .replace("motion = \"linear\"", "motion = \"linear\"\nlead = \"48 mm\"")
+        .replace("pole_pitch = \"24 mm\"", "pole_pairs = 1")
+        .replace("force_constant = \"80 N/Arms\"", &format!("flux_linkage = \"{} V s\"", pmsm(LINEAR).flux_linkage))
+        .replace("[axis.motor_side]\nmass = \"100 kg\"", "[axis.table]\nmass = \"105 kg\"")
+        .replace("mass = \"5 kg\"\n", "");
+    let (linear, rotary) = (scenario(LINEAR), scenario(&unrolled));
+    let r = rotary.axis.transmission;
+    assert!(same(linear.drive.max_effort, rotary.drive.max_effort / r), "the same force at the slide");
+    assert!(same(linear.drive.velocity.gain, rotary.drive.velocity.gain / (r * r)), "the same gain at the slide");
+    assert!(
+        same(pmsm(LINEAR).electrical_ratio, pmsm(&unrolled).electrical_ratio / r),
+        "the same frequency at one speed"
+    );
 }
 
 /// Oracle: the published law, u = k_v·(k_p·e − v) volts and 35.1507 newtons per volt.

@@ -2,8 +2,8 @@
 use crate::field::{Either, EitherMeasure, positive};
 use crate::physical::Kind::{Motor as InMotor, Plain};
 use crate::physical::{
-    BACK_EMF, CURRENT, EFFORT, FLUX_LINKAGE, INDUCTANCE, INERTIA, MASS, POSITION, RESISTANCE, SOURCE_GAIN,
-    TORQUE_CONSTANT, VOLTAGE,
+    BACK_EMF, CURRENT, EFFORT, FLUX_LINKAGE, FORCE_CONSTANT, INDUCTANCE, INERTIA, MASS, POSITION, RESISTANCE,
+    SOURCE_GAIN, TORQUE_CONSTANT, VOLTAGE,
 };
 use crate::simple::Choice;
 use crate::table::table;
@@ -21,7 +21,7 @@ pub(crate) enum MotorKind {
 
 impl Choice for MotorKind {
     const ALL: &'static [(&'static str, Self, &'static str)] = &[
-        ("pmsm", Self::Pmsm, "a permanent-magnet synchronous motor on an averaged inverter"),
+        ("pmsm", Self::Pmsm, "a permanent-magnet synchronous motor, turning or linear, on an averaged inverter"),
         ("ideal-source", Self::IdealSource, "effort = gain × output, the output saturating at `limit`"),
         ("prescribed", Self::Prescribed, "the motor side follows the set-point exactly"),
     ];
@@ -37,8 +37,11 @@ table! {
         source: String = (),
         /// What kind of motor it is.
         kind: MotorKind = (),
-        /// Pole pairs.
+        /// Pole pairs p of a motor that turns.
         pole_pairs: u32 = 1..=1000,
+        /// Distance τ_p from a north pole to the next south pole of a linear motor, half an electrical period. Catalogues
+        /// that give the pitch from north to north give twice that.
+        pole_pitch: f64 = positive(Plain(&POSITION.linear), "16 mm"),
         /// Stator resistance, phase to neutral.
         resistance: f64 = positive(Plain(&RESISTANCE), "0.36 Ohm"),
         /// Inductance of both axes, phase to neutral.
@@ -51,8 +54,11 @@ table! {
         flux_linkage: f64 = positive(Plain(&FLUX_LINKAGE), "0.545 V s"),
         /// Torque per current instead of the flux linkage: 1.5·p·ψ in Nm/Apk.
         torque_constant: f64 = positive(Plain(&TORQUE_CONSTANT), "0.3 Nm/Arms"),
-        /// Back-EMF per speed, line to line, instead of the flux linkage: √3·p·ψ in Vpk per rad/s.
-        back_emf: f64 = positive(Plain(&BACK_EMF), "4.64 Vpk/krpm"),
+        /// Force per current of a linear motor instead of the flux linkage: 1.5·(π/τ_p)·ψ in N/Apk.
+        force_constant: f64 = positive(Plain(&FORCE_CONSTANT), "80 N/Arms"),
+        /// Back-EMF per speed, line to line, instead of the flux linkage: √3·p·ψ in Vpk per rad/s; of a linear motor
+        /// √3·(π/τ_p)·ψ in Vpk per m/s ("65 Vpk s/m").
+        back_emf: f64 = positive(InMotor(&BACK_EMF), "4.64 Vpk/krpm"),
         /// Moment of inertia of the rotor.
         inertia: f64 = positive(Plain(&INERTIA), "0.00018 kg m2"),
         /// Mass of the moving part of a linear motor.
@@ -73,7 +79,7 @@ table! {
     pub(crate) struct Encoder {
         /// Increments per revolution: 1048576 for 20 bits.
         counts_per_rev: u32 = 1..=u32::MAX,
-        /// One increment.
-        step: f64 = positive(InMotor(&POSITION), "0.1 um"),
+        /// One increment: an angle of a motor that turns, with a `lead` too, a length of a linear motor ("0.1 um").
+        step: f64 = positive(InMotor(&POSITION), "0.01 deg"),
     }
 }

@@ -15,12 +15,8 @@ const PRESCRIBED_INERTIA: f64 = 1.0;
 
 pub(super) fn resolve(axis: &file::Axis, motor: &file::Motor, sources: &Sources, report: &mut Report) -> Option<Axis> {
     let motion = need(&axis.motion, "axis", "motion", axis.span, report);
-    let transmission = transmission(axis, motion, report);
-    let motor_motion = motor_motion(motion?, &axis.lead);
-    if motor_motion == Motion::Linear && motor.kind.given() == Some(&MotorKind::Pmsm) {
-        let help = "give the travel per revolution of the motor";
-        report.missing_with_help("axis", "lead", axis.span, help);
-    }
+    let motor_motion = report.motor?;
+    let transmission = transmission(axis, motion?, motor, motor_motion, report);
     let mechanics = match axis.mjcf.given() {
         Some(mjcf) => {
             no_bodies_besides(axis, report);
@@ -39,26 +35,55 @@ pub(super) fn resolve(axis: &file::Axis, motor: &file::Motor, sources: &Sources,
     Some(Axis { motion: motion?, motor_motion, transmission: transmission?, mechanics: mechanics? })
 }
 
-/// Coordinate of the motor: a linear axis without a lead has a linear motor.
-pub(crate) fn motor_motion<T>(axis: Motion, lead: &Slot<T>) -> Motion {
-    if axis == Motion::Linear && matches!(lead, Slot::Absent) { Motion::Linear } else { Motion::Rotary }
+/// Coordinate of the motor: what its own keys say, or otherwise what the axis needs. A linear axis without a lead has a
+/// linear motor.
+pub(crate) fn motor_motion(axis: Motion, has_lead: bool, own: Option<Motion>) -> Motion {
+    own.unwrap_or(if axis == Motion::Linear && !has_lead { Motion::Linear } else { Motion::Rotary })
 }
 
 /// Axis coordinate per motor coordinate.
-fn transmission(axis: &file::Axis, motion: Option<Motion>, report: &mut Report) -> Option<f64> {
+fn transmission(
+    axis: &file::Axis,
+    motion: Motion,
+    motor: &file::Motor,
+    motor_motion: Motion,
+    report: &mut Report,
+) -> Option<f64> {
     let gear = axis.gear_ratio.optional().ok().map(|ratio| ratio.copied().unwrap_or(1.0));
-    match (motion?, &axis.lead) {
-        (Motion::Rotary, lead) => {
-            if let Some(span) = lead.span() {
+    match (motion, motor_motion) {
+        (Motion::Rotary, Motion::Rotary) => {
+            if let Some(span) = axis.lead.span() {
                 report.error(span, "a rotary axis has no `lead`", "give `gear_ratio`");
             }
             Some(1.0 / gear?)
         }
-        (Motion::Linear, Slot::Given(lead)) => Some(lead.value / TAU / gear?),
-        (Motion::Linear, Slot::Wrong(_)) => None,
-        (Motion::Linear, Slot::Absent) => {
+        (Motion::Rotary, Motion::Linear) => {
+            let span = motor.pole_pitch.span().unwrap_or(motor.span);
+            report.error(span, "a linear motor cannot turn a rotary axis", "a motor that turns has `pole_pairs`");
+            None
+        }
+        (Motion::Linear, Motion::Rotary) => {
+            if matches!(axis.lead, Slot::Absent) {
+                let help =
+                    "give the travel per revolution of the motor; a linear motor has `pole_pitch`, no `pole_pairs`";
+                report.missing_with_help("axis", "lead", axis.span, help);
+            }
+            Some(axis.lead.given()? / TAU / gear?)
+        }
+        (Motion::Linear, Motion::Linear) => {
+            if let Some(span) = axis.lead.span() {
+                report.error(
+                    span,
+                    "a linear motor has no `lead`",
+                    "a motor that turns has `pole_pairs`, no `pole_pitch`",
+                );
+            }
             if let Some(span) = axis.gear_ratio.span() {
-                report.error(span, "a linear axis with a linear motor has no `gear_ratio`", "give the `lead` too");
+                report.error(
+                    span,
+                    "a linear motor has no `gear_ratio`",
+                    "a motor that turns a screw or pinion has a `lead`",
+                );
             }
             Some(1.0)
         }

@@ -8,8 +8,7 @@ use crate::resolve::estimate::{self, Belief};
 use crate::resolve::motor::resolution;
 use crate::resolve::{Way, need, one_way, task_rate};
 use crate::scenario::{
-    Axis, CurrentLoop, Drive, EffortFeedforward, Encoder, Feedback, Feedforward, Motor, Pmsm, PositionLoop,
-    VelocityLoop,
+    Axis, CurrentLoop, Drive, EffortFeedforward, Encoder, Feedback, Feedforward, Motor, PositionLoop, VelocityLoop,
 };
 use crate::source::Span;
 use servobench_base::Rate;
@@ -104,9 +103,7 @@ fn dc_link(drive: &file::Drive, motor: Option<&Motor>, is_used: bool, report: &m
 /// Largest effort the motor can give (motor coordinate).
 fn strength(motor: &Motor) -> f64 {
     match motor {
-        Motor::Pmsm(Pmsm { pole_pairs, flux_linkage, max_current, .. }) => {
-            1.5 * f64::from(*pole_pairs) * flux_linkage * max_current
-        }
+        Motor::Pmsm(motor) => motor.effort_constant() * motor.max_current,
         Motor::IdealSource(source) => source.gain * source.limit,
         Motor::Prescribed => f64::INFINITY,
     }
@@ -132,7 +129,8 @@ fn max_effort(drive: &file::Drive, motor: Option<&Motor>, report: &mut Report) -
             let (name, unit) = if turns { ("max_torque", "N m") } else { ("max_force", "N") };
             let message = format!("`{name}` is more than the motor gives, {strength:.5} {unit}");
             let help = match motor? {
-                Motor::Pmsm(_) => "that is 1.5·p·ψ·`max_current`",
+                Motor::Pmsm(_) if turns => "that is 1.5·p·ψ·`max_current`",
+                Motor::Pmsm(_) => "that is 1.5·(π/τ_p)·ψ·`max_current`",
                 _ => "that is `gain` times `limit`",
             };
             report.error(at.span, message, help);

@@ -6,7 +6,7 @@ use crate::file::MotorKind;
 use crate::resolve::{Way, need, one_way, refuse};
 use crate::scenario::{Encoder, IdealSource, Motion, Motor, Pmsm, SourceOutput};
 use crate::source::Span;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
 
@@ -16,12 +16,14 @@ pub(super) fn resolve(motor: &file::Motor, report: &mut Report) -> Option<Motor>
     let kind = need(&motor.kind, "motor", "kind", motor.span, report)?;
     let electrical: &Keys<'_> = &[
         ("pole_pairs", motor.pole_pairs.span()),
+        ("pole_pitch", motor.pole_pitch.span()),
         ("resistance", motor.resistance.span()),
         ("inductance", motor.inductance.span()),
         ("inductance_d", motor.inductance_d.span()),
         ("inductance_q", motor.inductance_q.span()),
         ("flux_linkage", motor.flux_linkage.span()),
         ("torque_constant", motor.torque_constant.span()),
+        ("force_constant", motor.force_constant.span()),
         ("back_emf", motor.back_emf.span()),
         ("max_current", motor.max_current.span()),
     ];
@@ -48,14 +50,14 @@ pub(super) fn resolve(motor: &file::Motor, report: &mut Report) -> Option<Motor>
 
 fn pmsm(motor: &file::Motor, encoder: Option<Encoder>, report: &mut Report) -> Option<Pmsm> {
     let header = motor.span;
-    let pole_pairs = need(&motor.pole_pairs, "motor", "pole_pairs", header, report);
+    let electrical_ratio = electrical_ratio(motor, report);
     let resistance = need(&motor.resistance, "motor", "resistance", header, report);
     let inductances = inductances(motor, report);
-    let flux_linkage = flux_linkage(motor, pole_pairs, report);
+    let flux_linkage = flux_linkage(motor, electrical_ratio, report);
     let max_current = need(&motor.max_current, "motor", "max_current", header, report);
     let (inductance_d, inductance_q) = inductances?;
     Some(Pmsm {
-        pole_pairs: pole_pairs?,
+        electrical_ratio: electrical_ratio?,
         resistance: resistance?,
         inductance_d,
         inductance_q,
@@ -63,6 +65,33 @@ fn pmsm(motor: &file::Motor, encoder: Option<Encoder>, report: &mut Report) -> O
         max_current: max_current?,
         encoder: encoder?,
     })
+}
+
+/// Electrical angle per motor coordinate: pole pairs of a motor that turns, π/τ_p of a linear one.
+fn electrical_ratio(motor: &file::Motor, report: &mut Report) -> Option<f64> {
+    if let (Some(pairs), Some(pitch)) = (motor.pole_pairs.span(), motor.pole_pitch.span())
+        && pairs.source == pitch.source
+    {
+        let help = "a motor that turns has `pole_pairs`, a linear motor has `pole_pitch`";
+        report.error(pairs.max(pitch), "`pole_pairs` and `pole_pitch` of one motor", help);
+        return None;
+    }
+    let (of_another, constant, turns) = match report.motor? {
+        Motion::Rotary => (&motor.force_constant, "torque_constant", "turns"),
+        Motion::Linear => (&motor.torque_constant, "force_constant", "moves along a line"),
+    };
+    if let Some(span) = of_another.span() {
+        let other = if constant == "torque_constant" { "force_constant" } else { "torque_constant" };
+        report.error(span, format!("the motor {turns} and has no `{other}`"), format!("give its `{constant}`"));
+    }
+    if report.motor == Some(Motion::Rotary) {
+        return need(&motor.pole_pairs, "motor", "pole_pairs", motor.span, report).map(f64::from);
+    }
+    if matches!(motor.pole_pitch, Slot::Absent) {
+        let help = "a motor that turns has `pole_pairs`, and a linear axis then a `lead`";
+        report.missing_with_help("motor", "pole_pitch", motor.span, help);
+    }
+    motor.pole_pitch.given().map(|pitch| PI / pitch)
 }
 
 fn inductances(motor: &file::Motor, report: &mut Report) -> Option<(f64, f64)> {
@@ -83,22 +112,26 @@ fn inductances(motor: &file::Motor, report: &mut Report) -> Option<(f64, f64)> {
     }
 }
 
-/// ψ from what is given: itself, `K_t = 1.5·p·ψ` per ampere of amplitude, or `K_e = √3·p·ψ` line to line.
-fn flux_linkage(motor: &file::Motor, pole_pairs: Option<u32>, report: &mut Report) -> Option<f64> {
+/// ψ from what is given: itself, or per ampere of amplitude `K_t = 1.5·p·ψ`, or line to line `K_e = √3·p·ψ`; with π/τ_p
+/// for p in a linear motor.
+fn flux_linkage(motor: &file::Motor, electrical_ratio: Option<f64>, report: &mut Report) -> Option<f64> {
+    let constant = match report.motor? {
+        Motion::Rotary => ("torque_constant", &motor.torque_constant),
+        Motion::Linear => ("force_constant", &motor.force_constant),
+    };
     let ways = [
         ("flux_linkage", motor.flux_linkage.span()),
-        ("torque_constant", motor.torque_constant.span()),
+        (constant.0, constant.1.span()),
         ("back_emf", motor.back_emf.span()),
     ];
-    let p = pole_pairs.map(f64::from);
     match one_way(&ways, report) {
         Way::Use(0) => motor.flux_linkage.given().copied(),
-        Way::Use(1) => Some(motor.torque_constant.given()? / (1.5 * p?)),
-        Way::Use(_) => Some(motor.back_emf.given()? / (SQRT_3 * p?)),
+        Way::Use(1) => Some(constant.1.given()? / (1.5 * electrical_ratio?)),
+        Way::Use(_) => Some(motor.back_emf.given()? / (SQRT_3 * electrical_ratio?)),
         Way::Contradiction => None,
         Way::None => {
-            let help = "or `torque_constant`, or `back_emf`";
-            report.missing_with_help("motor", "flux_linkage", motor.span, help);
+            let help = format!("or `{}`, or `back_emf`", constant.0);
+            report.missing_with_help("motor", "flux_linkage", motor.span, &help);
             None
         }
     }

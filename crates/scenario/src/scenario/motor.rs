@@ -11,11 +11,12 @@ pub enum Motor {
     Prescribed,
 }
 
-/// PMSM in dq, amplitude-invariant, phase-to-neutral.
+/// PMSM in dq, amplitude-invariant, phase-to-neutral; one that turns or a linear one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pmsm {
-    /// Pole pairs.
-    pub pole_pairs: u32,
+    /// Electrical angle per motor coordinate: the pole pairs of a motor that turns (rad/rad), π/τ_p of a linear motor
+    /// with the pole pitch τ_p (rad/m).
+    pub electrical_ratio: f64,
     /// Stator resistance, phase to neutral (Ω).
     pub resistance: f64,
     /// d-axis inductance (H).
@@ -57,4 +58,12 @@ pub enum SourceOutput {
 pub struct Encoder {
     /// Smallest step (motor coordinate for the motor's, axis coordinate for the load's); `None` for an ideal encoder.
     pub resolution: Option<f64>,
+}
+
+impl Pmsm {
+    /// Torque or force per ampere of amplitude at i_d = 0: 1.5·p·ψ (N·m/A), of a linear motor 1.5·(π/τ_p)·ψ (N/A).
+    #[must_use]
+    pub fn effort_constant(&self) -> f64 {
+        1.5 * self.electrical_ratio * self.flux_linkage
+    }
 }

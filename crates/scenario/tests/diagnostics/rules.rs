@@ -21,7 +21,6 @@ fn what_is_missing_is_said_at_the_header_of_its_table() {
     let cases = [
         ("base_rate = \"16 kHz\"\n", "3:1: missing `base_rate` in `run`"),
         ("motion = \"linear\"\n", "5:1: missing `motion` in `axis`"),
-        ("lead = \"10 mm\"\n", "5:1: missing `lead` in `axis`; give the travel per revolution of the motor"),
         ("mass = \"40 kg\"\n", "8:1: missing `mass` in `axis.table`"),
         ("resistance = \"1.6 Ohm\"\n", "15:1: missing `resistance` in `motor`"),
         ("inductance = \"3.5 mH\"\n", "15:1: missing `inductance` in `motor`; or `inductance_d` and `inductance_q`"),
@@ -50,6 +49,78 @@ fn what_is_missing_is_said_at_the_header_of_its_table() {
     );
 }
 
+/// A motor that turns needs a lead; that it has none must not make everything else of it wrong.
+#[test]
+fn a_motor_turns_or_is_linear_by_its_own_keys() {
+    let said = "5:1: missing `lead` in `axis`; give the travel per revolution of the motor; a linear motor has \
+                `pole_pitch`, no `pole_pairs`";
+    assert_eq!(after("lead = \"10 mm\"\n", ""), [said]);
+    let linear = AXIS
+        .replace("lead = \"10 mm\"\n", "")
+        .replace("pole_pairs = 4", "pole_pitch = \"23 mm\"")
+        .replace("inertia = \"1.57 kg cm2\"", "mass = \"20 kg\"");
+    assert_eq!(mistakes(&linear), [""; 0]);
+    let cases = [
+        (
+            "motion = \"linear\"",
+            "motion = \"linear\"\nlead = \"10 mm\"",
+            "7:8: a linear motor has no `lead`; a motor that turns has `pole_pairs`, no `pole_pitch`",
+        ),
+        (
+            "motion = \"linear\"",
+            "motion = \"linear\"\ngear_ratio = 2",
+            "7:14: a linear motor has no `gear_ratio`; a motor that turns a screw or pinion has a `lead`",
+        ),
+        (
+            "pole_pitch = \"23 mm\"",
+            "pole_pitch = \"23 mm\"\npole_pairs = 4",
+            "17:14: `pole_pairs` and `pole_pitch` of one motor; a motor that turns has `pole_pairs`, a linear motor has `pole_pitch`",
+        ),
+        (
+            "flux_linkage = \"0.06 V s\"",
+            "torque_constant = \"1 Nm/Arms\"",
+            "19:19: the motor moves along a line and has no `torque_constant`; give its `force_constant`",
+        ),
+        (
+            "flux_linkage = \"0.06 V s\"",
+            "force_constant = \"80 N/A\"",
+            "19:18: `force_constant` must be a force constant (N/Arms or N/Apk), but \"80 N/A\" is neither an amplitude nor an effective value; write `Arms` or `Apk`, `Vrms` or `Vpk`",
+        ),
+        (
+            "flux_linkage = \"0.06 V s\"\n",
+            "",
+            "14:1: missing `flux_linkage` in `motor`; or `force_constant`, or `back_emf`",
+        ),
+        (
+            "flux_linkage = \"0.06 V s\"",
+            "back_emf = \"31 Vrms/krpm\"",
+            "19:12: `back_emf` must be a back-EMF constant (Vrms s/m or Vpk s/m, line to line), but \"31 Vrms/krpm\" is a back-EMF constant (Vrms/krpm or Vpk/krpm, line to line)",
+        ),
+        (
+            "pole_pitch = \"23 mm\"\n",
+            "",
+            "14:1: missing `pole_pitch` in `motor`; a motor that turns has `pole_pairs`, and a linear axis then a `lead`",
+        ),
+        (
+            "dc_link = \"320 V\"",
+            "dc_link = \"320 V\"\nmax_force = \"1 kN\"",
+            "24:13: `max_force` is more than the motor gives, 231.22308 N; that is 1.5·(π/τ_p)·ψ·`max_current`",
+        ),
+    ];
+    for (old, new, said) in cases {
+        let changed = mistakes(&linear.replace(old, new));
+        assert!(changed.contains(&said.to_owned()), "{new}: {changed:#?}");
+    }
+    let turns = after("flux_linkage = \"0.06 V s\"", "force_constant = \"80 N/Arms\"");
+    assert!(
+        turns.contains(&"20:18: the motor turns and has no `force_constant`; give its `torque_constant`".to_owned()),
+        "{turns:?}"
+    );
+    let rotary = linear.replace("motion = \"linear\"", "motion = \"rotary\"");
+    let said = "16:14: a linear motor cannot turn a rotary axis; a motor that turns has `pole_pairs`";
+    assert!(mistakes(&rotary).contains(&said.to_owned()), "{:#?}", mistakes(&rotary));
+}
+
 #[test]
 fn order_four_needs_snap() {
     assert_eq!(after("order = 3", "order = 4"), ["42:1: missing `snap` in `setpoint`; a move of order 4 needs it"]);
@@ -62,6 +133,15 @@ fn task_rates_that_do_not_divide_the_base_rate() {
     assert_eq!(after("[measure]", "[record]\nrate = \"3 kHz\"\n[measure]"), [format!("48:8: {said}")]);
     let sample = after("jerk = \"200 m/s3\"", "jerk = \"200 m/s3\"\nsample_time = \"0.3 ms\"");
     assert_eq!(sample, ["42:15: `sample_time` is 4.8000 base ticks, not a whole number; 312.5 us fits"]);
+}
+
+/// The scenario is in question where it contradicts a model, which is right by itself.
+#[test]
+fn what_contradicts_a_model_is_pointed_at_in_the_scenario() {
+    let text = "[run]\nbase_rate = \"16 kHz\"\n[axis]\nmodel = \"ball-screw\"\ntable.coulomb = \"50 N\"\n[motor]\n\
+                model = \"wittenstein-premo-1f\"\n[drive]\nmodel = \"servo-16khz\"\n";
+    let said = "5:17: `coulomb` is 50 N, above `static`, which is 32 N; friction at rest is at least that of sliding: give both here";
+    assert_eq!(mistakes(text), [said]);
 }
 
 #[test]

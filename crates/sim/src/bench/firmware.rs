@@ -69,7 +69,7 @@ fn current_stage(
     current: &scenario::CurrentLoop,
 ) -> Result<drive::Stage, BuildError> {
     let estimate = current::MotorEstimate {
-        pole_pairs: f64::from(motor.pole_pairs),
+        pole_pairs: motor.electrical_ratio,
         resistance: motor.resistance,
         inductance: Dq { d: motor.inductance_d, q: motor.inductance_q },
         flux_linkage: motor.flux_linkage,

@@ -92,7 +92,7 @@ pub(super) fn power_stage(scenario: &Scenario, speed: f64) -> Result<(PowerStage
         }
         scenario::Motor::Pmsm(motor) => {
             let params = pmsm::Params {
-                pole_pairs: f64::from(motor.pole_pairs),
+                pole_pairs: motor.electrical_ratio,
                 resistance: motor.resistance,
                 inductance: Dq { d: motor.inductance_d, q: motor.inductance_q },
                 flux_linkage: motor.flux_linkage,
