@@ -1,6 +1,7 @@
 //! TOML as a tree in which every key and value knows its file and its bytes.
 use crate::diagnostic::Report;
 use crate::source::{SourceId, Span};
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
@@ -105,18 +106,111 @@ pub(crate) struct Parsed {
 pub(crate) fn parse(source: SourceId, text: &str, report: &mut Report) -> Parsed {
     let (table, errors) = parse_to_the_end(source, text);
     let mut broken: Vec<Range<usize>> = Vec::new();
-    for SyntaxError { span, message } in errors {
-        let lines = lines_around(text, &span);
-        // What follows the first error of a line is mostly its consequence.
-        if broken.iter().any(|other| other.start <= lines.start && lines.end <= other.end) {
+    let mut places = None;
+    for error in errors {
+        // What follows the first error of a line is mostly its consequence. Errors come in the order of their lines.
+        if broken.last().is_some_and(|last| error.span.end <= last.end) {
             continue;
         }
-        broken.push(lines);
-        let quoted = message.contains("must be quoted");
-        let help = if quoted { "write texts and quantities as in \"250 mm\"" } else { "" };
-        report.error(Span::new(source, &span), message, help);
+        let lines = lines_around(text, &error.span);
+        let line = part(text, &lines);
+        let is_duplicate = error.message == DUPLICATE;
+        // Keys under a header that cannot be read would seem to belong to the table before.
+        let takes_its_keys = line.trim_start().starts_with('[') && !is_duplicate;
+        let end = if takes_its_keys { end_of_table(text, lines.end) } else { lines.end };
+        broken.push(lines.start..end);
+        let (message, help) = if is_duplicate {
+            places.get_or_insert_with(|| Places::of(text, &table)).duplicate(
+                part(text, &error.span),
+                line,
+                error.span.start,
+            )
+        } else {
+            let quoted = error.message.contains("must be quoted");
+            let help = if quoted { "write texts and quantities as in \"250 mm\"" } else { "" };
+            (error.message, help.to_owned())
+        };
+        report.error(Span::new(source, &error.span), message, help);
     }
     Parsed { table, broken }
+}
+
+/// What the parser says of a key that is there already.
+const DUPLICATE: &str = "duplicate key";
+
+/// Where everything is that can be there twice.
+struct Places<'a> {
+    /// Where each line begins.
+    lines: Vec<usize>,
+    /// First line of each header, from 1.
+    headers: BTreeMap<String, usize>,
+    /// Keys and where they are.
+    keys: BTreeSet<(&'a str, usize)>,
+}
+
+impl<'a> Places<'a> {
+    fn of(text: &str, table: &'a Table) -> Self {
+        let mut places = Self { lines: Vec::new(), headers: BTreeMap::new(), keys: BTreeSet::new() };
+        let mut start = 0;
+        for line in text.split_inclusive('\n') {
+            places.lines.push(start);
+            places.headers.entry(header(line)).or_insert(places.lines.len());
+            start += line.len();
+        }
+        places.add(table);
+        places
+    }
+
+    fn add(&mut self, table: &'a Table) {
+        for Entry { key, key_span, node } in &table.entries {
+            self.keys.insert((key, key_span.start));
+            match &node.value {
+                Value::Table(inner) => self.add(inner),
+                Value::Array(items) => {
+                    items.iter().filter_map(|item| item.value.as_table()).for_each(|item| self.add(item))
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// What to say of a second `key` at `at` in `line`, and where the first is.
+    fn duplicate(&self, key: &str, line: &str, at: usize) -> (String, String) {
+        let line_at = |at: usize| self.lines.partition_point(|start| *start <= at);
+        let header = header(line);
+        let (what, first) = if header.starts_with('[') {
+            let first = self.headers.get(&header).copied().filter(|first| *first < line_at(at));
+            (format!("a second table `{header}`"), first)
+        } else {
+            // Keys of one table stand together: the nearest before is the first of two.
+            let first = self.keys.range((key, 0)..(key, at)).next_back().map(|(_, first)| line_at(*first));
+            (format!("a second `{key}`"), first)
+        };
+        (what, first.map_or(String::new(), |first| format!("the first one is on line {first}")))
+    }
+}
+
+/// A line without what may differ between two headers of one table.
+fn header(line: &str) -> String {
+    line.split('#').next().unwrap_or(line).split_whitespace().collect()
+}
+
+/// A part of the text. The parser may have seen spaces in place of what is there: a part that begins or ends within a
+/// character is empty.
+fn part<'a>(text: &'a str, range: &Range<usize>) -> &'a str {
+    text.get(range.clone()).unwrap_or_default()
+}
+
+/// End of the last line before the next header after `from`, or of the text.
+fn end_of_table(text: &str, from: usize) -> usize {
+    let mut at = from;
+    for line in part(text, &(from..text.len())).split_inclusive('\n') {
+        if line.trim_start().starts_with('[') {
+            return at.saturating_sub(1).max(from);
+        }
+        at += line.len();
+    }
+    text.len()
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -275,7 +369,7 @@ mod tests {
             said,
             [
                 (4, "string values must be quoted, expected literal string"),
-                (11, "duplicate key"),
+                (11, "a second `a`"),
                 (23, "invalid exponent, expected digits"),
                 (28, "string values must be quoted, expected literal string"),
             ]
@@ -292,6 +386,34 @@ mod tests {
         let said = "this bracket is not closed".to_owned();
         assert_eq!(places("[a]\nx = [1, 2\ny = 3\n[b]\nz = 4\n"), [(8, said.clone())]);
         assert_eq!(places("[a]\nx = { b = 1\ny = 3\n"), [(8, said)]);
+    }
+
+    #[test]
+    fn what_is_there_twice_is_named_with_its_first_place() {
+        let text =
+            "[run]\nrate = 1\n[a]\nrate = 2\nb.c = 1\nrate = 3\nb.c = 2\n[ run ] # again\n[[d]]\nx = 1\nx = 2\n[run]\n";
+        let said: Vec<_> = parsed(text).1.errors.into_iter().map(|e| (e.message, e.help.unwrap_or_default())).collect();
+        let pairs = [
+            ("a second `rate`", "the first one is on line 4"),
+            ("a second `c`", "the first one is on line 5"),
+            ("a second table `[run]`", "the first one is on line 1"),
+            ("a second `x`", "the first one is on line 10"),
+            ("a second table `[run]`", "the first one is on line 1"),
+        ];
+        assert_eq!(said, pairs.map(|(message, help)| (message.to_owned(), help.to_owned())));
+    }
+
+    /// Its keys are none of the table before.
+    #[test]
+    fn a_header_that_is_not_closed_takes_its_keys_with_it() {
+        for text in ["[a]\nx = 1\n[limits\ny = 2\nz = \"\n[b]\nv = 3\n", "[a]\nx = 1\n[limits\ny = 2\n"] {
+            let (parsed, report) = parsed(text);
+            let said: Vec<_> = report.errors.iter().map(|error| (error.span.start, error.message.as_str())).collect();
+            assert_eq!(said, [(17, "unclosed table, expected `]`")], "{text}");
+            let [lines] = parsed.broken.as_slice() else { panic!("{:?}", parsed.broken) };
+            assert!(text[lines.clone()].starts_with("[limits\ny = 2") && !text[lines.clone()].contains("[b]"));
+            assert_eq!(parsed.table.get("b").is_some(), text.contains("[b]"));
+        }
     }
 
     #[test]
