@@ -14,6 +14,7 @@ mod metric;
 mod modal;
 mod name;
 mod quantity;
+mod round;
 mod settling;
 mod span;
 #[cfg(test)]
@@ -29,5 +30,6 @@ pub use metric::{Metric, MetricSet, Metrics, MoveMetrics};
 pub use modal::{Mode, Signal, fit_mode};
 pub use name::{Name, UnknownMetric};
 pub use quantity::Quantity;
+pub use round::{round_above, round_below};
 pub use undamped::undamped_residual;
 pub use verdict::{Limit, Miss, Verdict};

@@ -24,11 +24,11 @@ impl<'a> Quantity<'a> {
     }
 
     /// Symbol with the prefix that suits an axis up to `largest` (SI), and how much of the plain unit (SI) it is: `mm` and
-    /// 0.001 for 0.25 m.
+    /// 0.001 for 0.25 m. The largest number at the axis is from a half to 500.
     #[must_use]
     pub fn axis_unit(largest: f64, unit: &str) -> (String, f64) {
         let symbol = unit.replace(' ', "·");
-        let exponent = format!("{largest:.2e}").split_once('e').and_then(|(_, e)| e.parse().ok());
+        let exponent = format!("{:.2e}", 2.0 * largest).split_once('e').and_then(|(_, e)| e.parse().ok());
         match exponent.and_then(|exponent| prefix(unit, exponent)) {
             Some((prefix, power)) if largest != 0.0 && largest.is_finite() => {
                 (format!("{prefix}{symbol}"), format!("1e{power}").parse().unwrap_or(1.0))
@@ -155,6 +155,10 @@ mod tests {
     #[test]
     fn an_axis_has_one_prefix() {
         assert_eq!(Quantity::axis_unit(0.25, "m"), ("mm".into(), 1e-3));
+        assert_eq!(Quantity::axis_unit(0.499, "m"), ("mm".into(), 1e-3));
+        assert_eq!(Quantity::axis_unit(0.5, "m"), ("m".into(), 1.0));
+        assert_eq!(Quantity::axis_unit(-0.24e-6, "m"), ("nm".into(), 1e-9));
+        assert_eq!(Quantity::axis_unit(25e3, "N"), ("kN".into(), 1e3));
         assert_eq!(Quantity::axis_unit(0.999_99, "m/s"), ("m/s".into(), 1.0));
         assert_eq!(Quantity::axis_unit(1000.0, "m/s⁴"), ("m/s⁴".into(), 1.0));
         assert_eq!(Quantity::axis_unit(0.0, "N m"), ("N·m".into(), 1.0));

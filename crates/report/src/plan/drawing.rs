@@ -1,10 +1,10 @@
 //! A plan as a drawing: position and its derivatives over time, one panel each, with their limits.
 use super::axis::Axis;
 use super::panel::{HEIGHT, Panel};
-use super::ticks::{step, ticks};
+use super::ticks::ticks;
 use super::{NAMES, PlannedMove, seconds};
 use servobench_base::Setpoint;
-use servobench_metrics::Quantity;
+use servobench_metrics::{Quantity, round_above};
 
 const WIDTH: f64 = 860.0;
 const LEFT: f64 = 84.0;
@@ -78,7 +78,7 @@ impl Drawing<'_> {
         let time =
             Axis { low: first, high: if last > first { last } else { first + 1.0 }, from: LEFT, to: WIDTH - RIGHT };
         let (unit, scale) = Quantity::axis_unit(time.high - time.low, "s");
-        let marks = ticks(time.low / scale, time.high / scale, step((time.high - time.low) / scale, 8.0));
+        let marks = ticks(time.low / scale, time.high / scale, round_above((time.high - time.low) / scale / 8.0));
         for (k, panel) in self.panels.iter().enumerate() {
             let top = TOP + k as f64 * (HEIGHT + GAP);
             svg.extend(marks.iter().map(|(value, _)| {

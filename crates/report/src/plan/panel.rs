@@ -1,8 +1,8 @@
 //! One quantity of a plan over time.
 use super::axis::Axis;
 use super::curve::straightened;
-use super::ticks::{step, ticks};
-use servobench_metrics::Quantity;
+use super::ticks::ticks;
+use servobench_metrics::{Quantity, round_above};
 
 /// Height of a panel.
 pub(super) const HEIGHT: f64 = 118.0;
@@ -27,7 +27,9 @@ impl Panel<'_> {
     pub(super) fn draw_scale(&self, svg: &mut Vec<String>, time: &Axis, value: &Axis) {
         let (_, scale) = self.shown_unit(value);
         let (left, right) = (time.from, time.to);
-        for (tick, label) in ticks(value.low / scale, value.high / scale, step((value.high - value.low) / scale, 4.0)) {
+        for (tick, label) in
+            ticks(value.low / scale, value.high / scale, round_above((value.high - value.low) / scale / 4.0))
+        {
             let (y, class) = (value.at(tick * scale), if tick == 0.0 { "z" } else { "g" });
             svg.push(format!(
                 "<line class=\"{class}\" x1=\"{left}\" x2=\"{right}\" y1=\"{y:.2}\" y2=\"{y:.2}\"/>\n\
