@@ -5,6 +5,7 @@
 use bolero::Driver;
 use bolero::generator::ValueGenerator;
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 use std::ops::Bound::{Excluded, Included};
 use std::ops::Range;
 
@@ -15,6 +16,8 @@ pub struct Splice {
     files: Vec<Vec<Vec<u8>>>,
     /// Words to put in.
     dictionary: Vec<Vec<u8>>,
+    /// All words of files and dictionary, each once, by their kind.
+    kinds: [Vec<Vec<u8>>; 3],
 }
 
 /// Files of text; see [`Splice::text`].
@@ -35,7 +38,7 @@ impl Splice {
     pub fn bytes(files: &[&[u8]], dictionary: &[&[u8]]) -> Self {
         assert!(!files.is_empty() && !dictionary.is_empty(), "there is nothing to splice");
         let bytes = |file: &&[u8]| file.iter().map(|byte| vec![*byte]).collect();
-        Self { files: files.iter().map(bytes).collect(), dictionary: dictionary.iter().map(|w| w.to_vec()).collect() }
+        Self::new(files.iter().map(bytes).collect(), dictionary.iter().map(|word| word.to_vec()).collect())
     }
 
     /// Of texts: a word is a number, a name, or any other character.
@@ -47,7 +50,25 @@ impl Splice {
         assert!(!files.is_empty() && !dictionary.is_empty(), "there is nothing to splice");
         let words = |file: &&str| words(file).into_iter().map(|word| word.as_bytes().to_vec()).collect();
         let dictionary = dictionary.iter().map(|word| word.as_bytes().to_vec()).collect();
-        SplicedText(Self { files: files.iter().map(words).collect(), dictionary })
+        SplicedText(Self::new(files.iter().map(words).collect(), dictionary))
+    }
+
+    fn new(files: Vec<Vec<Vec<u8>>>, dictionary: Vec<Vec<u8>>) -> Self {
+        let all: BTreeSet<_> = files.iter().flatten().chain(&dictionary).collect();
+        let mut kinds = [const { vec![] }; 3];
+        for word in all {
+            kinds[kind(word)].push(word.clone());
+        }
+        Self { files, dictionary, kinds }
+    }
+}
+
+/// 0 for a number, 1 for a name, 2 for anything else.
+fn kind(word: &[u8]) -> usize {
+    match word {
+        [b'0'..=b'9', ..] | [b'-' | b'+' | b'.', b'0'..=b'9', ..] => 0,
+        [b'a'..=b'z' | b'A'..=b'Z', ..] => 1,
+        _ => 2,
     }
 }
 
@@ -91,7 +112,7 @@ impl Splice {
     /// Makes one change.
     fn change<'a, D: Driver>(&'a self, words: &mut Words<'a>, driver: &mut D) -> Option<()> {
         let at = range(words, driver)?;
-        match below(driver, 9)? {
+        match below(driver, 17)? {
             0 => drop(words.drain(at)),
             1 => words.truncate(at.start),
             2 => {
@@ -119,7 +140,17 @@ impl Splice {
                 let byte = below(driver, word.len())?;
                 word.to_mut()[byte] = driver.produce()?;
             }
-            // The change that gets furthest, so twice as often.
+            // What changes least gets furthest, so most often.
+            7..=10 => {
+                let Some(word) = words.get_mut(at.start) else { return Some(()) };
+                *word = self.another(kind(word), driver)?;
+            }
+            11..=14 => {
+                let number = words.iter_mut().skip(at.start).find(|word| kind(word) == 0);
+                if let Some(number) = number {
+                    *number = self.another(0, driver)?;
+                }
+            }
             _ => {
                 let word = &self.dictionary[below(driver, self.dictionary.len())?];
                 let at = if driver.produce()? { at.start..at.start } else { at };
@@ -127,6 +158,16 @@ impl Splice {
             }
         }
         Some(())
+    }
+
+    /// Another word of a kind: one of ours, or a number of any magnitude.
+    fn another<'a, D: Driver>(&'a self, kind: usize, driver: &mut D) -> Option<Cow<'a, [u8]>> {
+        let ours = &self.kinds[kind];
+        if ours.is_empty() || kind == 0 && driver.produce()? {
+            let (digit, exponent) = (below(driver, 10)?, driver.gen_i32(Included(&-340), Included(&340))?);
+            return Some(Cow::Owned(format!("{digit}e{exponent}").into_bytes()));
+        }
+        Some(Cow::Borrowed(&ours[below(driver, ours.len())?]))
     }
 }
 
@@ -153,7 +194,6 @@ mod tests {
     use super::*;
     use crate::seeded::Seeded;
     use bolero::TestTarget;
-    use std::collections::BTreeSet;
     use std::sync::Mutex;
 
     #[test]
@@ -168,7 +208,7 @@ mod tests {
     #[test]
     fn every_kind_of_change_happens() {
         let seen = Mutex::new(BTreeSet::new());
-        let texts = Splice::text(&["a b\nc", "z"], &["0"]);
+        let texts = Splice::text(&["a b\nc", "z", "7 9"], &["0"]);
         TestTarget::new(Seeded { inputs: 50_000 }).with_generator(texts).for_each(|text: &String| {
             seen.lock().unwrap().insert(text.clone());
         });
@@ -185,10 +225,16 @@ mod tests {
             ("a word of another file", "a z\nc"),
             ("a byte changed", "a b\n\u{fffd}"),
             ("a word put in", "a 0b\nc"),
+            ("a name for a name", "a c\nc"),
+            ("a number for a number", "0 9"),
             ("a word replaced", "a 0\nc"),
         ] {
             assert!(seen.contains(text), "{change}: {text:?}");
         }
+        let is_tiny = |text: &String| {
+            text.split_once("e-3").is_some_and(|(digit, rest)| digit.len() == 1 && rest.ends_with(" 9"))
+        };
+        assert!(seen.iter().any(is_tiny), "a number of any magnitude");
     }
 
     #[test]
