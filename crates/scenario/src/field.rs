@@ -1,6 +1,7 @@
 //! What the value of a key may be: how it is read, what is said when it is wrong, and its JSON Schema.
 use crate::diagnostic::Report;
 use crate::physical::{Kind, Physical, RATIO};
+use crate::quantity;
 use crate::reading::{self, ReadError, names, proposals};
 use crate::source::{At, Span};
 use crate::tree::{Node, Number, Value};
@@ -207,10 +208,13 @@ pub(crate) fn physical(
     let ratio = candidates.iter().position(|physical| **physical == RATIO);
     match (&node.value, ratio) {
         (Value::Number(number), Some(which)) => {
-            if number.value.is_finite() {
+            if !number.value.is_finite() {
+                report.error(node.span, format!("`{key}` must be finite, got {}", number.text), "");
+            } else if let Some(why) = quantity::objection(number.value, number.value == 0.0) {
+                report.error(node.span, format!("`{key}`: {why}"), "");
+            } else {
                 return Some((which, number.value));
             }
-            report.error(node.span, format!("`{key}` must be finite, got {}", number.text), "");
         }
         (Value::Number(number), None) => {
             let help = proposals(&number.text, candidates);

@@ -80,13 +80,13 @@ pub fn parse(name: &str, text: &str, folder: Option<&Path>) -> Result<Loaded, Lo
 }
 
 /// Everything that is wrong. On lines with wrong syntax only that is said, and nothing is missing from a file that
-/// could not be read completely.
+/// could not be read completely. The lines are in the order of the files, none within another.
 fn all_errors(syntax: Report, report: &mut Report, broken: &[(SourceId, Range<usize>)]) -> Vec<Diagnostic> {
     let mut all = syntax.errors;
     let is_whole = |one: &Diagnostic| {
-        !broken
-            .iter()
-            .any(|(source, line)| *source == one.source && one.span.start <= line.end && line.start <= one.span.end)
+        let before = |(source, line): &(SourceId, Range<usize>)| (*source, line.end) < (one.source, one.span.start);
+        let next = broken.get(broken.partition_point(before));
+        !next.is_some_and(|(source, line)| *source == one.source && line.start <= one.span.end)
     };
     all.extend(std::mem::take(&mut report.errors).into_iter().filter(is_whole));
     if broken.is_empty() {

@@ -3,20 +3,24 @@
 /// The candidate nearest to `name`, when one is near: differing in case only, or in at most a third of its letters.
 pub(crate) fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = name.to_lowercase();
-    let letters = name.chars().count();
     candidates
         .into_iter()
-        .map(|candidate| {
-            let other = candidate.to_lowercase();
-            let changes = strsim::damerau_levenshtein(&lower, &other);
-            // A name cut short or drawn out is near whatever its length.
-            let contained = letters >= 3 && (other.starts_with(&lower) || lower.starts_with(&other));
-            let near = changes <= letters.max(candidate.chars().count()) / 3 || contained;
-            (changes, near, candidate)
-        })
-        .filter(|(_, near, _)| *near)
-        .min_by_key(|(changes, ..)| *changes)
-        .map(|(.., candidate)| candidate)
+        .filter_map(|candidate| changes(&lower, &candidate.to_lowercase()).map(|changes| (changes, candidate)))
+        .min_by_key(|(changes, _)| *changes)
+        .map(|(_, candidate)| candidate)
+}
+
+/// Number of changes that make one of the other, when they are near.
+fn changes(name: &str, other: &str) -> Option<usize> {
+    let (letters, others) = (name.chars().count(), other.chars().count());
+    let (difference, most) = (letters.abs_diff(others), letters.max(others) / 3);
+    // A name cut short or drawn out is near whatever its length.
+    if letters >= 3 && (other.starts_with(name) || name.starts_with(other)) {
+        return Some(difference);
+    }
+    // Each letter too many is a change: what is far by its length need not be compared, however long it is.
+    let changes = (difference <= most).then(|| strsim::damerau_levenshtein(name, other));
+    changes.filter(|changes| *changes <= most)
 }
 
 /// "did you mean `x`?", or a list of all candidates when none is near.
@@ -41,6 +45,18 @@ mod tests {
             assert_eq!(nearest(wrong, KEYS), Some(right));
         }
         assert_eq!(nearest("colour", KEYS), None);
+    }
+
+    #[test]
+    fn a_name_cut_short_or_drawn_out_is_near() {
+        assert_eq!(nearest("damp", KEYS), Some("damping"));
+        assert_eq!(nearest("massoftheload", KEYS), Some("mass"));
+        assert_eq!(nearest("ma", KEYS), None, "two letters say too little");
+    }
+
+    #[test]
+    fn a_name_that_is_very_long_is_not_compared() {
+        assert_eq!(nearest(&"q".repeat(10_000_000), KEYS), None);
     }
 
     #[test]

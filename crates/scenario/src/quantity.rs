@@ -8,7 +8,7 @@
 //! A product after a quotient ("N/m s") would be read in two ways and is refused.
 use crate::dimension::Dimension;
 use crate::unit::{hint, unit};
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 use winnow::ascii::digit1;
 use winnow::combinator::{alt, delimited, opt, preceded, repeat, separated};
 use winnow::error::{ContextError, ErrMode};
@@ -55,6 +55,22 @@ type Res<T> = Result<T, ErrMode<ContextError>>;
 
 /// Largest power of a unit; no quantity here goes beyond s⁻⁴.
 const MAX_POWER: i32 = 9;
+
+/// Magnitudes in SI that a quantity can have. No machine comes near, and what is derived from several of them, a gain
+/// from a bandwidth, an inertia and a transmission squared, stays inside the range of f64.
+const MAGNITUDES: RangeInclusive<f64> = 1e-30..=1e30;
+
+/// What is wrong with the magnitude of `value`, which was written as zero or not.
+pub(crate) fn objection(value: f64, is_zero: bool) -> Option<&'static str> {
+    let magnitude = value.abs();
+    if is_zero || MAGNITUDES.contains(&magnitude) {
+        None
+    } else if magnitude < *MAGNITUDES.start() {
+        Some("the number is too small: below 1e-30 in SI")
+    } else {
+        Some("the number is too large: above 1e30 in SI")
+    }
+}
 
 /// Reads `text`.
 ///
@@ -111,11 +127,10 @@ fn evaluate(text: &str, number: &str, factors: &[Factor]) -> Result<Quantity, Qu
     }
     let value = with_power_of_ten(number, tens) * numerator / denominator;
     let is_zero = number.bytes().take_while(|b| !matches!(b, b'e' | b'E')).all(|b| !(b'1'..=b'9').contains(&b));
-    if value.is_finite() && (value != 0.0 || is_zero) {
-        return Ok(Quantity { value, dimension, has_unit: !factors.is_empty() });
+    match objection(value, is_zero) {
+        None => Ok(Quantity { value, dimension, has_unit: !factors.is_empty() }),
+        Some(message) => Err(QuantityError::new(0..text.len(), message, "")),
     }
-    let message = if value == 0.0 { "the number is too small" } else { "the number is too large" };
-    Err(QuantityError::new(0..text.len(), message, ""))
 }
 
 /// `number · 10^tens`, rounded once.
@@ -273,8 +288,10 @@ mod tests {
             ("mm", 0..1, "a quantity begins with a number", ""),
             ("nan mm", 0..1, "the number must be finite", ""),
             ("-inf mm", 0..1, "the number must be finite", ""),
-            ("1e999 mm", 0..8, "the number is too large", ""),
-            ("1e-320 nm", 0..9, "the number is too small", ""),
+            ("1e999 mm", 0..8, "the number is too large: above 1e30 in SI", ""),
+            ("1.1e36 um", 0..9, "the number is too large: above 1e30 in SI", ""),
+            ("1e-320 nm", 0..9, "the number is too small: below 1e-30 in SI", ""),
+            ("-1e-400 nm", 0..10, "the number is too small: below 1e-30 in SI", ""),
             ("1,5 mm", 1..2, "the decimal sign is a point", ""),
             ("8 khz", 2..5, "unknown unit `khz`", "did you mean `kHz`?"),
             ("8 m/sek", 4..7, "unknown unit `sek`", "did you mean `s`?"),

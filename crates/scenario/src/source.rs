@@ -16,6 +16,8 @@ pub struct Sources {
 struct Source {
     name: String,
     text: String,
+    /// Where each line but the first begins.
+    line_starts: Vec<usize>,
     place: Place,
 }
 
@@ -81,14 +83,16 @@ impl Sources {
     /// Line and column of a byte offset, both from 1; columns count characters.
     #[must_use]
     pub fn line_and_column(&self, id: SourceId, offset: usize) -> (usize, usize) {
-        let text = self.text(id);
+        let Some(Source { text, line_starts, .. }) = self.files.get(id.0) else { return (1, 1) };
         let before = text.get(..offset).unwrap_or(text);
-        let line_start = before.rfind('\n').map_or(0, |at| at + 1);
-        (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
+        let lines = line_starts.partition_point(|start| *start <= before.len());
+        let line_start = lines.checked_sub(1).map_or(0, |last| line_starts[last]);
+        (lines + 1, before[line_start..].chars().count() + 1)
     }
 
     pub(crate) fn add(&mut self, name: String, text: String, place: Place) -> SourceId {
-        self.files.push(Source { name, text, place });
+        let line_starts = text.match_indices('\n').map(|(at, _)| at + 1).collect();
+        self.files.push(Source { name, text, line_starts, place });
         SourceId(self.files.len() - 1)
     }
 

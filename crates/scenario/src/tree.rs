@@ -58,8 +58,9 @@ impl Table {
 
     /// Lays `over` on this table: its values win, tables merge key by key.
     pub(crate) fn overlay(&mut self, over: Self) {
+        let own = self.entries.len();
         for entry in over.entries {
-            let Some(below) = self.entries.iter_mut().find(|below| below.key == entry.key) else {
+            let Some(below) = self.entries[..own].iter_mut().find(|below| below.key == entry.key) else {
                 self.entries.push(entry);
                 continue;
             };
@@ -99,6 +100,7 @@ impl Value {
 #[derive(Debug)]
 pub(crate) struct Parsed {
     pub(crate) table: Table,
+    /// None within another: both starts and ends increase.
     pub(crate) broken: Vec<Range<usize>>,
 }
 

@@ -27,6 +27,32 @@ fn a_bare_number_is_told_its_unit() {
     }
 }
 
+/// Each by itself would pass, and the gains derived from them would be infinite or zero.
+#[test]
+fn a_number_beyond_every_machine_is_refused() {
+    let cases = [
+        ("lead = \"10 mm\"", "lead = \"1e-28 mm\"", "7:9: `lead`: the number is too small: below 1e-30 in SI"),
+        (
+            "bandwidth = \"60 Hz\"",
+            "bandwidth = \"1e31 Hz\"",
+            "30:14: `bandwidth`: the number is too large: above 1e30 in SI",
+        ),
+        (
+            "lead = \"10 mm\"",
+            "lead = \"10 mm\"\ngear_ratio = 1e31",
+            "8:14: `gear_ratio`: the number is too large: above 1e30 in SI",
+        ),
+        (
+            "lead = \"10 mm\"",
+            "lead = \"10 mm\"\ngear_ratio = 1e-31",
+            "8:14: `gear_ratio`: the number is too small: below 1e-30 in SI",
+        ),
+    ];
+    for (old, new, said) in cases {
+        assert_eq!(after(old, new), [said], "{new}");
+    }
+}
+
 #[test]
 fn a_wrong_dimension_names_both() {
     let cases = [
