@@ -1,0 +1,159 @@
+//! What the loop may take for granted of every scenario that was loaded.
+use servobench_base::Rate;
+use servobench_scenario::*;
+
+/// Every number is finite and on its side of zero, or infinite where that has a meaning.
+pub(crate) fn check(scenario: &Scenario) {
+    let Scenario { base_rate, axis, motor, drive, .. } = scenario;
+    assert!(!scenario.engines.is_empty());
+    optional("duration", scenario.duration);
+    assert!(scenario.duration.is_none_or(|duration| duration <= LONGEST_RUN));
+    positive("transmission", axis.transmission);
+    if let AxisMechanics::Bodies(bodies) = &axis.mechanics {
+        assert!((1..=3).contains(&bodies.len()) && bodies[0].name == "motor" && bodies[0].coupling.is_none());
+        bodies.iter().for_each(body);
+        for body in &bodies[1..] {
+            coupling(body.coupling.expect("only the motor has no coupling"));
+        }
+    }
+    match motor {
+        Motor::Pmsm(motor) => {
+            pmsm(motor);
+            resolution(&motor.encoder);
+        }
+        Motor::IdealSource(source) => {
+            positive("gain", source.gain);
+            limit("limit", source.limit);
+            resolution(&source.encoder);
+        }
+        Motor::Prescribed => {}
+    }
+    self::drive(drive, *base_rate);
+    scenario.program.iter().for_each(step);
+    for disturbance in &scenario.disturbances {
+        not_negative("start", disturbance.start);
+        limit("duration", disturbance.duration);
+        finite("effort", disturbance.effort);
+        optional("frequency", disturbance.frequency);
+    }
+    finite("load_position", scenario.initial.load_position);
+    finite("load_velocity", scenario.initial.load_velocity);
+    divides(scenario.record.rate, *base_rate);
+    assert!(scenario.record.channels.iter().all(|channel| CHANNELS.contains(&channel.as_str())));
+    optional("window", scenario.measure.window);
+    not_negative("from", scenario.measure.from.unwrap_or_default());
+    optional("mode", scenario.measure.mode);
+    for Limit { metric, min, max } in &scenario.limits {
+        assert!(min.is_some() || max.is_some(), "{metric}");
+        assert!(min.zip(*max).is_none_or(|(min, max)| min <= max), "{metric}: {min:?} to {max:?}");
+        for bound in [min, max].into_iter().flatten() {
+            finite(metric, *bound);
+        }
+    }
+}
+
+fn body(body: &Body) {
+    positive("inertia", body.inertia);
+    not_negative("viscous", body.viscous);
+    not_negative("coulomb", body.coulomb);
+    finite("breakaway", body.breakaway);
+    assert!(body.breakaway >= body.coulomb, "{body:?}");
+    not_negative("stribeck_velocity", body.stribeck_velocity);
+    finite("bias", body.bias);
+}
+
+fn coupling(coupling: Coupling) {
+    positive("stiffness", coupling.stiffness);
+    not_negative("damping", coupling.damping);
+}
+
+fn pmsm(motor: &Pmsm) {
+    positive("electrical_ratio", motor.electrical_ratio);
+    positive("resistance", motor.resistance);
+    positive("inductance_d", motor.inductance_d);
+    positive("inductance_q", motor.inductance_q);
+    positive("flux_linkage", motor.flux_linkage);
+    positive("max_current", motor.max_current);
+}
+
+fn resolution(encoder: &Encoder) {
+    optional("resolution", encoder.resolution);
+}
+
+fn drive(drive: &Drive, base_rate: Rate) {
+    limit("dc_link", drive.dc_link);
+    limit("max_effort", drive.max_effort);
+    if let Some(current) = &drive.current {
+        divides(current.rate, base_rate);
+        positive("bandwidth", current.bandwidth);
+        for (d, q) in [current.gain, current.integral_time].into_iter().flatten() {
+            positive("current loop, d", d);
+            positive("current loop, q", q);
+        }
+    }
+    let VelocityLoop { rate, gain, integral_time, filter_time } = drive.velocity;
+    divides(rate, base_rate);
+    not_negative("velocity gain", gain);
+    optional("integral_time", integral_time);
+    not_negative("filter_time", filter_time);
+    divides(drive.position.rate, base_rate);
+    not_negative("position gain", drive.position.gain);
+    assert!((0.0..=1.0).contains(&drive.feedforward.velocity));
+    not_negative("delay", drive.feedforward.delay.unwrap_or_default());
+    let estimate = &drive.estimate;
+    not_negative("motor_inertia", estimate.motor_inertia);
+    not_negative("load_inertia", estimate.load_inertia);
+    limit("stiffness", estimate.stiffness);
+    not_negative("motor_viscous", estimate.motor_viscous);
+    not_negative("load_viscous", estimate.load_viscous);
+    not_negative("estimated coulomb", estimate.coulomb);
+    finite("estimated bias", estimate.bias);
+    estimate.motor.iter().for_each(pmsm);
+    drive.load_encoder.iter().for_each(resolution);
+    assert!(drive.position_feedback == Feedback::Motor || drive.load_encoder.is_some());
+}
+
+fn step(step: &Step) {
+    match step {
+        Step::Wait(length) => not_negative("wait", *length),
+        Step::Move(MoveStep { target, order, limits, sample_time, duration }) => {
+            let (Target::Absolute(length) | Target::Relative(length)) = *target;
+            finite("target", length);
+            assert!((2..=4).contains(order));
+            let (limited, free) = limits.split_at(usize::from(*order));
+            for limit in limited {
+                positive("limit of a move", *limit);
+            }
+            assert!(free.iter().all(|limit| *limit == f64::INFINITY), "{limits:?}");
+            optional("sample_time", *sample_time);
+            optional("duration of a move", *duration);
+        }
+    }
+}
+
+fn finite(what: &str, value: f64) {
+    assert!(value.is_finite(), "{what} is {value}");
+}
+
+fn positive(what: &str, value: f64) {
+    assert!(value.is_finite() && value > 0.0, "{what} is {value}");
+}
+
+fn not_negative(what: &str, value: f64) {
+    assert!(value.is_finite() && value >= 0.0, "{what} is {value}");
+}
+
+fn optional(what: &str, value: Option<f64>) {
+    if let Some(value) = value {
+        positive(what, value);
+    }
+}
+
+/// Positive, or infinite for none.
+fn limit(what: &str, value: f64) {
+    assert!(value > 0.0, "{what} is {value}");
+}
+
+fn divides(task: Rate, base_rate: Rate) {
+    assert!(base_rate.divider(task).is_ok(), "{task:?} in {base_rate:?}");
+}
