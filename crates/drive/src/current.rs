@@ -86,12 +86,12 @@ impl Params {
     /// # Errors
     /// [`ParamError`] names the first argument that is not finite and positive.
     pub fn from_bandwidth(motor: MotorEstimate, alpha: f64, max_voltage: f64) -> Result<Self, ParamError> {
-        positive("current bandwidth", alpha)?;
-        positive("resistance", motor.resistance)?;
-        positive("inductance_d", motor.inductance.d)?;
-        positive("inductance_q", motor.inductance.q)?;
+        positive("drive.current.bandwidth", alpha)?;
+        positive("drive.estimate.motor.resistance", motor.resistance)?;
+        positive("drive.estimate.motor.inductance_d", motor.inductance.d)?;
+        positive("drive.estimate.motor.inductance_q", motor.inductance.q)?;
         if max_voltage.is_nan() || max_voltage <= 0.0 {
-            return Err(ParamError { name: "dc_link", value: max_voltage, bound: "positive" });
+            return Err(ParamError { name: "drive.dc_link", value: max_voltage, bound: "positive" });
         }
         let k_p = Dq { d: alpha * motor.inductance.d, q: alpha * motor.inductance.q };
         let k_i = Dq { d: alpha * motor.resistance, q: alpha * motor.resistance };

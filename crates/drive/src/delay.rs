@@ -28,8 +28,8 @@ impl DelayLine {
     pub fn new(delay: f64, period: f64, start: Setpoint) -> Result<Self, ParamError> {
         let periods = delay / period;
         if !(0.0..=Self::CAPACITY as f64).contains(&periods) {
-            let bound = "from 0 to 30 periods of the position task";
-            return Err(ParamError { name: "feedforward delay", value: delay, bound });
+            let bound = "from 0 s to 30 periods of the position task";
+            return Err(ParamError { name: "drive.feedforward.delay", value: delay, bound });
         }
         let whole = libm::ceil(periods - 1e-9);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to CAPACITY")]
@@ -74,7 +74,9 @@ mod tests {
     fn it_starts_at_rest_and_refuses_what_it_cannot_hold() {
         let mut line = DelayLine::new(2.5e-3, 1e-3, Setpoint::at_rest(0.4)).unwrap();
         assert_eq!(line.push(Setpoint::at_rest(0.5)), Setpoint::at_rest(0.4));
-        assert!(DelayLine::new(31e-3, 1e-3, Setpoint::default()).is_err());
+        // By the key of the scenario file, in the unit of the value.
+        let said = DelayLine::new(31e-3, 1e-3, Setpoint::default()).unwrap_err().to_string();
+        assert_eq!(said, "`drive.feedforward.delay` must be from 0 s to 30 periods of the position task, got 0.031");
         assert!(DelayLine::new(-1e-6, 1e-3, Setpoint::default()).is_err());
         assert!(DelayLine::new(f64::NAN, 1e-3, Setpoint::default()).is_err());
     }

@@ -64,22 +64,22 @@ impl Params {
     /// [`ParamError`] names the first parameter out of its bound.
     pub fn check(&self) -> Result<(), ParamError> {
         if !(0.0..=1.0).contains(&self.velocity) {
-            return Err(ParamError { name: "velocity feedforward", value: self.velocity, bound: "from 0 to 1" });
+            return Err(ParamError { name: "drive.feedforward.velocity", value: self.velocity, bound: "from 0 to 1" });
         }
-        non_negative("estimated coulomb", self.coulomb)?;
-        servobench_base::finite("estimated bias", self.bias)?;
+        non_negative("drive.estimate.coulomb", self.coulomb)?;
+        servobench_base::finite("drive.estimate.bias", self.bias)?;
         match self.model {
             Model::Off => Ok(()),
             Model::Rigid { inertia, viscous } => {
-                non_negative("estimated inertia", inertia)?;
-                non_negative("estimated viscous", viscous).map(|_| ())
+                non_negative("drive.estimate.motor_inertia", inertia)?;
+                non_negative("drive.estimate.motor_viscous", viscous).map(|_| ())
             }
             Model::TwoMass { motor_inertia, load_inertia, stiffness, motor_viscous, load_viscous } => {
-                non_negative("estimated motor_inertia", motor_inertia)?;
-                non_negative("estimated load_inertia", load_inertia)?;
-                positive("estimated stiffness", stiffness)?;
-                non_negative("estimated motor_viscous", motor_viscous)?;
-                non_negative("estimated load_viscous", load_viscous).map(|_| ())
+                non_negative("drive.estimate.motor_inertia", motor_inertia)?;
+                non_negative("drive.estimate.load_inertia", load_inertia)?;
+                positive("drive.estimate.stiffness", stiffness)?;
+                non_negative("drive.estimate.motor_viscous", motor_viscous)?;
+                non_negative("drive.estimate.load_viscous", load_viscous).map(|_| ())
             }
         }
     }

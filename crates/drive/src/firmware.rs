@@ -127,14 +127,14 @@ pub struct Firmware {
 
 impl Params {
     /// # Errors
-    /// [`ParamError`] names the first parameter out of its bound.
+    /// [`ParamError`] names the first parameter out of its bound, as scenario files call it.
     pub fn check(&self) -> Result<(), ParamError> {
-        positive("transmission", self.transmission)?;
-        non_negative("position gain", self.position_gain)?;
-        non_negative("velocity filter_time", self.velocity_filter_time)?;
-        non_negative("feedforward delay", self.reference_delay)?;
+        positive("axis.transmission", self.transmission)?;
+        non_negative("drive.position.gain", self.position_gain)?;
+        non_negative("drive.velocity.filter_time", self.velocity_filter_time)?;
+        non_negative("drive.feedforward.delay", self.reference_delay)?;
         if let Stage::Direct { gain } = self.stage {
-            positive("gain", gain)?;
+            positive("motor.gain", gain)?;
         }
         self.velocity.check()?;
         self.feedforward.check()

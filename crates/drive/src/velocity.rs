@@ -49,12 +49,12 @@ impl Params {
     /// # Errors
     /// [`ParamError`] names the first parameter out of its bound.
     pub fn check(&self) -> Result<(), ParamError> {
-        non_negative("velocity gain", self.k_p)?;
+        non_negative("drive.velocity.gain", self.k_p)?;
         if let Some(integral_time) = self.integral_time {
-            positive("velocity integral_time", integral_time)?;
+            positive("drive.velocity.integral_time", integral_time)?;
         }
         if self.max_effort.is_nan() || self.max_effort <= 0.0 {
-            return Err(ParamError { name: "max_effort", value: self.max_effort, bound: "positive" });
+            return Err(ParamError { name: "drive.max_effort", value: self.max_effort, bound: "positive" });
         }
         Ok(())
     }
@@ -126,7 +126,10 @@ mod tests {
     #[test]
     fn errors_name_the_parameter() {
         let p = Params { k_p: 1.0, integral_time: Some(0.0), max_effort: 1.0 };
-        assert_eq!(p.check().unwrap_err().to_string(), "`velocity integral_time` must be finite and positive, got 0");
+        assert_eq!(
+            p.check().unwrap_err().to_string(),
+            "`drive.velocity.integral_time` must be finite and positive, got 0"
+        );
         assert!(Params { max_effort: f64::NAN, integral_time: None, ..p }.check().is_err());
     }
 }
