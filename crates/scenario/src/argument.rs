@@ -1,5 +1,5 @@
 //! Quantities on a command line: read and checked as in a scenario file.
-use crate::physical::{ACCELERATION, Coordinate, JERK, POSITION, Physical, SNAP, TIME, VELOCITY};
+use crate::physical::{ACCELERATION, Counterparts, JERK, POSITION, Physical, SNAP, TIME, VELOCITY};
 use crate::reading::{self, ReadError, names, proposals};
 use crate::scenario::Motion;
 use thiserror::Error;
@@ -39,7 +39,7 @@ pub fn axis_quantity(
     motion: Option<Motion>,
     text: &str,
 ) -> Result<(f64, Motion), ArgumentError> {
-    let Coordinate { linear, rotary } = match derivative {
+    let Counterparts { linear, rotary } = match derivative {
         Derivative::Position => &POSITION,
         Derivative::Velocity => &VELOCITY,
         Derivative::Acceleration => &ACCELERATION,

@@ -15,7 +15,7 @@ pub(crate) use program::{Disturbance, ProgramStep, Setpoint};
 
 use crate::channel::Channel;
 use crate::field::{any, not_negative, positive};
-use crate::limits::LimitTable;
+use crate::limit_table::LimitTable;
 use crate::list::{Many, OneOrMany};
 use crate::physical::Kind::{Axis as InAxis, Plain};
 use crate::physical::{FREQUENCY, POSITION, TIME, VELOCITY};

@@ -12,7 +12,7 @@ mod diagnostic;
 mod dimension;
 mod field;
 mod file;
-mod limits;
+mod limit_table;
 mod list;
 mod load;
 mod models;

@@ -20,14 +20,14 @@ pub(crate) enum Kind {
     /// One thing, whatever the axis.
     Plain(&'static Physical),
     /// In the axis coordinate: linear or rotary as the axis is.
-    Axis(&'static Coordinate),
+    Axis(&'static Counterparts),
     /// In the motor coordinate.
-    Motor(&'static Coordinate),
+    Motor(&'static Counterparts),
 }
 
 /// A pair of corresponding quantities: force and torque, mass and inertia.
 #[derive(Debug, PartialEq)]
-pub(crate) struct Coordinate {
+pub(crate) struct Counterparts {
     pub(crate) linear: Physical,
     pub(crate) rotary: Physical,
 }
@@ -35,15 +35,15 @@ pub(crate) struct Coordinate {
 impl Kind {
     /// What the key measures on this axis; both when that is not known.
     pub(crate) fn candidates(self, axis: Option<Motion>, motor: Option<Motion>) -> Vec<&'static Physical> {
-        let (coordinate, motion) = match self {
+        let (pair, motion) = match self {
             Self::Plain(physical) => return vec![physical],
-            Self::Axis(coordinate) => (coordinate, axis),
-            Self::Motor(coordinate) => (coordinate, motor),
+            Self::Axis(pair) => (pair, axis),
+            Self::Motor(pair) => (pair, motor),
         };
         match motion {
-            Some(Motion::Linear) => vec![&coordinate.linear],
-            Some(Motion::Rotary) => vec![&coordinate.rotary],
-            None => vec![&coordinate.linear, &coordinate.rotary],
+            Some(Motion::Linear) => vec![&pair.linear],
+            Some(Motion::Rotary) => vec![&pair.rotary],
+            None => vec![&pair.linear, &pair.rotary],
         }
     }
 }
@@ -100,7 +100,7 @@ pub(crate) static TORQUE_CONSTANT: Physical =
 pub(crate) static FORCE_CONSTANT: Physical =
     physical("a force constant (N/Arms or N/Apk)", "N/Arms", &[(D::NEWTON.times(AMPERE_PEAK, -1), 1.0)]);
 /// In volts of amplitude per m/s or rad/s.
-pub(crate) static BACK_EMF: Coordinate = Coordinate {
+pub(crate) static BACK_EMF: Counterparts = Counterparts {
     linear: physical(
         "a back-EMF constant (Vrms s/m or Vpk s/m, line to line)",
         "Vrms s/m",
@@ -115,49 +115,49 @@ pub(crate) static BACK_EMF: Coordinate = Coordinate {
 pub(crate) static CURRENT_GAIN: Physical =
     physical("a current loop gain (V/A)", "V/A", &[(D::VOLT.times(D::AMPERE, -1), 1.0)]);
 
-pub(crate) static POSITION: Coordinate = Coordinate {
+pub(crate) static POSITION: Counterparts = Counterparts {
     linear: physical("a length", "mm", &[(D::METRE, 1.0)]),
     rotary: physical("an angle", "deg", &[(D::RADIAN, 1.0)]),
 };
-pub(crate) static VELOCITY: Coordinate = Coordinate {
+pub(crate) static VELOCITY: Counterparts = Counterparts {
     linear: physical("a velocity", "m/s", &[(VELOCITY_L, 1.0)]),
     rotary: physical("an angular velocity", "rpm", &[(VELOCITY_R, 1.0)]),
 };
-pub(crate) static ACCELERATION: Coordinate = Coordinate {
+pub(crate) static ACCELERATION: Counterparts = Counterparts {
     linear: physical("an acceleration", "m/s2", &[(VELOCITY_L.times(SECOND, -1), 1.0)]),
     rotary: physical("an angular acceleration", "rad/s2", &[(VELOCITY_R.times(SECOND, -1), 1.0)]),
 };
-pub(crate) static JERK: Coordinate = Coordinate {
+pub(crate) static JERK: Counterparts = Counterparts {
     linear: physical("a jerk", "m/s3", &[(VELOCITY_L.times(SECOND, -2), 1.0)]),
     rotary: physical("an angular jerk", "rad/s3", &[(VELOCITY_R.times(SECOND, -2), 1.0)]),
 };
-pub(crate) static SNAP: Coordinate = Coordinate {
+pub(crate) static SNAP: Counterparts = Counterparts {
     linear: physical("a snap", "m/s4", &[(VELOCITY_L.times(SECOND, -3), 1.0)]),
     rotary: physical("an angular snap", "rad/s4", &[(VELOCITY_R.times(SECOND, -3), 1.0)]),
 };
-pub(crate) static INERTIAL: Coordinate = Coordinate {
+pub(crate) static INERTIAL: Counterparts = Counterparts {
     linear: physical("a mass", "kg", &[(D::KILOGRAM, 1.0)]),
     rotary: physical("a moment of inertia", "kg m2", &[(KG_M2, 1.0)]),
 };
-pub(crate) static EFFORT: Coordinate = Coordinate {
+pub(crate) static EFFORT: Counterparts = Counterparts {
     linear: physical("a force", "N", &[(D::NEWTON, 1.0)]),
     rotary: physical("a torque", "Nm", &[(D::NEWTON_METRE, 1.0)]),
 };
-pub(crate) static STIFFNESS: Coordinate = Coordinate {
+pub(crate) static STIFFNESS: Counterparts = Counterparts {
     linear: physical("a stiffness", "N/m", &[(D::NEWTON.times(D::METRE, -1), 1.0)]),
     rotary: physical("a torsional stiffness", "Nm/rad", STIFFNESS_R),
 };
-pub(crate) static VISCOUS: Coordinate = Coordinate {
+pub(crate) static VISCOUS: Counterparts = Counterparts {
     linear: physical("a damping", "N s/m", &[(D::NEWTON.times(SECOND, 1).times(D::METRE, -1), 1.0)]),
     rotary: physical("a torsional damping", "Nm s/rad", VISCOUS_R),
 };
 /// Output voltage per velocity of the motor.
-pub(crate) static VOLT_GAIN: Coordinate = Coordinate {
+pub(crate) static VOLT_GAIN: Counterparts = Counterparts {
     linear: physical("a velocity gain", "V s/m", &[(D::VOLT.times(VELOCITY_L, -1), 1.0)]),
     rotary: physical("a velocity gain", "V s/rad", &[(D::VOLT.times(VELOCITY_R, -1), 1.0)]),
 };
 /// Effort per volt.
-pub(crate) static SOURCE_GAIN: Coordinate = Coordinate {
+pub(crate) static SOURCE_GAIN: Counterparts = Counterparts {
     linear: physical("a force per voltage", "N/V", &[(D::NEWTON.times(D::VOLT, -1), 1.0)]),
     rotary: physical("a torque per voltage", "Nm/V", &[(D::NEWTON_METRE.times(D::VOLT, -1), 1.0)]),
 };

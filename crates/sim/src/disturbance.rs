@@ -36,8 +36,10 @@ impl Disturbances {
         let tick_at = |time: f64| base_rate.tick_at(time.min(end_of_run)).0;
         for (index, one) in all.iter().enumerate() {
             let acting = tick_at(one.start)..tick_at(one.start + one.duration);
-            if acting.is_empty() {
-                let (start, duration, end_of_run) = (one.start, one.duration, base_rate.time(Tick(ticks - 1)));
+            // The last tick is the end of the run: nothing moves after it.
+            let last = ticks - 1;
+            if acting.is_empty() || acting.start >= last {
+                let (start, duration, end_of_run) = (one.start, one.duration, base_rate.time(Tick(last)));
                 return Err(BuildError::IdleDisturbance { index, start, duration, end_of_run });
             }
             let on = match one.on {
@@ -97,7 +99,7 @@ mod tests {
     fn times_between_ticks_wait_for_the_next_one() {
         let step = Disturbance { start: 0.003_2, duration: 0.002, ..STEP };
         assert_eq!(acting(&step, hz(1_000), 10), [4, 5]);
-        assert_eq!(acting(&Disturbance { start: 0.008, ..STEP }, hz(1_000), 10), [8, 9]);
+        assert_eq!(acting(&Disturbance { start: 0.008, ..STEP }, hz(1_000), 10), [8, 9], "recorded up to the end");
     }
 
     #[test]
@@ -110,7 +112,7 @@ mod tests {
             refusal(0.003_2, 0.000_5),
             "disturbance 2 acts on no tick of the run, which ends at 0.01 s: it starts at 0.0032 s and lasts 0.0005 s"
         );
-        for (start, duration) in [(0.011, 1.0), (1e300, f64::INFINITY), (f64::MAX, f64::MAX)] {
+        for (start, duration) in [(0.01, 1.0), (0.011, 1.0), (1e300, f64::INFINITY), (f64::MAX, f64::MAX)] {
             assert!(refusal(start, duration).contains("acts on no tick"), "{start} s");
         }
     }
