@@ -1,7 +1,8 @@
 //! The same scenario twice, and with other scenarios beside it: the same bits.
 use servobench_scenario::EngineName;
-use servobench_suite::{for_each_in_parallel, jobs};
+use servobench_suite::jobs;
 use servobench_tests::{engines, measured, run, scenario_file};
+use std::thread;
 
 #[test]
 fn a_run_is_the_same_to_the_bit_whatever_runs_beside_it() {
@@ -9,7 +10,10 @@ fn a_run_is_the_same_to_the_bit_whatever_runs_beside_it() {
     let scenarios: Vec<_> = files.into_iter().map(scenario_file).collect();
     for engine in engines() {
         let alone: Vec<_> = scenarios.iter().map(|scenario| run(scenario, engine)).collect();
-        let together = for_each_in_parallel(&scenarios, 4, |_, scenario| run(scenario, engine));
+        let together: Vec<_> = thread::scope(|scope| {
+            let runs: Vec<_> = scenarios.iter().map(|scenario| scope.spawn(|| run(scenario, engine))).collect();
+            runs.into_iter().map(|run| run.join().unwrap()).collect()
+        });
         for ((scenario, alone), together) in scenarios.iter().zip(&alone).zip(&together) {
             for (one, two) in alone.channels.iter().zip(&together.channels) {
                 let same = one.values.iter().zip(&two.values).all(|(one, two)| one.to_bits() == two.to_bits());
