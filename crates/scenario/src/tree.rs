@@ -169,7 +169,7 @@ impl<'a> Places<'a> {
             match &node.value {
                 Value::Table(inner) => self.add(inner),
                 Value::Array(items) => {
-                    items.iter().filter_map(|item| item.value.as_table()).for_each(|item| self.add(item))
+                    items.iter().filter_map(|item| item.value.as_table()).for_each(|item| self.add(item));
                 }
                 _ => {}
             }
