@@ -1,6 +1,6 @@
 //! Users' own MJCF files on the engines that read them: where the load is.
 use servobench_plant::{Actuation, BodyState, Drive, Engine, Input, Mechanics, MechanicsSetup, MjcfModel, Model};
-use servobench_scenario::{AxisMechanics, Initial};
+use servobench_scenario::{Actuator, AxisMechanics, Initial};
 use servobench_tests::{engines, run, scenario_file};
 
 /// Tick length (s).
@@ -127,7 +127,7 @@ fn a_slide_at_an_angle_counts_by_its_cosine() {
 #[test]
 fn runs_start_where_the_scenario_says() {
     let mut scenario = scenario_file("own-mjcf.toml");
-    scenario.drive.enabled = false;
+    scenario.actuator = Actuator::Off;
     scenario.duration = Some(1e-3);
     scenario.initial = Initial { load_position: 0.25, load_velocity: 0.5 };
     for (load, bodies, motor) in [("load", &["motor", "load"][..], 0.0), ("carriage", &["motor"], 0.25)] {

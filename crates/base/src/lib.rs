@@ -9,6 +9,6 @@ mod setpoint;
 mod time;
 
 pub use frames::{AlphaBeta, Dq, ElectricalAngle, Rotation};
-pub use parameter::{ParamError, finite, non_negative, positive};
+pub use parameter::{ParamError, finite, limit, non_negative, positive};
 pub use setpoint::Setpoint;
 pub use time::{Countdown, Divider, Rate, RateError, Tick};

@@ -45,6 +45,14 @@ pub const fn finite(name: &'static str, value: f64) -> Result<f64, ParamError> {
     if value.is_finite() { Ok(value) } else { Err(ParamError { name, value, bound: "finite" }) }
 }
 
+/// Returns `value` when it is above zero; infinity means that there is no limit.
+///
+/// # Errors
+/// [`ParamError`] otherwise.
+pub const fn limit(name: &'static str, value: f64) -> Result<f64, ParamError> {
+    if value > 0.0 { Ok(value) } else { Err(ParamError { name, value, bound: "positive" }) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -56,5 +64,7 @@ mod tests {
         assert_eq!(non_negative("viscous", f64::NAN).unwrap_err().bound, "finite and not negative");
         assert!(finite("bias", f64::INFINITY).is_err());
         assert_eq!(non_negative("viscous", 0.0), Ok(0.0));
+        assert_eq!(limit("max_effort", f64::INFINITY), Ok(f64::INFINITY));
+        assert!(limit("max_effort", 0.0).is_err() && limit("max_effort", f64::NAN).is_err());
     }
 }

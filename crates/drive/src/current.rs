@@ -5,17 +5,17 @@
 //! decoupling_d = −ω·L_q·i_q      decoupling_q = ω·(L_d·i_d + ψ)
 //! dI/dt = k_i·(e + (u − v)/k_p)                           (forward Euler, step h)
 //! ```
-//! With k_p = α·L and k_i = α·R the loop closes like 1/(1 + s/α) (Harnefors & Nee, IEEE TIA 34(1), 1998); a ramp is
-//! followed 1/α late, whatever the dead time in the loop. The voltage limit gives the d axis first call.
+//! With k_p = α·L and k_i = k_p·R/L = α·R the loop closes like 1/(1 + s/α) (Harnefors & Nee, IEEE TIA 34(1), 1998); a
+//! ramp is followed 1/α late, whatever the dead time in the loop. The voltage limit gives the d axis first call.
 //!
 //! The voltage computed at tick k is applied from k+1 to k+2: it is turned ahead by 1.5·h·ω to meet the rotor there.
-use servobench_base::{AlphaBeta, Dq, ParamError, Rotation, positive};
+use servobench_base::{AlphaBeta, Dq, ParamError, Rotation, limit, positive};
 
 /// The motor as the firmware knows it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotorEstimate {
-    /// Pole pairs.
-    pub pole_pairs: f64,
+    /// Electrical angle per motor coordinate: pole pairs p (rad/rad), or π/τ_p of a linear motor (rad/m).
+    pub electrical_ratio: f64,
     /// Stator resistance, phase to neutral (Ω).
     pub resistance: f64,
     /// Inductances (H).
@@ -24,16 +24,25 @@ pub struct MotorEstimate {
     pub flux_linkage: f64,
 }
 
+/// Gains of the two axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gains {
+    /// Proportional gains (V/A).
+    pub k_p: Dq,
+    /// Integral gains (V/(A·s)).
+    pub k_i: Dq,
+}
+
 /// Gains and limits; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Params {
     /// The motor.
     pub motor: MotorEstimate,
-    /// Proportional gains (V/A).
-    pub k_p: Dq,
-    /// Integral gains (V/(A·s)).
-    pub k_i: Dq,
-    /// Largest voltage amplitude (V).
+    /// Gains.
+    pub gains: Gains,
+    /// Largest current reference (A, peak); may be infinite.
+    pub max_current: f64,
+    /// Largest voltage amplitude (V); may be infinite.
     pub max_voltage: f64,
 }
 
@@ -73,30 +82,69 @@ pub struct Output {
 }
 
 impl MotorEstimate {
-    /// Torque per q-axis current at i_d = 0 (N·m/A, peak).
+    /// Effort per q-axis current at i_d = 0 (N·m/A or N/A, peak).
     #[must_use]
-    pub fn torque_constant(&self) -> f64 {
-        1.5 * self.pole_pairs * self.flux_linkage
+    pub fn effort_constant(&self) -> f64 {
+        1.5 * self.electrical_ratio * self.flux_linkage
+    }
+}
+
+impl Gains {
+    /// Gains for the closed-loop bandwidth `alpha` (rad/s): k_p = α·L.
+    #[must_use]
+    pub fn from_bandwidth(motor: &MotorEstimate, alpha: f64) -> Self {
+        let Dq { d, q } = motor.inductance;
+        Self::cancelling(motor, Dq { d: alpha * d, q: alpha * q })
+    }
+
+    /// The proportional gains `k_p` (V/A) with the integral time L/R of each axis: the controller's zero cancels the
+    /// motor's pole.
+    #[must_use]
+    pub fn cancelling(motor: &MotorEstimate, k_p: Dq) -> Self {
+        let Dq { d, q } = motor.inductance;
+        Self::with_integral_times(k_p, Dq { d: d / motor.resistance, q: q / motor.resistance })
+    }
+
+    /// The proportional gains `k_p` (V/A) with the integral times `t_i` (s).
+    #[must_use]
+    pub fn with_integral_times(k_p: Dq, t_i: Dq) -> Self {
+        Self { k_p, k_i: Dq { d: k_p.d / t_i.d, q: k_p.q / t_i.q } }
     }
 }
 
 impl Params {
-    /// Gains for the closed-loop bandwidth `alpha` (rad/s).
-    ///
     /// # Errors
-    /// [`ParamError`] names the first argument that is not finite and positive.
-    pub fn from_bandwidth(motor: MotorEstimate, alpha: f64, max_voltage: f64) -> Result<Self, ParamError> {
-        positive("drive.current.bandwidth", alpha)?;
-        positive("drive.estimate.motor.resistance", motor.resistance)?;
-        positive("drive.estimate.motor.inductance_d", motor.inductance.d)?;
-        positive("drive.estimate.motor.inductance_q", motor.inductance.q)?;
-        if max_voltage.is_nan() || max_voltage <= 0.0 {
-            return Err(ParamError { name: "drive.dc_link", value: max_voltage, bound: "positive" });
+    /// [`ParamError`] names the first parameter out of its bound, as scenario files call it.
+    pub fn check(&self) -> Result<(), ParamError> {
+        for (name, value) in [
+            ("motor.pole_pairs", self.motor.electrical_ratio),
+            ("drive.estimate.motor.resistance", self.motor.resistance),
+            ("drive.estimate.motor.inductance_d", self.motor.inductance.d),
+            ("drive.estimate.motor.inductance_q", self.motor.inductance.q),
+            ("drive.estimate.motor.flux_linkage", self.motor.flux_linkage),
+            ("drive.current.gain_d", self.gains.k_p.d),
+            ("drive.current.gain_q", self.gains.k_p.q),
+            ("drive.current.integral_time_d", self.gains.k_p.d / self.gains.k_i.d),
+            ("drive.current.integral_time_q", self.gains.k_p.q / self.gains.k_i.q),
+        ] {
+            positive(name, value)?;
         }
-        let k_p = Dq { d: alpha * motor.inductance.d, q: alpha * motor.inductance.q };
-        let k_i = Dq { d: alpha * motor.resistance, q: alpha * motor.resistance };
-        Ok(Self { motor, k_p, k_i, max_voltage })
+        limit("motor.max_current", self.max_current)?;
+        limit("drive.dc_link", self.max_voltage).map(|_| ())
     }
+
+    /// Largest effort that the current limit leaves (N·m or N).
+    #[must_use]
+    pub fn max_effort(&self) -> f64 {
+        self.motor.effort_constant() * self.max_current
+    }
+}
+
+/// Largest phase voltage amplitude on a DC link of `dc_link` (V): the linear range of space-vector modulation, U_dc/√3
+/// (Holmes & Lipo, *Pulse Width Modulation for Power Converters*, §6.3).
+#[must_use]
+pub fn voltage_limit(dc_link: f64) -> f64 {
+    dc_link / libm::sqrt(3.0)
 }
 
 /// Returns the voltage for tick k, then advances `x` by `h` (s) to tick k+1.
@@ -105,15 +153,18 @@ pub fn step(p: &Params, x: &mut State, u: Input, h: f64) -> Output {
     let e = Dq { d: u.reference.d - i.d, q: u.reference.q - i.q };
     let motor = &p.motor;
     let v = Dq {
-        d: p.k_p.d * e.d + x.integral.d - u.omega_e * motor.inductance.q * i.q,
-        q: p.k_p.q * e.q + x.integral.q + u.omega_e * (motor.inductance.d * i.d + motor.flux_linkage),
+        d: p.gains.k_p.d * e.d + x.integral.d - u.omega_e * motor.inductance.q * i.q,
+        q: p.gains.k_p.q * e.q + x.integral.q + u.omega_e * (motor.inductance.d * i.d + motor.flux_linkage),
     };
     let computed = limit_d_first(v, p.max_voltage);
     let saturated = computed != v;
-    let windup =
-        if saturated { Dq { d: (v.d - computed.d) / p.k_p.d, q: (v.q - computed.q) / p.k_p.q } } else { Dq::default() };
-    x.integral.d += h * p.k_i.d * (e.d - windup.d);
-    x.integral.q += h * p.k_i.q * (e.q - windup.q);
+    let windup = if saturated {
+        Dq { d: (v.d - computed.d) / p.gains.k_p.d, q: (v.q - computed.q) / p.gains.k_p.q }
+    } else {
+        Dq::default()
+    };
+    x.integral.d += h * p.gains.k_i.d * (e.d - windup.d);
+    x.integral.q += h * p.gains.k_i.q * (e.q - windup.q);
     let voltage = core::mem::replace(&mut x.pending, computed.to_alpha_beta(u.rotor.ahead(1.5 * h * u.omega_e)));
     Output { voltage, current: i, computed, saturated }
 }
@@ -132,13 +183,22 @@ fn limit_d_first(v: Dq, max: f64) -> Dq {
 mod tests {
     use super::*;
 
-    const MOTOR: MotorEstimate =
-        MotorEstimate { pole_pairs: 3.0, resistance: 3.6, inductance: Dq { d: 36e-3, q: 51e-3 }, flux_linkage: 0.545 };
+    const MOTOR: MotorEstimate = MotorEstimate {
+        electrical_ratio: 3.0,
+        resistance: 3.6,
+        inductance: Dq { d: 36e-3, q: 51e-3 },
+        flux_linkage: 0.545,
+    };
     const H: f64 = 1.0 / 16_000.0;
+
+    fn tuned(alpha: f64, max_voltage: f64) -> Params {
+        let gains = Gains::from_bandwidth(&MOTOR, alpha);
+        Params { motor: MOTOR, gains, max_current: f64::INFINITY, max_voltage }
+    }
 
     /// Drives an R–L load at standstill, where each axis is exactly i(k+1) = a·i + (1 − a)/R·u.
     fn ramp_lag(alpha: f64) -> f64 {
-        let p = Params::from_bandwidth(MOTOR, alpha, 1e6).unwrap();
+        let p = tuned(alpha, 1e6);
         let (mut x, mut i) = (State::default(), Dq::default());
         let slope = 100.0;
         for k in 0..1_600 {
@@ -169,11 +229,11 @@ mod tests {
         assert_eq!(limit_d_first(Dq { d: 400.0, q: 1.0 }, 300.0), Dq { d: 300.0, q: 0.0 });
     }
 
-    /// Oracle: with back-calculation the integrator of a saturated axis comes to rest where v is k_p·(e_sat) above u,
-    /// so it cannot wind up: it stays bounded by u + k_p·|e|.
+    /// Oracle: with the voltage at u_max, v = k_p·e + I and dI/dt = k_i·(e + (u_max − v)/k_p) = (u_max − I)·k_i/k_p: the
+    /// integrator comes to rest at u_max, whatever the error.
     #[test]
-    fn the_integrator_does_not_wind_up() {
-        let p = Params::from_bandwidth(MOTOR, 2_000.0, 300.0).unwrap();
+    fn the_integrator_of_a_saturated_axis_rests_at_the_limit() {
+        let p = tuned(2_000.0, 300.0);
         let mut x = State::default();
         let input = Input {
             reference: Dq { d: 0.0, q: 100.0 },
@@ -184,12 +244,40 @@ mod tests {
         for _ in 0..160_000 {
             assert!(step(&p, &mut x, input, H).saturated);
         }
-        assert!(x.integral.q.abs() <= 300.0 + p.k_p.q * 100.0, "{:?}", x.integral);
+        // Each step rounds v, of 10 kV, and a difference of its size; what is rounded decays with k_i/k_p.
+        assert!((x.integral.q - 300.0).abs() < 1e-10, "{:?}", x.integral);
+    }
+
+    /// Oracle: by hand. T_i = L/R of each axis: 10 V/A · 3.6 Ω / 36 mH and 20 V/A · 3.6 Ω / 51 mH; or as given.
+    #[test]
+    fn each_axis_has_its_own_integral_gain() {
+        let k_p = Dq { d: 10.0, q: 20.0 };
+        let k_i = Gains::cancelling(&MOTOR, k_p).k_i;
+        assert!((k_i.d / 1000.0 - 1.0).abs() < 1e-15 && (k_i.q / (72.0 / 0.051) - 1.0).abs() < 1e-15, "{k_i:?}");
+        let given = Gains::with_integral_times(k_p, Dq { d: 0.5, q: 0.25 });
+        assert_eq!(given, Gains { k_p, k_i: Dq { d: 20.0, q: 80.0 } });
+        let k_p = Gains::from_bandwidth(&MOTOR, 1_000.0).k_p;
+        assert!((k_p.d / 36.0 - 1.0).abs() < 1e-15 && (k_p.q / 51.0 - 1.0).abs() < 1e-15, "{k_p:?}");
+    }
+
+    #[test]
+    fn errors_name_the_parameter() {
+        let good = tuned(2_000.0, 300.0);
+        assert_eq!(good.check(), Ok(()));
+        let said = |p: Params| p.check().unwrap_err().to_string();
+        let weak = MotorEstimate { flux_linkage: 0.0, ..MOTOR };
+        assert_eq!(
+            said(Params { motor: weak, ..good }),
+            "`drive.estimate.motor.flux_linkage` must be finite and positive, got 0"
+        );
+        assert_eq!(said(Params { max_current: -1.0, ..good }), "`motor.max_current` must be positive, got -1");
+        assert_eq!(said(Params { max_voltage: f64::NAN, ..good }), "`drive.dc_link` must be positive, got NaN");
+        assert!(Params { gains: Gains::from_bandwidth(&MOTOR, 0.0), ..good }.check().is_err());
     }
 
     #[test]
     fn the_voltage_meets_the_rotor_one_and_a_half_ticks_later() {
-        let p = Params::from_bandwidth(MOTOR, 2_000.0, 1e6).unwrap();
+        let p = tuned(2_000.0, 1e6);
         let mut x = State::default();
         let (rotor, omega_e) = (Rotation::default().ahead(0.7), 2_000.0);
         let input = Input { reference: Dq { d: 1.0, q: 2.0 }, current: AlphaBeta::default(), rotor, omega_e };

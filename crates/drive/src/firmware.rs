@@ -5,63 +5,19 @@
 //! time its computation takes). It knows the axis by its sensors and its own estimates, nothing else.
 //!
 //! Position and its reference are in the axis coordinate, velocity and effort in the motor's; `transmission` converts.
-use crate::current;
-use crate::delay::DelayLine;
-use crate::feedforward::{self, MotorReference};
-use crate::velocity;
-use servobench_base::{AlphaBeta, Divider, Dq, ElectricalAngle, ParamError, Rate, Setpoint, non_negative, positive};
+use crate::feedforward::MotorReference;
+use crate::params::{Params, Stage};
+use crate::{current, delay, velocity};
+use servobench_base::{AlphaBeta, Countdown, Dq, ElectricalAngle, ParamError, Setpoint};
 
 /// Which encoder closes the position loop.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Feedback {
-    /// Motor encoder; the loop follows the motor's own reference.
+    /// The motor's; the loop follows the motor's own reference.
+    #[default]
     Motor,
-    /// Load encoder; the loop follows the load's.
-    Load,
-}
-
-/// What turns the effort reference into effort.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Stage {
-    /// Current loop of a synchronous motor.
-    Current {
-        /// The loop.
-        params: current::Params,
-        /// Its period in base ticks.
-        every: Divider,
-    },
-    /// An ideal amplifier: output = effort / gain.
-    Direct {
-        /// Effort per unit of output, as the firmware knows it (N/V, or 1).
-        gain: f64,
-    },
-}
-
-/// Gains, limits, rates and estimates; constant during a run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Params {
-    /// Base rate of the run.
-    pub base_rate: Rate,
-    /// Axis coordinate per motor coordinate (m/rad, or 1).
-    pub transmission: f64,
-    /// Position gain, K_v (1/s).
-    pub position_gain: f64,
-    /// Which encoder closes the position loop.
-    pub feedback: Feedback,
-    /// Period of the position loop in base ticks.
-    pub position_every: Divider,
-    /// Velocity loop.
-    pub velocity: velocity::Params,
-    /// Its period in base ticks.
-    pub velocity_every: Divider,
-    /// Time constant of the low-pass on the measured velocity (s); 0 for none.
-    pub velocity_filter_time: f64,
-    /// Feedforward.
-    pub feedforward: feedforward::Params,
-    /// How long the reference waits for the feedforward effort (s).
-    pub reference_delay: f64,
-    /// Current loop or direct output.
-    pub stage: Stage,
+    /// The load's, which reads this position (axis coordinate); the loop follows the load's reference.
+    Load(f64),
 }
 
 /// What the sensors say at tick k.
@@ -69,10 +25,10 @@ pub struct Params {
 pub struct Sensors {
     /// Motor position (motor coordinate).
     pub motor_position: f64,
-    /// Motor velocity, where the encoder gives one.
+    /// Motor velocity, where the encoder gives one; otherwise the firmware forms differences.
     pub motor_velocity: Option<f64>,
-    /// Load position (axis coordinate), where there is an encoder.
-    pub load_position: Option<f64>,
+    /// What closes the position loop.
+    pub feedback: Feedback,
     /// Stator current (A, peak).
     pub current: AlphaBeta,
 }
@@ -86,9 +42,9 @@ pub enum Command {
     Output(f64),
 }
 
-/// What the loops hold and what a recording shows of them.
+/// What each loop said at its last turn, which is what a faster one and a recording see until the next.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Telemetry {
+pub struct Held {
     /// Load-side reference, delay-matched (axis coordinate).
     pub reference: Setpoint,
     /// Motor's own reference (axis coordinate).
@@ -97,97 +53,53 @@ pub struct Telemetry {
     pub velocity_reference: f64,
     /// Effort fed forward (motor coordinate).
     pub feedforward: f64,
-    /// Effort reference (motor coordinate).
-    pub effort_reference: f64,
-    /// Whether the effort limit binds.
-    pub effort_saturated: bool,
-    /// Last output of the current loop.
-    pub current: current::Output,
+    /// Effort reference (motor coordinate) and what cut it: the effort limit, or the current limit below it.
+    pub effort: velocity::Output,
     /// q-axis current reference (A, peak).
     pub current_reference: f64,
+    /// Output of the current loop.
+    pub current: current::Output,
 }
 
 /// All that a snapshot must hold.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Firmware {
-    params: Params,
-    delay: DelayLine,
+pub struct State {
+    delay: delay::State,
     velocity: velocity::State,
     current: current::State,
     /// Velocity after the filter (motor coordinate).
     filtered_velocity: f64,
     last_position: Option<f64>,
-    /// Base ticks until each loop is due.
-    position_in: u32,
-    velocity_in: u32,
-    current_in: u32,
-    telemetry: Telemetry,
-    command: Command,
+    position_turn: Countdown,
+    velocity_turn: Countdown,
+    current_turn: Countdown,
+    held: Held,
 }
 
-impl Params {
-    /// # Errors
-    /// [`ParamError`] names the first parameter out of its bound, as scenario files call it.
-    pub fn check(&self) -> Result<(), ParamError> {
-        positive("axis.transmission", self.transmission)?;
-        non_negative("drive.position.gain", self.position_gain)?;
-        non_negative("drive.velocity.filter_time", self.velocity_filter_time)?;
-        non_negative("drive.feedforward.delay", self.reference_delay)?;
-        if let Stage::Direct { gain } = self.stage {
-            positive("motor.gain", gain)?;
-        }
-        self.velocity.check()?;
-        self.feedforward.check()
-    }
-
-    /// How long an effort reference takes to act, which is how long the reference should wait (s): half the position
-    /// period that the reference is held for, and the lag of what follows (see [`current`]: 1/α for a ramp, from sample
-    /// to sample, so only what the position period exceeds the current period by is held).
-    #[must_use]
-    pub fn effort_path_delay(&self) -> f64 {
-        let tick = self.base_rate.period();
-        let position = f64::from(self.position_every.ticks()) * tick;
-        match &self.stage {
-            Stage::Direct { .. } => position / 2.0,
-            Stage::Current { params, every } => {
-                let current = f64::from(every.ticks()) * tick;
-                (position - current).max(0.0) / 2.0 + params.motor.inductance.q / params.k_p.q
-            }
-        }
-    }
-}
-
-impl Firmware {
-    /// Firmware at rest on the set-point `start`.
+impl State {
+    /// At rest on the set-point `start`.
     ///
     /// # Errors
-    /// [`ParamError`] names the first parameter out of its bound.
-    pub fn new(params: Params, start: Setpoint) -> Result<Self, ParamError> {
-        params.check()?;
-        let period = f64::from(params.position_every.ticks()) * params.base_rate.period();
-        let command = match params.stage {
-            Stage::Current { .. } => Command::Voltage(AlphaBeta::default()),
-            Stage::Direct { .. } => Command::Output(0.0),
-        };
+    /// [`ParamError`] names the first parameter of `p` that is out of its bound.
+    pub fn new(p: &Params, start: Setpoint) -> Result<Self, ParamError> {
+        p.check()?;
         Ok(Self {
-            delay: DelayLine::new(params.reference_delay, period, start)?,
+            delay: delay::State::new(start),
             velocity: velocity::State::default(),
             current: current::State::default(),
             filtered_velocity: 0.0,
             last_position: None,
-            position_in: 0,
-            velocity_in: 0,
-            current_in: 0,
-            telemetry: Telemetry::default(),
-            command,
-            params,
+            position_turn: Countdown::default(),
+            velocity_turn: Countdown::default(),
+            current_turn: Countdown::default(),
+            held: Held::default(),
         })
     }
 
-    /// What the loops hold since their last turn.
+    /// What the loops said at their last turn.
     #[must_use]
-    pub fn telemetry(&self) -> &Telemetry {
-        &self.telemetry
+    pub const fn held(&self) -> &Held {
+        &self.held
     }
 
     /// The references at the present tick: between two turns of the position loop the held set-point goes on along its
@@ -195,145 +107,111 @@ impl Firmware {
     /// axis moves on would add an error of velocity × period.
     #[inline]
     #[must_use]
-    pub fn references(&self) -> (Setpoint, MotorReference) {
-        let since = self.params.position_every.ticks() - 1 - self.position_in;
+    pub fn references(&self, p: &Params) -> (Setpoint, MotorReference) {
+        let since = self.position_turn.since(p.position_every);
         if since == 0 {
-            return (self.telemetry.reference, self.telemetry.motor_reference);
+            return (self.held.reference, self.held.motor_reference);
         }
-        let now = self.telemetry.reference.after(f64::from(since) * self.params.base_rate.period());
-        (now, self.params.feedforward.motor_reference(now))
-    }
-
-    /// One base tick: runs the loops that are due and returns what goes to the power stage from now on.
-    pub fn step(&mut self, setpoint: Setpoint, sensors: &Sensors) -> Command {
-        if due(&mut self.position_in, self.params.position_every) {
-            self.position_loop(setpoint, sensors);
-        }
-        if due(&mut self.velocity_in, self.params.velocity_every) {
-            self.velocity_loop(sensors);
-        }
-        match self.params.stage {
-            Stage::Current { params, every } => {
-                if due(&mut self.current_in, every) {
-                    self.current_loop(&params, every, sensors);
-                }
-            }
-            Stage::Direct { gain } => {
-                self.command = Command::Output(self.telemetry.effort_reference / gain);
-            }
-        }
-        self.command
-    }
-
-    fn position_loop(&mut self, setpoint: Setpoint, sensors: &Sensors) {
-        let p = &self.params;
-        let reference = self.delay.push(setpoint);
-        let motor_reference = p.feedforward.motor_reference(reference);
-        let error = match (p.feedback, sensors.load_position) {
-            (Feedback::Load, Some(load)) => reference.x - load,
-            _ => motor_reference.position - p.transmission * sensors.motor_position,
-        };
-        let t = &mut self.telemetry;
-        t.reference = reference;
-        t.motor_reference = motor_reference;
-        t.velocity_reference = p.position_gain * error + p.feedforward.velocity * motor_reference.velocity;
-        t.feedforward = p.transmission * p.feedforward.effort(setpoint);
-    }
-
-    fn velocity_loop(&mut self, sensors: &Sensors) {
-        let p = &self.params;
-        let h = f64::from(p.velocity_every.ticks()) * p.base_rate.period();
-        let last = self.last_position.replace(sensors.motor_position).unwrap_or(sensors.motor_position);
-        let measured = sensors.motor_velocity.unwrap_or((sensors.motor_position - last) / h);
-        // Backward Euler of the low-pass: stable for every time constant, and no filter at zero.
-        self.filtered_velocity += h / (h + p.velocity_filter_time) * (measured - self.filtered_velocity);
-        let t = &mut self.telemetry;
-        let input = velocity::Input {
-            reference: t.velocity_reference / p.transmission,
-            velocity: self.filtered_velocity,
-            feedforward: t.feedforward,
-        };
-        let output = velocity::step(&p.velocity, &mut self.velocity, input, h);
-        t.effort_reference = output.effort;
-        t.effort_saturated = output.saturated;
-    }
-
-    fn current_loop(&mut self, params: &current::Params, every: Divider, sensors: &Sensors) {
-        let h = f64::from(every.ticks()) * self.params.base_rate.period();
-        let t = &mut self.telemetry;
-        t.current_reference = t.effort_reference / params.motor.torque_constant();
-        let input = current::Input {
-            reference: Dq { d: 0.0, q: t.current_reference },
-            current: sensors.current,
-            rotor: ElectricalAngle::from_mechanical(sensors.motor_position, params.motor.pole_pairs).rotation(),
-            omega_e: params.motor.pole_pairs * self.filtered_velocity,
-        };
-        t.current = current::step(params, &mut self.current, input, h);
-        self.command = Command::Voltage(t.current.voltage);
+        let now = self.held.reference.after(f64::from(since) * p.base_rate.period());
+        (now, p.feedforward.motor_reference(now))
     }
 }
 
-/// Counts down to the next turn of a loop; whether it is now.
-fn due(ticks_left: &mut u32, every: Divider) -> bool {
-    if *ticks_left == 0 {
-        *ticks_left = every.ticks() - 1;
-        true
-    } else {
-        *ticks_left -= 1;
-        false
+/// One base tick: runs the loops that are due and returns what goes to the power stage from now on.
+pub fn step(p: &Params, x: &mut State, setpoint: Setpoint, sensors: &Sensors) -> Command {
+    if x.position_turn.is_due(p.position_every) {
+        position_loop(p, x, setpoint, sensors);
     }
+    if x.velocity_turn.is_due(p.velocity_every) {
+        velocity_loop(p, x, sensors);
+    }
+    match &p.stage {
+        Stage::Current { params, every } => {
+            if x.current_turn.is_due(*every) {
+                current_loop(params, x, sensors, p.period(*every));
+            }
+            Command::Voltage(x.held.current.voltage)
+        }
+        Stage::Direct { gain } => Command::Output(x.held.effort.effort / gain),
+    }
+}
+
+fn position_loop(p: &Params, x: &mut State, setpoint: Setpoint, sensors: &Sensors) {
+    let reference = delay::step(&p.reference_delay, &mut x.delay, setpoint);
+    let motor_reference = p.feedforward.motor_reference(reference);
+    let error = match sensors.feedback {
+        Feedback::Load(position) => reference.x - position,
+        Feedback::Motor => motor_reference.position - p.transmission * sensors.motor_position,
+    };
+    x.held.reference = reference;
+    x.held.motor_reference = motor_reference;
+    x.held.velocity_reference = p.position_gain * error + p.feedforward.velocity * motor_reference.velocity;
+    x.held.feedforward = p.transmission * p.feedforward.effort(setpoint);
+}
+
+fn velocity_loop(p: &Params, x: &mut State, sensors: &Sensors) {
+    let h = p.period(p.velocity_every);
+    let last = x.last_position.replace(sensors.motor_position).unwrap_or(sensors.motor_position);
+    let measured = sensors.motor_velocity.unwrap_or((sensors.motor_position - last) / h);
+    // Backward Euler of the low-pass: stable for every time constant, and no filter at zero.
+    x.filtered_velocity += h / (h + p.velocity_filter_time) * (measured - x.filtered_velocity);
+    let input = velocity::Input {
+        reference: x.held.velocity_reference / p.transmission,
+        velocity: x.filtered_velocity,
+        feedforward: x.held.feedforward,
+        available: match &p.stage {
+            Stage::Current { params, .. } => params.max_effort(),
+            Stage::Direct { .. } => f64::INFINITY,
+        },
+    };
+    x.held.effort = velocity::step(&p.velocity, &mut x.velocity, input, h);
+}
+
+fn current_loop(p: &current::Params, x: &mut State, sensors: &Sensors, h: f64) {
+    // The velocity loop keeps to what the current limit leaves; what is cut here is the rounding of the quotient.
+    let wanted = x.held.effort.effort / p.motor.effort_constant();
+    x.held.current_reference = wanted.clamp(-p.max_current, p.max_current);
+    let input = current::Input {
+        reference: Dq { d: 0.0, q: x.held.current_reference },
+        current: sensors.current,
+        rotor: ElectricalAngle::from_mechanical(sensors.motor_position, p.motor.electrical_ratio).rotation(),
+        omega_e: p.motor.electrical_ratio * x.filtered_velocity,
+    };
+    x.held.current = current::step(p, &mut x.current, input, h);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::params::tests::{emps, synchronous};
+    use crate::velocity::Cut;
 
-    fn rate(hz: u32) -> Rate {
-        Rate::new(hz).unwrap()
-    }
-
-    /// The EMPS axis' controller: u = kv·(kp·e − v), 1 kHz, nothing fed forward.
-    fn emps() -> Params {
-        let base_rate = rate(16_000);
-        let every = base_rate.divider(rate(1_000)).unwrap();
-        Params {
-            base_rate,
-            transmission: 1.0,
-            position_gain: 160.18,
-            feedback: Feedback::Motor,
-            position_every: every,
-            velocity: velocity::Params { k_p: 35.1507 * 243.45, integral_time: None, max_effort: 351.507 },
-            velocity_every: every,
-            velocity_filter_time: 0.0,
-            feedforward: feedforward::Params { velocity: 0.0, model: feedforward::Model::Off, coulomb: 0.0, bias: 0.0 },
-            reference_delay: 0.0,
-            stage: Stage::Direct { gain: 35.1507 },
-        }
+    fn at_rest(p: &Params) -> State {
+        State::new(p, Setpoint::default()).unwrap()
     }
 
     /// Oracle: the published control law, u = kv·(kp·e − v) in volts, held between its 1 kHz turns.
     #[test]
     fn a_p_p_cascade_is_the_published_control_law() {
-        let mut drive = Firmware::new(emps(), Setpoint::default()).unwrap();
+        let (p, mut x) = (emps(), at_rest(&emps()));
         let at = |x: f64| Sensors { motor_position: x, motor_velocity: Some(0.02), ..Sensors::default() };
         let setpoint = Setpoint { x: 8e-4, v: 0.1, ..Setpoint::default() };
         let law = |x: f64| 243.45 * (160.18 * (8e-4 - x) - 0.02);
         for k in 0..32 {
-            let x = 5e-4 + 1e-6 * f64::from(k);
-            let Command::Output(u) = drive.step(setpoint, &at(x)) else { panic!("an ideal amplifier") };
-            let turn = f64::from(k / 16 * 16);
-            assert!((u - law(5e-4 + 1e-6 * turn)).abs() < 1e-11, "tick {k}: {u}");
+            let position = |k: i32| 5e-4 + 1e-6 * f64::from(k);
+            let Command::Output(u) = step(&p, &mut x, setpoint, &at(position(k))) else { panic!("an ideal amplifier") };
+            assert!((u - law(position(k / 16 * 16))).abs() < 1e-11, "tick {k}: {u}");
         }
     }
 
     #[test]
     fn velocity_from_an_encoder_without_one_is_a_difference() {
-        let mut drive = Firmware::new(emps(), Setpoint::default()).unwrap();
+        let (p, mut x) = (emps(), at_rest(&emps()));
         let mut last = 0.0;
         for k in 0..=32 {
-            let x = 0.02 * f64::from(k) / 16_000.0;
-            let sensors = Sensors { motor_position: x, ..Sensors::default() };
-            if let Command::Output(u) = drive.step(Setpoint::default(), &sensors) {
+            let position = 0.02 * f64::from(k) / 16_000.0;
+            let sensors = Sensors { motor_position: position, ..Sensors::default() };
+            if let Command::Output(u) = step(&p, &mut x, Setpoint::default(), &sensors) {
                 last = u;
             }
         }
@@ -342,16 +220,44 @@ mod tests {
 
     #[test]
     fn references_go_on_between_two_turns_of_the_position_loop() {
-        let mut drive = Firmware::new(emps(), Setpoint::default()).unwrap();
+        let (p, mut x) = (emps(), at_rest(&emps()));
         for k in 0..40 {
             let setpoint = Setpoint { x: 0.1 * f64::from(k) / 16_000.0, v: 0.1, ..Setpoint::default() };
-            let _ = drive.step(setpoint, &Sensors::default());
-            assert!((drive.references().0.x - setpoint.x).abs() < 1e-18, "tick {k}");
+            step(&p, &mut x, setpoint, &Sensors::default());
+            assert!((x.references(&p).0.x - setpoint.x).abs() < 1e-18, "tick {k}");
         }
     }
 
+    /// Oracle: by hand. On the motor the loop sees r·(motor position) against the motor's reference, on the load the
+    /// load's own position against the load's.
     #[test]
-    fn the_delay_of_the_effort_path_is_half_the_hold() {
-        assert!((emps().effort_path_delay() - 0.5e-3).abs() < 1e-15);
+    fn the_encoder_that_closes_the_loop_is_the_one_that_is_compared() {
+        let p = Params { transmission: 0.5, ..emps() };
+        let setpoint = Setpoint::at_rest(3e-3);
+        for (feedback, error) in [(Feedback::Motor, 3e-3 - 0.5 * 2e-3), (Feedback::Load(2.5e-3), 3e-3 - 2.5e-3)] {
+            let mut x = at_rest(&p);
+            step(&p, &mut x, setpoint, &Sensors { motor_position: 2e-3, feedback, ..Sensors::default() });
+            assert!((x.held().velocity_reference - 160.18 * error).abs() < 1e-15, "{feedback:?}: {:?}", x.held());
+        }
+    }
+
+    /// Oracle: by hand: 9 A, and 1.5·p·ψ·9 A of the motor as the firmware knows it.
+    #[test]
+    fn a_demand_beyond_the_current_limit_is_cut_and_said() {
+        let p = synchronous();
+        let held_at = |velocity: f64| {
+            let mut x = at_rest(&p);
+            let sensors = Sensors { motor_velocity: Some(velocity), ..Sensors::default() };
+            step(&p, &mut x, Setpoint::default(), &sensors);
+            *x.held()
+        };
+        for sign in [1.0, -1.0] {
+            let held = held_at(-100.0 * sign);
+            assert!((held.current_reference - 9.0 * sign).abs() < 1e-14, "{held:?}");
+            assert!(held.current_reference.abs() <= 9.0, "not by one rounding more");
+            assert!((held.effort.effort - sign * 1.5 * 3.0 * 0.545 * 9.0).abs() < 1e-14, "{held:?}");
+            assert_eq!(held.effort.cut, Some(Cut::Available));
+        }
+        assert_eq!(held_at(-1.0).effort, velocity::Output { effort: 3.0, cut: None });
     }
 }

@@ -5,10 +5,11 @@
 #![cfg_attr(not(test), no_std)]
 
 pub mod current;
-mod delay;
+pub mod delay;
 pub mod feedforward;
 mod firmware;
+mod params;
 pub mod velocity;
 
-pub use delay::DelayLine;
-pub use firmware::{Command, Feedback, Firmware, Params, Sensors, Stage, Telemetry};
+pub use firmware::{Command, Feedback, Held, Sensors, State, step};
+pub use params::{Params, Stage};

@@ -1,11 +1,12 @@
 //! Velocity control: P or PI with back-calculation anti-windup, effort (torque or force) out.
 //!
 //! ```text
-//! e = ω_ref − ω      v = τ_ff + k_p·e + τ_i      τ = sat(v, ±τ_max)
+//! e = ω_ref − ω      v = τ_ff + k_p·e + τ_i      τ = sat(v, ±min(τ_max, τ_avail))
 //! dτ_i/dt = k_p/T_i·e + (τ − v)/T_i              (forward Euler, step h)
 //! ```
+//! τ_avail is what the loop below can give; knowing it here keeps the integrator from winding up against it.
 //! Source: Åström & Murray, *Feedback Systems*, 2nd ed., §11.4, tracking time T_t = T_i. The motor's coordinate.
-use servobench_base::{ParamError, non_negative, positive};
+use servobench_base::{ParamError, limit, non_negative, positive};
 
 /// Gains and limits; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,7 +27,7 @@ pub struct State {
 }
 
 /// Values sampled at tick k.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Input {
     /// Velocity reference (rad/s or m/s).
     pub reference: f64,
@@ -34,6 +35,17 @@ pub struct Input {
     pub velocity: f64,
     /// Effort fed forward (N·m or N).
     pub feedforward: f64,
+    /// Largest effort that the loop below can give (N·m or N); may be infinite.
+    pub available: f64,
+}
+
+/// Which limit cuts the effort.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cut {
+    /// The loop's own, [`Params::max_effort`].
+    Effort,
+    /// That of the loop below, [`Input::available`].
+    Available,
 }
 
 /// What tick k gives.
@@ -41,8 +53,8 @@ pub struct Input {
 pub struct Output {
     /// Effort reference (N·m or N).
     pub effort: f64,
-    /// Whether the limit cut it.
-    pub saturated: bool,
+    /// What cut it.
+    pub cut: Option<Cut>,
 }
 
 impl Params {
@@ -53,10 +65,7 @@ impl Params {
         if let Some(integral_time) = self.integral_time {
             positive("drive.velocity.integral_time", integral_time)?;
         }
-        if self.max_effort.is_nan() || self.max_effort <= 0.0 {
-            return Err(ParamError { name: "drive.max_effort", value: self.max_effort, bound: "positive" });
-        }
-        Ok(())
+        limit("drive.max_effort", self.max_effort).map(|_| ())
     }
 }
 
@@ -64,12 +73,14 @@ impl Params {
 pub fn step(p: &Params, x: &mut State, u: Input, h: f64) -> Output {
     let e = u.reference - u.velocity;
     let v = u.feedforward + p.k_p * e + x.integral;
-    let effort = v.clamp(-p.max_effort, p.max_effort);
+    let (limit, cut) =
+        if p.max_effort <= u.available { (p.max_effort, Cut::Effort) } else { (u.available, Cut::Available) };
+    let effort = v.clamp(-limit, limit);
     if let Some(integral_time) = p.integral_time {
         x.integral += h / integral_time * (p.k_p * e + (effort - v));
     }
     #[expect(clippy::float_cmp, reason = "a clamp that does not bind returns the very same bits")]
-    Output { effort, saturated: effort != v }
+    Output { effort, cut: if effort == v { None } else { Some(cut) } }
 }
 
 #[cfg(test)]
@@ -79,6 +90,7 @@ mod tests {
 
     const J: f64 = 2e-3;
     const OMEGA_N: f64 = 50.0;
+    const FREE: Input = Input { reference: 0.0, velocity: 0.0, feedforward: 0.0, available: f64::INFINITY };
 
     /// Speed after 40 ms of a 1 rad/s step with both poles at −ω_n: k_p = 2·J·ω_n, T_i = 2/ω_n. The plant
     /// `J·dω/dt = τ` is exact under a zero-order hold.
@@ -87,7 +99,7 @@ mod tests {
         let (mut x, mut omega) = (State::default(), 0.0);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
         for _ in 0..(0.04 / h).round() as u32 {
-            let u = Input { reference: 1.0, velocity: omega, feedforward: 0.0 };
+            let u = Input { reference: 1.0, velocity: omega, ..FREE };
             omega += h / J * step(&p, &mut x, u, h).effort;
         }
         omega
@@ -106,11 +118,34 @@ mod tests {
 
     proptest! {
         #[test]
-        fn effort_never_exceeds_the_limit(e in -1e6..1e6_f64, integral in -1e6..1e6_f64, ff in -1e6..1e6_f64) {
+        fn effort_never_exceeds_either_limit(
+            e in -1e6..1e6_f64,
+            integral in -1e6..1e6_f64,
+            feedforward in -1e6..1e6_f64,
+            available in 0.1..10.0_f64,
+        ) {
             let p = Params { k_p: 0.2, integral_time: Some(0.04), max_effort: 2.4 };
-            let u = Input { reference: e, velocity: 0.0, feedforward: ff };
             let mut x = State { integral };
-            prop_assert!(step(&p, &mut x, u, 1e-3).effort.abs() <= 2.4);
+            let output = step(&p, &mut x, Input { reference: e, feedforward, available, ..FREE }, 1e-3);
+            prop_assert!(output.effort.abs() <= available.min(2.4));
+            let binding = if available < 2.4 { Cut::Available } else { Cut::Effort };
+            let asked = feedforward + 0.2 * e + integral;
+            prop_assert_eq!(output.cut, (asked.abs() > available.min(2.4)).then_some(binding));
+        }
+    }
+
+    /// Oracle: with the effort at its limit, dτ_i/dt = (τ_max − τ_ff − τ_i)/T_i: the integrator comes to rest at the limit
+    /// that binds, less the feedforward, whatever the error.
+    #[test]
+    fn the_integrator_knows_the_limit_that_binds() {
+        let p = Params { k_p: 3.0, integral_time: Some(0.04), max_effort: 2.4 };
+        for (available, limit) in [(1.5, 1.5), (f64::INFINITY, 2.4)] {
+            let mut x = State::default();
+            for _ in 0..10_000 {
+                step(&p, &mut x, Input { reference: 40.0, feedforward: 0.5, available, ..FREE }, 1e-3);
+            }
+            // v is of 120: rounded to 1.4e-14 at each of the 40 steps that the integrator remembers.
+            assert!((x.integral - (limit - 0.5)).abs() < 1e-12, "{available}: {x:?}");
         }
     }
 
@@ -118,8 +153,8 @@ mod tests {
     fn a_p_controller_has_no_memory() {
         let p = Params { k_p: 3.0, integral_time: None, max_effort: f64::INFINITY };
         let mut x = State::default();
-        let u = Input { reference: 2.0, velocity: 0.5, feedforward: 1.0 };
-        assert_eq!(step(&p, &mut x, u, 1e-3), Output { effort: 5.5, saturated: false });
+        let u = Input { reference: 2.0, velocity: 0.5, feedforward: 1.0, ..FREE };
+        assert_eq!(step(&p, &mut x, u, 1e-3), Output { effort: 5.5, cut: None });
         assert_eq!(x, State::default());
     }
 

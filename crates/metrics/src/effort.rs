@@ -22,9 +22,11 @@ pub(crate) fn note(set: &mut MetricSet, recording: &Recording, rows: &Range<usiz
     set.note(Name::CurrentRms, RMS_CURRENT, current.as_ref().map_err(Clone::clone).and_then(rms));
     let voltage = vector_squared(recording, "voltage.d", "voltage.q", rows);
     set.note(Name::VoltagePeak, "V", voltage.as_ref().map_err(Clone::clone).and_then(peak));
-    for (name, share) in
-        [(Name::CurrentSaturationTime, "saturation.current"), (Name::VoltageSaturationTime, "saturation.voltage")]
-    {
+    for (name, share) in [
+        (Name::CurrentSaturationTime, "saturation.current"),
+        (Name::VoltageSaturationTime, "saturation.voltage"),
+        (Name::EffortSaturationTime, "saturation.effort"),
+    ] {
         set.note(name, "s", saturation_time(recording, share, rows));
     }
     let effort = channel(recording, EFFORT).map(|all| &all[rows.clone()]);

@@ -59,6 +59,7 @@ names! {
     CurrentSaturationTime "current_saturation_time" "time at the current limit",
     VoltagePeak "voltage_peak" "largest voltage vector",
     VoltageSaturationTime "voltage_saturation_time" "time at the voltage limit",
+    EffortSaturationTime "effort_saturation_time" "time at the effort limit",
     TorquePeak "torque_peak" "largest torque or force of the motor",
     TorqueRms "torque_rms" "RMS torque or force of the motor over the recording",
 }

@@ -45,7 +45,8 @@ channels! {
     "voltage.magnitude" "length of the voltage vector",
     "command.output" "output of an ideal source",
     "saturation.voltage" "share of the time that the voltage limit binds",
-    "saturation.current" "share of the time that the effort limit binds",
+    "saturation.current" "share of the time that the current limit binds",
+    "saturation.effort" "share of the time that the effort limit binds",
     "disturbance.motor" "external torque or force on the motor, in its own coordinate; where there is one",
     "disturbance.load" "external torque or force on the load; where there is one",
 }

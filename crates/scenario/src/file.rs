@@ -9,7 +9,7 @@ mod motor;
 mod program;
 
 pub(crate) use axis::{Axis, Body, Mjcf};
-pub(crate) use drive::{Drive, Estimate, EstimatedMotor, Velocity, VelocityKind};
+pub(crate) use drive::{Current, Drive, Estimate, FeedbackEncoder, Velocity, VelocityKind};
 pub(crate) use motor::{Encoder, Motor, MotorKind};
 pub(crate) use program::{Disturbance, ProgramStep, Setpoint};
 

@@ -36,9 +36,10 @@ pub use diagnostic::{Diagnostic, Invalid, LoadError};
 pub use load::{Loaded, load, parse};
 pub use models::{embedded_demo, embedded_models};
 pub use scenario::{
-    Axis, AxisMechanics, Body, Coupling, CurrentLoop, Disturbance, DisturbedBody, Drive, EffortFeedforward, Encoder,
-    EngineName, Estimate, Feedback, Feedforward, IdealSource, Initial, LONGEST_RUN, Limit, Measure, Mjcf, Motion,
-    Motor, MoveStep, Pmsm, PositionLoop, Record, Scenario, SourceOutput, Step, Target, VelocityLoop,
+    Actuator, Axis, AxisMechanics, Body, Coupling, CurrentGain, CurrentLoop, Disturbance, DisturbedBody, Drive,
+    EffortFeedforward, Encoder, EngineName, Estimate, Feedback, Feedforward, IdealSource, Initial, LONGEST_RUN, Limit,
+    Measure, Mjcf, Motion, MotorEstimate, MoveStep, Pmsm, PositionLoop, Record, Scenario, SourceOutput, Step, Target,
+    VelocityLoop,
 };
 pub use schema::json_schema;
 pub use source::{SourceId, Sources};

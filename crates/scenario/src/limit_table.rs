@@ -27,7 +27,7 @@ const SECONDS: Kind = Plain(&TIME);
 const PURE: Kind = Plain(&RATIO);
 
 /// Names and order are those of the crate `metrics`; a test holds them together.
-const METRICS: [Metric; 29] = [
+const METRICS: [Metric; 30] = [
     metric("move_time", SECONDS, "1.35 s", "duration of the longest set-point profile"),
     metric("settling_time", SECONDS, "50 ms", "last exit of the load from the window after the end of the profile"),
     metric("move_and_settling_time", SECONDS, "1.4 s", "longest profile with its settling time"),
@@ -65,6 +65,7 @@ const METRICS: [Metric; 29] = [
     metric("current_saturation_time", SECONDS, "0 s", "time at the current limit"),
     metric("voltage_peak", Plain(&VOLTAGE_AMPLITUDE), "300 V", "largest voltage vector"),
     metric("voltage_saturation_time", SECONDS, "0 s", "time at the voltage limit"),
+    metric("effort_saturation_time", SECONDS, "0 s", "time at the effort limit"),
     metric("torque_peak", InMotor(&EFFORT), "8 Nm", "largest torque or force of the motor"),
     metric("torque_rms", InMotor(&EFFORT), "2 Nm", "RMS torque or force of the motor over the recording"),
 ];

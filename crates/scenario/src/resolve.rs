@@ -1,9 +1,11 @@
 //! From the tables of a file to a [`Scenario`]: defaults, derived values, and the rules that concern several keys.
 
 mod axis;
+mod current;
 mod disturbance;
 mod drive;
 mod estimate;
+mod loops;
 mod motor;
 mod program;
 
@@ -26,7 +28,8 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
 
     let moved = axis.zip(motor).and_then(|(axis, motor)| axis::resolve(axis, motor, sources, report));
     let source = motor.and_then(|motor| motor::resolve(motor, report));
-    let drive = drive::resolve(file, &drive::Known { base_rate, axis: moved.as_ref(), motor: source.as_ref() }, report);
+    let known = drive::Known { base_rate, axis: moved.as_ref(), motor: source.as_ref() };
+    let actuator = drive::resolve(file, &known, report);
     let program = program::steps(file, base_rate, report);
     let duration = run.and_then(|run| duration(run, report));
     let fixed = is_prescribed.then(|| disturbance::Fixed::of(moved.as_ref()));
@@ -52,8 +55,7 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
         base_rate: base_rate?,
         duration,
         axis: moved?,
-        motor: source?,
-        drive: drive?,
+        actuator: actuator?,
         program: program?,
         disturbances: disturbances?,
         initial,

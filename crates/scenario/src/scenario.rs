@@ -3,14 +3,19 @@
 //! A rotary motor's own coordinate is rad, a linear one's m. The axis coordinate is the load's: rad or m, as
 //! [`Axis::motion`] says. "Effort" is a torque or a force, whichever fits the coordinate.
 
+mod actuator;
 mod axis;
 mod drive;
 mod motor;
 mod program;
 
+pub use actuator::Actuator;
 pub use axis::{Axis, AxisMechanics, Body, Coupling, Mjcf, Motion};
-pub use drive::{CurrentLoop, Drive, EffortFeedforward, Estimate, Feedback, Feedforward, PositionLoop, VelocityLoop};
-pub use motor::{Encoder, IdealSource, Motor, Pmsm, SourceOutput};
+pub use drive::{
+    CurrentGain, CurrentLoop, Drive, EffortFeedforward, Estimate, Feedback, Feedforward, MotorEstimate, PositionLoop,
+    VelocityLoop,
+};
+pub use motor::{Encoder, IdealSource, Pmsm, SourceOutput};
 pub use program::{Disturbance, DisturbedBody, Initial, MoveStep, Step, Target};
 
 use servobench_base::Rate;
@@ -36,10 +41,8 @@ pub struct Scenario {
     pub duration: Option<f64>,
     /// The mechanics.
     pub axis: Axis,
-    /// What moves it.
-    pub motor: Motor,
-    /// The firmware; ignored when the motor follows its prescribed motion.
-    pub drive: Drive,
+    /// What moves it, and what commands that.
+    pub actuator: Actuator,
     /// Moves and pauses, one after the other, from time 0.
     pub program: Vec<Step>,
     /// External efforts.

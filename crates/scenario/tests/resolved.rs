@@ -1,7 +1,7 @@
 //! What a scenario becomes: derived gains, merged bodies, overridden models.
 use servobench_scenario::{
-    AxisMechanics, Body, EffortFeedforward, EngineName, Feedback, Limit, Motion, Motor, MoveStep, Pmsm, Scenario,
-    SourceOutput, Step, Target, parse,
+    Actuator, AxisMechanics, Body, CurrentGain, CurrentLoop, Drive, EffortFeedforward, EngineName, Feedback,
+    IdealSource, Limit, Motion, MoveStep, Pmsm, Scenario, SourceOutput, Step, Target, parse,
 };
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
@@ -15,6 +15,26 @@ fn bodies(scenario: &Scenario) -> &[Body] {
         AxisMechanics::Bodies(bodies) => bodies,
         AxisMechanics::Mjcf(_) => panic!("bodies"),
     }
+}
+
+/// The synchronous motor, its DC link and its current loop.
+fn motor(scenario: &Scenario) -> (&Pmsm, f64, &CurrentLoop) {
+    match &scenario.actuator {
+        Actuator::Pmsm { motor, dc_link, current, .. } => (motor, *dc_link, current),
+        other => panic!("a synchronous motor, not {other:?}"),
+    }
+}
+
+/// The ideal source and its gain as the drive knows it.
+fn source(scenario: &Scenario) -> (&IdealSource, f64) {
+    match &scenario.actuator {
+        Actuator::IdealSource { source, estimated_gain, .. } => (source, *estimated_gain),
+        other => panic!("an ideal source, not {other:?}"),
+    }
+}
+
+fn drive(scenario: &Scenario) -> &Drive {
+    scenario.actuator.drive().unwrap()
 }
 
 /// Equal but for a few roundings.
@@ -75,13 +95,17 @@ fn a_rigid_body_is_reflected_through_the_screw() {
 #[test]
 fn the_estimate_is_the_plant_as_two_masses() {
     let scenario = scenario(SCREW);
-    let (r, estimate) = (0.01 / TAU, &scenario.drive.estimate);
+    let (r, estimate) = (0.01 / TAU, &drive(&scenario).estimate);
+    assert!(same(estimate.transmission, r));
     assert!(same(estimate.motor_inertia, (1.57e-4 + 1e-4) / (r * r) + 30.0));
     assert!(same(estimate.motor_viscous, 1e-3 / (r * r) + 100.0));
     assert!(same(estimate.coulomb, 0.05 / r + 20.0));
     assert!(same(estimate.bias, 9.81));
     assert!(same(estimate.load_inertia, 10.0) && same(estimate.stiffness, 2e6));
-    assert!(estimate.load_viscous == 0.0 && estimate.motor.is_some());
+    assert!(estimate.load_viscous == 0.0);
+    let (motor, dc_link, current) = motor(&scenario);
+    assert!(same(current.motor.resistance, motor.resistance) && same(current.motor.flux_linkage, motor.flux_linkage));
+    assert!(same(current.dc_link, dc_link));
 }
 
 #[test]
@@ -89,10 +113,12 @@ fn three_bodies_are_split_at_the_softest_coupling() {
     let stiff_table = SCREW.replace("viscous = \"100", "stiffness = \"43 N/um\"\nviscous = \"100");
     let first = scenario(&stiff_table);
     assert_eq!(bodies(&first).len(), 3);
-    assert!(same(first.drive.estimate.load_inertia, 10.0) && same(first.drive.estimate.stiffness, 2e6));
+    let estimate = &drive(&first).estimate;
+    assert!(same(estimate.load_inertia, 10.0) && same(estimate.stiffness, 2e6));
     let soft_table = SCREW.replace("viscous = \"100", "stiffness = \"1 N/um\"\nviscous = \"100");
     let second = scenario(&soft_table);
-    assert!(same(second.drive.estimate.load_inertia, 40.0) && same(second.drive.estimate.stiffness, 1e6));
+    let estimate = &drive(&second).estimate;
+    assert!(same(estimate.load_inertia, 40.0) && same(estimate.stiffness, 1e6));
 }
 
 /// Oracle: the rules of `docs/scenario.md` by hand: J·ω at the motor, 4/ω, K_v = ω.
@@ -101,13 +127,14 @@ fn gains_follow_from_bandwidths() {
     let scenario = scenario(SCREW);
     let r = 0.01 / TAU;
     let inertia = 1.57e-4 + 1e-4 + r * r * 40.0;
-    let (velocity, position) = (&scenario.drive.velocity, &scenario.drive.position);
+    let Drive { velocity, position, .. } = drive(&scenario);
     assert!(same(velocity.gain, inertia * TAU * 60.0), "{}", velocity.gain);
     assert!(same(velocity.integral_time.unwrap(), 4.0 / (TAU * 60.0)));
     assert!(same(position.gain, TAU * 12.0));
     assert_eq!((velocity.rate.hertz(), position.rate.hertz()), (8_000, 4_000));
-    let current = scenario.drive.current.as_ref().unwrap();
-    assert!(same(current.bandwidth, TAU * 1200.0) && current.gain.is_none() && current.integral_time.is_none());
+    let (.., current) = motor(&scenario);
+    assert!(matches!(current.gain, CurrentGain::Bandwidth(alpha) if same(alpha, TAU * 1200.0)), "{current:?}");
+    assert_eq!(current.integral_time, None, "L/R");
 }
 
 /// A wrong belief of the inertia reaches the gain: the firmware knows its estimate only.
@@ -117,24 +144,65 @@ fn an_estimate_overrides_single_values() {
     let wrong = scenario(&format!("{SCREW}[drive.estimate]\nload_inertia = \"20 kg\"\nmotor.resistance = \"2 Ohm\"\n"));
     let r = 0.01 / TAU;
     // The difference of two nearly equal gains loses a digit or two.
-    let difference = wrong.drive.velocity.gain - right.drive.velocity.gain;
+    let difference = drive(&wrong).velocity.gain - drive(&right).velocity.gain;
     assert!((difference / (r * r * 10.0 * TAU * 60.0) - 1.0).abs() < 1e-12, "{difference}");
-    assert!(same(wrong.drive.estimate.motor_inertia, right.drive.estimate.motor_inertia));
-    let (Motor::Pmsm(plant), believed) = (&wrong.motor, wrong.drive.estimate.motor.as_ref().unwrap()) else { panic!() };
-    assert!(same(believed.resistance, 2.0) && same(plant.resistance, 1.615), "the motor itself is what it is");
-    assert!(same(believed.flux_linkage, plant.flux_linkage));
+    assert!(same(drive(&wrong).estimate.motor_inertia, drive(&right).estimate.motor_inertia));
+    let (plant, _, current) = motor(&wrong);
+    assert!(same(current.motor.resistance, 2.0) && same(plant.resistance, 1.615), "the motor itself is what it is");
+    assert!(same(current.motor.flux_linkage, plant.flux_linkage));
+}
+
+/// Oracle: by hand. A drive that believes in half the lead sees twice the revolutions per millimetre; the inertia at the
+/// shaft of the motor is what it is.
+#[test]
+fn what_the_drive_believes_does_not_change_the_plant() {
+    let text = format!("{SCREW}[drive.estimate]\nlead = \"5 mm\"\ngear_ratio = 3\ndc_link = \"600 V\"\n");
+    let wrong = scenario(&text);
+    assert!(same(wrong.axis.transmission, 0.01 / TAU));
+    let (estimate, r) = (&drive(&wrong).estimate, 0.005 / TAU / 3.0);
+    assert!(same(estimate.transmission, r));
+    let shaft = 1.57e-4 + 1e-4 + (0.01 / TAU) * (0.01 / TAU) * 30.0;
+    assert!(same(estimate.motor_inertia * r * r, shaft), "{estimate:?}");
+    assert!(same(drive(&wrong).velocity.gain, (shaft + r * r * 10.0) * TAU * 60.0));
+    let (_, dc_link, current) = motor(&wrong);
+    assert!(same(dc_link, 560.0) && same(current.dc_link, 600.0));
+}
+
+/// Oracle: by hand. Gains in volts are volts whatever the drive believes a volt to be; the limit of the output becomes one
+/// of the effort that it believes in.
+#[test]
+fn an_ideal_source_has_a_gain_that_the_drive_believes() {
+    let text =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/emps.toml")).unwrap();
+    let wrong = scenario(&format!("{text}[drive.estimate]\ngain = \"20 N/V\"\n"));
+    let (source, estimated_gain) = source(&wrong);
+    assert!(same(source.gain, 35.1507) && same(estimated_gain, 20.0));
+    assert!(same(drive(&wrong).velocity.gain, 20.0 * 243.45) && same(drive(&wrong).max_effort, 200.0));
+}
+
+#[test]
+fn gains_of_the_current_loop_are_those_of_the_file() {
+    let with = |current: &str| scenario(&SCREW.replace("load_encoder = {", &format!("{current}\nload_encoder = {{")));
+    let given = with("current.gain_d = \"12 V/A\"\ncurrent.gain_q = \"15 V/A\"");
+    let (.., current) = motor(&given);
+    assert_eq!((current.gain, current.integral_time), (CurrentGain::PerAxis { d: 12.0, q: 15.0 }, None));
+    let given = with("current.integral_time_d = \"2 ms\"\ncurrent.integral_time_q = \"4 ms\"");
+    let (.., current) = motor(&given);
+    assert_eq!(current.integral_time, Some((0.002, 0.004)));
+    assert!(matches!(current.gain, CurrentGain::Bandwidth(_)), "the bandwidth of the model stays");
 }
 
 #[test]
 fn limits_of_the_motor_and_its_encoder() {
     let scenario = scenario(SCREW);
-    let Motor::Pmsm(motor) = &scenario.motor else { panic!("a synchronous motor") };
-    assert!(same(motor.max_current, 13.3 * 2_f64.sqrt()), "effective becomes peak");
-    assert!(same(scenario.drive.max_effort, 1.5 * 4.0 * motor.flux_linkage * motor.max_current));
+    let (motor, dc_link, current) = motor(&scenario);
+    assert!(same(current.max_current, 13.3 * 2_f64.sqrt()), "effective becomes peak");
+    assert!(drive(&scenario).max_effort.is_infinite(), "the current is the only limit unless another is given");
+    assert!(same(scenario.actuator.max_effort(), motor.effort_constant() * current.max_current));
     assert!(same(motor.encoder.resolution.unwrap(), TAU / 1_048_576.0));
-    assert!(same(scenario.drive.load_encoder.unwrap().resolution.unwrap(), 1e-7));
-    assert_eq!(scenario.drive.position_feedback, Feedback::Load);
-    assert!(same(scenario.drive.dc_link, 560.0) && scenario.drive.enabled);
+    let Feedback::Load(encoder) = drive(&scenario).position_feedback else { panic!("the load's") };
+    assert!(same(encoder.resolution.unwrap(), 1e-7));
+    assert!(same(dc_link, 560.0));
 }
 
 const LINEAR: &str = r#"
@@ -157,8 +225,7 @@ model = "servo-16khz"
 "#;
 
 fn pmsm(text: &str) -> Pmsm {
-    let Motor::Pmsm(motor) = scenario(text).motor else { panic!("a synchronous motor") };
-    motor
+    motor(&scenario(text)).0.clone()
 }
 
 /// Oracle: by hand. F = 3/2·(π/τ_p)·ψ·i with i an amplitude, and the power balance F·v = 3/2·e·i: at 1 m/s the EMF of a
@@ -172,7 +239,7 @@ fn a_linear_motor_by_any_of_its_constants() {
     let scenario = scenario(LINEAR);
     assert_eq!(scenario.axis.motor_motion, Motion::Linear);
     assert!(same(scenario.axis.transmission, 1.0) && same(bodies(&scenario)[0].inertia, 105.0), "forcer and slide");
-    assert!(same(scenario.drive.max_effort, 800.0), "80 N/Arms times 10 Arms");
+    assert!(same(scenario.actuator.max_effort(), 800.0), "80 N/Arms times 10 Arms");
     let emf = 3_f64.sqrt() * per_amplitude / 1.5;
     let by_emf = pmsm(&LINEAR.replace("force_constant = \"80 N/Arms\"", &format!("back_emf = \"{emf} Vpk s/m\"")));
     assert!(same(by_emf.flux_linkage, motor.flux_linkage), "{} {}", by_emf.flux_linkage, motor.flux_linkage);
@@ -189,8 +256,9 @@ fn a_linear_motor_is_a_rotary_one_unrolled() {
         .replace("mass = \"5 kg\"\n", "");
     let (linear, rotary) = (scenario(LINEAR), scenario(&unrolled));
     let r = rotary.axis.transmission;
-    assert!(same(linear.drive.max_effort, rotary.drive.max_effort / r), "the same force at the slide");
-    assert!(same(linear.drive.velocity.gain, rotary.drive.velocity.gain / (r * r)), "the same gain at the slide");
+    assert!(same(linear.actuator.max_effort(), rotary.actuator.max_effort() / r), "the same force at the slide");
+    let [linear_gain, rotary_gain] = [&linear, &rotary].map(|scenario| drive(scenario).velocity.gain);
+    assert!(same(linear_gain, rotary_gain / (r * r)), "the same gain at the slide");
     assert!(
         same(pmsm(LINEAR).electrical_ratio, pmsm(&unrolled).electrical_ratio / r),
         "the same frequency at one speed"
@@ -203,13 +271,13 @@ fn the_emps_controller_in_newtons() {
     let text =
         std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/emps.toml")).unwrap();
     let scenario = scenario(&text);
-    let drive = &scenario.drive;
+    let drive = drive(&scenario);
     assert!(same(drive.velocity.gain, 35.1507 * 243.45) && same(drive.position.gain, 160.18));
-    assert_eq!((drive.velocity.integral_time, drive.current.is_none()), (None, true));
+    assert_eq!(drive.velocity.integral_time, None);
     assert!(same(drive.max_effort, 351.507));
     assert!(drive.feedforward.velocity == 0.0 && drive.feedforward.effort == EffortFeedforward::Off);
-    let Motor::IdealSource(source) = &scenario.motor else { panic!("an ideal source") };
-    assert!(same(source.gain, 35.1507) && same(source.limit, 10.0));
+    let (source, estimated_gain) = source(&scenario);
+    assert!(same(source.gain, 35.1507) && same(source.limit, 10.0) && same(estimated_gain, 35.1507));
     assert_eq!(source.output, SourceOutput::Voltage);
     let [body] = bodies(&scenario) else { panic!("one body") };
     assert!(same(body.inertia, 95.1089) && same(body.viscous, 203.5034) && same(body.bias, -3.1648));
@@ -243,11 +311,11 @@ fn what_the_scenario_says_displaces_what_the_model_says() {
         .replace("encoder = { counts", "torque_constant = \"0.5 Nm/Apk\"\nmax_current = \"5 Apk\"\nencoder = { counts")
         .replace("load_encoder", "velocity.gain = \"0.2 Nm s/rad\"\nload_encoder");
     let scenario = scenario(&own);
-    let Motor::Pmsm(motor) = &scenario.motor else { panic!("a synchronous motor") };
+    let (motor, _, current) = motor(&scenario);
     assert!(same(motor.flux_linkage, 0.5 / 6.0), "instead of the model's back-EMF");
-    assert!(same(motor.max_current, 5.0) && same(motor.resistance, 1.615));
-    assert!(same(scenario.drive.velocity.gain, 0.2), "instead of the model's bandwidth");
-    assert_eq!(scenario.drive.velocity.rate.hertz(), 8_000, "the rest of the sub-table stays");
+    assert!(same(current.max_current, 5.0) && same(motor.resistance, 1.615));
+    assert!(same(drive(&scenario).velocity.gain, 0.2), "instead of the model's bandwidth");
+    assert_eq!(drive(&scenario).velocity.rate.hertz(), 8_000, "the rest of the sub-table stays");
 }
 
 #[test]
@@ -262,7 +330,7 @@ fn models_beside_the_scenario_come_before_embedded_ones() {
             .replace("560 V", "48 V");
     std::fs::write(folder.path().join("models/drives/servo-16khz.toml"), mine).unwrap();
     let loaded = parse("test.toml", SCREW, Some(&deep)).unwrap();
-    assert!(same(loaded.scenario.drive.dc_link, 48.0));
+    assert!(same(motor(&loaded.scenario).1, 48.0));
     let names: Vec<_> = loaded.sources.ids().map(|id| loaded.sources.name(id).to_owned()).collect();
     assert_eq!(names.len(), 3, "the scenario, the motor, the drive: {names:?}");
     assert_eq!(names[1], "<embedded>/models/motors/wittenstein-premo-1f.toml");
@@ -352,11 +420,10 @@ load_velocity = "60 rpm"
 #[test]
 fn a_drive_that_is_off_needs_no_loops() {
     let scenario = scenario(RING_DOWN);
-    assert!(!scenario.drive.enabled && scenario.drive.current.is_none());
+    assert_eq!(scenario.actuator, Actuator::Off);
     assert!(same(scenario.initial.load_position, PI / 2.0) && same(scenario.initial.load_velocity, TAU));
     assert!(same(scenario.axis.transmission, 0.2));
     assert_eq!((scenario.duration, scenario.record.rate.hertz(), scenario.name.as_str()), (None, 16_000, "test"));
-    assert!(same(scenario.drive.estimate.motor_inertia, 0.005 * 25.0), "a rotor behind a gear weighs its square");
 }
 
 #[test]
@@ -365,7 +432,7 @@ fn a_prescribed_motor_needs_neither_drive_nor_inertia() {
         "[run]\nbase_rate = \"16 kHz\"\n[axis]\nmotion = \"linear\"\n[axis.load]\nmass = \"10 kg\"\nstiffness = \"6e5 N/m\"\n\
          [motor]\nkind = \"prescribed\"\n",
     );
-    assert_eq!((scenario.motor, scenario.axis.motor_motion), (Motor::Prescribed, Motion::Linear));
+    assert_eq!((scenario.actuator, scenario.axis.motor_motion), (Actuator::Prescribed, Motion::Linear));
 }
 
 #[test]
@@ -380,5 +447,5 @@ fn a_users_own_mjcf_is_read_beside_the_file_that_names_it() {
         (mjcf.motor_joint.as_str(), mjcf.load_joint.as_str(), mjcf.actuator.as_str()),
         ("carriage", "load", "force")
     );
-    assert!(same(scenario.drive.velocity.gain, 30.0 * TAU * 15.0), "from the estimate");
+    assert!(same(drive(&scenario).velocity.gain, 30.0 * TAU * 15.0), "from the estimate");
 }

@@ -3,7 +3,7 @@
 //! `SERVOBENCH_WRITE_DOCS=1 cargo test -p servobench-scenario` writes `docs/scenario.schema.json` and the tables of
 //! `docs/scenario.md` anew.
 use serde_json::{Value as Json, json};
-use servobench_scenario::{AxisMechanics, Motor, embedded_demo, embedded_models, json_schema, load, parse};
+use servobench_scenario::{Actuator, AxisMechanics, embedded_demo, embedded_models, json_schema, load, parse};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -92,17 +92,18 @@ fn every_model_is_complete_and_says_where_its_values_come_from() {
 /// Oracle: the published numbers of the reference, computed by hand from the data sheets.
 #[test]
 fn peak_and_effective_values_of_the_motors() {
-    let pmsm = |name: &str| {
+    let motor_and_limit = |name: &str| {
         let axis = if name.starts_with("siemens-1fn3") { "linear-slide" } else { "ball-screw" };
         let text = format!(
             "[run]\nbase_rate = \"16 kHz\"\n[axis]\nmodel = \"{axis}\"\n[motor]\nmodel = \"{name}\"\n[drive]\n\
              model = \"servo-16khz\"\n"
         );
-        match parse("motor.toml", &text, None).unwrap().scenario.motor {
-            Motor::Pmsm(motor) => motor,
+        match parse("motor.toml", &text, None).unwrap().scenario.actuator {
+            Actuator::Pmsm { motor, current, .. } => (motor, current.max_current),
             other => panic!("{other:?}"),
         }
     };
+    let pmsm = |name| motor_and_limit(name).0;
     let torque_constant = |name| pmsm(name).effort_constant();
     let near = |a: f64, b: f64, digits: i32| (a - b).abs() <= 0.5 * 10_f64.powi(-digits);
     // Teknic: 4.64 Vpk/krpm line to line are 6.395 mVs and 0.0384 Nm/Apk.
@@ -111,14 +112,14 @@ fn peak_and_effective_values_of_the_motors() {
     // WITTENSTEIN: 31.1 Vrms/krpm and 0.51 Nm/Arms are printed side by side (10 % tolerance is usual; these agree to 1 %).
     let per_effective_ampere = torque_constant("wittenstein-premo-1f") * 2_f64.sqrt();
     assert!((per_effective_ampere / 0.51 - 1.0).abs() < 0.01, "{per_effective_ampere}");
-    assert!(near(pmsm("wittenstein-premo-1f").max_current, 18.81, 2));
+    assert!(near(motor_and_limit("wittenstein-premo-1f").1, 18.81, 2));
     // HEIDENHAIN, of the Siemens linear motor: 145.4 V effective per phase at 2.66 m/s, 57 Hz (rounded down, 57.8 Hz);
     // 8100 N at 49.4 A effective.
-    let linear = pmsm("siemens-1fn3900-4wb0");
+    let (linear, max_current) = motor_and_limit("siemens-1fn3900-4wb0");
     let omega_e = linear.electrical_ratio * 2.66;
     assert!(near(omega_e * linear.flux_linkage / 2_f64.sqrt(), 145.4, 1), "{}", linear.flux_linkage);
     assert!((57.0..58.0).contains(&(omega_e / (2.0 * std::f64::consts::PI))), "{omega_e}");
-    assert!(near(linear.effort_constant() * linear.max_current, 8100.0, 2));
+    assert!(near(linear.effort_constant() * max_current, 8100.0, 2));
     // Modelica: 112.3 V effective per phase at 50 Hz.
     let back_emf = pmsm("msl-sm-permanent-magnet").flux_linkage * 2.0 * std::f64::consts::PI * 50.0 / 2_f64.sqrt();
     assert!(near(back_emf, 112.3, 6), "{back_emf}");

@@ -11,9 +11,9 @@ use crate::limit_watch::LimitWatch;
 use crate::power::PowerStage;
 use crate::program::Program;
 use servobench_base::{Rate, Setpoint};
-use servobench_drive::Firmware;
+use servobench_drive as drive;
 use servobench_plant::{Encoder, Engine, Mechanics};
-use servobench_scenario::{self as scenario, Scenario};
+use servobench_scenario::{self as scenario, Actuator, Feedback, Scenario};
 use servobench_trace::{About, Recorder};
 
 /// How long a run goes on after its program, when the scenario does not say (s).
@@ -26,15 +26,13 @@ pub struct Bench {
     pub(crate) base_rate: Rate,
     pub(crate) ticks: u64,
     pub(crate) program: Program,
-    pub(crate) firmware: Option<Firmware>,
+    pub(crate) control: Option<Control>,
     pub(crate) power: PowerStage,
     pub(crate) mechanics: Box<dyn Mechanics>,
     /// Whether the motor follows the set-point exactly.
     pub(crate) prescribed: bool,
     /// Axis coordinate per motor coordinate.
     pub(crate) transmission: f64,
-    pub(crate) motor_encoder: Encoder,
-    pub(crate) load_encoder: Option<Encoder>,
     pub(crate) disturbances: Disturbances,
     pub(crate) selection: Selection,
     pub(crate) recorder: Recorder,
@@ -42,6 +40,15 @@ pub struct Bench {
     pub(crate) record_every: u32,
     pub(crate) ticks_to_row: u32,
     pub(crate) watch: LimitWatch,
+}
+
+/// The firmware and the sensors it is wired to.
+pub(crate) struct Control {
+    pub(crate) params: drive::Params,
+    pub(crate) state: drive::State,
+    pub(crate) motor_encoder: Encoder,
+    /// The encoder on the load, when it closes the position loop.
+    pub(crate) load_encoder: Option<Encoder>,
 }
 
 impl Bench {
@@ -58,18 +65,18 @@ impl Bench {
         let disturbances = Disturbances::new(&scenario.disturbances, base_rate, ticks)?;
 
         let (mechanics, bodies) = plant::mechanics(scenario, engine)?;
-        let (power, motor_encoder) = plant::power_stage(scenario, mechanics.bodies()[0].velocity)?;
-        let firmware = match scenario.motor {
-            scenario::Motor::Prescribed => None,
-            _ if !scenario.drive.enabled => None,
-            _ => Some(Firmware::new(firmware::params(scenario)?, Setpoint::default())?),
+        let power = plant::power_stage(&scenario.actuator, mechanics.bodies()[0].velocity)?;
+        let control = match &scenario.actuator {
+            Actuator::Prescribed | Actuator::Off => None,
+            Actuator::Pmsm { motor, current, drive, .. } => {
+                let stage = firmware::current_stage(base_rate, current)?;
+                Some(Control::new(firmware::params(base_rate, drive, stage)?, motor.encoder, drive.position_feedback)?)
+            }
+            Actuator::IdealSource { source, estimated_gain, drive } => {
+                let stage = drive::Stage::Direct { gain: *estimated_gain };
+                Some(Control::new(firmware::params(base_rate, drive, stage)?, source.encoder, drive.position_feedback)?)
+            }
         };
-        let load_encoder = scenario.drive.load_encoder.map(plant::encoder).transpose()?;
-        if scenario.drive.position_feedback == scenario::Feedback::Load && load_encoder.is_none() {
-            return Err(BuildError::Contradiction(
-                "`drive.position_feedback` is \"load\" but there is no `[drive.load_encoder]`",
-            ));
-        }
 
         let rotary = |motion| motion == scenario::Motion::Rotary;
         let effort_unit = if rotary(scenario.axis.motor_motion) { "N m" } else { "N" };
@@ -80,10 +87,10 @@ impl Bench {
             disturbed: [scenario::DisturbedBody::Motor, scenario::DisturbedBody::Load]
                 .map(|body| scenario.disturbances.iter().any(|disturbance| disturbance.on == body)),
             table: bodies.len() == 3,
-            amplifier: match (&power, &scenario.motor) {
-                (PowerStage::Off, _) | (_, scenario::Motor::Prescribed) => None,
-                (_, scenario::Motor::Pmsm(_)) => Some(Amplifier::Current),
-                (_, scenario::Motor::IdealSource(source)) => Some(Amplifier::Ideal {
+            amplifier: match &scenario.actuator {
+                Actuator::Prescribed | Actuator::Off => None,
+                Actuator::Pmsm { .. } => Some(Amplifier::Current),
+                Actuator::IdealSource { source, .. } => Some(Amplifier::Ideal {
                     output_unit: match source.output {
                         scenario::SourceOutput::Voltage => "V",
                         scenario::SourceOutput::Effort => effort_unit,
@@ -91,11 +98,15 @@ impl Bench {
                 }),
             },
         };
+        let drive = scenario.actuator.drive();
         let rates = WriterRates {
             base: base_rate,
-            position: scenario.drive.position.rate,
-            velocity: scenario.drive.velocity.rate,
-            current: scenario.drive.current.as_ref().map_or(base_rate, |current| current.rate),
+            position: drive.map_or(base_rate, |drive| drive.position.rate),
+            velocity: drive.map_or(base_rate, |drive| drive.velocity.rate),
+            current: match &scenario.actuator {
+                Actuator::Pmsm { current, .. } => current.rate,
+                Actuator::Prescribed | Actuator::Off | Actuator::IdealSource { .. } => base_rate,
+            },
         };
         let selection = Selection::new(&scenario.record.channels, &equipment, &rates)?;
         let record_every = base_rate.divider(scenario.record.rate)?.ticks();
@@ -116,13 +127,11 @@ impl Bench {
             base_rate,
             ticks,
             program,
-            firmware,
+            control,
             power,
             mechanics,
-            prescribed: matches!(scenario.motor, scenario::Motor::Prescribed),
+            prescribed: matches!(scenario.actuator, Actuator::Prescribed),
             transmission: scenario.axis.transmission,
-            motor_encoder,
-            load_encoder,
             disturbances,
             selection,
             recorder,
@@ -130,6 +139,18 @@ impl Bench {
             ticks_to_row: 0,
             watch: LimitWatch::default(),
         })
+    }
+}
+
+impl Control {
+    /// The drive at rest at zero.
+    fn new(params: drive::Params, motor: scenario::Encoder, feedback: Feedback) -> Result<Self, BuildError> {
+        let state = drive::State::new(&params, Setpoint::default())?;
+        let load_encoder = match feedback {
+            Feedback::Motor => None,
+            Feedback::Load(encoder) => Some(plant::encoder(encoder)?),
+        };
+        Ok(Self { params, state, motor_encoder: plant::encoder(motor)?, load_encoder })
     }
 }
 

@@ -1,5 +1,6 @@
 //! The recorded channels: their names, units and writers, and the row of one tick.
 use crate::error::BuildError;
+use crate::limit_watch::PerLimit;
 use servobench_base::{Rate, Setpoint};
 use servobench_plant::BodyState;
 use servobench_trace::ChannelSpec;
@@ -24,9 +25,9 @@ pub(crate) struct Instant {
     /// External efforts over the coming tick: on the motor in its own coordinate, on the load in the axis coordinate.
     pub(crate) motor_disturbance: f64,
     pub(crate) load_disturbance: f64,
-    /// Share of the ticks since the last row in which the voltage limit or the effort limit bound.
-    pub(crate) voltage_saturation: f64,
-    pub(crate) effort_saturation: f64,
+    /// Which limits bind at this tick, and in which share of the ticks since the last row they did.
+    pub(crate) binds: PerLimit<bool>,
+    pub(crate) saturation: PerLimit<f64>,
 }
 
 /// Which channels an axis has.
@@ -64,7 +65,7 @@ pub(crate) struct WriterRates {
     pub(crate) current: Rate,
 }
 
-const COUNT: usize = 29;
+const COUNT: usize = 30;
 
 /// Every channel there is, in the order of [`row`].
 fn all(equipment: &Equipment, rates: &WriterRates) -> [(bool, ChannelSpec); COUNT] {
@@ -120,7 +121,8 @@ fn all(equipment: &Equipment, rates: &WriterRates) -> [(bool, ChannelSpec); COUN
             rates.base,
         ),
         current_loop("saturation.voltage", ""),
-        channel(drive, "saturation.current", String::new(), "velocity loop", rates.velocity),
+        channel(current, "saturation.current", String::new(), "velocity loop", rates.velocity),
+        velocity_loop("saturation.effort", String::new()),
         disturbance(on_motor, "disturbance.motor", e),
         disturbance(on_load, "disturbance.load", equipment.load_effort_unit),
     ]
@@ -155,8 +157,9 @@ fn row(now: &Instant) -> [f64; COUNT] {
         now.voltage.q,
         now.voltage.magnitude(),
         now.output,
-        now.voltage_saturation,
-        now.effort_saturation,
+        now.saturation.voltage,
+        now.saturation.current,
+        now.saturation.effort,
         now.motor_disturbance,
         now.load_disturbance,
     ]

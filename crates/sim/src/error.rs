@@ -25,9 +25,6 @@ pub enum BuildError {
     /// The engine refuses the mechanics.
     #[error(transparent)]
     Mechanics(#[from] MechanicsError),
-    /// The motor is fed back from a sensor that is not there, or the like.
-    #[error("{0}")]
-    Contradiction(&'static str),
     /// The program, or the run, lasts longer than a run can.
     #[error(
         "{} would end at {end} s, a run lasts {limit} s at most; {}",

@@ -4,6 +4,17 @@ use servobench_trace::{Event, Recorder};
 /// Events noted for one limit at most; one more says that there were others.
 const MOST_EVENTS: usize = 100;
 
+/// Something for each limit that is watched.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct PerLimit<T> {
+    /// Voltage limit, which the current loop keeps to or the inverter enforces.
+    pub(crate) voltage: T,
+    /// Current limit, which cuts what the velocity loop asks for.
+    pub(crate) current: T,
+    /// Effort limit of the velocity loop.
+    pub(crate) effort: T,
+}
+
 /// One limit: whether it binds, since when, and how often it did since the last row.
 #[derive(Debug, Clone, Default)]
 struct Watch {
@@ -12,37 +23,51 @@ struct Watch {
     events: usize,
 }
 
-/// The voltage limit of the current loop and the effort limit of the velocity loop.
+/// All limits.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct LimitWatch {
-    voltage: Watch,
-    effort: Watch,
+    watches: PerLimit<Watch>,
+    /// Whether one of them bound at the last tick.
+    bound: bool,
     ticks: u32,
 }
 
-const VOLTAGE: (&str, &str) = ("current loop", "voltage limit binds");
+const VOLTAGE: (&str, &str) = ("inverter", "voltage limit binds");
+const CURRENT: (&str, &str) = ("velocity loop", "current limit binds");
 const EFFORT: (&str, &str) = ("velocity loop", "effort limit binds");
 
 impl LimitWatch {
-    /// Takes what tick `t` (s) says.
-    pub(crate) fn tick(&mut self, t: f64, voltage: bool, effort: bool, recorder: &mut Recorder) {
+    /// Takes which limits bind at tick `t` (s).
+    #[inline]
+    pub(crate) fn tick(&mut self, t: f64, binds: PerLimit<bool>, recorder: &mut Recorder) {
         self.ticks += 1;
-        self.voltage.tick(t, voltage, VOLTAGE, recorder);
-        self.effort.tick(t, effort, EFFORT, recorder);
+        let bound = binds.voltage || binds.current || binds.effort;
+        if bound || self.bound {
+            self.bound = bound;
+            self.note(t, binds, recorder);
+        }
     }
 
-    /// Shares of the ticks since the last call in which the voltage and the effort limit bound, 0 to 1.
-    pub(crate) fn shares(&mut self) -> (f64, f64) {
+    /// Shares of the ticks since the last call in which each limit bound, 0 to 1.
+    pub(crate) fn shares(&mut self) -> PerLimit<f64> {
         let ticks = f64::from(self.ticks.max(1));
         self.ticks = 0;
         let share = |watch: &mut Watch| f64::from(core::mem::take(&mut watch.bound_ticks)) / ticks;
-        (share(&mut self.voltage), share(&mut self.effort))
+        let PerLimit { voltage, current, effort } = &mut self.watches;
+        PerLimit { voltage: share(voltage), current: share(current), effort: share(effort) }
     }
 
     /// Ends what still binds at `t` (s).
     pub(crate) fn finish(&mut self, t: f64, recorder: &mut Recorder) {
-        self.voltage.tick(t, false, VOLTAGE, recorder);
-        self.effort.tick(t, false, EFFORT, recorder);
+        self.note(t, PerLimit::default(), recorder);
+    }
+
+    #[cold]
+    fn note(&mut self, t: f64, binds: PerLimit<bool>, recorder: &mut Recorder) {
+        let PerLimit { voltage, current, effort } = &mut self.watches;
+        voltage.tick(t, binds.voltage, VOLTAGE, recorder);
+        current.tick(t, binds.current, CURRENT, recorder);
+        effort.tick(t, binds.effort, EFFORT, recorder);
     }
 }
 
@@ -71,61 +96,59 @@ mod tests {
     use servobench_base::Rate;
     use servobench_trace::About;
 
-    /// The events of a run in which `binds` says at each tick whether voltage and effort limit bind; a tick is a second.
-    fn events(binds: impl IntoIterator<Item = (bool, bool)>) -> Vec<Event> {
+    fn recorder() -> Recorder {
         let about = About {
             scenario: "limits".into(),
             engine: "none".into(),
             axis_unit: "m".into(),
             bodies: vec!["motor".into()],
         };
-        let mut recorder = Recorder::new(about, Rate::new(1).unwrap(), Vec::new(), 0);
-        let (mut watch, mut t) = (LimitWatch::default(), 0.0);
-        for (voltage, effort) in binds {
-            watch.tick(t, voltage, effort, &mut recorder);
+        Recorder::new(about, Rate::new(1).unwrap(), Vec::new(), 0)
+    }
+
+    /// The events of a run in which `binds` says at each tick which limits bind; a tick is a second.
+    fn events(binds: impl IntoIterator<Item = PerLimit<bool>>) -> Vec<Event> {
+        let (mut recorder, mut watch, mut t) = (recorder(), LimitWatch::default(), 0.0);
+        for binds in binds {
+            watch.tick(t, binds, &mut recorder);
             t += 1.0;
         }
         watch.finish(t - 1.0, &mut recorder);
         recorder.finish().events
     }
 
-    /// Start, end and source of each.
-    fn spans(events: &[Event]) -> Vec<(f64, f64, &str)> {
-        events.iter().map(|event| (event.start, event.end, event.source.as_str())).collect()
+    fn binding(voltage: bool, current: bool, effort: bool) -> PerLimit<bool> {
+        PerLimit { voltage, current, effort }
     }
 
     #[test]
     fn an_event_lasts_from_the_first_tick_that_binds_to_the_first_that_does_not() {
         let voltage = [false, true, true, false, false, true, false];
+        let current = [true, true, false, false, false, false, false];
         let effort = [false, false, true, true, true, true, true];
-        let found = events(voltage.into_iter().zip(effort));
-        let (current_loop, velocity_loop) = ("current loop", "velocity loop");
-        assert_eq!(spans(&found), [(1.0, 3.0, current_loop), (2.0, 6.0, velocity_loop), (5.0, 6.0, current_loop)]);
-        assert_eq!(found[0].message, "voltage limit binds");
-        assert_eq!(found[1].message, "effort limit binds");
+        let found = events((0..7).map(|k| binding(voltage[k], current[k], effort[k])));
+        let found: Vec<_> = found.iter().map(|event| (event.start, event.end, event.message.as_str())).collect();
+        let [voltage, current, effort] = ["voltage limit binds", "current limit binds", "effort limit binds"];
+        assert_eq!(found, [(0.0, 2.0, current), (1.0, 3.0, voltage), (2.0, 6.0, effort), (5.0, 6.0, voltage)]);
     }
 
     #[test]
     fn shares_are_of_the_ticks_since_the_last_row() {
-        let mut recorder = Recorder::new(
-            About { scenario: String::new(), engine: String::new(), axis_unit: String::new(), bodies: Vec::new() },
-            Rate::new(1).unwrap(),
-            Vec::new(),
-            0,
-        );
-        let mut watch = LimitWatch::default();
-        assert_eq!(watch.shares(), (0.0, 0.0));
-        for (voltage, effort) in [(true, false), (true, false), (false, false), (true, true)] {
-            watch.tick(0.0, voltage, effort, &mut recorder);
+        let (mut recorder, mut watch) = (recorder(), LimitWatch::default());
+        assert_eq!(watch.shares(), PerLimit { voltage: 0.0, current: 0.0, effort: 0.0 });
+        for (voltage, current, effort) in
+            [(true, false, false), (true, true, false), (false, true, false), (true, false, true)]
+        {
+            watch.tick(0.0, binding(voltage, current, effort), &mut recorder);
         }
-        assert_eq!(watch.shares(), (0.75, 0.25));
-        watch.tick(0.0, true, false, &mut recorder);
-        assert_eq!(watch.shares(), (1.0, 0.0));
+        assert_eq!(watch.shares(), PerLimit { voltage: 0.75, current: 0.5, effort: 0.25 });
+        watch.tick(0.0, binding(true, false, false), &mut recorder);
+        assert_eq!(watch.shares(), PerLimit { voltage: 1.0, current: 0.0, effort: 0.0 });
     }
 
     #[test]
     fn the_last_event_that_is_listed_says_that_there_were_others() {
-        let chatter = |times: usize| events((0..2 * times).map(|k| (k % 2 == 0, false)));
+        let chatter = |times: usize| events((0..2 * times).map(|k| binding(k % 2 == 0, false, false)));
         assert!(chatter(99).iter().all(|event| event.message == "voltage limit binds"));
         let many = chatter(150);
         assert_eq!(many.len(), 100);

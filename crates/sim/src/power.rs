@@ -16,6 +16,8 @@ pub(crate) enum PowerStage {
         last_speed: f64,
         /// Rotor at this tick.
         rotor: Rotation,
+        /// Whether the inverter gives less voltage than it is asked for.
+        shortens: bool,
     },
     /// Ideal source: effort = gain · output, |output| ≤ limit.
     Ideal { gain: f64, limit: f64 },
@@ -51,25 +53,34 @@ impl PowerStage {
         }
     }
 
+    /// Whether the inverter gave less voltage than it was asked for at the last tick.
+    pub(crate) fn shortens_voltage(&self) -> bool {
+        matches!(self, Self::Pmsm { shortens: true, .. })
+    }
+
     /// Goes from tick k to k+1 (`h` s) and returns the mean effort over it (N·m or N).
     pub(crate) fn advance(&mut self, command: Command, motor: BodyState, h: f64) -> f64 {
         let output = self.output(command);
         match (self, command) {
-            (Self::Pmsm { params, state, u_dc, last_speed, rotor }, Command::Voltage(voltage)) => {
+            (Self::Pmsm { params, state, u_dc, last_speed, rotor, shortens }, Command::Voltage(wanted)) => {
                 // Straight on from the last two ticks: second order.
                 let mean_speed = motor.velocity + (motor.velocity - *last_speed) / 2.0;
                 *last_speed = motor.velocity;
-                let input = pmsm::Input {
-                    voltage: inverter::output(voltage, *u_dc),
-                    rotor: *rotor,
-                    omega_e: params.pole_pairs * mean_speed,
-                };
+                let voltage = inverter::output(wanted, *u_dc);
+                *shortens = is_shorter(voltage, wanted);
+                let input = pmsm::Input { voltage, rotor: *rotor, omega_e: params.pole_pairs * mean_speed };
                 pmsm::step(params, state, input, h)
             }
             (Self::Ideal { gain, .. }, _) => *gain * output,
             _ => 0.0,
         }
     }
+}
+
+/// Whether `given` falls short of `wanted`, by more than the rounding of a drive that keeps to the limit itself.
+fn is_shorter(given: AlphaBeta, wanted: AlphaBeta) -> bool {
+    let squared = |u: AlphaBeta| u.alpha * u.alpha + u.beta * u.beta;
+    given != wanted && squared(given) < (1.0 - 1e-9) * squared(wanted)
 }
 
 #[cfg(test)]
@@ -84,7 +95,7 @@ mod tests {
     /// On 540 V, a tick after it turned at `last_speed` (rad/s).
     fn stage(last_speed: f64) -> PowerStage {
         let (state, rotor) = (pmsm::State::default(), Rotation::default());
-        PowerStage::Pmsm { params: MOTOR, state, u_dc: 540.0, last_speed, rotor }
+        PowerStage::Pmsm { params: MOTOR, state, u_dc: 540.0, last_speed, rotor, shortens: false }
     }
 
     /// Oracle: in the stator frame the back-EMF of a motor at constant speed, ψ·ω_e·[−sin θ, cos θ], averaged over the
@@ -135,6 +146,18 @@ mod tests {
         let motor = BodyState { position: std::f64::consts::PI / 3.0, velocity: 0.0 };
         let AlphaBeta { alpha, beta } = stage.measured_current(motor);
         assert!(alpha.abs() < 1e-14 && (beta + 2.0).abs() < 1e-14, "{alpha} {beta}");
+    }
+
+    /// A drive that keeps to the limit itself meets it to a rounding or two, which is no cut.
+    #[test]
+    fn a_voltage_beyond_the_dc_link_is_known() {
+        let limit = 540.0 / 3.0_f64.sqrt();
+        let mut stage = stage(0.0);
+        for (length, shortened) in [(0.9, false), (1.0 + 4e-16, false), (1.001, true), (0.5, false)] {
+            let (alpha, beta) = (0.6 * limit * length, -0.8 * limit * length);
+            stage.advance(Command::Voltage(AlphaBeta { alpha, beta }), BodyState::default(), H);
+            assert_eq!(stage.shortens_voltage(), shortened, "{length}");
+        }
     }
 
     /// EMPS: 35.15 N/V, ±10 V.

@@ -1,9 +1,11 @@
 //! The closed loop, in execution order.
 use crate::bench::Bench;
 use crate::channels::Instant;
+use crate::limit_watch::PerLimit;
 use servobench_base::Tick;
-use servobench_drive::{Command, Sensors};
-use servobench_plant::{Actuation, BodyState, Encoder, Input, MechanicsError};
+use servobench_drive::velocity::Cut;
+use servobench_drive::{self as drive, Command, Feedback, Sensors};
+use servobench_plant::{Actuation, BodyState, Input, MechanicsError};
 use servobench_scenario::DisturbedBody;
 use servobench_trace::Recording;
 
@@ -48,11 +50,13 @@ impl Bench {
 
             let (mut now, motor) = self.sample();
             now.setpoint = self.program.at(t);
-            let command = self.control(t, motor, &mut now);
+            let command = self.control(motor, &mut now);
             // The mean effort over the coming tick belongs into the row of this one; the current is the one at k.
             now.current = self.power.current();
             now.output = self.power.output(command);
             now.effort = self.power.advance(command, motor, self.base_rate.period());
+            now.binds.voltage |= self.power.shortens_voltage();
+            self.watch.tick(t, now.binds, &mut self.recorder);
             now.motor_disturbance = self.disturbances.effort_at(DisturbedBody::Motor, k);
             now.load_disturbance = self.disturbances.effort_at(DisturbedBody::Load, k);
             self.record(&mut now);
@@ -84,29 +88,35 @@ impl Bench {
     }
 
     /// control(k): the firmware sees its sensors and the set-point. `motor` is in the motor's own coordinate.
-    fn control(&mut self, t: f64, motor: BodyState, now: &mut Instant) -> Command {
-        let Some(firmware) = &mut self.firmware else {
+    fn control(&mut self, motor: BodyState, now: &mut Instant) -> Command {
+        let Some(control) = &mut self.control else {
             now.reference = now.setpoint.x;
             now.motor_reference = now.setpoint.x;
             return Command::Output(0.0);
         };
-        let reading = self.motor_encoder.read(motor.position, motor.velocity);
-        let on_load = |encoder: Encoder| encoder.read(now.load.position, now.load.velocity).position;
+        let reading = control.motor_encoder.read(motor.position, motor.velocity);
         let sensors = Sensors {
             motor_position: reading.position,
             motor_velocity: reading.velocity,
-            load_position: self.load_encoder.map(on_load),
+            feedback: match control.load_encoder {
+                None => Feedback::Motor,
+                Some(encoder) => Feedback::Load(encoder.read(now.load.position, now.load.velocity).position),
+            },
             current: self.power.measured_current(motor),
         };
-        let command = firmware.step(now.setpoint, &sensors);
-        let (telemetry, (reference, motor_reference)) = (firmware.telemetry(), firmware.references());
+        let command = drive::step(&control.params, &mut control.state, now.setpoint, &sensors);
+        let (held, (reference, motor_reference)) = (control.state.held(), control.state.references(&control.params));
         now.reference = reference.x;
         now.motor_reference = motor_reference.position;
-        now.velocity_reference = telemetry.velocity_reference;
-        now.effort_reference = telemetry.effort_reference;
-        now.current_reference = telemetry.current_reference;
-        now.voltage = telemetry.current.computed;
-        self.watch.tick(t, telemetry.current.saturated, telemetry.effort_saturated, &mut self.recorder);
+        now.velocity_reference = held.velocity_reference;
+        now.effort_reference = held.effort.effort;
+        now.current_reference = held.current_reference;
+        now.voltage = held.current.computed;
+        now.binds = PerLimit {
+            voltage: held.current.saturated,
+            current: held.effort.cut == Some(Cut::Available),
+            effort: held.effort.cut == Some(Cut::Effort),
+        };
         command
     }
 
@@ -114,7 +124,7 @@ impl Bench {
     fn record(&mut self, now: &mut Instant) {
         if self.ticks_to_row == 0 {
             self.ticks_to_row = self.record_every;
-            (now.voltage_saturation, now.effort_saturation) = self.watch.shares();
+            now.saturation = self.watch.shares();
             self.recorder.push(self.selection.pick(now));
         }
         self.ticks_to_row -= 1;

@@ -1,6 +1,6 @@
 //! The same axis under different set-points: at equal limits, or slowed to equal duration.
 use crate::job::Job;
-use servobench_scenario::{Drive, Scenario};
+use servobench_scenario::{Actuator, Drive, Scenario};
 use servobench_sim::{BuildError, Program};
 use thiserror::Error;
 
@@ -69,8 +69,7 @@ fn differences(one: &Scenario, other: &Scenario) -> Vec<&'static str> {
         base_rate,
         duration: _,
         axis,
-        motor,
-        drive,
+        actuator,
         program: _,
         disturbances,
         initial,
@@ -86,35 +85,49 @@ fn differences(one: &Scenario, other: &Scenario) -> Vec<&'static str> {
     };
     compare("`run.base_rate`", *base_rate == other.base_rate);
     compare("`axis`", *axis == other.axis);
-    compare("`motor`", *motor == other.motor);
-    let Drive {
-        enabled,
-        dc_link,
-        max_effort,
-        current,
-        velocity,
-        position,
-        feedforward,
-        estimate,
-        load_encoder,
-        position_feedback,
-    } = drive;
-    compare("`drive.enabled`", *enabled == other.drive.enabled);
-    compare("`drive.dc_link`", dc_link.to_bits() == other.drive.dc_link.to_bits());
-    compare("the effort limit of `drive`", max_effort.to_bits() == other.drive.max_effort.to_bits());
-    compare("`drive.current`", *current == other.drive.current);
-    compare("`drive.velocity`", *velocity == other.drive.velocity);
-    compare("`drive.position`", *position == other.drive.position);
-    compare("`drive.feedforward`", *feedforward == other.drive.feedforward);
-    compare("`drive.estimate`", *estimate == other.drive.estimate);
-    compare("`drive.load_encoder`", *load_encoder == other.drive.load_encoder);
-    compare("`drive.position_feedback`", *position_feedback == other.drive.position_feedback);
+    compare_actuators(actuator, &other.actuator, &mut compare);
     compare("`disturbance`", *disturbances == other.disturbances);
     compare("`initial`", *initial == other.initial);
     // A peak between two rows is not seen.
     compare("`record.rate`", record.rate == other.record.rate);
     compare("`measure`", *measure == other.measure);
     parts
+}
+
+/// Compares what moves the axis, part by part where both are of one kind.
+fn compare_actuators(one: &Actuator, other: &Actuator, compare: &mut impl FnMut(&'static str, bool)) {
+    match (one, other) {
+        (Actuator::Prescribed, Actuator::Prescribed) | (Actuator::Off, Actuator::Off) => {}
+        (
+            Actuator::Pmsm { motor, dc_link, current, drive },
+            Actuator::Pmsm { motor: other_motor, dc_link: other_link, current: other_current, drive: other_drive },
+        ) => {
+            compare("`motor`", motor == other_motor);
+            compare("`drive.dc_link`", dc_link.to_bits() == other_link.to_bits());
+            compare("`drive.current`", current == other_current);
+            compare_drives(drive, other_drive, compare);
+        }
+        (
+            Actuator::IdealSource { source, estimated_gain, drive },
+            Actuator::IdealSource { source: other_source, estimated_gain: other_gain, drive: other_drive },
+        ) => {
+            compare("`motor`", source == other_source);
+            compare("`drive.estimate.gain`", estimated_gain.to_bits() == other_gain.to_bits());
+            compare_drives(drive, other_drive, compare);
+        }
+        (Actuator::Off, _) | (_, Actuator::Off) => compare("`drive.enabled`", false),
+        _ => compare("the kind of `motor`", false),
+    }
+}
+
+fn compare_drives(one: &Drive, other: &Drive, compare: &mut impl FnMut(&'static str, bool)) {
+    let Drive { max_effort, velocity, position, position_feedback, feedforward, estimate } = one;
+    compare("the effort limit of `drive`", max_effort.to_bits() == other.max_effort.to_bits());
+    compare("`drive.velocity`", *velocity == other.velocity);
+    compare("`drive.position`", *position == other.position);
+    compare("`drive.position_feedback`", *position_feedback == other.position_feedback);
+    compare("`drive.feedforward`", *feedforward == other.feedforward);
+    compare("`drive.estimate`", *estimate == other.estimate);
 }
 
 /// Slows every move to the longest of its counterparts, so that all jobs make the same moves in the same time. A job

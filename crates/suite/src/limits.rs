@@ -1,18 +1,18 @@
 //! What bounds the channels of an axis.
 use servobench_plant::inverter;
-use servobench_scenario::{Motor, Scenario};
+use servobench_scenario::{Actuator, Scenario};
 
 /// Channels with the largest magnitude that motor and drive allow them (SI); those without a bound are left out.
 #[must_use]
 pub fn channel_limits(scenario: &Scenario) -> Vec<(&'static str, f64)> {
-    let effort = ("effort.reference", scenario.drive.max_effort);
-    let limits = match &scenario.motor {
-        Motor::Pmsm(motor) => {
-            let voltage = inverter::voltage_limit(scenario.drive.dc_link);
-            vec![effort, ("current.q", motor.max_current), ("voltage.magnitude", voltage)]
+    let effort = ("effort.reference", scenario.actuator.max_effort());
+    let limits = match &scenario.actuator {
+        Actuator::Pmsm { dc_link, current, .. } => {
+            let voltage = inverter::voltage_limit(*dc_link);
+            vec![effort, ("current.q", current.max_current), ("voltage.magnitude", voltage)]
         }
-        Motor::IdealSource(source) => vec![effort, ("command.output", source.limit)],
-        Motor::Prescribed => Vec::new(),
+        Actuator::IdealSource { source, .. } => vec![effort, ("command.output", source.limit)],
+        Actuator::Prescribed | Actuator::Off => Vec::new(),
     };
     limits.into_iter().filter(|(_, limit)| limit.is_finite()).collect()
 }
@@ -30,7 +30,7 @@ mod tests {
         // `dc_link = "320 V"`: 320 V/√3 without overmodulation; `max_torque = "6.09 Nm"`.
         assert!((of("voltage.magnitude").unwrap() - 184.752_086).abs() < 1e-6, "{limits:?}");
         assert_eq!((of("effort.reference"), limits.len()), (Some(6.09), 3));
-        let free = Scenario { motor: Motor::Prescribed, ..demo };
+        let free = Scenario { actuator: Actuator::Prescribed, ..demo };
         assert_eq!(channel_limits(&free), []);
     }
 }

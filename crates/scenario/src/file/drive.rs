@@ -3,15 +3,24 @@ use crate::field::{Either, EitherMeasure, any, not_negative, positive};
 use crate::list::{AutoTime, Share};
 use crate::physical::Kind::{Axis as InAxis, Motor as InMotor, Plain};
 use crate::physical::{
-    BANDWIDTH, CURRENT_GAIN, EFFORT, FLUX_LINKAGE, FORCE, INDUCTANCE, INERTIAL, POSITION, POSITION_GAIN, RESISTANCE,
-    STIFFNESS, TIME, TORQUE, VISCOUS, VOLT_GAIN, VOLTAGE,
+    BANDWIDTH, CURRENT_GAIN, EFFORT, FLUX_LINKAGE, FORCE, INDUCTANCE, INERTIAL, LEAD, POSITION, POSITION_GAIN, RATIO,
+    RESISTANCE, SOURCE_GAIN, STIFFNESS, TIME, TORQUE, VISCOUS, VOLT_GAIN, VOLTAGE,
 };
-use crate::scenario::{EffortFeedforward, Feedback};
+use crate::scenario::EffortFeedforward;
 use crate::simple::Choice;
 use crate::table::table;
 use servobench_base::Rate;
 
-impl Choice for Feedback {
+/// Which encoder closes the position loop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum FeedbackEncoder {
+    /// The motor's.
+    Motor,
+    /// The load's.
+    Load,
+}
+
+impl Choice for FeedbackEncoder {
     const ALL: &'static [(&'static str, Self, &'static str)] =
         &[("motor", Self::Motor, "the encoder on the motor"), ("load", Self::Load, "the encoder on the load")];
 }
@@ -50,12 +59,13 @@ table! {
         enabled: bool = (),
         /// Voltage of the DC link.
         dc_link: f64 = positive(Plain(&VOLTAGE), "540 V"),
-        /// Largest torque that the drive asks for; what `max_current` gives unless given.
+        /// Largest torque that the drive asks for, besides what the current limit of the motor or the `limit` of an ideal
+        /// source allows.
         max_torque: f64 = positive(Plain(&TORQUE), "12 Nm"),
         /// Largest force that the drive asks for, with a linear motor.
         max_force: f64 = positive(Plain(&FORCE), "300 N"),
         /// Encoder that closes the position loop; the motor's unless given.
-        position_feedback: Feedback = (),
+        position_feedback: FeedbackEncoder = (),
         /// Current loop of a synchronous motor.
         current: Current = (),
         /// Velocity loop.
@@ -82,9 +92,9 @@ table! {
         gain_d: f64 = positive(Plain(&CURRENT_GAIN), "12 V/A"),
         /// Proportional gain of the q axis instead of the bandwidth.
         gain_q: f64 = positive(Plain(&CURRENT_GAIN), "12 V/A"),
-        /// Integral time of the d axis; L/R unless given.
+        /// Integral time of the d axis; L/R of the estimated motor unless given.
         integral_time_d: f64 = positive(Plain(&TIME), "5 ms"),
-        /// Integral time of the q axis; L/R unless given.
+        /// Integral time of the q axis; L/R of the estimated motor unless given.
         integral_time_q: f64 = positive(Plain(&TIME), "5 ms"),
     }
 }
@@ -92,7 +102,7 @@ table! {
 table! {
     /// Velocity loop, in the motor coordinate.
     pub(crate) struct Velocity {
-        /// Task rate; it divides the base rate.
+        /// Task rate; it divides the rate of the current loop, or the base rate where there is none.
         rate: Rate = "8 kHz",
         /// P or PI; PI unless given.
         kind: VelocityKind = (),
@@ -111,7 +121,7 @@ table! {
 table! {
     /// Position loop: proportional.
     pub(crate) struct Position {
-        /// Task rate; it divides the base rate.
+        /// Task rate; it divides the rate of the velocity loop.
         rate: Rate = "4 kHz",
         /// Closed-loop bandwidth; the gain is the same number in rad/s.
         bandwidth: f64 = positive(Plain(&BANDWIDTH), "20 Hz"),
@@ -137,6 +147,10 @@ table! {
 table! {
     /// What the firmware believes of the axis, in the axis coordinate. Each value is the plant's own unless given.
     pub(crate) struct Estimate {
+        /// Travel per revolution of the screw, pinion or pulley.
+        lead: f64 = positive(Plain(&LEAD), "10 mm"),
+        /// Revolutions of the motor per revolution behind the gear.
+        gear_ratio: f64 = positive(Plain(&RATIO), "5"),
         /// Mass or inertia on the motor's side of the softest spring, rotor included.
         motor_inertia: f64 = positive(InAxis(&INERTIAL), "20 kg"),
         /// Mass or inertia beyond that spring.
@@ -151,6 +165,10 @@ table! {
         coulomb: f64 = not_negative(InAxis(&EFFORT), "20 N"),
         /// Constant resisting force or torque on all bodies.
         bias: f64 = any(InAxis(&EFFORT), "-3 N"),
+        /// Force or torque per volt of an ideal source.
+        gain: f64 = positive(InMotor(&SOURCE_GAIN), "35.1507 N/V"),
+        /// Voltage of the DC link.
+        dc_link: f64 = positive(Plain(&VOLTAGE), "540 V"),
         /// The synchronous motor.
         motor: EstimatedMotor = (),
     }

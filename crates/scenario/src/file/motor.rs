@@ -63,7 +63,7 @@ table! {
         inertia: f64 = positive(Plain(&INERTIA), "0.00018 kg m2"),
         /// Mass of the moving part of a linear motor.
         mass: f64 = positive(Plain(&MASS), "3 kg"),
-        /// Largest phase current.
+        /// Largest phase current; the drive asks for no more.
         max_current: f64 = positive(Plain(&CURRENT), "10 Arms"),
         /// Force or torque per volt of an ideal source; without it the output is the force or torque itself.
         gain: f64 = positive(InMotor(&SOURCE_GAIN), "35.1507 N/V"),

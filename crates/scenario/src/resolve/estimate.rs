@@ -1,8 +1,11 @@
-//! What the firmware believes of the axis: the plant as two masses, with single values overridden.
+//! What the firmware believes of the axis and its motor: the plant, with single values overridden.
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
-use crate::scenario::{Axis, AxisMechanics, Body, Coupling, Estimate, Motor, Pmsm};
+use crate::resolve::motor::Motor;
+use crate::scenario::{Axis, AxisMechanics, Body, Coupling, Estimate, Motion, MotorEstimate, Pmsm, SourceOutput};
+use crate::source::Span;
+use std::f64::consts::TAU;
 
 /// The estimate and whether it holds inertias at all: of a user's own MJCF file only what `[drive.estimate]` says is
 /// known.
@@ -11,15 +14,22 @@ pub(super) struct Belief {
     pub(super) knows_inertia: bool,
 }
 
-pub(super) fn resolve(slot: &Slot<file::Estimate>, axis: &Axis, motor: &Motor, report: &mut Report) -> Option<Belief> {
-    let mut estimate = match &axis.mechanics {
-        AxisMechanics::Bodies(bodies) => two_masses(bodies, axis.transmission),
-        AxisMechanics::Mjcf(_) => unknown(),
+/// What the firmware believes of the axis, which the file has as `written`.
+pub(super) fn of_axis(
+    given: Option<&file::Estimate>,
+    written: &file::Axis,
+    axis: &Axis,
+    report: &mut Report,
+) -> Option<Belief> {
+    let transmission = match given {
+        Some(given) => believed_transmission(given, written, axis, report)?,
+        None => axis.transmission,
     };
-    if let Motor::Pmsm(motor) = motor {
-        estimate.motor = Some(motor.clone());
-    }
-    if let Some(given) = slot.optional().ok()? {
+    let mut estimate = match &axis.mechanics {
+        AxisMechanics::Bodies(bodies) => two_masses(bodies, transmission),
+        AxisMechanics::Mjcf(_) => unknown(transmission),
+    };
+    if let Some(given) = given {
         let values = [
             (&given.motor_inertia, &mut estimate.motor_inertia),
             (&given.load_inertia, &mut estimate.load_inertia),
@@ -32,10 +42,74 @@ pub(super) fn resolve(slot: &Slot<file::Estimate>, axis: &Axis, motor: &Motor, r
         for (slot, value) in values {
             override_with(slot, value);
         }
-        override_motor(&given.motor, estimate.motor.as_mut(), report);
     }
     let knows_inertia = estimate.motor_inertia > 0.0;
     Some(Belief { estimate, knows_inertia })
+}
+
+/// Axis coordinate per motor coordinate as the firmware believes: with its own `lead` or `gear_ratio`.
+fn believed_transmission(
+    given: &file::Estimate,
+    written: &file::Axis,
+    axis: &Axis,
+    report: &mut Report,
+) -> Option<f64> {
+    let has_lead = (axis.motion, axis.motor_motion) == (Motion::Linear, Motion::Rotary);
+    let mut refuse = |span: Option<Span>, message: &str| span.map(|span| report.error(span, message, ""));
+    if !has_lead && refuse(given.lead.span(), "the axis has no `lead` to estimate").is_some() {
+        return None;
+    }
+    if axis.motor_motion == Motion::Linear {
+        let refused = refuse(given.gear_ratio.span(), "the axis has no `gear_ratio` to estimate");
+        return refused.is_none().then_some(axis.transmission);
+    }
+    let believed = |estimated: &Slot<f64>, written: &Slot<f64>| match estimated {
+        Slot::Absent => Some(written.given().copied()),
+        _ => estimated.given().copied().map(Some),
+    };
+    let gear_ratio = believed(&given.gear_ratio, &written.gear_ratio)?.unwrap_or(1.0);
+    let lead = believed(&given.lead, &written.lead)?;
+    Some(lead.map_or(1.0, |lead| lead / TAU) / gear_ratio)
+}
+
+/// What the firmware believes of its synchronous motor.
+pub(super) fn of_motor(given: Option<&file::Estimate>, motor: &Pmsm) -> MotorEstimate {
+    let Pmsm { electrical_ratio, resistance, inductance_d, inductance_q, flux_linkage, .. } = *motor;
+    let mut estimate = MotorEstimate { electrical_ratio, resistance, inductance_d, inductance_q, flux_linkage };
+    if let Some(given) = given.and_then(|given| given.motor.given()) {
+        override_with(&given.resistance, &mut estimate.resistance);
+        override_with(&given.inductance_d, &mut estimate.inductance_d);
+        override_with(&given.inductance_q, &mut estimate.inductance_q);
+        override_with(&given.flux_linkage, &mut estimate.flux_linkage);
+    }
+    estimate
+}
+
+/// A value that is `truth` unless the drive believes otherwise.
+pub(super) fn or_true(given: Option<&file::Estimate>, slot: fn(&file::Estimate) -> &Slot<f64>, truth: f64) -> f64 {
+    given.and_then(|given| slot(given).given().copied()).unwrap_or(truth)
+}
+
+/// Objects to estimates of what is not there.
+pub(super) fn check_motor(given: &file::Estimate, motor: &Motor, report: &mut Report) {
+    let mut refuse = |span, why: &str| {
+        if let Some(span) = span {
+            report.error(span, why, "");
+        }
+    };
+    if !matches!(motor, Motor::Pmsm { .. }) {
+        refuse(given.motor.span(), "there is no synchronous motor to estimate");
+        refuse(given.dc_link.span(), "there is no inverter whose DC link could be estimated");
+    }
+    match motor {
+        Motor::IdealSource(source) if source.output == SourceOutput::Effort => {
+            refuse(given.gain.span(), "the output of the source is its effort: there is no `gain` to estimate");
+        }
+        Motor::IdealSource(_) => {}
+        Motor::Pmsm { .. } | Motor::Prescribed => {
+            refuse(given.gain.span(), "there is no ideal source whose `gain` could be estimated");
+        }
+    }
 }
 
 fn override_with(slot: &Slot<f64>, value: &mut f64) {
@@ -44,21 +118,9 @@ fn override_with(slot: &Slot<f64>, value: &mut f64) {
     }
 }
 
-fn override_motor(slot: &Slot<file::EstimatedMotor>, motor: Option<&mut Pmsm>, report: &mut Report) {
-    let Some(at) = slot.at() else { return };
-    let Some(motor) = motor else {
-        report.error(at.span, "there is no synchronous motor to estimate", "");
-        return;
-    };
-    let given = &at.value;
-    override_with(&given.resistance, &mut motor.resistance);
-    override_with(&given.inductance_d, &mut motor.inductance_d);
-    override_with(&given.inductance_q, &mut motor.inductance_q);
-    override_with(&given.flux_linkage, &mut motor.flux_linkage);
-}
-
-const fn unknown() -> Estimate {
+const fn unknown(transmission: f64) -> Estimate {
     Estimate {
+        transmission,
         motor_inertia: 0.0,
         load_inertia: 0.0,
         stiffness: f64::INFINITY,
@@ -66,7 +128,6 @@ const fn unknown() -> Estimate {
         load_viscous: 0.0,
         coulomb: 0.0,
         bias: 0.0,
-        motor: None,
     }
 }
 
@@ -79,7 +140,7 @@ fn two_masses(bodies: &[Body], transmission: f64) -> Estimate {
         .filter_map(|(i, body)| body.coupling.map(|Coupling { stiffness, .. }| (i, stiffness)))
         .min_by(|(_, one), (_, two)| one.total_cmp(two));
     let (split, stiffness) = softest.unwrap_or((bodies.len(), f64::INFINITY));
-    let mut estimate = Estimate { stiffness, ..unknown() };
+    let mut estimate = Estimate { stiffness, ..unknown(transmission) };
     for (i, body) in bodies.iter().enumerate() {
         let r = if i == 0 { transmission } else { 1.0 };
         let (inertia, viscous) = if i < split {

@@ -4,11 +4,22 @@ use crate::field::{Either, Slot};
 use crate::file;
 use crate::file::MotorKind;
 use crate::resolve::{Way, need, one_way, refuse};
-use crate::scenario::{Encoder, IdealSource, Motion, Motor, Pmsm, SourceOutput};
+use crate::scenario::{Encoder, IdealSource, Motion, Pmsm, SourceOutput};
 use crate::source::Span;
 use std::f64::consts::{PI, TAU};
 
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
+
+/// What moves the axis, before a drive is there to command it.
+pub(super) enum Motor {
+    /// A synchronous motor and its largest phase current, peak (A).
+    Pmsm {
+        motor: Pmsm,
+        max_current: f64,
+    },
+    IdealSource(IdealSource),
+    Prescribed,
+}
 
 type Keys<'a> = [(&'a str, Option<Span>)];
 
@@ -32,7 +43,7 @@ pub(super) fn resolve(motor: &file::Motor, report: &mut Report) -> Option<Motor>
     match kind {
         MotorKind::Pmsm => {
             refuse(ideal, "belongs to an ideal source, this is a synchronous motor", "", report);
-            pmsm(motor, encoder, report).map(Motor::Pmsm)
+            pmsm(motor, encoder, report)
         }
         MotorKind::IdealSource => {
             refuse(electrical, "belongs to a synchronous motor, this is an ideal source", "", report);
@@ -48,7 +59,7 @@ pub(super) fn resolve(motor: &file::Motor, report: &mut Report) -> Option<Motor>
     }
 }
 
-fn pmsm(motor: &file::Motor, encoder: Option<Encoder>, report: &mut Report) -> Option<Pmsm> {
+fn pmsm(motor: &file::Motor, encoder: Option<Encoder>, report: &mut Report) -> Option<Motor> {
     let header = motor.span;
     let electrical_ratio = electrical_ratio(motor, report);
     let resistance = need(&motor.resistance, "motor", "resistance", header, report);
@@ -56,15 +67,15 @@ fn pmsm(motor: &file::Motor, encoder: Option<Encoder>, report: &mut Report) -> O
     let flux_linkage = flux_linkage(motor, electrical_ratio, report);
     let max_current = need(&motor.max_current, "motor", "max_current", header, report);
     let (inductance_d, inductance_q) = inductances?;
-    Some(Pmsm {
+    let motor = Pmsm {
         electrical_ratio: electrical_ratio?,
         resistance: resistance?,
         inductance_d,
         inductance_q,
         flux_linkage: flux_linkage?,
-        max_current: max_current?,
         encoder: encoder?,
-    })
+    };
+    Some(Motor::Pmsm { motor, max_current: max_current? })
 }
 
 /// Electrical angle per motor coordinate: pole pairs of a motor that turns, π/τ_p of a linear one.

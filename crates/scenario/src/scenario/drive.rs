@@ -1,52 +1,77 @@
-//! The firmware of the drive.
-use super::motor::{Encoder, Pmsm};
+//! The drive's firmware: what it is set to and what it believes.
+use super::motor::Encoder;
 use servobench_base::Rate;
 
-/// The drive's firmware.
+/// The drive's firmware, but for what belongs to the kind of motor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drive {
-    /// Whether the power stage is on. Off: no current, no force, and the axis is free.
-    pub enabled: bool,
-    /// DC-link voltage (V); infinite without a limit.
-    pub dc_link: f64,
     /// Largest effort it asks for (motor coordinate); infinite without a limit.
     pub max_effort: f64,
-    /// Current loop; `None` for an ideal source.
-    pub current: Option<CurrentLoop>,
     /// Velocity loop.
     pub velocity: VelocityLoop,
-    /// Position loop.
+    /// Position loop; its rate is a whole fraction of the velocity loop's.
     pub position: PositionLoop,
+    /// Which encoder closes the position loop.
+    pub position_feedback: Feedback,
     /// Feedforward.
     pub feedforward: Feedforward,
     /// What the firmware believes of the axis.
     pub estimate: Estimate,
-    /// Encoder on the load, when the axis has one.
-    pub load_encoder: Option<Encoder>,
-    /// Which encoder closes the position loop.
-    pub position_feedback: Feedback,
 }
 
 /// Encoder that closes a loop.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Feedback {
-    /// Motor encoder.
+    /// The one on the motor.
     Motor,
-    /// Load encoder.
-    Load,
+    /// This one, on the load.
+    Load(Encoder),
 }
 
 /// Current loop in dq.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurrentLoop {
-    /// Task rate.
+    /// Task rate; the velocity loop's is a whole fraction of it.
     pub rate: Rate,
-    /// Closed-loop bandwidth (rad/s); gains are derived from it and the estimated motor.
-    pub bandwidth: f64,
-    /// Proportional gains (V/A) d and q, when given instead of derived.
-    pub gain: Option<(f64, f64)>,
-    /// Integral times (s) d and q, when given.
+    /// What the proportional gains follow from.
+    pub gain: CurrentGain,
+    /// Integral times (s) d and q; `None`: L/R of the estimated motor.
     pub integral_time: Option<(f64, f64)>,
+    /// Largest current reference, peak (A).
+    pub max_current: f64,
+    /// What the firmware believes of the motor.
+    pub motor: MotorEstimate,
+    /// DC-link voltage that it reckons with (V).
+    pub dc_link: f64,
+}
+
+/// What the proportional gains of the current loop follow from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CurrentGain {
+    /// The closed-loop bandwidth (rad/s) and the estimated motor.
+    Bandwidth(f64),
+    /// They are given.
+    PerAxis {
+        /// d axis (V/A).
+        d: f64,
+        /// q axis (V/A).
+        q: f64,
+    },
+}
+
+/// What the firmware believes of a synchronous motor, phase to neutral.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MotorEstimate {
+    /// Electrical angle per motor coordinate: pole pairs (rad/rad), or π/τ_p of a linear motor (rad/m).
+    pub electrical_ratio: f64,
+    /// Stator resistance (Ω).
+    pub resistance: f64,
+    /// d-axis inductance (H).
+    pub inductance_d: f64,
+    /// q-axis inductance (H).
+    pub inductance_q: f64,
+    /// Flux linkage, peak (V·s).
+    pub flux_linkage: f64,
 }
 
 /// Velocity loop.
@@ -95,10 +120,12 @@ pub enum EffortFeedforward {
     TwoMass,
 }
 
-/// What the firmware believes, all in the axis coordinate unless said otherwise. The tool fills it from the plant;
-/// a scenario overrides single values to express mismatch.
+/// What the firmware believes of the axis, in the axis coordinate unless said otherwise. The tool fills it from the
+/// plant; a scenario overrides single values to express mismatch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Estimate {
+    /// Axis coordinate per motor coordinate (m/rad, or 1).
+    pub transmission: f64,
     /// Mass or inertia on the motor's side of the spring (two-mass), rotor included.
     pub motor_inertia: f64,
     /// Mass or inertia beyond the spring; 0 for a rigid axis.
@@ -113,6 +140,12 @@ pub struct Estimate {
     pub coulomb: f64,
     /// Constant resisting effort, all bodies.
     pub bias: f64,
-    /// Motor as the firmware knows it; `None` for an ideal source.
-    pub motor: Option<Pmsm>,
+}
+
+impl CurrentLoop {
+    /// Largest effort that the current limit leaves, as the firmware believes (N·m or N): 1.5·p·ψ times the limit.
+    #[must_use]
+    pub fn max_effort(&self) -> f64 {
+        1.5 * self.motor.electrical_ratio * self.motor.flux_linkage * self.max_current
+    }
 }

@@ -1,15 +1,4 @@
-//! What moves the axis.
-
-/// What moves the axis.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Motor {
-    /// A permanent-magnet synchronous motor on an averaged inverter.
-    Pmsm(Pmsm),
-    /// An ideal source: effort = gain × output, output saturating.
-    IdealSource(IdealSource),
-    /// The motor side follows the set-point exactly.
-    Prescribed,
-}
+//! Motors: a synchronous one, an ideal source.
 
 /// PMSM in dq, amplitude-invariant, phase-to-neutral; one that turns or a linear one.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,8 +14,6 @@ pub struct Pmsm {
     pub inductance_q: f64,
     /// Flux linkage of the magnets, peak (V·s).
     pub flux_linkage: f64,
-    /// Largest current, peak (A).
-    pub max_current: f64,
     /// Encoder on the motor.
     pub encoder: Encoder,
 }

@@ -131,6 +131,8 @@ fn task_rates_that_do_not_divide_the_base_rate() {
     let said = "3000 Hz does not divide the base rate 16000 Hz; 2000 Hz and 3200 Hz do; change it or `run.base_rate`";
     assert_eq!(after("rate = \"4 kHz\"", "rate = \"3 kHz\""), [format!("32:8: {said}")]);
     assert_eq!(after("[measure]", "[record]\nrate = \"3 kHz\"\n[measure]"), [format!("48:8: {said}")]);
+    let fast = "32000 Hz is faster than the base rate 16000 Hz; change it or `run.base_rate`";
+    assert_eq!(after("rate = \"4 kHz\"", "rate = \"32 kHz\""), [format!("32:8: {fast}")]);
     let sample = after("jerk = \"200 m/s3\"", "jerk = \"200 m/s3\"\nsample_time = \"0.3 ms\"");
     assert_eq!(sample, ["42:15: `sample_time` is 4.8000 base ticks, not a whole number; 312.5 us fits"]);
 }
@@ -143,6 +145,46 @@ fn what_contradicts_a_model_is_pointed_at_in_the_scenario() {
     let said = "5:17: `coulomb` is 50 N, above `static`, which is 32 N; friction at rest is at least that of sliding: give both here";
     assert_eq!(mistakes(text), [said]);
 }
+
+#[test]
+fn loops_turn_with_the_faster_ones_below_them() {
+    let velocity = "32:8: 8000 Hz is faster than the velocity loop, 2000 Hz; each turn hands its output to the velocity \
+                    loop in the same tick";
+    let text = AXIS.replace("rate = \"8 kHz\"", "rate = \"2 kHz\"").replace("rate = \"4 kHz\"", "rate = \"8 kHz\"");
+    assert_eq!(mistakes(&text), [velocity]);
+    let current = "29:8: 8000 Hz is faster than the current loop, 4000 Hz; each turn hands its output to the current \
+                   loop in the same tick";
+    assert_eq!(after("[drive.current]\nrate = \"16 kHz\"", "[drive.current]\nrate = \"4 kHz\""), [current]);
+    let uneven = "32:8: 3200 Hz does not divide the rate of the velocity loop, 8000 Hz; 2000 Hz and 4000 Hz do; each \
+                  turn hands its output to the velocity loop in the same tick";
+    assert_eq!(after("rate = \"4 kHz\"", "rate = \"3.2 kHz\""), [uneven]);
+}
+
+#[test]
+fn estimates_of_what_is_not_there() {
+    let estimate = |key: &str| after("[measure]", &format!("[drive.estimate]\n{key}\n[measure]"));
+    assert_eq!(estimate("gain = \"2 Nm/V\""), ["48:8: there is no ideal source whose `gain` could be estimated"]);
+    assert_eq!(estimate("lead = \"5 mm\"\ngear_ratio = 3\ndc_link = \"600 V\""), [""; 0]);
+    let ideal = AXIS
+        .replace("lead = \"10 mm\"\n", "")
+        .replace("kind = \"pmsm\"\npole_pairs = 4\nresistance = \"1.6 Ohm\"\ninductance = \"3.5 mH\"\n", "")
+        .replace("flux_linkage = \"0.06 V s\"\ninertia = \"1.57 kg cm2\"\nmax_current = \"13.3 Arms\"", IDEAL);
+    let estimate = |key: &str| mistakes(&ideal.replace("[measure]", &format!("[drive.estimate]\n{key}\n[measure]")));
+    assert_eq!(mistakes(&ideal), [""; 0]);
+    assert_eq!(
+        estimate("lead = \"5 mm\"\ngain = \"3 N/V\"\ndc_link = \"600 V\"\nmotor = { resistance = \"1 Ohm\" }"),
+        [
+            "43:8: the axis has no `lead` to estimate",
+            "44:8: the output of the source is its effort: there is no `gain` to estimate",
+            "45:11: there is no inverter whose DC link could be estimated",
+            "46:9: there is no synchronous motor to estimate",
+        ]
+    );
+    assert_eq!(estimate("gear_ratio = 3"), ["43:14: the axis has no `gear_ratio` to estimate"]);
+}
+
+/// Without a gain: the output is the force itself.
+const IDEAL: &str = "kind = \"ideal-source\"\nmass = \"2 kg\"\nlimit = \"500 N\"";
 
 #[test]
 fn contradictions() {
@@ -265,6 +307,9 @@ fn wrong_syntax_is_said_without_its_consequences() {
 fn what_is_doubtful_is_a_warning() {
     let unused = AXIS.replace("order = 3", "order = 2");
     assert_eq!(warnings(&unused), ["41:8: `jerk` is not used by a move of order 2"]);
+    let encoder = AXIS.replace("[drive.current]", "[drive.load_encoder]\nstep = \"1 um\"\n[drive.current]");
+    let said = "25:1: the encoder on the load is not used; write `position_feedback = \"load\"` in `[drive]`";
+    assert_eq!(warnings(&encoder), [said]);
     let narrow = AXIS.replace("static = \"32 N\"\n", "");
     assert_eq!(warnings(&narrow), ["13:21: `stribeck_velocity` does nothing without `static`"]);
 }

@@ -4,7 +4,7 @@ use servobench_scenario::*;
 
 /// Every number is finite and on its side of zero, or infinite where that has a meaning.
 pub(crate) fn check(scenario: &Scenario) {
-    let Scenario { base_rate, axis, motor, drive, .. } = scenario;
+    let Scenario { base_rate, axis, actuator, .. } = scenario;
     assert!(!scenario.engines.is_empty());
     optional("duration", scenario.duration);
     assert!(scenario.duration.is_none_or(|duration| duration <= LONGEST_RUN));
@@ -16,19 +16,23 @@ pub(crate) fn check(scenario: &Scenario) {
             coupling(body.coupling.expect("only the motor has no coupling"));
         }
     }
-    match motor {
-        Motor::Pmsm(motor) => {
+    match actuator {
+        Actuator::Prescribed | Actuator::Off => {}
+        Actuator::Pmsm { motor, dc_link, current, drive } => {
             pmsm(motor);
-            resolution(&motor.encoder);
+            positive("dc_link", *dc_link);
+            self::current(current, *base_rate);
+            self::drive(drive, *base_rate);
+            assert!(current.rate.divider(drive.velocity.rate).is_ok(), "{:?} in {:?}", drive.velocity, current.rate);
         }
-        Motor::IdealSource(source) => {
+        Actuator::IdealSource { source, estimated_gain, drive } => {
             positive("gain", source.gain);
+            positive("estimated gain", *estimated_gain);
             limit("limit", source.limit);
             resolution(&source.encoder);
+            self::drive(drive, *base_rate);
         }
-        Motor::Prescribed => {}
     }
-    self::drive(drive, *base_rate);
     scenario.program.iter().for_each(step);
     for disturbance in &scenario.disturbances {
         not_negative("start", disturbance.start);
@@ -73,34 +77,52 @@ fn pmsm(motor: &Pmsm) {
     positive("inductance_d", motor.inductance_d);
     positive("inductance_q", motor.inductance_q);
     positive("flux_linkage", motor.flux_linkage);
-    positive("max_current", motor.max_current);
+    resolution(&motor.encoder);
 }
 
 fn resolution(encoder: &Encoder) {
     optional("resolution", encoder.resolution);
 }
 
-fn drive(drive: &Drive, base_rate: Rate) {
-    limit("dc_link", drive.dc_link);
-    limit("max_effort", drive.max_effort);
-    if let Some(current) = &drive.current {
-        divides(current.rate, base_rate);
-        positive("bandwidth", current.bandwidth);
-        for (d, q) in [current.gain, current.integral_time].into_iter().flatten() {
-            positive("current loop, d", d);
-            positive("current loop, q", q);
+fn current(current: &CurrentLoop, base_rate: Rate) {
+    divides(current.rate, base_rate);
+    match current.gain {
+        CurrentGain::Bandwidth(bandwidth) => positive("bandwidth", bandwidth),
+        CurrentGain::PerAxis { d, q } => {
+            positive("gain, d", d);
+            positive("gain, q", q);
         }
     }
+    if let Some((d, q)) = current.integral_time {
+        positive("integral time, d", d);
+        positive("integral time, q", q);
+    }
+    positive("max_current", current.max_current);
+    positive("estimated dc_link", current.dc_link);
+    let MotorEstimate { electrical_ratio, resistance, inductance_d, inductance_q, flux_linkage } = current.motor;
+    positive("estimated electrical_ratio", electrical_ratio);
+    positive("estimated resistance", resistance);
+    positive("estimated inductance_d", inductance_d);
+    positive("estimated inductance_q", inductance_q);
+    positive("estimated flux_linkage", flux_linkage);
+}
+
+fn drive(drive: &Drive, base_rate: Rate) {
+    limit("max_effort", drive.max_effort);
     let VelocityLoop { rate, gain, integral_time, filter_time } = drive.velocity;
     divides(rate, base_rate);
     not_negative("velocity gain", gain);
     optional("integral_time", integral_time);
     not_negative("filter_time", filter_time);
-    divides(drive.position.rate, base_rate);
+    divides(drive.position.rate, rate);
     not_negative("position gain", drive.position.gain);
+    if let Feedback::Load(encoder) = &drive.position_feedback {
+        resolution(encoder);
+    }
     assert!((0.0..=1.0).contains(&drive.feedforward.velocity));
     not_negative("delay", drive.feedforward.delay.unwrap_or_default());
     let estimate = &drive.estimate;
+    positive("estimated transmission", estimate.transmission);
     not_negative("motor_inertia", estimate.motor_inertia);
     not_negative("load_inertia", estimate.load_inertia);
     limit("stiffness", estimate.stiffness);
@@ -108,9 +130,6 @@ fn drive(drive: &Drive, base_rate: Rate) {
     not_negative("load_viscous", estimate.load_viscous);
     not_negative("estimated coulomb", estimate.coulomb);
     finite("estimated bias", estimate.bias);
-    estimate.motor.iter().for_each(pmsm);
-    drive.load_encoder.iter().for_each(resolution);
-    assert!(drive.position_feedback == Feedback::Motor || drive.load_encoder.is_some());
 }
 
 fn step(step: &Step) {

@@ -1,21 +1,16 @@
-//! What the firmware of a scenario knows: gains, limits, rates and estimates.
+//! What the firmware of a scenario knows: gains, limits, rates and estimates. Nothing here sees the plant.
 use crate::error::BuildError;
 use servobench_base::{Dq, Rate};
-use servobench_drive::{self as drive, current, feedforward, velocity};
-use servobench_plant::inverter;
-use servobench_scenario::{self as scenario, Scenario};
+use servobench_drive::{self as drive, current, delay, feedforward, velocity};
+use servobench_scenario as scenario;
 
-/// Parameters of the firmware.
-pub(super) fn params(scenario: &Scenario) -> Result<drive::Params, BuildError> {
-    let (drive, estimate) = (&scenario.drive, &scenario.drive.estimate);
-    let base_rate = scenario.base_rate;
-    let stage = match (&scenario.motor, &estimate.motor, &drive.current) {
-        (scenario::Motor::IdealSource(source), ..) => drive::Stage::Direct { gain: source.gain },
-        (_, Some(motor), Some(current)) => current_stage(base_rate, drive.dc_link, motor, current)?,
-        _ => {
-            return Err(BuildError::Contradiction("a synchronous motor needs a `[drive.current]`"));
-        }
-    };
+/// Parameters of the firmware that is set as `drive` says and commands `stage`.
+pub(super) fn params(
+    base_rate: Rate,
+    drive: &scenario::Drive,
+    stage: drive::Stage,
+) -> Result<drive::Params, BuildError> {
+    let estimate = &drive.estimate;
     let model = match drive.feedforward.effort {
         scenario::EffortFeedforward::Off => feedforward::Model::Off,
         scenario::EffortFeedforward::Rigid => feedforward::Model::Rigid {
@@ -33,12 +28,8 @@ pub(super) fn params(scenario: &Scenario) -> Result<drive::Params, BuildError> {
     let friction = |value: f64| if drive.feedforward.friction { value } else { 0.0 };
     let mut params = drive::Params {
         base_rate,
-        transmission: scenario.axis.transmission,
+        transmission: estimate.transmission,
         position_gain: drive.position.gain,
-        feedback: match drive.position_feedback {
-            scenario::Feedback::Motor => drive::Feedback::Motor,
-            scenario::Feedback::Load => drive::Feedback::Load,
-        },
         position_every: base_rate.divider(drive.position.rate)?,
         velocity: velocity::Params {
             k_p: drive.velocity.gain,
@@ -53,34 +44,83 @@ pub(super) fn params(scenario: &Scenario) -> Result<drive::Params, BuildError> {
             coulomb: friction(estimate.coulomb),
             bias: friction(estimate.bias),
         },
-        reference_delay: 0.0,
+        reference_delay: delay::Params::default(),
         stage,
     };
     // Without effort feedforward there is nothing to wait for.
     let path = if model == feedforward::Model::Off { 0.0 } else { params.effort_path_delay() };
-    params.reference_delay = drive.feedforward.delay.unwrap_or(path);
+    let delay = drive.feedforward.delay.unwrap_or(path);
+    params.reference_delay = delay::Params::new(delay, params.period(params.position_every))?;
     Ok(params)
 }
 
-fn current_stage(
-    base_rate: Rate,
-    dc_link: f64,
-    motor: &scenario::Pmsm,
-    current: &scenario::CurrentLoop,
-) -> Result<drive::Stage, BuildError> {
-    let estimate = current::MotorEstimate {
-        pole_pairs: motor.electrical_ratio,
-        resistance: motor.resistance,
-        inductance: Dq { d: motor.inductance_d, q: motor.inductance_q },
-        flux_linkage: motor.flux_linkage,
+/// The current loop of a synchronous motor.
+pub(super) fn current_stage(base_rate: Rate, current: &scenario::CurrentLoop) -> Result<drive::Stage, BuildError> {
+    let scenario::MotorEstimate { electrical_ratio, resistance, inductance_d, inductance_q, flux_linkage } =
+        current.motor;
+    let motor = current::MotorEstimate {
+        electrical_ratio,
+        resistance,
+        inductance: Dq { d: inductance_d, q: inductance_q },
+        flux_linkage,
     };
-    let max_voltage = inverter::voltage_limit(dc_link);
-    let mut params = current::Params::from_bandwidth(estimate, current.bandwidth, max_voltage)?;
-    if let Some((d, q)) = current.gain {
-        params.k_p = Dq { d, q };
-    }
-    if let Some((d, q)) = current.integral_time {
-        params.k_i = Dq { d: params.k_p.d / d, q: params.k_p.q / q };
-    }
+    let derived = match current.gain {
+        scenario::CurrentGain::Bandwidth(alpha) => current::Gains::from_bandwidth(&motor, alpha),
+        scenario::CurrentGain::PerAxis { d, q } => current::Gains::cancelling(&motor, Dq { d, q }),
+    };
+    let gains = match current.integral_time {
+        Some((d, q)) => current::Gains::with_integral_times(derived.k_p, Dq { d, q }),
+        None => derived,
+    };
+    let max_voltage = current::voltage_limit(current.dc_link);
+    let params = current::Params { motor, gains, max_current: current.max_current, max_voltage };
     Ok(drive::Stage::Current { params, every: base_rate.divider(current.rate)? })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use scenario::Actuator;
+
+    /// The integral gains of the current loop of a drive with `current` in its file, on a motor that it believes to have
+    /// 4 Ω, 20 mH and 50 mH.
+    fn integral_gains(current: &str) -> Dq {
+        let text = format!(
+            r#"
+[run]
+base_rate = "16 kHz"
+[axis]
+motion = "rotary"
+[motor]
+model = "saarakkala-2.2kw"
+[drive]
+model = "servo-16khz"
+current = {{ {current} }}
+estimate.motor = {{ resistance = "4 Ohm", inductance_d = "20 mH", inductance_q = "50 mH" }}
+"#
+        );
+        let parsed = scenario::parse("test", &text, None).unwrap_or_else(|error| panic!("{error}")).scenario;
+        let Actuator::Pmsm { current, .. } = parsed.actuator else { panic!("a synchronous motor") };
+        let drive::Stage::Current { params, .. } = current_stage(parsed.base_rate, &current).unwrap() else {
+            panic!("a current loop")
+        };
+        params.gains.k_i
+    }
+
+    /// Oracle: by hand. k_i = k_p/T_i per axis: α·R with k_p = α·L, k_p·R/L with gains that are given, or as given.
+    #[test]
+    fn the_integral_gain_follows_from_the_estimate_on_each_axis() {
+        for (current, d, q) in [
+            ("bandwidth = \"1000 rad/s\"", 4000.0, 4000.0),
+            ("gain_d = \"10 V/A\", gain_q = \"10 V/A\"", 2000.0, 800.0),
+            (
+                "gain_d = \"10 V/A\", gain_q = \"10 V/A\", integral_time_d = \"10 ms\", integral_time_q = \"20 ms\"",
+                1000.0,
+                500.0,
+            ),
+        ] {
+            let found = integral_gains(current);
+            assert!((found.d / d - 1.0).abs() < 1e-14 && (found.q / q - 1.0).abs() < 1e-14, "{current}: {found:?}");
+        }
+    }
 }

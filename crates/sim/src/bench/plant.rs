@@ -3,16 +3,16 @@ use crate::error::BuildError;
 use crate::power::PowerStage;
 use servobench_base::{Dq, Rotation};
 use servobench_plant::{self as plant, BodyState, Chain, Encoder, Engine, Mechanics, MechanicsSetup, pmsm};
-use servobench_scenario::{self as scenario, Scenario};
+use servobench_scenario::{self as scenario, Actuator, Scenario};
 
 /// The mechanics at tick 0 and the names of its bodies.
 pub(super) fn mechanics(
     scenario: &Scenario,
     engine: &dyn Engine,
 ) -> Result<(Box<dyn Mechanics>, Vec<String>), BuildError> {
-    let drive = match scenario.motor {
-        scenario::Motor::Prescribed => plant::Drive::Prescribed,
-        _ => plant::Drive::Effort,
+    let drive = match scenario.actuator {
+        Actuator::Prescribed => plant::Drive::Prescribed,
+        Actuator::Off | Actuator::Pmsm { .. } | Actuator::IdealSource { .. } => plant::Drive::Effort,
     };
     let (model, names) = match &scenario.axis.mechanics {
         scenario::AxisMechanics::Bodies(bodies) => {
@@ -80,17 +80,12 @@ pub(super) fn encoder(encoder: scenario::Encoder) -> Result<Encoder, BuildError>
     Ok(encoder)
 }
 
-/// The power stage with the motor at `speed` (its own coordinate, per second), and the encoder on the motor.
-pub(super) fn power_stage(scenario: &Scenario, speed: f64) -> Result<(PowerStage, Encoder), BuildError> {
-    let on = scenario.drive.enabled;
-    match &scenario.motor {
-        scenario::Motor::Prescribed => Ok((PowerStage::Off, Encoder::default())),
-        scenario::Motor::IdealSource(source) => {
-            let encoder = encoder(source.encoder)?;
-            let stage = PowerStage::Ideal { gain: source.gain, limit: source.limit };
-            Ok((if on { stage } else { PowerStage::Off }, encoder))
-        }
-        scenario::Motor::Pmsm(motor) => {
+/// What turns the drive's command into effort, with the motor at `speed` (its own coordinate, per second).
+pub(super) fn power_stage(actuator: &Actuator, speed: f64) -> Result<PowerStage, BuildError> {
+    match actuator {
+        Actuator::Prescribed | Actuator::Off => Ok(PowerStage::Off),
+        Actuator::IdealSource { source, .. } => Ok(PowerStage::Ideal { gain: source.gain, limit: source.limit }),
+        Actuator::Pmsm { motor, dc_link, .. } => {
             let params = pmsm::Params {
                 pole_pairs: motor.electrical_ratio,
                 resistance: motor.resistance,
@@ -98,10 +93,14 @@ pub(super) fn power_stage(scenario: &Scenario, speed: f64) -> Result<(PowerStage
                 flux_linkage: motor.flux_linkage,
             };
             params.check()?;
-            let encoder = encoder(motor.encoder)?;
-            let (state, u_dc) = (pmsm::State::default(), scenario.drive.dc_link);
-            let stage = PowerStage::Pmsm { params, state, u_dc, last_speed: speed, rotor: Rotation::default() };
-            Ok((if on { stage } else { PowerStage::Off }, encoder))
+            Ok(PowerStage::Pmsm {
+                params,
+                state: pmsm::State::default(),
+                u_dc: *dc_link,
+                last_speed: speed,
+                rotor: Rotation::default(),
+                shortens: false,
+            })
         }
     }
 }

@@ -1,0 +1,183 @@
+//! What the firmware knows and does not change: gains, limits, rates and its own estimates of the axis.
+use crate::{current, delay, feedforward, velocity};
+use servobench_base::{Divider, ParamError, Rate, non_negative, positive};
+
+/// What turns the effort reference into effort.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Stage {
+    /// Current loop of a synchronous motor.
+    Current {
+        /// The loop.
+        params: current::Params,
+        /// Its period in base ticks.
+        every: Divider,
+    },
+    /// An ideal amplifier: output = effort / gain.
+    Direct {
+        /// Effort per unit of output, as the firmware knows it (N/V, or 1).
+        gain: f64,
+    },
+}
+
+/// Gains, limits, rates and estimates; constant during a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Params {
+    /// Base rate of the run.
+    pub base_rate: Rate,
+    /// Axis coordinate per motor coordinate (m/rad, or 1), as the firmware knows it.
+    pub transmission: f64,
+    /// Position gain, K_v (1/s).
+    pub position_gain: f64,
+    /// Period of the position loop in base ticks; a whole number of periods of the velocity loop.
+    pub position_every: Divider,
+    /// Velocity loop.
+    pub velocity: velocity::Params,
+    /// Its period in base ticks; a whole number of periods of the current loop.
+    pub velocity_every: Divider,
+    /// Time constant of the low-pass on the measured velocity (s); 0 for none.
+    pub velocity_filter_time: f64,
+    /// Feedforward.
+    pub feedforward: feedforward::Params,
+    /// How long the reference waits for the feedforward effort.
+    pub reference_delay: delay::Params,
+    /// Current loop or direct output.
+    pub stage: Stage,
+}
+
+impl Params {
+    /// # Errors
+    /// [`ParamError`] names the first parameter out of its bound, as scenario files call it.
+    pub fn check(&self) -> Result<(), ParamError> {
+        positive("axis.transmission", self.transmission)?;
+        non_negative("drive.position.gain", self.position_gain)?;
+        non_negative("drive.velocity.filter_time", self.velocity_filter_time)?;
+        match &self.stage {
+            Stage::Direct { gain } => positive("motor.gain", *gain).map(|_| ()),
+            Stage::Current { params, .. } => params.check(),
+        }?;
+        self.velocity.check()?;
+        self.feedforward.check()?;
+        self.check_rates()
+    }
+
+    /// Turns of a slower loop must coincide with turns of the faster one, or its output would wait for a while that
+    /// changes from turn to turn.
+    fn check_rates(&self) -> Result<(), ParamError> {
+        let coincides = |name, slower: Divider, faster: Divider, bound| {
+            let value = f64::from(self.base_rate.hertz()) / f64::from(slower.ticks());
+            if slower.is_multiple_of(faster) { Ok(()) } else { Err(ParamError { name, value, bound }) }
+        };
+        let bound = "a whole fraction of the velocity loop's rate";
+        coincides("drive.position.rate", self.position_every, self.velocity_every, bound)?;
+        match self.stage {
+            Stage::Direct { .. } => Ok(()),
+            Stage::Current { every, .. } => coincides(
+                "drive.velocity.rate",
+                self.velocity_every,
+                every,
+                "a whole fraction of the current loop's rate",
+            ),
+        }
+    }
+
+    /// Period of the task that turns every `every` base ticks (s).
+    #[inline]
+    #[must_use]
+    pub fn period(&self, every: Divider) -> f64 {
+        f64::from(every.ticks()) * self.base_rate.period()
+    }
+
+    /// How long an effort reference takes to act, which is how long the reference should wait (s): half the position
+    /// period that the reference is held for, and the lag of what follows (see [`current`]: 1/α for a ramp, from sample
+    /// to sample, so only what the position period exceeds the current period by is held). The velocity loop holds
+    /// nothing longer, since its period is not above that of the position loop.
+    #[must_use]
+    pub fn effort_path_delay(&self) -> f64 {
+        let position = self.period(self.position_every);
+        match &self.stage {
+            Stage::Direct { .. } => position / 2.0,
+            Stage::Current { params, every } => {
+                (position - self.period(*every)) / 2.0 + params.motor.inductance.q / params.gains.k_p.q
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::current::{Gains, MotorEstimate};
+    use servobench_base::Dq;
+
+    pub(crate) const BASE: u32 = 16_000;
+
+    pub(crate) fn every(hz: u32) -> Divider {
+        let rate = |hz| Rate::new(hz).unwrap();
+        rate(BASE).divider(rate(hz)).unwrap()
+    }
+
+    /// The EMPS axis' controller: u = kv·(kp·e − v), 1 kHz, nothing fed forward.
+    pub(crate) fn emps() -> Params {
+        Params {
+            base_rate: Rate::new(BASE).unwrap(),
+            transmission: 1.0,
+            position_gain: 160.18,
+            position_every: every(1_000),
+            velocity: velocity::Params { k_p: 35.1507 * 243.45, integral_time: None, max_effort: 351.507 },
+            velocity_every: every(1_000),
+            velocity_filter_time: 0.0,
+            feedforward: feedforward::Params { velocity: 0.0, model: feedforward::Model::Off, coulomb: 0.0, bias: 0.0 },
+            reference_delay: delay::Params::default(),
+            stage: Stage::Direct { gain: 35.1507 },
+        }
+    }
+
+    /// The 2.2 kW motor under loops of 16, 8 and 4 kHz, current-limited to 9 A.
+    pub(crate) fn synchronous() -> Params {
+        let inductance = Dq { d: 36e-3, q: 51e-3 };
+        let motor = MotorEstimate { electrical_ratio: 3.0, resistance: 3.6, inductance, flux_linkage: 0.545 };
+        let gains = Gains::from_bandwidth(&motor, 6_000.0);
+        let params = current::Params { motor, gains, max_current: 9.0, max_voltage: 300.0 };
+        Params {
+            position_every: every(4_000),
+            velocity: velocity::Params { k_p: 3.0, integral_time: Some(0.01), max_effort: f64::INFINITY },
+            velocity_every: every(8_000),
+            stage: Stage::Current { params, every: every(16_000) },
+            ..emps()
+        }
+    }
+
+    /// Oracle: by hand. Half of 1 ms; half of what 250 µs exceed 62.5 µs by, and 1/α.
+    #[test]
+    fn the_delay_of_the_effort_path_is_half_the_hold_and_the_lag_of_the_current() {
+        assert!((emps().effort_path_delay() - 0.5e-3).abs() < 1e-15);
+        assert!((synchronous().effort_path_delay() - (93.75e-6 + 1.0 / 6_000.0)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_loop_turns_with_the_faster_one_below_it() {
+        assert_eq!((emps().check(), synchronous().check()), (Ok(()), Ok(())));
+        let said = |params: Params| params.check().unwrap_err().to_string();
+        let hasty = Params { position_every: every(2_000), ..emps() };
+        assert_eq!(said(hasty), "`drive.position.rate` must be a whole fraction of the velocity loop's rate, got 2000");
+        let uneven = Params { position_every: every(3_200), ..synchronous() };
+        assert_eq!(
+            said(uneven),
+            "`drive.position.rate` must be a whole fraction of the velocity loop's rate, got 3200"
+        );
+        let Stage::Current { params, .. } = synchronous().stage else { panic!() };
+        let slow = Params { stage: Stage::Current { params, every: every(4_000) }, ..synchronous() };
+        assert_eq!(said(slow), "`drive.velocity.rate` must be a whole fraction of the current loop's rate, got 8000");
+    }
+
+    #[test]
+    fn the_parameters_of_every_loop_are_checked() {
+        let said = |params: Params| params.check().unwrap_err().to_string();
+        let no_gain = Params { stage: Stage::Direct { gain: 0.0 }, ..emps() };
+        assert_eq!(said(no_gain), "`motor.gain` must be finite and positive, got 0");
+        let Stage::Current { params, every } = synchronous().stage else { panic!() };
+        let no_current = current::Params { max_current: f64::NAN, ..params };
+        let starved = Params { stage: Stage::Current { params: no_current, every }, ..synchronous() };
+        assert_eq!(said(starved), "`motor.max_current` must be positive, got NaN");
+    }
+}

@@ -1,0 +1,53 @@
+//! What moves the axis: the part of the plant that a drive commands, and the drive that goes with it.
+use super::drive::{CurrentLoop, Drive};
+use super::motor::{IdealSource, Pmsm};
+
+/// What moves the axis, and what commands that.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Actuator {
+    /// The motor side follows the set-point exactly.
+    Prescribed,
+    /// The power stage is off: no current, no force, and the axis is free.
+    Off,
+    /// A permanent-magnet synchronous motor on an averaged inverter.
+    Pmsm {
+        /// The motor.
+        motor: Pmsm,
+        /// DC-link voltage of the inverter (V).
+        dc_link: f64,
+        /// Current loop of the drive.
+        current: CurrentLoop,
+        /// The drive.
+        drive: Drive,
+    },
+    /// An ideal source of force or torque.
+    IdealSource {
+        /// The source.
+        source: IdealSource,
+        /// Effort per unit of output as the drive knows it.
+        estimated_gain: f64,
+        /// The drive.
+        drive: Drive,
+    },
+}
+
+impl Actuator {
+    /// The drive, where there is one.
+    #[must_use]
+    pub const fn drive(&self) -> Option<&Drive> {
+        match self {
+            Self::Prescribed | Self::Off => None,
+            Self::Pmsm { drive, .. } | Self::IdealSource { drive, .. } => Some(drive),
+        }
+    }
+
+    /// Largest effort reference (N·m or N): the drive's effort limit, or what its current limit leaves of it.
+    #[must_use]
+    pub fn max_effort(&self) -> f64 {
+        match self {
+            Self::Prescribed | Self::Off => f64::INFINITY,
+            Self::Pmsm { current, drive, .. } => drive.max_effort.min(current.max_effort()),
+            Self::IdealSource { drive, .. } => drive.max_effort,
+        }
+    }
+}
