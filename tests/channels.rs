@@ -1,8 +1,8 @@
 //! What a scenario can ask to record is what the loop records.
 use servobench_plant::Exact;
-use servobench_scenario::{CHANNELS, Disturbance, DisturbedBody, Scenario};
+use servobench_scenario::{CHANNELS, Disturbance, DisturbedBody, Motion, Scenario};
 use servobench_tests::{run, scenario_file};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The first ticks of axes that have everything between them: a synchronous motor with a table before the load, an
 /// ideal source, a load that is pushed; and something that pushes the motor.
@@ -59,4 +59,36 @@ fn a_disturbance_is_recorded_in_the_rows_in_which_it_acts() {
     let expected = |row: usize| if acts.contains(&row) { 300.0_f64 } else { 0.0 };
     assert!((0..recording.len()).all(|row| (force[row] - expected(row)).abs() < f64::MIN_POSITIVE));
     assert!(recording.channel("disturbance.motor").is_none(), "nothing pushes the motor");
+}
+
+/// Unit of each channel as the reference of scenario files gives it.
+fn documented() -> BTreeMap<String, String> {
+    let reference = include_str!("../docs/scenario.md");
+    let (_, table) = reference.split_once("### Channels\n").unwrap();
+    let rows = table.lines().filter_map(|line| line.strip_prefix("| `")?.split_once("` | "));
+    let unit = |rest: &str| rest.split(" | ").next().unwrap().to_owned();
+    rows.map(|(name, rest)| (name.to_owned(), unit(rest))).collect()
+}
+
+#[test]
+fn the_reference_gives_the_units_that_are_recorded() {
+    let documented = documented();
+    assert!(documented.keys().eq(CHANNELS.iter().copied().collect::<BTreeSet<_>>()), "{documented:?}");
+    for scenario in axes() {
+        let effort = |motion| if motion == Motion::Linear { "N" } else { "N m" };
+        let axis = if scenario.axis.motion == Motion::Linear { "m" } else { "rad" };
+        let (motor, load) = (effort(scenario.axis.motor_motion), effort(scenario.axis.motion));
+        for channel in run(&scenario, &Exact).channels {
+            let spec = channel.spec;
+            let expected = match documented[&spec.name].as_str() {
+                "E" => motor.to_owned(),
+                "F" => load.to_owned(),
+                "1" => String::new(),
+                // None of the sources here has a gain.
+                "V or E" => motor.to_owned(),
+                other => other.replace('U', axis),
+            };
+            assert_eq!(spec.unit, expected, "{}", spec.name);
+        }
+    }
 }

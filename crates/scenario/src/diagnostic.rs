@@ -1,6 +1,7 @@
 //! What is wrong with a scenario, where, and what to do about it.
 use crate::scenario::Motion;
 use crate::source::{SourceId, Sources, Span};
+use servobench_base::Rate;
 use std::fmt;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -82,6 +83,8 @@ pub(crate) struct Report {
     pub(crate) missing: Vec<Diagnostic>,
     /// Tables whose model was not found: what they lack may well be in it.
     pub(crate) without_model: Vec<&'static str>,
+    /// Task rates that models give.
+    pub(crate) rates_of_models: Vec<Rate>,
     /// Coordinate of the axis, once known.
     pub(crate) axis: Option<Motion>,
     /// Coordinate of the motor, once known.

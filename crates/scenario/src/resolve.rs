@@ -1,6 +1,7 @@
 //! From the tables of a file to a [`Scenario`]: defaults, derived values, and the rules that concern several keys.
 
 mod axis;
+mod bandwidth;
 mod current;
 mod disturbance;
 mod drive;
@@ -8,13 +9,16 @@ mod estimate;
 mod loops;
 mod motor;
 mod program;
+mod time;
 
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file::{File, MotorKind, Run};
 use crate::scenario::{EngineName, LONGEST_RUN, Limit, Measure, Record, Scenario};
+use crate::simple::MAX_RATE;
 use crate::source::{At, SourceId, Sources, Span};
 use servobench_base::Rate;
+use std::collections::BTreeSet;
 
 pub(crate) use axis::motor_motion;
 
@@ -31,13 +35,18 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
     let known = drive::Known { base_rate, axis: moved.as_ref(), motor: source.as_ref() };
     let actuator = drive::resolve(file, &known, report);
     let program = program::steps(file, base_rate, report);
+    if let Some(actuator) = &actuator {
+        bandwidth::check(file, actuator, report);
+    }
     let duration = run.and_then(|run| duration(run, report));
+    time::check(file, program.as_deref(), report);
     let fixed = is_prescribed.then(|| disturbance::Fixed::of(moved.as_ref()));
     let timing = disturbance::Timing { base_rate, duration };
     let disturbances = disturbance::disturbances(file, &timing, fixed, report);
     let initial = disturbance::initial(file, fixed, report);
     let record = record(file, base_rate, report);
     let limits = limits(file, report);
+    say_rates_of_models(file, base_rate, report);
     if is_prescribed && let Some(span) = file.drive.span() {
         report.warning(span, "`drive` is not used: the motor follows the set-point exactly", "");
     }
@@ -123,16 +132,51 @@ fn need<T: Clone>(slot: &Slot<T>, path: &str, key: &str, header: Span, report: &
     slot.given().cloned()
 }
 
-/// A task rate that must divide the base rate.
+/// A task rate that must divide the base rate. What a model says is not in question: see [`say_rates_of_models`].
 fn task_rate(slot: &Slot<Rate>, base_rate: Option<Rate>, report: &mut Report) -> Option<Rate> {
     let rate = slot.at()?;
+    let is_of_model = rate.span.source != SourceId::SCENARIO;
+    if is_of_model {
+        report.rates_of_models.push(rate.value);
+    }
     match base_rate?.divider(rate.value) {
         Ok(_) => Some(rate.value),
         Err(why) => {
-            report.error(rate.span, why.to_string(), "change it or `run.base_rate`");
+            if !is_of_model {
+                report.error(rate.span, why.to_string(), "change it or `run.base_rate`");
+            }
             None
         }
     }
+}
+
+/// Objects to a base rate that rates of models do not divide: one mistake, where the scenario makes it.
+fn say_rates_of_models(file: &File, base_rate: Option<Rate>, report: &mut Report) {
+    let place = file.run.given().and_then(|run| run.base_rate.span());
+    let (Some(place), Some(base_rate)) = (place, base_rate) else { return };
+    let rates: BTreeSet<Rate> = report.rates_of_models.iter().copied().collect();
+    let wrong = rates.iter().rev().filter(|rate| base_rate.divider(**rate).is_err());
+    let listed: Vec<String> = wrong.map(|rate| format!("{} Hz", rate.hertz())).collect();
+    if listed.is_empty() {
+        return;
+    }
+    let multiple = rates
+        .iter()
+        .map(|rate| u64::from(rate.hertz()))
+        .fold(1_u64, |multiple, rate| rate.saturating_mul(multiple / greatest_divisor(multiple, rate)));
+    let times = (u64::from(base_rate.hertz()) / multiple).max(1);
+    let message = format!("the base rate must be a multiple of the model's rates: {}", listed.join(", "));
+    let help = if multiple <= u64::from(MAX_RATE) {
+        format!("write \"{} Hz\", or other rates in `[drive]`", times * multiple)
+    } else {
+        "write other rates in `[drive]`".to_owned()
+    };
+    report.error(place, message, help);
+}
+
+/// Euclid's algorithm.
+const fn greatest_divisor(a: u64, b: u64) -> u64 {
+    if b == 0 { a } else { greatest_divisor(b, a % b) }
 }
 
 /// Which of several ways to say one thing a file uses.

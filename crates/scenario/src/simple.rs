@@ -35,7 +35,7 @@ impl Field for Rate {
 }
 
 /// Ten ticks in a microsecond; no servo loop is faster.
-const MAX_RATE: u32 = 10_000_000;
+pub(crate) const MAX_RATE: u32 = 10_000_000;
 
 /// A count.
 impl Field for u32 {

@@ -212,6 +212,7 @@ fn the_reference_lists_every_key() {
     let (written, after) = rest.split_once(END).unwrap();
     let mut tables = String::new();
     describe("", &json_schema(), &mut tables);
+    describe_channels(&json_schema(), &mut tables);
     if std::env::var_os(WRITE_DOCS).is_some() {
         std::fs::write(&path, format!("{before}{BEGIN}{tables}{END}{after}")).unwrap();
     } else {
@@ -243,6 +244,22 @@ fn describe(path: &str, table: &Json, out: &mut String) {
             let below = if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
             describe(&below, value, out);
         }
+    }
+}
+
+/// What can be recorded, as Markdown.
+fn describe_channels(schema: &Json, out: &mut String) {
+    let choices = &schema["properties"]["record"]["properties"]["channels"]["anyOf"][0]["oneOf"];
+    let _ = write!(
+        out,
+        "\n### Channels\n\nWhat `record.channels` can name. U is the unit of the axis, m or rad; E that of the motor's torque \
+         or force, N m or N; F that of the load's. Currents and voltages are amplitudes.\n\n| channel | unit | meaning |\n\
+         |---|---|---|\n"
+    );
+    for choice in choices.as_array().unwrap() {
+        let (unit, meaning) =
+            choice["description"].as_str().unwrap().strip_prefix('[').and_then(|rest| rest.split_once("] ")).unwrap();
+        let _ = writeln!(out, "| `{}` | {unit} | {meaning} |", choice["const"].as_str().unwrap());
     }
 }
 

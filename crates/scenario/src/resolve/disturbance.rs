@@ -80,6 +80,7 @@ fn disturbance(
         report.missing("disturbance", right, given.span);
     }
     refuse_idle(given, timing, report);
+    refuse_aliased(given, timing, report);
     Some(Disturbance {
         on: on.value,
         start: given.start.given().copied().unwrap_or(0.0),
@@ -103,6 +104,17 @@ fn refuse_idle(given: &file::Disturbance, timing: &Timing, report: &mut Report) 
         let message =
             format!("there is no tick between its start and its end, ticks are {} s apart", base_rate.period());
         report.error(duration.span, message, "");
+    }
+}
+
+/// Objects to a sine that the ticks show as a slower one, or as nothing.
+fn refuse_aliased(given: &file::Disturbance, timing: &Timing, report: &mut Report) {
+    let (Some(frequency), Some(base_rate)) = (given.frequency.at(), timing.base_rate) else { return };
+    let most = f64::from(base_rate.hertz()) / 2.0;
+    if frequency.value >= most {
+        let message =
+            format!("a sine of {} Hz needs more than two ticks per period: less than {most} Hz", frequency.value);
+        report.error(frequency.span, message, "lower it or raise `run.base_rate`");
     }
 }
 

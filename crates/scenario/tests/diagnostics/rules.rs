@@ -144,6 +144,14 @@ fn what_contradicts_a_model_is_pointed_at_in_the_scenario() {
                 model = \"wittenstein-premo-1f\"\n[drive]\nmodel = \"servo-16khz\"\n";
     let said = "5:17: `coulomb` is 50 N, above `static`, which is 32 N; friction at rest is at least that of sliding: give both here";
     assert_eq!(mistakes(text), [said]);
+    let rates = text.replace("table.coulomb = \"50 N\"\n", "").replace("16 kHz", "15 kHz");
+    let said = "2:13: the base rate must be a multiple of the model's rates: 16000 Hz, 8000 Hz, 4000 Hz; write \"16000 Hz\", \
+                or other rates in `[drive]`";
+    assert_eq!(mistakes(&rates), [said]);
+    assert_eq!(
+        mistakes(&rates.replace("15 kHz", "40 kHz")),
+        [said.replace("16000 Hz, 8000 Hz, 4000 Hz", "16000 Hz").replace("\"16000", "\"32000")]
+    );
 }
 
 #[test]
@@ -301,6 +309,57 @@ fn wrong_syntax_is_said_without_its_consequences() {
             "38:9: `order` must be a whole number from 2 to 4, got 7",
         ]
     );
+}
+
+/// Oracles: y ← y + ωT·(r − y) diverges from ωT = 2 on, with a period of delay from ωT = 1 on.
+#[test]
+fn a_loop_that_its_rate_cannot_carry() {
+    let unstable = |name: &str, bandwidth: &str, rate: u32, most: &str| {
+        format!(
+            "the {name} loop has a bandwidth of {bandwidth} Hz at a rate of {rate} Hz: it is unstable from {most} Hz; lower \
+             the bandwidth or raise the rate"
+        )
+    };
+    let cases = [
+        (
+            "bandwidth = \"1 kHz\"",
+            "bandwidth = \"2.6 kHz\"",
+            "27:13",
+            unstable("current", "2600.0", 16_000, "rate/2π on, 2546.5"),
+        ),
+        (
+            "bandwidth = \"60 Hz\"",
+            "bandwidth = \"9 kHz\"",
+            "30:13",
+            unstable("velocity", "9000.0", 8_000, "rate/π on, 2546.5"),
+        ),
+        (
+            "gain = \"80 1/s\"",
+            "gain = \"8000 1/s\"",
+            "33:8",
+            unstable("position", "1273.2", 4_000, "rate/π on, 1273.2"),
+        ),
+    ];
+    for (old, new, place, said) in cases {
+        assert_eq!(warnings(&AXIS.replace(old, new)), [format!("{place}: {said}")], "{new}");
+    }
+    let doubtful = AXIS
+        .replace("bandwidth = \"1 kHz\"", "bandwidth = \"2.2 kHz\"")
+        .replace("gain = \"80 1/s\"", "gain = \"7000 1/s\"");
+    assert_eq!(
+        warnings(&doubtful),
+        [
+            "27:13: the current loop has a bandwidth of 2200.0 Hz at a rate of 16000 Hz: 1.5 periods of delay take 74° of its \
+             phase; a tenth of the rate is usual at most",
+            "33:8: the position loop has a bandwidth of 1114.1 Hz at a rate of 4000 Hz: 0.5 periods of delay take 50° of its \
+             phase; a tenth of the rate is usual at most",
+        ]
+    );
+    // A drive that is off has no loop.
+    let off = AXIS
+        .replace("dc_link = \"320 V\"", "enabled = false")
+        .replace("bandwidth = \"60 Hz\"", "bandwidth = \"9 kHz\"");
+    assert_eq!(warnings(&off), [""; 0]);
 }
 
 #[test]

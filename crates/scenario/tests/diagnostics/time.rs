@@ -1,5 +1,5 @@
-//! What would never end, and what would never act.
-use crate::{AXIS, after, mistakes};
+//! What would never end, what would never act, and what has too little time.
+use crate::{AXIS, after, mistakes, warnings};
 
 /// Beyond 2⁶⁴ ticks a counter would start again: such a run once passed with no tick at all.
 #[test]
@@ -60,4 +60,46 @@ fn what_cannot_move_by_itself_cannot_be_disturbed() {
     let said = format!("the load is rigid with a motor that follows the set-point exactly, from zero; {way_out}");
     assert_eq!(starts(rigid), [format!("10:17: {said}"), format!("11:17: {said}")]);
     assert_eq!(starts(elastic), [""; 0]);
+}
+
+/// Oracle: 250 mm at 0.5 m/s and 6 m/s² take 0.5 s + 0.5/6 s = 0.5833 s in second order, and no less with a limit of jerk;
+/// 10 mm back never reach 0.5 m/s and take 2·√(0.01/6) s = 81.6 ms.
+#[test]
+fn a_run_that_ends_within_its_program_is_doubtful() {
+    let run = |duration: &str, steps: &str| {
+        let text =
+            AXIS.replace("base_rate = \"16 kHz\"", &format!("base_rate = \"16 kHz\"\nduration = \"{duration}\""));
+        warnings(&text.replace("move_to = \"250 mm\"", steps))
+    };
+    let said = |ends: &str, least: &str| {
+        format!(
+            "5:12: the run ends after {ends} s, within its program, which takes {least} s at least; moves are judged as far \
+             as they are recorded"
+        )
+    };
+    assert_eq!(run("300 ms", "move_to = \"250 mm\""), [said("0.3", "0.5833")]);
+    assert_eq!(run("583.4 ms", "move_to = \"250 mm\""), [""; 0]);
+    let back = "move_to = \"250 mm\"\n[[program]]\nmove_to = \"240 mm\"";
+    assert_eq!(run("660 ms", back), [said("0.66", "0.6650")]);
+    let slow = "move_to = \"250 mm\"\nduration = \"1 s\"\n[[program]]\nwait = \"1.1 s\"";
+    assert_eq!(run("2 s", slow), [said("2", "2.1000")]);
+}
+
+#[test]
+fn what_is_measured_after_the_end_is_refused() {
+    let late = AXIS
+        .replace("base_rate = \"16 kHz\"", "base_rate = \"16 kHz\"\nduration = \"2 s\"")
+        .replace("[measure]", "[measure]\nfrom = \"100 s\"");
+    assert_eq!(mistakes(&late), ["49:8: the run is over by then: it lasts 2 s"]);
+    assert_eq!(mistakes(&late.replace("100 s", "1.9 s")), [""; 0]);
+}
+
+/// Sampled at twice its frequency from its start a sine is zero at every tick.
+#[test]
+fn a_sine_that_the_ticks_cannot_show_is_refused() {
+    let of = |frequency: &str| after("force = \"100 N\"", &format!("force = \"100 N\"\nfrequency = \"{frequency}\""));
+    let said = "needs more than two ticks per period: less than 8000 Hz; lower it or raise `run.base_rate`";
+    assert_eq!(of("16 kHz"), [format!("47:13: a sine of 16000 Hz {said}")]);
+    assert_eq!(of("8 kHz"), [format!("47:13: a sine of 8000 Hz {said}")]);
+    assert_eq!(of("7.9 kHz"), [""; 0]);
 }

@@ -1,0 +1,87 @@
+//! Loops that their rates cannot carry.
+//!
+//! A loop of bandwidth ω that acts once per period T on what integrates,
+//!
+//! ```text
+//! y(k+1) = y(k) + ωT·(r − y(k))              z − 1 + ωT = 0          stable for ωT < 2: below rate/π
+//! y(k+1) = y(k) + ωT·(r − y(k−1))            z² − z + ωT = 0         stable for ωT < 1: below rate/2π
+//! ```
+//! the second with the period that a current loop takes to compute its voltage. What else is in the loop, a faster loop, a
+//! filter, a spring, only takes from that. Source: Åström, Wittenmark, *Computer-Controlled Systems*, 3rd ed., §3.2 (Jury).
+use crate::diagnostic::Report;
+use crate::file::File;
+use crate::scenario::{Actuator, CurrentGain};
+use crate::source::Span;
+use servobench_base::Rate;
+use std::f64::consts::{PI, TAU};
+
+/// A loop as far as its sampling goes.
+struct Sampled {
+    name: &'static str,
+    /// Bandwidth ω (rad/s).
+    bandwidth: f64,
+    rate: Rate,
+    /// The loop is unstable from `rate/limit` on (Hz).
+    limit: f64,
+    /// The same in words.
+    limit_in_words: &'static str,
+    /// Periods from a sample to the middle of what it causes.
+    delay: f64,
+    /// Where bandwidth and rate are written.
+    places: Vec<Option<Span>>,
+}
+
+/// Share of the rate above which a bandwidth is doubtful.
+const DOUBTFUL: f64 = 0.1;
+
+/// Doubts loops that are unstable on any axis, and those near it. They are not refused: a bench may show how a loop diverges.
+pub(super) fn check(file: &File, actuator: &Actuator, report: &mut Report) {
+    let (Some(given), Some(drive)) = (file.drive.given(), actuator.drive()) else { return };
+    if let (Actuator::Pmsm { current, .. }, Some(keys)) = (actuator, given.current.given()) {
+        let (bandwidth, gain) = match current.gain {
+            CurrentGain::Bandwidth(bandwidth) => (bandwidth, None),
+            CurrentGain::PerAxis { d, q } => {
+                let [d, q] = [d / current.motor.inductance_d, q / current.motor.inductance_q];
+                if d > q { (d, keys.gain_d.span()) } else { (q, keys.gain_q.span()) }
+            }
+        };
+        let places = vec![keys.bandwidth.span(), gain, keys.rate.span()];
+        let (limit, limit_in_words) = (TAU, "rate/2π");
+        Sampled { name: "current", bandwidth, rate: current.rate, limit, limit_in_words, delay: 1.5, places }
+            .check(report);
+    }
+    let estimate = &drive.estimate;
+    // Inertia as the motor feels it, τ/α = r²·M.
+    let inertia = estimate.transmission * estimate.transmission * (estimate.motor_inertia + estimate.load_inertia);
+    if let Some(keys) = given.velocity.given().filter(|_| inertia > 0.0) {
+        let places = vec![keys.bandwidth.span(), keys.gain.span(), keys.rate.span()];
+        Sampled::cascaded("velocity", drive.velocity.gain / inertia, drive.velocity.rate, places).check(report);
+    }
+    if let Some(keys) = given.position.given() {
+        let places = vec![keys.bandwidth.span(), keys.gain.span(), keys.rate.span()];
+        Sampled::cascaded("position", drive.position.gain, drive.position.rate, places).check(report);
+    }
+}
+
+impl Sampled {
+    fn cascaded(name: &'static str, bandwidth: f64, rate: Rate, places: Vec<Option<Span>>) -> Self {
+        Self { name, bandwidth, rate, limit: PI, limit_in_words: "rate/π", delay: 0.5, places }
+    }
+
+    fn check(&self, report: &mut Report) {
+        let (bandwidth, rate) = (self.bandwidth / TAU, f64::from(self.rate.hertz()));
+        // What the scenario itself says is in question before what a model says.
+        let Some(place) = self.places.iter().flatten().min_by_key(|span| span.source) else { return };
+        let Self { name, limit_in_words, .. } = self;
+        let it = format!("the {name} loop has a bandwidth of {bandwidth:.1} Hz at a rate of {rate} Hz");
+        let most = rate / self.limit;
+        if bandwidth >= most {
+            let message = format!("{it}: it is unstable from {limit_in_words} on, {most:.1} Hz");
+            report.warning(*place, message, "lower the bandwidth or raise the rate");
+        } else if bandwidth > DOUBTFUL * rate {
+            let phase = 360.0 * self.delay * bandwidth / rate;
+            let message = format!("{it}: {} periods of delay take {phase:.0}° of its phase", self.delay);
+            report.warning(*place, message, "a tenth of the rate is usual at most");
+        }
+    }
+}

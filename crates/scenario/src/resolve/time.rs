@@ -1,0 +1,61 @@
+//! What must fit into the length of the run: the program, and what is measured.
+//!
+//! How long a move lasts is known when it is planned, which is not done here. What is known is how long it lasts at least:
+//!
+//! ```text
+//! T ≥ x/v + v/a   (v²/a ≤ x)     T ≥ 2·√(x/a)   (otherwise)
+//! ```
+//! the rest-to-rest move of second order, which every limit of jerk and snap only lengthens.
+use crate::diagnostic::Report;
+use crate::file::File;
+use crate::scenario::{MoveStep, Step, Target};
+
+/// Shorter by rounding only.
+const ROUNDING: f64 = 1e-9;
+
+/// Objects to what cannot be in time; `steps` are those of the file, when all of them are right. A run that ends within its
+/// program is a run, but nobody should be surprised by it.
+pub(super) fn check(file: &File, steps: Option<&[Step]>, report: &mut Report) {
+    let Some(run) = file.run.given().and_then(|run| run.duration.at()) else { return };
+    if let Some(least) = steps.map(least_program)
+        && run.value < least * (1.0 - ROUNDING)
+    {
+        let message =
+            format!("the run ends after {} s, within its program, which takes {least:.4} s at least", run.value);
+        report.warning(run.span, message, "moves are judged as far as they are recorded");
+    }
+    if let Some(from) = file.measure.given().and_then(|measure| measure.from.at())
+        && from.value >= run.value
+    {
+        report.error(from.span, format!("the run is over by then: it lasts {} s", run.value), "");
+    }
+}
+
+/// How long the program lasts at least (s).
+fn least_program(steps: &[Step]) -> f64 {
+    let (mut end, mut position) = (0.0, 0.0);
+    for step in steps {
+        match step {
+            Step::Wait(length) => end += length,
+            Step::Move(step) => {
+                let target = match step.target {
+                    Target::Absolute(target) => target,
+                    Target::Relative(distance) => position + distance,
+                };
+                end += step.duration.unwrap_or_else(|| least_move(step, target - position));
+                position = target;
+            }
+        }
+    }
+    end
+}
+
+/// How long a move over `distance` lasts at least (s).
+fn least_move(step: &MoveStep, distance: f64) -> f64 {
+    let ([velocity, acceleration, ..], distance) = (step.limits, distance.abs());
+    if velocity * velocity <= acceleration * distance {
+        distance / velocity + velocity / acceleration
+    } else {
+        2.0 * (distance / acceleration).sqrt()
+    }
+}
