@@ -93,6 +93,12 @@ pub enum Absence {
         /// Share of the energy that the fitted modes explain, 0 to 1.
         share: f64,
     },
+    /// The load holds still where a mode would move it: friction, not vibration.
+    #[error("the load sticks and slips instead of oscillating")]
+    Sticks,
+    /// One component more in the fit, and other modes come out.
+    #[error("the motion after the profile is no sum of a few decaying modes")]
+    Unconfirmed,
     /// Nothing oscillates where the scenario says that the mode is.
     #[error("no mode within {} % of {}", 100.0 * share, Quantity::new(*frequency, "Hz"))]
     NotThere {

@@ -2,6 +2,8 @@
 
 /// Below this share of its own length, what is left of a column after projection is rounding.
 const DEPENDENT: f64 = 1e-11;
+/// A projection that leaves more than this share of a vector (squared) has not cancelled.
+const SOUND: f64 = 0.1;
 
 /// Orthonormal columns Q and the triangle R of `A = Q·R`.
 #[derive(Debug, Clone, Default)]
@@ -15,34 +17,56 @@ impl Orthonormal {
     /// Q and R of `columns`; `None` when they are linearly dependent or not finite.
     pub(crate) fn of(columns: &[Vec<f64>]) -> Option<Self> {
         let mut basis = Self::default();
-        for column in columns {
-            let length = norm(column);
-            let mut rest = column.clone();
-            let mut above = basis.remove_from(&mut rest);
-            let left = norm(&rest);
-            if !(left.is_finite() && left > DEPENDENT * length) {
-                return None;
-            }
-            for x in &mut rest {
-                *x /= left;
-            }
-            above.push(left);
-            basis.columns.push(rest);
-            basis.triangle.push(above);
-        }
+        columns.iter().try_for_each(|column| basis.push(column.clone()))?;
         Some(basis)
     }
 
+    /// Adds a column; `None` when it depends on those that are there, or is not finite.
+    fn push(&mut self, mut column: Vec<f64>) -> Option<()> {
+        let length = norm(&column);
+        let mut above = self.remove_from(&mut column);
+        let left = norm(&column);
+        if !(left.is_finite() && left > DEPENDENT * length) {
+            return None;
+        }
+        for x in &mut column {
+            *x /= left;
+        }
+        above.push(left);
+        self.columns.push(column);
+        self.triangle.push(above);
+        Some(())
+    }
+
+    /// How much of the sum of squares of `residual`, orthogonal to what is there, further `columns` would take.
+    pub(crate) fn gain(&mut self, columns: Vec<Vec<f64>>, residual: &[f64]) -> Option<f64> {
+        let count = self.columns.len();
+        let independent = columns.into_iter().try_for_each(|column| self.push(column));
+        let taken = self.columns[count..].iter().map(|q| dot(q, residual)).map(|along| along * along).sum();
+        self.columns.truncate(count);
+        self.triangle.truncate(count);
+        independent.map(|()| taken)
+    }
+
     /// Subtracts from `vector` its projection on the columns and returns the projection's coordinates. Modified
-    /// Gram–Schmidt, twice, which is enough (Giraud, Langou, Rozložník, 2005).
+    /// Gram–Schmidt; where it cancels, a second time, which is enough (Giraud, Langou, Rozložník, 2005).
     pub(crate) fn remove_from(&self, vector: &mut [f64]) -> Vec<f64> {
-        let mut coordinates = vec![0.0; self.columns.len()];
-        for _ in 0..2 {
-            for (column, coordinate) in self.columns.iter().zip(&mut coordinates) {
-                let along = dot(column, vector);
-                *coordinate += along;
-                vector.iter_mut().zip(column).for_each(|(x, q)| *x -= along * q);
-            }
+        let before = dot(vector, vector);
+        let mut coordinates = self.remove_once(vector);
+        if dot(vector, vector) <= SOUND * before {
+            let more = self.remove_once(vector);
+            coordinates.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+        }
+        coordinates
+    }
+
+    /// [`remove_from`](Self::remove_from) in one pass: not orthogonal to the last digit where it cancels.
+    pub(crate) fn remove_once(&self, vector: &mut [f64]) -> Vec<f64> {
+        let mut coordinates = Vec::with_capacity(self.columns.len() + 1);
+        for column in &self.columns {
+            let along = dot(column, vector);
+            coordinates.push(along);
+            vector.iter_mut().zip(column).for_each(|(x, q)| *x -= along * q);
         }
         coordinates
     }
@@ -60,7 +84,8 @@ impl Orthonormal {
     }
 }
 
-/// Solves the symmetric positive definite `a·x = b` by Cholesky; `None` when it is not definite.
+/// Solves the symmetric positive definite `a·x = b` by Cholesky, of `a` the lower triangle; `None` when it is not
+/// definite.
 pub(crate) fn solve_definite(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Option<Vec<f64>> {
     let n = b.len();
     for i in 0..n {
@@ -84,9 +109,17 @@ pub(crate) fn solve_definite(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Option<Ve
     b.iter().all(|x| x.is_finite()).then_some(b)
 }
 
-/// Sum of products, in order.
+/// Sum of products, always in the same order: eight interleaved sums, so that a processor can work on them side by side.
 pub(crate) fn dot(one: &[f64], two: &[f64]) -> f64 {
-    one.iter().zip(two).map(|(a, b)| a * b).sum()
+    let ((ones, one_rest), (twos, two_rest)) = (one.as_chunks::<8>(), two.as_chunks::<8>());
+    let mut sums = [0.0; 8];
+    for (a, b) in ones.iter().zip(twos) {
+        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += a * b;
+        }
+    }
+    let rest: f64 = one_rest.iter().zip(two_rest).map(|(a, b)| a * b).sum();
+    sums.iter().sum::<f64>() + rest
 }
 
 fn norm(vector: &[f64]) -> f64 {
@@ -109,6 +142,19 @@ mod tests {
         assert!((dot(&y, &y) - 1.0 / 6.0).abs() < 1e-15, "residual {y:?}");
     }
 
+    /// About their mean 4/3 the values (1, 1, 2) have 2/3; of that the line of the test above takes 1/2.
+    #[test]
+    fn the_gain_of_a_column_is_what_a_fit_with_it_takes() {
+        let mut basis = Orthonormal::of(&[vec![1.0, 1.0, 1.0]]).unwrap();
+        let mut y = vec![1.0, 1.0, 2.0];
+        basis.remove_from(&mut y);
+        for _ in 0..2 {
+            let gain = basis.gain(vec![vec![0.0, 1.0, 2.0]], &y).unwrap();
+            assert!((gain - 0.5).abs() < 1e-15, "{gain}");
+            assert_eq!(basis.gain(vec![vec![3.0, 3.0, 3.0]], &y), None);
+        }
+    }
+
     #[test]
     fn dependent_columns_are_refused() {
         assert!(Orthonormal::of(&[vec![1.0, 2.0, 3.0], vec![0.1, 0.2, 0.3]]).is_none());
@@ -117,8 +163,16 @@ mod tests {
 
     #[test]
     fn cholesky_solves_and_refuses() {
-        let x = solve_definite(vec![vec![4.0, 2.0], vec![2.0, 3.0]], vec![2.0, 5.0]).unwrap();
+        let x = solve_definite(vec![vec![4.0], vec![2.0, 3.0]], vec![2.0, 5.0]).unwrap();
         assert!((x[0] + 0.5).abs() < 1e-15 && (x[1] - 2.0).abs() < 1e-15, "{x:?}");
-        assert!(solve_definite(vec![vec![1.0, 2.0], vec![2.0, 1.0]], vec![1.0, 1.0]).is_none());
+        assert!(solve_definite(vec![vec![1.0], vec![2.0, 1.0]], vec![1.0, 1.0]).is_none());
+    }
+
+    /// Whole numbers, so that the sum is exact: 0·1 + 1·2 + … + 20·21 = 20·21·22/3.
+    #[test]
+    fn a_sum_of_products_leaves_nothing_out() {
+        let one: Vec<f64> = (0..21).map(f64::from).collect();
+        let two: Vec<f64> = (1..22).map(f64::from).collect();
+        assert!((dot(&one, &two) - 3080.0).abs() < 1e-12);
     }
 }

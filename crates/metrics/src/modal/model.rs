@@ -1,97 +1,144 @@
 //! Motion after a move as a sum of what a linear system at rest input can do.
 //!
 //! ```text
-//! y(t) = c + Σ B·(1 − e^{−λt})/(λT) + Σ e^{−σt}·(a·cos ω_d·t + b·sin ω_d·t)
+//! y(t) = c + Σ B·(1 − e^{−λt})/(λT) + Σ e^{−σt}·(a·cos √q·t + b·sin(√q·t)/√q)
 //! ```
-//! Real poles are written so that they stay well conditioned down to λ = 0, where they are a straight line.
+//! Real poles are written so that they stay well conditioned down to λ = 0, where they are a straight line. Pairs of
+//! poles are written so that they pass without a seam from an oscillation (q = ω_d² > 0) through a double pole (q = 0)
+//! to two tails (q < 0, where sine and cosine are hyperbolic): a fit that needs two tails does not end at the border.
 use super::series::Series;
 use core::f64::consts::PI;
 
 /// One component beside the constant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Component {
-    /// A real pole at −`rate` (1/s): an aperiodic tail.
+    /// A real pole at −`rate`: an aperiodic tail.
     Tail {
         /// λ (1/s).
         rate: f64,
     },
-    /// A pair of complex poles at −`decay` ± i·`frequency`.
-    Oscillation {
-        /// σ = ζ·ω (1/s).
+    /// Two poles at −`decay` ± √(−`square`).
+    Pair {
+        /// σ (1/s).
         decay: f64,
-        /// ω_d, damped (rad/s).
-        frequency: f64,
+        /// q (1/s²).
+        square: f64,
     },
+}
+
+/// A pair of complex poles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Oscillation {
+    /// σ = ζ·ω (1/s).
+    pub(crate) decay: f64,
+    /// ω_d = ω·√(1 − ζ²) (rad/s).
+    pub(crate) damped: f64,
 }
 
 /// Steps of the recurrences between two fresh evaluations of the transcendental functions; each step rounds once.
 const FRESH: usize = 64;
+/// Fastest decay that is told from a jump, per step.
+const FASTEST: f64 = 10.0;
+/// Growth of a tail over the series, as a power of e: tenfold at most. A tail that grows takes over from a drift.
+const TAIL_GROWTH: f64 = 2.3;
+/// The same of an oscillation.
+const GROWTH: f64 = 20.0;
+/// Largest frequency, in Nyquist frequencies.
+const NYQUIST: f64 = 0.98;
+
+impl Oscillation {
+    /// Natural frequency ω/2π (Hz).
+    pub(crate) fn frequency(self) -> f64 {
+        libm::hypot(self.decay, self.damped) / (2.0 * PI)
+    }
+
+    /// Damping ratio ζ.
+    pub(crate) fn damping(self) -> f64 {
+        self.decay / libm::hypot(self.decay, self.damped)
+    }
+}
 
 impl Component {
+    /// A pair of poles with the natural frequency `frequency` (Hz) and a small damping ratio: `ω_d = ω` is near enough to
+    /// start from.
+    pub(crate) fn oscillating(frequency: f64, damping: f64) -> Self {
+        let omega = 2.0 * PI * frequency;
+        Self::Pair { decay: damping * omega, square: omega * omega }
+    }
+
+    /// The oscillation that this component is; `None` for tails.
+    pub(crate) fn oscillation(self) -> Option<Oscillation> {
+        match self {
+            Self::Pair { decay, square } if square > 0.0 => Some(Oscillation { decay, damped: square.sqrt() }),
+            _ => None,
+        }
+    }
+
     /// Number of linear coefficients; equal to the number of non-linear parameters.
     pub(crate) const fn width(self) -> usize {
         match self {
             Self::Tail { .. } => 1,
-            Self::Oscillation { .. } => 2,
+            Self::Pair { .. } => 2,
         }
     }
 
-    /// Appends the columns that the coefficients multiply.
-    pub(crate) fn columns(self, series: &Series, columns: &mut Vec<Vec<f64>>) {
+    /// The columns that the coefficients multiply.
+    pub(crate) fn columns(self, series: &Series) -> Vec<Vec<f64>> {
         let count = series.values.len();
         match self {
             Self::Tail { rate } => {
                 let length = series.length();
-                columns.push((0..count).map(|k| tail(rate, series.time(k), length)).collect());
+                vec![(0..count).map(|k| tail(rate, series.time(k), length)).collect()]
             }
-            Self::Oscillation { decay, frequency } => {
+            Self::Pair { decay, square } => {
                 let (mut cosines, mut sines) = (Vec::with_capacity(count), Vec::with_capacity(count));
-                let turn = point(decay, frequency, series.step);
-                let mut z = (1.0, 0.0);
+                let (c, s) = pair(decay, square, series.step);
+                let mut here = (1.0, 0.0);
                 for k in 0..count {
-                    z = if k % FRESH == 0 { point(decay, frequency, series.time(k)) } else { product(z, turn) };
-                    cosines.push(z.0);
-                    sines.push(z.1);
+                    here = if k % FRESH == 0 {
+                        pair(decay, square, series.time(k))
+                    } else {
+                        // The addition theorems, which hold on either side of q = 0.
+                        (here.0 * c - square * (here.1 * s), here.0 * s + here.1 * c)
+                    };
+                    cosines.push(here.0);
+                    sines.push(here.1);
                 }
-                columns.extend([cosines, sines]);
+                vec![cosines, sines]
             }
         }
     }
 
-    /// Appends the derivatives of this component, with these `columns` and `coefficients`, by its non-linear
-    /// parameters.
-    pub(crate) fn derivatives(
-        self,
-        series: &Series,
-        columns: &[Vec<f64>],
-        coefficients: &[f64],
-        derivatives: &mut Vec<Vec<f64>>,
-    ) {
+    /// Derivatives of this component, with these `columns` and `coefficients`, by its non-linear parameters.
+    pub(crate) fn derivatives(self, series: &Series, columns: &[Vec<f64>], coefficients: &[f64]) -> Vec<Vec<f64>> {
         let times = (0..series.values.len()).map(|k| series.time(k));
         match self {
             Self::Tail { rate } => {
                 let (b, length) = (coefficients[0], series.length());
-                derivatives.push(times.map(|t| b * tail_by_rate(rate, t, length)).collect());
+                vec![times.map(|t| b * tail_by_rate(rate, t, length)).collect()]
             }
-            Self::Oscillation { .. } => {
+            Self::Pair { decay, square } => {
                 let (a, b) = (coefficients[0], coefficients[1]);
-                let rows = || times.clone().zip(&columns[0]).zip(&columns[1]);
-                derivatives.push(rows().map(|((t, cos), sin)| -t * (a * cos + b * sin)).collect());
-                derivatives.push(rows().map(|((t, cos), sin)| t * (b * cos - a * sin)).collect());
+                let rows = times.zip(&columns[0]).zip(&columns[1]).map(|((t, c), s)| (t, *c, *s));
+                let by_decay = rows.clone().map(|(t, c, s)| -t * (a * c + b * s)).collect();
+                let by_square = rows.map(|(t, c, s)| b * sine_by_square(decay, square, t, c, s) - 0.5 * a * t * s);
+                vec![by_decay, by_square.collect()]
             }
         }
     }
 
     /// The component with its parameters moved by `step`, as far as a series of this kind can show them.
     pub(crate) fn moved(self, step: &[f64], series: &Series) -> Self {
-        let (length, interval) = (series.length(), series.step);
+        let (slowest, fastest) = (-TAIL_GROWTH / series.length(), FASTEST / series.step);
         match self {
-            // A tail that grows takes over from a drift; tenfold at most.
-            Self::Tail { rate } => Self::Tail { rate: (rate + step[0]).clamp(-2.3 / length, 10.0 / interval) },
-            Self::Oscillation { decay, frequency } => Self::Oscillation {
-                decay: (decay + step[0]).clamp(-20.0 / length, 10.0 / interval),
-                frequency: (frequency + step[1]).clamp(1.0 / length, 0.98 * PI / interval),
-            },
+            Self::Tail { rate } => Self::Tail { rate: (rate + step[0]).clamp(slowest, fastest) },
+            Self::Pair { decay, square } => {
+                let decay = (decay + step[0]).clamp(-GROWTH / series.length(), fastest);
+                // Two tails keep to the bounds of one.
+                let apart = (decay - slowest).min(fastest - decay).max(0.0);
+                let highest = NYQUIST * PI / series.step;
+                Self::Pair { decay, square: (square + step[1]).clamp(-apart * apart, highest * highest) }
+            }
         }
     }
 }
@@ -114,51 +161,80 @@ fn tail_by_rate(rate: f64, t: f64, length: f64) -> f64 {
     t * t / length * g
 }
 
-/// `e^{(−σ + iω)t}`.
-fn point(decay: f64, frequency: f64, t: f64) -> (f64, f64) {
-    let (sin, cos) = libm::sincos(frequency * t);
-    let envelope = libm::exp(-decay * t);
-    (envelope * cos, envelope * sin)
+/// `e^{−σt}·cos √q·t` and `e^{−σt}·sin(√q·t)/√q`.
+fn pair(decay: f64, square: f64, t: f64) -> (f64, f64) {
+    let root = square.abs().sqrt();
+    if square > 0.0 {
+        let (sin, cos) = libm::sincos(root * t);
+        let envelope = libm::exp(-decay * t);
+        (envelope * cos, envelope * sin / root)
+    } else if square < 0.0 {
+        // cosh and sinh without the difference of two exponentials, which would cancel.
+        let slow = libm::exp((root - decay) * t);
+        let apart = libm::expm1(-2.0 * root * t);
+        (slow * (1.0 + 0.5 * apart), -slow * apart / (2.0 * root))
+    } else {
+        let envelope = libm::exp(-decay * t);
+        (envelope, envelope * t)
+    }
 }
 
-fn product((a, b): (f64, f64), (c, d): (f64, f64)) -> (f64, f64) {
-    (a * c - b * d, a * d + b * c)
+/// Derivative by q of the `s` of the [`pair`] (`c`, `s`) at `t`: `(t·c − s)/2q`.
+fn sine_by_square(decay: f64, square: f64, t: f64, c: f64, s: f64) -> f64 {
+    let u = square * t * t;
+    if u.abs() < 1e-2 {
+        // Truncated after the square; the next coefficient is 1/90720.
+        t * t * t * libm::exp(-decay * t) * (-1.0 / 6.0 + u * (1.0 / 60.0 - u / 1680.0))
+    } else {
+        (t * c - s) / (2.0 * square)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    type Case = (Component, Vec<f64>, Box<dyn Fn(f64) -> f64>);
+
     fn series() -> Series {
         Series::thinned(&[0.0; 300], 0.2e-3, 1e-3, 1, 300)
     }
 
     fn value(component: Component, coefficients: &[f64], k: usize) -> f64 {
-        let mut columns = Vec::new();
-        component.columns(&series(), &mut columns);
-        columns.iter().zip(coefficients).map(|(column, c)| column[k] * c).sum()
+        component.columns(&series()).iter().zip(coefficients).map(|(column, c)| column[k] * c).sum()
     }
 
-    /// Columns are what the formula says; derivatives are what central differences say (error of the order of step²).
+    /// Columns are what the formula says, and the derivatives are what central differences of them say: an error of the
+    /// order of step², and rounding over step. Both sides of q = 0, and close to it.
     #[test]
     fn columns_and_derivatives() {
         let series = series();
-        for (component, coefficients) in [
-            (Component::Oscillation { decay: 3.0, frequency: 200.0 }, vec![0.7, -0.4]),
-            (Component::Tail { rate: 12.0 }, vec![1.3]),
-            (Component::Tail { rate: 1e-4 }, vec![1.3]),
-        ] {
-            let (mut columns, mut derivatives) = (Vec::new(), Vec::new());
-            component.columns(&series, &mut columns);
-            component.derivatives(&series, &columns, &coefficients, &mut derivatives);
+        let (a, b) = (0.7, -40.0);
+        let tail = |rate: f64| move |t: f64| 1.3 * (1.0 - (-rate * t).exp()) / (rate * 0.299);
+        let oscillation = move |decay: f64, q: f64| {
+            move |t: f64| (-decay * t).exp() * (a * (q.sqrt() * t).cos() + b * (q.sqrt() * t).sin() / q.sqrt())
+        };
+        let tails = move |decay: f64, q: f64| {
+            let r = (-q).sqrt();
+            move |t: f64| (-decay * t).exp() * (a * (r * t).cosh() + b * (r * t).sinh() / r)
+        };
+        let cases: [Case; 7] = [
+            (Component::Tail { rate: 12.0 }, vec![1.3], Box::new(tail(12.0))),
+            (Component::Tail { rate: 1e-4 }, vec![1.3], Box::new(tail(1e-4))),
+            (Component::Pair { decay: 3.0, square: 4e4 }, vec![a, b], Box::new(oscillation(3.0, 4e4))),
+            (Component::Pair { decay: 3.0, square: 1e-2 }, vec![a, b], Box::new(oscillation(3.0, 1e-2))),
+            (
+                Component::Pair { decay: 3.0, square: 0.0 },
+                vec![a, b],
+                Box::new(move |t| (-3.0 * t).exp() * (a + b * t)),
+            ),
+            (Component::Pair { decay: 3.0, square: -1e-2 }, vec![a, b], Box::new(tails(3.0, -1e-2))),
+            (Component::Pair { decay: 30.0, square: -400.0 }, vec![a, b], Box::new(tails(30.0, -400.0))),
+        ];
+        for (component, coefficients, exact) in cases {
+            let derivatives = component.derivatives(&series, &component.columns(&series), &coefficients);
             for k in [0, 63, 64, 65, 299] {
-                let t = series.time(k);
-                let exact = match component {
-                    Component::Oscillation { decay, frequency } => {
-                        (-decay * t).exp() * (0.7 * (frequency * t).cos() - 0.4 * (frequency * t).sin())
-                    }
-                    Component::Tail { rate } => 1.3 * (1.0 - (-rate * t).exp()) / (rate * 0.299),
-                };
+                let exact = exact(series.time(k));
                 assert!((value(component, &coefficients, k) - exact).abs() < 1e-11, "{component:?} {k}");
                 for (p, derivative) in derivatives.iter().enumerate() {
                     let step = |sign: f64| {
@@ -167,7 +243,7 @@ mod tests {
                         value(component.moved(&step, &series), &coefficients, k)
                     };
                     let difference = (step(1.0) - step(-1.0)) / 2e-3;
-                    assert!((derivative[k] - difference).abs() < 1e-8, "{component:?} {p} {k}");
+                    assert!((derivative[k] - difference).abs() < 1e-7, "{component:?} {p} {k}");
                 }
             }
         }
@@ -175,12 +251,16 @@ mod tests {
 
     #[test]
     fn poles_stay_where_the_series_can_show_them() {
-        let mode = Component::Oscillation { decay: 0.0, frequency: 200.0 };
+        let mode = Component::oscillating(100.0 / PI, 0.0);
         let moved = |step: [f64; 2]| mode.moved(&step, &series());
-        assert_eq!(moved([5.0, 5.0]), Component::Oscillation { decay: 5.0, frequency: 205.0 });
-        // 1 kHz: below the Nyquist frequency; 0.299 s: at least a radian, growing by e²⁰ at most.
-        assert_eq!(moved([0.0, 1e4]), Component::Oscillation { decay: 0.0, frequency: 980.0 * PI });
-        let Component::Oscillation { decay, frequency } = moved([-1e4, -1e4]) else { panic!("still a mode") };
-        assert!((frequency * 0.299 - 1.0).abs() < 1e-12 && (decay * 0.299 + 20.0).abs() < 1e-12);
+        assert_eq!(moved([5.0, 0.0]), Component::Pair { decay: 5.0, square: 4e4 });
+        // 1 kHz: below the Nyquist frequency; 0.299 s: growing by e²⁰ at most, where no tail may be.
+        let Component::Pair { square, .. } = moved([0.0, 1e8]) else { panic!("still a pair") };
+        assert!((square.sqrt() / (980.0 * PI) - 1.0).abs() < 1e-12);
+        let Component::Pair { decay, square } = moved([-1e4, -1e8]) else { panic!("still a pair") };
+        assert!((decay * 0.299 + 20.0).abs() < 1e-12 && square.abs() < 1e-12);
+        // Two tails: the slow one grows tenfold at most.
+        let Component::Pair { decay, square } = moved([50.0, -1e8]) else { panic!("still a pair") };
+        assert!(((decay - (-square).sqrt()) * 0.299 + 2.3).abs() < 1e-9);
     }
 }

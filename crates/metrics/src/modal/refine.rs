@@ -1,0 +1,98 @@
+//! The poles that fit best: Levenberg–Marquardt on what the best amplitudes leave (separable least squares).
+//!
+//! Source: Golub & Pereyra, *Separable nonlinear least squares*, Inverse Problems 19, 2003, with the Jacobian of Kaufman;
+//! damping after Nielsen, *Damping parameter in Marquardt's method*, IMM-REP-1999-05.
+use super::fit::Fit;
+use super::least_squares::{dot, solve_definite};
+use super::model::Component;
+use super::series::Series;
+
+const MAX_STEPS: usize = 60;
+/// Energy that is rounding, relative to that of the series.
+const ROUNDING: f64 = 1e-28;
+
+/// How much a step is held back, relative to the curvature.
+struct Damping {
+    mu: f64,
+    /// Next increase of `mu`.
+    increase: f64,
+}
+
+impl Damping {
+    const START: Self = Self { mu: 1e-3, increase: 2.0 };
+
+    /// After a step that took `share` of what it promised: less damping the better the promise was kept. More where
+    /// much less was taken, or steps would go back and forth across a valley.
+    fn accept(&mut self, share: f64) {
+        let off = 2.0 * share - 1.0;
+        *self = Self { mu: self.mu * (1.0 - off * off * off).clamp(0.1, 2.0), increase: 2.0 };
+    }
+
+    /// After a step that led uphill.
+    fn reject(&mut self) {
+        self.mu *= self.increase;
+        self.increase *= 2.0;
+    }
+}
+
+impl Fit {
+    /// The same with the poles where the energy is least, as far as steps promise to take the share `worth` of it.
+    pub(crate) fn refined(mut self, series: &Series, worth: f64) -> Self {
+        let rounding = ROUNDING * dot(&series.values, &series.values);
+        let mut damping = Damping::START;
+        for _ in 0..MAX_STEPS {
+            match self.improved(series, &mut damping, rounding.max(worth * self.energy)) {
+                Some(better) => self = better,
+                None => break,
+            }
+        }
+        self
+    }
+
+    /// After one step downhill; `None` when none promises to take more than `least` of the energy.
+    fn improved(&self, series: &Series, damping: &mut Damping, least: f64) -> Option<Self> {
+        let derivatives = self.derivatives(series);
+        let curvature: Vec<Vec<f64>> = derivatives
+            .iter()
+            .enumerate()
+            .map(|(k, one)| derivatives[..=k].iter().map(|two| dot(one, two)).collect())
+            .collect();
+        let slope: Vec<f64> = derivatives.iter().map(|column| dot(column, &self.residual)).collect();
+        loop {
+            let mut damped = curvature.clone();
+            damped.iter_mut().enumerate().for_each(|(k, row)| row[k] *= 1.0 + damping.mu);
+            let step = solve_definite(damped, slope.clone())?;
+            let held_back = |k: usize| damping.mu * curvature[k][k] * step[k];
+            let promised: f64 = (0..step.len()).map(|k| step[k] * (slope[k] + held_back(k))).sum();
+            if promised <= least {
+                return None;
+            }
+            match Self::of(self.moved(&step, series), series) {
+                Some(better) if better.energy < self.energy => {
+                    damping.accept((self.energy - better.energy) / promised);
+                    return Some(better);
+                }
+                _ => damping.reject(),
+            }
+        }
+    }
+
+    /// Derivatives of the fitted curve by the poles, without what the amplitudes can make good.
+    fn derivatives(&self, series: &Series) -> Vec<Vec<f64>> {
+        let of = |(component, places): (Component, std::ops::Range<usize>)| {
+            component.derivatives(series, &self.columns[places.clone()], &self.coefficients[places])
+        };
+        let mut derivatives: Vec<Vec<f64>> = self.terms().flat_map(of).collect();
+        for column in &mut derivatives {
+            self.basis.remove_once(column);
+        }
+        derivatives
+    }
+
+    fn moved(&self, step: &[f64], series: &Series) -> Vec<Component> {
+        // The constant has a coefficient but no pole.
+        self.terms()
+            .map(|(component, places)| component.moved(&step[places.start - 1..places.end - 1], series))
+            .collect()
+    }
+}
