@@ -195,7 +195,7 @@ fn creep_between_two_holds_is_no_mode() {
         ("exponential", |u| (1.0 - (-4.0 * u).exp()) / (1.0 - (-4.0_f64).exp())),
     ];
     let mut random = Random(13);
-    for case in 0..cases(200) {
+    for case in 0..cases(100) {
         let (what, way) = ways[case % 4];
         let seconds = random.between(0.2, 1.0);
         let (begin, length) = (seconds * random.between(0.0, 0.6), seconds * random.between(0.05, 0.4));
