@@ -2,53 +2,71 @@
 use crate::error::TraceError;
 use crate::header::{FORMAT, FORMAT_KEY, Header, RECORDING_KEY};
 use crate::recording::Recording;
-use crate::seal;
+use crate::write::ROW_GROUP;
+use crate::{TIME, seal};
 use parquet::basic::Type as PhysicalType;
 use parquet::column::reader::ColumnReader;
 use parquet::errors::ParquetError;
 use parquet::file::metadata::FileMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::SchemaDescriptor;
+use std::collections::HashSet;
 use std::fs::File;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 impl Recording {
     /// Reads what [`Recording::write_parquet`] wrote.
     ///
-    /// The file's seal is checked before its values are decoded: a file that was damaged, cut or edited is refused, never
+    /// The file's seal is checked before anything is decoded: a file that was damaged, cut or edited is refused, never
     /// half read.
     ///
     /// # Errors
-    /// [`TraceError::Io`]; [`TraceError::NotParquet`]; [`TraceError::Missing`] names the metadata key or the column that
-    /// a foreign file lacks; [`TraceError::Format`]; [`TraceError::Damaged`].
+    /// [`TraceError::Io`]; [`TraceError::Damaged`]; [`TraceError::NotParquet`]; [`TraceError::Missing`] names the metadata
+    /// key or the column that a foreign file lacks; [`TraceError::Format`].
     pub fn read_parquet(path: impl AsRef<Path>) -> Result<Self, TraceError> {
         let path = path.as_ref();
         let io = |source| TraceError::Io { action: "read", path: path.into(), source };
         let mut file = File::open(path).map_err(io)?;
-        let own_cursor = File::open(path).map_err(io)?;
-        let reader = SerializedFileReader::new(own_cursor)
-            .map_err(|error| TraceError::NotParquet { path: path.into(), reason: error.to_string() })?;
-        let metadata = reader.metadata().file_metadata();
-        let header = header(metadata, path)?;
-        let schema = metadata.schema_descr();
-        let indices = header.columns().map(|name| column(schema, name, path)).collect::<Result<Vec<_>, _>>()?;
-        if !seal::holds(&mut file).map_err(io)? {
-            let reason = format!("its bytes do not match its `{}`", seal::KEY);
-            return Err(TraceError::Damaged { path: path.into(), reason });
+        let seal = seal::holds(&mut file).map_err(io)?;
+        if seal == Some(false) {
+            return Err(damaged(path, format!("its bytes do not match its `{}`", seal::KEY)));
         }
-        let instants = header.instants;
-        let mut recording = header.into_recording().ok_or_else(|| TraceError::Damaged {
-            path: path.into(),
-            reason: format!("a rate in `{RECORDING_KEY}` is 0 Hz"),
-        })?;
-        for (channel, index) in recording.channels.iter_mut().zip(indices) {
-            channel.values = values(&reader, index, instants).map_err(|error| TraceError::Damaged {
-                path: path.into(),
-                reason: format!("column `{}`: {error}", channel.spec.name),
-            })?;
-        }
-        Ok(recording)
+        // The decoder panics on some files that it has not written: foreign ones, and ours edited and sealed again.
+        catch_unwind(AssertUnwindSafe(|| decode(file, path, seal.is_some()))).unwrap_or_else(|panic| {
+            let words = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
+            let reason = format!("the decoder gave up: {}", words.unwrap_or("it did not say why"));
+            Err(TraceError::NotParquet { path: path.into(), reason })
+        })
     }
+}
+
+fn damaged(path: &Path, reason: String) -> TraceError {
+    TraceError::Damaged { path: path.into(), reason }
+}
+
+fn decode(file: File, path: &Path, is_sealed: bool) -> Result<Recording, TraceError> {
+    let reader = SerializedFileReader::new(file)
+        .map_err(|error| TraceError::NotParquet { path: path.into(), reason: error.to_string() })?;
+    let metadata = reader.metadata().file_metadata();
+    let header = header(metadata, path)?;
+    let mut names = HashSet::from([TIME]);
+    if let Some(name) = header.columns().find(|name| !names.insert(name)) {
+        return Err(damaged(path, format!("two columns in `{RECORDING_KEY}` are named `{name}`")));
+    }
+    let schema = metadata.schema_descr();
+    let indices = header.columns().map(|name| column(schema, name, path)).collect::<Result<Vec<_>, _>>()?;
+    if !is_sealed {
+        return Err(missing_key(seal::KEY, path));
+    }
+    let instants = header.instants;
+    let recording = header.into_recording();
+    let mut recording = recording.ok_or_else(|| damaged(path, format!("a rate in `{RECORDING_KEY}` is 0 Hz")))?;
+    for (channel, index) in recording.channels.iter_mut().zip(indices) {
+        channel.values = values(&reader, index, instants)
+            .map_err(|error| damaged(path, format!("column `{}`: {error}", channel.spec.name)))?;
+    }
+    Ok(recording)
 }
 
 /// The header of a file that has our format.
@@ -56,19 +74,18 @@ fn header(metadata: &FileMetaData, path: &Path) -> Result<Header, TraceError> {
     let text = |key: &str| {
         let pairs = metadata.key_value_metadata().into_iter().flatten();
         let value = pairs.filter(|pair| pair.key == key).find_map(|pair| pair.value.as_deref());
-        value.ok_or_else(|| TraceError::Missing {
-            path: path.into(),
-            missing: format!("the key `{key}` in its file metadata"),
-        })
+        value.ok_or_else(|| missing_key(key, path))
     };
     let found = text(FORMAT_KEY)?;
     if found != FORMAT {
         return Err(TraceError::Format { path: path.into(), found: found.into(), known: FORMAT });
     }
-    serde_json::from_str(text(RECORDING_KEY)?).map_err(|error| TraceError::Damaged {
-        path: path.into(),
-        reason: format!("its `{RECORDING_KEY}` cannot be read: {error}"),
-    })
+    serde_json::from_str(text(RECORDING_KEY)?)
+        .map_err(|error| damaged(path, format!("its `{RECORDING_KEY}` cannot be read: {error}")))
+}
+
+fn missing_key(key: &str, path: &Path) -> TraceError {
+    TraceError::Missing { path: path.into(), missing: format!("the key `{key}` in its file metadata") }
 }
 
 /// Index of the column `name`.
@@ -88,7 +105,8 @@ fn column(schema: &SchemaDescriptor, name: &str, path: &Path) -> Result<usize, T
 
 /// All values of a column that has `instants` of them.
 fn values(reader: &SerializedFileReader<File>, column: usize, instants: usize) -> Result<Vec<f64>, ParquetError> {
-    let mut values = Vec::with_capacity(instants);
+    // A file that was edited may promise any number: what is reserved is what the writer puts into one row group.
+    let mut values = Vec::with_capacity(instants.min(ROW_GROUP));
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group)?;
         let ColumnReader::DoubleColumnReader(mut column) = group.get_column_reader(column)? else {

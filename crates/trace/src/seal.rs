@@ -27,10 +27,10 @@ pub(crate) fn apply(file: &mut (impl Read + Write + Seek)) -> io::Result<bool> {
     Ok(true)
 }
 
-/// Whether the file has a seal and its bytes are those that were sealed.
-pub(crate) fn holds(file: &mut (impl Read + Seek)) -> io::Result<bool> {
-    let Some((start, digits)) = find(file)? else { return Ok(false) };
-    Ok(digest(file, start)?.as_bytes() == digits)
+/// Whether the bytes of the file are those that were sealed; `None` when it has no seal.
+pub(crate) fn holds(file: &mut (impl Read + Seek)) -> io::Result<Option<bool>> {
+    let Some((start, digits)) = find(file)? else { return Ok(None) };
+    Ok(Some(digest(file, start)?.as_bytes() == digits))
 }
 
 /// Offset of the digits in the file, and the digits.
@@ -89,10 +89,10 @@ mod tests {
     fn the_seal_is_the_digest_of_the_file_with_zeros_in_its_place() {
         let mut file = unsealed();
         let expected = format!("{:016x}", XxHash64::oneshot(0, file.get_ref()));
-        assert!(!holds(&mut file).unwrap());
+        assert_eq!(holds(&mut file).unwrap(), Some(false));
         assert!(apply(&mut file).unwrap());
         assert!(file.get_ref().windows(16).any(|window| window == expected.as_bytes()));
-        assert!(holds(&mut file).unwrap());
+        assert_eq!(holds(&mut file).unwrap(), Some(true));
     }
 
     /// The value that the reference implementation (github.com/Cyan4973/xxHash) gives for no bytes.
@@ -107,17 +107,17 @@ mod tests {
         apply(&mut file).unwrap();
         for index in 0..file.get_ref().len() {
             file.get_mut()[index] ^= 4;
-            assert!(!holds(&mut file).unwrap(), "byte {index}");
+            assert_ne!(holds(&mut file).unwrap(), Some(true), "byte {index}");
             file.get_mut()[index] ^= 4;
         }
-        assert!(holds(&mut file).unwrap());
+        assert_eq!(holds(&mut file).unwrap(), Some(true));
     }
 
     #[test]
     fn without_a_place_there_is_no_seal() {
         for bytes in [&b""[..], b"PAR1", &[0xff; 40], &[0; 40]] {
             assert!(!apply(&mut Cursor::new(bytes.to_vec())).unwrap());
-            assert!(!holds(&mut Cursor::new(bytes.to_vec())).unwrap());
+            assert_eq!(holds(&mut Cursor::new(bytes.to_vec())).unwrap(), None);
         }
     }
 }

@@ -17,7 +17,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Instants per row group: what a reader such as `DuckDB` hands to one thread, and 1 MiB per column.
-const ROW_GROUP: usize = 1 << 17;
+pub(crate) const ROW_GROUP: usize = 1 << 17;
 
 impl Recording {
     /// Writes the recording as a Parquet file: the column `time` (s), one column per channel (SI, f64), and in the

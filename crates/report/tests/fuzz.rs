@@ -1,0 +1,63 @@
+//! Fuzz target: whatever is in a `results.json`, it is refused, or it is written again as it was read. `docs/testing.md`
+//! says how to run more of it.
+use servobench_fuzz::{Splice, check, fuzz};
+use servobench_report::Results;
+
+const FILES: [&str; 2] = [
+    r#"{"schema":"servobench-results/1","generator":"servobench 0.1.0","scenarios":[]}"#,
+    r#"{"schema":"servobench-results/1","generator":"servobench 0.1.0","scenarios":[{"name":"jerk","file":"jerk.toml",
+    "engine":"exact","verdict":"failed","duration":1.8,"reasons":["settling_time is 60 ms, the limit is 50 ms"],"metrics":
+    {"settling_time":{"value":0.06,"unit":"s","limit":0.05,"pass":false},"following_error_cruise_load":{"value":null,
+    "unit":"m","limit":1e-6,"limit_min":-1e-6,"pass":false}},"absent":{"following_error_cruise_load":"no cruise"},"moves":
+    [{"label":"move","start":0.1,"end":1.4,"metrics":{"move_time":{"value":1.3,"unit":"s","limit":null,"pass":null}}}],
+    "events":[{"start":0.2,"end":0.3,"source":"drive","message":"voltage limit"}],"recording":null},
+    {"name":"broken","file":null,"engine":"mujoco","verdict":"error","duration":0.0,"reasons":["diverged"],"metrics":{},
+    "absent":{},"moves":[],"events":[],"recording":"broken.parquet"}]}"#,
+];
+
+const WORDS: &[&str] = &[
+    "{",
+    "}",
+    "[",
+    "]",
+    ",",
+    ":",
+    "\"",
+    "\\",
+    "\\u0000",
+    "\\ud800",
+    "null",
+    "true",
+    "false",
+    "NaN",
+    "1e400",
+    "-0.0",
+    "5e-324",
+    "18446744073709551616",
+    "servobench-results/2",
+    "passed",
+    "failed",
+    "error",
+    "value",
+    "unit",
+    "limit",
+    "pass",
+    "name",
+    "metrics",
+    "\"value\":1,",
+    "\u{1f600}",
+    "\u{0}",
+];
+
+#[test]
+fn results_files() {
+    fuzz(check!(), 2_000, Splice::text(&FILES, WORDS), |text| match Results::from_json(text) {
+        Ok(results) => {
+            let written = results.to_json().unwrap();
+            let again = Results::from_json(&written).unwrap();
+            assert_eq!(again, results);
+            assert_eq!(again.to_json().unwrap(), written);
+        }
+        Err(error) => assert!(!error.to_string().is_empty()),
+    });
+}
