@@ -75,6 +75,28 @@ impl MetricSet {
         self.absent.iter().map(|(name, absence)| (*name, absence))
     }
 
+    fn judge(&mut self, limits: &[Limit], in_move: Option<usize>) -> Vec<Miss> {
+        for metric in self.present.values_mut() {
+            (metric.limit, metric.pass) = (None, None);
+        }
+        let mut misses = Vec::new();
+        for limit in limits {
+            let Some(metric) = self.present.get_mut(&limit.metric) else {
+                let absence = self.absent.get(&limit.metric).cloned();
+                misses.push(Miss { limit: *limit, in_move, value: None, unit: String::new(), absence });
+                continue;
+            };
+            let within = limit.holds(metric.value);
+            metric.limit = Some(metric.limit.map_or(*limit, |other| other.and(limit)));
+            metric.pass = Some(metric.pass.unwrap_or(true) && within);
+            if !within {
+                let (value, unit) = (Some(metric.value), metric.unit.clone());
+                misses.push(Miss { limit: *limit, in_move, value, unit, absence: None });
+            }
+        }
+        misses
+    }
+
     /// Notes a metric, or why there is none.
     pub(crate) fn note(&mut self, name: Name, unit: &str, result: Result<f64, Absence>) {
         match result {
@@ -102,22 +124,17 @@ impl Metrics {
     /// Judges the metrics of the run by `limits`, and notes limit and result at each of them. A limit on a metric
     /// that is absent is missed.
     pub fn judge(&mut self, limits: &[Limit]) -> Verdict {
-        for metric in self.run.present.values_mut() {
-            (metric.limit, metric.pass) = (None, None);
-        }
+        Verdict { misses: self.run.judge(limits, None) }
+    }
+
+    /// Judges the metrics of each move by its own limits, as [`Metrics::judge`] does it for the run. Limits of moves that
+    /// were not made are missed.
+    pub fn judge_moves(&mut self, limits: &[Vec<Limit>]) -> Verdict {
         let mut misses = Vec::new();
-        for limit in limits {
-            let Some(metric) = self.run.present.get_mut(&limit.metric) else {
-                let absence = self.run.absent.get(&limit.metric).cloned();
-                misses.push(Miss { limit: *limit, value: None, unit: String::new(), absence });
-                continue;
-            };
-            let within = limit.holds(metric.value);
-            metric.limit = Some(metric.limit.map_or(*limit, |other| other.and(limit)));
-            metric.pass = Some(metric.pass.unwrap_or(true) && within);
-            if !within {
-                let (value, unit) = (Some(metric.value), metric.unit.clone());
-                misses.push(Miss { limit: *limit, value, unit, absence: None });
+        for (index, limits) in limits.iter().enumerate() {
+            match self.moves.get_mut(index) {
+                Some(made) => misses.extend(made.metrics.judge(limits, Some(index))),
+                None => misses.extend(MetricSet::default().judge(limits, Some(index))),
             }
         }
         Verdict { misses }

@@ -9,10 +9,9 @@ use std::fmt;
 pub struct Limit {
     /// The metric.
     pub metric: Name,
-    /// Smallest value that passes.
+    /// Smallest value that passes; of a metric whose sign is a direction ([`Name::is_signed`]), the smallest magnitude.
     pub min: Option<f64>,
-    /// Largest value that passes. Alone, it bounds the magnitude of a metric whose sign is a direction
-    /// ([`Name::is_signed`]).
+    /// Largest value that passes, or magnitude.
     pub max: Option<f64>,
 }
 
@@ -21,6 +20,8 @@ pub struct Limit {
 pub struct Miss {
     /// The limit.
     pub limit: Limit,
+    /// Index of the move that missed it; `None` for the run as a whole.
+    pub in_move: Option<usize>,
     /// Value (SI); `None` when the metric is absent.
     pub value: Option<f64>,
     /// Unit of the metric.
@@ -57,12 +58,19 @@ impl Limit {
     /// Whether `value` is within. A limit that is not a number is never kept.
     #[must_use]
     pub fn holds(&self, value: f64) -> bool {
-        let size = if self.metric.is_signed() && self.min.is_none() { value.abs() } else { value };
-        self.min.is_none_or(|min| value >= min) && self.max.is_none_or(|max| size <= max)
+        let size = if self.metric.is_signed() { value.abs() } else { value };
+        self.min.is_none_or(|min| size >= min) && self.max.is_none_or(|max| size <= max)
     }
 }
 
 impl Verdict {
+    /// This verdict and `other` in one.
+    #[must_use]
+    pub fn and(mut self, other: Self) -> Self {
+        self.misses.extend(other.misses);
+        self
+    }
+
     /// Whether every limit is kept.
     #[must_use]
     pub fn passed(&self) -> bool {
@@ -70,9 +78,12 @@ impl Verdict {
     }
 }
 
-/// `settling_time 35.2 ms, limit 20.0 ms`
+/// `settling_time 35.2 ms, limit 20.0 ms`, of a move `move 2: settling_time 35.2 ms, limit 20.0 ms`
 impl fmt::Display for Miss {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(index) = self.in_move {
+            write!(f, "move {}: ", index + 1)?;
+        }
         let name = self.limit.metric;
         match (self.value, &self.absence) {
             (Some(value), _) => {
@@ -94,7 +105,7 @@ impl fmt::Display for Miss {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metric::Metrics;
+    use crate::metric::{MetricSet, Metrics, MoveMetrics};
 
     fn measured() -> Metrics {
         let mut metrics = Metrics::default();
@@ -113,12 +124,39 @@ mod tests {
     }
 
     #[test]
-    fn a_largest_value_bounds_the_magnitude_of_a_signed_metric() {
+    fn a_limit_bounds_the_magnitude_of_a_signed_metric() {
         let mut metrics = measured();
         assert!(!metrics.judge(&[Limit::at_most(Name::FollowingErrorCruiseLoad, 0.5e-3)]).passed());
         assert!(metrics.judge(&[Limit::at_most(Name::FollowingErrorCruiseLoad, 0.9e-3)]).passed());
-        let range = Limit { metric: Name::FollowingErrorCruiseLoad, min: Some(0.7e-3), max: Some(0.9e-3) };
-        assert!(!metrics.judge(&[range]).passed(), "a range means the signed value");
+        for (min, max, within) in [(0.7e-3, 0.9e-3, true), (0.5e-3, 0.7e-3, false), (0.81e-3, 0.9e-3, false)] {
+            let range = Limit { metric: Name::FollowingErrorCruiseLoad, min: Some(min), max: Some(max) };
+            assert_eq!(metrics.judge(&[range]).passed(), within, "{min} m to {max} m");
+        }
+    }
+
+    /// Two moves at 0.8 mm and −0.9 mm, each with a band of its own.
+    #[test]
+    fn each_move_keeps_its_own_limits() {
+        let made = |error| {
+            let mut metrics = MetricSet::default();
+            metrics.note(Name::FollowingErrorCruiseLoad, "m", Ok(error));
+            MoveMetrics { label: "to and fro".into(), start: 0.0, end: 1.0, metrics }
+        };
+        let mut metrics = Metrics { run: MetricSet::default(), moves: vec![made(0.8e-3), made(-0.9e-3)] };
+        let band = |min, max| Limit { metric: Name::FollowingErrorCruiseLoad, min: Some(min), max: Some(max) };
+        let (first, second) = (band(0.79e-3, 0.81e-3), band(0.89e-3, 0.91e-3));
+        assert!(metrics.judge_moves(&[vec![first], vec![second]]).passed());
+        let verdict = metrics.judge_moves(&[vec![second], vec![second, Limit::at_most(Name::Overshoot, 1e-6)]]);
+        let said: Vec<_> = verdict.misses.iter().map(Miss::to_string).collect();
+        assert_eq!(
+            said,
+            [
+                "move 1: following_error_cruise_load 800 µm, limit 890 µm to 910 µm",
+                "move 2: overshoot is not measured here",
+            ]
+        );
+        let passes = metrics.moves.iter().map(|made| made.metrics.get(Name::FollowingErrorCruiseLoad).unwrap().pass);
+        assert_eq!(passes.collect::<Vec<_>>(), [Some(false), Some(true)]);
     }
 
     #[test]

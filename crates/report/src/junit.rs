@@ -34,7 +34,8 @@ fn status(run: &RunResult) -> TestCaseStatus {
         Outcome::Failed => (NonSuccessKind::Failure, "limit missed"),
         Outcome::Error => (NonSuccessKind::Error, "run not carried out"),
     };
-    let missed = run.metrics.iter().filter(|(_, metric)| metric.pass == Some(false)).count();
+    let of_moves = run.moves.iter().flat_map(|made| made.metrics.iter());
+    let missed = run.metrics.iter().chain(of_moves).filter(|(_, metric)| metric.pass == Some(false)).count();
     let message = match (run.verdict, missed) {
         (Outcome::Failed, 1) => "1 limit missed".to_owned(),
         (Outcome::Failed, count) => format!("{count} limits missed"),

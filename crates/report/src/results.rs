@@ -155,9 +155,17 @@ impl RunResult {
         let mut result = Self::of(run, Some(recording), metrics);
         result.verdict = if verdict.passed() { Outcome::Passed } else { Outcome::Failed };
         result.reasons = verdict.misses.iter().map(ToString::to_string).collect();
-        let unmeasured = verdict.misses.iter().filter(|miss| miss.value.is_none());
-        let unmeasured = unmeasured.map(|miss| (miss.limit.metric.to_string(), MetricResult::missing(&miss.limit)));
-        result.metrics = result.metrics.into_iter().chain(unmeasured).collect();
+        for miss in verdict.misses.iter().filter(|miss| miss.value.is_none()) {
+            let missing = [(miss.limit.metric.to_string(), MetricResult::missing(&miss.limit))];
+            let metrics = match miss.in_move {
+                None => &mut result.metrics,
+                Some(index) => match result.moves.get_mut(index) {
+                    Some(made) => &mut made.metrics,
+                    None => continue,
+                },
+            };
+            *metrics = std::mem::take(metrics).into_iter().chain(missing).collect();
+        }
         result
     }
 

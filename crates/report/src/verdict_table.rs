@@ -1,4 +1,5 @@
 //! The table at the end of a run: what failed first, each missed limit below its run.
+use crate::ordered::Ordered;
 use crate::results::{MetricResult, Outcome, Results, RunResult};
 use crate::style::{Ink, Style};
 use crate::text::{elided, widest, wrapped};
@@ -65,7 +66,15 @@ fn row(table: &mut String, run: &RunResult, name: usize, engine: usize, style: S
     line(table, text.trim_end());
     match run.verdict {
         Outcome::Passed => {}
-        Outcome::Failed => missed_limits(table, run, style),
+        Outcome::Failed => {
+            missed_limits(table, &run.metrics, &run.absent, style);
+            for (index, made) in run.moves.iter().enumerate() {
+                if made.metrics.iter().any(|(_, metric)| metric.pass == Some(false)) {
+                    line(table, &format!("{:INDENT$}move {} ({}):", "", index + 1, made.label));
+                    missed_limits(table, &made.metrics, &run.absent, style);
+                }
+            }
+        }
         Outcome::Error => {
             let width = style.width.saturating_sub(INDENT);
             for part in run.reasons.iter().flat_map(|reason| wrapped(reason, width)) {
@@ -75,12 +84,12 @@ fn row(table: &mut String, run: &RunResult, name: usize, engine: usize, style: S
     }
 }
 
-fn missed_limits(table: &mut String, run: &RunResult, style: Style) {
-    let missed: Vec<_> = run.metrics.iter().filter(|(_, metric)| metric.pass == Some(false)).collect();
+fn missed_limits(table: &mut String, metrics: &Ordered<MetricResult>, absent: &Ordered<String>, style: Style) {
+    let missed: Vec<_> = metrics.iter().filter(|(_, metric)| metric.pass == Some(false)).collect();
     let name = widest(missed.iter().map(|(name, _)| *name));
     for (metric_name, metric) in missed {
         let Some(value) = metric.value else {
-            let why = run.absent.get(metric_name).map_or("it is not measured here", String::as_str);
+            let why = absent.get(metric_name).map_or("it is not measured here", String::as_str);
             let text = format!("{metric_name} could not be measured: {why}");
             for (k, part) in wrapped(&text, style.width.saturating_sub(INDENT + 2)).iter().enumerate() {
                 line(table, &format!("{:INDENT$}{}{part}", "", if k == 0 { "" } else { "  " }));
@@ -88,21 +97,22 @@ fn missed_limits(table: &mut String, run: &RunResult, style: Style) {
             continue;
         };
         let value_text = style.paint(Ink::Bad, &format!("{:>NUMBER$}", Quantity::new(value, &metric.unit)));
-        let text = format!("{:INDENT$}{metric_name:name$}  {value_text}  {}", "", missed_bound(metric, value));
+        let text =
+            format!("{:INDENT$}{metric_name:name$}  {value_text}  {}", "", missed_bound(metric_name, metric, value));
         line(table, text.trim_end());
     }
 }
 
 /// `limit 20.0 ms, 76 % over`
-fn missed_bound(metric: &MetricResult, value: f64) -> String {
+fn missed_bound(name: &str, metric: &MetricResult, value: f64) -> String {
     let bound = |bound: f64| Quantity::new(bound, &metric.unit);
-    let below = metric.limit_min.filter(|min| value < *min);
+    let size = if name.parse::<Name>().is_ok_and(Name::is_signed) { value.abs() } else { value };
+    let below = metric.limit_min.filter(|min| size < *min);
     let (words, limit) = match (below, metric.limit) {
         (Some(min), _) => (format!("limit at least {}", bound(min)), min),
         (None, Some(max)) => (format!("limit {}", bound(max)), max),
         (None, None) => return String::new(),
     };
-    let size = if below.is_some() { value } else { value.abs() };
     let share = 100.0 * (size / limit - 1.0);
     match share {
         _ if limit <= 0.0 || !share.is_finite() => words,
@@ -188,11 +198,24 @@ mod tests {
     fn how_far_beyond_a_limit() {
         let metric =
             |limit_min, limit| MetricResult { value: None, unit: "s".into(), limit, limit_min, pass: Some(false) };
-        assert_eq!(missed_bound(&metric(None, Some(0.02)), 0.0352), "limit 20.0 ms, 76 % over");
-        assert_eq!(missed_bound(&metric(None, Some(0.02)), -0.0352), "limit 20.0 ms, 76 % over");
-        assert_eq!(missed_bound(&metric(None, Some(0.02)), 0.1), "limit 20.0 ms, 5.0 times as much");
-        assert_eq!(missed_bound(&metric(None, Some(0.02)), 0.020_000_1), "limit 20.0 ms, less than 0.1 % over");
-        assert_eq!(missed_bound(&metric(Some(1.0), Some(2.0)), 0.9), "limit at least 1.00 s, 10 % under");
-        assert_eq!(missed_bound(&metric(None, Some(0.0)), 0.9), "limit 0 s");
+        assert_eq!(missed_bound("steady_state_error", &metric(None, Some(0.02)), 0.0352), "limit 20.0 ms, 76 % over");
+        assert_eq!(missed_bound("steady_state_error", &metric(None, Some(0.02)), -0.0352), "limit 20.0 ms, 76 % over");
+        assert_eq!(
+            missed_bound("steady_state_error", &metric(None, Some(0.02)), 0.1),
+            "limit 20.0 ms, 5.0 times as much"
+        );
+        assert_eq!(
+            missed_bound("steady_state_error", &metric(None, Some(0.02)), 0.020_000_1),
+            "limit 20.0 ms, less than 0.1 % over"
+        );
+        assert_eq!(
+            missed_bound("steady_state_error", &metric(Some(1.0), Some(2.0)), 0.9),
+            "limit at least 1.00 s, 10 % under"
+        );
+        assert_eq!(
+            missed_bound("steady_state_error", &metric(Some(1.0), Some(2.0)), -0.9),
+            "limit at least 1.00 s, 10 % under"
+        );
+        assert_eq!(missed_bound("steady_state_error", &metric(None, Some(0.0)), 0.9), "limit 0 s");
     }
 }

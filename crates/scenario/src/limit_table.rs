@@ -1,6 +1,6 @@
 //! `[limits]`: metrics by name, each with what it measures.
 use crate::diagnostic::Report;
-use crate::field::{Bound, Field, Measure, not_negative};
+use crate::field::{Field, Measure, any, not_negative};
 use crate::nearest::suggestion;
 use crate::physical::Kind::{self, Axis as InAxis, Motor as InMotor, Plain};
 use crate::physical::{CURRENT, CURRENT_RMS, EFFORT, FREQUENCY, POSITION, RATIO, TIME, VELOCITY, VOLTAGE_AMPLITUDE};
@@ -25,6 +25,9 @@ const fn metric(name: &'static str, kind: Kind, example: &'static str, meaning: 
 const LENGTH: Kind = InAxis(&POSITION);
 const SECONDS: Kind = Plain(&TIME);
 const PURE: Kind = Plain(&RATIO);
+
+/// Negative where a vibration grows.
+const DAMPING: &str = "residual_vibration_damping";
 
 /// Names and order are those of the crate `metrics`; a test holds them together.
 const METRICS: [Metric; 30] = [
@@ -54,7 +57,7 @@ const METRICS: [Metric; 30] = [
         "amplitude of the dominant mode at the end of the profile",
     ),
     metric("residual_vibration_frequency", Plain(&FREQUENCY), "40 Hz", "natural frequency of the dominant mode"),
-    metric("residual_vibration_damping", PURE, "0.02", "damping ratio of the dominant mode"),
+    metric(DAMPING, PURE, "0.02", "damping ratio of the dominant mode"),
     metric("residual_vibration_share", PURE, "0.9", "share of the vibration that the fitted modes explain"),
     metric("setpoint_velocity_ratio", PURE, "1", "peak velocity of the set-point over its limit"),
     metric("setpoint_acceleration_ratio", PURE, "1", "peak acceleration of the set-point over its limit"),
@@ -75,9 +78,9 @@ impl Metric {
         not_negative(self.kind, self.example)
     }
 
-    /// An end of a range has a sign: a cruise error may have to lie below zero.
+    /// An end of a range; below zero only where the value can be, and its sign is no direction: bounds are of magnitudes.
     fn end(&self) -> Measure {
-        Measure { kind: self.kind, bound: Bound::Any, example: self.example }
+        if self.name == DAMPING { any(self.kind, self.example) } else { self.largest() }
     }
 }
 

@@ -14,6 +14,7 @@ mod time;
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file::{File, MotorKind, Run};
+use crate::limit_table::LimitTable;
 use crate::scenario::{EngineName, LONGEST_RUN, Limit, Measure, Record, Scenario};
 use crate::simple::MAX_RATE;
 use crate::source::{At, SourceId, Sources, Span};
@@ -45,7 +46,7 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
     let disturbances = disturbance::disturbances(file, &timing, fixed, report);
     let initial = disturbance::initial(file, fixed, report);
     let record = record(file, base_rate, report);
-    let limits = limits(file, report);
+    let limits = file.limits.given().map_or_else(Vec::new, |given| limits(given, has_window(file), report));
     say_rates_of_models(file, base_rate, report);
     if is_prescribed && let Some(span) = file.drive.span() {
         report.warning(span, "`drive` is not used: the motor follows the set-point exactly", "");
@@ -112,9 +113,11 @@ fn record(file: &File, base_rate: Option<Rate>, report: &mut Report) -> Option<R
 /// Metrics that need a window around the target.
 const IN_A_WINDOW: [&str; 2] = ["settling_time", "move_and_settling_time"];
 
-fn limits(file: &File, report: &mut Report) -> Vec<Limit> {
-    let Some(limits) = file.limits.given() else { return Vec::new() };
-    let has_window = file.measure.given().is_some_and(|measure| measure.window.span().is_some());
+fn has_window(file: &File) -> bool {
+    file.measure.given().is_some_and(|measure| measure.window.span().is_some())
+}
+
+fn limits(limits: &LimitTable, has_window: bool, report: &mut Report) -> Vec<Limit> {
     for limit in &limits.0 {
         if !has_window && IN_A_WINDOW.contains(&limit.value.metric.as_str()) {
             let message = format!("`{}` needs a settling window", limit.value.metric);

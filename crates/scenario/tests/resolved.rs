@@ -382,7 +382,7 @@ fn limits_keep_their_order_and_their_meaning() {
 torque_peak = "5 Nm"
 current_peak = "10 Arms"
 current_rms = "10 Arms"
-following_error_cruise_load = { min = "-1 mm", max = "0.5 mm" }
+following_error_cruise_load = { min = "0.4 mm", max = "0.5 mm" }
 residual_vibration_damping = "5 %"
 setpoint_jerk_ratio = 1
 "#
@@ -395,7 +395,7 @@ setpoint_jerk_ratio = 1
     assert_eq!(
         limits[3..],
         [
-            limit("following_error_cruise_load", Some(-1e-3), 5e-4),
+            limit("following_error_cruise_load", Some(4e-4), 5e-4),
             limit("residual_vibration_damping", None, 0.05),
             limit("setpoint_jerk_ratio", None, 1.0),
         ]
@@ -448,4 +448,27 @@ fn a_users_own_mjcf_is_read_beside_the_file_that_names_it() {
         ("carriage", "load", "force")
     );
     assert!(same(drive(&scenario).velocity.gain, 30.0 * TAU * 15.0), "from the estimate");
+}
+
+#[test]
+fn a_move_has_limits_of_its_own_and_a_pause_has_none() {
+    let file = |step: &str, limit: &str| {
+        let setpoint = "[setpoint]\norder = 2\nvelocity = \"1 m/s\"\nacceleration = \"1 m/s2\"\n";
+        format!("{SCREW}{setpoint}[[program]]\n{step}\n[program.limits]\n{limit}\n")
+    };
+    let band = "following_error_cruise_load = { min = \"0.8 mm\", max = \"0.9 mm\" }";
+    let Some(Step::Move(MoveStep { metric_limits, .. })) = scenario(&file("move_to = \"1 m\"", band)).program.pop()
+    else {
+        panic!("a move")
+    };
+    let metric = "following_error_cruise_load".to_owned();
+    assert_eq!(metric_limits, [Limit { metric, min: Some(0.8e-3), max: Some(0.9e-3) }]);
+    for (step, limit, refusal) in [
+        ("wait = \"1 s\"", band, "a pause has no `limits`"),
+        ("move_to = \"1 m\"", "settling_time = \"1 s\"", "`settling_time` needs a settling window"),
+        ("move_to = \"1 m\"", "following_error_cruise_load = { min = \"-1 mm\" }", "`min` must be zero or more"),
+    ] {
+        let found = servobench_scenario::parse("test", &file(step, limit), None).unwrap_err().to_string();
+        assert!(found.contains(refusal), "{found}");
+    }
 }

@@ -144,7 +144,7 @@ mod tests {
 
     fn one_metre() -> MoveStep {
         let (target, limits) = (Target::Relative(1.0), [1.0, 5.0, 50.0, 1000.0]);
-        MoveStep { target, order: 4, limits, sample_time: None, duration: None }
+        MoveStep { target, order: 4, limits, sample_time: None, duration: None, metric_limits: Vec::new() }
     }
 
     fn to(target: Target) -> Step {

@@ -1,6 +1,6 @@
 //! The same axis under different set-points: at equal limits, or slowed to equal duration.
 use crate::job::Job;
-use servobench_scenario::{Actuator, Drive, Scenario};
+use servobench_scenario::{Actuator, Drive, Scenario, Step};
 use servobench_sim::{BuildError, Program};
 use thiserror::Error;
 
@@ -149,6 +149,11 @@ pub fn to_equal_duration(jobs: &mut [Job]) -> Result<(), CompareError> {
         if *durations != longest {
             job.slow_to(longest.clone());
             job.scenario.limits.clear();
+            for step in &mut job.scenario.program {
+                if let Step::Move(step) = step {
+                    step.metric_limits.clear();
+                }
+            }
         }
     }
     Ok(())

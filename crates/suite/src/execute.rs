@@ -5,7 +5,7 @@ use crate::job::Job;
 use crate::worker::{self, WorkerCommand};
 use servobench_metrics::{Limit, Metrics, Name, Question, UnknownMetric, Verdict, measure};
 use servobench_plant::Engine;
-use servobench_scenario::Scenario;
+use servobench_scenario::{self as scenario, Scenario, Step};
 use servobench_sim::Bench;
 use servobench_trace::Recording;
 
@@ -46,13 +46,18 @@ pub fn execute(
     progress: &mut dyn FnMut(f64),
 ) -> Result<Run, Box<Broken>> {
     let broken = |error, until_then| Box::new(Broken { error, until_then });
-    let limits = limits(&job.scenario).map_err(|error| broken(error.into(), None))?;
+    let limits = limits(&job.scenario.limits).map_err(|error| broken(error.into(), None))?;
+    let of_moves = job.scenario.program.iter().filter_map(|step| match step {
+        Step::Move(step) => Some(self::limits(&step.metric_limits)),
+        Step::Wait(_) => None,
+    });
+    let of_moves: Vec<_> = of_moves.collect::<Result<_, _>>().map_err(|error| broken(error.into(), None))?;
     let (recording, failure) = recorded(job, engines, worker, progress).map_err(|error| broken(error, None))?;
     let asked = &job.scenario.measure;
     let mut metrics = measure(&recording, &Question { window: asked.window, from: asked.from, mode: asked.mode });
     match failure {
         Some(failure) => Err(broken(failure, Some((recording, metrics)))),
-        None => Ok(Run { verdict: metrics.judge(&limits), recording, metrics }),
+        None => Ok(Run { verdict: metrics.judge(&limits).and(metrics.judge_moves(&of_moves)), recording, metrics }),
     }
 }
 
@@ -80,9 +85,8 @@ pub(crate) fn run_here(
     Ok((outcome.recording, outcome.failure.map(RunError::from)))
 }
 
-fn limits(scenario: &Scenario) -> Result<Vec<Limit>, UnknownMetric> {
-    scenario
-        .limits
+fn limits(limits: &[scenario::Limit]) -> Result<Vec<Limit>, UnknownMetric> {
+    limits
         .iter()
         .map(|limit| Ok(Limit { metric: limit.metric.parse::<Name>()?, min: limit.min, max: limit.max }))
         .collect()

@@ -1,5 +1,6 @@
 //! `[setpoint]`, `[[program]]` and `[[disturbance]]`: what happens.
 use crate::field::{any, not_negative, positive};
+use crate::limit_table::LimitTable;
 use crate::physical::Kind::{Axis as InAxis, Plain};
 use crate::physical::{ACCELERATION, FORCE, FREQUENCY, JERK, POSITION, SNAP, TIME, TORQUE, VELOCITY};
 use crate::scenario::DisturbedBody;
@@ -52,6 +53,8 @@ table! {
         sample_time: f64 = positive(Plain(&TIME), "1 ms"),
         /// Slows the move to last this long, every derivative in proportion; as fast as the limits allow unless given.
         duration: f64 = positive(Plain(&TIME), "1.5 s"),
+        /// Limits that this move's own metrics must keep, beside those of the run.
+        limits: LimitTable = (),
     }
 }
 

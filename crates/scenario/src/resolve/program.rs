@@ -3,7 +3,7 @@ use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
 use crate::file::File;
-use crate::resolve::{Way, one_way};
+use crate::resolve::{Way, has_window, limits, one_way};
 use crate::scenario::{LONGEST_RUN, MoveStep, Step, Target};
 use crate::source::{At, Span};
 use servobench_base::Rate;
@@ -20,6 +20,13 @@ struct Profile<'a> {
     duration: &'a Slot<f64>,
 }
 
+/// What the steps need to know of the rest of the file.
+struct Known {
+    base_rate: Option<Rate>,
+    /// Whether there is a settling window.
+    has_window: bool,
+}
+
 /// What has been said of `[setpoint]` already: once is enough for all moves.
 #[derive(Default)]
 struct Said {
@@ -31,10 +38,11 @@ pub(super) fn steps(file: &File, base_rate: Option<Rate>, report: &mut Report) -
     let Some(program) = file.program.optional().ok()? else { return Some(Vec::new()) };
     refuse_endless(&program.0, report);
     let mut said = Said::default();
+    let known = Known { base_rate, has_window: has_window(file) };
     let steps: Vec<_> = program
         .0
         .iter()
-        .map(|step| self::step(&step.value, file.setpoint.given(), base_rate, &mut said, report))
+        .map(|step| self::step(&step.value, file.setpoint.given(), &known, &mut said, report))
         .collect();
     steps.into_iter().collect()
 }
@@ -57,7 +65,7 @@ fn refuse_endless(program: &[At<file::ProgramStep>], report: &mut Report) {
 fn step(
     step: &file::ProgramStep,
     defaults: Option<&file::Setpoint>,
-    base_rate: Option<Rate>,
+    known: &Known,
     said: &mut Said,
     report: &mut Report,
 ) -> Option<Step> {
@@ -83,7 +91,7 @@ fn step(
         Way::Use(0) => step.move_to.given().copied().map(Target::Absolute),
         Way::Use(1) => step.move_by.given().copied().map(Target::Relative),
         Way::Use(_) => {
-            no_profile(&own, report);
+            no_profile(&own, step.limits.span(), report);
             return step.wait.given().copied().map(Step::Wait);
         }
         Way::Contradiction => return None,
@@ -92,17 +100,23 @@ fn step(
             return None;
         }
     };
-    let profile = profile(&own, defaults.as_ref(), step.span, base_rate, said, report);
+    let profile = profile(&own, defaults.as_ref(), step.span, known.base_rate, said, report);
+    let metric_limits =
+        step.limits.optional().ok().map(|own| own.map_or_else(Vec::new, |own| limits(own, known.has_window, report)));
     let (order, limits, sample_time) = profile?;
     let duration = own.duration.optional().ok()?.copied();
-    Some(Step::Move(MoveStep { target: target?, order, limits, sample_time, duration }))
+    Some(Step::Move(MoveStep { target: target?, order, limits, sample_time, duration, metric_limits: metric_limits? }))
 }
 
 /// Objects to keys of a move in a pause.
-fn no_profile(own: &Profile<'_>, report: &mut Report) {
+fn no_profile(own: &Profile<'_>, metric_limits: Option<Span>, report: &mut Report) {
     let limits = LIMITS.into_iter().zip(own.limits).map(|(key, slot)| (key, slot.span()));
-    let others =
-        [("order", own.order.span()), ("sample_time", own.sample_time.span()), ("duration", own.duration.span())];
+    let others = [
+        ("order", own.order.span()),
+        ("sample_time", own.sample_time.span()),
+        ("duration", own.duration.span()),
+        ("limits", metric_limits),
+    ];
     for (key, span) in limits.chain(others) {
         if let Some(span) = span {
             report.error(span, format!("a pause has no `{key}`"), "");

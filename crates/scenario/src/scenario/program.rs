@@ -1,4 +1,5 @@
 //! What happens: moves, disturbances, where the axis starts.
+use super::Limit;
 
 /// A step of the program.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +23,8 @@ pub struct MoveStep {
     pub sample_time: Option<f64>,
     /// Slowed to last this long (s), every derivative in proportion; `None`: as fast as the limits allow.
     pub duration: Option<f64>,
+    /// Limits of what is measured on this move.
+    pub metric_limits: Vec<Limit>,
 }
 
 /// Where a move goes.

@@ -135,7 +135,7 @@ fn drive(drive: &Drive, base_rate: Rate) {
 fn step(step: &Step) {
     match step {
         Step::Wait(length) => not_negative("wait", *length),
-        Step::Move(MoveStep { target, order, limits, sample_time, duration }) => {
+        Step::Move(MoveStep { target, order, limits, sample_time, duration, metric_limits }) => {
             let (Target::Absolute(length) | Target::Relative(length)) = *target;
             finite("target", length);
             assert!((2..=4).contains(order));
@@ -146,6 +146,7 @@ fn step(step: &Step) {
             assert!(free.iter().all(|limit| *limit == f64::INFINITY), "{limits:?}");
             optional("sample_time", *sample_time);
             optional("duration of a move", *duration);
+            assert!(metric_limits.iter().all(|limit| limit.min.is_some() || limit.max.is_some()), "{metric_limits:?}");
         }
     }
 }
