@@ -10,7 +10,7 @@ pub(crate) enum Page {
     Errors,
     /// What was asked for.
     SetPoint,
-    /// Motor and inverter.
+    /// Currents and voltages of the drive.
     Electrical,
 }
 
@@ -27,15 +27,59 @@ pub(crate) struct Curve {
     pub(crate) width: f32,
 }
 
+impl Page {
+    /// Height of one of its plots in a window of 1400 × 900 points, without title and time axis (points).
+    pub(crate) const fn plot_height(self) -> f64 {
+        match self {
+            Self::Motion => 155.0,
+            Self::Errors | Self::Electrical => 210.0,
+            Self::SetPoint => 340.0,
+        }
+    }
+}
+
+/// What a title says of the curves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Headline {
+    /// Nothing.
+    None,
+    /// Largest magnitude.
+    Peak,
+    /// Largest minus smallest value.
+    PeakToPeak,
+}
+
+impl Headline {
+    /// The number that it says of a curve from `low` to `high`.
+    pub(crate) fn of(self, (low, high): (f64, f64)) -> f64 {
+        match self {
+            Self::PeakToPeak => high - low,
+            Self::None | Self::Peak => high.max(-low),
+        }
+    }
+}
+
 /// One plot.
 #[derive(Debug)]
 pub(crate) struct Plot {
     /// Name in the view's title.
     pub(crate) title: &'static str,
+    /// Name when the values are forces, where it is another.
+    pub(crate) linear_title: Option<&'static str>,
     /// First part of the entity path.
     pub(crate) path: &'static str,
     /// Where it stands.
     pub(crate) page: Page,
+    /// What the title says of the first curve.
+    pub(crate) headline: Headline,
+    /// Whether currents and voltages are amplitudes.
+    pub(crate) amplitude: bool,
+    /// Values that are always in sight (SI).
+    pub(crate) includes: &'static [f64],
+    /// Whether a value holds until the next one: a staircase.
+    pub(crate) held: bool,
+    /// Derivative of the position whose limit in the plan bounds it, 0 for velocity.
+    pub(crate) derivative: Option<usize>,
     /// Its curves, the one that a comparison shows first: the first of them that was recorded.
     pub(crate) curves: &'static [Curve],
 }
@@ -46,6 +90,20 @@ pub(crate) const BOUND: &str = "limit";
 const fn curve(channels: &'static [&'static str], name: &'static str, colour: Rgb, width: f32) -> Curve {
     Curve { channels, name, colour, width }
 }
+
+/// A plot as most are; the others name what differs.
+const PLAIN: Plot = Plot {
+    title: "",
+    linear_title: None,
+    path: "",
+    page: Page::Errors,
+    headline: Headline::Peak,
+    amplitude: false,
+    includes: &[0.0],
+    held: false,
+    derivative: None,
+    curves: &[],
+};
 
 // Curves of one plot often coincide. What is drawn later is thinner, so that all of them can be seen.
 const WIDE: f32 = 4.0;
@@ -58,12 +116,15 @@ pub(crate) const PLOTS: &[Plot] = &[
         title: "Position",
         path: "position",
         page: Page::Motion,
+        headline: Headline::None,
+        includes: &[],
         curves: &[
             curve(&["load.position"], "load", style::LOAD, WIDE),
             curve(&["motor.position"], "motor", style::MOTOR, MIDDLE),
             curve(&["table.position"], "table", style::TABLE, MIDDLE),
             curve(&["reference.position", "setpoint.position"], "reference", style::REFERENCE, THIN),
         ],
+        ..PLAIN
     },
     Plot {
         title: "Velocity",
@@ -74,68 +135,98 @@ pub(crate) const PLOTS: &[Plot] = &[
             curve(&["motor.velocity"], "motor", style::MOTOR, MIDDLE),
             curve(&["velocity.reference", "setpoint.velocity"], "reference", style::REFERENCE, THIN),
         ],
+        ..PLAIN
     },
     Plot {
         title: "Following error",
         path: "following_error",
-        page: Page::Errors,
         curves: &[
             curve(&["following_error.load"], "load", style::LOAD, MIDDLE),
             curve(&["following_error.motor"], "motor", style::MOTOR, MIDDLE),
         ],
+        ..PLAIN
     },
     Plot {
-        title: "Effort of the motor",
+        title: "Disturbance on the load",
+        path: "load_disturbance",
+        held: true,
+        curves: &[curve(&["disturbance.load"], "load", style::DISTURBANCE, MIDDLE)],
+        ..PLAIN
+    },
+    Plot {
+        title: "Disturbance on the motor",
+        path: "motor_disturbance",
+        held: true,
+        curves: &[curve(&["disturbance.motor"], "motor", style::DISTURBANCE, MIDDLE)],
+        ..PLAIN
+    },
+    Plot {
+        title: "Motor torque",
+        linear_title: Some("Motor force"),
         path: "effort",
-        page: Page::Errors,
         curves: &[
             curve(&["effort.motor"], "motor", style::MOTOR, MIDDLE),
             curve(&["effort.reference"], "reference", style::REFERENCE, THIN),
         ],
+        ..PLAIN
     },
     Plot {
         title: "Current",
         path: "current",
-        page: Page::Errors,
+        page: Page::Electrical,
+        amplitude: true,
         curves: &[
             curve(&["current.q"], "q", style::MOTOR, MIDDLE),
             curve(&["current.d"], "d", style::AUXILIARY, MIDDLE),
             curve(&["current.q_reference"], "q reference", style::REFERENCE, THIN),
         ],
+        ..PLAIN
     },
     Plot {
         title: "Output of the drive",
         path: "output",
-        page: Page::Errors,
+        page: Page::Electrical,
         curves: &[curve(&["command.output"], "output", style::MOTOR, MIDDLE)],
+        ..PLAIN
     },
     Plot {
         title: "Set-point velocity",
         path: "setpoint_velocity",
+        derivative: Some(0),
         page: Page::SetPoint,
         curves: &[curve(&["setpoint.velocity"], "velocity", style::REFERENCE, MIDDLE)],
+        ..PLAIN
     },
     Plot {
         title: "Set-point acceleration",
         path: "setpoint_acceleration",
+        derivative: Some(1),
         page: Page::SetPoint,
         curves: &[curve(&["setpoint.acceleration"], "acceleration", style::MOTOR, MIDDLE)],
+        ..PLAIN
     },
     Plot {
         title: "Set-point jerk",
         path: "setpoint_jerk",
+        held: true,
+        derivative: Some(2),
         page: Page::SetPoint,
         curves: &[curve(&["setpoint.jerk"], "jerk", style::TABLE, MIDDLE)],
+        ..PLAIN
     },
     Plot {
         title: "Set-point snap",
         path: "setpoint_snap",
+        held: true,
+        derivative: Some(3),
         page: Page::SetPoint,
         curves: &[curve(&["setpoint.snap"], "snap", style::AUXILIARY, MIDDLE)],
+        ..PLAIN
     },
     Plot {
         title: "Voltage",
         path: "voltage",
+        amplitude: true,
         page: Page::Electrical,
         curves: &[
             curve(&["voltage.magnitude"], "magnitude", style::TABLE, MIDDLE),
@@ -143,14 +234,19 @@ pub(crate) const PLOTS: &[Plot] = &[
             curve(&["voltage.d"], "d", style::AUXILIARY, MIDDLE),
             curve(&["voltage.limit"], BOUND, style::LIMIT, THIN),
         ],
+        ..PLAIN
     },
     Plot {
         title: "Saturated share of control ticks",
         path: "saturation",
+        headline: Headline::None,
+        includes: &[0.0, 1.0],
         page: Page::Electrical,
         curves: &[
             curve(&["saturation.current"], "current", style::LOAD, MIDDLE),
             curve(&["saturation.voltage"], "voltage", style::MOTOR, MIDDLE),
+            curve(&["saturation.effort"], "effort", style::TABLE, MIDDLE),
         ],
+        ..PLAIN
     },
 ];

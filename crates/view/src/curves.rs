@@ -1,11 +1,18 @@
 //! Logs the lines of the plots, column by column.
-use crate::plan::{PlannedPlot, Series, Values};
+use crate::planned::PlannedPlot;
 use crate::scale::Scale;
+use crate::series::{Series, Values};
+use rerun::components::InterpolationMode;
 use rerun::{RecordingStream, RecordingStreamResult, Scalars, SeriesLines, TimeColumn};
 use servobench_trace::envelope;
 
 /// The one timeline: seconds since the start of the run.
 pub(crate) const TIMELINE: &str = "time";
+
+/// Logs names and colours of all lines of `plot`. Without them a viewer shows what it has read so far in colours of its own.
+pub(crate) fn log_styles(stream: &RecordingStream, plot: &PlannedPlot<'_>) -> RecordingStreamResult<()> {
+    plot.series.iter().try_for_each(|series| stream.log_static(series.path.clone(), &style(series, plot.held)))
+}
 
 /// Logs all lines of `plot`, each of at most `max_instants` points.
 pub(crate) fn log(stream: &RecordingStream, plot: &PlannedPlot<'_>, max_instants: usize) -> RecordingStreamResult<()> {
@@ -14,26 +21,27 @@ pub(crate) fn log(stream: &RecordingStream, plot: &PlannedPlot<'_>, max_instants
         let times = TimeColumn::new_duration_secs(TIMELINE, times);
         let columns = Scalars::new(values).columns_of_unit_batches()?;
         stream.send_columns(series.path.clone(), [times], columns)?;
-        stream.log_static(series.path.clone(), &style(series))?;
     }
     Ok(())
 }
 
-fn style(series: &Series<'_>) -> SeriesLines {
-    SeriesLines::new().with_names([series.name.as_str()]).with_colors([series.colour]).with_widths([series.width])
+fn style(series: &Series<'_>, held: bool) -> SeriesLines {
+    let mode = if held { InterpolationMode::StepAfter } else { InterpolationMode::Linear };
+    let lines = SeriesLines::new().with_names([series.name.as_str()]).with_colors([series.colour]);
+    lines.with_widths([series.width]).with_interpolation_mode(mode)
 }
 
 /// Times (s) and values (in the plot's unit); what is not finite has no place in a plot.
 fn points(series: &Series<'_>, scale: &Scale, max_instants: usize) -> (Vec<f64>, Vec<f64>) {
     match series.values {
-        Values::Channel { run, values, first } => {
+        Values::Channel { run, values, first, origin } => {
             let values = &values[first..];
             // Two per bucket, and the first and the last.
             let buckets = max_instants.saturating_sub(2) / 2;
             let kept: Vec<usize> =
                 if values.len() > max_instants { envelope(values, buckets) } else { (0..values.len()).collect() };
             let finite = kept.into_iter().filter(|index| values[*index].is_finite());
-            finite.map(|index| (run.recording.time_of(first + index), values[index] * scale.factor)).unzip()
+            finite.map(|index| (run.recording.time_of(first + index), (values[index] - origin) * scale.factor)).unzip()
         }
         Values::Level { value, span: (from, to) } => (vec![from, to], vec![value * scale.factor; 2]),
     }

@@ -13,6 +13,9 @@ use rerun::external::re_sdk_types::blueprint::archetypes as blueprint;
 use rerun::external::uuid::Uuid;
 use rerun::{AsComponents, EntityPath, RecordingStream, RecordingStreamBuilder, SerializedComponentBatch};
 
+/// Columns of a grid.
+const GRID_COLUMNS: u32 = 2;
+
 /// How the viewer arranges a recording. Made by [`Presentation::blueprint`](crate::Presentation::blueprint).
 #[derive(Debug)]
 pub struct Layout {
@@ -140,7 +143,8 @@ fn log_node(stream: &RecordingStream, node: &Node) -> rerun::RecordingStreamResu
     archetype = match container.kind {
         ContainerKind::Horizontal => archetype.with_col_shares(shares),
         ContainerKind::Vertical => archetype.with_row_shares(shares),
-        ContainerKind::Tabs | ContainerKind::Grid => archetype,
+        ContainerKind::Grid => archetype.with_grid_columns(GRID_COLUMNS),
+        ContainerKind::Tabs => archetype,
     };
     if let Some(name) = container.name {
         archetype = archetype.with_display_name(name);

@@ -5,7 +5,8 @@ use crate::error::ViewError;
 use crate::happenings::{self, Happenings};
 use crate::layout::Layout;
 use crate::options::ViewOptions;
-use crate::plan::{self, PlannedPlot};
+use crate::plan;
+use crate::planned::PlannedPlot;
 use crate::run::Run;
 use crate::scene::Scene;
 use rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
@@ -77,17 +78,21 @@ impl<'a> Presentation<'a> {
     /// # Errors
     /// [`ViewError::Rerun`].
     pub fn log(&self, stream: &RecordingStream) -> Result<(), ViewError> {
-        self.log_all(stream).map_err(ViewError::rerun("log the recording"))
+        let action = "log the recording";
+        self.log_all_but_curves(stream).map_err(ViewError::rerun(action))?;
+        // Static data wait in a batch. Without this the curves would come first, and a viewer would show them, while it
+        // reads a large file, in colours of its own and without axis.
+        stream.flush_blocking().map_err(ViewError::rerun(action))?;
+        self.plots
+            .iter()
+            .try_for_each(|plot| curves::log(stream, plot, self.max_instants))
+            .map_err(ViewError::rerun(action))
     }
 
-    fn log_all(&self, stream: &RecordingStream) -> RecordingStreamResult<()> {
-        for plot in &self.plots {
-            curves::log(stream, plot, self.max_instants)?;
-        }
-        if let Some(scene) = &self.scene {
-            scene.log(stream, &self.runs)?;
-        }
-        self.runs.iter().enumerate().try_for_each(|(index, run)| happenings::log(stream, run, index))
+    fn log_all_but_curves(&self, stream: &RecordingStream) -> RecordingStreamResult<()> {
+        self.plots.iter().try_for_each(|plot| curves::log_styles(stream, plot))?;
+        self.runs.iter().enumerate().try_for_each(|(index, run)| happenings::log(stream, run, index))?;
+        self.scene.as_ref().map_or(Ok(()), |scene| scene.log(stream, &self.runs))
     }
 
     /// Writes an `.rrd` file: blueprint and data. The file appears when it is whole.

@@ -24,19 +24,20 @@ impl<'a> Run<'a> {
         names.iter().find_map(named)
     }
 
-    /// Time from which residual vibration is shown (s): the end of the last profile, or else `otherwise`.
-    pub(crate) fn residual_start(&self, otherwise: Option<f64>) -> Option<f64> {
-        self.recording.moves.iter().map(|made| made.end).reduce(f64::max).or(otherwise)
+    /// Whether motor and load are one body.
+    pub(crate) fn is_rigid(&self) -> bool {
+        self.recording.about.bodies.len() == 1
+    }
+
+    /// End of the last profile (s) and the target of that move (axis unit).
+    pub(crate) fn after_the_last_move(&self) -> Option<(f64, f64)> {
+        let last = self.recording.moves.iter().max_by(|one, two| one.end.total_cmp(&two.end))?;
+        Some((last.end, last.to))
     }
 
     /// Time of the last instant (s).
     pub(crate) fn end(&self) -> f64 {
         self.recording.time_of(self.recording.len().saturating_sub(1))
-    }
-
-    /// Smallest and largest finite value of all of `channels` that were recorded.
-    pub(crate) fn range(&self, channels: &[&str]) -> Option<(f64, f64)> {
-        range(channels.iter().filter_map(|name| self.recording.channel(name)).flatten())
     }
 }
 

@@ -1,4 +1,5 @@
 //! Units a person can read: µm for a following error, mm/s for a slow axis.
+use servobench_metrics::Quantity;
 
 /// Factor from SI to the unit that is shown.
 #[derive(Debug, Clone, PartialEq)]
@@ -9,28 +10,33 @@ pub(crate) struct Scale {
     pub(crate) unit: String,
 }
 
-/// Prefix and how many of the prefixed unit make one of the bare unit, smallest unit first.
-const PREFIXES: [(&str, f64); 4] = [("n", 1e9), ("µ", 1e6), ("m", 1e3), ("", 1.0)];
+/// The unit `unit` of a channel as it is shown: a product with its dot, a current or voltage that is an amplitude as such.
+pub(crate) fn shown_unit(unit: &str, amplitude: bool) -> String {
+    match unit {
+        "A" | "V" if amplitude => format!("{unit}pk"),
+        _ => unit.replace(' ', "·"),
+    }
+}
 
 impl Scale {
-    /// The coarsest of n, µ, m and no prefix in which `peak` (SI, not negative) is at least one half; k for forces, voltages
-    /// and power from 10 000 on. A pure number and a zero stay as they are.
+    /// The unit in which `peak` (SI) is a number from a half to 500, as far as there is a prefix for it.
     pub(crate) fn for_peak(unit: &str, peak: f64) -> Self {
-        let scale = |(prefix, factor): (&str, f64)| Self { factor, unit: format!("{prefix}{unit}") };
-        if unit.is_empty() || peak <= 0.0 || !peak.is_finite() {
-            return scale(("", 1.0));
-        }
-        if peak >= 1e4 && ["N", "N m", "N·m", "V", "W"].contains(&unit) {
-            return scale(("k", 1e-3));
-        }
-        let fits = |(_, factor): &&(&str, f64)| peak * factor >= 0.5;
-        scale(*PREFIXES.iter().rev().find(fits).unwrap_or(&PREFIXES[0]))
+        let (unit, size) = Quantity::axis_unit(peak, unit);
+        // 1/0.000001 computed is not always a whole number.
+        let factor = 1.0 / size;
+        Self { factor: if factor > 1.0 { factor.round() } else { factor }, unit }
     }
 
-    /// A value (SI) in this unit, to four significant digits.
-    pub(crate) fn show(&self, value: f64) -> f64 {
+    /// A value (SI) in this unit, to `digits` significant digits, with the unit.
+    pub(crate) fn show(&self, value: f64, digits: u8) -> String {
+        let number = self.rounded(value, digits);
+        if self.unit.is_empty() { number.to_string() } else { format!("{number} {}", self.unit) }
+    }
+
+    /// A value (SI) in this unit, to `digits` significant digits.
+    fn rounded(&self, value: f64, digits: u8) -> f64 {
         let shown = value * self.factor;
-        let places = 3.0 - shown.abs().log10().floor();
+        let places = f64::from(digits) - 1.0 - shown.abs().log10().floor();
         if !places.is_finite() {
             return shown;
         }
@@ -45,42 +51,27 @@ impl Scale {
     }
 }
 
-/// The largest number of 1, 2, 5, 10, 20, 50 … that is at most `value`, which is positive.
-pub(crate) fn nice_below(value: f64) -> f64 {
-    let decade = 10_f64.powf(value.log10().floor());
-    // A value such as 0.1 may come out as 0.999… of its decade.
-    let digit = value / decade * (1.0 + 1e-9);
-    [10.0, 5.0, 2.0].into_iter().find(|step| digit >= *step).unwrap_or(1.0) * decade
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn a_peak_reads_as_a_half_to_five_hundred() {
-        for (unit, peak, factor, shown) in [
-            ("m", 1.0, 1.0, "m"),
-            ("m", 0.25, 1e3, "mm"),
-            ("m", 83e-6, 1e6, "µm"),
-            ("m", 0.999, 1.0, "m"),
-            ("m", 0.24e-6, 1e9, "nm"),
-            ("m", 1e-13, 1e9, "nm"),
-            ("rad/s", 314.0, 1.0, "rad/s"),
-            ("rad", 2e-4, 1e6, "µrad"),
-            ("A", 4.2, 1.0, "A"),
-            ("N", 25_000.0, 1e-3, "kN"),
-            ("m/s^4", 1e6, 1.0, "m/s^4"),
-            ("", 0.3, 1.0, ""),
-            ("m", 0.0, 1.0, "m"),
-        ] {
-            assert_eq!(Scale::for_peak(unit, peak), Scale { factor, unit: shown.into() }, "{peak} {unit}");
-        }
+    fn currents_and_voltages_say_when_they_are_amplitudes() {
+        let shown =
+            [("A", true), ("V", true), ("V", false), ("N m", false), ("m/s²", true)].map(|(u, a)| shown_unit(u, a));
+        assert_eq!(shown, ["Apk", "Vpk", "V", "N·m", "m/s²"]);
     }
 
     #[test]
-    fn four_digits_are_shown() {
-        let show = |value, factor| Scale { factor, unit: String::new() }.show(value).to_string();
+    fn the_factor_is_that_of_the_unit() {
+        let scale = Scale::for_peak("m", 83e-6);
+        assert!(scale.unit == "µm" && (scale.factor - 1e6).abs() < 1e-6, "{scale:?}");
+        assert_eq!(Scale::for_peak("", 0.3), Scale { factor: 1.0, unit: String::new() });
+    }
+
+    #[test]
+    fn values_are_rounded_to_significant_digits() {
+        let show = |value, factor| Scale { factor, unit: String::new() }.show(value, 4);
         for (value, factor, shown) in [
             (18.809_04, 1.0, "18.81"),
             (5e-6, 1e6, "5"),
@@ -93,14 +84,6 @@ mod tests {
         ] {
             assert_eq!(show(value, factor), shown, "{value}");
         }
-    }
-
-    #[test]
-    fn nice_numbers_are_1_2_and_5() {
-        for (value, nice) in [(1.0, 1.0), (1.9, 1.0), (2.0, 2.0), (4.9, 2.0), (7.0, 5.0), (99.0, 50.0), (100.0, 100.0)]
-        {
-            assert!((nice_below(value) - nice).abs() < 1e-9 * nice, "{value}");
-            assert!((nice_below(value * 1e-6) - nice * 1e-6).abs() < 1e-15 * nice, "{value} millionths");
-        }
+        assert_eq!(Scale::for_peak("m", 408e-6).show(407.92e-6, 3), "408 µm");
     }
 }

@@ -4,9 +4,9 @@ use crate::linear;
 use crate::options::ViewOptions;
 use crate::rotary;
 use crate::run::{Run, range};
-use crate::scale::nice_below;
 use crate::style::{self, Rgb};
 use rerun::{EntityPath, RecordingStream, RecordingStreamResult, TimeColumn, Transform3D, ViewCoordinates};
+use servobench_metrics::round_below;
 
 /// Largest number of poses per run: a screen shows far fewer.
 const POSES: usize = 4_000;
@@ -38,9 +38,12 @@ pub(crate) struct Scene {
 /// Positions of the bodies of one run at the instants that are shown.
 #[derive(Debug)]
 pub(crate) struct Poses {
-    times: Vec<f64>,
+    /// The instants (s).
+    pub(crate) times: Vec<f64>,
     /// Position of what was asked for (axis unit).
     pub(crate) reference: Option<Vec<f64>>,
+    /// What pushes the load (N or N·m).
+    pub(crate) force: Option<Vec<f64>>,
     /// The bodies, the motor's first.
     pub(crate) bodies: Vec<Body>,
 }
@@ -48,10 +51,10 @@ pub(crate) struct Poses {
 /// One body of one run.
 #[derive(Debug)]
 pub(crate) struct Body {
-    /// `motor`, `table` or `load`.
+    /// `motor`, `table` or `load`, or `body` when it is all of them.
     pub(crate) name: &'static str,
-    /// What stands above it, if anything.
-    pub(crate) label: Option<String>,
+    /// Whether its name stands above it.
+    pub(crate) labelled: bool,
     /// Its colour.
     pub(crate) colour: Rgb,
     /// Positions (axis unit), the deflection enlarged.
@@ -59,27 +62,29 @@ pub(crate) struct Body {
 }
 
 const REFERENCES: [&str; 2] = ["reference.position", "setpoint.position"];
+/// Channels of the bodies, the motor's first.
 const BODIES: [&str; 3] = ["motor.position", "table.position", "load.position"];
 
 impl Scene {
     /// The scene of `runs`; `None` when no position was recorded.
     pub(crate) fn of(runs: &[Run<'_>], options: &ViewOptions) -> Option<Self> {
-        let ranges = runs.iter().filter_map(|run| run.range(&BODIES));
+        let ranges = runs.iter().flat_map(bodies).filter_map(|(_, positions)| range(positions));
         let (low, high) = ranges.reduce(|one, two| (one.0.min(two.0), one.1.max(two.1)))?;
         let unit = runs.first()?.recording.about.axis_unit.clone();
         let rotary = unit == "rad";
         let span = if high > low { high - low } else { 1.0 };
         let deflection = runs.iter().map(largest_deflection).fold(0.0, f64::max);
-        let recorded = |run: &Run<'_>| BODIES.iter().filter(|name| run.recording.channel(name).is_some()).count();
-        let bodies = runs.iter().map(recorded).max().unwrap_or(0);
+        let bodies = runs.iter().map(|run| bodies(run).len()).max().unwrap_or(0);
         // As far as the gap between two boxes allows, or about 20° of a disc.
         let room = if rotary { rotary::ROOM } else { linear::ROOM * span };
-        let fitting = if deflection > 0.0 { nice_below(room / deflection).max(1.0) } else { 1.0 };
+        let fitting = if deflection > 0.0 { round_below(room / deflection).max(1.0) } else { 1.0 };
         let exaggeration = options.exaggeration.unwrap_or(fitting);
         // Where the deflection is most of the motion (a ring-down), the rail is as long as it takes for bodies to stay apart.
         let travel = span.max(exaggeration * deflection / linear::ROOM);
-        let title = if deflection > 0.0 { format!("Axis, deflection × {exaggeration}") } else { "Axis".into() };
-        let (eye, target) = if rotary { rotary::camera(runs.len(), bodies) } else { linear::camera(runs.len()) };
+        let enlarged = deflection > 0.0 && (exaggeration - 1.0).abs() > 0.0;
+        let title = if enlarged { format!("Axis, deflection × {exaggeration}") } else { "Axis".into() };
+        let (eye, target) =
+            if rotary { rotary::camera(runs.len(), bodies) } else { linear::camera(runs.len(), bodies) };
         let roots = runs.iter().map(|run| run.path(&["axis"])).collect();
         Some(Self { title, roots, eye, target, rotary, low, travel, exaggeration, unit })
     }
@@ -110,60 +115,64 @@ impl Scene {
     }
 }
 
+/// Name and positions of the bodies of `run`, the motor's first; one when motor and load are one.
+fn bodies<'a>(run: &Run<'a>) -> Vec<(&'static str, &'a [f64])> {
+    let recorded = BODIES.into_iter().filter_map(|name| Some((name, run.recording.channel(name)?)));
+    let mut bodies = recorded.map(|(channel, positions)| (channel.trim_end_matches(".position"), positions));
+    if run.is_rigid() {
+        return bodies.next_back().map(|(_, positions)| ("body", positions)).into_iter().collect();
+    }
+    bodies.collect()
+}
+
 /// Largest deflection of a body against the motor (axis unit).
 fn largest_deflection(run: &Run<'_>) -> f64 {
-    let Some(motor) = run.recording.channel(BODIES[0]) else { return 0.0 };
-    let others = BODIES[1..].iter().filter_map(|name| run.recording.channel(name));
-    let peaks = others.filter_map(|body| {
-        let deflections: Vec<f64> = body.iter().zip(motor).map(|(body, motor)| body - motor).collect();
+    let bodies = bodies(run);
+    let Some((("motor", motor), others)) = bodies.split_first() else { return 0.0 };
+    let peaks = others.iter().filter_map(|(_, body)| {
+        let deflections: Vec<f64> = body.iter().zip(*motor).map(|(body, motor)| body - motor).collect();
         range(&deflections).map(|(low, high)| high.max(-low))
     });
     peaks.fold(0.0, f64::max)
 }
 
-/// Every n-th instant and the last, where all positions are finite: bodies must be seen at the same instant, so an envelope of each would not do.
+/// Every n-th instant and the last, where all positions are finite: bodies must be seen at the same instant, so an
+/// envelope of each would not do.
 fn poses(run: &Run<'_>, index: usize, exaggeration: f64) -> Poses {
     let recording = run.recording;
-    let channels: Vec<&[f64]> = BODIES.iter().filter_map(|name| recording.channel(name)).collect();
-    let whole = |index: &usize| channels.iter().all(|values| values.get(*index).is_some_and(|value| value.is_finite()));
+    let recorded = bodies(run);
+    let is_whole =
+        |index: &usize| recorded.iter().all(|(_, values)| values.get(*index).is_some_and(|value| value.is_finite()));
     let stride = recording.len().div_ceil(POSES).max(1);
     let last = recording.len().checked_sub(1).filter(|last| !last.is_multiple_of(stride));
-    let kept: Vec<usize> = (0..recording.len()).step_by(stride).chain(last).filter(whole).collect();
+    let kept: Vec<usize> = (0..recording.len()).step_by(stride).chain(last).filter(is_whole).collect();
     let pick = |values: &[f64]| kept.iter().map(|index| values[*index]).collect::<Vec<f64>>();
     let mut bodies: Vec<Body> = Vec::new();
-    let outermost = BODIES.into_iter().rfind(|name| recording.channel(name).is_some());
-    for (channel, colour) in BODIES.into_iter().zip(colours(run, index)) {
-        let Some(values) = recording.channel(channel) else { continue };
+    for (name, values) in recorded {
         let mut positions = pick(values);
         if let Some(motor) = bodies.first() {
             for (position, motor) in positions.iter_mut().zip(&motor.positions) {
                 *position = motor + exaggeration * (*position - motor);
             }
         }
-        let name = channel.trim_end_matches(".position");
-        let is_outermost = Some(channel) == outermost;
-        let label = match run.label {
-            None if is_outermost && !bodies.is_empty() => Some(format!("{name}, deflection × {exaggeration}")),
-            None => Some(name.to_owned()),
-            // In a comparison one label per run is enough to read.
-            Some(label) => is_outermost.then(|| label.to_owned()),
-        };
-        bodies.push(Body { name, label, colour, positions });
+        let labelled = run.label.is_none() && name != "body";
+        bodies.push(Body { name, labelled, colour: colour(run, index, name), positions });
     }
     let reference = REFERENCES.into_iter().find_map(|name| recording.channel(name));
     let reference = reference.filter(|values| values.len() == recording.len()).map(pick);
-    Poses { times: kept.iter().map(|index| recording.time_of(*index)).collect(), reference, bodies }
+    let force = recording.channel("disturbance.load").filter(|values| values.len() == recording.len()).map(pick);
+    Poses { times: kept.iter().map(|index| recording.time_of(*index)).collect(), reference, force, bodies }
 }
 
-/// Colours of motor, table and load; shades of the run's colour in a comparison.
-fn colours(run: &Run<'_>, index: usize) -> [Rgb; 3] {
-    if run.label.is_none() {
-        return [style::MOTOR, style::TABLE, style::LOAD];
-    }
-    let shade = |percent: u16| {
-        style::of_run(index).map(|part| u8::try_from(u16::from(part) * percent / 100).unwrap_or(u8::MAX))
+/// Colour of the body `name`; a shade of the run's colour in a comparison.
+fn colour(run: &Run<'_>, index: usize, name: &str) -> Rgb {
+    let (own, percent) = match name {
+        "motor" => (style::MOTOR, 50),
+        "table" => (style::TABLE, 75),
+        _ => (style::LOAD, 100),
     };
-    [shade(50), shade(75), shade(100)]
+    let shade = |part: u8| u8::try_from(u16::from(part) * percent / 100).unwrap_or(u8::MAX);
+    run.label.map_or(own, |_| style::of_run(index).map(shade))
 }
 
 impl Poses {

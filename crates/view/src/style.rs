@@ -13,6 +13,10 @@ pub(crate) const TABLE: Rgb = [46, 184, 150];
 pub(crate) const LOAD: Rgb = [245, 140, 40];
 /// A second quantity beside the main one.
 pub(crate) const AUXILIARY: Rgb = [160, 110, 230];
+/// What pushes from outside.
+pub(crate) const DISTURBANCE: Rgb = [230, 90, 160];
+/// Nothing happens.
+pub(crate) const IDLE: Rgb = [52, 56, 64];
 /// A bound.
 pub(crate) const LIMIT: Rgb = [225, 70, 80];
 

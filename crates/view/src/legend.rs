@@ -1,0 +1,37 @@
+//! Where the legend of a plot covers least.
+use crate::planned::PlannedPlot;
+use rerun::blueprint::components::Corner2D;
+
+/// Part of a plot's width that a legend takes.
+const WIDTH: f64 = 0.18;
+/// Part of a plot's height that one line of a legend takes, and its frame.
+const LINE: f64 = 0.12;
+const FRAME: f64 = 0.06;
+/// Instants at which a curve is looked at in a corner.
+const LOOKS: usize = 400;
+
+/// Corners in order of preference: whether each is at the right and at the top, and the weight of what it covers. Much of
+/// what is to be seen happens at the left.
+const CORNERS: [(Corner2D, bool, bool, usize); 4] = [
+    (Corner2D::RightTop, true, true, 1),
+    (Corner2D::RightBottom, true, false, 1),
+    (Corner2D::LeftTop, false, true, 2),
+    (Corner2D::LeftBottom, false, false, 2),
+];
+
+/// The corner in which the fewest points of the curves lie.
+pub(crate) fn corner(plot: &PlannedPlot<'_>) -> Corner2D {
+    let lines = plot.shown().count();
+    let height = (FRAME + LINE * lines as f64).min(1.0);
+    let (start, end) = plot.time();
+    let (low, high) = plot.range;
+    let covered = |right: bool, top: bool| -> usize {
+        let (from, to) =
+            if right { (end - WIDTH * (end - start), end) } else { (start, start + WIDTH * (end - start)) };
+        let (bottom, ceiling) =
+            if top { (high - height * (high - low), high) } else { (low, low + height * (high - low)) };
+        plot.shown().map(|series| series.hits((from, to), (bottom, ceiling), LOOKS)).sum()
+    };
+    let emptiest = CORNERS.into_iter().min_by_key(|(_, right, top, weight)| weight * covered(*right, *top));
+    emptiest.map_or(Corner2D::RightTop, |(corner, ..)| corner)
+}

@@ -1,0 +1,113 @@
+//! Reads a file back.
+use rerun::blueprint::components::QueryExpression;
+use rerun::components::{Name, Range1D};
+use rerun::external::re_log_encoding::DecoderApp;
+use rerun::external::re_sdk_types::blueprint::archetypes::{ScalarAxis, ViewBlueprint, ViewContents};
+use rerun::log::{Chunk, LogMsg};
+use rerun::{Scalars, StoreKind};
+use servobench_trace::Recording;
+use servobench_view::{ViewOptions, write_rrd};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+/// A view of the blueprint.
+#[derive(Default, Debug, Clone)]
+pub(crate) struct View {
+    /// Its title.
+    pub(crate) title: String,
+    /// Range of its value axis.
+    pub(crate) range: Option<[f64; 2]>,
+}
+
+/// What was read back.
+#[derive(Default)]
+pub(crate) struct Content {
+    /// Entities with data, static or over time.
+    pub(crate) entities: BTreeSet<String>,
+    /// Time (ns) and value of each curve.
+    pub(crate) curves: BTreeMap<String, Vec<(i64, f64)>>,
+    /// Entities in the order of the file.
+    pub(crate) order: Vec<String>,
+    /// Timelines of the data.
+    pub(crate) timelines: BTreeSet<String>,
+    /// The blueprint's views by their ids.
+    pub(crate) views: BTreeMap<String, View>,
+    /// Entities that the blueprint's views ask for.
+    pub(crate) queries: BTreeSet<String>,
+}
+
+impl Content {
+    /// Takes what `chunk` of a blueprint says of a view.
+    fn read_view(&mut self, chunk: &Chunk) {
+        let path = chunk.entity_path().to_string();
+        let Some(id) = path.strip_prefix("/view/").and_then(|rest| rest.split('/').next()) else { return };
+        let names = chunk.iter_component::<Name>(ViewBlueprint::descriptor_display_name().component);
+        let name = names.flat_map(|names| names.as_slice().to_vec()).next();
+        let ranges = chunk.iter_component::<Range1D>(ScalarAxis::descriptor_range().component);
+        let range = ranges.flat_map(|ranges| ranges.as_slice().to_vec()).next();
+        let view = self.views.entry(id.to_owned()).or_default();
+        view.title = name.map_or(std::mem::take(&mut view.title), |name| name.to_string());
+        view.range = range.map(|range| [range.start(), range.end()]).or(view.range);
+    }
+
+    /// The view whose title begins with `name`.
+    pub(crate) fn view(&self, name: &str) -> &View {
+        let found = self.views.values().find(|view| view.title.starts_with(name));
+        found.unwrap_or_else(|| panic!("no view `{name}` in {:?}", self.views.values()))
+    }
+
+    /// Its title.
+    pub(crate) fn title(&self, name: &str) -> &str {
+        &self.view(name).title
+    }
+}
+
+pub(crate) fn read(path: &Path) -> Content {
+    let mut content = Content::default();
+    for message in DecoderApp::decode_eager(BufReader::new(File::open(path).unwrap())).unwrap() {
+        let LogMsg::ArrowMsg(store, message) = message.unwrap() else { continue };
+        let chunk = Chunk::from_arrow_msg(&message).unwrap();
+        if store.kind() == StoreKind::Blueprint {
+            content.read_view(&chunk);
+            let queries = chunk.iter_component::<QueryExpression>(ViewContents::descriptor_query().component);
+            let queries = queries.flat_map(|queries| queries.as_slice().to_vec());
+            content.queries.extend(queries.map(|query| query.0.trim_start_matches("+ ").to_owned()));
+            continue;
+        }
+        let entity = chunk.entity_path().to_string();
+        if entity.starts_with("/__") {
+            continue;
+        }
+        content.order.push(entity.clone());
+        content.timelines.extend(chunk.timelines().keys().map(ToString::to_string));
+        let values = chunk.iter_slices::<f64>(Scalars::descriptor_scalars().component).map(|value| value[0]);
+        if let Some(times) = chunk.timelines().get(&"time".into()) {
+            let curve = content.curves.entry(entity.clone()).or_default();
+            curve.extend(times.times_raw().iter().copied().zip(values));
+        }
+        content.entities.insert(entity);
+    }
+    content.curves.retain(|_, curve| !curve.is_empty());
+    content
+}
+
+pub(crate) fn written(recording: &Recording, options: &ViewOptions) -> Content {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.rrd");
+    write_rrd(recording, &path, options).unwrap();
+    assert_eq!(folder.path().read_dir().unwrap().count(), 1, "nothing is left beside the file");
+    read(&path)
+}
+
+/// Every entity that a view asks for exists; a view that asks for all below an entity asks for something.
+pub(crate) fn assert_views_are_fed(content: &Content) {
+    for query in &content.queries {
+        let found = query.strip_suffix("/**").map_or_else(
+            || content.entities.contains(query),
+            |root| content.entities.iter().any(|entity| entity.starts_with(root)),
+        );
+        assert!(found, "a view asks for {query}, which was not logged");
+    }
+}

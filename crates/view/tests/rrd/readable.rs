@@ -1,0 +1,164 @@
+//! What a person reads: titles, scales, bodies, disturbances.
+use crate::axis::{Case, run};
+use crate::content::{assert_views_are_fed, read, written};
+use crate::{MAX_INSTANTS, example, options};
+use servobench_base::Rate;
+use servobench_trace::{Channel, ChannelSpec, Recording};
+use servobench_view::{ViewOptions, write_comparison_rrd};
+
+/// Largest magnitude of `values`.
+fn peak(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |peak: f64, value| peak.max(value.abs()))
+}
+
+/// The number before `unit` after `word` in `title`.
+fn number(title: &str, word: &str, unit: &str) -> f64 {
+    let rest = &title[title.find(word).unwrap_or_else(|| panic!("no `{word}` in `{title}`")) + word.len()..];
+    let text = rest.split(unit).next().unwrap_or_default().trim();
+    text.parse().unwrap_or_else(|_| panic!("`{text}` of `{title}` is not a number"))
+}
+
+fn add(recording: &mut Recording, name: &str, unit: &str, values: Vec<f64>) {
+    let rate = Rate::new(16_000).unwrap();
+    let spec = ChannelSpec { name: name.into(), unit: unit.into(), writer: "test".into(), rate };
+    recording.channels.push(Channel { spec, values });
+}
+
+/// Oracle: the recording. Three digits are shown.
+#[test]
+fn titles_say_the_unit_and_the_peak() {
+    let recording = example(3);
+    let content = written(&recording, &options());
+    for (title, channel, unit, factor) in [
+        ("Following error (µm), peak ", "following_error.load", "µm", 1e6),
+        ("Motor force (N), peak ", "effort.motor", "N", 1.0),
+        ("Current (Apk), peak ", "current.q", "Apk", 1.0),
+        ("Velocity (m/s), peak ", "load.velocity", "m/s", 1.0),
+        ("Set-point acceleration (m/s²), peak ", "setpoint.acceleration", "m/s²", 1.0),
+    ] {
+        let (said, is) =
+            (number(content.title(title), "peak", unit), factor * peak(recording.channel(channel).unwrap()));
+        assert!((said - is).abs() <= 0.005 * is, "{title}: {said}, {is}");
+    }
+    assert_eq!(content.title("Position"), "Position (m)");
+}
+
+/// Oracle: the metric's definition, load position minus target from the end of the profile on.
+#[test]
+fn residual_vibration_is_the_load_minus_its_target() {
+    let recording = example(3);
+    let content = written(&recording, &ViewOptions { max_instants: usize::MAX, ..options() });
+    let (end, target) = (recording.moves[0].end, recording.moves[0].to);
+    let first = recording.index_at(end);
+    let expected: Vec<f64> = recording.channel("load.position").unwrap()[first..].iter().map(|x| x - target).collect();
+    let curve = &content.curves["/residual_vibration/load"];
+    assert_eq!(curve.len(), expected.len());
+    // The unit is µm: one rounding of a position of a metre is 1e-10 of it.
+    assert!(curve.iter().zip(&expected).all(|((_, shown), x)| (shown - 1e6 * x).abs() < 1e-9 + 1e-12 * shown.abs()));
+    let (low, high) = expected.iter().fold((0.0, 0.0), |(low, high): (f64, f64), x| (low.min(*x), high.max(*x)));
+    let said = number(content.title("Residual vibration after the last move (µm), p-p "), "p-p", "µm");
+    assert!((said - 1e6 * (high - low)).abs() <= 0.005 * said, "{said}");
+}
+
+#[test]
+fn limits_and_windows_are_written_in_one_style() {
+    let recording = example(3);
+    let titled = |window, current| {
+        let limits = vec![("current.q".into(), current), ("following_error.load".into(), 5e-3)];
+        let content = written(&recording, &ViewOptions { window: Some(window), limits, ..options() });
+        ["Residual", "Current", "Following"].map(|name| content.title(name).split(", ").last().unwrap().to_owned())
+    };
+    // Out of sight, each with the prefix that suits it.
+    assert_eq!(titled(10e-3, 18_810.0), ["window ±10 mm", "limit ±18.81 kApk", "limit ±5 mm"]);
+}
+
+/// Oracle: Rerun labels multiples of a power of ten, at a distance of 21 points or more.
+#[test]
+fn every_value_axis_has_two_labels_at_least() {
+    for recording in [example(3), example(4), run(Case { name: "turntable", order: 4, rotary: true, duration: 1.5 })] {
+        let content = written(&recording, &options());
+        let ranges = content.views.values().filter_map(|view| Some((&view.title, view.range?)));
+        let mut count = 0;
+        for (title, [low, high]) in ranges {
+            let labelled = (-12..12).any(|k| {
+                let tick = 10_f64.powi(k);
+                (high / tick).floor() - (low / tick).ceil() >= 1.0 && (high - low) / tick <= 340.0 / 21.0
+            });
+            assert!(labelled, "{title}: {low} to {high}");
+            count += 1;
+        }
+        assert!(count > 10, "{count} plots");
+    }
+}
+
+#[test]
+fn a_comparison_says_the_peak_of_each_run() {
+    let (jerk, snap) = (example(3), example(4));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("compare.rrd");
+    write_comparison_rrd(&[("jerk", &jerk), ("snap", &snap)], &path, &options()).unwrap();
+    let content = read(&path);
+    let title = content.title("Following error");
+    let of = |recording: &Recording| 1e6 * peak(recording.channel("following_error.load").unwrap());
+    let (said_of_jerk, said_of_snap) = (number(title, "peak", "µm (jerk)"), number(title, "µm (jerk), ", "µm (snap)"));
+    assert!((said_of_jerk - of(&jerk)).abs() <= 0.005 * of(&jerk), "{title}: {}", of(&jerk));
+    assert!((said_of_snap - of(&snap)).abs() <= 0.005 * of(&snap), "{title}: {}", of(&snap));
+    // All runs were planned with one acceleration, but only one of them with a limit of the snap.
+    assert!(content.entities.contains("/limit/setpoint_acceleration/upper"));
+    assert!(!content.entities.contains("/limit/setpoint_snap/upper"));
+}
+
+#[test]
+fn one_body_is_drawn_as_one() {
+    let mut recording = example(3);
+    recording.about.bodies = vec!["axis".into()];
+    let motor = recording.channel("motor.position").unwrap().to_vec();
+    recording
+        .channels
+        .iter_mut()
+        .filter(|one| one.spec.name == "load.position")
+        .for_each(|one| one.values.clone_from(&motor));
+    let content = written(&recording, &options());
+    let bodies: Vec<_> = content.entities.iter().filter(|entity| entity.starts_with("/axis/")).collect();
+    assert_eq!(bodies, ["/axis/bed", "/axis/body", "/axis/reference", "/axis/ruler"]);
+    assert_eq!(content.title("Axis"), "Axis");
+    assert!(!content.queries.contains("/following_error/motor"), "the same curve twice");
+    assert!(content.queries.contains("/following_error/load"));
+    assert_views_are_fed(&content);
+}
+
+#[test]
+fn a_disturbance_has_a_plot_a_lane_and_an_arrow() {
+    let mut recording = example(3);
+    let pushed = |k: usize| if (3_200..11_200).contains(&k) { -300.0 } else { 0.0 };
+    let force = (0..recording.len()).map(pushed).collect();
+    add(&mut recording, "disturbance.load", "N", force);
+    let content = written(&recording, &options());
+    assert_eq!(content.title("Disturbance"), "Disturbance on the load (N), peak 300 N");
+    for entity in ["/load_disturbance", "/load_disturbance/load", "/axis/load/disturbance"] {
+        assert!(content.entities.contains(entity), "{entity} is missing in {:?}", content.entities);
+    }
+    assert!(content.queries.contains("/load_disturbance"), "no view shows the lane");
+    assert_views_are_fed(&content);
+}
+
+#[test]
+fn without_a_disturbance_there_is_none_of_it() {
+    let mut recording = example(3);
+    let none = vec![0.0; recording.len()];
+    add(&mut recording, "disturbance.load", "N", none);
+    let content = written(&recording, &options());
+    assert!(!content.queries.contains("/load_disturbance"));
+    assert_views_are_fed(&content);
+}
+
+/// A viewer shows a large file while it reads it.
+#[test]
+fn names_colours_and_bodies_come_before_the_curves() {
+    let content = written(&example(3), &options());
+    let first_curve = content.order.iter().position(|entity| entity == "/position/load").unwrap();
+    let is_early = |entity: &str| content.order.iter().position(|other| other == entity).unwrap() <= first_curve;
+    // The first chunk of a curve's entity is its style; its values, of which there are as many as are kept, come later.
+    assert!(is_early("/axis/load") && is_early("/saturation/voltage") && is_early("/moves"));
+    assert!(content.curves["/position/load"].len() <= MAX_INSTANTS);
+}
