@@ -10,8 +10,8 @@
 //!
 //! The inverter holds its voltage in the stator frame, so in the rotor frame it turns backwards during a tick; its mean
 //! there is the vector at the middle of the tick, shortened by sinc(ωh/2). With that mean the currents take one step of
-//! the trapezoidal rule, solved in closed form; the torque is the mean of both ends. Second order in the tick, exact in
-//! steady state, and stable for every tick, however small L/R is.
+//! the trapezoidal rule, solved in closed form; the torque is the mean of both ends. Second order in the tick, stable
+//! for every tick, however small L/R is, and in steady state the mean current is exact.
 use servobench_base::{AlphaBeta, Dq, ParamError, Rotation, positive};
 
 /// Parameters of the motor; constant during a run.
