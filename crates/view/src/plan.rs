@@ -3,6 +3,7 @@ use crate::catalogue::{BOUND, Curve, Headline, PLOTS, Page, Plot};
 use crate::options::ViewOptions;
 use crate::planned::{Bound, Frame, PlannedPlot};
 use crate::run::Run;
+use crate::scale::Scale;
 use crate::series::{Role, Series, Values};
 use crate::style;
 
@@ -118,6 +119,11 @@ fn residual<'a>(runs: &[Run<'a>], options: &ViewOptions) -> Option<PlannedPlot<'
         bound: options.window.map(|value| Bound { word: "window", value, both_sides: true }),
     };
     let mut planned = PlannedPlot::new(&frame, series);
-    planned.own_time = Some(planned.time());
+    let (start, end) = planned.time();
+    planned.own_time = Some((start, end));
+    if start > 0.0 {
+        // Rerun leaves the seconds out at most ticks of a time axis.
+        planned.title = format!("{}, from {}", planned.title, Scale::for_peak("s", start).show(start, 3));
+    }
     Some(planned)
 }

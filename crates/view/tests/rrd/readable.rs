@@ -58,6 +58,8 @@ fn residual_vibration_is_the_load_minus_its_target() {
     let (low, high) = expected.iter().fold((0.0, 0.0), |(low, high): (f64, f64), x| (low.min(*x), high.max(*x)));
     let said = number(content.title("Residual vibration after the last move (µm), p-p "), "p-p", "µm");
     assert!((said - 1e6 * (high - low)).abs() <= 0.005 * said, "{said}");
+    let from = number(content.title("Residual"), "from", "s");
+    assert!((from - end).abs() <= 0.005 * end, "{from} instead of {end}");
 }
 
 #[test]
@@ -66,7 +68,8 @@ fn limits_and_windows_are_written_in_one_style() {
     let titled = |window, current| {
         let limits = vec![("current.q".into(), current), ("following_error.load".into(), 5e-3)];
         let content = written(&recording, &ViewOptions { window: Some(window), limits, ..options() });
-        ["Residual", "Current", "Following"].map(|name| content.title(name).split(", ").last().unwrap().to_owned())
+        let bound = |title: &str| title.split(", ").find(|part| part.contains('±')).unwrap().to_owned();
+        ["Residual", "Current", "Following"].map(|name| bound(content.title(name)))
     };
     // Out of sight, each with the prefix that suits it.
     assert_eq!(titled(10e-3, 18_810.0), ["window ±10 mm", "limit ±18.81 kApk", "limit ±5 mm"]);
