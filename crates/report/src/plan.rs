@@ -7,6 +7,7 @@ mod json;
 mod panel;
 mod table;
 mod ticks;
+mod times;
 
 use servobench_motion::{Limits, Profile};
 
@@ -65,12 +66,6 @@ impl PlannedMove {
     fn steps(&self) -> impl Iterator<Item = f64> {
         (0..=STEPS).map(|k| self.profile.duration() * f64::from(k) / f64::from(STEPS))
     }
-}
-
-/// To the nanosecond: a plan is read to be typed in somewhere else.
-fn seconds(value: f64) -> String {
-    let text = format!("{value:.9}");
-    format!("{} s", text.trim_end_matches('0').trim_end_matches('.'))
 }
 
 /// Moves for the tests.

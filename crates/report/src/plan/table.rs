@@ -1,5 +1,6 @@
 //! A plan for a person.
-use super::{NAMES, PlannedMove, seconds};
+use super::times::Times;
+use super::{NAMES, PlannedMove};
 use servobench_metrics::Quantity;
 
 impl PlannedMove {
@@ -8,16 +9,19 @@ impl PlannedMove {
     pub fn table(&self) -> String {
         let profile = &self.profile;
         let n = profile.order().derivative();
-        let mut lines = vec![format!(
-            "move of {} in {}, order {n}",
-            Quantity::new(profile.distance(), self.unit),
-            seconds(profile.duration())
-        )];
+        let segments = profile.segments().flat_map(|segment| [segment.start, segment.length]);
+        let all = self.dwells().map(|(.., time)| time).chain(segments).chain([profile.duration()]);
+        let times = Times::new(profile.duration(), all);
+        let distance = Quantity::new(profile.distance(), self.unit);
+        let mut lines = vec![format!("move of {distance} in {}, order {n}", times.show(profile.duration()))];
         if let Some(samples) = profile.samples() {
-            lines.push(format!("{} samples of {}", samples.total(), seconds(samples.time)));
+            let time = Times::new(samples.time, [samples.time]).show(samples.time);
+            lines.push(format!("{} samples of {time}", samples.total()));
         }
         lines.push(String::new());
-        lines.extend(self.dwells().map(|(name, meaning, value)| format!("{name}  {:>12}   {meaning}", seconds(value))));
+        lines.extend(
+            self.dwells().map(|(name, meaning, value)| format!("{name}  {:>13}   {meaning}", times.show(value))),
+        );
         lines.push(String::new());
         lines.push(format!("{:<13} {:>16} {:>16} {:>9}", "", "peak", "limit", "of limit"));
         for (i, (peak, limit)) in self.peaks().zip(self.limits()).enumerate() {
@@ -26,11 +30,11 @@ impl PlannedMove {
             lines.push(format!("{name:<13} {peak_text:>16} {limit_text:>16} {:>7.2} %", 100.0 * peak / limit));
         }
         lines.push(String::new());
-        lines.push(format!("{:>12} {:>12}  {}", "start", "length", NAMES[n]));
+        lines.push(format!("{:>13} {:>13}  {}", "start", "length", NAMES[n]));
         let unit = self.unit_of(n);
         lines.extend(profile.segments().map(|segment| {
             let value = Quantity::new(segment.value, &unit);
-            format!("{:>12} {:>12}  {value}", seconds(segment.start), seconds(segment.length))
+            format!("{:>13} {:>13}  {value}", times.show(segment.start), times.show(segment.length))
         }));
         lines.join("\n") + "\n"
     }
@@ -45,12 +49,12 @@ mod tests {
         let table = moves::sampled(1e-3).table();
         insta::assert_snapshot!(table, @r#"
         move of 1.00 m in 1.35 s, order 4
-        1350 samples of 0.001 s
+        1350 samples of 1 ms
 
-        t_d        0.05 s   snap at its peak
-        t_j        0.05 s   jerk at its peak
-        t_a        0.05 s   acceleration at its peak
-        t_v        0.65 s   velocity at its peak
+        t_d         0.05 s   snap at its peak
+        t_j         0.05 s   jerk at its peak
+        t_a         0.05 s   acceleration at its peak
+        t_v         0.65 s   velocity at its peak
 
                                   peak            limit  of limit
         velocity              1.00 m/s         1.00 m/s  100.00 %
@@ -58,22 +62,22 @@ mod tests {
         jerk                 50.0 m/s³        50.0 m/s³  100.00 %
         snap                 1000 m/s⁴        1000 m/s⁴  100.00 %
 
-               start       length  snap
-                 0 s       0.05 s  1000 m/s⁴
-              0.05 s       0.05 s  0 m/s⁴
-               0.1 s       0.05 s  -1000 m/s⁴
-              0.15 s       0.05 s  0 m/s⁴
-               0.2 s       0.05 s  -1000 m/s⁴
-              0.25 s       0.05 s  0 m/s⁴
-               0.3 s       0.05 s  1000 m/s⁴
-              0.35 s       0.65 s  0 m/s⁴
-                 1 s       0.05 s  -1000 m/s⁴
-              1.05 s       0.05 s  0 m/s⁴
-               1.1 s       0.05 s  1000 m/s⁴
-              1.15 s       0.05 s  0 m/s⁴
-               1.2 s       0.05 s  1000 m/s⁴
-              1.25 s       0.05 s  0 m/s⁴
-               1.3 s       0.05 s  -1000 m/s⁴
+                start        length  snap
+               0.00 s        0.05 s  1000 m/s⁴
+               0.05 s        0.05 s  0 m/s⁴
+               0.10 s        0.05 s  -1000 m/s⁴
+               0.15 s        0.05 s  0 m/s⁴
+               0.20 s        0.05 s  -1000 m/s⁴
+               0.25 s        0.05 s  0 m/s⁴
+               0.30 s        0.05 s  1000 m/s⁴
+               0.35 s        0.65 s  0 m/s⁴
+               1.00 s        0.05 s  -1000 m/s⁴
+               1.05 s        0.05 s  0 m/s⁴
+               1.10 s        0.05 s  1000 m/s⁴
+               1.15 s        0.05 s  0 m/s⁴
+               1.20 s        0.05 s  1000 m/s⁴
+               1.25 s        0.05 s  0 m/s⁴
+               1.30 s        0.05 s  -1000 m/s⁴
         "#);
         assert!(table.lines().all(|line| line.chars().count() <= 80), "{table}");
     }
