@@ -1,5 +1,6 @@
 //! Where the legend of a plot covers least.
 use crate::planned::PlannedPlot;
+use crate::series::Role;
 use rerun::blueprint::components::Corner2D;
 
 /// Part of a plot's width that a legend takes.
@@ -30,7 +31,9 @@ pub(crate) fn corner(plot: &PlannedPlot<'_>) -> Corner2D {
             if right { (end - WIDTH * (end - start), end) } else { (start, start + WIDTH * (end - start)) };
         let (bottom, ceiling) =
             if top { (high - height * (high - low), high) } else { (low, low + height * (high - low)) };
-        plot.shown().map(|series| series.hits((from, to), (bottom, ceiling), LOOKS)).sum()
+        // Of a bound, the rest of the line says as much.
+        let curves = plot.shown().filter(|series| series.role != Role::Bound);
+        curves.map(|series| series.hits((from, to), (bottom, ceiling), LOOKS)).sum()
     };
     let emptiest = CORNERS.into_iter().min_by_key(|(_, right, top, weight)| weight * covered(*right, *top));
     emptiest.map_or(Corner2D::RightTop, |(corner, ..)| corner)

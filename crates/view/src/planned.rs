@@ -1,5 +1,5 @@
 //! A plot that has its curves: its unit, its title, the range of its axis.
-use crate::catalogue::{Headline, Page};
+use crate::catalogue::{BOUND, Headline, Page};
 use crate::scale::{Scale, shown_unit};
 use crate::series::{Role, Series, Values};
 use crate::style;
@@ -141,13 +141,10 @@ impl<'a> PlannedPlot<'a> {
 
     /// Takes recorded bounds out of the plot into the title when they are out of sight.
     fn place_recorded_bounds(&mut self, peak: f64, unit: &str) {
-        let bounds = || self.series.iter().filter(|series| series.role == Role::Bound);
-        let nearest = bounds().filter_map(Series::range).map(|(low, _)| low).reduce(f64::min);
-        let (Some(nearest), Some(bound)) = (nearest.filter(|nearest| *nearest > IN_SIGHT * peak), bounds().next())
-        else {
-            return;
-        };
-        self.title = format!("{}, {} {}", self.title, bound.name, Scale::for_peak(unit, nearest).show(nearest, 4));
+        let bounds = self.series.iter().filter(|series| series.role == Role::Bound);
+        let nearest = bounds.filter_map(Series::range).map(|(low, _)| low).reduce(f64::min);
+        let Some(nearest) = nearest.filter(|nearest| *nearest > IN_SIGHT * peak) else { return };
+        self.title = format!("{}, {BOUND} {}", self.title, Scale::for_peak(unit, nearest).show(nearest, 4));
         self.series.iter_mut().filter(|series| series.role == Role::Bound).for_each(|series| series.shown = false);
     }
 }

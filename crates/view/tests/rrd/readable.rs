@@ -106,6 +106,7 @@ fn a_comparison_says_the_peak_of_each_run() {
     let (said_of_jerk, said_of_snap) = (number(title, "peak", "µm (jerk)"), number(title, "µm (jerk), ", "µm (snap)"));
     assert!((said_of_jerk - of(&jerk)).abs() <= 0.005 * of(&jerk), "{title}: {}", of(&jerk));
     assert!((said_of_snap - of(&snap)).abs() <= 0.005 * of(&snap), "{title}: {}", of(&snap));
+    assert!(content.title("Voltage").ends_with("(snap), limit 311.8 Vpk"), "a bound of all runs");
     // All runs were planned with one acceleration, but only one of them with a limit of the snap.
     assert!(content.entities.contains("/limit/setpoint_acceleration/upper"));
     assert!(!content.entities.contains("/limit/setpoint_snap/upper"));
