@@ -141,8 +141,9 @@ pub(crate) struct ViewArgs {
 pub(crate) struct WorkerArgs {
     #[arg(long, value_parser = engine())]
     pub(crate) engine: EngineName,
+    /// Without it the scenario is only checked.
     #[arg(long)]
-    pub(crate) recording: PathBuf,
+    pub(crate) recording: Option<PathBuf>,
     #[arg(long)]
     pub(crate) name: String,
     #[arg(long)]

@@ -6,6 +6,13 @@ use std::io::IsTerminal;
 /// Columns that a diagnostic is laid out for.
 const WIDTH: usize = 80;
 
+/// Everything that is wrong with a scenario, with its name and the number of mistakes.
+pub(crate) fn mistakes(mistakes: &[Diagnostic], sources: &Sources) -> String {
+    let plural = if mistakes.len() == 1 { "mistake" } else { "mistakes" };
+    let name = sources.name(sources.scenario());
+    format!("{name}: {} {plural}\n{}", mistakes.len(), render(mistakes, sources, Severity::Error))
+}
+
 /// The diagnostics as a person reads them, one after the other.
 pub(crate) fn render(diagnostics: &[Diagnostic], sources: &Sources, severity: Severity) -> String {
     let theme = if std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none() {

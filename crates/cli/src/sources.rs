@@ -1,6 +1,6 @@
 //! Scenario files: from files, from folders, or the demo that is embedded.
 use crate::console::say;
-use crate::diagnostics::render;
+use crate::diagnostics::{mistakes, render};
 use crate::exit::CliError;
 use miette::Severity;
 use servobench_scenario::{LoadError, Loaded};
@@ -45,8 +45,12 @@ fn search(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), CliError> {
 
 /// Loads every file; the mistakes of all of them are reported together, and warnings go to standard error.
 pub(crate) fn load(paths: &[PathBuf]) -> Result<Vec<Source>, CliError> {
-    let loaded = files(paths)?.into_iter().map(|path| shown(servobench_scenario::load(&path)));
-    collect(loaded)
+    collect(files(paths)?.iter().map(|path| read(path)))
+}
+
+/// Loads one file.
+pub(crate) fn read(path: &Path) -> Result<Loaded, CliError> {
+    shown(servobench_scenario::load(path))
 }
 
 /// The embedded demo.
@@ -78,13 +82,7 @@ fn shown(loaded: Result<Loaded, LoadError>) -> Result<Loaded, CliError> {
             }
             Ok(loaded)
         }
-        Err(LoadError::Invalid(invalid)) => {
-            let count = invalid.diagnostics.len();
-            let plural = if count == 1 { "mistake" } else { "mistakes" };
-            let name = invalid.sources.name(invalid.sources.scenario());
-            let mistakes = render(&invalid.diagnostics, &invalid.sources, Severity::Error);
-            Err(CliError::Input(format!("{name}: {count} {plural}\n{mistakes}")))
-        }
+        Err(LoadError::Invalid(invalid)) => Err(CliError::Input(mistakes(&invalid.diagnostics, &invalid.sources))),
         Err(error @ LoadError::Read { .. }) => Err(CliError::Input(error.to_string())),
     }
 }

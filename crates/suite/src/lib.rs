@@ -1,5 +1,6 @@
 //! Many scenarios: expansion into jobs, parallel workers, isolation, comparison.
 
+mod check;
 mod compare;
 mod engines;
 mod error;
@@ -10,6 +11,7 @@ mod panicked;
 mod pool;
 pub mod worker;
 
+pub use check::{Objection, check};
 pub use compare::{CompareError, only_setpoints_differ, to_equal_duration};
 pub use engines::{EngineMissing, Engines, Installed};
 pub use error::RunError;

@@ -1,11 +1,14 @@
 //! A run in a process of its own: the worker is this same program, told one scenario and where its recording goes.
 //!
 //! ```text
-//! servobench worker --engine <name> --recording <file> --name <scenario> [--path <file>] [--durations <s>,<s>…]
+//! servobench worker --engine <name> [--recording <file>] --name <scenario> [--path <file>] [--durations <s>,<s>…]
 //! stdin:  text of the scenario
 //! stdout: JSON lines, {"progress": 0.25} …, and at last {"end": "done" or {"input": "<why>"} or {"failed": "<why>"}}
 //! exit code: 0 done, 2 the input is wrong, 3 ended early (the recording is there as far as it came)
 //! ```
+//! Without `--recording` nothing runs: the worker tells what keeps the scenario from being built,
+//! `{"objections": […]}`, and is done.
+//!
 //! What the worker says of its end is what the run is reported with, so that a reason does not depend on where a run
 //! happened. An end without a word is that of a native library; it costs this run only, and what the library wrote on
 //! standard error is reported. A worker that says nothing for [`WorkerCommand::patience`] is ended.
@@ -14,7 +17,7 @@ mod listener;
 mod message;
 mod serve;
 
-pub(crate) use call::call;
+pub(crate) use call::{ask, call};
 pub use message::End;
 pub use serve::{Order, serve};
 

@@ -42,7 +42,7 @@ fn order(folder: &Path) -> Order {
         path: None,
         engine: EngineName::Exact,
         durations: vec![],
-        recording: folder.join("wild.parquet"),
+        recording: Some(folder.join("wild.parquet")),
     }
 }
 
@@ -76,7 +76,7 @@ fn a_reason_and_a_recording_do_not_depend_on_where_the_run_happened() {
     assert_eq!(served(&order, WILD), End::Failed(reason));
     let own = folder.path().join("here.parquet");
     until_then.unwrap().0.write_parquet(&own).unwrap();
-    assert!(std::fs::read(own).unwrap() == std::fs::read(&order.recording).unwrap(), "up to where it came");
+    assert!(std::fs::read(own).unwrap() == std::fs::read(order.recording.unwrap()).unwrap(), "up to where it came");
 }
 
 #[test]
@@ -84,7 +84,7 @@ fn a_run_that_comes_to_its_end_is_done() {
     let folder = tempfile::tempdir().unwrap();
     let order = Order { durations: vec![1.5], ..order(folder.path()) };
     assert_eq!(served(&order, &WILD.replace("2 MHz", "20 Hz")), End::Done);
-    let recording = Recording::read_parquet(&order.recording).unwrap();
+    let recording = Recording::read_parquet(order.recording.as_deref().unwrap()).unwrap();
     assert!((recording.moves[0].end - 1.5).abs() < 1e-12 && recording.about.scenario == "wild");
 }
 
@@ -98,4 +98,19 @@ fn wrong_input_is_told_apart_from_a_failure() {
     assert!(matches!(&end, End::Input(why) if why.contains("`duration`")), "{end:?}");
     let end = served(&Order { engine: EngineName::Rapier, ..order(folder.path()) }, WILD);
     assert!(matches!(&end, End::Failed(why) if why.contains("--features rapier")), "{end:?}");
+}
+
+/// The move cannot be made in 2 ms; nothing runs to find that out.
+#[test]
+fn without_a_recording_the_scenario_is_only_checked() {
+    let order = Order { durations: vec![0.002], recording: None, ..order("none".as_ref()) };
+    let mut out = Vec::new();
+    assert_eq!(serve(&order, WILD, &ENGINES, &mut out), End::Done);
+    let lines: Vec<serde_json::Value> =
+        String::from_utf8(out).unwrap().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let [said, end] = &lines[..] else { panic!("{lines:?}") };
+    assert_eq!(end, &serde_json::json!({ "end": "done" }));
+    let [objection] = &said["objections"].as_array().unwrap()[..] else { panic!("{said}") };
+    assert_eq!(objection["key"], "program.0");
+    assert!(objection["message"].as_str().unwrap().contains("`duration` must be at least"), "{objection}");
 }

@@ -2,6 +2,7 @@
 use super::listener::{Listener, Silence, end};
 use super::message::{End, Message};
 use super::{WorkerCommand, WorkerError};
+use crate::check::Objection;
 use crate::execute::Recorded;
 use crate::job::Job;
 use servobench_trace::Recording;
@@ -13,7 +14,11 @@ use std::thread;
 /// Runs `job` in a worker process.
 pub(crate) fn call(command: &WorkerCommand, job: &Job, progress: &mut dyn FnMut(f64)) -> Result<Recorded, WorkerError> {
     let path = command.folder.join(format!("{}.{}.worker.parquet", job.id, std::process::id()));
-    let ended = converse(command, job, &path, progress);
+    let ended = converse(command, job, Some(&path), &mut |message| {
+        if let Message::Progress(share) = message {
+            progress(share);
+        }
+    });
     let recording = Recording::read_parquet(&path);
     // Nothing depends on the file any more; if it cannot be removed it is only in the way.
     std::fs::remove_file(&path).ok();
@@ -28,19 +33,30 @@ pub(crate) fn call(command: &WorkerCommand, job: &Job, progress: &mut dyn FnMut(
     }
 }
 
-/// Starts the worker, feeds it and listens to it to its end.
+/// Asks a worker process what keeps `job` from being built.
+pub(crate) fn ask(command: &WorkerCommand, job: &Job) -> Result<Vec<Objection>, WorkerError> {
+    let mut all = Vec::new();
+    converse(command, job, None, &mut |message| {
+        if let Message::Objections(objections) = message {
+            all.extend(objections);
+        }
+    })?;
+    Ok(all)
+}
+
+/// Starts the worker, feeds it and listens to it to its end; `hear` gets all but its last word.
 fn converse(
     command: &WorkerCommand,
     job: &Job,
-    recording: &Path,
-    progress: &mut dyn FnMut(f64),
+    recording: Option<&Path>,
+    hear: &mut dyn FnMut(Message),
 ) -> Result<(), WorkerError> {
     let cannot = |action| {
         let program = command.program.clone();
         move |source| WorkerError::Process { action, program, source }
     };
     let mut child = start(command, job, recording).map_err(cannot("start"))?;
-    let heard = hear(&mut child, command, job, progress);
+    let heard = listen(&mut child, command, job, hear);
     if let Err(WorkerError::Stalled { .. }) = heard {
         // One that ended in the meantime cannot be ended, which is as good.
         child.kill().ok();
@@ -49,10 +65,12 @@ fn converse(
     heard
 }
 
-fn start(command: &WorkerCommand, job: &Job, recording: &Path) -> io::Result<Child> {
+fn start(command: &WorkerCommand, job: &Job, recording: Option<&Path>) -> io::Result<Child> {
     let mut worker = Command::new(&command.program);
     worker.arg("worker").args(["--engine", job.engine.as_str(), "--name", &job.scenario.name]);
-    worker.arg("--recording").arg(recording);
+    if let Some(recording) = recording {
+        worker.arg("--recording").arg(recording);
+    }
     if let Some(path) = &job.scenario.path {
         worker.arg("--path").arg(path);
     }
@@ -64,12 +82,12 @@ fn start(command: &WorkerCommand, job: &Job, recording: &Path) -> io::Result<Chi
     worker.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()
 }
 
-/// Feeds the worker, and passes its progress on until its last word and its end.
-fn hear(
+/// Feeds the worker, and passes on what it says until its last word and its end.
+fn listen(
     child: &mut Child,
     command: &WorkerCommand,
     job: &Job,
-    progress: &mut dyn FnMut(f64),
+    hear: &mut dyn FnMut(Message),
 ) -> Result<(), WorkerError> {
     let cannot = |action, source| WorkerError::Process { action, program: command.program.clone(), source };
     let stalled = |Silence| WorkerError::Stalled { patience: command.patience };
@@ -84,8 +102,8 @@ fn hear(
     let mut last = None;
     while let Some(message) = listener.next(command.patience).map_err(stalled)? {
         match message {
-            Message::Progress(share) => progress(share),
             Message::End(end) => last = Some(end),
+            other => hear(other),
         }
     }
     let status = end(child, command.patience).map_err(|error| cannot("wait for", error))?.map_err(stalled)?;

@@ -1,4 +1,5 @@
 //! What a worker says.
+use crate::check::Objection;
 use serde::{Deserialize, Serialize};
 
 /// One line of a worker's standard output.
@@ -7,6 +8,8 @@ use serde::{Deserialize, Serialize};
 pub(super) enum Message {
     /// Share that is done, from 0 to 1.
     Progress(f64),
+    /// What keeps the scenario from being built.
+    Objections(Vec<Objection>),
     /// The last word.
     End(End),
 }
@@ -15,7 +18,7 @@ pub(super) enum Message {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum End {
-    /// The recording is complete.
+    /// The recording, or the answer, is complete.
     Done,
     /// The input is wrong: why.
     Input(String),
@@ -41,9 +44,14 @@ mod tests {
 
     #[test]
     fn every_message_is_one_line_that_reads_back() {
+        let objection = Objection { key: "axis".into(), line: Some(2), message: "no".into(), way_out: String::new() };
         let why = "engine `mujoco`: \"half\n a µm\" too far".to_owned();
         for (message, line) in [
             (Message::Progress(0.25), "{\"progress\":0.25}\n"),
+            (
+                Message::Objections(vec![objection]),
+                "{\"objections\":[{\"key\":\"axis\",\"line\":2,\"message\":\"no\",\"way_out\":\"\"}]}\n",
+            ),
             (Message::End(End::Done), "{\"end\":\"done\"}\n"),
             (Message::End(End::Input("no".into())), "{\"end\":{\"input\":\"no\"}}\n"),
             (

@@ -1,10 +1,12 @@
 //! The worker's side.
 use super::message::{End, Message};
+use crate::check::objections;
 use crate::engines::Engines;
 use crate::error::RunError;
 use crate::execute::run_here;
 use crate::job::slow_to;
 use crate::panicked::caught;
+use servobench_plant::Engine;
 use servobench_scenario::{EngineName, LoadError, Scenario};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -20,8 +22,8 @@ pub struct Order {
     pub engine: EngineName,
     /// Durations that the moves are slowed to (s); empty: as they are.
     pub durations: Vec<f64>,
-    /// Where the recording goes.
-    pub recording: PathBuf,
+    /// Where the recording goes. Without one nothing runs, and only what keeps the scenario from being built is told.
+    pub recording: Option<PathBuf>,
 }
 
 /// Runs the scenario in `text` as `order` says, and tells the caller on `out`: progress, and at last how it ended.
@@ -32,28 +34,39 @@ pub fn serve(order: &Order, text: &str, engines: &Engines, mut out: impl Write) 
         message.line().map_err(std::io::Error::from).and_then(|line| out.write_all(line.as_bytes())).ok();
         out.flush().ok();
     };
-    let run = caught(|| run(order, text, engines, &mut |share| say(&Message::Progress(share))));
-    let end = run.unwrap_or_else(|panic| End::Failed(panic.to_string()));
+    let end = caught(|| obey(order, text, engines, &mut say));
+    let end = end.unwrap_or_else(|panic| End::Failed(panic.to_string()));
     say(&Message::End(end.clone()));
     end
 }
 
-fn run(order: &Order, text: &str, engines: &Engines, progress: &mut dyn FnMut(f64)) -> End {
+/// Runs or checks.
+fn obey(order: &Order, text: &str, engines: &Engines, say: &mut dyn FnMut(&Message)) -> End {
     let scenario = match read(order, text) {
         Ok(scenario) => scenario,
         Err(error) => return End::Input(error.to_string()),
     };
-    let installed = engines.get(order.engine).map_err(RunError::from);
-    let (recording, failure) = match installed.and_then(|installed| run_here(&scenario, installed.engine, progress)) {
-        Ok(recorded) => recorded,
-        Err(error) if error.is_input() => return End::Input(error.to_string()),
-        Err(error) => return End::Failed(error.to_string()),
-    };
-    match (failure, recording.write_parquet(&order.recording)) {
+    let done = engines.get(order.engine).map_err(RunError::from).and_then(|installed| match &order.recording {
+        Some(path) => run(&scenario, installed.engine, path, say),
+        None => objections(&scenario, installed.engine).map(|all| {
+            say(&Message::Objections(all));
+            End::Done
+        }),
+    });
+    done.unwrap_or_else(
+        |error| {
+            if error.is_input() { End::Input(error.to_string()) } else { End::Failed(error.to_string()) }
+        },
+    )
+}
+
+fn run(scenario: &Scenario, engine: &dyn Engine, path: &Path, say: &mut dyn FnMut(&Message)) -> Result<End, RunError> {
+    let (recording, failure) = run_here(scenario, engine, &mut |share| say(&Message::Progress(share)))?;
+    Ok(match (failure, recording.write_parquet(path)) {
         (Some(failure), _) => End::Failed(failure.to_string()),
         (None, Err(error)) => End::Failed(error.to_string()),
         (None, Ok(())) => End::Done,
-    }
+    })
 }
 
 /// The scenario as the caller has it.

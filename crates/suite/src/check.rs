@@ -1,0 +1,117 @@
+//! What keeps a scenario from being built on an engine, told without running it.
+use crate::engines::Engines;
+use crate::error::RunError;
+use crate::job::Job;
+use crate::panicked::caught;
+use crate::worker::{self, WorkerCommand, WorkerError};
+use serde::{Deserialize, Serialize};
+use servobench_plant::{Engine, MechanicsError, Refusal, RefusedAt};
+use servobench_scenario::{AxisMechanics, Scenario};
+use servobench_sim::{Bench, BuildError};
+
+/// Something that keeps a scenario from being built.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Objection {
+    /// Key of the scenario that is to blame: `axis.mjcf.file`, `program.0`.
+    pub key: String,
+    /// Line, from 1, of the MJCF file that is to blame; without one it is the key itself.
+    pub line: Option<u32>,
+    /// What is wrong.
+    pub message: String,
+    /// What to do about it; empty when the message says so.
+    pub way_out: String,
+}
+
+/// Everything that keeps `job` from being built, as far as it can be told at once; nothing when it can be. An isolated
+/// engine is asked in a worker process.
+///
+/// # Errors
+/// [`RunError`] when nobody can tell: the build lacks the engine, a library does not load, the worker cannot be
+/// spoken to.
+pub fn check(job: &Job, engines: &Engines, worker: &WorkerCommand) -> Result<Vec<Objection>, RunError> {
+    let installed = engines.get(job.engine)?;
+    if !installed.isolated {
+        return caught(|| objections(&job.scenario, installed.engine))?;
+    }
+    match worker::ask(worker, job) {
+        // What a library cannot bear in a user's own file is the file's fault, as far as anybody can tell.
+        Err(error @ (WorkerError::Ended { .. } | WorkerError::Stalled { .. })) if has_mjcf(&job.scenario) => {
+            Ok(vec![Objection::new(model_key(&job.scenario), error.to_string())])
+        }
+        answer => Ok(answer?),
+    }
+}
+
+/// The objections of `engine`, asked in this process.
+pub(crate) fn objections(scenario: &Scenario, engine: &dyn Engine) -> Result<Vec<Objection>, RunError> {
+    let mut all = Vec::new();
+    for error in Bench::objections(scenario, engine) {
+        // A library that does not load is not the scenario's fault.
+        if matches!(error, BuildError::Mechanics(MechanicsError::Native { .. })) {
+            return Err(error.into());
+        }
+        all.extend(of(&error, scenario));
+    }
+    Ok(all)
+}
+
+/// What `error` objects to, each thing at its place.
+fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
+    let key = match error {
+        BuildError::Mechanics(MechanicsError::Refused { engine, refusals, way_out, .. }) => {
+            return refusals.iter().map(|refusal| Objection::to(refusal, engine, way_out, scenario)).collect();
+        }
+        BuildError::Mechanics(MechanicsError::Unsupported { engine, what, way_out }) => {
+            let message = format!("engine `{engine}` does not support {what}");
+            return vec![Objection { way_out: way_out.clone(), ..Objection::new(model_key(scenario), message) }];
+        }
+        // The firmware calls its parameters as the file does.
+        BuildError::Parameter(error) if error.name.contains('.') => error.name.to_owned(),
+        BuildError::Mechanics(_) | BuildError::Parameter(_) => model_key(scenario).to_owned(),
+        BuildError::Plan { index, .. } | BuildError::TooLong { step: Some(index), .. } => format!("program.{index}"),
+        BuildError::UnknownChannel { .. } => "record.channels".to_owned(),
+        BuildError::TooLong { step: None, .. } => "run.duration".to_owned(),
+        BuildError::IdleDisturbance { index, .. } => format!("disturbance.{index}"),
+        BuildError::TooMuchMemory { .. } => "record".to_owned(),
+        BuildError::Rate(_) => "drive".to_owned(),
+    };
+    vec![Objection::new(&key, error.to_string())]
+}
+
+impl Objection {
+    fn new(key: &str, message: String) -> Self {
+        Self { key: key.to_owned(), line: None, message, way_out: String::new() }
+    }
+
+    /// What `engine` refuses in the MJCF file of `scenario`.
+    fn to(refusal: &Refusal, engine: &str, way_out: &str, scenario: &Scenario) -> Self {
+        let (key, line) = match &refusal.place {
+            RefusedAt::Line(line) => (model_key(scenario), Some(*line)),
+            RefusedAt::Name(name) => (name_key(name, scenario).unwrap_or(model_key(scenario)), None),
+            RefusedAt::File => (model_key(scenario), None),
+        };
+        let message = format!("engine `{engine}`: {}", refusal.message);
+        Self { key: key.to_owned(), line, message, way_out: way_out.to_owned() }
+    }
+}
+
+fn has_mjcf(scenario: &Scenario) -> bool {
+    matches!(scenario.axis.mechanics, AxisMechanics::Mjcf(_))
+}
+
+/// Key of what the engine simulates.
+fn model_key(scenario: &Scenario) -> &'static str {
+    if has_mjcf(scenario) { "axis.mjcf.file" } else { "axis" }
+}
+
+/// Key that gives the name of a joint or an actuator.
+fn name_key(name: &str, scenario: &Scenario) -> Option<&'static str> {
+    let AxisMechanics::Mjcf(mjcf) = &scenario.axis.mechanics else { return None };
+    [
+        ("axis.mjcf.motor_joint", &mjcf.motor_joint),
+        ("axis.mjcf.load_joint", &mjcf.load_joint),
+        ("axis.mjcf.actuator", &mjcf.actuator),
+    ]
+    .into_iter()
+    .find_map(|(key, own)| (own == name).then_some(key))
+}

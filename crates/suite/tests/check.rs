@@ -1,0 +1,104 @@
+//! What an engine objects to, and the key or line that is to blame.
+use servobench_plant::{Engine, Mechanics, MechanicsError, MechanicsSetup, Refusal, RefusedAt};
+use servobench_scenario::{AxisMechanics, Mjcf};
+use servobench_suite::{Engines, Installed, Job, Objection, RunError, Source, WorkerCommand, check, jobs};
+use std::time::Duration;
+
+const TEXT: &str = r#"
+engine = "rapier"
+[run]
+base_rate = "1 kHz"
+[axis]
+motion = "linear"
+[axis.motor_side]
+mass = "20 kg"
+[motor]
+kind = "ideal-source"
+[drive.velocity]
+rate = "1 kHz"
+bandwidth = "20 Hz"
+[drive.position]
+rate = "1 kHz"
+gain = "20 1/s"
+[setpoint]
+order = 2
+velocity = "1 m/s"
+acceleration = "1 m/s2"
+[[program]]
+wait = "0.1 s"
+[[program]]
+move_to = "10 mm"
+duration = "1 ms"
+"#;
+
+/// Refuses every file in three places, or panics.
+struct Refuses {
+    panics: bool,
+}
+
+impl Engine for Refuses {
+    fn name(&self) -> &'static str {
+        "rapier"
+    }
+
+    fn build(&self, _: &MechanicsSetup) -> Result<Box<dyn Mechanics>, MechanicsError> {
+        assert!(!self.panics, "cannot bear it");
+        let refusal = |place, message: &str| Refusal { place, message: message.into() };
+        let refusals = vec![
+            refusal(RefusedAt::Line(3), "no mesh"),
+            refusal(RefusedAt::Name("elbow".into()), "no elbow"),
+            refusal(RefusedAt::Name("tendon's".into()), "no such joint"),
+            refusal(RefusedAt::File, "no mass"),
+        ];
+        Err(MechanicsError::Refused { engine: "rapier", path: "arm.xml".into(), refusals, way_out: "change it" })
+    }
+}
+
+fn engines(engine: &'static Refuses) -> Engines {
+    Engines { exact: None, rapier: Some(Installed { engine, isolated: false }), mujoco: None }
+}
+
+/// With an MJCF file whose load joint is `elbow`.
+fn job() -> Job {
+    let mut scenario =
+        servobench_scenario::parse("test", TEXT, None).unwrap_or_else(|error| panic!("{error}")).scenario;
+    scenario.axis.mechanics = AxisMechanics::Mjcf(Mjcf {
+        xml: "<mujoco/>".into(),
+        path: "arm.xml".into(),
+        motor_joint: "shoulder".into(),
+        load_joint: "elbow".into(),
+        actuator: "servo".into(),
+    });
+    jobs(vec![Source { scenario, text: TEXT.into() }], &[]).remove(0)
+}
+
+fn nowhere() -> WorkerCommand {
+    WorkerCommand { program: "none".into(), folder: "none".into(), patience: Duration::ZERO }
+}
+
+#[test]
+fn each_objection_has_its_place() {
+    let found = check(&job(), &engines(&Refuses { panics: false }), &nowhere()).unwrap();
+    let places: Vec<(&str, Option<u32>)> = found.iter().map(|one| (one.key.as_str(), one.line)).collect();
+    let file = "axis.mjcf.file";
+    assert_eq!(
+        places,
+        [("program.1", None), (file, Some(3)), ("axis.mjcf.load_joint", None), (file, None), (file, None)],
+        "{found:?}"
+    );
+    let refused = |line, message: &str| Objection {
+        key: file.into(),
+        line,
+        message: format!("engine `rapier`: {message}"),
+        way_out: "change it".into(),
+    };
+    assert_eq!((&found[1], &found[4]), (&refused(Some(3), "no mesh"), &refused(None, "no mass")));
+}
+
+#[test]
+fn who_cannot_be_asked_is_no_objection() {
+    let missing = check(&job(), &Engines::default(), &nowhere());
+    assert!(matches!(missing, Err(RunError::EngineMissing(_))), "{missing:?}");
+    let panicked = check(&job(), &engines(&Refuses { panics: true }), &nowhere());
+    assert!(matches!(panicked, Err(RunError::Panicked(_))), "{panicked:?}");
+}

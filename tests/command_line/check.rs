@@ -1,0 +1,158 @@
+//! `servobench check` and `servobench schema`.
+use crate::{SLIDE, code, folder, json, repository, said, servobench};
+use std::fs;
+
+#[test]
+fn every_mistake_of_a_file_is_reported_in_one_go() {
+    let text = SLIDE
+        .replace("\"20 kg\"", "20")
+        .replace("velocity = \"0.5 m/s\"", "velocity = \"0.5 m\"")
+        .replace("jerk =", "jerq =")
+        .replace("rate = \"4 kHz\"\ngain", "rate = \"3 kHz\"\ngain");
+    let work = folder(&[("bad.toml", &text)]);
+    let output = servobench(&["check", work.path().join("bad.toml").to_str().unwrap()]);
+    assert_eq!(code(&output), 2);
+    let said = said(&output);
+    for expected in ["\"20 kg\"", "velocity", "jerk", "3000 Hz"] {
+        assert!(said.contains(expected), "{expected} in:\n{said}");
+    }
+    assert!(said.lines().all(|line| line.chars().count() <= 80), "80 columns:\n{said}");
+}
+
+#[test]
+fn the_schema_is_the_one_in_the_repository() {
+    let output = servobench(&["schema"]);
+    let kept = fs::read(repository().join("docs/scenario.schema.json")).unwrap();
+    assert_eq!(json(&output.stdout), json(&kept), "run `servobench schema > docs/scenario.schema.json`");
+}
+
+/// Two slides on the ground that a tendon couples; line numbers in the tests count from here.
+const ARM: &str = r#"<mujoco>
+  <compiler angle="radian"/>
+  <option gravity="0 0 0" integrator="RK4"/>
+  <worldbody>
+    <body name="carriage"><joint name="carriage" type="slide" axis="1 0 0"/><inertial pos="0 0 0" mass="20" diaginertia="1 1 1"/></body>
+    <body name="load"><joint name="load" type="slide" axis="1 0 0"/><inertial pos="0 0 0" mass="10" diaginertia="1 1 1"/></body>
+  </worldbody>
+  <tendon><fixed stiffness="6e5" springlength="0"><joint joint="carriage" coef="1"/><joint joint="load" coef="-1"/></fixed></tendon>
+  <actuator><motor name="force" joint="carriage"/></actuator>
+</mujoco>
+"#;
+
+/// [`SLIDE`] with the mechanics of `arm.xml`, on `engines`.
+fn own_mjcf(engines: &str) -> String {
+    let mjcf = "mjcf = { file = \"arm.xml\", motor_joint = \"carriage\", load_joint = \"load\", actuator = \"force\" }";
+    let estimate = "[drive.estimate]\nmotor_inertia = \"20 kg\"\nload_inertia = \"10 kg\"\nstiffness = \"6e5 N/m\"\n";
+    let slide = SLIDE
+        .replace("[axis.motor_side]\nmass = \"20 kg\"", mjcf)
+        .replace("[setpoint]", &format!("{estimate}[setpoint]"));
+    format!("engine = {engines}{slide}")
+}
+
+/// What `check` says of a scenario with the MJCF file `arm`, and its exit code.
+fn checked(scenario: &str, arm: &str) -> (i32, String) {
+    let work = folder(&[("own.toml", scenario), ("arm.xml", arm)]);
+    let output = servobench(&["check", work.path().join("own.toml").to_str().unwrap()]);
+    (code(&output), said(&output))
+}
+
+#[test]
+fn check_asks_the_engines_that_a_scenario_names() {
+    let (code, said) = checked(&own_mjcf("[\"rapier\"]"), ARM);
+    assert_eq!((code, said.as_str()), (0, "1 scenario is valid\n"));
+    let (code, said) = checked(&own_mjcf("[\"exact\"]"), ARM);
+    assert_eq!(code, 2);
+    assert!(said.contains("own.toml:7:17]") && said.contains("engine `exact` does not support MJCF files"), "{said}");
+}
+
+#[test]
+fn all_that_rapier_refuses_in_a_file_is_said_by_name_at_its_place_in_one_go() {
+    let arm = ARM
+        .replace("<worldbody>", "<equality/>\n<worldbody>")
+        .replace(r#"name="load" type="slide""#, r#"name="load" type="slide" range="0 1""#);
+    let (code, said) = checked(&own_mjcf("[\"rapier\"]"), &arm);
+    assert_eq!(code, 2);
+    for expected in [
+        "2 mistakes",
+        "arm.xml:4:3]",
+        "`<equality>` in `<mujoco>` is not simulated",
+        "arm.xml:7:5]",
+        "`range`",
+        "own.toml:7:17",
+    ] {
+        assert!(said.contains(expected), "{expected} in:\n{said}");
+    }
+}
+
+#[test]
+fn names_that_the_mjcf_file_lacks_are_said_where_they_are_given() {
+    let scenario = own_mjcf("[\"rapier\"]").replace("load_joint = \"load\"", "load_joint = \"laod\"");
+    let (code, said) = checked(&scenario.replace("actuator = \"force\"", "actuator = \"motor\""), ARM);
+    assert_eq!(code, 2);
+    for expected in [
+        "2 mistakes",
+        "own.toml:7:67]",
+        "`laod`; there is `carriage`, `load`",
+        "own.toml:7:86]",
+        "motor `motor`; there is `force`",
+    ] {
+        assert!(
+            said.split_whitespace().collect::<Vec<_>>().join(" ").replace("│ ", "").contains(expected),
+            "{expected} in:\n{said}"
+        );
+    }
+}
+
+/// What only a run would tell before: a move that cannot be so fast, beside mechanics that cannot be built.
+#[test]
+fn check_builds_what_run_would_run() {
+    let scenario =
+        own_mjcf("[\"exact\", \"rapier\"]").replace("move_to = \"50 mm\"", "move_to = \"50 mm\"\nduration = \"1 ms\"");
+    let (code, said) = checked(&scenario, ARM);
+    assert_eq!(code, 2);
+    assert!(said.contains("2 mistakes") && said.contains("`duration` must be at least"), "{said}");
+}
+
+/// Each of these was valid to `check` and ended `run` without a place.
+#[test]
+fn what_run_would_refuse_is_refused_at_its_place() {
+    for (from, to, line, expected) in [
+        ("effort = \"rigid\"", "effort = \"rigid\"\ndelay = \"1 s\"", 21, "`drive.feedforward.delay`"),
+        ("[measure]", "[record]\nchannels = [\"current.q\"]\n[measure]", 29, "`current.q`"),
+        ("move_to = \"50 mm\"", "move_to = \"50 mm\"\nduration = \"1 ms\"", 26, "`duration` must be at least"),
+    ] {
+        assert!(SLIDE.contains(from), "{from}");
+        let scenario = SLIDE.replace(from, to);
+        let work = folder(&[("slide.toml", &scenario)]);
+        let (file, out) = (work.path().join("slide.toml"), work.path().join("out"));
+        let output = servobench(&["check", file.to_str().unwrap()]);
+        assert_eq!(code(&output), 2, "{}", said(&output));
+        let said = said(&output);
+        assert!(
+            said.contains(&format!("slide.toml:{line}:")) && said.contains(expected),
+            "{line} {expected} in:\n{said}"
+        );
+        assert_eq!(code(&servobench(&["run", file.to_str().unwrap(), "--out", out.to_str().unwrap()])), 2);
+    }
+}
+
+#[cfg(not(feature = "mujoco"))]
+#[test]
+fn check_says_which_engines_it_could_not_ask() {
+    let (code, said) = checked(&own_mjcf("[\"rapier\", \"mujoco\"]"), ARM);
+    assert_eq!((code, said.as_str()), (0, "1 scenario is valid as far as this build can tell, which lacks `mujoco`\n"));
+}
+
+#[cfg(feature = "mujoco")]
+#[test]
+fn mujoco_is_asked_in_a_process_of_its_own() {
+    let (code, said) = checked(&own_mjcf("[\"rapier\", \"mujoco\"]"), ARM);
+    assert_eq!((code, said.as_str()), (0, "1 scenario is valid\n"));
+    // MuJoCo knows no such attribute either, and stops at its first mistake.
+    let (code, said) =
+        checked(&own_mjcf("[\"rapier\", \"mujoco\"]"), &ARM.replace("diaginertia=\"1 1 1\"", "inertia=\"1\""));
+    assert_eq!(code, 2);
+    for expected in ["3 mistakes", "engine `mujoco`", "unrecognized attribute", "engine `rapier`"] {
+        assert!(said.contains(expected), "{expected} in:\n{said}");
+    }
+}

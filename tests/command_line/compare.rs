@@ -1,0 +1,52 @@
+//! `servobench compare`
+use crate::{SLIDE, code, folder, json, said, servobench};
+use std::fs;
+
+#[test]
+fn compare_says_in_words_which_wins_and_writes_one_recording() {
+    let work = tempfile::tempdir().unwrap();
+    for equal in ["limits", "duration"] {
+        let out = work.path().join(equal);
+        let output = servobench(&[
+            "compare",
+            "scenarios/lambrechts-jerk.toml",
+            "scenarios/lambrechts-snap.toml",
+            "--equal",
+            equal,
+            "--out",
+            out.to_str().unwrap(),
+        ]);
+        assert_eq!(code(&output), 0, "{}", said(&output));
+        assert!(said(&output).contains("residual vibration"), "{}", said(&output));
+        let recordings = fs::read_dir(&out)
+            .unwrap()
+            .filter(|entry| entry.as_ref().unwrap().path().extension().is_some_and(|extension| extension == "rrd"));
+        assert_eq!(recordings.count(), 1);
+    }
+}
+
+/// Two drives with other gains are no two set-points.
+#[test]
+fn compare_refuses_scenarios_that_differ_in_more_than_the_set_point() {
+    let work = folder(&[("one.toml", SLIDE), ("two.toml", &SLIDE.replace("60 1/s", "30 1/s"))]);
+    let (one, two, out) = (work.path().join("one.toml"), work.path().join("two.toml"), work.path().join("out"));
+    let output = servobench(&["compare", one.to_str().unwrap(), two.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert_eq!(code(&output), 2, "{}", said(&output));
+    assert!(said(&output).contains("`one` and `two` differ in `drive.position`"), "{}", said(&output));
+    assert!(!out.exists());
+}
+
+#[test]
+fn a_limit_that_is_missed_in_a_comparison_ends_with_4_and_is_named() {
+    let fast = format!("{SLIDE}\n[limits]\nmove_time = \"1 ms\"\n");
+    let work = folder(&[("one.toml", &fast), ("two.toml", &SLIDE.replace("5 m/s2", "2 m/s2"))]);
+    let (one, two, out) = (work.path().join("one.toml"), work.path().join("two.toml"), work.path().join("out"));
+    let output = servobench(&["compare", one.to_str().unwrap(), two.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert_eq!(code(&output), 4, "{}", said(&output));
+    assert!(said(&output).contains("one missed a limit: move_time"), "{}", said(&output));
+    let results = json(&fs::read(out.join("comparison.json")).unwrap());
+    let runs = results["scenarios"].as_array().unwrap();
+    assert_eq!((&runs[0]["verdict"], &runs[1]["verdict"]), (&"failed".into(), &"passed".into()));
+    assert!(runs.iter().all(|run| run["recording"] == "one-against-two.rrd"), "{results}");
+    assert!(out.join("one-against-two.rrd").is_file());
+}

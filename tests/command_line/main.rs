@@ -1,0 +1,82 @@
+//! The program as its users see it: output, files, exit codes. It belongs to the crate `cli`, whose binary it runs.
+mod check;
+mod compare;
+mod output;
+mod plan;
+mod run;
+#[cfg(unix)]
+mod view;
+
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// `servobench`, to be run in the repository's root.
+fn command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_servobench"));
+    command.args(arguments).current_dir(repository());
+    command
+}
+
+/// Runs `servobench` in the repository's root.
+fn servobench(arguments: &[&str]) -> Output {
+    command(arguments).output().unwrap()
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
+}
+
+fn json(text: &[u8]) -> Value {
+    serde_json::from_slice(text).unwrap()
+}
+
+/// A folder that goes away, with scenario files in it.
+fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    folder
+}
+
+/// A rigid axis that is held by nothing: with a negative damping it would diverge, with a plain one it moves.
+const SLIDE: &str = r#"
+[run]
+base_rate = "4 kHz"
+duration = "0.4 s"
+[axis]
+motion = "linear"
+[axis.motor_side]
+mass = "20 kg"
+[motor]
+kind = "ideal-source"
+[drive.velocity]
+rate = "4 kHz"
+bandwidth = "80 Hz"
+kind = "p"
+[drive.position]
+rate = "4 kHz"
+gain = "60 1/s"
+[drive.feedforward]
+velocity = true
+effort = "rigid"
+[setpoint]
+order = 3
+velocity = "0.5 m/s"
+acceleration = "5 m/s2"
+jerk = "200 m/s3"
+[[program]]
+move_to = "50 mm"
+[measure]
+window = "10 um"
+"#;
