@@ -6,7 +6,7 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Absence {
     /// The recording lacks a channel.
-    #[error("the recording has no channel `{channel}`")]
+    #[error("`{channel}` is not recorded{}", only_of_a_pmsm(channel))]
     NoChannel {
         /// Missing channel.
         channel: &'static str,
@@ -107,4 +107,13 @@ pub enum Absence {
         /// Half width of the search, relative.
         share: f64,
     },
+}
+
+/// Why a channel of the motor's electrical side may be missing.
+fn only_of_a_pmsm(channel: &str) -> &'static str {
+    match channel.split_once('.') {
+        Some(("current", _) | ("saturation", "current")) => "; only a PMSM has a current",
+        Some(("voltage", _) | ("saturation", "voltage")) => "; only a PMSM has a voltage",
+        _ => "",
+    }
 }

@@ -15,6 +15,8 @@ pub struct Quantity<'a> {
 /// SI prefixes and their powers of ten.
 const PREFIXES: [(&str, i32); 8] = [("p", -12), ("n", -9), ("µ", -6), ("m", -3), ("", 0), ("k", 3), ("M", 6), ("G", 9)];
 const SIGNIFICANT: usize = 3;
+/// Digits that are shown at most to tell two numbers apart.
+const MOST: usize = 7;
 
 impl<'a> Quantity<'a> {
     /// A value (SI) with its unit.
@@ -34,6 +36,39 @@ impl<'a> Quantity<'a> {
                 (format!("{prefix}{symbol}"), format!("1e{power}").parse().unwrap_or(1.0))
             }
             _ => (symbol, 1.0),
+        }
+    }
+
+    /// Significant digits, from three to seven, that show two numbers apart by two units or more in the last digit.
+    #[must_use]
+    pub fn digits_apart(one: f64, two: f64) -> usize {
+        let (largest, difference) = (one.abs().max(two.abs()), (one - two).abs());
+        let exponent = format!("{largest:e}").split_once('e').and_then(|(_, e)| e.parse::<i32>().ok());
+        let Some(exponent) = exponent.filter(|_| difference > 0.0) else { return SIGNIFICANT };
+        let (mut digits, mut last) = (SIGNIFICANT, 10_f64.powi(exponent - 2));
+        while digits < MOST && difference < 2.0 * last {
+            (digits, last) = (digits + 1, last / 10.0);
+        }
+        digits
+    }
+
+    /// The text with the prefix that `largest` (SI) has, so that the numbers of a row share one; with its own when it is
+    /// smaller by more than three powers of ten.
+    #[must_use]
+    pub fn beside(&self, largest: f64) -> String {
+        let Self { value, unit } = *self;
+        let exponent = |value: f64| {
+            let text = format!("{value:.*e}", SIGNIFICANT - 1);
+            text.split_once('e').and_then(|(mantissa, e)| Some((mantissa.to_owned(), e.parse::<i32>().ok()?)))
+        };
+        let (Some((mantissa, own)), Some((_, of_largest))) = (exponent(value), exponent(largest)) else {
+            return self.to_string();
+        };
+        match prefix(unit, of_largest) {
+            Some((prefix, power)) if value != 0.0 && !unit.is_empty() && own + 3 >= of_largest && own <= of_largest => {
+                format!("{} {prefix}{}", shifted(&mantissa, own - power), unit.replace(' ', "·"))
+            }
+            _ => self.to_string(),
         }
     }
 
@@ -162,6 +197,40 @@ mod tests {
         assert_eq!(Quantity::axis_unit(0.999_99, "m/s"), ("m/s".into(), 1.0));
         assert_eq!(Quantity::axis_unit(1000.0, "m/s⁴"), ("m/s⁴".into(), 1.0));
         assert_eq!(Quantity::axis_unit(0.0, "N m"), ("N·m".into(), 1.0));
+    }
+
+    #[test]
+    fn digits_show_a_miss_however_small() {
+        for (one, two, digits) in [
+            (35.2e-3, 20e-3, 3),
+            (39.08, 38.985, 4),
+            (814e-6, 812e-6, 3),
+            (0.020_000_1, 0.02, 7),
+            (1.0 + 1e-9, 1.0, 7),
+            (2.0, 2.0, 3),
+            (0.0, 0.0, 3),
+            (f64::INFINITY, 1.0, 3),
+        ] {
+            assert_eq!(Quantity::digits_apart(one, two), digits, "{one} {two}");
+            assert_eq!(Quantity::digits_apart(two, one), digits, "{one} {two}");
+        }
+    }
+
+    #[test]
+    fn the_numbers_of_a_row_share_a_prefix() {
+        for (value, largest, unit, text) in [
+            (0.98, 1.01, "N m", "0.980 N·m"),
+            (0.756, 1.71, "s", "0.756 s"),
+            (0.705, 0.756, "s", "705 ms"),
+            (105e-9, 1.7e-6, "m", "0.105 µm"),
+            (6.3e-9, 1.7e-3, "m", "6.30 nm"),
+            (-0.35e-3, 4.2e-3, "m", "-0.350 mm"),
+            (0.0, 1.0, "m", "0 m"),
+            (0.0064, 0.5, "", "0.00640"),
+            (f64::NAN, 1.0, "m", "NaN m"),
+        ] {
+            assert_eq!(Quantity::new(value, unit).beside(largest), text);
+        }
     }
 
     #[test]

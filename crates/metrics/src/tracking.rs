@@ -159,8 +159,8 @@ mod tests {
         note(&mut set, &recording, 0..100, &[]);
         let why = |name| set.absence(name).unwrap().to_string();
         assert_eq!(why(Name::FollowingErrorPeakLoad), "`following_error.load` is not finite at 0.051 s");
-        assert_eq!(why(Name::FollowingErrorCruiseMotor), "the recording has no channel `following_error.motor`");
-        assert_eq!(why(Name::VelocityErrorPeak), "the recording has no channel `velocity.reference`");
+        assert_eq!(why(Name::FollowingErrorCruiseMotor), "`following_error.motor` is not recorded");
+        assert_eq!(why(Name::VelocityErrorPeak), "`velocity.reference` is not recorded");
     }
 
     #[test]

@@ -87,8 +87,10 @@ impl fmt::Display for Miss {
         let name = self.limit.metric;
         match (self.value, &self.absence) {
             (Some(value), _) => {
-                write!(f, "{name} {}, limit ", Quantity::new(value, &self.unit))?;
-                let bound = |bound| Quantity::new(bound, &self.unit);
+                let bounds = [self.limit.min, self.limit.max].into_iter().flatten();
+                let digits = bounds.map(|bound| Quantity::digits_apart(value.abs(), bound.abs())).max().unwrap_or(3);
+                write!(f, "{name} {:.digits$}, limit ", Quantity::new(value, &self.unit))?;
+                let bound = |bound| format!("{:.digits$}", Quantity::new(bound, &self.unit));
                 match (self.limit.min, self.limit.max) {
                     (Some(min), Some(max)) => write!(f, "{} to {}", bound(min), bound(max)),
                     (Some(min), None) => write!(f, "at least {}", bound(min)),
@@ -172,7 +174,7 @@ mod tests {
             said,
             [
                 "settling_time 35.0 ms, limit 20.0 ms",
-                "torque_rms could not be measured: the recording has no channel `effort.motor`",
+                "torque_rms could not be measured: `effort.motor` is not recorded",
                 "overshoot is not measured here",
             ]
         );

@@ -182,7 +182,7 @@ fn the_published_move_is_within_its_limits() {
         missed,
         [
             "residual_vibration_pp 12.5 nm, limit 12.0 nm",
-            "following_error_peak_motor could not be measured: the recording has no channel `following_error.motor`",
+            "following_error_peak_motor could not be measured: `following_error.motor` is not recorded",
         ]
     );
     assert_eq!(metrics.moves.len(), 1);
