@@ -106,7 +106,7 @@ impl Planned {
             *slot = limit.is_finite().then_some(limit);
         }
         Move {
-            label: format!("move from {from} {unit} to {to} {unit}, order {order}"),
+            label: format!("move from {} {unit} to {} {unit}, order {order}", six_digits(from), six_digits(to)),
             start: self.start,
             end: self.start + profile.duration(),
             from,
@@ -116,6 +116,13 @@ impl Planned {
             cruise: (self.start + (profile.duration() - cruise) / 2.0, cruise),
         }
     }
+}
+
+/// A position (m or rad) to six significant digits and a picounit: a sum of targets shows its rounding otherwise.
+fn six_digits(position: f64) -> f64 {
+    let position = libm::round(position * 1e12) / 1e12;
+    // Adding zero takes the sign from a zero.
+    format!("{position:.5e}").parse::<f64>().unwrap_or(position) + 0.0
 }
 
 /// Plans `step` from `position`.
@@ -166,6 +173,15 @@ mod tests {
         assert!((cruise.0 - 0.45).abs() < 1e-12 && (cruise.1 - 0.65).abs() < 1e-12, "{cruise:?}");
         assert!(program.durations().all(|duration| (duration - 1.35).abs() < 1e-12));
         assert_eq!(program.durations().count(), 2);
+    }
+
+    #[test]
+    fn a_label_shows_no_rounding() {
+        let quarter = core::f64::consts::FRAC_PI_2;
+        let steps = [0.1, 0.2, -0.3, quarter].map(|distance| to(Target::Relative(distance)));
+        let labels: Vec<_> = Program::plan(&steps).unwrap().moves("m").map(|made| made.label).collect();
+        let ends = [("0", "0.1"), ("0.1", "0.3"), ("0.3", "0"), ("0", "1.5708")];
+        assert_eq!(labels, ends.map(|(from, to)| format!("move from {from} m to {to} m, order 4")));
     }
 
     /// Oracle: each move's own set-point, looked up at every instant. Moves without a pause between them, one of no
