@@ -50,6 +50,25 @@ fn plan_writes_tables_and_drawings_and_refuses_what_is_missing() {
     assert!(said(&output).contains("\"1 mm\" or \"1 deg\""), "{}", said(&output));
 }
 
+#[test]
+fn plan_lists_every_mistake_and_says_what_it_does_not_use() {
+    let output =
+        servobench(&["plan", "--order", "4", "--distance", "1", "--velocity", "1 m", "--acceleration", "5 m/s2"]);
+    assert_eq!(code(&output), 2);
+    for expected in ["--distance `1`", "--velocity `1 m`", "--jerk is missing", "--snap is missing"] {
+        assert!(said(&output).contains(expected), "{expected} in:\n{}", said(&output));
+    }
+    let line = "plan --order 2 --distance 90deg --velocity 3000rpm --acceleration 50rad/s2 --snap 1rad/s4";
+    let output = servobench(&line.split_whitespace().collect::<Vec<_>>());
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    let said = said(&output);
+    for expected in
+        ["--snap is not used by a move of order 2", "move of 90 deg in 354.490770 ms", "3000 rpm", "50 rad/s2"]
+    {
+        assert!(said.contains(expected), "{expected} in:\n{said}");
+    }
+}
+
 /// A sample time that is too short by some powers of ten costs a sentence, not the machine's memory.
 #[test]
 fn plan_refuses_a_table_of_absurd_length_and_draws_it_all_the_same() {

@@ -3,12 +3,14 @@ mod axis;
 mod csv;
 mod curve;
 mod drawing;
+mod given;
 mod json;
 mod panel;
 mod table;
 mod ticks;
 mod times;
 
+use given::Given;
 use servobench_motion::{Limits, Profile};
 
 /// Names of position and its derivatives.
@@ -22,13 +24,25 @@ pub struct PlannedMove {
     profile: Profile,
     limits: Limits,
     unit: &'static str,
+    /// Distance and limits of velocity, acceleration, jerk, snap in the units of whoever asked.
+    given: [Option<Given>; 5],
 }
 
 impl PlannedMove {
     /// The move `profile`, planned under `limits`; `unit` is that of positions, `m` or `rad`.
     #[must_use]
     pub const fn new(profile: Profile, limits: Limits, unit: &'static str) -> Self {
-        Self { profile, limits, unit }
+        Self { profile, limits, unit, given: [None, None, None, None, None] }
+    }
+
+    /// The same, with distance and limits (velocity, acceleration, jerk, snap) shown in the units in which they were
+    /// written.
+    #[must_use]
+    pub fn as_given<'a>(mut self, distance: &'a str, limits: impl IntoIterator<Item = &'a str>) -> Self {
+        for (slot, text) in self.given.iter_mut().zip([distance].into_iter().chain(limits)) {
+            *slot = Given::read(text);
+        }
+        self
     }
 
     /// Unit of the derivative `n` of position.

@@ -1,6 +1,6 @@
 //! `servobench plan`: one rest-to-rest move on paper.
 use crate::args::PlanArgs;
-use crate::console::print;
+use crate::console::{print, say};
 use crate::exit::{CliError, Exit};
 use crate::output::write_file;
 use servobench_motion::{Limits, Order, Profile};
@@ -23,35 +23,61 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
 }
 
 fn planned(args: &PlanArgs) -> Result<PlannedMove, CliError> {
-    let named = |name: &'static str| move |error: ArgumentError| CliError::Input(format!("--{name} {error}"));
-    let (distance, motion) = axis_quantity(Derivative::Position, None, &args.distance).map_err(named("distance"))?;
-    let limit = |name: &'static str, derivative, text: &str| {
-        axis_quantity(derivative, Some(motion), text).map(|(value, _)| value).map_err(named(name))
+    let mut mistakes = Mistakes::default();
+    let distance = mistakes.unless("distance", axis_quantity(Derivative::Position, None, &args.distance));
+    let (distance, motion) = distance.map_or((0.0, None), |(distance, motion)| (distance, Some(motion)));
+    let mut limit = |name: &'static str, derivative, text: &str| {
+        let quantity = axis_quantity(derivative, motion, text);
+        mistakes.unless(name, quantity).map_or(f64::INFINITY, |(value, _)| value)
     };
-    let needed = |name: &'static str, derivative, text: &Option<String>, order: u8| match text {
-        Some(text) => limit(name, derivative, text),
-        None if args.order >= order => {
-            Err(CliError::Input(format!("--{name} is missing: a move of order {} needs its limit", args.order)))
+    let (velocity, acceleration) = (
+        limit("velocity", Derivative::Velocity, &args.velocity),
+        limit("acceleration", Derivative::Acceleration, &args.acceleration),
+    );
+    let mut optional = |name: &'static str, derivative, text: &Option<String>, order| {
+        let is_used = args.order >= order;
+        let Some(text) = text else {
+            if is_used {
+                mistakes.0.push(format!("--{name} is missing: a move of order {} needs its limit", args.order));
+            }
+            return f64::INFINITY;
+        };
+        if !is_used {
+            say(&format!("--{name} is not used by a move of order {}\n", args.order));
         }
-        None => Ok(f64::INFINITY),
+        mistakes.unless(name, axis_quantity(derivative, motion, text)).map_or(f64::INFINITY, |(value, _)| value)
     };
-    let limits = Limits {
-        velocity: limit("velocity", Derivative::Velocity, &args.velocity)?,
-        acceleration: limit("acceleration", Derivative::Acceleration, &args.acceleration)?,
-        jerk: needed("jerk", Derivative::Jerk, &args.jerk, 3)?,
-        snap: needed("snap", Derivative::Snap, &args.snap, 4)?,
-    };
+    let (jerk, snap) =
+        (optional("jerk", Derivative::Jerk, &args.jerk, 3), optional("snap", Derivative::Snap, &args.snap, 4));
+    let sample_time = args.sample_time.as_ref().and_then(|text| mistakes.unless("sample-time", time(text)));
+    mistakes.none()?;
+    let limits = Limits { velocity, acceleration, jerk, snap };
     let order = Order::from_derivative(args.order)
         .ok_or_else(|| CliError::Input(format!("--order must be 2, 3 or 4, got {}", args.order)))?;
-    let profile = match &args.sample_time {
-        Some(text) => {
-            let sample_time = time(text).map_err(named("sample-time"))?;
-            Profile::plan_sampled(order, distance, &limits, sample_time)
-        }
+    let profile = match sample_time {
+        Some(sample_time) => Profile::plan_sampled(order, distance, &limits, sample_time),
         None => Profile::plan(order, distance, &limits),
     };
     let profile = profile.map_err(|error| CliError::Input(error.to_string()))?;
-    Ok(PlannedMove::new(profile, limits, if motion == Motion::Linear { "m" } else { "rad" }))
+    let unit = if motion == Some(Motion::Rotary) { "rad" } else { "m" };
+    let given = [&args.velocity, &args.acceleration].into_iter().chain(&args.jerk).chain(&args.snap);
+    Ok(PlannedMove::new(profile, limits, unit).as_given(&args.distance, given.map(String::as_str)))
+}
+
+/// Arguments that are wrong.
+#[derive(Default)]
+struct Mistakes(Vec<String>);
+
+impl Mistakes {
+    /// The value of the argument `name`, unless it is wrong.
+    fn unless<T>(&mut self, name: &str, value: Result<T, ArgumentError>) -> Option<T> {
+        value.map_err(|error| self.0.push(format!("--{name} {error}"))).ok()
+    }
+
+    /// All of them at once, if there are any.
+    fn none(self) -> Result<(), CliError> {
+        if self.0.is_empty() { Ok(()) } else { Err(CliError::Input(self.0.join("\n"))) }
+    }
 }
 
 fn write_csv(planned: &PlannedMove, path: &Path) -> Result<(), CliError> {

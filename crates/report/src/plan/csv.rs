@@ -23,6 +23,7 @@ impl PlannedMove {
         writeln!(out, "time_s,position_{unit},velocity_{unit}_s,acceleration_{unit}_s2,jerk_{unit}_s3,snap_{unit}_s4")?;
         match samples {
             Some(samples) => (0..rows).try_for_each(|k| self.write_row(&mut out, k as f64 * samples.time)),
+            None if self.profile.duration() == 0.0 => self.write_row(&mut out, 0.0),
             None => self.steps().try_for_each(|t| self.write_row(&mut out, t)),
         }?;
         Ok(out.flush()?)
@@ -38,7 +39,7 @@ impl PlannedMove {
 mod tests {
     use super::super::{PlannedMove, moves};
     use super::*;
-    use servobench_motion::Order;
+    use servobench_motion::{Limits, Order, Profile};
 
     fn rows(plan: &PlannedMove) -> Vec<Vec<f64>> {
         let mut bytes = Vec::new();
@@ -67,6 +68,13 @@ mod tests {
     fn another_plan_has_equal_steps() {
         let rows = rows(&moves::lambrechts(Order::Fourth));
         assert_eq!((rows.len(), rows[500][1].to_bits()), (1001, 0.5_f64.to_bits()));
+    }
+
+    #[test]
+    fn a_move_of_no_distance_has_one_row() {
+        let limits = Limits { velocity: 1.0, acceleration: 1.0, jerk: 1.0, snap: 1.0 };
+        let nothing = PlannedMove::new(Profile::plan(Order::Third, 0.0, &limits).unwrap(), limits, "m");
+        assert_eq!(rows(&nothing), [vec![0.0; 6]]);
     }
 
     #[test]

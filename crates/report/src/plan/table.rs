@@ -4,7 +4,8 @@ use super::{NAMES, PlannedMove};
 use servobench_metrics::Quantity;
 
 impl PlannedMove {
-    /// Segment times, peaks against limits, duration.
+    /// Segment times, peaks against limits, duration: in the units in which distance and limits were given, all times
+    /// in one unit.
     #[must_use]
     pub fn table(&self) -> String {
         let profile = &self.profile;
@@ -12,7 +13,7 @@ impl PlannedMove {
         let segments = profile.segments().flat_map(|segment| [segment.start, segment.length]);
         let all = self.dwells().map(|(.., time)| time).chain(segments).chain([profile.duration()]);
         let times = Times::new(profile.duration(), all);
-        let distance = Quantity::new(profile.distance(), self.unit);
+        let distance = self.in_given_unit(0, profile.distance(), profile.distance());
         let mut lines = vec![format!("move of {distance} in {}, order {n}", times.show(profile.duration()))];
         if let Some(samples) = profile.samples() {
             let time = Times::new(samples.time, [samples.time]).show(samples.time);
@@ -20,29 +21,67 @@ impl PlannedMove {
         }
         lines.push(String::new());
         lines.extend(
-            self.dwells().map(|(name, meaning, value)| format!("{name}  {:>13}   {meaning}", times.show(value))),
+            self.dwells().map(|(name, meaning, value)| format!("{name}  {:>TIME$}   {meaning}", times.show(value))),
         );
         lines.push(String::new());
-        lines.push(format!("{:<13} {:>16} {:>16} {:>9}", "", "peak", "limit", "of limit"));
+        lines.push(format!("{:<13} {:>QUANTITY$} {:>QUANTITY$} {:>9}", "", "peak", "limit", "of limit"));
         for (i, (peak, limit)) in self.peaks().zip(self.limits()).enumerate() {
-            let (name, unit) = (NAMES[i + 1], self.unit_of(i + 1));
-            let (peak_text, limit_text) = (Quantity::new(peak, &unit), Quantity::new(limit, &unit));
-            lines.push(format!("{name:<13} {peak_text:>16} {limit_text:>16} {:>7.2} %", 100.0 * peak / limit));
+            let (peak_text, limit_text) =
+                (self.in_given_unit(i + 1, peak, limit), self.in_given_unit(i + 1, limit, limit));
+            let share = 100.0 * peak / limit;
+            lines.push(format!("{:<13} {peak_text:>QUANTITY$} {limit_text:>QUANTITY$} {share:>7.2} %", NAMES[i + 1]));
         }
         lines.push(String::new());
-        lines.push(format!("{:>13} {:>13}  {}", "start", "length", NAMES[n]));
-        let unit = self.unit_of(n);
+        lines.push(format!("{:>TIME$} {:>TIME$}  {}", "start", "length", NAMES[n]));
+        let limit = self.limits().last().unwrap_or(f64::INFINITY);
         lines.extend(profile.segments().map(|segment| {
-            let value = Quantity::new(segment.value, &unit);
-            format!("{:>13} {:>13}  {value}", times.show(segment.start), times.show(segment.length))
+            let value = self.in_given_unit(n, segment.value, limit);
+            format!("{:>TIME$} {:>TIME$}  {value}", times.show(segment.start), times.show(segment.length))
         }));
         lines.join("\n") + "\n"
     }
+
+    /// Derivative `n` in the unit in which `given` (SI) was given; in SI when it was not.
+    fn in_given_unit(&self, n: usize, value: f64, given: f64) -> String {
+        match &self.given[n] {
+            Some(quantity) if given != 0.0 => quantity.times(value / given),
+            _ => Quantity::new(value, &self.unit_of(n)).to_string(),
+        }
+    }
 }
+
+/// `125.663706 ms` fits.
+const TIME: usize = 13;
+const QUANTITY: usize = 16;
 
 #[cfg(test)]
 mod tests {
-    use super::super::moves;
+    use super::super::{PlannedMove, moves};
+    use servobench_motion::{Limits, Order, Profile};
+    use std::f64::consts::TAU;
+
+    /// 90° at 60 rpm and 50 rad/s²: the triangle peaks at √(π/2·50) rad/s = 8.862 rad/s, above 2π rad/s, so it cruises.
+    #[test]
+    fn units_are_those_of_the_user() {
+        let limits = Limits { velocity: TAU, acceleration: 50.0, jerk: f64::INFINITY, snap: f64::INFINITY };
+        let profile = Profile::plan(Order::Second, -TAU / 4.0, &limits).unwrap();
+        let table = PlannedMove::new(profile, limits, "rad").as_given("-90 deg", ["60 rpm", "50 rad/s2"]).table();
+        insta::assert_snapshot!(table, @r#"
+        move of -90 deg in 375.663706 ms, order 2
+
+        t_a  125.663706 ms   acceleration at its peak
+        t_v  124.336294 ms   velocity at its peak
+
+                                  peak            limit  of limit
+        velocity                60 rpm           60 rpm  100.00 %
+        acceleration         50 rad/s2        50 rad/s2  100.00 %
+
+                start        length  acceleration
+          0.000000 ms 125.663706 ms  -50 rad/s2
+        125.663706 ms 124.336294 ms  0 rad/s2
+        250.000000 ms 125.663706 ms  50 rad/s2
+        "#);
+    }
 
     #[test]
     fn the_published_move() {
