@@ -21,11 +21,20 @@ fn a_reader_that_goes_away_leaves_the_verdict_its_code() {
 }
 
 #[cfg(target_os = "linux")]
+const PLAN: [&str; 9] =
+    ["plan", "--order", "2", "--distance", "1 m", "--velocity", "1 m/s", "--acceleration", "1 m/s2"];
+
+#[cfg(target_os = "linux")]
 #[test]
 fn output_that_cannot_be_written_ends_with_3() {
     let work = tempfile::tempdir().unwrap();
     let out = work.path().to_str().unwrap();
-    for arguments in [&["run", "scenarios/lambrechts-snap.toml", "--out", out][..], &["schema"]] {
+    for arguments in [
+        &["run", "scenarios/lambrechts-snap.toml", "--out", out][..],
+        &["schema"],
+        &["check", "scenarios/lambrechts-snap.toml"],
+        &PLAN,
+    ] {
         let full = File::options().write(true).open("/dev/full").unwrap();
         let output =
             command(arguments).stdout(full).stderr(Stdio::piped()).spawn().unwrap().wait_with_output().unwrap();

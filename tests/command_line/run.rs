@@ -38,6 +38,71 @@ fn a_missed_limit_ends_with_4_and_is_named() {
     assert!(said(&output).contains("following_error_cruise_load"), "{}", said(&output));
 }
 
+/// The number behind each word: a single run shows all its metrics, several do when asked to.
+#[test]
+fn a_single_run_shows_all_its_metrics_with_limit_and_share() {
+    let work = folder(&[("slide.toml", &format!("{SLIDE}\n[limits]\nmove_time = \"1 s\"\n"))]);
+    let (file, out) = (work.path().join("slide.toml"), work.path().join("out"));
+    let run = |more: &[&str]| {
+        let arguments = ["run", file.to_str().unwrap(), "--out", out.to_str().unwrap()];
+        let output = servobench(&[&arguments[..], more].concat());
+        assert_eq!(code(&output), 0, "{}", said(&output));
+        assert!(said(&output).lines().all(|line| line.chars().count() <= 80), "{}", said(&output));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let (one, both) = (run(&[]), ["--engine", "exact", "--engine", "rapier"]);
+    let row = one.lines().find(|line| line.starts_with("move_time")).unwrap_or_else(|| panic!("{one}"));
+    // 0.227 s of 1 s.
+    assert_eq!(row.split_whitespace().collect::<Vec<_>>(), ["move_time", "227", "ms", "1.00", "s", "23", "%"]);
+    assert_eq!(run(&both).matches("torque_rms").count(), 0);
+    assert_eq!(run(&[&both[..], &["--verbose"]].concat()).matches("torque_rms").count(), 2);
+}
+
+/// Without limits nothing was judged, and a drive at its limit is no quiet pass.
+#[test]
+fn what_was_not_judged_did_not_pass_and_a_limit_that_bound_is_said() {
+    let weak = SLIDE.replace("[drive.velocity]", "[drive]\nmax_force = \"60 N\"\n[drive.velocity]");
+    let work = folder(&[("weak.toml", &weak)]);
+    let (file, out) = (work.path().join("weak.toml"), work.path().join("out"));
+    let output = servobench(&["run", file.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    let said = said(&output);
+    assert!(said.contains("no limits  weak") && said.contains("1 run: 1 without limits"), "{said}");
+    // 20 kg at 5 m/s² need 100 N.
+    assert!(said.contains(" limit bound ") && !said.contains("passed"), "{said}");
+}
+
+#[test]
+fn recordings_of_earlier_runs_are_announced() {
+    let work = folder(&[("slide.toml", SLIDE), ("other.toml", SLIDE)]);
+    let out = work.path().join("out");
+    let run = |file: &str| {
+        let output =
+            servobench(&["run", work.path().join(file).to_str().unwrap(), "--out", out.to_str().unwrap(), "--rrd"]);
+        said(&output)
+    };
+    assert!(!run("slide.toml").contains("earlier"));
+    assert!(!run("slide.toml").contains("earlier"), "the same again");
+    let said = run("other.toml");
+    assert!(said.contains(", with a recording of an earlier run\n"), "{said}");
+    assert!(said.contains(&format!("{} view ", env!("CARGO_BIN_EXE_servobench"))), "to be pasted: {said}");
+}
+
+#[test]
+fn two_files_of_one_name_are_told_apart() {
+    let work = tempfile::tempdir().unwrap();
+    for side in ["a", "b"] {
+        fs::create_dir(work.path().join(side)).unwrap();
+        fs::write(work.path().join(side).join("slide.toml"), SLIDE).unwrap();
+    }
+    let out = work.path().join("out");
+    let output = servobench(&["run", work.path().to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    for expected in ["a/slide  exact", "b/slide  exact"] {
+        assert!(said(&output).contains(expected), "{}", said(&output));
+    }
+}
+
 #[test]
 fn wrong_input_ends_with_2_before_anything_runs() {
     let work = folder(&[("good.toml", SLIDE), ("bad.toml", &SLIDE.replace("\"20 kg\"", "20"))]);
@@ -61,7 +126,7 @@ fn a_run_that_cannot_be_carried_out_ends_with_3_and_costs_nobody_else() {
     let output = servobench(&["run", work.path().to_str().unwrap(), "--out", out.to_str().unwrap()]);
     assert_eq!(code(&output), 3, "{}", said(&output));
     let results = json(&fs::read(out.join("results.json")).unwrap());
-    assert_eq!(results["scenarios"][0]["verdict"], "passed");
+    assert_eq!(results["scenarios"][0]["verdict"], "unjudged");
     assert_eq!(results["scenarios"][1]["verdict"], "error");
     assert!(results["scenarios"][1]["reasons"][0].as_str().unwrap().contains("diverged"), "{results}");
 }

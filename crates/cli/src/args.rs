@@ -7,18 +7,23 @@ use std::time::Duration;
 
 /// Closed-loop test bench for servo axes.
 #[derive(Debug, Parser)]
-#[command(name = "servobench", version, about, max_term_width = 80, after_help = AFTER_HELP)]
+#[command(name = "servobench", version, max_term_width = 80, after_help = AFTER_HELP)]
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
 }
 
-const AFTER_HELP: &str = "Exit codes: 0 all passed, 2 the input is wrong, 3 a run could not be carried out \
+const AFTER_HELP: &str = "Exit codes: 0 every limit is kept, 2 the input is wrong, 3 a run could not be carried out \
                           or its results not be written, 4 a limit was missed.";
+
+const COLUMNS: &str = "Columns: MOVE is the set-point's duration, SETTLING the time after it until the load stays in \
+                       its window, PEAK ERR the peak following error of the load, VIBR P-P its residual vibration, \
+                       peak-to-peak.";
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Run scenarios and judge them; without a file, run the demo.
+    #[command(after_help = COLUMNS)]
     Run(RunArgs),
     /// Validate scenario files without running them: every mistake in one go.
     Check(CheckArgs),
@@ -39,7 +44,7 @@ pub(crate) enum Command {
 pub(crate) struct RunArgs {
     /// Scenario files, or folders of them.
     pub(crate) scenarios: Vec<PathBuf>,
-    /// Folder for `results.json` and the recordings.
+    /// Folder for results.json and the recordings.
     #[arg(long, value_name = "DIR", default_value = "servobench-out")]
     pub(crate) out: PathBuf,
     /// Engine to use instead of the scenarios' own; may be given several times.
@@ -60,6 +65,9 @@ pub(crate) struct RunArgs {
     /// Say only what failed.
     #[arg(long, short)]
     pub(crate) quiet: bool,
+    /// Show all metrics of every run, as of a single one.
+    #[arg(long, short, conflicts_with = "quiet")]
+    pub(crate) verbose: bool,
 }
 
 #[derive(Debug, Args)]
@@ -95,7 +103,8 @@ pub(crate) struct PlanArgs {
     /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,
-    /// Write samples: time, position, velocity, acceleration, jerk, snap (SI).
+    /// Write time, position, velocity, acceleration, jerk, snap (SI): a row for each sample with --sample-time, 1001
+    /// rows at equal steps without.
     #[arg(long, value_name = "FILE")]
     pub(crate) csv: Option<PathBuf>,
     /// Draw position and its derivatives with their limits.
@@ -133,7 +142,7 @@ pub(crate) enum Equal {
 
 #[derive(Debug, Args)]
 pub(crate) struct ViewArgs {
-    /// A recording (`.rrd` or `.parquet`), or a folder that `run` or `compare` wrote.
+    /// A recording (.rrd or .parquet), or a folder that run or compare wrote.
     pub(crate) recording: PathBuf,
 }
 
@@ -176,6 +185,18 @@ mod tests {
     #[test]
     fn the_arguments_are_consistent() {
         Cli::command().debug_assert();
+    }
+
+    /// Help is plain text: a backtick in it comes from a doc comment that forgot so.
+    #[test]
+    fn help_is_plain_text_that_says_what_the_program_is() {
+        let mut cli = Cli::command();
+        let help = cli.render_long_help().to_string();
+        assert!(help.starts_with("Closed-loop test bench for servo axes"), "{help}");
+        for command in cli.get_subcommands_mut() {
+            let help = command.render_long_help().to_string();
+            assert!(!help.contains('`') || command.is_hide_set(), "{help}");
+        }
     }
 
     #[test]

@@ -20,6 +20,11 @@ pub(crate) fn say(text: &str) {
     std::io::stderr().lock().write_all(text.as_bytes()).ok();
 }
 
+/// This program as it was started, for commands to be pasted.
+pub(crate) fn program() -> String {
+    std::env::args().next().unwrap_or_else(|| "servobench".into())
+}
+
 /// How tables are shown on standard output.
 pub(crate) fn style() -> Style {
     let colour = std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();

@@ -2,13 +2,14 @@
 //!
 //! | code | meaning |
 //! |---|---|
-//! | 0 | all passed |
+//! | 0 | every limit is kept |
 //! | 2 | the input is wrong: usage, scenario, model |
 //! | 3 | a run could not be carried out: engine missing, diverged, native failure; or what it gave could not be written |
 //! | 4 | a limit was missed |
 //!
 //! 1 is never ours: it is what a native library ends a process with. A reader that goes away (`| head`) changes nothing:
 //! the verdict keeps its code.
+use servobench_report::Outcome;
 use servobench_suite::RunError;
 use std::process::ExitCode;
 use thiserror::Error;
@@ -73,6 +74,16 @@ impl CliError {
             Self::Input(_) => Exit::Input,
             Self::Run(_) => Exit::Run,
         }
+    }
+}
+
+/// What a run that came to this ends the program with.
+pub(crate) const fn of_outcome(outcome: Outcome) -> Exit {
+    match outcome {
+        Outcome::Passed | Outcome::Unjudged => Exit::Passed,
+        Outcome::Failed => Exit::Limit,
+        Outcome::Input => Exit::Input,
+        Outcome::Error => Exit::Run,
     }
 }
 

@@ -1,10 +1,12 @@
 //! What a run leaves on the disk: recordings, results, reports. Each file is there whole or not at all.
 use crate::exit::CliError;
-use servobench_report::RunIdentity;
+use servobench_report::{Results, RunIdentity};
 use servobench_scenario::Scenario;
 use servobench_suite::{Job, channel_limits};
 use servobench_trace::Recording;
 use servobench_view::ViewOptions;
+use std::collections::HashSet;
+use std::ffi::OsStr;
 use std::fmt::Display;
 use std::path::Path;
 
@@ -35,6 +37,20 @@ pub(crate) fn write_recording(job: &Job, recording: &Recording, folder: &Path, r
         servobench_view::write_rrd(recording, path, &view_options(&job.scenario)).map_err(|error| failed(&error))?;
     }
     Ok(name)
+}
+
+/// How many recordings in `folder` neither `results` nor the comparison beside them name. A folder that cannot be read
+/// is said to hold none.
+pub(crate) fn older_recordings(folder: &Path, results: &Results) -> usize {
+    let comparison = std::fs::read_to_string(folder.join(COMPARISON)).ok();
+    let comparison = comparison.and_then(|text| Results::from_json(&text).ok());
+    let stem = |path: &Path| path.file_stem().map(OsStr::to_owned);
+    let runs = results.scenarios.iter().chain(comparison.iter().flat_map(|comparison| &comparison.scenarios));
+    let named: HashSet<_> = runs.filter_map(|run| stem(run.recording.as_deref()?.as_ref())).collect();
+    let is_recording = |path: &Path| path.extension().is_some_and(|kind| kind == "parquet" || kind == "rrd");
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let found: HashSet<_> = entries.filter(|path| is_recording(path)).filter_map(|path| stem(&path)).collect();
+    found.difference(&named).count()
 }
 
 /// Which run it is, for results; `recording` is the file beside them that holds it.

@@ -22,7 +22,7 @@ pub fn junit(results: &Results) -> Result<String, ReportError> {
 fn case(run: &RunResult) -> TestCase {
     let mut case = TestCase::new(format!("{} [{}]", run.name, run.engine), status(run));
     case.set_classname(run.file.as_deref().unwrap_or("servobench"));
-    if !run.metrics.is_empty() {
+    if run.verdict.is_whole() && !run.metrics.is_empty() {
         case.set_system_out(metric_table(run, Style::default()));
     }
     case
@@ -30,8 +30,9 @@ fn case(run: &RunResult) -> TestCase {
 
 fn status(run: &RunResult) -> TestCaseStatus {
     let (kind, what) = match run.verdict {
-        Outcome::Passed => return TestCaseStatus::success(),
+        Outcome::Passed | Outcome::Unjudged => return TestCaseStatus::success(),
         Outcome::Failed => (NonSuccessKind::Failure, "limit missed"),
+        Outcome::Input => (NonSuccessKind::Error, "wrong input"),
         Outcome::Error => (NonSuccessKind::Error, "run not carried out"),
     };
     let of_moves = run.moves.iter().flat_map(|made| made.metrics.iter());
@@ -55,7 +56,7 @@ mod tests {
     fn reads_back_with_failures_and_errors_told_apart() {
         let xml = junit(&samples::results()).unwrap();
         let report = Report::deserialize_from_str(&xml).unwrap();
-        assert_eq!((report.tests, report.failures, report.errors), (4, 1, 1));
+        assert_eq!((report.tests, report.failures, report.errors), (6, 1, 2));
         let cases = &report.test_suites[0].test_cases;
         let names: Vec<_> = cases.iter().map(|case| case.name.as_str()).collect();
         assert_eq!(names[0], "lambrechts-jerk [exact]");
@@ -69,7 +70,7 @@ mod tests {
         assert_eq!(message.as_ref().unwrap().as_str(), "3 limits missed");
         let lines: Vec<_> = description.as_ref().unwrap().as_str().lines().collect();
         assert_eq!(lines[1], "residual_vibration_pp 8.30 µm, limit 2.00 µm");
-        let TestCaseStatus::NonSuccess { kind, message, description, .. } = &cases[3].status else { panic!("broken") };
+        let TestCaseStatus::NonSuccess { kind, message, description, .. } = &cases[4].status else { panic!("broken") };
         assert_eq!(*kind, NonSuccessKind::Error);
         let whole =
             "the mechanics diverged at 0.123 s: the position of `load` is not finite; take a smaller step than 1.00 ms";

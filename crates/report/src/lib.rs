@@ -3,6 +3,7 @@
 //! What is said of runs is made from [`Results`], which hold nothing that differs between two runs of the same scenario:
 //! no wall-clock time, no host. So every text here is the same to the byte, too.
 
+mod bound_limits;
 mod compare;
 mod error;
 mod junit;

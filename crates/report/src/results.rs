@@ -2,7 +2,7 @@
 use crate::error::ReportError;
 use crate::ordered::Ordered;
 use serde::{Deserialize, Serialize};
-use servobench_metrics::{Limit, Metric, MetricSet, Metrics, MoveMetrics, Name, Verdict};
+use servobench_metrics::{Limit, Metric, MetricSet, Metrics, MoveMetrics, Name, Quantity, Verdict};
 use servobench_trace::{Event, Recording};
 
 /// Name and version of the schema.
@@ -25,10 +25,27 @@ pub struct Results {
 pub enum Outcome {
     /// Every limit is kept.
     Passed,
+    /// The run came to its end, and there was no limit to keep.
+    Unjudged,
     /// A limit is missed.
     Failed,
+    /// The scenario asks for what cannot be built.
+    Input,
     /// The run could not be carried out.
     Error,
+}
+
+impl Outcome {
+    /// Whether the run came to its end without missing a limit.
+    #[must_use]
+    pub const fn is_good(self) -> bool {
+        matches!(self, Self::Passed | Self::Unjudged)
+    }
+
+    /// Whether the run came to its end, so that its metrics mean what they say.
+    pub(crate) const fn is_whole(self) -> bool {
+        !matches!(self, Self::Input | Self::Error)
+    }
 }
 
 /// One scenario on one engine.
@@ -44,7 +61,7 @@ pub struct RunResult {
     pub verdict: Outcome,
     /// Simulated time, from tick 0 to the last recorded instant (s).
     pub duration: f64,
-    /// Missed limits or the error, in words; empty when it passed.
+    /// Missed limits or the error, in words; empty without either.
     pub reasons: Vec<String>,
     /// Metrics by name; with those that have a limit but could not be measured.
     pub(crate) metrics: Ordered<MetricResult>,
@@ -153,7 +170,6 @@ impl RunResult {
     #[must_use]
     pub fn judged(run: RunIdentity, recording: &Recording, metrics: &Metrics, verdict: &Verdict) -> Self {
         let mut result = Self::of(run, Some(recording), metrics);
-        result.verdict = if verdict.passed() { Outcome::Passed } else { Outcome::Failed };
         result.reasons = verdict.misses.iter().map(ToString::to_string).collect();
         for miss in verdict.misses.iter().filter(|miss| miss.value.is_none()) {
             let missing = [(miss.limit.metric.to_string(), MetricResult::missing(&miss.limit))];
@@ -166,7 +182,20 @@ impl RunResult {
             };
             *metrics = std::mem::take(metrics).into_iter().chain(missing).collect();
         }
+        let of_moves = result.moves.iter().flat_map(|made| made.metrics.iter());
+        let is_judged = result.metrics.iter().chain(of_moves).any(|(_, metric)| metric.pass.is_some());
+        result.verdict = match (verdict.passed(), is_judged) {
+            (false, _) => Outcome::Failed,
+            (true, true) => Outcome::Passed,
+            (true, false) => Outcome::Unjudged,
+        };
         result
+    }
+
+    /// A run that could not be built, because the scenario asks for what there is not, and why.
+    #[must_use]
+    pub fn input(run: RunIdentity, reasons: Vec<String>) -> Self {
+        Self { verdict: Outcome::Input, reasons, ..Self::of(run, None, &Metrics::default()) }
     }
 
     /// A run that could not be carried out and why, with what was recorded and measured until then.
@@ -204,6 +233,12 @@ impl RunResult {
 }
 
 impl MetricResult {
+    /// Significant digits that show how `value` stands to the limits.
+    pub(crate) fn digits(&self, value: f64) -> usize {
+        let bounds = [self.limit_min, self.limit].into_iter().flatten();
+        bounds.map(|bound| Quantity::digits_apart(value.abs(), bound.abs())).max().unwrap_or(3)
+    }
+
     fn missing(limit: &Limit) -> Self {
         Self { value: None, unit: String::new(), limit: limit.max, limit_min: limit.min, pass: Some(false) }
     }
@@ -330,7 +365,7 @@ mod tests {
         assert_eq!((peak.limit, peak.pass), (Some(0.1e-3), Some(true)));
         let settling = run.metrics.get("settling_time").unwrap();
         assert_eq!((settling.value, settling.limit, settling.pass), (None, Some(0.1), Some(false)));
-        let why = "settling_time could not be measured: the recording has no channel `load.position`";
+        let why = "settling_time could not be measured: `load.position` is not recorded";
         assert_eq!(run.reasons, [why]);
         assert_eq!(run.moves[0].metrics.get("setpoint_velocity_ratio").unwrap().value, Some(0.8));
         assert_eq!(run.events.len(), 1);

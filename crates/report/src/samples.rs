@@ -1,6 +1,7 @@
 //! Results for the tests: the move of Lambrechts under two limits, a run that missed limits, one that broke off.
 use crate::results::{EventResult, MetricResult, Outcome, Results, RunResult};
 use servobench_metrics::Name;
+use servobench_trace::Move;
 
 /// A metric without a limit.
 fn free(name: Name, value: f64, unit: &str) -> (String, MetricResult) {
@@ -20,11 +21,11 @@ pub(crate) fn run(name: &str, engine: &str, metrics: impl IntoIterator<Item = (S
         name: name.into(),
         file: Some(format!("scenarios/{name}.toml")),
         engine: engine.into(),
-        verdict: Outcome::Passed,
+        verdict: Outcome::Unjudged,
         duration: 2.0,
         reasons: vec![],
         metrics: metrics.into_iter().collect(),
-        absent: [("current_peak".to_owned(), "the recording has no channel `current.d`".to_owned())]
+        absent: [("current_peak".to_owned(), "`current.d` is not recorded; only a PMSM has a current".to_owned())]
             .into_iter()
             .collect(),
         moves: vec![],
@@ -54,6 +55,24 @@ pub(crate) fn of_numbers(name: &str, numbers: [f64; 8]) -> RunResult {
     )
 }
 
+/// The set-point of Lambrechts: 1 m at 1 m/s, 5 m/s², 50 m/s³, and at order 4 1000 m/s⁴, all of which it reaches.
+pub(crate) fn lambrechts_move(order: usize) -> Move {
+    let limits = [1.0, 5.0, 50.0, 1000.0];
+    let mut made = Move {
+        label: format!("move from 0 m to 1 m, order {order}"),
+        start: 0.0,
+        end: if order == 3 { 1.3 } else { 1.35 },
+        from: 0.0,
+        to: 1.0,
+        peaks: limits,
+        limits: limits.map(Some),
+        cruise: (0.35, 0.65),
+    };
+    made.peaks[order..].fill(f64::INFINITY);
+    made.limits[order..].fill(None);
+    made
+}
+
 /// The jerk-limited move.
 pub(crate) fn jerk() -> RunResult {
     of_numbers("lambrechts-jerk", [1.3, 0.004, 3.1e-6, 3.4e-6, 38.985, 0.0021, 170.0, 61.2])
@@ -81,10 +100,35 @@ pub(crate) fn missed() -> RunResult {
     run.reasons = vec![
         "settling_time 35.2 ms, limit 20.0 ms".into(),
         "residual_vibration_pp 8.30 µm, limit 2.00 µm".into(),
-        "current_peak could not be measured: the recording has no channel `current.d`".into(),
+        "current_peak could not be measured: `current.d` is not recorded; only a PMSM has a current".into(),
     ];
-    run.events =
-        vec![EventResult { start: 0.1, end: 0.2, source: "velocity loop".into(), message: "torque limit".into() }];
+    run.events = vec![EventResult {
+        start: 0.1,
+        end: 0.2,
+        source: "velocity loop".into(),
+        message: "effort limit binds".into(),
+    }];
+    run
+}
+
+/// A run that keeps its limit, with a drive that was at its limit for half a second.
+pub(crate) fn kept() -> RunResult {
+    let mut run = run("kept", "exact", [limited(Name::MoveTime, Some(1.0), "s", 2.0)]);
+    run.verdict = Outcome::Passed;
+    run.events = vec![EventResult {
+        start: 0.1,
+        end: 0.6,
+        source: "current loop".into(),
+        message: "voltage limit binds".into(),
+    }];
+    run
+}
+
+/// A scenario that cannot be built.
+pub(crate) fn wrong() -> RunResult {
+    let mut run = broken();
+    run.verdict = Outcome::Input;
+    run.reasons = vec!["`axis.mjcf.file`: there is no `arm.xml`".into()];
     run
 }
 
@@ -102,5 +146,5 @@ pub(crate) fn broken() -> RunResult {
 
 /// All of them.
 pub(crate) fn results() -> Results {
-    Results::new(vec![jerk(), missed(), snap(), broken()])
+    Results::new(vec![jerk(), missed(), kept(), snap(), broken(), wrong()])
 }

@@ -22,6 +22,7 @@ pub(crate) enum Ink {
     Heading,
     Good,
     Bad,
+    Warning,
     Faint,
 }
 
@@ -32,6 +33,7 @@ impl Style {
             Ink::Heading => "1",
             Ink::Good => "32",
             Ink::Bad => "1;31",
+            Ink::Warning => "33",
             Ink::Faint => "2",
         };
         if self.colour && !text.trim().is_empty() { format!("\x1b[{code}m{text}\x1b[0m") } else { text.to_owned() }

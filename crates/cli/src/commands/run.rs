@@ -1,8 +1,8 @@
 //! `servobench run`: scenarios in, verdicts out.
 use crate::args::RunArgs;
-use crate::console::{print, style};
+use crate::console::{print, program, style};
 use crate::engines;
-use crate::exit::{CliError, Exit, of_run_error};
+use crate::exit::{CliError, Exit, of_outcome, of_run_error};
 use crate::output;
 use crate::progress::Progress;
 use crate::sources;
@@ -22,20 +22,15 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
     let ended = map_in_parallel(&jobs, workers::at_a_time(args.jobs), Job::memory, |job| {
         one(job, &engines, &worker, args.rrd, &args.out, &progress)
     });
-    let ended: Vec<(RunResult, Exit)> = jobs
-        .iter()
-        .zip(ended)
-        .map(|(job, ended)| {
-            ended.unwrap_or_else(|panic| {
-                progress.ended(&job.id, words(Exit::Run));
-                (RunResult::error(output::identity(job, None), None, vec![panic.to_string()]), Exit::Run)
-            })
+    let ended = jobs.iter().zip(ended).map(|(job, ended)| {
+        ended.unwrap_or_else(|panic| {
+            progress.ended(&job.id, words(Outcome::Error));
+            RunResult::error(output::identity(job, None), None, vec![panic.to_string()])
         })
-        .collect();
+    });
+    let results = Results::new(ended.collect());
     progress.finish();
-
-    let exit = ended.iter().fold(Exit::Passed, |worst, (_, exit)| worst.worse(*exit));
-    let results = Results::new(ended.into_iter().map(|(result, _)| result).collect());
+    let exit = results.scenarios.iter().fold(Exit::Passed, |worst, run| worst.worse(of_outcome(run.verdict)));
     let text = results.to_json().map_err(|error| CliError::Run(error.to_string()))?;
     output::write_file(&args.out.join(output::RESULTS), &text)?;
     if let Some(path) = &args.junit {
@@ -61,20 +56,19 @@ fn one(
     rrd: bool,
     folder: &Path,
     progress: &Progress,
-) -> (RunResult, Exit) {
+) -> RunResult {
     let write = |recording| output::write_recording(job, recording, folder, rrd);
-    let (result, exit) = match execute(job, engines, worker, &mut progress.of_run()) {
+    let result = match execute(job, engines, worker, &mut progress.of_run()) {
         Ok(Run { recording, metrics, verdict }) => match write(&recording) {
-            Ok(name) => {
-                let run = output::identity(job, Some(name));
-                let exit = if verdict.passed() { Exit::Passed } else { Exit::Limit };
-                (RunResult::judged(run, &recording, &metrics, &verdict), exit)
-            }
+            Ok(name) => RunResult::judged(output::identity(job, Some(name)), &recording, &metrics, &verdict),
             Err(error) => {
                 let (run, until_then) = (output::identity(job, None), Some((&recording, &metrics)));
-                (RunResult::error(run, until_then, vec![error.to_string()]), error.exit())
+                RunResult::error(run, until_then, vec![error.to_string()])
             }
         },
+        Err(broken) if of_run_error(&broken.error) == Exit::Input => {
+            RunResult::input(output::identity(job, None), vec![broken.error.to_string()])
+        }
         Err(broken) => {
             let Broken { error, until_then } = *broken;
             let mut reasons = vec![error.to_string()];
@@ -82,30 +76,38 @@ fn one(
                 write(recording).map_err(|unwritten| reasons.push(unwritten.to_string())).ok()
             });
             let until_then = until_then.as_ref().map(|(recording, metrics)| (recording, metrics));
-            (RunResult::error(output::identity(job, name), until_then, reasons), of_run_error(&error))
+            RunResult::error(output::identity(job, name), until_then, reasons)
         }
     };
-    progress.ended(&job.id, words(exit));
-    (result, exit)
+    progress.ended(&job.id, words(result.verdict));
+    result
 }
 
 /// What a progress line says of a run.
-const fn words(exit: Exit) -> &'static str {
-    match exit {
-        Exit::Passed => "passed",
-        Exit::Limit => "missed a limit",
-        Exit::Input | Exit::Run => "could not be carried out",
+const fn words(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Passed => "passed",
+        Outcome::Unjudged => "done, without limits",
+        Outcome::Failed => "missed a limit",
+        Outcome::Input => "wrong input",
+        Outcome::Error => "could not be carried out",
     }
 }
 
 fn text_of(results: &Results, args: &RunArgs) -> String {
     if args.quiet {
-        let bad = results.scenarios.iter().filter(|run| run.verdict != Outcome::Passed);
+        let bad = results.scenarios.iter().filter(|run| !run.verdict.is_good());
         let lines = bad.map(|run| format!("{} on {}: {}\n", run.name, run.engine, run.reasons.join("; ")));
         return lines.collect::<Vec<_>>().concat();
     }
     let out = args.out.display();
-    let mut parts = vec![verdict_table(results, style()), format!("results and recordings: {out}\n")];
-    parts.extend(args.rrd.then(|| format!("look at them: servobench view {out}\n")));
+    let older = match output::older_recordings(&args.out, results) {
+        0 => String::new(),
+        1 => ", with a recording of an earlier run".into(),
+        count => format!(", with {count} recordings of earlier runs"),
+    };
+    let mut parts =
+        vec![verdict_table(results, style(), args.verbose), format!("results and recordings: {out}{older}\n")];
+    parts.extend(args.rrd.then(|| format!("look at them: {} view {out}\n", program())));
     parts.concat()
 }

@@ -1,0 +1,68 @@
+//! Limits of the machine that bound during a run, in words.
+use crate::results::EventResult;
+use servobench_metrics::Quantity;
+
+/// How an event says that a limit bound.
+const BINDS: &str = " binds";
+
+/// One line for each limit that bound: `voltage limit bound for 636 ms`.
+pub(crate) fn bound_limits(events: &[EventResult]) -> Vec<String> {
+    let mut limits: Vec<Bound<'_>> = Vec::new();
+    for event in events {
+        let Some((limit, rest)) = event.message.split_once(BINDS) else { continue };
+        let index = limits.iter().position(|bound| bound.limit == limit).unwrap_or_else(|| {
+            limits.push(Bound { limit, times: 0, seconds: 0.0, is_all: true });
+            limits.len() - 1
+        });
+        let bound = &mut limits[index];
+        bound.times += 1;
+        bound.seconds += event.end - event.start;
+        // Later ones are not listed.
+        bound.is_all &= rest.is_empty();
+    }
+    limits.iter().map(Bound::words).collect()
+}
+
+struct Bound<'a> {
+    limit: &'a str,
+    times: usize,
+    seconds: f64,
+    is_all: bool,
+}
+
+impl Bound<'_> {
+    fn words(&self) -> String {
+        let Self { limit, times, seconds, is_all } = self;
+        let seconds = Quantity::new(*seconds, "s");
+        match (*is_all, *times) {
+            (false, _) => format!("{limit} bound more than {times} times, for more than {seconds} in all"),
+            (true, 1) => format!("{limit} bound for {seconds}"),
+            (true, _) => format!("{limit} bound {times} times, for {seconds} in all"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn event(start: f64, end: f64, message: &str) -> EventResult {
+        EventResult { start, end, source: "loop".into(), message: message.into() }
+    }
+
+    #[test]
+    fn times_are_summed_for_each_limit() {
+        let events = [
+            event(0.1, 0.2, "voltage limit binds"),
+            event(0.3, 0.7, "effort limit binds"),
+            event(0.5, 0.5, "something else"),
+            event(0.8, 1.0, "voltage limit binds"),
+        ];
+        assert_eq!(
+            bound_limits(&events),
+            ["voltage limit bound 2 times, for 300 ms in all", "effort limit bound for 400 ms"]
+        );
+        let cut = [event(0.0, 0.5, "effort limit binds; later ones are not listed")];
+        assert_eq!(bound_limits(&cut), ["effort limit bound more than 1 times, for more than 500 ms in all"]);
+    }
+}
