@@ -36,6 +36,21 @@ fn compare_refuses_scenarios_that_differ_in_more_than_the_set_point() {
     assert!(!out.exists());
 }
 
+/// Another limit, not another order of the profile, makes the difference here: it is said, or refused on demand.
+#[test]
+fn limits_that_differ_are_said_or_refused() {
+    let work = folder(&[("one.toml", SLIDE), ("two.toml", &SLIDE.replace("5 m/s2", "2 m/s2"))]);
+    let (one, two, out) = (work.path().join("one.toml"), work.path().join("two.toml"), work.path().join("out"));
+    let arguments = ["compare", one.to_str().unwrap(), two.to_str().unwrap(), "--out", out.to_str().unwrap()];
+    let output = servobench(&arguments);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    let words = said(&output).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("Their limits differ: acceleration 2.00 m/s² against 5.00 m/s²."), "{}", said(&output));
+    let output = servobench(&[&arguments[..], &["--equal", "limits"]].concat());
+    assert_eq!(code(&output), 2, "{}", said(&output));
+    assert!(said(&output).contains("move 1 of `one` is limited to 5 in acceleration"), "{}", said(&output));
+}
+
 #[test]
 fn a_limit_that_is_missed_in_a_comparison_ends_with_4_and_is_named() {
     let fast = format!("{SLIDE}\n[limits]\nmove_time = \"1 ms\"\n");
@@ -46,7 +61,7 @@ fn a_limit_that_is_missed_in_a_comparison_ends_with_4_and_is_named() {
     assert!(said(&output).contains("one missed a limit: move_time"), "{}", said(&output));
     let results = json(&fs::read(out.join("comparison.json")).unwrap());
     let runs = results["scenarios"].as_array().unwrap();
-    assert_eq!((&runs[0]["verdict"], &runs[1]["verdict"]), (&"failed".into(), &"passed".into()));
+    assert_eq!((&runs[0]["verdict"], &runs[1]["verdict"]), (&"failed".into(), &"unjudged".into()));
     assert!(runs.iter().all(|run| run["recording"] == "one-against-two.rrd"), "{results}");
     assert!(out.join("one-against-two.rrd").is_file());
 }

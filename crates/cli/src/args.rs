@@ -117,9 +117,9 @@ pub(crate) struct CompareArgs {
     /// Scenario files: the same axis under different set-points.
     #[arg(required = true, num_args = 2..)]
     pub(crate) scenarios: Vec<PathBuf>,
-    /// What is equal in all runs.
-    #[arg(long, value_enum, default_value_t = Equal::Limits)]
-    pub(crate) equal: Equal,
+    /// What must be equal in all runs; without it each keeps its own limits.
+    #[arg(long, value_enum)]
+    pub(crate) equal: Option<Equal>,
     /// Engine to use instead of the first scenario's.
     #[arg(long, value_name = "NAME", value_parser = engine())]
     pub(crate) engine: Option<EngineName>,
@@ -134,7 +134,7 @@ pub(crate) struct CompareArgs {
 /// What is equal in all runs of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Equal {
-    /// Each scenario's own limits.
+    /// The limits: it is an error when one that several moves have differs.
     Limits,
     /// The duration: faster moves are slowed to the slowest, and no longer judged by their limits.
     Duration,

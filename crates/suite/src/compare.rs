@@ -1,6 +1,6 @@
-//! The same axis under different set-points: at equal limits, or slowed to equal duration.
+//! The same axis under different set-points: each at its own limits, at equal ones, or slowed to equal duration.
 use crate::job::Job;
-use servobench_scenario::{Actuator, Drive, Scenario, Step};
+use servobench_scenario::{Actuator, Drive, MoveStep, Scenario, Step};
 use servobench_sim::{BuildError, Program};
 use thiserror::Error;
 
@@ -20,8 +20,10 @@ pub enum CompareError {
         /// The parts of the scenarios that differ, as the file calls them.
         parts: Vec<&'static str>,
     },
-    /// Moves without a counterpart cannot have its duration.
-    #[error("`{one}` makes {moves} moves and `{other}` {other_moves}; equal durations need the same moves in each")]
+    /// Moves without a counterpart cannot have its limits or its duration.
+    #[error(
+        "`{one}` makes {moves} moves and `{other}` {other_moves}; what is to be equal needs the same moves in each"
+    )]
     Moves {
         /// Name of the first scenario.
         one: String,
@@ -31,6 +33,25 @@ pub enum CompareError {
         other: String,
         /// Its moves.
         other_moves: usize,
+    },
+    /// A limit that both moves have differs.
+    #[error(
+        "move {number} of `{one}` is limited to {value} in {derivative} (SI), that of `{other}` to {other_value}; without \
+         equal limits each runs at its own"
+    )]
+    Limits {
+        /// Number of the move, from 1.
+        number: usize,
+        /// `velocity`, `acceleration`, `jerk`, `snap`.
+        derivative: &'static str,
+        /// Name of the first scenario.
+        one: String,
+        /// Its limit (SI).
+        value: f64,
+        /// Name of the other.
+        other: String,
+        /// Its limit (SI).
+        other_value: f64,
     },
     /// A move cannot be planned.
     #[error("`{scenario}`: {error}")]
@@ -128,6 +149,43 @@ fn compare_drives(one: &Drive, other: &Drive, compare: &mut impl FnMut(&'static 
     compare("`drive.position_feedback`", *position_feedback == other.position_feedback);
     compare("`drive.feedforward`", *feedforward == other.feedforward);
     compare("`drive.estimate`", *estimate == other.estimate);
+}
+
+/// Whether each move has the limits of its counterparts, as far as its order has them.
+///
+/// # Errors
+/// [`CompareError::Moves`] when the programs differ in their number of moves, [`CompareError::Limits`].
+pub fn limits_agree(jobs: &[Job]) -> Result<(), CompareError> {
+    const DERIVATIVES: [&str; 4] = ["velocity", "acceleration", "jerk", "snap"];
+    let Some((one, others)) = jobs.split_first() else { return Ok(()) };
+    let moves = moves(one);
+    for other in others {
+        let other_moves = self::moves(other);
+        let (one, other) = (one.scenario.name.clone(), other.scenario.name.clone());
+        if moves.len() != other_moves.len() {
+            let (moves, other_moves) = (moves.len(), other_moves.len());
+            return Err(CompareError::Moves { one, moves, other, other_moves });
+        }
+        for (k, (step, other_step)) in moves.iter().zip(other_moves).enumerate() {
+            let both = step.limits.into_iter().zip(other_step.limits).zip(DERIVATIVES);
+            let shared = both.take(usize::from(step.order.min(other_step.order)));
+            for ((value, other_value), derivative) in shared {
+                if value.to_bits() != other_value.to_bits() {
+                    return Err(CompareError::Limits { number: k + 1, derivative, one, value, other, other_value });
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The moves of a job.
+fn moves(job: &Job) -> Vec<MoveStep> {
+    let moves = job.scenario.program.iter().filter_map(|step| match step {
+        Step::Move(step) => Some(step.clone()),
+        Step::Wait(_) => None,
+    });
+    moves.collect()
 }
 
 /// Slows every move to the longest of its counterparts, so that all jobs make the same moves in the same time. A job
@@ -245,6 +303,18 @@ mod tests {
     }
 
     #[test]
+    fn limits_agree_as_far_as_both_orders_have_them() {
+        let third = ONE.replace("order = 2", "order = 3\n        jerk = \"50 m/s3\"");
+        assert_eq!(limits_agree(&of([ONE, &third])), Ok(()));
+        let fast = third.replace("0.5 m/s", "5 m/s");
+        let error = limits_agree(&of([ONE, &fast])).unwrap_err().to_string();
+        let expected = "move 1 of `one` is limited to 0.5 in velocity (SI), that of `two` to 5;";
+        assert!(error.starts_with(expected), "{error}");
+        let more = format!("{ONE}\n[[program]]\nmove_to = \"0 mm\"");
+        assert!(matches!(limits_agree(&of([ONE, &more])), Err(CompareError::Moves { .. })));
+    }
+
+    #[test]
     fn equal_durations_are_those_of_the_slower_move() {
         let limited = format!("{ONE}\n[limits]\nmove_time = \"0.52 s\"");
         let slow = limited.replace("0.5 m/s", "0.1 m/s");
@@ -259,6 +329,6 @@ mod tests {
         assert_eq!(jobs.iter().map(|job| job.scenario.limits.len()).collect::<Vec<_>>(), [0, 1]);
         let more = format!("{ONE}\n[[program]]\nmove_to = \"0 mm\"");
         let error = to_equal_duration(&mut of([ONE, &more])).unwrap_err().to_string();
-        assert_eq!(error, "`one` makes 1 moves and `two` 2; equal durations need the same moves in each");
+        assert_eq!(error, "`one` makes 1 moves and `two` 2; what is to be equal needs the same moves in each");
     }
 }

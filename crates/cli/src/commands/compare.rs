@@ -1,6 +1,6 @@
 //! `servobench compare`: the same axis under different set-points.
 use crate::args::{CompareArgs, Equal};
-use crate::console::{print, style};
+use crate::console::{print, program, style};
 use crate::engines;
 use crate::exit::{CliError, Exit, of_run_error};
 use crate::output;
@@ -10,7 +10,8 @@ use crate::workers;
 use servobench_report::{Compared, Comparison, Results, RunResult};
 use servobench_scenario::EngineName;
 use servobench_suite::{
-    CompareError, Job, Run, RunError, execute, jobs, map_in_parallel, only_setpoints_differ, to_equal_duration,
+    CompareError, Job, Run, RunError, execute, jobs, limits_agree, map_in_parallel, only_setpoints_differ,
+    to_equal_duration,
 };
 use servobench_trace::Recording;
 
@@ -19,8 +20,10 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
     let mut jobs = wanted_jobs(args)?;
     let wrong = |error: CompareError| CliError::Input(error.to_string());
     only_setpoints_differ(&jobs).map_err(wrong)?;
-    if args.equal == Equal::Duration {
-        to_equal_duration(&mut jobs).map_err(wrong)?;
+    match args.equal {
+        None => {}
+        Some(Equal::Limits) => limits_agree(&jobs).map_err(wrong)?,
+        Some(Equal::Duration) => to_equal_duration(&mut jobs).map_err(wrong)?,
     }
     let labels = labels(&jobs.iter().map(|job| job.scenario.name.as_str()).collect::<Vec<_>>());
     output::make_folder(&args.out)?;
@@ -35,7 +38,9 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
             RunResult::judged(identity, &run.recording, &run.metrics, &run.verdict)
         })
         .collect();
-    let compared = labels.iter().zip(&results).map(|(label, result)| Compared { label, result }).collect();
+    let compared = labels.iter().zip(&results).zip(&runs);
+    let compared = compared.map(|((label, result), run)| Compared { label, result, moves: &run.recording.moves });
+    let compared = compared.collect();
     let text = text_of(args, &jobs, &Comparison::new(compared), &recording);
     let json = Results::new(results).to_json().map_err(|error| CliError::Run(error.to_string()))?;
     output::write_file(&args.out.join(output::COMPARISON), &json)?;
@@ -87,15 +92,16 @@ fn text_of(args: &CompareArgs, jobs: &[Job], comparison: &Comparison<'_>, record
         comparison.table(style) + "\n",
         comparison.words(style.width) + "\n",
         comparison.missed(style.width),
-        format!("look at it: servobench view {}\n", args.out.join(recording).display()),
+        format!("look at it: {} view {}\n", program(), args.out.join(recording).display()),
     ]
     .concat()
 }
 
 fn heading(args: &CompareArgs, jobs: &[Job]) -> String {
     let equal = match args.equal {
-        Equal::Limits => "each at its own limits",
-        Equal::Duration => "slowed to equal duration",
+        None => "each at its own limits",
+        Some(Equal::Limits) => "at equal limits",
+        Some(Equal::Duration) => "slowed to equal duration",
     };
     let names: Vec<_> = jobs.iter().map(|job| job.scenario.name.as_str()).collect();
     let engine = jobs.first().map_or("", |job| job.engine.as_str());

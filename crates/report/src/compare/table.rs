@@ -14,7 +14,13 @@ enum Kind {
     Size,
     /// A property of the axis: no better or worse.
     Property,
+    /// A limit that a set-point was planned with: said when they differ.
+    Limit,
 }
+
+/// Limits of the set-points, and the powers of the second in their units.
+const LIMITS: [(&str, &str); 4] =
+    [("limit of velocity", ""), ("limit of acceleration", "²"), ("limit of jerk", "³"), ("limit of snap", "⁴")];
 
 const ROWS: [(&str, Name, Kind); 11] = [
     ("move", Name::MoveTime, Kind::Time),
@@ -45,27 +51,14 @@ impl Comparison<'_> {
         let labels: Vec<_> = self.runs.iter().map(|run| format!("  {:>cell$}", elided(run.label, cell))).collect();
         let change = if self.runs.len() == 2 { "  change" } else { "" };
         let mut table = style.paint(Ink::Heading, &format!("{:name$}{}{change}", "", labels.concat())) + "\n";
+        for (k, (label, power)) in LIMITS.into_iter().enumerate() {
+            let unit = format!("{}/s{power}", self.axis_unit());
+            let values: Vec<_> = self.runs.iter().map(|run| Some((run.limit(k)?, unit.as_str()))).collect();
+            row(&mut table, &format!("{label:name$}"), cell, Kind::Limit, &values);
+        }
         for (label, metric, kind) in ROWS {
             let values: Vec<_> = self.runs.iter().map(|run| run.result.metric(metric)).collect();
-            if values.iter().all(Option::is_none) {
-                continue;
-            }
-            let mark = |value| {
-                if values.len() > 2 && kind != Kind::Property && is_smallest(value, &values) { "*" } else { "" }
-            };
-            let cells = values.iter().map(|value| match *value {
-                Some((number, unit)) => {
-                    format!("  {:>cell$}", format!("{}{}", mark(*value), shown(kind, number, unit)))
-                }
-                None => format!("  {:>cell$}", "–"),
-            });
-            let change = match values.as_slice() {
-                [Some(one), Some(two)] => format!("  {}", beside(kind, *one, *two)),
-                _ => String::new(),
-            };
-            let row = format!("{:name$}{}{change}", effort_word(label, &values), cells.collect::<Vec<_>>().concat());
-            table += row.trim_end();
-            table.push('\n');
+            row(&mut table, &format!("{:name$}", effort_word(label, &values)), cell, kind, &values);
         }
         if self.runs.len() > 2 {
             table += &style.paint(Ink::Faint, "* smallest, by more than 1 %");
@@ -73,12 +66,37 @@ impl Comparison<'_> {
         }
         table
     }
+
+    /// Unit of the axis, as the residual vibration has it.
+    fn axis_unit(&self) -> &str {
+        let unit = self.runs.iter().find_map(|run| run.result.metric(Name::ResidualVibrationPp));
+        unit.map_or("m", |(_, unit)| unit)
+    }
+}
+
+/// One quantity of all runs, unless none has it: all with one prefix, with two runs how they stand to each other.
+fn row(table: &mut String, label: &str, cell: usize, kind: Kind, values: &[Option<Value<'_>>]) {
+    if values.iter().all(Option::is_none) {
+        return;
+    }
+    let largest = values.iter().flatten().fold(0.0, |largest: f64, (value, _)| largest.max(value.abs()));
+    let is_ranked = values.len() > 2 && matches!(kind, Kind::Time | Kind::Size);
+    let cells = values.iter().map(|value| {
+        let text = value.map_or("–".into(), |(number, unit)| shown(kind, Quantity::new(number, unit), largest));
+        let mark = if is_ranked && is_smallest(*value, values) { "*" } else { "" };
+        format!("  {:>cell$}", format!("{mark}{text}"))
+    });
+    let change = match values {
+        [Some(one), Some(two)] => format!("  {}", beside(kind, *one, *two)),
+        _ => String::new(),
+    };
+    *table += format!("{label}{}{change}", cells.collect::<String>()).trim_end();
+    table.push('\n');
 }
 
 /// Properties of the axis with more digits: they tell modes apart.
-fn shown(kind: Kind, value: f64, unit: &str) -> String {
-    let quantity = Quantity::new(value, unit);
-    if kind == Kind::Property { format!("{quantity:.4}") } else { quantity.to_string() }
+fn shown(kind: Kind, quantity: Quantity<'_>, largest: f64) -> String {
+    if kind == Kind::Property { format!("{quantity:.4}") } else { quantity.beside(largest) }
 }
 
 /// "effort" is a force or a torque, as the unit says.
@@ -97,6 +115,8 @@ fn is_smallest(value: Option<Value<'_>>, all: &[Option<Value<'_>>]) -> bool {
 fn beside(kind: Kind, one: Value<'_>, two: Value<'_>) -> String {
     match kind {
         Kind::Property => String::new(),
+        Kind::Limit if one.0.to_bits() == two.0.to_bits() => String::new(),
+        Kind::Limit => "differs".into(),
         Kind::Size => Relation::of(one.0, two.0).to_string(),
         Kind::Time if Relation::of(one.0, two.0) == Relation::Same => "same".into(),
         Kind::Time => {
@@ -111,20 +131,23 @@ fn beside(kind: Kind, one: Value<'_>, two: Value<'_>) -> String {
 mod tests {
     use super::*;
     use crate::compare::Compared;
-    use crate::samples::{jerk, of_numbers, snap};
+    use crate::samples::{jerk, lambrechts_move, of_numbers, snap};
 
     #[test]
     fn table_of_two() {
         let (jerk, snap) = (jerk(), snap());
-        let runs = vec![Compared { label: "jerk", result: &jerk }, Compared { label: "snap", result: &snap }];
+        let runs = vec![
+            Compared { label: "jerk", result: &jerk, moves: &[] },
+            Compared { label: "snap", result: &snap, moves: &[] },
+        ];
         let table = Comparison::new(runs).table(Style::default());
         insta::assert_snapshot!(table, @r#"
                                             jerk         snap  change
         move                              1.30 s       1.35 s  +50.0 ms, +3.8 %
         move + settling                   1.30 s       1.35 s  +46.0 ms, +3.5 %
-        peak following error, load       3.10 µm       730 nm  4.2 × less
-        residual vibration, p-p          3.40 µm       210 nm  16 × less
-          amplitude of the mode          1.70 µm       105 nm  16 × less
+        peak following error, load       3.10 µm     0.730 µm  4.2 × less
+        residual vibration, p-p          3.40 µm     0.210 µm  16 × less
+          amplitude of the mode          1.70 µm     0.105 µm  16 × less
           its frequency                 38.98 Hz     38.98 Hz
           its damping ratio             0.002100     0.002100
         peak force                         170 N        169 N  same
@@ -133,23 +156,47 @@ mod tests {
         assert!(table.lines().all(|line| line.chars().count() <= 80), "{table}");
     }
 
+    /// 0.98 N beside 1.01 kN would hide which is larger.
+    #[test]
+    fn a_row_has_one_prefix_and_limits_stand_above() {
+        let one = of_numbers("one", [0.98, 0.1, 3e-6, 980e-9, 39.0, 0.002, 170.0, 60.0]);
+        let two = of_numbers("two", [1.01, 0.1, 3e-6, 1.4e-6, 39.0, 0.002, 1200.0, 60.0]);
+        let (third, mut fourth) = ([lambrechts_move(3)], [lambrechts_move(4)]);
+        fourth[0].limits[0] = Some(0.5);
+        let runs = vec![
+            Compared { label: "one", result: &one, moves: &third },
+            Compared { label: "two", result: &two, moves: &fourth },
+        ];
+        let table = Comparison::new(runs).table(Style::default());
+        let row = |name: &str| {
+            let row = table.lines().find_map(|line| line.strip_prefix(name)).unwrap_or_else(|| panic!("{table}"));
+            row.split_whitespace().collect::<Vec<_>>().join(" ")
+        };
+        assert_eq!(row("limit of velocity"), "1.00 m/s 0.500 m/s differs");
+        assert_eq!(row("limit of jerk"), "50.0 m/s³ 50.0 m/s³");
+        assert_eq!(row("limit of snap"), "– 1000 m/s⁴");
+        assert_eq!(row("move "), "0.980 s 1.01 s +30.0 ms, +3.1 %");
+        assert_eq!(row("residual vibration, p-p"), "0.980 µm 1.40 µm 43 % more");
+        assert_eq!(row("peak force"), "0.170 kN 1.20 kN 7.1 × as much");
+    }
+
     #[test]
     fn of_three_the_smallest_is_marked() {
         let (jerk, snap) = (jerk(), snap());
         let trapezoid = of_numbers("trapezoid", [1.2, 0.3, 90e-6, 41e-6, 38.985, 0.0021, 190.0, 60.3]);
         let runs = vec![
-            Compared { label: "trapezoid", result: &trapezoid },
-            Compared { label: "jerk", result: &jerk },
-            Compared { label: "snap", result: &snap },
+            Compared { label: "trapezoid", result: &trapezoid, moves: &[] },
+            Compared { label: "jerk", result: &jerk, moves: &[] },
+            Compared { label: "snap", result: &snap, moves: &[] },
         ];
         let comparison = Comparison::new(runs);
         insta::assert_snapshot!(comparison.table(Style::default()), @r#"
                                        trapezoid         jerk         snap
         move                             *1.20 s       1.30 s       1.35 s
         move + settling                   1.50 s      *1.30 s       1.35 s
-        peak following error, load       90.0 µm      3.10 µm      *730 nm
-        residual vibration, p-p          41.0 µm      3.40 µm      *210 nm
-          amplitude of the mode          20.5 µm      1.70 µm      *105 nm
+        peak following error, load       90.0 µm      3.10 µm    *0.730 µm
+        residual vibration, p-p          41.0 µm      3.40 µm    *0.210 µm
+          amplitude of the mode          20.5 µm      1.70 µm    *0.105 µm
           its frequency                 38.98 Hz     38.98 Hz     38.98 Hz
           its damping ratio             0.002100     0.002100     0.002100
         peak force                         190 N        170 N        169 N

@@ -1,6 +1,7 @@
 //! What the table says, in words.
+use super::closed_form::{AROUND, Ratios};
 use super::relation::{Relation, percent};
-use super::{Compared, Comparison, Value, force_or_torque};
+use super::{Compared, Comparison, Value, force_or_torque, in_words, vibration_of};
 use crate::text::wrapped;
 use servobench_metrics::{Name, Quantity};
 
@@ -17,19 +18,27 @@ impl Comparison<'_> {
     }
 }
 
+/// Names of the derivatives that have limits, and their powers of the second.
+const DERIVATIVES: [(&str, &str); 4] = [("velocity", ""), ("acceleration", "²"), ("jerk", "³"), ("snap", "⁴")];
+
 /// Two runs: the one of which the sentences speak, and the other.
 struct Pair<'a> {
     this: Compared<'a>,
     other: Compared<'a>,
+    /// By which metric their vibrations are held against each other.
+    vibration: Name,
 }
 
 impl<'a> Pair<'a> {
     /// Speaks of the run that leaves less vibration; of the second when that does not decide.
     fn of(one: Compared<'a>, two: Compared<'a>) -> Self {
-        let vibration = |run: Compared<'_>| run.result.metric(Name::ResidualVibrationPp).map(|(value, _)| value);
-        match (vibration(one), vibration(two)) {
-            (Some(first), Some(second)) if Relation::of(first, second).is_more() => Self { this: one, other: two },
-            _ => Self { this: two, other: one },
+        let vibration = vibration_of(&[one, two]);
+        let value = |run: Compared<'_>| run.result.metric(vibration).map(|(value, _)| value);
+        match (value(one), value(two)) {
+            (Some(first), Some(second)) if Relation::of(first, second).is_more() => {
+                Self { this: one, other: two, vibration }
+            }
+            _ => Self { this: two, other: one, vibration },
         }
     }
 
@@ -44,38 +53,41 @@ impl<'a> Pair<'a> {
     }
 
     fn sentences(&self) -> Vec<String> {
-        [self.vibration(), self.mode(), self.time(), self.settling(), self.costs(), self.conclusion()]
-            .into_iter()
-            .flatten()
-            .collect()
+        let sentences = [
+            self.vibration(),
+            self.mode(),
+            self.beside_the_mode(),
+            self.limits(),
+            self.time(),
+            self.settling(),
+            self.costs(),
+            self.conclusion(),
+        ];
+        sentences.into_iter().flatten().collect()
     }
 
     fn vibration(&self) -> Option<String> {
         let (this, other) = (self.this.label, self.other.label);
-        let Some(((value, unit), (reference, _))) = self.both(Name::ResidualVibrationPp) else {
+        let Some(((value, unit), (reference, _))) = self.both(self.vibration) else {
             let without = [self.this, self.other];
-            let without = without.into_iter().find(|run| run.result.metric(Name::ResidualVibrationPp).is_none())?;
+            let without = without.into_iter().find(|run| run.result.metric(self.vibration).is_none())?;
             return Some(format!("The residual vibration of {} was not measured.", without.label));
         };
         let (value, reference_text) = (Quantity::new(value, unit), Quantity::new(reference, unit));
         Some(match Relation::of(reference, value.value) {
             Relation::Same => format!("{this} and {other} leave the same residual vibration within 1 %: {value}."),
             relation => format!(
-                "{this} leaves {value} of residual vibration (peak-to-peak) where {other} leaves {reference_text}: \
-                 {relation}."
+                "{this} leaves {value} of residual vibration ({}) where {other} leaves {reference_text}: {relation}.",
+                in_words(self.vibration)
             ),
         })
     }
 
     /// At which frequency and damping the ratio holds.
     fn mode(&self) -> Option<String> {
-        if matches!(self.relation(Name::ResidualVibrationPp), None | Some(Relation::Same)) {
+        if matches!(self.relation(self.vibration), None | Some(Relation::Same)) {
             return None;
         }
-        let mode = |run: Compared<'_>| {
-            let (frequency, _) = run.result.metric(Name::ResidualVibrationFrequency)?;
-            Some((frequency, run.result.metric(Name::ResidualVibrationDamping)?.0))
-        };
         let text = |(frequency, damping)| {
             format!("{:.4} (ζ = {:.2})", Quantity::new(frequency, "Hz"), Quantity::new(damping, ""))
         };
@@ -91,6 +103,39 @@ impl<'a> Pair<'a> {
             (_, Some(mode)) | (Some(mode), None) => format!("The load rings at {}; {holds}", text(mode)),
             (None, None) => return None,
         })
+    }
+
+    /// What the set-points alone make of modes that lie beside the one measured: a ratio near a zero of a spectrum changes
+    /// several times over within a per cent.
+    fn beside_the_mode(&self) -> Option<String> {
+        if self.vibration != Name::ResidualVibrationAmplitude || self.relation(self.vibration) == Some(Relation::Same) {
+            return None;
+        }
+        let (frequency, _) = mode(self.other)?;
+        let Ratios { low, high } = Ratios::of(self.this.moves, self.other.moves, frequency, AROUND)?;
+        Some(format!(
+            "Of undamped modes within ±{:.0} % of that frequency the set-points alone would make, by their closed form, \
+             four in five ring from {} to {}.",
+            100.0 * AROUND,
+            size(low),
+            size(high)
+        ))
+    }
+
+    /// Limits that differ: then it is not the order of the profile that makes the difference.
+    fn limits(&self) -> Option<String> {
+        let axis = self.this.result.metric(Name::ResidualVibrationPp).map_or("m", |(_, unit)| unit);
+        let differences: Vec<_> = DERIVATIVES
+            .into_iter()
+            .enumerate()
+            .filter_map(|(k, (name, power))| Some((name, power, self.this.limit(k)?, self.other.limit(k)?)))
+            .filter(|(_, _, this, other)| this.to_bits() != other.to_bits())
+            .map(|(name, power, this, other)| {
+                let unit = format!("{axis}/s{power}");
+                format!("{name} {} against {}", Quantity::new(this, &unit), Quantity::new(other, &unit))
+            })
+            .collect();
+        (!differences.is_empty()).then(|| format!("Their limits differ: {}.", differences.join(", ")))
     }
 
     fn time(&self) -> Option<String> {
@@ -152,7 +197,7 @@ impl<'a> Pair<'a> {
             (false, true) => return Some(format!("{} wins: only it settles.", self.other.label)),
             _ => {}
         }
-        let vibration = self.relation(Name::ResidualVibrationPp)?;
+        let vibration = self.relation(self.vibration)?;
         let arrival = self.relation(Name::MoveAndSettlingTime).or_else(|| self.relation(Name::MoveTime))?;
         let (this, other) = (self.this.label, self.other.label);
         Some(match (vibration, arrival) {
@@ -166,11 +211,26 @@ impl<'a> Pair<'a> {
     }
 }
 
+/// Natural frequency (Hz) and damping ratio of the mode in which a run rings.
+fn mode(run: Compared<'_>) -> Option<(f64, f64)> {
+    let (frequency, _) = run.result.metric(Name::ResidualVibrationFrequency)?;
+    Some((frequency, run.result.metric(Name::ResidualVibrationDamping)?.0))
+}
+
+/// How a size stands to a reference that is `ratio` times as large.
+fn size(ratio: f64) -> String {
+    match Relation::of(1.0, 1.0 / ratio) {
+        Relation::Same => "as much".into(),
+        relation => relation.to_string(),
+    }
+}
+
 /// More than two runs: each quantity from the best to the worst.
 fn ranking(runs: &[Compared<'_>]) -> Vec<String> {
     let unit = runs.iter().find_map(|run| run.result.metric(Name::TorqueRms)).map_or("", |(_, unit)| unit);
+    let vibration = vibration_of(runs);
     [
-        ("Residual vibration (peak-to-peak)".to_owned(), Name::ResidualVibrationPp),
+        (format!("Residual vibration ({})", in_words(vibration)), vibration),
         ("Move".to_owned(), Name::MoveTime),
         ("Move with settling".to_owned(), Name::MoveAndSettlingTime),
         ("Peak following error".to_owned(), Name::FollowingErrorPeakLoad),
@@ -204,22 +264,44 @@ fn against(best: f64, (value, unit): Value<'_>) -> String {
 mod tests {
     use super::*;
     use crate::results::RunResult;
-    use crate::samples::{jerk, of_numbers, snap};
+    use crate::samples::{jerk, lambrechts_move, of_numbers, snap};
+    use servobench_trace::Move;
 
     fn words(one: &RunResult, two: &RunResult) -> String {
-        let runs = vec![Compared { label: "jerk", result: one }, Compared { label: "snap", result: two }];
-        Comparison::new(runs).words(76)
+        words_of_moves(one, two, [&[], &[]])
+    }
+
+    fn words_of_moves(one: &RunResult, two: &RunResult, moves: [&[Move]; 2]) -> String {
+        let one = Compared { label: "jerk", result: one, moves: moves[0] };
+        let two = Compared { label: "snap", result: two, moves: moves[1] };
+        Comparison::new(vec![one, two]).words(76)
+    }
+
+    #[test]
+    fn a_ratio_stands_beside_what_the_set_points_make_of_the_frequencies_around() {
+        let (third, fourth) = ([lambrechts_move(3)], [lambrechts_move(4)]);
+        let text = words_of_moves(&jerk(), &snap(), [&third, &fourth]).replace('\n', " ");
+        // The ratio has its pole within 10 % of 38.985 Hz, at 40 Hz.
+        assert!(text.contains("four in five ring from 9.3 × less to 100 × less."), "{text}");
+        assert!(!text.contains("differ"), "{text}");
+    }
+
+    #[test]
+    fn limits_that_differ_are_said() {
+        let slow = Move { limits: [Some(0.5), Some(5.0), Some(50.0), None], ..lambrechts_move(3) };
+        let text = words_of_moves(&jerk(), &snap(), [&[slow], &[lambrechts_move(4)]]).replace('\n', " ");
+        assert!(text.contains("Their limits differ: velocity 1.00 m/s against 500 mm/s."), "{text}");
     }
 
     #[test]
     fn words_of_two() {
         insta::assert_snapshot!(words(&jerk(), &snap()), @r#"
-        snap leaves 210 nm of residual vibration (peak-to-peak) where jerk leaves
-        3.40 µm: 16 × less. The load rings at 38.98 Hz (ζ = 0.0021); the ratio holds
-        for this mode, not for every other. The move of snap takes 50.0 ms (3.8 %)
-        longer. With settling, it is in position 46.0 ms (3.5 %) later. Its peak
-        following error is 4.2 × less, peak force the same, RMS force 2.0 % less.
-        snap shakes its load less, jerk arrives sooner.
+        snap leaves 105 nm of residual vibration (amplitude of the mode) where jerk
+        leaves 1.70 µm: 16 × less. The load rings at 38.98 Hz (ζ = 0.0021); the
+        ratio holds for this mode, not for every other. The move of snap takes
+        50.0 ms (3.8 %) longer. With settling, it is in position 46.0 ms (3.5 %)
+        later. Its peak following error is 4.2 × less, peak force the same, RMS
+        force 2.0 % less. snap shakes its load less, jerk arrives sooner.
         "#);
     }
 
@@ -228,19 +310,19 @@ mod tests {
         let (jerk, snap) = (jerk(), snap());
         let trapezoid = of_numbers("trapezoid", [1.2, 0.3, 90e-6, 41e-6, 38.985, 0.0021, 190.0, 60.3]);
         let runs = vec![
-            Compared { label: "trapezoid", result: &trapezoid },
-            Compared { label: "jerk", result: &jerk },
-            Compared { label: "snap", result: &snap },
+            Compared { label: "trapezoid", result: &trapezoid, moves: &[] },
+            Compared { label: "jerk", result: &jerk, moves: &[] },
+            Compared { label: "snap", result: &snap, moves: &[] },
         ];
         let comparison = Comparison::new(runs);
         insta::assert_snapshot!(comparison.words(76), @r#"
-        Residual vibration (peak-to-peak): snap 210 nm, jerk 3.40 µm (16 × as much),
-        trapezoid 41.0 µm (200 × as much). Move: trapezoid 1.20 s, jerk 1.30 s
-        (8.3 % longer), snap 1.35 s (13 % longer). Move with settling: jerk 1.30 s,
-        snap 1.35 s (3.5 % longer), trapezoid 1.50 s (15 % longer). Peak following
-        error: snap 730 nm, jerk 3.10 µm (4.2 × as much), trapezoid 90.0 µm
-        (120 × as much). RMS force: snap 60.0 N, trapezoid 60.3 N, jerk 61.2 N
-        (2.0 % more).
+        Residual vibration (amplitude of the mode): snap 105 nm, jerk 1.70 µm
+        (16 × as much), trapezoid 20.5 µm (200 × as much). Move: trapezoid 1.20 s,
+        jerk 1.30 s (8.3 % longer), snap 1.35 s (13 % longer). Move with settling:
+        jerk 1.30 s, snap 1.35 s (3.5 % longer), trapezoid 1.50 s (15 % longer).
+        Peak following error: snap 730 nm, jerk 3.10 µm (4.2 × as much), trapezoid
+        90.0 µm (120 × as much). RMS force: snap 60.0 N, trapezoid 60.3 N, jerk
+        61.2 N (2.0 % more).
         "#);
     }
 
@@ -248,7 +330,10 @@ mod tests {
     #[test]
     fn the_quieter_run_is_the_subject_whichever_comes_first() {
         let (jerk, snap) = (jerk(), snap());
-        let runs = vec![Compared { label: "snap", result: &snap }, Compared { label: "jerk", result: &jerk }];
+        let runs = vec![
+            Compared { label: "snap", result: &snap, moves: &[] },
+            Compared { label: "jerk", result: &jerk, moves: &[] },
+        ];
         assert_eq!(Comparison::new(runs).words(76), words(&jerk, &snap));
     }
 
@@ -257,7 +342,7 @@ mod tests {
         let one = of_numbers("one", [1.3, 0.1, 3e-6, 3.40e-6, 39.0, 0.002, 170.0, 60.0]);
         let two = of_numbers("two", [1.309, 0.1, 3e-6, 3.42e-6, 39.0, 0.002, 170.0, 60.0]);
         let text = words(&one, &two).replace('\n', " ");
-        assert!(text.contains("leave the same residual vibration within 1 %: 3.42 µm."), "{text}");
+        assert!(text.contains("leave the same residual vibration within 1 %: 1.71 µm."), "{text}");
         assert!(text.contains("Between snap and jerk there is nothing to choose."), "{text}");
         assert!(!text.contains("wins") && !text.contains("less"), "{text}");
     }
