@@ -15,6 +15,7 @@ mod modal;
 mod name;
 mod quantity;
 mod round;
+mod rounding;
 mod settling;
 mod span;
 #[cfg(test)]

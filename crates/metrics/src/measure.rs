@@ -3,7 +3,7 @@ use crate::absence::Absence;
 use crate::metric::{MetricSet, Metrics, MoveMetrics};
 use crate::span::{Phase, phases};
 use crate::vibration::Residual;
-use crate::{compliance, effort, settling, tracking};
+use crate::{compliance, effort, rounding, settling, tracking};
 use servobench_trace::Recording;
 
 /// What a measurement needs to know besides the recording.
@@ -40,14 +40,16 @@ pub fn measure(recording: &Recording, question: &Question) -> Metrics {
     residual.note(&mut run, recording);
     compliance::note(&mut run, &phases);
     effort::note(&mut run, recording, &all);
-    Metrics { run, moves }
+    let mut metrics = Metrics { run, moves };
+    rounding::clear(&mut metrics, recording);
+    metrics
 }
 
 /// One move: its profile and what follows until the next. Torque, current and voltage are those of the profile.
 fn move_metrics(recording: &Recording, phase: &Phase<'_>, question: &Question, residual: &Residual) -> MetricSet {
     let mut metrics = MetricSet::default();
     let this = std::slice::from_ref(phase);
-    settling::note(&mut metrics, recording, phase, question.window);
+    settling::note(&mut metrics, recording, phase, question.window, residual.mode());
     tracking::note(&mut metrics, recording, phase.rows(), this);
     residual.note(&mut metrics, recording);
     compliance::note(&mut metrics, this);

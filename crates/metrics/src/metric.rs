@@ -97,6 +97,15 @@ impl MetricSet {
         misses
     }
 
+    /// Makes a metric zero whose magnitude is not above `floor`.
+    pub(crate) fn clear(&mut self, name: Name, floor: f64) {
+        if let Some(metric) = self.present.get_mut(&name)
+            && metric.value.abs() <= floor
+        {
+            metric.value = 0.0;
+        }
+    }
+
     /// Notes a metric, or why there is none.
     pub(crate) fn note(&mut self, name: Name, unit: &str, result: Result<f64, Absence>) {
         match result {

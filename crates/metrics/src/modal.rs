@@ -24,6 +24,8 @@ mod series;
 mod spectrum;
 
 use crate::absence::Absence;
+use fit::Fit;
+use model::Component;
 use order::Order;
 use series::Series;
 
@@ -92,6 +94,15 @@ pub fn fit_mode(signal: &Signal<'_>, near: Option<f64>) -> Result<Mode, Absence>
     let order = Order::of(&series, &proposed, signal.resolution).ok_or(Absence::NoVibration)?;
     let mode = dominant::dominant(&order, &series, &signal, near)?;
     Ok(Mode { amplitude: mode.amplitude * height, ..mode })
+}
+
+/// The rest position of a record in which `mode` rings: the constant of the least squares fit of a constant and that mode.
+/// `None` when the record cannot tell them apart.
+pub(crate) fn rest_beside(mode: &Mode, values: &[f64], step: f64) -> Option<f64> {
+    let first = *values.first()?;
+    let values: Vec<f64> = values.iter().map(|y| y - first).collect();
+    let series = Series::thinned(&values, 0.0, step, 1, usize::MAX);
+    Some(first + Fit::of(vec![Component::oscillating_at(mode.frequency, mode.damping)], &series)?.constant())
 }
 
 /// How many values of the record make one of the series that is fitted.

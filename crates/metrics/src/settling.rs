@@ -1,6 +1,7 @@
 //! Settling time, overshoot and what is left at rest: the load against its target.
 use crate::absence::Absence;
 use crate::metric::{MetricSet, MoveMetrics};
+use crate::modal::{Mode, rest_beside};
 use crate::name::Name;
 use crate::span::{Phase, channel, largest};
 use servobench_trace::Recording;
@@ -13,7 +14,14 @@ const DWELL: usize = 20;
 const REST: usize = 10;
 
 /// Notes duration, settling, overshoot and the error at rest of one move.
-pub(crate) fn note(set: &mut MetricSet, recording: &Recording, phase: &Phase<'_>, window: Option<f64>) {
+/// `mode` is that with which the load rings afterwards, where it does.
+pub(crate) fn note(
+    set: &mut MetricSet,
+    recording: &Recording,
+    phase: &Phase<'_>,
+    window: Option<f64>,
+    mode: Option<&Mode>,
+) {
     let made = phase.made;
     let length = made.end - made.start;
     let load = channel(recording, LOAD);
@@ -23,7 +31,11 @@ pub(crate) fn note(set: &mut MetricSet, recording: &Recording, phase: &Phase<'_>
     set.note(Name::SettlingTime, "s", settling.clone());
     set.note(Name::MoveAndSettlingTime, "s", settling.map(|settling| length + settling));
     set.note(Name::Overshoot, unit, load.clone().and_then(|load| overshoot(load, phase)));
-    set.note(Name::SteadyStateError, unit, load.and_then(|load| error_at_rest(load, phase)));
+    set.note(
+        Name::SteadyStateError,
+        unit,
+        load.and_then(|load| error_at_rest(load, phase, recording.rate.period(), mode)),
+    );
 }
 
 /// Notes the worst of `moves`. A move that is followed at once by the next has no time to settle and does not count.
@@ -94,13 +106,24 @@ fn overshoot(load: &[f64], phase: &Phase<'_>) -> Result<f64, Absence> {
     largest(beyond, "of the move").map(|beyond| beyond.max(0.0))
 }
 
-/// Target minus position, mean over the last tenth of the time before the next move.
-fn error_at_rest(load: &[f64], phase: &Phase<'_>) -> Result<f64, Absence> {
+/// Target minus position, mean over the last tenth of the time before the next move. Where a mode rings, over whole periods
+/// of it, and without it: a mean over part of a period would be that of the vibration.
+fn error_at_rest(load: &[f64], phase: &Phase<'_>, step: f64, mode: Option<&Mode>) -> Result<f64, Absence> {
     let rows = phase.after.clone();
     if rows.is_empty() {
         return Err(Absence::NothingRecorded { part: "between the profile and the next move" });
     }
     let count = rows.len().div_ceil(REST);
+    if let Some(mode) = mode {
+        let period = 1.0 / (mode.frequency * (1.0 - mode.damping * mode.damping).sqrt() * step);
+        let periods = (count as f64 / period).ceil();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a mode is seen for two periods")]
+        let count = ((periods * period).round() as usize).min(rows.len());
+        let last: Vec<f64> = load[rows.end - count..rows.end].iter().map(|x| phase.made.to - x).collect();
+        if let Some(rest) = rest_beside(mode, &last, step) {
+            return Ok(rest);
+        }
+    }
     let last = &load[rows.end - count..rows.end];
     Ok(last.iter().map(|x| phase.made.to - x).sum::<f64>() / count as f64)
 }
@@ -116,7 +139,7 @@ mod tests {
 
     fn of_first(recording: &Recording, window: Option<f64>) -> MetricSet {
         let mut set = MetricSet::default();
-        note(&mut set, recording, &phases(recording)[0], window);
+        note(&mut set, recording, &phases(recording)[0], window, None);
         set
     }
 
@@ -153,6 +176,24 @@ mod tests {
         // The chord between rows 125 µs apart, on a curve of slope 1.3 mm/s: below 1 µs.
         assert!((settling - last).abs() < 2e-6, "{settling} {last}");
         assert!(settling > 20.0 * first_entry, "{settling} {first_entry}");
+    }
+
+    /// 1 µm short of its target, the load rings with 100 µm at 4.3 Hz and ζ = 0.005 about that, for 4.3 periods: a mean over
+    /// the last tenth would be that of less than half a period.
+    #[test]
+    fn the_error_at_rest_does_not_see_what_rings() {
+        let (f, zeta) = (4.3, 0.005_f64);
+        let omega = 2.0 * PI * f;
+        let ring = |t: f64| 100e-6 * (-zeta * omega * t).exp() * (omega * (1.0 - zeta * zeta).sqrt() * t + 0.4).cos();
+        let recording = after_a_move(|t| ring(t) - 1e-6);
+        let mode = Mode { amplitude: 100e-6, frequency: f, damping: zeta, share: 1.0 };
+        let mut set = MetricSet::default();
+        note(&mut set, &recording, &phases(&recording)[0], None, Some(&mode));
+        let rest = set.value(Name::SteadyStateError).unwrap();
+        // Positions about 1 m are rounded to 1e-16.
+        assert!((rest - 1e-6).abs() < 1e-14, "{rest}");
+        let polluted = of_first(&recording, None).value(Name::SteadyStateError).unwrap();
+        assert!((polluted - 1e-6).abs() > 10e-6, "{polluted}");
     }
 
     #[test]
@@ -214,7 +255,7 @@ mod tests {
             .iter()
             .map(|phase| {
                 let mut metrics = MetricSet::default();
-                note(&mut metrics, &recording, phase, Some(WINDOW));
+                note(&mut metrics, &recording, phase, Some(WINDOW), None);
                 let made = phase.made;
                 MoveMetrics { label: made.label.clone(), start: made.start, end: made.end, metrics }
             })

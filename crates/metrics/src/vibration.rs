@@ -65,6 +65,11 @@ impl Residual {
         }
     }
 
+    /// The dominant mode, where there is one.
+    pub(crate) fn mode(&self) -> Option<&Mode> {
+        self.mode.as_ref().ok()
+    }
+
     /// Notes the six metrics.
     pub(crate) fn note(&self, set: &mut MetricSet, recording: &Recording) {
         let unit = recording.about.axis_unit.as_str();

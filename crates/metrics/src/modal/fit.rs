@@ -34,6 +34,11 @@ impl Fit {
         finite.then_some(Self { components, energy, residual, coefficients, columns, basis })
     }
 
+    /// The constant beside the components.
+    pub(crate) fn constant(&self) -> f64 {
+        self.coefficients[0]
+    }
+
     /// With the one of `candidates` that takes most of what is left.
     pub(crate) fn with_best_of(&self, candidates: impl Iterator<Item = Component>, series: &Series) -> Option<Self> {
         let mut basis = self.basis.clone();

@@ -59,6 +59,12 @@ impl Oscillation {
 }
 
 impl Component {
+    /// The pair of poles of natural frequency `frequency` (Hz) and damping ratio `damping`.
+    pub(crate) fn oscillating_at(frequency: f64, damping: f64) -> Self {
+        let omega = 2.0 * PI * frequency;
+        Self::Pair { decay: damping * omega, square: omega * omega * (1.0 - damping * damping) }
+    }
+
     /// A pair of poles with the natural frequency `frequency` (Hz) and a small damping ratio: `ω_d = ω` is near enough to
     /// start from.
     pub(crate) fn oscillating(frequency: f64, damping: f64) -> Self {

@@ -1,0 +1,63 @@
+//! What is rounding counts as zero, or one rounding would be reported as a third less than another.
+use crate::metric::{MetricSet, Metrics};
+use crate::name::Name;
+use servobench_trace::Recording;
+
+/// Differences of positions.
+const DIFFERENCES: [Name; 11] = [
+    Name::Overshoot,
+    Name::SteadyStateError,
+    Name::FollowingErrorPeakMotor,
+    Name::FollowingErrorPeakLoad,
+    Name::FollowingErrorRmsMotor,
+    Name::FollowingErrorRmsLoad,
+    Name::FollowingErrorCruiseMotor,
+    Name::FollowingErrorCruiseLoad,
+    Name::ResidualVibrationPp,
+    Name::ResidualVibrationRms,
+    Name::ResidualVibrationAmplitude,
+];
+/// Last places of a position in which the differences of two may be rounding.
+const PLACES: f64 = 8.0;
+/// Damping ratio below which the fit cannot tell a mode from an undamped one.
+const UNDAMPED: f64 = 1e-9;
+
+/// Makes zero what the recorded positions cannot show.
+pub(crate) fn clear(metrics: &mut Metrics, recording: &Recording) {
+    let positions = recording.channels.iter().filter(|channel| channel.spec.name.ends_with(".position"));
+    let largest = positions.flat_map(|channel| &channel.values).fold(0.0, |largest: f64, x| largest.max(x.abs()));
+    let floor = PLACES * f64::EPSILON * largest;
+    let moves = metrics.moves.iter_mut().map(|made| &mut made.metrics);
+    for set in moves.chain([&mut metrics.run]) {
+        clear_set(set, floor);
+    }
+}
+
+fn clear_set(set: &mut MetricSet, floor: f64) {
+    for name in DIFFERENCES {
+        set.clear(name, floor);
+    }
+    set.clear(Name::ResidualVibrationDamping, UNDAMPED);
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::measure::{Question, measure};
+    use crate::name::Name;
+    use crate::synthetic::{Build, planned};
+
+    /// Beside 1 m, 3e-16 m is one or two roundings; a picometre is not.
+    #[test]
+    fn rounding_is_zero_and_a_picometre_is_not() {
+        for (error, reported) in [(3.3e-16, 0.0), (1e-12, 1e-12)] {
+            let recording = Build::new(1000, 2000)
+                .channel("load.position", "m", |t| t.min(1.0))
+                .channel("following_error.load", "m", |_| error)
+                .moves([planned(0.0, 1.0, 0.0, 1.0).made()])
+                .finish();
+            let metrics = measure(&recording, &Question::default());
+            assert_eq!(metrics.run.value(Name::FollowingErrorPeakLoad), Some(reported));
+            assert_eq!(metrics.moves[0].metrics.value(Name::FollowingErrorPeakLoad), Some(reported));
+        }
+    }
+}
