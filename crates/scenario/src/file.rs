@@ -90,7 +90,8 @@ table! {
 table! {
     /// What to record.
     pub(crate) struct Record {
-        /// Rate of the recording; the base rate unless given. It divides the base rate.
+        /// Rate of the rows that are kept; the base rate unless given. It divides the base rate. What is measured is every
+        /// tick.
         rate: Rate = "4 kHz",
         /// Channels to keep; all that the axis has unless given.
         channels: OneOrMany<Channel> = (),

@@ -14,7 +14,7 @@ use servobench_base::{Rate, Setpoint};
 use servobench_drive as drive;
 use servobench_plant::{Encoder, Engine, Mechanics};
 use servobench_scenario::{self as scenario, Actuator, Feedback, Scenario};
-use servobench_trace::{About, Recorder};
+use servobench_trace::{About, Event, Recorder};
 
 /// How long a run goes on after its program, when the scenario does not say (s).
 const TAIL: f64 = 0.5;
@@ -36,7 +36,7 @@ pub struct Bench {
     pub(crate) disturbances: Disturbances,
     pub(crate) selection: Selection,
     pub(crate) recorder: Recorder,
-    /// Base ticks from row to row, and to the next one.
+    /// Base ticks from row to row, and to the next one. One, unless the run is too long for that.
     pub(crate) record_every: u32,
     pub(crate) ticks_to_row: u32,
     pub(crate) watch: LimitWatch,
@@ -109,9 +109,8 @@ impl Bench {
             },
         };
         let selection = Selection::new(&scenario.record.channels, &equipment, &rates)?;
-        let record_every = base_rate.divider(scenario.record.rate)?.ticks();
+        let (rate, record_every) = recorded_rate(scenario, selection.specs.len(), ticks, duration)?;
         let rows = ticks.div_ceil(u64::from(record_every));
-        check_memory(selection.specs.len(), rows, scenario.record.rate, duration)?;
         let about = About {
             scenario: scenario.name.clone(),
             engine: engine.name().into(),
@@ -119,7 +118,10 @@ impl Bench {
             bodies,
         };
         let rows = usize::try_from(rows).unwrap_or(usize::MAX);
-        let mut recorder = Recorder::new(about, scenario.record.rate, selection.specs.clone(), rows);
+        let mut recorder = Recorder::new(about, rate, selection.specs.clone(), rows);
+        if record_every > 1 {
+            recorder.note_event(thinned_event(rate, duration));
+        }
         for made in program.moves(equipment.axis_unit) {
             recorder.note_move(made);
         }
@@ -154,10 +156,47 @@ impl Control {
     }
 }
 
-fn check_memory(channels: usize, rows: u64, rate: Rate, duration: f64) -> Result<(), BuildError> {
-    let gigabytes = channels as f64 * rows as f64 * 8e-9;
+/// The rate of the rows, and every how many ticks there is one: every tick, so that what is measured does not depend on
+/// `record.rate`; at `record.rate` where that would not fit in memory.
+///
+/// # Errors
+/// [`BuildError::TooMuchMemory`] when that does not fit, either.
+fn recorded_rate(scenario: &Scenario, channels: usize, ticks: u64, duration: f64) -> Result<(Rate, u32), BuildError> {
+    let (base_rate, rate) = (scenario.base_rate, scenario.record.rate);
+    let gigabytes = |every: u32| channels as f64 * ticks.div_ceil(u64::from(every)) as f64 * 8e-9;
+    if gigabytes(1) <= RECORDING_LIMIT {
+        return Ok((base_rate, 1));
+    }
+    let every = base_rate.divider(rate)?.ticks();
+    let gigabytes = gigabytes(every);
     if gigabytes <= RECORDING_LIMIT {
-        return Ok(());
+        return Ok((rate, every));
     }
     Err(BuildError::TooMuchMemory { channels, rate: rate.hertz(), duration, gigabytes, limit: RECORDING_LIMIT })
+}
+
+fn thinned_event(rate: Rate, duration: f64) -> Event {
+    let message = format!(
+        "every tick would take more than {RECORDING_LIMIT} GB: measured at {} Hz, and what is faster than half of that is \
+         folded; name fewer `record.channels` to measure at every tick",
+        rate.hertz()
+    );
+    Event { start: 0.0, end: duration, source: "recorder".into(), message }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 40 channels of 16 kHz fill 4 GB in 781 s; 1 kHz lasts sixteen times as long.
+    #[test]
+    fn every_tick_is_kept_as_long_as_it_fits() {
+        let text = "[run]\nbase_rate = \"16 kHz\"\n[axis]\nmotion = \"linear\"\n[motor]\nkind = \"prescribed\"\n\
+                    [record]\nrate = \"1 kHz\"\n";
+        let scenario = scenario::parse("test", text, None).unwrap_or_else(|e| panic!("{e}")).scenario;
+        let rate_of = |seconds: u32| recorded_rate(&scenario, 40, 16_000 * u64::from(seconds), f64::from(seconds));
+        assert_eq!(rate_of(780).map(|(rate, every)| (rate.hertz(), every)), Ok((16_000, 1)));
+        assert_eq!(rate_of(790).map(|(rate, every)| (rate.hertz(), every)), Ok((1_000, 16)));
+        assert!(matches!(rate_of(13_000), Err(BuildError::TooMuchMemory { rate: 1_000, .. })));
+    }
 }

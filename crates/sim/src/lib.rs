@@ -10,8 +10,10 @@ mod limit_watch;
 mod power;
 mod program;
 mod run;
+mod thinning;
 
 pub use bench::Bench;
 pub use error::BuildError;
 pub use program::Program;
 pub use run::{Failure, Outcome};
+pub use thinning::thinned;

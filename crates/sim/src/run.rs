@@ -12,7 +12,8 @@ use servobench_trace::Recording;
 /// What a run leaves behind.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
-    /// Everything up to the end, or up to the failure.
+    /// Everything up to the end, or up to the failure: every tick, whatever `record.rate` says ([`thinned`](crate::thinned)),
+    /// unless that would not fit in memory.
     pub recording: Recording,
     /// Why the run ended early.
     pub failure: Option<Failure>,

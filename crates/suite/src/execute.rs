@@ -6,13 +6,13 @@ use crate::worker::{self, WorkerCommand};
 use servobench_metrics::{Limit, Metrics, Name, Question, UnknownMetric, Verdict, measure};
 use servobench_plant::Engine;
 use servobench_scenario::{self as scenario, Scenario, Step};
-use servobench_sim::Bench;
+use servobench_sim::{Bench, thinned};
 use servobench_trace::Recording;
 
 /// A run that came to its end.
 #[derive(Debug)]
 pub struct Run {
-    /// Everything recorded.
+    /// What is kept of the recording, at `record.rate`.
     pub recording: Recording,
     /// What was measured, judged.
     pub metrics: Metrics,
@@ -55,6 +55,8 @@ pub fn execute(
     let (recording, failure) = recorded(job, engines, worker, progress).map_err(|error| broken(error, None))?;
     let asked = &job.scenario.measure;
     let mut metrics = measure(&recording, &Question { window: asked.window, from: asked.from, mode: asked.mode });
+    // What is measured does not depend on how much of it is kept.
+    let recording = thinned(recording, job.scenario.record.rate);
     match failure {
         Some(failure) => Err(broken(failure, Some((recording, metrics)))),
         None => Ok(Run { verdict: metrics.judge(&limits).and(metrics.judge_moves(&of_moves)), recording, metrics }),

@@ -37,10 +37,13 @@ impl Job {
     #[must_use]
     pub fn memory(&self) -> u64 {
         const VALUE: f64 = size_of::<f64>() as f64;
-        let Scenario { duration, program, record, .. } = &self.scenario;
+        let Scenario { duration, program, record, base_rate, .. } = &self.scenario;
         let Some(duration) = duration.or_else(|| Some(Program::plan(program).ok()?.end() + TAIL)) else { return 0 };
         let channels = if record.channels.is_empty() { CHANNELS.len() } else { record.channels.len() };
-        let bytes = (duration * f64::from(record.rate.hertz()) + 1.0) * channels as f64 * VALUE;
+        let bytes = |hertz: u32| (duration * f64::from(hertz) + 1.0) * channels as f64 * VALUE;
+        // Every tick until it is measured, beside what is kept of it.
+        let kept = if record.rate == *base_rate { 0.0 } else { bytes(record.rate.hertz()) };
+        let bytes = bytes(base_rate.hertz()) + kept;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates: more than there is")]
         let bytes = bytes.ceil() as u64;
         bytes
@@ -124,6 +127,8 @@ mod tests {
         let paused =
             TEXT.replace("duration = \"2 s\"", "").replace("[record]", "[[program]]\nwait = \"1 s\"\n[record]");
         assert_eq!(job(&paused).memory(), 1501 * 2 * 8);
+        let thinned = TEXT.replace("[record]", "[record]\nrate = \"100 Hz\"");
+        assert_eq!(job(&thinned).memory(), (2001 + 201) * 2 * 8);
     }
 
     #[test]
