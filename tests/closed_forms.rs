@@ -167,8 +167,8 @@ fn a_linear_motor_moves_like_the_rotary_one_that_it_unrolls() {
     }
 }
 
-/// The table of the feed axis sticks, creeps one way by half a micrometre as the integrator unwinds, and sticks again: way
-/// and displacement are the same to rounding, so nothing oscillates.
+/// The table of the feed axis sticks, creeps one way by half a micrometre as the integrator unwinds, and sticks again: but
+/// for the picometres by which its coupling gives back, way and displacement are the same, so nothing oscillates.
 #[test]
 fn a_table_that_creeps_has_no_mode() {
     let axis = scenario_file("feed-axis-move.toml");
@@ -176,7 +176,7 @@ fn a_table_that_creeps_has_no_mode() {
     let after = &recording.channel("load.position").unwrap()[recording.index_at(recording.moves[0].end)..];
     let way: f64 = after.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
     let displacement = (after[after.len() - 1] - after[0]).abs();
-    assert!(displacement > 0.1e-6 && way < 1.000_001 * displacement, "{way} m for {displacement} m");
+    assert!(displacement > 0.1e-6 && way < 1.001 * displacement, "{way} m for {displacement} m");
     let metrics = measured(&axis, &recording);
     for name in [Name::ResidualVibrationFrequency, Name::ResidualVibrationAmplitude] {
         assert!(metrics.run.absence(name).is_some(), "{name}: {:?}", metrics.run.value(name));
