@@ -1,6 +1,6 @@
 //! Runs side by side: a table, and what it says in words.
 //!
-//! Differences within one per cent are none. A ratio of vibrations never stands alone: at which frequency and damping it
+//! Differences within one per cent are none, nor are those of rounding. A ratio of vibrations never stands alone: at which frequency and damping it
 //! holds, what the set-points make of the frequencies beside that one, and what it costs in time and torque.
 mod closed_form;
 mod relation;
@@ -31,6 +31,10 @@ pub struct Comparison<'a> {
     runs: Vec<Compared<'a>>,
 }
 
+/// Sizes below this (SI) are rounding: positions of the order of 1 m are known to 1e-16 m, and a picometre is nothing that
+/// a machine shows.
+const ROUNDING: f64 = 1e-12;
+
 /// Value (SI) and unit.
 type Value<'a> = (f64, &'a str);
 
@@ -58,7 +62,13 @@ impl<'a> Comparison<'a> {
     }
 }
 
-impl Compared<'_> {
+impl<'a> Compared<'a> {
+    /// Value (SI) and unit of a metric; what is within the rounding of the simulation is zero.
+    fn metric(&self, name: Name) -> Option<Value<'a>> {
+        let (value, unit) = self.result.metric(name)?;
+        Some((if value.abs() < ROUNDING { 0.0 } else { value }, unit))
+    }
+
     /// The limit of derivative `k` (0: velocity) that all moves share (SI).
     fn limit(&self, k: usize) -> Option<f64> {
         let (first, others) = self.moves.split_first()?;
@@ -69,7 +79,7 @@ impl Compared<'_> {
 /// By which metric vibrations are held against each other: the amplitude of the mode when all ring in the same one,
 /// otherwise peak-to-peak, which has the settling of the drive in it.
 fn vibration_of(runs: &[Compared<'_>]) -> Name {
-    let value = |run: &Compared<'_>, name| run.result.metric(name).map(|(value, _)| value);
+    let value = |run: &Compared<'_>, name| run.metric(name).map(|(value, _)| value);
     let have_amplitudes = runs.iter().all(|run| value(run, Name::ResidualVibrationAmplitude).is_some());
     let frequencies: Vec<_> = runs.iter().map(|run| value(run, Name::ResidualVibrationFrequency)).collect();
     let is_same = |two: &Option<f64>| frequencies[0].zip(*two).map(|(one, two)| Relation::of(one, two));
@@ -111,5 +121,18 @@ mod tests {
         "#);
         let kept = vec![Compared { label: "jerk", result: &jerk, moves: &[] }; 2];
         assert_eq!(Comparison::new(kept).missed(76), "");
+    }
+
+    #[test]
+    fn rounding_is_no_improvement() {
+        let [one, two] = [3.33e-16, 2.22e-16]
+            .map(|error| crate::samples::of_numbers("one", [1.3, 0.0, error, 1e-6, 39.0, 1.4e-15, 170.0, 60.0]));
+        let runs = vec![
+            Compared { label: "one", result: &one, moves: &[] },
+            Compared { label: "two", result: &two, moves: &[] },
+        ];
+        let table = Comparison::new(runs).table(crate::style::Style::default());
+        let row = table.lines().find(|line| line.starts_with("peak following error")).unwrap();
+        assert_eq!(row.split_whitespace().skip(4).collect::<Vec<_>>(), ["0", "m", "0", "m", "same"], "{table}");
     }
 }

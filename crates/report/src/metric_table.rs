@@ -7,20 +7,26 @@ use servobench_metrics::Quantity;
 const VALUE: usize = 11;
 const USED: usize = 6;
 
-/// All metrics of a run with their limits and how much of these is used, then what could not be measured and why.
+/// All metrics of a run with their limits and how much of these is used, then those of single moves that have limits of
+/// their own, then what could not be measured and why.
 pub(crate) fn metric_table(run: &RunResult, style: Style) -> String {
     let name = widest(run.metrics.iter().map(|(name, _)| name)).max("METRIC".len());
     let heading = format!("{:name$}  {:>VALUE$}  {:>VALUE$}  {:>USED$}", "METRIC", "VALUE", "LIMIT", "USED");
     let mut table = style.paint(Ink::Heading, &heading) + "\n";
     for (metric_name, metric) in run.metrics.iter() {
-        let Some(value) = metric.value else { continue };
-        let missed = metric.pass == Some(false);
-        let digits = if missed { metric.digits(value) } else { 3 };
-        let value_text = format!("{:>VALUE$.digits$}", Quantity::new(value, &metric.unit));
-        let value_text = if missed { style.paint(Ink::Bad, &value_text) } else { value_text };
-        let text = format!("{metric_name:name$}  {value_text}  {}", limit(metric, value, digits));
-        table.push_str(text.trim_end());
-        table.push_str(if missed { "  missed\n" } else { "\n" });
+        row(&mut table, &format!("{metric_name:name$}"), metric, style);
+    }
+    for (k, made) in run.moves.iter().enumerate() {
+        let is_limited = |metric: &MetricResult| metric.pass.is_some();
+        let limited: Vec<_> = made.metrics.iter().filter(|(_, metric)| is_limited(metric)).collect();
+        if !limited.is_empty() {
+            let heading = format!("limits of move {} ({}):", k + 1, made.label);
+            table += &style.paint(Ink::Heading, &heading);
+            table.push('\n');
+        }
+        for (metric_name, metric) in limited {
+            row(&mut table, &format!("{metric_name:name$}"), metric, style);
+        }
     }
     for (why, names) in by_reason(run) {
         let text = format!("not measured: {} ({why})", names.join(", "));
@@ -31,6 +37,18 @@ pub(crate) fn metric_table(run: &RunResult, style: Style) -> String {
         }
     }
     table
+}
+
+/// A metric with its limit, unless it could not be measured.
+fn row(table: &mut String, name: &str, metric: &MetricResult, style: Style) {
+    let Some(value) = metric.value else { return };
+    let missed = metric.pass == Some(false);
+    let digits = if missed { metric.digits(value) } else { 3 };
+    let value_text = format!("{:>VALUE$.digits$}", Quantity::new(value, &metric.unit));
+    let value_text = if missed { style.paint(Ink::Bad, &value_text) } else { value_text };
+    let text = format!("{name}  {value_text}  {}", limit(metric, value, digits));
+    table.push_str(text.trim_end());
+    table.push_str(if missed { "  missed\n" } else { "\n" });
 }
 
 /// What could not be measured: each reason once, with the metrics that it keeps from being measured.
@@ -63,6 +81,7 @@ fn limit(metric: &MetricResult, value: f64, digits: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::results::MoveResult;
     use crate::samples;
 
     #[test]
@@ -78,5 +97,25 @@ mod tests {
           current)
         "#);
         assert!(table.lines().all(|line| line.chars().count() <= 80), "{table}");
+    }
+
+    #[test]
+    fn limits_of_a_single_move_stand_below_its_name() {
+        let mut run = samples::kept();
+        let metrics = samples::missed().metrics;
+        run.moves = vec![MoveResult { label: "move from 0 m to 1 m, order 3".into(), start: 0.0, end: 1.3, metrics }];
+        let table = metric_table(&run, Style::default());
+        let (_, of_move) = table.split_once("limits of move 1 (move from 0 m to 1 m, order 3):\n").unwrap();
+        let lines: Vec<_> =
+            of_move.lines().take(3).map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect();
+        assert_eq!(
+            lines,
+            [
+                "settling_time 35.2 ms 20.0 ms 176 % missed",
+                "following_error_peak_load 45.1 µm 50.0 µm 90 %",
+                "residual_vibration_pp 8.30 µm 2.00 µm 415 % missed",
+            ]
+        );
+        assert!(!of_move.contains("move_time"), "{table}");
     }
 }

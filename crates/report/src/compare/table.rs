@@ -57,7 +57,7 @@ impl Comparison<'_> {
             row(&mut table, &format!("{label:name$}"), cell, Kind::Limit, &values);
         }
         for (label, metric, kind) in ROWS {
-            let values: Vec<_> = self.runs.iter().map(|run| run.result.metric(metric)).collect();
+            let values: Vec<_> = self.runs.iter().map(|run| run.metric(metric)).collect();
             row(&mut table, &format!("{:name$}", effort_word(label, &values)), cell, kind, &values);
         }
         if self.runs.len() > 2 {
@@ -69,7 +69,7 @@ impl Comparison<'_> {
 
     /// Unit of the axis, as the residual vibration has it.
     fn axis_unit(&self) -> &str {
-        let unit = self.runs.iter().find_map(|run| run.result.metric(Name::ResidualVibrationPp));
+        let unit = self.runs.iter().find_map(|run| run.metric(Name::ResidualVibrationPp));
         unit.map_or("m", |(_, unit)| unit)
     }
 }

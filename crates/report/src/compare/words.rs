@@ -33,7 +33,7 @@ impl<'a> Pair<'a> {
     /// Speaks of the run that leaves less vibration; of the second when that does not decide.
     fn of(one: Compared<'a>, two: Compared<'a>) -> Self {
         let vibration = vibration_of(&[one, two]);
-        let value = |run: Compared<'_>| run.result.metric(vibration).map(|(value, _)| value);
+        let value = |run: Compared<'_>| run.metric(vibration).map(|(value, _)| value);
         match (value(one), value(two)) {
             (Some(first), Some(second)) if Relation::of(first, second).is_more() => {
                 Self { this: one, other: two, vibration }
@@ -44,7 +44,7 @@ impl<'a> Pair<'a> {
 
     /// Values of both, this run's first.
     fn both(&self, name: Name) -> Option<(Value<'a>, Value<'a>)> {
-        Some((self.this.result.metric(name)?, self.other.result.metric(name)?))
+        Some((self.this.metric(name)?, self.other.metric(name)?))
     }
 
     /// How this run stands to the other.
@@ -70,7 +70,7 @@ impl<'a> Pair<'a> {
         let (this, other) = (self.this.label, self.other.label);
         let Some(((value, unit), (reference, _))) = self.both(self.vibration) else {
             let without = [self.this, self.other];
-            let without = without.into_iter().find(|run| run.result.metric(self.vibration).is_none())?;
+            let without = without.into_iter().find(|run| run.metric(self.vibration).is_none())?;
             return Some(format!("The residual vibration of {} was not measured.", without.label));
         };
         let (value, reference_text) = (Quantity::new(value, unit), Quantity::new(reference, unit));
@@ -124,7 +124,7 @@ impl<'a> Pair<'a> {
 
     /// Limits that differ: then it is not the order of the profile that makes the difference.
     fn limits(&self) -> Option<String> {
-        let axis = self.this.result.metric(Name::ResidualVibrationPp).map_or("m", |(_, unit)| unit);
+        let axis = self.this.metric(Name::ResidualVibrationPp).map_or("m", |(_, unit)| unit);
         let differences: Vec<_> = DERIVATIVES
             .into_iter()
             .enumerate()
@@ -170,7 +170,7 @@ impl<'a> Pair<'a> {
 
     /// Following error and effort.
     fn costs(&self) -> Option<String> {
-        let unit = self.this.result.metric(Name::TorquePeak).map_or("", |(_, unit)| unit);
+        let unit = self.this.metric(Name::TorquePeak).map_or("", |(_, unit)| unit);
         let effort = force_or_torque(unit);
         let parts: Vec<_> = [
             (Name::FollowingErrorPeakLoad, "peak following error".to_owned()),
@@ -191,7 +191,7 @@ impl<'a> Pair<'a> {
 
     /// Who wins, if anyone does.
     fn conclusion(&self) -> Option<String> {
-        let settled = |run: Compared<'_>| run.result.metric(Name::MoveAndSettlingTime).is_some();
+        let settled = |run: Compared<'_>| run.metric(Name::MoveAndSettlingTime).is_some();
         match (settled(self.this), settled(self.other)) {
             (true, false) => return Some(format!("{} wins: only it settles.", self.this.label)),
             (false, true) => return Some(format!("{} wins: only it settles.", self.other.label)),
@@ -213,8 +213,8 @@ impl<'a> Pair<'a> {
 
 /// Natural frequency (Hz) and damping ratio of the mode in which a run rings.
 fn mode(run: Compared<'_>) -> Option<(f64, f64)> {
-    let (frequency, _) = run.result.metric(Name::ResidualVibrationFrequency)?;
-    Some((frequency, run.result.metric(Name::ResidualVibrationDamping)?.0))
+    let (frequency, _) = run.metric(Name::ResidualVibrationFrequency)?;
+    Some((frequency, run.metric(Name::ResidualVibrationDamping)?.0))
 }
 
 /// How a size stands to a reference that is `ratio` times as large.
@@ -227,7 +227,7 @@ fn size(ratio: f64) -> String {
 
 /// More than two runs: each quantity from the best to the worst.
 fn ranking(runs: &[Compared<'_>]) -> Vec<String> {
-    let unit = runs.iter().find_map(|run| run.result.metric(Name::TorqueRms)).map_or("", |(_, unit)| unit);
+    let unit = runs.iter().find_map(|run| run.metric(Name::TorqueRms)).map_or("", |(_, unit)| unit);
     let vibration = vibration_of(runs);
     [
         (format!("Residual vibration ({})", in_words(vibration)), vibration),
@@ -238,7 +238,7 @@ fn ranking(runs: &[Compared<'_>]) -> Vec<String> {
     ]
     .into_iter()
     .filter_map(|(words, name)| {
-        let mut ranked: Vec<_> = runs.iter().filter_map(|run| Some((run.label, run.result.metric(name)?))).collect();
+        let mut ranked: Vec<_> = runs.iter().filter_map(|run| Some((run.label, run.metric(name)?))).collect();
         ranked.sort_by(|one, two| one.1.0.abs().total_cmp(&two.1.0.abs()));
         let (_, (best, _)) = *ranked.first()?;
         let parts: Vec<_> = ranked.iter().map(|(label, value)| format!("{label} {}", against(best, *value))).collect();
