@@ -100,6 +100,6 @@ mod tests {
         let set = measured();
         assert!((set.value(Name::VoltageSaturationTime).unwrap() - 0.025).abs() < 1e-12);
         let why = set.absence(Name::CurrentSaturationTime).unwrap().to_string();
-        assert_eq!(why, "`saturation.current` is not recorded");
+        assert_eq!(why, "`saturation.current` is not recorded; only a PMSM has a current");
     }
 }
