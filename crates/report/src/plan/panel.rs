@@ -3,7 +3,7 @@ use super::axis::{Axis, unit_at};
 use super::curve::Curve;
 use super::drawing::escaped;
 use super::ticks::ticks;
-use servobench_metrics::{Quantity, round_above};
+use servobench_metrics::{Quantity, round_above, round_below};
 
 /// Height of a panel.
 pub(super) const HEIGHT: f64 = 118.0;
@@ -28,9 +28,7 @@ impl Panel<'_> {
     pub(super) fn draw_scale(&self, svg: &mut Vec<String>, time: &Axis, value: &Axis) {
         let (_, scale) = self.shown_unit();
         let (left, right) = (time.from, time.to);
-        for (tick, label) in
-            ticks(value.low / scale, value.high / scale, round_above((value.high - value.low) / scale / 4.0))
-        {
+        for (tick, label) in marks(value.low / scale, value.high / scale) {
             let (y, class) = (value.at(tick * scale), if tick == 0.0 { "z" } else { "g" });
             svg.push(format!(
                 "<line class=\"{class}\" x1=\"{left}\" x2=\"{right}\" y1=\"{y:.2}\" y2=\"{y:.2}\"/>\n\
@@ -104,6 +102,13 @@ impl Panel<'_> {
     }
 }
 
+/// About four ticks from `low` to `high`. Where their round step leaves a single one, a finer step leaves three at least.
+fn marks(low: f64, high: f64) -> Vec<(f64, String)> {
+    let span = high - low;
+    let few = ticks(low, high, round_above(span / 4.0));
+    if few.len() > 1 { few } else { ticks(low, high, round_below(span / 3.0)) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::curve::Shape;
@@ -141,6 +146,17 @@ mod tests {
             "{svg}"
         );
         assert!(!drawn(&panel(&[0.0, 1.0, 0.0], 2.0)).contains("off the scale"));
+    }
+
+    /// ±349 takes a scale of ±405: 500, the step above a quarter of it, would leave 0 alone.
+    #[test]
+    fn every_panel_has_a_scale() {
+        let labels = |peak: f64| {
+            let svg = drawn(&panel(&[0.0, peak, -peak], peak));
+            svg.matches("text-anchor=\"end\">").count()
+        };
+        assert_eq!(labels(349.0), 5);
+        assert!((100..1000).all(|peak| (2..=9).contains(&labels(f64::from(peak)))));
     }
 
     /// There is room for eight characters left of a panel.
