@@ -81,11 +81,10 @@ fn the_reference_gives_the_units_that_are_recorded() {
         for channel in run(&scenario, &Exact).channels {
             let spec = channel.spec;
             let expected = match documented[&spec.name].as_str() {
-                "E" => motor.to_owned(),
+                // None of the sources here has a gain, which would make it volts.
+                "E" | "V or E" => motor.to_owned(),
                 "F" => load.to_owned(),
                 "1" => String::new(),
-                // None of the sources here has a gain.
-                "V or E" => motor.to_owned(),
                 other => other.replace('U', axis),
             };
             assert_eq!(spec.unit, expected, "{}", spec.name);
