@@ -21,6 +21,14 @@ fn continuous(bencher: Bencher<'_, '_>, order: Order) {
         .bench_local_values(|distance| Profile::plan(order, black_box(distance), &LIMITS));
 }
 
+#[divan::bench]
+fn optimal(bencher: Bencher<'_, '_>) {
+    let mut distances = DISTANCES.into_iter().cycle();
+    bencher
+        .with_inputs(|| distances.next().unwrap_or_default())
+        .bench_local_values(|distance| Profile::plan_optimal(Order::Fourth, black_box(distance), &LIMITS));
+}
+
 #[divan::bench(args = ORDERS)]
 fn sampled(bencher: Bencher<'_, '_>, order: Order) {
     let mut distances = DISTANCES.into_iter().cycle();

@@ -41,6 +41,101 @@ pub enum PlanError {
         /// Duration of the move at its limits (s).
         shortest: f64,
     },
+    /// A point of a table that cannot be followed; the first one is point 0.
+    #[error("point {point}: `{name}` must be {bound}, got {value}: {remedy}")]
+    Point {
+        /// Number of the point.
+        point: usize,
+        /// Field name.
+        name: &'static str,
+        /// Rejected value, in the unit of the field.
+        value: f64,
+        /// What the value must be, in words.
+        bound: &'static str,
+        /// The way out, in words.
+        remedy: &'static str,
+    },
+    /// A table without a way from one point to another.
+    #[error("a table needs at least 2 points, got {points}: add the point where the move ends")]
+    TooFewPoints {
+        /// Number of points.
+        points: usize,
+    },
+    /// A slice of the caller that cannot hold a value for each point.
+    #[error("`{name}` must hold a value for each of {points} points, got room for {length}: pass a longer slice")]
+    ShortSlice {
+        /// Argument name.
+        name: &'static str,
+        /// Length of the slice.
+        length: usize,
+        /// Number of points.
+        points: usize,
+    },
+    /// A word for a drive's trajectory buffer with a meaning that is not defined.
+    #[error("point {point}: bits {bits:#06x} of the word {word:#06x} are reserved: send them as zero")]
+    ReservedBits {
+        /// Number of the point.
+        point: usize,
+        /// The word as received.
+        word: u16,
+        /// The reserved bits that are set.
+        bits: u16,
+    },
+    /// A sample of the slow task with a value that cannot be used.
+    #[error(
+        "sample {index}: `{name}` must be finite and at most {highest:e} in magnitude (SI), got {value:e}: correct it or \
+         its unit"
+    )]
+    Sample {
+        /// Number of the sample, from 0.
+        index: u64,
+        /// Field name.
+        name: &'static str,
+        /// Rejected value (SI).
+        value: f64,
+        /// Largest accepted magnitude (SI).
+        highest: f64,
+    },
+    /// An interval asked for before all its samples are there.
+    #[error("the interpolation needs {needed} samples, got {received}: push the missing ones first")]
+    Waiting {
+        /// Number of samples that are there.
+        received: usize,
+        /// Number of samples that the mode needs.
+        needed: usize,
+    },
+    /// A filter with more impulses than are kept.
+    #[error(
+        "the filter has {impulses} impulses, at most {capacity} are kept: cascade fewer, or filter one after the other"
+    )]
+    TooManyImpulses {
+        /// Number of impulses.
+        impulses: usize,
+        /// Number that is kept at most.
+        capacity: usize,
+    },
+    /// A streaming filter that lasts longer than its memory.
+    #[error(
+        "the filter spans {samples:.9e} samples, its memory holds {capacity}: take a larger memory, a longer sample time \
+         or a higher frequency"
+    )]
+    FilterTooLong {
+        /// Number of samples that the filter spans, both ends included.
+        samples: f64,
+        /// Number of samples in memory.
+        capacity: usize,
+    },
+    /// A damping ratio for which the equations of the extra-insensitive shaper have no usable solution.
+    #[error(
+        "no extra-insensitive shaper found for `damping_ratio` = {damping_ratio} and `tolerable` = {tolerable}: lower \
+         either, or take a ZVD shaper"
+    )]
+    NoShaper {
+        /// Damping ratio of the mode.
+        damping_ratio: f64,
+        /// Tolerable residual vibration at the modelled frequency.
+        tolerable: f64,
+    },
 }
 
 #[cfg(test)]

@@ -1,4 +1,13 @@
-//! Set-points over time: rest-to-rest moves of order 2 (trapezoid), 3 (jerk-limited) and 4 (snap-limited).
+//! Set-points over time.
+//!
+//! - [`Profile`]: rest-to-rest moves of order 2 (trapezoid), 3 (jerk-limited) and 4 (snap-limited), below.
+//! - [`online`]: transitions of order 3 and 4 from any state, planned while the axis moves.
+//! - [`rockwell`]: the two profiles of Rockwell's axis move.
+//! - [`pvt`]: tables of positions, velocities and times; [`position_profile`]: the same sent as velocity commands.
+//! - [`interpolate`]: between a slow task that commands and a fast one that drives.
+//! - [`shape`]: input shapers and averages that take a vibration out of any of these.
+//!
+//! # Rest to rest
 //!
 //! ```
 //! use servobench_motion::{Limits, Order, Profile};
@@ -66,14 +75,24 @@
 
 mod boxes;
 mod error;
+pub mod interpolate;
 mod limits;
+pub mod online;
+mod optimal;
 mod piece;
+pub mod position_profile;
 mod profile;
+pub mod pvt;
+pub mod rockwell;
+mod root;
 mod segment;
+pub mod shape;
 mod stretch;
+mod trajectory;
 
 pub use error::PlanError;
 pub use limits::{Limits, Order};
 pub use piece::Piece;
 pub use profile::{Peaks, Profile, Samples, Times};
 pub use segment::{Segment, Segments};
+pub use trajectory::Trajectory;

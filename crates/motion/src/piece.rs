@@ -37,6 +37,11 @@ impl Piece {
         }
     }
 
+    /// From `anchor` at `start` (s) for `length` (s), until `until` (s).
+    pub(crate) const fn forward(anchor: Setpoint, start: f64, length: f64, until: f64) -> Self {
+        Self { anchor, start, length, origin: 0.0, sign: 1.0, base: 0.0, tolerance: 0.0, until }
+    }
+
     /// Whether it is still the one at `t` (s), a time not before the one that it was looked up for.
     #[inline]
     #[must_use]

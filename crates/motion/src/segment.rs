@@ -1,5 +1,6 @@
 //! Where the highest derivative switches: pulses and dwells in the order of time.
 use crate::Profile;
+use crate::profile::Boxes;
 
 /// A stretch of time in which the highest derivative is constant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,10 +30,16 @@ impl Iterator for Segments<'_> {
     type Item = Segment;
 
     fn next(&mut self) -> Option<Segment> {
-        while self.next < (2 << (self.profile.order().derivative() - 1)) - 1 {
-            let segment = nth(self.profile, self.next);
+        while self.next < MOST {
+            let segment = self.profile.box_units().map_or_else(
+                || turned(self.profile, self.next),
+                |boxes| {
+                    let n = self.profile.order().derivative();
+                    (self.next < (1 << n) - 1).then(|| nth(boxes, n, self.profile.amplitude(), self.next))
+                },
+            );
             self.next += 1;
-            if segment.length > 0.0 {
+            if let Some(segment) = segment.filter(|segment| segment.length > 0.0) {
                 return Some(segment);
             }
         }
@@ -40,25 +47,36 @@ impl Iterator for Segments<'_> {
     }
 }
 
-/// Segment `i` of the 2ⁿ − 1 that order n has, those of length zero included.
+/// Segments at most.
+const MOST: usize = 16;
+
+/// Segment `i` of 16 of a move of order 4 whose second half is the first one turned about the middle: s(t) = −s(T − t).
+fn turned(profile: &Profile, i: usize) -> Option<Segment> {
+    if i < MOST / 2 {
+        return profile.first_half(i);
+    }
+    let Segment { start, length, value } = profile.first_half((MOST - 1).checked_sub(i)?)?;
+    Some(Segment { start: profile.duration() - start - length, length, value: 0.0 - value })
+}
+
+/// Segment `i` of the 2ⁿ − 1 that a step of `amplitude` through n `boxes` has, those of length zero included.
 ///
 /// Pulse p = i/2 starts at the sum of the boxes `T2, T3, …` that the bits of p select and has the sign (−1)^(number of
 /// bits). The dwell behind it is that of box 2 + (trailing zeros of p + 1).
-pub(crate) fn nth(profile: &Profile, i: usize) -> Segment {
-    let unit = profile.unit();
-    let (boxes, dwells) = (profile.box_units(), profile.dwell_units());
+pub(crate) fn nth(boxes: &Boxes, n: usize, amplitude: f64, i: usize) -> Segment {
+    let Boxes { lengths, dwells, unit, .. } = boxes;
     let pulse = i / 2;
     let mut start = 0.0;
-    for (bit, length) in boxes[1..].iter().enumerate() {
+    for (bit, length) in lengths[1..n].iter().enumerate() {
         if pulse >> bit & 1 == 1 {
             start += length;
         }
     }
     if i.is_multiple_of(2) {
-        let value = if pulse.count_ones().is_multiple_of(2) { profile.amplitude() } else { -profile.amplitude() };
-        Segment { start: start * unit, length: boxes[0] * unit, value }
+        let value = if pulse.count_ones().is_multiple_of(2) { amplitude } else { -amplitude };
+        Segment { start: start * unit, length: lengths[0] * unit, value }
     } else {
         let dwell = dwells[1 + (pulse + 1).trailing_zeros() as usize];
-        Segment { start: (start + boxes[0]) * unit, length: dwell * unit, value: 0.0 }
+        Segment { start: (start + lengths[0]) * unit, length: dwell * unit, value: 0.0 }
     }
 }

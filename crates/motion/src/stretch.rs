@@ -53,9 +53,10 @@ impl Profile {
         if factor < 1.0 - 1e-12 {
             return Err(PlanError::TooShort { duration, shortest: self.duration() });
         }
+        let Some(known) = self.box_units() else { return Ok(self.slowed(factor.max(1.0))) };
         // By the dwells: one of zero stays exactly zero.
         let (mut boxes, mut sum) = ([0.0; 4], 0.0);
-        for (length, dwell) in boxes.iter_mut().zip(self.dwell_units()).take(self.order().derivative()) {
+        for (length, dwell) in boxes.iter_mut().zip(known.dwells).take(self.order().derivative()) {
             *length = dwell * factor.max(1.0) + sum;
             sum += *length;
         }

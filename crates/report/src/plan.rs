@@ -67,10 +67,10 @@ impl PlannedMove {
     fn dwells(&self) -> impl Iterator<Item = (&'static str, &'static str, f64)> {
         let times = self.profile.times();
         [
-            ("t_d", "snap at its peak", times.t_d),
-            ("t_j", "jerk at its peak", times.t_j),
-            ("t_a", "acceleration at its peak", Some(times.t_a)),
-            ("t_v", "velocity at its peak", Some(times.t_v)),
+            ("t_d", "snap at its peak", times.and_then(|times| times.t_d)),
+            ("t_j", "jerk at its peak", times.and_then(|times| times.t_j)),
+            ("t_a", "acceleration at its peak", times.map(|times| times.t_a)),
+            ("t_v", "velocity at its peak", times.map(|times| times.t_v)),
         ]
         .into_iter()
         .filter_map(|(name, meaning, value)| Some((name, meaning, value?)))

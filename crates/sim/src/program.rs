@@ -100,7 +100,7 @@ impl Planned {
         let (profile, order) = (&self.profile, self.profile.order().derivative());
         let (from, to) = (self.from, self.from + profile.distance());
         let peaks = profile.peaks();
-        let cruise = profile.times().t_v;
+        let cruise = profile.cruise();
         let mut limits = [None; 4];
         for (slot, limit) in limits.iter_mut().zip(self.limits).take(order) {
             *slot = limit.is_finite().then_some(limit);

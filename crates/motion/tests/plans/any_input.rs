@@ -42,7 +42,7 @@ fn check(plan: &Profile, t: f64) -> Result<(), TestCaseError> {
     }
     let peaks = plan.peaks();
     prop_assert!(peaks.velocity.is_finite() && peaks.acceleration.is_finite());
-    prop_assert!(plan.times().t_a >= 0.0 && plan.times().t_v >= 0.0);
+    prop_assert!(plan.times().unwrap().t_a >= 0.0 && plan.cruise() >= 0.0);
     Ok(())
 }
 

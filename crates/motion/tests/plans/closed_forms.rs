@@ -21,7 +21,7 @@ fn lambrechts_one_metre() {
         assert!(close(third.duration(), 1.30), "{}", third.duration());
         let fourth = plan(Order::Fourth);
         assert!(close(fourth.duration(), 1.35), "{}", fourth.duration());
-        let Times { t_d, t_j, t_a, t_v } = fourth.times();
+        let Times { t_d, t_j, t_a, t_v } = fourth.times().unwrap();
         for (found, published) in [(t_d.unwrap(), 0.05), (t_j.unwrap(), 0.05), (t_a, 0.05), (t_v, 0.65)] {
             assert!((found - published).abs() < 1e-15, "{found} {published}");
         }
@@ -86,7 +86,7 @@ fn rockwell_jerk_by_percent_of_time() {
     let jerk = |percent: f64| a * a / v * (200.0 / percent - 1.0);
     assert!(close(jerk(100.0), 5e4) && close(jerk(25.0), 3.5e5));
     let limits = |jerk| Limits { velocity: v, acceleration: a, jerk, snap: f64::INFINITY };
-    let ramp = |plan: Profile| (plan.duration() - plan.times().t_v) / 2.0;
+    let ramp = |plan: Profile| (plan.duration() - plan.cruise()) / 2.0;
     let trapezoid = Profile::plan(Order::Second, 0.1, &limits(f64::INFINITY)).unwrap();
     assert!((ramp(trapezoid) - 2e-3).abs() < 1e-15);
     assert!((trapezoid.at(2e-3).x - 0.2e-3).abs() < 1e-15, "distance of the ramp: 0.2 mm");
@@ -147,7 +147,7 @@ fn dwells_of_rounding_noise_are_dropped_and_no_others() {
         assert_eq!(plan.segments().count(), 4, "{exact:?}");
     }
     let limits = Limits { velocity: 1.0, acceleration: 1.0, ..Limits::UNLIMITED };
-    let t_v = Profile::plan(Order::Second, 1.0 + 1e-10, &limits).unwrap().times().t_v;
+    let t_v = Profile::plan(Order::Second, 1.0 + 1e-10, &limits).unwrap().cruise();
     // An ulp of 1 s.
     assert!((t_v - 1e-10).abs() < 3e-16, "{t_v}");
 }
@@ -169,7 +169,7 @@ fn ten_decades_between_limits() {
     let plan = Profile::plan(Order::Fourth, 1e3, &limits).unwrap();
     // The velocity is reached within t_d = ∛(v/2d) without dwells, then it is a cruise of x/v.
     let t_d = (1e-5_f64 / 2e12).cbrt();
-    assert!(close(plan.times().t_d.unwrap(), t_d));
+    assert!(close(plan.times().unwrap().t_d.unwrap(), t_d));
     assert!(close(plan.duration(), 1e3 / 1e-5 + 4.0 * t_d));
     let slow = Limits { velocity: 1e5, acceleration: 1e-5, jerk: 1e5, snap: 1e5 };
     let plan = Profile::plan(Order::Fourth, 1.0, &slow).unwrap();

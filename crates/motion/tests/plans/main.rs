@@ -4,6 +4,8 @@ mod any_input;
 mod closed_forms;
 mod double_double;
 mod evaluation;
+mod optimal;
 mod paper;
 mod requests;
+mod rockwell;
 mod sweep;

@@ -92,7 +92,7 @@ fn paper(x: f64, limits: &Limits, ts: f64) -> Result<([f64; 4], f64), Undecided>
 }
 
 fn times(plan: &Profile) -> [f64; 4] {
-    let Times { t_d, t_j, t_a, t_v } = plan.times();
+    let Times { t_d, t_j, t_a, t_v } = plan.times().unwrap();
     [t_d.unwrap(), t_j.unwrap(), t_a, t_v]
 }
 

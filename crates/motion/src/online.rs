@@ -1,0 +1,111 @@
+//! Transitions from any state, planned while the axis moves: to a position at rest, to a position passed at a velocity, to a
+//! velocity. Order 3 (jerk-limited) is the shortest there is; order 4 (snap-limited) is the shortest from rest to rest
+//! without a cruise, and near it elsewhere.
+//!
+//! # One idea for every order
+//!
+//! Between two states of a chain of integrators whose first derivative is limited, let
+//!
+//! - *away* be the fastest way towards the limit on the side of the target,
+//! - *home* the fastest way to the target's derivatives, one integrator less: the same problem one order below.
+//!
+//! Who follows *away* for a time τ and goes *home* from there covers the more the longer τ is; one τ meets the target. Where
+//! that would pass the limit, the limit is touched for an instant, with the one value of the highest state with which the
+//! target is met; where a touch at rest is not far enough, there is a cruise. So order n is a root in one unknown over
+//! order n − 1, and order 2 is two parabolas. It never fails to bracket: at τ = 0 there is too little, at the limit too much.
+//!
+//! Order 4 adds the one thing that order 3 does not need: a state may be so near its velocity limit that the fastest way
+//! passes it though a slower one does not. `ladder` says what is tried then.
+mod first;
+mod fourth;
+mod ladder;
+mod path;
+mod second;
+mod third;
+mod transition;
+mod watch;
+
+use crate::limits::in_range;
+use crate::{Limits, Order, PlanError};
+use servobench_base::{ParamError, finite, positive};
+
+pub use second::Sides;
+pub use transition::Transition;
+
+/// How much work a plan of order 4 may take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effort {
+    /// A bounded amount, for a control cycle.
+    Fast,
+    /// More, where that makes the transition shorter.
+    Refined,
+}
+
+/// Where a transition ends, with neither acceleration nor jerk.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Target {
+    /// At a position (m or rad), passed at a velocity (m/s or rad/s), zero for a stop there.
+    Position {
+        /// Position.
+        x: f64,
+        /// Velocity.
+        v: f64,
+    },
+    /// At a velocity (m/s or rad/s), wherever that is reached.
+    Velocity(f64),
+}
+
+/// What a transition may not exceed, velocity and acceleration by direction; in the axis unit (m or rad).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DirectionalLimits {
+    /// Velocity (m/s or rad/s).
+    pub velocity: Sides,
+    /// Acceleration (m/s² or rad/s²).
+    pub acceleration: Sides,
+    /// Jerk (m/s³ or rad/s³), a magnitude.
+    pub jerk: f64,
+    /// Snap (m/s⁴ or rad/s⁴), a magnitude; order 3 does not use it.
+    pub snap: f64,
+}
+
+impl From<Limits> for DirectionalLimits {
+    fn from(limits: Limits) -> Self {
+        let Limits { velocity, acceleration, jerk, snap } = limits;
+        Self { velocity: Sides::both(velocity), acceleration: Sides::both(acceleration), jerk, snap }
+    }
+}
+
+impl DirectionalLimits {
+    fn check(&self, order: Order) -> Result<(), PlanError> {
+        let remedy = "correct its unit";
+        for (name, value) in [
+            ("velocity.above", self.velocity.above),
+            ("velocity.below", self.velocity.below),
+            ("acceleration.above", self.acceleration.above),
+            ("acceleration.below", self.acceleration.below),
+            ("jerk", self.jerk),
+        ] {
+            in_range(name, positive(name, value)?, remedy)?;
+        }
+        if order == Order::Fourth {
+            in_range("snap", positive("snap", self.snap)?, "correct its unit or plan a lower order")?;
+        }
+        Ok(())
+    }
+}
+
+impl Target {
+    fn check(&self, limits: &DirectionalLimits) -> Result<(), PlanError> {
+        let v = match self {
+            Self::Position { x, v } => {
+                finite("target.x", *x)?;
+                finite("target.v", *v)?
+            }
+            Self::Velocity(v) => finite("target.v", *v)?,
+        };
+        if limits.velocity.excess(v).0 > 0.0 {
+            return Err(ParamError { name: "target.v", value: v, bound: "within the limits of velocity" }.into());
+        }
+        Ok(())
+    }
+}

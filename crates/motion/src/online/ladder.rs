@@ -1,0 +1,183 @@
+//! From any state: the shortest way where it keeps the limits, the next best where it does not.
+//!
+//! 1. [`fourth::fastest`].
+//! 2. First the acceleration to zero, as fast as it can; or, where the velocity limit is too near for that, through zero
+//!    with all jerk that there is. Then 1. Who has more time looks for the shortest part of that after which 1 keeps them.
+//! 3. The same braking on to zero acceleration and jerk, and by way of a velocity at which both are zero: the distance grows
+//!    with it from one limit to the other, so that there is one for every target.
+//!
+//! When none keeps the limits, the state has left no choice; then it is the one of 1 and 2 that exceeds them least.
+use super::Effort;
+use super::first::State;
+use super::fourth::{self, Limits4, State4};
+use super::path::Path;
+use super::second::{self, Limits2, Sides, State2};
+use super::third;
+use super::watch::ROUNDING;
+use crate::root::increasing;
+
+/// Stretches at most: back into the jerk limit, braking twice, and what [`fourth::fastest`] has.
+pub(crate) const STRETCHES: usize = 1 + 3 + 3 + fourth::STRETCHES;
+
+/// A way, and how far it is beyond the limits, as a part of them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Plan {
+    pub(crate) path: Path<STRETCHES>,
+    /// At most.
+    pub(crate) excess: f64,
+    /// Without the way back from where it begins.
+    fault: f64,
+}
+
+/// Where to, at a constant velocity within its limits.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Goal {
+    /// To this state.
+    State(State4),
+    /// To this velocity, wherever that is.
+    Velocity(f64),
+}
+
+impl Goal {
+    fn fastest(&self, from: State4, limits: &Limits4) -> Option<Path<{ fourth::STRETCHES }>> {
+        match self {
+            Self::State(to) => fourth::fastest(from, *to, limits),
+            Self::Velocity(v) => {
+                let to = third::State3 { p: *v, v: 0.0, a: 0.0 };
+                let mut path = Path::EMPTY;
+                path.extend(&third::fastest(from.upper(), to, &limits.upper()));
+                Some(path)
+            }
+        }
+    }
+}
+
+/// The way from `from` to `goal`.
+pub(crate) fn plan(from: State4, goal: &Goal, limits: &Limits4, effort: Effort) -> Plan {
+    let mut back = Path::<STRETCHES>::EMPTY;
+    let (excess, side) = Sides::both(limits.j).excess(from.j);
+    back.push(-side * limits.d, excess / limits.d);
+    let start = from.along(&back);
+
+    let judged = |path: Path<STRETCHES>| {
+        let [velocity, acceleration] = from.watched(&path, limits);
+        let (excess, fault) = (velocity.most.max(acceleration.most), velocity.fault.max(acceleration.fault));
+        Plan { path, excess, fault }
+    };
+    // `brake` for a while, then the fastest way.
+    let after = |brake: &Path<3>, time: f64| {
+        let rest = goal.fastest(start.until(brake, time), limits)?;
+        let mut path = back;
+        path.extend_until(brake, time);
+        path.extend(&rest);
+        Some(judged(path))
+    };
+    let keeps_the_limits = |plan: &Plan| plan.fault <= ROUNDING;
+    let direct = after(&Path::EMPTY, 0.0);
+    if let Some(plan) = direct.filter(keeps_the_limits) {
+        return plan;
+    }
+    let bring = |state: State4, a: f64| {
+        let limits = Limits2 { a: Sides::both(limits.j), j: limits.d };
+        second::fastest(State2 { v: state.a, a: state.j }, State2 { v: a, a: 0.0 }, &limits)
+    };
+    let to_zero = bring(start, 0.0);
+    let side = if start.a > 0.0 || (start.a == 0.0 && start.j > 0.0) { 1.0 } else { -1.0 };
+    let through_zero = bring(start, limits.a.at(-side));
+    let brakes = [(to_zero, to_zero.duration()), (through_zero, crossing(start, &through_zero))];
+    let mut best = direct;
+    for (brake, longest) in &brakes {
+        let Some(plan) = after(brake, *longest) else { continue };
+        if keeps_the_limits(&plan) {
+            let shorter = |time: f64| after(brake, time).filter(keeps_the_limits);
+            return if effort == Effort::Refined { least_braking(&plan, *longest, shorter) } else { plan };
+        }
+        if best.is_none_or(|best| plan.fault < best.fault) {
+            best = Some(plan);
+        }
+    }
+    // As long through zero as the velocity limit demands, and no longer: the other limit may be near, too.
+    let calmed = |time: f64| {
+        let mut path = Path::<6>::EMPTY;
+        path.extend_until(&through_zero, time);
+        path.extend(&bring(start.until(&through_zero, time), 0.0));
+        path
+    };
+    let room = |time: f64| {
+        let mut highest = side * start.v;
+        start.velocities(&calmed(time), |v| highest = highest.max(side * v));
+        limits.v.towards(side) - highest
+    };
+    let mut path = back;
+    path.extend(&calmed(increasing(0.0, crossing(start, &through_zero), room)));
+    path.extend(&by_way_of_a_velocity(from.along(&path), goal, limits));
+    let plan = judged(path);
+    if best.is_none_or(|best| plan.fault < best.fault) {
+        best = Some(plan);
+    }
+    best.unwrap_or(plan)
+}
+
+/// When the acceleration passes zero on `path`.
+fn crossing(from: State4, path: &Path<3>) -> f64 {
+    let (mut state, mut start) = (from, 0.0);
+    if from.a == 0.0 {
+        return 0.0;
+    }
+    for stretch in path.stretches() {
+        let end = state.after(stretch.value, stretch.length);
+        if end.a * state.a <= 0.0 {
+            // a + j·t + d·t²/2 = 0, the first root after the start, without cancellation.
+            let root = libm::sqrt((state.j * state.j - 2.0 * stretch.value * state.a).max(0.0));
+            let towards = if state.a > 0.0 { state.j - root } else { state.j + root };
+            return start + (-2.0 * state.a / towards).clamp(0.0, stretch.length);
+        }
+        (state, start) = (end, start + stretch.length);
+    }
+    start
+}
+
+/// The plan with the shortest braking below `longest`; `braked` gives one only where it keeps the limits.
+fn least_braking(whole: &Plan, longest: f64, braked: impl Fn(f64) -> Option<Plan>) -> Plan {
+    let (mut best, mut low, mut high) = (*whole, 0.0, longest);
+    for _ in 0..20 {
+        let time = 0.5 * (low + high);
+        match braked(time) {
+            Some(plan) => {
+                high = time;
+                if plan.path.duration() < best.path.duration() {
+                    best = plan;
+                }
+            }
+            None => low = time,
+        }
+    }
+    best
+}
+
+/// From a constant velocity to another one and to that of `goal`; with a cruise where the limit is not far enough.
+fn by_way_of_a_velocity(from: State4, goal: &Goal, limits: &Limits4) -> Path<{ fourth::STRETCHES }> {
+    let upper = limits.upper();
+    let constant = |velocity: f64| third::State3 { p: velocity, v: 0.0, a: 0.0 };
+    let between = |one: third::State3, other: third::State3| third::fastest(one, other, &upper);
+    let start = constant(from.v);
+    let mut path = Path::EMPTY;
+    match goal {
+        Goal::Velocity(v) => path.extend(&between(start, constant(*v))),
+        Goal::State(to) => {
+            let both = |velocity: f64| [between(start, constant(velocity)), between(constant(velocity), to.upper())];
+            let beyond = |velocity: f64| {
+                let [there, back] = both(velocity);
+                from.along(&there).along(&back).x - to.x
+            };
+            let velocity = increasing(-limits.v.below, limits.v.above, beyond);
+            let [there, back] = both(velocity);
+            path.extend(&there);
+            if velocity >= limits.v.above || velocity <= -limits.v.below {
+                path.push(0.0, -beyond(velocity) / velocity);
+            }
+            path.extend(&back);
+        }
+    }
+    path
+}

@@ -1,0 +1,132 @@
+//! A planned transition, and the set-point at any time of it.
+use super::fourth::{Limits4, State4};
+use super::ladder::{self, Goal, STRETCHES};
+use super::path::Path;
+use super::second::{self, Limits2, Sides, State2};
+use super::third::{self, Limits3, State3};
+use super::{DirectionalLimits, Effort, Target};
+use crate::{Order, Piece, PlanError, Segment, Trajectory};
+use servobench_base::{ParamError, Setpoint, finite};
+
+/// The way from one state to a target, in the axis unit (m or rad) and seconds from its start.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Transition {
+    way: Trajectory<STRETCHES>,
+    excess: f64,
+}
+
+impl Transition {
+    /// Plans the way from `from` to `target`.
+    ///
+    /// `from` may be any state: that of a running move, or one beyond the limits, which is led back in the shortest way. Its
+    /// snap does not matter, at order 3 its jerk neither.
+    ///
+    /// # Errors
+    /// [`PlanError`] when a state is not finite, a limit that the order uses is not positive or lies outside 1e-30 … 1e30
+    /// (SI), or the velocity of the target is beyond its limits; and at order 2, which has no transition.
+    pub fn plan(
+        order: Order,
+        from: &Setpoint,
+        target: &Target,
+        limits: &DirectionalLimits,
+        effort: Effort,
+    ) -> Result<Self, PlanError> {
+        limits.check(order)?;
+        target.check(limits)?;
+        for (name, value) in [("from.x", from.x), ("from.v", from.v), ("from.a", from.a)] {
+            finite(name, value)?;
+        }
+        match order {
+            Order::Second => Err(ParamError { name: "order", value: 2.0, bound: "3 or 4" }.into()),
+            Order::Third => Ok(third_order(from, target, limits)),
+            Order::Fourth => {
+                finite("from.j", from.j)?;
+                Ok(fourth_order(from, target, limits, effort))
+            }
+        }
+    }
+
+    fn new<const N: usize>(order: Order, from: Setpoint, path: &Path<N>, target: &Target, excess: f64) -> Self {
+        let segments = path.stretches().iter().map(|stretch| (stretch.value, stretch.length));
+        let way = Trajectory::new(order, from, segments, |end| match target {
+            Target::Position { x, v } => Setpoint { v: *v, ..Setpoint::at_rest(*x) },
+            Target::Velocity(v) => Setpoint { v: *v, ..Setpoint::at_rest(end.x) },
+        });
+        Self { way, excess: excess.max(0.0) }
+    }
+
+    /// The set-point `t` seconds after the start; before it the first one, from the end on the target, which goes on at its
+    /// velocity. NaN counts as before the start.
+    #[must_use]
+    #[inline]
+    pub fn at(&self, t: f64) -> Setpoint {
+        self.way.at(t)
+    }
+
+    /// The polynomial that [`at`](Self::at) evaluates at `t` (s).
+    #[must_use]
+    pub fn piece(&self, t: f64) -> Piece {
+        self.way.piece(t)
+    }
+
+    /// Duration (s).
+    #[must_use]
+    pub const fn duration(&self) -> f64 {
+        self.way.duration()
+    }
+
+    /// Order of the profile.
+    #[must_use]
+    pub const fn order(&self) -> Order {
+        self.way.order()
+    }
+
+    /// The segments with their highest derivative.
+    #[must_use]
+    pub fn segments(&self) -> impl ExactSizeIterator<Item = Segment> + '_ {
+        self.way.segments()
+    }
+
+    /// How far it goes beyond the limits of velocity and acceleration, as a part of them. Zero, unless the state from which it
+    /// starts is beyond them, or leaves no way that is not.
+    #[must_use]
+    pub const fn excess(&self) -> f64 {
+        self.excess
+    }
+}
+
+fn third_order(from: &Setpoint, target: &Target, limits: &DirectionalLimits) -> Transition {
+    let DirectionalLimits { velocity, acceleration, jerk, .. } = *limits;
+    let start = State3 { p: from.x, v: from.v, a: from.a };
+    let path = match target {
+        Target::Position { x, v } => {
+            let to = State3 { p: *x, v: *v, a: 0.0 };
+            third::fastest(start, to, &Limits3 { v: velocity, a: acceleration, j: jerk })
+        }
+        Target::Velocity(v) => {
+            let mut path = Path::EMPTY;
+            let (beyond, side) = acceleration.excess(start.a);
+            path.push(-side * jerk, beyond / jerk);
+            let turn = start.along(&path);
+            let limits = Limits2 { a: acceleration, j: jerk };
+            path.extend(&second::fastest(State2 { v: turn.v, a: turn.a }, State2 { v: *v, a: 0.0 }, &limits));
+            path
+        }
+    };
+    let excess = start.excess(&path, velocity, acceleration);
+    Transition::new(Order::Third, Setpoint { j: 0.0, s: 0.0, ..*from }, &path, target, excess)
+}
+
+fn fourth_order(from: &Setpoint, target: &Target, limits: &DirectionalLimits, effort: Effort) -> Transition {
+    let DirectionalLimits { velocity, acceleration, jerk, snap } = *limits;
+    let limits = Limits4 { v: velocity, a: acceleration, j: jerk, d: snap };
+    // The distance alone matters.
+    let start = State4 { x: 0.0, v: from.v, a: from.a, j: from.j };
+    let goal = match target {
+        Target::Position { x, v } => Goal::State(State4 { x: x - from.x, v: *v, a: 0.0, j: 0.0 }),
+        Target::Velocity(v) => Goal::Velocity(*v),
+    };
+    let ladder::Plan { path, excess, .. } = ladder::plan(start, &goal, &limits, effort);
+    let excess = excess.max(Sides::both(jerk).excess(from.j).0 / jerk);
+    Transition::new(Order::Fourth, Setpoint { s: 0.0, ..*from }, &path, target, excess)
+}

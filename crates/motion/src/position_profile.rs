@@ -1,0 +1,54 @@
+//! Positions at given times on a drive that is told velocities: `MC_PositionProfile` on the profile velocity mode.
+//!
+//! The drive takes a velocity V and an acceleration a = d > 0, goes there in a straight line and stays. Two ways to
+//! meet the positions p_i at the times t_i (dT_i = t_i − t_(i−1)) with such [`Command`]s:
+//!
+//! # Option 1, [`Plateaus`]: hits every position
+//!
+//! In segment i the velocity is constant, V_i, but for the shares α·dT_i at its beginning and end, in which it goes
+//! linearly to that of the neighbours; W_i is the velocity at the point itself, W_0 = V_s and W_N = V_e given.
+//!
+//! ```text
+//! W_i = (dT_i·V_(i+1) + dT_(i+1)·V_i)/(dT_i + dT_(i+1))
+//! 2(p_i − p_(i−1))/dT_i = α·W_(i−1) + (2 − 2α)·V_i + α·W_i                                  (area below the velocity)
+//! ```
+//!
+//! With the first in the second this is a tridiagonal system in V_i, diagonally dominant for 0 < α ≤ 1/2. (In the
+//! last row, as printed in the source, the plus between the terms of V_(N−1) and V_N is missing, and W_N = V_e takes
+//! the place of V_(N+1).) Once W is known, the second row gives V_i back: the points alone, with W_i as their
+//! velocity, are the profile.
+//!
+//! # Option 2, [`Spline`]: follows the cubic spline
+//!
+//! The [spline](crate::pvt::continuous) through the points with the end velocities V_s and V_e has continuous
+//! acceleration. At the frequency ν = 1/h the command V = P'(t + h), a = |V − V_cur|/h is sent; a drive that obeys is
+//! at V when the next one comes (V_cur = P'(t)), so that its velocity is the spline's at every command and a straight
+//! line in between. Its position is the trapezoidal rule applied to P', and the error is known beforehand. With the
+//! kernel of Peano,
+//!
+//! ```text
+//! E(t_k + h) − E(t_k) = ∫₀ʰ s(h − s)/2·j(t_k + s) ds
+//! ```
+//!
+//! and as j is constant in each segment, the sum over all intervals (Euler–Maclaurin) is, exactly and for any position
+//! θ_i ∈ [0, 1) of the points between two commands, with the jerk jumping by Δj_i at the points passed,
+//!
+//! ```text
+//! E(t_k) = h²/12·(a(t_k) − a(t_0)) + h³/6·Σ Δj_i·B3(θ_i),      B3(θ) = θ³ − 3/2·θ² + θ/2,    |B3| ≤ √3/36.
+//! ```
+//!
+//! Between two commands the error runs monotonically from the one value to the other where the jerk keeps its sign,
+//! and turns at most twice between two points where it does not: the largest error of all is found in one pass over
+//! the points, however many commands there are.
+//!
+//! Source: N. D. Baikov, A. N. Godunov, *An Approach to Implementing Functional Blocks of the PLCopen Specification*,
+//! sections 4 and 5 (which asks for the error to be estimated and leaves it open how).
+
+mod command;
+mod plateaus;
+mod rate;
+mod stepped;
+
+pub use command::Command;
+pub use plateaus::{PlateauCommands, Plateaus};
+pub use stepped::{PointErrors, Spline, Stepped, SteppedCommands};

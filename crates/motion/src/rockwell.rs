@@ -1,0 +1,159 @@
+//! The two profiles of Rockwell's Motion Axis Move: trapezoid and S-curve, with their ways to say jerk.
+//!
+//! Velocity rises to the speed within the acceleration and its jerk, and falls within the deceleration and its own:
+//!
+//! ```text
+//! v ≥ A²/J:  t_j = A/J,     t_a = v/A − A/J        lasting  v/A + A/J
+//! v < A²/J:  t_j = √(v/J),  t_a = 0                lasting  2·√(v/J)
+//! ```
+//! either way over v/2 times its length. Jerk "in % of time" is the part of the ramp in which the acceleration changes, half
+//! of it at each end: with t_a + 2·t_j = v/A + A/J and 2·t_j = %/100 of it, J = (A²/V)·(200/% − 1), where V is the speed that
+//! was asked for. It stays that when the distance is too short for this speed. A trapezoid takes all the jerk that the axis
+//! is configured for.
+//!
+//! Source: Rockwell Automation, *Logix5000 Controllers Motion Instructions*, MOTION-RM002, "Motion Axis Move"; the distances
+//! that K. T. Erickson, *Programmable Logic Controllers*, §3.2.3.1, prints for its examples are not those of its profiles.
+use crate::limits::in_range;
+use crate::root::increasing;
+use crate::{Order, PlanError, Trajectory};
+use servobench_base::{ParamError, Setpoint, finite, positive};
+
+/// How a move says its jerk.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Jerk {
+    /// As a value (m/s³ or rad/s³).
+    Value(f64),
+    /// As a part of the jerk that the axis is configured for (%, above 0 to 100).
+    PercentOfMaximum(f64),
+    /// As the part of the ramp in which the acceleration changes (%, above 0 to 100).
+    PercentOfTime(f64),
+}
+
+/// Shape of the velocity over time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Shape {
+    /// Acceleration as rectangular as the axis' jerk allows.
+    Trapezoid,
+    /// Acceleration with this jerk, and deceleration with that.
+    SCurve {
+        /// Of the acceleration.
+        acceleration: Jerk,
+        /// Of the deceleration.
+        deceleration: Jerk,
+    },
+}
+
+/// Operands of a move, in the axis unit (m or rad).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Move {
+    /// Distance; its sign is the direction.
+    pub distance: f64,
+    /// Speed (m/s or rad/s).
+    pub speed: f64,
+    /// Acceleration (m/s² or rad/s²).
+    pub acceleration: f64,
+    /// Deceleration (m/s² or rad/s²).
+    pub deceleration: f64,
+    /// Shape.
+    pub shape: Shape,
+}
+
+/// Largest jerk that an axis is configured for (m/s³ or rad/s³).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MaximumJerk {
+    /// Of accelerations.
+    pub acceleration: f64,
+    /// Of decelerations.
+    pub deceleration: f64,
+}
+
+/// One ramp between rest and a speed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Ramp {
+    acceleration: f64,
+    jerk: f64,
+}
+
+impl Move {
+    /// Plans the move.
+    ///
+    /// # Errors
+    /// [`PlanError`] when the distance is not finite, or another operand not positive, above 100 % where it is a part, or
+    /// outside 1e-30 … 1e30 (SI).
+    pub fn plan(&self, maximum: &MaximumJerk) -> Result<Trajectory<7>, PlanError> {
+        let speed = checked("speed", self.speed)?;
+        let (said_up, said_down) = match self.shape {
+            Shape::Trapezoid => (Jerk::PercentOfMaximum(100.0), Jerk::PercentOfMaximum(100.0)),
+            Shape::SCurve { acceleration, deceleration } => (acceleration, deceleration),
+        };
+        let ramp = |acceleration: f64, said: Jerk, maximum: f64| -> Result<Ramp, PlanError> {
+            Ok(Ramp { acceleration, jerk: checked("jerk", said.value(acceleration, speed, maximum)?)? })
+        };
+        let up = ramp(checked("acceleration", self.acceleration)?, said_up, maximum.acceleration)?;
+        let down = ramp(checked("deceleration", self.deceleration)?, said_down, maximum.deceleration)?;
+
+        let distance = finite("distance", self.distance)? + 0.0;
+        if distance == 0.0 {
+            return Ok(Trajectory::new(Order::Third, Setpoint::default(), [], |_| Setpoint::default()));
+        }
+        let length = in_range("distance", distance, "correct its unit, or ask for a distance of 0")?.abs();
+        let ramps = |v: f64| 0.5 * v * (up.duration(v) + down.duration(v));
+        let peak = if ramps(speed) <= length { speed } else { increasing(0.0, speed, |v| ramps(v) - length) };
+        let cruise = ((length - ramps(peak)) / peak).max(0.0);
+        let sign = distance.signum();
+        let ([j_1, a_1], [j_2, a_2]) = (up.times(peak), down.times(peak));
+        let segments = [
+            (sign * up.jerk, j_1),
+            (0.0, a_1),
+            (-sign * up.jerk, j_1),
+            (0.0, cruise),
+            (-sign * down.jerk, j_2),
+            (0.0, a_2),
+            (sign * down.jerk, j_2),
+        ];
+        Ok(Trajectory::new(Order::Third, Setpoint::default(), segments, |_| Setpoint::at_rest(distance)))
+    }
+}
+
+impl Jerk {
+    /// The jerk (m/s³ or rad/s³) of a ramp with `acceleration` to `speed` on an axis that is configured for `maximum`.
+    ///
+    /// # Errors
+    /// [`PlanError`] when a part is not above 0 and at most 100 %.
+    pub fn value(self, acceleration: f64, speed: f64, maximum: f64) -> Result<f64, PlanError> {
+        let part = |name: &'static str, percent: f64| {
+            if percent > 0.0 && percent <= 100.0 {
+                Ok(percent)
+            } else {
+                Err(PlanError::from(ParamError { name, value: percent, bound: "above 0 % and at most 100 %" }))
+            }
+        };
+        match self {
+            Self::Value(jerk) => Ok(jerk),
+            Self::PercentOfMaximum(percent) => Ok(maximum * (part("jerk_percent_of_maximum", percent)? / 100.0)),
+            Self::PercentOfTime(percent) => {
+                let percent = part("jerk_percent_of_time", percent)?;
+                Ok(acceleration * acceleration / speed * (200.0 / percent - 1.0))
+            }
+        }
+    }
+}
+
+impl Ramp {
+    /// Lengths of the jerk and of the constant acceleration on the way to `v` (s).
+    fn times(&self, v: f64) -> [f64; 2] {
+        let whole = self.acceleration / self.jerk;
+        let constant = v / self.acceleration - whole;
+        // A rest of rounding is none: 100 % of time leaves no constant acceleration.
+        if constant > 1e-12 * whole { [whole, constant] } else { [libm::sqrt(v / self.jerk), 0.0] }
+    }
+
+    fn duration(&self, v: f64) -> f64 {
+        let [jerk, constant] = self.times(v);
+        2.0 * jerk + constant
+    }
+}
+
+fn checked(name: &'static str, value: f64) -> Result<f64, PlanError> {
+    in_range(name, positive(name, value)?, "correct its unit")
+}

@@ -1,0 +1,55 @@
+//! Input shaping and averaging of set-points: what keeps a move from exciting a vibration of the axis.
+//!
+//! A mode of natural frequency ω and damping ratio ζ rings after an impulse. Split into impulses `A_i` at `t_i` (ΣA = 1),
+//! what rings after the last one, in parts of what one impulse at t = 0 would have left at its own instant, is
+//!
+//! ```text
+//! V(ω, ζ) = e^(−ζω·t_n)·|Σ A_i·e^((ζω + jω_d)·t_i)|      ω_d = ω·√(1 − ζ²)        (Singer & Seering 1990, eq. 2)
+//!
+//! with K = e^(−ζπ/√(1−ζ²)), at the times 0, T, 2T, 3T, T = π/ω_d, half a period of the damped vibration:
+//!   ZV    (1, K)/(1 + K)                    V = 0                        adds T
+//!   ZVD   (1, 2K, K²)/(1 + K)²              V = dV/dω = 0                adds 2T
+//!   ZVDD  (1, 3K, 3K², K³)/(1 + K)³         V = dV/dω = d²V/dω² = 0      adds 3T
+//!   EI    (1 + v, 2 − 2v, 1 + v)/4 (ζ = 0)  V = v, zero on both sides    adds 2T
+//! ```
+//!
+//! Sources: ZV, ZVD, ZVDD: Singer & Seering, *Preshaping Command Inputs to Reduce System Vibration*, J. Dynamic Systems,
+//! Measurement and Control 112 (1990). EI (extra-insensitive): Singhose, Seering & Singer, *Residual Vibration Reduction
+//! Using Vector Diagrams to Generate Shaped Inputs*, J. Mechanical Design 116 (1994); for ζ > 0 the equations are solved
+//! here instead of using the curve fit of Singhose, Porter, Tuttle & Singer, *Vibration Reduction Using Multi-Hump
+//! Input Shapers*, same journal as the first, 119 (1997).
+//! Averages: Biagiotti & Melchiorri, *FIR Filters for Online Trajectory Planning with Time- and Frequency-Domain
+//! Specifications*, Control Engineering Practice 20 (2012).
+//!
+//! | | on a set-point as a function of time | on a stream of set-points |
+//! |---|---|---|
+//! | impulses | [`Impulses::shape`], exact | [`ShapingFilter`], times on the grid of samples |
+//! | averages | [`MovingAverages`], exact, of what can be integrated | [`MovingAverage`], one after the other |
+//!
+//! Both come to rest at exactly the target: values are summed as differences from one of them.
+//!
+//! ```
+//! use servobench_motion::shape::{Impulses, Vibration};
+//! use servobench_motion::{Limits, Order, Profile};
+//! let limits = Limits { velocity: 1.0, acceleration: 5.0, jerk: 50.0, snap: 1000.0 };
+//! let plan = Profile::plan(Order::Third, 0.3, &limits)?;
+//! let shaper = Impulses::zvd(&Vibration::new(62.8, 0.02)?);
+//! let end = plan.duration() + shaper.duration();
+//! assert_eq!(shaper.shape(end, |t| plan.at(t)).x, 0.3);
+//! assert!((end - plan.duration() - 0.1).abs() < 1e-3);
+//! # Ok::<(), servobench_motion::PlanError>(())
+//! ```
+
+mod averages;
+mod difference;
+mod extra_insensitive;
+mod filter;
+mod impulses;
+mod mean;
+mod vibration;
+
+pub use averages::MovingAverages;
+pub use filter::ShapingFilter;
+pub use impulses::{Impulse, Impulses};
+pub use mean::MovingAverage;
+pub use vibration::Vibration;

@@ -1,0 +1,71 @@
+//! The mean of the last set-points of a stream.
+use super::difference::{checked, minus, plus};
+use crate::PlanError;
+use servobench_base::{ParamError, Setpoint};
+
+/// A moving average of up to `N` samples.
+///
+/// A step through averages of n1 … n4 samples, one after the other, is the sampled move of order 4 with these boxes: its
+/// backward differences are those of the forward-Euler cascade. The set-points of a step say nothing of its derivatives,
+/// which are impulses; [`MovingAverages::of_step`](super::MovingAverages::of_step) does.
+///
+/// The sum is built anew for every block of `length` samples, forwards within the block and backwards over the one
+/// before it, as differences from the first of the newer block: nothing drifts, and a rest gives exactly its value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MovingAverage<const N: usize> {
+    length: usize,
+    /// The first `filled` set-points of this block; behind them, for each place, the sum of the block before from there on,
+    /// as differences from `base`.
+    memory: [Setpoint; N],
+    filled: usize,
+    base: Setpoint,
+    /// Sum of this block, as differences from `base`.
+    sum: Setpoint,
+    received: u64,
+}
+
+impl<const N: usize> MovingAverage<N> {
+    /// The mean of the last `length` samples, after a long rest at `rest`.
+    ///
+    /// # Errors
+    /// [`PlanError::Parameter`] when the length is zero, [`PlanError::FilterTooLong`] when it is above `N`;
+    /// [`PlanError::Sample`] for a rest that [`next`](Self::next) would refuse.
+    pub fn new(length: usize, rest: Setpoint) -> Result<Self, PlanError> {
+        let rest = checked(0, rest)?;
+        if length == 0 {
+            return Err(ParamError { name: "length", value: 0.0, bound: "at least one sample" }.into());
+        }
+        if length > N {
+            return Err(PlanError::FilterTooLong { samples: length as f64, capacity: N });
+        }
+        Ok(Self { length, memory: [rest; N], filled: length, base: rest, sum: Setpoint::default(), received: 0 })
+    }
+
+    /// Takes the next set-point and gives the mean of it and those before it.
+    ///
+    /// # Errors
+    /// [`PlanError::Sample`] with the number of the set-point, from 0, when a value is not finite or above 1e150 in
+    /// magnitude. Nothing is changed then.
+    pub fn next(&mut self, setpoint: Setpoint) -> Result<Setpoint, PlanError> {
+        let setpoint = checked(self.received, setpoint)?;
+        self.received += 1;
+        if self.filled == self.length {
+            self.begin_block(setpoint);
+        }
+        self.memory[self.filled] = setpoint;
+        self.filled += 1;
+        self.sum = plus(self.sum, minus(setpoint, self.base));
+        let older = if self.filled < self.length { self.memory[self.filled] } else { Setpoint::default() };
+        Ok(plus(self.base, plus(self.sum, older).scaled(1.0 / self.length as f64)))
+    }
+
+    /// Turns the block in memory into its sums from behind.
+    fn begin_block(&mut self, base: Setpoint) {
+        let mut sum = Setpoint::default();
+        for place in self.memory[..self.length].iter_mut().rev() {
+            sum = plus(sum, minus(*place, base));
+            *place = sum;
+        }
+        (self.base, self.sum, self.filled) = (base, Setpoint::default(), 0);
+    }
+}

@@ -1,0 +1,110 @@
+//! A way through time whose highest derivative is constant piece by piece.
+use crate::{Order, Piece, Segment};
+use servobench_base::Setpoint;
+
+/// Up to `N` segments from a first state on, in the axis unit (m or rad) and seconds from the start.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Trajectory<const N: usize> {
+    order: Order,
+    /// Starts of the segments (s); infinite beyond the last.
+    starts: [f64; N],
+    /// Their states at the start, with the highest derivative that holds until the next.
+    anchors: [Setpoint; N],
+    count: usize,
+    duration: f64,
+    /// The state at the end, from which it goes on at its velocity.
+    end: Setpoint,
+}
+
+impl<const N: usize> Trajectory<N> {
+    /// From `from`, through segments of (highest derivative, length), those without a length left out; at the end it is as
+    /// `arrive` says of what the segments lead to, so that nothing of their rounding is left.
+    ///
+    /// More than `N` segments are a defect of the caller.
+    pub(crate) fn new(
+        order: Order,
+        from: Setpoint,
+        segments: impl IntoIterator<Item = (f64, f64)>,
+        arrive: impl FnOnce(Setpoint) -> Setpoint,
+    ) -> Self {
+        let (mut state, mut start) = (from, 0.0);
+        let mut way = Self {
+            order,
+            starts: [f64::INFINITY; N],
+            anchors: [Setpoint::default(); N],
+            count: 0,
+            duration: 0.0,
+            end: from,
+        };
+        for (value, length) in segments.into_iter().filter(|(_, length)| *length > 0.0) {
+            match order {
+                Order::Second => state.a = value,
+                Order::Third => state.j = value,
+                Order::Fourth => state.s = value,
+            }
+            way.starts[way.count] = start;
+            way.anchors[way.count] = state;
+            way.count += 1;
+            state = state.after(length);
+            start += length;
+        }
+        way.duration = start;
+        way.end = arrive(state);
+        way
+    }
+
+    /// The set-point `t` seconds after the start; before it the first one, from the end on at the velocity of the end. NaN
+    /// counts as before the start.
+    #[must_use]
+    #[inline]
+    pub fn at(&self, t: f64) -> Setpoint {
+        self.piece(t).at(t)
+    }
+
+    /// The polynomial that [`at`](Self::at) evaluates at `t` (s).
+    #[must_use]
+    pub fn piece(&self, t: f64) -> Piece {
+        if t >= self.duration || self.count == 0 {
+            return Piece::forward(self.end, self.duration, f64::MAX, f64::INFINITY);
+        }
+        let i = self.starts[1..self.count].iter().take_while(|start| **start <= t).count();
+        let until = self.end_of(i);
+        Piece::forward(self.anchors[i], self.starts[i], until - self.starts[i], until)
+    }
+
+    fn end_of(&self, i: usize) -> f64 {
+        if i + 1 < self.count { self.starts[i + 1] } else { self.duration }
+    }
+
+    /// Duration (s).
+    #[must_use]
+    pub const fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    /// The state at the end.
+    #[must_use]
+    pub const fn end(&self) -> Setpoint {
+        self.end
+    }
+
+    /// Order: the derivative of position that is constant piece by piece.
+    #[must_use]
+    pub const fn order(&self) -> Order {
+        self.order
+    }
+
+    /// The segments with their highest derivative.
+    #[must_use]
+    pub fn segments(&self) -> impl ExactSizeIterator<Item = Segment> + '_ {
+        (0..self.count).map(|i| {
+            let anchor = self.anchors[i];
+            let value = match self.order {
+                Order::Second => anchor.a,
+                Order::Third => anchor.j,
+                Order::Fourth => anchor.s,
+            };
+            Segment { start: self.starts[i], length: self.end_of(i) - self.starts[i], value }
+        })
+    }
+}

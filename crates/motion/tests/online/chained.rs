@@ -1,0 +1,119 @@
+//! Moves aborted by moves: at any instant, with new targets and now and then with new limits.
+use crate::random::{Random, sweep_size};
+use servobench_base::Setpoint;
+use servobench_motion::Order;
+use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target, Transition};
+
+/// What is asked of one chain.
+struct Chain {
+    random: Random,
+    limits: DirectionalLimits,
+    /// Distance that fills the velocity limit in about the time that the limits take.
+    length: f64,
+    state: Setpoint,
+}
+
+impl Chain {
+    fn new(seed: u64) -> Self {
+        let mut random = Random::seeded(seed);
+        let (d, t) = (random.decades(-6.0, 9.0), random.decades(-3.0, 1.0));
+        let limits = random.limits(d, t);
+        Self { random, limits, length: d * t * t * t * t, state: Setpoint::default() }
+    }
+
+    fn target(&mut self) -> Target {
+        let Sides { below, above } = self.limits.velocity;
+        let draw = 4.0 * self.random.signed();
+        let v = if draw > 2.0 {
+            above * self.random.unit()
+        } else if draw < -2.0 {
+            -below * self.random.unit()
+        } else {
+            0.0
+        };
+        if self.random.unit() < 0.1 {
+            return Target::Velocity(v);
+        }
+        let away = self.random.signed().signum() * self.length * self.random.decades(-3.0, 1.5);
+        Target::Position { x: self.state.x + away, v }
+    }
+}
+
+/// Largest part by which a set-point of `planned` is beyond the limits, and the largest jump of one where pieces join.
+fn check(planned: &Transition, chain: &Chain, target: &Target, what: &str) {
+    let DirectionalLimits { velocity, acceleration, jerk, .. } = chain.limits;
+    let context = || format!("{what}: from {:?} to {target:?} within {:?}: {planned:?}", chain.state, chain.limits);
+    assert!(planned.duration().is_finite() && planned.excess() <= 1e-9, "{}", context());
+    let mut last: Option<Setpoint> = None;
+    for segment in planned.segments() {
+        for part in [0.0, 0.3, 0.7, 1.0 - 1e-9] {
+            let at = planned.at(segment.start + part * segment.length);
+            let inside =
+                |sides: Sides, value: f64| value <= sides.above * (1.0 + 1e-9) && value >= -sides.below * (1.0 + 1e-9);
+            assert!(inside(velocity, at.v) && inside(acceleration, at.a), "{at:?} {}", context());
+            assert!(planned.order() == Order::Third || at.j.abs() <= jerk * (1.0 + 1e-9), "{at:?} {}", context());
+            if let (0.0, Some(before)) = (part, last) {
+                // 1e-9 of a segment before it ends.
+                let close = |one: f64, two: f64, size: f64| (one - two).abs() <= 1e-8 * size;
+                assert!(close(before.v, at.v, velocity.above + velocity.below), "{before:?} {at:?} {}", context());
+                assert!(
+                    close(before.a, at.a, acceleration.above + acceleration.below),
+                    "{before:?} {at:?} {}",
+                    context()
+                );
+            }
+            last = Some(at);
+        }
+    }
+    // What the polynomials end with, and what the target says.
+    let (before, end) = (planned.at(planned.duration().next_down()), planned.at(planned.duration()));
+    let travel = match target {
+        Target::Position { x, .. } => (x - chain.state.x).abs() + chain.length,
+        Target::Velocity(_) => chain.length,
+    };
+    if planned.duration() > 0.0 {
+        let Sides { below, above } = velocity;
+        assert!((before.x - end.x).abs() <= 1e-9 * travel, "{before:?} {end:?} {}", context());
+        assert!((before.v - end.v).abs() <= 1e-9 * (below + above), "{before:?} {end:?} {}", context());
+        assert!(
+            (before.a - end.a).abs() <= 1e-9 * (acceleration.below + acceleration.above),
+            "{before:?} {}",
+            context()
+        );
+        assert!(planned.order() == Order::Third || (before.j - end.j).abs() <= 1e-9 * jerk, "{before:?} {}", context());
+    }
+    match target {
+        Target::Position { x, v } => assert_eq!((end.x.to_bits(), end.v.to_bits()), (x.to_bits(), v.to_bits())),
+        Target::Velocity(v) => assert_eq!(end.v.to_bits(), v.to_bits()),
+    }
+}
+
+fn chains(order: Order, effort: Effort, aborts: usize) {
+    const LINKS: usize = 20;
+    for seed in 0..aborts.div_ceil(LINKS) as u64 {
+        let mut chain = Chain::new(seed);
+        for link in 0..LINKS {
+            let target = chain.target();
+            let planned = Transition::plan(order, &chain.state, &target, &chain.limits, effort).unwrap();
+            check(&planned, &chain, &target, &format!("seed {seed}, link {link}"));
+            chain.state = planned.at(chain.random.unit() * planned.duration());
+            // As a drive does it: the position starts anew now and then.
+            chain.state.x = chain.random.signed() * chain.length;
+        }
+    }
+}
+
+#[test]
+fn order_4_fast_never_fails() {
+    chains(Order::Fourth, Effort::Fast, sweep_size(100_000));
+}
+
+#[test]
+fn order_4_refined_never_fails() {
+    chains(Order::Fourth, Effort::Refined, sweep_size(100_000) / 100);
+}
+
+#[test]
+fn order_3_never_fails() {
+    chains(Order::Third, Effort::Fast, sweep_size(100_000));
+}

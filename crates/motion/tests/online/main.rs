@@ -1,0 +1,7 @@
+//! Transitions from any state, against oracles that share no code with the planner.
+
+mod chained;
+mod outside;
+mod random;
+mod rest;
+mod ruckig;

@@ -1,0 +1,67 @@
+//! The shortest move of order 4.
+use crate::requests::{Random, sweep_size};
+use servobench_motion::{Limits, Order, Profile};
+
+/// Oracle: with the snap alone limited the shortest move takes (384·x/d)^¼, that of the boxes (512·x/d)^¼.
+#[test]
+fn with_snap_alone_it_takes_the_fourth_root_of_384() {
+    let mut random = Random::seeded(384);
+    for _ in 0..1000 {
+        let (distance, snap) = (10.0_f64.powf(12.0 * random.unit() - 6.0), 10.0_f64.powf(12.0 * random.unit() - 6.0));
+        let limits = Limits { snap, ..Limits::UNLIMITED };
+        let optimal = Profile::plan_optimal(Order::Fourth, distance, &limits).unwrap();
+        // Four roundings of the fourth root, some ten of the sum.
+        assert!((optimal.duration() / (384.0 * distance / snap).powf(0.25) - 1.0).abs() < 4e-15, "{distance} {snap}");
+        let published = Profile::plan(Order::Fourth, distance, &limits).unwrap();
+        assert!((published.duration() / (512.0 * distance / snap).powf(0.25) - 1.0).abs() < 4e-15, "{distance} {snap}");
+    }
+}
+
+/// Never longer than the published one, never beyond a limit, and on its way from 0 to the distance.
+#[test]
+fn it_is_never_longer_and_keeps_the_limits() {
+    let mut random = Random::seeded(4);
+    let (mut gained, mut cruising) = (0.0_f64, 0);
+    for _ in 0..sweep_size() {
+        let request = random.request();
+        let (distance, limits) = (request.distance, request.limits);
+        let Ok(published) = Profile::plan(Order::Fourth, distance, &limits) else { continue };
+        let optimal = Profile::plan_optimal(Order::Fourth, distance, &limits).unwrap();
+        let gain = 1.0 - optimal.duration() / published.duration();
+        gained = gained.max(gain);
+        cruising += u32::from(optimal.cruise() > 0.0);
+        assert!(gain > -1e-14 && gain < 0.07457 + 1e-5, "{request:?}: {gain}");
+        let peaks = optimal.peaks();
+        for (peak, limit) in [
+            (peaks.velocity, limits.velocity),
+            (peaks.acceleration, limits.acceleration),
+            (peaks.jerk, limits.jerk),
+            (peaks.snap, limits.snap),
+        ] {
+            assert!(peak <= limit * (1.0 + 1e-13), "{request:?}: {peak} {limit}");
+        }
+        let half = 0.5 * optimal.duration();
+        let [before, after] = [half * (1.0 - 1e-15), half].map(|t| optimal.at(t));
+        // Four steps of integration, and a time that is rounded to 1e-15 of the duration.
+        let duration = optimal.duration();
+        for (one, two, peak, above) in [
+            (before.x, after.x, distance.abs(), peaks.velocity),
+            (before.v, after.v, peaks.velocity, peaks.acceleration),
+            (before.a, after.a, peaks.acceleration, peaks.jerk),
+        ] {
+            let tolerance = 8.0 * f64::EPSILON * (peak + above * duration);
+            assert!((one - two).abs() <= tolerance, "{request:?}: {before:?} {after:?}");
+        }
+        for k in 0..=64 {
+            let at = optimal.at(optimal.duration() * f64::from(k) / 64.0);
+            for (value, peak) in
+                [(at.v, peaks.velocity), (at.a, peaks.acceleration), (at.j, peaks.jerk), (at.s, peaks.snap)]
+            {
+                assert!(value.abs() <= peak * (1.0 + 1e-13), "{request:?}: {at:?} {peaks:?}");
+            }
+        }
+        let end = optimal.at(optimal.duration());
+        assert_eq!(end.x.to_bits(), (distance + 0.0).to_bits(), "{request:?}");
+    }
+    assert!(gained > 0.05 && cruising > 0, "{gained} {cruising}");
+}

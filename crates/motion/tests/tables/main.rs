@@ -1,0 +1,11 @@
+//! Moves through tables of points, against oracles that share no code with them.
+
+mod any_input;
+mod drive;
+mod evaluation;
+mod plateaus;
+mod random;
+mod stepped;
+mod velocities;
+mod words;
+mod worked;
