@@ -1,18 +1,19 @@
 //! Transitions from any state, planned while the axis moves: to a position at rest, to a position passed at a velocity, to a
-//! velocity. Order 3 (jerk-limited) is the shortest there is; order 4 (snap-limited) is the shortest from rest to rest
+//! velocity. Order 3 (jerk-limited) is as short as Ruckig's; order 4 (snap-limited) is the shortest from rest to rest
 //! without a cruise, and near it elsewhere.
 //!
 //! # One idea for every order
 //!
-//! Between two states of a chain of integrators whose first derivative is limited, let
+//! Between two states of a chain of integrators, let
 //!
-//! - *away* be the fastest way towards the limit on the side of the target,
+//! - *away* be the fastest way to gain velocity towards the target: at order 3 to the velocity limit, at order 4 to the largest
+//!   acceleration and on with it,
 //! - *home* the fastest way to the target's derivatives, one integrator less: the same problem one order below.
 //!
-//! Who follows *away* for a time τ and goes *home* from there covers the more the longer τ is; one τ meets the target. Where
+//! Who follows *away* for a time τ and goes *home* from there covers the more the longer τ is; the first τ that meets the target is taken. Where
 //! that would pass the limit, the limit is touched for an instant, with the one value of the highest state with which the
 //! target is met; where a touch at rest is not far enough, there is a cruise. So order n is a root in one unknown over
-//! order n − 1, and order 2 is two parabolas. It never fails to bracket: at τ = 0 there is too little, at the limit too much.
+//! order n − 1, and order 2 is two parabolas.
 //!
 //! Order 4 adds the one thing that order 3 does not need: a state may be so near its velocity limit that the fastest way
 //! passes it though a slower one does not. `ladder` says what is tried then.

@@ -1,5 +1,5 @@
 //! The first time at which a target is met.
-use super::path::Stretch;
+use super::path::{Path, Stretch};
 use crate::root::{between, increasing};
 
 /// A product takes a fifth of the time of a quotient.
@@ -12,6 +12,24 @@ const PARTS: u32 = 12;
 pub(crate) trait State: Copy {
     /// The state `t` later while the highest derivative is `value`.
     fn after(self, value: f64, t: f64) -> Self;
+
+    /// The state at the end of `path`.
+    fn along<const N: usize>(self, path: &Path<N>) -> Self {
+        path.stretches().iter().fold(self, |state, Stretch { value, length }| state.after(*value, *length))
+    }
+
+    /// The state after `time` on `path`.
+    fn until<const N: usize>(self, path: &Path<N>, mut time: f64) -> Self {
+        let mut state = self;
+        for Stretch { value, length } in path.stretches() {
+            state = state.after(*value, length.min(time));
+            time -= length;
+            if time <= 0.0 {
+                break;
+            }
+        }
+        state
+    }
 }
 
 /// The first time on the way of these `stretches` from `start` at which `beyond` of the state is zero; `None` when it stays

@@ -1,8 +1,8 @@
 //! A fast way between two states of a chain of four integrators.
 //!
-//! The same as one order below ([`super::third`]): the fastest way to the velocity limit for a while τ, then the fastest
-//! way to the target's velocity. Where the velocity limit would be exceeded by that, it is touched for an instant, with the
-//! jerk with which the target's position is met; where a touch at rest (jerk zero) is not far enough, it cruises.
+//! Towards the largest acceleration, and on with it, for a while τ; then the fastest way to the target's velocity
+//! ([`super::third`]). Where that would exceed the velocity limit, the limit is touched for an instant, with the jerk with
+//! which the target's position is met; where a touch at rest (jerk zero) is not far enough, it cruises.
 use super::first::{State, THIRD, meeting};
 use super::path::{Path, Stretch};
 use super::second::{self, Limits2, Sides, State2};
@@ -53,24 +53,6 @@ impl State for State4 {
 }
 
 impl State4 {
-    /// The state at the end of `path`.
-    pub(crate) fn along<const N: usize>(self, path: &Path<N>) -> Self {
-        path.stretches().iter().fold(self, |state, Stretch { value, length }| state.after(*value, *length))
-    }
-
-    /// The state after `time` on `path`.
-    pub(crate) fn until<const N: usize>(self, path: &Path<N>, mut time: f64) -> Self {
-        let mut state = self;
-        for Stretch { value, length } in path.stretches() {
-            state = state.after(*value, length.min(time));
-            time -= length;
-            if time <= 0.0 {
-                break;
-            }
-        }
-        state
-    }
-
     pub(crate) const fn upper(self) -> State3 {
         State3 { p: self.v, v: self.a, a: self.j }
     }

@@ -34,24 +34,6 @@ impl State for State3 {
 }
 
 impl State3 {
-    /// The state at the end of `path`.
-    pub(crate) fn along<const N: usize>(self, path: &Path<N>) -> Self {
-        path.stretches().iter().fold(self, |state, Stretch { value, length }| state.after(*value, *length))
-    }
-
-    /// The state after `time` on `path`.
-    fn until<const N: usize>(self, path: &Path<N>, mut time: f64) -> Self {
-        let mut state = self;
-        for Stretch { value, length } in path.stretches() {
-            state = state.after(*value, length.min(time));
-            time -= length;
-            if time <= 0.0 {
-                break;
-            }
-        }
-        state
-    }
-
     /// How far `path` is beyond these limits of `v` and `a`, as a part of them.
     pub(crate) fn excess<const N: usize>(self, path: &Path<N>, v: Sides, a: Sides) -> f64 {
         let (mut state, mut velocity, mut acceleration) = (self, Watch::new(v, self.v), Watch::new(a, self.a));

@@ -1,4 +1,5 @@
 //! A planned transition, and the set-point at any time of it.
+use super::first::State;
 use super::fourth::{Limits4, State4};
 use super::ladder::{self, Goal, STRETCHES};
 use super::path::Path;

@@ -55,8 +55,7 @@ fn they_come_back_and_it_is_said() {
     }
 }
 
-/// Oracle: from velocity v₀ > V to V with the snap limit d alone takes 2·(4·(v₀ − V)/d)^⅓·…: four pulses of one length,
-/// v₀ − V = 2·d·T³, in 4·T.
+/// Oracle: from v₀ > V to V with the snap d alone limited there are three pulses, of T, 2T and T, and v₀ − V = 2·d·T³.
 #[test]
 fn a_velocity_beyond_its_limit_is_left_as_fast_as_it_can_be() {
     let limits =

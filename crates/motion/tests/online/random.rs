@@ -1,22 +1,11 @@
 //! Seeded random numbers and requests.
-use servobench_motion::online::{DirectionalLimits, Sides};
+#[path = "../shared/random.rs"]
+mod shared;
 
-/// `SplitMix64` (Steele, Lea & Flood 2014).
-pub(crate) struct Random(u64);
+use servobench_motion::online::{DirectionalLimits, Sides};
+pub(crate) use shared::Random;
 
 impl Random {
-    pub(crate) fn seeded(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    /// Uniform in [0, 1).
-    pub(crate) fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / 9_007_199_254_740_992.0
-    }
-
     /// Uniform in [−1, 1).
     pub(crate) fn signed(&mut self) -> f64 {
         2.0 * self.unit() - 1.0
