@@ -51,6 +51,71 @@ pub(crate) fn lengths(bounds: &[f64], grid: Grid) -> Option<[f64; 4]> {
     Some(boxes)
 }
 
+/// How far the whole numbers of the fewest samples may lie from the lengths of the continuous profile: to the next whole
+/// number, and this much farther. Brute force over far wider windows finds nothing shorter (`tests/plans/fewest.rs`).
+const REACH: f64 = 2.0;
+
+/// Whole lengths of the `bounds.len() − 1` boxes of the profile with the smallest sum; of several, the one with the lowest
+/// amplitude. `bounds` and `None` as for [`lengths`].
+///
+/// With the distance X = amplitude·∏ n_k, a bound on the product of the first m boxes and the amplitude is one on the
+/// product of the boxes behind them, for whatever n_1 … n_m:
+///
+/// ```text
+/// X/V ≤ n_4,   X/A ≤ n_3·n_4,   X/J ≤ n_2·n_3·n_4,   X/D ≤ n_1·n_2·n_3·n_4        (order 4)
+/// ```
+///
+/// All but the last box take every whole number near the continuous length; the last follows.
+pub(crate) fn fewest(bounds: &[f64]) -> Option<[f64; 4]> {
+    let near = lengths(bounds, Grid::Continuous)?;
+    let mut search = Search { bounds, near, best: lengths(bounds, Grid::Whole)? };
+    search.from(0, [0.0; 4], 0.0);
+    Some(search.best)
+}
+
+/// The boxes that are tried, and the best of them.
+struct Search<'a> {
+    bounds: &'a [f64],
+    near: [f64; 4],
+    best: [f64; 4],
+}
+
+impl Search<'_> {
+    /// Tries all lengths from box `k` on behind `boxes`, whose sum is `sum`.
+    fn from(&mut self, k: usize, mut boxes: [f64; 4], sum: f64) {
+        let last = self.bounds.len() - 2;
+        let shortest = sum.max(1.0);
+        if k == last {
+            let mut product = 1.0;
+            boxes[k] = shortest;
+            for (m, bound) in self.bounds[..=last].iter().enumerate().rev() {
+                if m < last {
+                    product *= boxes[m];
+                }
+                let needed = self.bounds[last + 1] / (bound * product) * (1.0 - SLACK);
+                boxes[k] = boxes[k].max(libm::ceil(needed));
+            }
+            if rank(&boxes) < rank(&self.best) {
+                self.best = boxes;
+            }
+            return;
+        }
+        let lowest = (libm::floor(self.near[k]) - REACH).max(shortest);
+        let highest = (libm::ceil(self.near[k]) + REACH).max(shortest);
+        boxes[k] = lowest;
+        while boxes[k] <= highest {
+            self.from(k + 1, boxes, sum + boxes[k]);
+            boxes[k] += 1.0;
+        }
+    }
+}
+
+/// Fewer samples are better, then a larger product, which is a lower amplitude.
+fn rank(boxes: &[f64; 4]) -> (f64, f64) {
+    let product: f64 = boxes.iter().filter(|length| **length > 0.0).product();
+    (boxes.iter().sum(), -product)
+}
+
 /// Product of a box of length `t` and the `i` shortest boxes that may follow it, if those before it sum up to `c`:
 /// 2^(i(i−1)/2)·t·(c + t)^i.
 fn growth(i: usize, c: f64, t: f64) -> f64 {

@@ -2,6 +2,7 @@
 //!
 //! - [`Profile`]: rest-to-rest moves of order 2 (trapezoid), 3 (jerk-limited) and 4 (snap-limited), below.
 //! - [`online`]: transitions of order 3 and 4 from any state, planned while the axis moves.
+//! - [`sampled`]: moves sample by sample.
 //! - [`rockwell`]: the two profiles of Rockwell's axis move.
 //! - [`pvt`]: tables of positions, velocities and times; [`position_profile`]: the same sent as velocity commands.
 //! - [`interpolate`]: between a slow task that commands and a fast one that drives.
@@ -68,9 +69,14 @@
 //!
 //! # Executing a plan
 //!
-//! [`Profile::at`] evaluates the exact polynomial, the zero-order hold of the highest derivative: a sampled move of N
-//! samples lands at sample N, without lag. Forward Euler, (72)–(75), lands on the same position after N + 3 samples
-//! at order 4 and lags by 1.5·Ts·v on the way.
+//! [`Profile::at`] evaluates the exact polynomial, the *exact hold* of the highest derivative. A sampled move may also be sent
+//! through the *forward-Euler cascade* (72)–(75), [`sampled::Cascade`]. Both are at rest on the distance at sample N; the
+//! cascade stands still for its first three samples at order 4 and lags by 1.5·Ts·v on the way ([`sampled`]).
+//!
+//! | sampled by | samples |
+//! |---|---|
+//! | [`Profile::plan_sampled`] | the sequential rounding of the paper |
+//! | [`Profile::plan_fewest`] | the fewest of any boxes; brute force finds none below |
 #![cfg_attr(not(test), no_std)]
 
 mod boxes;
@@ -85,6 +91,7 @@ mod profile;
 pub mod pvt;
 pub mod rockwell;
 mod root;
+pub mod sampled;
 mod segment;
 pub mod shape;
 mod stretch;

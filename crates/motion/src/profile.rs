@@ -1,6 +1,7 @@
 //! A planned rest-to-rest move: what it is made of, and the set-point at any time.
 use crate::boxes::{self, Grid};
 use crate::limits::in_range;
+use crate::sampled::Run;
 use crate::{Limits, Order, Piece, PlanError, Segment, Segments, optimal, segment};
 use servobench_base::{Setpoint, finite, positive};
 
@@ -97,12 +98,32 @@ impl Profile {
     /// Plans a move all of whose switching instants are whole multiples of `sample_time` (s).
     ///
     /// The end position is exact; the amplitude and the peaks are lowered, never raised, to make the times fit.
-    /// Executed by forward Euler with one amplitude per sample, or by the exact zero-order hold, the move lands
-    /// on `distance`; [`at`](Self::at) is the latter, and continuous between samples.
+    /// Executed by the forward-Euler [`Cascade`](crate::sampled::Cascade) or by the exact hold, the move lands on `distance`
+    /// at its last sample; [`at`](Self::at) is the latter, and continuous between samples.
     ///
     /// # Errors
     /// As [`plan`](Self::plan), for the sample time too, and [`PlanError::TooManySamples`] above 2⁵³ samples.
     pub fn plan_sampled(order: Order, distance: f64, limits: &Limits, sample_time: f64) -> Result<Self, PlanError> {
+        Self::whole(order, distance, limits, sample_time, |bounds| boxes::lengths(bounds, Grid::Whole))
+    }
+
+    /// As [`plan_sampled`](Self::plan_sampled), with the fewest samples that a step through boxes needs, instead of the
+    /// sequential rounding; never more than there. Of several ways, that of the lowest amplitude.
+    ///
+    /// # Errors
+    /// As [`plan_sampled`](Self::plan_sampled).
+    pub fn plan_fewest(order: Order, distance: f64, limits: &Limits, sample_time: f64) -> Result<Self, PlanError> {
+        Self::whole(order, distance, limits, sample_time, boxes::fewest)
+    }
+
+    /// The move through the boxes that `choose` makes of the bounds in units of the sample time.
+    fn whole(
+        order: Order,
+        distance: f64,
+        limits: &Limits,
+        sample_time: f64,
+        choose: impl Fn(&[f64]) -> Option<[f64; 4]>,
+    ) -> Result<Self, PlanError> {
         let Request { distance, mut bounds } = Request::new(order, distance, limits)?;
         let sample_time = in_range("sample_time", positive("sample_time", sample_time)?, "correct its unit")?;
         if distance == 0.0 {
@@ -115,7 +136,7 @@ impl Profile {
             scale *= sample_time;
             *bound *= scale;
         }
-        let Some(boxes) = boxes::lengths(&bounds[..=n], Grid::Whole) else {
+        let Some(boxes) = choose(&bounds[..=n]) else {
             let samples = Self::plan(order, distance, limits)?.duration / sample_time;
             return Err(PlanError::TooManySamples { samples, sample_time });
         };
@@ -384,6 +405,17 @@ impl Profile {
     #[must_use]
     pub const fn segments(&self) -> Segments<'_> {
         Segments::of(self)
+    }
+
+    /// The segments in whole samples; none for a continuous plan.
+    pub fn runs(&self) -> impl Iterator<Item = Run> + '_ {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole numbers up to 2⁵³")]
+        self.boxes.filter(|boxes| boxes.sampled).into_iter().flat_map(|boxes| {
+            self.segments().map(move |segment| Run {
+                value: segment.value,
+                count: libm::round(segment.length / boxes.unit) as u64,
+            })
+        })
     }
 
     pub(crate) const fn box_units(&self) -> Option<&Boxes> {

@@ -112,25 +112,6 @@ fn a_switching_instant_is_hit_however_the_time_was_rounded() {
     assert_eq!(plan.at(total as f64 / 3000.0), Setpoint::at_rest(0.3));
 }
 
-/// The identity of the crate documentation, (72)–(75) of the paper: forward Euler with one snap per sample lands on
-/// the distance after N + n − 1 samples.
-#[test]
-fn the_euler_cascade_of_the_sampled_amplitude_lands() {
-    for plan in sampled_plans(70).filter(|plan| plan.samples().unwrap().total() < 3000).take(200) {
-        let n = plan.order().derivative();
-        let (total, ts) = (plan.samples().unwrap().total(), plan.samples().unwrap().time);
-        let mut state = [0.0_f64; 5];
-        for k in 0..total + n as u64 {
-            state[n] = values(plan.at(k as f64 * ts))[n];
-            for m in 0..n {
-                state[m] += ts * state[m + 1];
-            }
-        }
-        // Some 10⁴ additions, whose roundings drift over up to 3000 samples.
-        assert!((state[0] / plan.distance() - 1.0).abs() < 1e-9, "{plan:?}: {}", state[0]);
-    }
-}
-
 #[test]
 fn at_rest_before_and_after_for_ever() {
     for order in [Order::Second, Order::Third, Order::Fourth] {

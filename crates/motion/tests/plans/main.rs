@@ -1,9 +1,11 @@
 //! Plans against oracles that share no code with the planner.
 
 mod any_input;
+mod cascade;
 mod closed_forms;
 mod double_double;
 mod evaluation;
+mod fewest;
 mod optimal;
 mod paper;
 mod requests;
