@@ -4,10 +4,11 @@ use crate::workspace::Workspace;
 use crate::{bench, checks, demo, dist, test, wheel};
 
 /// Every command: arguments and what it does.
-const COMMANDS: [(&str, &str); 7] = [
+const COMMANDS: [(&str, &str); 8] = [
     ("setup", "fetch the MuJoCo library, once"),
     ("demo", "set up, build, run the demo and compare its two moves"),
     ("test [--without-mujoco]", "set up, then run every check and test that CI runs"),
+    ("outside", "run the outside clients alone: what others wrote against ours"),
     ("bench [--json]", "measure a tick of the closed loop on every engine"),
     ("checks", "check dependency arrows, licences and text"),
     ("viewer", "fetch the Rerun viewer that `servobench view` opens, once"),
@@ -29,6 +30,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), Failure> {
         ["demo"] => demo::run(&Workspace::find()?),
         ["test"] => test::run(&Workspace::find()?, test::Engines::All),
         ["test", "--without-mujoco"] => test::run(&Workspace::find()?, test::Engines::Embedded),
+        ["outside"] => test::run_outside(&Workspace::find()?),
         ["bench"] => bench::run(&Workspace::find()?, false),
         ["bench", "--json"] => bench::run(&Workspace::find()?, true),
         ["checks"] => checks::run(&Workspace::find()?),

@@ -6,6 +6,8 @@ mod command;
 mod demo;
 mod dist;
 mod failure;
+mod outside;
+mod python;
 mod test;
 mod wheel;
 mod workspace;

@@ -1,5 +1,6 @@
 //! `cargo xtask test`: everything that CI runs, in order, up to the first failure.
 use crate::failure::Failure;
+use crate::outside::Outside;
 use crate::wheel;
 use crate::workspace::{Workspace, run as run_command, shown};
 use std::process::{Command, Stdio};
@@ -45,7 +46,28 @@ pub(crate) fn run(workspace: &Workspace, engines: Engines) -> Result<(), Failure
     if engines == Engines::All {
         wheel::MUJOCO.ensure(workspace)?;
     }
-    run_steps(steps(workspace, engines)?)
+    let outside = Outside::prepare(workspace);
+    let mut steps = steps(workspace, engines)?;
+    steps.extend(outside_clients(&outside, workspace));
+    outside.report();
+    run_steps(steps)?;
+    // Once more, where it is not scrolled away.
+    outside.report();
+    Ok(())
+}
+
+/// Runs the outside clients alone.
+///
+/// # Errors
+/// [`Failure::Fetch`] when what they need cannot be had, [`Failure::Steps`] when one fails.
+pub(crate) fn run_outside(workspace: &Workspace) -> Result<(), Failure> {
+    let outside = Outside::prepare(workspace);
+    let steps = outside_clients(&outside, workspace).collect();
+    if let Outside::Missing(why) = outside { Err(why) } else { run_steps(steps) }
+}
+
+fn outside_clients(outside: &Outside, workspace: &Workspace) -> impl Iterator<Item = Step> + use<> {
+    outside.commands(workspace).into_iter().map(|command| Step::new("outside clients", command))
 }
 
 fn steps(workspace: &Workspace, engines: Engines) -> Result<Vec<Step>, Failure> {

@@ -4,6 +4,7 @@
 //! A file is pinned by its own SHA-256, not by that of the wheel: wheels for other Python versions hold the same file.
 //! It is checked on every call; only a missing or changed file needs the network.
 use crate::failure::Failure;
+use crate::python;
 use crate::workspace::Workspace;
 use sha2::{Digest, Sha256};
 use std::fs::{self, File};
@@ -187,17 +188,8 @@ impl Wheel {
         Ok(file)
     }
 
-    /// Runs a Python command; when it fails, the last line that names an error is the cause.
     fn python(&self, tool: &str, command: &mut Command) -> Result<(), Failure> {
-        let done = command.output().map_err(|e| self.failure(format!("`python3` cannot be started: {e}")))?;
-        if done.status.success() {
-            return Ok(());
-        }
-        let messages = String::from_utf8_lossy(&done.stderr);
-        let mut lines = messages.lines().rev().map(str::trim).filter(|line| !line.is_empty());
-        let last = lines.clone().next().unwrap_or("it gave no message");
-        let cause = lines.find(|line| line.starts_with("ERROR")).unwrap_or(last);
-        Err(self.failure(format!("{tool}: {}", cause.trim_start_matches("ERROR: "))))
+        python::run(tool, command).map_err(|why| self.failure(why))
     }
 
     fn failure(&self, why: String) -> Failure {
@@ -214,7 +206,8 @@ const UNZIP: &str = "import shutil, sys, zipfile
 with zipfile.ZipFile(sys.argv[1]).open(sys.argv[2]) as member, open(sys.argv[3], 'wb') as file:
     shutil.copyfileobj(member, file)";
 
-fn sha256(path: &Path) -> io::Result<String> {
+/// SHA-256 of a file, in hexadecimal digits.
+pub(crate) fn sha256(path: &Path) -> io::Result<String> {
     let mut hash = Sha256::new();
     io::copy(&mut File::open(path)?, &mut hash)?;
     Ok(format!("{:x}", hash.finalize()))
