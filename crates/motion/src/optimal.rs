@@ -4,69 +4,97 @@
 //! the shortest: the acceleration may swing straight from +a to −a, crossing zero with the jerk −j. The half move is
 //!
 //! ```text
-//! up:    a from 0 to a_p,   jerk 0 → j_u → 0          α = min(√(a_p/D), J/D)   β = a_p/(D·α)    lasting α + β
+//! up:    a from 0 to a_p,   jerk 0 → α → 0          α = min(√a_p, J)     β = a_p/α     lasting α + β
 //! hold:  a = a_p for η      only at a_p = A
-//! down:  a from a_p to 0,   jerk 0 → −j_d → −j        j_d² = min(J², D·a_p + j²/2)
+//! down:  a from a_p to 0,   jerk 0 → −δ → −j        δ = min(√P, J)       ε = P/δ       lasting δ + ε − j
 //! ```
-//! and the second half is the first one turned about the middle, x(T − t) = X − x(t). Three regions, by what binds at the
-//! middle:
+//! Turned around in time, the way down is what is left of a way up to P = a_p + j²/2 after its first j seconds, in which
+//! the jerk has risen to j and the acceleration to j²/2. A way up is a step through the boxes α and β: it rises by half
+//! of its time, and the second integral has its variance besides.
+//!
+//! ```text
+//! v_up = a_p·(α+β)/2                          x_up = a_p·((α+β)²/8 + (α²+β²)/24)
+//! v_down = (P − j²)·(δ+ε)/2 + j³/3            ∂v/∂a_p = α/2 + β + δ/2 + ε − j²/(2δ)
+//! ```
+//! The second half is the first one turned about the middle, x(T − t) = X − x(t). Three regions, by what binds there:
 //!
 //! | | velocity at the middle | jerk −j there |
 //! |---|---|---|
-//! | swing | below V | the largest, min(J, √(2·D·a_p)) |
+//! | swing | below V | the largest, min(J, √(2·a_p)) |
 //! | touch | V for an instant | between |
 //! | cruise | V for t_v | 0: the product of boxes |
 //!
+//! The more jerk is left in the middle, the shorter is the way to V: two half moves to V, without jerk and with the
+//! largest, tell the regions apart.
+//!
 //! Everything here is in units in which the distance and the snap limit are one.
-use crate::root::increasing;
+use crate::root::{between, increasing};
+use core::f64::consts::SQRT_2;
 
-/// A half move by its parameters; see the module for their meaning. Unit distance, unit snap.
+/// v/a_p^(3/2) and x/a_p² of a half move whose jerk is not limited, with the largest jerk in the middle.
+const FREE_SWING: (f64, f64) = (1.0 + 2.0 * SQRT_2 / 3.0, 17.0 / 12.0 + SQRT_2);
+
+/// A half move; see the module for its parts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Half {
     peak: f64,
+    up: Swell,
     hold: f64,
-    /// Lengths of the jerk's and the acceleration's box going up.
-    alpha: f64,
-    beta: f64,
-    /// Jerk at the end, as a magnitude.
+    down: Swell,
+    /// Jerk in the middle, as a magnitude.
     end: f64,
-    /// Jerk on the way down, as a magnitude, and how long it is held.
-    down: f64,
-    down_hold: f64,
 }
 
-/// Where a half move ends.
+/// The acceleration rises from 0 to a peak, without jerk at both ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct End {
-    x: f64,
-    v: f64,
+struct Swell {
+    /// Length of the shorter box, and largest jerk.
+    jerk: f64,
+    /// Length of the longer box.
+    rise: f64,
+}
+
+impl Swell {
+    fn new(peak: f64, most_jerk: f64) -> Self {
+        let root = libm::sqrt(peak);
+        Self { jerk: root.min(most_jerk), rise: root.max(peak / most_jerk) }
+    }
+
+    const fn time(&self) -> f64 {
+        self.jerk + self.rise
+    }
+
+    /// Its second integral for a peak of one.
+    const fn second(&self) -> f64 {
+        let Self { jerk, rise } = *self;
+        self.time() * self.time() / 8.0 + (jerk * jerk + rise * rise) / 24.0
+    }
 }
 
 impl Half {
-    /// Acceleration up to `peak`, held for `hold`, and down to zero at the jerk −`end`, within the jerk limit `jerk`;
-    /// `end` is at most `jerk` and √(2·`peak`).
-    fn new(peak: f64, hold: f64, end: f64, jerk: f64) -> Self {
-        let root = libm::sqrt(peak);
-        let (alpha, beta) = (root.min(jerk), root.max(peak / jerk));
-        let free = libm::sqrt(peak + 0.5 * end * end);
-        let (down, down_hold) =
-            if free <= jerk { (free, 0.0) } else { (jerk, (peak - jerk * jerk + 0.5 * end * end) / jerk) };
-        Self { peak, hold, alpha, beta, end, down, down_hold }
-    }
-
-    fn down_time(&self) -> f64 {
-        2.0 * self.down + self.down_hold - self.end
+    /// Acceleration up to `peak` and at once down to zero at the jerk −`end`, within the jerk limit `jerk`; `end` is at
+    /// most `jerk` and √(2·`peak`).
+    fn new(peak: f64, end: f64, jerk: f64) -> Self {
+        Self { peak, up: Swell::new(peak, jerk), hold: 0.0, down: Swell::new(peak + 0.5 * end * end, jerk), end }
     }
 
     /// The lengths of its seven segments, in which the snap is +1, 0, −1, 0, −1, 0, +1.
     pub(crate) fn lengths(&self) -> [f64; 7] {
-        let Self { alpha, beta, hold, down, down_hold, end, .. } = *self;
-        [alpha, difference(beta, alpha), alpha, hold, down, down_hold, difference(down, end)]
+        let Self { up, hold, down, end, .. } = *self;
+        [
+            up.jerk,
+            difference(up.rise, up.jerk),
+            up.jerk,
+            hold,
+            down.jerk,
+            difference(down.rise, down.jerk),
+            difference(down.jerk, end),
+        ]
     }
 
     /// Largest jerk.
     pub(crate) fn jerk(&self) -> f64 {
-        self.alpha.max(self.down)
+        self.up.jerk.max(self.down.jerk)
     }
 
     /// Largest acceleration.
@@ -74,25 +102,27 @@ impl Half {
         self.peak
     }
 
-    /// Velocity at its end.
-    pub(crate) fn velocity(&self) -> f64 {
-        self.ends().v
+    /// Velocity in the middle.
+    const fn v(&self) -> f64 {
+        let Self { peak, up, hold, down, end } = *self;
+        let v_down = 0.5 * (peak - 0.5 * end * end) * down.time() + end * end * end / 3.0;
+        peak * (0.5 * up.time() + hold) + v_down
     }
 
-    fn ends(&self) -> End {
-        let Self { peak, hold, alpha, beta, down, down_hold, .. } = *self;
-        let (up, off) = (alpha + beta, self.down_time());
-        // A step through two boxes rises by half the time; the second integral has its variance besides.
-        let v_up = 0.5 * peak * up;
-        let x_up = peak * (up * up / 8.0 + (alpha * alpha + beta * beta) / 24.0);
-        // Snap −1 from the start of the way down, 0 after `down`, +1 after `down_hold` more.
-        // Differences of powers by their factors: `down` may be a tiny part of `off`.
-        let (rest, last) = (down + down_hold - self.end, down - self.end);
-        let cubes = down * (off * off + off * rest + rest * rest) - last * last * last;
-        let fourths = down * (off + rest) * (off * off + rest * rest) - last * last * last * last;
-        let v = v_up + peak * (hold + off) - cubes / 6.0;
-        let x = x_up + v_up * (hold + off) + peak * (0.5 * (hold + off) * (hold + off)) - fourths / 24.0;
-        End { x, v }
+    /// Its derivative by the peak.
+    const fn v_by_peak(&self) -> f64 {
+        let Self { up, hold, down, end, .. } = *self;
+        0.5 * (up.jerk + down.jerk - end * end / down.jerk) + up.rise + hold + down.rise
+    }
+
+    /// Position in the middle.
+    const fn x(&self) -> f64 {
+        let Self { peak, up, hold, down, end } = *self;
+        let off = down.time() - end;
+        // Back from the middle the velocity falls by the integral of the way up that is left.
+        let begun = end * end * (end * end / 24.0 + off * (end / 6.0 + off / 4.0));
+        let fallen = (peak + 0.5 * end * end) * down.second() - begun;
+        peak * (up.second() + 0.5 * hold * (up.time() + hold)) + self.v() * off - fallen
     }
 }
 
@@ -111,56 +141,68 @@ pub(crate) struct Scaled {
 
 /// The first half of the shortest move over a unit distance at unit snap; `None` when it cruises.
 pub(crate) fn half(limits: &Scaled) -> Option<Half> {
-    let swinging = swing(limits);
-    if swinging.velocity() <= limits.velocity { Some(swinging) } else { touch(limits) }
+    // Going up alone covers a_p²/2 at least, so a_p < 1. From v down to zero at −a_p covers v²/(2·a_p), so v < 1.
+    let limits = Scaled { velocity: limits.velocity.min(1.0), acceleration: limits.acceleration.min(1.0), ..*limits };
+    let cubed = limits.velocity / FREE_SWING.0;
+    let steepest = limits.jerk.min(SQRT_2 * libm::cbrt(cubed)).min(libm::sqrt(2.0 * limits.acceleration));
+    // The way is stationary at the steepest: almost a linear function of the square of what the jerk is less.
+    let reaching = |square: f64| reaching(steepest * (1.0 - libm::sqrt(square)), &limits);
+    let beyond = |square: f64| off_middle(reaching(square).x());
+    let longest = beyond(1.0);
+    if longest <= 0.0 {
+        return None;
+    }
+    let shortest = beyond(0.0);
+    if shortest >= 0.0 {
+        return Some(swing(&limits));
+    }
+    Some(reaching(between((0.0, shortest), (1.0, longest), beyond)))
+}
+
+/// What a position near the middle of the way is off by, or zero where that is rounding.
+fn off_middle(x: f64) -> f64 {
+    let off = x - 0.5;
+    if off.abs() < 4.0 * f64::EPSILON { 0.0 } else { off }
+}
+
+/// To the velocity limit in the middle, with the jerk −`end` there.
+fn reaching(end: f64, limits: &Scaled) -> Half {
+    /// A step so small, as a part of the peak, leaves the square of it: what is missing then is rounding.
+    const LAST: f64 = 1e-8;
+    let Scaled { velocity, acceleration, jerk } = *limits;
+    // From above: v is at least that of the free swing, and at least a_p²/J.
+    let free = libm::cbrt(velocity / FREE_SWING.0);
+    let mut peak = acceleration.min(free * free).min(libm::sqrt(velocity * jerk));
+    let mut step = f64::INFINITY;
+    while step > LAST * peak {
+        let half = Half::new(peak, end, jerk);
+        let short = velocity - half.v();
+        if short >= 0.0 {
+            let hold = if peak < acceleration { 0.0 } else { short / peak };
+            return Half { hold, ..half };
+        }
+        // The velocity grows ever faster with the peak: Newton's method comes down to the root and does not pass it.
+        step = -short / half.v_by_peak();
+        peak -= step;
+    }
+    Half::new(peak, end, jerk)
 }
 
 /// As if there were no limit of velocity.
 fn swing(limits: &Scaled) -> Half {
-    let Scaled { acceleration, jerk, .. } = *limits;
-    let steepest = |peak: f64| Half::new(peak, 0.0, libm::sqrt(2.0 * peak).min(jerk), jerk);
-    // x = a_p²·(17/12 + √2) as long as no jerk is held.
-    let free = libm::sqrt(0.5 / (17.0 / 12.0 + core::f64::consts::SQRT_2));
-    if free <= acceleration.min(0.5 * jerk * jerk) {
+    let Scaled { acceleration: highest, jerk, .. } = *limits;
+    let steepest = |peak: f64| Half::new(peak, libm::sqrt(2.0 * peak).min(jerk), jerk);
+    let free = libm::sqrt(0.5 / FREE_SWING.1);
+    if free <= highest.min(0.5 * jerk * jerk) {
         return steepest(free);
     }
-    // Going up alone, in 2·√a_p at least, covers a_p²/2: the peak is at most one.
-    let highest = acceleration.min(1.0);
     let at_highest = steepest(highest);
-    let short = 0.5 - at_highest.ends().x;
+    let short = 0.5 - at_highest.x();
     if short <= 0.0 {
         let lowest = highest.min(0.5 * jerk * jerk).min(free);
-        return steepest(increasing(lowest, highest, |peak| steepest(peak).ends().x - 0.5));
+        return steepest(increasing(lowest, highest, |peak| off_middle(steepest(peak).x())));
     }
     // The hold adds its own a_p·η²/2, and η times what is constant in time around it: v going up, a_p on the way down.
-    let v = highest * (0.5 * (at_highest.alpha + at_highest.beta) + at_highest.down_time());
+    let v = highest * (0.5 * at_highest.up.time() + at_highest.down.time() - at_highest.end);
     Half { hold: 2.0 * short / (v + libm::sqrt(v * v + 2.0 * highest * short)), ..at_highest }
-}
-
-/// The velocity limit is reached for an instant in the middle; `None` when it is reached before.
-fn touch(limits: &Scaled) -> Option<Half> {
-    let Scaled { velocity, acceleration, jerk } = *limits;
-    let reaching = |end: f64| {
-        // Going up alone gains a_p^(3/2) at least.
-        let highest = acceleration.min(libm::cbrt(velocity * velocity));
-        let lowest = (0.5 * end * end).min(highest);
-        let top = Half::new(highest, 0.0, end, jerk);
-        let short = velocity - top.ends().v;
-        if short >= 0.0 {
-            return Half { hold: short / highest, ..top };
-        }
-        Half::new(
-            increasing(lowest, highest, |peak| Half::new(peak, 0.0, end, jerk).ends().v - velocity),
-            0.0,
-            end,
-            jerk,
-        )
-    };
-    if reaching(0.0).ends().x <= 0.5 {
-        return None;
-    }
-    // With j = √(2·a_p) the velocity is a_p^(3/2)·(1 + 2√2/3), as long as no jerk is held.
-    let cubed = velocity / (1.0 + 2.0 * core::f64::consts::SQRT_2 / 3.0);
-    let most = jerk.min(core::f64::consts::SQRT_2 * libm::cbrt(cubed)).min(libm::sqrt(2.0 * acceleration));
-    Some(reaching(increasing(0.0, most, |end| 0.5 - reaching(end).ends().x)))
 }
