@@ -80,6 +80,7 @@
 #![cfg_attr(not(test), no_std)]
 
 mod boxes;
+mod course;
 mod error;
 pub mod interpolate;
 mod limits;
@@ -97,6 +98,7 @@ pub mod shape;
 mod stretch;
 mod trajectory;
 
+pub use course::Course;
 pub use error::PlanError;
 pub use limits::{Limits, Order};
 pub use piece::Piece;

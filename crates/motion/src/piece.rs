@@ -37,6 +37,26 @@ impl Piece {
         }
     }
 
+    /// From `anchor` at `start` (s) on until `until` (s), with the snap of `anchor`.
+    #[must_use]
+    pub const fn between(anchor: Setpoint, start: f64, until: f64) -> Self {
+        Self::forward(anchor, start, until - start, until)
+    }
+
+    /// `setpoint` as it is until `until` (s), although its velocity is not zero: a set-point held between two samples.
+    #[must_use]
+    pub const fn held(setpoint: Setpoint, until: f64) -> Self {
+        Self::forward(setpoint, 0.0, 0.0, until)
+    }
+
+    /// The same passed `factor` times as slowly.
+    #[must_use]
+    pub fn slowed(&self, factor: f64) -> Self {
+        let [start, length, origin] = [self.start, self.length, self.origin].map(|time| time * factor);
+        let [tolerance, until] = [self.tolerance, self.until].map(|time| time * factor);
+        Self { anchor: self.anchor.at_pace(1.0 / factor), start, length, origin, tolerance, until, ..*self }
+    }
+
     /// From `anchor` at `start` (s) for `length` (s), until `until` (s).
     pub(crate) const fn forward(anchor: Setpoint, start: f64, length: f64, until: f64) -> Self {
         Self { anchor, start, length, origin: 0.0, sign: 1.0, base: 0.0, tolerance: 0.0, until }
@@ -47,6 +67,12 @@ impl Piece {
     #[must_use]
     pub fn holds(&self, t: f64) -> bool {
         t + self.tolerance - self.origin < self.until
+    }
+
+    /// The time at which it ceases to hold (s); infinite for the last one.
+    #[must_use]
+    pub fn ends(&self) -> f64 {
+        self.origin + self.until
     }
 
     /// The set-point at `t` (s), a time at which it holds.

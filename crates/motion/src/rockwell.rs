@@ -81,16 +81,7 @@ impl Move {
     /// [`PlanError`] when the distance is not finite, or another operand not positive, above 100 % where it is a part, or
     /// outside 1e-30 … 1e30 (SI).
     pub fn plan(&self, maximum: &MaximumJerk) -> Result<Trajectory<7>, PlanError> {
-        let speed = checked("speed", self.speed)?;
-        let (said_up, said_down) = match self.shape {
-            Shape::Trapezoid => (Jerk::PercentOfMaximum(100.0), Jerk::PercentOfMaximum(100.0)),
-            Shape::SCurve { acceleration, deceleration } => (acceleration, deceleration),
-        };
-        let ramp = |acceleration: f64, said: Jerk, maximum: f64| -> Result<Ramp, PlanError> {
-            Ok(Ramp { acceleration, jerk: checked("jerk", said.value(acceleration, speed, maximum)?)? })
-        };
-        let up = ramp(checked("acceleration", self.acceleration)?, said_up, maximum.acceleration)?;
-        let down = ramp(checked("deceleration", self.deceleration)?, said_down, maximum.deceleration)?;
+        let (speed, [up, down]) = (checked("speed", self.speed)?, self.ramps(maximum)?);
 
         let distance = finite("distance", self.distance)? + 0.0;
         if distance == 0.0 {
@@ -112,6 +103,32 @@ impl Move {
             (sign * down.jerk, j_2),
         ];
         Ok(Trajectory::new(Order::Third, Setpoint::default(), segments, |_| Setpoint::at_rest(distance)))
+    }
+}
+
+impl Move {
+    /// The jerk of the acceleration and that of the deceleration (m/s³ or rad/s³).
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan).
+    pub fn jerks(&self, maximum: &MaximumJerk) -> Result<[f64; 2], PlanError> {
+        Ok(self.ramps(maximum)?.map(|ramp| ramp.jerk))
+    }
+
+    /// The ramps up and down.
+    fn ramps(&self, maximum: &MaximumJerk) -> Result<[Ramp; 2], PlanError> {
+        let speed = checked("speed", self.speed)?;
+        let (said_up, said_down) = match self.shape {
+            Shape::Trapezoid => (Jerk::PercentOfMaximum(100.0), Jerk::PercentOfMaximum(100.0)),
+            Shape::SCurve { acceleration, deceleration } => (acceleration, deceleration),
+        };
+        let ramp = |acceleration: f64, said: Jerk, maximum: f64| -> Result<Ramp, PlanError> {
+            Ok(Ramp { acceleration, jerk: checked("jerk", said.value(acceleration, speed, maximum)?)? })
+        };
+        Ok([
+            ramp(checked("acceleration", self.acceleration)?, said_up, maximum.acceleration)?,
+            ramp(checked("deceleration", self.deceleration)?, said_down, maximum.deceleration)?,
+        ])
     }
 }
 

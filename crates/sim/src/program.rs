@@ -1,7 +1,8 @@
 //! The program of moves as a set-point over time.
 use crate::error::{BuildError, check_length};
 use servobench_base::Setpoint;
-use servobench_motion::{Limits, Order, Piece, Profile};
+use servobench_motion::{Limits, Order, PlanError};
+use servobench_planner::{Method, Plan, PointToPoint, Reader, Request, Way};
 use servobench_scenario::{MoveStep, Step, Target};
 use servobench_trace::Move;
 
@@ -10,8 +11,7 @@ use servobench_trace::Move;
 struct Planned {
     start: f64,
     from: f64,
-    profile: Profile,
-    limits: [f64; 4],
+    plan: Plan,
 }
 
 /// Moves and pauses, one after the other.
@@ -23,14 +23,14 @@ pub struct Program {
 }
 
 /// What the last query found; the next one is most likely the same.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct Now {
     /// Index of the move, its start (s) and where it starts from; the move is over when the next one starts (s).
     index: usize,
     start: f64,
     from: f64,
     next_start: f64,
-    piece: Piece,
+    reader: Reader,
 }
 
 impl Program {
@@ -44,16 +44,17 @@ impl Program {
             match step {
                 Step::Wait(length) => end += length,
                 Step::Move(step) => {
-                    let profile = plan_move(step, position).map_err(|error| BuildError::Plan { index, error })?;
-                    moves.push(Planned { start: end, from: position, profile, limits: step.limits });
-                    position += profile.distance();
-                    end += profile.duration();
+                    let plan = plan_move(step, position).map_err(|error| BuildError::Plan { index, error })?;
+                    let (from, start) = (position, end);
+                    position += plan.end().x;
+                    end += plan.duration();
+                    moves.push(Planned { start, from, plan });
                 }
             }
             check_length(Some(index), end)?;
         }
         let next_start = if moves.is_empty() { f64::INFINITY } else { f64::NEG_INFINITY };
-        let now = Now { index: 0, start: 0.0, from: 0.0, next_start, piece: Piece::at_rest(0.0) };
+        let now = Now { index: 0, start: 0.0, from: 0.0, next_start, reader: Reader::default() };
         Ok(Self { moves, end, now })
     }
 
@@ -66,10 +67,10 @@ impl Program {
     /// Set-point at `t` (s). Queries must not go back in time.
     #[inline]
     pub fn at(&mut self, t: f64) -> Setpoint {
-        if t >= self.now.next_start || !self.now.piece.holds(t - self.now.start) {
+        if t >= self.now.next_start || !self.now.reader.holds(t - self.now.start) {
             self.look_up(t);
         }
-        let mut setpoint = self.now.piece.at(t - self.now.start);
+        let mut setpoint = self.now.reader.at(t - self.now.start);
         setpoint.x += self.now.from;
         setpoint
     }
@@ -79,14 +80,16 @@ impl Program {
     fn look_up(&mut self, t: f64) {
         let later = self.now.index + 1..self.moves.len();
         let index = later.take_while(|index| self.moves[*index].start <= t).last().unwrap_or(self.now.index);
-        let Some(Planned { start, from, profile, .. }) = self.moves.get(index) else { return };
-        let next_start = self.moves.get(index + 1).map_or(f64::INFINITY, |next| next.start);
-        self.now = Now { index, start: *start, from: *from, next_start, piece: profile.piece(t - start) };
+        let Some(Planned { start, from, plan }) = self.moves.get(index) else { return };
+        let now = &mut self.now;
+        now.reader.look_up(plan, t - start);
+        (now.index, now.start, now.from) = (index, *start, *from);
+        now.next_start = self.moves.get(index + 1).map_or(f64::INFINITY, |next| next.start);
     }
 
     /// How long each move lasts (s).
     pub fn durations(&self) -> impl Iterator<Item = f64> {
-        self.moves.iter().map(|planned| planned.profile.duration())
+        self.moves.iter().map(|planned| planned.plan.duration())
     }
 
     /// What a recording says of the moves; `unit` is the axis unit.
@@ -97,23 +100,20 @@ impl Program {
 
 impl Planned {
     fn describe(&self, unit: &str) -> Move {
-        let (profile, order) = (&self.profile, self.profile.order().derivative());
-        let (from, to) = (self.from, self.from + profile.distance());
-        let peaks = profile.peaks();
-        let cruise = profile.cruise();
-        let mut limits = [None; 4];
-        for (slot, limit) in limits.iter_mut().zip(self.limits).take(order) {
-            *slot = limit.is_finite().then_some(limit);
-        }
+        let (plan, order) = (&self.plan, self.plan.order());
+        let (from, to) = (self.from, self.from + plan.end().x);
+        let (cruise_start, cruise) = plan.cruise();
+        let limits =
+            plan.limits().map(|sides| sides.below.max(sides.above)).map(|limit| limit.is_finite().then_some(limit));
         Move {
             label: format!("move from {} {unit} to {} {unit}, order {order}", six_digits(from), six_digits(to)),
             start: self.start,
-            end: self.start + profile.duration(),
+            end: self.start + plan.duration(),
             from,
             to,
-            peaks: [peaks.velocity, peaks.acceleration, peaks.jerk, peaks.snap],
+            peaks: plan.largest(),
             limits,
-            cruise: (self.start + (profile.duration() - cruise) / 2.0, cruise),
+            cruise: (self.start + cruise_start, cruise),
         }
     }
 }
@@ -126,7 +126,7 @@ fn six_digits(position: f64) -> f64 {
 }
 
 /// Plans `step` from `position`.
-fn plan_move(step: &MoveStep, position: f64) -> Result<Profile, servobench_motion::PlanError> {
+fn plan_move(step: &MoveStep, position: f64) -> Result<Plan, PlanError> {
     let order = match step.order {
         2 => Order::Second,
         3 => Order::Third,
@@ -138,11 +138,9 @@ fn plan_move(step: &MoveStep, position: f64) -> Result<Profile, servobench_motio
         Target::Absolute(target) => target - position,
         Target::Relative(distance) => distance,
     };
-    let profile = match step.sample_time {
-        Some(sample_time) => Profile::plan_sampled(order, distance, &limits, sample_time),
-        None => Profile::plan(order, distance, &limits),
-    }?;
-    step.duration.map_or(Ok(profile), |duration| profile.stretched_to(duration))
+    let (method, sample_time) = (Method::Published, step.sample_time);
+    let way = Way::PointToPoint(PointToPoint { distance, order, limits, method, sample_time });
+    Request { duration: step.duration, ..Request::new(way) }.plan()
 }
 
 #[cfg(test)]
@@ -195,7 +193,7 @@ mod tests {
             for k in (0..60_000_u32).step_by(skip) {
                 let t = f64::from(k) / 16e3;
                 let made = program.moves.iter().take_while(|planned| planned.start <= t).last().unwrap();
-                let mut expected = made.profile.at(t - made.start);
+                let mut expected = made.plan.at(t - made.start);
                 expected.x += made.from;
                 let bits = |Setpoint { x, v, a, j, s }| [x, v, a, j, s].map(f64::to_bits);
                 assert_eq!(bits(program.at(t)), bits(expected), "every {skip} ticks, {t} s");

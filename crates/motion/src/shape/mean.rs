@@ -3,7 +3,7 @@ use super::difference::{checked, minus, plus};
 use crate::PlanError;
 use servobench_base::{ParamError, Setpoint};
 
-/// A moving average of up to `N` samples.
+/// A moving average of as many samples as its memory `M` holds: an array, a slice of one, or on the heap a `Vec`.
 ///
 /// A step through averages of n1 … n4 samples, one after the other, is the sampled move of order 4 with these boxes: its
 /// backward differences are those of the forward-Euler cascade. The set-points of a step say nothing of its derivatives,
@@ -12,11 +12,10 @@ use servobench_base::{ParamError, Setpoint};
 /// The sum is built anew for every block of `length` samples, forwards within the block and backwards over the one
 /// before it, as differences from the first of the newer block: nothing drifts, and a rest gives exactly its value.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MovingAverage<const N: usize> {
-    length: usize,
+pub struct MovingAverage<M> {
     /// The first `filled` set-points of this block; behind them, for each place, the sum of the block before from there on,
     /// as differences from `base`.
-    memory: [Setpoint; N],
+    memory: M,
     filled: usize,
     base: Setpoint,
     /// Sum of this block, as differences from `base`.
@@ -24,21 +23,20 @@ pub struct MovingAverage<const N: usize> {
     received: u64,
 }
 
-impl<const N: usize> MovingAverage<N> {
-    /// The mean of the last `length` samples, after a long rest at `rest`.
+impl<M: AsRef<[Setpoint]> + AsMut<[Setpoint]>> MovingAverage<M> {
+    /// The mean of the last samples, as many as `memory` is long, after a long rest at `rest`.
     ///
     /// # Errors
-    /// [`PlanError::Parameter`] when the length is zero, [`PlanError::FilterTooLong`] when it is above `N`;
-    /// [`PlanError::Sample`] for a rest that [`next`](Self::next) would refuse.
-    pub fn new(length: usize, rest: Setpoint) -> Result<Self, PlanError> {
+    /// [`PlanError::Parameter`] for a memory of no length; [`PlanError::Sample`] for a rest that [`next`](Self::next) would
+    /// refuse.
+    pub fn over(mut memory: M, rest: Setpoint) -> Result<Self, PlanError> {
         let rest = checked(0, rest)?;
-        if length == 0 {
+        let filled = memory.as_ref().len();
+        if filled == 0 {
             return Err(ParamError { name: "length", value: 0.0, bound: "at least one sample" }.into());
         }
-        if length > N {
-            return Err(PlanError::FilterTooLong { samples: length as f64, capacity: N });
-        }
-        Ok(Self { length, memory: [rest; N], filled: length, base: rest, sum: Setpoint::default(), received: 0 })
+        memory.as_mut().fill(rest);
+        Ok(Self { memory, filled, base: rest, sum: Setpoint::default(), received: 0 })
     }
 
     /// Takes the next set-point and gives the mean of it and those before it.
@@ -49,20 +47,22 @@ impl<const N: usize> MovingAverage<N> {
     pub fn next(&mut self, setpoint: Setpoint) -> Result<Setpoint, PlanError> {
         let setpoint = checked(self.received, setpoint)?;
         self.received += 1;
-        if self.filled == self.length {
+        let length = self.memory.as_ref().len();
+        if self.filled == length {
             self.begin_block(setpoint);
         }
-        self.memory[self.filled] = setpoint;
+        let memory = self.memory.as_mut();
+        memory[self.filled] = setpoint;
         self.filled += 1;
         self.sum = plus(self.sum, minus(setpoint, self.base));
-        let older = if self.filled < self.length { self.memory[self.filled] } else { Setpoint::default() };
-        Ok(plus(self.base, plus(self.sum, older).scaled(1.0 / self.length as f64)))
+        let older = memory.get(self.filled).copied().unwrap_or_default();
+        Ok(plus(self.base, plus(self.sum, older).scaled(1.0 / length as f64)))
     }
 
     /// Turns the block in memory into its sums from behind.
     fn begin_block(&mut self, base: Setpoint) {
         let mut sum = Setpoint::default();
-        for place in self.memory[..self.length].iter_mut().rev() {
+        for place in self.memory.as_mut().iter_mut().rev() {
             sum = plus(sum, minus(*place, base));
             *place = sum;
         }

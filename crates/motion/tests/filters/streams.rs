@@ -76,8 +76,7 @@ fn a_shaper_longer_than_the_memory_is_refused() {
     );
     assert!(ShapingFilter::<64>::new(&shaper, 1e-25, Setpoint::default()).is_err());
     assert!(ShapingFilter::<64>::new(&shaper, f64::NAN, Setpoint::default()).is_err());
-    assert!(MovingAverage::<8>::new(0, Setpoint::default()).is_err());
-    assert!(MovingAverage::<8>::new(9, Setpoint::default()).is_err());
+    assert!(MovingAverage::over([], Setpoint::default()).is_err());
 }
 
 #[test]
@@ -85,7 +84,7 @@ fn the_moving_average_is_the_mean_of_the_last_samples() {
     let mut random = Random::seeded(22);
     for length in [1, 2, 3, 7, 64] {
         let rest = random_setpoint(&mut random);
-        let mut filter = MovingAverage::<64>::new(length, rest).unwrap();
+        let mut filter = MovingAverage::over(vec![rest; length], rest).unwrap();
         let mut past = vec![rest; length];
         for _ in 0..1000 {
             let newest = random_setpoint(&mut random);
@@ -103,7 +102,7 @@ fn the_moving_average_is_the_mean_of_the_last_samples() {
 #[test]
 fn after_a_million_samples_a_rest_is_exactly_the_target() {
     let mut random = Random::seeded(23);
-    let mut filter = MovingAverage::<64>::new(61, Setpoint::default()).unwrap();
+    let mut filter = MovingAverage::over([Setpoint::default(); 61], Setpoint::default()).unwrap();
     for _ in 0..1_000_000 {
         filter.next(random_setpoint(&mut random)).unwrap();
     }
@@ -121,8 +120,9 @@ fn four_averages_of_a_step_are_the_sampled_profile() {
     for distance in [0.02, -0.4, 3.0] {
         let plan = Profile::plan_sampled(Order::Fourth, distance, &limits, 0.01).unwrap();
         let boxes = plan.samples().unwrap().boxes;
-        let mut filters =
-            boxes.map(|n| MovingAverage::<512>::new(usize::try_from(n).unwrap(), Setpoint::default()).unwrap());
+        let mut filters = boxes.map(|n| {
+            MovingAverage::over(vec![Setpoint::default(); usize::try_from(n).unwrap()], Setpoint::default()).unwrap()
+        });
         // The forward-Euler cascade of the plan's snap, one sample earlier at each of its four stages.
         let (mut v, mut a, mut j, mut x) = (0.0, 0.0, 0.0, 0.0);
         for k in 0..plan.samples().unwrap().total() + 10 {
@@ -150,13 +150,13 @@ proptest! {
         sample_time in any_number(),
     ) {
         let shaper = Impulses::zvd(&Vibration::new(std::f64::consts::PI / 5.3, 0.1).unwrap());
-        let mut mean = MovingAverage::<16>::new(length, Setpoint::default()).unwrap();
+        let mut mean = MovingAverage::over(vec![Setpoint::default(); length], Setpoint::default()).unwrap();
         let mut shaped = ShapingFilter::<16>::new(&shaper, 1.0, Setpoint::default()).unwrap();
         prop_assert!(ShapingFilter::<16>::new(&shaper, sample_time, Setpoint::default()).is_err() || sample_time > 0.7);
         for [x, v, a, j, s] in numbers {
             let setpoint = Setpoint { x, v, a, j, s };
             let usable = values(setpoint).iter().all(|y| y.abs() <= 1e150);
-            let before = (mean, shaped);
+            let before = (mean.clone(), shaped);
             match (mean.next(setpoint), shaped.next(setpoint)) {
                 (Ok(one), Ok(other)) => {
                     prop_assert!(usable);
@@ -165,7 +165,7 @@ proptest! {
                 (Err(one), Err(other)) => {
                     prop_assert!(!usable);
                     prop_assert_eq!(one.to_string(), other.to_string());
-                    prop_assert!((mean, shaped) == before);
+                    prop_assert!((&mean, &shaped) == (&before.0, &before.1));
                 }
                 _ => prop_assert!(false, "one filter refuses what the other takes"),
             }

@@ -11,9 +11,10 @@ enum May {
 }
 
 /// The floor plan, lower floors first. Dev-dependencies are free: the oracle of a test may come from anywhere.
-const PLAN: [(&str, May); 18] = [
+const PLAN: [(&str, May); 19] = [
     ("base", May::On(&[])),
     ("motion", May::On(&["base"])),
+    ("planner", May::On(&["base", "motion"])),
     ("drive", May::On(&["base", "motion"])),
     ("plant", May::On(&["base"])),
     ("engine-mujoco", May::On(&["base", "plant"])),
@@ -21,9 +22,9 @@ const PLAN: [(&str, May); 18] = [
     ("trace", May::On(&["base"])),
     ("metrics", May::On(&["base", "trace"])),
     ("scenario", May::On(&["base"])),
-    ("sim", May::On(&["base", "motion", "drive", "plant", "trace", "metrics", "scenario"])),
+    ("sim", May::On(&["base", "motion", "planner", "drive", "plant", "trace", "metrics", "scenario"])),
     ("suite", May::On(&["base", "plant", "sim", "scenario", "trace", "metrics"])),
-    ("report", May::On(&["base", "motion", "trace", "metrics"])),
+    ("report", May::On(&["base", "motion", "planner", "trace", "metrics"])),
     ("view", May::On(&["base", "trace", "metrics"])),
     ("cli", May::OnAll),
     ("tests", May::OnAll),

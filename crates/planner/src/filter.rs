@@ -1,0 +1,85 @@
+//! What may stand between a generator and the drive.
+use crate::plan::Plan;
+use crate::polynomials::{Between, Polynomials};
+use servobench_base::{ParamError, Setpoint, positive};
+use servobench_motion::PlanError;
+use servobench_motion::shape::{Impulses, MovingAverage};
+
+/// An input shaper, then moving averages.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Filter {
+    /// A sum of parts of the set-point, each later than the one before; exact at any time.
+    pub shaper: Option<Impulses>,
+    /// Means of the last samples.
+    pub averages: Option<Averages>,
+}
+
+/// Moving averages, one after the other, of samples; a set-point is held until the next one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Averages {
+    /// Their lengths (s), whole numbers of samples.
+    pub lengths: Vec<f64>,
+    /// Sample time (s).
+    pub sample_time: f64,
+}
+
+/// Samples at most of a move that is averaged.
+const MOST_SAMPLES: f64 = 1e7;
+/// A length this near to a whole number of samples (in samples) is one.
+const NEAR: f64 = 1e-6;
+
+impl Filter {
+    /// No filter.
+    pub const NONE: Self = Self { shaper: None, averages: None };
+
+    /// How much longer a move is behind it (s).
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.shaper.as_ref().map_or(0.0, Impulses::duration)
+            + self.averages.as_ref().map_or(0.0, |averages| averages.lengths.iter().sum())
+    }
+}
+
+impl Averages {
+    /// What they make of `plan`.
+    pub(crate) fn of(&self, plan: &Plan) -> Result<Polynomials, PlanError> {
+        let sample_time = positive("sample_time", self.sample_time)?;
+        let start = plan.start();
+        let mut filters = Vec::with_capacity(self.lengths.len());
+        let mut total = 0;
+        for length in &self.lengths {
+            let samples = self.samples(*length)?;
+            total += samples;
+            filters.push(MovingAverage::over(vec![start; samples], start)?);
+        }
+        let duration = plan.duration() + total as f64 * sample_time;
+        let samples = libm::ceil(duration / sample_time - NEAR);
+        if samples > MOST_SAMPLES {
+            return Err(PlanError::TooManySamples { samples, sample_time });
+        }
+        let mut reader = plan.reader_at(0.0);
+        let mut parts = Vec::new();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number up to 10 million")]
+        for k in 0..samples as u64 {
+            let t = k as f64 * sample_time;
+            if !reader.holds(t) {
+                reader.look_up(plan, t);
+            }
+            let averaged = filters.iter_mut().try_fold(reader.at(t), |setpoint, filter| filter.next(setpoint))?;
+            parts.push((t, averaged));
+        }
+        Ok(Polynomials::new(parts, Between::Held, duration, Setpoint::at_rest(plan.end().x)))
+    }
+
+    /// A length in samples.
+    fn samples(&self, length: f64) -> Result<usize, PlanError> {
+        let samples = length / self.sample_time;
+        let whole = libm::round(samples);
+        if !((1.0..=MOST_SAMPLES).contains(&whole) && (samples - whole).abs() <= NEAR) {
+            let bound = "a whole number of samples, 1 to 10 million";
+            return Err(ParamError { name: "averages", value: length, bound }.into());
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number up to 10 million")]
+        Ok(whole as usize)
+    }
+}

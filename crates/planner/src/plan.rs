@@ -1,0 +1,247 @@
+//! A planned move.
+use crate::analysis::{self, Binding, Peak, Span};
+use crate::filter::Filter;
+use crate::slowed::Slowed;
+use servobench_base::{Setpoint, positive};
+use servobench_motion::online::Sides;
+use servobench_motion::position_profile::Command;
+use servobench_motion::shape::Impulse;
+use servobench_motion::{Course, Order, Peaks, PlanError, Profile};
+use std::fmt;
+use std::sync::Arc;
+
+/// A move as a set-point over time, in the axis unit (m or rad) and seconds from its start.
+#[derive(Clone)]
+pub struct Plan {
+    course: Arc<dyn Course + Send + Sync>,
+    /// Parts of the course and how much later they come: one of all at once unless it is shaped.
+    parts: Vec<Impulse>,
+    /// Limits of velocity, acceleration, jerk, snap; infinite where there is none.
+    limits: [Sides; 4],
+    told: Told,
+    /// Duration of the published profile (s), where this is another.
+    published: Option<f64>,
+    /// Length of what filters it (s).
+    filter: f64,
+    /// Whether a set-point stays until the next one instead of going on with its derivatives.
+    is_held: bool,
+}
+
+/// What a generator has to tell of its plan.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Told {
+    /// A profile from rest to rest.
+    Profile(Box<Profile>),
+    /// A way from a state of motion.
+    Transition {
+        /// Its order.
+        order: Order,
+        /// How far it goes beyond the limits, as a part of them.
+        excess: f64,
+    },
+    /// A move by Rockwell's operands.
+    Rockwell {
+        /// Jerk of the acceleration (m/s³ or rad/s³).
+        acceleration: f64,
+        /// Jerk of the deceleration (m/s³ or rad/s³).
+        deceleration: f64,
+    },
+    /// A move along the segments of a table.
+    Table,
+    /// A table followed by profile velocities.
+    Commands {
+        /// What is sent.
+        commands: Vec<Command>,
+        /// What the position differs from the spline's at most (m or rad).
+        error: f64,
+    },
+}
+
+impl Plan {
+    pub(crate) fn of(course: impl Course + Send + Sync + 'static, told: Told) -> Self {
+        let parts = vec![Impulse { time: 0.0, amplitude: 1.0 }];
+        Self {
+            course: Arc::new(course),
+            parts,
+            limits: [Sides::both(f64::INFINITY); 4],
+            told,
+            published: None,
+            filter: 0.0,
+            is_held: false,
+        }
+    }
+
+    pub(crate) fn within(self, limits: [Sides; 4]) -> Self {
+        Self { limits, ..self }
+    }
+
+    pub(crate) fn instead_of(self, published: Option<f64>) -> Self {
+        Self { published, ..self }
+    }
+
+    /// The same course in `duration` seconds, what filters it included, every derivative lower in proportion.
+    pub(crate) fn stretched_to(mut self, duration: f64, filter: f64) -> Result<Self, PlanError> {
+        let shortest = self.course.duration() + filter;
+        let inner = positive("duration", duration)? - filter;
+        if inner < self.course.duration() * (1.0 - 1e-12) {
+            return Err(PlanError::TooShort { duration, shortest });
+        }
+        if let Told::Profile(profile) = &mut self.told {
+            **profile = profile.stretched_to(inner)?;
+            self.course = Arc::new(**profile);
+        } else if self.course.duration() > 0.0 {
+            let factor = (inner / self.course.duration()).max(1.0);
+            self.course = Arc::new(Slowed { course: self.course, factor });
+        }
+        Ok(self)
+    }
+
+    /// The same move behind `filter`.
+    pub(crate) fn filtered(mut self, filter: &Filter) -> Result<Self, PlanError> {
+        if let Some(shaper) = &filter.shaper {
+            self.parts = shaper.iter().collect();
+        }
+        if let Some(averages) = &filter.averages {
+            self.course = Arc::new(averages.of(&self)?);
+            self.is_held = true;
+            self.parts = vec![Impulse { time: 0.0, amplitude: 1.0 }];
+        }
+        self.filter = filter.length();
+        Ok(self)
+    }
+
+    /// Duration (s).
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.course.duration() + self.parts.last().map_or(0.0, |last| last.time)
+    }
+
+    /// How much of the duration is that of what filters it (s).
+    #[must_use]
+    pub const fn filter_length(&self) -> f64 {
+        self.filter
+    }
+
+    /// The set-point at `t` (s); before the start the first, from the end on that of the end, which goes on at its velocity.
+    ///
+    /// For many in the order of time: [`Reader`](crate::Reader).
+    #[must_use]
+    pub fn at(&self, t: f64) -> Setpoint {
+        self.reader_at(t).at(t)
+    }
+
+    /// Where it starts.
+    #[must_use]
+    pub fn start(&self) -> Setpoint {
+        self.at(0.0)
+    }
+
+    /// Where it ends.
+    #[must_use]
+    pub fn end(&self) -> Setpoint {
+        self.at(self.duration())
+    }
+
+    /// Limits of velocity, acceleration, jerk and snap that it was planned with; infinite where there is none.
+    #[must_use]
+    pub const fn limits(&self) -> &[Sides; 4] {
+        &self.limits
+    }
+
+    /// What its generator has to tell.
+    #[must_use]
+    pub const fn told(&self) -> &Told {
+        &self.told
+    }
+
+    /// Duration of the published profile for the same request (s), where this is another one.
+    #[must_use]
+    pub const fn published_duration(&self) -> Option<f64> {
+        self.published
+    }
+
+    /// The highest derivative of position that is no impulse: 1 to 4.
+    #[must_use]
+    pub fn order(&self) -> usize {
+        match &self.told {
+            Told::Profile(profile) => profile.order().derivative(),
+            Told::Transition { order, .. } => order.derivative(),
+            Told::Rockwell { .. } | Told::Table => 3,
+            Told::Commands { .. } => 2,
+        }
+    }
+
+    /// Its polynomials in the order of time.
+    pub fn spans(&self) -> impl Iterator<Item = Span> {
+        analysis::spans(self)
+    }
+
+    /// The extreme values of velocity, acceleration, jerk and snap; infinite for those above its order, which are impulses.
+    #[must_use]
+    pub fn peaks(&self) -> [Peak; 4] {
+        analysis::peaks(self)
+    }
+
+    /// The largest magnitudes of velocity, acceleration, jerk and snap; infinite above its order. Of a profile that nothing
+    /// filters by its closed forms.
+    #[must_use]
+    pub fn largest(&self) -> [f64; 4] {
+        if let Some(profile) = self.plain_profile() {
+            let Peaks { velocity, acceleration, jerk, snap } = profile.peaks();
+            return [velocity, acceleration, jerk, snap];
+        }
+        self.peaks().map(|Peak { lowest, highest }| highest.max(-lowest))
+    }
+
+    /// Where velocity, acceleration, jerk and snap are at their limits.
+    #[must_use]
+    pub fn bindings(&self) -> Vec<Binding> {
+        analysis::bindings(self)
+    }
+
+    /// Start and length (s) of the longest part at constant velocity; length 0 without one.
+    ///
+    /// Of a profile without one the start is its middle.
+    #[must_use]
+    pub fn cruise(&self) -> (f64, f64) {
+        match self.plain_profile() {
+            Some(profile) => ((profile.duration() - profile.cruise()) / 2.0, profile.cruise()),
+            None => analysis::cruise(self),
+        }
+    }
+
+    /// The profile, where nothing filters it.
+    fn plain_profile(&self) -> Option<&Profile> {
+        match &self.told {
+            Told::Profile(profile) if self.filter == 0.0 => Some(profile),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn course(&self) -> &(dyn Course + Send + Sync) {
+        &*self.course
+    }
+
+    pub(crate) const fn is_held(&self) -> bool {
+        self.is_held
+    }
+
+    pub(crate) fn parts(&self) -> &[Impulse] {
+        &self.parts
+    }
+}
+
+impl fmt::Debug for Plan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { course, parts, limits, told, published, filter, is_held } = self;
+        f.debug_struct("Plan")
+            .field("duration", &course.duration())
+            .field("parts", parts)
+            .field("limits", limits)
+            .field("told", told)
+            .field("published", published)
+            .field("filter", filter)
+            .field("is_held", is_held)
+            .finish()
+    }
+}

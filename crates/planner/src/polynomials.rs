@@ -1,0 +1,66 @@
+//! A course of any number of polynomials, kept on the heap.
+use servobench_base::Setpoint;
+use servobench_motion::{Course, Piece};
+
+/// Polynomials one after the other.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Polynomials {
+    /// When each begins (s), the first at 0, ascending.
+    starts: Vec<f64>,
+    /// The set-points at their beginning.
+    anchors: Vec<Setpoint>,
+    between: Between,
+    duration: f64,
+    end: Setpoint,
+}
+
+/// What a set-point does until the next one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Between {
+    /// It goes on with its derivatives.
+    Polynomial,
+    /// It stays.
+    Held,
+}
+
+impl Polynomials {
+    /// Those that begin at the times and with the set-points of `parts`, the first at time 0, up to `end` at `duration` (s).
+    pub(crate) fn new(
+        parts: impl IntoIterator<Item = (f64, Setpoint)>,
+        between: Between,
+        duration: f64,
+        end: Setpoint,
+    ) -> Self {
+        let (starts, anchors) = parts.into_iter().unzip();
+        Self { starts, anchors, between, duration, end }
+    }
+
+    /// Those that `piece` gives one after the other from `start` (s) until `end` (s) of its own time.
+    pub(crate) fn collect(start: f64, end: f64, mut piece: impl FnMut(f64) -> Piece) -> Self {
+        let (mut t, mut parts) = (start, Vec::new());
+        while t < end {
+            let current = piece(t);
+            parts.push((t - start, current.at(t)));
+            t = current.ends().max(t.next_up());
+        }
+        Self::new(parts, Between::Polynomial, end - start, piece(end).at(end))
+    }
+}
+
+impl Course for Polynomials {
+    fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    fn piece(&self, t: f64) -> Piece {
+        if t >= self.duration || self.starts.is_empty() {
+            return Piece::between(self.end, self.duration, f64::INFINITY);
+        }
+        let i = self.starts.partition_point(|start| *start <= t).saturating_sub(1);
+        let until = self.starts.get(i + 1).copied().unwrap_or(self.duration);
+        match self.between {
+            Between::Polynomial => Piece::between(self.anchors[i], self.starts[i], until),
+            Between::Held => Piece::held(self.anchors[i], until),
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! What can be asked for.
+use crate::filter::Filter;
+use crate::plan::{Plan, Told};
+use crate::table::TableMove;
+use servobench_base::Setpoint;
+use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target, Transition};
+use servobench_motion::{Limits, Order, PlanError, Profile, rockwell};
+
+/// A move as it was asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Request {
+    /// Which way it goes.
+    pub way: Way,
+    /// How long it lasts (s), slowed with every derivative in proportion; as fast as its limits allow without.
+    pub duration: Option<f64>,
+    /// What filters it.
+    pub filter: Filter,
+}
+
+/// Which way a move goes.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Way {
+    /// From rest to rest.
+    PointToPoint(PointToPoint),
+    /// From any state.
+    Replanning(Replanning),
+    /// By the operands of Rockwell's axis move.
+    Rockwell(Rockwell),
+    /// Through a table.
+    Table(TableMove),
+}
+
+/// A move from rest to rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointToPoint {
+    /// Distance; its sign is the direction.
+    pub distance: f64,
+    /// Order of the profile.
+    pub order: Order,
+    /// Limits.
+    pub limits: Limits,
+    /// Which profile.
+    pub method: Method,
+    /// Sample time (s) of which all times are whole multiples; continuous without one.
+    pub sample_time: Option<f64>,
+}
+
+/// Which profile goes from rest to rest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Method {
+    /// The step through boxes that is published (Pietrusewicz et al. 2019): 15 segments at order 4.
+    #[default]
+    Published,
+    /// The shortest.
+    Optimal,
+}
+
+/// A move from any state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Replanning {
+    /// Where from.
+    pub from: Setpoint,
+    /// Where to.
+    pub target: Target,
+    /// Order of the profile, 3 or 4.
+    pub order: Order,
+    /// Limits by direction.
+    pub limits: DirectionalLimits,
+    /// How much work it may be.
+    pub effort: Effort,
+}
+
+/// Rockwell's axis move.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rockwell {
+    /// Its operands.
+    pub operands: rockwell::Move,
+    /// What the axis is configured for.
+    pub maximum: rockwell::MaximumJerk,
+}
+
+impl Request {
+    /// As fast as the limits allow, and not filtered.
+    #[must_use]
+    pub const fn new(way: Way) -> Self {
+        Self { way, duration: None, filter: Filter::NONE }
+    }
+
+    /// Plans it.
+    ///
+    /// # Errors
+    /// [`PlanError`] of the generator; [`PlanError::TooShort`] for a duration below that at the limits.
+    pub fn plan(&self) -> Result<Plan, PlanError> {
+        let plan = self.way.plan()?;
+        let plan = match self.duration {
+            Some(duration) => plan.stretched_to(duration, self.filter.length())?,
+            None => plan,
+        };
+        plan.filtered(&self.filter)
+    }
+}
+
+impl Way {
+    fn plan(&self) -> Result<Plan, PlanError> {
+        match self {
+            Self::PointToPoint(request) => request.plan(),
+            Self::Replanning(request) => request.plan(),
+            Self::Rockwell(request) => request.plan(),
+            Self::Table(request) => request.plan(),
+        }
+    }
+}
+
+impl PointToPoint {
+    fn plan(&self) -> Result<Plan, PlanError> {
+        let Self { distance, order, limits, method, sample_time } = *self;
+        let published = || match sample_time {
+            Some(sample_time) => Profile::plan_sampled(order, distance, &limits, sample_time),
+            None => Profile::plan(order, distance, &limits),
+        };
+        let (profile, compared) = match method {
+            Method::Published => (published()?, None),
+            Method::Optimal => (Profile::plan_optimal(order, distance, &limits)?, Some(published()?.duration())),
+        };
+        let Limits { velocity, acceleration, jerk, snap } = limits;
+        let mut sides = [velocity, acceleration, jerk, snap].map(Sides::both);
+        sides[order.derivative()..].fill(Sides::both(f64::INFINITY));
+        Ok(Plan::of(profile, Told::Profile(Box::new(profile))).within(sides).instead_of(compared))
+    }
+}
+
+impl Replanning {
+    fn plan(&self) -> Result<Plan, PlanError> {
+        let Self { from, target, order, limits, effort } = self;
+        let transition = Transition::plan(*order, from, target, limits, *effort)?;
+        let DirectionalLimits { velocity, acceleration, jerk, snap } = *limits;
+        let mut sides = [velocity, acceleration, Sides::both(jerk), Sides::both(snap)];
+        sides[order.derivative()..].fill(Sides::both(f64::INFINITY));
+        Ok(Plan::of(transition, Told::Transition { order: *order, excess: transition.excess() }).within(sides))
+    }
+}
+
+impl Rockwell {
+    fn plan(&self) -> Result<Plan, PlanError> {
+        let Self { operands, maximum } = self;
+        let trajectory = operands.plan(maximum)?;
+        let [up, down] = operands.jerks(maximum)?;
+        let (up_a, down_a) = (operands.acceleration, operands.deceleration);
+        let (above, below) = if operands.distance < 0.0 { (down_a, up_a) } else { (up_a, down_a) };
+        let sides = [
+            Sides::both(operands.speed),
+            Sides { below, above },
+            Sides::both(up.max(down)),
+            Sides::both(f64::INFINITY),
+        ];
+        Ok(Plan::of(trajectory, Told::Rockwell { acceleration: up, deceleration: down }).within(sides))
+    }
+}

@@ -1,0 +1,308 @@
+//! Plans of every family against what their generators say themselves.
+use servobench_base::Setpoint;
+use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target, Transition};
+use servobench_motion::pvt::{Knot, Table, average, continuous};
+use servobench_motion::rockwell::{Jerk, MaximumJerk, Move, Shape};
+use servobench_motion::shape::{Impulses, Vibration};
+use servobench_motion::{Limits, Order, PlanError, Profile};
+use servobench_planner::{
+    Averages, Binding, Filter, Follow, Method, Peak, Plan, PointToPoint, Reader, Replanning, Request, Rockwell,
+    TableMove, Told, Velocities, Way,
+};
+
+const LIMITS: Limits = Limits { velocity: 1.0, acceleration: 5.0, jerk: 50.0, snap: 1000.0 };
+
+fn point_to_point(distance: f64, method: Method) -> Way {
+    Way::PointToPoint(PointToPoint { distance, order: Order::Fourth, limits: LIMITS, method, sample_time: None })
+}
+
+fn plan(way: Way) -> Plan {
+    Request::new(way).plan().unwrap()
+}
+
+/// A transition from a state of motion, with limits by direction.
+fn replanning() -> Replanning {
+    Replanning {
+        from: Setpoint { x: 0.1, v: 0.4, a: 1.0, j: -5.0, s: 0.0 },
+        target: Target::Position { x: -0.5, v: -0.2 },
+        order: Order::Fourth,
+        limits: DirectionalLimits {
+            velocity: Sides { below: 0.8, above: 1.0 },
+            acceleration: Sides { below: 4.0, above: 5.0 },
+            jerk: 50.0,
+            snap: 1000.0,
+        },
+        effort: Effort::Fast,
+    }
+}
+
+fn table(follow: Follow, velocities: Velocities) -> TableMove {
+    let knots = [(0.5, 0.0), (0.6, 0.01), (0.75, 0.04), (0.9, 0.03), (1.0, 0.05)].map(|(t, x)| Knot::new(t, x));
+    TableMove { knots: knots.to_vec(), velocities, follow }
+}
+
+/// One of each family, and a filtered one.
+fn all() -> Vec<Plan> {
+    let rockwell = Rockwell {
+        operands: Move {
+            distance: -0.1,
+            speed: 0.2,
+            acceleration: 10.0,
+            deceleration: 20.0,
+            shape: Shape::SCurve { acceleration: Jerk::PercentOfTime(25.0), deceleration: Jerk::PercentOfTime(60.0) },
+        },
+        maximum: MaximumJerk { acceleration: 1e4, deceleration: 1e4 },
+    };
+    let shaper = Impulses::zvd(&Vibration::new(60.0, 0.02).unwrap());
+    let shaped = |duration| Request {
+        duration,
+        filter: Filter { shaper: Some(shaper), averages: None },
+        ..Request::new(point_to_point(0.3, Method::Published))
+    };
+    let averages = Averages { lengths: vec![0.01, 0.025], sample_time: 1e-3 };
+    let averaged = Request {
+        filter: Filter { shaper: Some(shaper), averages: Some(averages) },
+        ..Request::new(point_to_point(0.3, Method::Published))
+    };
+    vec![
+        plan(point_to_point(1.0, Method::Published)),
+        plan(point_to_point(-0.02, Method::Optimal)),
+        plan(Way::Replanning(replanning())),
+        plan(Way::Rockwell(rockwell)),
+        plan(Way::Table(table(Follow::Segments, Velocities::Continuous))),
+        plan(Way::Table(table(Follow::Segments, Velocities::Given))),
+        plan(Way::Table(table(Follow::Plateaus(0.25), Velocities::Given))),
+        plan(Way::Table(table(Follow::Steps(500.0), Velocities::Given))),
+        shaped(None).plan().unwrap(),
+        shaped(Some(2.0)).plan().unwrap(),
+        averaged.plan().unwrap(),
+    ]
+}
+
+fn values(setpoint: Setpoint) -> [f64; 5] {
+    let Setpoint { x, v, a, j, s } = setpoint;
+    [x, v, a, j, s]
+}
+
+#[test]
+fn a_plan_is_what_its_generator_says() {
+    let profile = Profile::plan_optimal(Order::Fourth, -0.02, &LIMITS).unwrap();
+    let Replanning { from, target, order, limits, effort } = replanning();
+    let transition = Transition::plan(order, &from, &target, &limits, effort).unwrap();
+    let mut knots = table(Follow::Segments, Velocities::Given).knots;
+    average(&mut knots, 0.0, 0.0).unwrap();
+    let through = Table::new(&knots).unwrap();
+    let [optimal, moving] = [point_to_point(-0.02, Method::Optimal), Way::Replanning(replanning())].map(plan);
+    let averaged = plan(Way::Table(table(Follow::Segments, Velocities::Average)));
+    for k in 0..=1000_u32 {
+        let part = f64::from(k) / 1000.0;
+        let t = part * profile.duration();
+        assert_eq!(optimal.at(t), profile.at(t), "{t}");
+        let t = part * transition.duration();
+        assert_eq!(moving.at(t), transition.at(t), "{t}");
+        // The table begins at 0.5 s; a difference of times rounds to 1e-16 s, at velocities up to 1 m/s.
+        let t = part * through.duration();
+        assert!((averaged.at(t).x - through.at(0.5 + t).x).abs() < 1e-15, "{t}");
+    }
+    let Told::Transition { excess, .. } = moving.told() else { panic!("{:?}", moving.told()) };
+    assert_eq!(excess.to_bits(), transition.excess().to_bits());
+}
+
+#[test]
+fn a_reader_finds_what_a_look_up_finds() {
+    for plan in all() {
+        let mut reader = Reader::default();
+        reader.look_up(&plan, 0.0);
+        for k in 0..=20_000_u32 {
+            let t = f64::from(k) / 20_000.0 * plan.duration();
+            if !reader.holds(t) {
+                reader.look_up(&plan, t);
+            }
+            assert_eq!(values(reader.at(t)).map(f64::to_bits), values(plan.at(t)).map(f64::to_bits), "{t} of {plan:?}");
+        }
+    }
+}
+
+/// The spans follow each other without a gap and are the plan; so every value lies within the peaks. 1e-9: differences of
+/// positions that belong to anchors at different times.
+#[test]
+fn spans_are_the_plan_and_peaks_bound_it() {
+    for plan in all() {
+        let (mut end, peaks) = (0.0, plan.peaks());
+        for span in plan.spans() {
+            assert!((span.start - end).abs() <= 1e-12 * plan.duration(), "{} after {end} of {plan:?}", span.start);
+            end = span.start + span.length;
+            for part in 0..8 {
+                let since = span.length * f64::from(part) / 8.0;
+                let (mine, its) = (values(span.after(since)), values(plan.at(span.start + since)));
+                for (k, (mine, its)) in mine.into_iter().zip(its).enumerate().take(plan.order()) {
+                    let scale = if k == 0 { 1.0 } else { peaks[k - 1].highest.max(-peaks[k - 1].lowest) };
+                    assert!((mine - its).abs() <= 1e-9 * scale, "derivative {k} at {since} of {span:?}: {mine} {its}");
+                    if k > 0 {
+                        let Peak { lowest, highest } = peaks[k - 1];
+                        assert!(
+                            (lowest - 1e-9 * scale..=highest + 1e-9 * scale).contains(&its),
+                            "{k}: {its} {peaks:?}"
+                        );
+                    }
+                }
+            }
+        }
+        assert!((end - plan.duration()).abs() <= 1e-12 * plan.duration(), "{end} of {plan:?}");
+    }
+}
+
+/// Oracle: the closed forms of the profile.
+#[test]
+fn peaks_and_cruise_of_a_profile_are_its_closed_forms() {
+    for (distance, method) in [(1.0, Method::Published), (0.05, Method::Published), (-0.05, Method::Optimal)] {
+        let profile = match method {
+            Method::Published => Profile::plan(Order::Fourth, distance, &LIMITS).unwrap(),
+            Method::Optimal => Profile::plan_optimal(Order::Fourth, distance, &LIMITS).unwrap(),
+        };
+        let known = profile.peaks();
+        let plan = plan(point_to_point(distance, method));
+        for (peak, known) in plan.peaks().into_iter().zip([known.velocity, known.acceleration, known.jerk, known.snap])
+        {
+            let largest = peak.highest.max(-peak.lowest);
+            assert!((largest / known - 1.0).abs() < 1e-9, "{largest} {known}");
+        }
+        assert_eq!(plan.largest(), [known.velocity, known.acceleration, known.jerk, known.snap]);
+    }
+}
+
+/// A shaper of two impulses leaves of the cruise what both parts have of it.
+#[test]
+fn the_cruise_is_the_longest_part_at_constant_velocity() {
+    let shaper = Impulses::zv(&Vibration::new(60.0, 0.02).unwrap());
+    let request = |shaper| Request {
+        filter: Filter { shaper, averages: None },
+        ..Request::new(point_to_point(1.0, Method::Published))
+    };
+    let (start, length) = request(None).plan().unwrap().cruise();
+    assert!((start - 0.35).abs() < 1e-12 && (length - 0.65).abs() < 1e-12, "{start} {length}");
+    let (start, length) = request(Some(shaper)).plan().unwrap().cruise();
+    let delay = shaper.duration();
+    assert!((start - 0.35 - delay).abs() < 1e-12 && (length - 0.65 + delay).abs() < 1e-12, "{start} {length}");
+    let (_, length) = plan(Way::Replanning(replanning())).cruise();
+    assert!(length > 0.0, "a cruise at the limit");
+}
+
+/// Lambrechts' move, all of whose dwells last 0.05 s but the cruise, meets its limits where its figure says.
+#[test]
+fn bindings_are_where_the_published_figure_shows_them() {
+    let plan = plan(point_to_point(1.0, Method::Published));
+    let of = |derivative| -> Vec<(f64, f64, f64)> {
+        let of = |found: &Binding| found.derivative == derivative;
+        plan.bindings().into_iter().filter(of).map(|found| (found.start, found.length, found.value)).collect()
+    };
+    let close = |found: Vec<(f64, f64, f64)>, expected: &[(f64, f64, f64)]| {
+        assert_eq!(found.len(), expected.len(), "{found:?}");
+        for (one, other) in found.iter().zip(expected) {
+            assert!((one.0 - other.0).abs() < 1e-9 && (one.1 - other.1).abs() < 1e-9, "{found:?}");
+            assert!((one.2 - other.2).abs() < 1e-9 * other.2.abs(), "{found:?}");
+        }
+    };
+    close(of(1), &[(0.35, 0.65, 1.0)]);
+    close(of(2), &[(0.15, 0.05, 5.0), (1.15, 0.05, -5.0)]);
+    close(of(3), &[(0.05, 0.05, 50.0), (0.25, 0.05, -50.0), (1.05, 0.05, -50.0), (1.25, 0.05, 50.0)]);
+    assert_eq!(of(4).len(), 8);
+}
+
+/// The velocity limit may be met for an instant: an optimum that touches it.
+#[test]
+fn a_touched_limit_is_a_binding_of_no_length() {
+    let limits = Limits { velocity: 0.3, ..LIMITS };
+    let request = |distance| {
+        let order = Order::Fourth;
+        Way::PointToPoint(PointToPoint { distance, order, limits, method: Method::Optimal, sample_time: None })
+    };
+    let touching = (1..60).map(|k| f64::from(k) * 2e-3).find_map(|distance| {
+        let plan = plan(request(distance));
+        plan.bindings()
+            .into_iter()
+            .find(|found| found.derivative == 1 && found.length == 0.0)
+            .map(|found| (plan, found))
+    });
+    let (plan, found) = touching.expect("a distance at which the limit is touched");
+    assert!((found.start - plan.duration() / 2.0).abs() < 1e-9 && (found.value - 0.3).abs() < 1e-9, "{found:?}");
+}
+
+/// Oracle: the shaper's own sum, and that nothing of a mode is left: ZVD at its frequency.
+#[test]
+fn a_shaped_plan_is_the_sum_of_its_parts() {
+    let shaper = Impulses::zvd(&Vibration::new(60.0, 0.02).unwrap());
+    let way = point_to_point(0.3, Method::Optimal);
+    let request = Request { filter: Filter { shaper: Some(shaper), averages: None }, ..Request::new(way) };
+    let plain = Profile::plan_optimal(Order::Fourth, 0.3, &LIMITS).unwrap();
+    let shaped = request.plan().unwrap();
+    assert!((shaped.duration() - plain.duration() - shaper.duration()).abs() < 1e-15);
+    for k in -10..=1010_i32 {
+        let t = f64::from(k) / 1000.0 * shaped.duration();
+        assert_eq!(shaped.at(t), shaper.shape(t, |t| plain.at(t)), "{t}");
+    }
+    assert_eq!(shaped.end(), Setpoint::at_rest(0.3));
+    let stretched = Request { duration: Some(3.0), ..request.clone() }.plan().unwrap();
+    assert!((stretched.duration() - 3.0).abs() < 1e-12);
+    let refused = Request { duration: Some(0.5), ..request }.plan().unwrap_err();
+    assert!(matches!(refused, PlanError::TooShort { shortest, .. } if (shortest - shaped.duration()).abs() < 1e-12));
+}
+
+/// Oracle: a mean written down as a sum.
+#[test]
+fn averages_are_means_of_the_last_samples() {
+    let way = point_to_point(0.3, Method::Published);
+    let averages = Averages { lengths: vec![0.008], sample_time: 2e-3 };
+    let filter = Filter { shaper: None, averages: Some(averages) };
+    let averaged = Request { filter: filter.clone(), ..Request::new(way.clone()) }.plan().unwrap();
+    let plain = plan(way.clone());
+    for k in 0..400_u32 {
+        let t = f64::from(k) * 2e-3;
+        let mean = (0..4).map(|i| plain.at(t - f64::from(i) * 2e-3).x).sum::<f64>() / 4.0;
+        assert!((averaged.at(t + 1e-3).x - mean).abs() < 1e-15, "{t}");
+    }
+    assert_eq!(averaged.end(), Setpoint::at_rest(0.3));
+    let odd = Averages { lengths: vec![0.009], sample_time: 2e-3 };
+    let refused = Request { filter: Filter { averages: Some(odd), ..filter }, ..Request::new(way) }.plan().unwrap_err();
+    assert_eq!(refused.to_string(), "`averages` must be a whole number of samples, 1 to 10 million, got 0.009");
+}
+
+/// What a drive makes of velocity commands differs from the spline by what was announced: at most, and at some time by just
+/// that.
+#[test]
+fn commands_lead_as_near_to_the_spline_as_announced() {
+    let plan = plan(Way::Table(table(Follow::Steps(200.0), Velocities::Given)));
+    let Told::Commands { commands, error } = plan.told() else { panic!("{:?}", plan.told()) };
+    assert_eq!(commands.len(), 100);
+    let mut knots = table(Follow::Segments, Velocities::Given).knots;
+    let mut scratch = [0.0; 5];
+    continuous(&mut knots, 0.0, 0.0, &mut scratch).unwrap();
+    let spline = Table::new(&knots).unwrap();
+    let off = |k: u32| {
+        let t = 0.5 * f64::from(k) / 500_000.0;
+        (plan.at(t).x - spline.at(0.5 + t).x).abs()
+    };
+    let largest = (0..=500_000).map(off).fold(0.0, f64::max);
+    // 5000 looks between two commands miss the top of a parabola by 1e-8 of it.
+    assert!((largest / error - 1.0).abs() < 1e-6 && *error > 0.0, "{largest} {error}");
+}
+
+/// Every position is hit where velocities have plateaus. Rounding of 0.05 m, added up over the segments.
+#[test]
+fn plateaus_hit_every_position() {
+    let table = table(Follow::Plateaus(0.3), Velocities::Given);
+    let plan = plan(Way::Table(table.clone()));
+    for knot in table.knots {
+        assert!((plan.at(knot.t - 0.5).x - knot.x).abs() < 1e-15, "{knot:?}");
+    }
+    let Told::Commands { commands, error } = plan.told() else { panic!("{:?}", plan.told()) };
+    assert_eq!((commands.len(), error.to_bits()), (5, 0.0_f64.to_bits()));
+}
+
+#[test]
+fn the_gain_over_the_published_profile_is_known() {
+    let plan = plan(point_to_point(1e-3, Method::Optimal));
+    let told = plan.published_duration().unwrap();
+    // Snap alone binds: (384/512)^¼.
+    assert!((plan.duration() / told - libm::pow(0.75, 0.25)).abs() < 1e-9, "{told}");
+}
