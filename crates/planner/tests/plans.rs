@@ -167,7 +167,8 @@ fn peaks_and_cruise_of_a_profile_are_its_closed_forms() {
             let largest = peak.highest.max(-peak.lowest);
             assert!((largest / known - 1.0).abs() < 1e-9, "{largest} {known}");
         }
-        assert_eq!(plan.largest(), [known.velocity, known.acceleration, known.jerk, known.snap]);
+        let bits = |values: [f64; 4]| values.map(f64::to_bits);
+        assert_eq!(bits(plan.largest()), bits([known.velocity, known.acceleration, known.jerk, known.snap]));
     }
 }
 
