@@ -19,6 +19,7 @@ mod models;
 mod nearest;
 mod physical;
 mod place;
+mod points;
 mod quantity;
 mod reading;
 mod resolve;
@@ -35,6 +36,7 @@ pub use channel::CHANNELS;
 pub use diagnostic::{Diagnostic, Invalid, LoadError};
 pub use load::{Loaded, load, parse};
 pub use models::{embedded_demo, embedded_models};
+pub use points::{Column, MOST_POINTS, Points, PointsError, PointsMistake, read_points};
 pub use scenario::{
     Actuator, Axis, AxisMechanics, Body, Coupling, CurrentGain, CurrentLoop, Disturbance, DisturbedBody, Drive,
     EffortFeedforward, Encoder, EngineName, Estimate, Feedback, Feedforward, IdealSource, Initial, LONGEST_RUN, Limit,

@@ -105,36 +105,72 @@ pub(crate) fn parse(text: &str) -> Result<Quantity, QuantityError> {
     evaluate(text, number, &factors)
 }
 
-fn evaluate(text: &str, number: &str, factors: &[Factor]) -> Result<Quantity, QuantityError> {
-    let (mut numerator, mut denominator, mut tens) = (1.0, 1.0, 0);
-    let mut dimension = Dimension::ONE;
-    for Factor { symbol, power, at } in factors {
-        let Some(unit) = unit(symbol) else {
-            let message = format!("unknown unit `{symbol}`");
-            let help = hint(symbol).unwrap_or_default();
-            return Err(QuantityError::new(at.clone(), message, help));
-        };
-        if power.abs() > MAX_POWER {
-            let message = format!("the power of `{symbol}` must be from -{MAX_POWER} to {MAX_POWER}");
-            return Err(QuantityError::new(at.clone(), message, ""));
+/// What a number means in SI that stands before a unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Scale {
+    numerator: f64,
+    denominator: f64,
+    tens: i32,
+    dimension: Dimension,
+}
+
+impl Scale {
+    /// That of the unit `text`.
+    ///
+    /// # Errors
+    /// As [`parse`].
+    pub(crate) fn read(text: &str) -> Result<Self, QuantityError> {
+        let mut input = LocatingSlice::new(text);
+        match spaced(unit_expression).parse_next(&mut input) {
+            Ok(factors) if input.is_empty() => Self::of(&factors),
+            _ => Err(QuantityError::new(0..text.len(), "this is no unit", "")),
         }
-        let (above, below) =
-            if *power < 0 { (unit.denominator, unit.numerator) } else { (unit.numerator, unit.denominator) };
-        numerator *= above.powi(power.abs());
-        denominator *= below.powi(power.abs());
-        tens += unit.power * power;
-        dimension = dimension.times(unit.dimension, *power);
     }
-    let value = with_power_of_ten(number, tens) * numerator / denominator;
-    let is_zero = number.bytes().take_while(|b| !matches!(b, b'e' | b'E')).all(|b| !(b'1'..=b'9').contains(&b));
-    match objection(value, is_zero) {
-        None => Ok(Quantity { value, dimension, has_unit: !factors.is_empty() }),
-        Some(message) => Err(QuantityError::new(0..text.len(), message, "")),
+
+    fn of(factors: &[Factor]) -> Result<Self, QuantityError> {
+        let mut scale = Self { numerator: 1.0, denominator: 1.0, tens: 0, dimension: Dimension::ONE };
+        for Factor { symbol, power, at } in factors {
+            let Some(unit) = unit(symbol) else {
+                let message = format!("unknown unit `{symbol}`");
+                let help = hint(symbol).unwrap_or_default();
+                return Err(QuantityError::new(at.clone(), message, help));
+            };
+            if power.abs() > MAX_POWER {
+                let message = format!("the power of `{symbol}` must be from -{MAX_POWER} to {MAX_POWER}");
+                return Err(QuantityError::new(at.clone(), message, ""));
+            }
+            let (above, below) =
+                if *power < 0 { (unit.denominator, unit.numerator) } else { (unit.numerator, unit.denominator) };
+            scale.numerator *= above.powi(power.abs());
+            scale.denominator *= below.powi(power.abs());
+            scale.tens += unit.power * power;
+            scale.dimension = scale.dimension.times(unit.dimension, *power);
+        }
+        Ok(scale)
     }
+
+    /// `number` in SI.
+    ///
+    /// # Errors
+    /// What is wrong with its magnitude.
+    pub(crate) fn value(&self, number: &str) -> Result<f64, &'static str> {
+        let value = with_power_of_ten(number, self.tens) * self.numerator / self.denominator;
+        let is_zero = number.bytes().take_while(|b| !matches!(b, b'e' | b'E')).all(|b| !(b'1'..=b'9').contains(&b));
+        objection(value, is_zero).map_or(Ok(value), Err)
+    }
+}
+
+fn evaluate(text: &str, number: &str, factors: &[Factor]) -> Result<Quantity, QuantityError> {
+    let scale = Scale::of(factors)?;
+    let value = scale.value(number).map_err(|message| QuantityError::new(0..text.len(), message, ""))?;
+    Ok(Quantity { value, dimension: scale.dimension, has_unit: !factors.is_empty() })
 }
 
 /// `number · 10^tens`, rounded once.
 fn with_power_of_ten(number: &str, tens: i32) -> f64 {
+    if tens == 0 {
+        return number.parse().unwrap_or(f64::NAN);
+    }
     let (mantissa, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
     // An exponent beyond 32 bits makes an infinity or a zero of its own.
     let exponent = exponent.parse::<i32>().map(|exponent| exponent.saturating_add(tens));

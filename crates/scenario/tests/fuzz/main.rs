@@ -1,5 +1,6 @@
 //! Fuzz targets: whatever is in a file, it is a scenario in which every number makes sense, or a list of mistakes with
 //! places in their files. `docs/testing.md` says how to run more of them.
+mod points;
 mod quantities;
 mod sound;
 

@@ -1,0 +1,35 @@
+//! Tables of points.
+use crate::WORDS;
+use servobench_fuzz::{Splice, check, fuzz};
+use servobench_scenario::read_points;
+
+const TABLES: [&str; 4] = [
+    "time [ms],position [mm],velocity [mm/s]\n0,0,0\n10,5,\n20,15,750\n30,20,0\n",
+    "position [deg],time [s]\r\n0,0\r\n-90,.5\r\n\r\n1e2,1.25\r\n",
+    "time [us],velocity [rpm],position [rev]\n-1,0,+3.\n0,1e-3,4\n1e6,,5\n",
+    "\u{feff}time [min],position [m]\n0,0\n1,2\n",
+];
+
+/// What is read is a table: finite, in the order of time, a velocity or none for each point; what is refused has a place in
+/// the text.
+#[test]
+fn points() {
+    fuzz(check!(), 3_000, Splice::text(&TABLES, WORDS), |text| match read_points(text) {
+        Ok(points) => {
+            let count = points.times.len();
+            assert!(count >= 2 && points.positions.len() == count, "{points:?}");
+            assert!(points.times.windows(2).all(|pair| pair[0] < pair[1]), "{points:?}");
+            let velocities = points.velocities.into_iter().flat_map(|all| {
+                assert_eq!(all.len(), count);
+                all
+            });
+            let mut values = points.times.into_iter().chain(points.positions).chain(velocities.flatten());
+            assert!(values.all(|value| value.abs() <= 1e30));
+        }
+        Err(error) => {
+            assert!(error.line <= text.lines().count().max(1), "{error}");
+            let line = text.lines().nth(error.line - 1).unwrap_or("");
+            assert!((1..=line.chars().count() + 1).contains(&error.column), "{error}");
+        }
+    });
+}
