@@ -9,13 +9,24 @@
 //!     assert!(text.parse::<f64>().is_err() || !text.contains('_'));
 //! });
 //! ```
+//! Structured input is put together of [`Number`], ranges, tuples, arrays and what [`produce`] gives:
+//!
+//! ```
+//! use servobench_fuzz::{Number, ValueGenerator, check, fuzz};
+//!
+//! let pairs = (Number::any(), 1..10_u8).map_gen(|(number, times)| (number, number * f64::from(times)));
+//! fuzz(check!(), 1_000, pairs, |(one, many): &(f64, f64)| assert!(one.is_nan() || one.abs() <= many.abs()));
+//! ```
 //! `cargo test` runs a target on the same seeded inputs each time, then on those that a fuzzer left. Another number of
 //! inputs: `SERVOBENCH_SWEEP=1000000`. With `cargo bolero test` the same target runs under libFuzzer, AFL or Honggfuzz.
 
+mod number;
 mod seeded;
 mod splice;
 mod target;
 
 pub use bolero::check;
+pub use bolero::generator::{ValueGenerator, produce};
+pub use number::Number;
 pub use splice::{Splice, SplicedText};
 pub use target::{Target, fuzz};

@@ -185,7 +185,7 @@ fn range<D: Driver>(words: &[impl AsRef<[u8]>], driver: &mut D) -> Option<Range<
 }
 
 /// A number below `bound`, which is not zero.
-fn below<D: Driver>(driver: &mut D, bound: usize) -> Option<usize> {
+pub(crate) fn below<D: Driver>(driver: &mut D, bound: usize) -> Option<usize> {
     driver.gen_usize(Included(&0), Excluded(&bound))
 }
 

@@ -102,6 +102,14 @@ pub(crate) fn in_range(name: &'static str, value: f64, remedy: &'static str) -> 
     }
 }
 
+/// Returns `value`, of either sign or zero, when its magnitude is not above [`RANGE`].
+///
+/// # Errors
+/// [`ParamError`] otherwise.
+pub(crate) fn within_range(name: &'static str, value: f64) -> Result<f64, ParamError> {
+    if value.abs() <= RANGE.1 { Ok(value) } else { Err(ParamError { name, value, bound: "a number within ±1e30" }) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -26,7 +26,7 @@ mod third;
 mod transition;
 mod watch;
 
-use crate::limits::in_range;
+use crate::limits::{in_range, within_range};
 use crate::{Limits, Order, PlanError};
 use servobench_base::{ParamError, finite, positive};
 
@@ -99,7 +99,7 @@ impl Target {
     fn check(&self, limits: &DirectionalLimits) -> Result<(), PlanError> {
         let v = match self {
             Self::Position { x, v } => {
-                finite("target.x", *x)?;
+                within_range("target.x", *x)?;
                 finite("target.v", *v)?
             }
             Self::Velocity(v) => finite("target.v", *v)?,

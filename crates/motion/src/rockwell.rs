@@ -89,7 +89,16 @@ impl Move {
         }
         let length = in_range("distance", distance, "correct its unit, or ask for a distance of 0")?.abs();
         let ramps = |v: f64| 0.5 * v * (up.duration(v) + down.duration(v));
-        let peak = if ramps(speed) <= length { speed } else { increasing(0.0, speed, |v| ramps(v) - length) };
+        let peak = if ramps(speed) <= length {
+            speed
+        } else {
+            // A ramp lasts v/A and 2·√(v/J) at least and both together at most. So does the length: v is within a factor of
+            // 2^(2/3) of the smaller of two bounds.
+            let by_acceleration = libm::sqrt(2.0 * length / (1.0 / up.acceleration + 1.0 / down.acceleration));
+            let by_jerk = libm::cbrt(length / (1.0 / libm::sqrt(up.jerk) + 1.0 / libm::sqrt(down.jerk)));
+            let highest = speed.min(by_acceleration).min(by_jerk * by_jerk);
+            increasing(0.5 * highest, highest, |v| ramps(v) - length)
+        };
         let cruise = ((length - ramps(peak)) / peak).max(0.0);
         let sign = distance.signum();
         let ([j_1, a_1], [j_2, a_2]) = (up.times(peak), down.times(peak));

@@ -3,8 +3,8 @@ use crate::boxes::MAX_SAMPLES;
 use crate::{PlanError, Profile};
 use servobench_base::positive;
 
-/// Longest duration (s) that a move can be stretched to: its fourth power is still a normal number.
-const LONGEST: f64 = 1e60;
+/// Longest duration (s) of what is planned or stretched: its fourth power is still a normal number.
+pub(crate) const LONGEST: f64 = 1e60;
 
 impl Profile {
     /// The same move in `duration` seconds: all boxes longer by the same factor k, hence velocity, acceleration, jerk

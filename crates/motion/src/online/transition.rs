@@ -6,8 +6,10 @@ use super::path::Path;
 use super::second::{self, Limits2, Sides, State2};
 use super::third::{self, Limits3, State3};
 use super::{DirectionalLimits, Effort, Target};
+use crate::limits::within_range;
+use crate::stretch::LONGEST;
 use crate::{Order, Piece, PlanError, Segment, Trajectory};
-use servobench_base::{ParamError, Setpoint, finite};
+use servobench_base::{ParamError, Setpoint};
 
 /// The way from one state to a target, in the axis unit (m or rad) and seconds from its start.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,8 +25,9 @@ impl Transition {
     /// snap does not matter, at order 3 its jerk neither.
     ///
     /// # Errors
-    /// [`PlanError`] when a state is not finite, a limit that the order uses is not positive or lies outside 1e-30 … 1e30
-    /// (SI), or the velocity of the target is beyond its limits; and at order 2, which has no transition.
+    /// [`PlanError`] when a state is no number within ±1e30, a limit that the order uses is not positive or lies outside
+    /// 1e-30 … 1e30 (SI), or the velocity of the target is beyond its limits; when the way would take more than 1e60 s; and
+    /// at order 2, which has no transition.
     pub fn plan(
         order: Order,
         from: &Setpoint,
@@ -35,16 +38,22 @@ impl Transition {
         limits.check(order)?;
         target.check(limits)?;
         for (name, value) in [("from.x", from.x), ("from.v", from.v), ("from.a", from.a)] {
-            finite(name, value)?;
+            within_range(name, value)?;
         }
-        match order {
-            Order::Second => Err(ParamError { name: "order", value: 2.0, bound: "3 or 4" }.into()),
-            Order::Third => Ok(third_order(from, target, limits)),
+        let planned = match order {
+            Order::Second => return Err(ParamError { name: "order", value: 2.0, bound: "3 or 4" }.into()),
+            Order::Third => third_order(from, target, limits),
             Order::Fourth => {
-                finite("from.j", from.j)?;
-                Ok(fourth_order(from, target, limits, effort))
+                within_range("from.j", from.j)?;
+                fourth_order(from, target, limits, effort)
             }
+        };
+        let value = planned.duration();
+        if value <= LONGEST {
+            return Ok(planned);
         }
+        let remedy = "start nearer to the limits, or raise them";
+        Err(PlanError::OutOfRange { name: "duration", value, lowest: 0.0, highest: LONGEST, remedy })
     }
 
     fn new<const N: usize>(order: Order, from: Setpoint, path: &Path<N>, target: &Target, excess: f64) -> Self {
@@ -135,6 +144,22 @@ fn fourth_order(from: &Setpoint, target: &Target, limits: &DirectionalLimits, ef
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Limits;
+
+    /// Found by the fuzz target: states so far beyond the limits that the way back left what `f64` can hold.
+    #[test]
+    fn a_way_that_takes_too_long_is_refused() {
+        let limits = Limits { velocity: 1.0, acceleration: 1.0, jerk: 1e-18, snap: 1e-28 };
+        let target = Target::Position { x: 1.0, v: 0.0 };
+        let message = |from: Setpoint| {
+            Transition::plan(Order::Fourth, &from, &target, &limits.into(), Effort::Fast).unwrap_err().to_string()
+        };
+        let refused = message(Setpoint { j: 7.5, ..Setpoint::default() });
+        assert!(refused.starts_with("`duration` must be between 0e0 and 1e60 (SI), got "), "{refused}");
+        assert!(refused.ends_with(": start nearer to the limits, or raise them"), "{refused}");
+        let refused = message(Setpoint { v: -2e30, ..Setpoint::default() });
+        assert_eq!(refused, "`from.v` must be a number within ±1e30, got -2000000000000000000000000000000");
+    }
 
     /// The published generator of order 4 needs 3 kB for an axis (Pietrusewicz, Waszczuk & Kubicki 2019).
     #[test]

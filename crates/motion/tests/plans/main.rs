@@ -1,6 +1,5 @@
 //! Plans against oracles that share no code with the planner.
 
-mod any_input;
 mod cascade;
 mod closed_forms;
 mod double_double;

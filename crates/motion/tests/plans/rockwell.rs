@@ -109,3 +109,17 @@ fn wrong_operands_are_refused_by_name() {
     assert_eq!(said(percent), "`jerk_percent_of_time` must be above 0 % and at most 100 %, got 101");
     assert_eq!(Move { distance: 0.0, ..good }.plan(&maximum).unwrap().duration().to_bits(), 0);
 }
+
+/// Found by the fuzz target: a speed 1e42 times the one that is reached, from which the search did not get down.
+#[test]
+fn the_speed_that_was_asked_for_may_be_far_away() {
+    let jerks = Shape::SCurve { acceleration: Jerk::Value(1e-30), deceleration: Jerk::Value(1e-3) };
+    let request = Move { speed: 1e30, distance: -1e-3, ..printed(jerks) };
+    let way = request.plan(&MaximumJerk { acceleration: 1.0, deceleration: 1.0 }).unwrap();
+    // The four jerks alone: v = (distance/(1/√J1 + 1/√J2))^(2/3).
+    let peak = (1e-3 / (1e15 + 1e3_f64.sqrt())).powf(2.0 / 3.0);
+    let reached = way.segments().map(|segment| way.at(segment.start).v.abs()).fold(0.0, f64::max);
+    assert!((reached / peak - 1.0).abs() < 1e-14, "{reached:e} {peak:e}");
+    let before = way.at(way.duration().next_down()).x;
+    assert!((before / -1e-3 - 1.0).abs() < 1e-12, "{before}");
+}

@@ -1,6 +1,5 @@
 //! Moves through tables of points, against oracles that share no code with them.
 
-mod any_input;
 mod drive;
 mod evaluation;
 mod plateaus;

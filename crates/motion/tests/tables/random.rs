@@ -1,19 +1,14 @@
-//! Seeded tables.
-use servobench_motion::pvt::Knot;
+//! Seeded random numbers and tables.
+#[path = "../shared/random.rs"]
+mod shared;
 
-/// Numbers in [0, 1): xorshift64* (Vigna 2016).
-pub(crate) struct Random(pub(crate) u64);
+use servobench_motion::pvt::Knot;
+pub(crate) use shared::Random;
 
 impl Random {
-    pub(crate) fn next(&mut self) -> f64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
+    /// Uniform in [low, high).
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
+        low + (high - low) * self.unit()
     }
 
     /// A walk of `count` points, up to ±1 each, at times of 5 to 255 ms.

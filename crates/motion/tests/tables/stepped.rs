@@ -45,7 +45,7 @@ fn velocities_of_the_source(knots: &[Knot], start: f64, end: f64) -> Vec<f64> {
 
 #[test]
 fn the_spline_is_that_of_the_source() {
-    let mut random = Random(10);
+    let mut random = Random::seeded(10);
     for count in [2, 3, 4, 12, 60] {
         let mut knots = random.knots(count);
         let expected = velocities_of_the_source(&knots, 1.5, -2.5);
@@ -78,7 +78,7 @@ fn points_on_commands_err_by_the_change_of_acceleration() {
 /// points is what was computed, and nowhere more than announced.
 #[test]
 fn the_drive_errs_as_announced() {
-    let mut random = Random(11);
+    let mut random = Random::seeded(11);
     let mut tightest = f64::INFINITY;
     for k in 0..400 {
         let mut knots = random.knots(2 + k % 30);
@@ -141,7 +141,7 @@ fn the_lowest_rate_by_hand() {
 
 #[test]
 fn the_lowest_rate_is_enough_and_one_less_is_not() {
-    let mut random = Random(12);
+    let mut random = Random::seeded(12);
     for k in 0..60 {
         let mut knots = random.knots(2 + k);
         let spline = solve(&mut knots, 0.0, 0.0);
@@ -157,7 +157,7 @@ fn the_lowest_rate_is_enough_and_one_less_is_not() {
 /// Halving the interval quarters the error: the trapezoidal rule is of order 2.
 #[test]
 fn the_error_is_of_order_two() {
-    let mut knots = Random(13).knots(10);
+    let mut knots = Random::seeded(13).knots(10);
     let spline = solve(&mut knots, 0.0, 0.0);
     let error = |rate| spline.stepped(rate).unwrap().largest_error();
     let order = (error(1000.0) / error(2000.0)).log2();
@@ -166,7 +166,7 @@ fn the_error_is_of_order_two() {
 
 #[test]
 fn refusals() {
-    let mut knots = Random(14).knots(5);
+    let mut knots = Random::seeded(14).knots(5);
     let spline = solve(&mut knots, 0.0, 0.0);
     for rate in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e31] {
         assert!(spline.stepped(rate).is_err());

@@ -1,0 +1,28 @@
+//! Whatever is asked for: a way or a refusal in words, never a panic, never a set-point that is no number, and the end
+//! exactly where it was promised.
+
+mod interpolation;
+mod position_profiles;
+mod profiles;
+mod rockwell;
+mod shapers;
+mod tables;
+mod transitions;
+mod words;
+
+use servobench_base::Setpoint;
+use servobench_motion::{Order, PlanError};
+
+const ORDERS: [Order; 3] = [Order::Second, Order::Third, Order::Fourth];
+
+fn is_finite(s: Setpoint) -> bool {
+    [s.x, s.v, s.a, s.j, s.s].iter().all(|value| value.is_finite())
+}
+
+/// A refusal says something, and the point that it names is there.
+fn refused(error: PlanError, points: usize) {
+    if let PlanError::Point { point, .. } = error {
+        assert!(point < points, "{error} of {points} points");
+    }
+    assert!(error.to_string().len() > 20, "{error}");
+}
