@@ -76,7 +76,7 @@ pub(crate) fn spans(plan: &Plan) -> impl Iterator<Item = Span> {
         }
         reader.look_up(plan, t);
         let ends = reader.ends().max(t.next_up()).min(duration);
-        let span = Span { start: t, length: ends - t, state: reader.at(t), is_held: plan.is_held() };
+        let span = Span { start: t, length: ends - t, state: reader.at(t), is_held: plan.held().is_some() };
         t = ends;
         Some(span)
     })

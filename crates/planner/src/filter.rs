@@ -1,4 +1,5 @@
 //! What may stand between a generator and the drive.
+use crate::cascade::{MOST_SAMPLES, too_many};
 use crate::plan::Plan;
 use crate::polynomials::{Between, Polynomials};
 use servobench_base::{ParamError, Setpoint, positive};
@@ -23,8 +24,6 @@ pub struct Averages {
     pub sample_time: f64,
 }
 
-/// Samples at most of a move that is averaged.
-const MOST_SAMPLES: f64 = 1e7;
 /// A length this near to a whole number of samples (in samples) is one.
 const NEAR: f64 = 1e-6;
 
@@ -55,7 +54,7 @@ impl Averages {
         let duration = plan.duration() + total as f64 * sample_time;
         let samples = libm::ceil(duration / sample_time - NEAR);
         if samples > MOST_SAMPLES {
-            return Err(PlanError::TooManySamples { samples, sample_time });
+            return Err(too_many(sample_time));
         }
         let mut reader = plan.reader_at(0.0);
         let mut parts = Vec::new();

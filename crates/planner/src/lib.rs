@@ -9,7 +9,7 @@
 //! use servobench_planner::{Method, PointToPoint, Request, Way};
 //! let limits = Limits { velocity: 1.0, acceleration: 5.0, jerk: 50.0, snap: 1000.0 };
 //! let order = Order::Fourth;
-//! let way = PointToPoint { distance: 0.1, order, limits, method: Method::Optimal, sample_time: None };
+//! let way = PointToPoint { distance: 0.1, order, limits, method: Method::Optimal, grid: None };
 //! let plan = Request::new(Way::PointToPoint(way)).plan()?;
 //! assert!((plan.at(plan.duration()).x - 0.1).abs() < 1e-15);
 //! let told = plan.published_duration().expect("what the published profile takes");
@@ -17,6 +17,7 @@
 //! # Ok::<(), servobench_motion::PlanError>(())
 //! ```
 mod analysis;
+mod cascade;
 mod filter;
 mod plan;
 mod polynomials;
@@ -29,5 +30,5 @@ pub use analysis::{Binding, Peak, Span};
 pub use filter::{Averages, Filter};
 pub use plan::{Plan, Told};
 pub use reader::Reader;
-pub use request::{Method, PointToPoint, Replanning, Request, Rockwell, Way};
+pub use request::{Execution, Grid, Method, PointToPoint, Replanning, Request, Rockwell, Sampling, Way};
 pub use table::{Follow, TableMove, Velocities};

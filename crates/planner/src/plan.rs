@@ -1,6 +1,8 @@
 //! A planned move.
 use crate::analysis::{self, Binding, Peak, Span};
+use crate::cascade::cascade;
 use crate::filter::Filter;
+use crate::request::Execution;
 use crate::slowed::Slowed;
 use servobench_base::{Setpoint, positive};
 use servobench_motion::online::Sides;
@@ -23,8 +25,10 @@ pub struct Plan {
     published: Option<f64>,
     /// Length of what filters it (s).
     filter: f64,
-    /// Whether a set-point stays until the next one instead of going on with its derivatives.
-    is_held: bool,
+    /// How set-points are made of a sampled profile.
+    execution: Execution,
+    /// Sample time (s), where a set-point stays until the next one instead of going on with its derivatives.
+    held: Option<f64>,
 }
 
 /// What a generator has to tell of its plan.
@@ -54,6 +58,8 @@ pub enum Told {
         commands: Vec<Command>,
         /// What the position differs from the spline's at most (m or rad).
         error: f64,
+        /// Commands per second, where they are sent at a rate.
+        rate: Option<f64>,
     },
 }
 
@@ -67,7 +73,20 @@ impl Plan {
             told,
             published: None,
             filter: 0.0,
-            is_held: false,
+            execution: Execution::Hold,
+            held: None,
+        }
+    }
+
+    /// That of `profile`.
+    pub(crate) fn along(profile: &Profile, execution: Execution) -> Result<Self, PlanError> {
+        let told = Told::Profile(Box::new(*profile));
+        match (execution, profile.samples()) {
+            (Execution::Euler, Some(samples)) => {
+                let plan = Self::of(cascade(profile, &samples)?, told);
+                Ok(Self { execution, held: Some(samples.time), ..plan })
+            }
+            _ => Ok(Self::of(*profile, told)),
         }
     }
 
@@ -86,10 +105,12 @@ impl Plan {
         if inner < self.course.duration() * (1.0 - 1e-12) {
             return Err(PlanError::TooShort { duration, shortest });
         }
-        if let Told::Profile(profile) = &mut self.told {
-            **profile = profile.stretched_to(inner)?;
-            self.course = Arc::new(**profile);
-        } else if self.course.duration() > 0.0 {
+        // The published profile would have been slowed, too.
+        self.published = None;
+        if let Told::Profile(profile) = &self.told {
+            return Ok(Self::along(&profile.stretched_to(inner)?, self.execution)?.within(self.limits));
+        }
+        if self.course.duration() > 0.0 {
             let factor = (inner / self.course.duration()).max(1.0);
             self.course = Arc::new(Slowed { course: self.course, factor });
         }
@@ -103,7 +124,7 @@ impl Plan {
         }
         if let Some(averages) = &filter.averages {
             self.course = Arc::new(averages.of(&self)?);
-            self.is_held = true;
+            self.held = Some(averages.sample_time);
             self.parts = vec![Impulse { time: 0.0, amplitude: 1.0 }];
         }
         self.filter = filter.length();
@@ -120,6 +141,12 @@ impl Plan {
     #[must_use]
     pub const fn filter_length(&self) -> f64 {
         self.filter
+    }
+
+    /// Sample time (s) of a plan whose set-points stay until the next one.
+    #[must_use]
+    pub const fn held(&self) -> Option<f64> {
+        self.held
     }
 
     /// The set-point at `t` (s); before the start the first, from the end on that of the end, which goes on at its velocity.
@@ -213,17 +240,13 @@ impl Plan {
     /// The profile, where nothing filters it.
     fn plain_profile(&self) -> Option<&Profile> {
         match &self.told {
-            Told::Profile(profile) if self.filter == 0.0 => Some(profile),
+            Told::Profile(profile) if self.filter == 0.0 && self.held.is_none() => Some(profile),
             _ => None,
         }
     }
 
     pub(crate) fn course(&self) -> &(dyn Course + Send + Sync) {
         &*self.course
-    }
-
-    pub(crate) const fn is_held(&self) -> bool {
-        self.is_held
     }
 
     pub(crate) fn parts(&self) -> &[Impulse] {
@@ -233,7 +256,7 @@ impl Plan {
 
 impl fmt::Debug for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { course, parts, limits, told, published, filter, is_held } = self;
+        let Self { course, parts, limits, told, published, filter, execution, held } = self;
         f.debug_struct("Plan")
             .field("duration", &course.duration())
             .field("parts", parts)
@@ -241,7 +264,8 @@ impl fmt::Debug for Plan {
             .field("told", told)
             .field("published", published)
             .field("filter", filter)
-            .field("is_held", is_held)
+            .field("execution", execution)
+            .field("held", held)
             .finish()
     }
 }

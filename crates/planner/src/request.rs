@@ -2,7 +2,7 @@
 use crate::filter::Filter;
 use crate::plan::{Plan, Told};
 use crate::table::TableMove;
-use servobench_base::Setpoint;
+use servobench_base::{ParamError, Setpoint};
 use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target, Transition};
 use servobench_motion::{Limits, Order, PlanError, Profile, rockwell};
 
@@ -41,8 +41,48 @@ pub struct PointToPoint {
     pub limits: Limits,
     /// Which profile.
     pub method: Method,
-    /// Sample time (s) of which all times are whole multiples; continuous without one.
-    pub sample_time: Option<f64>,
+    /// Samples of which all times are whole multiples; continuous without.
+    pub grid: Option<Grid>,
+}
+
+/// How a move from rest to rest is sampled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grid {
+    /// Sample time (s).
+    pub sample_time: f64,
+    /// How its times are made whole.
+    pub sampling: Sampling,
+    /// How set-points are made of its samples.
+    pub execution: Execution,
+}
+
+/// How the times of a move are made whole numbers of samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Sampling {
+    /// One after the other, from the shortest on: as it is published.
+    #[default]
+    Published,
+    /// With the fewest samples that a step through boxes needs.
+    Fewest,
+}
+
+/// What is between two samples of the highest derivative.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Execution {
+    /// The exact polynomial: the highest derivative is held.
+    #[default]
+    Hold,
+    /// The forward-Euler cascade: sums sample by sample, each set-point held until the next. On the way it lags by half a
+    /// sample for each derivative but one: by 1.5 samples at order 4.
+    Euler,
+}
+
+impl Grid {
+    /// As it is published, and held exactly.
+    #[must_use]
+    pub const fn new(sample_time: f64) -> Self {
+        Self { sample_time, sampling: Sampling::Published, execution: Execution::Hold }
+    }
 }
 
 /// Which profile goes from rest to rest.
@@ -113,19 +153,30 @@ impl Way {
 
 impl PointToPoint {
     fn plan(&self) -> Result<Plan, PlanError> {
-        let Self { distance, order, limits, method, sample_time } = *self;
-        let published = || match sample_time {
-            Some(sample_time) => Profile::plan_sampled(order, distance, &limits, sample_time),
+        let Self { distance, order, limits, method, grid } = *self;
+        let published = || match grid {
+            Some(grid) => Profile::plan_sampled(order, distance, &limits, grid.sample_time),
             None => Profile::plan(order, distance, &limits),
         };
-        let (profile, compared) = match method {
-            Method::Published => (published()?, None),
-            Method::Optimal => (Profile::plan_optimal(order, distance, &limits)?, Some(published()?.duration())),
+        let (profile, compared) = match (method, grid) {
+            (Method::Published, Some(Grid { sampling: Sampling::Fewest, sample_time, .. })) => {
+                let fewest = Profile::plan_fewest(order, distance, &limits, sample_time)?;
+                (fewest, Some(published()?.duration()))
+            }
+            (Method::Published, _) => (published()?, None),
+            (Method::Optimal, None) => {
+                (Profile::plan_optimal(order, distance, &limits)?, Some(published()?.duration()))
+            }
+            (Method::Optimal, Some(Grid { sample_time, .. })) => {
+                let bound = "left out: the shortest profile is continuous";
+                return Err(ParamError { name: "sample_time", value: sample_time, bound }.into());
+            }
         };
+        let execution = grid.map_or(Execution::Hold, |grid| grid.execution);
         let Limits { velocity, acceleration, jerk, snap } = limits;
         let mut sides = [velocity, acceleration, jerk, snap].map(Sides::both);
         sides[order.derivative()..].fill(Sides::both(f64::INFINITY));
-        Ok(Plan::of(profile, Told::Profile(Box::new(profile))).within(sides).instead_of(compared))
+        Ok(Plan::along(&profile, execution)?.within(sides).instead_of(compared))
     }
 }
 

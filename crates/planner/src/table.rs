@@ -1,7 +1,7 @@
 //! Moves through tables: as they are, or as a drive follows that is told velocities.
 use crate::plan::{Plan, Told};
 use crate::polynomials::{Between, Polynomials};
-use servobench_base::Setpoint;
+use servobench_base::{ParamError, Setpoint};
 use servobench_motion::PlanError;
 use servobench_motion::position_profile::{Command, Plateaus, Spline};
 use servobench_motion::pvt::{Knot, Table, average, continuous, smooth};
@@ -41,14 +41,18 @@ pub enum Follow {
     Plateaus(f64),
     /// By profile velocities along its spline, option 2; commands per second.
     Steps(f64),
+    /// The same with the lowest whole number of commands per second that keeps the drive so near to the spline (m or rad).
+    Within(f64),
 }
+
+/// Commands at most that are kept of a move.
+const MOST_COMMANDS: f64 = 1e7;
 
 impl TableMove {
     pub(crate) fn plan(&self) -> Result<Plan, PlanError> {
         let mut knots = self.knots.clone();
         let mut scratch = vec![0.0; knots.len()];
-        let velocity = |knot: Option<&Knot>| knot.and_then(|knot| knot.v).unwrap_or(0.0);
-        let (start, end) = (velocity(knots.first()), velocity(knots.last()));
+        let (start, end) = self.ends();
         match self.follow {
             Follow::Segments => {
                 match self.velocities {
@@ -68,16 +72,36 @@ impl TableMove {
                 let commands = plateaus.commands().collect();
                 let mut cursor = plateaus.cursor();
                 let knots = plateaus.knots();
-                Ok(course(knots, |t| cursor.piece(t), Told::Commands { commands, error: 0.0 }))
+                Ok(course(knots, |t| cursor.piece(t), Told::Commands { commands, error: 0.0, rate: None }))
             }
-            Follow::Steps(rate) => {
-                let stepped = Spline::solve(&mut knots, start, end, &mut scratch)?.stepped(rate)?;
-                let commands: Vec<Command> = stepped.commands().collect();
-                let error = stepped.largest_error();
-                let (first, last) = (self.knots[0], self.knots[self.knots.len() - 1]);
-                Ok(obeyed(commands, error, Setpoint { v: start, ..Setpoint::at_rest(first.x) }, first.t, last.t))
-            }
+            Follow::Steps(rate) => self.stepped(|_| Ok(rate)),
+            Follow::Within(error) => self.stepped(|spline| spline.lowest_rate(error).map(f64::from)),
         }
+    }
+
+    /// Velocities of the first and the last point.
+    fn ends(&self) -> (f64, f64) {
+        let velocity = |knot: Option<&Knot>| knot.and_then(|knot| knot.v).unwrap_or(0.0);
+        (velocity(self.knots.first()), velocity(self.knots.last()))
+    }
+
+    /// The plan that follows the spline by as many commands per second as `choose` says.
+    fn stepped(&self, choose: impl FnOnce(Spline<'_>) -> Result<f64, PlanError>) -> Result<Plan, PlanError> {
+        let (mut knots, mut scratch) = (self.knots.clone(), vec![0.0; self.knots.len()]);
+        let (start, end) = self.ends();
+        let spline = Spline::solve(&mut knots, start, end, &mut scratch)?;
+        let rate = choose(spline)?;
+        let stepped = spline.stepped(rate)?;
+        if rate * spline.table().duration() > MOST_COMMANDS {
+            let bound = "low enough for at most 10 million commands";
+            return Err(ParamError { name: "rate", value: rate, bound }.into());
+        }
+        let commands: Vec<Command> = stepped.commands().collect();
+        let (first, last) = (self.knots[0], self.knots[self.knots.len() - 1]);
+        let state = Setpoint { v: start, ..Setpoint::at_rest(first.x) };
+        let (parts, end) = obeyed(&commands, state, first.t, last.t);
+        let told = Told::Commands { commands, error: stepped.largest_error(), rate: Some(rate) };
+        Ok(Plan::of(Polynomials::new(parts, Between::Polynomial, last.t - first.t, end), told))
     }
 }
 
@@ -86,8 +110,9 @@ fn course(knots: &[Knot], piece: impl FnMut(f64) -> servobench_motion::Piece, to
     Plan::of(polynomials, told)
 }
 
-/// The way of a drive that obeys `commands` from `state` at `start` until `end` (s): a straight line of velocity after each.
-fn obeyed(commands: Vec<Command>, error: f64, mut state: Setpoint, start: f64, end: f64) -> Plan {
+/// The way of a drive that obeys `commands` from `state` at `start` until `end` (s), a straight line of velocity after each:
+/// set-points with the times from `start` (s) at which they begin, and where it ends.
+fn obeyed(commands: &[Command], mut state: Setpoint, start: f64, end: f64) -> (Vec<(f64, Setpoint)>, Setpoint) {
     let untils = commands.iter().skip(1).map(|command| command.t).chain([end]);
     let mut parts = Vec::with_capacity(commands.len());
     for (command, until) in commands.iter().zip(untils) {
@@ -96,6 +121,5 @@ fn obeyed(commands: Vec<Command>, error: f64, mut state: Setpoint, start: f64, e
         parts.push((command.t - start, state));
         state = Setpoint { v: command.velocity, ..state.after(length) };
     }
-    state.a = 0.0;
-    Plan::of(Polynomials::new(parts, Between::Polynomial, end - start, state), Told::Commands { commands, error })
+    (parts, Setpoint { a: 0.0, ..state })
 }

@@ -6,14 +6,21 @@ use servobench_motion::rockwell::{Jerk, MaximumJerk, Move, Shape};
 use servobench_motion::shape::{Impulses, Vibration};
 use servobench_motion::{Limits, Order, PlanError, Profile};
 use servobench_planner::{
-    Averages, Binding, Filter, Follow, Method, Peak, Plan, PointToPoint, Reader, Replanning, Request, Rockwell,
-    TableMove, Told, Velocities, Way,
+    Averages, Binding, Execution, Filter, Follow, Grid, Method, Peak, Plan, PointToPoint, Reader, Replanning, Request,
+    Rockwell, Sampling, TableMove, Told, Velocities, Way,
 };
 
 const LIMITS: Limits = Limits { velocity: 1.0, acceleration: 5.0, jerk: 50.0, snap: 1000.0 };
 
 fn point_to_point(distance: f64, method: Method) -> Way {
-    Way::PointToPoint(PointToPoint { distance, order: Order::Fourth, limits: LIMITS, method, sample_time: None })
+    Way::PointToPoint(PointToPoint { distance, order: Order::Fourth, limits: LIMITS, method, grid: None })
+}
+
+/// 0.02 m, in samples of 1 ms.
+fn sampled(sampling: Sampling, execution: Execution) -> Way {
+    let grid = Some(Grid { sample_time: 1e-3, sampling, execution });
+    let (order, method) = (Order::Fourth, Method::Published);
+    Way::PointToPoint(PointToPoint { distance: 0.02, order, limits: LIMITS, method, grid })
 }
 
 fn plan(way: Way) -> Plan {
@@ -67,6 +74,8 @@ fn all() -> Vec<Plan> {
     vec![
         plan(point_to_point(1.0, Method::Published)),
         plan(point_to_point(-0.02, Method::Optimal)),
+        plan(sampled(Sampling::Fewest, Execution::Hold)),
+        plan(sampled(Sampling::Published, Execution::Euler)),
         plan(Way::Replanning(replanning())),
         plan(Way::Rockwell(rockwell)),
         plan(Way::Table(table(Follow::Segments, Velocities::Continuous))),
@@ -216,7 +225,7 @@ fn a_touched_limit_is_a_binding_of_no_length() {
     let limits = Limits { velocity: 0.3, ..LIMITS };
     let request = |distance| {
         let order = Order::Fourth;
-        Way::PointToPoint(PointToPoint { distance, order, limits, method: Method::Optimal, sample_time: None })
+        Way::PointToPoint(PointToPoint { distance, order, limits, method: Method::Optimal, grid: None })
     };
     let touching = (1..60).map(|k| f64::from(k) * 2e-3).find_map(|distance| {
         let plan = plan(request(distance));
@@ -273,7 +282,7 @@ fn averages_are_means_of_the_last_samples() {
 #[test]
 fn commands_lead_as_near_to_the_spline_as_announced() {
     let plan = plan(Way::Table(table(Follow::Steps(200.0), Velocities::Given)));
-    let Told::Commands { commands, error } = plan.told() else { panic!("{:?}", plan.told()) };
+    let Told::Commands { commands, error, .. } = plan.told() else { panic!("{:?}", plan.told()) };
     assert_eq!(commands.len(), 100);
     let mut knots = table(Follow::Segments, Velocities::Given).knots;
     let mut scratch = [0.0; 5];
@@ -296,7 +305,7 @@ fn plateaus_hit_every_position() {
     for knot in table.knots {
         assert!((plan.at(knot.t - 0.5).x - knot.x).abs() < 1e-15, "{knot:?}");
     }
-    let Told::Commands { commands, error } = plan.told() else { panic!("{:?}", plan.told()) };
+    let Told::Commands { commands, error, .. } = plan.told() else { panic!("{:?}", plan.told()) };
     assert_eq!((commands.len(), error.to_bits()), (5, 0.0_f64.to_bits()));
 }
 
@@ -306,4 +315,65 @@ fn the_gain_over_the_published_profile_is_known() {
     let told = plan.published_duration().unwrap();
     // Snap alone binds: (384/512)^¼.
     assert!((plan.duration() / told - libm::pow(0.75, 0.25)).abs() < 1e-9, "{told}");
+}
+
+/// Oracle: the cascade written down as sums. 1e-15: those of 0.02 m over some hundred samples.
+#[test]
+fn the_cascade_sums_sample_by_sample() {
+    let hold = plan(sampled(Sampling::Published, Execution::Hold));
+    let euler = plan(sampled(Sampling::Published, Execution::Euler));
+    assert_eq!((euler.held(), euler.duration().to_bits()), (Some(1e-3), hold.duration().to_bits()));
+    let [mut x, mut v, mut a, mut j] = [0.0_f64; 4];
+    for t in (0..).map(|k| (f64::from(k) + 0.5) * 1e-3).take_while(|t| *t < hold.duration()) {
+        let (at, snap) = (euler.at(t), hold.at(t).s);
+        assert!((at.x - x).abs() < 1e-15 && (at.v - v).abs() < 1e-13, "{at:?} instead of {x} {v} at {t}");
+        (x, v, a, j) = (x + 1e-3 * v, v + 1e-3 * a, a + 1e-3 * j, j + 1e-3 * snap);
+    }
+    assert_eq!(euler.end(), Setpoint::at_rest(0.02));
+    let slow = Request { duration: Some(1.0), ..Request::new(sampled(Sampling::Published, Execution::Euler)) };
+    let slow = slow.plan().unwrap();
+    assert!(slow.held() == Some(1e-3) && (slow.duration() - 1.0).abs() < 1e-12, "{slow:?}");
+}
+
+#[test]
+fn the_fewest_samples_are_compared_with_the_published_ones() {
+    let [published, fewest] =
+        [Sampling::Published, Sampling::Fewest].map(|sampling| plan(sampled(sampling, Execution::Hold)));
+    assert_eq!(fewest.published_duration().map(f64::to_bits), Some(published.duration().to_bits()));
+    assert!(fewest.duration() <= published.duration());
+}
+
+#[test]
+fn what_would_fill_the_memory_is_refused() {
+    let grid = |sample_time, execution| Some(Grid { sample_time, sampling: Sampling::Published, execution });
+    let way = |grid, method| {
+        Way::PointToPoint(PointToPoint { distance: 1.0, order: Order::Fourth, limits: LIMITS, method, grid })
+    };
+    let said = |way| Request::new(way).plan().unwrap_err().to_string();
+    assert_eq!(
+        said(way(grid(1e-9, Execution::Euler), Method::Published)),
+        "`sample_time` must be long enough for a move of at most 10 million samples, got 0.000000001"
+    );
+    assert_eq!(
+        said(way(grid(1e-3, Execution::Hold), Method::Optimal)),
+        "`sample_time` must be left out: the shortest profile is continuous, got 0.001"
+    );
+    assert_eq!(
+        said(Way::Table(table(Follow::Steps(1e10), Velocities::Given))),
+        "`rate` must be low enough for at most 10 million commands, got 10000000000"
+    );
+}
+
+/// One command per second less would not keep the drive so near.
+#[test]
+fn the_lowest_rate_within_an_error_is_found() {
+    let steps = |follow| {
+        let Told::Commands { error, rate, .. } = plan(Way::Table(table(follow, Velocities::Given))).told().clone()
+        else {
+            panic!("commands");
+        };
+        (error, rate.unwrap())
+    };
+    let (error, rate) = steps(Follow::Within(1e-5));
+    assert!(error <= 1e-5 && steps(Follow::Steps(rate - 1.0)).0 > 1e-5, "{error} at {rate}");
 }

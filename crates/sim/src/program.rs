@@ -2,7 +2,7 @@
 use crate::error::{BuildError, check_length};
 use servobench_base::Setpoint;
 use servobench_motion::{Limits, Order, PlanError};
-use servobench_planner::{Method, Plan, PointToPoint, Reader, Request, Way};
+use servobench_planner::{Grid, Method, Plan, PointToPoint, Reader, Request, Way};
 use servobench_scenario::{MoveStep, Step, Target};
 use servobench_trace::Move;
 
@@ -138,8 +138,8 @@ fn plan_move(step: &MoveStep, position: f64) -> Result<Plan, PlanError> {
         Target::Absolute(target) => target - position,
         Target::Relative(distance) => distance,
     };
-    let (method, sample_time) = (Method::Published, step.sample_time);
-    let way = Way::PointToPoint(PointToPoint { distance, order, limits, method, sample_time });
+    let (method, grid) = (Method::Published, step.sample_time.map(Grid::new));
+    let way = Way::PointToPoint(PointToPoint { distance, order, limits, method, grid });
     Request { duration: step.duration, ..Request::new(way) }.plan()
 }
 
