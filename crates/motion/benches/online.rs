@@ -1,25 +1,41 @@
 //! Cost of planning from any state and of reading a set-point, beside `rsruckig` (order 3) on the same requests:
 //! `cargo bench -p servobench-motion --bench online`.
 //!
-//! A control cycle must bear the slow plans too: the table has percentiles of single calls.
+//! A control cycle must bear the slow plans too: the table has percentiles of single calls. Each is timed in several passes over
+//! all requests, of which the shortest counts: the others have in them what the operating system did in between.
+#[path = "../tests/shared/random.rs"]
+mod shared;
+
 use rsruckig::prelude::{InputParameter, Ruckig, ThrowErrorHandler, Trajectory};
 use servobench_base::Setpoint;
 use servobench_motion::online::{DirectionalLimits, Effort, Target, Transition};
 use servobench_motion::{Limits, Order, Profile};
+use shared::Random;
 use std::hint::black_box;
 use std::time::Instant;
 
 const REQUESTS: usize = 100_000;
+const PASSES: usize = 5;
 
-/// `SplitMix64`, as a number in [0, 1).
-struct Random(u64);
+/// One request: a state on the way of another move, a target at rest or passed at a velocity, limits of which each binds now and
+/// then.
+struct Request {
+    from: Setpoint,
+    x: f64,
+    v: f64,
+    limits: Limits,
+}
+
+impl Request {
+    fn plan(&self, order: Order, effort: Effort) -> Option<Transition> {
+        let target = Target::Position { x: self.x, v: self.v };
+        Transition::plan(order, &self.from, &target, &DirectionalLimits::from(self.limits), effort).ok()
+    }
+}
 
 impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / 9_007_199_254_740_992.0
+    fn signed(&mut self) -> f64 {
+        2.0 * self.unit() - 1.0
     }
 
     fn decades(&mut self, low: f64, high: f64) -> f64 {
@@ -27,15 +43,9 @@ impl Random {
     }
 }
 
-/// One request: a state on the way of another move, a target at rest, limits of which each binds now and then.
-struct Request {
-    from: Setpoint,
-    x: f64,
-    limits: Limits,
-}
-
-fn requests() -> Vec<Request> {
-    let mut random = Random(4);
+/// With velocities at the targets up to `passing` of the limit.
+fn requests(passing: f64) -> Vec<Request> {
+    let mut random = Random::seeded(4);
     let mut all = Vec::with_capacity(REQUESTS);
     while all.len() < REQUESTS {
         let limits = Limits {
@@ -46,12 +56,10 @@ fn requests() -> Vec<Request> {
         };
         let mut from = Setpoint::default();
         for _ in 0..3 {
-            let x = (random.unit() - 0.5).signum() * random.decades(-2.0, 1.0);
-            let target = Target::Position { x, v: 0.0 };
-            let Ok(way) = Transition::plan(Order::Fourth, &from, &target, &limits.into(), Effort::Fast) else {
-                continue;
-            };
-            all.push(Request { from, x, limits });
+            let x = random.signed().signum() * random.decades(-2.0, 1.0);
+            let request = Request { from, x, v: passing * limits.velocity * random.signed(), limits };
+            let Some(way) = request.plan(Order::Fourth, Effort::Fast) else { continue };
+            all.push(request);
             from = Setpoint { x: 0.0, ..way.at(random.unit() * way.duration()) };
         }
     }
@@ -60,14 +68,14 @@ fn requests() -> Vec<Request> {
 
 /// Times of single calls (ns), sorted.
 fn times<T>(requests: &[Request], mut call: impl FnMut(&Request) -> T) -> Vec<f64> {
-    let mut times: Vec<f64> = requests
-        .iter()
-        .map(|request| {
+    let mut times = vec![f64::INFINITY; requests.len()];
+    for _ in 0..PASSES {
+        for (request, shortest) in requests.iter().zip(&mut times) {
             let start = Instant::now();
             black_box(call(black_box(request)));
-            start.elapsed().as_nanos() as f64
-        })
-        .collect();
+            *shortest = shortest.min(start.elapsed().as_nanos() as f64);
+        }
+    }
     times.sort_by(f64::total_cmp);
     times
 }
@@ -77,36 +85,47 @@ fn row(name: &str, times: &[f64]) {
     println!("{name:<36} {:>9.0} {:>9.0} {:>9.0} {:>9.0}", at(500), at(900), at(990), at(999));
 }
 
-fn main() {
-    let requests = requests();
-    println!("{:<36} {:>9} {:>9} {:>9} {:>9}", "plan, ns", "median", "90 %", "99 %", "99.9 %");
-    row("nothing: what the clock takes", &times(&requests, |_| ()));
-    let plan = |order, effort| {
-        move |request: &Request| {
-            let target = Target::Position { x: request.x, v: 0.0 };
-            Transition::plan(order, &request.from, &target, &DirectionalLimits::from(request.limits), effort)
-        }
-    };
-    row("online order 4, fast", &times(&requests, plan(Order::Fourth, Effort::Fast)));
-    row("online order 4, refined", &times(&requests, plan(Order::Fourth, Effort::Refined)));
-    row("online order 3", &times(&requests, plan(Order::Third, Effort::Fast)));
-    let mut ruckig = Ruckig::<1, ThrowErrorHandler>::new(None, 0.001);
-    let mut trajectory = Trajectory::new(None);
-    let mut input = InputParameter::new(None);
-    let mut theirs = |from: &Setpoint, request: &Request| {
+/// `rsruckig` from `from` to the target of `request`.
+struct Peer {
+    ruckig: Ruckig<1, ThrowErrorHandler>,
+    input: InputParameter<1>,
+    trajectory: Trajectory<1>,
+}
+
+impl Peer {
+    fn new() -> Self {
+        Self { ruckig: Ruckig::new(None, 0.001), input: InputParameter::new(None), trajectory: Trajectory::new(None) }
+    }
+
+    fn plan(&mut self, from: &Setpoint, request: &Request) -> bool {
+        let Self { ruckig, input, trajectory } = self;
         input.current_velocity[0] = from.v;
         input.current_acceleration[0] = from.a;
         input.target_position[0] = request.x;
+        input.target_velocity[0] = request.v;
         input.max_velocity[0] = request.limits.velocity;
         input.max_acceleration[0] = request.limits.acceleration;
         input.max_jerk[0] = request.limits.jerk;
-        ruckig.calculate(&input, &mut trajectory).is_ok()
-    };
-    row("rsruckig order 3", &times(&requests, |request| theirs(&request.from, request)));
-    row("rsruckig order 3, rest to rest", &times(&requests, |request| theirs(&Setpoint::default(), request)));
-    row("order 4 published, rest to rest", &times(&requests, |r| Profile::plan(Order::Fourth, r.x, &r.limits)));
-    row("order 4 optimal, rest to rest", &times(&requests, |r| Profile::plan_optimal(Order::Fourth, r.x, &r.limits)));
-    samples(&requests);
+        ruckig.calculate(input, trajectory).is_ok()
+    }
+}
+
+fn main() {
+    let (stopping, passing) = (requests(0.0), requests(1.0));
+    println!("{:<36} {:>9} {:>9} {:>9} {:>9}", "plan, ns", "median", "90 %", "99 %", "99.9 %");
+    row("nothing: what the clock takes", &times(&stopping, |_| ()));
+    let mut peer = Peer::new();
+    for (requests, what) in [(&stopping, "to rest"), (&passing, "to a velocity")] {
+        row(&format!("order 4 {what}, fast"), &times(requests, |r| r.plan(Order::Fourth, Effort::Fast)));
+        row(&format!("order 4 {what}, refined"), &times(requests, |r| r.plan(Order::Fourth, Effort::Refined)));
+        row(&format!("order 3 {what}"), &times(requests, |r| r.plan(Order::Third, Effort::Fast)));
+        row(&format!("order 3 {what}, rsruckig"), &times(requests, |r| peer.plan(&r.from, r)));
+    }
+    let at_rest = Setpoint::default();
+    row("order 3 rest to rest, rsruckig", &times(&stopping, |r| peer.plan(&at_rest, r)));
+    row("order 4 rest to rest, published", &times(&stopping, |r| Profile::plan(Order::Fourth, r.x, &r.limits)));
+    row("order 4 rest to rest, optimal", &times(&stopping, |r| Profile::plan_optimal(Order::Fourth, r.x, &r.limits)));
+    samples(&stopping);
 }
 
 /// One set-point of a planned way, over 1000 of each.
@@ -114,9 +133,7 @@ fn samples(requests: &[Request]) {
     const SAMPLES: u32 = 1000;
     let (mut by_time, mut by_piece, mut count) = (0.0, 0.0, 0.0);
     for request in requests.iter().take(1000) {
-        let target = Target::Position { x: request.x, v: 0.0 };
-        let limits = request.limits.into();
-        let Ok(way) = Transition::plan(Order::Fourth, &request.from, &target, &limits, Effort::Fast) else { continue };
+        let Some(way) = request.plan(Order::Fourth, Effort::Fast) else { continue };
         let step = way.duration() / f64::from(SAMPLES);
         let start = Instant::now();
         for k in 0..SAMPLES {

@@ -10,16 +10,21 @@
 //!   acceleration and on with it,
 //! - *home* the fastest way to the target's derivatives, one integrator less: the same problem one order below.
 //!
-//! Who follows *away* for a time τ and goes *home* from there covers the more the longer τ is; the first τ that meets the target is taken. Where
-//! that would pass the limit, the limit is touched for an instant, with the one value of the highest state with which the
-//! target is met; where a touch at rest is not far enough, there is a cruise. So order n is a root in one unknown over
-//! order n − 1, and order 2 is two parabolas.
+//! Who follows *away* for a time τ and goes *home* from there covers the more the longer τ is; the first τ that meets the
+//! target is taken. Where that would pass the limit, the limit is touched for an instant, with the one value of the highest
+//! state with which the target is met; where a touch at rest is not far enough, there is a cruise. So order n is a root in
+//! one unknown over order n − 1, and order 2 is two parabolas.
+//!
+//! How much farther one gets by a longer τ is known in closed form (`second::Way::grows`, `costate`), so that Newton's method
+//! finds each root in a few looks, and the inner one, which begins where the last one ended, in fewer.
 //!
 //! Order 4 adds the one thing that order 3 does not need: a state may be so near its velocity limit that the fastest way
 //! passes it though a slower one does not. `ladder` says what is tried then.
+mod costate;
 mod first;
 mod fourth;
 mod ladder;
+mod newton;
 mod path;
 mod second;
 mod third;

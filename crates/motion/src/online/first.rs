@@ -1,12 +1,15 @@
 //! The first time at which a target is met.
+use super::newton::{Bracket, Near};
 use super::path::{Path, Stretch};
-use crate::root::{between, increasing};
 
 /// A product takes a fifth of the time of a quotient.
 pub(crate) const THIRD: f64 = 1.0 / 3.0;
 
 /// Parts of a stretch that are looked at one by one.
-const PARTS: u32 = 12;
+const PARTS: u32 = 4;
+
+/// Points at most that are looked at on a hill.
+const CLIMB: usize = 30;
 
 /// A state that a stretch leads on.
 pub(crate) trait State: Copy {
@@ -18,69 +21,83 @@ pub(crate) trait State: Copy {
         path.stretches().iter().fold(self, |state, Stretch { value, length }| state.after(*value, *length))
     }
 
-    /// The state after `time` on `path`.
-    fn until<const N: usize>(self, path: &Path<N>, mut time: f64) -> Self {
-        let mut state = self;
+    /// The state after `time` on `path`, and the highest derivative there.
+    fn until<const N: usize>(self, path: &Path<N>, mut time: f64) -> (Self, f64) {
+        let (mut state, mut last) = (self, 0.0);
         for Stretch { value, length } in path.stretches() {
-            state = state.after(*value, length.min(time));
+            (state, last) = (state.after(*value, length.min(time)), *value);
             time -= length;
             if time <= 0.0 {
                 break;
             }
         }
-        state
+        (state, last)
     }
 }
 
-/// The first time on the way of these `stretches` from `start` at which `beyond` of the state is zero; `None` when it stays
-/// below. At the start it is `first`, below zero.
+/// The first time on the way of these `stretches` from `start` at which `beyond` is zero; `None` when it stays below, as it is at
+/// the start. It gives its value at a state, and its slope while the highest derivative is what it is there.
 ///
 /// Who turns home later covers more than whoever turned before and waits at the target's velocity. Towards a target that
-/// moves away, or rests, that is more by any measure, and `grows`. Towards one that moves the other way the waiting counts
-/// against it: what is beyond may rise, sink and rise again, and there can be several times.
-pub(crate) fn meeting<S: State>(
-    start: S,
-    first: f64,
-    stretches: &[Stretch],
-    grows: bool,
-    beyond: impl Fn(S) -> f64,
-) -> Option<f64> {
-    let parts = if grows { 1 } else { PARTS };
-    let (mut state, mut begin, mut reached) = (start, 0.0, first);
+/// moves away, or rests, that is more by any measure, and [`Bracket::root`] finds where it is enough. Towards one that moves
+/// the other way the waiting counts against it: what is beyond may rise, sink and rise again, and there can be several times.
+pub(crate) fn meeting<S: State>(start: S, stretches: &[Stretch], beyond: impl Fn(S, f64) -> (f64, f64)) -> Option<f64> {
+    let (mut state, mut begin) = (start, 0.0);
     for Stretch { value, length } in stretches {
-        let beyond = |time: f64| beyond(state.after(*value, time));
-        // The last two points.
-        let mut last = [(0.0, reached); 2];
-        for k in 1..=parts {
-            let time = length * f64::from(k) / f64::from(parts);
-            let now = (time, beyond(time));
-            if !grows && last[1].1 < 0.0 && last[1].1 >= last[0].1 && last[1].1 > now.1 && k > 1 {
-                let top = highest(last[0].0, time, beyond);
-                if beyond(top) >= 0.0 {
-                    return Some(begin + increasing(last[0].0, top, beyond));
-                }
+        let beyond = |time: f64| beyond(state.after(*value, time), *value);
+        let mut low = Point::of(&beyond, 0.0);
+        for k in 1..=PARTS {
+            let high = Point::of(&beyond, length * f64::from(k) / f64::from(PARTS));
+            let reached = if high.value >= 0.0 { Some(high) } else { hill(&beyond, low, high) };
+            if let Some(high) = reached {
+                let bracket = Bracket { low: low.time, high: high.time, missing: -low.value };
+                let middle = Near::to(0.5 * (low.time + high.time));
+                return bracket.root(&middle, |part| part, beyond).map(|time| begin + time);
             }
-            if now.1 >= 0.0 {
-                return Some(begin + between(last[1], now, beyond));
-            }
-            last = [last[1], now];
+            low = high;
         }
         state = state.after(*value, *length);
-        (begin, reached) = (begin + length, last[1].1);
+        begin += length;
     }
     None
 }
 
-/// Where `f`, which rises and falls between `low` and `high`, is highest: by the golden section.
-fn highest(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    for _ in 0..30 {
-        let step = GOLDEN * (high - low);
-        if f(high - step) >= f(low + step) {
-            high = low + step;
+/// A function at a time.
+#[derive(Clone, Copy)]
+struct Point {
+    time: f64,
+    value: f64,
+    slope: f64,
+}
+
+impl Point {
+    fn of(f: &impl Fn(f64) -> (f64, f64), time: f64) -> Self {
+        let (value, slope) = f(time);
+        Self { time, value, slope }
+    }
+}
+
+/// A time between two points below zero at which `f` is not: on a hill that is high enough.
+///
+/// The tangents at both sides of a hill meet above it. Where they do is looked at, and taken for that side to which it
+/// belongs, until a point is not below zero, or the tangents meet there.
+fn hill(f: &impl Fn(f64) -> (f64, f64), mut low: Point, mut high: Point) -> Option<Point> {
+    for _ in 0..CLIMB {
+        let is_hill = low.slope > 0.0 && high.slope < 0.0;
+        let (length, bend) = (high.time - low.time, low.slope - high.slope);
+        let part = (high.value - low.value - high.slope * length) / (bend * length);
+        if !is_hill || low.value + low.slope * part * length < 0.0 {
+            return None;
+        }
+        let point = Point::of(f, low.time + part.clamp(0.1, 0.9) * length);
+        if point.value >= 0.0 {
+            return Some(point);
+        }
+        if point.slope > 0.0 {
+            low = point;
         } else {
-            low = high - step;
+            high = point;
         }
     }
-    0.5 * (low + high)
+    None
 }

@@ -4,6 +4,7 @@
 //! ([`super::third`]). Where that would exceed the velocity limit, the limit is touched for an instant, with the jerk with
 //! which the target's position is met; where a touch at rest (jerk zero) is not far enough, it cruises.
 use super::first::{State, THIRD, meeting};
+use super::newton::{Bracket, Near};
 use super::path::{Path, Stretch};
 use super::second::{self, Limits2, Sides, State2};
 use super::third::{self, Limits3, State3};
@@ -11,7 +12,7 @@ use super::watch::{ROUNDING, Watch};
 use crate::root::increasing;
 
 /// Stretches at most: there, a cruise, and back.
-pub(crate) const STRETCHES: usize = 8 + 1 + 8;
+pub(crate) const STRETCHES: usize = third::STRETCHES + 1 + third::STRETCHES;
 
 /// A state of four integrators in a row.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -122,14 +123,29 @@ pub(crate) fn fastest(from: State4, to: State4, limits: &Limits4) -> Option<Path
     }
     // Up to the largest acceleration, and on with it until the velocity limit would be passed.
     let limit = State2 { v: a.at(sign), a: 0.0 };
-    let mut away = Path::<4>::EMPTY;
+    let mut away = Path::<{ second::STRETCHES + 1 }>::EMPTY;
     away.extend(&second::fastest(State2 { v: from.a, a: from.j }, limit, &Limits2 { a: Sides::both(j), j: d }));
     away.push(0.0, (v.towards(sign) - sign * from.along(&away).v) / a.towards(sign));
-    let beyond = |turn: State4| sign * (turn.along(&third::fastest(turn.upper(), to.upper(), &upper)).x - to.x);
-    if let Some(time) = meeting(from, -missing.abs(), away.stretches(), grows, beyond) {
-        let turn = from.until(&away, time);
+    let near = Near::nothing();
+    let home = |turn: State4| third::way(turn.upper(), to.upper(), &upper, &near);
+    let beyond = |turn: State4, rate: f64| {
+        let third::Way { path, by_a } = home(turn);
+        let first = path.stretches().first().map_or(0.0, |first| first.value);
+        (sign * (turn.along(&path).x - to.x), sign * (rate - first) * by_a)
+    };
+    let time = if grows {
+        let bracket = Bracket { low: 0.0, high: away.duration(), missing: missing.abs() };
+        let fourth_root = |part: f64| libm::sqrt(libm::sqrt(part));
+        bracket.root(&Near::nothing(), fourth_root, |time| {
+            let (turn, rate) = from.until(&away, time);
+            beyond(turn, rate)
+        })
+    } else {
+        meeting(from, away.stretches(), beyond)
+    };
+    if let Some(time) = time {
         path.extend_until(&away, time);
-        path.extend(&third::fastest(turn.upper(), to.upper(), &upper));
+        path.extend(&home(from.until(&away, time).0).path);
         if from.keeps(&path, limits) {
             return Some(path);
         }
@@ -161,15 +177,18 @@ fn cruise(from: State4, to: State4, sign: f64, limits: &Limits4) -> Option<Path<
 /// beyond, the limit is met in quite another way.
 fn touch(from: State4, to: State4, sign: f64, limits: &Limits4) -> Option<Path<STRETCHES>> {
     let upper = limits.upper();
+    let near = [Near::nothing(), Near::nothing()];
     let halves = |jerk: f64| {
         let join = State3 { p: limits.v.at(sign), v: 0.0, a: -sign * jerk };
-        let there = third::fastest(from.upper(), join, &upper);
-        let back = third::fastest(join, to.upper(), &upper);
+        let there = third::way(from.upper(), join, &upper, &near[0]).path;
+        let back = third::way(join, to.upper(), &upper, &near[1]).path;
         let arrives = there.stretches().last().is_none_or(|last| last.value * sign >= 0.0);
         let leaves = back.stretches().first().is_none_or(|first| first.value * sign <= 0.0);
         (arrives && leaves).then_some((there, back))
     };
-    let missed = |there: &Path<8>, back: &Path<8>| sign * (to.x - from.along(there).along(back).x);
+    let missed = |there: &Path<{ third::STRETCHES }>, back: &Path<{ third::STRETCHES }>| {
+        sign * (to.x - from.along(there).along(back).x)
+    };
     let beyond = (to.x - from.x).abs();
     let short = |jerk: f64| halves(jerk).map_or(beyond, |(there, back)| missed(&there, &back));
     let (there, back) = halves(increasing(0.0, limits.j, short))?;

@@ -17,7 +17,7 @@ use super::watch::ROUNDING;
 use crate::root::increasing;
 
 /// Stretches at most: back into the jerk limit, braking twice, and what [`fourth::fastest`] has.
-pub(crate) const STRETCHES: usize = 1 + 3 + 3 + fourth::STRETCHES;
+pub(crate) const STRETCHES: usize = 1 + 2 * second::STRETCHES + fourth::STRETCHES;
 
 /// A way, and how far it is beyond the limits, as a part of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,8 +65,8 @@ pub(crate) fn plan(from: State4, goal: &Goal, limits: &Limits4, effort: Effort) 
         Plan { path, excess, fault }
     };
     // `brake` for a while, then the fastest way.
-    let after = |brake: &Path<3>, time: f64| {
-        let rest = goal.fastest(start.until(brake, time), limits)?;
+    let after = |brake: &Path<{ second::STRETCHES }>, time: f64| {
+        let rest = goal.fastest(start.until(brake, time).0, limits)?;
         let mut path = back;
         path.extend_until(brake, time);
         path.extend(&rest);
@@ -98,9 +98,9 @@ pub(crate) fn plan(from: State4, goal: &Goal, limits: &Limits4, effort: Effort) 
     }
     // As long through zero as the velocity limit demands, and no longer: the other limit may be near, too.
     let calmed = |time: f64| {
-        let mut path = Path::<6>::EMPTY;
+        let mut path = Path::<{ 2 * second::STRETCHES }>::EMPTY;
         path.extend_until(&through_zero, time);
-        path.extend(&bring(start.until(&through_zero, time), 0.0));
+        path.extend(&bring(start.until(&through_zero, time).0, 0.0));
         path
     };
     let room = |time: f64| {
@@ -119,7 +119,7 @@ pub(crate) fn plan(from: State4, goal: &Goal, limits: &Limits4, effort: Effort) 
 }
 
 /// When the acceleration passes zero on `path`.
-fn crossing(from: State4, path: &Path<3>) -> f64 {
+fn crossing(from: State4, path: &Path<{ second::STRETCHES }>) -> f64 {
     let (mut state, mut start) = (from, 0.0);
     if from.a == 0.0 {
         return 0.0;

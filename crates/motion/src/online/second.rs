@@ -3,6 +3,9 @@
 use super::first::THIRD;
 use super::path::Path;
 
+/// Stretches at most: a rate, a hold, and the other rate.
+pub(crate) const STRETCHES: usize = 3;
+
 /// A state of two integrators in a row: `v` and its rate `a`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct State2 {
@@ -50,22 +53,64 @@ impl Sides {
     }
 }
 
-/// The fastest way between two states, as it is in the direction in which it begins.
-struct Way {
-    /// The direction.
-    sign: f64,
-    /// Rates up, none, and down: how long each lasts.
-    up: f64,
-    hold: f64,
-    down: f64,
-    /// Largest value of `a`.
+/// The fastest way between two states: one rate, none, and the opposite one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Way {
+    /// The first rate.
+    pub(crate) rate: f64,
+    /// How long each lasts.
+    pub(crate) up: f64,
+    pub(crate) hold: f64,
+    pub(crate) down: f64,
+    /// Largest value of `a` in the direction of the first rate.
     peak: f64,
+}
+
+impl Way {
+    pub(crate) fn path(&self) -> Path<STRETCHES> {
+        let mut path = Path::EMPTY;
+        path.push(self.rate, self.up);
+        path.push(0.0, self.hold);
+        path.push(-self.rate, self.down);
+        path
+    }
+
+    pub(crate) fn duration(&self) -> f64 {
+        self.up + self.hold + self.down
+    }
+
+    /// The integral of `v` over it.
+    #[inline]
+    pub(crate) fn covered(&self, from: State2, to: State2) -> f64 {
+        let Self { rate, up, hold, down, .. } = *self;
+        let rise = up * (from.v + 0.5 * up * (from.a + up * THIRD * rate));
+        let fall = down * (to.v - 0.5 * down * (to.a + down * THIRD * rate));
+        rise + hold * self.middle(from, to) + fall
+    }
+
+    /// `v` in the middle of the hold.
+    #[inline]
+    fn middle(&self, from: State2, to: State2) -> f64 {
+        0.5 * (from.v + to.v) + (to.a * to.a - from.a * from.a) / (4.0 * self.rate)
+    }
+
+    /// How [`covered`](Self::covered) and what is covered before grow with the time for which `a` has changed at the rate `w` before.
+    ///
+    /// It is the same from every state on this way: F(p, v, a) with v + a·∂F/∂v + u·∂F/∂a = 0 at the first rate u. Who goes on
+    /// at another rate w for dt before changes it by (w − u)·∂F/∂a·dt = (1 − w/u)·(v + a·∂F/∂v)·dt. As v rises by dv, the middle
+    /// of the way is reached dv/peak earlier: ∂F/∂v = up + hold/2 − (v in the middle)/peak.
+    #[inline]
+    pub(crate) fn grows(&self, from: State2, to: State2, w: f64) -> f64 {
+        let Self { rate, up, hold, peak, .. } = *self;
+        let by_v = up + 0.5 * hold - self.middle(from, to) / peak.copysign(rate);
+        (1.0 - w / rate) * (from.v + from.a * by_v)
+    }
 }
 
 /// One rate, a hold, and the other rate. Which comes first is told by the straight way between the two values of `a`: who has
 /// to gain more than that way gains goes up first (Athans & Falb, *Optimal Control*, §7.2).
 #[inline]
-fn way(from: State2, to: State2, limits: &Limits2) -> Way {
+pub(crate) fn way(from: State2, to: State2, limits: &Limits2) -> Way {
     let straight = (to.a + from.a) * (to.a - from.a).abs() / (2.0 * limits.j);
     let gain = to.v - from.v;
     let sign = if gain >= straight { 1.0 } else { -1.0 };
@@ -76,28 +121,10 @@ fn way(from: State2, to: State2, limits: &Limits2) -> Way {
     let limit = limits.a.towards(sign);
     let (peak, hold) =
         if free <= limit { (free, 0.0) } else { (limit, (gain - (limit * limit - squares) / limits.j) / limit) };
-    Way { sign, up: (peak - a_0) / limits.j, hold, down: (peak - a_1) / limits.j, peak }
+    Way { rate: sign * limits.j, up: (peak - a_0) / limits.j, hold: hold.max(0.0), down: (peak - a_1) / limits.j, peak }
 }
 
 /// The fastest way from `from`, with `a` within its limits, to `to`.
-pub(crate) fn fastest(from: State2, to: State2, limits: &Limits2) -> Path<3> {
-    let Way { sign, up, hold, down, .. } = way(from, to, limits);
-    let mut path = Path::EMPTY;
-    path.push(sign * limits.j, up);
-    path.push(0.0, hold);
-    path.push(-sign * limits.j, down);
-    path
-}
-
-/// The integral of `v` over that way.
-#[inline]
-pub(crate) fn covered(from: State2, to: State2, limits: &Limits2) -> f64 {
-    let Way { sign, up, hold, down, peak } = way(from, to, limits);
-    let hold = hold.max(0.0);
-    let (v, a, j) = (sign * from.v, sign * from.a, limits.j);
-    let risen = v + 0.5 * (a + peak) * up;
-    let held = risen + peak * hold;
-    let rise = up * (v + up / 2.0 * (a + up * THIRD * j));
-    let fall = down * (held + down / 2.0 * (peak - down * THIRD * j));
-    sign * (rise + hold * (risen + 0.5 * peak * hold) + fall)
+pub(crate) fn fastest(from: State2, to: State2, limits: &Limits2) -> Path<STRETCHES> {
+    way(from, to, limits).path()
 }

@@ -4,10 +4,15 @@
 //! acceleration from there on, covers the more the longer τ is. The τ with which the target's position is met is the
 //! fastest way: one rate, the other, the first again, with holds where acceleration or velocity is at its limit. When the
 //! whole way to the velocity limit is not far enough, a cruise there makes up the rest.
+use super::costate;
 use super::first::{State, THIRD, meeting};
+use super::newton::{Bracket, Near};
 use super::path::{Path, Stretch};
 use super::second::{self, Limits2, Sides, State2};
 use super::watch::Watch;
+
+/// Stretches at most: back into the limit of acceleration, there, a cruise, and back.
+pub(crate) const STRETCHES: usize = 1 + second::STRETCHES + 1 + second::STRETCHES;
 
 /// A state of three integrators in a row.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,9 +59,21 @@ impl State3 {
     }
 }
 
+/// A fastest way.
+pub(crate) struct Way {
+    pub(crate) path: Path<STRETCHES>,
+    /// The change of the integral of `p` over it with `a` where it begins.
+    pub(crate) by_a: f64,
+}
+
 /// The fastest way from `from` to `to`. A target that is passed with an acceleration may be missed, as there may be no way of
 /// this kind.
-pub(crate) fn fastest(from: State3, to: State3, limits: &Limits3) -> Path<8> {
+pub(crate) fn fastest(from: State3, to: State3, limits: &Limits3) -> Path<STRETCHES> {
+    way(from, to, limits, &Near::nothing()).path
+}
+
+/// The same, where τ is `near` the one of the last way.
+pub(crate) fn way(from: State3, to: State3, limits: &Limits3, near: &Near) -> Way {
     let Limits3 { v, a, j } = *limits;
     let upper = Limits2 { a, j };
     let mut path = Path::EMPTY;
@@ -64,25 +81,48 @@ pub(crate) fn fastest(from: State3, to: State3, limits: &Limits3) -> Path<8> {
     let (excess, side) = a.excess(from.a);
     path.push(-side * j, excess / j);
     let start = from.along(&path);
-    let home = |turn: State3| turn.p + second::covered(turn.upper(), to.upper(), &upper);
-    let missing = to.p - home(start);
+    let home = |turn: State3| second::way(turn.upper(), to.upper(), &upper);
+    let direct = home(start);
+    let missing = to.p - (start.p + direct.covered(start.upper(), to.upper()));
     if missing == 0.0 {
-        path.extend(&second::fastest(start.upper(), to.upper(), &upper));
-        return path;
+        path.extend(&direct.path());
+        return Way { path, by_a: 0.0 };
     }
     let sign = if missing > 0.0 { 1.0 } else { -1.0 };
-    let away = second::fastest(start.upper(), State2 { v: v.at(sign), a: 0.0 }, &upper);
-    let beyond = |turn: State3| sign * (home(turn) - to.p);
-    if let Some(time) = meeting(start, -missing.abs(), away.stretches(), sign * to.v >= 0.0, beyond) {
+    let limit = State2 { v: v.at(sign), a: 0.0 };
+    let there = second::way(start.upper(), limit, &upper);
+    let away = there.path();
+    let beyond = |turn: State3, rate: f64| {
+        let back = home(turn);
+        let covered = turn.p + back.covered(turn.upper(), to.upper());
+        (sign * (covered - to.p), sign * back.grows(turn.upper(), to.upper(), rate))
+    };
+    let time = if sign * to.v >= 0.0 {
+        // From where the ways part to where they are the same again.
+        let bracket = Bracket {
+            low: if there.rate * direct.rate > 0.0 { there.up.min(direct.up) } else { 0.0 },
+            high: if there.rate * sign > 0.0 { there.up + there.hold } else { there.duration() },
+            missing: missing.abs(),
+        };
+        bracket.root(near, libm::cbrt, |time| {
+            let (turn, rate) = start.until(&away, time);
+            beyond(turn, rate)
+        })
+    } else {
+        meeting(start, away.stretches(), beyond)
+    };
+    if let Some(time) = time {
+        let back = home(start.until(&away, time).0);
         path.extend_until(&away, time);
-        path.extend(&second::fastest(start.until(&away, time).upper(), to.upper(), &upper));
-        return path;
+        path.extend(&back.path());
+        let risen = time.min(there.up);
+        let held = (time - risen).min(there.hold);
+        return Way { path, by_a: costate::by_a([risen, held, time - risen - held], None, &back, to.p) };
     }
-    let limit = start.along(&away);
-    let rest = second::fastest(State2 { v: v.at(sign), a: 0.0 }, to.upper(), &upper);
-    let short = to.p - limit.along(&rest).p;
+    let back = second::way(limit, to.upper(), &upper);
+    let cruise = (to.p - start.along(&away).along(&back.path()).p) / limit.v;
     path.extend(&away);
-    path.push(0.0, short / v.at(sign));
-    path.extend(&rest);
-    path
+    path.push(0.0, cruise);
+    path.extend(&back.path());
+    Way { path, by_a: costate::by_a([there.up, there.hold, there.down], Some(cruise), &back, to.p) }
 }
