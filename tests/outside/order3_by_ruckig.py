@@ -70,7 +70,7 @@ def judge(kind: str, requests: list[Request]) -> list[str]:
         defect = plan.defect()
         worst_defect = max(worst_defect, defect)
         if defect > BAR:
-            wrong.append(f"{plan.request} is beyond its limits or beside its target by {defect:.1e}")
+            wrong.append(f"{plan.request} is {defect:.1e} beyond its limits or beside its target")
         theirs = ruckig_duration(plan.request)
         if theirs is None:
             refused += 1
