@@ -29,7 +29,11 @@ class Random(random.Random):
             return Limits.both(v, a, jerk, snap)
         return Limits(v * self.uniform(0.7, 1.4), v, a * self.uniform(0.7, 1.4), a, jerk, snap)
 
+    def within(self, below: float, above: float) -> float:
+        """Between -below and above; now and then at one of them or at zero."""
+        return self.choice((-below, 0.0, above)) if self.random() < 0.2 else self.uniform(-below, above)
+
     def state(self, limits: Limits) -> State:
-        """At zero, with any velocity and acceleration within the limits."""
-        v = self.uniform(-limits.v_below, limits.v_above)
-        return State(0.0, v, self.uniform(-limits.a_below, limits.a_above))
+        """At zero, with a velocity and an acceleration within the limits."""
+        v = self.within(limits.v_below, limits.v_above)
+        return State(0.0, v, self.within(limits.a_below, limits.a_above))

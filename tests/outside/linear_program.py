@@ -39,9 +39,9 @@ POWERS = np.array([1, 2, 3, 4])
 class Ways:
     """All ways on one grid from a state to rest somewhere, within the limits.
 
-    The unit of time is the duration, that of the snap its limit; only the bounds of the program depend on the duration, and
-    each solution starts from the one before. The states are in units of the least that limits them, divided by a power of the
-    number of intervals: the rows of the program then hold numbers of similar size.
+    The unit of time is the duration, that of the snap its limit: only the bounds of the program depend on the duration, and
+    each solution starts from the one before. The states are in units of the least that limits them, divided by a power of
+    the number of intervals: the rows of the program then hold numbers of similar size.
     """
 
     def __init__(self, start: State, limits: Limits, nodes: Vector, duration: float) -> None:

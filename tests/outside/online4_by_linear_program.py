@@ -1,8 +1,8 @@
 """Transitions of order 4 from moving states against the optimum of linear programs.
 
 The states are those in which moves are aborted that were themselves begun by aborting others, within limits that differ by
-direction; the targets are at rest. In the median nothing is above the optimum. What is allowed beside is for the approach to a
-limit in ever shorter swings, which the planner leaves out, and in `fast` for the bounded amount of work.
+direction; the targets are at rest. In the median nothing is above the optimum. What is allowed beside is for the approach to
+a limit in ever shorter swings, which the planner leaves out, and in `fast` for the bounded amount of work.
 Size: 300 states, scaled by `SERVOBENCH_SWEEP`.
 """
 
@@ -75,7 +75,7 @@ def main() -> None:
         for percent, bar in bars.items():
             found = np.percentile(above, percent)
             if found > bar:
-                wrong.append(f"`{effort}` is {found:.1e} above the optimum at the {percent}th percentile, at most {bar} is allowed")
+                wrong.append(f"`{effort}` is {found:.1e} above the optimum at {percent} %, at most {bar} is allowed")
                 wrong.append(f"the worst, {max(above):.1e} above: {slowest.request} takes {slowest.duration} s")
         if max(defects) > DEFECT:
             wrong.append(f"{worst.request} is {max(defects):.1e} beyond its limits or beside its target")

@@ -1,7 +1,8 @@
 """Order 3 against Ruckig (Berscheid & Kröger, RSS 2021): from rest to rest and from moving starts, equal to 1e-9.
 
-It is Ruckig's own C++, as its authors publish it for Python. A start whose acceleration carries the velocity beyond its
-limit is not asked for: there Ruckig brakes first, which takes longer. What Ruckig refuses is counted.
+It is Ruckig's own C++, as its authors publish it for Python. Where the acceleration at the start carries the velocity beyond
+its limit, whatever is done, Ruckig first comes back to the limit and plans from there: then ours may be shorter, but not go
+further beyond. What Ruckig refuses is counted.
 Size: 100 000 requests, scaled by `SERVOBENCH_SWEEP`.
 """
 
@@ -27,17 +28,14 @@ def moving(random: Random) -> Request:
     """From any state within limits that differ by direction, to a position passed at a velocity or at rest."""
     length, time = random.decades(-4, 2), random.decades(-2, 1)
     limits = random.limits(length, time, directional=True)
-    start = random.state(limits)
-    while is_carried_beyond(start, limits.jerk, -limits.v_below, limits.v_above):
-        start = random.state(limits)
-    passed_at = random.choice((0.0, random.state(limits).v))
-    to = State(random.sign() * length * random.decades(-2, 1.5), passed_at)
-    return Request("transition fast", 3, start, to, limits)
+    to = State(random.sign() * length * random.decades(-2, 1.5), random.choice((0.0, random.state(limits).v)))
+    return Request("transition fast", 3, random.state(limits), to, limits)
 
 
-def is_carried_beyond(start: State, jerk: float, lowest: float, highest: float) -> bool:
-    """Whether the acceleration, taken back at once, carries the velocity beyond its limits."""
-    return not lowest <= start.v + start.a * abs(start.a) / (2 * jerk) <= highest
+def carried(request: Request) -> float:
+    """By which part of the limit the acceleration at the start carries the velocity beyond it, taken back at once."""
+    _, v, a, _ = request.start
+    return max(0.0, request.limits.excess(State(v=v + a * abs(a) / (2 * request.limits.jerk))))
 
 
 def ruckig_duration(request: Request) -> float | None:
@@ -63,39 +61,44 @@ def ruckig_duration(request: Request) -> float | None:
     return float(trajectory.duration * time) if result == ruckig.Result.Working else None
 
 
-def judge(kind: str, requests: list[Request]) -> list[str]:
-    """Prints what was found and returns what is wrong."""
-    refused, furthest, worst_defect, wrong = 0, 0.0, 0.0, []
+def judge(kind: str, requests: list[Request]) -> list[tuple[float, str]]:
+    """Prints what was found and returns what is wrong, each with how much."""
+    differences, defects, wrong = [], [], []
     for plan in ask(requests):
-        defect = plan.defect()
-        worst_defect = max(worst_defect, defect)
+        unavoidable = carried(plan.request)
+        defect = plan.defect() - unavoidable
+        defects.append(defect)
         if defect > BAR:
-            wrong.append(f"{plan.request} is {defect:.1e} beyond its limits or beside its target")
+            wrong.append((defect, f"{plan.request} is {defect:.1e} beyond its limits or beside its target"))
         theirs = ruckig_duration(plan.request)
         if theirs is None:
-            refused += 1
             continue
         difference = plan.duration / theirs - 1
-        furthest = max(furthest, abs(difference))
-        if abs(difference) > BAR:
-            wrong.append(f"{plan.request} takes {plan.duration} s, Ruckig {theirs} s ({difference:+.1e})")
+        differences.append(difference)
+        if difference > BAR or (difference < -BAR and unavoidable == 0):
+            wrong.append((abs(difference), f"{plan.request} takes {plan.duration} s, Ruckig {theirs} s"))
+    refused = len(requests) - len(differences)
     if refused > len(requests) // 100:
-        wrong.append(f"Ruckig refuses {refused} of {len(requests)} requests: {kind}")
-    print(f"{kind:24} {len(requests):8} {refused:8} {furthest:13.1e} {worst_defect:9.1e}")
+        wrong.append((math.inf, f"Ruckig refuses {refused} of {len(requests)} requests: {kind}"))
+    columns = min(differences, default=math.nan), max(differences, default=math.nan), max(defects)
+    print(f"{kind:26} {len(requests):8} {refused:8} {' '.join(f'{value:9.1e}' for value in columns)}")
     return wrong
 
 
 def main() -> None:
     """Judges every kind of request."""
     random, size = Random(3), sweep_size(100_000)
-    print(f"{'order 3 against Ruckig':24} {'requests':>8} {'refused':>8} {'difference':>13} {'defect':>9}")
+    moved = [moving(random) for _ in range(size // 2)]
+    print("order 3, duration above that of Ruckig")
+    print(f"{'':26} {'requests':>8} {'refused':>8} {'least':>9} {'largest':>9} {'defect':>9}")
     wrong = [
         *judge("profile, rest to rest", [rest_to_rest(random, "profile optimal") for _ in range(size // 4)]),
         *judge("transition, rest to rest", [rest_to_rest(random, "transition fast") for _ in range(size // 4)]),
-        *judge("transition, moving", [moving(random) for _ in range(size // 2)]),
+        *judge("transition, moving", [request for request in moved if carried(request) == 0]),
+        *judge("transition, carried beyond", [request for request in moved if carried(request) > 0]),
     ]
     if wrong:
-        raise SystemExit(f"{len(wrong)} requests are wrong, the first: {wrong[0]}")
+        raise SystemExit(f"{len(wrong)} requests are wrong, the worst: {max(wrong)[1]}")
 
 
 if __name__ == "__main__":

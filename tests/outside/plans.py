@@ -1,4 +1,4 @@
-"""Asks the crate `servobench-motion` for plans, through its example `plan_lines`, and follows them with its own integration."""
+"""Asks the crate `servobench-motion` for plans, through its example `plan_lines`, and follows them by itself."""
 
 import math
 import subprocess
@@ -57,7 +57,7 @@ class Limits(NamedTuple):
 
 @dataclass(frozen=True)
 class Request:
-    """From a state to `to`, which is a position and a velocity. `method` is a planner and its method as `plan_lines` knows them."""
+    """From a state to `to`, a position and a velocity. `method` is a planner and its method, as `plan_lines` has them."""
 
     method: str
     order: int
