@@ -2,7 +2,8 @@
 //!
 //! 1. [`fourth::fastest`].
 //! 2. First the acceleration to zero, as fast as it can; or, where the velocity limit is too near for that, through zero
-//!    with all jerk that there is. Then 1. Who has more time looks for the shortest part of that after which 1 keeps them.
+//!    with all jerk that there is. Then 1. The shortest part of that after which 1 keeps them is looked for by bisection, as
+//!    often as [`Effort`] says.
 //! 3. The same braking on to zero acceleration and jerk, and by way of a velocity at which both are zero: the distance grows
 //!    with it from one limit to the other, so that there is one for every target.
 //!
@@ -36,6 +37,16 @@ pub(crate) enum Goal {
     State(State4),
     /// To this velocity, wherever that is.
     Velocity(f64),
+}
+
+impl Effort {
+    /// How often the braking is halved.
+    const fn halvings(self) -> usize {
+        match self {
+            Self::Fast => 3,
+            Self::Refined => 20,
+        }
+    }
 }
 
 impl Goal {
@@ -90,7 +101,7 @@ pub(crate) fn plan(from: State4, goal: &Goal, limits: &Limits4, effort: Effort) 
         let Some(plan) = after(brake, *longest) else { continue };
         if keeps_the_limits(&plan) {
             let shorter = |time: f64| after(brake, time).filter(keeps_the_limits);
-            return if effort == Effort::Refined { least_braking(&plan, *longest, shorter) } else { plan };
+            return least_braking(&plan, *longest, effort, shorter);
         }
         if best.is_none_or(|best| plan.fault < best.fault) {
             best = Some(plan);
@@ -138,9 +149,9 @@ fn crossing(from: State4, path: &Path<{ second::STRETCHES }>) -> f64 {
 }
 
 /// The plan with the shortest braking below `longest`; `braked` gives one only where it keeps the limits.
-fn least_braking(whole: &Plan, longest: f64, braked: impl Fn(f64) -> Option<Plan>) -> Plan {
+fn least_braking(whole: &Plan, longest: f64, effort: Effort, braked: impl Fn(f64) -> Option<Plan>) -> Plan {
     let (mut best, mut low, mut high) = (*whole, 0.0, longest);
-    for _ in 0..20 {
+    for _ in 0..effort.halvings() {
         let time = 0.5 * (low + high);
         match braked(time) {
             Some(plan) => {

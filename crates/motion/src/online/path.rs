@@ -55,3 +55,17 @@ impl<const N: usize> Path<N> {
         self.stretches().iter().map(|stretch| stretch.length).sum()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[should_panic(expected = "index out of bounds")]
+    fn a_stretch_too_many_is_seen_in_every_build() {
+        let mut path = Path::<1>::EMPTY;
+        path.push(1.0, 0.0);
+        path.push(1.0, 1.0);
+        path.push(1.0, 1.0);
+    }
+}

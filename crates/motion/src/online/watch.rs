@@ -2,7 +2,7 @@
 use super::second::Sides;
 
 /// What rounding may add to a limit, as a part of it.
-pub(crate) const ROUNDING: f64 = 1e-12;
+pub(crate) const ROUNDING: f64 = 1e-11;
 
 /// Watches the values that a quantity has, at its turning points at least, in the order of time.
 #[derive(Debug, Clone, Copy)]
