@@ -18,7 +18,7 @@
 //! fuzz(check!(), 1_000, pairs, |(one, many): &(f64, f64)| assert!(one.is_nan() || one.abs() <= many.abs()));
 //! ```
 //! `cargo test` runs a target on the same seeded inputs each time, then on those that a fuzzer left. Another number of
-//! inputs: `SERVOBENCH_SWEEP=1000000`. With `cargo bolero test` the same target runs under libFuzzer, AFL or Honggfuzz.
+//! inputs: `SERVOBENCH_SWEEP=1000000`. Built for libFuzzer (docs/testing.md), the same target is guided by coverage.
 
 mod number;
 mod seeded;

@@ -1,5 +1,6 @@
 //! The developer commands, run as `cargo xtask <command>`.
 
+mod bare_metal;
 mod bench;
 mod checks;
 mod command;

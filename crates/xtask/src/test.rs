@@ -1,4 +1,5 @@
 //! `cargo xtask test`: everything that CI runs, in order, up to the first failure.
+use crate::bare_metal::BareMetal;
 use crate::failure::Failure;
 use crate::outside::Outside;
 use crate::wheel;
@@ -46,13 +47,18 @@ pub(crate) fn run(workspace: &Workspace, engines: Engines) -> Result<(), Failure
     if engines == Engines::All {
         wheel::MUJOCO.ensure(workspace)?;
     }
-    let outside = Outside::prepare(workspace);
+    let (bare_metal, outside) = (BareMetal::prepare(), Outside::prepare(workspace));
     let mut steps = steps(workspace, engines)?;
+    steps.extend(bare_metal.command(workspace).map(|command| Step::new("bare metal", command)));
     steps.extend(outside_clients(&outside, workspace));
-    outside.report();
+    let report = || {
+        bare_metal.report();
+        outside.report();
+    };
+    report();
     run_steps(steps)?;
     // Once more, where it is not scrolled away.
-    outside.report();
+    report();
     Ok(())
 }
 

@@ -11,7 +11,7 @@ enum May {
 }
 
 /// The floor plan, lower floors first. Dev-dependencies are free: the oracle of a test may come from anywhere.
-const PLAN: [(&str, May); 19] = [
+const PLAN: [(&str, May); 20] = [
     ("base", May::On(&[])),
     ("motion", May::On(&["base"])),
     ("planner", May::On(&["base", "motion"])),
@@ -28,6 +28,7 @@ const PLAN: [(&str, May); 19] = [
     ("view", May::On(&["base", "trace", "metrics"])),
     ("cli", May::OnAll),
     ("tests", May::OnAll),
+    ("bare-metal", May::On(&["motion"])),
     ("features", May::On(&[])),
     ("fuzz", May::On(&[])),
     ("xtask", May::On(&[])),
