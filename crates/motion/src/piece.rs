@@ -49,6 +49,12 @@ impl Piece {
         Self::forward(setpoint, 0.0, 0.0, until)
     }
 
+    /// The same, a switching instant that is nearer than `tolerance` (s) counting as reached.
+    #[must_use]
+    pub const fn within(self, tolerance: f64) -> Self {
+        Self { tolerance, ..self }
+    }
+
     /// The same passed `factor` times as slowly.
     #[must_use]
     pub fn slowed(&self, factor: f64) -> Self {

@@ -12,6 +12,8 @@ pub(crate) struct Polynomials {
     between: Between,
     duration: f64,
     end: Setpoint,
+    /// A beginning that is nearer than this counts as reached (s).
+    tolerance: f64,
 }
 
 /// What a set-point does until the next one.
@@ -23,6 +25,9 @@ pub(crate) enum Between {
     Held,
 }
 
+/// Part of a sample by which its beginning may be missed.
+const NEAR: f64 = 1e-9;
+
 impl Polynomials {
     /// Those that begin at the times and with the set-points of `parts`, the first at time 0, up to `end` at `duration` (s).
     pub(crate) fn new(
@@ -31,8 +36,11 @@ impl Polynomials {
         duration: f64,
         end: Setpoint,
     ) -> Self {
-        let (starts, anchors) = parts.into_iter().unzip();
-        Self { starts, anchors, between, duration, end }
+        let (starts, anchors): (Vec<f64>, _) = parts.into_iter().unzip();
+        // A multiple of the sample time differs from that of a rate by a rounding or two.
+        let samples = if between == Between::Held { starts.len() as f64 } else { f64::INFINITY };
+        let tolerance = (4.0 * f64::EPSILON * duration).max(NEAR * duration / samples);
+        Self { starts, anchors, between, duration, end, tolerance }
     }
 
     /// Those that `piece` gives one after the other from `start` (s) until `end` (s) of its own time.
@@ -53,14 +61,16 @@ impl Course for Polynomials {
     }
 
     fn piece(&self, t: f64) -> Piece {
-        if t >= self.duration || self.starts.is_empty() {
+        let reached = t + self.tolerance;
+        if reached >= self.duration || self.starts.is_empty() {
             return Piece::between(self.end, self.duration, f64::INFINITY);
         }
-        let i = self.starts.partition_point(|start| *start <= t).saturating_sub(1);
+        let i = self.starts.partition_point(|start| *start <= reached).saturating_sub(1);
         let until = self.starts.get(i + 1).copied().unwrap_or(self.duration);
-        match self.between {
+        let piece = match self.between {
             Between::Polynomial => Piece::between(self.anchors[i], self.starts[i], until),
             Between::Held => Piece::held(self.anchors[i], until),
-        }
+        };
+        piece.within(self.tolerance)
     }
 }

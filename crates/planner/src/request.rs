@@ -129,9 +129,15 @@ impl Request {
     /// Plans it.
     ///
     /// # Errors
-    /// [`PlanError`] of the generator; [`PlanError::TooShort`] for a duration below that at the limits.
+    /// [`PlanError`] of the generator; [`PlanError::TooShort`] for a duration below that at the limits;
+    /// [`PlanError::Parameter`] for a duration or a filter of a move that starts or ends in motion.
     pub fn plan(&self) -> Result<Plan, PlanError> {
         let plan = self.way.plan()?;
+        let v = [plan.start().v, plan.end().v].into_iter().find(|v| *v != 0.0);
+        if let (Some(value), true) = (v, self.duration.is_some() || self.filter.length() > 0.0) {
+            let bound = "zero at the start and the end of a move that is filtered or slowed";
+            return Err(ParamError { name: "velocity", value, bound }.into());
+        }
         let plan = match self.duration {
             Some(duration) => plan.stretched_to(duration, self.filter.length())?,
             None => plan,

@@ -377,3 +377,19 @@ fn the_lowest_rate_within_an_error_is_found() {
     let (error, rate) = steps(Follow::Within(1e-5));
     assert!(error <= 1e-5 && steps(Follow::Steps(rate - 1.0)).0 > 1e-5, "{error} at {rate}");
 }
+
+/// A velocity would jump where the parts of a shaper begin, or where time is stretched.
+#[test]
+fn a_move_that_starts_in_motion_is_neither_filtered_nor_slowed() {
+    let shaper = Some(Impulses::zv(&Vibration::new(60.0, 0.0).unwrap()));
+    let way = Way::Replanning(replanning());
+    let filtered = Request { filter: Filter { shaper, averages: None }, ..Request::new(way.clone()) };
+    let slowed = Request { duration: Some(10.0), ..Request::new(way) };
+    for request in [filtered, slowed] {
+        let message = request.plan().unwrap_err().to_string();
+        assert_eq!(
+            message,
+            "`velocity` must be zero at the start and the end of a move that is filtered or slowed, got 0.4"
+        );
+    }
+}

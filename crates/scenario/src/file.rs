@@ -7,11 +7,13 @@ mod axis;
 mod drive;
 mod motor;
 mod program;
+mod setpoint;
 
 pub(crate) use axis::{Axis, Body, Mjcf};
 pub(crate) use drive::{Current, Drive, Estimate, FeedbackEncoder, Velocity, VelocityKind};
 pub(crate) use motor::{Encoder, Motor, MotorKind};
-pub(crate) use program::{Disturbance, ProgramStep, Setpoint};
+pub(crate) use program::{Disturbance, ProgramStep};
+pub(crate) use setpoint::{FollowRule, Rockwell, Setpoint, Shaper, ShaperName, TableOfPoints, VelocityRule};
 
 use crate::channel::Channel;
 use crate::field::{any, not_negative, positive};

@@ -39,9 +39,11 @@ pub use models::{embedded_demo, embedded_models};
 pub use points::{Column, MOST_POINTS, Points, PointsError, PointsMistake, read_points};
 pub use scenario::{
     Actuator, Axis, AxisMechanics, Body, Coupling, CurrentGain, CurrentLoop, Disturbance, DisturbedBody, Drive,
-    EffortFeedforward, Encoder, EngineName, Estimate, Feedback, Feedforward, IdealSource, Initial, LONGEST_RUN, Limit,
-    Measure, Mjcf, Motion, MotorEstimate, MoveStep, Pmsm, PositionLoop, Record, Scenario, SourceOutput, Step, Target,
-    VelocityLoop,
+    EffortFeedforward, Encoder, EngineName, Estimate, Execution, Feedback, Feedforward, Filter, Follow, Goal, Grid,
+    IdealSource, Initial, Interpolation, InterpolationMode, LONGEST_RUN, Limit, Measure, Method, Mjcf, Motion,
+    MotorEstimate, MoveStep, OnlineMove, PlanEffort, Pmsm, PositionLoop, Record, RestMove, RockwellJerk, RockwellMove,
+    RockwellShape, Sampling, Scenario, Shaper, ShaperKind, SourceOutput, Step, TableMove, Target, Velocities,
+    VelocityLoop, Way,
 };
 pub use schema::json_schema;
 pub use source::{SourceId, Sources};

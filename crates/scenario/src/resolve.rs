@@ -6,9 +6,13 @@ mod current;
 mod disturbance;
 mod drive;
 mod estimate;
+mod filter;
+mod keys;
 mod loops;
 mod motor;
+mod points;
 mod program;
+mod rockwell;
 mod time;
 
 use crate::diagnostic::Report;
@@ -35,7 +39,8 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
     let source = motor.and_then(|motor| motor::resolve(motor, report));
     let known = drive::Known { base_rate, axis: moved.as_ref(), motor: source.as_ref() };
     let actuator = drive::resolve(file, &known, report);
-    let program = program::steps(file, base_rate, report);
+    let program = program::steps(file, base_rate, sources, report);
+    let interpolation = filter::interpolation(file, base_rate, report);
     if let Some(actuator) = &actuator {
         bandwidth::check(file, actuator, report);
     }
@@ -67,6 +72,7 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
         axis: moved?,
         actuator: actuator?,
         program: program?,
+        interpolation: interpolation?,
         disturbances: disturbances?,
         initial,
         record: record?,

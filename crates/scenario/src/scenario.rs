@@ -5,18 +5,25 @@
 
 mod actuator;
 mod axis;
+mod disturbance;
 mod drive;
+mod filter;
 mod motor;
 mod program;
 
 pub use actuator::Actuator;
 pub use axis::{Axis, AxisMechanics, Body, Coupling, Mjcf, Motion};
+pub use disturbance::{Disturbance, DisturbedBody, Initial};
 pub use drive::{
     CurrentGain, CurrentLoop, Drive, EffortFeedforward, Estimate, Feedback, Feedforward, MotorEstimate, PositionLoop,
     VelocityLoop,
 };
+pub use filter::{Filter, Interpolation, InterpolationMode, Shaper, ShaperKind};
 pub use motor::{Encoder, IdealSource, Pmsm, SourceOutput};
-pub use program::{Disturbance, DisturbedBody, Initial, MoveStep, Step, Target};
+pub use program::{
+    Execution, Follow, Goal, Grid, Method, MoveStep, OnlineMove, PlanEffort, RestMove, RockwellJerk, RockwellMove,
+    RockwellShape, Sampling, Step, TableMove, Target, Velocities, Way,
+};
 
 use servobench_base::Rate;
 use std::path::PathBuf;
@@ -45,6 +52,8 @@ pub struct Scenario {
     pub actuator: Actuator,
     /// Moves and pauses, one after the other, from time 0.
     pub program: Vec<Step>,
+    /// Between the set-point and the drive; `None`: the drive has a new set-point at every tick.
+    pub interpolation: Option<Interpolation>,
     /// External efforts.
     pub disturbances: Vec<Disturbance>,
     /// Deviation from rest at zero at time 0.

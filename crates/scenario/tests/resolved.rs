@@ -1,8 +1,5 @@
 //! What a scenario becomes: derived gains, merged bodies, overridden models.
-use servobench_scenario::{
-    Actuator, AxisMechanics, Body, CurrentGain, CurrentLoop, Drive, EffortFeedforward, EngineName, Feedback,
-    IdealSource, Limit, Motion, MoveStep, Pmsm, Scenario, SourceOutput, Step, Target, parse,
-};
+use servobench_scenario::*;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
@@ -298,9 +295,12 @@ fn a_sample_time_is_whole_ticks_to_the_bit() {
              [[program]]\nmove_to = \"1 m\"\n"
         );
         let scenario = scenario(&text);
-        let [Step::Move(MoveStep { sample_time: Some(time), .. })] = scenario.program.as_slice() else {
+        let [Step::Move(MoveStep { way: Way::Rest(RestMove { grid: Some(grid), .. }), .. })] =
+            scenario.program.as_slice()
+        else {
             panic!("{:?}", scenario.program)
         };
+        let time = grid.sample_time;
         assert_eq!(time.to_bits(), f64::to_bits(ticks / 12e3), "{typed}: {time} s");
     }
 }
@@ -365,12 +365,105 @@ duration = "2 s"
     let [Step::Move(first), Step::Wait(pause), Step::Move(second)] = loaded.scenario.program.as_slice() else {
         panic!()
     };
-    assert_eq!((first.target, first.order, first.duration), (Target::Absolute(0.25), 4, None));
+    assert_eq!((first.target(), first.order, first.duration), (Some(Target::Absolute(0.25)), 4, None));
     assert_eq!(first.limits.map(f64::to_bits), [0.5, 5.0, 50.0, 1000.0].map(f64::to_bits));
-    assert_eq!(first.sample_time, Some(0.001));
+    let Way::Rest(RestMove { grid: Some(grid), .. }) = first.way else { panic!("{first:?}") };
+    assert_eq!(grid, Grid { sample_time: 0.001, sampling: Sampling::Published, execution: Execution::Hold });
     assert!(same(*pause, 0.2));
-    assert_eq!((second.target, second.order, second.duration), (Target::Relative(-0.05), 3, Some(2.0)));
+    assert_eq!((second.target(), second.order, second.duration), (Some(Target::Relative(-0.05)), 3, Some(2.0)));
     assert_eq!(second.limits.map(f64::to_bits), [0.1, 5.0, 50.0, f64::INFINITY].map(f64::to_bits));
+}
+
+/// Every way of moving, and what the steps take from `[setpoint]`.
+#[test]
+fn moves_of_every_family() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(
+        folder.path().join("points.csv"),
+        "time [ms],position [mm],velocity [mm/s]\n0,0,\n10,5,500\n20,15,\n",
+    )
+    .unwrap();
+    let text = format!(
+        "{SCREW}{}",
+        r#"
+[setpoint]
+order = 4
+velocity = "30 m/min"
+acceleration = "5 m/s2"
+jerk = "50 m/s3"
+snap = "1000 m/s4"
+method = "optimal"
+negative_velocity = "20 m/min"
+shaper = { kind = "ei", frequency = "17.5 Hz", damping = 0.02 }
+averages = ["10 ms", "5 ms"]
+interpolation = { mode = "quintic-b-spline", period = "4 ms" }
+[[program]]
+move_to = "250 mm"
+[[program]]
+move_to = "50 mm"
+aborts_after = "0.1 s"
+end_velocity = "-5 m/min"
+shaper = { kind = "none" }
+averages = []
+[[program]]
+reach_velocity = "6 m/min"
+online = "refined"
+hold = "0.2 s"
+order = 3
+shaper = { kind = "none" }
+averages = []
+[[program]]
+move_to = "0 mm"
+shaper = { kind = "none" }
+averages = []
+[[program]]
+table = { file = "points.csv", relative = true, velocities = "smooth", passes = 5 }
+[[program]]
+table = { file = "points.csv", relative = true, follow = "steps", command_rate = "200 Hz" }
+[[program]]
+move_by = "10 mm"
+rockwell = { shape = "s-curve", deceleration = "8 m/s2", jerk_of_time = "25 %", deceleration_jerk_of_maximum = 0.5, maximum_jerk = "400 m/s3" }
+"#
+    );
+    let scenario = parse("test.toml", &text, Some(folder.path())).unwrap_or_else(|e| panic!("{e}")).scenario;
+    let period = 4e-3;
+    assert_eq!(scenario.interpolation, Some(Interpolation { mode: InterpolationMode::QuinticBSpline, period }));
+    let moves = scenario.program.iter().filter_map(|step| match step {
+        Step::Move(step) => Some(step),
+        Step::Wait(_) => None,
+    });
+    let moves: Vec<_> = moves.collect();
+    let [rest, passing, turning, home, through, steps, rockwell] = moves.as_slice() else { panic!("{moves:?}") };
+
+    let Way::Rest(RestMove { method: Method::Optimal, grid: None, .. }) = rest.way else { panic!("{rest:?}") };
+    let shaper = Shaper { kind: ShaperKind::Ei(0.05), frequency: 17.5, damping: 0.02 };
+    assert_eq!(rest.filter, Filter { shaper: Some(shaper), averages: vec![0.01, 0.005] });
+    assert_eq!((rest.aborts_after, passing.aborts_after), (None, Some(0.1)));
+    assert_eq!(passing.filter, Filter::default());
+    let online = |goal, effort| Way::Online(OnlineMove { goal, effort, negative: [Some(20.0 / 60.0), None] });
+    let passed = Goal::Position(Target::Absolute(0.05), -5.0 / 60.0);
+    assert_eq!(passing.way, online(passed, PlanEffort::Fast));
+    assert_eq!(turning.way, online(Goal::Velocity(0.1, 0.2), PlanEffort::Refined));
+    assert!(passing.ends_in_motion() && turning.ends_in_motion() && turning.order == 3);
+    // Nothing of its own says so: the move before ends in motion.
+    assert_eq!(home.way, online(Goal::Position(Target::Absolute(0.0), 0.0), PlanEffort::Fast));
+
+    let Way::Table(TableMove {
+        points,
+        is_relative: true,
+        velocities: Velocities::Smooth(5),
+        follow: Follow::Segments,
+    }) = &through.way
+    else {
+        panic!("{through:?}")
+    };
+    assert_eq!(*points, [(0.0, 0.0, None), (0.01, 0.005, Some(0.5)), (0.02, 0.015, None)]);
+    let Way::Table(TableMove { follow: Follow::Steps(rate), .. }) = steps.way else { panic!("{steps:?}") };
+    assert!(same(rate, 200.0) && (through.order, steps.order) == (3, 2));
+    let jerks = [RockwellJerk::PartOfTime(0.25), RockwellJerk::PartOfMaximum(0.5)];
+    let (target, shape) = (Target::Relative(0.01), RockwellShape::SCurve);
+    let asked = RockwellMove { target, shape, deceleration: 8.0, jerks, maximum: [400.0; 2] };
+    assert_eq!(rockwell.way, Way::Rockwell(asked));
 }
 
 #[test]

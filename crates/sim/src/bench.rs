@@ -58,7 +58,7 @@ impl Bench {
     /// [`BuildError`] says which part of the scenario cannot be built.
     pub fn new(scenario: &Scenario, engine: &dyn Engine) -> Result<Self, BuildError> {
         let base_rate = scenario.base_rate;
-        let program = Program::plan(&scenario.program)?;
+        let program = Program::new(scenario)?;
         let duration = scenario.duration.unwrap_or(program.end() + TAIL);
         check_length(None, duration)?;
         let ticks = base_rate.tick_at(duration).0 + 1;

@@ -22,6 +22,20 @@ pub enum BuildError {
         /// What the planner says.
         error: PlanError,
     },
+    /// A move is to be aborted that has ended by then.
+    #[error(
+        "program step {}: `aborts_after` is {after} s, but the move before lasts {lasts} s: abort it earlier, or let this move \
+         follow without `aborts_after`",
+        index + 1
+    )]
+    NothingToAbort {
+        /// Number of the step that aborts, from 0.
+        index: usize,
+        /// When it would, after the start of the move before (s).
+        after: f64,
+        /// How long that lasts (s).
+        lasts: f64,
+    },
     /// The engine refuses the mechanics.
     #[error(transparent)]
     Mechanics(#[from] MechanicsError),

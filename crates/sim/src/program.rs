@@ -1,24 +1,38 @@
 //! The program of moves as a set-point over time.
+mod fine;
+mod request;
+
 use crate::error::{BuildError, check_length};
+use fine::Fine;
 use servobench_base::Setpoint;
-use servobench_motion::{Limits, Order, PlanError};
-use servobench_planner::{Grid, Method, Plan, PointToPoint, Reader, Request, Way};
-use servobench_scenario::{MoveStep, Step, Target};
+use servobench_planner::{Plan, Reader};
+use servobench_scenario::{Goal, OnlineMove, Scenario, Step, Way};
 use servobench_trace::Move;
 
-/// A planned move and when it starts.
+/// A planned move, and when it starts and ends: later than its plan where a velocity is held, earlier where it is aborted.
 #[derive(Debug, Clone)]
 struct Planned {
     start: f64,
+    end: f64,
     from: f64,
     plan: Plan,
+    /// What it is, in a word or two.
+    kind: &'static str,
 }
 
-/// Moves and pauses, one after the other.
+/// Moves and pauses, one after the other, as the drive sees them.
 #[derive(Debug, Clone)]
 pub struct Program {
-    moves: Vec<Planned>,
+    course: Course,
     end: f64,
+    /// Between the course and the drive.
+    fine: Option<Fine>,
+}
+
+/// Moves one after the other.
+#[derive(Debug, Clone)]
+struct Course {
+    moves: Vec<Planned>,
     now: Now,
 }
 
@@ -34,28 +48,49 @@ struct Now {
 }
 
 impl Program {
-    /// Plans every move.
+    /// Plans every move of `scenario`.
     ///
     /// # Errors
-    /// [`BuildError::Plan`] and [`BuildError::TooLong`] name the step.
-    pub fn plan(steps: &[Step]) -> Result<Self, BuildError> {
-        let (mut moves, mut end, mut position) = (Vec::new(), 0.0, 0.0);
+    /// [`BuildError::Plan`], [`BuildError::NothingToAbort`] and [`BuildError::TooLong`] name the step.
+    pub fn new(scenario: &Scenario) -> Result<Self, BuildError> {
+        let mut program = Self::plan(&scenario.program, scenario.base_rate.period())?;
+        if let Some(interpolation) = &scenario.interpolation {
+            let fine = Fine::new(interpolation, scenario.base_rate)?;
+            program.end += fine.delay();
+            program.fine = Some(fine);
+            check_length(None, program.end)?;
+        }
+        Ok(program)
+    }
+
+    /// Plans every move; a tick lasts `tick` (s).
+    fn plan(steps: &[Step], tick: f64) -> Result<Self, BuildError> {
+        let (mut moves, mut end, mut state) = (Vec::<Planned>::new(), 0.0, Setpoint::default());
         for (index, step) in steps.iter().enumerate() {
             match step {
                 Step::Wait(length) => end += length,
                 Step::Move(step) => {
-                    let plan = plan_move(step, position).map_err(|error| BuildError::Plan { index, error })?;
-                    let (from, start) = (position, end);
-                    position += plan.end().x;
-                    end += plan.duration();
-                    moves.push(Planned { start, from, plan });
+                    if let (Some(after), Some(last)) = (step.aborts_after, moves.last_mut()) {
+                        (end, state) = last.abort(after, index)?;
+                    }
+                    let plan = request::request(step, state, tick).plan();
+                    let plan = plan.map_err(|error| BuildError::Plan { index, error })?;
+                    let held = match step.way {
+                        Way::Online(OnlineMove { goal: Goal::Velocity(_, hold), .. }) => hold,
+                        _ => 0.0,
+                    };
+                    let (start, from, length) = (end, state.x, plan.duration() + held);
+                    end += length;
+                    state = plan.at(length);
+                    state.x += from;
+                    moves.push(Planned { start, end, from, plan, kind: request::kind(step) });
                 }
             }
             check_length(Some(index), end)?;
         }
         let next_start = if moves.is_empty() { f64::INFINITY } else { f64::NEG_INFINITY };
         let now = Now { index: 0, start: 0.0, from: 0.0, next_start, reader: Reader::default() };
-        Ok(Self { moves, end, now })
+        Ok(Self { course: Course { moves, now }, end, fine: None })
     }
 
     /// End of the last step (s).
@@ -64,9 +99,33 @@ impl Program {
         self.end
     }
 
-    /// Set-point at `t` (s). Queries must not go back in time.
+    /// Set-point at `t` (s), the time of a tick. Queries go from tick to tick where the program is interpolated, and must not
+    /// go back in time elsewhere.
     #[inline]
     pub fn at(&mut self, t: f64) -> Setpoint {
+        let Self { course, fine, .. } = self;
+        match fine {
+            None => course.at(t),
+            Some(fine) => fine.next(|| course.at(t)),
+        }
+    }
+
+    /// How long each move lasts (s).
+    pub fn durations(&self) -> impl Iterator<Item = f64> {
+        self.course.moves.iter().map(|planned| planned.end - planned.start)
+    }
+
+    /// What a recording says of the moves; `unit` is the axis unit.
+    pub fn moves(&self, unit: &str) -> impl Iterator<Item = Move> {
+        let delay = self.fine.as_ref().map_or(0.0, Fine::delay);
+        self.course.moves.iter().map(move |planned| planned.describe(unit, delay))
+    }
+}
+
+impl Course {
+    /// Set-point at `t` (s). Queries must not go back in time.
+    #[inline]
+    fn at(&mut self, t: f64) -> Setpoint {
         if t >= self.now.next_start || !self.now.reader.holds(t - self.now.start) {
             self.look_up(t);
         }
@@ -80,40 +139,55 @@ impl Program {
     fn look_up(&mut self, t: f64) {
         let later = self.now.index + 1..self.moves.len();
         let index = later.take_while(|index| self.moves[*index].start <= t).last().unwrap_or(self.now.index);
-        let Some(Planned { start, from, plan }) = self.moves.get(index) else { return };
+        let Some(Planned { start, from, plan, .. }) = self.moves.get(index) else { return };
         let now = &mut self.now;
         now.reader.look_up(plan, t - start);
         (now.index, now.start, now.from) = (index, *start, *from);
         now.next_start = self.moves.get(index + 1).map_or(f64::INFINITY, |next| next.start);
     }
-
-    /// How long each move lasts (s).
-    pub fn durations(&self) -> impl Iterator<Item = f64> {
-        self.moves.iter().map(|planned| planned.plan.duration())
-    }
-
-    /// What a recording says of the moves; `unit` is the axis unit.
-    pub fn moves(&self, unit: &str) -> impl Iterator<Item = Move> {
-        self.moves.iter().map(move |planned| planned.describe(unit))
-    }
 }
 
 impl Planned {
-    fn describe(&self, unit: &str) -> Move {
+    /// Ends the move so long after its start; the time then, and the state of motion. `index` is the step that aborts it.
+    fn abort(&mut self, after: f64, index: usize) -> Result<(f64, Setpoint), BuildError> {
+        let lasts = self.end - self.start;
+        if after >= lasts {
+            return Err(BuildError::NothingToAbort { index, after, lasts });
+        }
+        self.end = self.start + after;
+        let mut state = self.plan.at(after);
+        state.x += self.from;
+        Ok((self.end, state))
+    }
+
+    /// What a recording says of it, `delay` (s) later at its end than it is planned.
+    fn describe(&self, unit: &str, delay: f64) -> Move {
         let (plan, order) = (&self.plan, self.plan.order());
-        let (from, to) = (self.from, self.from + plan.end().x);
-        let (cruise_start, cruise) = plan.cruise();
+        let length = self.end - self.start;
+        let is_aborted = length < plan.duration();
+        let (from, to) = (self.from, self.from + plan.at(length.max(plan.duration())).x);
+        let (cruise_start, cruise) = match plan.end().v {
+            // A velocity that is held.
+            v if v != 0.0 && length > plan.duration() => (plan.duration(), length - plan.duration()),
+            _ => plan.cruise(),
+        };
+        let cruise = (cruise_start.min(length), cruise.min(length - cruise_start).max(0.0));
         let limits =
             plan.limits().map(|sides| sides.below.max(sides.above)).map(|limit| limit.is_finite().then_some(limit));
+        let (kind, aborted) = (self.kind, if is_aborted { ", aborted" } else { "" });
         Move {
-            label: format!("move from {} {unit} to {} {unit}, order {order}", six_digits(from), six_digits(to)),
+            label: format!(
+                "move from {} {unit} to {} {unit}, order {order}{kind}{aborted}",
+                six_digits(from),
+                six_digits(to)
+            ),
             start: self.start,
-            end: self.start + plan.duration(),
+            end: self.end + delay,
             from,
             to,
             peaks: plan.largest(),
             limits,
-            cruise: (self.start + cruise_start, cruise),
+            cruise: (self.start + cruise.0 + delay, cruise.1),
         }
     }
 }
@@ -125,41 +199,38 @@ fn six_digits(position: f64) -> f64 {
     format!("{position:.5e}").parse::<f64>().unwrap_or(position) + 0.0
 }
 
-/// Plans `step` from `position`.
-fn plan_move(step: &MoveStep, position: f64) -> Result<Plan, PlanError> {
-    let order = match step.order {
-        2 => Order::Second,
-        3 => Order::Third,
-        _ => Order::Fourth,
-    };
-    let [velocity, acceleration, jerk, snap] = step.limits;
-    let limits = Limits { velocity, acceleration, jerk, snap };
-    let distance = match step.target {
-        Target::Absolute(target) => target - position,
-        Target::Relative(distance) => distance,
-    };
-    let (method, grid) = (Method::Published, step.sample_time.map(Grid::new));
-    let way = Way::PointToPoint(PointToPoint { distance, order, limits, method, grid });
-    Request { duration: step.duration, ..Request::new(way) }.plan()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use servobench_scenario::{Filter, Method, MoveStep, RestMove, Target};
+
+    /// A tick of 16 kHz (s).
+    const TICK: f64 = 1.0 / 16e3;
 
     fn one_metre() -> MoveStep {
-        let (target, limits) = (Target::Relative(1.0), [1.0, 5.0, 50.0, 1000.0]);
-        MoveStep { target, order: 4, limits, sample_time: None, duration: None, metric_limits: Vec::new() }
+        MoveStep {
+            way: rest(Target::Relative(1.0)),
+            order: 4,
+            limits: [1.0, 5.0, 50.0, 1000.0],
+            filter: Filter::default(),
+            aborts_after: None,
+            duration: None,
+            metric_limits: Vec::new(),
+        }
+    }
+
+    fn rest(target: Target) -> Way {
+        Way::Rest(RestMove { target, method: Method::Published, grid: None })
     }
 
     fn to(target: Target) -> Step {
-        Step::Move(MoveStep { target, ..one_metre() })
+        Step::Move(MoveStep { way: rest(target), ..one_metre() })
     }
 
     #[test]
     fn moves_follow_each_other_and_pauses_hold_the_target() {
         let steps = [Step::Wait(0.1), to(Target::Absolute(1.0)), Step::Wait(0.5), to(Target::Relative(-1.0))];
-        let mut program = Program::plan(&steps).unwrap();
+        let mut program = Program::plan(&steps, TICK).unwrap();
         // Lambrechts' move lasts 1.35 s each way.
         assert!((program.end() - (0.1 + 1.35 + 0.5 + 1.35)).abs() < 1e-12);
         assert_eq!(program.at(0.05), Setpoint::at_rest(0.0));
@@ -177,7 +248,7 @@ mod tests {
     fn a_label_shows_no_rounding() {
         let quarter = core::f64::consts::FRAC_PI_2;
         let steps = [0.1, 0.2, -0.3, quarter].map(|distance| to(Target::Relative(distance)));
-        let labels: Vec<_> = Program::plan(&steps).unwrap().moves("m").map(|made| made.label).collect();
+        let labels: Vec<_> = Program::plan(&steps, TICK).unwrap().moves("m").map(|made| made.label).collect();
         let ends = [("0", "0.1"), ("0.1", "0.3"), ("0.3", "0"), ("0", "1.5708")];
         assert_eq!(labels, ends.map(|(from, to)| format!("move from {from} m to {to} m, order 4")));
     }
@@ -189,10 +260,10 @@ mod tests {
         let to = |target| to(Target::Absolute(target));
         let steps = [to(0.3), to(0.3), to(-0.2), Step::Wait(0.05), to(1.0)];
         for skip in [1, 7, 5_000, 12_000] {
-            let mut program = Program::plan(&steps).unwrap();
+            let mut program = Program::plan(&steps, TICK).unwrap();
             for k in (0..60_000_u32).step_by(skip) {
                 let t = f64::from(k) / 16e3;
-                let made = program.moves.iter().take_while(|planned| planned.start <= t).last().unwrap();
+                let made = program.course.moves.iter().take_while(|planned| planned.start <= t).last().unwrap();
                 let mut expected = made.plan.at(t - made.start);
                 expected.x += made.from;
                 let bits = |Setpoint { x, v, a, j, s }| [x, v, a, j, s].map(f64::to_bits);
@@ -203,7 +274,7 @@ mod tests {
 
     #[test]
     fn without_a_move_the_axis_is_to_stay() {
-        let mut program = Program::plan(&[Step::Wait(0.5)]).unwrap();
+        let mut program = Program::plan(&[Step::Wait(0.5)], TICK).unwrap();
         assert!([0.0, 0.1, 7.0].iter().all(|t| program.at(*t) == Setpoint::at_rest(0.0)));
         assert!((program.end() - 0.5).abs() < 1e-15);
     }
@@ -218,7 +289,7 @@ mod tests {
             (vec![Step::Wait(0.5), Step::Wait(f64::INFINITY)], "inf"),
             (vec![Step::Wait(0.5), Step::Wait(f64::NAN)], "NaN"),
         ] {
-            let message = Program::plan(&steps).unwrap_err().to_string();
+            let message = Program::plan(&steps, TICK).unwrap_err().to_string();
             assert!(message.starts_with(&format!("program step 2 would end at {end}")), "{message}");
             assert!(message.contains("a run lasts 1000000 s at most"), "{message}");
         }

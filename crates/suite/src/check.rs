@@ -68,7 +68,9 @@ fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
         // The firmware calls its parameters as the file does.
         BuildError::Parameter(error) if error.name.contains('.') => error.name.to_owned(),
         BuildError::Mechanics(_) | BuildError::Parameter(_) => model_key(scenario).to_owned(),
-        BuildError::Plan { index, .. } | BuildError::TooLong { step: Some(index), .. } => format!("program.{index}"),
+        BuildError::Plan { index, .. }
+        | BuildError::NothingToAbort { index, .. }
+        | BuildError::TooLong { step: Some(index), .. } => format!("program.{index}"),
         BuildError::UnknownChannel { .. } => "record.channels".to_owned(),
         BuildError::TooLong { step: None, .. } => "run.duration".to_owned(),
         BuildError::IdleDisturbance { index, .. } => format!("disturbance.{index}"),

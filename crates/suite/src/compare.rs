@@ -92,6 +92,7 @@ fn differences(one: &Scenario, other: &Scenario) -> Vec<&'static str> {
         axis,
         actuator,
         program: _,
+        interpolation: _,
         disturbances,
         initial,
         record,
@@ -219,7 +220,7 @@ pub fn to_equal_duration(jobs: &mut [Job]) -> Result<(), CompareError> {
 
 /// How long each move lasts (s).
 fn durations(job: &Job) -> Result<Vec<f64>, CompareError> {
-    let program = Program::plan(&job.scenario.program)
+    let program = Program::new(&job.scenario)
         .map_err(|error| CompareError::Plan { scenario: job.scenario.name.clone(), error })?;
     Ok(program.durations().collect())
 }

@@ -37,8 +37,10 @@ impl Job {
     #[must_use]
     pub fn memory(&self) -> u64 {
         const VALUE: f64 = size_of::<f64>() as f64;
-        let Scenario { duration, program, record, base_rate, .. } = &self.scenario;
-        let Some(duration) = duration.or_else(|| Some(Program::plan(program).ok()?.end() + TAIL)) else { return 0 };
+        let Scenario { duration, record, base_rate, .. } = &self.scenario;
+        let Some(duration) = duration.or_else(|| Some(Program::new(&self.scenario).ok()?.end() + TAIL)) else {
+            return 0;
+        };
         let channels = if record.channels.is_empty() { CHANNELS.len() } else { record.channels.len() };
         let bytes = |hertz: u32| (duration * f64::from(hertz) + 1.0) * channels as f64 * VALUE;
         // Every tick until it is measured, beside what is kept of it.

@@ -1,9 +1,11 @@
-//! `[setpoint]`, `[[program]]` and `[[disturbance]]`: what happens.
+//! `[[program]]` and `[[disturbance]]`: what happens.
+use super::setpoint::{Rockwell, Shaper, TableOfPoints};
 use crate::field::{any, not_negative, positive};
 use crate::limit_table::LimitTable;
+use crate::list::Many;
 use crate::physical::Kind::{Axis as InAxis, Plain};
 use crate::physical::{ACCELERATION, FORCE, FREQUENCY, JERK, POSITION, SNAP, TIME, TORQUE, VELOCITY};
-use crate::scenario::DisturbedBody;
+use crate::scenario::{DisturbedBody, Execution, Method, PlanEffort, Sampling};
 use crate::simple::Choice;
 use crate::table::table;
 
@@ -13,32 +15,25 @@ impl Choice for DisturbedBody {
 }
 
 table! {
-    /// What every move respects unless it says otherwise.
-    pub(crate) struct Setpoint {
-        /// Order of the profile: 2 limits velocity and acceleration, 3 jerk too, 4 snap too.
-        order: u32 = 2..=4,
-        /// Largest velocity.
-        velocity: f64 = positive(InAxis(&VELOCITY), "30 m/min"),
-        /// Largest acceleration.
-        acceleration: f64 = positive(InAxis(&ACCELERATION), "5 m/s2"),
-        /// Largest jerk.
-        jerk: f64 = positive(InAxis(&JERK), "50 m/s3"),
-        /// Largest snap.
-        snap: f64 = positive(InAxis(&SNAP), "1000 m/s4"),
-        /// Sample time of the plan, a whole number of base ticks; continuous unless given.
-        sample_time: f64 = positive(Plain(&TIME), "1 ms"),
-    }
-}
-
-table! {
-    /// A move or a pause: give one of `move_to`, `move_by` and `wait`. The other keys override `[setpoint]`.
+    /// A move or a pause: give one of `move_to`, `move_by`, `reach_velocity`, `table` and `wait`. The other keys override
+    /// `[setpoint]`.
     pub(crate) struct ProgramStep {
         /// Moves to a position.
         move_to: f64 = any(InAxis(&POSITION), "250 mm"),
         /// Moves by a distance from the last target.
         move_by: f64 = any(InAxis(&POSITION), "-250 mm"),
+        /// Goes over to a velocity and holds it for `hold`; the next move takes over in motion.
+        reach_velocity: f64 = any(InAxis(&VELOCITY), "10 m/min"),
+        /// Moves through the points of a table.
+        table: TableOfPoints = (),
         /// Waits.
         wait: f64 = not_negative(Plain(&TIME), "0.2 s"),
+        /// Passes the target of `move_to` or `move_by` at this velocity; the next move takes over in motion.
+        end_velocity: f64 = any(InAxis(&VELOCITY), "5 m/min"),
+        /// How long `reach_velocity` holds its velocity; not at all unless given.
+        hold: f64 = not_negative(Plain(&TIME), "0.5 s"),
+        /// Breaks the move before off, so long after its start, and takes over from the state of motion that it has then.
+        aborts_after: f64 = positive(Plain(&TIME), "0.3 s"),
         /// Order of the profile.
         order: u32 = 2..=4,
         /// Largest velocity.
@@ -49,8 +44,26 @@ table! {
         jerk: f64 = positive(InAxis(&JERK), "50 m/s3"),
         /// Largest snap.
         snap: f64 = positive(InAxis(&SNAP), "1000 m/s4"),
+        /// Which profile goes from rest to rest.
+        method: Method = (),
         /// Sample time of the plan, a whole number of base ticks.
         sample_time: f64 = positive(Plain(&TIME), "1 ms"),
+        /// How the times are made whole numbers of samples.
+        sampling: Sampling = (),
+        /// How set-points are made of the samples.
+        execution: Execution = (),
+        /// Plans as if the axis were in motion, with so much work.
+        online: PlanEffort = (),
+        /// Largest velocity below zero, of a move that is planned in motion.
+        negative_velocity: f64 = positive(InAxis(&VELOCITY), "20 m/min"),
+        /// Largest acceleration below zero, of a move that is planned in motion.
+        negative_acceleration: f64 = positive(InAxis(&ACCELERATION), "4 m/s2"),
+        /// Moves by the operands of Rockwell's axis move.
+        rockwell: Rockwell = (),
+        /// Input shaper.
+        shaper: Shaper = (),
+        /// Lengths of moving averages behind the generator; `[]` for none.
+        averages: Many<f64> = positive(Plain(&TIME), "10 ms"),
         /// Slows the move to last this long, every derivative in proportion; as fast as the limits allow unless given.
         duration: f64 = positive(Plain(&TIME), "1.5 s"),
         /// Limits that this move's own metrics must keep, beside those of the run.

@@ -3,47 +3,53 @@ use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
 use crate::file::File;
-use crate::resolve::{Way, has_window, limits, one_way};
-use crate::scenario::{LONGEST_RUN, MoveStep, Step, Target};
-use crate::source::{At, Span};
+use crate::resolve::keys::{Keys, LIMITS, Said};
+use crate::resolve::{Way as OneWay, filter, has_window, limits, one_way, points, rockwell};
+use crate::scenario::{
+    Filter, Goal, LONGEST_RUN, MoveStep, OnlineMove, PlanEffort, RestMove, Step, TableMove, Target, Way,
+};
+use crate::source::{At, Sources, Span};
 use servobench_base::Rate;
-use std::collections::BTreeSet;
-
-/// Keys of the limits, velocity first.
-const LIMITS: [&str; 4] = ["velocity", "acceleration", "jerk", "snap"];
-
-/// What a move says of itself, or `[setpoint]` for all.
-struct Profile<'a> {
-    order: &'a Slot<u32>,
-    limits: [&'a Slot<f64>; 4],
-    sample_time: &'a Slot<f64>,
-    duration: &'a Slot<f64>,
-}
 
 /// What the steps need to know of the rest of the file.
-struct Known {
+struct Known<'a> {
     base_rate: Option<Rate>,
     /// Whether there is a settling window.
     has_window: bool,
+    sources: &'a Sources,
 }
 
-/// What has been said of `[setpoint]` already: once is enough for all moves.
-#[derive(Default)]
-struct Said {
-    missing: Vec<&'static str>,
-    places: BTreeSet<Span>,
+/// What happens before a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Before {
+    /// Nothing that could be broken off.
+    Pause,
+    /// A move that ends at rest.
+    Move,
+    /// A move that ends in motion.
+    Motion,
 }
 
-pub(super) fn steps(file: &File, base_rate: Option<Rate>, report: &mut Report) -> Option<Vec<Step>> {
+pub(super) fn steps(file: &File, base_rate: Option<Rate>, sources: &Sources, report: &mut Report) -> Option<Vec<Step>> {
     let Some(program) = file.program.optional().ok()? else { return Some(Vec::new()) };
     refuse_endless(&program.0, report);
     let mut said = Said::default();
-    let known = Known { base_rate, has_window: has_window(file) };
-    let steps: Vec<_> = program
-        .0
-        .iter()
-        .map(|step| self::step(&step.value, file.setpoint.given(), &known, &mut said, report))
-        .collect();
+    let known = Known { base_rate, has_window: has_window(file), sources };
+    let defaults = file.setpoint.given().map(Keys::of_setpoint);
+    let (mut steps, mut before) = (Vec::new(), Before::Pause);
+    for step in &program.0 {
+        let resolved = self::step(&step.value, defaults.as_ref(), before, &known, &mut said, report);
+        before = match &resolved {
+            Some(Step::Move(step)) if step.ends_in_motion() => Before::Motion,
+            Some(Step::Wait(_)) => Before::Pause,
+            // Where it has not become clear what it is, nothing that follows is to be blamed for it.
+            Some(Step::Move(_)) | None => Before::Move,
+        };
+        steps.push(resolved);
+    }
+    if let (Before::Motion, Some(last)) = (before, program.0.last()) {
+        report.error(last.value.span, "the program ends in motion", "add a move to rest behind this one");
+    }
     steps.into_iter().collect()
 }
 
@@ -52,7 +58,8 @@ pub(super) fn steps(file: &File, base_rate: Option<Rate>, report: &mut Report) -
 fn refuse_endless(program: &[At<file::ProgramStep>], report: &mut Report) {
     let mut end = 0.0;
     for step in program {
-        let Some(length) = step.value.wait.at().or(step.value.duration.at()) else { continue };
+        let step = &step.value;
+        let Some(length) = step.wait.at().or(step.duration.at()).or(step.hold.at()) else { continue };
         end += length.value;
         if end > LONGEST_RUN {
             let message = format!("the program would last {end} s at least, a run lasts {LONGEST_RUN} s at most");
@@ -62,151 +69,242 @@ fn refuse_endless(program: &[At<file::ProgramStep>], report: &mut Report) {
     }
 }
 
+/// What a step does.
+enum Does {
+    To(Option<Target>),
+    Velocity(Option<f64>),
+    Table,
+}
+
 fn step(
     step: &file::ProgramStep,
-    defaults: Option<&file::Setpoint>,
-    known: &Known,
+    defaults: Option<&Keys<'_>>,
+    before: Before,
+    known: &Known<'_>,
     said: &mut Said,
     report: &mut Report,
 ) -> Option<Step> {
-    let own = Profile {
-        order: &step.order,
-        limits: [&step.velocity, &step.acceleration, &step.jerk, &step.snap],
-        sample_time: &step.sample_time,
-        duration: &step.duration,
-    };
-    let defaults = defaults.map(|all| Profile {
-        order: &all.order,
-        limits: [&all.velocity, &all.acceleration, &all.jerk, &all.snap],
-        sample_time: &all.sample_time,
-        duration: &Slot::Absent,
-    });
-    let ways = [("move_to", step.move_to.span()), ("move_by", step.move_by.span()), ("wait", step.wait.span())];
+    let own = Keys::of_step(step);
+    let ways = [
+        ("move_to", step.move_to.span()),
+        ("move_by", step.move_by.span()),
+        ("reach_velocity", step.reach_velocity.span()),
+        ("table", step.table.span()),
+        ("wait", step.wait.span()),
+    ];
     let there: Vec<_> = ways.iter().filter(|(_, span)| span.is_some()).collect();
     if let [(first, _), (second, Some(span)), ..] = there.as_slice() {
         report.error(*span, format!("`{first}` and `{second}` in one step"), "write two steps");
         return None;
     }
-    let target = match one_way(&ways, report) {
-        Way::Use(0) => step.move_to.given().copied().map(Target::Absolute),
-        Way::Use(1) => step.move_by.given().copied().map(Target::Relative),
-        Way::Use(_) => {
-            no_profile(&own, step.limits.span(), report);
+    let does = match one_way(&ways, report) {
+        OneWay::Use(0) => Does::To(step.move_to.given().copied().map(Target::Absolute)),
+        OneWay::Use(1) => Does::To(step.move_by.given().copied().map(Target::Relative)),
+        OneWay::Use(2) => Does::Velocity(step.reach_velocity.given().copied()),
+        OneWay::Use(3) => Does::Table,
+        OneWay::Use(_) => {
+            no_keys(own.named().chain(of_moves(step)), "a pause", report);
+            if before == Before::Motion {
+                report.error(
+                    step.span,
+                    "the axis does not rest here: the move before ends in motion",
+                    "let the next move follow at once; a velocity that was reached is held by `hold`",
+                );
+            }
             return step.wait.given().copied().map(Step::Wait);
         }
-        Way::Contradiction => return None,
-        Way::None => {
-            report.lacking("program", step.span, "this step does nothing", "give `move_to`, `move_by` or `wait`");
+        OneWay::Contradiction => return None,
+        OneWay::None => {
+            let help = "give `move_to`, `move_by`, `reach_velocity`, `table` or `wait`";
+            report.lacking("program", step.span, "this step does nothing", help);
             return None;
         }
     };
-    let profile = profile(&own, defaults.as_ref(), step.span, known.base_rate, said, report);
     let metric_limits =
         step.limits.optional().ok().map(|own| own.map_or_else(Vec::new, |own| limits(own, known.has_window, report)));
-    let (order, limits, sample_time) = profile?;
-    let duration = own.duration.optional().ok()?.copied();
-    Some(Step::Move(MoveStep { target: target?, order, limits, sample_time, duration, metric_limits: metric_limits? }))
+    let keys = own.or(defaults);
+    let context = Context { step, own: &own, keys: &keys, before, known };
+    let moved = match does {
+        Does::Table => context.table(report),
+        Does::To(target) => context.to(target, said, report),
+        Does::Velocity(velocity) => context.to_velocity(velocity, said, report),
+    };
+    let filter = filter::filter(&keys, known.base_rate, said, report);
+    let (way, order, limits) = moved?;
+    let (aborts_after, duration) =
+        (step.aborts_after.optional().ok()?.copied(), step.duration.optional().ok()?.copied());
+    let step = MoveStep { way, order, limits, filter: filter?, aborts_after, duration, metric_limits: metric_limits? };
+    context.check_ends(&step, report);
+    Some(Step::Move(step))
 }
 
-/// Objects to keys of a move in a pause.
-fn no_profile(own: &Profile<'_>, metric_limits: Option<Span>, report: &mut Report) {
-    let limits = LIMITS.into_iter().zip(own.limits).map(|(key, slot)| (key, slot.span()));
-    let others = [
-        ("order", own.order.span()),
-        ("sample_time", own.sample_time.span()),
-        ("duration", own.duration.span()),
-        ("limits", metric_limits),
-    ];
-    for (key, span) in limits.chain(others) {
+/// Keys of moves that say nothing of their profile.
+fn of_moves(step: &file::ProgramStep) -> impl Iterator<Item = (&'static str, Option<Span>)> {
+    [
+        ("end_velocity", step.end_velocity.span()),
+        ("hold", step.hold.span()),
+        ("aborts_after", step.aborts_after.span()),
+        ("duration", step.duration.span()),
+        ("limits", step.limits.span()),
+    ]
+    .into_iter()
+}
+
+/// Objects to keys that `what` does not have.
+fn no_keys(keys: impl IntoIterator<Item = (&'static str, Option<Span>)>, what: &str, report: &mut Report) {
+    for (key, span) in keys {
         if let Some(span) = span {
-            report.error(span, format!("a pause has no `{key}`"), "");
+            report.error(span, format!("{what} has no `{key}`"), "");
         }
     }
 }
 
-fn profile(
-    own: &Profile<'_>,
-    defaults: Option<&Profile<'_>>,
-    header: Span,
-    base_rate: Option<Rate>,
-    said: &mut Said,
-    report: &mut Report,
-) -> Option<(u8, [f64; 4], Option<f64>)> {
-    let order = either(own.order, defaults.map(|all| all.order));
-    let slots: [&Slot<f64>; 4] = std::array::from_fn(|i| either(own.limits[i], defaults.map(|all| all.limits[i])));
-    let Some(order_value) = order.given().and_then(|order| u8::try_from(*order).ok()) else {
-        if matches!(order, Slot::Absent) {
-            said.missing("order", header, "2, 3 or 4", report);
+/// A move that is being resolved.
+struct Context<'a> {
+    step: &'a file::ProgramStep,
+    /// What the step says itself.
+    own: &'a Keys<'a>,
+    /// What holds, the step's own before that of `[setpoint]`.
+    keys: &'a Keys<'a>,
+    before: Before,
+    known: &'a Known<'a>,
+}
+
+/// Way, order and limits of a move.
+type Moved = (Way, u8, [f64; 4]);
+
+impl Context<'_> {
+    /// A move to a position.
+    fn to(&self, target: Option<Target>, said: &mut Said, report: &mut Report) -> Option<Moved> {
+        no_keys([("hold", self.step.hold.span())], "a move to a position", report);
+        if let Some(rockwell) = self.keys.rockwell.at() {
+            return self.rockwell(target, rockwell, said, report);
         }
-        // Whatever the order is, it limits these.
-        for (key, slot) in LIMITS.into_iter().zip(slots).take(2) {
-            if matches!(slot, Slot::Absent) {
-                said.missing(key, header, "every move needs it", report);
+        if self.keys.rockwell.span().is_some() {
+            return None;
+        }
+        if self.in_motion().is_some() || self.keys.online.span().is_some() {
+            let end_velocity = self.step.end_velocity.optional().ok()?.copied().unwrap_or(0.0);
+            return self.online(target.map(|target| Goal::Position(target, end_velocity)), said, report);
+        }
+        let unused = self.own.named().filter(|(key, _)| key.starts_with("negative_"));
+        no_keys(unused, "a move that is not planned `online`", report);
+        let order_and_limits = self.keys.order_and_limits(self.step.span, said, report);
+        let grid = filter::grid(self.keys, self.known.base_rate, said, report);
+        let (order, limits) = order_and_limits?;
+        let method = self.keys.method.optional().ok()?.copied().unwrap_or_default();
+        Some((Way::Rest(RestMove { target: target?, method, grid: grid? }), order, limits))
+    }
+
+    /// A move to a velocity.
+    fn to_velocity(&self, velocity: Option<f64>, said: &mut Said, report: &mut Report) -> Option<Moved> {
+        no_keys([("end_velocity", self.step.end_velocity.span())], "a move to a velocity", report);
+        if let Some(span) = self.own.rockwell.span() {
+            report.error(span, "Rockwell's move goes to a position", "leave `rockwell` out of this step");
+        }
+        let hold = self.step.hold.optional().ok()?.copied().unwrap_or(0.0);
+        self.online(velocity.map(|velocity| Goal::Velocity(velocity, hold)), said, report)
+    }
+
+    /// A move from any state of motion.
+    fn online(&self, goal: Option<Goal>, said: &mut Said, report: &mut Report) -> Option<Moved> {
+        for (key, span) in self.own.named() {
+            let is_of_rest = matches!(key, "method" | "sample_time" | "sampling" | "execution");
+            if let (Some(span), true) = (span, is_of_rest) {
+                let message = format!("`{key}` is for moves from rest to rest, this one is planned in motion");
+                report.error(span, message, "");
             }
         }
-        return None;
-    };
-    let mut limits = [f64::INFINITY; 4];
-    let mut is_complete = true;
-    for (i, slot) in slots.into_iter().enumerate() {
-        let is_limited = i < usize::from(order_value);
-        match slot {
-            Slot::Given(at) if is_limited => limits[i] = at.value,
-            Slot::Given(At { span, .. }) => {
-                let message = format!("`{}` is not used by a move of order {order_value}", LIMITS[i]);
-                said.once(*span, |report| report.warning(*span, message, ""), report);
-            }
-            Slot::Absent if is_limited => {
-                said.missing(LIMITS[i], header, &format!("a move of order {order_value} needs it"), report);
-                is_complete = false;
-            }
-            Slot::Wrong(_) => is_complete = false,
-            Slot::Absent => {}
+        let (order, limits) = self.keys.order_and_limits(self.step.span, said, report)?;
+        if order < 3 {
+            let span = self.keys.order.span().unwrap_or(self.step.span);
+            let message = "a move that is planned in motion has order 3 or 4, got 2";
+            said.once(span, |report| report.error(span, message, ""), report);
+            return None;
         }
-    }
-    let sample_time = match either(own.sample_time, defaults.map(|all| all.sample_time)) {
-        Slot::Absent => Some(None),
-        Slot::Wrong(_) => None,
-        Slot::Given(at) => whole_ticks(*at, base_rate, said, report).map(Some),
-    };
-    let sample_time = sample_time?;
-    is_complete.then_some((order_value, limits, sample_time))
-}
-
-/// The move's own value before that of `[setpoint]`.
-fn either<'a, T>(own: &'a Slot<T>, default: Option<&'a Slot<T>>) -> &'a Slot<T> {
-    match (own, default) {
-        (Slot::Absent, Some(default)) => default,
-        _ => own,
-    }
-}
-
-/// A sample time that must be a whole number of base ticks.
-fn whole_ticks(time: At<f64>, base_rate: Option<Rate>, said: &mut Said, report: &mut Report) -> Option<f64> {
-    let hertz = f64::from(base_rate?.hertz());
-    let ticks = time.value * hertz;
-    if ticks.round() >= 1.0 && (ticks - ticks.round()).abs() <= 1e-9 * ticks {
-        // Not as typed: what 83.33333333 us lacks of a tick at 12 kHz would add up over the samples of a move.
-        return Some(ticks.round() / hertz);
-    }
-    let in_microseconds = |ticks: f64| ticks * base_rate.map_or(0.0, Rate::period) * 1e6;
-    let near = format!("{} us", in_microseconds(ticks.round().max(1.0)));
-    let message = format!("`sample_time` is {ticks:.4} base ticks, not a whole number");
-    said.once(time.span, |report| report.error(time.span, message, format!("{near} fits")), report);
-    None
-}
-
-impl Said {
-    fn missing(&mut self, key: &'static str, header: Span, why: &str, report: &mut Report) {
-        if !self.missing.contains(&key) {
-            self.missing.push(key);
-            report.missing_with_help("setpoint", key, header, why);
+        let [velocity, acceleration] = self.keys.negative.map(Slot::optional);
+        let negative = [velocity.ok()?.copied(), acceleration.ok()?.copied()];
+        let effort = self.keys.online.optional().ok()?.copied().unwrap_or(PlanEffort::Fast);
+        let goal = goal?;
+        let (Goal::Position(_, v) | Goal::Velocity(v, _)) = goal;
+        let most = if v < 0.0 { negative[0].unwrap_or(limits[0]) } else { limits[0] };
+        let asked = self.step.end_velocity.span().or(self.step.reach_velocity.span());
+        if let (Some(span), true) = (asked, v.abs() > most) {
+            report.error(span, format!("beyond the velocity limit, {most} in SI"), "lower it or raise the limit");
+            return None;
         }
+        Some((Way::Online(OnlineMove { goal, effort, negative }), order, limits))
     }
 
-    fn once(&mut self, place: Span, say: impl FnOnce(&mut Report), report: &mut Report) {
-        if self.places.insert(place) {
-            say(report);
+    /// Rockwell's axis move.
+    fn rockwell(
+        &self,
+        target: Option<Target>,
+        keys: &At<file::Rockwell>,
+        said: &mut Said,
+        report: &mut Report,
+    ) -> Option<Moved> {
+        if let Some(span) = self.in_motion() {
+            let help = "leave `rockwell` out of this step, or let the axis rest";
+            report.error(span, "Rockwell's move starts and ends at rest", help);
+            return None;
+        }
+        let unused = self.own.named().filter(|(key, _)| !matches!(*key, "rockwell" | "shaper" | "averages"));
+        let unused = unused.filter(|(key, _)| !LIMITS[..3].contains(key));
+        no_keys(unused, "Rockwell's move", report);
+        let limits = self.keys.limits(2, 3, "Rockwell's move", self.step.span, said, report);
+        let is_own = self.own.rockwell.span().is_some();
+        let operands = rockwell::Operands {
+            acceleration: self.keys.limits[1],
+            jerk_beside: if is_own { self.own.limits[2] } else { self.keys.limits[2] },
+            jerk: self.keys.limits[2],
+        };
+        let rockwell = rockwell::resolve(keys, &operands, target, report);
+        Some((Way::Rockwell(rockwell?), 3, limits?))
+    }
+
+    /// A move through a table.
+    fn table(&self, report: &mut Report) -> Option<Moved> {
+        let unused = self.own.named().filter(|(key, _)| !matches!(*key, "shaper" | "averages"));
+        let of_motion = of_moves(self.step).filter(|(key, _)| !matches!(*key, "duration" | "limits"));
+        no_keys(unused.chain(of_motion), "a table", report);
+        if self.before == Before::Motion {
+            report.error(self.step.span, "a table starts at rest", "let the move before end at rest");
+            return None;
+        }
+        let table: TableMove = points::resolve(self.step.table.at()?, self.known.sources, report)?;
+        let order = match table.follow {
+            crate::scenario::Follow::Segments => 3,
+            _ => 2,
+        };
+        Some((Way::Table(table), order, [f64::INFINITY; 4]))
+    }
+
+    /// Where it says that the move starts or ends in motion.
+    fn in_motion(&self) -> Option<Span> {
+        let starts = (self.before == Before::Motion).then_some(self.step.span);
+        self.step.aborts_after.span().or(self.step.end_velocity.span()).or(starts)
+    }
+
+    /// Objects to what does not fit the way in which the move starts and ends.
+    fn check_ends(&self, step: &MoveStep, report: &mut Report) {
+        if let (Before::Pause, Some(span)) = (self.before, self.step.aborts_after.span()) {
+            report.error(span, "there is no move to abort", "give the step before a move, or leave `aborts_after` out");
+        }
+        let starts_in_motion = self.before == Before::Motion || step.aborts_after.is_some();
+        if !starts_in_motion && !step.ends_in_motion() {
+            return;
+        }
+        let Filter { shaper, averages } = &step.filter;
+        for (is_there, slot, help) in [
+            (shaper.is_some(), self.keys.shaper.span(), "write `shaper = { kind = \"none\" }` into this step"),
+            (!averages.is_empty(), self.keys.averages.span(), "write `averages = []` into this step"),
+            (step.duration.is_some(), self.step.duration.span(), "leave it out: limits say how fast the move is"),
+        ] {
+            if is_there {
+                let message = "a move that starts or ends in motion is not filtered or slowed: its velocity would jump";
+                report.error(slot.unwrap_or(self.step.span), message, help);
+            }
         }
     }
 }

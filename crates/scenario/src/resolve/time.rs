@@ -8,7 +8,7 @@
 //! the rest-to-rest move of second order, which every limit of jerk and snap only lengthens.
 use crate::diagnostic::Report;
 use crate::file::File;
-use crate::scenario::{MoveStep, Step, Target};
+use crate::scenario::{Goal, MoveStep, OnlineMove, Step, Target, Way};
 
 /// Shorter by rounding only.
 const ROUNDING: f64 = 1e-9;
@@ -34,18 +34,33 @@ pub(super) fn check(file: &File, steps: Option<&[Step]>, report: &mut Report) {
 /// How long the program lasts at least (s).
 fn least_program(steps: &[Step]) -> f64 {
     let (mut end, mut position) = (0.0, 0.0);
-    for step in steps {
-        match step {
-            Step::Wait(length) => end += length,
-            Step::Move(step) => {
-                let target = match step.target {
-                    Target::Absolute(target) => target,
-                    Target::Relative(distance) => position + distance,
-                };
-                end += step.duration.unwrap_or_else(|| least_move(step, target - position));
-                position = target;
+    for (k, step) in steps.iter().enumerate() {
+        let step = match step {
+            Step::Wait(length) => {
+                end += length;
+                continue;
             }
+            Step::Move(step) => step,
+        };
+        let from = position;
+        match step.target() {
+            Some(Target::Absolute(target)) => position = target,
+            Some(Target::Relative(distance)) => position += distance,
+            None => {}
         }
+        let aborted_after = match steps.get(k + 1) {
+            Some(Step::Move(next)) => next.aborts_after,
+            _ => None,
+        };
+        end += aborted_after.or(step.duration).unwrap_or_else(|| match &step.way {
+            Way::Rest(_) => least_move(step, position - from),
+            Way::Online(OnlineMove { goal: Goal::Velocity(_, hold), .. }) => *hold,
+            // What it makes of its start in motion, or of its jerk, is for the planner to say.
+            Way::Online(_) | Way::Rockwell(_) => 0.0,
+            Way::Table(table) => {
+                table.points.last().map_or(0.0, |last| last.0) - table.points.first().map_or(0.0, |first| first.0)
+            }
+        });
     }
     end
 }

@@ -2,6 +2,7 @@
 mod names;
 mod quantities;
 mod rules;
+mod setpoints;
 mod time;
 
 use servobench_scenario::{LoadError, parse};

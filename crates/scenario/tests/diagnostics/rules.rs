@@ -35,7 +35,10 @@ fn what_is_missing_is_said_at_the_header_of_its_table() {
         ("rate = \"4 kHz\"\n", "31:1: missing `rate` in `drive.position`"),
         ("jerk = \"200 m/s3\"\n", "41:1: missing `jerk` in `setpoint`; a move of order 3 needs it"),
         ("order = 3\n", "41:1: missing `order` in `setpoint`; 2, 3 or 4"),
-        ("move_to = \"250 mm\"\n", "42:1: this step does nothing; give `move_to`, `move_by` or `wait`"),
+        (
+            "move_to = \"250 mm\"\n",
+            "42:1: this step does nothing; give `move_to`, `move_by`, `reach_velocity`, `table` or `wait`",
+        ),
         ("on = \"load\"\n", "44:1: missing `on` in `disturbance`"),
         ("force = \"100 N\"\n", "44:1: missing `force` in `disturbance`"),
         ("window = \"10 um\"\n", "49:1: `settling_time` needs a settling window; give `window` in `[measure]`"),

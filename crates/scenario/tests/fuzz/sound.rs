@@ -135,18 +135,68 @@ fn drive(drive: &Drive, base_rate: Rate) {
 fn step(step: &Step) {
     match step {
         Step::Wait(length) => not_negative("wait", *length),
-        Step::Move(MoveStep { target, order, limits, sample_time, duration, metric_limits }) => {
-            let (Target::Absolute(length) | Target::Relative(length)) = *target;
-            finite("target", length);
+        Step::Move(MoveStep { way, order, limits, filter, aborts_after, duration, metric_limits }) => {
             assert!((2..=4).contains(order));
-            let (limited, free) = limits.split_at(usize::from(*order));
+            let needed = self::way(way, *order);
+            let (limited, free) = limits.split_at(needed);
             for limit in limited {
                 positive("limit of a move", *limit);
             }
-            assert!(free.iter().all(|limit| *limit == f64::INFINITY), "{limits:?}");
-            optional("sample_time", *sample_time);
+            if !matches!(way, Way::Rockwell(_)) {
+                assert!(free.iter().all(|limit| *limit == f64::INFINITY), "{limits:?}");
+            }
+            if let Some(Shaper { kind, frequency, damping }) = filter.shaper {
+                positive("frequency of a shaper", frequency);
+                not_negative("damping", damping);
+                if let ShaperKind::Ei(tolerable) = kind {
+                    positive("tolerable", tolerable);
+                }
+            }
+            for length in &filter.averages {
+                positive("length of an average", *length);
+            }
+            optional("aborts_after", *aborts_after);
             optional("duration of a move", *duration);
             assert!(metric_limits.iter().all(|limit| limit.min.is_some() || limit.max.is_some()), "{metric_limits:?}");
+        }
+    }
+}
+
+/// How many limits the way needs.
+fn way(way: &Way, order: u8) -> usize {
+    let target = |target: Target| {
+        let (Target::Absolute(length) | Target::Relative(length)) = target;
+        finite("target", length);
+    };
+    match way {
+        Way::Rest(asked) => {
+            target(asked.target);
+            optional("sample_time", asked.grid.map(|grid| grid.sample_time));
+            usize::from(order)
+        }
+        Way::Online(asked) => {
+            match asked.goal {
+                Goal::Position(to, v) => {
+                    target(to);
+                    finite("end_velocity", v);
+                }
+                Goal::Velocity(v, hold) => {
+                    finite("reach_velocity", v);
+                    not_negative("hold", hold);
+                }
+            }
+            asked.negative.iter().for_each(|limit| optional("negative limit", *limit));
+            usize::from(order)
+        }
+        Way::Rockwell(asked) => {
+            target(asked.target);
+            positive("deceleration", asked.deceleration);
+            asked.maximum.iter().for_each(|jerk| limit("maximum jerk", *jerk));
+            2
+        }
+        Way::Table(asked) => {
+            assert!(asked.points.len() >= 2);
+            0
         }
     }
 }

@@ -10,7 +10,7 @@ impl Bench {
     /// [`Bench::new`] builds it. The engine is asked by building its mechanics.
     #[must_use]
     pub fn objections(scenario: &Scenario, engine: &dyn Engine) -> Vec<BuildError> {
-        let program = Program::plan(&scenario.program).err();
+        let program = Program::new(scenario).err();
         let mechanics = plant::mechanics(scenario, engine).err();
         let found: Vec<_> = [program, mechanics].into_iter().flatten().collect();
         // The rest stands on these two.

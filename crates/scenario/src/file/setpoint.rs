@@ -1,0 +1,225 @@
+//! `[setpoint]`: what every move respects, and how set-points are generated, filtered and interpolated.
+use crate::field::{not_negative, positive};
+use crate::list::Many;
+use crate::physical::Kind::{Axis as InAxis, Plain};
+use crate::physical::{ACCELERATION, FREQUENCY, JERK, RATIO, SNAP, TIME, VELOCITY};
+use crate::scenario::{Execution, InterpolationMode, Method, PlanEffort, RockwellShape, Sampling};
+use crate::simple::Choice;
+use crate::table::table;
+
+impl Choice for Method {
+    const ALL: &'static [(&'static str, Self, &'static str)] = &[
+        ("published", Self::Published, "the published step through boxes, 15 segments at order 4"),
+        ("optimal", Self::Optimal, "the shortest: up to 7.5 % less time at order 4 where velocity does not cruise"),
+    ];
+}
+
+impl Choice for Sampling {
+    const ALL: &'static [(&'static str, Self, &'static str)] = &[
+        ("published", Self::Published, "time after time is rounded up, as it is published"),
+        ("fewest", Self::Fewest, "the fewest samples that a step through boxes needs"),
+    ];
+}
+
+impl Choice for Execution {
+    const ALL: &'static [(&'static str, Self, &'static str)] = &[
+        ("hold", Self::Hold, "the exact polynomial, the highest derivative held: N samples, no lag"),
+        (
+            "euler",
+            Self::Euler,
+            "the forward-Euler cascade, each sample held until the next: at rest at the same sample, and 1.5 samples late on the way at order 4",
+        ),
+    ];
+}
+
+impl Choice for PlanEffort {
+    const ALL: &'static [(&'static str, Self, &'static str)] = &[
+        ("fast", Self::Fast, "a bounded amount of work, for a control cycle"),
+        ("refined", Self::Refined, "more work where that makes the move shorter"),
+    ];
+}
+
+impl Choice for RockwellShape {
+    const ALL: &'static [(&'static str, Self, &'static str)] = &[
+        ("trapezoid", Self::Trapezoid, "acceleration as rectangular as `maximum_jerk` allows"),
+        ("s-curve", Self::SCurve, "acceleration with a jerk of its own"),
+    ];
+}
+
+impl Choice for InterpolationMode {
+    const ALL: &'static [(&'static str, Self, &'static str)] = &[
+        ("linear", Self::Linear, "position linear, velocity its slope; one period late"),
+        ("cubic", Self::Cubic, "by positions and velocities; one period late"),
+        ("quintic", Self::Quintic, "by positions, velocities and accelerations; one period late"),
+        ("cubic-b-spline", Self::CubicBSpline, "positions as control points, not passed through; two periods late"),
+        (
+            "quintic-b-spline",
+            Self::QuinticBSpline,
+            "positions as control points, not passed through; three periods late",
+        ),
+        ("all-linear", Self::AllLinear, "position, velocity, acceleration each linear; one period late"),
+        ("all-cubic", Self::AllCubic, "position and velocity each cubic; one period late"),
+    ];
+}
+
+/// Which input shaper a file names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ShaperName {
+    None,
+    Zv,
+    Zvd,
+    Zvdd,
+    Ei,
+}
+
+impl Choice for ShaperName {
+    const ALL: &'static [(&'static str, Self, &'static str)] = &[
+        ("none", Self::None, "no shaper, where `[setpoint]` has one"),
+        ("zv", Self::Zv, "zero vibration: half a period longer"),
+        ("zvd", Self::Zvd, "zero vibration and derivative: one period longer"),
+        ("zvdd", Self::Zvdd, "zero vibration and two derivatives: one and a half periods longer"),
+        ("ei", Self::Ei, "extra-insensitive, within `tolerable`: one period longer"),
+    ];
+}
+
+/// Where the velocities at the points of a table come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum VelocityRule {
+    Given,
+    Average,
+    Smooth,
+    Continuous,
+}
+
+impl Choice for VelocityRule {
+    const ALL: &'static [(&'static str, Self, &'static str)] = &[
+        ("given", Self::Given, "the table's own; a point without one is approached linearly"),
+        ("average", Self::Average, "the mean of the segments before and behind"),
+        ("smooth", Self::Smooth, "the average, then `passes` of smoothing"),
+        ("continuous", Self::Continuous, "those with continuous acceleration: the cubic spline"),
+    ];
+}
+
+/// How a table is followed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum FollowRule {
+    Segments,
+    Plateaus,
+    Steps,
+}
+
+impl Choice for FollowRule {
+    const ALL: &'static [(&'static str, Self, &'static str)] = &[
+        ("segments", Self::Segments, "along its cubic and linear segments (PVT, PT)"),
+        ("plateaus", Self::Plateaus, "by profile velocities with a plateau in each segment; hits every position"),
+        ("steps", Self::Steps, "by profile velocities along the cubic spline, sent at `command_rate`"),
+    ];
+}
+
+table! {
+    /// What every move respects unless it says otherwise.
+    pub(crate) struct Setpoint {
+        /// Order of the profile: 2 limits velocity and acceleration, 3 jerk too, 4 snap too.
+        order: u32 = 2..=4,
+        /// Largest velocity.
+        velocity: f64 = positive(InAxis(&VELOCITY), "30 m/min"),
+        /// Largest acceleration.
+        acceleration: f64 = positive(InAxis(&ACCELERATION), "5 m/s2"),
+        /// Largest jerk.
+        jerk: f64 = positive(InAxis(&JERK), "50 m/s3"),
+        /// Largest snap.
+        snap: f64 = positive(InAxis(&SNAP), "1000 m/s4"),
+        /// Which profile goes from rest to rest; "published" unless given.
+        method: Method = (),
+        /// Sample time of moves from rest to rest, a whole number of base ticks; continuous unless given.
+        sample_time: f64 = positive(Plain(&TIME), "1 ms"),
+        /// How the times are made whole numbers of samples; "published" unless given.
+        sampling: Sampling = (),
+        /// How set-points are made of the samples; "hold" unless given.
+        execution: Execution = (),
+        /// Plans every move as one that may start in motion, with so much work; "fast" where a move does and nothing is given.
+        online: PlanEffort = (),
+        /// Largest velocity below zero, of moves that are planned in motion; as `velocity` unless given.
+        negative_velocity: f64 = positive(InAxis(&VELOCITY), "20 m/min"),
+        /// Largest acceleration below zero, of moves that are planned in motion; as `acceleration` unless given.
+        negative_acceleration: f64 = positive(InAxis(&ACCELERATION), "4 m/s2"),
+        /// Moves by the operands of Rockwell's axis move.
+        rockwell: Rockwell = (),
+        /// Input shaper, against one mode of the axis.
+        shaper: Shaper = (),
+        /// Lengths of moving averages behind the generator, one after the other, whole numbers of base ticks.
+        averages: Many<f64> = positive(Plain(&TIME), "10 ms"),
+        /// Between a slow task that commands and the drive; the drive has a new set-point at every tick unless given.
+        interpolation: Interpolation = (),
+    }
+}
+
+table! {
+    /// Rockwell's axis move: velocity from rest to the speed and back, with jerk as a value (`jerk` of the move) or as a part.
+    pub(crate) struct Rockwell requires ["shape"] {
+        /// Shape of the velocity.
+        shape: RockwellShape = (),
+        /// Largest deceleration; as `acceleration` unless given.
+        deceleration: f64 = positive(InAxis(&ACCELERATION), "8 m/s2"),
+        /// Jerk as the part of the ramp in which the acceleration changes, above 0 to 100 %.
+        jerk_of_time: f64 = positive(Plain(&RATIO), "25 %"),
+        /// Jerk as a part of `maximum_jerk`, above 0 to 100 %.
+        jerk_of_maximum: f64 = positive(Plain(&RATIO), "60 %"),
+        /// Jerk of the deceleration; said as for the acceleration unless one of these three is given.
+        deceleration_jerk: f64 = positive(InAxis(&JERK), "80 m/s3"),
+        /// Jerk of the deceleration as the part of its ramp in which it changes.
+        deceleration_jerk_of_time: f64 = positive(Plain(&RATIO), "50 %"),
+        /// Jerk of the deceleration as a part of `maximum_deceleration_jerk`.
+        deceleration_jerk_of_maximum: f64 = positive(Plain(&RATIO), "60 %"),
+        /// Largest jerk of accelerations that the axis is configured for: that of a trapezoid.
+        maximum_jerk: f64 = positive(InAxis(&JERK), "500 m/s3"),
+        /// Largest jerk of decelerations; as `maximum_jerk` unless given.
+        maximum_deceleration_jerk: f64 = positive(InAxis(&JERK), "500 m/s3"),
+    }
+}
+
+table! {
+    /// An input shaper: the move in parts, each half a period of a mode later than the one before, so that their vibrations
+    /// cancel.
+    pub(crate) struct Shaper requires ["kind"] {
+        /// Which one.
+        kind: ShaperName = (),
+        /// Natural frequency of the mode.
+        frequency: f64 = positive(Plain(&FREQUENCY), "17.5 Hz"),
+        /// Damping ratio of the mode; 0 unless given.
+        damping: f64 = not_negative(Plain(&RATIO), "0.02"),
+        /// Part of the vibration that "ei" may leave; 0.05 unless given.
+        tolerable: f64 = positive(Plain(&RATIO), "5 %"),
+    }
+}
+
+table! {
+    /// Between a slow task that commands and the drive.
+    pub(crate) struct Interpolation requires ["mode", "period"] {
+        /// How values between two commands are found.
+        mode: InterpolationMode = (),
+        /// Time between two commands, a whole number of base ticks.
+        period: f64 = positive(Plain(&TIME), "4 ms"),
+    }
+}
+
+table! {
+    /// A table of points, and how it is followed. It starts and ends at rest unless its first and last point have a velocity.
+    pub(crate) struct TableOfPoints requires ["file"] {
+        /// A CSV file, relative to this one, with the heading `time [ms],position [mm],velocity [mm/s]`: any units, velocity
+        /// left out where there is none.
+        file: String = (),
+        /// Whether the positions count from where the axis is when the move starts.
+        relative: bool = (),
+        /// Where the velocities come from; "given" unless given.
+        velocities: VelocityRule = (),
+        /// How often "smooth" passes over them; 2 unless given.
+        passes: u32 = 0..=1_000_000,
+        /// How it is followed; "segments" unless given.
+        follow: FollowRule = (),
+        /// Share of a segment at either end in which the velocity of "plateaus" changes, up to 0.5; 0.25 unless given.
+        plateau_share: f64 = positive(Plain(&RATIO), "0.25"),
+        /// Commands per second of "steps".
+        command_rate: f64 = positive(Plain(&FREQUENCY), "100 Hz"),
+    }
+}

@@ -1,0 +1,103 @@
+//! Times on the base ticks: sample times, averages, the period of a commanding task; and the input shaper.
+use crate::diagnostic::Report;
+use crate::field::Slot;
+use crate::file::{File, ShaperName};
+use crate::resolve::keys::{Keys, Said};
+use crate::scenario::{Filter, Grid, Interpolation, Shaper, ShaperKind};
+use crate::source::At;
+use servobench_base::Rate;
+
+/// Part of the vibration that an extra-insensitive shaper leaves unless something is said.
+const TOLERABLE: f64 = 0.05;
+
+/// The filter of a move.
+pub(super) fn filter(keys: &Keys<'_>, base_rate: Option<Rate>, said: &mut Said, report: &mut Report) -> Option<Filter> {
+    let shaper = match keys.shaper.optional().ok()? {
+        None => None,
+        Some(given) => {
+            let kind = *given.kind.given()?;
+            let tolerable = given.tolerable.optional().ok()?.copied();
+            if let (Some(_), Some(span), true) = (tolerable, given.tolerable.span(), kind != ShaperName::Ei) {
+                said.once(span, |report| report.error(span, "`tolerable` is for the shaper \"ei\"", ""), report);
+            }
+            let kind = match kind {
+                ShaperName::None => None,
+                ShaperName::Zv => Some(ShaperKind::Zv),
+                ShaperName::Zvd => Some(ShaperKind::Zvd),
+                ShaperName::Zvdd => Some(ShaperKind::Zvdd),
+                ShaperName::Ei => Some(ShaperKind::Ei(tolerable.unwrap_or(TOLERABLE))),
+            };
+            match kind {
+                None => None,
+                Some(kind) => {
+                    if matches!(given.frequency, Slot::Absent) {
+                        let say = |report: &mut Report| {
+                            report.missing_with_help("shaper", "frequency", given.span, "that of the mode");
+                        };
+                        said.once(given.span, say, report);
+                    }
+                    let damping = given.damping.optional().ok()?.copied().unwrap_or(0.0);
+                    Some(Shaper { kind, frequency: *given.frequency.given()?, damping })
+                }
+            }
+        }
+    };
+    let averages = keys.averages.optional().ok()?.map_or(&[][..], |averages| &averages.0);
+    let averages: Vec<_> =
+        averages.iter().map(|length| whole_ticks("averages", *length, base_rate, said, report)).collect();
+    Some(Filter { shaper, averages: averages.into_iter().collect::<Option<_>>()? })
+}
+
+/// The samples of a move from rest to rest, when it has some.
+#[expect(clippy::option_option, reason = "a wrong sample time is not the same as none")]
+pub(super) fn grid(
+    keys: &Keys<'_>,
+    base_rate: Option<Rate>,
+    said: &mut Said,
+    report: &mut Report,
+) -> Option<Option<Grid>> {
+    let sample_time = match keys.sample_time {
+        Slot::Absent => None,
+        Slot::Wrong(_) => return None,
+        Slot::Given(at) => Some(whole_ticks("sample_time", *at, base_rate, said, report)?),
+    };
+    let Some(sample_time) = sample_time else {
+        for (key, span) in [("sampling", keys.sampling.span()), ("execution", keys.execution.span())] {
+            let Some(span) = span else { continue };
+            let message = format!("`{key}` is for a move that has samples");
+            said.once(span, |report| report.error(span, message, "give `sample_time`"), report);
+        }
+        return Some(None);
+    };
+    let sampling = keys.sampling.optional().ok()?.copied().unwrap_or_default();
+    let execution = keys.execution.optional().ok()?.copied().unwrap_or_default();
+    Some(Some(Grid { sample_time, sampling, execution }))
+}
+
+/// What is between the set-point and the drive, when there is something.
+#[expect(clippy::option_option, reason = "a wrong table is not the same as none")]
+pub(super) fn interpolation(
+    file: &File,
+    base_rate: Option<Rate>,
+    report: &mut Report,
+) -> Option<Option<Interpolation>> {
+    let Some(setpoint) = file.setpoint.given() else { return Some(None) };
+    let Some(given) = setpoint.interpolation.optional().ok()? else { return Some(None) };
+    let period = whole_ticks("period", *given.period.at()?, base_rate, &mut Said::default(), report)?;
+    Some(Some(Interpolation { mode: *given.mode.given()?, period }))
+}
+
+/// A time that must be a whole number of base ticks.
+fn whole_ticks(key: &str, time: At<f64>, base_rate: Option<Rate>, said: &mut Said, report: &mut Report) -> Option<f64> {
+    let hertz = f64::from(base_rate?.hertz());
+    let ticks = time.value * hertz;
+    if ticks.round() >= 1.0 && (ticks - ticks.round()).abs() <= 1e-9 * ticks {
+        // Not as typed: what 83.33333333 us lacks of a tick at 12 kHz would add up over the samples of a move.
+        return Some(ticks.round() / hertz);
+    }
+    let in_microseconds = |ticks: f64| ticks * base_rate.map_or(0.0, Rate::period) * 1e6;
+    let near = format!("{} us", in_microseconds(ticks.round().max(1.0)));
+    let message = format!("`{key}` is {ticks:.4} base ticks, not a whole number");
+    said.once(time.span, |report| report.error(time.span, message, format!("{near} fits")), report);
+    None
+}

@@ -1,0 +1,34 @@
+//! What else happens: external efforts, and where the axis starts.
+
+/// An external effort.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Disturbance {
+    /// Body it acts on.
+    pub on: DisturbedBody,
+    /// First instant (s).
+    pub start: f64,
+    /// How long (s); infinite: to the end.
+    pub duration: f64,
+    /// Amplitude (N or N·m, in the body's coordinate).
+    pub effort: f64,
+    /// Frequency of a sine (Hz); `None` for a step.
+    pub frequency: Option<f64>,
+}
+
+/// Body a disturbance acts on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DisturbedBody {
+    /// The motor (motor coordinate).
+    Motor,
+    /// The load (axis coordinate).
+    Load,
+}
+
+/// Initial deviation of the load from rest at zero (axis coordinate).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Initial {
+    /// Load position (m or rad).
+    pub load_position: f64,
+    /// Load velocity (m/s or rad/s).
+    pub load_velocity: f64,
+}
