@@ -71,13 +71,17 @@
 //!
 //! [`Profile::at`] evaluates the exact polynomial, the *exact hold* of the highest derivative. A sampled move may also be sent
 //! through the *forward-Euler cascade* (72)–(75), [`sampled::Cascade`]. Both are at rest on the distance at sample N; the
-//! cascade stands still for its first three samples at order 4 and lags by 1.5·Ts·v on the way ([`sampled`]).
+//! cascade stands still for its first three samples at order 4 and lags by 1.5·Ts·v on the way. A move that keeps its limits
+//! at every sample of the cascade keeps them at every time of the exact hold ([`sampled`]).
 //!
-//! | sampled by | samples |
+//! | planner | samples |
 //! |---|---|
-//! | [`Profile::plan_sampled`] | the sequential rounding of the paper |
+//! | [`Profile::plan_sampled`] | those of the paper's sequential rounding |
 //! | [`Profile::plan_fewest`] | the fewest of any boxes; brute force finds none below |
+//! | `sampled::Shortest` (feature `std`) | the fewest of any move, with a proof up to 300 samples |
 #![cfg_attr(not(test), no_std)]
+#[cfg(all(feature = "std", not(test)))]
+extern crate std;
 
 mod boxes;
 mod course;

@@ -124,18 +124,11 @@ impl Profile {
         sample_time: f64,
         choose: impl Fn(&[f64]) -> Option<[f64; 4]>,
     ) -> Result<Self, PlanError> {
-        let Request { distance, mut bounds } = Request::new(order, distance, limits)?;
-        let sample_time = in_range("sample_time", positive("sample_time", sample_time)?, "correct its unit")?;
+        let Request { distance, bounds } = Request::sampled(order, distance, limits, sample_time)?;
         if distance == 0.0 {
             return Ok(Self::from_boxes(order, distance, [0.0; 4], Some(sample_time)));
         }
-        // In units of the sample time: the k-th derivative times Ts^k.
         let n = order.derivative();
-        let mut scale = 1.0;
-        for bound in bounds[..n].iter_mut().rev() {
-            scale *= sample_time;
-            *bound *= scale;
-        }
         let Some(boxes) = choose(&bounds[..=n]) else {
             let samples = Self::plan(order, distance, limits)?.duration / sample_time;
             return Err(PlanError::TooManySamples { samples, sample_time });
@@ -436,10 +429,10 @@ impl Profile {
 }
 
 /// A checked request.
-struct Request {
-    distance: f64,
+pub(crate) struct Request {
+    pub(crate) distance: f64,
     /// Limits from the highest derivative down, then |distance|.
-    bounds: [f64; 5],
+    pub(crate) bounds: [f64; 5],
 }
 
 impl Request {
@@ -453,5 +446,17 @@ impl Request {
         }
         bounds[order.derivative()] = distance.abs();
         Ok(Self { distance, bounds })
+    }
+
+    /// In units of the sample time: the k-th derivative times Ts^k.
+    pub(crate) fn sampled(order: Order, distance: f64, limits: &Limits, sample_time: f64) -> Result<Self, PlanError> {
+        let mut request = Self::new(order, distance, limits)?;
+        let sample_time = in_range("sample_time", positive("sample_time", sample_time)?, "correct its unit")?;
+        let mut scale = 1.0;
+        for bound in request.bounds[..order.derivative()].iter_mut().rev() {
+            scale *= sample_time;
+            *bound *= scale;
+        }
+        Ok(request)
     }
 }

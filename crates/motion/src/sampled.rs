@@ -8,14 +8,67 @@
 //! exact hold, [`Profile::at`](crate::Profile)  x += v + a/2 + j/6 + s_k/24;  v += a + j/2 + s_k/6;  …
 //! ```
 //!
-//! What a unit of snap at sample i has made of the position at sample N is `C(m, 3)` with `m = N − 1 − i` in the first, and
-//! `((m + 1)⁴ − m⁴)/24` in the second: polynomials in i with the same cube, −i³/6. Where velocity, acceleration and jerk
-//! are zero again, Σ s_i, Σ i·s_i and Σ i²·s_i are zero, so that **both are at rest on the same position at sample N**.
-//! On the way they differ: at order n the cascade stands still for its first n − 1 samples and lags by
-//! (n − 1)/2 samples, x_k ≈ x(t_k − (n − 1)/2·Ts), exactly so where the velocity is constant.
+//! # The values of the cascade are the control points of the exact hold
+//!
+//! In each sample the exact hold is a polynomial, joined to the next as smoothly as the order allows: a spline. Its
+//! coefficients in terms of B-splines are the values of the cascade, from the highest derivative down,
+//!
+//! ```text
+//! j(t) = Σ_k j_k·B_1(t − k)     a(t) = Σ_k a_k·B_2(t − k)     v(t) = Σ_k v_k·B_3(t − k)     x(t) = Σ_k x_k·B_4(t − k)
+//! ```
+//!
+//! B_1 is the hat between −1 and 1, B_m(t) the mean of B_(m−1) from t to t + 1: the derivative of one sum has the differences
+//! of neighbours for coefficients, which is what the cascade adds up. B_m is nowhere negative, its shifts sum to one, and its
+//! middle is at −(m − 1)/2. Hence:
+//!
+//! - **A move within its limits at every sample of the cascade is within them at every time of the exact hold**: a weighted
+//!   mean of values is not larger than the largest. The reverse does not hold, but costs little: a move planned for the
+//!   exact hold alone is shorter by 0.02 … 0.04 samples on average.
+//! - At order n the cascade lags by (n − 1)/2 samples, x_k ≈ x(t_k − (n − 1)/2·Ts), exactly so where the velocity is constant,
+//!   and stands still for its first n − 1 samples.
+//! - Where velocity, acceleration and jerk are zero again, all x_k are the same: **both are at rest on the same position at
+//!   sample N**.
+//!
+//! # How many samples
+//!
+//! Three planners, each freer than the one before. By how many samples they are shorter than the first, on average and at
+//! most, in 420 random requests of order 4 up to 300 samples:
+//!
+//! | | the move is | shorter by |
+//! |---|---|---|
+//! | [`Profile::plan_sampled`](crate::Profile::plan_sampled) | boxes, rounded one after the other as published | – |
+//! | [`Profile::plan_fewest`](crate::Profile::plan_fewest) | boxes | 1.40, at most 7 |
+//! | `Shortest` (feature `std`) | any; proven for each of the requests | 3.16, at most 22 |
+//!
+//! A linear program with a variable for each sample of the whole move (HiGHS) has the same number in all 420. A plan takes 0.3 ms
+//! on average there and 9 ms at most; at orders 2 and 3, 1000 requests each, 0.03 and 0.1 ms, all proven. Between 300 and 2000
+//! samples nine in ten are proven; above, nothing is, and the move is within five samples of the continuous optimum.
 mod cascade;
+#[cfg(feature = "std")]
+mod half;
+#[cfg(feature = "std")]
+mod proof;
+#[cfg(feature = "std")]
+mod reach;
+#[cfg(feature = "std")]
+mod shortest;
+#[cfg(feature = "std")]
+mod simplex;
+#[cfg(feature = "std")]
+mod way;
 
 pub use cascade::{Along, Cascade};
+#[cfg(feature = "std")]
+pub use shortest::Shortest;
+
+/// How samples of the highest derivative become set-points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Execution {
+    /// By the [`Cascade`].
+    ForwardEuler,
+    /// By the exact hold.
+    ExactHold,
+}
 
 /// Samples in a row in which the highest derivative is the same.
 #[derive(Debug, Clone, Copy, PartialEq)]

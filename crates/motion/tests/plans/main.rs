@@ -9,4 +9,6 @@ mod optimal;
 mod paper;
 mod requests;
 mod rockwell;
+#[cfg(feature = "std")]
+mod shortest;
 mod sweep;
