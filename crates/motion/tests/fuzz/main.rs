@@ -6,6 +6,8 @@ mod position_profiles;
 mod profiles;
 mod rockwell;
 mod shapers;
+#[cfg(feature = "std")]
+mod shortest;
 mod tables;
 mod transitions;
 mod words;

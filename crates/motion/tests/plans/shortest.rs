@@ -303,3 +303,26 @@ fn what_the_boxes_refuse_is_refused_and_no_distance_is_no_move() {
     assert_eq!(slow.at_least(), 1);
     assert_eq!(slow.at(slow.duration()), Setpoint::at_rest(1.0));
 }
+
+/// Wide requests, ten decades apart, as the other planners are swept with.
+#[test]
+fn requests_of_any_size_are_proven() {
+    let mut random = Random::seeded(65);
+    let (mut tried, mut proven, mut excess) = (0, 0, 0.0_f64);
+    while tried < sweep_size() / 100 {
+        let crate::requests::Request { order, distance, limits, sample_time } = random.request();
+        let Ok(boxes) = Profile::plan_fewest(order, distance, &limits, sample_time) else { continue };
+        if boxes.samples().unwrap().total() > 300 {
+            continue;
+        }
+        let plan = Shortest::plan(order, distance, &limits, sample_time).unwrap();
+        let (peaks, hold) = (plan.peaks(), plan.peaks_by(Execution::ExactHold));
+        excess = excess.max(peaks.velocity.max(hold.velocity) / limits.velocity - 1.0);
+        excess = excess.max(peaks.acceleration.max(hold.acceleration) / limits.acceleration - 1.0);
+        tried += 1;
+        proven += usize::from(plan.at_least() == plan.samples());
+    }
+    // The rounding that the planner admits, and that of the peaks.
+    assert!(excess < 2e-11, "a limit is exceeded by {excess:e}");
+    assert!(proven * 100 >= tried * 99, "{proven} of {tried}");
+}

@@ -1,0 +1,77 @@
+//! Sampled moves of any shape.
+use crate::{ORDERS, is_finite, refused};
+use servobench_base::Setpoint;
+use servobench_fuzz::{Number, ValueGenerator, check, fuzz};
+use servobench_motion::sampled::{Cascade, Execution, Shortest};
+use servobench_motion::{Limits, Order, PlanError, Profile};
+
+#[derive(Debug)]
+struct Request {
+    order: Order,
+    distance: f64,
+    limits: Limits,
+    /// Samples of the boxes, about; what is too many to look at in a test is left out.
+    samples: f64,
+    /// Time to look at, as it is and as a part of the duration.
+    t: f64,
+}
+
+fn requests() -> impl ValueGenerator<Output = Request> {
+    let (number, magnitude) = (Number::any(), Number::magnitude());
+    (0..3_usize, number, [magnitude; 4], 1..400_u32, number).map_gen(
+        |(order, distance, [velocity, acceleration, jerk, snap], samples, t)| Request {
+            order: ORDERS[order],
+            distance,
+            limits: Limits { velocity, acceleration, jerk, snap },
+            samples: f64::from(samples),
+            t,
+        },
+    )
+}
+
+/// The move, in samples of a part of what the continuous one takes.
+fn planned(request: &Request) -> Result<Shortest, PlanError> {
+    let Request { order, distance, limits, samples, .. } = *request;
+    let duration = Profile::plan_optimal(order, distance, &limits)?.duration();
+    Shortest::plan(order, distance, &limits, if duration > 0.0 { duration / samples } else { 1e-3 })
+}
+
+fn holds(plan: &Shortest, request: &Request) {
+    let (duration, distance) = (plan.duration(), request.distance);
+    let boxes = Profile::plan_fewest(plan.order(), distance, &request.limits, plan.sample_time()).unwrap();
+    let most = boxes.samples().map_or(0, |samples| samples.total());
+    assert!(plan.at_least() <= plan.samples() && plan.samples() <= most, "{plan:?}");
+    for t in [duration, duration.next_up(), f64::MAX, f64::INFINITY] {
+        assert_eq!(plan.at(t), Setpoint::at_rest(distance + 0.0), "at {t:e} of {plan:?}");
+    }
+    for t in [request.t, request.t * duration, duration.next_down(), 0.5 * duration] {
+        assert!(is_finite(plan.at(t)), "at {t:e} of {plan:?}");
+    }
+    let Limits { velocity, acceleration, jerk, snap } = request.limits;
+    for execution in [Execution::ForwardEuler, Execution::ExactHold] {
+        let peaks = plan.peaks_by(execution);
+        for (peak, limit) in
+            [(peaks.velocity, velocity), (peaks.acceleration, acceleration), (peaks.jerk, jerk), (peaks.snap, snap)]
+                .into_iter()
+                .take(plan.order().derivative())
+        {
+            // What the program may exceed a limit by, and the integration of some hundred runs.
+            assert!(peak <= limit * (1.0 + 1e-10), "{execution:?}: {peak} {limit} of {plan:?}");
+        }
+    }
+    let mut cascade = Cascade::at_rest(plan.order(), 0.0, plan.sample_time()).unwrap();
+    let count = cascade.along(plan.runs()).inspect(|at| assert!(is_finite(*at), "{at:?} of {plan:?}")).count();
+    assert_eq!(count as u64, plan.samples());
+    // The rounding of the velocity, over all samples.
+    let reach = distance.abs() + plan.peaks().velocity * duration;
+    let off = (cascade.state().x - distance).abs();
+    assert!(off <= 1e-10 * reach, "{off:e} of {plan:?}");
+}
+
+#[test]
+fn sampled_moves() {
+    fuzz(check!(), 5_000, requests(), |request| match planned(request) {
+        Ok(plan) => holds(&plan, request),
+        Err(error) => refused(error, 0),
+    });
+}
