@@ -94,6 +94,7 @@ mod piece;
 pub mod position_profile;
 mod profile;
 pub mod pvt;
+mod request;
 pub mod rockwell;
 mod root;
 pub mod sampled;

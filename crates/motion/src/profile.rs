@@ -1,9 +1,9 @@
 //! A planned rest-to-rest move: what it is made of, and the set-point at any time.
 use crate::boxes::{self, Grid};
-use crate::limits::in_range;
+use crate::request::Request;
 use crate::sampled::Run;
 use crate::{Limits, Order, Piece, PlanError, Segment, Segments, optimal, segment};
-use servobench_base::{Setpoint, finite, positive};
+use servobench_base::Setpoint;
 
 /// A rest-to-rest move from 0 to [`distance`](Self::distance), in the axis unit (m or rad) and seconds from its start.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -425,38 +425,5 @@ impl Profile {
             Order::Fourth => anchor.s,
         };
         start.is_finite().then_some(Segment { start, length, value })
-    }
-}
-
-/// A checked request.
-pub(crate) struct Request {
-    pub(crate) distance: f64,
-    /// Limits from the highest derivative down, then |distance|.
-    pub(crate) bounds: [f64; 5],
-}
-
-impl Request {
-    fn new(order: Order, distance: f64, limits: &Limits) -> Result<Self, PlanError> {
-        let mut bounds = [f64::INFINITY; 5];
-        bounds[..4].copy_from_slice(&limits.descending(order)?);
-        // Adding zero makes −0 a plain zero.
-        let mut distance = finite("distance", distance)? + 0.0;
-        if distance != 0.0 {
-            distance = in_range("distance", distance, "correct its unit, or ask for a distance of 0")?;
-        }
-        bounds[order.derivative()] = distance.abs();
-        Ok(Self { distance, bounds })
-    }
-
-    /// In units of the sample time: the k-th derivative times Ts^k.
-    pub(crate) fn sampled(order: Order, distance: f64, limits: &Limits, sample_time: f64) -> Result<Self, PlanError> {
-        let mut request = Self::new(order, distance, limits)?;
-        let sample_time = in_range("sample_time", positive("sample_time", sample_time)?, "correct its unit")?;
-        let mut scale = 1.0;
-        for bound in request.bounds[..order.derivative()].iter_mut().rev() {
-            scale *= sample_time;
-            *bound *= scale;
-        }
-        Ok(request)
     }
 }

@@ -23,7 +23,7 @@
 //!
 //! - **A move within its limits at every sample of the cascade is within them at every time of the exact hold**: a weighted
 //!   mean of values is not larger than the largest. The reverse does not hold, but costs little: a move planned for the
-//!   exact hold alone is shorter by 0.02 … 0.04 samples on average.
+//!   exact hold alone is shorter by 0.04 samples on average, at most.
 //! - At order n the cascade lags by (n − 1)/2 samples, x_k ≈ x(t_k − (n − 1)/2·Ts), exactly so where the velocity is constant,
 //!   and stands still for its first n − 1 samples.
 //! - Where velocity, acceleration and jerk are zero again, all x_k are the same: **both are at rest on the same position at
@@ -40,9 +40,10 @@
 //! | [`Profile::plan_fewest`](crate::Profile::plan_fewest) | boxes | 1.40, at most 7 |
 //! | `Shortest` (feature `std`) | any; proven for each of the requests | 3.16, at most 22 |
 //!
-//! A linear program with a variable for each sample of the whole move (HiGHS) has the same number in all 420. A plan takes 0.3 ms
-//! on average there and 9 ms at most; at orders 2 and 3, 1000 requests each, 0.03 and 0.1 ms, all proven. Between 300 and 2000
-//! samples nine in ten are proven; above, nothing is, and the move is within five samples of the continuous optimum.
+//! A linear program with a variable for each sample of the whole move (HiGHS) has the same number in all 420, and in 200 each
+//! of orders 2 and 3. A plan takes 0.3 ms on average there and 9 ms at most; at orders 2 and 3, 1000 requests each, 0.03 and
+//! 0.1 ms, all proven. Between 300 and 2000 samples nine in ten are proven, in 8 ms on average; above, nothing is, and the move
+//! is within five samples of the continuous optimum.
 mod cascade;
 #[cfg(feature = "std")]
 mod half;

@@ -15,6 +15,7 @@ use servobench_base::{Setpoint, positive};
 ///     assert!(set_point.v <= 1.0 + 1e-12);
 /// }
 /// assert!((cascade.state().x - 1.0).abs() < 1e-9);
+/// cascade.settle(1.0);
 /// # Ok::<(), servobench_motion::PlanError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,6 +49,12 @@ impl Cascade {
     #[must_use]
     pub const fn state(&self) -> Setpoint {
         self.sending(0.0)
+    }
+
+    /// From now on at rest at `x` (m or rad), where a move has ended: what its rounding has left in velocity, acceleration and
+    /// jerk would go on for ever.
+    pub const fn settle(&mut self, x: f64) {
+        self.state = Setpoint::at_rest(x);
     }
 
     /// The set-points of the samples of `runs` in the order of time. Within a run they come in closed form from its start:

@@ -3,7 +3,7 @@ use super::half::Half;
 use super::reach::{Answer, Cell, Reach};
 use super::way::Way;
 use super::{Execution, Run};
-use crate::profile::Request;
+use crate::request::Request;
 use crate::{Limits, Order, Peaks, Piece, PlanError, Profile};
 use servobench_base::Setpoint;
 use std::vec::Vec;

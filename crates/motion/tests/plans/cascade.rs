@@ -97,6 +97,10 @@ fn every_sampled_plan_lands() {
             }
             let error = cascade.state().x / plan.distance() - 1.0;
             assert!(error.abs() < 1e-9, "{request:?}: {error:e}");
+            cascade.settle(plan.distance());
+            for _ in 0..10 {
+                assert_eq!(cascade.step(0.0), Setpoint::at_rest(plan.distance()), "{request:?}: at rest for ever");
+            }
         }
     }
 }
