@@ -55,7 +55,7 @@ pub enum Absence {
     #[error("no move has a part at constant velocity")]
     NoCruise,
     /// No move is limited in this derivative.
-    #[error("no set-point is planned with a {derivative} limit")]
+    #[error("no set-point is planned with a limit of {derivative}")]
     NoLimit {
         /// `velocity`, `acceleration`, `jerk`, `snap`.
         derivative: &'static str,

@@ -4,6 +4,9 @@ use crate::metric::MetricSet;
 use crate::name::Name;
 use crate::span::Phase;
 
+/// What rounding may add to a limit, as a part of it: what generators promise.
+const ROUNDING: f64 = 1e-9;
+
 const DERIVATIVES: [(Name, &str); 4] = [
     (Name::SetpointVelocityRatio, "velocity"),
     (Name::SetpointAccelerationRatio, "acceleration"),
@@ -26,6 +29,7 @@ fn ratio(phases: &[Phase<'_>], order: usize, derivative: &'static str) -> Result
     for made in phases.iter().map(|phase| phase.made) {
         let Some(limit) = made.limits[order].filter(|limit| limit.is_finite()) else { continue };
         let ratio = made.peaks[order].abs() / limit;
+        let ratio = if (ratio - 1.0).abs() <= ROUNDING { 1.0 } else { ratio };
         if !ratio.is_finite() {
             return Err(Absence::Unbounded { derivative, label: made.label.clone() });
         }
@@ -39,6 +43,19 @@ mod tests {
     use super::*;
     use crate::span::phases;
     use crate::synthetic::{Build, planned};
+
+    #[test]
+    fn what_differs_from_its_limit_by_rounding_is_at_it() {
+        let limits = [Some(3.0), Some(3.0), Some(3.0), Some(3.0)];
+        let peaks = [3.0_f64.next_up(), 3.0 - 2e-9, 3.0 + 1e-8, 3.0 - 1e-8];
+        let recording =
+            Build::new(1000, 100).moves([planned(0.0, 0.01, 0.0, 1.0).bounded(peaks, limits).made()]).finish();
+        let mut set = MetricSet::default();
+        note(&mut set, &phases(&recording));
+        let at_limit = [Name::SetpointVelocityRatio, Name::SetpointAccelerationRatio];
+        assert!(at_limit.iter().all(|name| set.value(*name) == Some(1.0)));
+        assert!(set.value(Name::SetpointJerkRatio) > Some(1.0) && set.value(Name::SetpointSnapRatio) < Some(1.0));
+    }
 
     #[test]
     fn the_largest_ratio_of_the_moves_counts() {

@@ -43,7 +43,8 @@ pub(crate) fn metric_table(run: &RunResult, style: Style) -> String {
 fn row(table: &mut String, name: &str, metric: &MetricResult, style: Style) {
     let Some(value) = metric.value else { return };
     let missed = metric.pass == Some(false);
-    let digits = if missed { metric.digits(value) } else { 3 };
+    let of_range = metric.limit_min.zip(metric.limit).map_or(3, |(min, max)| Quantity::digits_apart(min, max));
+    let digits = if missed { metric.digits(value) } else { 3 }.max(of_range);
     let value_text = format!("{:>VALUE$.digits$}", Quantity::new(value, &metric.unit));
     let value_text = if missed { style.paint(Ink::Bad, &value_text) } else { value_text };
     let text = format!("{name}  {value_text}  {}", limit(metric, value, digits));
@@ -74,7 +75,11 @@ fn limit(metric: &MetricResult, value: f64, digits: usize) -> String {
             format!("{:>VALUE$}  {used:>USED$}", bound(max))
         }
         (Some(min), None) => format!("{:>VALUE$}", format!("≥ {}", bound(min))),
-        (Some(min), Some(max)) => format!("{} to {}", bound(min), bound(max)),
+        (Some(min), Some(max)) => {
+            let digits = digits.max(Quantity::digits_apart(min, max));
+            let bound = |bound: f64| format!("{:.digits$}", Quantity::new(bound, &metric.unit));
+            format!("{} to {}", bound(min), bound(max))
+        }
     }
 }
 

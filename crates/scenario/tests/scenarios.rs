@@ -19,7 +19,7 @@ fn read(path: &Path) -> String {
 
 /// Every scenario file of the repository.
 fn scenarios() -> Vec<PathBuf> {
-    let folders = ["scenarios", "scenarios/demo"].map(|folder| repository().join(folder));
+    let folders = ["scenarios", "scenarios/demo", "scenarios/setpoints"].map(|folder| repository().join(folder));
     let files = folders.iter().flat_map(|folder| std::fs::read_dir(folder).unwrap());
     let mut all: Vec<PathBuf> = files
         .map(|entry| entry.unwrap().path())

@@ -172,8 +172,15 @@ impl Planned {
             _ => plan.cruise(),
         };
         let cruise = (cruise_start.min(length), cruise.min(length - cruise_start).max(0.0));
-        let limits =
-            plan.limits().map(|sides| sides.below.max(sides.above)).map(|limit| limit.is_finite().then_some(limit));
+        let (mut peaks, mut limits) = (plan.largest(), [None; 4]);
+        for (k, (sides, both)) in plan.limits().iter().zip(plan.peaks()).enumerate() {
+            let uses_more_below = -both.lowest * sides.above > both.highest * sides.below;
+            let limit = if uses_more_below { sides.below } else { sides.above };
+            limits[k] = limit.is_finite().then_some(limit);
+            if sides.below.to_bits() != sides.above.to_bits() {
+                peaks[k] = if uses_more_below { -both.lowest } else { both.highest };
+            }
+        }
         let (kind, aborted) = (self.kind, if is_aborted { ", aborted" } else { "" });
         Move {
             label: format!(
@@ -185,7 +192,7 @@ impl Planned {
             end: self.end + delay,
             from,
             to,
-            peaks: plan.largest(),
+            peaks,
             limits,
             cruise: (self.start + cruise.0 + delay, cruise.1),
         }

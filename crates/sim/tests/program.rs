@@ -103,6 +103,15 @@ fn moves_follow_each_other_in_motion() {
     assert!(setpoints.iter().all(|at| at.v >= -0.7 * (1.0 + 1e-9)) && setpoints.iter().any(|at| at.v < -0.699));
 }
 
+/// What a recording says of a move whose limits differ between the directions is that of the direction that uses more of its own.
+#[test]
+fn peaks_stand_beside_the_limits_of_their_direction() {
+    let text = "[[program]]\nmove_to = \"-1 m\"\nonline = \"fast\"\nnegative_velocity = \"0.7 m/s\"\n";
+    let made = Program::new(&scenario(text)).unwrap().moves("m").next().unwrap();
+    assert_eq!(made.limits, [Some(0.7), Some(5.0), Some(50.0), Some(1000.0)]);
+    assert!((made.peaks[0] - 0.7).abs() < 1e-9 && made.label.ends_with("order 4 online"), "{made:?}");
+}
+
 /// Oracle: the shaper's own sum of the profile.
 #[test]
 fn a_shaped_move_is_the_sum_of_its_parts_and_next_waits_for_it() {
