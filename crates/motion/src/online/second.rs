@@ -109,6 +109,9 @@ impl Way {
 
 /// One rate, a hold, and the other rate. Which comes first is told by the straight way between the two values of `a`: who has
 /// to gain more than that way gains goes up first (Athans & Falb, *Optimal Control*, §7.2).
+///
+/// The times are quotients, not products with 1/j: the rate times such a time is, but for few values, exactly the difference that
+/// it was made of, and nothing of it is left to be integrated over a hold.
 #[inline]
 pub(crate) fn way(from: State2, to: State2, limits: &Limits2) -> Way {
     let straight = (to.a + from.a) * (to.a - from.a).abs() / (2.0 * limits.j);

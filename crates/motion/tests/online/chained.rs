@@ -117,3 +117,23 @@ fn order_4_refined_never_fails() {
 fn order_3_never_fails() {
     chains(Order::Third, Effort::Fast, sweep_size(100_000));
 }
+
+/// Two in a thousand are longer, and two in ten thousand by more than a tenth; the bounds leave room for other draws.
+#[test]
+fn order_4_fast_is_nearly_always_the_refined_one() {
+    let (mut longer, mut much_longer, count) = (0, 0, sweep_size(100_000) / 5);
+    for seed in 0..count as u64 / 20 {
+        let mut chain = Chain::new(seed);
+        for _ in 0..20 {
+            let target = chain.target();
+            let [fast, refined] = [Effort::Fast, Effort::Refined]
+                .map(|effort| Transition::plan(Order::Fourth, &chain.state, &target, &chain.limits, effort).unwrap());
+            let ratio = fast.duration() / refined.duration();
+            longer += usize::from(ratio > 1.0 + 1e-9);
+            much_longer += usize::from(ratio > 1.1);
+            chain.state = fast.at(chain.random.unit() * fast.duration());
+        }
+    }
+    assert!(longer * 1000 <= 4 * count, "{longer} of {count} are longer");
+    assert!(much_longer * 1000 <= count, "{much_longer} of {count} are longer by more than a tenth");
+}
