@@ -263,6 +263,32 @@ fn every_way_to_execute_it_lands() {
     }
 }
 
+/// Whoever keeps a piece as long as it holds gets the set-points of whoever looks it up at every instant, to the bit, and looks
+/// up one for each run at most, and two more: where the middle of the move cuts a run in two, and the rest at the end.
+#[test]
+fn a_piece_holds_exactly_as_long_as_it_is_the_one() {
+    let mut random = Random::seeded(66);
+    for _ in 0..sweep_size() / 1000 {
+        let about = 4.0 + 290.0 * random.unit();
+        let plan = Request::random(&mut random, about).plan();
+        let (ts, duration) = (plan.sample_time(), plan.duration());
+        let instants = (0..=2 * plan.samples()).map(|k| 0.5 * k as f64 * ts);
+        let beside =
+            instants.flat_map(|t| [t, t.next_up(), t.next_down(), t + 0.9e-9 * ts, t - 0.9e-9 * ts, t + 0.3 * ts]);
+        let mut times: Vec<f64> = beside.chain([-1.0, 2.0 * duration]).collect();
+        times.sort_by(f64::total_cmp);
+        let (mut piece, mut looked_up) = (plan.piece(-1.0), 0);
+        for t in times {
+            if !piece.holds(t) {
+                piece = plan.piece(t);
+                looked_up += 1;
+            }
+            assert_eq!(values(piece.at(t)).map(f64::to_bits), values(plan.at(t)).map(f64::to_bits), "{plan:?} at {t}");
+        }
+        assert!(looked_up <= plan.runs().len() + 2, "{plan:?}: {looked_up}");
+    }
+}
+
 /// Many samples: within five of the continuous optimum, without and with a cruise.
 #[test]
 fn long_moves_are_near_the_continuous_optimum() {
