@@ -108,10 +108,15 @@ pub(crate) fn bindings(plan: &Plan) -> Vec<Binding> {
             let bound = if value > 0.0 { limit.above } else { limit.below };
             bound.is_finite() && value.abs() >= bound * (1.0 - NEAR)
         };
+        if limit.below.is_infinite() && limit.above.is_infinite() {
+            continue;
+        }
         let first = found.len();
         for span in spans(plan) {
             let inside = derivative(&span.after(0.5 * span.length), k);
-            let is_whole = span.turns(k).all(|t| at_limit(derivative(&span.after(t), k)));
+            // Between the limits of both directions the ends are at one, too.
+            let is_there = |value: f64| at_limit(value) && value * inside > 0.0;
+            let is_whole = is_there(inside) && span.turns(k).all(|t| is_there(derivative(&span.after(t), k)));
             if is_whole {
                 push(
                     &mut found,

@@ -219,6 +219,19 @@ fn bindings_are_where_the_published_figure_shows_them() {
     assert_eq!(of(4).len(), 8);
 }
 
+/// From the jerk limit on one side straight to that on the other: where it leaves the one, it is at none.
+#[test]
+fn a_way_from_limit_to_limit_is_no_binding() {
+    let limits = DirectionalLimits::from(LIMITS);
+    let (target, order, effort) = (Target::Velocity(0.5), Order::Fourth, Effort::Fast);
+    let plan = plan(Way::Replanning(Replanning { from: Setpoint::default(), target, order, limits, effort }));
+    let jerks: Vec<Binding> = plan.bindings().into_iter().filter(|found| found.derivative == 3).collect();
+    // 50 ms of snap up to the limit, and from there 100 ms down to that of the other side.
+    let [high, low] = &jerks[..] else { panic!("{jerks:?}") };
+    assert!(high.value > 0.0 && low.value < 0.0 && (high.start - 0.05).abs() < 1e-12, "{jerks:?}");
+    assert!((low.start - high.start - high.length - 0.1).abs() < 1e-12, "{jerks:?}");
+}
+
 /// The velocity limit may be met for an instant: an optimum that touches it.
 #[test]
 fn a_touched_limit_is_a_binding_of_no_length() {
