@@ -3,6 +3,8 @@ mod check;
 mod compare;
 mod output;
 mod plan;
+mod plan_families;
+mod plan_mistakes;
 mod run;
 #[cfg(unix)]
 mod view;

@@ -1,4 +1,10 @@
 //! Arguments.
+mod plan;
+
+pub(crate) use plan::{
+    PlanArgs, PlanExecution, PlanMethod, PlanOnline, PlanProfile, PlanSampling, PlanShape, PlanShaper, PlanVelocities,
+};
+
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use servobench_scenario::EngineName;
@@ -29,8 +35,9 @@ pub(crate) enum Command {
     Check(CheckArgs),
     /// Print the JSON Schema of a scenario file.
     Schema,
-    /// Plan a rest-to-rest move: segment times, peaks, duration.
-    Plan(PlanArgs),
+    /// Plan a move of any family: duration, segments, peaks against limits.
+    #[command(after_help = plan::EXAMPLES)]
+    Plan(Box<PlanArgs>),
     /// Run the same axis under different set-points and say which wins by how much.
     Compare(CompareArgs),
     /// Open a recording in the Rerun viewer.
@@ -75,41 +82,6 @@ pub(crate) struct CheckArgs {
     /// Scenario files, or folders of them.
     #[arg(required = true)]
     pub(crate) scenarios: Vec<PathBuf>,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct PlanArgs {
-    /// Order of the profile: 2 trapezoid, 3 jerk-limited, 4 snap-limited.
-    #[arg(long, value_parser = clap::value_parser!(u8).range(2..=4))]
-    pub(crate) order: u8,
-    /// Distance, as "1 m" or "90 deg"; its sign is the direction.
-    #[arg(long, allow_hyphen_values = true)]
-    pub(crate) distance: String,
-    /// Velocity limit, as "1 m/s".
-    #[arg(long)]
-    pub(crate) velocity: String,
-    /// Acceleration limit, as "5 m/s2".
-    #[arg(long)]
-    pub(crate) acceleration: String,
-    /// Jerk limit, as "50 m/s3" (orders 3 and 4).
-    #[arg(long)]
-    pub(crate) jerk: Option<String>,
-    /// Snap limit, as "1000 m/s4" (order 4).
-    #[arg(long)]
-    pub(crate) snap: Option<String>,
-    /// Make every time a whole number of samples of this length, as "1 ms".
-    #[arg(long, value_name = "TIME")]
-    pub(crate) sample_time: Option<String>,
-    /// Print JSON.
-    #[arg(long)]
-    pub(crate) json: bool,
-    /// Write time, position, velocity, acceleration, jerk, snap (SI): a row for each sample with --sample-time, 1001
-    /// rows at equal steps without.
-    #[arg(long, value_name = "FILE")]
-    pub(crate) csv: Option<PathBuf>,
-    /// Draw position and its derivatives with their limits.
-    #[arg(long, value_name = "FILE")]
-    pub(crate) svg: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

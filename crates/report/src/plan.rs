@@ -1,17 +1,23 @@
-//! A rest-to-rest move on paper: for a person, as JSON, as a table of samples, as a drawing.
+//! A move on paper, whatever planned it: for a person, as JSON, as a table of samples, as a drawing.
 mod axis;
 mod csv;
 mod curve;
 mod drawing;
-mod given;
+mod envelope;
 mod json;
+mod marks;
 mod panel;
+mod rows;
 mod table;
 mod ticks;
 mod times;
+mod unit;
+mod words;
 
-use given::Given;
-use servobench_motion::{Limits, Profile};
+use servobench_base::Setpoint;
+use servobench_motion::{PlanError, Profile};
+use servobench_planner::{Plan, Request, Told};
+use unit::Unit;
 
 /// Names of position and its derivatives.
 const NAMES: [&str; 5] = ["position", "velocity", "acceleration", "jerk", "snap"];
@@ -19,53 +25,70 @@ const NAMES: [&str; 5] = ["position", "velocity", "acceleration", "jerk", "snap"
 const STEPS: u32 = 1000;
 
 /// A planned move and what was asked for.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct PlannedMove {
-    profile: Profile,
-    limits: Limits,
+    request: Request,
+    plan: Plan,
     unit: &'static str,
-    /// Distance and limits of velocity, acceleration, jerk, snap in the units of whoever asked.
-    given: [Option<Given>; 5],
+    /// Units of position and its derivatives as whoever asked wrote them.
+    given: [Option<Unit>; 5],
 }
 
 impl PlannedMove {
-    /// The move `profile`, planned under `limits`; `unit` is that of positions, `m` or `rad`.
-    #[must_use]
-    pub const fn new(profile: Profile, limits: Limits, unit: &'static str) -> Self {
-        Self { profile, limits, unit, given: [None, None, None, None, None] }
+    /// Plans `request`; `unit` is that of positions, `m` or `rad`.
+    ///
+    /// # Errors
+    /// [`PlanError`] of the planner.
+    pub fn new(request: Request, unit: &'static str) -> Result<Self, PlanError> {
+        let plan = request.plan()?;
+        Ok(Self { request, plan, unit, given: [const { None }; 5] })
     }
 
-    /// The same, with distance and limits (velocity, acceleration, jerk, snap) shown in the units in which they were
-    /// written.
+    /// The same with derivative `k` of position, 0 to 4, in the unit in which `text` was written, whose value is `value`
+    /// (SI). A text of no unit, and a value of zero, which does not say how large the unit is, change nothing.
     #[must_use]
-    pub fn as_given<'a>(mut self, distance: &'a str, limits: impl IntoIterator<Item = &'a str>) -> Self {
-        for (slot, text) in self.given.iter_mut().zip([distance].into_iter().chain(limits)) {
-            *slot = Given::read(text);
+    pub fn as_given(mut self, k: usize, text: &str, value: f64) -> Self {
+        if let (Some(slot), Some(unit)) = (self.given.get_mut(k), Unit::given(text, value)) {
+            *slot = Some(unit);
         }
         self
     }
 
-    /// Unit of the derivative `n` of position.
-    fn unit_of(&self, n: usize) -> String {
-        let power = ["", "/s", "/s²", "/s³", "/s⁴"][n];
-        format!("{}{power}", self.unit)
+    /// Unit in which derivative `k` of position is told: the given one, else one that goes with another given one, else
+    /// that of the SI.
+    fn unit(&self, k: usize) -> Unit {
+        let related = || self.given.iter().flatten().find_map(|unit| unit.of_derivative(k));
+        self.given[k].clone().or_else(related).unwrap_or_else(|| Unit::si(self.unit, k))
     }
 
-    /// Limits of velocity, acceleration, jerk and snap that the order uses.
-    fn limits(&self) -> impl Iterator<Item = f64> {
-        let Limits { velocity, acceleration, jerk, snap } = self.limits;
-        [velocity, acceleration, jerk, snap].into_iter().take(self.profile.order().derivative())
+    /// Unit in which derivative `k` is drawn: lengths with the prefix that suits them, angles as they were given.
+    fn drawn_unit(&self, k: usize) -> Unit {
+        if self.unit == "rad" { self.unit(k).pretty() } else { Unit::si(self.unit, k) }
     }
 
-    /// Peaks of the same derivatives.
-    fn peaks(&self) -> impl Iterator<Item = f64> {
-        let peaks = self.profile.peaks();
-        [peaks.velocity, peaks.acceleration, peaks.jerk, peaks.snap].into_iter().take(self.profile.order().derivative())
+    /// Derivative `k` of position (SI) in words.
+    fn show(&self, k: usize, value: f64) -> String {
+        self.unit(k).text(value)
+    }
+
+    /// From where to where (m or rad); zero where nothing but rounding is between.
+    fn distance(&self) -> f64 {
+        let (from, to) = (self.plan.start().x, self.plan.end().x);
+        let way = self.plan.largest()[0] * self.plan.duration();
+        without_dust(to - from, from.abs().max(to.abs()).max(way))
+    }
+
+    /// The profile from rest to rest as it was planned, where nothing filters it.
+    fn profile(&self) -> Option<&Profile> {
+        match self.plan.told() {
+            Told::Profile(profile) if self.plan.filter_length() == 0.0 => Some(profile),
+            _ => None,
+        }
     }
 
     /// How long each derivative stays at its peak within one pulse of it: name in the literature, meaning, time (s).
     fn dwells(&self) -> impl Iterator<Item = (&'static str, &'static str, f64)> {
-        let times = self.profile.times();
+        let times = self.profile().and_then(Profile::times);
         [
             ("t_d", "snap at its peak", times.and_then(|times| times.t_d)),
             ("t_j", "jerk at its peak", times.and_then(|times| times.t_j)),
@@ -76,27 +99,66 @@ impl PlannedMove {
         .filter_map(|(name, meaning, value)| Some((name, meaning, value?)))
     }
 
-    /// Times that cut the move into [`STEPS`] equal steps (s).
-    fn steps(&self) -> impl Iterator<Item = f64> {
-        (0..=STEPS).map(|k| self.profile.duration() * f64::from(k) / f64::from(STEPS))
+    /// Sample time (s) and number of samples of a sampled plan.
+    fn samples(&self) -> Option<(f64, u64)> {
+        if let Some(samples) = self.profile().and_then(Profile::samples) {
+            return Some((samples.time, samples.total()));
+        }
+        let time = self.plan.held()?;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "ten million at most are planned")]
+        Some((time, (self.plan.duration() / time - 1e-6).ceil() as u64))
     }
+
+    /// Duration of the published profile (s), filters included, and what this one is shorter by, as a part of it.
+    fn gain(&self) -> Option<(f64, f64)> {
+        let published = self.plan.published_duration()? + self.plan.filter_length();
+        (published > 0.0).then(|| (published, 1.0 - self.plan.duration() / published))
+    }
+}
+
+/// `value`, or zero where it is nothing but rounding beside values up to `largest`.
+fn without_dust(value: f64, largest: f64) -> f64 {
+    if value.abs() <= 1e-12 * largest { 0.0 } else { value }
+}
+
+/// Position and its derivatives.
+const fn derivatives(setpoint: &Setpoint) -> [f64; 5] {
+    let Setpoint { x, v, a, j, s } = *setpoint;
+    [x, v, a, j, s]
 }
 
 /// Moves for the tests.
 #[cfg(test)]
 mod moves {
     use super::*;
-    use servobench_motion::Order;
+    use servobench_motion::{Limits, Order};
+    use servobench_planner::{Execution, Grid, Method, PointToPoint, Sampling, Way};
 
-    const LAMBRECHTS: Limits = Limits { velocity: 1.0, acceleration: 5.0, jerk: 50.0, snap: 1000.0 };
+    pub(super) const LAMBRECHTS: Limits = Limits { velocity: 1.0, acceleration: 5.0, jerk: 50.0, snap: 1000.0 };
+
+    /// A move over `distance` (m) under `limits`.
+    pub(super) fn published(order: Order, distance: f64, limits: Limits) -> PlannedMove {
+        let way = PointToPoint { distance, order, limits, method: Method::Published, grid: None };
+        of(Way::PointToPoint(way))
+    }
 
     /// 1 m under the limits of Lambrechts: 1.35 s at order 4, t_d = t_j = t_a = 0.05 s, t_v = 0.65 s.
     pub(super) fn lambrechts(order: Order) -> PlannedMove {
-        PlannedMove::new(Profile::plan(order, 1.0, &LAMBRECHTS).unwrap(), LAMBRECHTS, "m")
+        published(order, 1.0, LAMBRECHTS)
     }
 
     /// The same with samples of `time` (s).
     pub(super) fn sampled(time: f64) -> PlannedMove {
-        PlannedMove::new(Profile::plan_sampled(Order::Fourth, 1.0, &LAMBRECHTS, time).unwrap(), LAMBRECHTS, "m")
+        executed(time, Execution::Hold)
+    }
+
+    pub(super) fn executed(sample_time: f64, execution: Execution) -> PlannedMove {
+        let grid = Some(Grid { sample_time, sampling: Sampling::Published, execution });
+        let (order, method) = (Order::Fourth, Method::Published);
+        of(Way::PointToPoint(PointToPoint { distance: 1.0, order, limits: LAMBRECHTS, method, grid }))
+    }
+
+    pub(super) fn of(way: Way) -> PlannedMove {
+        PlannedMove::new(Request::new(way), "m").unwrap()
     }
 }

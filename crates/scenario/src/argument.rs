@@ -1,5 +1,5 @@
 //! Quantities on a command line: read and checked as in a scenario file.
-use crate::physical::{ACCELERATION, Counterparts, JERK, POSITION, Physical, SNAP, TIME, VELOCITY};
+use crate::physical::{ACCELERATION, Counterparts, FREQUENCY, JERK, POSITION, Physical, RATIO, SNAP, TIME, VELOCITY};
 use crate::reading::{self, ReadError, names, proposals};
 use crate::scenario::Motion;
 use thiserror::Error;
@@ -64,6 +64,22 @@ pub fn time(text: &str) -> Result<f64, ArgumentError> {
     Ok(read(&[&TIME], text)?.0)
 }
 
+/// Reads a frequency (Hz).
+///
+/// # Errors
+/// As [`axis_quantity`].
+pub fn frequency(text: &str) -> Result<f64, ArgumentError> {
+    Ok(read(&[&FREQUENCY], text)?.0)
+}
+
+/// Reads a pure number: `0.02`, `2 %`.
+///
+/// # Errors
+/// As [`axis_quantity`].
+pub fn ratio(text: &str) -> Result<f64, ArgumentError> {
+    Ok(read(&[&RATIO], text)?.0)
+}
+
 /// The value, and which of `candidates` it is.
 fn read(candidates: &[&Physical], text: &str) -> Result<(f64, usize), ArgumentError> {
     let wrong = |message: String| ArgumentError { text: text.to_owned(), message };
@@ -93,6 +109,7 @@ mod tests {
         let (angle, motion) = axis_quantity(Derivative::Position, None, "180 deg").unwrap();
         assert!((angle - std::f64::consts::PI).abs() < 1e-15 && motion == Motion::Rotary);
         assert_eq!(time("1 ms"), Ok(1e-3));
+        assert_eq!((frequency("8 kHz"), ratio("2 %"), ratio("0.02")), (Ok(8000.0), Ok(0.02), Ok(0.02)));
     }
 
     #[test]

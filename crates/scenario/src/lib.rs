@@ -31,7 +31,7 @@ mod table;
 mod tree;
 mod unit;
 
-pub use argument::{ArgumentError, Derivative, axis_quantity, time};
+pub use argument::{ArgumentError, Derivative, axis_quantity, frequency, ratio, time};
 pub use channel::CHANNELS;
 pub use diagnostic::{Diagnostic, Invalid, LoadError};
 pub use load::{Loaded, load, parse};

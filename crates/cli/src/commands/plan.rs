@@ -1,18 +1,30 @@
-//! `servobench plan`: one rest-to-rest move on paper.
-use crate::args::PlanArgs;
-use crate::console::{print, say};
+//! `servobench plan`: one move of any family on paper.
+mod arguments;
+mod filter;
+mod point_to_point;
+mod replanning;
+mod rockwell;
+mod table;
+
+use crate::args::{PlanArgs, PlanProfile};
+use crate::console::print;
 use crate::exit::{CliError, Exit};
 use crate::output::write_file;
-use servobench_motion::{Limits, Order, Profile};
+use arguments::Arguments;
+use servobench_planner::Request;
 use servobench_report::{PlannedMove, ReportError};
-use servobench_scenario::{ArgumentError, Derivative, Motion, axis_quantity, time};
+use servobench_scenario::Motion;
 use std::path::Path;
 
 /// Plans the move and prints, tabulates or draws it.
 pub(crate) fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
-    let planned = planned(args)?;
+    let (planned, csv_step) = planned(args)?;
     if let Some(path) = &args.csv {
-        write_csv(&planned, path)?;
+        write_csv(&planned, csv_step, path)?;
+    }
+    if let Some(path) = &args.commands {
+        servobench_trace::stream_whole(path, |file| planned.write_commands(file).map(drop))
+            .map_err(|error| cannot_write(path, &error))?;
     }
     if let Some(path) = &args.svg {
         write_file(path, &planned.svg())?;
@@ -22,67 +34,85 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
     Ok(Exit::Passed)
 }
 
-fn planned(args: &PlanArgs) -> Result<PlannedMove, CliError> {
-    let mut mistakes = Mistakes::default();
-    let distance = mistakes.unless("distance", axis_quantity(Derivative::Position, None, &args.distance));
-    let (distance, motion) = distance.map_or((0.0, None), |(distance, motion)| (distance, Some(motion)));
-    let mut limit = |name: &'static str, derivative, text: &str| {
-        let quantity = axis_quantity(derivative, motion, text);
-        mistakes.unless(name, quantity).map_or(f64::INFINITY, |(value, _)| value)
+/// The plan, and how far the rows of its table are apart (s) where that is said.
+fn planned(args: &PlanArgs) -> Result<(PlannedMove, Option<f64>), CliError> {
+    let mut arguments = Arguments::of(args);
+    let way = match args.profile {
+        PlanProfile::PointToPoint if replanning::is_meant(&arguments) => replanning::way(args, &mut arguments),
+        PlanProfile::PointToPoint => point_to_point::way(args, &mut arguments),
+        PlanProfile::Rockwell => rockwell::way(args, &mut arguments),
+        PlanProfile::Pvt => table::pvt(args, &mut arguments),
+        PlanProfile::Position => table::position(args, &mut arguments),
     };
-    let (velocity, acceleration) = (
-        limit("velocity", Derivative::Velocity, &args.velocity),
-        limit("acceleration", Derivative::Acceleration, &args.acceleration),
-    );
-    let mut optional = |name: &'static str, derivative, text: &Option<String>, order| {
-        let is_used = args.order >= order;
-        let Some(text) = text else {
-            if is_used {
-                mistakes.0.push(format!("--{name} is missing: a move of order {} needs its limit", args.order));
-            }
-            return f64::INFINITY;
-        };
-        if !is_used {
-            say(&format!("--{name} is not used by a move of order {}\n", args.order));
-        }
-        mistakes.unless(name, axis_quantity(derivative, motion, text)).map_or(f64::INFINITY, |(value, _)| value)
+    let duration = arguments.time("duration");
+    let csv_step = arguments.positive_time("csv-step");
+    let filter = filter::filter(args, &mut arguments);
+    let (motion, units) = arguments.finish()?;
+    let Some(way) = way else {
+        // Whatever is missing has been told.
+        return Err(CliError::Input("the move is not described".into()));
     };
-    let (jerk, snap) =
-        (optional("jerk", Derivative::Jerk, &args.jerk, 3), optional("snap", Derivative::Snap, &args.snap, 4));
-    let sample_time = args.sample_time.as_ref().and_then(|text| mistakes.unless("sample-time", time(text)));
-    mistakes.none()?;
-    let limits = Limits { velocity, acceleration, jerk, snap };
-    let order = Order::from_derivative(args.order)
-        .ok_or_else(|| CliError::Input(format!("--order must be 2, 3 or 4, got {}", args.order)))?;
-    let profile = match sample_time {
-        Some(sample_time) => Profile::plan_sampled(order, distance, &limits, sample_time),
-        None => Profile::plan(order, distance, &limits),
-    };
-    let profile = profile.map_err(|error| CliError::Input(error.to_string()))?;
     let unit = if motion == Some(Motion::Rotary) { "rad" } else { "m" };
-    let given = [&args.velocity, &args.acceleration].into_iter().chain(&args.jerk).chain(&args.snap);
-    Ok(PlannedMove::new(profile, limits, unit).as_given(&args.distance, given.map(String::as_str)))
+    let planned = PlannedMove::new(Request { way, duration, filter }, unit);
+    let planned = planned.map_err(|error| CliError::Input(by_flags(&error.to_string())))?;
+    let planned =
+        units.into_iter().fold(planned, |planned, told| planned.as_given(told.derivative, &told.text, told.value));
+    Ok((planned, csv_step))
 }
 
-/// Arguments that are wrong.
-#[derive(Default)]
-struct Mistakes(Vec<String>);
+/// Fields of a request whose flags have other names.
+const FIELDS: [(&str, &str); 14] = [
+    ("alpha", "plateau"),
+    ("rate", "command-rate"),
+    ("allowed", "allowed-error"),
+    ("speed", "velocity"),
+    ("target.x", "distance"),
+    ("target.v", "end-velocity"),
+    ("from.x", "start-position"),
+    ("from.v", "start-velocity"),
+    ("from.a", "start-acceleration"),
+    ("from.j", "start-jerk"),
+    ("velocity.above", "velocity"),
+    ("velocity.below", "negative-velocity"),
+    ("acceleration.above", "acceleration"),
+    ("acceleration.below", "negative-acceleration"),
+];
 
-impl Mistakes {
-    /// The value of the argument `name`, unless it is wrong.
-    fn unless<T>(&mut self, name: &str, value: Result<T, ArgumentError>) -> Option<T> {
-        value.map_err(|error| self.0.push(format!("--{name} {error}"))).ok()
+/// What a planner says of its request, with flags for its fields.
+fn by_flags(message: &str) -> String {
+    let mut parts = message.split('`');
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for (i, part) in parts.enumerate() {
+        if i % 2 == 0 {
+            let flag = FIELDS.iter().find(|(field, _)| *field == part).map_or(part, |(_, flag)| flag);
+            text.push_str("--");
+            text.push_str(&flag.replace('_', "-"));
+        } else {
+            text.push_str(part);
+        }
     }
-
-    /// All of them at once, if there are any.
-    fn none(self) -> Result<(), CliError> {
-        if self.0.is_empty() { Ok(()) } else { Err(CliError::Input(self.0.join("\n"))) }
-    }
+    text
 }
 
-fn write_csv(planned: &PlannedMove, path: &Path) -> Result<(), CliError> {
-    servobench_trace::stream_whole(path, |file| planned.write_csv(file)).map_err(|error| match error {
+fn write_csv(planned: &PlannedMove, step: Option<f64>, path: &Path) -> Result<(), CliError> {
+    servobench_trace::stream_whole(path, |file| planned.write_csv(step, file)).map_err(|error| match error {
         ReportError::TooManyRows { .. } => CliError::Input(format!("--csv would write {error}")),
-        error => CliError::Run(format!("cannot write `{}`: {error}", path.display())),
+        error => cannot_write(path, &error),
     })
+}
+
+fn cannot_write(path: &Path, error: &ReportError) -> CliError {
+    CliError::Run(format!("cannot write `{}`: {error}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_planner_speaks_of_flags() {
+        assert_eq!(by_flags("`alpha` must be above 0, got 2"), "--plateau must be above 0, got 2");
+        assert_eq!(by_flags("about `sample_time` = 1 s and `x`"), "about --sample-time = 1 s and --x");
+        assert_eq!(by_flags("nothing"), "nothing");
+    }
 }

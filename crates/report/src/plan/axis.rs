@@ -21,10 +21,10 @@ impl Axis {
 /// Numbers at an axis from here on are written with a power of ten at its unit.
 const LONG: f64 = 1e4;
 
-/// The unit of an axis up to `largest` (SI), with a power of ten where no prefix makes its numbers short, and how much of
-/// the plain unit it is: `×10⁶ m/s⁴` and 1e6.
-pub(super) fn unit_at(largest: f64, unit: &str) -> (String, f64) {
-    let (symbol, scale) = Quantity::axis_unit(largest, unit);
+/// The unit of an axis up to `largest`, with a power of ten where no prefix makes its numbers short, and how much of the plain
+/// unit it is: `×10⁶ m/s⁴` and 1e6. Only a unit of the SI takes a prefix.
+pub(super) fn unit_at(largest: f64, unit: &str, takes_prefix: bool) -> (String, f64) {
+    let (symbol, scale) = if takes_prefix { Quantity::axis_unit(largest, unit) } else { (unit.to_owned(), 1.0) };
     let shown = largest / scale;
     if shown < LONG || !shown.is_finite() {
         return (symbol, scale);
@@ -46,6 +46,8 @@ mod tests {
 
     #[test]
     fn numbers_at_an_axis_are_short() {
+        assert_eq!(unit_at(7200.0, "deg/s", false), ("deg/s".to_owned(), 1.0));
+        assert_eq!(unit_at(36_000.0, "deg/s", false), ("×10³ deg/s".to_owned(), 1e3));
         for (largest, unit, symbol, scale) in [
             (0.25, "m", "mm", 1e-3),
             (1000.0, "m/s⁴", "m/s⁴", 1.0),
@@ -54,7 +56,7 @@ mod tests {
             (1e7, "m/s⁴", "×10⁶ m/s⁴", 1e6),
             (1e16, "m/s⁴", "×10¹⁵ m/s⁴", 1e15),
         ] {
-            assert_eq!(unit_at(largest, unit), (symbol.to_owned(), scale));
+            assert_eq!(unit_at(largest, unit, true), (symbol.to_owned(), scale));
         }
     }
 }

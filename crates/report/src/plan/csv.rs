@@ -2,36 +2,68 @@
 use super::{PlannedMove, STEPS};
 use crate::error::ReportError;
 use servobench_base::Setpoint;
-use std::io::{self, Write};
+use servobench_motion::position_profile::Command;
+use servobench_planner::{Reader, Told};
+use std::io::Write;
 
 /// More rows than this (about 1 GB) are a mistake in the sample time rather than a table.
 const MOST_ROWS: u64 = 10_000_000;
 
 impl PlannedMove {
-    /// Writes one row for each sample of a sampled plan, of another one at equal steps: time, position and its
-    /// derivatives, in SI.
+    /// Writes a row every `step` (s); without one, for each sample of a sampled plan, of another one at equal steps: time,
+    /// position and its derivatives, in SI.
     ///
     /// # Errors
     /// [`ReportError::TooManyRows`] before anything is written, [`ReportError::Io`].
-    pub fn write_csv(&self, mut out: impl Write) -> Result<(), ReportError> {
-        let samples = self.profile.samples();
-        let rows = samples.map_or(u64::from(STEPS), |samples| samples.total()).saturating_add(1);
-        if let Some(samples) = samples.filter(|_| rows > MOST_ROWS) {
-            return Err(ReportError::TooManyRows { rows, limit: MOST_ROWS, sample_time: samples.time });
+    pub fn write_csv(&self, step: Option<f64>, mut out: impl Write) -> Result<(), ReportError> {
+        let duration = self.plan.duration();
+        let samples = self.samples();
+        let has_equal_steps = step.is_none() && samples.is_none();
+        let (step, steps) = match (step, samples) {
+            (Some(step), _) => (step, (duration / step - 1e-9).ceil().max(0.0)),
+            (None, Some((time, samples))) => (time, samples as f64),
+            (None, None) if duration == 0.0 => (0.0, 0.0),
+            (None, None) => (duration / f64::from(STEPS), f64::from(STEPS)),
+        };
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "it saturates, and is refused then"
+        )]
+        let rows = (steps as u64).saturating_add(1);
+        if rows > MOST_ROWS {
+            return Err(ReportError::TooManyRows { rows, limit: MOST_ROWS, sample_time: step });
         }
         let unit = self.unit;
         writeln!(out, "time_s,position_{unit},velocity_{unit}_s,acceleration_{unit}_s2,jerk_{unit}_s3,snap_{unit}_s4")?;
-        match samples {
-            Some(samples) => (0..rows).try_for_each(|k| self.write_row(&mut out, k as f64 * samples.time)),
-            None if self.profile.duration() == 0.0 => self.write_row(&mut out, 0.0),
-            None => self.steps().try_for_each(|t| self.write_row(&mut out, t)),
-        }?;
+        let mut reader = Reader::default();
+        reader.look_up(&self.plan, 0.0);
+        for k in 0..rows {
+            let t = if has_equal_steps && k > 0 { duration * (k as f64 / steps) } else { k as f64 * step };
+            if !reader.holds(t) {
+                reader.look_up(&self.plan, t);
+            }
+            let Setpoint { x, v, a, j, s } = reader.at(t);
+            writeln!(out, "{t},{x},{v},{a},{j},{s}")?;
+        }
         Ok(out.flush()?)
     }
 
-    fn write_row(&self, out: &mut impl Write, t: f64) -> io::Result<()> {
-        let Setpoint { x, v, a, j, s } = self.profile.at(t);
-        writeln!(out, "{t},{x},{v},{a},{j},{s}")
+    /// Writes a row for each velocity command of a position profile: when it is sent, velocity, acceleration, in SI; whether
+    /// there are commands at all.
+    ///
+    /// # Errors
+    /// [`ReportError::Io`].
+    pub fn write_commands(&self, mut out: impl Write) -> Result<bool, ReportError> {
+        let Told::Commands { commands, .. } = self.plan.told() else { return Ok(false) };
+        let unit = self.unit;
+        writeln!(out, "time_s,velocity_{unit}_s,acceleration_{unit}_s2")?;
+        let start = commands.first().map_or(0.0, |command| command.t);
+        for Command { t, velocity, acceleration } in commands {
+            writeln!(out, "{},{velocity},{acceleration}", t - start)?;
+        }
+        out.flush()?;
+        Ok(true)
     }
 }
 
@@ -39,11 +71,14 @@ impl PlannedMove {
 mod tests {
     use super::super::{PlannedMove, moves};
     use super::*;
-    use servobench_motion::{Limits, Order, Profile};
+    use servobench_motion::pvt::Knot;
+    use servobench_motion::{Limits, Order};
+    use servobench_planner::{Follow, TableMove, Velocities, Way};
+    use std::io;
 
     fn rows(plan: &PlannedMove) -> Vec<Vec<f64>> {
         let mut bytes = Vec::new();
-        plan.write_csv(&mut bytes).unwrap();
+        plan.write_csv(None, &mut bytes).unwrap();
         let text = String::from_utf8(bytes).unwrap();
         let (heading, rows) = text.split_once('\n').unwrap();
         assert_eq!(heading, "time_s,position_m,velocity_m_s,acceleration_m_s2,jerk_m_s3,snap_m_s4");
@@ -73,20 +108,42 @@ mod tests {
     #[test]
     fn a_move_of_no_distance_has_one_row() {
         let limits = Limits { velocity: 1.0, acceleration: 1.0, jerk: 1.0, snap: 1.0 };
-        let nothing = PlannedMove::new(Profile::plan(Order::Third, 0.0, &limits).unwrap(), limits, "m");
-        assert_eq!(rows(&nothing), [vec![0.0; 6]]);
+        assert_eq!(rows(&moves::published(Order::Third, 0.0, limits)), [vec![0.0; 6]]);
     }
 
     #[test]
     fn an_absurd_number_of_rows_is_refused_before_the_first() {
         let mut out = Vec::new();
-        let error = moves::sampled(1e-12).write_csv(&mut out).unwrap_err().to_string();
+        let error = moves::sampled(1e-12).write_csv(None, &mut out).unwrap_err().to_string();
         assert_eq!(
             error,
             "a table of 1350000000001 rows at a sample time of 1e-12 s; at most 10000000 are written: take a longer \
              sample time"
         );
         assert!(out.is_empty());
+    }
+
+    /// 0 … 1.35 s in steps of 0.1 s, and one more for what is left.
+    #[test]
+    fn rows_are_as_far_apart_as_asked_for() {
+        let mut bytes = Vec::new();
+        moves::lambrechts(Order::Fourth).write_csv(Some(0.1), &mut bytes).unwrap();
+        let text = String::from_utf8(bytes).unwrap();
+        assert_eq!(text.lines().count(), 1 + 15);
+        assert!(text.ends_with("1.4000000000000001,1,0,0,0,0\n"), "{text}");
+    }
+
+    /// α = 1/2 leaves no plateau: one command for each segment.
+    #[test]
+    fn commands_have_a_table_of_their_own() {
+        let knots = vec![Knot::new(1.0, 0.0), Knot::new(2.0, 1.0)];
+        let way = TableMove { knots, velocities: Velocities::Given, follow: Follow::Plateaus(0.5) };
+        let mut bytes = Vec::new();
+        assert!(moves::of(Way::Table(way)).write_commands(&mut bytes).unwrap());
+        let text = String::from_utf8(bytes).unwrap();
+        // A triangle: to 2 m/s within half a second and back.
+        assert_eq!(text, "time_s,velocity_m_s,acceleration_m_s2\n0,2,4\n0.5,0,4\n");
+        assert!(!moves::lambrechts(Order::Fourth).write_commands(io::sink()).unwrap());
     }
 
     #[test]
@@ -100,6 +157,6 @@ mod tests {
                 Ok(())
             }
         }
-        assert!(matches!(moves::sampled(1e-3).write_csv(Full), Err(ReportError::Io(_))));
+        assert!(matches!(moves::sampled(1e-3).write_csv(None, Full), Err(ReportError::Io(_))));
     }
 }

@@ -1,16 +1,26 @@
 //! A plan as a drawing: position and its derivatives over time, one panel each, with their limits.
 use super::axis::{Axis, unit_at};
-use super::curve::{Curve, Shape};
-use super::panel::{HEIGHT, Panel};
+use super::curve::Curve;
+use super::envelope::Envelope;
+use super::marks::Marks;
+use super::panel::{HEIGHT, Line, Panel};
 use super::ticks::ticks;
-use super::{NAMES, PlannedMove};
-use servobench_base::Setpoint;
-use servobench_metrics::{Quantity, round_above};
+use super::{NAMES, PlannedMove, derivatives};
+use crate::text::wrapped;
+use servobench_metrics::round_above;
+use servobench_motion::Profile;
+use servobench_motion::online::Sides;
+use servobench_planner::{Binding, Span};
 
 const WIDTH: f64 = 860.0;
 const LEFT: f64 = 84.0;
 const RIGHT: f64 = 132.0;
-const TOP: f64 = 78.0;
+/// Above the first panel, with one line below the title.
+const TOP: f64 = 96.0;
+/// Height of another one.
+const LINE: f64 = 17.0;
+/// Characters in it.
+const CHARACTERS: usize = 108;
 const BOTTOM: f64 = 46.0;
 const GAP: f64 = 22.0;
 /// One colour for each panel, distinguishable without colour vision by position anyway.
@@ -20,78 +30,111 @@ const STYLE: &str = "text{font-family:'DejaVu Sans','Segoe UI',Helvetica,Arial,s
 .k{font-size:11px;fill:#5b6472}.e{font-size:11px;font-weight:600}.g{stroke:#e4e8ee;stroke-width:1}.b{stroke:#aab3c0;stroke-width:1;stroke-dasharray:1.5 3}\
 .z{stroke:#9aa3b0;stroke-width:1}\
 .l{stroke:#c2303a;stroke-width:1.2;stroke-dasharray:6 4}.lt{font-size:11px;fill:#c2303a}.c{fill:none;\
-stroke-width:2;stroke-linejoin:round}.f{stroke:none;opacity:.09}";
+stroke-width:2;stroke-linejoin:round}.f{stroke:none;opacity:.09}.v{stroke-width:1.2;stroke-linejoin:round}\
+.m{fill:none;stroke:#c2303a;stroke-width:4}.d{fill:none;stroke:#c2303a;stroke-width:7;stroke-linecap:round}";
 
-/// Parts into which a segment is cut, so that position, of the fourth degree, is drawn within 1e-8 of the move.
-const PARTS: u32 = 4;
+/// Polynomials that are drawn as such; more of them are drawn as far as they are seen.
+const EXACT: usize = 250;
+/// Looks into a polynomial for how far its position goes.
+const LOOKS: u32 = 8;
 /// Labels of the time axis keep this far from that of the end.
 const LABEL: f64 = 34.0;
 /// Marks closer than this are one.
 const APART: f64 = 1.5;
+/// More ends of segments than this would hide the curves.
+const MOST_BOUNDARIES: usize = 80;
 
 impl PlannedMove {
     /// The move as SVG, complete in itself.
     ///
-    /// Between two switching instants everything is a polynomial and drawn as such: a sampled plan too, which is continuous
-    /// between its samples.
+    /// Every polynomial is drawn as such, that of a sampled profile too, which is continuous between its samples; set-points
+    /// that are held, in steps. Of very many polynomials the lowest and the highest value in each column of pixels are drawn.
     #[must_use]
     pub fn svg(&self) -> String {
-        let n = self.profile.order().derivative();
-        let (mut switches, mut parts) = (Vec::new(), Vec::new());
-        for segment in self.profile.segments() {
-            switches.push(segment.start);
-            parts.extend((0..PARTS).map(|k| segment.start + segment.length * f64::from(k) / f64::from(PARTS)));
-        }
-        if !switches.is_empty() {
-            switches.push(self.profile.duration());
-            parts.push(self.profile.duration());
-        }
-        let (of_switches, of_parts) = (self.columns(&switches), self.columns(&parts));
-        let units: Vec<String> = (0..=n).map(|i| self.unit_of(i)).collect();
-        let limits = std::iter::once(None).chain(self.limits().map(|limit| limit.is_finite().then_some(limit)));
-        let curve = |i: usize| match n - i {
-            0 => Curve { times: &switches, values: &of_switches[i], shape: Shape::Held },
-            1 => Curve { times: &switches, values: &of_switches[i], shape: Shape::Straight },
-            _ => Curve { times: &parts, values: &of_parts[i], shape: Shape::Smooth(&of_parts[i + 1]) },
+        let n = self.plan.order();
+        let spans: Vec<Span> = self.plan.spans().take(EXACT + 1).collect();
+        let (duration, end) = (self.plan.duration(), self.plan.end());
+        let envelope = (spans.len() > EXACT).then(|| Envelope::of(self.plan.spans(), duration));
+        let position = match &envelope {
+            Some(envelope) => envelope.range(0),
+            None => range_of_position(&spans, self.plan.start().x),
         };
-        let panels: Vec<Panel<'_>> = limits
+        let peaks = self.plan.peaks().map(|peak| (peak.lowest, peak.highest));
+        let ranges = std::iter::once(position).chain(peaks);
+        let limits = std::iter::once(Sides::both(f64::INFINITY)).chain(*self.plan.limits());
+        let panels: Vec<Panel<'_>> = ranges
+            .zip(limits)
             .enumerate()
-            .map(|(i, limit)| Panel { name: NAMES[i], unit: &units[i], curve: curve(i), limit })
+            .take(n + 1)
+            .map(|(k, ((low, high), limit))| {
+                let unit = self.drawn_unit(k);
+                let scale = unit.scale();
+                let line = match &envelope {
+                    Some(envelope) => Line::Seen(envelope, k),
+                    None => Line::Exact(Curve { spans: &spans, end, k, is_highest: k == n, scale }),
+                };
+                let limit = Sides { below: limit.below / scale, above: limit.above / scale };
+                Panel { name: NAMES[k], unit, range: (low / scale, high / scale), limit, line }
+            })
             .collect();
-        let distance = Quantity::new(self.profile.distance(), self.unit);
         // In the unit of the time axis; to the nanosecond they are in the table.
-        let (unit, scale) = unit_at(self.profile.duration(), "s");
+        let (unit, scale) = unit_at(duration, "s", true);
         let shown = |time: f64| format!("{} {unit}", four_digits(time / scale));
-        let title = format!("{distance} in {}, order {n}", shown(self.profile.duration()));
-        let subtitle: Vec<_> = self.dwells().map(|(name, _, value)| format!("{name} = {}", shown(value))).collect();
-        Drawing { title: &title, subtitle: &subtitle.join(",  "), switches: &switches, panels: &panels }.to_svg()
+        let what = self.what(&self.drawn_unit(0).short(self.distance()));
+        let title = format!("{what} in {}, {}", shown(duration), self.kind());
+        let dwells: Vec<_> = self.dwells().map(|(name, _, value)| format!("{name} = {}", shown(value))).collect();
+        let dwells = Some(dwells.join(", ")).filter(|dwells| !dwells.is_empty());
+        let below = dwells.into_iter().chain(self.notes()).collect::<Vec<_>>().join(" · ");
+        Drawing {
+            title: &title,
+            lines: wrapped(&below, CHARACTERS),
+            duration,
+            boundaries: self.boundaries(&spans),
+            bindings: self.plan.bindings(),
+            panels: &panels,
+        }
+        .to_svg()
     }
 
-    /// Position and its derivatives at `times`.
-    fn columns(&self, times: &[f64]) -> [Vec<f64>; 5] {
-        let setpoints: Vec<Setpoint> = times.iter().map(|t| self.profile.at(*t)).collect();
-        let column = |value: fn(&Setpoint) -> f64| setpoints.iter().map(value).collect::<Vec<_>>();
-        [column(|at| at.x), column(|at| at.v), column(|at| at.a), column(|at| at.j), column(|at| at.s)]
+    /// Ends of the segments (s).
+    fn boundaries(&self, spans: &[Span]) -> Vec<f64> {
+        match self.profile().map(Profile::segments) {
+            _ if self.plan.held().is_some() || spans.len() > EXACT => Vec::new(),
+            Some(segments) => segments.map(|segment| segment.start + segment.length).collect(),
+            None => spans.iter().map(|span| span.start + span.length).collect(),
+        }
     }
+}
+
+/// The lowest and the highest position, from `start` on.
+fn range_of_position(spans: &[Span], start: f64) -> (f64, f64) {
+    let looks = spans.iter().flat_map(|span| {
+        (0..=LOOKS).map(|look| derivatives(&span.after(span.length * f64::from(look) / f64::from(LOOKS)))[0])
+    });
+    looks.fold((start, start), |(low, high), x| (low.min(x), high.max(x)))
 }
 
 /// Panels below each other.
 struct Drawing<'a> {
     /// Headline: `1 m in 1.35 s, order 4`.
     title: &'a str,
-    /// What a reader wants to know besides: segment times.
-    subtitle: &'a str,
-    /// Switching instants from the start to the end (s), ascending.
-    switches: &'a [f64],
-    /// Panels from top to bottom.
+    /// What a reader wants to know besides: segment times, what the planner tells.
+    lines: Vec<String>,
+    duration: f64,
+    /// Ends of the segments (s), ascending.
+    boundaries: Vec<f64>,
+    /// Where quantities are at their limits.
+    bindings: Vec<Binding>,
+    /// Panels from top to bottom, position first.
     panels: &'a [Panel<'a>],
 }
 
 impl Drawing<'_> {
     fn to_svg(&self) -> String {
         let count = self.panels.len() as f64;
-        let height = TOP + count * HEIGHT + (count - 1.0).max(0.0) * GAP + BOTTOM;
-        let (title, subtitle) = (escaped(self.title), escaped(self.subtitle));
+        let first = TOP + LINE * (self.lines.len() as f64 - 1.0).max(0.0);
+        let height = first + count * HEIGHT + (count - 1.0).max(0.0) * GAP + BOTTOM;
+        let title = escaped(self.title);
         let mut svg = vec![
             format!(
                 "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" \
@@ -100,49 +143,79 @@ impl Drawing<'_> {
             format!("<title>{title}</title>\n<style>{STYLE}</style>"),
             format!("<rect width=\"{WIDTH}\" height=\"{height}\" fill=\"#ffffff\"/>"),
             format!("<text class=\"t\" x=\"{LEFT}\" y=\"34\">{title}</text>"),
-            format!("<text class=\"s\" x=\"{LEFT}\" y=\"55\">{subtitle}</text>"),
         ];
-        let end = self.switches.last().copied();
-        let time = Axis { low: 0.0, high: end.unwrap_or(1.0), from: LEFT, to: WIDTH - RIGHT };
-        let (unit, scale) = unit_at(time.high, "s");
-        let marks = ticks(0.0, time.high / scale, round_above(time.high / scale / 8.0));
+        svg.extend(self.lines.iter().enumerate().map(|(i, line)| {
+            format!("<text class=\"s\" x=\"{LEFT}\" y=\"{}\">{}</text>", 55.0 + LINE * i as f64, escaped(line))
+        }));
+        let has_end = self.duration > 0.0;
+        let high = if has_end { self.duration } else { 1.0 };
+        let time = Axis { low: 0.0, high, from: LEFT, to: WIDTH - RIGHT };
+        let (unit, scale) = unit_at(time.high, "s", true);
+        let ticks = ticks(0.0, time.high / scale, round_above(time.high / scale / 8.0));
+        let boundaries = self.seen_boundaries(&time);
+        let mut marks_seen = (false, false);
         for (k, panel) in self.panels.iter().enumerate() {
-            let top = TOP + k as f64 * (HEIGHT + GAP);
+            let top = first + k as f64 * (HEIGHT + GAP);
             let bottom = top + HEIGHT;
             let upright = |class: &str, x: f64| {
                 format!("<line class=\"{class}\" x1=\"{x:.2}\" x2=\"{x:.2}\" y1=\"{top}\" y2=\"{bottom}\"/>")
             };
-            svg.extend(marks.iter().map(|(value, _)| upright("g", time.at(value * scale))));
-            svg.extend(self.boundaries(&time).into_iter().map(|x| upright("b", x)));
+            svg.extend(ticks.iter().map(|(value, _)| upright("g", time.at(value * scale))));
+            svg.extend(boundaries.iter().map(|x| upright("b", *x)));
             let (value, colour) = (panel.axis(top), COLOURS[k % COLOURS.len()]);
             panel.draw_scale(&mut svg, &time, &value);
             panel.draw_curve(&mut svg, &time, &value, colour);
+            let bindings = self.bindings.iter().filter(|binding| binding.derivative == k);
+            let marks = Marks::of(bindings, panel.unit.scale(), &time, &value);
+            marks.draw(&mut svg);
+            marks_seen = (marks_seen.0 || !marks.stretches.is_empty(), marks_seen.1 || !marks.dots.is_empty());
             panel.draw_legend(&mut svg, time.to + 12.0, top, colour);
         }
+        self.draw_key(&mut svg, first - 16.0, marks_seen);
         let base = height - BOTTOM + 18.0;
         let centred = |class: &str, x: f64, y: f64, text: &str| {
             format!("<text class=\"{class}\" x=\"{x:.2}\" y=\"{y:.2}\" text-anchor=\"middle\">{text}</text>")
         };
-        let free = marks.iter().map(|(value, label)| (time.at(value * scale), label));
-        let free = free.filter(|(x, _)| end.is_none() || time.to - x >= LABEL);
+        let free = ticks.iter().map(|(value, label)| (time.at(value * scale), label));
+        let free = free.filter(|(x, _)| !has_end || time.to - x >= LABEL);
         svg.extend(free.map(|(x, label)| centred("k", x, base, label)));
-        if let Some(end) = end {
-            svg.push(centred("e", time.to, base, &four_digits(end / scale)));
+        if has_end {
+            svg.push(centred("e", time.to, base, &four_digits(self.duration / scale)));
         }
         svg.push(centred("k", f64::midpoint(time.from, time.to), base + 18.0, &format!("time ({unit})")));
         svg.push("</svg>\n".to_owned());
         svg.join("\n")
     }
 
+    /// What the lines of limits and the marks on them mean, as far as there are some.
+    fn draw_key(&self, svg: &mut Vec<String>, y: f64, (has_stretches, has_dots): (bool, bool)) {
+        let mut x = LEFT;
+        let mut entry = |symbol: &str, text: &str, width: f64| {
+            svg.push(format!(
+                "<g transform=\"translate({x:.0},{y:.0})\">{symbol}<text class=\"lt\" x=\"28\" y=\"4\">{text}</text></g>"
+            ));
+            x += width;
+        };
+        if self.panels.iter().any(Panel::shows_a_limit) {
+            entry("<line class=\"l\" x1=\"0\" x2=\"22\" y1=\"0\" y2=\"0\"/>", "limit", 72.0);
+        }
+        if has_stretches {
+            entry("<path class=\"m\" d=\"M0,0H22\"/>", "at its limit", 112.0);
+        }
+        if has_dots {
+            entry("<path class=\"d\" d=\"M11,0h0\"/>", "at its limit for an instant", 0.0);
+        }
+    }
+
     /// Where a segment ends (pixels); segments too short to be seen end where the next one does.
-    fn boundaries(&self, time: &Axis) -> Vec<f64> {
+    fn seen_boundaries(&self, time: &Axis) -> Vec<f64> {
         let mut boundaries: Vec<f64> = Vec::new();
-        for x in self.switches.iter().skip(1).map(|t| time.at(*t)) {
+        for x in self.boundaries.iter().map(|t| time.at(*t)) {
             if boundaries.last().is_none_or(|before| x - before >= APART) {
                 boundaries.push(x);
             }
         }
-        boundaries
+        if boundaries.len() > MOST_BOUNDARIES { Vec::new() } else { boundaries }
     }
 }
 
@@ -161,7 +234,11 @@ pub(super) fn escaped(text: &str) -> String {
 mod tests {
     use super::super::moves;
     use super::*;
-    use servobench_motion::{Limits, Order, Profile};
+    use servobench_base::Setpoint;
+    use servobench_motion::pvt::Knot;
+    use servobench_motion::{Limits, Order};
+    use servobench_planner::{Execution, Follow, Method, PointToPoint, Request, TableMove, Velocities, Way};
+    use std::f64::consts::PI;
 
     /// The path of the line of panel `k`.
     fn path(svg: &str, k: usize) -> &str {
@@ -175,10 +252,35 @@ mod tests {
         path.split(|c| !is_number(c)).filter(|text| !text.is_empty()).map(|text| text.parse().unwrap()).collect()
     }
 
-    /// The points and control points of a path of cubic curves.
-    fn cubics(path: &str) -> Vec<(f64, f64)> {
-        assert!(path.chars().all(|c| !c.is_ascii_alphabetic() || "MC".contains(c)), "{path}");
-        numbers(path).chunks(2).map(|pair| (pair[0], pair[1])).collect()
+    /// The parts of a path, each as a cubic curve: its ends and what pulls at it; none for those that go upright.
+    fn cubics(path: &str) -> Vec<[(f64, f64); 4]> {
+        let mut parts: Vec<[(f64, f64); 4]> = Vec::new();
+        let mut here = (0.0, 0.0);
+        let starts = path.char_indices().filter(|(_, c)| c.is_ascii_alphabetic()).map(|(i, _)| i);
+        let ends = starts.clone().skip(1).chain([path.len()]);
+        for command in starts.zip(ends).map(|(start, end)| &path[start..end]) {
+            let numbers = numbers(command);
+            let straight = |to: (f64, f64)| {
+                let along = |part: f64| (here.0 + part * (to.0 - here.0), here.1 + part * (to.1 - here.1));
+                [here, along(1.0 / 3.0), along(2.0 / 3.0), to]
+            };
+            let part = match &command[..1] {
+                "C" => [here, (numbers[0], numbers[1]), (numbers[2], numbers[3]), (numbers[4], numbers[5])],
+                "L" => straight((numbers[0], numbers[1])),
+                "H" => straight((numbers[0], here.1)),
+                "V" => {
+                    here.1 = numbers[0];
+                    continue;
+                }
+                _ => {
+                    here = (numbers[0], numbers[1]);
+                    continue;
+                }
+            };
+            here = part[3];
+            parts.push(part);
+        }
+        parts
     }
 
     /// Pixels of the time and of the value `value` in panel `k`, whose values go from `low` to `high`. Room is 2 % at zero
@@ -196,12 +298,10 @@ mod tests {
     #[test]
     fn curves_are_those_of_the_profile() {
         let plan = moves::lambrechts(Order::Fourth);
-        let (profile, svg) = (&plan.profile, plan.svg());
+        let (profile, svg) = (&plan.plan, plan.svg());
         let values: [fn(Setpoint) -> f64; 3] = [|at| at.x, |at| at.v, |at| at.a];
         for (k, (value, range)) in (0..).zip(values.into_iter().zip([(0.0, 1.0), (0.0, 1.0), (-5.0, 5.0)])) {
-            let points = cubics(path(&svg, usize::from(k)));
-            assert_eq!(points.len(), 1 + 3 * 4 * 15, "15 segments in four parts");
-            for part in points.windows(4).step_by(3) {
+            for part in cubics(path(&svg, usize::from(k))) {
                 for step in 0..=100 {
                     let u = f64::from(step) / 100.0;
                     let weights = [(1.0 - u).powi(3), 3.0 * u * (1.0 - u).powi(2), 3.0 * u * u * (1.0 - u), u.powi(3)];
@@ -222,11 +322,12 @@ mod tests {
     fn curves_have_no_corners() {
         let svg = moves::lambrechts(Order::Fourth).svg();
         for k in 0..3 {
-            let points = cubics(path(&svg, k));
-            for k in (3..points.len() - 3).step_by(3) {
+            let parts = cubics(path(&svg, k));
+            assert!(parts.len() >= 15, "{}", parts.len());
+            for pair in parts.windows(2) {
                 let slope = |from: (f64, f64), to: (f64, f64)| (to.1 - from.1) / (to.0 - from.0);
-                let (before, after) = (slope(points[k - 1], points[k]), slope(points[k], points[k + 1]));
-                assert!((before - after).abs() < 0.02, "{before} and {after} at {:?}", points[k]);
+                let (before, after) = (slope(pair[0][2], pair[0][3]), slope(pair[1][0], pair[1][1]));
+                assert!((before - after).abs() < 0.02, "{before} and {after} at {:?}", pair[1][0]);
             }
         }
     }
@@ -236,7 +337,7 @@ mod tests {
     fn the_highest_derivatives_are_drawn_without_slant() {
         let svg = moves::lambrechts(Order::Fourth).svg();
         let (jerk, snap) = (path(&svg, 3), path(&svg, 4));
-        assert!(jerk.chars().all(|c| !c.is_ascii_alphabetic() || "ML".contains(c)), "{jerk}");
+        assert!(jerk.chars().all(|c| !c.is_ascii_alphabetic() || "MLH".contains(c)), "{jerk}");
         assert!(snap.chars().all(|c| !c.is_ascii_alphabetic() || "MHV".contains(c)), "{snap}");
         let zero = pixel(1.35, 4, (-1000.0, 1000.0), 0.0, 0.0).1;
         let numbers = numbers(snap);
@@ -261,11 +362,10 @@ mod tests {
     #[test]
     fn the_shortest_pulse_is_drawn_to_its_peak() {
         let limits = Limits { velocity: 1.0, acceleration: 1e-3, jerk: 1e6, snap: 1e16 };
-        let profile = Profile::plan(Order::Fourth, 1.0, &limits).unwrap();
-        let peak = profile.peaks().jerk;
-        let svg = PlannedMove::new(profile, Limits { jerk: peak, ..limits }, "m").svg();
+        let peak = moves::published(Order::Fourth, 1.0, limits).plan.largest()[2];
+        let svg = moves::published(Order::Fourth, 1.0, Limits { jerk: peak, ..limits }).svg();
         let top = pixel(1.0, 3, (-peak, peak), 0.0, peak).1;
-        let highest = numbers(path(&svg, 3)).into_iter().skip(1).step_by(2).fold(f64::INFINITY, f64::min);
+        let highest = cubics(path(&svg, 3)).into_iter().map(|part| part[3].1).fold(f64::INFINITY, f64::min);
         assert!((highest - top).abs() < 0.02, "{highest} {top}");
     }
 
@@ -282,7 +382,7 @@ mod tests {
     #[test]
     fn times_are_written_in_the_unit_of_the_axis() {
         let limits = Limits { velocity: 1.0, acceleration: 3.0, jerk: 100.0, snap: 1e4 };
-        let svg = PlannedMove::new(Profile::plan(Order::Second, 1e-3, &limits).unwrap(), limits, "m").svg();
+        let svg = moves::published(Order::Second, 1e-3, limits).svg();
         // Two halves of √(1 mm/3 m/s²) = 18.257 ms each.
         assert!(svg.contains(">1.00 mm in 36.51 ms, order 2<") && svg.contains("t_a = 18.26 ms"), "{svg}");
         assert!(svg.contains(">36.51</text>") && svg.contains(">time (ms)</text>"));
@@ -291,8 +391,63 @@ mod tests {
     #[test]
     fn a_move_of_no_distance_is_still_a_drawing() {
         let limits = Limits { velocity: 1.0, acceleration: 1.0, jerk: 1.0, snap: 1.0 };
-        let svg = PlannedMove::new(Profile::plan(Order::Third, 0.0, &limits).unwrap(), limits, "m").svg();
+        let svg = moves::published(Order::Third, 0.0, limits).svg();
         assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>") && !svg.contains("NaN"), "{svg}");
+    }
+
+    /// Lambrechts' move is at its limits in as many stretches as its figure shows: once the velocity, twice the acceleration,
+    /// four times the jerk, and snap in eight.
+    #[test]
+    fn where_a_bound_binds_is_marked() {
+        let svg = moves::lambrechts(Order::Fourth).svg();
+        let marks: Vec<usize> = svg
+            .split("<path class=\"m\"")
+            .skip(1)
+            .map(|rest| rest.split("/>").next().unwrap().matches('M').count())
+            .collect();
+        // The last one is the sign in the key.
+        assert_eq!(marks, [1, 2, 4, 8, 1]);
+        assert!(svg.contains(">at its limit<") && !svg.contains("for an instant"));
+    }
+
+    #[test]
+    fn a_limit_that_is_touched_gets_a_dot() {
+        let limits = |velocity| Limits { velocity, ..moves::LAMBRECHTS };
+        let peak = moves::published(Order::Third, 0.01, limits(1.0)).plan.largest()[0];
+        let svg = moves::published(Order::Third, 0.01, limits(peak)).svg();
+        assert!(svg.contains("<path class=\"d\"") && svg.contains("at its limit for an instant"), "{svg}");
+    }
+
+    /// The panels end with the order: no empty one.
+    #[test]
+    fn there_is_a_panel_for_each_derivative_that_is_limited() {
+        let svg = moves::lambrechts(Order::Third).svg();
+        assert!(svg.contains(">jerk<") && !svg.contains(">snap<"));
+    }
+
+    /// A quarter of a turn: 90 at the axis, and a limit of 60 rpm.
+    #[test]
+    fn angles_are_drawn_in_their_units() {
+        let limits = Limits { velocity: 2.0 * PI, acceleration: 50.0, jerk: f64::INFINITY, snap: f64::INFINITY };
+        let (order, method, distance) = (Order::Second, Method::Published, PI / 2.0);
+        let way = PointToPoint { distance, order, limits, method, grid: None };
+        let plan = PlannedMove::new(Request::new(Way::PointToPoint(way)), "rad").unwrap();
+        let svg = plan.as_given(0, "90 deg", PI / 2.0).as_given(1, "60 rpm", 2.0 * PI).svg();
+        for text in [">90 deg in 375.7 ms, order 2<", ">peak 90 deg<", ">limit 60 rpm<", ">deg/s²<"] {
+            assert!(svg.contains(text), "{text} in {svg}");
+        }
+        assert!(!svg.contains("rad"));
+    }
+
+    /// The samples of the cascade, as far as they are seen, and a table of a hundred thousand points.
+    #[test]
+    fn very_many_polynomials_take_little_room() {
+        let knots = (0..100_000).map(|k| Knot::new(f64::from(k), f64::from(k % 3))).collect();
+        let way = TableMove { knots, velocities: Velocities::Average, follow: Follow::Segments };
+        for plan in [moves::executed(1e-3, Execution::Euler), moves::of(Way::Table(way))] {
+            let svg = plan.svg();
+            assert!(svg.len() < 200_000 && svg.contains("class=\"v\""), "{} bytes", svg.len());
+        }
     }
 
     #[test]

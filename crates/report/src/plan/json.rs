@@ -1,17 +1,30 @@
 //! A plan for a program.
-use super::{NAMES, PlannedMove};
+use super::{NAMES, PlannedMove, derivatives};
 use crate::error::ReportError;
 use crate::ordered::Ordered;
 use serde::Serialize;
+use servobench_base::Setpoint;
+use servobench_motion::Profile;
+use servobench_planner::{Execution, Sampling, Told};
+
+/// Segments, bindings and commands at most, each; of more the number alone is told, and `--csv` has the values.
+const MOST: usize = 100_000;
 
 /// A plan; values are SI.
 #[derive(Debug, Serialize)]
 struct Plan {
+    family: &'static str,
+    method: &'static str,
     order: usize,
     /// Unit of positions.
     unit: &'static str,
     distance: f64,
     duration_s: f64,
+    /// How much of the duration is that of shaper and averages.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    filter_s: Option<f64>,
+    #[serde(flatten)]
+    compared: Option<Compared>,
     /// `t_d` … `t_v` (s).
     #[serde(flatten)]
     dwells: Ordered<f64>,
@@ -20,15 +33,75 @@ struct Plan {
     effective: Ordered<f64>,
     /// Largest magnitudes.
     peaks: Ordered<f64>,
+    /// Lowest and highest values.
+    extremes: Ordered<[f64; 2]>,
+    /// Lowest and highest values allowed, where there is a limit.
+    limits: Ordered<[Option<f64>; 2]>,
     #[serde(flatten)]
     samples: Option<Samples>,
-    segments: Vec<Segment>,
+    /// How far a transition goes beyond its limits, as a part of them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    excess: Option<f64>,
+    /// Of Rockwell's ramps.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    jerks: Option<Jerks>,
+    /// What the position differs from the spline's at most.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    position_error: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    command_rate_hz: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    command_count: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    commands: Option<Vec<Command>>,
+    /// Where a derivative is at its limit.
+    binding_count: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bindings: Option<Vec<Binding>>,
+    segment_count: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    segments: Option<Vec<Segment>>,
+}
+
+/// Beside the published profile.
+#[derive(Debug, Serialize)]
+struct Compared {
+    published_duration_s: f64,
+    /// Part of its duration that is gained.
+    gain: f64,
 }
 
 #[derive(Debug, Serialize)]
 struct Samples {
     sample_time_s: f64,
-    samples: u64,
+    #[serde(rename = "samples")]
+    count: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sampling: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    execution: Option<&'static str>,
+}
+
+#[derive(Debug, Serialize)]
+struct Jerks {
+    acceleration: f64,
+    deceleration: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct Command {
+    time_s: f64,
+    velocity: f64,
+    acceleration: f64,
+}
+
+/// A derivative at its limit; for an instant where the length is 0.
+#[derive(Debug, Serialize)]
+struct Binding {
+    quantity: &'static str,
+    start_s: f64,
+    length_s: f64,
+    value: f64,
 }
 
 /// A stretch of constant highest derivative.
@@ -37,6 +110,16 @@ struct Segment {
     start_s: f64,
     length_s: f64,
     value: f64,
+    #[serde(flatten)]
+    state: Option<State>,
+}
+
+/// The set-point at the beginning of a segment, where that is no move from rest to rest.
+#[derive(Debug, Serialize)]
+struct State {
+    position: f64,
+    velocity: f64,
+    acceleration: f64,
 }
 
 impl PlannedMove {
@@ -45,39 +128,126 @@ impl PlannedMove {
     /// # Errors
     /// [`ReportError::Json`].
     pub fn json(&self) -> Result<String, ReportError> {
-        let profile = &self.profile;
-        let n = profile.order().derivative();
-        let effective = (format!("{}_effective", NAMES[n]), profile.amplitude());
-        let peaks = NAMES[1..].iter().map(|name| (*name).to_owned()).zip(self.peaks());
-        let samples = profile.samples();
+        let n = self.plan.order();
+        let effective = self.profile().map(|profile| (format!("{}_effective", NAMES[n]), profile.amplitude()));
+        let names = || NAMES[1..=n].iter().map(|name| (*name).to_owned());
+        let limits =
+            self.plan.limits().map(|sides| [-sides.below, sides.above].map(|limit| limit.is_finite().then_some(limit)));
+        let (commands, error, rate) = match self.plan.told() {
+            Told::Commands { commands, error, rate } => (Some(commands), Some(*error), *rate),
+            _ => (None, None, None),
+        };
+        let bindings = self.plan.bindings();
+        let segments = self.segments();
         let plan = Plan {
+            family: self.family(),
+            method: self.method(),
             order: n,
             unit: self.unit,
-            distance: profile.distance(),
-            duration_s: profile.duration(),
+            distance: self.distance(),
+            duration_s: self.plan.duration(),
+            filter_s: Some(self.plan.filter_length()).filter(|length| *length > 0.0),
+            compared: self.gain().map(|(published_duration_s, gain)| Compared { published_duration_s, gain }),
             dwells: self.dwells().map(|(name, _, value)| (name.to_owned(), value)).collect(),
-            effective: [effective].into_iter().collect(),
-            peaks: peaks.collect(),
-            samples: samples.map(|samples| Samples { sample_time_s: samples.time, samples: samples.total() }),
-            segments: profile
-                .segments()
-                .map(|segment| Segment { start_s: segment.start, length_s: segment.length, value: segment.value })
-                .collect(),
+            effective: effective.into_iter().collect(),
+            peaks: names().zip(self.plan.largest()).collect(),
+            extremes: names().zip(self.plan.peaks().map(|peak| [peak.lowest, peak.highest])).collect(),
+            limits: names().zip(limits).filter(|(_, limit)| limit.iter().any(Option::is_some)).collect(),
+            samples: self.sampled(),
+            excess: match self.plan.told() {
+                Told::Transition { excess, .. } => Some(*excess),
+                _ => None,
+            },
+            jerks: match self.plan.told() {
+                Told::Rockwell { acceleration, deceleration } => {
+                    Some(Jerks { acceleration: *acceleration, deceleration: *deceleration })
+                }
+                _ => None,
+            },
+            position_error: error,
+            command_rate_hz: rate,
+            command_count: commands.map(Vec::len),
+            commands: commands.filter(|commands| commands.len() <= MOST).map(|commands| {
+                let start = commands.first().map_or(0.0, |command| command.t);
+                let command = |of: &servobench_motion::position_profile::Command| Command {
+                    time_s: of.t - start,
+                    velocity: of.velocity,
+                    acceleration: of.acceleration,
+                };
+                commands.iter().map(command).collect()
+            }),
+            binding_count: bindings.len(),
+            bindings: (bindings.len() <= MOST).then(|| {
+                let binding = |of: servobench_planner::Binding| Binding {
+                    quantity: NAMES[of.derivative],
+                    start_s: of.start,
+                    length_s: of.length,
+                    value: of.value,
+                };
+                bindings.into_iter().map(binding).collect()
+            }),
+            segment_count: segments.len(),
+            segments: (segments.len() <= MOST).then_some(segments),
         };
         Ok(serde_json::to_string_pretty(&plan)? + "\n")
+    }
+
+    fn sampled(&self) -> Option<Samples> {
+        let (sample_time_s, count) = self.samples()?;
+        let grid = self.grid();
+        let sampling = grid.map(|grid| match grid.sampling {
+            Sampling::Published => "published",
+            Sampling::Fewest => "fewest",
+        });
+        let execution = grid.map(|grid| match grid.execution {
+            Execution::Hold => "hold",
+            Execution::Euler => "euler",
+        });
+        Some(Samples { sample_time_s, count, sampling, execution })
+    }
+
+    /// The segments of a profile from rest to rest; of another plan its polynomials with where they begin, none of samples.
+    fn segments(&self) -> Vec<Segment> {
+        if let Some(segments) = self.profile().map(Profile::segments) {
+            let segment = |of: servobench_motion::Segment| Segment {
+                start_s: of.start,
+                length_s: of.length,
+                value: of.value,
+                state: None,
+            };
+            return segments.map(segment).collect();
+        }
+        if self.plan.held().is_some() {
+            return Vec::new();
+        }
+        let n = self.plan.order();
+        let segment = |of: servobench_planner::Span| {
+            let Setpoint { x, v, a, .. } = of.state;
+            let state = State { position: x, velocity: v, acceleration: a };
+            Segment { start_s: of.start, length_s: of.length, value: derivatives(&of.state)[n], state: Some(state) }
+        };
+        self.plan.spans().map(segment).collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::moves;
+    use super::super::{PlannedMove, moves};
     use servobench_motion::Order;
+    use servobench_motion::pvt::Knot;
+    use servobench_planner::{Execution, Follow, Method, PointToPoint, TableMove, Velocities, Way};
+
+    fn json(plan: &PlannedMove) -> serde_json::Value {
+        serde_json::from_str(&plan.json().unwrap()).unwrap()
+    }
 
     /// Lambrechts' limits at order 2: 1 m at 1 m/s, and 0.2 s more for 5 m/s² up and down.
     #[test]
     fn a_trapezoid() {
         insta::assert_snapshot!(moves::lambrechts(Order::Second).json().unwrap(), @r#"
         {
+          "family": "point-to-point",
+          "method": "published",
           "order": 2,
           "unit": "m",
           "distance": 1.0,
@@ -89,6 +259,48 @@ mod tests {
             "velocity": 1.0,
             "acceleration": 5.0
           },
+          "extremes": {
+            "velocity": [
+              0.0,
+              1.0
+            ],
+            "acceleration": [
+              -5.0,
+              5.0
+            ]
+          },
+          "limits": {
+            "velocity": [
+              -1.0,
+              1.0
+            ],
+            "acceleration": [
+              -5.0,
+              5.0
+            ]
+          },
+          "binding_count": 3,
+          "bindings": [
+            {
+              "quantity": "velocity",
+              "start_s": 0.2,
+              "length_s": 0.8,
+              "value": 1.0
+            },
+            {
+              "quantity": "acceleration",
+              "start_s": 0.0,
+              "length_s": 0.2,
+              "value": 5.0
+            },
+            {
+              "quantity": "acceleration",
+              "start_s": 1.0,
+              "length_s": 0.19999999999999996,
+              "value": -5.0
+            }
+          ],
+          "segment_count": 3,
           "segments": [
             {
               "start_s": 0.0,
@@ -112,8 +324,37 @@ mod tests {
 
     #[test]
     fn samples_are_counted() {
-        let plan: serde_json::Value = serde_json::from_str(&moves::sampled(1e-3).json().unwrap()).unwrap();
+        let plan = json(&moves::sampled(1e-3));
         assert_eq!((&plan["samples"], &plan["sample_time_s"]), (&1350.into(), &1e-3.into()), "{plan}");
         assert_eq!(plan["segments"].as_array().unwrap().len(), 15);
+        let euler = json(&moves::executed(1e-3, Execution::Euler));
+        assert_eq!((&euler["samples"], &euler["execution"]), (&1350.into(), &"euler".into()), "{euler}");
+    }
+
+    /// (384/512)^¼ of the time, where snap alone binds.
+    #[test]
+    fn the_gain_is_a_number() {
+        let (order, method) = (Order::Fourth, Method::Optimal);
+        let way = PointToPoint { distance: 1e-3, order, limits: moves::LAMBRECHTS, method, grid: None };
+        let plan = json(&moves::of(Way::PointToPoint(way)));
+        let near = |name: &str, expected: f64| {
+            let found = plan[name].as_f64().unwrap();
+            assert!((found - expected).abs() < 1e-9, "{name}: {found}");
+        };
+        near("gain", 1.0 - 0.75_f64.sqrt().sqrt());
+        near("published_duration_s", (512.0 * 1e-3 / 1000.0_f64).sqrt().sqrt());
+        assert_eq!((&plan["family"], &plan["method"]), (&"point-to-point".into(), &"optimal".into()));
+        assert!(plan["bindings"].as_array().unwrap().iter().all(|one| one["quantity"] == "snap"), "{plan}");
+    }
+
+    #[test]
+    fn commands_are_listed_with_their_error() {
+        let knots = [(0.5, 0.0), (0.6, 0.01), (0.75, 0.04)].map(|(t, x)| Knot::new(t, x)).to_vec();
+        let way = TableMove { knots, velocities: Velocities::Given, follow: Follow::Steps(100.0) };
+        let plan = json(&moves::of(Way::Table(way)));
+        assert_eq!((&plan["command_count"], &plan["command_rate_hz"]), (&25.into(), &100.0.into()), "{plan}");
+        assert!(plan["position_error"].as_f64().unwrap() > 0.0 && plan["limits"].as_object().unwrap().is_empty());
+        assert_eq!(plan["commands"][0]["time_s"], 0.0);
+        assert_eq!(plan["segments"][0]["position"], 0.0);
     }
 }

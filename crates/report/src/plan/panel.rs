@@ -2,8 +2,11 @@
 use super::axis::{Axis, unit_at};
 use super::curve::Curve;
 use super::drawing::escaped;
+use super::envelope::Envelope;
 use super::ticks::ticks;
-use servobench_metrics::{Quantity, round_above, round_below};
+use super::unit::Unit;
+use servobench_metrics::{round_above, round_below};
+use servobench_motion::online::Sides;
 
 /// Height of a panel.
 pub(super) const HEIGHT: f64 = 118.0;
@@ -11,16 +14,27 @@ pub(super) const HEIGHT: f64 = 118.0;
 const IN_SIGHT: f64 = 2.5;
 
 /// One quantity over time.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Panel<'a> {
     /// `velocity`.
     pub(super) name: &'a str,
-    /// Unit of the values: `m/s`.
-    pub(super) unit: &'a str,
-    /// Its values (SI).
-    pub(super) curve: Curve<'a>,
-    /// Largest magnitude allowed (SI); drawn dashed.
-    pub(super) limit: Option<f64>,
+    /// In which its values are drawn.
+    pub(super) unit: Unit,
+    /// Its lowest and highest value, in that unit.
+    pub(super) range: (f64, f64),
+    /// Largest magnitudes allowed, in that unit; infinite where there is no limit. Drawn dashed.
+    pub(super) limit: Sides,
+    /// What it does.
+    pub(super) line: Line<'a>,
+}
+
+/// What a quantity does.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Line<'a> {
+    /// Its polynomials.
+    Exact(Curve<'a>),
+    /// The derivative of position of that number, as far as it is seen.
+    Seen(&'a Envelope, usize),
 }
 
 impl Panel<'_> {
@@ -37,66 +51,109 @@ impl Panel<'_> {
                 y + 4.0
             ));
         }
-        for limit in self.drawn_limit().iter().flat_map(|limit| [*limit, -*limit]) {
-            if (value.low..=value.high).contains(&limit) {
-                let y = value.at(limit);
-                svg.push(format!("<line class=\"l\" x1=\"{left}\" x2=\"{right}\" y1=\"{y:.2}\" y2=\"{y:.2}\"/>"));
-            }
+        for limit in self.drawn_limits(value) {
+            let y = value.at(limit);
+            svg.push(format!("<line class=\"l\" x1=\"{left}\" x2=\"{right}\" y1=\"{y:.2}\" y2=\"{y:.2}\"/>"));
         }
     }
 
     /// The curve over the area under it.
     pub(super) fn draw_curve(&self, svg: &mut Vec<String>, time: &Axis, value: &Axis, colour: &str) {
-        let Some((line, area)) = self.curve.paths(time, value) else { return };
-        svg.push(format!(
-            "<path class=\"f\" fill=\"{colour}\" d=\"{area}\"/>\n<path class=\"c\" stroke=\"{colour}\" d=\"{line}\"/>"
-        ));
+        match &self.line {
+            Line::Exact(curve) => {
+                let Some((line, area)) = curve.paths(time, value) else { return };
+                svg.push(format!(
+                    "<path class=\"f\" fill=\"{colour}\" d=\"{area}\"/>\n\
+                     <path class=\"c\" stroke=\"{colour}\" d=\"{line}\"/>"
+                ));
+            }
+            Line::Seen(envelope, k) => {
+                let path = envelope.path(*k, self.unit.scale(), time, value);
+                svg.push(format!("<path class=\"v\" fill=\"{colour}\" stroke=\"{colour}\" d=\"{path}\"/>"));
+            }
+        }
     }
 
     /// Name, unit, peak and limit at the right of the panel.
     pub(super) fn draw_legend(&self, svg: &mut Vec<String>, x: f64, top: f64, colour: &str) {
         let (unit, _) = self.shown_unit();
-        let peak = Quantity::new(self.peak(), self.unit);
-        let mut line = |class: &str, y: f64, attributes: &str, text: &str| {
-            let (y, text) = (top + y, escaped(text));
+        let shown = |value: f64| self.unit.short(value * self.unit.scale());
+        let mut y = top;
+        let mut line = |class: &str, down: f64, attributes: &str, text: &str| {
+            y += down;
+            let text = escaped(text);
             svg.push(format!("<text class=\"{class}\" x=\"{x:.2}\" y=\"{y:.2}\"{attributes}>{text}</text>"));
         };
         line("n", 16.0, &format!(" style=\"fill:{colour}\""), self.name);
-        line("k", 33.0, "", &unit);
-        line("k", 54.0, "", &format!("peak {peak}"));
-        if let Some(limit) = self.limit {
-            line("lt", 71.0, "", &format!("limit {}", Quantity::new(limit, self.unit)));
-            if self.drawn_limit().is_none() {
-                line("lt", 86.0, "", "(off the scale)");
-            }
+        line("k", 17.0, "", &unit);
+        line("k", 21.0, "", &format!("peak {}", shown(self.peak())));
+        let Sides { below, above } = self.limit;
+        let limits = match (below.is_finite(), above.is_finite()) {
+            (true, true) if below.to_bits() == above.to_bits() => vec![format!("limit {}", shown(above))],
+            (is_below, is_above) => [(is_above, above), (is_below, -below)]
+                .into_iter()
+                .filter(|(is_limited, _)| *is_limited)
+                .map(|(_, limit)| format!("limit {}", shown(limit)))
+                .collect(),
+        };
+        for (i, limit) in limits.iter().enumerate() {
+            line("lt", if i == 0 { 17.0 } else { 15.0 }, "", limit);
+        }
+        if !limits.is_empty() && [below, above].iter().all(|limit| self.in_sight(*limit).is_none()) {
+            line("lt", 15.0, "", "(off the scale)");
         }
     }
 
     /// Unit of the scale, and how much of the plain unit it is.
     fn shown_unit(&self) -> (String, f64) {
-        unit_at(self.peak().max(self.drawn_limit().unwrap_or(0.0)), self.unit)
+        let Sides { below, above } = self.limit;
+        let largest = [below, above].into_iter().filter_map(|limit| self.in_sight(limit)).fold(self.peak(), f64::max);
+        unit_at(largest, self.unit.symbol(), self.unit.takes_prefix())
     }
 
-    fn peak(&self) -> f64 {
-        self.curve.values.iter().fold(0.0, |peak: f64, value| peak.max(value.abs()))
+    const fn peak(&self) -> f64 {
+        self.range.1.abs().max(self.range.0.abs())
     }
 
-    /// The limit, where it does not flatten the curve.
-    fn drawn_limit(&self) -> Option<f64> {
+    /// A limit, where it is one that does not flatten the curve.
+    fn in_sight(&self, limit: f64) -> Option<f64> {
         let peak = self.peak();
-        self.limit.filter(|limit| peak == 0.0 || *limit <= IN_SIGHT * peak)
+        (limit.is_finite() && (peak == 0.0 || limit <= IN_SIGHT * peak)).then_some(limit)
     }
 
-    /// Room for the values, zero, and the limit on each side that the values go to.
+    /// The limits that are drawn on an axis.
+    fn drawn_limits(&self, value: &Axis) -> impl Iterator<Item = f64> {
+        let Sides { below, above } = self.limit;
+        let limits = [self.in_sight(above), self.in_sight(below).map(|limit| -limit)];
+        let range = value.low..=value.high;
+        limits.into_iter().flatten().filter(move |limit| range.contains(limit))
+    }
+
+    /// Whether a limit is drawn.
+    pub(super) fn shows_a_limit(&self) -> bool {
+        self.drawn_limits(&self.axis(0.0)).next().is_some()
+    }
+
+    /// Room for the values, for zero unless they are far from it, and for the limit on each side that the values go to.
     pub(super) fn axis(&self, top: f64) -> Axis {
-        let (mut low, mut high) =
-            self.curve.values.iter().fold((0.0, 0.0), |(l, h): (f64, f64), value| (l.min(*value), h.max(*value)));
-        if let Some(limit) = self.drawn_limit() {
-            let (below, above) = (low < -1e-9 * limit, high > 1e-9 * limit);
-            low = if below { low.min(-limit) } else { low };
-            high = if above || !below { high.max(limit) } else { high };
+        let (mut low, mut high) = self.range;
+        let is_near_zero = low.max(-high) <= high - low;
+        if is_near_zero {
+            (low, high) = (low.min(0.0), high.max(0.0));
         }
-        let span = if high > low { high - low } else { 1.0 };
+        let tiny = 1e-9 * self.peak();
+        let (below, above) = (low < -tiny, high > tiny);
+        if let Some(limit) = self.in_sight(self.limit.below).filter(|_| below) {
+            low = low.min(-limit);
+        }
+        if let Some(limit) = self.in_sight(self.limit.above).filter(|_| above || !below) {
+            high = high.max(limit);
+        }
+        let span = match high - low {
+            span if span > 0.0 => span,
+            _ if high != 0.0 => high.abs(),
+            _ => 1.0,
+        };
         let room = |side: f64| if side == 0.0 { 0.02 } else { 0.08 } * span;
         Axis { low: low - room(low), high: high + room(high), from: top + HEIGHT, to: top }
     }
@@ -111,14 +168,16 @@ fn marks(low: f64, high: f64) -> Vec<(f64, String)> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::curve::Shape;
     use super::*;
+    use servobench_base::Setpoint;
 
     const TIME: Axis = Axis { low: 0.0, high: 2.0, from: 84.0, to: 728.0 };
 
-    fn panel(values: &[f64], limit: f64) -> Panel<'_> {
-        let curve = Curve { times: &[0.0, 1.0, 2.0], values, shape: Shape::Straight };
-        Panel { name: "velocity", unit: "m/s", curve, limit: Some(limit) }
+    /// A velocity from `low` to `high`.
+    fn panel((low, high): (f64, f64), limit: f64) -> Panel<'static> {
+        let curve = Curve { spans: &[], end: Setpoint::default(), k: 1, is_highest: false, scale: 1.0 };
+        let (unit, limit) = (Unit::si("m", 1), Sides::both(limit));
+        Panel { name: "velocity", unit, range: (low, high), limit, line: Line::Exact(curve) }
     }
 
     /// The scale and the legend of `panel`.
@@ -131,28 +190,42 @@ mod tests {
 
     #[test]
     fn a_limit_is_drawn_on_the_sides_that_are_used() {
-        let lines = |values: [f64; 3]| drawn(&panel(&values, 2.0)).matches("class=\"l\"").count();
-        assert_eq!((lines([0.0, 1.0, 0.0]), lines([0.0, 1.0, -1.0]), lines([0.0, -1.0, 0.0])), (1, 2, 1));
+        let lines = |range| drawn(&panel(range, 2.0)).matches("class=\"l\"").count();
+        assert_eq!((lines((0.0, 1.0)), lines((-1.0, 1.0)), lines((-1.0, 0.0))), (1, 2, 1));
+    }
+
+    #[test]
+    fn limits_that_differ_by_direction_are_both_named() {
+        let svg = drawn(&Panel { limit: Sides { below: 1.5, above: 2.0 }, ..panel((-1.0, 1.0), 2.0) });
+        assert_eq!(svg.matches("class=\"l\"").count(), 2);
+        assert!(svg.contains(">limit 2.00 m/s<") && svg.contains(">limit -1.50 m/s<"), "{svg}");
+    }
+
+    /// 1 mm of way beside a position of 5 m.
+    #[test]
+    fn what_is_far_from_zero_takes_its_panel() {
+        let axis = panel((5.0, 5.001), f64::INFINITY).axis(0.0);
+        assert!(axis.low > 4.99 && axis.high < 5.01, "{axis:?}");
     }
 
     /// The curve takes its panel but for a room of 2 and 8 % of the span; the limit is named.
     #[test]
     fn a_far_limit_does_not_flatten_the_curve() {
-        let far = panel(&[0.0, 1.0, 0.0], 10.0);
+        let far = panel((0.0, 1.0), 10.0);
         let (svg, axis) = (drawn(&far), far.axis(0.0));
         assert!((axis.at(1.0) - 0.08 / 1.1 * HEIGHT).abs() < 1e-9, "{axis:?}");
         assert!(
             !svg.contains("class=\"l\"") && svg.contains("limit 10.0 m/s") && svg.contains("(off the scale)"),
             "{svg}"
         );
-        assert!(!drawn(&panel(&[0.0, 1.0, 0.0], 2.0)).contains("off the scale"));
+        assert!(!drawn(&panel((0.0, 1.0), 2.0)).contains("off the scale"));
     }
 
     /// ±349 takes a scale of ±405: 500, the step above a quarter of it, would leave 0 alone.
     #[test]
     fn every_panel_has_a_scale() {
         let labels = |peak: f64| {
-            let svg = drawn(&panel(&[0.0, peak, -peak], peak));
+            let svg = drawn(&panel((-peak, peak), peak));
             svg.matches("text-anchor=\"end\">").count()
         };
         assert_eq!(labels(349.0), 5);
@@ -162,7 +235,7 @@ mod tests {
     /// There is room for eight characters left of a panel.
     #[test]
     fn labels_of_large_numbers_are_short() {
-        let svg = drawn(&panel(&[1e9, -1e9, 0.0], 1e9));
+        let svg = drawn(&panel((-1e9, 1e9), 1e9));
         let labels = svg.split("text-anchor=\"end\">").skip(1).map(|rest| rest.split('<').next().unwrap());
         assert_eq!(labels.collect::<Vec<_>>(), ["-1", "0", "1"]);
         assert!(svg.contains("×10⁹ m/s"), "{svg}");

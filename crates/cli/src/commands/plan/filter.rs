@@ -1,0 +1,54 @@
+//! What stands between the planner and the drive.
+use super::arguments::Arguments;
+use crate::args::{PlanArgs, PlanShaper};
+use servobench_motion::shape::{Impulses, Vibration};
+use servobench_planner::{Averages, Filter};
+use std::f64::consts::TAU;
+
+/// The filters; one that is wrong is left out, and told.
+pub(super) fn filter(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Filter {
+    Filter { shaper: shaper(args, arguments), averages: averages(arguments) }
+}
+
+fn shaper(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Impulses> {
+    arguments.take("shaper");
+    let others = ["shaper-frequency", "shaper-damping", "shaper-tolerable"];
+    let Some(shaper) = args.shaper else {
+        for name in others {
+            if arguments.take(name).is_some() {
+                arguments.mistake(format!("--{name} is that of a --shaper: choose one, or leave it out"));
+            }
+        }
+        return None;
+    };
+    if !arguments.is_given("shaper-frequency") {
+        arguments.missing("shaper-frequency", "a shaper is made for a vibration, as \"12 Hz\"");
+    }
+    let frequency = arguments.frequency("shaper-frequency");
+    let damping = if arguments.is_given("shaper-damping") { arguments.ratio("shaper-damping") } else { Some(0.0) };
+    let tolerable =
+        if arguments.is_given("shaper-tolerable") { arguments.ratio("shaper-tolerable") } else { Some(0.05) };
+    if arguments.is_given("shaper-tolerable") && shaper != PlanShaper::Ei {
+        arguments.mistake("--shaper-tolerable is for --shaper ei: the others leave nothing at the frequency");
+    }
+    let (frequency, damping, tolerable) = (frequency?, damping?, tolerable?);
+    let shaped = Vibration::new(TAU * frequency, damping).and_then(|vibration| match shaper {
+        PlanShaper::Zv => Ok(Impulses::zv(&vibration)),
+        PlanShaper::Zvd => Ok(Impulses::zvd(&vibration)),
+        PlanShaper::Zvdd => Ok(Impulses::zvdd(&vibration)),
+        PlanShaper::Ei => Impulses::ei(&vibration, tolerable),
+    });
+    shaped.map_err(|error| arguments.mistake(format!("--shaper: {error}"))).ok()
+}
+
+fn averages(arguments: &mut Arguments<'_>) -> Option<Averages> {
+    if !arguments.is_given("averages") {
+        return None;
+    }
+    let lengths = arguments.times("averages");
+    if !arguments.is_given("sample-time") {
+        arguments.missing("sample-time", "averages are those of samples, as \"1 ms\"");
+    }
+    let sample_time = arguments.time("sample-time");
+    Some(Averages { lengths: lengths?, sample_time: sample_time? })
+}

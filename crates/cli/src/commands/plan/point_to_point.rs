@@ -1,0 +1,81 @@
+//! A move from rest to rest.
+use super::arguments::Arguments;
+use crate::args::{PlanArgs, PlanExecution, PlanMethod, PlanSampling};
+use crate::console::say;
+use servobench_motion::{Limits, Order};
+use servobench_planner::{Execution, Grid, Method, PointToPoint, Sampling, Way};
+use servobench_scenario::Derivative;
+
+pub(super) fn way(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Way> {
+    let distance = arguments.needed_axis("distance", Derivative::Position, "how far the move goes, as \"1 m\"");
+    let (order, limits) = order_and_limits(args, arguments);
+    arguments.take("method");
+    let method = match args.method {
+        Some(PlanMethod::Optimal) => Method::Optimal,
+        Some(PlanMethod::Published) | None => Method::Published,
+    };
+    let grid = grid(args, method, arguments);
+    Some(Way::PointToPoint(PointToPoint { distance: distance?, order: order?, limits: limits?, method, grid }))
+}
+
+/// Order, and the limits that it uses.
+pub(super) fn order_and_limits(args: &PlanArgs, arguments: &mut Arguments<'_>) -> (Option<Order>, Option<Limits>) {
+    arguments.take("order");
+    let order = args.order.and_then(Order::from_derivative);
+    if order.is_none() {
+        arguments.missing("order", "2 trapezoid, 3 jerk-limited, 4 snap-limited");
+    }
+    let mut needed = |name, derivative, from: usize, example: &str| {
+        let is_used = order.is_none_or(|order| order.derivative() >= from);
+        let is_needed = is_used && (order.is_some() || from <= 2);
+        if is_needed && !arguments.is_given(name) {
+            let of_order = order.map_or_else(String::new, |order| format!(" of order {}", order.derivative()));
+            arguments.missing(name, &format!("a move{of_order} needs its limit, as \"{example}\""));
+        }
+        if !is_used && arguments.is_given(name) {
+            say(&format!("--{name} is not used by a move of order {}\n", order.map_or(0, Order::derivative)));
+        }
+        let value = arguments.axis(name, derivative);
+        if is_used { value } else { Some(f64::INFINITY) }
+    };
+    let velocity = needed("velocity", Derivative::Velocity, 1, "1 m/s");
+    let acceleration = needed("acceleration", Derivative::Acceleration, 2, "5 m/s2");
+    let jerk = needed("jerk", Derivative::Jerk, 3, "50 m/s3");
+    let snap = needed("snap", Derivative::Snap, 4, "1000 m/s4");
+    let limits = || Some(Limits { velocity: velocity?, acceleration: acceleration?, jerk: jerk?, snap: snap? });
+    (order, limits())
+}
+
+/// How the move is sampled, if it is and that is right.
+fn grid(args: &PlanArgs, method: Method, arguments: &mut Arguments<'_>) -> Option<Grid> {
+    let sampled: Vec<&str> = ["sampling", "execution"].into_iter().filter(|name| arguments.is_given(name)).collect();
+    arguments.take("sampling");
+    arguments.take("execution");
+    if let Some(name) = sampled.first().filter(|_| method == Method::Optimal) {
+        arguments.mistake(format!("--{name} is for --method published: the shortest profile is continuous"));
+        return None;
+    }
+    if !arguments.is_given("sample-time") {
+        for name in &sampled {
+            arguments.missing("sample-time", &format!("--{name} needs one, as \"1 ms\""));
+        }
+        return None;
+    }
+    if method == Method::Optimal {
+        if !arguments.is_given("averages") {
+            arguments.take("sample-time");
+            arguments.mistake("--sample-time is for --method published: the shortest profile is continuous");
+        }
+        return None;
+    }
+    let sample_time = arguments.time("sample-time")?;
+    let sampling = match args.sampling {
+        Some(PlanSampling::Fewest) => Sampling::Fewest,
+        Some(PlanSampling::Published) | None => Sampling::Published,
+    };
+    let execution = match args.execution {
+        Some(PlanExecution::Euler) => Execution::Euler,
+        Some(PlanExecution::Hold) | None => Execution::Hold,
+    };
+    Some(Grid { sample_time, sampling, execution })
+}

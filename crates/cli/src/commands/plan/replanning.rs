@@ -1,0 +1,81 @@
+//! A move from a state of motion.
+use super::arguments::Arguments;
+use super::point_to_point::order_and_limits;
+use crate::args::{PlanArgs, PlanOnline};
+use servobench_base::Setpoint;
+use servobench_motion::Order;
+use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target};
+use servobench_planner::{Replanning, Way};
+use servobench_scenario::Derivative;
+
+/// What only a move from a state of motion has.
+const FLAGS: [&str; 9] = [
+    "start-velocity",
+    "start-acceleration",
+    "start-jerk",
+    "start-position",
+    "end-velocity",
+    "to-velocity",
+    "negative-velocity",
+    "negative-acceleration",
+    "online",
+];
+
+/// Whether such a move is asked for.
+pub(super) fn is_meant(arguments: &Arguments<'_>) -> bool {
+    FLAGS.iter().any(|flag| arguments.is_given(flag))
+}
+
+pub(super) fn way(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Way> {
+    let said = FLAGS.into_iter().find(|flag| arguments.is_given(flag)).unwrap_or("online");
+    for flag in ["method", "sampling", "execution"] {
+        if arguments.take(flag).is_some() {
+            arguments.mistake(format!("--{flag} is for a move from rest to rest: leave it out, or leave out --{said}"));
+        }
+    }
+    let distance = if arguments.is_given("to-velocity") {
+        None
+    } else {
+        let why = "how far the move goes, as \"1 m\"; or go to a velocity by --to-velocity";
+        Some(arguments.needed_axis("distance", Derivative::Position, why))
+    };
+    let velocity = arguments.axis("to-velocity", Derivative::Velocity);
+    let (order, limits) = order_and_limits(args, arguments);
+    if order == Some(Order::Second) {
+        arguments.mistake(format!("--order must be 3 or 4 with --{said}: choose one, or leave out --{said}"));
+    }
+    if args.order == Some(3) && arguments.is_given("start-jerk") {
+        arguments.mistake(
+            "--start-jerk is not used by a move of order 3, whose jerk may jump: leave it out, or choose --order 4",
+        );
+    }
+    let mut start = |name, derivative| {
+        if arguments.is_given(name) { arguments.axis(name, derivative) } else { Some(0.0) }
+    };
+    let x = start("start-position", Derivative::Position);
+    let v = start("start-velocity", Derivative::Velocity);
+    let a = start("start-acceleration", Derivative::Acceleration);
+    let j = start("start-jerk", Derivative::Jerk);
+    let end_velocity = start("end-velocity", Derivative::Velocity);
+    let negative_velocity = arguments.magnitude("negative-velocity", Derivative::Velocity);
+    let negative_acceleration = arguments.magnitude("negative-acceleration", Derivative::Acceleration);
+    arguments.take("online");
+    let effort = match args.online {
+        Some(PlanOnline::Refined) => Effort::Refined,
+        Some(PlanOnline::Fast) | None => Effort::Fast,
+    };
+    let limits = limits?;
+    let sides = |above: f64, below: Option<f64>| Sides { above, below: below.unwrap_or(above) };
+    let limits = DirectionalLimits {
+        velocity: sides(limits.velocity, negative_velocity),
+        acceleration: sides(limits.acceleration, negative_acceleration),
+        jerk: limits.jerk,
+        snap: limits.snap,
+    };
+    let from = Setpoint { x: x?, v: v?, a: a?, j: j?, s: 0.0 };
+    let target = match distance {
+        Some(distance) => Target::Position { x: from.x + distance?, v: end_velocity? },
+        None => Target::Velocity(velocity?),
+    };
+    Some(Way::Replanning(Replanning { from, target, order: order?, limits, effort }))
+}

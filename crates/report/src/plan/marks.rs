@@ -1,0 +1,67 @@
+//! Marks where a bound binds.
+use super::axis::Axis;
+use servobench_planner::Binding;
+use std::fmt::Write;
+
+/// Shorter than this a stretch is a dot, and marks that are nearer to each other are one (pixels).
+const DOT: f64 = 1.5;
+
+/// Marks on the limits of one panel.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Marks {
+    /// Stretches along the limit, as a path.
+    pub(super) stretches: String,
+    /// Dots, as a path of lines of no length.
+    pub(super) dots: String,
+}
+
+impl Marks {
+    /// Those of `bindings`, all of one derivative, whose unit is `scale` of the SI's.
+    pub(super) fn of<'a>(bindings: impl Iterator<Item = &'a Binding>, scale: f64, time: &Axis, value: &Axis) -> Self {
+        // Above zero and below, each from left to right: where it begins, where it ends, its height.
+        let mut merged: [Vec<(f64, f64, f64)>; 2] = [vec![], vec![]];
+        for binding in bindings {
+            let (from, to) = (time.at(binding.start), time.at(binding.start + binding.length));
+            let side = &mut merged[usize::from(binding.value < 0.0)];
+            match side.last_mut() {
+                Some(last) if from - last.1 < DOT => last.1 = last.1.max(to),
+                _ => side.push((from, to, value.at(binding.value / scale))),
+            }
+        }
+        let mut marks = Self::default();
+        for (from, to, y) in merged.into_iter().flatten() {
+            let written = if to - from < DOT {
+                write!(marks.dots, "M{:.1},{y:.1}h0", f64::midpoint(from, to))
+            } else {
+                write!(marks.stretches, "M{from:.1},{y:.1}H{to:.1}")
+            };
+            debug_assert!(written.is_ok(), "a string takes everything");
+        }
+        marks
+    }
+
+    pub(super) fn draw(&self, svg: &mut Vec<String>) {
+        for (class, path) in [("m", &self.stretches), ("d", &self.dots)] {
+            if !path.is_empty() {
+                svg.push(format!("<path class=\"{class}\" d=\"{path}\"/>"));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stretches_are_lines_and_instants_are_dots() {
+        let time = Axis { low: 0.0, high: 1.0, from: 0.0, to: 100.0 };
+        let value = Axis { low: -2.0, high: 2.0, from: 100.0, to: 0.0 };
+        let binding = |start, length, value| Binding { derivative: 1, start, length, value };
+        // The second begins where the first ends, but for a pixel.
+        let all = [binding(0.1, 0.2, 2.0), binding(0.31, 0.1, 2.0), binding(0.5, 0.0, -2.0), binding(0.9, 0.001, 2.0)];
+        let marks = Marks::of(all.iter(), 1.0, &time, &value);
+        assert_eq!(marks.stretches, "M10.0,0.0H41.0");
+        assert_eq!(marks.dots, "M90.1,0.0h0M50.0,100.0h0");
+    }
+}

@@ -1,0 +1,136 @@
+//! Units in which a plan is told.
+use servobench_metrics::Quantity;
+use std::f64::consts::PI;
+
+/// Unit of position or of one of its derivatives.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Unit {
+    symbol: String,
+    /// How much of the SI unit it is.
+    si: f64,
+    /// Whether it is the SI unit, which takes the prefix that suits the number.
+    takes_prefix: bool,
+}
+
+/// Units of angles that are none of the SI, with what units of their derivatives begin with.
+const ANGLES: [(&str, &str, f64); 7] = [
+    ("deg", "deg", PI / 180.0),
+    ("°", "deg", PI / 180.0),
+    ("arcmin", "arcmin", PI / 10_800.0),
+    ("arcsec", "arcsec", PI / 648_000.0),
+    ("rev", "rev", 2.0 * PI),
+    ("rpm", "rev", 2.0 * PI),
+    ("krpm", "rev", 2.0 * PI),
+];
+const POWERS: [&str; 5] = ["", "/s", "/s²", "/s³", "/s⁴"];
+
+impl Unit {
+    /// That of the SI for derivative `k` of a position in `m` or `rad`.
+    pub(super) fn si(base: &str, k: usize) -> Self {
+        Self { symbol: format!("{base}{}", POWERS[k]), si: 1.0, takes_prefix: true }
+    }
+
+    /// The unit in which `text` was written, whose value is `value` (SI); `None` when it begins with no number or ends
+    /// without a unit, and for a value of zero.
+    pub(super) fn given(text: &str, value: f64) -> Option<Self> {
+        let text = text.trim();
+        let ends = text.char_indices().map(|(i, c)| i + c.len_utf8());
+        let (number, end) = ends.rev().find_map(|end| Some((text[..end].trim_end().parse::<f64>().ok()?, end)))?;
+        let (symbol, si) = (text[end..].trim(), value / number);
+        (!symbol.is_empty() && si.is_finite() && si > 0.0).then(|| Self {
+            symbol: symbol.to_owned(),
+            si,
+            takes_prefix: false,
+        })
+    }
+
+    /// That of derivative `k` of the angle that this unit, of another derivative, begins with.
+    pub(super) fn of_derivative(&self, k: usize) -> Option<Self> {
+        let (_, base, si) = ANGLES.iter().find(|(begin, ..)| self.symbol.starts_with(begin))?;
+        Some(Self { symbol: format!("{base}{}", POWERS[k]), si: *si, takes_prefix: false })
+    }
+
+    /// The same with raised digits for the powers.
+    pub(super) fn pretty(mut self) -> Self {
+        for (plain, raised) in [("s2", "s²"), ("s^2", "s²"), ("s3", "s³"), ("s^3", "s³"), ("s4", "s⁴"), ("s^4", "s⁴")]
+        {
+            if let Some(rest) = self.symbol.strip_suffix(plain) {
+                self.symbol = format!("{rest}{raised}");
+                break;
+            }
+        }
+        self
+    }
+
+    /// How much of the SI unit it is.
+    pub(super) const fn scale(&self) -> f64 {
+        self.si
+    }
+
+    pub(super) fn symbol(&self) -> &str {
+        &self.symbol
+    }
+
+    /// `value` (SI): to six digits, of the SI unit as an engineer reads it.
+    pub(super) fn text(&self, value: f64) -> String {
+        if self.takes_prefix {
+            return Quantity::new(value, &self.symbol).to_string();
+        }
+        format!("{} {}", digits(value / self.si, 6), self.symbol)
+    }
+
+    /// `value` (SI) in few digits, for a drawing.
+    pub(super) fn short(&self, value: f64) -> String {
+        if self.takes_prefix {
+            return Quantity::new(value, &self.symbol).to_string();
+        }
+        format!("{} {}", digits(value / self.si, 4), self.symbol)
+    }
+
+    /// Whether it takes the prefix that suits the number.
+    pub(super) const fn takes_prefix(&self) -> bool {
+        self.takes_prefix
+    }
+}
+
+/// The number to `count` significant digits, without zeros at its end.
+pub(super) fn digits(value: f64, count: usize) -> String {
+    let rounded: f64 = format!("{value:.*e}", count - 1).parse().unwrap_or(value);
+    // A minus sign before zero reads as a mistake.
+    let rounded = if rounded == 0.0 { 0.0 } else { rounded };
+    if rounded == 0.0 || (1e-4..1e9).contains(&rounded.abs()) { rounded.to_string() } else { format!("{rounded:e}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quantity_keeps_its_unit() {
+        for (text, value, shown, words) in [
+            ("90 deg", PI / 2.0, PI / 2.0, "90 deg"),
+            ("-90deg", -PI / 2.0, -PI / 2.0, "-90 deg"),
+            (" 1e3 m/s4 ", 1e3, 500.0, "500 m/s4"),
+            ("3000 rpm", 100.0 * PI, 100.0 / 3.0 * PI, "1000 rpm"),
+            ("1 m/s", 1.0, 2.0 / 3.0, "0.666667 m/s"),
+            ("1 m/s", 1.0, -0.0, "0 m/s"),
+            ("4 m/s2", 4.0, 4e-9, "4e-9 m/s2"),
+        ] {
+            assert_eq!(Unit::given(text, value).unwrap().text(shown), words, "{text}");
+        }
+        for (text, value) in [("5", 5.0), ("fast", 1.0), ("0 mm", 0.0), ("1 m", f64::INFINITY)] {
+            assert_eq!(Unit::given(text, value), None, "{text}");
+        }
+    }
+
+    /// Whoever writes revolutions per minute reads revolutions.
+    #[test]
+    fn other_derivatives_of_an_angle_go_with_the_given_one() {
+        let of = |text, value, k| Unit::given(text, value).unwrap().of_derivative(k);
+        let position = of("60 rpm", 2.0 * PI, 0).unwrap();
+        assert_eq!((position.text(PI).as_str(), position.symbol()), ("0.5 rev", "rev"));
+        assert_eq!(of("1 deg/s", PI / 180.0, 3).unwrap().symbol(), "deg/s³");
+        assert_eq!(of("1 mm", 1e-3, 1), None);
+        assert_eq!(Unit::given("1 deg/s2", 1.0).unwrap().pretty().symbol(), "deg/s²");
+    }
+}
