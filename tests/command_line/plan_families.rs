@@ -70,6 +70,19 @@ fn fewest_samples_are_never_more() {
     assert!(samples("fewest") <= samples("published"));
 }
 
+/// The example of the generator: 50 samples, 55 through boxes, 56 as published.
+#[test]
+fn the_shortest_sampled_move_has_the_fewest_samples() {
+    let line = format!("--order 4 --distance 10mm {LAMBRECHTS} --sample-time 5ms --method optimal");
+    for execution in ["hold", "euler"] {
+        let plan_json = json_of(&format!("{line} --execution {execution}"));
+        assert_eq!((&plan_json["samples"], &plan_json["samples_at_least"]), (&50.into(), &50.into()), "{plan_json}");
+        assert!((number(&plan_json["published_duration_s"]) - 0.28).abs() < 1e-12);
+        assert_eq!(plan_json["execution"], execution);
+    }
+    assert!(plan(&line).contains("no move of fewer samples reaches the distance: proven"));
+}
+
 /// From 0.4 m/s: braking within 5 m/s² takes longer than 0.4²/(2·5) m, so that a target right there is passed and come back
 /// to.
 #[test]

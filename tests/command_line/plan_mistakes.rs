@@ -31,8 +31,8 @@ fn every_mistake_names_its_flag_and_the_way_out() {
             "--shape is not used by this move: leave it out, or choose --profile rockwell",
         ),
         (
-            &format!("--order 4 {LIMITS} --method optimal --execution euler"),
-            "--execution is for --method published: the shortest profile is continuous",
+            &format!("--order 4 {LIMITS} --method optimal --sample-time 1ms --sampling fewest"),
+            "--sampling is for --method published: the shortest move has the fewest samples of all; leave it out",
         ),
         (
             &format!("--order 4 {LIMITS} --sampling fewest"),
@@ -99,6 +99,10 @@ fn every_mistake_names_its_flag_and_the_way_out() {
             "--averages must be a whole number of samples, 1 to 10 million, got 0.0015",
         ),
         (&format!("--order 4 {LIMITS} --duration 1s"), "--duration must be at least 1.35 s, got 1 s"),
+        (
+            &format!("--order 4 {LIMITS} --start-velocity 0.1m/s --duration 9s"),
+            "--start-velocity must be zero for a move that is filtered or slowed, got 0.1",
+        ),
         (
             &format!("--order 4 {LIMITS} --sample-time 1ns --execution euler"),
             "--sample-time must be long enough for a move of at most 10 million samples",

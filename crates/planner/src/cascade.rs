@@ -1,8 +1,8 @@
 //! A sampled move as the forward-Euler cascade makes it.
 use crate::polynomials::{Between, Polynomials};
 use servobench_base::{ParamError, Setpoint};
-use servobench_motion::sampled::Cascade;
-use servobench_motion::{PlanError, Profile, Samples};
+use servobench_motion::sampled::{Cascade, Run};
+use servobench_motion::{Order, PlanError};
 
 /// Samples at most that are kept of a move.
 pub(crate) const MOST_SAMPLES: f64 = 1e7;
@@ -13,13 +13,24 @@ pub(crate) fn too_many(sample_time: f64) -> PlanError {
     ParamError { name: "sample_time", value: sample_time, bound }.into()
 }
 
-/// The set-points of `profile`, each held until the next; the profile as it is where it is continuous.
-pub(crate) fn cascade(profile: &Profile, samples: &Samples) -> Result<Polynomials, PlanError> {
-    if samples.total() as f64 > MOST_SAMPLES {
-        return Err(too_many(samples.time));
+/// A move of so many samples (s) from 0 to `distance`.
+pub(crate) struct Sampled {
+    pub(crate) order: Order,
+    pub(crate) distance: f64,
+    pub(crate) sample_time: f64,
+    pub(crate) samples: u64,
+    pub(crate) duration: f64,
+}
+
+impl Sampled {
+    /// Its set-points, each held until the next, when `runs` are sent.
+    pub(crate) fn cascade(&self, runs: impl Iterator<Item = Run>) -> Result<Polynomials, PlanError> {
+        let Self { order, distance, sample_time, samples, duration } = *self;
+        if samples as f64 > MOST_SAMPLES {
+            return Err(too_many(sample_time));
+        }
+        let mut cascade = Cascade::at_rest(order, 0.0, sample_time)?;
+        let parts: Vec<_> = cascade.along(runs).enumerate().map(|(k, at)| (k as f64 * sample_time, at)).collect();
+        Ok(Polynomials::new(parts, Between::Held, duration, Setpoint::at_rest(distance)))
     }
-    let mut cascade = Cascade::at_rest(profile.order(), 0.0, samples.time)?;
-    let parts: Vec<_> =
-        cascade.along(profile.runs()).enumerate().map(|(k, at)| (k as f64 * samples.time, at)).collect();
-    Ok(Polynomials::new(parts, Between::Held, profile.duration(), Setpoint::at_rest(profile.distance())))
 }

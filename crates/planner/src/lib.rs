@@ -18,6 +18,7 @@
 //! ```
 mod analysis;
 mod cascade;
+mod fewest;
 mod filter;
 mod plan;
 mod polynomials;

@@ -1,12 +1,14 @@
 //! A planned move.
 use crate::analysis::{self, Binding, Peak, Span};
-use crate::cascade::cascade;
+use crate::cascade::Sampled;
+use crate::fewest::Fewest;
 use crate::filter::Filter;
 use crate::request::Execution;
 use crate::slowed::Slowed;
 use servobench_base::{Setpoint, positive};
 use servobench_motion::online::Sides;
 use servobench_motion::position_profile::Command;
+use servobench_motion::sampled::Shortest;
 use servobench_motion::shape::Impulse;
 use servobench_motion::{Course, Order, Peaks, PlanError, Profile};
 use std::fmt;
@@ -36,6 +38,8 @@ pub struct Plan {
 pub enum Told {
     /// A profile from rest to rest.
     Profile(Box<Profile>),
+    /// A sampled move of the fewest samples, through boxes or not.
+    Shortest(Box<Shortest>),
     /// A way from a state of motion.
     Transition {
         /// Its order.
@@ -83,10 +87,37 @@ impl Plan {
         let told = Told::Profile(Box::new(*profile));
         match (execution, profile.samples()) {
             (Execution::Euler, Some(samples)) => {
-                let plan = Self::of(cascade(profile, &samples)?, told);
+                let sampled = Sampled {
+                    order: profile.order(),
+                    distance: profile.distance(),
+                    sample_time: samples.time,
+                    samples: samples.total(),
+                    duration: profile.duration(),
+                };
+                let plan = Self::of(sampled.cascade(profile.runs())?, told);
                 Ok(Self { execution, held: Some(samples.time), ..plan })
             }
             _ => Ok(Self::of(*profile, told)),
+        }
+    }
+
+    /// That of `shortest`.
+    pub(crate) fn along_shortest(shortest: Shortest, execution: Execution) -> Result<Self, PlanError> {
+        let sample_time = shortest.sample_time();
+        let shortest = Box::new(shortest);
+        let told = Told::Shortest(shortest.clone());
+        match execution {
+            Execution::Hold => Ok(Self::of(Fewest(shortest), told)),
+            Execution::Euler => {
+                let sampled = Sampled {
+                    order: shortest.order(),
+                    distance: shortest.distance(),
+                    sample_time,
+                    samples: shortest.samples(),
+                    duration: shortest.duration(),
+                };
+                Ok(Self { execution, held: Some(sample_time), ..Self::of(sampled.cascade(shortest.runs())?, told) })
+            }
         }
     }
 
@@ -107,6 +138,10 @@ impl Plan {
         }
         // The published profile would have been slowed, too.
         self.published = None;
+        if matches!(self.told, Told::Shortest(_)) {
+            // Asked for its own duration: see the request.
+            return Ok(self);
+        }
         if let Told::Profile(profile) = &self.told {
             return Ok(Self::along(&profile.stretched_to(inner)?, self.execution)?.within(self.limits));
         }
@@ -192,6 +227,7 @@ impl Plan {
     pub fn order(&self) -> usize {
         match &self.told {
             Told::Profile(profile) => profile.order().derivative(),
+            Told::Shortest(shortest) => shortest.order().derivative(),
             Told::Transition { order, .. } => order.derivative(),
             Told::Rockwell { .. } | Told::Table => 3,
             Told::Commands { .. } => 2,

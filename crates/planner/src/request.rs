@@ -4,6 +4,7 @@ use crate::plan::{Plan, Told};
 use crate::table::TableMove;
 use servobench_base::{ParamError, Setpoint};
 use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target, Transition};
+use servobench_motion::sampled::Shortest;
 use servobench_motion::{Limits, Order, PlanError, Profile, rockwell};
 
 /// A move as it was asked for.
@@ -91,7 +92,7 @@ pub enum Method {
     /// The step through boxes that is published (Pietrusewicz et al. 2019): 15 segments at order 4.
     #[default]
     Published,
-    /// The shortest.
+    /// The shortest; of a sampled move that of the fewest samples, whatever its shape.
     Optimal,
 }
 
@@ -133,16 +134,37 @@ impl Request {
     /// [`PlanError::Parameter`] for a duration or a filter of a move that starts or ends in motion.
     pub fn plan(&self) -> Result<Plan, PlanError> {
         let plan = self.way.plan()?;
-        let v = [plan.start().v, plan.end().v].into_iter().find(|v| *v != 0.0);
-        if let (Some(value), true) = (v, self.duration.is_some() || self.filter.length() > 0.0) {
-            let bound = "zero at the start and the end of a move that is filtered or slowed";
-            return Err(ParamError { name: "velocity", value, bound }.into());
+        if self.duration.is_some() || self.filter.length() > 0.0 {
+            for (name, value) in [("start_velocity", plan.start().v), ("end_velocity", plan.end().v)] {
+                if value != 0.0 {
+                    let bound = "zero for a move that is filtered or slowed";
+                    return Err(ParamError { name, value, bound }.into());
+                }
+            }
         }
         let plan = match self.duration {
-            Some(duration) => plan.stretched_to(duration, self.filter.length())?,
+            Some(duration) => self.slowed(plan, duration)?,
             None => plan,
         };
         plan.filtered(&self.filter)
+    }
+}
+
+impl Request {
+    /// `plan`, which this request is, in `duration` seconds.
+    fn slowed(&self, plan: Plan, duration: f64) -> Result<Plan, PlanError> {
+        let Way::PointToPoint(way @ PointToPoint { grid: Some(grid), .. }) = &self.way else {
+            return plan.stretched_to(duration, self.filter.length());
+        };
+        if way.method == Method::Published
+            || (plan.duration() + self.filter.length() - duration).abs() <= 1e-9 * duration
+        {
+            return plan.stretched_to(duration, self.filter.length());
+        }
+        // Slower than its limits it need not be the shortest: through boxes all its times stay whole samples.
+        let grid = Some(Grid { sampling: Sampling::Fewest, ..*grid });
+        let boxes = PointToPoint { method: Method::Published, grid, ..*way };
+        boxes.plan()?.stretched_to(duration, self.filter.length())
     }
 }
 
@@ -164,6 +186,9 @@ impl PointToPoint {
             Some(grid) => Profile::plan_sampled(order, distance, &limits, grid.sample_time),
             None => Profile::plan(order, distance, &limits),
         };
+        let Limits { velocity, acceleration, jerk, snap } = limits;
+        let mut sides = [velocity, acceleration, jerk, snap].map(Sides::both);
+        sides[order.derivative()..].fill(Sides::both(f64::INFINITY));
         let (profile, compared) = match (method, grid) {
             (Method::Published, Some(Grid { sampling: Sampling::Fewest, sample_time, .. })) => {
                 let fewest = Profile::plan_fewest(order, distance, &limits, sample_time)?;
@@ -173,15 +198,13 @@ impl PointToPoint {
             (Method::Optimal, None) => {
                 (Profile::plan_optimal(order, distance, &limits)?, Some(published()?.duration()))
             }
-            (Method::Optimal, Some(Grid { sample_time, .. })) => {
-                let bound = "left out: the shortest profile is continuous";
-                return Err(ParamError { name: "sample_time", value: sample_time, bound }.into());
+            (Method::Optimal, Some(grid)) => {
+                let shortest = Shortest::plan(order, distance, &limits, grid.sample_time)?;
+                let plan = Plan::along_shortest(shortest, grid.execution)?;
+                return Ok(plan.within(sides).instead_of(Some(published()?.duration())));
             }
         };
         let execution = grid.map_or(Execution::Hold, |grid| grid.execution);
-        let Limits { velocity, acceleration, jerk, snap } = limits;
-        let mut sides = [velocity, acceleration, jerk, snap].map(Sides::both);
-        sides[order.derivative()..].fill(Sides::both(f64::INFINITY));
         Ok(Plan::along(&profile, execution)?.within(sides).instead_of(compared))
     }
 }

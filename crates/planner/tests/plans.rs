@@ -368,10 +368,6 @@ fn what_would_fill_the_memory_is_refused() {
         "`sample_time` must be long enough for a move of at most 10 million samples, got 0.000000001"
     );
     assert_eq!(
-        said(way(grid(1e-3, Execution::Hold), Method::Optimal)),
-        "`sample_time` must be left out: the shortest profile is continuous, got 0.001"
-    );
-    assert_eq!(
         said(Way::Table(table(Follow::Steps(1e10), Velocities::Given))),
         "`rate` must be low enough for at most 10 million commands, got 10000000000"
     );
@@ -400,9 +396,34 @@ fn a_move_that_starts_in_motion_is_neither_filtered_nor_slowed() {
     let slowed = Request { duration: Some(10.0), ..Request::new(way) };
     for request in [filtered, slowed] {
         let message = request.plan().unwrap_err().to_string();
-        assert_eq!(
-            message,
-            "`velocity` must be zero at the start and the end of a move that is filtered or slowed, got 0.4"
-        );
+        assert_eq!(message, "`start_velocity` must be zero for a move that is filtered or slowed, got 0.4");
+    }
+}
+
+/// Oracle: the documented example of the generator, 50 samples instead of 55 through boxes and 56 as published; and the
+/// cascade, which ends on the distance at the same sample.
+#[test]
+fn the_shortest_sampled_move_is_shorter_than_any_boxes() {
+    let request = |execution, duration| {
+        let grid = Some(Grid { sample_time: 5e-3, sampling: Sampling::Published, execution });
+        let (order, method) = (Order::Fourth, Method::Optimal);
+        let way = Way::PointToPoint(PointToPoint { distance: 0.01, order, limits: LIMITS, method, grid });
+        Request { duration, ..Request::new(way) }
+    };
+    for execution in [Execution::Hold, Execution::Euler] {
+        let plan = request(execution, None).plan().unwrap();
+        let Told::Shortest(shortest) = plan.told() else { panic!("{:?}", plan.told()) };
+        assert_eq!((shortest.samples(), shortest.at_least()), (50, 50));
+        assert!((plan.duration() - 0.25).abs() < 1e-12 && plan.end() == Setpoint::at_rest(0.01));
+        assert!((plan.published_duration().unwrap() - 0.28).abs() < 1e-12);
+        for (peak, limit) in plan.largest().into_iter().zip([1.0, 5.0, 50.0, 1000.0]) {
+            assert!(peak <= limit * (1.0 + 1e-9), "{peak} {limit}");
+        }
+        // Slowed to its own time it stays what it is, below that of boxes there is nothing, above it goes through boxes.
+        let slowed = |duration| request(execution, Some(duration)).plan();
+        assert!(matches!(slowed(0.25).unwrap().told(), Told::Shortest(_)));
+        assert!(matches!(slowed(0.26), Err(PlanError::TooShort { shortest, .. }) if (shortest - 0.275).abs() < 1e-12));
+        let slow = slowed(0.5).unwrap();
+        assert!(matches!(slow.told(), Told::Profile(_)) && (slow.duration() - 0.5).abs() < 1e-12);
     }
 }

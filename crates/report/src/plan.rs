@@ -15,6 +15,7 @@ mod unit;
 mod words;
 
 use servobench_base::Setpoint;
+use servobench_motion::sampled::Shortest;
 use servobench_motion::{PlanError, Profile};
 use servobench_planner::{Plan, Request, Told};
 use unit::Unit;
@@ -86,6 +87,14 @@ impl PlannedMove {
         }
     }
 
+    /// The sampled move of the fewest samples, where that is what was planned and nothing filters it.
+    fn shortest(&self) -> Option<&Shortest> {
+        match self.plan.told() {
+            Told::Shortest(shortest) if self.plan.filter_length() == 0.0 => Some(shortest),
+            _ => None,
+        }
+    }
+
     /// How long each derivative stays at its peak within one pulse of it: name in the literature, meaning, time (s).
     fn dwells(&self) -> impl Iterator<Item = (&'static str, &'static str, f64)> {
         let times = self.profile().and_then(Profile::times);
@@ -103,6 +112,9 @@ impl PlannedMove {
     fn samples(&self) -> Option<(f64, u64)> {
         if let Some(samples) = self.profile().and_then(Profile::samples) {
             return Some((samples.time, samples.total()));
+        }
+        if let Some(shortest) = self.shortest() {
+            return Some((shortest.sample_time(), shortest.samples()));
         }
         let time = self.plan.held()?;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "ten million at most are planned")]

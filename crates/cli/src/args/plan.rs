@@ -52,13 +52,13 @@ pub(crate) struct PlanArgs {
     /// Snap limit, as "1000 m/s4" (order 4).
     #[arg(long, help_heading = POINT_TO_POINT)]
     pub(crate) snap: Option<String>,
-    /// Published: the step through boxes. Optimal: the shortest.
+    /// Published: the step through boxes. Optimal: the shortest, with --sample-time that of the fewest samples.
     #[arg(long, value_enum, help_heading = POINT_TO_POINT)]
     pub(crate) method: Option<PlanMethod>,
     /// Make every time a whole number of samples of this length, as "1 ms".
     #[arg(long, value_name = "TIME", help_heading = POINT_TO_POINT)]
     pub(crate) sample_time: Option<String>,
-    /// How times are made whole: as published, or with the fewest samples.
+    /// How times of boxes are made whole: as published, or with the fewest samples.
     #[arg(long, value_enum, help_heading = POINT_TO_POINT)]
     pub(crate) sampling: Option<PlanSampling>,
     /// Exact hold of the highest derivative, without lag; or the forward-Euler cascade, which lags by 1.5 samples at

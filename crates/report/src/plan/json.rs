@@ -5,6 +5,7 @@ use crate::ordered::Ordered;
 use serde::Serialize;
 use servobench_base::Setpoint;
 use servobench_motion::Profile;
+use servobench_motion::sampled::Shortest;
 use servobench_planner::{Execution, Sampling, Told};
 
 /// Segments, bindings and commands at most, each; of more the number alone is told, and `--csv` has the values.
@@ -76,6 +77,9 @@ struct Samples {
     sample_time_s: f64,
     #[serde(rename = "samples")]
     count: u64,
+    /// Below which no move reaches the distance, as far as that is proven.
+    #[serde(rename = "samples_at_least", skip_serializing_if = "Option::is_none")]
+    at_least: Option<u64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     sampling: Option<&'static str>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -195,7 +199,7 @@ impl PlannedMove {
     fn sampled(&self) -> Option<Samples> {
         let (sample_time_s, count) = self.samples()?;
         let grid = self.grid();
-        let sampling = grid.map(|grid| match grid.sampling {
+        let sampling = grid.filter(|_| self.shortest().is_none()).map(|grid| match grid.sampling {
             Sampling::Published => "published",
             Sampling::Fewest => "fewest",
         });
@@ -203,7 +207,8 @@ impl PlannedMove {
             Execution::Hold => "hold",
             Execution::Euler => "euler",
         });
-        Some(Samples { sample_time_s, count, sampling, execution })
+        let at_least = self.shortest().map(Shortest::at_least);
+        Some(Samples { sample_time_s, count, at_least, sampling, execution })
     }
 
     /// The segments of a profile from rest to rest; of another plan its polynomials with where they begin, none of samples.

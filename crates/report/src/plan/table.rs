@@ -97,8 +97,8 @@ mod tests {
     use servobench_motion::shape::{Impulses, Vibration};
     use servobench_motion::{Limits, Order};
     use servobench_planner::{
-        Averages, Execution, Filter, Follow, Method, PointToPoint, Replanning, Request, Rockwell, TableMove,
-        Velocities, Way,
+        Averages, Execution, Filter, Follow, Grid, Method, PointToPoint, Replanning, Request, Rockwell, Sampling,
+        TableMove, Velocities, Way,
     };
     use std::f64::consts::TAU;
 
@@ -192,6 +192,36 @@ mod tests {
           69.99271 ms   28.99193 ms  1000 m/s⁴
           98.98464 ms   20.50039 ms  1000 m/s⁴
          119.48503 ms   20.50039 ms  -1000 m/s⁴
+        "#);
+    }
+
+    /// The example of the generator: 50 samples instead of 56.
+    #[test]
+    fn the_shortest_sampled_move_says_that_it_is() {
+        let grid = Some(Grid { sample_time: 5e-3, sampling: Sampling::Published, execution: Execution::Hold });
+        let (order, method) = (Order::Fourth, Method::Optimal);
+        let way = PointToPoint { distance: 0.01, order, limits: moves::LAMBRECHTS, method, grid };
+        insta::assert_snapshot!(table(&moves::of(Way::PointToPoint(way))), @r#"
+        move of 10.0 mm in 250 ms, order 4, optimal
+        50 samples of 5 ms
+        no move of fewer samples reaches the distance: proven
+        10.71 % shorter than the published profile (280 ms)
+
+                                  peak            limit  of limit
+        velocity             93.7 mm/s         1.00 m/s    9.37 %
+        acceleration         1.32 m/s²        5.00 m/s²   26.36 %
+        jerk                 49.3 m/s³        50.0 m/s³   98.69 %
+        snap                  987 m/s⁴        1000 m/s⁴   98.69 %
+
+                start        length  snap
+                 0 ms         35 ms  987 m/s⁴
+                35 ms          5 ms  -348 m/s⁴
+                40 ms         80 ms  -987 m/s⁴
+               120 ms          5 ms  -639 m/s⁴
+               125 ms          5 ms  639 m/s⁴
+               130 ms         80 ms  987 m/s⁴
+               210 ms          5 ms  348 m/s⁴
+               215 ms         35 ms  -987 m/s⁴
         "#);
     }
 

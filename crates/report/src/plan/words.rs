@@ -104,6 +104,13 @@ impl PlannedMove {
         if let Some((sample_time, samples)) = self.samples() {
             notes.push(format!("{samples} samples of {}", time(sample_time)));
         }
+        if let Some(shortest) = self.shortest() {
+            notes.push(if shortest.at_least() == shortest.samples() {
+                "no move of fewer samples reaches the distance: proven".to_owned()
+            } else {
+                format!("no move of fewer than {} samples reaches the distance", shortest.at_least())
+            });
+        }
         if let Some(Grid { execution: Execution::Euler, sample_time, .. }) = self.grid() {
             let late = 0.5 * (self.plan.order() as f64 - 1.0) * sample_time;
             notes.push(format!("forward-Euler cascade: {} behind the exact hold on the way", time(late)));

@@ -48,23 +48,16 @@ pub(super) fn order_and_limits(args: &PlanArgs, arguments: &mut Arguments<'_>) -
 
 /// How the move is sampled, if it is and that is right.
 fn grid(args: &PlanArgs, method: Method, arguments: &mut Arguments<'_>) -> Option<Grid> {
-    let sampled: Vec<&str> = ["sampling", "execution"].into_iter().filter(|name| arguments.is_given(name)).collect();
-    arguments.take("sampling");
-    arguments.take("execution");
-    if let Some(name) = sampled.first().filter(|_| method == Method::Optimal) {
-        arguments.mistake(format!("--{name} is for --method published: the shortest profile is continuous"));
-        return None;
+    let sampled = ["sampling", "execution"].into_iter().filter(|name| arguments.take(name).is_some());
+    let sampled: Vec<&str> = sampled.collect();
+    if method == Method::Optimal && args.sampling.is_some() {
+        arguments.mistake(
+            "--sampling is for --method published: the shortest move has the fewest samples of all; leave it out",
+        );
     }
     if !arguments.is_given("sample-time") {
-        for name in &sampled {
+        for name in sampled {
             arguments.missing("sample-time", &format!("--{name} needs one, as \"1 ms\""));
-        }
-        return None;
-    }
-    if method == Method::Optimal {
-        if !arguments.is_given("averages") {
-            arguments.take("sample-time");
-            arguments.mistake("--sample-time is for --method published: the shortest profile is continuous");
         }
         return None;
     }
