@@ -67,6 +67,9 @@ pub enum Told {
     },
 }
 
+/// Longest duration (s) that a move can be stretched to: its fourth power is still a normal number.
+const LONGEST: f64 = 1e60;
+
 impl Plan {
     pub(crate) fn of(course: impl Course + Send + Sync + 'static, told: Told) -> Self {
         let parts = vec![Impulse { time: 0.0, amplitude: 1.0 }];
@@ -146,6 +149,16 @@ impl Plan {
             return Ok(Self::along(&profile.stretched_to(inner)?, self.execution)?.within(self.limits));
         }
         if self.course.duration() > 0.0 {
+            if duration > LONGEST {
+                let (lowest, remedy) = (shortest, "correct its unit");
+                return Err(PlanError::OutOfRange {
+                    name: "duration",
+                    value: duration,
+                    lowest,
+                    highest: LONGEST,
+                    remedy,
+                });
+            }
             let factor = (inner / self.course.duration()).max(1.0);
             self.course = Arc::new(Slowed { course: self.course, factor });
         }

@@ -1,0 +1,179 @@
+//! Whatever is asked for: a plan or a refusal in words, never a panic, never a set-point that is no number.
+use servobench_base::Setpoint;
+use servobench_fuzz::{Number, ValueGenerator, check, fuzz, produce};
+use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target};
+use servobench_motion::pvt::Knot;
+use servobench_motion::rockwell::{Jerk, MaximumJerk, Move, Shape};
+use servobench_motion::shape::{Impulses, Vibration};
+use servobench_motion::{Limits, Order};
+use servobench_planner::{
+    Averages, Execution, Filter, Follow, Grid, Method, Plan, PointToPoint, Replanning, Request, Rockwell, Sampling,
+    TableMove, Velocities, Way,
+};
+
+/// Numbers that a request of any family is made of, and which family and variant it is.
+#[derive(Debug)]
+struct Asked {
+    family: u8,
+    variant: u8,
+    signed: [f64; 6],
+    magnitudes: [f64; 8],
+    filter: u8,
+}
+
+fn asked() -> impl ValueGenerator<Output = Asked> {
+    let (signed, magnitude) = (Number::any(), Number::magnitude());
+    (0..4_u8, produce::<u8>(), [signed; 6], [magnitude; 8], produce::<u8>())
+        .map_gen(|(family, variant, signed, magnitudes, filter)| Asked { family, variant, signed, magnitudes, filter })
+}
+
+impl Asked {
+    fn order(&self) -> Order {
+        [Order::Second, Order::Third, Order::Fourth][usize::from(self.variant % 3)]
+    }
+
+    fn way(&self) -> Way {
+        let ([x, v, a, j, distance, end], [velocity, acceleration, jerk, snap, time, other, ..]) =
+            (self.signed, self.magnitudes);
+        let is = |bit: u8| self.variant >> bit & 1 == 1;
+        match self.family {
+            0 => Way::PointToPoint(PointToPoint {
+                distance,
+                order: self.order(),
+                limits: Limits { velocity, acceleration, jerk, snap },
+                method: if is(7) { Method::Optimal } else { Method::Published },
+                grid: is(6).then_some(Grid {
+                    sample_time: time,
+                    sampling: if is(5) { Sampling::Fewest } else { Sampling::Published },
+                    execution: if is(4) { Execution::Euler } else { Execution::Hold },
+                }),
+            }),
+            1 => Way::Replanning(Replanning {
+                from: Setpoint { x, v, a, j, s: 0.0 },
+                target: if is(7) { Target::Velocity(end) } else { Target::Position { x: distance, v: end } },
+                order: self.order(),
+                limits: DirectionalLimits {
+                    velocity: Sides { below: velocity, above: time },
+                    acceleration: Sides { below: acceleration, above: other },
+                    jerk,
+                    snap,
+                },
+                effort: if is(6) { Effort::Refined } else { Effort::Fast },
+            }),
+            2 => {
+                let shape = match self.variant % 3 {
+                    0 => Shape::Trapezoid,
+                    1 => Shape::SCurve { acceleration: Jerk::Value(jerk), deceleration: Jerk::PercentOfTime(time) },
+                    _ => Shape::SCurve {
+                        acceleration: Jerk::PercentOfTime(jerk),
+                        deceleration: Jerk::PercentOfMaximum(time),
+                    },
+                };
+                let (deceleration, maximum) = (snap, MaximumJerk { acceleration: other, deceleration: other });
+                Way::Rockwell(Rockwell {
+                    operands: Move { distance, speed: velocity, acceleration, deceleration, shape },
+                    maximum,
+                })
+            }
+            _ => {
+                let times = [velocity, acceleration, jerk, snap].into_iter().scan(0.0, |t, step| {
+                    *t += step;
+                    Some(*t)
+                });
+                let knots = times.zip([x, v, a, j]).enumerate();
+                let knots = knots.map(|(k, (t, x))| Knot { t, x, v: (k % 2 == 1).then_some(end) }).collect();
+                let velocities = match self.variant % 4 {
+                    0 => Velocities::Given,
+                    1 => Velocities::Average,
+                    2 => Velocities::Smooth(usize::from(self.variant >> 4)),
+                    _ => Velocities::Continuous,
+                };
+                let follow = match self.variant >> 2 & 3 {
+                    0 => Follow::Plateaus(time),
+                    1 => Follow::Steps(time),
+                    2 => Follow::Within(time),
+                    _ => Follow::Segments,
+                };
+                Way::Table(TableMove { knots, velocities, follow })
+            }
+        }
+    }
+
+    fn request(&self) -> Request {
+        let [.., one, other] = self.magnitudes;
+        let shaper = match self.filter % 4 {
+            0 => Vibration::new(one, 0.1).ok().map(|mode| Impulses::zvd(&mode)),
+            1 => Vibration::new(one, 0.02).ok().and_then(|mode| Impulses::ei(&mode, 0.05).ok()),
+            _ => None,
+        };
+        // As many samples as a person would wait for.
+        let averages = (self.filter.is_multiple_of(7) && other > 1e-3)
+            .then(|| Averages { lengths: vec![3.0 * other, other], sample_time: other });
+        let duration = self.filter.is_multiple_of(5).then_some(one);
+        Request { way: self.way(), duration, filter: Filter { shaper, averages } }
+    }
+}
+
+fn is_finite(setpoint: Setpoint) -> bool {
+    let Setpoint { x, v, a, j, s } = setpoint;
+    [x, v, a, j, s].iter().all(|value| value.is_finite())
+}
+
+fn holds(plan: &Plan) {
+    let duration = plan.duration();
+    assert!(duration >= 0.0 && duration.is_finite(), "{plan:?}");
+    for part in [-1.0, 0.0, 1e-9, 0.1, 0.5, 0.75, 1.0 - 1e-9, 1.0, 2.0] {
+        assert!(is_finite(plan.at(part * duration)), "{} at {part} of {plan:?}", plan.at(part * duration).x);
+    }
+    let (start, length) = plan.cruise();
+    assert!(length >= 0.0 && start >= 0.0 && start + length <= duration * (1.0 + 1e-9), "{start} {length} of {plan:?}");
+    for peak in &plan.peaks()[..plan.order()] {
+        assert!(peak.lowest <= peak.highest && peak.lowest.is_finite() && peak.highest.is_finite(), "{peak:?}");
+    }
+    for binding in plan.bindings() {
+        assert!(binding.start >= 0.0 && binding.length >= 0.0 && binding.value.is_finite(), "{binding:?} of {plan:?}");
+    }
+}
+
+/// Long moves of short samples take their time: they are for the planners' own targets.
+fn is_quick(request: &Request) -> bool {
+    match &request.way {
+        Way::PointToPoint(PointToPoint { grid: Some(grid), distance, order, limits, .. }) => {
+            Request::new(Way::PointToPoint(PointToPoint {
+                grid: None,
+                distance: *distance,
+                order: *order,
+                limits: *limits,
+                method: Method::Published,
+            }))
+            .plan()
+            .map_or(true, |plan| plan.duration() / grid.sample_time < 3e3)
+        }
+        Way::Table(TableMove { follow: Follow::Steps(rate) | Follow::Within(rate), knots, .. }) => {
+            let length = knots.last().map_or(0.0, |last| last.t);
+            (rate * length).abs() < 1e4 || !rate.is_finite()
+        }
+        _ => true,
+    }
+}
+
+#[test]
+fn requests() {
+    fuzz(check!(), 5_000, asked(), |asked| {
+        let request = asked.request();
+        if !is_quick(&request) {
+            return;
+        }
+        let quick = request.filter.averages.as_ref().is_none_or(|averages| {
+            let plain = Request { filter: Filter::NONE, ..request.clone() };
+            plain.plan().map_or(true, |plan| plan.duration() / averages.sample_time < 1e4)
+        });
+        if !quick {
+            return;
+        }
+        match request.plan() {
+            Ok(plan) => holds(&plan),
+            Err(error) => assert!(error.to_string().len() > 15, "{error}"),
+        }
+    });
+}
