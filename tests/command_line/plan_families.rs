@@ -80,7 +80,7 @@ fn the_shortest_sampled_move_has_the_fewest_samples() {
         assert!((number(&plan_json["published_duration_s"]) - 0.28).abs() < 1e-12);
         assert_eq!(plan_json["execution"], execution);
     }
-    assert!(plan(&line).contains("no move of fewer samples reaches the distance: proven"));
+    assert!(plan(&line).contains("proven: no move of fewer samples reaches the distance"));
 }
 
 /// From 0.4 m/s: braking within 5 m/s² takes longer than 0.4²/(2·5) m, so that a target right there is passed and come back
@@ -160,7 +160,7 @@ fn pvt_tables_get_their_velocities() {
         let segments = plan_json["segments"].as_array().unwrap().clone();
         let ends = segments.windows(2).map(|pair| {
             let of = |k: usize, name: &str| number(&pair[k][name]);
-            (of(0, "acceleration") + of(0, "value") * of(0, "length_s") - of(1, "acceleration")).abs()
+            (of(0, "acceleration") + of(0, "jerk") * of(0, "length_s") - of(1, "acceleration")).abs()
         });
         ends.fold(0.0, f64::max)
     };

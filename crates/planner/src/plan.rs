@@ -55,7 +55,10 @@ pub enum Told {
         deceleration: f64,
     },
     /// A move along the segments of a table.
-    Table,
+    Table {
+        /// The highest derivative that is no impulse: 1 where velocity jumps, 2 where acceleration does.
+        order: usize,
+    },
     /// A table followed by profile velocities.
     Commands {
         /// What is sent.
@@ -242,7 +245,8 @@ impl Plan {
             Told::Profile(profile) => profile.order().derivative(),
             Told::Shortest(shortest) => shortest.order().derivative(),
             Told::Transition { order, .. } => order.derivative(),
-            Told::Rockwell { .. } | Told::Table => 3,
+            Told::Table { order } => *order,
+            Told::Rockwell { .. } => 3,
             Told::Commands { .. } => 2,
         }
     }

@@ -55,6 +55,14 @@ impl Polynomials {
     }
 }
 
+impl Polynomials {
+    /// The set-points at the beginning of each with its length (s).
+    pub(crate) fn parts(&self) -> impl Iterator<Item = (Setpoint, f64)> {
+        let ends = self.starts.iter().skip(1).copied().chain([self.duration]);
+        self.anchors.iter().zip(self.starts.iter().zip(ends)).map(|(anchor, (start, end))| (*anchor, end - start))
+    }
+}
+
 impl Course for Polynomials {
     fn duration(&self) -> f64 {
         self.duration

@@ -2,9 +2,9 @@
 use crate::plan::{Plan, Told};
 use crate::polynomials::{Between, Polynomials};
 use servobench_base::{ParamError, Setpoint};
-use servobench_motion::PlanError;
 use servobench_motion::position_profile::{Command, Plateaus, Spline};
 use servobench_motion::pvt::{Knot, Table, average, continuous, smooth};
+use servobench_motion::{Course, PlanError};
 
 /// A move through points.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,6 +45,8 @@ pub enum Follow {
     Within(f64),
 }
 
+/// A difference below this part of the largest value is none.
+const ROUNDING: f64 = 1e-9;
 /// Commands at most that are kept of a move.
 const MOST_COMMANDS: f64 = 1e7;
 
@@ -65,14 +67,17 @@ impl TableMove {
                     Velocities::Continuous => continuous(&mut knots, start, end, &mut scratch)?,
                 }
                 let mut cursor = Table::new(&knots)?.cursor();
-                Ok(course(&knots, |t| cursor.piece(t), Told::Table))
+                let polynomials = Polynomials::collect(knots[0].t, knots[knots.len() - 1].t, |t| cursor.piece(t));
+                let order = order(&polynomials, start);
+                Ok(Plan::of(polynomials, Told::Table { order }))
             }
             Follow::Plateaus(alpha) => {
                 let plateaus = Plateaus::solve(&mut knots, start, end, alpha, &mut scratch)?;
                 let commands = plateaus.commands().collect();
                 let mut cursor = plateaus.cursor();
                 let knots = plateaus.knots();
-                Ok(course(knots, |t| cursor.piece(t), Told::Commands { commands, error: 0.0, rate: None }))
+                let polynomials = Polynomials::collect(knots[0].t, knots[knots.len() - 1].t, |t| cursor.piece(t));
+                Ok(Plan::of(polynomials, Told::Commands { commands, error: 0.0, rate: None }))
             }
             Follow::Steps(rate) => self.stepped(|_| Ok(rate)),
             Follow::Within(error) => self.stepped(|spline| spline.lowest_rate(error).map(f64::from)),
@@ -105,9 +110,27 @@ impl TableMove {
     }
 }
 
-fn course(knots: &[Knot], piece: impl FnMut(f64) -> servobench_motion::Piece, told: Told) -> Plan {
-    let polynomials = Polynomials::collect(knots[0].t, knots[knots.len() - 1].t, piece);
-    Plan::of(polynomials, told)
+/// The highest derivative that is no impulse, of a way that is entered at velocity `start`.
+fn order(way: &Polynomials, start: f64) -> usize {
+    let (mut jumps, mut largest) = ([0.0_f64; 2], [0.0_f64; 2]);
+    let mut before = Setpoint { v: start, ..Setpoint::default() };
+    let end = Setpoint { a: 0.0, ..way.end() };
+    for (now, next) in way.parts().map(|(part, length)| (part, part.after(length))).chain([(end, end)]) {
+        let values = [(before.v, now.v), (before.a, now.a)];
+        for ((before, now), (jump, largest)) in values.into_iter().zip(jumps.iter_mut().zip(&mut largest)) {
+            *jump = jump.max((now - before).abs());
+            *largest = largest.max(now.abs()).max(before.abs());
+        }
+        before = next;
+    }
+    let is_jump = |k: usize| jumps[k] > ROUNDING * largest[k];
+    if is_jump(0) {
+        1
+    } else if is_jump(1) {
+        2
+    } else {
+        3
+    }
 }
 
 /// The way of a drive that obeys `commands` from `state` at `start` until `end` (s), a straight line of velocity after each:

@@ -427,3 +427,17 @@ fn the_shortest_sampled_move_is_shorter_than_any_boxes() {
         assert!(matches!(slow.told(), Told::Profile(_)) && (slow.duration() - 0.5).abs() < 1e-12);
     }
 }
+
+/// Velocity jumps between linear segments, acceleration where a cubic spline begins; the five points of an S-curve join with
+/// neither.
+#[test]
+fn a_table_says_what_jumps() {
+    let order = |knots: Vec<Knot>, velocities| {
+        plan(Way::Table(TableMove { knots, velocities, follow: Follow::Segments })).order()
+    };
+    let knots = table(Follow::Segments, Velocities::Given).knots;
+    assert_eq!(order(knots.clone(), Velocities::Given), 1);
+    assert_eq!(order(knots.clone(), Velocities::Average), 2);
+    assert_eq!(order(knots, Velocities::Continuous), 2);
+    assert_eq!(order(servobench_motion::pvt::s_curve(0.0, 1.0, 0.1).unwrap().to_vec(), Velocities::Given), 3);
+}

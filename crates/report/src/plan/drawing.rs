@@ -166,7 +166,7 @@ impl Drawing<'_> {
             panel.draw_scale(&mut svg, &time, &value);
             panel.draw_curve(&mut svg, &time, &value, colour);
             let bindings = self.bindings.iter().filter(|binding| binding.derivative == k);
-            let marks = Marks::of(bindings, panel.unit.scale(), &time, &value);
+            let marks = Marks::of(bindings, panel.limit, &time, &value);
             marks.draw(&mut svg);
             marks_seen = (marks_seen.0 || !marks.stretches.is_empty(), marks_seen.1 || !marks.dots.is_empty());
             panel.draw_legend(&mut svg, time.to + 12.0, top, colour);

@@ -124,6 +124,7 @@ struct State {
     position: f64,
     velocity: f64,
     acceleration: f64,
+    jerk: f64,
 }
 
 impl PlannedMove {
@@ -227,8 +228,8 @@ impl PlannedMove {
         }
         let n = self.plan.order();
         let segment = |of: servobench_planner::Span| {
-            let Setpoint { x, v, a, .. } = of.state;
-            let state = State { position: x, velocity: v, acceleration: a };
+            let Setpoint { x, v, a, j, .. } = of.state;
+            let state = State { position: x, velocity: v, acceleration: a, jerk: j };
             Segment { start_s: of.start, length_s: of.length, value: derivatives(&of.state)[n], state: Some(state) }
         };
         self.plan.spans().map(segment).collect()

@@ -1,5 +1,6 @@
 //! Marks where a bound binds.
 use super::axis::Axis;
+use servobench_motion::online::Sides;
 use servobench_planner::Binding;
 use std::fmt::Write;
 
@@ -16,16 +17,18 @@ pub(super) struct Marks {
 }
 
 impl Marks {
-    /// Those of `bindings`, all of one derivative, whose unit is `scale` of the SI's.
-    pub(super) fn of<'a>(bindings: impl Iterator<Item = &'a Binding>, scale: f64, time: &Axis, value: &Axis) -> Self {
+    /// Those of `bindings`, all of one derivative, along its `limit`, also where it is beyond.
+    pub(super) fn of<'a>(bindings: impl Iterator<Item = &'a Binding>, limit: Sides, time: &Axis, value: &Axis) -> Self {
         // Above zero and below, each from left to right: where it begins, where it ends, its height.
         let mut merged: [Vec<(f64, f64, f64)>; 2] = [vec![], vec![]];
         for binding in bindings {
             let (from, to) = (time.at(binding.start), time.at(binding.start + binding.length));
-            let side = &mut merged[usize::from(binding.value < 0.0)];
+            let is_below = binding.value < 0.0;
+            let side = &mut merged[usize::from(is_below)];
+            let limit = if is_below { -limit.below } else { limit.above };
             match side.last_mut() {
                 Some(last) if from - last.1 < DOT => last.1 = last.1.max(to),
-                _ => side.push((from, to, value.at(binding.value / scale))),
+                _ => side.push((from, to, value.at(limit))),
             }
         }
         let mut marks = Self::default();
@@ -58,9 +61,9 @@ mod tests {
         let time = Axis { low: 0.0, high: 1.0, from: 0.0, to: 100.0 };
         let value = Axis { low: -2.0, high: 2.0, from: 100.0, to: 0.0 };
         let binding = |start, length, value| Binding { derivative: 1, start, length, value };
-        // The second begins where the first ends, but for a pixel.
-        let all = [binding(0.1, 0.2, 2.0), binding(0.31, 0.1, 2.0), binding(0.5, 0.0, -2.0), binding(0.9, 0.001, 2.0)];
-        let marks = Marks::of(all.iter(), 1.0, &time, &value);
+        // The second begins where the first ends, but for a pixel; the last is beyond.
+        let all = [binding(0.1, 0.2, 2.0), binding(0.31, 0.1, 2.0), binding(0.5, 0.0, -2.0), binding(0.9, 0.001, 2.5)];
+        let marks = Marks::of(all.iter(), Sides::both(2.0), &time, &value);
         assert_eq!(marks.stretches, "M10.0,0.0H41.0");
         assert_eq!(marks.dots, "M90.1,0.0h0M50.0,100.0h0");
     }

@@ -52,8 +52,11 @@ impl PlannedMove {
             return self.listed("start", profile.segments().map(row), "segments");
         }
         if matches!(self.request.way, Way::Table(_)) {
-            let row =
-                |t: f64, Setpoint { x, v, a, .. }: Setpoint| Row::point(t, [Some((0, x)), Some((1, v)), Some((2, a))]);
+            // Where velocity jumps, there is no acceleration to tell.
+            let has_acceleration = n > 1;
+            let row = |t: f64, Setpoint { x, v, a, .. }: Setpoint| {
+                Row::point(t, [Some((0, x)), Some((1, v)), has_acceleration.then_some((2, a))])
+            };
             let end = row(self.plan.duration(), self.plan.end());
             let rows = self.plan.spans().map(|span| row(span.start, span.state)).chain([end]);
             return self.listed("time", rows, "points");

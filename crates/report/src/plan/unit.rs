@@ -22,6 +22,8 @@ const ANGLES: [(&str, &str, f64); 7] = [
     ("rpm", "rev", 2.0 * PI),
     ("krpm", "rev", 2.0 * PI),
 ];
+/// Numbers from here on are written with a power of ten in a drawing.
+const LONG: f64 = 1e6;
 const POWERS: [&str; 5] = ["", "/s", "/s²", "/s³", "/s⁴"];
 
 impl Unit {
@@ -84,7 +86,10 @@ impl Unit {
         if self.takes_prefix {
             return Quantity::new(value, &self.symbol).to_string();
         }
-        format!("{} {}", digits(value / self.si, 4), self.symbol)
+        let number = digits(value / self.si, 4);
+        let long = number.parse::<f64>().ok().filter(|number| number.abs() >= LONG);
+        let number = long.map_or(number, |long| format!("{long:e}"));
+        format!("{number} {}", self.symbol)
     }
 
     /// Whether it takes the prefix that suits the number.
@@ -118,6 +123,7 @@ mod tests {
         ] {
             assert_eq!(Unit::given(text, value).unwrap().text(shown), words, "{text}");
         }
+        assert_eq!(Unit::given("1 rad/s4", 1.0).unwrap().short(1e7), "1e7 rad/s4");
         for (text, value) in [("5", 5.0), ("fast", 1.0), ("0 mm", 0.0), ("1 m", f64::INFINITY)] {
             assert_eq!(Unit::given(text, value), None, "{text}");
         }

@@ -105,10 +105,12 @@ impl PlannedMove {
             notes.push(format!("{samples} samples of {}", time(sample_time)));
         }
         if let Some(shortest) = self.shortest() {
-            notes.push(if shortest.at_least() == shortest.samples() {
-                "no move of fewer samples reaches the distance: proven".to_owned()
-            } else {
-                format!("no move of fewer than {} samples reaches the distance", shortest.at_least())
+            notes.push(match shortest.at_least() {
+                least if least >= shortest.samples() => {
+                    "proven: no move of fewer samples reaches the distance".to_owned()
+                }
+                0 | 1 => "not proven to be the fewest samples".to_owned(),
+                least => format!("not proven to be the fewest samples; below {least} none reach the distance"),
             });
         }
         if let Some(Grid { execution: Execution::Euler, sample_time, .. }) = self.grid() {
@@ -158,7 +160,7 @@ impl PlannedMove {
                 self.show(3, *acceleration),
                 self.show(3, *deceleration)
             )],
-            (Way::Table(way), Told::Table) => vec![velocities(way)],
+            (Way::Table(way), Told::Table { .. }) => vec![velocities(way)],
             (Way::Table(way), Told::Commands { commands, error, rate }) => vec![match (way.follow, rate) {
                 (_, Some(rate)) => format!(
                     "{} velocity commands at {rate} Hz: at most {} off the cubic spline",
