@@ -8,6 +8,7 @@ mod json;
 mod marks;
 mod panel;
 mod rows;
+mod sheet;
 mod table;
 mod ticks;
 mod times;

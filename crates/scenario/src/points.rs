@@ -8,12 +8,13 @@
 //! ```
 //! The heading names the columns, in any order, with the unit of all their numbers. `velocity` may be left out, or a row of
 //! it left empty. Times increase. Spaces around numbers and empty lines do not matter; the decimal sign is a point.
-use crate::physical::{POSITION, Physical, TIME, VELOCITY};
+mod mistake;
+
 use crate::quantity::Scale;
 use crate::reading::{self, ReadError, names};
 use crate::scenario::Motion;
-use std::fmt;
-use thiserror::Error;
+
+pub use mistake::{Column, PointsError, PointsMistake};
 
 /// Points at most: a table of more is taken for a mistake.
 pub const MOST_POINTS: usize = 5_000_000;
@@ -31,158 +32,6 @@ pub struct Points {
     pub velocities: Option<Vec<Option<f64>>>,
     /// Units as the heading writes them: of time, position, velocity.
     pub units: [Option<String>; 3],
-}
-
-/// What is wrong with a table of points, and where.
-#[derive(Debug, Clone, PartialEq, Error)]
-#[error("{line}:{column}: {mistake}")]
-pub struct PointsError {
-    /// Line, from 1.
-    pub line: usize,
-    /// Column in characters, from 1.
-    pub column: usize,
-    /// What is wrong there.
-    pub mistake: PointsMistake,
-}
-
-/// What is wrong at a place of a table of points, with the way out.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum PointsMistake {
-    /// There is nothing.
-    #[error("the table is empty: begin with a heading like `time [ms],position [mm],velocity [mm/s]`")]
-    NoHeading,
-    /// Something else stands between the columns.
-    #[error("columns are separated by commas, not by `{found}`: write `time [ms],position [mm]`, numbers with a point")]
-    Separator {
-        /// What stands there.
-        found: &'static str,
-    },
-    /// A column has a name that means nothing here.
-    #[error("unknown column `{name}`: the heading is like `time [ms],position [mm],velocity [mm/s]`")]
-    UnknownColumn {
-        /// What stands there instead of a name.
-        name: String,
-    },
-    /// A column has no unit.
-    #[error("`{column}` needs its unit in brackets: write `{column} [{proposal}]`")]
-    NoUnit {
-        /// Which.
-        column: Column,
-        /// A unit that it might have.
-        proposal: &'static str,
-    },
-    /// A column has no usable unit.
-    #[error("`{column}` cannot be in `{unit}`: {message}")]
-    Unit {
-        /// Which column.
-        column: Column,
-        /// Its unit.
-        unit: String,
-        /// What is wrong with it, and what to write instead.
-        message: String,
-    },
-    /// A column is there a second time.
-    #[error("there are two columns `{column}`: delete one")]
-    Twice {
-        /// Which.
-        column: Column,
-    },
-    /// A column that every table needs is not there.
-    #[error("the column `{column}` is missing: add `{column} [{proposal}]`")]
-    Missing {
-        /// Which.
-        column: Column,
-        /// A unit that it might have.
-        proposal: &'static str,
-    },
-    /// A row has more or fewer values than the heading has columns.
-    #[error("a row of {found} values below a heading of {expected}: separate values by commas, with decimal points")]
-    Width {
-        /// Values in the row.
-        found: usize,
-        /// Columns in the heading.
-        expected: usize,
-    },
-    /// A value is no number that can be used.
-    #[error("`{column}` is `{text}`: {reason}")]
-    Value {
-        /// In which column.
-        column: Column,
-        /// What stands there.
-        text: String,
-        /// What is wrong with it.
-        reason: &'static str,
-    },
-    /// A point is not later than the one before.
-    #[error(
-        "`time` is {time} s, not later than {before} s at the point before: sort the rows by time and give each a time \
-         of its own"
-    )]
-    Order {
-        /// Its time (s).
-        time: f64,
-        /// That of the point before (s).
-        before: f64,
-    },
-    /// There is no way from one point to another.
-    #[error("a table needs at least 2 points, this one has {points}: add the point where the move ends")]
-    TooFew {
-        /// Number of points.
-        points: usize,
-    },
-    /// There are more points than anybody means.
-    #[error("a table has at most {most} points: split it, or leave points out")]
-    TooMany {
-        /// The most that are read.
-        most: usize,
-    },
-}
-
-/// A column of a table of points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Column {
-    /// Time from any zero.
-    Time,
-    /// Absolute position.
-    Position,
-    /// Velocity at the point.
-    Velocity,
-}
-
-impl Column {
-    const ALL: [Self; 3] = [Self::Time, Self::Position, Self::Velocity];
-
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Time => "time",
-            Self::Position => "position",
-            Self::Velocity => "velocity",
-        }
-    }
-
-    /// What it may measure: linear first, then rotary.
-    fn candidates(self) -> Vec<&'static Physical> {
-        match self {
-            Self::Time => vec![&TIME],
-            Self::Position => vec![&POSITION.linear, &POSITION.rotary],
-            Self::Velocity => vec![&VELOCITY.linear, &VELOCITY.rotary],
-        }
-    }
-
-    /// A unit that it might have.
-    const fn proposal(self) -> &'static str {
-        match self {
-            Self::Time => "ms",
-            Self::Position => "mm",
-            Self::Velocity => "mm/s",
-        }
-    }
-}
-
-impl fmt::Display for Column {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
 }
 
 /// A column of the heading.

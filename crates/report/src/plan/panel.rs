@@ -1,8 +1,8 @@
 //! One quantity of a plan over time.
 use super::axis::{Axis, unit_at};
 use super::curve::Curve;
-use super::drawing::escaped;
 use super::envelope::Envelope;
+use super::sheet::escaped;
 use super::ticks::ticks;
 use super::unit::Unit;
 use servobench_metrics::{round_above, round_below};
