@@ -161,6 +161,10 @@ fn a_table_is_refused_at_the_place_of_its_mistake() {
             "--command-rate `100`: a frequency needs its unit; write \"100 Hz\"".to_owned(),
         ),
         (
+            format!("--profile position --points {} --plateau 0.2 --averages 1ms --sample-time 1ms", path("good.csv")),
+            "--averages is not for --profile position, whose commands a drive follows as they are".to_owned(),
+        ),
+        (
             format!("--profile position --points {} --command-rate 1e10Hz", path("good.csv")),
             "--command-rate must be low enough for at most 10 million commands".to_owned(),
         ),

@@ -164,6 +164,7 @@ impl Plan {
             }
             let factor = (inner / self.course.duration()).max(1.0);
             self.course = Arc::new(Slowed { course: self.course, factor });
+            self.told.slow(factor);
         }
         Ok(self)
     }
@@ -304,6 +305,31 @@ impl Plan {
 
     pub(crate) fn parts(&self) -> &[Impulse] {
         &self.parts
+    }
+}
+
+impl Told {
+    /// What is told of the same in a time that is `factor` times as long.
+    fn slow(&mut self, factor: f64) {
+        match self {
+            Self::Rockwell { acceleration, deceleration } => {
+                for jerk in [acceleration, deceleration] {
+                    *jerk /= factor * factor * factor;
+                }
+            }
+            Self::Commands { commands, rate, .. } => {
+                let start = commands.first().map_or(0.0, |command| command.t);
+                for command in commands {
+                    command.t = start + (command.t - start) * factor;
+                    command.velocity /= factor;
+                    command.acceleration /= factor * factor;
+                }
+                if let Some(rate) = rate {
+                    *rate /= factor;
+                }
+            }
+            Self::Profile(_) | Self::Shortest(_) | Self::Transition { .. } | Self::Table { .. } => {}
+        }
     }
 }
 

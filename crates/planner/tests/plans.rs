@@ -441,3 +441,35 @@ fn a_table_says_what_jumps() {
     assert_eq!(order(knots, Velocities::Continuous), 2);
     assert_eq!(order(servobench_motion::pvt::s_curve(0.0, 1.0, 0.1).unwrap().to_vec(), Velocities::Given), 3);
 }
+
+/// Oracle: what a drive makes of the commands as they are told, straight lines of velocity one after the other, at the end of
+/// each. Half the pace takes a quarter of the acceleration and an eighth of the jerk.
+#[test]
+fn what_is_told_of_a_slowed_move_is_slowed() {
+    for follow in [Follow::Plateaus(0.3), Follow::Steps(50.0)] {
+        let request = Request::new(Way::Table(table(follow, Velocities::Given)));
+        let fast = request.plan().unwrap();
+        let slow = Request { duration: Some(2.0 * fast.duration()), ..request }.plan().unwrap();
+        let Told::Commands { commands, .. } = slow.told() else { panic!("{:?}", slow.told()) };
+        let start = commands[0].t;
+        for pair in commands.windows(2) {
+            let reached = slow.at(pair[1].t - start - 1e-9);
+            assert!((reached.v - pair[0].velocity).abs() < 1e-6, "{pair:?} {reached:?}");
+            assert!((slow.at(pair[0].t - start + 1e-9).a.abs() - pair[0].acceleration).abs() < 1e-9, "{pair:?}");
+        }
+    }
+    let all = all();
+    let rockwell = all.iter().find(|plan| matches!(plan.told(), Told::Rockwell { .. })).unwrap();
+    let Told::Rockwell { acceleration, .. } = rockwell.told() else { panic!("{:?}", rockwell.told()) };
+    let operands = Move {
+        distance: -0.1,
+        speed: 0.2,
+        acceleration: 10.0,
+        deceleration: 20.0,
+        shape: Shape::SCurve { acceleration: Jerk::PercentOfTime(25.0), deceleration: Jerk::PercentOfTime(60.0) },
+    };
+    let way = Way::Rockwell(Rockwell { operands, maximum: MaximumJerk { acceleration: 1e4, deceleration: 1e4 } });
+    let slow = Request { duration: Some(2.0 * rockwell.duration()), ..Request::new(way) }.plan().unwrap();
+    let Told::Rockwell { acceleration: slowed, .. } = slow.told() else { panic!("{:?}", slow.told()) };
+    assert!((8.0 * slowed / acceleration - 1.0).abs() < 1e-12, "{slowed} {acceleration}");
+}

@@ -56,10 +56,14 @@ impl PlannedMove {
         self
     }
 
-    /// Unit in which derivative `k` of position is told: the given one, else one that goes with another given one, else
+    /// Unit in which derivative `k` of position is told: the given one, else one that goes with the nearest given one, else
     /// that of the SI.
     fn unit(&self, k: usize) -> Unit {
-        let related = || self.given.iter().flatten().find_map(|unit| unit.of_derivative(k));
+        let related = || {
+            let given = || self.given.iter().enumerate().filter_map(|(i, unit)| Some((i.abs_diff(k), unit.as_ref()?)));
+            let nearest = given().min_by_key(|(distance, _)| *distance);
+            nearest.and_then(|(_, unit)| unit.of_derivative(k))
+        };
         self.given[k].clone().or_else(related).unwrap_or_else(|| Unit::si(self.unit, k))
     }
 

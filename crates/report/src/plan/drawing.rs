@@ -291,7 +291,7 @@ mod tests {
         let way = PointToPoint { distance, order, limits, method, grid: None };
         let plan = PlannedMove::new(Request::new(Way::PointToPoint(way)), "rad").unwrap();
         let svg = plan.as_given(0, "90 deg", PI / 2.0).as_given(1, "60 rpm", 2.0 * PI).svg();
-        for text in [">90 deg in 375.7 ms, order 2<", ">peak 90 deg<", ">limit 60 rpm<", ">deg/s²<"] {
+        for text in [">90 deg in 375.7 ms, order 2<", ">peak 90 deg<", ">limit 60 rpm<", ">rev/s²<"] {
             assert!(svg.contains(text), "{text} in {svg}");
         }
         assert!(!svg.contains("rad"));

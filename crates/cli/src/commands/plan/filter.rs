@@ -1,12 +1,22 @@
 //! What stands between the planner and the drive.
 use super::arguments::Arguments;
-use crate::args::{PlanArgs, PlanShaper};
+use crate::args::{PlanArgs, PlanProfile, PlanShaper};
 use servobench_motion::shape::{Impulses, Vibration};
 use servobench_planner::{Averages, Filter};
 use std::f64::consts::TAU;
 
 /// The filters; one that is wrong is left out, and told.
 pub(super) fn filter(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Filter {
+    if args.profile == PlanProfile::Position {
+        for name in ["shaper", "averages"] {
+            if arguments.is_given(name) {
+                arguments.mistake(format!(
+                    "--{name} is not for --profile position, whose commands a drive follows as they are: leave it out, or \
+                     choose --profile pvt"
+                ));
+            }
+        }
+    }
     Filter { shaper: shaper(args, arguments), averages: averages(arguments) }
 }
 
