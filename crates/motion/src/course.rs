@@ -53,6 +53,17 @@ impl<const N: usize> Course for Trajectory<N> {
     }
 }
 
+#[cfg(feature = "std")]
+impl Course for crate::sampled::Shortest {
+    fn duration(&self) -> f64 {
+        Self::duration(self)
+    }
+
+    fn piece(&self, t: f64) -> Piece {
+        Self::piece(self, t)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -18,7 +18,6 @@
 //! ```
 mod analysis;
 mod cascade;
-mod fewest;
 mod filter;
 mod plan;
 mod polynomials;

@@ -1,7 +1,6 @@
 //! A planned move.
 use crate::analysis::{self, Binding, Peak, Span};
 use crate::cascade::Sampled;
-use crate::fewest::Fewest;
 use crate::filter::Filter;
 use crate::request::Execution;
 use crate::slowed::Slowed;
@@ -110,10 +109,9 @@ impl Plan {
     /// That of `shortest`.
     pub(crate) fn along_shortest(shortest: Shortest, execution: Execution) -> Result<Self, PlanError> {
         let sample_time = shortest.sample_time();
-        let shortest = Box::new(shortest);
-        let told = Told::Shortest(shortest.clone());
+        let told = Told::Shortest(Box::new(shortest.clone()));
         match execution {
-            Execution::Hold => Ok(Self::of(Fewest(shortest), told)),
+            Execution::Hold => Ok(Self::of(shortest, told)),
             Execution::Euler => {
                 let sampled = Sampled {
                     order: shortest.order(),

@@ -420,6 +420,8 @@ averages = []
 table = { file = "points.csv", relative = true, velocities = "smooth", passes = 5 }
 [[program]]
 table = { file = "points.csv", relative = true, follow = "steps", command_rate = "200 Hz" }
+shaper = { kind = "none" }
+averages = []
 [[program]]
 move_by = "10 mm"
 rockwell = { shape = "s-curve", deceleration = "8 m/s2", jerk_of_time = "25 %", deceleration_jerk_of_maximum = 0.5, maximum_jerk = "400 m/s3" }

@@ -31,6 +31,28 @@ impl Row {
     const fn segment(start: f64, length: f64, k: usize, value: f64) -> Self {
         Self { start, length: Some(length), quantities: [Some((k, value)), None, None] }
     }
+
+    /// Whether `other` has the same quantities but for rounding.
+    fn is_as(&self, other: &Self) -> bool {
+        let mut both = self.quantities.iter().flatten().zip(other.quantities.iter().flatten());
+        both.all(|((_, one), (_, other))| (one - other).abs() <= 1e-9 * one.abs())
+    }
+}
+
+/// Rows that follow each other with the same quantities, as one.
+fn joined(mut rows: impl Iterator<Item = Row>) -> impl Iterator<Item = Row> {
+    let mut next = rows.next();
+    std::iter::from_fn(move || {
+        let mut row = next.take()?;
+        for following in rows.by_ref() {
+            if !row.is_as(&following) {
+                next = Some(following);
+                break;
+            }
+            row.length = row.length.zip(following.length).map(|(one, other)| one + other);
+        }
+        Some(row)
+    })
 }
 
 impl PlannedMove {
@@ -49,7 +71,7 @@ impl PlannedMove {
         }
         if let Some(profile) = self.profile() {
             let row = |segment: Segment| Row::segment(segment.start, segment.length, n, segment.value);
-            return self.listed("start", profile.segments().map(row), "segments");
+            return self.listed("start", joined(profile.segments().map(row)), "segments");
         }
         if matches!(self.request.way, Way::Table(_)) {
             // Where velocity jumps, there is no acceleration to tell.
@@ -62,7 +84,7 @@ impl PlannedMove {
             return self.listed("time", rows, "points");
         }
         let row = |span: Span| Row::segment(span.start, span.length, n, derivatives(&span.state)[n]);
-        self.listed("start", self.plan.spans().map(row), "segments")
+        self.listed("start", joined(self.plan.spans().map(row)), "segments")
     }
 
     /// Rows below their headings, of very many only the first and the last.

@@ -6,7 +6,7 @@ use crate::file::File;
 use crate::resolve::keys::{Keys, LIMITS, Said};
 use crate::resolve::{Way as OneWay, filter, has_window, limits, one_way, points, rockwell};
 use crate::scenario::{
-    Filter, Goal, LONGEST_RUN, MoveStep, OnlineMove, PlanEffort, RestMove, Step, TableMove, Target, Way,
+    Filter, Follow, Goal, LONGEST_RUN, MoveStep, OnlineMove, PlanEffort, RestMove, Step, TableMove, Target, Way,
 };
 use crate::source::{At, Sources, Span};
 use servobench_base::Rate;
@@ -273,10 +273,7 @@ impl Context<'_> {
             return None;
         }
         let table: TableMove = points::resolve(self.step.table.at()?, self.known.sources, report)?;
-        let order = match table.follow {
-            crate::scenario::Follow::Segments => 3,
-            _ => 2,
-        };
+        let order = if table.follow == Follow::Segments { 3 } else { 2 };
         Some((Way::Table(table), order, [f64::INFINITY; 4]))
     }
 
@@ -292,17 +289,24 @@ impl Context<'_> {
             report.error(span, "there is no move to abort", "give the step before a move, or leave `aborts_after` out");
         }
         let starts_in_motion = self.before == Before::Motion || step.aborts_after.is_some();
-        if !starts_in_motion && !step.ends_in_motion() {
-            return;
-        }
+        let is_in_motion = starts_in_motion || step.ends_in_motion();
+        let message = match &step.way {
+            _ if is_in_motion => {
+                "a move that starts or ends in motion is not filtered or slowed: its velocity would jump"
+            }
+            Way::Table(table) if table.follow != Follow::Segments => {
+                "a position profile is not filtered: it sends velocities"
+            }
+            _ => return,
+        };
         let Filter { shaper, averages } = &step.filter;
+        let is_slowed = is_in_motion && step.duration.is_some();
         for (is_there, slot, help) in [
             (shaper.is_some(), self.keys.shaper.span(), "write `shaper = { kind = \"none\" }` into this step"),
             (!averages.is_empty(), self.keys.averages.span(), "write `averages = []` into this step"),
-            (step.duration.is_some(), self.step.duration.span(), "leave it out: limits say how fast the move is"),
+            (is_slowed, self.step.duration.span(), "leave it out: limits say how fast the move is"),
         ] {
             if is_there {
-                let message = "a move that starts or ends in motion is not filtered or slowed: its velocity would jump";
                 report.error(slot.unwrap_or(self.step.span), message, help);
             }
         }

@@ -171,6 +171,11 @@ fn tables_of_points() {
             ],
         ),
         (
+            "averages = [\"10 ms\"]\n",
+            &table("file = \"points.csv\", follow = \"plateaus\""),
+            &["1:12: a position profile is not filtered: it sends velocities; write `averages = []` into this step"],
+        ),
+        (
             "",
             &table("file = \"wrong.csv\""),
             &[
