@@ -1,4 +1,15 @@
-//! The box lengths of a plan, all orders and both grids in one loop; the derivation is in the crate documentation.
+//! The box lengths of a plan, all orders in one loop; the derivation is in the crate documentation.
+//!
+//! On [`whole`] numbers every bound that is met lowers the amplitude. In [`continuous`] time it stays the limit D, and a
+//! bound that binds is the peak from which the boxes behind it go on:
+//!
+//! ```text
+//! T1 = min(J/D, √(A/D), ∛(V/2D), ∜(X/8D))
+//!   X binds:  T2 = T1,  T3 = 2·T1,  T4 = 4·T1
+//!   V binds:  T2 = T1,  T3 = 2·T1,  T4 = X/V
+//!   A binds:  T2 = T1,  T3 = least T of  T = V/A,  T(2·T1 + T) = X/A;  …
+//!   J binds:  T2 = least T of  T = A/J,  T(T1 + T) = V/J,  2T(T1 + T)² = X/J;  …
+//! ```
 
 /// Admissible excess of a bound, relative: the rounding of one comparison. `Ts` itself, its fourth power, a product of
 /// four counts and two quotients are some fifteen roundings of 2⁻⁵³ each.
@@ -10,26 +21,17 @@ const NO_DWELL: f64 = 1e-12;
 /// Largest sample count: above it not every whole number is an `f64`.
 pub(crate) const MAX_SAMPLES: f64 = 9_007_199_254_740_992.0;
 
-/// What box lengths may be.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Grid {
-    /// Any length.
-    Continuous,
-    /// Whole numbers; the unit of time is the sample.
-    Whole,
-}
-
-/// Lengths of the `bounds.len() − 1` boxes of the shortest profile that the sequential method finds.
+/// Whole lengths of the `bounds.len() − 1` boxes of the shortest profile that the sequential method finds.
 ///
 /// `bounds` runs from the limit of the highest derivative over those below it to the distance, all positive and in the
-/// grid's unit of time. The boxes that an order does not have are zero. `None`: a move of more than [`MAX_SAMPLES`].
-pub(crate) fn lengths(bounds: &[f64], grid: Grid) -> Option<[f64; 4]> {
+/// unit of time of the boxes. The boxes that an order does not have are zero. `None`: a move of more than [`MAX_SAMPLES`].
+pub(crate) fn whole(bounds: &[f64]) -> Option<[f64; 4]> {
     let n = bounds.len() - 1;
     let mut boxes = [0.0; 4];
     // The amplitude that makes the last chosen bound an equality, and ∏ and Σ of the boxes so far.
     let (mut amplitude, mut product, mut sum) = (bounds[0], 1.0, 0.0);
     for (k, slot) in boxes.iter_mut().enumerate().take(n) {
-        let shortest = |level: usize| grid.shortest(level - k - 1, sum, bounds[level] / (amplitude * product));
+        let shortest = |level: usize| shortest_whole(level - k - 1, sum, bounds[level] / (amplitude * product));
         let equality = |level: usize, t: f64| bounds[level] / (product * growth(level - k - 1, sum, t));
         // First the distance, then every lower derivative whose limit the result would exceed.
         let mut length = shortest(n);
@@ -44,11 +46,45 @@ pub(crate) fn lengths(bounds: &[f64], grid: Grid) -> Option<[f64; 4]> {
         amplitude = next;
         product *= length;
         sum += length;
-        if grid == Grid::Whole && sum > MAX_SAMPLES {
+        if sum > MAX_SAMPLES {
             return None;
         }
     }
     Some(boxes)
+}
+
+/// Lengths of any size; `bounds` as for [`whole`].
+pub(crate) fn continuous(bounds: &[f64]) -> [f64; 4] {
+    let n = bounds.len() - 1;
+    // `following` boxes more are as short as their order permits.
+    let (mut boxes, mut sum, mut following) = ([0.0; 4], 0.0, 0);
+    for k in 0..n {
+        if following > 0 {
+            following -= 1;
+            boxes[k] = sum;
+        } else {
+            let (i, length) = binding(sum, bounds[k], &bounds[k + 1..]);
+            boxes[k] = if length <= sum * (1.0 + NO_DWELL) { sum } else { length };
+            following = i;
+        }
+        sum += boxes[k];
+    }
+    boxes
+}
+
+/// Which of `bounds` binds the box behind those that sum up to `sum` and reach `peak`, and the length that it permits.
+///
+/// Only the first one costs no root: of the others, the cubic last, one is taken where the length so far exceeds the bound.
+fn binding(sum: f64, peak: f64, bounds: &[f64]) -> (usize, f64) {
+    let (mut which, mut length) = (0, bounds[0] / peak);
+    for i in [1, 3, 2] {
+        if let Some(bound) = bounds.get(i)
+            && peak * growth(i, sum, length) > *bound
+        {
+            (which, length) = (i, root(i, sum, bound / peak));
+        }
+    }
+    (which, length)
 }
 
 /// How far the whole numbers of the fewest samples may lie from the lengths of the continuous profile: to the next whole
@@ -56,7 +92,7 @@ pub(crate) fn lengths(bounds: &[f64], grid: Grid) -> Option<[f64; 4]> {
 const REACH: f64 = 2.0;
 
 /// Whole lengths of the `bounds.len() − 1` boxes of the profile with the smallest sum; of several, the one with the lowest
-/// amplitude. `bounds` and `None` as for [`lengths`].
+/// amplitude. `bounds` and `None` as for [`whole`].
 ///
 /// With the distance X = amplitude·∏ n_k, a bound on the product of the first m boxes and the amplitude is one on the
 /// product of the boxes behind them, for whatever n_1 … n_m:
@@ -67,8 +103,8 @@ const REACH: f64 = 2.0;
 ///
 /// All but the last box take every whole number near the continuous length; the last follows.
 pub(crate) fn fewest(bounds: &[f64]) -> Option<[f64; 4]> {
-    let near = lengths(bounds, Grid::Continuous)?;
-    let mut search = Search { bounds, near, best: lengths(bounds, Grid::Whole)? };
+    let near = continuous(bounds);
+    let mut search = Search { bounds, near, best: whole(bounds)? };
     search.from(0, [0.0; 4], 0.0);
     Some(search.best)
 }
@@ -127,16 +163,9 @@ fn growth(i: usize, c: f64, t: f64) -> f64 {
     product
 }
 
-impl Grid {
-    /// Smallest length, at least `c`, whose [`growth`] reaches `q`.
-    fn shortest(self, i: usize, c: f64, q: f64) -> f64 {
-        let t = root(i, c, q);
-        match self {
-            Self::Continuous if t <= c * (1.0 + NO_DWELL) => c,
-            Self::Continuous => t,
-            Self::Whole => smallest_whole(t, c, |n| growth(i, c, n) >= q * (1.0 - SLACK)),
-        }
-    }
+/// Smallest whole number, at least `c`, whose [`growth`] reaches `q`.
+fn shortest_whole(i: usize, c: f64, q: f64) -> f64 {
+    smallest_whole(root(i, c, q), c, |n| growth(i, c, n) >= q * (1.0 - SLACK))
 }
 
 /// Positive root of `growth(i, c, t) = q`; i = 3 occurs for the first box only, where c = 0.
@@ -150,19 +179,40 @@ fn root(i: usize, c: f64, q: f64) -> f64 {
     }
 }
 
-/// Positive root of `t(c + t)² = q`, by Newton from above: convex and increasing, so that the steps go down
-/// monotonically until rounding stops them. Cardano's formula, (23) of the paper, cancels for t ≪ c.
+/// Positive root of `t(c + t)² = q`, by Halley's method: where the function rises its Schwarzian derivative is negative, so
+/// that the steps lead from either side to the root and not past it. Cardano's formula, (23) of the paper, cancels for
+/// t ≪ c.
 fn cubic(c: f64, q: f64) -> f64 {
-    let mut t = libm::cbrt(q).min(q / (c * c));
+    /// A step so small, as a part of the root, leaves the cube of it: less than rounding.
+    const LAST: f64 = 1e-6;
+    let mut t = near_cubic(c, q);
     loop {
         let s = c + t;
-        let next = t - (t * s * s - q) / (s * (s + 2.0 * t));
-        if next < t {
-            t = next;
-        } else {
+        let (off, slope) = (t * s * s - q, s * (s + 2.0 * t));
+        let step = off * slope / (slope * slope - off * (s + s + t));
+        t -= step;
+        if step.abs() <= LAST * t {
             return t;
         }
     }
+}
+
+/// The root of [`cubic`] to a percent from t = c on, where [`continuous`] boxes lie; below it a bound.
+fn near_cubic(c: f64, q: f64) -> f64 {
+    let inverse = near_inverse_cbrt(q);
+    let part = c * inverse;
+    if part < 1.0 {
+        // Its series in c/∛q.
+        q * inverse * inverse + c * (part * (1.0 / 9.0 + part * (2.0 / 81.0)) - 2.0 / 3.0)
+    } else {
+        q / (c * c)
+    }
+}
+
+/// 1/∛q to 0.3 %: a third of the exponent, which leaves 3.5 %, and one step of Newton's method.
+fn near_inverse_cbrt(q: f64) -> f64 {
+    let inverse = f64::from_bits(0x553e_f0ff_289d_d796 - q.to_bits() / 3);
+    inverse * (4.0 / 3.0 - q / 3.0 * inverse * inverse * inverse)
 }
 
 /// Smallest whole number from `at_least` on for which `holds`; `guess` is within a few roundings of it.
@@ -198,13 +248,19 @@ mod tests {
         }
 
         #[test]
+        fn the_start_is_near_the_root(ratio in 1.0..1e6_f64, c in decades()) {
+            let t = ratio * c;
+            prop_assert!((near_cubic(c, t * (c + t) * (c + t)) / t - 1.0).abs() < 0.01, "t = {t:e}");
+        }
+
+        #[test]
         fn the_whole_number_is_the_smallest_that_reaches(i in 1..4_usize, c in 0..1_000_u32, n in 1..1_000_u32) {
             // Exact in f64: 8·1000·2000³ < 2⁵³.
             let c = if i == 3 { 0.0 } else { f64::from(c) };
             let n = f64::from(n) + c;
             let exactly = growth(i, c, n);
-            prop_assert_eq!(Grid::Whole.shortest(i, c, exactly).to_bits(), n.to_bits());
-            prop_assert_eq!(Grid::Whole.shortest(i, c, exactly + 0.5).to_bits(), (n + 1.0).to_bits());
+            prop_assert_eq!(shortest_whole(i, c, exactly).to_bits(), n.to_bits());
+            prop_assert_eq!(shortest_whole(i, c, exactly + 0.5).to_bits(), (n + 1.0).to_bits());
         }
     }
 
@@ -220,8 +276,8 @@ mod tests {
         assert!(smallest_whole(MAX_SAMPLES - 9.0, 0.0, |_| false) >= MAX_SAMPLES);
         assert!(smallest_whole(f64::INFINITY, 0.0, |_| true) >= MAX_SAMPLES);
         // A distance of n at a velocity of one per sample takes n samples of cruise; the slack is 32 samples here.
-        assert!(lengths(&[1.0, 1.0, MAX_SAMPLES - 64.0], Grid::Whole).is_some());
-        assert_eq!(lengths(&[1.0, 1.0, MAX_SAMPLES + 64.0], Grid::Whole), None);
-        assert_eq!(lengths(&[1e-150, 1.0, 1e30], Grid::Whole), None);
+        assert!(whole(&[1.0, 1.0, MAX_SAMPLES - 64.0]).is_some());
+        assert_eq!(whole(&[1.0, 1.0, MAX_SAMPLES + 64.0]), None);
+        assert_eq!(whole(&[1e-150, 1.0, 1e30]), None);
     }
 }

@@ -1,5 +1,5 @@
 //! A planned rest-to-rest move: what it is made of, and the set-point at any time.
-use crate::boxes::{self, Grid};
+use crate::boxes;
 use crate::request::Request;
 use crate::sampled::Run;
 use crate::{Limits, Order, Piece, PlanError, Segment, Segments, optimal, segment};
@@ -90,9 +90,7 @@ impl Profile {
     /// 1e-30 … 1e30 (SI). A distance of zero is a move of duration zero.
     pub fn plan(order: Order, distance: f64, limits: &Limits) -> Result<Self, PlanError> {
         let Request { distance, bounds } = Request::new(order, distance, limits)?;
-        let boxes =
-            if distance == 0.0 { None } else { boxes::lengths(&bounds[..=order.derivative()], Grid::Continuous) };
-        Ok(Self::from_boxes(order, distance, boxes.unwrap_or_default(), None))
+        Ok(Self::continuous(order, distance, &bounds))
     }
 
     /// Plans a move all of whose switching instants are whole multiples of `sample_time` (s).
@@ -104,7 +102,7 @@ impl Profile {
     /// # Errors
     /// As [`plan`](Self::plan), for the sample time too, and [`PlanError::TooManySamples`] above 2⁵³ samples.
     pub fn plan_sampled(order: Order, distance: f64, limits: &Limits, sample_time: f64) -> Result<Self, PlanError> {
-        Self::whole(order, distance, limits, sample_time, |bounds| boxes::lengths(bounds, Grid::Whole))
+        Self::whole(order, distance, limits, sample_time, boxes::whole)
     }
 
     /// As [`plan_sampled`](Self::plan_sampled), with the fewest samples that a step through boxes needs, instead of the
@@ -160,9 +158,13 @@ impl Profile {
                 return Ok(Self::from_half(distance, &half, unit));
             }
         }
-        let boxes =
-            if distance == 0.0 { None } else { boxes::lengths(&bounds[..=order.derivative()], Grid::Continuous) };
-        Ok(Self::from_boxes(order, distance, boxes.unwrap_or_default(), None))
+        Ok(Self::continuous(order, distance, &bounds))
+    }
+
+    /// The move through boxes of any length; `bounds` as in [`Request`].
+    fn continuous(order: Order, distance: f64, bounds: &[f64; 5]) -> Self {
+        let boxes = if distance == 0.0 { [0.0; 4] } else { boxes::continuous(&bounds[..=order.derivative()]) };
+        Self::from_boxes(order, distance, boxes, None)
     }
 
     /// The move of `distance` with these boxes, in seconds or in samples. The boxes fulfil the order conditions.
@@ -181,16 +183,23 @@ impl Profile {
             *slot = peak;
         }
         let boxes = Boxes { lengths, dwells, unit, sampled: sample_time.is_some() };
-        let mut profile = Self { boxes: Some(boxes), peaks, ..Self::empty(order, distance, sum * unit) };
-        if boxes.sampled {
-            // k·Ts against k/f is 1.5 ulp; a time found by subtracting is worse, which the sample grid can bear.
-            profile.tolerance = profile.tolerance.max(1e-9 * unit);
+        let duration = sum * unit;
+        // k·Ts against k/f is 1.5 ulp; a time found by subtracting is worse, which the sample grid can bear.
+        let tolerance = rounding(duration).max(if boxes.sampled { 1e-9 * unit } else { 0.0 });
+        if sum == 0.0 {
+            return Self { boxes: Some(boxes), peaks, tolerance, ..Self::empty(order, distance, duration) };
         }
-        if sum > 0.0 {
-            profile.amplitude = lengths[..n].iter().rev().fold(distance, |peak, length| peak / (length * unit));
-            profile.fill_from_boxes(&boxes);
-        }
-        profile
+        let (amplitude, v) = (peak.copysign(distance), peaks[0].copysign(distance));
+        let (starts, lengths) = (segment::starts(&boxes, n), segment::lengths(&boxes, n));
+        // Of the cruise only the velocity is not zero: the residue that the integration leaves in the acceleration would
+        // drift through a long one.
+        let cruise = Setpoint { x: v * (starts[(1 << (n - 1)) - 1] / 2.0), v, ..Setpoint::default() };
+        let anchors = match order {
+            Order::Second => segment::anchors::<1>(|state, value| state.a = value, amplitude, &lengths, cruise),
+            Order::Third => segment::anchors::<3>(|state, value| state.j = value, amplitude, &lengths, cruise),
+            Order::Fourth => segment::anchors::<7>(|state, value| state.s = value, amplitude, &lengths, cruise),
+        };
+        Self { order, distance, amplitude, boxes: Some(boxes), peaks, duration, tolerance, starts, lengths, anchors }
     }
 
     /// No segment yet.
@@ -202,34 +211,10 @@ impl Profile {
             boxes: None,
             peaks: [0.0; 4],
             duration,
-            tolerance: 4.0 * f64::EPSILON * duration,
+            tolerance: rounding(duration),
             starts: [f64::INFINITY; 8],
             lengths: [0.0; 8],
             anchors: [Setpoint::default(); 8],
-        }
-    }
-
-    /// Segments and their start states up to the cruise, of which only the velocity is not zero: the residue that the
-    /// integration leaves in the acceleration would drift through a long cruise.
-    fn fill_from_boxes(&mut self, boxes: &Boxes) {
-        let n = self.order.derivative();
-        let cruise = (1 << (n - 1)) - 1;
-        let mut state = Setpoint::default();
-        for i in 0..=cruise {
-            let segment = segment::nth(boxes, n, self.amplitude, i);
-            if i == cruise {
-                let v = self.distance / (boxes.lengths[n - 1] * boxes.unit);
-                state = Setpoint { x: v * (segment.start / 2.0), v, ..Setpoint::default() };
-            }
-            match self.order {
-                Order::Second => state.a = segment.value,
-                Order::Third => state.j = segment.value,
-                Order::Fourth => state.s = segment.value,
-            }
-            self.starts[i] = segment.start;
-            self.lengths[i] = segment.length;
-            self.anchors[i] = state;
-            state = state.after(segment.length);
         }
     }
 
@@ -426,4 +411,9 @@ impl Profile {
         };
         start.is_finite().then_some(Segment { start, length, value })
     }
+}
+
+/// 4 ulp of the duration (s).
+const fn rounding(duration: f64) -> f64 {
+    4.0 * f64::EPSILON * duration
 }

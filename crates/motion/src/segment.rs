@@ -1,6 +1,9 @@
 //! Where the highest derivative switches: pulses and dwells in the order of time.
 use crate::Profile;
 use crate::profile::Boxes;
+use core::array::from_fn;
+use core::cmp::Ordering;
+use servobench_base::Setpoint;
 
 /// A stretch of time in which the highest derivative is constant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,4 +82,41 @@ pub(crate) fn nth(boxes: &Boxes, n: usize, amplitude: f64, i: usize) -> Segment 
         let dwell = dwells[1 + (pulse + 1).trailing_zeros() as usize];
         Segment { start: (start + lengths[0]) * unit, length: dwell * unit, value: 0.0 }
     }
+}
+
+/// Starts (s) of the segments of the first half of a step through n `boxes`, the cruise included, as [`nth`] has them;
+/// infinite beyond the order.
+pub(crate) fn starts(boxes: &Boxes, n: usize) -> [f64; MOST / 2] {
+    let [first, second, third, _] = boxes.lengths;
+    let pulses = [0.0, second, third, second + third];
+    from_fn(|i| if i < 1 << (n - 1) { (pulses[i / 2] + [0.0, first][i % 2]) * boxes.unit } else { f64::INFINITY })
+}
+
+/// Their lengths (s); zero beyond the order.
+pub(crate) fn lengths(boxes: &Boxes, n: usize) -> [f64; MOST / 2] {
+    let [pulse, second, third, fourth] = boxes.dwells;
+    let lengths = [pulse, second, pulse, third, pulse, second, pulse, fourth];
+    from_fn(|i| if i < 1 << (n - 1) { lengths[i] * boxes.unit } else { 0.0 })
+}
+
+/// The states at their starts: from rest through pulses of `amplitude`, which `set` makes the highest derivative, to the
+/// last, the `cruise`.
+pub(crate) fn anchors<const CRUISE: usize>(
+    set: impl Fn(&mut Setpoint, f64),
+    amplitude: f64,
+    lengths: &[f64; MOST / 2],
+    cruise: Setpoint,
+) -> [Setpoint; MOST / 2] {
+    let values = [amplitude, 0.0, -amplitude, 0.0, -amplitude, 0.0, amplitude];
+    let mut state = Setpoint::default();
+    from_fn(|i| match i.cmp(&CRUISE) {
+        Ordering::Less => {
+            set(&mut state, values[i]);
+            let anchor = state;
+            state = state.after(lengths[i]);
+            anchor
+        }
+        Ordering::Equal => cruise,
+        Ordering::Greater => Setpoint::default(),
+    })
 }
