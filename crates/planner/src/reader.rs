@@ -6,44 +6,50 @@ use servobench_motion::Piece;
 /// What holds of a [`Plan`] at one time and for a while after it.
 ///
 /// Nothing is allocated after the first look-up.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Reader {
-    /// The polynomials whose weighted sum is the set-point: part, delay (s), polynomial.
-    pieces: Vec<(f64, f64, Piece)>,
+    /// The polynomial of the first part, which has no delay: the only one, unless the plan is shaped.
+    first: Piece,
+    /// Those of the parts that come later: part, delay (s), polynomial.
+    later: Vec<(f64, f64, Piece)>,
+}
+
+impl Default for Reader {
+    fn default() -> Self {
+        Self { first: Piece::at_rest(0.0), later: Vec::new() }
+    }
 }
 
 impl Reader {
     /// What holds at `t` (s) of `plan`.
     pub fn look_up(&mut self, plan: &Plan, t: f64) {
-        self.pieces.clear();
-        let pieces = plan.parts().iter().map(|part| {
+        self.first = plan.course().piece(t);
+        self.later.clear();
+        self.later.extend(plan.parts().iter().skip(1).map(|part| {
             let since = t - part.time;
-            let is_yet_to_come = part.time > 0.0 && since < 0.0;
-            let piece = if is_yet_to_come {
+            let piece = if since < 0.0 {
                 Piece::held(Setpoint::at_rest(plan.course().at(0.0).x), 0.0)
             } else {
                 plan.course().piece(since)
             };
             (part.amplitude, part.time, piece)
-        });
-        self.pieces.extend(pieces);
+        }));
     }
 
     /// Whether it still holds at `t` (s), a time not before that of the look-up.
     #[inline]
     #[must_use]
     pub fn holds(&self, t: f64) -> bool {
-        self.pieces.iter().all(|(_, delay, piece)| piece.holds(t - delay))
+        self.first.holds(t) && self.later.iter().all(|(_, delay, piece)| piece.holds(t - delay))
     }
 
     /// The set-point at `t` (s), a time at which it holds.
     #[inline]
     #[must_use]
     pub fn at(&self, t: f64) -> Setpoint {
-        let Some(((_, _, first), rest)) = self.pieces.split_first() else { return Setpoint::default() };
-        let first = first.at(t);
+        let first = self.first.at(t);
         // Differences from the first part: at rest all are the same to the bit.
-        rest.iter().fold(first, |sum, (part, delay, piece)| {
+        self.later.iter().fold(first, |sum, (part, delay, piece)| {
             let Setpoint { x, v, a, j, s } = piece.at(t - delay);
             Setpoint {
                 x: sum.x + part * (x - first.x),
@@ -57,14 +63,14 @@ impl Reader {
 
     /// When the first of its polynomials ceases to hold (s).
     pub(crate) fn ends(&self) -> f64 {
-        self.pieces.iter().map(|(_, delay, piece)| piece.ends() + delay).fold(f64::INFINITY, f64::min)
+        self.later.iter().map(|(_, delay, piece)| piece.ends() + delay).fold(self.first.ends(), f64::min)
     }
 }
 
 impl Plan {
     /// A reader that has found what holds at `t` (s).
     pub(crate) fn reader_at(&self, t: f64) -> Reader {
-        let mut reader = Reader { pieces: Vec::with_capacity(self.parts().len()) };
+        let mut reader = Reader::default();
         reader.look_up(self, t);
         reader
     }
