@@ -11,8 +11,9 @@ enum May {
 }
 
 /// The floor plan, lower floors first. Dev-dependencies are free: the oracle of a test may come from anywhere.
-const PLAN: [(&str, May); 20] = [
+const PLAN: [(&str, May); 21] = [
     ("base", May::On(&[])),
+    ("cia402", May::On(&["base"])),
     ("motion", May::On(&["base"])),
     ("planner", May::On(&["base", "motion"])),
     ("drive", May::On(&["base", "motion"])),
