@@ -3,8 +3,15 @@
 //! `no_std`, no heap. Objects are cited by their index, as in 6041h.
 #![cfg_attr(not(test), no_std)]
 
+mod controlword;
+mod option_code;
 mod state;
 mod statusword;
 
+pub use controlword::{Command, ControlBit, Controlword};
+pub use option_code::{
+    Deceleration, DisableOperationOption, FaultReactionOption, HaltOption, OptionCodeError, QuickStopOption,
+    ShutdownOption,
+};
 pub use state::PowerState;
 pub use statusword::{StatusBit, Statusword};
