@@ -4,14 +4,18 @@
 #![cfg_attr(not(test), no_std)]
 
 mod controlword;
+mod machine;
 mod option_code;
 mod state;
 mod statusword;
+mod transitions;
 
 pub use controlword::{Command, ControlBit, Controlword};
+pub use machine::{DriveFunction, PowerInputs, PowerMemory, PowerOutputs, PowerParams, step};
 pub use option_code::{
     Deceleration, DisableOperationOption, FaultReactionOption, HaltOption, OptionCodeError, QuickStopOption,
     ShutdownOption,
 };
 pub use state::PowerState;
 pub use statusword::{StatusBit, Statusword};
+pub use transitions::{Cause, TRANSITIONS, Transition};

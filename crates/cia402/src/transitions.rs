@@ -1,0 +1,226 @@
+//! The transitions of the power state machine (IEC 61800-7-201, finite state automaton): one table, from which the machine
+//! steps, the tests test and `docs/cia402.md` is written.
+use crate::controlword::Command;
+use crate::state::PowerState::{
+    self, Fault, FaultReactionActive, NotReadyToSwitchOn, OperationEnabled, QuickStopActive, ReadyToSwitchOn,
+    SwitchOnDisabled, SwitchedOn,
+};
+
+/// What sets a transition off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Cause {
+    /// The drive is powered on or its application reset.
+    Start,
+    /// The self-test is over.
+    Initialised,
+    /// The master asks for it.
+    Command(Command),
+    /// The quick stop is over and its option code does not hold the axis.
+    QuickStopCompleted,
+    /// A fault is present.
+    Fault,
+    /// The fault reaction is over.
+    FaultReactionCompleted,
+}
+
+impl Cause {
+    /// Name in the words of the standard.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Start => "Power-on or reset of the application",
+            Self::Initialised => "Initialisation completed",
+            Self::Command(command) => command.name(),
+            Self::QuickStopCompleted => "Quick stop completed (605Ah = 0 to 4)",
+            Self::Fault => "Fault",
+            Self::FaultReactionCompleted => "Fault reaction completed",
+        }
+    }
+}
+
+/// An arrow of the state diagram.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Transition {
+    /// Number in the standard.
+    pub number: u8,
+    /// States that it leads out of; none for the start.
+    pub from: &'static [PowerState],
+    /// State that it leads to.
+    pub to: PowerState,
+    /// What sets it off, any of them.
+    pub causes: &'static [Cause],
+    /// Beside its cause, what it waits for or asks of an option code; empty for nothing.
+    pub condition: &'static str,
+    /// What the drive does.
+    pub action: &'static str,
+}
+
+/// Every transition, at the place of its number.
+pub const TRANSITIONS: [Transition; 17] = [
+    Transition {
+        number: 0,
+        from: &[],
+        to: NotReadyToSwitchOn,
+        causes: &[Cause::Start],
+        condition: "",
+        action: "self-test, initialisation",
+    },
+    Transition {
+        number: 1,
+        from: &[NotReadyToSwitchOn],
+        to: SwitchOnDisabled,
+        causes: &[Cause::Initialised],
+        condition: "",
+        action: "communication activated",
+    },
+    Transition {
+        number: 2,
+        from: &[SwitchOnDisabled],
+        to: ReadyToSwitchOn,
+        causes: &[Cause::Command(Command::Shutdown)],
+        condition: "",
+        action: "none",
+    },
+    Transition {
+        number: 3,
+        from: &[ReadyToSwitchOn],
+        to: SwitchedOn,
+        causes: &[Cause::Command(Command::SwitchOn)],
+        condition: "",
+        action: "high-level power switched on, if possible",
+    },
+    Transition {
+        number: 4,
+        from: &[SwitchedOn],
+        to: OperationEnabled,
+        causes: &[Cause::Command(Command::EnableOperation)],
+        condition: "",
+        action: "drive function enabled, internal set-points cleared",
+    },
+    Transition {
+        number: 5,
+        from: &[OperationEnabled],
+        to: SwitchedOn,
+        causes: &[Cause::Command(Command::DisableOperation)],
+        condition: "standstill, unless 605Ch = 0",
+        action: "drive function disabled",
+    },
+    Transition {
+        number: 6,
+        from: &[SwitchedOn],
+        to: ReadyToSwitchOn,
+        causes: &[Cause::Command(Command::Shutdown)],
+        condition: "",
+        action: "high-level power switched off, if possible",
+    },
+    Transition {
+        number: 7,
+        from: &[ReadyToSwitchOn],
+        to: SwitchOnDisabled,
+        causes: &[Cause::Command(Command::QuickStop), Cause::Command(Command::DisableVoltage)],
+        condition: "",
+        action: "none",
+    },
+    Transition {
+        number: 8,
+        from: &[OperationEnabled],
+        to: ReadyToSwitchOn,
+        causes: &[Cause::Command(Command::Shutdown)],
+        condition: "standstill, unless 605Bh = 0",
+        action: "drive function disabled, high-level power switched off, if possible",
+    },
+    Transition {
+        number: 9,
+        from: &[OperationEnabled],
+        to: SwitchOnDisabled,
+        causes: &[Cause::Command(Command::DisableVoltage)],
+        condition: "",
+        action: "drive function disabled, high-level power switched off, if possible",
+    },
+    Transition {
+        number: 10,
+        from: &[SwitchedOn],
+        to: SwitchOnDisabled,
+        causes: &[Cause::Command(Command::QuickStop), Cause::Command(Command::DisableVoltage)],
+        condition: "",
+        action: "high-level power switched off, if possible",
+    },
+    Transition {
+        number: 11,
+        from: &[OperationEnabled],
+        to: QuickStopActive,
+        causes: &[Cause::Command(Command::QuickStop)],
+        condition: "",
+        action: "quick stop started (605Ah)",
+    },
+    Transition {
+        number: 12,
+        from: &[QuickStopActive],
+        to: SwitchOnDisabled,
+        causes: &[Cause::QuickStopCompleted, Cause::Command(Command::DisableVoltage)],
+        condition: "",
+        action: "drive function disabled, high-level power switched off, if possible",
+    },
+    Transition {
+        number: 13,
+        from: &[NotReadyToSwitchOn, SwitchOnDisabled, ReadyToSwitchOn, SwitchedOn, OperationEnabled, QuickStopActive],
+        to: FaultReactionActive,
+        causes: &[Cause::Fault],
+        condition: "",
+        action: "fault reaction started (605Eh)",
+    },
+    Transition {
+        number: 14,
+        from: &[FaultReactionActive],
+        to: Fault,
+        causes: &[Cause::FaultReactionCompleted],
+        condition: "",
+        action: "drive function disabled, high-level power switched off, if possible",
+    },
+    Transition {
+        number: 15,
+        from: &[Fault],
+        to: SwitchOnDisabled,
+        causes: &[Cause::Command(Command::FaultReset)],
+        condition: "no fault is present",
+        action: "fault condition reset",
+    },
+    Transition {
+        number: 16,
+        from: &[QuickStopActive],
+        to: OperationEnabled,
+        causes: &[Cause::Command(Command::EnableOperation)],
+        condition: "605Ah = 5 to 8",
+        action: "drive function enabled",
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_transition_stands_at_the_place_of_its_number_and_leads_elsewhere() {
+        for (place, transition) in TRANSITIONS.iter().enumerate() {
+            assert_eq!(usize::from(transition.number), place);
+            assert!(!transition.from.contains(&transition.to), "{place}");
+            assert!(!transition.causes.is_empty(), "{place}");
+        }
+    }
+
+    #[test]
+    fn a_command_sets_off_the_transitions_that_drive_manuals_list_for_it() {
+        // 6040h: the column "transitions" of the command table, as Synapticon's and ABB's manuals print it.
+        let listed = |command| {
+            let sets_off = move |t: &&Transition| t.causes.contains(&Cause::Command(command));
+            TRANSITIONS.iter().filter(sets_off).map(|transition| transition.number)
+        };
+        assert!(listed(Command::Shutdown).eq([2, 6, 8]));
+        assert!(listed(Command::SwitchOn).eq([3]));
+        assert!(listed(Command::DisableVoltage).eq([7, 9, 10, 12]));
+        assert!(listed(Command::QuickStop).eq([7, 10, 11]));
+        assert!(listed(Command::DisableOperation).eq([5]));
+        assert!(listed(Command::EnableOperation).eq([4, 16]));
+        assert!(listed(Command::FaultReset).eq([15]));
+    }
+}

@@ -1,0 +1,89 @@
+//! A master, a plant and a supervision gone mad for a million cycles.
+use servobench_cia402::{
+    Controlword, DisableOperationOption, DriveFunction, FaultReactionOption, HaltOption, PowerInputs, PowerMemory,
+    PowerParams, QuickStopOption, ShutdownOption, TRANSITIONS, step,
+};
+
+/// Words that lead somewhere: of random words alone hardly one in a thousand sequences gets to Operation enabled.
+const SENSIBLE: [u16; 7] = [0x0000, 0x0002, 0x0006, 0x0007, 0x000F, 0x0080, 0x010F];
+const CYCLES: u64 = 1_000_000;
+/// Cycles after which the drive starts anew, with other option codes.
+const LIFE: u64 = 1_000;
+
+#[test]
+fn no_controlword_leads_out_of_the_diagram_or_powers_an_axis_that_is_not_enabled() {
+    let mut random = SplitMix(402);
+    let (mut params, mut memory, mut drive) = start(&mut random);
+    let mut taken = [0_u64; TRANSITIONS.len()];
+    for cycle in 0..CYCLES {
+        if cycle % LIFE == 0 {
+            (params, memory, drive) = start(&mut random);
+        }
+        let (before, powered) = (memory.state(), drive != DriveFunction::Disabled);
+        let outputs = step(&params, &mut memory, random.controlword(), random.inputs());
+        let after = memory.state();
+        assert_eq!(outputs.statusword.state(), Some(after), "cycle {cycle}");
+        let number = outputs.transition.map(|transition| {
+            assert!(transition.from.contains(&before) && transition.to == after, "cycle {cycle}: {transition:?}");
+            taken[usize::from(transition.number)] += 1;
+            transition.number
+        });
+        assert!(number.is_some() || after == before, "cycle {cycle}: {before} to {after} without a transition");
+        let is_powered = outputs.drive != DriveFunction::Disabled;
+        assert!(!is_powered || after.is_drive_function_enabled(), "cycle {cycle}: powered in {after}");
+        assert!(!is_powered || powered || number == Some(4), "cycle {cycle}: powered by transition {number:?}");
+        drive = outputs.drive;
+    }
+    // All but the start, or the test would not have been where it matters.
+    assert!(taken[1..].iter().all(|times| *times > 100), "{taken:?}");
+}
+
+fn start(random: &mut SplitMix) -> (PowerParams, PowerMemory, DriveFunction) {
+    let params = PowerParams {
+        quick_stop: QuickStopOption::try_from(random.one_of(QuickStopOption::CODES)).unwrap(),
+        shutdown: ShutdownOption::try_from(random.one_of(ShutdownOption::CODES)).unwrap(),
+        disable_operation: DisableOperationOption::try_from(random.one_of(DisableOperationOption::CODES)).unwrap(),
+        halt: HaltOption::try_from(random.one_of(HaltOption::CODES)).unwrap(),
+        fault_reaction: FaultReactionOption::try_from(random.one_of(FaultReactionOption::CODES)).unwrap(),
+    };
+    (params, PowerMemory::default(), DriveFunction::Disabled)
+}
+
+/// SplitMix64 (Steele, Lea and Flood 2014).
+struct SplitMix(u64);
+
+impl SplitMix {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        mixed ^ (mixed >> 31)
+    }
+
+    fn one_of<T: Copy>(&mut self, choices: &[T]) -> T {
+        choices[usize::try_from(self.next() % choices.len() as u64).unwrap()]
+    }
+
+    /// True once in `times`.
+    fn once_in(&mut self, times: u64) -> bool {
+        self.next().is_multiple_of(times)
+    }
+
+    fn controlword(&mut self) -> Controlword {
+        let any = u16::try_from(self.next() >> 48).unwrap();
+        Controlword::from_bits(if self.once_in(2) { any } else { self.one_of(&SENSIBLE) })
+    }
+
+    fn inputs(&mut self) -> PowerInputs {
+        PowerInputs {
+            initialised: self.once_in(4),
+            fault: self.once_in(32),
+            standstill: self.once_in(4),
+            remote: !self.once_in(8),
+            main_voltage: self.once_in(2),
+            warning: self.once_in(2),
+            target_reached: self.once_in(2),
+            internal_limit: self.once_in(2),
+        }
+    }
+}
