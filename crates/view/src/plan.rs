@@ -19,6 +19,9 @@ pub(crate) fn plots<'a>(runs: &[Run<'a>], options: &ViewOptions) -> Vec<PlannedP
     planned
 }
 
+/// The first derivative of the position (0: velocity) that moves of some order do not limit.
+const JERK: usize = 2;
+
 fn plan<'a>(plot: &Plot, runs: &[Run<'a>], options: &ViewOptions) -> Option<PlannedPlot<'a>> {
     // In a comparison, all runs show the same curve: the first one that one of them has.
     let recorded = |curve: &&Curve| runs.iter().any(|run| run.first_of(curve.channels).is_some());
@@ -52,6 +55,12 @@ fn plan<'a>(plot: &Plot, runs: &[Run<'a>], options: &ViewOptions) -> Option<Plan
                 values: Values::Channel { run: *run, values: &channel.values, first: 0, origin: 0.0 },
             });
         }
+    }
+    if plot.derivative.is_some_and(|derivative| derivative >= JERK)
+        && series.iter().all(|one| one.range() == Some((0.0, 0.0)))
+    {
+        // An impulse wherever it is not: the order of the moves does not limit it.
+        return None;
     }
     let ours = |channel: &str| plot.curves.iter().any(|curve| curve.channels.contains(&channel));
     let limits = options.limits.iter().filter(|(channel, _)| ours(channel)).map(|(_, limit)| *limit);

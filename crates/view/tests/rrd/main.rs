@@ -24,7 +24,7 @@ fn options() -> ViewOptions {
 
 #[test]
 fn a_run_is_all_there_on_one_timeline() {
-    let content = written(&example(3), &options());
+    let content = written(&example(4), &options());
     assert_eq!(content.timelines, BTreeSet::from(["time".to_owned()]));
     for entity in [
         "/position/load",
@@ -46,6 +46,14 @@ fn a_run_is_all_there_on_one_timeline() {
     for entity in ["/axis/motor", "/axis/load", "/axis/bed", "/axis/spring/load", "/axis/reference", "/moves", "/log"] {
         assert!(content.entities.contains(entity), "{entity} is missing in {:?}", content.entities);
     }
+    assert_views_are_fed(&content);
+}
+
+#[test]
+fn a_derivative_that_is_no_more_than_impulses_has_no_plot() {
+    let content = written(&example(3), &options());
+    assert!(!content.curves.contains_key("/setpoint_snap/snap"), "{:?}", content.curves.keys());
+    assert!(content.curves.contains_key("/setpoint_jerk/jerk"));
     assert_views_are_fed(&content);
 }
 
