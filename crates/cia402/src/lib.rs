@@ -4,11 +4,14 @@
 #![cfg_attr(not(test), no_std)]
 
 mod controlword;
+pub mod counter;
+pub mod difference;
 mod machine;
 mod option_code;
 mod state;
 mod statusword;
 mod transitions;
+pub mod units;
 
 pub use controlword::{Command, ControlBit, Controlword};
 pub use machine::{DriveFunction, PowerInputs, PowerMemory, PowerOutputs, PowerParams, step};

@@ -1,0 +1,155 @@
+//! Position counters that wrap.
+//!
+//! A counter of N bits shows the position modulo 2^N. Of the ways between two readings the shortest is taken,
+//!
+//! ```text
+//! step = ((to − from + 2^(N−1)) mod 2^N) − 2^(N−1),        position += step,
+//! ```
+//!
+//! so no count is lost over any number of turns as long as every true step is shorter than half the range. A step of
+//! half the range has two directions and is refused. A longer one looks like a shorter one the other way and cannot be
+//! seen, unless the axis is known to be slower: [`Unwrapped::with_largest_step`] refuses whatever it cannot have done.
+//!
+//! ```
+//! use servobench_cia402::counter::{Counter, Unwrapped};
+//! let mut position = Unwrapped::new(Counter::signed(16)?, 32_767_i16)?;
+//! assert_eq!(position.follow(-32_768_i16)?, 32_768);
+//! # Ok::<(), servobench_cia402::units::UnitError>(())
+//! ```
+use crate::units::UnitError;
+
+/// The range of a position counter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Counter {
+    bits: u32,
+    signed: bool,
+}
+
+impl Counter {
+    /// A counter of `bits` bits from −2^(bits−1) to 2^(bits−1) − 1, such as the position actual internal value (6063h)
+    /// with 32.
+    ///
+    /// # Errors
+    /// [`UnitError::CounterWidth`] unless `bits` is from 8 to 64.
+    pub const fn signed(bits: u32) -> Result<Self, UnitError> {
+        Self::of_width(bits, true)
+    }
+
+    /// A counter of `bits` bits from 0 to 2^bits − 1.
+    ///
+    /// # Errors
+    /// As [`signed`](Self::signed).
+    pub const fn unsigned(bits: u32) -> Result<Self, UnitError> {
+        Self::of_width(bits, false)
+    }
+
+    const fn of_width(bits: u32, signed: bool) -> Result<Self, UnitError> {
+        match bits {
+            8..=64 => Ok(Self { bits, signed }),
+            _ => Err(UnitError::CounterWidth { bits }),
+        }
+    }
+
+    /// Number of readings, 2^N.
+    #[must_use]
+    pub const fn range(self) -> i128 {
+        1 << self.bits
+    }
+
+    /// Lowest reading.
+    #[must_use]
+    pub const fn lowest(self) -> i128 {
+        if self.signed { -self.range() / 2 } else { 0 }
+    }
+
+    /// Highest reading.
+    #[must_use]
+    pub const fn highest(self) -> i128 {
+        self.lowest() + self.range() - 1
+    }
+
+    /// What the counter shows at a position (counts).
+    #[must_use]
+    pub const fn wrap(self, position: i128) -> i128 {
+        // The range is a power of two: its low bits are the remainder, of negative positions too.
+        let remainder = position & (self.range() - 1);
+        if remainder > self.highest() { remainder - self.range() } else { remainder }
+    }
+
+    /// The shortest way from one reading to another, from −2^(N−1) to 2^(N−1) − 1 counts.
+    const fn way(self, from: i128, to: i128) -> i128 {
+        Self { bits: self.bits, signed: true }.wrap(to - from)
+    }
+
+    fn reading(self, reading: i128) -> Result<i128, UnitError> {
+        let (lowest, highest) = (self.lowest(), self.highest());
+        if (lowest..=highest).contains(&reading) {
+            Ok(reading)
+        } else {
+            Err(UnitError::OutsideCounter { bits: self.bits, lowest, highest, reading })
+        }
+    }
+}
+
+/// The absolute position behind a counter.
+///
+/// 2⁶³ readings of the widest counter, each half the range further, stay within the 127 bits of the position.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Unwrapped {
+    counter: Counter,
+    largest_step: i128,
+    reading: i128,
+    position: i128,
+}
+
+impl Unwrapped {
+    /// Starts at the position that the counter shows.
+    ///
+    /// # Errors
+    /// [`UnitError::OutsideCounter`] if the counter cannot show the reading.
+    pub fn new(counter: Counter, reading: impl Into<i128>) -> Result<Self, UnitError> {
+        let reading = counter.reading(reading.into())?;
+        Ok(Self { counter, largest_step: counter.range() / 2 - 1, reading, position: reading })
+    }
+
+    /// The same at another position (counts), known from homing or from before.
+    #[must_use]
+    pub fn at(self, position: i64) -> Self {
+        Self { position: position.into(), ..self }
+    }
+
+    /// The same with a bound on the counts between two readings: what the axis can do at its highest velocity.
+    ///
+    /// # Errors
+    /// [`UnitError::StepBound`] unless the bound is at least 1 and shorter than half the range.
+    pub const fn with_largest_step(self, largest_step: i128) -> Result<Self, UnitError> {
+        let highest = self.counter.range() / 2 - 1;
+        if largest_step < 1 || largest_step > highest {
+            return Err(UnitError::StepBound { largest_step, highest });
+        }
+        Ok(Self { largest_step, ..self })
+    }
+
+    /// The position (counts) at the next reading.
+    ///
+    /// # Errors
+    /// [`UnitError::OutsideCounter`] if the counter cannot show it, [`UnitError::StepTooLong`] if the direction is not
+    /// known. Nothing has changed then.
+    pub fn follow(&mut self, reading: impl Into<i128>) -> Result<i128, UnitError> {
+        let reading = self.counter.reading(reading.into())?;
+        let step = self.counter.way(self.reading, reading);
+        if step.abs() > self.largest_step {
+            let (from, largest_step) = (self.reading, self.largest_step);
+            return Err(UnitError::StepTooLong { from, to: reading, step, largest_step });
+        }
+        self.reading = reading;
+        self.position += step;
+        Ok(self.position)
+    }
+
+    /// The position at the last accepted reading (counts).
+    #[must_use]
+    pub const fn position(&self) -> i128 {
+        self.position
+    }
+}

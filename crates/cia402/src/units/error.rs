@@ -1,0 +1,146 @@
+//! Why a factor, a count or a position is refused.
+use core::fmt;
+
+use thiserror::Error;
+
+/// Index and sub-index in the object dictionary.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Object {
+    /// Index, such as 6091h.
+    pub index: u16,
+    /// Sub-index, 00h for a plain variable.
+    pub subindex: u8,
+}
+
+impl fmt::Display for Object {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:04X}h:{:02X}h", self.index, self.subindex)
+    }
+}
+
+/// A factor, reading or position that is refused, with what would be accepted.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum UnitError {
+    /// An object of the factor group that is zero.
+    #[error("`{name}` ({object}) must be at least 1, got 0: write the ratio of the axis, or 1 if there is none")]
+    ZeroFactor {
+        /// The object.
+        object: Object,
+        /// Its name in the standard.
+        name: &'static str,
+    },
+    /// A part of a ratio that is not positive.
+    #[error("`{name}` must be at least 1, got {value}: give the sign by the polarity (607Eh)")]
+    NotPositive {
+        /// Numerator or denominator.
+        name: &'static str,
+        /// Rejected value.
+        value: i64,
+    },
+    /// A polarity with a bit that has no meaning.
+    #[error("polarity (607Eh:00h) must have no bits but 7 and 6, got {polarity:#04x}: clear bits {reserved:#04x}")]
+    ReservedPolarity {
+        /// The byte as written.
+        polarity: u8,
+        /// The reserved bits that are set.
+        reserved: u8,
+    },
+    /// A product of ratios with a reduced numerator or denominator that is not kept.
+    #[error(
+        "`{name}` needs a numerator or denominator of {value} when reduced, at most {highest} is kept: choose factors \
+         that have more in common, or a coarser unit"
+    )]
+    RatioTooLarge {
+        /// The product.
+        name: &'static str,
+        /// The larger one of numerator and denominator, reduced.
+        value: u128,
+        /// Largest one that is kept.
+        highest: i64,
+    },
+    /// Counts that overflow when they are converted.
+    #[error(
+        "{value} counts cannot be multiplied by {numerator} within 127 bits: wrap the position into its counter first"
+    )]
+    CountOverflow {
+        /// Counts to be converted.
+        value: i128,
+        /// Numerator of the ratio, or of its product with the time.
+        numerator: i128,
+    },
+    /// A position or velocity that is no number or too far for the counts.
+    #[error("`{name}` must be finite and at most {highest:e} in magnitude (SI), got {value:e}: correct it or its unit")]
+    NotCountable {
+        /// Field name.
+        name: &'static str,
+        /// Rejected value (SI).
+        value: f64,
+        /// Magnitude at which the counts overflow (SI).
+        highest: f64,
+    },
+    /// A value that its object cannot hold.
+    #[error(
+        "`{name}` ({object}) must be between {lowest} and {highest}, got {value}: choose a coarser unit (6092h, 6096h)"
+    )]
+    OutsideObject {
+        /// The object.
+        object: Object,
+        /// Its name in the standard.
+        name: &'static str,
+        /// Rejected value, in the unit of the object.
+        value: i128,
+        /// Smallest value.
+        lowest: i128,
+        /// Largest value.
+        highest: i128,
+    },
+    /// A counter too narrow or too wide.
+    #[error("a position counter must have 8 to 64 bits, got {bits}: take the width of the drive's counter")]
+    CounterWidth {
+        /// Requested width (bit).
+        bits: u32,
+    },
+    /// A reading that the counter cannot show.
+    #[error(
+        "a {bits}-bit counter shows {lowest} to {highest}, got {reading}: check its width and whether it is signed"
+    )]
+    OutsideCounter {
+        /// Width (bit).
+        bits: u32,
+        /// Lowest reading.
+        lowest: i128,
+        /// Highest reading.
+        highest: i128,
+        /// Rejected reading.
+        reading: i128,
+    },
+    /// A bound on the steps that does not tell one direction from the other.
+    #[error(
+        "`largest_step` must be between 1 and {highest} counts, got {largest_step}: half the range of the counter has \
+         two directions"
+    )]
+    StepBound {
+        /// Rejected bound (counts).
+        largest_step: i128,
+        /// Largest bound, one less than half the range (counts).
+        highest: i128,
+    },
+    /// Two readings so far apart that the way between them is not known.
+    #[error(
+        "the counter went from {from} to {to}, {step} counts the nearest way, at most {largest_step} tell the \
+         direction: read it more often, take a wider counter or start again from a known position"
+    )]
+    StepTooLong {
+        /// Reading before.
+        from: i128,
+        /// Reading after.
+        to: i128,
+        /// Difference the nearest way (counts).
+        step: i128,
+        /// Largest step accepted (counts).
+        largest_step: i128,
+    },
+    /// A difference over a cycle without length.
+    #[error("`cycle_time` must be at least 1 ns, got 0: give the time between two readings")]
+    ZeroCycleTime,
+}

@@ -1,0 +1,143 @@
+//! A positive fraction of integers.
+use super::UnitError;
+
+/// A positive fraction, always reduced: numerator and denominator up to 2⁶³ − 1 without a common divisor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Ratio {
+    numerator: i64,
+    denominator: i64,
+}
+
+impl Ratio {
+    /// 1/1.
+    pub const ONE: Self = Self { numerator: 1, denominator: 1 };
+
+    /// The fraction, reduced.
+    ///
+    /// # Errors
+    /// [`UnitError::NotPositive`] if the numerator or the denominator is zero or negative.
+    pub fn new(numerator: i64, denominator: i64) -> Result<Self, UnitError> {
+        for (name, value) in [("numerator", numerator), ("denominator", denominator)] {
+            if value < 1 {
+                return Err(UnitError::NotPositive { name, value });
+            }
+        }
+        Self::reduced("ratio", numerator.unsigned_abs().into(), denominator.unsigned_abs().into())
+    }
+
+    /// The fraction of two positive numbers of any size; `name` is what a refusal calls it.
+    pub(crate) fn reduced(name: &'static str, numerator: u128, denominator: u128) -> Result<Self, UnitError> {
+        let divisor = greatest_common_divisor(numerator, denominator);
+        let kept = |part: u128| {
+            i64::try_from(part / divisor).map_err(|_| UnitError::RatioTooLarge {
+                name,
+                value: numerator.max(denominator) / divisor,
+                highest: i64::MAX,
+            })
+        };
+        Ok(Self { numerator: kept(numerator)?, denominator: kept(denominator)? })
+    }
+
+    /// Numerator, at least 1.
+    #[must_use]
+    pub const fn numerator(self) -> i64 {
+        self.numerator
+    }
+
+    /// Denominator, at least 1.
+    #[must_use]
+    pub const fn denominator(self) -> i64 {
+        self.denominator
+    }
+
+    /// Denominator over numerator.
+    #[must_use]
+    pub const fn inverse(self) -> Self {
+        Self { numerator: self.denominator, denominator: self.numerator }
+    }
+
+    /// The product; `name` is what a refusal calls it.
+    ///
+    /// # Errors
+    /// [`UnitError::RatioTooLarge`] if the reduced product does not fit.
+    pub fn times(self, other: Self, name: &'static str) -> Result<Self, UnitError> {
+        let product = |a: i64, b: i64| u128::from(a.unsigned_abs()) * u128::from(b.unsigned_abs());
+        Self::reduced(name, product(self.numerator, other.numerator), product(self.denominator, other.denominator))
+    }
+
+    /// `count` times the ratio to the nearest integer, a half upwards.
+    ///
+    /// # Errors
+    /// [`UnitError::CountOverflow`] if the product with the numerator leaves 127 bits.
+    pub fn of(self, count: i128) -> Result<i128, UnitError> {
+        Ok(nearest(product(count, self.numerator.into())?, self.denominator.into()))
+    }
+
+    /// `count` times the ratio to the nearest `f64`: one rounding.
+    ///
+    /// The quotient is developed to at least 65 bits and its last one stands for the rest, so the conversion to 53 bits
+    /// rounds what the exact fraction would round.
+    ///
+    /// # Errors
+    /// [`UnitError::CountOverflow`] as [`of`](Self::of).
+    pub fn of_as_f64(self, count: i128) -> Result<f64, UnitError> {
+        let numerator = product(count, self.numerator.into())?;
+        if numerator == 0 {
+            return Ok(0.0);
+        }
+        let denominator = u128::from(self.denominator.unsigned_abs());
+        let shift = numerator.unsigned_abs().leading_zeros();
+        let shifted = numerator.unsigned_abs() << shift;
+        let quotient = (shifted / denominator) | u128::from(!shifted.is_multiple_of(denominator));
+        let magnitude = quotient as f64 / (1_u128 << shift) as f64;
+        Ok(if numerator < 0 { -magnitude } else { magnitude })
+    }
+
+    /// The number `x` times the ratio to the nearest integer, a half upwards: one rounding, since `x` is a fraction
+    /// itself. `None` if `x` is not finite or the result leaves 127 bits.
+    #[must_use]
+    pub fn of_f64(self, x: f64) -> Option<i128> {
+        let (mantissa, exponent) = mantissa_and_exponent(x)?;
+        // 53 and 63 bits: no overflow.
+        let numerator = i128::from(mantissa) * i128::from(self.numerator);
+        let denominator = i128::from(self.denominator);
+        if let Ok(shift) = u32::try_from(exponent) {
+            // The sign bit, 2^127, is no trap: every mantissa but 0 overflows with it, and 0 has a negative exponent.
+            let scaled = numerator.checked_mul(1_i128.checked_shl(shift)?)?;
+            return Some(nearest(scaled, denominator));
+        }
+        let halves = (2 * numerator).div_euclid(denominator) >> exponent.unsigned_abs().min(127);
+        Some((halves + 1) >> 1)
+    }
+}
+
+/// `numerator/denominator` to the nearest integer, a half upwards; the denominator is positive.
+pub(crate) fn nearest(numerator: i128, denominator: i128) -> i128 {
+    let remainder = numerator.rem_euclid(denominator);
+    numerator.div_euclid(denominator) + i128::from(remainder >= denominator - remainder)
+}
+
+/// The product, refused beyond 127 bits.
+pub(crate) fn product(value: i128, numerator: i128) -> Result<i128, UnitError> {
+    value.checked_mul(numerator).ok_or(UnitError::CountOverflow { value, numerator })
+}
+
+/// `x = mantissa·2^exponent`, exactly. `None` if `x` is not finite.
+fn mantissa_and_exponent(x: f64) -> Option<(i64, i32)> {
+    if !x.is_finite() {
+        return None;
+    }
+    // libm splits off a mantissa in [1/2, 1); 53 bits more make it an integer.
+    let (fraction, exponent) = libm::frexp(x);
+    #[expect(clippy::cast_possible_truncation, reason = "an integer of at most 53 bits")]
+    let mantissa = (fraction * 9_007_199_254_740_992.0) as i64;
+    Some((mantissa, exponent - 53))
+}
+
+/// Euclid's algorithm.
+const fn greatest_common_divisor(mut a: u128, mut b: u128) -> u128 {
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    a
+}
