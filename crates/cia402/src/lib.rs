@@ -1,6 +1,25 @@
 //! The drive profile CiA 402 (IEC 61800-7-201) as both sides see it, the master and the drive.
 //!
-//! `no_std`, no heap. Objects are cited by their index, as in 6041h.
+//! `no_std`, no heap. Objects are cited by their index, as in 6041h. A master leads the drive to Operation enabled:
+//!
+//! ```
+//! use servobench_cia402::{
+//!     Command, Controlword, DriveFunction, PowerInputs, PowerMemory, PowerParams, PowerState, Statusword, step,
+//! };
+//!
+//! let (params, mut memory) = (PowerParams::default(), PowerMemory::default());
+//! let inputs = PowerInputs { initialised: true, remote: true, main_voltage: true, ..PowerInputs::default() };
+//! for command in [Command::DisableVoltage, Command::Shutdown, Command::SwitchOn, Command::EnableOperation] {
+//!     step(&params, &mut memory, Controlword::of(command), inputs);
+//! }
+//! assert_eq!(memory.state(), PowerState::OperationEnabled);
+//!
+//! let outputs = step(&params, &mut memory, Controlword::of(Command::QuickStop), inputs);
+//! assert_ne!(outputs.drive, DriveFunction::Follow);
+//! // What the master reads.
+//! let word = Statusword::from_bits(outputs.statusword.bits());
+//! assert_eq!(word.state(), Some(PowerState::QuickStopActive));
+//! ```
 #![cfg_attr(not(test), no_std)]
 
 mod controlword;
