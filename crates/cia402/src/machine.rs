@@ -13,7 +13,7 @@ use crate::option_code::{
 };
 use crate::state::PowerState;
 use crate::statusword::{StatusBit, Statusword};
-use crate::transitions::{Cause, TRANSITIONS, Transition};
+use crate::transitions::{Cause, Transition, leaving};
 
 /// The option codes of a drive; those of [`Default`] are the profile's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -107,7 +107,7 @@ pub fn step(
     }
     let resets = memory.controlword.gives(Command::FaultReset) && !before.gives(Command::FaultReset);
     let moment = Moment { params, memory: *memory, inputs, resets };
-    let due = TRANSITIONS.iter().filter(|transition| moment.is_due(transition));
+    let due = leaving(memory.state).filter(|transition| moment.is_due(transition));
     let transition = due.max_by_key(|transition| transition.causes.contains(&Cause::Fault));
     if let Some(transition) = transition {
         memory.state = transition.to;
@@ -126,10 +126,9 @@ struct Moment<'a> {
 }
 
 impl Moment<'_> {
+    /// Whether a transition that leads out of the present state is to be taken.
     fn is_due(&self, transition: &Transition) -> bool {
-        transition.from.contains(&self.memory.state)
-            && transition.causes.iter().any(|cause| self.is_given(*cause))
-            && self.is_allowed(transition.number)
+        transition.causes.iter().any(|cause| self.is_given(*cause)) && self.is_allowed(transition.number)
     }
 
     fn is_given(&self, cause: Cause) -> bool {

@@ -195,6 +195,32 @@ pub const TRANSITIONS: [Transition; 17] = [
     },
 ];
 
+/// The transitions that lead out of `state`, by number.
+pub(crate) fn leaving(state: PowerState) -> impl Iterator<Item = &'static Transition> {
+    let mut left = LEAVING[state as usize];
+    core::iter::from_fn(move || {
+        let transition = TRANSITIONS.get(left.trailing_zeros() as usize)?;
+        left &= left - 1;
+        Some(transition)
+    })
+}
+
+/// Per state, a bit for each transition that leads out of it: the drive asks at each of its cycles.
+const LEAVING: [u32; PowerState::ALL.len()] = {
+    let mut leaving = [0; PowerState::ALL.len()];
+    let mut number = 0;
+    while number < TRANSITIONS.len() {
+        let from = TRANSITIONS[number].from;
+        let mut place = 0;
+        while place < from.len() {
+            leaving[from[place] as usize] |= 1 << number;
+            place += 1;
+        }
+        number += 1;
+    }
+    leaving
+};
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -222,5 +248,12 @@ mod tests {
         assert!(listed(Command::DisableOperation).eq([5]));
         assert!(listed(Command::EnableOperation).eq([4, 16]));
         assert!(listed(Command::FaultReset).eq([15]));
+    }
+    #[test]
+    fn a_state_is_left_by_the_transitions_that_name_it() {
+        for state in PowerState::ALL {
+            let named = TRANSITIONS.iter().filter(|transition| transition.from.contains(&state));
+            assert!(leaving(state).eq(named), "{state}");
+        }
     }
 }
