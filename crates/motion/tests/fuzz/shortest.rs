@@ -50,13 +50,13 @@ fn holds(plan: &Shortest, request: &Request) {
     let Limits { velocity, acceleration, jerk, snap } = request.limits;
     for execution in [Execution::ForwardEuler, Execution::ExactHold] {
         let peaks = plan.peaks_by(execution);
-        let peaks = [peaks.velocity, peaks.acceleration, peaks.jerk, peaks.snap];
-        let n = plan.order().derivative();
-        for (m, (peak, limit)) in peaks.into_iter().zip([velocity, acceleration, jerk, snap]).enumerate().take(n) {
-            // What the program may exceed a limit by, and what becomes of the rounding of the highest derivative when it is
-            // integrated over the whole move: a velocity that is held for hundreds of samples drifts by 1e-10 of itself.
-            let rounding = (1..n - m).fold(f64::EPSILON * peaks[n - 1], |sum, k| sum * duration / k as f64);
-            assert!(peak <= limit * (1.0 + 1e-10) + rounding, "{execution:?}: {peak} {limit} of {plan:?}");
+        for (peak, limit) in
+            [(peaks.velocity, velocity), (peaks.acceleration, acceleration), (peaks.jerk, jerk), (peaks.snap, snap)]
+                .into_iter()
+                .take(plan.order().derivative())
+        {
+            // What the program may exceed a limit by, and the integration of some hundred runs.
+            assert!(peak <= limit * (1.0 + 1e-10), "{execution:?}: {peak} {limit} of {plan:?}");
         }
     }
     let mut cascade = Cascade::at_rest(plan.order(), 0.0, plan.sample_time()).unwrap();
@@ -66,6 +66,15 @@ fn holds(plan: &Shortest, request: &Request) {
     let reach = distance.abs() + plan.peaks().velocity * duration;
     let off = (cascade.state().x - distance).abs();
     assert!(off <= 1e-10 * reach, "{off:e} of {plan:?}");
+}
+
+/// What libFuzzer found: a cruise of 358 samples behind pulses of one, over which the rounding of the snap grew to 1.6e-10 of the
+/// velocity.
+#[test]
+fn a_long_cruise_behind_short_pulses_keeps_its_limit() {
+    let limits = Limits { velocity: 1.0, acceleration: 1.0, jerk: 1.0, snap: 1.0 };
+    let request = Request { order: Order::Fourth, distance: -1e30, limits, samples: 358.0, t: -1.0 };
+    holds(&planned(&request).unwrap(), &request);
 }
 
 #[test]
