@@ -26,7 +26,9 @@ mod controlword;
 pub mod counter;
 pub mod difference;
 mod machine;
+mod mode;
 mod option_code;
+mod process_data;
 mod state;
 mod statusword;
 mod transitions;
@@ -34,10 +36,12 @@ pub mod units;
 
 pub use controlword::{Command, ControlBit, Controlword};
 pub use machine::{DriveFunction, PowerInputs, PowerMemory, PowerOutputs, PowerParams, step};
+pub use mode::Mode;
 pub use option_code::{
     Deceleration, DisableOperationOption, FaultReactionOption, HaltOption, OptionCodeError, QuickStopOption,
     ShutdownOption,
 };
+pub use process_data::{Actuals, Commands};
 pub use state::PowerState;
 pub use statusword::{StatusBit, Statusword};
 pub use transitions::{Cause, TRANSITIONS, Transition};

@@ -6,10 +6,13 @@
 
 pub mod current;
 pub mod delay;
+mod demand;
 pub mod feedforward;
 mod firmware;
+pub mod modes;
 mod params;
 pub mod velocity;
 
+pub use demand::Demand;
 pub use firmware::{Command, Feedback, Held, Sensors, State, step};
 pub use params::{Params, Stage};

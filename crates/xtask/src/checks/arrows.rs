@@ -11,25 +11,33 @@ enum May {
 }
 
 /// The floor plan, lower floors first. Dev-dependencies are free: the oracle of a test may come from anywhere.
-const PLAN: [(&str, May); 21] = [
+const PLAN: [(&str, May); 23] = [
     ("base", May::On(&[])),
     ("cia402", May::On(&["base"])),
     ("motion", May::On(&["base"])),
     ("planner", May::On(&["base", "motion"])),
-    ("drive", May::On(&["base", "motion"])),
+    ("drive", May::On(&["base", "cia402", "motion"])),
+    ("fieldbus", May::On(&["base", "cia402", "motion"])),
+    ("plcopen", May::On(&["base", "fieldbus", "motion"])),
     ("plant", May::On(&["base"])),
     ("engine-mujoco", May::On(&["base", "plant"])),
     ("engine-rapier", May::On(&["base", "plant"])),
     ("trace", May::On(&["base"])),
     ("metrics", May::On(&["base", "trace"])),
     ("scenario", May::On(&["base"])),
-    ("sim", May::On(&["base", "motion", "planner", "drive", "plant", "trace", "metrics", "scenario"])),
+    (
+        "sim",
+        May::On(&[
+            "base", "cia402", "motion", "planner", "drive", "fieldbus", "plcopen", "plant", "trace", "metrics",
+            "scenario",
+        ]),
+    ),
     ("suite", May::On(&["base", "plant", "sim", "scenario", "trace", "metrics"])),
     ("report", May::On(&["base", "motion", "planner", "trace", "metrics"])),
     ("view", May::On(&["base", "trace", "metrics"])),
     ("cli", May::OnAll),
     ("tests", May::OnAll),
-    ("bare-metal", May::On(&["motion"])),
+    ("bare-metal", May::On(&["cia402", "motion", "fieldbus", "plcopen"])),
     ("features", May::On(&[])),
     ("fuzz", May::On(&[])),
     ("xtask", May::On(&[])),

@@ -1,0 +1,59 @@
+//! Process data: what goes over the bus with every frame, in the drive's own units.
+//!
+//! Positions, velocities and accelerations are in the user units that the [factor group](crate::units) defines, torques
+//! in thousandths of the rated torque (6076h).
+use crate::{Controlword, Statusword};
+
+/// What the master sends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Commands {
+    /// 6040h.
+    pub controlword: Controlword,
+    /// Mode of operation that is asked for (6060h).
+    pub mode: i8,
+    /// 607Ah.
+    pub target_position: i32,
+    /// 60FFh.
+    pub target_velocity: i32,
+    /// 6071h.
+    pub target_torque: i16,
+    /// Added to the velocity that the position loop asks for (60B1h).
+    pub velocity_offset: i32,
+    /// Added to the torque that the velocity loop asks for (60B2h).
+    pub torque_offset: i16,
+    /// 6081h.
+    pub profile_velocity: u32,
+    /// 6083h.
+    pub profile_acceleration: u32,
+    /// 6084h.
+    pub profile_deceleration: u32,
+    /// Position that the reference gets when it is found (607Ch).
+    pub home_offset: i32,
+    /// A point for the trajectory buffer, or a command to it (2010h); sent when there is one.
+    pub trajectory_point: Option<[u8; 8]>,
+}
+
+/// What the drive sends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Actuals {
+    /// 6041h.
+    pub statusword: Statusword,
+    /// Mode of operation that is active (6061h).
+    pub mode: i8,
+    /// 6064h.
+    pub position: i32,
+    /// 606Ch.
+    pub velocity: i32,
+    /// 6077h.
+    pub torque: i16,
+    /// 60F4h.
+    pub following_error: i32,
+    /// Code of the last fault (603Fh), 0 without one.
+    pub error_code: u16,
+    /// 60FDh: bit 0 negative limit switch, bit 1 positive limit switch, bit 2 home switch.
+    pub digital_inputs: u32,
+    /// Free points of the trajectory buffer (2011h).
+    pub buffer_free: u16,
+    /// State of the trajectory buffer (2012h).
+    pub buffer_status: u32,
+}

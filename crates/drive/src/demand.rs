@@ -1,0 +1,36 @@
+//! What the mode of operation asks of the loops.
+use servobench_base::Setpoint;
+
+/// What the loops are to do at a tick. Positions and velocities are in the axis coordinate (m or rad), efforts in the
+/// motor's (N·m or N).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Demand {
+    /// The motor carries no current.
+    Off,
+    /// The position loop follows the set-point.
+    Position {
+        /// What is followed.
+        setpoint: Setpoint,
+        /// Added to the velocity that the position loop asks for.
+        velocity_offset: f64,
+        /// Added to the effort that the velocity loop asks for.
+        effort_offset: f64,
+    },
+    /// The velocity loop follows the velocity; there is no position loop.
+    Velocity {
+        /// What is followed: velocity, and acceleration for the feedforward. Its position is not used.
+        setpoint: Setpoint,
+        /// Added to the effort that the velocity loop asks for.
+        effort_offset: f64,
+    },
+    /// The effort itself, within the drive's limits.
+    Effort(f64),
+}
+
+impl Demand {
+    /// The position loop follows `setpoint`, without offsets.
+    #[must_use]
+    pub const fn position(setpoint: Setpoint) -> Self {
+        Self::Position { setpoint, velocity_offset: 0.0, effort_offset: 0.0 }
+    }
+}

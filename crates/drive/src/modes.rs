@@ -1,0 +1,71 @@
+//! Modes of operation (CiA 402): from what the master sends to what the loops are to do.
+//!
+//! A mode sees a [`Moment`] and gives an [`Answer`], once per period of the position loop. Positions and velocities are in
+//! the axis unit (m or rad), efforts in the motor's (N·m or N): drive units end at the door.
+use crate::Demand;
+use servobench_base::Setpoint;
+use servobench_cia402::Controlword;
+
+/// What a mode sees at a step of the drive.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moment {
+    /// What the master sends.
+    pub targets: Targets,
+    /// What the drive measures.
+    pub actual: Actual,
+    /// What the loops were asked to follow at the last step: where a mode that takes over begins.
+    pub demanded: Setpoint,
+    /// Time since the last step (s).
+    pub period: f64,
+}
+
+/// What the master sends.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Targets {
+    /// With the bits that a mode gives a meaning of its own.
+    pub controlword: Controlword,
+    /// Target position (607Ah).
+    pub position: f64,
+    /// Target velocity (60FFh).
+    pub velocity: f64,
+    /// Target effort (6071h).
+    pub effort: f64,
+    /// Added to what the position loop asks for (60B1h).
+    pub velocity_offset: f64,
+    /// Added to what the velocity loop asks for (60B2h).
+    pub effort_offset: f64,
+    /// Whether the frame that brought these came since the last step.
+    pub is_new: bool,
+}
+
+/// What the drive measures.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Actual {
+    /// Position, the home offset included.
+    pub position: f64,
+    /// Velocity.
+    pub velocity: f64,
+    /// Effort of the motor.
+    pub effort: f64,
+    /// Switch of the negative end.
+    pub negative_limit: bool,
+    /// Switch of the positive end.
+    pub positive_limit: bool,
+    /// Home switch.
+    pub home: bool,
+    /// Position at which the last index pulse came, when one came since the last step.
+    pub index: Option<f64>,
+}
+
+/// What a mode says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Answer {
+    /// For the loops.
+    pub demand: Demand,
+    /// Bit 10 of the statusword.
+    pub target_reached: bool,
+    /// Bit 12 of the statusword, whose meaning depends on the mode.
+    pub bit_12: bool,
+    /// Bit 13 of the statusword, whose meaning depends on the mode.
+    pub bit_13: bool,
+}

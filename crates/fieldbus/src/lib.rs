@@ -1,0 +1,8 @@
+//! Between a motion task and a drive.
+//!
+//! `no_std`, no heap.
+#![cfg_attr(not(test), no_std)]
+
+mod axis;
+
+pub use axis::{AxisCommand, AxisFeedback, Homing, Power, Switches, Task};
