@@ -5,6 +5,7 @@
 //! time its computation takes). It knows the axis by its sensors and its own estimates, nothing else.
 //!
 //! Position and its reference are in the axis coordinate, velocity and effort in the motor's; `transmission` converts.
+use crate::Demand;
 use crate::feedforward::MotorReference;
 use crate::params::{Params, Stage};
 use crate::{current, delay, velocity};
@@ -40,6 +41,19 @@ pub enum Command {
     Voltage(AlphaBeta),
     /// Output of an ideal amplifier (V, or the effort itself).
     Output(f64),
+    /// The power stage is off: the motor carries no current.
+    Off,
+}
+
+/// Which of the loops are closed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum Closed {
+    #[default]
+    Position,
+    Velocity,
+    /// Only the current loop.
+    Effort,
+    None,
 }
 
 /// What each loop said at its last turn, which is what a faster one and a recording see until the next.
@@ -70,6 +84,7 @@ pub struct State {
     /// Velocity after the filter (motor coordinate).
     filtered_velocity: f64,
     last_position: Option<f64>,
+    closed: Closed,
     position_turn: Countdown,
     velocity_turn: Countdown,
     current_turn: Countdown,
@@ -89,6 +104,7 @@ impl State {
             current: current::State::default(),
             filtered_velocity: 0.0,
             last_position: None,
+            closed: Closed::Position,
             position_turn: Countdown::default(),
             velocity_turn: Countdown::default(),
             current_turn: Countdown::default(),
@@ -117,22 +133,81 @@ impl State {
     }
 }
 
-/// One base tick: runs the loops that are due and returns what goes to the power stage from now on.
-pub fn step(p: &Params, x: &mut State, setpoint: Setpoint, sensors: &Sensors) -> Command {
+/// One base tick: runs the loops that are due and returns what goes to the power stage from now on. The demand is taken
+/// at the turns of the position loop.
+pub fn step(p: &Params, x: &mut State, demand: &Demand, sensors: &Sensors) -> Command {
     if x.position_turn.is_due(p.position_every) {
-        position_loop(p, x, setpoint, sensors);
+        take(p, x, demand, sensors);
     }
     if x.velocity_turn.is_due(p.velocity_every) {
         velocity_loop(p, x, sensors);
     }
     match &p.stage {
         Stage::Current { params, every } => {
-            if x.current_turn.is_due(*every) {
+            let is_due = x.current_turn.is_due(*every);
+            if x.closed == Closed::None {
+                return Command::Off;
+            }
+            if is_due {
                 current_loop(params, x, sensors, p.period(*every));
             }
             Command::Voltage(x.held.current.voltage)
         }
+        Stage::Direct { .. } if x.closed == Closed::None => Command::Off,
         Stage::Direct { gain } => Command::Output(x.held.effort.effort / gain),
+    }
+}
+
+fn take(p: &Params, x: &mut State, demand: &Demand, sensors: &Sensors) {
+    match *demand {
+        Demand::Position { setpoint, velocity_offset, effort_offset } => {
+            if x.closed != Closed::Position {
+                x.close(Closed::Position);
+                x.delay = delay::State::new(setpoint);
+            }
+            position_loop(p, x, setpoint, sensors);
+            x.held.velocity_reference += velocity_offset;
+            x.held.feedforward += effort_offset;
+        }
+        Demand::Velocity { setpoint, effort_offset } => {
+            x.close(Closed::Velocity);
+            x.rest_on(p, sensors);
+            x.held.velocity_reference = setpoint.v;
+            x.held.feedforward = p.transmission * p.feedforward.effort(setpoint) + effort_offset;
+        }
+        Demand::Effort(effort) => {
+            x.close(Closed::Effort);
+            x.rest_on(p, sensors);
+            x.held.feedforward = effort;
+        }
+        Demand::Off => {
+            x.close(Closed::None);
+            x.rest_on(p, sensors);
+        }
+    }
+}
+
+impl State {
+    /// Goes over to other loops: what the loops below had gathered stays, unless the power goes off.
+    fn close(&mut self, closed: Closed) {
+        if closed == Closed::None && self.closed != Closed::None {
+            (self.velocity, self.current) = (velocity::State::default(), current::State::default());
+            let Held { reference, motor_reference, .. } = self.held;
+            self.held = Held { reference, motor_reference, ..Held::default() };
+        }
+        self.closed = closed;
+    }
+
+    /// Without a position loop the reference is where the axis is.
+    fn rest_on(&mut self, p: &Params, sensors: &Sensors) {
+        let position = match sensors.feedback {
+            Feedback::Load(position) => position,
+            Feedback::Motor => p.transmission * sensors.motor_position,
+        };
+        let reference = Setpoint { v: p.transmission * self.filtered_velocity, ..Setpoint::at_rest(position) };
+        self.held.reference = reference;
+        self.held.motor_reference = MotorReference { position: reference.x, velocity: reference.v };
+        self.held.velocity_reference = reference.v;
     }
 }
 
@@ -164,7 +239,11 @@ fn velocity_loop(p: &Params, x: &mut State, sensors: &Sensors) {
             Stage::Direct { .. } => f64::INFINITY,
         },
     };
-    x.held.effort = velocity::step(&p.velocity, &mut x.velocity, input, h);
+    x.held.effort = match x.closed {
+        Closed::Position | Closed::Velocity => velocity::step(&p.velocity, &mut x.velocity, input, h),
+        Closed::Effort => velocity::limited(&p.velocity, input.available, input.feedforward),
+        Closed::None => velocity::Output::default(),
+    };
 }
 
 fn current_loop(p: &current::Params, x: &mut State, sensors: &Sensors, h: f64) {
@@ -186,6 +265,8 @@ mod tests {
     use crate::params::tests::{emps, synchronous};
     use crate::velocity::Cut;
 
+    const REST: Demand = Demand::position(Setpoint::at_rest(0.0));
+
     fn at_rest(p: &Params) -> State {
         State::new(p, Setpoint::default()).unwrap()
     }
@@ -199,7 +280,9 @@ mod tests {
         let law = |x: f64| 243.45 * (160.18 * (8e-4 - x) - 0.02);
         for k in 0..32 {
             let position = |k: i32| 5e-4 + 1e-6 * f64::from(k);
-            let Command::Output(u) = step(&p, &mut x, setpoint, &at(position(k))) else { panic!("an ideal amplifier") };
+            let Command::Output(u) = step(&p, &mut x, &Demand::position(setpoint), &at(position(k))) else {
+                panic!("an ideal amplifier")
+            };
             assert!((u - law(position(k / 16 * 16))).abs() < 1e-11, "tick {k}: {u}");
         }
     }
@@ -211,7 +294,7 @@ mod tests {
         for k in 0..=32 {
             let position = 0.02 * f64::from(k) / 16_000.0;
             let sensors = Sensors { motor_position: position, ..Sensors::default() };
-            if let Command::Output(u) = step(&p, &mut x, Setpoint::default(), &sensors) {
+            if let Command::Output(u) = step(&p, &mut x, &REST, &sensors) {
                 last = u;
             }
         }
@@ -223,7 +306,7 @@ mod tests {
         let (p, mut x) = (emps(), at_rest(&emps()));
         for k in 0..40 {
             let setpoint = Setpoint { x: 0.1 * f64::from(k) / 16_000.0, v: 0.1, ..Setpoint::default() };
-            step(&p, &mut x, setpoint, &Sensors::default());
+            step(&p, &mut x, &Demand::position(setpoint), &Sensors::default());
             assert!((x.references(&p).0.x - setpoint.x).abs() < 1e-18, "tick {k}");
         }
     }
@@ -236,7 +319,12 @@ mod tests {
         let setpoint = Setpoint::at_rest(3e-3);
         for (feedback, error) in [(Feedback::Motor, 3e-3 - 0.5 * 2e-3), (Feedback::Load(2.5e-3), 3e-3 - 2.5e-3)] {
             let mut x = at_rest(&p);
-            step(&p, &mut x, setpoint, &Sensors { motor_position: 2e-3, feedback, ..Sensors::default() });
+            step(
+                &p,
+                &mut x,
+                &Demand::position(setpoint),
+                &Sensors { motor_position: 2e-3, feedback, ..Sensors::default() },
+            );
             assert!((x.held().velocity_reference - 160.18 * error).abs() < 1e-15, "{feedback:?}: {:?}", x.held());
         }
     }
@@ -248,7 +336,7 @@ mod tests {
         let held_at = |velocity: f64| {
             let mut x = at_rest(&p);
             let sensors = Sensors { motor_velocity: Some(velocity), ..Sensors::default() };
-            step(&p, &mut x, Setpoint::default(), &sensors);
+            step(&p, &mut x, &REST, &sensors);
             *x.held()
         };
         for sign in [1.0, -1.0] {
@@ -259,5 +347,44 @@ mod tests {
             assert_eq!(held.effort.cut, Some(Cut::Available));
         }
         assert_eq!(held_at(-1.0).effort, velocity::Output { effort: 3.0, cut: None });
+    }
+
+    /// Oracle: by hand. Without a position loop the velocity demand goes to the velocity loop as it is; an effort goes past
+    /// both, within the limit; without power nothing goes out. The reference is where the axis is.
+    #[test]
+    fn a_demand_closes_the_loops_that_it_names() {
+        let p = Params { transmission: 0.5, ..emps() };
+        let sensors = Sensors { motor_position: 2e-3, motor_velocity: Some(0.02), ..Sensors::default() };
+        let answer = |demand: Demand| {
+            let mut x = at_rest(&p);
+            let command = step(&p, &mut x, &demand, &sensors);
+            assert!((x.references(&p).0.x - 1e-3).abs() < 1e-18, "{demand:?}: {:?}", x.held);
+            (command, x.held.velocity_reference, x.held.effort)
+        };
+        let velocity = Demand::Velocity { setpoint: Setpoint { v: 0.03, ..Setpoint::default() }, effort_offset: 7.0 };
+        let (_, reference, effort) = answer(velocity);
+        assert!((reference - 0.03).abs() < 1e-18);
+        assert!((effort.effort - (35.1507 * 243.45 * (0.03 / 0.5 - 0.02) + 7.0)).abs() < 1e-10, "{effort:?}");
+        assert_eq!(answer(Demand::Effort(-12.0)).2, velocity::Output { effort: -12.0, cut: None });
+        assert_eq!(answer(Demand::Effort(1e3)).2, velocity::Output { effort: 351.507, cut: Some(Cut::Effort) });
+        assert_eq!(answer(Demand::Off).0, Command::Off);
+    }
+
+    /// Oracle: a drive that was never off. What the loops had gathered before is gone, and so is the old reference.
+    #[test]
+    fn a_drive_that_was_off_begins_anew() {
+        let p = synchronous();
+        let demand = Demand::position(Setpoint::at_rest(1e-3));
+        let sensors = |position| Sensors { motor_position: position, motor_velocity: Some(0.0), ..Sensors::default() };
+        let (mut x, mut fresh) = (at_rest(&p), at_rest(&p));
+        for (demand, position) in [(&demand, 0.0), (&Demand::Off, 9e-4)] {
+            for _ in 0..40 {
+                step(&p, &mut x, demand, &sensors(position));
+            }
+        }
+        assert_eq!((x.velocity, x.held.effort), (velocity::State::default(), velocity::Output::default()));
+        step(&p, &mut x, &demand, &sensors(9e-4));
+        step(&p, &mut fresh, &demand, &sensors(9e-4));
+        assert_eq!(x.held.effort, fresh.held.effort);
     }
 }

@@ -73,14 +73,21 @@ impl Params {
 pub fn step(p: &Params, x: &mut State, u: Input, h: f64) -> Output {
     let e = u.reference - u.velocity;
     let v = u.feedforward + p.k_p * e + x.integral;
-    let (limit, cut) =
-        if p.max_effort <= u.available { (p.max_effort, Cut::Effort) } else { (u.available, Cut::Available) };
-    let effort = v.clamp(-limit, limit);
+    let output = limited(p, u.available, v);
     if let Some(integral_time) = p.integral_time {
-        x.integral += h / integral_time * (p.k_p * e + (effort - v));
+        x.integral += h / integral_time * (p.k_p * e + (output.effort - v));
     }
+    output
+}
+
+/// `effort` within the limits.
+#[must_use]
+pub fn limited(p: &Params, available: f64, effort: f64) -> Output {
+    let (limit, cut) =
+        if p.max_effort <= available { (p.max_effort, Cut::Effort) } else { (available, Cut::Available) };
+    let given = effort.clamp(-limit, limit);
     #[expect(clippy::float_cmp, reason = "a clamp that does not bind returns the very same bits")]
-    Output { effort, cut: if effort == v { None } else { Some(cut) } }
+    Output { effort: given, cut: if given == effort { None } else { Some(cut) } }
 }
 
 #[cfg(test)]

@@ -71,7 +71,14 @@ impl PowerStage {
                 let input = pmsm::Input { voltage, rotor: *rotor, omega_e: params.pole_pairs * mean_speed };
                 pmsm::step(params, state, input, h)
             }
-            (Self::Ideal { gain, .. }, _) => *gain * output,
+            // The current is gone within the tick, which takes a real inverter some milliseconds; no current flows back as
+            // long as the back-EMF is below the DC link.
+            (Self::Pmsm { state, last_speed, shortens, .. }, Command::Off) => {
+                *state = pmsm::State::default();
+                (*last_speed, *shortens) = (motor.velocity, false);
+                0.0
+            }
+            (Self::Ideal { gain, .. }, Command::Output(_)) => *gain * output,
             _ => 0.0,
         }
     }

@@ -4,7 +4,7 @@ use crate::channels::Instant;
 use crate::limit_watch::PerLimit;
 use servobench_base::Tick;
 use servobench_drive::velocity::Cut;
-use servobench_drive::{self as drive, Command, Feedback, Sensors};
+use servobench_drive::{self as drive, Command, Demand, Feedback, Sensors};
 use servobench_plant::{Actuation, BodyState, Input, MechanicsError};
 use servobench_scenario::DisturbedBody;
 use servobench_trace::Recording;
@@ -105,7 +105,7 @@ impl Bench {
             },
             current: self.power.measured_current(motor),
         };
-        let command = drive::step(&control.params, &mut control.state, now.setpoint, &sensors);
+        let command = drive::step(&control.params, &mut control.state, &Demand::position(now.setpoint), &sensors);
         let (held, (reference, motor_reference)) = (control.state.held(), control.state.references(&control.params));
         now.reference = reference.x;
         now.motor_reference = motor_reference.position;
