@@ -1,6 +1,7 @@
 //! What a motion task and an axis tell each other, once per cycle of that task.
 //!
 //! Positions and velocities are in the axis unit (m or rad), efforts in the motor's (N·m or N).
+use crate::{Fault, Interpolation};
 use servobench_motion::interpolate::Sample;
 
 /// What the motion task wants of the axis.
@@ -39,8 +40,10 @@ pub struct AxisFeedback {
     pub effort: f64,
     /// How far the power is.
     pub power: Power,
-    /// Fault of the drive (its code, 603Fh) or of the link to it; `None` without one.
-    pub fault: Option<u16>,
+    /// Fault of the drive or of the link to it; `None` without one.
+    pub fault: Option<Fault>,
+    /// How the set-points of the motion task arrive.
+    pub interpolation: Interpolation,
     /// How far homing is.
     pub homing: Homing,
     /// The switches, inverted where they are wired so.

@@ -1,0 +1,92 @@
+//! How the interpolation fares, with the numbers of the block `RM_AxisSpline` of REXYGEN (REX Controls, function block
+//! reference, output `State`).
+
+/// State of the interpolation between two cycles of the motion task.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[repr(i8)]
+pub enum Interpolation {
+    /// Disabled: what is commanded is the actual position.
+    #[default]
+    Off = 0,
+    /// Too few samples yet; the axis waits where it is.
+    Wait = 1,
+    /// In the first interval of the buffer: every sample came in time.
+    Run1 = 2,
+    /// In the second one: the newest sample is late, one step is predicted.
+    Run2 = 3,
+    /// In the third one: two steps are predicted.
+    Run3 = 4,
+    /// Samples came faster than they were used up; starts again with the newest.
+    Overflow = -1,
+    /// Samples stayed away for longer than can be predicted; the axis is brought to rest and starts again by itself.
+    Underflow = -2,
+    /// The sample could not be read consistently.
+    Busy = -3,
+    /// Samples were missed because the link runs more slowly than the motion task.
+    Slow = -4,
+}
+
+impl Interpolation {
+    /// Every state, by number.
+    pub const ALL: [Self; 9] = [
+        Self::Slow,
+        Self::Busy,
+        Self::Underflow,
+        Self::Overflow,
+        Self::Off,
+        Self::Wait,
+        Self::Run1,
+        Self::Run2,
+        Self::Run3,
+    ];
+
+    /// Its number in the source, from −4 to 4.
+    #[must_use]
+    pub const fn number(self) -> i8 {
+        self as i8
+    }
+
+    /// Its name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Off => "Off",
+            Self::Wait => "Wait",
+            Self::Run1 => "Run1",
+            Self::Run2 => "Run2",
+            Self::Run3 => "Run3",
+            Self::Overflow => "Overflow",
+            Self::Underflow => "Underflow",
+            Self::Busy => "Busy",
+            Self::Slow => "Slow",
+        }
+    }
+
+    /// Whether the axis follows the motion task, by samples or by their prediction.
+    #[must_use]
+    pub const fn is_running(self) -> bool {
+        matches!(self, Self::Run1 | Self::Run2 | Self::Run3)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Interpolation;
+
+    #[test]
+    fn numbers_are_those_of_the_source() {
+        let numbers = Interpolation::ALL.map(|state| (state.number(), state.name()));
+        let source = [
+            (-4, "Slow"),
+            (-3, "Busy"),
+            (-2, "Underflow"),
+            (-1, "Overflow"),
+            (0, "Off"),
+            (1, "Wait"),
+            (2, "Run1"),
+            (3, "Run2"),
+            (4, "Run3"),
+        ];
+        assert_eq!(numbers, source);
+    }
+}
