@@ -38,11 +38,13 @@ pub use load::{Loaded, load, parse};
 pub use models::{embedded_demo, embedded_models};
 pub use points::{Column, MOST_POINTS, Points, PointsError, PointsMistake, read_points};
 pub use scenario::{
-    Actuator, Axis, AxisMechanics, Body, Coupling, CurrentGain, CurrentLoop, Disturbance, DisturbedBody, Drive,
-    EffortFeedforward, Encoder, EngineName, Estimate, Execution, Feedback, Feedforward, Filter, Follow, Goal, Grid,
-    IdealSource, Initial, Interpolation, InterpolationMode, LONGEST_RUN, Limit, Measure, Method, Mjcf, Motion,
-    MotorEstimate, MoveStep, OnlineMove, PlanEffort, Pmsm, PositionLoop, Record, RestMove, RockwellJerk, RockwellMove,
-    RockwellShape, Sampling, Scenario, Shaper, ShaperKind, SourceOutput, Step, TableMove, Target, Velocities,
+    Actuator, Axis, AxisMechanics, Block, Body, Braking, BufferMode, Bus, BusFault, BusFaultKind, BusMode, Call,
+    Command, Condition, Counter, Coupling, CurrentGain, CurrentLoop, Direction, Disturbance, DisturbedBody, Drive,
+    DriveInterpolation, DriveUnits, Dynamics, EffortFeedforward, Encoder, EngineName, Estimate, Execution, Feedback,
+    Feedforward, Filter, Follow, Goal, Grid, HomeSwitch, IdealSource, Initial, Interpolation, InterpolationMode,
+    LONGEST_RUN, Limit, Measure, Method, Mjcf, Motion, MotorEstimate, MoveStep, ObjectWrite, OnlineMove, Output,
+    PlanEffort, Plc, Pmsm, PositionLoop, Record, RestMove, RockwellJerk, RockwellMove, RockwellShape, Sampling,
+    Scenario, Sequencing, Shaper, ShaperKind, SourceOutput, Step, Switches, TableMove, Target, Update, Velocities,
     VelocityLoop, Way,
 };
 pub use schema::json_schema;

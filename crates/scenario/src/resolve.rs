@@ -73,6 +73,8 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
         actuator: actuator?,
         program: program?,
         interpolation: interpolation?,
+        bus: None,
+        plc: None,
         disturbances: disturbances?,
         initial,
         record: record?,

@@ -5,14 +5,17 @@
 
 mod actuator;
 mod axis;
+mod bus;
 mod disturbance;
 mod drive;
 mod filter;
 mod motor;
+mod plc;
 mod program;
 
 pub use actuator::Actuator;
-pub use axis::{Axis, AxisMechanics, Body, Coupling, Mjcf, Motion};
+pub use axis::{Axis, AxisMechanics, Body, Coupling, HomeSwitch, Mjcf, Motion, Switches};
+pub use bus::{Bus, BusFault, BusFaultKind, BusMode, Counter, DriveInterpolation, DriveUnits, ObjectWrite, Sequencing};
 pub use disturbance::{Disturbance, DisturbedBody, Initial};
 pub use drive::{
     CurrentGain, CurrentLoop, Drive, EffortFeedforward, Estimate, Feedback, Feedforward, MotorEstimate, PositionLoop,
@@ -20,6 +23,7 @@ pub use drive::{
 };
 pub use filter::{Filter, Interpolation, InterpolationMode, Shaper, ShaperKind};
 pub use motor::{Encoder, IdealSource, Pmsm, SourceOutput};
+pub use plc::{Block, Braking, BufferMode, Call, Command, Condition, Direction, Dynamics, Output, Plc, Update};
 pub use program::{
     Execution, Follow, Goal, Grid, Method, MoveStep, OnlineMove, PlanEffort, RestMove, RockwellJerk, RockwellMove,
     RockwellShape, Sampling, Step, TableMove, Target, Velocities, Way,
@@ -50,10 +54,14 @@ pub struct Scenario {
     pub axis: Axis,
     /// What moves it, and what commands that.
     pub actuator: Actuator,
-    /// Moves and pauses, one after the other, from time 0.
+    /// Moves and pauses, one after the other, from time 0; none where there is a PLC program.
     pub program: Vec<Step>,
     /// Between the set-point and the drive; `None`: the drive has a new set-point at every tick.
     pub interpolation: Option<Interpolation>,
+    /// The fieldbus; `None`: the drive has a new set-point at every tick.
+    pub bus: Option<Bus>,
+    /// The PLC program, which needs a fieldbus; `None` without one.
+    pub plc: Option<Plc>,
     /// External efforts.
     pub disturbances: Vec<Disturbance>,
     /// Deviation from rest at zero at time 0.

@@ -93,6 +93,8 @@ fn differences(one: &Scenario, other: &Scenario) -> Vec<&'static str> {
         actuator,
         program: _,
         interpolation: _,
+        bus,
+        plc: _,
         disturbances,
         initial,
         record,
@@ -108,6 +110,7 @@ fn differences(one: &Scenario, other: &Scenario) -> Vec<&'static str> {
     compare("`run.base_rate`", *base_rate == other.base_rate);
     compare("`axis`", *axis == other.axis);
     compare_actuators(actuator, &other.actuator, &mut compare);
+    compare("`bus`", *bus == other.bus);
     compare("`disturbance`", *disturbances == other.disturbances);
     compare("`initial`", *initial == other.initial);
     // A peak between two rows is not seen.

@@ -6,7 +6,7 @@ use crate::file::MotorKind;
 use crate::models::read_beside;
 use crate::physical::EFFORT;
 use crate::resolve::need;
-use crate::scenario::{Axis, AxisMechanics, Body, Coupling, Mjcf, Motion};
+use crate::scenario::{Axis, AxisMechanics, Body, Coupling, Mjcf, Motion, Switches};
 use crate::source::{Sources, Span};
 use std::f64::consts::TAU;
 
@@ -32,7 +32,14 @@ pub(super) fn resolve(axis: &file::Axis, motor: &file::Motor, sources: &Sources,
         None if axis.mjcf.span().is_some() => None,
         None => bodies(axis, motor, motor_motion, transmission, report).map(AxisMechanics::Bodies),
     };
-    Some(Axis { motion: motion?, motor_motion, transmission: transmission?, mechanics: mechanics? })
+    Some(Axis {
+        motion: motion?,
+        motor_motion,
+        transmission: transmission?,
+        mechanics: mechanics?,
+        switches: Switches::default(),
+        modulo: None,
+    })
 }
 
 /// Coordinate of the motor: what its own keys say, or otherwise what the axis needs. A linear axis without a lead has a

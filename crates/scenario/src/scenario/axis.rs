@@ -21,6 +21,33 @@ pub struct Axis {
     pub transmission: f64,
     /// The bodies.
     pub mechanics: AxisMechanics,
+    /// What the drive sees of its position besides encoders.
+    pub switches: Switches,
+    /// Period of a modulo axis; `None` for one with ends.
+    pub modulo: Option<f64>,
+}
+
+/// Switches along an axis (axis coordinate) and the index pulse of its motor.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Switches {
+    /// Active at and below it: the negative end.
+    pub negative: Option<f64>,
+    /// Active at and above it: the positive end.
+    pub positive: Option<f64>,
+    /// Home switch.
+    pub home: Option<HomeSwitch>,
+    /// Where in each revolution of the motor the index pulse comes (rad, from 0 to below 2π); `None` for a linear motor,
+    /// which has none.
+    pub index: Option<f64>,
+}
+
+/// Home switch: active between two positions, both included (axis coordinate).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HomeSwitch {
+    /// Lower end.
+    pub from: f64,
+    /// Upper end.
+    pub to: f64,
 }
 
 /// Where the bodies come from.
