@@ -29,6 +29,7 @@ mod machine;
 mod mode;
 mod option_code;
 mod process_data;
+mod sequence;
 mod state;
 mod statusword;
 mod transitions;
@@ -42,6 +43,7 @@ pub use option_code::{
     ShutdownOption,
 };
 pub use process_data::{Actuals, Commands};
+pub use sequence::{Next, keeping, towards};
 pub use state::PowerState;
 pub use statusword::{StatusBit, Statusword};
 pub use transitions::{Cause, TRANSITIONS, Transition};

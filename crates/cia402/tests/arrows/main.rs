@@ -1,5 +1,6 @@
 //! Every arrow of the state diagram by its number, and every absent one.
 mod drive;
+mod sequence;
 
 use drive::{AT_REST, Drive, FAULTY, MOVING};
 use servobench_cia402::DriveFunction::{Brake, Disabled, Follow};
