@@ -124,6 +124,7 @@ fn recording(profile: &Profile, omega: f64) -> Recording {
             cruise: (0.3, 0.7),
         }],
         events: vec![],
+        signals: vec![],
     }
 }
 

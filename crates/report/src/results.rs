@@ -317,6 +317,7 @@ mod tests {
                 cruise: (0.2, 0.0),
             }],
             events: vec![Event { start: 0.1, end: 0.1, source: "test".into(), message: "an event".into() }],
+            signals: vec![],
         };
         let mut metrics = measure(&recording, &Question::default());
         let limits = [Limit::at_most(Name::FollowingErrorPeakLoad, 0.1e-3), Limit::at_most(Name::SettlingTime, 0.1)];

@@ -53,6 +53,7 @@ mod tests {
             ],
             moves: vec![],
             events: vec![],
+            signals: vec![],
         }
     }
 

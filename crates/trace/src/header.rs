@@ -6,12 +6,12 @@
 //! | `servobench.recording` | JSON: all of a [`Recording`] but the values |
 //! | `servobench.seal` | digest of the whole file, see [`seal`](crate::seal) |
 use crate::channel::{Channel, ChannelSpec};
-use crate::recording::{About, Event, Move, Recording};
+use crate::recording::{About, Event, Move, Recording, Signal};
 use serde::{Deserialize, Serialize};
 use servobench_base::Rate;
 
 /// Version of the layout.
-pub(crate) const FORMAT: &str = "1";
+pub(crate) const FORMAT: &str = "2";
 /// Key of the version.
 pub(crate) const FORMAT_KEY: &str = "servobench.format";
 /// Key of the JSON.
@@ -32,6 +32,7 @@ pub(crate) struct Header {
     channels: Vec<ChannelHeader>,
     moves: Vec<MoveHeader>,
     events: Vec<EventHeader>,
+    signals: Vec<SignalHeader>,
 }
 
 /// A channel without its values.
@@ -65,6 +66,14 @@ struct EventHeader {
     end: Number,
     source: String,
     message: String,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SignalHeader {
+    source: String,
+    name: String,
+    changes: Vec<(Number, String)>,
 }
 
 /// A number in JSON, which has no word for infinity: `"inf"`, `"-inf"` and `"NaN"` are written as text.
@@ -153,6 +162,20 @@ impl From<EventHeader> for Event {
     }
 }
 
+impl From<&Signal> for SignalHeader {
+    fn from(signal: &Signal) -> Self {
+        let changes = signal.changes.iter().map(|(time, value)| ((*time).into(), value.clone())).collect();
+        Self { source: signal.source.clone(), name: signal.name.clone(), changes }
+    }
+}
+
+impl From<SignalHeader> for Signal {
+    fn from(signal: SignalHeader) -> Self {
+        let changes = signal.changes.into_iter().map(|(time, value)| (time.into(), value)).collect();
+        Self { source: signal.source, name: signal.name, changes }
+    }
+}
+
 impl Header {
     /// Header of `recording`.
     pub(crate) fn of(recording: &Recording) -> Self {
@@ -173,6 +196,7 @@ impl Header {
             channels: channels.collect(),
             moves: recording.moves.iter().map(MoveHeader::from).collect(),
             events: recording.events.iter().map(EventHeader::from).collect(),
+            signals: recording.signals.iter().map(SignalHeader::from).collect(),
         }
     }
 
@@ -192,6 +216,7 @@ impl Header {
             channels: channels.collect::<Option<_>>()?,
             moves: self.moves.into_iter().map(Move::from).collect(),
             events: self.events.into_iter().map(Event::from).collect(),
+            signals: self.signals.into_iter().map(Signal::from).collect(),
             about: About {
                 scenario: self.scenario,
                 engine: self.engine,

@@ -1,10 +1,14 @@
 //! Fills a recording row by row, without allocating per row.
 use crate::channel::{Channel, ChannelSpec};
-use crate::recording::{About, Event, Move, Recording};
+use crate::recording::{About, Event, Move, Recording, Signal};
 use servobench_base::Rate;
 
 /// Rows that are collected before they go to the columns: a block stays in the first cache.
 const BLOCK: usize = 64;
+
+/// A signal of a recorder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SignalId(usize);
 
 /// Takes one row per recorded instant.
 #[derive(Debug)]
@@ -20,7 +24,7 @@ impl Recorder {
     pub fn new(about: About, rate: Rate, channels: Vec<ChannelSpec>, rows: usize) -> Self {
         let block = Vec::with_capacity(BLOCK * channels.len());
         let channels = channels.into_iter().map(|spec| Channel { spec, values: Vec::with_capacity(rows) }).collect();
-        let recording = Recording { about, rate, channels, moves: Vec::new(), events: Vec::new() };
+        let recording = Recording { about, rate, channels, moves: vec![], events: vec![], signals: vec![] };
         Self { recording, block }
     }
 
@@ -54,6 +58,23 @@ impl Recorder {
     /// Notes an event.
     pub fn note_event(&mut self, event: Event) {
         self.recording.events.push(event);
+    }
+
+    /// A signal that has no value yet.
+    pub fn add_signal(&mut self, source: &str, name: &str) -> SignalId {
+        self.recording.signals.push(Signal { source: source.into(), name: name.into(), changes: Vec::new() });
+        SignalId(self.recording.signals.len() - 1)
+    }
+
+    /// Notes that a signal has `value` from `time` (s) on; nothing where it has it already.
+    ///
+    /// # Panics
+    /// When the signal is that of another recorder: the loop that notes it is wrong.
+    pub fn note_value(&mut self, SignalId(index): SignalId, time: f64, value: &str) {
+        let changes = &mut self.recording.signals[index].changes;
+        if changes.last().is_none_or(|(_, last)| last != value) {
+            changes.push((time, value.into()));
+        }
     }
 
     /// The recording, events in order of their start.
@@ -91,5 +112,24 @@ mod tests {
             let down: Vec<f64> = up.iter().map(|k| -k).collect();
             assert_eq!((recording.channel("up"), recording.channel("down")), (Some(&up[..]), Some(&down[..])));
         }
+    }
+
+    #[test]
+    fn a_signal_keeps_its_changes_only() {
+        let about = About { scenario: "s".into(), engine: "none".into(), axis_unit: "m".into(), bodies: vec![] };
+        let mut recorder = Recorder::new(about, Rate::new(1_000).unwrap(), vec![], 0);
+        let [state, done] = ["state", "Done"].map(|name| recorder.add_signal("axis", name));
+        for (time, value) in [(0.0, "Disabled"), (0.1, "Disabled"), (0.2, "Standstill"), (0.3, "Disabled")] {
+            recorder.note_value(state, time, value);
+        }
+        recorder.note_value(done, 0.1, "TRUE");
+        let recording = recorder.finish();
+        let state = recording.signal("axis", "state").unwrap();
+        assert_eq!(state.changes.len(), 3, "{state:?}");
+        let values = [-0.1, 0.0, 0.15, 0.2, 0.29, 9.0].map(|time| state.at(time));
+        let (disabled, standstill) = (Some("Disabled"), Some("Standstill"));
+        assert_eq!(values, [None, disabled, disabled, standstill, standstill, disabled]);
+        assert_eq!(recording.signal("axis", "Done").unwrap().changes, [(0.1, "TRUE".to_owned())]);
+        assert_eq!(recording.signal("drive", "state"), None);
     }
 }

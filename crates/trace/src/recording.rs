@@ -50,7 +50,27 @@ pub struct Event {
     pub message: String,
 }
 
-/// Channels of equal length, sampled together; moves; events.
+/// Something that has one value out of a few and changes now and then: a state, an output of a function block.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Signal {
+    /// Whose it is: `drive`, `axis`, the name of a function block.
+    pub source: String,
+    /// What it is: `state`, `Done`.
+    pub name: String,
+    /// Since when (s) it has which value, in order of time; no two neighbours are equal.
+    pub changes: Vec<(f64, String)>,
+}
+
+impl Signal {
+    /// The value at `time` (s); `None` before the first.
+    #[must_use]
+    pub fn at(&self, time: f64) -> Option<&str> {
+        let later = self.changes.partition_point(|(since, _)| *since <= time);
+        later.checked_sub(1).map(|index| self.changes[index].1.as_str())
+    }
+}
+
+/// Channels of equal length, sampled together; moves; events; signals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
     /// What it is of.
@@ -63,6 +83,8 @@ pub struct Recording {
     pub moves: Vec<Move>,
     /// The events in order of their start.
     pub events: Vec<Event>,
+    /// The signals, those of one source together.
+    pub signals: Vec<Signal>,
 }
 
 impl Recording {
@@ -70,6 +92,12 @@ impl Recording {
     #[must_use]
     pub fn channel(&self, name: &str) -> Option<&[f64]> {
         self.channels.iter().find(|channel| channel.spec.name == name).map(|channel| channel.values.as_slice())
+    }
+
+    /// The signal `name` of `source`.
+    #[must_use]
+    pub fn signal(&self, source: &str, name: &str) -> Option<&Signal> {
+        self.signals.iter().find(|signal| signal.source == source && signal.name == name)
     }
 
     /// Number of recorded instants.

@@ -1,7 +1,7 @@
 //! A recording comes back from its file to the bit, or is refused with the reason.
 use proptest::prelude::*;
 use servobench_base::Rate;
-use servobench_trace::{About, Channel, ChannelSpec, Event, Move, Recording, TraceError};
+use servobench_trace::{About, Channel, ChannelSpec, Event, Move, Recording, Signal, TraceError};
 use std::fs;
 use std::io::{Seek, SeekFrom, Write};
 use std::path::Path;
@@ -41,6 +41,11 @@ fn event() -> impl Strategy<Value = Event> {
     })
 }
 
+fn signal() -> impl Strategy<Value = Signal> {
+    let changes = prop::collection::vec((number(), any::<String>()), 0..4);
+    (any::<String>(), any::<String>(), changes).prop_map(|(source, name, changes)| Signal { source, name, changes })
+}
+
 fn spec() -> impl Strategy<Value = ChannelSpec> {
     ("c\\.[a-zµ_]{1,9}(\\.[a-z_]{1,9})?", any::<String>(), any::<String>(), rate())
         .prop_map(|(name, unit, writer, rate)| ChannelSpec { name, unit, writer, rate })
@@ -62,17 +67,22 @@ fn any_recording() -> impl Strategy<Value = Recording> {
     let about = (any::<String>(), any::<String>(), any::<String>(), prop::collection::vec(any::<String>(), 0..3));
     let moves = prop::collection::vec(one_move(), 0..3);
     let events = prop::collection::vec(event(), 0..3);
-    (about, rate(), channels(), moves, events).prop_map(|(about, rate, channels, moves, events)| {
+    let signals = prop::collection::vec(signal(), 0..3);
+    (about, rate(), channels(), moves, events, signals).prop_map(|(about, rate, channels, moves, events, signals)| {
         let (scenario, engine, axis_unit, bodies) = about;
-        Recording { about: About { scenario, engine, axis_unit, bodies }, rate, channels, moves, events }
+        Recording { about: About { scenario, engine, axis_unit, bodies }, rate, channels, moves, events, signals }
     })
+}
+
+fn said(recording: &Recording) -> String {
+    format!("{:?}{:?}{:?}", recording.moves, recording.events, recording.signals)
 }
 
 /// Equality to the bit: `==` alone takes -0 for 0.
 fn assert_same(one: &Recording, two: &Recording) {
     assert_eq!(one, two);
     // The shortest text that reads back as the same f64 tells all of them apart, zeros too.
-    assert_eq!(format!("{:?}{:?}", one.moves, one.events), format!("{:?}{:?}", two.moves, two.events));
+    assert_eq!(said(one), said(two));
     for (one, two) in one.channels.iter().zip(&two.channels) {
         let bits = |channel: &Channel| channel.values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
         assert_eq!(bits(one), bits(two), "{}", one.spec.name);
@@ -105,6 +115,7 @@ fn small(instants: u32) -> Recording {
             cruise: (0.3, 0.7),
         }],
         events: vec![Event { start: 0.25, end: 0.5, source: "drive".into(), message: "current limit".into() }],
+        signals: vec![Signal { source: "axis".into(), name: "state".into(), changes: vec![(0.0, "Disabled".into())] }],
     }
 }
 
@@ -222,14 +233,14 @@ fn a_foreign_parquet_file_is_told_what_it_lacks() {
     };
     let lacks = |missing: &str| format!("`{}` is not a recording of servobench: it lacks {missing}", path.display());
     assert_eq!(refusal(&[]).to_string(), lacks("the key `servobench.format` in its file metadata"));
-    let format = ("servobench.format", "1");
+    let format = ("servobench.format", "2");
     assert_eq!(refusal(&[format]).to_string(), lacks("the key `servobench.recording` in its file metadata"));
-    let json = r#"{"scenario":"s","engine":"e","axis_unit":"m","bodies":[],"rate":1,"instants":0,"channels":[{"name":"y","unit":"m","writer":"w","rate":1}],"moves":[],"events":[]}"#;
+    let json = r#"{"scenario":"s","engine":"e","axis_unit":"m","bodies":[],"rate":1,"instants":0,"channels":[{"name":"y","unit":"m","writer":"w","rate":1}],"moves":[],"events":[],"signals":[]}"#;
     let keys = [format, ("servobench.recording", json)];
     assert_eq!(refusal(&keys).to_string(), lacks("the column `y` of type DOUBLE, without nulls"));
     let damage = refusal(&[format, ("servobench.recording", "{}")]).to_string();
     assert!(damage.contains("`servobench.recording` cannot be read: missing field `scenario`"), "{damage}");
     assert!(
-        matches!(refusal(&[("servobench.format", "2")]), TraceError::Format { found, known: "1", .. } if found == "2")
+        matches!(refusal(&[("servobench.format", "1")]), TraceError::Format { found, known: "2", .. } if found == "1")
     );
 }

@@ -23,6 +23,7 @@ mod run;
 mod scale;
 mod scene;
 mod series;
+mod signals;
 mod style;
 mod ticks;
 

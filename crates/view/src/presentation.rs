@@ -9,6 +9,7 @@ use crate::plan;
 use crate::planned::PlannedPlot;
 use crate::run::Run;
 use crate::scene::Scene;
+use crate::signals;
 use rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 use servobench_trace::Recording;
 use std::path::Path;
@@ -70,10 +71,16 @@ impl<'a> Presentation<'a> {
     #[must_use]
     pub fn blueprint(&self) -> Layout {
         let duration = self.runs.iter().map(Run::end).fold(0.0, f64::max);
-        blueprint::layout(&self.plots, self.scene.as_ref(), &Happenings::of(&self.runs), duration)
+        blueprint::layout(
+            &self.plots,
+            self.scene.as_ref(),
+            &Happenings::of(&self.runs),
+            signals::paths(&self.runs),
+            duration,
+        )
     }
 
-    /// Logs curves, 3D view, moves and events.
+    /// Logs curves, 3D view, moves, events and signals.
     ///
     /// # Errors
     /// [`ViewError::Rerun`].
@@ -92,6 +99,7 @@ impl<'a> Presentation<'a> {
     fn log_all_but_curves(&self, stream: &RecordingStream) -> RecordingStreamResult<()> {
         self.plots.iter().try_for_each(|plot| curves::log_styles(stream, plot))?;
         self.runs.iter().enumerate().try_for_each(|(index, run)| happenings::log(stream, run, index))?;
+        self.runs.iter().try_for_each(|run| signals::log(stream, run))?;
         self.scene.as_ref().map_or(Ok(()), |scene| scene.log(stream, &self.runs))
     }
 

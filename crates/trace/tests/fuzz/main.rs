@@ -11,7 +11,7 @@ use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 use servobench_base::Rate;
 use servobench_fuzz::{Splice, check, fuzz};
-use servobench_trace::{About, Channel, ChannelSpec, Event, Move, Recording, TraceError};
+use servobench_trace::{About, Channel, ChannelSpec, Event, Move, Recording, Signal, TraceError};
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
@@ -43,6 +43,7 @@ fn recording(instants: u32, channels: u32, path: &Path) -> (Recording, Vec<u8>) 
             cruise: (0.3, 0.7),
         }],
         events: vec![Event { start: 0.25, end: 0.5, source: "drive".into(), message: "current limit".into() }],
+        signals: vec![Signal { source: "axis".into(), name: "state".into(), changes: vec![(0.0, "Disabled".into())] }],
     };
     recording.write_parquet(path).unwrap();
     let bytes = fs::read(path).unwrap();
@@ -117,8 +118,8 @@ const HEADERS: [&str; 2] = [
     r#"{"scenario":"s","engine":"exact","axis_unit":"m","bodies":["motor","load"],"rate":16000,"instants":7,"channels":
     [{"name":"c.0","unit":"m","writer":"mechanics","rate":16000},{"name":"c.1","unit":"m","writer":"drive","rate":8000}],
     "moves":[{"label":"move","start":0.0,"end":1.3,"from":0.0,"to":1.0,"peaks":[1.0,5.0,50.0,"inf"],"limits":[1.0,5.0,
-    null,null],"cruise":[0.3,0.7]}],"events":[{"start":0.25,"end":0.5,"source":"drive","message":"current limit"}]}"#,
-    r#"{"scenario":"","engine":"","axis_unit":"","bodies":[],"rate":1,"instants":0,"channels":[],"moves":[],"events":[]}"#,
+    null,null],"cruise":[0.3,0.7]}],"events":[{"start":0.25,"end":0.5,"source":"drive","message":"current limit"}],"signals":[{"source":"axis","name":"state","changes":[[0.0,"Disabled"]]}]}"#,
+    r#"{"scenario":"","engine":"","axis_unit":"","bodies":[],"rate":1,"instants":0,"channels":[],"moves":[],"events":[],"signals":[]}"#,
 ];
 
 const WORDS: &[&str] = &[
@@ -177,7 +178,7 @@ fn with_header(header: &str) -> Vec<u8> {
     };
     let fields = ["time", "c.0", "c.1"].map(column).to_vec();
     let schema = Type::group_type_builder("recording").with_fields(fields).build().unwrap();
-    let keys = [("servobench.format", "1"), ("servobench.seal", "0000000000000000"), ("servobench.recording", header)];
+    let keys = [("servobench.format", "2"), ("servobench.seal", "0000000000000000"), ("servobench.recording", header)];
     let keys = keys.map(|(key, value)| KeyValue::new(key.into(), value.to_owned())).to_vec();
     let properties = WriterProperties::builder().set_key_value_metadata(Some(keys)).build();
     let mut bytes = vec![];

@@ -1,0 +1,81 @@
+//! Signals: a lane for each, those of one source together.
+use crate::curves::TIMELINE;
+use crate::run::Run;
+use crate::style::{self, Rgb};
+use rerun::{Color, EntityPath, RecordingStream, RecordingStreamResult, StateChange, StateConfiguration, TimeColumn};
+use servobench_trace::Signal;
+
+/// Colours of the values of a signal, in the order in which they first appear.
+const COLOURS: [Rgb; 6] =
+    [style::MOTOR, style::LOAD, style::TABLE, style::AUXILIARY, style::DISTURBANCE, style::REFERENCE];
+
+/// Values that say that something is off.
+const OFF: [&str; 4] = ["FALSE", "none", "Off", "Disabled"];
+/// Parts of values that say that something went wrong.
+const WRONG: [&str; 5] = ["Error", "Fault", "fault", "Underflow", "Overflow"];
+
+/// Entities of the lanes of `runs`.
+pub(crate) fn paths(runs: &[Run<'_>]) -> Vec<EntityPath> {
+    let lanes = |run: &Run<'_>| run.recording.signals.iter().map(|signal| path(run, signal)).collect::<Vec<_>>();
+    runs.iter().flat_map(lanes).collect()
+}
+
+/// Logs the signals of `run`.
+pub(crate) fn log(stream: &RecordingStream, run: &Run<'_>) -> RecordingStreamResult<()> {
+    run.recording.signals.iter().filter(|signal| !signal.changes.is_empty()).try_for_each(|signal| {
+        let path = path(run, signal);
+        let times = TimeColumn::new_duration_secs(TIMELINE, signal.changes.iter().map(|(time, _)| *time));
+        let values = signal.changes.iter().map(|(_, value)| value.as_str());
+        let columns = StateChange::update_fields().with_state(values).columns_of_unit_batches()?;
+        let (texts, colours): (Vec<&str>, Vec<Color>) =
+            coloured(signal).into_iter().map(|(text, [r, g, b])| (text, Color::from_rgb(r, g, b))).unzip();
+        let configuration = StateConfiguration::new().with_values(texts).with_colors(colours);
+        stream.send_columns(path.clone(), [times], columns)?;
+        stream.log_static(path, &configuration)
+    })
+}
+
+fn path(run: &Run<'_>, signal: &Signal) -> EntityPath {
+    run.path(&["signals", &signal.source, &signal.name])
+}
+
+/// The values of `signal` with their colours.
+fn coloured(signal: &Signal) -> Vec<(&str, Rgb)> {
+    let mut values: Vec<(&str, Rgb)> = Vec::new();
+    let mut colours = COLOURS.iter().cycle();
+    for (_, value) in &signal.changes {
+        if values.iter().any(|(known, _)| known == value) {
+            continue;
+        }
+        let colour = if OFF.contains(&value.as_str()) {
+            style::IDLE
+        } else if WRONG.iter().any(|wrong| value.contains(wrong)) || (signal.name.contains("Error") && value == "TRUE")
+        {
+            style::LIMIT
+        } else {
+            *colours.next().unwrap_or(&style::MOTOR)
+        };
+        values.push((value, colour));
+    }
+    values
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn signal(name: &str, values: &[&str]) -> Signal {
+        let changes = values.iter().enumerate().map(|(k, value)| (k as f64, (*value).to_owned())).collect();
+        Signal { source: "first".into(), name: name.into(), changes }
+    }
+
+    #[test]
+    fn what_is_off_is_grey_and_what_went_wrong_is_red() {
+        let done = signal("Done", &["FALSE", "TRUE", "FALSE"]);
+        assert_eq!(coloured(&done), [("FALSE", style::IDLE), ("TRUE", style::MOTOR)]);
+        assert_eq!(coloured(&signal("Error", &["FALSE", "TRUE"]))[1].1, style::LIMIT);
+        let state = signal("state", &["Disabled", "Standstill", "Discrete motion", "Error stop", "Standstill"]);
+        let colours: Vec<Rgb> = coloured(&state).into_iter().map(|(_, colour)| colour).collect();
+        assert_eq!(colours, [style::IDLE, style::MOTOR, style::LOAD, style::LIMIT]);
+    }
+}
