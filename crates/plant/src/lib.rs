@@ -14,6 +14,7 @@ mod mjcf;
 pub mod pmsm;
 mod refusal;
 mod sensor;
+mod switches;
 
 pub use chain::{Body, Chain, Coordinate, Link};
 pub use exact::Exact;
@@ -25,3 +26,4 @@ pub use mechanics::{
 pub use mjcf::chain_to_mjcf;
 pub use refusal::{Refusal, RefusedAt};
 pub use sensor::{Encoder, Reading};
+pub use switches::{SwitchReading, Switches};

@@ -1,0 +1,127 @@
+//! Limit and home switches along the axis, and the index pulse of the motor's encoder.
+//!
+//! A switch is active or not at the position of the load. The index pulse comes once per revolution of the motor and its
+//! position is latched where it comes, between two ticks too: an encoder's hardware does that.
+use core::f64::consts::TAU;
+use core::ops::RangeInclusive;
+use servobench_base::{ParamError, finite};
+
+/// Where the switches are; constant during a run.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Switches {
+    /// The negative end: active at and below it (axis coordinate).
+    pub negative: Option<f64>,
+    /// The positive end: active at and above it (axis coordinate).
+    pub positive: Option<f64>,
+    /// Where the home switch is active (axis coordinate).
+    pub home: Option<RangeInclusive<f64>>,
+    /// Angle of the motor at which the index pulse comes (rad); `None` for a motor without one.
+    pub index: Option<f64>,
+}
+
+/// What the switches say at a tick.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SwitchReading {
+    /// Whether the switch of the negative end is active.
+    pub negative: bool,
+    /// Whether the switch of the positive end is active.
+    pub positive: bool,
+    /// Whether the home switch is active.
+    pub home: bool,
+    /// Position of the motor at the last index pulse since the tick before (rad); `None` without one.
+    pub index: Option<f64>,
+}
+
+impl Switches {
+    /// # Errors
+    /// [`ParamError`] names the first position that is not finite.
+    pub fn check(&self) -> Result<(), ParamError> {
+        let home = self.home.as_ref();
+        for (name, position) in [
+            ("axis.switches.negative", self.negative),
+            ("axis.switches.positive", self.positive),
+            ("axis.switches.home.from", home.map(|home| *home.start())),
+            ("axis.switches.home.to", home.map(|home| *home.end())),
+            ("axis.switches.index", self.index),
+        ] {
+            position.map_or(Ok(0.0), |position| finite(name, position))?;
+        }
+        Ok(())
+    }
+
+    /// What they say with the load at `load` (axis coordinate), and of the motor's way from `before` to `now` (rad).
+    #[must_use]
+    pub fn read(&self, load: f64, before: f64, now: f64) -> SwitchReading {
+        SwitchReading {
+            negative: self.negative.is_some_and(|end| load <= end),
+            positive: self.positive.is_some_and(|end| load >= end),
+            home: self.home.as_ref().is_some_and(|home| home.contains(&load)),
+            index: self.index.and_then(|index| last_pulse(index, before, now)),
+        }
+    }
+}
+
+/// The last angle `index` + n·2π on the way from `before` to `now`, both ends of the way in the half-open interval that
+/// leaves out `before`: two ways one after the other meet each pulse once.
+fn last_pulse(index: f64, before: f64, now: f64) -> Option<f64> {
+    let turns = |angle: f64| (angle - index) / TAU;
+    if now > before {
+        let pulse = index + TAU * libm::floor(turns(now));
+        (pulse > before && pulse <= now).then_some(pulse)
+    } else {
+        let pulse = index + TAU * libm::ceil(turns(now));
+        (pulse < before && pulse >= now).then_some(pulse)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Oracle: a motor that turns ten times passes its index ten times, each a whole number of turns from the next, on
+    /// whatever ticks.
+    #[test]
+    fn each_pulse_comes_once() {
+        let switches = Switches { index: Some(0.3), ..Switches::default() };
+        for direction in [1.0, -1.0] {
+            let angle = |tick: u32| direction * (0.1 + 10.0 * TAU * f64::from(tick) / 777.0);
+            let pulses: Vec<f64> =
+                (0..777).filter_map(|tick| switches.read(0.0, angle(tick), angle(tick + 1)).index).collect();
+            assert_eq!(pulses.len(), 10, "{pulses:?}");
+            for (k, pulse) in pulses.iter().enumerate() {
+                let expected = if direction > 0.0 { 0.3 + TAU * k as f64 } else { 0.3 - TAU * (k as f64 + 1.0) };
+                // A few roundings of 63 rad.
+                assert!((pulse - expected).abs() < 1e-13, "{k}: {pulse}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_switch_is_active_beyond_its_end_and_a_home_switch_between_its_ends() {
+        let switches =
+            Switches { negative: Some(-0.02), positive: Some(0.5), home: Some(0.0..=0.01), ..Switches::default() };
+        let at = |load| {
+            let reading = switches.read(load, 0.0, 0.0);
+            (reading.negative, reading.home, reading.positive)
+        };
+        for (load, expected) in [
+            (-0.1, (true, false, false)),
+            (-0.02, (true, false, false)),
+            (-0.01, (false, false, false)),
+            (0.0, (false, true, false)),
+            (0.01, (false, true, false)),
+            (0.3, (false, false, false)),
+            (0.5, (false, false, true)),
+        ] {
+            assert_eq!(at(load), expected, "{load}");
+        }
+        assert_eq!(Switches::default().read(0.0, 0.0, 100.0), SwitchReading::default());
+    }
+
+    #[test]
+    fn a_position_that_is_no_number_is_refused() {
+        let switches = Switches { home: Some(0.0..=f64::NAN), ..Switches::default() };
+        let refusal = switches.check().unwrap_err().to_string();
+        assert_eq!(refusal, "`axis.switches.home.to` must be finite, got NaN");
+    }
+}
