@@ -7,6 +7,7 @@
 pub mod current;
 pub mod delay;
 mod demand;
+pub mod device;
 pub mod feedforward;
 mod firmware;
 pub mod modes;

@@ -2,6 +2,9 @@
 //!
 //! A mode sees a [`Moment`] and gives an [`Answer`], once per period of the position loop. Positions and velocities are in
 //! the axis unit (m or rad), efforts in the motor's (N·m or N): drive units end at the door.
+pub mod cyclic;
+pub mod stop;
+
 use crate::Demand;
 use servobench_base::Setpoint;
 use servobench_cia402::Controlword;
@@ -13,7 +16,8 @@ pub struct Moment {
     pub targets: Targets,
     /// What the drive measures.
     pub actual: Actual,
-    /// What the loops were asked to follow at the last step: where a mode that takes over begins.
+    /// What the loops follow now if they go on as at the last step: where a mode that takes over begins. Where no demand
+    /// says so, it is where the axis is.
     pub demanded: Setpoint,
     /// Time since the last step (s).
     pub period: f64,
@@ -26,6 +30,8 @@ pub struct Targets {
     pub controlword: Controlword,
     /// Target position (607Ah).
     pub position: f64,
+    /// Target position (607Ah) as a distance, for set-points that are relative.
+    pub distance: f64,
     /// Target velocity (60FFh).
     pub velocity: f64,
     /// Target effort (6071h).
@@ -34,6 +40,12 @@ pub struct Targets {
     pub velocity_offset: f64,
     /// Added to what the velocity loop asks for (60B2h).
     pub effort_offset: f64,
+    /// Highest velocity of a profile (6081h), a magnitude.
+    pub profile_velocity: f64,
+    /// Acceleration of a profile (6083h), a magnitude.
+    pub profile_acceleration: f64,
+    /// Deceleration of a profile (6084h), a magnitude.
+    pub profile_deceleration: f64,
     /// Whether the frame that brought these came since the last step.
     pub is_new: bool,
 }

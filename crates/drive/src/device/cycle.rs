@@ -1,0 +1,72 @@
+//! When the targets of the cyclic modes act.
+//!
+//! The drive keeps a clock of its own with the period of the frames. It starts with the first frame and is not moved by the
+//! later ones: a frame acts at the beginning of the cycle after it came, however early it came. A cycle that begins without a
+//! new frame is a missed one.
+
+/// Rates of the clock.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Params {
+    /// Steps of the drive per frame (60C2h), at least 1.
+    pub steps: u32,
+    /// Steps that the first frame waits for its cycle: how much later than that one the others may come without being missed.
+    pub shift: u32,
+    /// Cycles in a row that may begin without a new frame.
+    pub bridged: u32,
+}
+
+/// What the clock says at a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Beat {
+    /// A cycle begins and the targets of a new frame act.
+    Sample,
+    /// A cycle begins without a new frame.
+    Missed,
+    /// A cycle goes on, or none has begun.
+    Between,
+}
+
+/// All that a snapshot must hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct State {
+    /// Steps until the next cycle begins; none before the first frame.
+    left: Option<u32>,
+    is_waiting: bool,
+    missed: u32,
+}
+
+impl State {
+    /// Cycles in a row that began without a new frame.
+    #[must_use]
+    pub const fn missed(&self) -> u32 {
+        self.missed
+    }
+}
+
+/// Counts a step; `came` says whether a frame came since the last one. After more missed cycles than are bridged the clock
+/// waits for another first frame.
+pub(super) fn step(p: &Params, x: &mut State, came: bool) -> Beat {
+    x.is_waiting |= came;
+    if x.left.is_none() && came {
+        (x.left, x.missed) = (Some(p.shift), 0);
+    }
+    match x.left {
+        None => Beat::Between,
+        Some(0) => {
+            x.left = Some(p.steps - 1);
+            if core::mem::take(&mut x.is_waiting) {
+                x.missed = 0;
+                return Beat::Sample;
+            }
+            x.missed += 1;
+            if x.missed > p.bridged {
+                x.left = None;
+            }
+            Beat::Missed
+        }
+        Some(left) => {
+            x.left = Some(left - 1);
+            Beat::Between
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! What the drive is set to: the objects that do not come with every frame, in SI.
+use super::{Units, Window, cycle};
+use crate::modes::cyclic;
+use core::cmp::Ordering;
+use servobench_base::{ParamError, limit, positive};
+use servobench_cia402::PowerParams;
+use servobench_cia402::units::{AxisUnit, FactorGroup, Ratio};
+use servobench_motion::interpolate;
+
+/// Settings of the drive; constant while it runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Params {
+    /// Time between two steps (s): the period of the position loop.
+    pub period: f64,
+    /// When the targets of the cyclic modes act.
+    pub cycle: cycle::Params,
+    /// How cyclic positions are interpolated.
+    pub interpolation: interpolate::Mode,
+    /// The option codes.
+    pub power: PowerParams,
+    /// Drive units.
+    pub units: Units,
+    /// What no mode may exceed.
+    pub limits: Limits,
+    /// The profile that a frame's own values replace where they are not zero.
+    pub profile: Profile,
+    /// Following error window and time-out (6065h, 6066h).
+    pub following_error: Window,
+    /// Position window and time (6067h, 6068h).
+    pub position: Window,
+    /// Velocity window and time (606Dh, 606Eh).
+    pub velocity: Window,
+    /// Velocity threshold and time (606Fh, 6070h): what counts as standstill.
+    pub standstill: Window,
+}
+
+/// What no mode may exceed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// Velocity of any demand (6080h); may be infinite.
+    pub velocity: f64,
+    /// Velocity of a profile (607Fh); may be infinite.
+    pub profile_velocity: f64,
+    /// Acceleration of a profile (60C5h); may be infinite.
+    pub acceleration: f64,
+    /// Deceleration of a profile (60C6h); may be infinite.
+    pub deceleration: f64,
+    /// Effort in positive and negative direction (the lower of 6072h and 60E0h or 60E1h), magnitudes; may be infinite.
+    pub effort: [f64; 2],
+    /// Lowest and highest position (607Dh); `None` without software limits.
+    pub position: Option<[f64; 2]>,
+}
+
+/// How the drive itself moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Profile {
+    /// 6081h.
+    pub velocity: f64,
+    /// 6083h.
+    pub acceleration: f64,
+    /// 6084h.
+    pub deceleration: f64,
+    /// 6085h.
+    pub quick_stop_deceleration: f64,
+}
+
+impl Default for Params {
+    /// A linear axis of 1 µm per increment and per unit under a position loop of 4 kHz and frames of 1 kHz, without limits.
+    fn default() -> Self {
+        let millionth = Ratio::new(1, 1_000_000).map(AxisUnit::Metre);
+        let units = millionth.and_then(|unit| Units::new(&FactorGroup::default(), unit, 1.0));
+        Self {
+            period: 250e-6,
+            cycle: cycle::Params { steps: 4, shift: 0, bridged: 2 },
+            interpolation: interpolate::Mode::Linear,
+            power: PowerParams::default(),
+            units: units.expect("ratios of ones and a million are in range"),
+            limits: Limits {
+                velocity: f64::INFINITY,
+                profile_velocity: f64::INFINITY,
+                acceleration: f64::INFINITY,
+                deceleration: f64::INFINITY,
+                effort: [f64::INFINITY; 2],
+                position: None,
+            },
+            profile: Profile { velocity: 0.1, acceleration: 1.0, deceleration: 1.0, quick_stop_deceleration: 10.0 },
+            following_error: Window { width: f64::INFINITY, time: 0.0 },
+            position: Window { width: 1e-5, time: 0.01 },
+            velocity: Window { width: 1e-3, time: 0.01 },
+            standstill: Window { width: 1e-3, time: 0.01 },
+        }
+    }
+}
+
+impl Params {
+    /// # Errors
+    /// [`ParamError`] names the first setting out of its bound, by the name of its object.
+    pub fn check(&self) -> Result<(), ParamError> {
+        positive("period", self.period)?;
+        positive("interpolation_time_period", f64::from(self.cycle.steps))?;
+        self.units.check()?;
+        self.cyclic_position().check()?;
+        let Limits { velocity, profile_velocity, acceleration, deceleration, effort: [forward, backward], position } =
+            self.limits;
+        limit("max_motor_speed", velocity)?;
+        limit("max_profile_velocity", profile_velocity)?;
+        limit("max_acceleration", acceleration)?;
+        limit("max_deceleration", deceleration)?;
+        limit("positive_torque_limit", forward)?;
+        limit("negative_torque_limit", backward)?;
+        if let Some([lowest, highest]) = position
+            && lowest.partial_cmp(&highest) != Some(Ordering::Less)
+        {
+            let bound = "above the lowest one";
+            return Err(ParamError { name: "software_position_limit.max", value: highest, bound });
+        }
+        positive("profile_velocity", self.profile.velocity)?;
+        positive("profile_acceleration", self.profile.acceleration)?;
+        positive("profile_deceleration", self.profile.deceleration)?;
+        positive("quick_stop_deceleration", self.profile.quick_stop_deceleration)?;
+        self.following_error.check(["following_error_window", "following_error_time_out"])?;
+        self.position.check(["position_window", "position_window_time"])?;
+        self.velocity.check(["velocity_window", "velocity_window_time"])?;
+        self.standstill.check(["velocity_threshold", "velocity_threshold_time"])
+    }
+
+    pub(super) const fn cyclic_position(&self) -> cyclic::position::Params {
+        cyclic::position::Params {
+            interpolation: self.interpolation,
+            steps: self.cycle.steps,
+            velocity: self.limits.velocity,
+        }
+    }
+
+    pub(super) const fn cyclic_velocity(&self) -> cyclic::velocity::Params {
+        cyclic::velocity::Params { steps: self.cycle.steps, velocity: self.limits.velocity }
+    }
+
+    pub(super) const fn cyclic_effort(&self) -> cyclic::effort::Params {
+        cyclic::effort::Params { steps: self.cycle.steps }
+    }
+}

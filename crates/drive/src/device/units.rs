@@ -1,0 +1,139 @@
+//! Where drive units end: the factor group as the drive uses it.
+//!
+//! The loops count from the encoder's zero in the encoder's direction; polarity (607Eh) and user-defined units are only in what
+//! goes over the bus. Velocities are in the user-defined velocity unit, accelerations in that unit per second, efforts in
+//! thousandths of the rated one (6076h).
+use core::f64::consts::TAU;
+use servobench_base::{ParamError, positive};
+use servobench_cia402::units::{
+    AxisUnit, FactorGroup, POLARITY_POSITION, POLARITY_VELOCITY, Ratio, Scaling, UnitError,
+};
+
+/// The conversions between the bus and the loops.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Units {
+    scaling: Scaling,
+    /// Metres or radians per increment.
+    increment: f64,
+    /// Metres or radians per user-defined position unit, with the sign of the polarity.
+    position: f64,
+    /// m/s or rad/s per user-defined velocity unit, with the sign of the polarity.
+    velocity: f64,
+    /// N·m or N per thousandth.
+    effort: f64,
+}
+
+impl Units {
+    /// The conversions by a factor group, `unit` being the user-defined position unit, and the motor's rated effort (N·m or N).
+    ///
+    /// # Errors
+    /// [`UnitError`] when the factor group is refused.
+    pub fn new(factors: &FactorGroup, unit: AxisUnit, rated_effort: f64) -> Result<Self, UnitError> {
+        let scaling = factors.scaling(unit)?;
+        let length = match unit {
+            AxisUnit::Metre(length) => as_f64(length),
+            AxisUnit::Revolution(length) => as_f64(length) * TAU,
+        };
+        let [numerator, denominator] = factors.velocity_factor.map(f64::from);
+        let sign = |bit| if factors.polarity & bit == 0 { 1.0 } else { -1.0 };
+        Ok(Self {
+            scaling,
+            increment: scaling.metres_or_radians(1)?.abs(),
+            position: sign(POLARITY_POSITION) * length,
+            velocity: sign(POLARITY_VELOCITY) * length * (denominator / numerator),
+            effort: rated_effort / 1000.0,
+        })
+    }
+
+    /// # Errors
+    /// [`ParamError`] unless the rated effort is positive.
+    pub fn check(&self) -> Result<(), ParamError> {
+        positive("rated_effort", 1000.0 * self.effort).map(|_| ())
+    }
+
+    /// Metres or radians at so many increments.
+    #[inline]
+    #[must_use]
+    pub fn metres_or_radians(&self, increments: i64) -> f64 {
+        increments as f64 * self.increment
+    }
+
+    /// Increments nearest to a position (m or rad).
+    #[must_use]
+    pub fn increments(&self, metres_or_radians: f64) -> i64 {
+        nearest(metres_or_radians / self.increment)
+    }
+
+    /// Position in user-defined units.
+    #[must_use]
+    #[expect(clippy::cast_possible_truncation, reason = "wraps, which is meant")]
+    pub fn position(&self, increments: i64) -> i64 {
+        // 64 bits of increments times a ratio of 63 bits cannot leave the 127 bits that are computed with; what leaves 64 bits
+        // wraps like the counters of the bus.
+        self.scaling.position(increments.into()).unwrap_or_default() as i64
+    }
+
+    /// Metres or radians at a position in user-defined units.
+    #[inline]
+    #[must_use]
+    pub fn from_position(&self, units: i64) -> f64 {
+        units as f64 * self.position
+    }
+
+    /// A difference of positions (m or rad) in user-defined units, nearest, at the end of the object's range beyond it.
+    #[inline]
+    #[must_use]
+    pub fn distance(&self, metres_or_radians: f64) -> i32 {
+        saturated(nearest(metres_or_radians / self.position))
+    }
+
+    /// m/s or rad/s at a velocity in user-defined units.
+    #[inline]
+    #[must_use]
+    pub fn from_velocity(&self, units: i32) -> f64 {
+        f64::from(units) * self.velocity
+    }
+
+    /// Velocity in user-defined units, nearest, at the end of the object's range beyond it.
+    #[inline]
+    #[must_use]
+    pub fn velocity(&self, velocity: f64) -> i32 {
+        saturated(nearest(velocity / self.velocity))
+    }
+
+    /// The magnitude of a velocity (m/s or rad/s) or an acceleration (m/s² or rad/s²) of a profile.
+    #[inline]
+    #[must_use]
+    pub fn from_rate(&self, units: u32) -> f64 {
+        f64::from(units) * self.velocity.abs()
+    }
+
+    /// Effort (N·m or N) at so many thousandths of the rated one.
+    #[inline]
+    #[must_use]
+    pub fn from_effort(&self, thousandths: i16) -> f64 {
+        f64::from(thousandths) * self.effort
+    }
+
+    /// Effort in thousandths of the rated one, nearest, at the end of the object's range beyond it.
+    #[inline]
+    #[must_use]
+    pub fn effort(&self, effort: f64) -> i16 {
+        let thousandths = saturated(nearest(effort / self.effort));
+        i16::try_from(thousandths).unwrap_or(if thousandths < 0 { i16::MIN } else { i16::MAX })
+    }
+}
+
+fn as_f64(ratio: Ratio) -> f64 {
+    ratio.numerator() as f64 / ratio.denominator() as f64
+}
+
+/// The nearest whole number, a half away from zero; at the ends of the range beyond it.
+#[expect(clippy::cast_possible_truncation, reason = "saturates, which is meant")]
+fn nearest(value: f64) -> i64 {
+    (value + 0.5_f64.copysign(value)) as i64
+}
+
+fn saturated(value: i64) -> i32 {
+    i32::try_from(value).unwrap_or(if value < 0 { i32::MIN } else { i32::MAX })
+}

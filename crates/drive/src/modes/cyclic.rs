@@ -1,0 +1,46 @@
+//! The cyclic synchronous modes: the master gives a target every cycle, the drive interpolates in between.
+//!
+//! A target that comes with a frame is reached at the end of the cycle that begins with it. What goes with it, the offsets,
+//! goes linearly to its value in the same time. A cycle that begins without a new frame goes on with the velocity of the one
+//! before it, or with the same velocity or effort target.
+pub mod effort;
+pub mod position;
+pub mod velocity;
+
+/// A value that goes linearly to each of its targets within a cycle.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Linear {
+    from: f64,
+    to: f64,
+}
+
+impl Linear {
+    const fn resting(value: f64) -> Self {
+        Self { from: value, to: value }
+    }
+
+    const fn go_to(&mut self, target: f64) {
+        *self = Self { from: self.to, to: target };
+    }
+
+    /// After a fraction of the cycle.
+    const fn at(&self, fraction: f64) -> f64 {
+        self.from + fraction * (self.to - self.from)
+    }
+}
+
+/// How far a cycle has gone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+struct Progress {
+    steps: u32,
+}
+
+impl Progress {
+    /// The fraction that has passed at a step of a cycle of `steps`; counts the step. A cycle that lasts longer than it should
+    /// has passed.
+    fn next(&mut self, steps: u32) -> f64 {
+        let passed = f64::from(self.steps) / f64::from(steps);
+        self.steps = (self.steps + 1).min(steps);
+        passed
+    }
+}

@@ -1,0 +1,38 @@
+//! Cyclic synchronous torque (cst): the effort goes linearly to the sum of target (6071h) and offset (60B2h) within a cycle.
+use super::{Linear, Progress};
+use crate::Demand;
+use crate::device::Beat;
+use crate::modes::{Answer, Moment};
+
+/// How the drive interpolates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Params {
+    /// Steps of the drive per cycle.
+    pub steps: u32,
+}
+
+/// All that a snapshot must hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State {
+    effort: Linear,
+    progress: Progress,
+}
+
+impl State {
+    /// Goes on with the effort that the motor gives until the first target.
+    #[must_use]
+    pub const fn begin(now: &Moment) -> Self {
+        Self { effort: Linear::resting(now.actual.effort), progress: Progress { steps: 0 } }
+    }
+}
+
+/// The demand of a step.
+pub fn step(p: Params, x: &mut State, now: &Moment, beat: Beat) -> Answer {
+    if beat != Beat::Between {
+        x.progress = Progress::default();
+        let targets = &now.targets;
+        x.effort.go_to(if beat == Beat::Sample { targets.effort + targets.effort_offset } else { x.effort.to });
+    }
+    let demand = Demand::Effort(x.effort.at(x.progress.next(p.steps)));
+    Answer { demand, target_reached: false, bit_12: true, bit_13: false }
+}

@@ -1,0 +1,156 @@
+//! Cyclic synchronous position (csp).
+//!
+//! Between two targets the position is that of [`interpolate`](servobench_motion::interpolate), in one of three ways:
+//!
+//! | interpolation | by | target reached after |
+//! |---|---|---|
+//! | linear | the targets | a cycle |
+//! | cubic | the targets, and the velocity offsets (60B1h) as their velocities | a cycle |
+//! | cubic B-spline | the targets as control points | two cycles; passed by in a curve |
+//!
+//! The targets may ask for no more than the highest velocity: what is beyond is cut, and the drive says so (bit 11). A cubic
+//! that would pass it between two targets is replaced by the line.
+use super::{Linear, Progress};
+use crate::Demand;
+use crate::device::Beat;
+use crate::modes::{Answer, Moment};
+use servobench_base::{ParamError, Setpoint, limit};
+use servobench_motion::interpolate::{Interval, Mode, Sample};
+
+/// How the drive interpolates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Params {
+    /// Linear, cubic or cubic B-spline.
+    pub interpolation: Mode,
+    /// Steps of the drive per cycle.
+    pub steps: u32,
+    /// Highest velocity (6080h), a magnitude; may be infinite.
+    pub velocity: f64,
+}
+
+impl Params {
+    /// # Errors
+    /// [`ParamError`] names the first parameter out of its bound.
+    pub fn check(&self) -> Result<(), ParamError> {
+        if !matches!(self.interpolation, Mode::Linear | Mode::Cubic | Mode::CubicBSpline) {
+            let value = Mode::ALL.iter().position(|mode| *mode == self.interpolation).map_or(0.0, |i| i as f64 + 1.0);
+            return Err(ParamError {
+                name: "interpolation",
+                value,
+                bound: "1 (linear), 2 (cubic) or 4 (cubic B-spline)",
+            });
+        }
+        limit("max_motor_speed", self.velocity).map(|_| ())
+    }
+}
+
+/// All that a snapshot must hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State {
+    /// The last targets, the newest last: as many as the interpolation needs.
+    points: [Sample; 4],
+    has_begun: bool,
+    /// Set-point at the beginning of the cycle; its derivatives hold for all of it.
+    start: Setpoint,
+    progress: Progress,
+    velocity_offset: Linear,
+    effort_offset: Linear,
+    is_limited: bool,
+}
+
+impl State {
+    /// Goes on as before until the first target.
+    #[must_use]
+    pub const fn begin(now: &Moment) -> Self {
+        let start = Setpoint { x: now.demanded.x, v: now.demanded.v, ..Setpoint::at_rest(0.0) };
+        Self {
+            points: [Sample { x: 0.0, v: 0.0, a: 0.0, torque: 0.0 }; 4],
+            has_begun: false,
+            start,
+            progress: Progress { steps: 0 },
+            velocity_offset: Linear::resting(0.0),
+            effort_offset: Linear::resting(0.0),
+            is_limited: false,
+        }
+    }
+
+    /// Whether the last target asked for more than the highest velocity.
+    #[must_use]
+    pub const fn is_limited(&self) -> bool {
+        self.is_limited
+    }
+
+    /// The next cycle goes to `target`.
+    fn go_to(&mut self, p: &Params, cycle: f64, target: Sample) {
+        let [_, b, c, d] = self.points;
+        let furthest = p.velocity * cycle;
+        let kept = Sample {
+            x: d.x + (target.x - d.x).clamp(-furthest, furthest),
+            v: target.v.clamp(-p.velocity, p.velocity),
+            ..target
+        };
+        self.points = [b, c, d, kept];
+        let (curve, is_slow_enough) = match self.along(p.interpolation, cycle) {
+            Some(curve) if peak_velocity(&curve, cycle) <= p.velocity => (Some(curve), true),
+            _ => (self.along(Mode::Linear, cycle), false),
+        };
+        self.is_limited = kept != target || !is_slow_enough;
+        // Targets are finite: they are whole numbers of drive units.
+        self.start = curve.unwrap_or(Setpoint::at_rest(d.x));
+        self.progress = Progress::default();
+    }
+
+    fn along(&self, mode: Mode, cycle: f64) -> Option<Setpoint> {
+        let interval = Interval::new(mode, cycle, &self.points).ok()?;
+        interval.at(0.0).ok().map(|command| command.setpoint)
+    }
+
+    /// Lays the targets before the first one so that every interpolation begins where the axis is, at its velocity.
+    fn lay(&mut self, cycle: f64, now: Setpoint, mode: Mode) {
+        let sample = |cycles: f64| Sample { x: now.x + cycles * cycle * now.v, v: now.v, ..Sample::default() };
+        self.points = match mode {
+            Mode::CubicBSpline => [-2.0, -1.0, 0.0, 1.0],
+            _ => [-3.0, -2.0, -1.0, 0.0],
+        }
+        .map(sample);
+        self.has_begun = true;
+    }
+}
+
+/// Highest magnitude of the velocity on a cubic that begins with `start`.
+fn peak_velocity(start: &Setpoint, cycle: f64) -> f64 {
+    let turn = -start.a / start.j;
+    let between = if turn > 0.0 && turn < cycle { start.v + 0.5 * start.a * turn } else { 0.0 };
+    // Of the ends the targets take care, but for a rounding.
+    between.abs()
+}
+
+/// The demand of a step.
+pub fn step(p: &Params, x: &mut State, now: &Moment, beat: Beat) -> Answer {
+    let cycle = f64::from(p.steps) * now.period;
+    if beat != Beat::Between && !x.has_begun {
+        x.lay(cycle, now.demanded, p.interpolation);
+    }
+    match beat {
+        Beat::Between => {}
+        Beat::Sample => {
+            let targets = &now.targets;
+            x.go_to(p, cycle, Sample { x: targets.position, v: targets.velocity_offset, ..Sample::default() });
+            x.velocity_offset.go_to(targets.velocity_offset.clamp(-p.velocity, p.velocity));
+            x.effort_offset.go_to(targets.effort_offset);
+        }
+        Beat::Missed => {
+            let [.., before, last] = x.points;
+            x.go_to(p, cycle, Sample { x: last.x + (last.x - before.x), ..last });
+            x.velocity_offset.go_to(x.velocity_offset.to);
+            x.effort_offset.go_to(x.effort_offset.to);
+        }
+    }
+    let passed = x.progress.next(p.steps);
+    let demand = Demand::Position {
+        setpoint: x.start.after(passed * cycle),
+        velocity_offset: x.velocity_offset.at(passed),
+        effort_offset: x.effort_offset.at(passed),
+    };
+    Answer { demand, target_reached: false, bit_12: true, bit_13: false }
+}

@@ -1,0 +1,66 @@
+//! Cyclic synchronous velocity (csv): the velocity goes linearly to the sum of target (60FFh) and offset (60B1h) within a
+//! cycle. Its slope is there for the feedforward.
+use super::{Linear, Progress};
+use crate::Demand;
+use crate::device::Beat;
+use crate::modes::{Answer, Moment};
+use servobench_base::Setpoint;
+
+/// How the drive interpolates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Params {
+    /// Steps of the drive per cycle.
+    pub steps: u32,
+    /// Highest velocity (6080h), a magnitude.
+    pub velocity: f64,
+}
+
+/// All that a snapshot must hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State {
+    velocity: Linear,
+    effort_offset: Linear,
+    progress: Progress,
+    is_limited: bool,
+}
+
+impl State {
+    /// Goes on as before until the first target.
+    #[must_use]
+    pub const fn begin(now: &Moment) -> Self {
+        Self {
+            velocity: Linear::resting(now.demanded.v),
+            effort_offset: Linear::resting(0.0),
+            progress: Progress { steps: 0 },
+            is_limited: false,
+        }
+    }
+
+    /// Whether the last target asked for more than the highest velocity.
+    #[must_use]
+    pub const fn is_limited(&self) -> bool {
+        self.is_limited
+    }
+}
+
+/// The demand of a step.
+pub fn step(p: &Params, x: &mut State, now: &Moment, beat: Beat) -> Answer {
+    let targets = &now.targets;
+    if beat != Beat::Between {
+        x.progress = Progress::default();
+        let (velocity, effort_offset) = if beat == Beat::Sample {
+            (targets.velocity + targets.velocity_offset, targets.effort_offset)
+        } else {
+            (x.velocity.to, x.effort_offset.to)
+        };
+        x.is_limited = velocity.abs() > p.velocity;
+        x.velocity.go_to(velocity.clamp(-p.velocity, p.velocity));
+        x.effort_offset.go_to(effort_offset);
+    }
+    let cycle = f64::from(p.steps) * now.period;
+    let passed = x.progress.next(p.steps);
+    let slope = if passed < 1.0 { (x.velocity.to - x.velocity.from) / cycle } else { 0.0 };
+    let setpoint = Setpoint { v: x.velocity.at(passed), a: slope, ..Setpoint::at_rest(now.actual.position) };
+    let demand = Demand::Velocity { setpoint, effort_offset: x.effort_offset.at(passed) };
+    Answer { demand, target_reached: false, bit_12: true, bit_13: false }
+}

@@ -1,0 +1,165 @@
+//! Cyclic synchronous position, velocity and torque.
+use crate::axis::{Axis, setpoint};
+use servobench_cia402::{Mode, StatusBit};
+use servobench_drive::Demand;
+use servobench_drive::device::{CycleParams, Fault, Limits, Params};
+use servobench_motion::interpolate;
+
+const MICROMETRE: f64 = 1e-6;
+
+/// Oracle: by hand. A target that comes with a frame is reached a cycle later, on a line.
+#[test]
+fn linear_targets_are_reached_a_cycle_later() {
+    let mut axis = Axis::enabled(&Params::default(), Mode::CyclicSynchronousPosition);
+    let targets = [0, 100, 300, 600, 600, 500];
+    let mut before = 0;
+    for target in targets {
+        axis.frame.target_position = target;
+        for (k, outputs) in axis.cycle().iter().enumerate() {
+            let passed = k as f64 / 4.0;
+            let line = f64::from(before) + passed * f64::from(target - before);
+            let got = setpoint(&outputs.demand);
+            assert!((got.x - line * MICROMETRE).abs() < 1e-18, "towards {target}, step {k}: {got:?}");
+            assert!((got.v - f64::from(target - before) * MICROMETRE / 1e-3).abs() < 1e-15, "{got:?}");
+        }
+        assert!(axis.has(StatusBit::ModeSpecific12), "the drive follows");
+        before = target;
+    }
+}
+
+/// Oracle: x = t³ is a cubic, and its velocity at the frames is 3t²: interpolated, nothing of it changes.
+#[test]
+fn cubic_interpolation_by_the_velocity_offsets_is_exact_for_cubics() {
+    let params = Params {
+        interpolation: interpolate::Mode::Cubic,
+        cycle: CycleParams { steps: 8, ..Params::default().cycle },
+        ..Params::default()
+    };
+    let mut axis = Axis::enabled(&params, Mode::CyclicSynchronousPosition);
+    let cycle = 2e-3;
+    // In µm: 1000·n³ at frame n, so that every value is a whole number.
+    for n in 1..=5_i32 {
+        axis.frame.target_position = 1000 * n.pow(3);
+        axis.frame.velocity_offset = 3000 * n.pow(2) * 500;
+        for (k, outputs) in axis.cycle().iter().enumerate() {
+            let u = f64::from(n - 1) + k as f64 / 8.0;
+            let got = setpoint(&outputs.demand);
+            let (x, v, a) = (1e-3 * u.powi(3), 3e-3 * u * u / cycle, 6e-3 * u / cycle.powi(2));
+            assert!((got.x - x).abs() < 1e-15 * 125.0, "frame {n}, step {k}: {got:?} {x}");
+            assert!((got.v - v).abs() < 1e-12 && (got.a - a).abs() < 1e-8, "frame {n}, step {k}: {got:?} {v} {a}");
+        }
+    }
+}
+
+/// A line is what every interpolation keeps; the B-spline passes it a cycle later.
+#[test]
+fn a_b_spline_keeps_a_line_a_cycle_later() {
+    let params = Params { interpolation: interpolate::Mode::CubicBSpline, ..Params::default() };
+    let mut axis = Axis::enabled(&params, Mode::CyclicSynchronousPosition);
+    for n in 1..=10_i32 {
+        axis.frame.target_position = 50 * n;
+        for (k, outputs) in axis.cycle().iter().enumerate() {
+            let got = setpoint(&outputs.demand);
+            if n >= 5 {
+                let x = 50e-6 * (f64::from(n) - 2.0 + k as f64 / 4.0);
+                assert!((got.x - x).abs() < 1e-17 && (got.v - 0.05).abs() < 1e-13, "frame {n}, step {k}: {got:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn offsets_go_linearly_to_their_values_within_the_cycle() {
+    let mut axis = Axis::enabled(&Params::default(), Mode::CyclicSynchronousPosition);
+    (axis.frame.velocity_offset, axis.frame.torque_offset) = (4000, 200);
+    for (k, outputs) in axis.cycle().iter().enumerate() {
+        let Demand::Position { velocity_offset, effort_offset, .. } = outputs.demand else { panic!("{outputs:?}") };
+        let passed = k as f64 / 4.0;
+        assert!((velocity_offset - passed * 4e-3).abs() < 1e-18 && (effort_offset - passed * 0.2).abs() < 1e-16);
+    }
+}
+
+/// Oracle: 0.1 m/s are 100 µm a cycle.
+#[test]
+fn a_target_too_far_away_is_approached_with_the_highest_velocity_and_the_drive_says_so() {
+    let limits = Limits { velocity: 0.1, ..Params::default().limits };
+    let mut axis = Axis::enabled(&Params { limits, ..Params::default() }, Mode::CyclicSynchronousPosition);
+    axis.frame.target_position = 1050;
+    for n in 1..=10 {
+        axis.cycle();
+        assert!(axis.has(StatusBit::InternalLimitActive), "cycle {n}");
+        assert!((axis.position - 1e-4 * f64::from(n)).abs() < 1e-15, "cycle {n}: {}", axis.position);
+    }
+    axis.cycle();
+    assert!(!axis.has(StatusBit::InternalLimitActive));
+    assert!((axis.position - 1.05e-3).abs() < 1e-15);
+}
+
+#[test]
+fn a_missing_frame_is_bridged_at_the_last_velocity_and_too_many_are_a_fault() {
+    let mut axis = Axis::enabled(&Params::default(), Mode::CyclicSynchronousPosition);
+    for n in 1..=3 {
+        axis.frame.target_position = 100 * n;
+        axis.cycle();
+    }
+    // Two cycles without a frame are bridged, the third is a fault.
+    for k in 0..8_i32 {
+        let outputs = axis.step(false);
+        let x = 3e-4 + 1e-4 * f64::from(k) / 4.0;
+        assert!((setpoint(&outputs.demand).x - x).abs() < 1e-17 && outputs.fault.is_none(), "step {k}: {outputs:?}");
+        assert!(axis.has(StatusBit::Warning));
+    }
+    let outputs = axis.step(false);
+    assert_eq!((outputs.fault, outputs.transition.unwrap().number), (Some(Fault::FramesMissing), 13));
+    assert_eq!(axis.actuals().error_code, 0x8700);
+}
+
+#[test]
+fn frames_that_come_late_by_less_than_the_shift_lose_nothing() {
+    let cycle = CycleParams { steps: 4, shift: 2, bridged: 0 };
+    let mut axis = Axis::enabled(&Params { cycle, ..Params::default() }, Mode::CyclicSynchronousPosition);
+    for (n, late) in (0..).zip([0, 1, 2, 0, 2, 1, 1, 0]) {
+        axis.frame.target_position = 100 * (n + 1);
+        for k in 0..4 {
+            let outputs = axis.step(k == late);
+            assert!(outputs.fault.is_none());
+            // The cycle of frame n begins two steps after it should have come.
+            let steps = 4 * n + k - 2;
+            let x = 25e-6 * f64::from(steps.max(0));
+            assert!((setpoint(&outputs.demand).x - x).abs() < 1e-16, "frame {n}, step {k}: {outputs:?} {x}");
+        }
+    }
+}
+
+/// Oracle: by hand: from 0 to 0.2 m/s in a millisecond is 200 m/s².
+#[test]
+fn cyclic_velocities_are_ramps_between_the_frames() {
+    let mut axis = Axis::enabled(&Params::default(), Mode::CyclicSynchronousVelocity);
+    (axis.frame.target_velocity, axis.frame.velocity_offset) = (150_000, 50_000);
+    for (k, outputs) in axis.cycle().iter().enumerate() {
+        let got = setpoint(&outputs.demand);
+        assert!((got.v - 0.05 * k as f64).abs() < 1e-16 && (got.a - 200.0).abs() < 1e-10, "step {k}: {got:?}");
+    }
+    assert!(axis.cycle().iter().all(|outputs| (setpoint(&outputs.demand).v - 0.2).abs() < 1e-16));
+}
+
+#[test]
+fn cyclic_efforts_are_ramps_between_the_frames_within_the_limits_of_their_direction() {
+    let limits = Limits { effort: [0.5, 0.25], ..Params::default().limits };
+    let mut axis = Axis::enabled(&Params { limits, ..Params::default() }, Mode::CyclicSynchronousTorque);
+    let mut efforts = |target, offset| {
+        (axis.frame.target_torque, axis.frame.torque_offset) = (target, offset);
+        let efforts: Vec<_> = axis
+            .cycle()
+            .iter()
+            .map(|outputs| {
+                let Demand::Effort(effort) = outputs.demand else { panic!("{outputs:?}") };
+                effort
+            })
+            .collect();
+        (efforts, axis.has(StatusBit::InternalLimitActive))
+    };
+    assert_eq!(efforts(300, 100), (vec![0.0, 0.1, 0.2, 0.30000000000000004], false));
+    assert_eq!(efforts(900, -100), (vec![0.4, 0.5, 0.5, 0.5], true));
+    assert_eq!(efforts(-800, 0), (vec![0.5, 0.4, 0.0, -0.25], true));
+}
