@@ -25,10 +25,14 @@
 mod controlword;
 pub mod counter;
 pub mod difference;
+mod error_code;
 mod machine;
 mod mode;
+pub mod modulo;
+pub mod objects;
 mod option_code;
 mod process_data;
+mod sdo;
 mod sequence;
 mod state;
 mod statusword;
@@ -36,6 +40,7 @@ mod transitions;
 pub mod units;
 
 pub use controlword::{Command, ControlBit, Controlword};
+pub use error_code::ErrorCode;
 pub use machine::{DriveFunction, PowerInputs, PowerMemory, PowerOutputs, PowerParams, step};
 pub use mode::Mode;
 pub use option_code::{
@@ -43,6 +48,7 @@ pub use option_code::{
     ShutdownOption,
 };
 pub use process_data::{Actuals, Commands};
+pub use sdo::{AbortCode, SdoError, Side};
 pub use sequence::{Next, keeping, towards};
 pub use state::PowerState;
 pub use statusword::{StatusBit, Statusword};

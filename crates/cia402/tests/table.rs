@@ -1,27 +1,57 @@
-//! `docs/cia402.md` holds the table of the transitions. `SERVOBENCH_WRITE_DOCS=1 cargo test -p servobench-cia402` writes it.
-use servobench_cia402::TRANSITIONS;
+//! Pages of `docs/` with tables made of the source. `SERVOBENCH_WRITE_DOCS=1 cargo test -p servobench-cia402` writes them.
+use servobench_cia402::objects::{Access, Admitted, Entry, OBJECTS, ObjectDescription};
+use servobench_cia402::{AbortCode, ErrorCode, TRANSITIONS};
 use std::fmt::Write as _;
 use std::path::Path;
 
 const WRITE_DOCS: &str = "SERVOBENCH_WRITE_DOCS";
-const BEGIN: &str = "<!-- generated: transitions -->\n";
-const END: &str = "<!-- end of generated transitions -->\n";
 
 #[test]
 fn the_page_lists_every_transition() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/cia402.md");
+    hold("cia402.md", "transitions", &transitions());
+}
+
+#[test]
+fn the_page_lists_every_object() {
+    hold("objects.md", "objects", &objects());
+}
+
+#[test]
+fn the_page_lists_every_abort_code() {
+    let mut table = String::from("| code | text |\n|---|---|\n");
+    for code in AbortCode::ALL {
+        writeln!(table, "| {code} | {} |", code.text()).unwrap();
+    }
+    hold("objects.md", "abort codes", &table);
+}
+
+#[test]
+fn the_page_lists_every_error_code() {
+    let mut table = String::from("| 603Fh | error | 1001h |\n|---|---|---|\n");
+    for error in ErrorCode::ALL {
+        writeln!(table, "| {:04X}h | {} | {:02X}h |", error.code(), error.text(), error.register()).unwrap();
+    }
+    hold("objects.md", "error codes", &table);
+}
+
+/// Holds a section of a page against what it is made of, or writes it.
+fn hold(page: &str, section: &str, table: &str) {
+    // Several tests may write to one page.
+    static PAGES: std::sync::Mutex<()> = std::sync::Mutex::new(());
+    let _alone = PAGES.lock();
+    let (begin, end) = (format!("<!-- generated: {section} -->\n"), format!("<!-- end of generated {section} -->\n"));
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs").join(page);
     let text = std::fs::read_to_string(&path).unwrap();
-    let (before, rest) = text.split_once(BEGIN).unwrap();
-    let (written, after) = rest.split_once(END).unwrap();
-    let table = table();
+    let (before, rest) = text.split_once(&begin).unwrap();
+    let (written, after) = rest.split_once(&end).unwrap();
     if std::env::var_os(WRITE_DOCS).is_some() {
-        std::fs::write(&path, format!("{before}{BEGIN}{table}{END}{after}")).unwrap();
+        std::fs::write(&path, format!("{before}{begin}{table}{end}{after}")).unwrap();
     } else {
         assert!(written == table, "run the tests of this crate with {WRITE_DOCS}=1");
     }
 }
 
-fn table() -> String {
+fn transitions() -> String {
     let mut table = String::from("| no. | from | to | cause | condition | action |\n|---|---|---|---|---|---|\n");
     for transition in &TRANSITIONS {
         let from: Vec<&str> = transition.from.iter().map(|state| state.name()).collect();
@@ -32,6 +62,66 @@ fn table() -> String {
         writeln!(table, "| {number} | {from} | {to} | {causes} | {condition} | {action} |").unwrap();
     }
     table
+}
+
+fn objects() -> String {
+    let mut table = String::from("| object | name | type | access | PDO | default | values | unit |\n");
+    table += "|---|---|---|---|---|---|---|---|\n";
+    for object in &OBJECTS {
+        let is_list_of_constants = object.entries().iter().all(|entry| entry.access == Access::Constant);
+        if is_list_of_constants && object.entries().len() > 4 {
+            let values: Vec<String> = object.entries().iter().map(|entry| number(entry.default)).collect();
+            row(&mut table, object, &format!(":1–{}", values.len()), &object.entries()[0], &values.join(", "));
+            continue;
+        }
+        for (subindex, entry) in (object.first_subindex()..).zip(object.entries()) {
+            let subindex = if subindex == 0 { String::new() } else { format!(":{subindex}") };
+            row(&mut table, object, &subindex, entry, &default(entry));
+        }
+    }
+    table
+}
+
+fn row(table: &mut String, object: &ObjectDescription, subindex: &str, entry: &Entry, default: &str) {
+    let index = object.index;
+    let name = if object.name == entry.name { object.name.into() } else { format!("{}: {}", object.name, entry.name) };
+    let access = entry.access.abbreviation().to_owned() + if entry.disabled_only { "¹" } else { "" };
+    let (data_type, pdo) = (entry.data_type.name(), or_dash(entry.mapping.abbreviation()));
+    let (values, unit) = (values(entry), or_dash(entry.unit));
+    writeln!(
+        table,
+        "| {index:04X}h{subindex} | {name} | {data_type} | {access} | {pdo} | {default} | {values} | {unit} |"
+    )
+    .unwrap();
+}
+
+/// Long bounds read better as powers of two.
+fn default(entry: &Entry) -> String {
+    match entry.default {
+        0xFFFF_FFFF => "2³² − 1".into(),
+        value if value == i64::from(i32::MIN) => "−2³¹".into(),
+        value if value == i64::from(i32::MAX) => "2³¹ − 1".into(),
+        0x2_0192 => "00020192h".into(),
+        value => number(value),
+    }
+}
+
+/// With a minus sign.
+fn number(value: i64) -> String {
+    value.to_string().replace('-', "−")
+}
+
+fn values(entry: &Entry) -> String {
+    match entry.admitted {
+        Admitted::Any => "–".into(),
+        Admitted::Range(lowest, highest) if i128::from(highest) == entry.data_type.highest() => {
+            format!("{} and more", number(lowest))
+        }
+        Admitted::Range(lowest, highest) if lowest == highest => number(lowest),
+        Admitted::Range(lowest, highest) => format!("{} to {}", number(lowest), number(highest)),
+        Admitted::OneOf(accepted) => accepted.iter().map(|value| number(*value)).collect::<Vec<_>>().join(", "),
+        Admitted::Bits(bits) => format!("bits {bits:02X}h"),
+    }
 }
 
 fn or_dash(text: &str) -> String {

@@ -1,0 +1,155 @@
+//! Modulo axes: positions within a range, and the way to a target.
+//!
+//! A position beyond the position range limit (607Bh) goes on at its other end. Both ends are positions of the range, as
+//! they are of the whole range of 32 bits that is the default, so after `length = max − min + 1` positions the axis is
+//! where it was. In integers, for positions `from` and `to` of the range:
+//!
+//! ```text
+//! way = (to − from) mod length, in [0, length)       positive direction
+//!       way − length, unless way = 0                 negative direction
+//!       the shorter one of both, positive if equal   shortest way
+//! ```
+//!
+//! The positioning option code (60F2h, IEC 61800-7-201) chooses by its bits 7 and 6, the rotary axis direction option. Its
+//! first choice, 00b, takes the way as on a linear axis: it can be longer than the range.
+//!
+//! ```
+//! use servobench_cia402::modulo::{Direction, PositionRange};
+//! let turn = PositionRange::new(0, 359)?;
+//! assert_eq!(turn.way(350, 10, Direction::Positive), 20);
+//! assert_eq!(turn.way(350, 10, Direction::Negative), -340);
+//! assert_eq!(turn.way(350, 10, Direction::Shortest), 20);
+//! # Ok::<(), servobench_cia402::modulo::EmptyRange>(())
+//! ```
+use thiserror::Error;
+
+/// Bits of 60F2h that are taken: the rotary axis direction option.
+pub(crate) const POSITIONING_OPTION_BITS: u32 = 0b1100_0000;
+
+/// How a modulo axis gets to its target.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Direction {
+    /// With increasing position; not at all where the target is the position.
+    Positive,
+    /// With decreasing position; not at all where the target is the position.
+    Negative,
+    /// The shorter way, with increasing position if both are equal.
+    Shortest,
+    /// As the axis moves or last moved.
+    Current {
+        /// Whether that is with decreasing position.
+        negative: bool,
+    },
+}
+
+/// The rotary axis direction option of the positioning option code.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum RotaryAxisOption {
+    /// As on a linear axis: a target beyond the range is so many turns away.
+    Linear,
+    /// In one direction, or the shorter one.
+    Modulo(Direction),
+}
+
+impl RotaryAxisOption {
+    /// The option in bits 7 and 6 of 60F2h.
+    #[must_use]
+    pub const fn of_code(positioning_option_code: u16) -> Self {
+        match (positioning_option_code >> 6) & 0b11 {
+            0b00 => Self::Linear,
+            0b01 => Self::Modulo(Direction::Negative),
+            0b10 => Self::Modulo(Direction::Positive),
+            _ => Self::Modulo(Direction::Shortest),
+        }
+    }
+}
+
+/// A range whose end comes before its begin, or is it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error("max position range limit (607Bh:02h) must be above {min}, the min position range limit, got {max}")]
+pub struct EmptyRange {
+    /// 607Bh:01h.
+    pub min: i32,
+    /// 607Bh:02h.
+    pub max: i32,
+}
+
+/// The positions that an axis has (607Bh).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct PositionRange {
+    min: i32,
+    max: i32,
+}
+
+impl Default for PositionRange {
+    /// All of 32 bits.
+    fn default() -> Self {
+        Self { min: i32::MIN, max: i32::MAX }
+    }
+}
+
+impl PositionRange {
+    /// The range from one position to another, both in it.
+    ///
+    /// # Errors
+    /// [`EmptyRange`] unless the second one is above the first.
+    pub const fn new(min: i32, max: i32) -> Result<Self, EmptyRange> {
+        if min < max { Ok(Self { min, max }) } else { Err(EmptyRange { min, max }) }
+    }
+
+    /// Smallest position.
+    #[must_use]
+    pub const fn min(self) -> i32 {
+        self.min
+    }
+
+    /// Largest position.
+    #[must_use]
+    pub const fn max(self) -> i32 {
+        self.max
+    }
+
+    /// Number of positions, at most 2³².
+    #[must_use]
+    pub const fn length(self) -> i64 {
+        self.max as i64 - self.min as i64 + 1
+    }
+
+    /// Where an axis is that ran to a position without end.
+    #[must_use]
+    pub const fn wrap(self, position: i64) -> i32 {
+        // `position − min` could overflow; its remainder does not depend on how many turns are taken off before.
+        let (position, min, length) = (position % self.length(), self.min as i64, self.length());
+        #[expect(clippy::cast_possible_truncation, reason = "from min to max, both 32 bits")]
+        {
+            (min + (position - min).rem_euclid(length)) as i32
+        }
+    }
+
+    /// The signed distance from one position to another, each wrapped into the range first; less than one turn.
+    #[must_use]
+    pub const fn way(self, from: i64, to: i64, direction: Direction) -> i64 {
+        let positive = (self.wrap(to) as i64 - self.wrap(from) as i64).rem_euclid(self.length());
+        let negative = if positive == 0 { 0 } else { positive - self.length() };
+        match direction {
+            Direction::Positive | Direction::Current { negative: false } => positive,
+            Direction::Negative | Direction::Current { negative: true } => negative,
+            Direction::Shortest => {
+                if positive <= -negative {
+                    positive
+                } else {
+                    negative
+                }
+            }
+        }
+    }
+
+    /// The distance of a move by the positioning option code (60F2h).
+    #[must_use]
+    pub const fn way_by_option(self, from: i32, to: i32, option: RotaryAxisOption) -> i64 {
+        match option {
+            RotaryAxisOption::Linear => to as i64 - from as i64,
+            RotaryAxisOption::Modulo(direction) => self.way(from as i64, to as i64, direction),
+        }
+    }
+}

@@ -1,0 +1,268 @@
+//! The values of the objects.
+use super::entry::{Admitted, Entry};
+use super::place::{Found, PLACES, Parameter, Signal, find, parameter as p, signal};
+use super::table::OBJECTS;
+use super::value::{Stored, Value};
+use crate::modulo::PositionRange;
+use crate::sdo::{SdoError, Side};
+use crate::units::{AxisUnit, FactorGroup, Object, Ratio};
+use crate::{
+    Actuals, Commands, DisableOperationOption, FaultReactionOption, HaltOption, Mode, OptionCodeError, PowerParams,
+    PowerState, QuickStopOption, ShutdownOption,
+};
+
+/// Every value of the object dictionary.
+///
+/// What the master writes is refused unless its object takes it, so the values of parameters are always in range. The drive
+/// reads its parameters again when [`generation`](Self::generation) has changed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Dictionary {
+    /// The bits of each value.
+    bits: [u64; PLACES],
+    generation: u32,
+}
+
+impl Default for Dictionary {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Dictionary {
+    /// The values after power-on.
+    #[must_use]
+    pub const fn new() -> Self {
+        const DEFAULTS: [u64; PLACES] = {
+            let mut bits = [0; PLACES];
+            let (mut object, mut place) = (0, 0);
+            while object < OBJECTS.len() {
+                let entries = OBJECTS[object].entries();
+                let mut number = 0;
+                while number < entries.len() {
+                    bits[place] = entries[number].default_value().bits();
+                    (number, place) = (number + 1, place + 1);
+                }
+                object += 1;
+            }
+            bits
+        };
+        Self { bits: DEFAULTS, generation: 0 }
+    }
+
+    /// What the master reads.
+    ///
+    /// # Errors
+    /// [`SdoError`] if there is no such object or it is write only.
+    pub fn read(&self, object: Object) -> Result<Value, SdoError> {
+        match find(object)? {
+            Found::HighestSubindex(highest) => Ok(Value::Unsigned8(highest)),
+            Found::Entry(entry, place) if entry.access.is_read() => Ok(entry.data_type.value(self.bits[place])),
+            Found::Entry(Entry { name, .. }, _) => Err(SdoError::WriteOnly { object, name }),
+        }
+    }
+
+    /// What the master writes, with the drive in this state.
+    ///
+    /// # Errors
+    /// [`SdoError`] says what is not taken, and why; nothing has changed then.
+    pub fn write(&mut self, object: Object, value: Value, state: PowerState) -> Result<(), SdoError> {
+        let (entry, place) = writable(object)?;
+        let (name, data_type) = (entry.name, entry.data_type);
+        if value.data_type() != data_type {
+            return Err(SdoError::Type { object, name, data_type, value });
+        }
+        self.store(object, entry, place, value, state)
+    }
+
+    /// [`read`](Self::read) as bytes, the lowest first, and how many of them belong to the value.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn upload(&self, object: Object) -> Result<([u8; 8], usize), SdoError> {
+        self.read(object).map(|value| (value.bytes(), value.data_type().size()))
+    }
+
+    /// [`write`](Self::write) of bytes, the lowest first.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write).
+    pub fn download(&mut self, object: Object, bytes: &[u8], state: PowerState) -> Result<(), SdoError> {
+        let (entry, place) = writable(object)?;
+        let (name, data_type) = (entry.name, entry.data_type);
+        let value = Value::of_bytes(data_type, bytes).ok_or(SdoError::Length {
+            object,
+            name,
+            data_type,
+            length: bytes.len(),
+        })?;
+        self.store(object, entry, place, value, state)
+    }
+
+    fn store(
+        &mut self,
+        object: Object,
+        entry: &'static Entry,
+        place: usize,
+        value: Value,
+        state: PowerState,
+    ) -> Result<(), SdoError> {
+        if entry.disabled_only && state.is_drive_function_enabled() {
+            return Err(SdoError::State { object, name: entry.name, state });
+        }
+        admit(object, entry, value)?;
+        let before = core::mem::replace(&mut self.bits[place], value.bits());
+        if let Err(refused) = self.fits_the_others(object, entry.name, value) {
+            self.bits[place] = before;
+            return Err(refused);
+        }
+        self.generation = self.generation.wrapping_add(1);
+        Ok(())
+    }
+
+    /// Whether the value, stored already, goes with those of the objects that it belongs to.
+    fn fits_the_others(&self, object: Object, name: &'static str, value: Value) -> Result<(), SdoError> {
+        let crossed = |side, bound| Err(SdoError::CrossedBounds { object, name, value, side, bound });
+        match (object.index, object.subindex) {
+            (0x607B, _) => {
+                let (min, max) = (self.get(p::MIN_POSITION_RANGE_LIMIT), self.get(p::MAX_POSITION_RANGE_LIMIT));
+                match object.subindex {
+                    _ if min < max => Ok(()),
+                    1 => crossed(Side::Below, max),
+                    _ => crossed(Side::Above, min),
+                }
+            }
+            (0x607D, _) => {
+                let (min, max) = (self.get(p::MIN_POSITION_LIMIT), self.get(p::MAX_POSITION_LIMIT));
+                match object.subindex {
+                    _ if min <= max => Ok(()),
+                    1 => crossed(Side::AtMost, max),
+                    _ => crossed(Side::AtLeast, min),
+                }
+            }
+            (0x608F | 0x6091 | 0x6092 | 0x6096, _) => self
+                .factor_group()
+                .scaling(AxisUnit::Metre(Ratio::ONE))
+                .map(|_| ())
+                .map_err(|reason| SdoError::FactorGroup { object, value, reason }),
+            _ => Ok(()),
+        }
+    }
+
+    /// How often the master has written, modulo 2³².
+    #[must_use]
+    pub const fn generation(&self) -> u32 {
+        self.generation
+    }
+
+    /// A parameter, in constant time.
+    #[must_use]
+    pub fn get<T: Stored>(&self, parameter: Parameter<T>) -> T {
+        T::of_bits(self.bits[parameter.place])
+    }
+
+    /// A signal, in constant time.
+    #[must_use]
+    pub fn signal<T: Stored>(&self, signal: Signal<T>) -> T {
+        T::of_bits(self.bits[signal.place])
+    }
+
+    /// Sets a signal, in constant time. Its change is none of the master's writes: the generation stays.
+    pub fn set<T: Stored>(&mut self, signal: Signal<T>, value: T) {
+        self.bits[signal.place] = value.value().bits();
+    }
+
+    /// Takes over what came and goes as process data, so that the master reads the same by SDO.
+    ///
+    /// Profile velocity, accelerations and home offset are parameters: the master writes them.
+    pub fn mirror(&mut self, commands: &Commands, actuals: &Actuals) {
+        self.set(signal::CONTROLWORD, commands.controlword.bits());
+        self.set(signal::TARGET_POSITION, commands.target_position);
+        self.set(signal::TARGET_VELOCITY, commands.target_velocity);
+        self.set(signal::TARGET_TORQUE, commands.target_torque);
+        self.set(signal::VELOCITY_OFFSET, commands.velocity_offset);
+        self.set(signal::TORQUE_OFFSET, commands.torque_offset);
+        if let Some(mode) = Mode::from_code(commands.mode) {
+            self.bits[p::MODES_OF_OPERATION.place] = Value::Integer8(mode.code()).bits();
+        }
+        self.set(signal::STATUSWORD, actuals.statusword.bits());
+        self.set(signal::MODES_OF_OPERATION_DISPLAY, actuals.mode);
+        self.set(signal::POSITION_ACTUAL_VALUE, actuals.position);
+        self.set(signal::VELOCITY_ACTUAL_VALUE, actuals.velocity);
+        self.set(signal::TORQUE_ACTUAL_VALUE, actuals.torque);
+        self.set(signal::FOLLOWING_ERROR_ACTUAL_VALUE, actuals.following_error);
+        self.set(signal::ERROR_CODE, actuals.error_code);
+        self.set(signal::DIGITAL_INPUTS, actuals.digital_inputs);
+        self.set(signal::TRAJECTORY_BUFFER_FREE_COUNT, actuals.buffer_free);
+        self.set(signal::TRAJECTORY_BUFFER_STATUS, actuals.buffer_status);
+    }
+
+    /// The option codes (605Ah to 605Eh).
+    #[must_use]
+    pub fn power_params(&self) -> PowerParams {
+        PowerParams {
+            quick_stop: self.option(p::QUICK_STOP_OPTION_CODE, QuickStopOption::try_from),
+            shutdown: self.option(p::SHUTDOWN_OPTION_CODE, ShutdownOption::try_from),
+            disable_operation: self.option(p::DISABLE_OPERATION_OPTION_CODE, DisableOperationOption::try_from),
+            halt: self.option(p::HALT_OPTION_CODE, HaltOption::try_from),
+            fault_reaction: self.option(p::FAULT_REACTION_OPTION_CODE, FaultReactionOption::try_from),
+        }
+    }
+
+    fn option<T: Default>(&self, code: Parameter<i16>, option: impl Fn(i16) -> Result<T, OptionCodeError>) -> T {
+        // The object takes no other code: a test holds its range against the codes that there are.
+        option(self.get(code)).unwrap_or_default()
+    }
+
+    /// The mode of operation that is asked for (6060h); `None` as long as none was.
+    #[must_use]
+    pub fn mode(&self) -> Option<Mode> {
+        Mode::from_code(self.get(p::MODES_OF_OPERATION))
+    }
+
+    /// The factor group (608Fh, 6091h, 6092h, 6096h, 607Eh).
+    #[must_use]
+    pub fn factor_group(&self) -> FactorGroup {
+        FactorGroup {
+            position_encoder_resolution: [self.get(p::ENCODER_INCREMENTS), self.get(p::ENCODER_MOTOR_REVOLUTIONS)],
+            gear_ratio: [self.get(p::GEAR_MOTOR_REVOLUTIONS), self.get(p::GEAR_SHAFT_REVOLUTIONS)],
+            feed_constant: [self.get(p::FEED), self.get(p::FEED_SHAFT_REVOLUTIONS)],
+            velocity_factor: [self.get(p::VELOCITY_FACTOR_NUMERATOR), self.get(p::VELOCITY_FACTOR_DIVISOR)],
+            polarity: self.get(p::POLARITY),
+        }
+    }
+
+    /// The position range limit (607Bh).
+    #[must_use]
+    pub fn position_range(&self) -> PositionRange {
+        let (min, max) = (self.get(p::MIN_POSITION_RANGE_LIMIT), self.get(p::MAX_POSITION_RANGE_LIMIT));
+        // Never empty: what would make it so was refused.
+        PositionRange::new(min, max).unwrap_or_default()
+    }
+}
+
+/// The entry that a master may write.
+fn writable(object: Object) -> Result<(&'static Entry, usize), SdoError> {
+    match find(object)? {
+        Found::Entry(entry, place) if entry.access.is_written() => Ok((entry, place)),
+        Found::Entry(Entry { name, .. }, _) => Err(SdoError::ReadOnly { object, name }),
+        Found::HighestSubindex(_) => Err(SdoError::ReadOnly { object, name: super::entry::HIGHEST_SUBINDEX }),
+    }
+}
+
+/// Refuses what the entry does not take.
+fn admit(object: Object, entry: &'static Entry, value: Value) -> Result<(), SdoError> {
+    let (name, number) = (entry.name, value.number());
+    match entry.admitted {
+        Admitted::Range(_, highest) if number > highest.into() => {
+            Err(SdoError::TooHigh { object, name, value, highest })
+        }
+        Admitted::Range(lowest, _) if number < lowest.into() => Err(SdoError::TooLow { object, name, value, lowest }),
+        Admitted::OneOf(accepted) if !accepted.iter().any(|one| i128::from(*one) == number) => {
+            Err(SdoError::NotListed { object, name, value, accepted })
+        }
+        Admitted::Bits(bits) if number & !i128::from(bits) != 0 => {
+            Err(SdoError::ReservedBits { object, name, value, bits })
+        }
+        _ => Ok(()),
+    }
+}

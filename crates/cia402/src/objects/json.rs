@@ -1,0 +1,48 @@
+//! The object dictionary as JSON: the table and the present values.
+use super::dictionary::Dictionary;
+use super::entry::{Admitted, Entry};
+use super::table::OBJECTS;
+use crate::units::Object;
+use core::fmt::{self, Display, Formatter};
+
+/// The object dictionary as a JSON array with one object for each entry, to be written where text goes.
+///
+/// `index` and `subindex` are numbers; `range` has two numbers, `accepted` several, `bits` a mask, and none of
+/// the three stands for every value of the type. `value` is null for what is only written.
+#[derive(Debug, Clone, Copy)]
+pub struct Json<'a>(pub &'a Dictionary);
+
+impl Display for Json<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let mut before = "[\n  ";
+        for object in &OBJECTS {
+            for (subindex, entry) in (object.first_subindex()..).zip(object.entries()) {
+                f.write_str(before)?;
+                before = ",\n  ";
+                let address = Object { index: object.index, subindex };
+                write!(f, "{{\"index\": {}, \"subindex\": {subindex}, \"object\": \"{}\"", object.index, object.name)?;
+                description(f, entry)?;
+                match self.0.read(address) {
+                    Ok(value) => write!(f, ", \"value\": {value}}}")?,
+                    Err(_) => f.write_str(", \"value\": null}")?,
+                }
+            }
+        }
+        f.write_str("\n]\n")
+    }
+}
+
+/// What the table says of an entry. No name and no unit has a character that JSON escapes.
+fn description(f: &mut Formatter<'_>, entry: &Entry) -> fmt::Result {
+    let Entry { name, data_type, access, mapping, unit, disabled_only, .. } = *entry;
+    let (data_type, access, mapping) = (data_type.name(), access.abbreviation(), mapping.abbreviation());
+    write!(f, ", \"name\": \"{name}\", \"type\": \"{data_type}\", \"access\": \"{access}\", \"pdo\": \"{mapping}\"")?;
+    write!(f, ", \"unit\": \"{unit}\", \"disabled_only\": {disabled_only}, \"default\": {}", entry.default_value())?;
+    match entry.admitted {
+        Admitted::Any => Ok(()),
+        Admitted::Range(lowest, highest) => write!(f, ", \"range\": [{lowest}, {highest}]"),
+        // A slice of numbers is written alike by Rust and JSON.
+        Admitted::OneOf(accepted) => write!(f, ", \"accepted\": {accepted:?}"),
+        Admitted::Bits(bits) => write!(f, ", \"bits\": {bits}"),
+    }
+}

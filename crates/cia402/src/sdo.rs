@@ -1,0 +1,247 @@
+//! Why an access to the object dictionary is refused: the abort codes of CiA 301 (table 22) with the reason.
+//!
+//! The same codes end an SDO transfer over EtherCAT (ETG.1000.6, table 41).
+use crate::PowerState;
+use crate::objects::{DataType, Value};
+use crate::units::{Object, UnitError};
+use core::fmt;
+use thiserror::Error;
+
+/// Declares the abort codes with their texts.
+macro_rules! abort_codes {
+    ($($name:ident = $code:literal, $text:literal;)*) => {
+        /// What goes over the bus to end a transfer.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        #[repr(u32)]
+        pub enum AbortCode {
+            $(#[doc = concat!($text, ".")] $name = $code,)*
+        }
+
+        impl AbortCode {
+            /// Every code that the dictionary gives.
+            pub const ALL: &[Self] = &[$(Self::$name),*];
+
+            /// Text in the words of the standard.
+            #[must_use]
+            pub const fn text(self) -> &'static str {
+                match self { $(Self::$name => $text,)* }
+            }
+        }
+    };
+}
+
+abort_codes! {
+    WriteOnly = 0x0601_0001, "Attempt to read a write only object";
+    ReadOnly = 0x0601_0002, "Attempt to write a read only object";
+    NoObject = 0x0602_0000, "Object does not exist in the object dictionary";
+    Incompatible = 0x0604_0043, "General parameter incompatibility reason";
+    Length = 0x0607_0010, "Data type does not match, length of service parameter does not match";
+    NoSubindex = 0x0609_0011, "Sub-index does not exist";
+    OutOfRange = 0x0609_0030, "Invalid value for parameter";
+    TooHigh = 0x0609_0031, "Value of parameter written too high";
+    TooLow = 0x0609_0032, "Value of parameter written too low";
+    MaximumBelowMinimum = 0x0609_0036, "Maximum value is less than minimum value";
+    DeviceState = 0x0800_0022, "Data cannot be transferred or stored to the application because of the present device state";
+}
+
+impl AbortCode {
+    /// The code as it goes over the bus.
+    #[must_use]
+    pub const fn bits(self) -> u32 {
+        self as u32
+    }
+}
+
+impl fmt::Display for AbortCode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let bits = self.bits();
+        write!(f, "{:04X} {:04X}h", bits >> 16, bits & 0xFFFF)
+    }
+}
+
+/// An access that is refused: the object, the value, what would be taken. Nothing has changed.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum SdoError {
+    /// An index that the drive does not have.
+    #[error("there is no object {index:04X}h: take one of the drive's object dictionary")]
+    NoObject {
+        /// Index as asked for.
+        index: u16,
+    },
+    /// A sub-index that the object does not have.
+    #[error("there is no {object}: `{name}` has sub-indices up to {highest:02X}h")]
+    NoSubindex {
+        /// As asked for.
+        object: Object,
+        /// Name of the object.
+        name: &'static str,
+        /// Highest sub-index that it has.
+        highest: u8,
+    },
+    /// A read of what is only written.
+    #[error("`{name}` ({object}) is write only: keep what was written")]
+    WriteOnly {
+        /// The object.
+        object: Object,
+        /// Its name.
+        name: &'static str,
+    },
+    /// A write of what is only read.
+    #[error("`{name}` ({object}) is read only: it tells what the drive does")]
+    ReadOnly {
+        /// The object.
+        object: Object,
+        /// Its name.
+        name: &'static str,
+    },
+    /// So many bytes for another type.
+    #[error("`{name}` ({object}) is of type {}, {} byte long, got {length} byte", data_type.name(), data_type.size())]
+    Length {
+        /// The object.
+        object: Object,
+        /// Its name.
+        name: &'static str,
+        /// Its type.
+        data_type: DataType,
+        /// Number of bytes that came.
+        length: usize,
+    },
+    /// A value of another type.
+    #[error("`{name}` ({object}) is of type {}, got {} {value}", data_type.name(), value.data_type().name())]
+    Type {
+        /// The object.
+        object: Object,
+        /// Its name.
+        name: &'static str,
+        /// Its type.
+        data_type: DataType,
+        /// Value that came.
+        value: Value,
+    },
+    /// A value above the range.
+    #[error("`{name}` ({object}) must be at most {highest}, got {value}")]
+    TooHigh {
+        /// The object.
+        object: Object,
+        /// Its name.
+        name: &'static str,
+        /// Rejected value.
+        value: Value,
+        /// Largest value that it takes.
+        highest: i64,
+    },
+    /// A value below the range.
+    #[error("`{name}` ({object}) must be at least {lowest}, got {value}")]
+    TooLow {
+        /// The object.
+        object: Object,
+        /// Its name.
+        name: &'static str,
+        /// Rejected value.
+        value: Value,
+        /// Smallest value that it takes.
+        lowest: i64,
+    },
+    /// A value that is none of those with a meaning.
+    #[error("`{name}` ({object}) must be one of {accepted:?}, got {value}")]
+    NotListed {
+        /// The object.
+        object: Object,
+        /// Its name.
+        name: &'static str,
+        /// Rejected value.
+        value: Value,
+        /// Values that it takes.
+        accepted: &'static [i64],
+    },
+    /// Bits without a meaning.
+    #[error("`{name}` ({object}) must have no bits but {bits:#x}, got {:#x}: clear the others", value.number())]
+    ReservedBits {
+        /// The object.
+        object: Object,
+        /// Its name.
+        name: &'static str,
+        /// Rejected value.
+        value: Value,
+        /// Bits that have a meaning.
+        bits: u32,
+    },
+    /// A window whose ends would change places.
+    #[error("`{name}` ({object}) must be {side} {bound}, the other end, got {value}: write the other end first")]
+    CrossedBounds {
+        /// The object.
+        object: Object,
+        /// Its name.
+        name: &'static str,
+        /// Rejected value.
+        value: Value,
+        /// On which side of the other end it has to be.
+        side: Side,
+        /// Value of the other end.
+        bound: i32,
+    },
+    /// A factor that does not go with the others.
+    #[error("{object} = {value} does not go with the other objects of the factor group: {reason}")]
+    FactorGroup {
+        /// The object.
+        object: Object,
+        /// Rejected value.
+        value: Value,
+        /// What is wrong with their product.
+        reason: UnitError,
+    },
+    /// A write that has to wait.
+    #[error("`{name}` ({object}) cannot be written in {state}: disable operation first")]
+    State {
+        /// The object.
+        object: Object,
+        /// Its name.
+        name: &'static str,
+        /// State of the drive.
+        state: PowerState,
+    },
+}
+
+/// A side of a bound.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Side {
+    /// Less than it.
+    Below,
+    /// Not above it.
+    AtMost,
+    /// Greater than it.
+    Above,
+    /// Not below it.
+    AtLeast,
+}
+
+impl fmt::Display for Side {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Below => "below",
+            Self::AtMost => "at most",
+            Self::Above => "above",
+            Self::AtLeast => "at least",
+        })
+    }
+}
+
+impl SdoError {
+    /// The code that ends the transfer.
+    #[must_use]
+    pub const fn abort_code(&self) -> AbortCode {
+        match self {
+            Self::NoObject { .. } => AbortCode::NoObject,
+            Self::NoSubindex { .. } => AbortCode::NoSubindex,
+            Self::WriteOnly { .. } => AbortCode::WriteOnly,
+            Self::ReadOnly { .. } => AbortCode::ReadOnly,
+            Self::Length { .. } | Self::Type { .. } => AbortCode::Length,
+            Self::TooHigh { .. } => AbortCode::TooHigh,
+            Self::TooLow { .. } => AbortCode::TooLow,
+            Self::NotListed { .. } | Self::ReservedBits { .. } => AbortCode::OutOfRange,
+            Self::CrossedBounds { .. } => AbortCode::MaximumBelowMinimum,
+            Self::FactorGroup { .. } => AbortCode::Incompatible,
+            Self::State { .. } => AbortCode::DeviceState,
+        }
+    }
+}

@@ -1,0 +1,3 @@
+//! Fuzz targets: what a master could send (docs/testing.md).
+
+mod writes;
