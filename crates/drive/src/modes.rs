@@ -3,6 +3,7 @@
 //! A mode sees a [`Moment`] and gives an [`Answer`], once per period of the position loop. Positions and velocities are in
 //! the axis unit (m or rad), efforts in the motor's (N·m or N): drive units end at the door.
 pub mod cyclic;
+pub mod homing;
 pub mod stop;
 
 use crate::Demand;

@@ -1,0 +1,190 @@
+//! Homing (hm, mode 6): the drive looks for its reference (IEC 61800-7-201, homing mode).
+//!
+//! The controlword's bit 4 starts the search with its rising edge and interrupts it when it is taken back; halt (bit 8)
+//! stops the axis on its leg. Either stops within the homing acceleration.
+//!
+//! | bit 13, homing error | bit 12, homing attained | bit 10, target reached | |
+//! |---|---|---|---|
+//! | 0 | 0 | 0 | search under way, or being interrupted |
+//! | 0 | 0 | 1 | not started, interrupted, or halted: the axis is at rest |
+//! | 0 | 1 | 0 | the reference is found, the axis is being stopped |
+//! | 0 | 1 | 1 | homed |
+//! | 1 | 0 | 0 | failed, the axis is being stopped |
+//! | 1 | 0 | 1 | failed, the axis is at rest |
+//!
+//! A search fails when the axis meets a limit switch that its method does not expect in that direction, and stays failed until
+//! bit 4 rises again. An edge of a switch counts while the axis moves in the direction of the leg, so that a home switch which is
+//! narrower than the way in which the axis reverses is not mistaken for its other edge. It is where the axis was at the first step
+//! that saw it, late by one period at the speed for zero; an index pulse is where it came, and one in the step in which the edge
+//! before it was seen does not count.
+//!
+//! The reference gets the home offset as its position, as ETG.6010 and most drives have it; where the profile says that zero is
+//! the offset away from the reference, other drives take the opposite sign.
+//!
+//! Which legs a method has is a [table](Method), printed in `docs/homing.md`. Sources: the drawings of DSP 402 v2, homing mode,
+//! as manuals print them (Control Techniques, *SM-EtherCAT User Guide*, issue 2, section 7.7; Brooks, *Homing methods 7 to 14*;
+//! Bonfiglioli, *Active Cube, application manual Positioning*, 04/08, table 5.2, which the tests hold the methods against).
+mod leg;
+mod method;
+mod ramp;
+mod search;
+
+use super::{Answer, Moment};
+use crate::Demand;
+use ramp::Ramp;
+use search::{Finding, Search};
+use servobench_base::{ParamError, Setpoint, finite, positive};
+use servobench_cia402::ControlBit;
+
+pub use leg::{Direction, Event, Leg, Speed, Switch};
+pub use method::{Method, Start, UnknownMethod};
+
+/// How the drive looks for its reference.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Params {
+    /// Homing method (6098h).
+    pub method: Method,
+    /// Speed during search for switch (6099h.1).
+    pub switch_speed: f64,
+    /// Speed during search for zero (6099h.2).
+    pub zero_speed: f64,
+    /// Homing acceleration (609Ah), for stops too.
+    pub acceleration: f64,
+    /// Jerk; without it velocity is a trapezoid.
+    pub jerk: Option<f64>,
+    /// Position that the reference gets (607Ch).
+    pub home_offset: f64,
+}
+
+impl Params {
+    /// Whether a search can be made with them.
+    ///
+    /// # Errors
+    /// [`ParamError`] names the first value that is not positive, or an offset that is no number.
+    pub fn check(&self) -> Result<(), ParamError> {
+        positive("switch_speed", self.switch_speed)?;
+        positive("zero_speed", self.zero_speed)?;
+        positive("acceleration", self.acceleration)?;
+        self.jerk.map_or(Ok(0.0), |jerk| positive("jerk", jerk))?;
+        finite("home_offset", self.home_offset)?;
+        Ok(())
+    }
+}
+
+/// All that a snapshot must hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State {
+    phase: Phase,
+    /// Bit 4 of the last controlword.
+    asked: bool,
+    ramp: Ramp,
+}
+
+/// Why a search failed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Failure {
+    /// This limit switch came.
+    Limit(Switch),
+    /// What the loops were asked to follow before, or the parameters, allow no motion.
+    Motion,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Phase {
+    /// Not started, or interrupted.
+    Idle,
+    Searching(Search),
+    /// The reference is found, the axis is being stopped.
+    Found {
+        reference: f64,
+    },
+    Homed,
+    Failed(Failure),
+}
+
+impl State {
+    /// The mode takes over: a bit 4 that is set already starts nothing.
+    #[must_use]
+    pub fn begin(now: &Moment) -> Self {
+        Self { phase: Phase::Idle, asked: asks(now), ramp: Ramp::default() }
+    }
+
+    /// Whether the last search that was started has found the reference, and the axis has stopped.
+    #[must_use]
+    pub const fn is_homed(&self) -> bool {
+        matches!(self.phase, Phase::Homed)
+    }
+
+    /// Why the last search failed, if it did.
+    #[must_use]
+    pub const fn failure(&self) -> Option<Failure> {
+        match self.phase {
+            Phase::Failed(failure) => Some(failure),
+            _ => None,
+        }
+    }
+}
+
+/// What a step says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Output {
+    /// For the loops and the statusword, in the positions as they are at this step.
+    pub answer: Answer,
+    /// When the axis has just been homed: what is added to every position from the next step on, so that the reference is at
+    /// the home offset. The caller adds it to what it measures and to what it demanded.
+    pub shift: Option<f64>,
+}
+
+/// Goes on with the search.
+///
+/// The parameters must have passed [`Params::check`]; the method is taken from them as the search starts. Nothing else may keep
+/// the axis from a limit switch, which some methods look for.
+pub fn step(params: &Params, state: &mut State, moment: &Moment) -> Output {
+    let asked = asks(moment);
+    let was_asked = core::mem::replace(&mut state.asked, asked);
+    if asked && !was_asked {
+        state.phase = Phase::Searching(Search::begin(params.method, &moment.actual));
+    }
+    let mut velocity = 0.0;
+    if let Phase::Searching(search) = &mut state.phase {
+        match search.look(&moment.actual) {
+            _ if !asked => state.phase = Phase::Idle,
+            Finding::Leg(leg) => velocity = leg.direction.sign() * speed(params, leg),
+            Finding::Reference(reference) => state.phase = Phase::Found { reference },
+            Finding::Limit(switch) => state.phase = Phase::Failed(Failure::Limit(switch)),
+        }
+    }
+    if moment.targets.controlword.has(ControlBit::Halt) {
+        velocity = 0.0;
+    }
+    let setpoint = state.ramp.step(params, velocity, moment).unwrap_or_else(|_| {
+        state.phase = Phase::Failed(Failure::Motion);
+        Setpoint::at_rest(moment.demanded.x)
+    });
+    let is_at_rest = velocity == 0.0 && setpoint.v == 0.0 && setpoint.a == 0.0;
+    let shift = match state.phase {
+        Phase::Found { reference } if is_at_rest => {
+            state.phase = Phase::Homed;
+            Some(params.home_offset - reference)
+        }
+        _ => None,
+    };
+    let answer = Answer {
+        demand: Demand::position(setpoint),
+        target_reached: is_at_rest,
+        bit_12: matches!(state.phase, Phase::Found { .. } | Phase::Homed),
+        bit_13: matches!(state.phase, Phase::Failed(_)),
+    };
+    Output { answer, shift }
+}
+
+const fn asks(moment: &Moment) -> bool {
+    moment.targets.controlword.has(ControlBit::ModeSpecific4)
+}
+
+const fn speed(params: &Params, leg: Leg) -> f64 {
+    match leg.speed {
+        Speed::Switch => params.switch_speed,
+        Speed::Zero => params.zero_speed,
+    }
+}

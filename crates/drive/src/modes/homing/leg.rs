@@ -1,0 +1,120 @@
+//! A leg of a search: in which direction, how fast, and until when.
+use crate::modes::Actual;
+use core::fmt;
+
+/// A switch at the axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Switch {
+    /// At the negative end of the axis, on from there outwards.
+    NegativeLimit,
+    /// At the positive end of the axis, on from there outwards.
+    PositiveLimit,
+    /// Between them: on over a part of the way, or from one point to an end.
+    Home,
+}
+
+impl Switch {
+    /// Whether it is on.
+    #[must_use]
+    pub const fn is_on(self, actual: &Actual) -> bool {
+        match self {
+            Self::NegativeLimit => actual.negative_limit,
+            Self::PositiveLimit => actual.positive_limit,
+            Self::Home => actual.home,
+        }
+    }
+
+    /// Name in the words of the profile.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::NegativeLimit => "negative limit switch",
+            Self::PositiveLimit => "positive limit switch",
+            Self::Home => "home switch",
+        }
+    }
+}
+
+/// A direction along the axis; positions grow to the right.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Direction {
+    /// To the left.
+    Negative,
+    /// To the right.
+    Positive,
+}
+
+impl Direction {
+    /// −1 or 1.
+    #[must_use]
+    pub const fn sign(self) -> f64 {
+        match self {
+            Self::Negative => -1.0,
+            Self::Positive => 1.0,
+        }
+    }
+
+    /// The other direction.
+    #[must_use]
+    pub const fn reversed(self) -> Self {
+        match self {
+            Self::Negative => Self::Positive,
+            Self::Positive => Self::Negative,
+        }
+    }
+
+    /// The limit switch at the end that it leads to.
+    #[must_use]
+    pub const fn limit_switch(self) -> Switch {
+        match self {
+            Self::Negative => Switch::NegativeLimit,
+            Self::Positive => Switch::PositiveLimit,
+        }
+    }
+}
+
+/// What ends a leg.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Event {
+    /// The switch of the method goes on.
+    On,
+    /// The switch of the method goes off.
+    Off,
+    /// An index pulse comes.
+    Index,
+}
+
+/// Which of the homing speeds (6099h) the axis travels at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Speed {
+    /// During search for switch (6099h.1).
+    Switch,
+    /// During search for zero (6099h.2).
+    Zero,
+}
+
+/// A leg of a search.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Leg {
+    /// Where to.
+    pub direction: Direction,
+    /// Until when. An event counts only while the axis moves in the direction of the leg.
+    pub until: Event,
+    /// How fast.
+    pub speed: Speed,
+}
+
+impl fmt::Display for Leg {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let arrow = match self.direction {
+            Direction::Negative => '←',
+            Direction::Positive => '→',
+        };
+        let until = match self.until {
+            Event::On => "on",
+            Event::Off => "off",
+            Event::Index => "index",
+        };
+        write!(f, "{arrow} {until}")
+    }
+}

@@ -1,0 +1,62 @@
+//! A search under way: the leg that the axis is on, and what its switches and the index pulse say of it.
+use super::leg::{Event, Leg, Switch};
+use super::method::{Method, Start};
+use crate::modes::Actual;
+
+/// Where a search is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Search {
+    method: Method,
+    start: Start,
+    leg: usize,
+    /// The switch of the method at the last look.
+    was_on: bool,
+}
+
+/// What a look says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Finding {
+    /// This leg goes on, or has just begun.
+    Leg(Leg),
+    /// The reference is at this position.
+    Reference(f64),
+    /// A limit switch came that the method does not expect.
+    Limit(Switch),
+}
+
+impl Search {
+    /// From where the axis is.
+    pub(super) fn begin(method: Method, actual: &Actual) -> Self {
+        let was_on = method.switch().is_some_and(|switch| switch.is_on(actual));
+        Self { method, start: if was_on { Start::On } else { Start::Off }, leg: 0, was_on }
+    }
+
+    pub(super) fn look(&mut self, actual: &Actual) -> Finding {
+        let is_on = self.method.switch().is_some_and(|switch| switch.is_on(actual));
+        let was_on = core::mem::replace(&mut self.was_on, is_on);
+        let Some(leg) = self.present() else { return Finding::Reference(actual.position) };
+        let event = match leg.until {
+            Event::On => (is_on && !was_on).then_some(actual.position),
+            Event::Off => (was_on && !is_on).then_some(actual.position),
+            Event::Index => actual.index,
+        };
+        if let Some(position) = event.filter(|_| actual.velocity * leg.direction.sign() > 0.0) {
+            self.leg += 1;
+            return self.present().map_or(Finding::Reference(position), Finding::Leg);
+        }
+        let limit = leg.direction.limit_switch();
+        let is_sought = leg.until == Event::On && self.method.switch() == Some(limit);
+        if is_sought || !limit.is_on(actual) {
+            return Finding::Leg(leg);
+        }
+        if !self.method.turns_at_limit() || self.start != Start::Off || self.leg > 0 {
+            return Finding::Limit(limit);
+        }
+        self.start = Start::AtLimit;
+        self.present().map_or(Finding::Limit(limit), Finding::Leg)
+    }
+
+    fn present(&self) -> Option<Leg> {
+        self.method.leg(self.start, self.leg)
+    }
+}

@@ -1,0 +1,106 @@
+//! An ideal axis: it goes on as the last set-point says. Its switches and index pulses are what the drive knows of it.
+use servobench_base::Setpoint;
+use servobench_cia402::{Command, ControlBit, Controlword};
+use servobench_drive::Demand;
+use servobench_drive::modes::homing::{Output, Params, State, step};
+use servobench_drive::modes::{Actual, Moment, Targets};
+use std::ops::RangeInclusive;
+
+pub(crate) const PERIOD: f64 = 1.0 / 4000.0;
+/// Where the limit switches go on.
+pub(crate) const ENDS: (f64, f64) = (-1.0, 1.0);
+
+/// What is mounted at the axis.
+#[derive(Debug, Clone)]
+pub(crate) struct Machine {
+    /// Where the home switch is on.
+    pub(crate) home: RangeInclusive<f64>,
+    /// Positions of index pulses, in ascending order.
+    pub(crate) pulses: Vec<f64>,
+}
+
+impl Machine {
+    /// Pulses 0.1 apart, none near the edges of a home switch that is on over `home`.
+    pub(crate) fn with_home(home: RangeInclusive<f64>) -> Self {
+        Self { home, pulses: (-12..12).map(|k| f64::from(k) * 0.1 + 0.037).collect() }
+    }
+
+    pub(crate) fn pulse_left_of(&self, x: f64) -> f64 {
+        *self.pulses.iter().rfind(|pulse| **pulse < x).unwrap()
+    }
+
+    pub(crate) fn pulse_right_of(&self, x: f64) -> f64 {
+        *self.pulses.iter().find(|pulse| **pulse > x).unwrap()
+    }
+
+    /// Negative limit, positive limit and home switch at `x`.
+    pub(crate) fn switches(&self, x: f64) -> [bool; 3] {
+        [x <= ENDS.0, x >= ENDS.1, self.home.contains(&x)]
+    }
+}
+
+/// The axis under the drive.
+pub(crate) struct Axis<'a> {
+    machine: &'a Machine,
+    /// The last set-point, in the machine's coordinate.
+    pub(crate) demanded: Setpoint,
+    /// What the coordinate of the drive is ahead of the machine's.
+    pub(crate) shift: f64,
+    last: f64,
+    pub(crate) params: Params,
+    pub(crate) state: State,
+}
+
+/// What was seen at a step, in the machine's coordinate.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Seen {
+    /// Where the axis was at the step.
+    pub(crate) at: Setpoint,
+    /// What it was asked to do.
+    pub(crate) demanded: Setpoint,
+    pub(crate) output: Output,
+}
+
+pub(crate) fn idle() -> Controlword {
+    Controlword::of(Command::EnableOperation)
+}
+
+pub(crate) fn start() -> Controlword {
+    idle().with(ControlBit::ModeSpecific4, true)
+}
+
+impl<'a> Axis<'a> {
+    pub(crate) fn new(machine: &'a Machine, params: Params, at: f64) -> Self {
+        let demanded = Setpoint::at_rest(at);
+        let moment = Moment { targets: targets(idle()), actual: Actual::default(), demanded, period: PERIOD };
+        Self { machine, demanded, shift: 0.0, last: at, params, state: State::begin(&moment) }
+    }
+
+    pub(crate) fn step(&mut self, controlword: Controlword) -> Seen {
+        let at = self.demanded.after(PERIOD);
+        let [negative_limit, positive_limit, home] = self.machine.switches(at.x);
+        let crossed =
+            |pulse: &&f64| (self.last < **pulse && **pulse <= at.x) || (at.x <= **pulse && **pulse < self.last);
+        let actual = Actual {
+            position: at.x + self.shift,
+            velocity: at.v,
+            effort: 0.0,
+            negative_limit,
+            positive_limit,
+            home,
+            index: self.machine.pulses.iter().find(crossed).map(|pulse| pulse + self.shift),
+        };
+        self.last = at.x;
+        let demanded = Setpoint { x: self.demanded.x + self.shift, ..self.demanded }.after(PERIOD);
+        let moment = Moment { targets: targets(controlword), actual, demanded, period: PERIOD };
+        let output = step(&self.params, &mut self.state, &moment);
+        let Demand::Position { setpoint, .. } = output.answer.demand else { panic!("{:?}", output.answer.demand) };
+        self.demanded = Setpoint { x: setpoint.x - self.shift, ..setpoint };
+        self.shift += output.shift.unwrap_or(0.0);
+        Seen { at, demanded: self.demanded, output }
+    }
+}
+
+fn targets(controlword: Controlword) -> Targets {
+    Targets { controlword, ..Targets::default() }
+}

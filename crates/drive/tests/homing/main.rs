@@ -1,0 +1,6 @@
+//! Homing: what every method finds on an ideal axis, against what manuals print of the profile's drawings.
+mod axis;
+mod bits;
+mod methods;
+mod published;
+mod table;
