@@ -4,14 +4,18 @@
 //! one), those in the axis coordinate the load.
 
 mod axis;
+mod bus;
 mod drive;
 mod motor;
+mod plc;
 mod program;
 mod setpoint;
 
 pub(crate) use axis::{Axis, Body, Mjcf};
+pub(crate) use bus::{Bus, BusFault, FaultName};
 pub(crate) use drive::{Current, Drive, Estimate, FeedbackEncoder, Velocity, VelocityKind};
 pub(crate) use motor::{Encoder, Motor, MotorKind};
+pub(crate) use plc::{Call, Condition, Plc, Update};
 pub(crate) use program::{Disturbance, ProgramStep};
 pub(crate) use setpoint::{FollowRule, Rockwell, Setpoint, Shaper, ShaperName, TableOfPoints, VelocityRule};
 
@@ -56,6 +60,12 @@ table! {
         setpoint: Setpoint = (),
         /// Moves and pauses, one after the other from time 0; `[[program]]` for each.
         program: Many<ProgramStep> = (),
+        /// The fieldbus between the motion task and the drive; without it the drive has a set-point at every tick.
+        bus: Bus = (),
+        /// What holds for all `[[call]]`s.
+        plc: Plc = (),
+        /// Calls of PLCopen function blocks instead of a program; `[[call]]` for each.
+        call: Many<Call> = (),
         /// External forces and torques; `[[disturbance]]` for each.
         disturbance: Many<Disturbance> = (),
         /// Where the load is at time 0; the motor is at rest at zero.

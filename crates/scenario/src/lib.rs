@@ -7,6 +7,7 @@
 //! `docs/scenario.md` follow from them.
 
 mod argument;
+mod block;
 mod channel;
 mod diagnostic;
 mod dimension;
@@ -17,6 +18,7 @@ mod list;
 mod load;
 mod models;
 mod nearest;
+mod object_table;
 mod physical;
 mod place;
 mod points;
@@ -30,13 +32,14 @@ mod source;
 mod table;
 mod tree;
 mod unit;
+mod when;
 
 pub use argument::{ArgumentError, Derivative, axis_quantity, frequency, ratio, time};
 pub use channel::CHANNELS;
 pub use diagnostic::{Diagnostic, Invalid, LoadError};
 pub use load::{Loaded, load, parse};
 pub use models::{embedded_demo, embedded_models};
-pub use points::{Column, MOST_POINTS, Points, PointsError, PointsMistake, read_points};
+pub use points::{Column, MOST_POINTS, Points, PointsError, PointsMistake, Profile, read_points, read_profile};
 pub use scenario::{
     Actuator, Axis, AxisMechanics, Block, Body, Braking, BufferMode, Bus, BusFault, BusFaultKind, BusMode, Call,
     Command, Condition, Counter, Coupling, CurrentGain, CurrentLoop, Direction, Disturbance, DisturbedBody, Drive,

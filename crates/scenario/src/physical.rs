@@ -143,6 +143,10 @@ pub(crate) static EFFORT: Counterparts = Counterparts {
     linear: physical("a force", "N", &[(D::NEWTON, 1.0)]),
     rotary: physical("a torque", "Nm", &[(D::NEWTON_METRE, 1.0)]),
 };
+pub(crate) static EFFORT_RATE: Counterparts = Counterparts {
+    linear: physical("a change of force per time", "N/s", &[(D::NEWTON.times(SECOND, -1), 1.0)]),
+    rotary: physical("a change of torque per time", "Nm/s", &[(D::NEWTON_METRE.times(SECOND, -1), 1.0)]),
+};
 pub(crate) static STIFFNESS: Counterparts = Counterparts {
     linear: physical("a stiffness", "N/m", &[(D::NEWTON.times(D::METRE, -1), 1.0)]),
     rotary: physical("a torsional stiffness", "Nm/rad", STIFFNESS_R),
@@ -163,7 +167,7 @@ pub(crate) static SOURCE_GAIN: Counterparts = Counterparts {
 };
 
 /// Everything that has a name here, to name what a user wrote.
-static NAMED: [&Physical; 34] = [
+static NAMED: [&Physical; 36] = [
     &POSITION.linear,
     &POSITION.rotary,
     &TIME,
@@ -198,6 +202,8 @@ static NAMED: [&Physical; 34] = [
     &VOLT_GAIN.rotary,
     &SOURCE_GAIN.linear,
     &SOURCE_GAIN.rotary,
+    &EFFORT_RATE.linear,
+    &EFFORT_RATE.rotary,
 ];
 
 /// What a quantity of dimension `dimension` is: "a force (kg·m/s²)".

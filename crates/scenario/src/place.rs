@@ -26,18 +26,25 @@ impl Loaded {
     }
 
     fn place_of(&self, key: &str) -> Span {
-        key.split('.').try_fold(&self.root, inner).map_or_else(|outer| outer.span, |node| node.span)
+        let (mut node, mut rest) = (&self.root, key);
+        while !rest.is_empty() {
+            // Indices of objects have points of their own: "6099h.1".
+            let whole = inner(node, rest).map(|found| (found, ""));
+            let (part, behind) = rest.split_once('.').unwrap_or((rest, ""));
+            let Some(next) = whole.or_else(|| inner(node, part).map(|found| (found, behind))) else { break };
+            (node, rest) = next;
+        }
+        node.span
     }
 }
 
-/// The part `key` of `node`; what has no such part is itself the innermost.
-fn inner<'a>(node: &'a Node, key: &str) -> Result<&'a Node, &'a Node> {
-    let part = match &node.value {
+/// The part `key` of `node`.
+fn inner<'a>(node: &'a Node, key: &str) -> Option<&'a Node> {
+    match &node.value {
         Value::Table(table) => table.get(key),
         Value::Array(items) => key.parse().ok().and_then(|index: usize| items.get(index)),
         _ => None,
-    };
-    part.ok_or(node)
+    }
 }
 
 /// What stands on a line, from 1, of a file; its end when it has not so many.
@@ -84,6 +91,15 @@ wait = "2 s"
         ] {
             assert_eq!(place(&loaded, key), expected, "{key}");
         }
+    }
+
+    #[test]
+    fn objects_are_found_however_their_sub_index_is_written() {
+        let objects = "[drive.objects]\n\"6065h\" = 1\n\"607Dh.1\" = 2\n607Eh.0 = 3\n";
+        let loaded = parse("a.toml", &format!("{TEXT}{objects}"), None).err().map(|error| error.to_string());
+        // The drive is prescribed: it has no objects, but they are where they are.
+        let said = loaded.unwrap_or_default();
+        assert!(said.starts_with("a.toml:12:1: `objects` is for a drive on a fieldbus"), "{said}");
     }
 
     #[test]

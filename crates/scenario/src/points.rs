@@ -8,13 +8,18 @@
 //! ```
 //! The heading names the columns, in any order, with the unit of all their numbers. `velocity` may be left out, or a row of
 //! it left empty. Times increase. Spaces around numbers and empty lines do not matter; the decimal sign is a point.
+//!
+//! A profile is such a table of times and of velocities or accelerations alone.
+mod column;
 mod mistake;
 
 use crate::quantity::Scale;
 use crate::reading::{self, ReadError, names};
 use crate::scenario::Motion;
 
-pub use mistake::{Column, PointsError, PointsMistake};
+pub use column::Column;
+use column::Layout;
+pub use mistake::{PointsError, PointsMistake};
 
 /// Points at most: a table of more is taken for a mistake.
 pub const MOST_POINTS: usize = 5_000_000;
@@ -32,6 +37,17 @@ pub struct Points {
     pub velocities: Option<Vec<Option<f64>>>,
     /// Units as the heading writes them: of time, position, velocity.
     pub units: [Option<String>; 3],
+}
+
+/// A profile, in SI: two points at least, in the order of time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Profile {
+    /// Whether its values are those of lengths or of angles.
+    pub motion: Motion,
+    /// Times (s), each later than the one before.
+    pub times: Vec<f64>,
+    /// Velocities or accelerations, one for each time.
+    pub values: Vec<f64>,
 }
 
 /// A column of the heading.
@@ -70,37 +86,69 @@ pub fn read_points(text: &str) -> Result<Points, PointsError> {
     read(text, MOST_POINTS)
 }
 
+/// Reads a profile of the values `column`, velocities or accelerations.
+///
+/// # Errors
+/// [`PointsError`], the first mistake.
+pub fn read_profile(text: &str, column: Column) -> Result<Profile, PointsError> {
+    let layout = if column == Column::Acceleration { Layout::Accelerations } else { Layout::Velocities };
+    let (mut times, mut values) = (Vec::new(), Vec::new());
+    let heads = read_rows(text, layout, MOST_POINTS, |column, value| match column {
+        Column::Time => times.extend(value),
+        Column::Position | Column::Velocity | Column::Acceleration => values.extend(value),
+    })?;
+    Ok(Profile { motion: motion(&heads), times, values })
+}
+
 /// Reads a table of `most` points at most.
 fn read(text: &str, most: usize) -> Result<Points, PointsError> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut rows = (1..).zip(text.lines()).filter(|(_, row)| !row.trim().is_empty());
-    let Some((line, row)) = rows.next() else { return Err(wrong(1, 1, PointsMistake::NoHeading)) };
-    let heads = heading(line, row)?;
-    let motion = if heads.iter().any(|head| head.column == Column::Position && head.which == 1) {
-        Motion::Rotary
-    } else {
-        Motion::Linear
-    };
+    let (mut times, mut positions, mut velocities) = (Vec::new(), Vec::new(), Vec::new());
+    let heads = read_rows(text, Layout::Positions, most, |column, value| match column {
+        Column::Time => times.extend(value),
+        Column::Position => positions.extend(value),
+        Column::Velocity | Column::Acceleration => velocities.push(value),
+    })?;
     let has_velocity = heads.iter().any(|head| head.column == Column::Velocity);
     let unit = |column| heads.iter().find(|head| head.column == column).map(|head| head.unit.clone());
-    let mut points = Points {
-        motion,
-        times: Vec::new(),
-        positions: Vec::new(),
-        velocities: has_velocity.then(Vec::new),
-        units: Column::ALL.map(unit),
+    Ok(Points {
+        motion: motion(&heads),
+        times,
+        positions,
+        velocities: has_velocity.then_some(velocities),
+        units: [Column::Time, Column::Position, Column::Velocity].map(unit),
+    })
+}
+
+/// Whether the values below `heads` are those of lengths or of angles.
+fn motion(heads: &[Head]) -> Motion {
+    let is_rotary = heads.iter().any(|head| head.column != Column::Time && head.which == 1);
+    if is_rotary { Motion::Rotary } else { Motion::Linear }
+}
+
+/// Reads a table of `most` points at most, and gives what stands in its cells to `take`: nothing where one is empty.
+fn read_rows(
+    text: &str,
+    layout: Layout,
+    most: usize,
+    mut take: impl FnMut(Column, Option<f64>),
+) -> Result<Vec<Head>, PointsError> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut rows = (1..).zip(text.lines()).filter(|(_, row)| !row.trim().is_empty());
+    let Some((line, row)) = rows.next() else {
+        return Err(wrong(1, 1, PointsMistake::NoHeading { like: layout.example() }));
     };
-    let mut last = (line, f64::NEG_INFINITY);
+    let heads = heading(line, row, layout)?;
+    let (mut points, mut last) = (0, (line, f64::NEG_INFINITY));
     for (line, row) in rows {
-        if points.times.len() == most {
+        if points == most {
             return Err(wrong(line, 1, PointsMistake::TooMany { most }));
         }
-        let time = read_row(&mut points, &heads, line, row, last.1)?;
-        last = (line, time);
+        last = (line, read_row(&heads, layout, line, row, last.1, &mut take)?);
+        points += 1;
     }
-    match points.times.len() {
-        points @ (0 | 1) => Err(wrong(last.0, 1, PointsMistake::TooFew { points })),
-        _ => Ok(points),
+    match points {
+        0 | 1 => Err(wrong(last.0, 1, PointsMistake::TooFew { points })),
+        _ => Ok(heads),
     }
 }
 
@@ -119,10 +167,14 @@ fn cells(row: &str) -> impl Iterator<Item = Cell<'_>> {
 }
 
 /// The columns in their order.
-fn heading(line: usize, row: &str) -> Result<Vec<Head>, PointsError> {
+fn heading(line: usize, row: &str, layout: Layout) -> Result<Vec<Head>, PointsError> {
     for (found, name) in [(';', ";"), ('\t', "tab")] {
         if let Some((before, _)) = row.split_once(found).filter(|_| !row.contains(',')) {
-            return Err(wrong(line, before.chars().count() + 1, PointsMistake::Separator { found: name }));
+            return Err(wrong(
+                line,
+                before.chars().count() + 1,
+                PointsMistake::Separator { found: name, like: layout.shortest_example() },
+            ));
         }
     }
     let mut heads: Vec<Head> = Vec::new();
@@ -132,8 +184,8 @@ fn heading(line: usize, row: &str) -> Result<Vec<Head>, PointsError> {
             None => (cell.text, None),
         };
         let fail = |mistake| wrong(line, cell.at(), mistake);
-        let Some(column) = Column::ALL.into_iter().find(|column| column.name() == name) else {
-            return Err(fail(PointsMistake::UnknownColumn { name: name.to_owned() }));
+        let Some(column) = layout.columns().find(|column| column.name() == name) else {
+            return Err(fail(PointsMistake::UnknownColumn { name: name.to_owned(), like: layout.example() }));
         };
         if heads.iter().any(|head| head.column == column) {
             return Err(fail(PointsMistake::Twice { column }));
@@ -145,7 +197,7 @@ fn heading(line: usize, row: &str) -> Result<Vec<Head>, PointsError> {
             .map_err(|message| fail(PointsMistake::Unit { column, unit: unit.to_owned(), message }))?;
         heads.push(Head { column, unit: unit.to_owned(), scale, which, at: cell.at() });
     }
-    for column in [Column::Time, Column::Position] {
+    for column in layout.needed() {
         if heads.iter().all(|head| head.column != column) {
             return Err(wrong(line, 1, PointsMistake::Missing { column, proposal: column.proposal() }));
         }
@@ -182,14 +234,21 @@ fn read_unit(column: Column, unit: &str) -> Result<(Scale, usize), String> {
     Ok((scale, which))
 }
 
-/// Adds a point to `points` that must be later than `before` (s); its time (s).
-fn read_row(points: &mut Points, heads: &[Head], line: usize, row: &str, before: f64) -> Result<f64, PointsError> {
-    let mut read = 0;
+/// Gives a point to `take` that must be later than `before` (s); its time (s).
+fn read_row(
+    heads: &[Head],
+    layout: Layout,
+    line: usize,
+    row: &str,
+    before: f64,
+    take: &mut impl FnMut(Column, Option<f64>),
+) -> Result<f64, PointsError> {
+    let (mut read, mut time) = (0, before);
     for (head, cell) in heads.iter().zip(cells(row)) {
         let column = head.column;
         read += 1;
-        if column == Column::Velocity && cell.text.is_empty() {
-            points.velocities.iter_mut().for_each(|velocities| velocities.push(None));
+        if cell.text.is_empty() && !layout.needed().contains(&column) {
+            take(column, None);
             continue;
         }
         let value = number(&head.scale, cell.text).map_err(|reason| {
@@ -198,19 +257,18 @@ fn read_row(points: &mut Points, heads: &[Head], line: usize, row: &str, before:
                 wrong(line, cell.at(), PointsMistake::Value { column, text: shown(cell.text), reason })
             })
         })?;
-        match column {
-            Column::Time if value <= before => {
+        if column == Column::Time {
+            if value <= before {
                 return Err(wrong(line, cell.at(), PointsMistake::Order { time: value, before }));
             }
-            Column::Time => points.times.push(value),
-            Column::Position => points.positions.push(value),
-            Column::Velocity => points.velocities.iter_mut().for_each(|velocities| velocities.push(Some(value))),
+            time = value;
         }
+        take(column, Some(value));
     }
     if read < heads.len() || row.bytes().filter(|byte| *byte == b',').count() + 1 != heads.len() {
         width(line, row, heads.len())?;
     }
-    Ok(points.times.last().copied().unwrap_or(before))
+    Ok(time)
 }
 
 /// Nothing, if `row` has `expected` values.

@@ -2,18 +2,27 @@
 
 mod axis;
 mod bandwidth;
+mod block;
+mod bus;
+mod bus_fault;
+mod condition;
 mod current;
 mod disturbance;
 mod drive;
 mod estimate;
 mod filter;
+mod inputs;
 mod keys;
 mod loops;
+mod mode;
 mod motor;
+mod plc;
 mod points;
+mod profile;
 mod program;
 mod rockwell;
 mod time;
+mod whole;
 
 use crate::diagnostic::Report;
 use crate::field::Slot;
@@ -46,6 +55,12 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
     }
     let duration = run.and_then(|run| duration(run, report));
     time::check(file, program.as_deref(), report);
+    let bus = bus::resolve(file, &bus::Known { base_rate, duration, actuator: actuator.as_ref() }, report);
+    if let Some(Some(bus)) = &bus {
+        bus::refuse_by_program(file, bus, program.as_deref(), report);
+    }
+    let is_modulo = axis.is_some_and(|axis| axis.modulo.span().is_some());
+    let plc = plc::resolve(file, &plc::Known { duration, is_modulo, sources }, report);
     let fixed = is_prescribed.then(|| disturbance::Fixed::of(moved.as_ref()));
     let timing = disturbance::Timing { base_rate, duration };
     let disturbances = disturbance::disturbances(file, &timing, fixed, report);
@@ -73,8 +88,8 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
         actuator: actuator?,
         program: program?,
         interpolation: interpolation?,
-        bus: None,
-        plc: None,
+        bus: bus?,
+        plc: plc?,
         disturbances: disturbances?,
         initial,
         record: record?,

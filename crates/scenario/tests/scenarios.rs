@@ -19,7 +19,8 @@ fn read(path: &Path) -> String {
 
 /// Every scenario file of the repository.
 fn scenarios() -> Vec<PathBuf> {
-    let folders = ["scenarios", "scenarios/demo", "scenarios/setpoints"].map(|folder| repository().join(folder));
+    let folders =
+        ["scenarios", "scenarios/demo", "scenarios/plc", "scenarios/setpoints"].map(|folder| repository().join(folder));
     let files = folders.iter().flat_map(|folder| std::fs::read_dir(folder).unwrap());
     let mut all: Vec<PathBuf> = files
         .map(|entry| entry.unwrap().path())
@@ -216,6 +217,8 @@ fn the_reference_lists_every_key() {
     let (written, after) = rest.split_once(END).unwrap();
     let mut tables = String::new();
     describe("", &json_schema(), &mut tables);
+    describe_conditions(&json_schema(), &mut tables);
+    describe_blocks(&json_schema(), &mut tables);
     describe_channels(&json_schema(), &mut tables);
     if std::env::var_os(WRITE_DOCS).is_some() {
         std::fs::write(&path, format!("{before}{BEGIN}{tables}{END}{after}")).unwrap();
@@ -251,6 +254,41 @@ fn describe(path: &str, table: &Json, out: &mut String) {
     }
 }
 
+/// What "condition" stands for, as Markdown.
+fn describe_conditions(schema: &Json, out: &mut String) {
+    let condition = &schema["properties"]["call"]["items"]["properties"]["start"]["anyOf"][1];
+    let _ = write!(
+        out,
+        "\n### Conditions\n\n{} `\"first.Done\"` is short for `{{ after = \"first.Done\" }}`.\n\n| key | value | meaning |\n\
+         |---|---|---|\n",
+        condition["description"].as_str().unwrap()
+    );
+    for key in condition["x-order"].as_array().unwrap().iter().map(|key| key.as_str().unwrap()) {
+        let value = &condition["properties"][key];
+        let _ = writeln!(out, "| `{key}` | {} | {} |", kind(value), value["description"].as_str().unwrap());
+    }
+}
+
+/// Inputs and outputs of the function blocks, as Markdown.
+fn describe_blocks(schema: &Json, out: &mut String) {
+    let choices = &schema["properties"]["call"]["items"]["properties"]["block"]["oneOf"];
+    let _ = write!(
+        out,
+        "\n### Blocks\n\nWhat `call.block` can name. `start` and `stop` say when `Execute` or `Enable` is TRUE; conditions can name \
+         the outputs.\n\n| block | what it does | inputs | outputs |\n|---|---|---|---|\n"
+    );
+    for choice in choices.as_array().unwrap() {
+        let list = |key: &str| {
+            let all = choice[key].as_array().unwrap().iter().map(|one| format!("`{}`", one.as_str().unwrap()));
+            all.collect::<Vec<_>>().join(", ")
+        };
+        let inputs = [format!("`{}`", choice["x-trigger"].as_str().unwrap()), list("x-inputs")];
+        let inputs: Vec<_> = inputs.into_iter().filter(|part| !part.is_empty()).collect();
+        let (name, meaning) = (choice["const"].as_str().unwrap(), choice["description"].as_str().unwrap());
+        let _ = writeln!(out, "| `{name}` | {meaning} | {} | {} |", inputs.join("; "), list("x-outputs"));
+    }
+}
+
 /// What can be recorded, as Markdown.
 fn describe_channels(schema: &Json, out: &mut String) {
     let choices = &schema["properties"]["record"]["properties"]["channels"]["anyOf"][0]["oneOf"];
@@ -273,6 +311,12 @@ fn is_percentage(value: &Json) -> bool {
 
 /// What a value may be, in a few characters.
 fn kind(value: &Json) -> String {
+    if value["title"] == "condition" {
+        return "output, or a [condition](#conditions)".into();
+    }
+    if let (true, Some(example)) = (value["type"] == "object", value["examples"][0].as_str()) {
+        return format!("`{{ {example} }}`");
+    }
     if let Some(example) = value["examples"][0].as_str() {
         return format!("`\"{example}\"`");
     }

@@ -1,7 +1,7 @@
 //! `[axis]`: the mechanics.
 use crate::field::{any, not_negative, positive};
 use crate::physical::Kind::{Axis as InAxis, Motor as InMotor, Plain};
-use crate::physical::{EFFORT, INERTIA, LEAD, MASS, RATIO, STIFFNESS, VELOCITY, VISCOUS};
+use crate::physical::{EFFORT, INERTIA, LEAD, MASS, POSITION, RATIO, STIFFNESS, VELOCITY, VISCOUS};
 use crate::scenario::Motion;
 use crate::simple::Choice;
 use crate::table::table;
@@ -34,6 +34,34 @@ table! {
         load: Body = (),
         /// A user's own MJCF file instead of bodies.
         mjcf: Mjcf = (),
+        /// Period of a modulo axis, one that turns on and on; it has ends unless given. Function blocks use it.
+        modulo: f64 = positive(InAxis(&POSITION), "360 deg"),
+        /// Switches along the axis, which a drive on a fieldbus sees.
+        switches: Switches = (),
+    }
+}
+
+table! {
+    /// Switches along the axis and the index pulse of its motor, which a drive on a fieldbus sees.
+    pub(crate) struct Switches {
+        /// Switch of the negative end: active here and below; there is none unless given.
+        negative: f64 = any(InAxis(&POSITION), "-20 mm"),
+        /// Switch of the positive end: active here and above; there is none unless given.
+        positive: f64 = any(InAxis(&POSITION), "520 mm"),
+        /// Home switch; there is none unless given.
+        home: HomeSwitch = (),
+        /// Where in each revolution of the motor the index pulse comes; 0 unless given. A linear motor has none.
+        index: f64 = any(Plain(&POSITION.rotary), "90 deg"),
+    }
+}
+
+table! {
+    /// Home switch: active from one position to the other.
+    pub(crate) struct HomeSwitch requires ["from", "to"] {
+        /// Lower end.
+        from: f64 = any(InAxis(&POSITION), "0 mm"),
+        /// Upper end.
+        to: f64 = any(InAxis(&POSITION), "10 mm"),
     }
 }
 

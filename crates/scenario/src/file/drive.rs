@@ -1,6 +1,7 @@
 //! `[drive]`: the firmware.
 use crate::field::{Either, EitherMeasure, any, not_negative, positive};
 use crate::list::{AutoTime, Share};
+use crate::object_table::ObjectTable;
 use crate::physical::Kind::{Axis as InAxis, Motor as InMotor, Plain};
 use crate::physical::{
     BANDWIDTH, CURRENT_GAIN, EFFORT, FLUX_LINKAGE, FORCE, INDUCTANCE, INERTIAL, LEAD, POSITION, POSITION_GAIN, RATIO,
@@ -78,6 +79,9 @@ table! {
         estimate: Estimate = (),
         /// Encoder on the load; there is none unless given.
         load_encoder: LoadEncoder = (),
+        /// What the master writes into the drive's objects (CiA 402) before the first cycle of `[bus]`: whole numbers by index and
+        /// sub-index.
+        objects: ObjectTable = (),
     }
 }
 

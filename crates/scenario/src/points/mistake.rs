@@ -1,6 +1,5 @@
 //! What may be wrong with a table of points.
-use crate::physical::{POSITION, Physical, TIME, VELOCITY};
-use std::fmt;
+use super::Column;
 use thiserror::Error;
 
 /// What is wrong with a table of points, and where.
@@ -19,19 +18,26 @@ pub struct PointsError {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum PointsMistake {
     /// There is nothing.
-    #[error("the table is empty: begin with a heading like `time [ms],position [mm],velocity [mm/s]`")]
-    NoHeading,
+    #[error("the table is empty: begin with a heading like `{like}`")]
+    NoHeading {
+        /// A right one.
+        like: &'static str,
+    },
     /// Something else stands between the columns.
-    #[error("columns are separated by commas, not by `{found}`: write `time [ms],position [mm]`, numbers with a point")]
+    #[error("columns are separated by commas, not by `{found}`: write `{like}`, numbers with a point")]
     Separator {
         /// What stands there.
         found: &'static str,
+        /// A right heading.
+        like: &'static str,
     },
     /// A column has a name that means nothing here.
-    #[error("unknown column `{name}`: the heading is like `time [ms],position [mm],velocity [mm/s]`")]
+    #[error("unknown column `{name}`: the heading is like `{like}`")]
     UnknownColumn {
         /// What stands there instead of a name.
         name: String,
+        /// A right heading.
+        like: &'static str,
     },
     /// A column has no unit.
     #[error("`{column}` needs its unit in brackets: write `{column} [{proposal}]`")]
@@ -106,51 +112,4 @@ pub enum PointsMistake {
         /// The most that are read.
         most: usize,
     },
-}
-
-/// A column of a table of points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Column {
-    /// Time from any zero.
-    Time,
-    /// Absolute position.
-    Position,
-    /// Velocity at the point.
-    Velocity,
-}
-
-impl Column {
-    pub(super) const ALL: [Self; 3] = [Self::Time, Self::Position, Self::Velocity];
-
-    pub(super) const fn name(self) -> &'static str {
-        match self {
-            Self::Time => "time",
-            Self::Position => "position",
-            Self::Velocity => "velocity",
-        }
-    }
-
-    /// What it may measure: linear first, then rotary.
-    pub(super) fn candidates(self) -> Vec<&'static Physical> {
-        match self {
-            Self::Time => vec![&TIME],
-            Self::Position => vec![&POSITION.linear, &POSITION.rotary],
-            Self::Velocity => vec![&VELOCITY.linear, &VELOCITY.rotary],
-        }
-    }
-
-    /// A unit that it might have.
-    pub(super) const fn proposal(self) -> &'static str {
-        match self {
-            Self::Time => "ms",
-            Self::Position => "mm",
-            Self::Velocity => "mm/s",
-        }
-    }
-}
-
-impl fmt::Display for Column {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
 }

@@ -6,7 +6,7 @@ use crate::file::MotorKind;
 use crate::models::read_beside;
 use crate::physical::EFFORT;
 use crate::resolve::need;
-use crate::scenario::{Axis, AxisMechanics, Body, Coupling, Mjcf, Motion, Switches};
+use crate::scenario::{Axis, AxisMechanics, Body, Coupling, HomeSwitch, Mjcf, Motion, Switches};
 use crate::source::{Sources, Span};
 use std::f64::consts::TAU;
 
@@ -32,13 +32,15 @@ pub(super) fn resolve(axis: &file::Axis, motor: &file::Motor, sources: &Sources,
         None if axis.mjcf.span().is_some() => None,
         None => bodies(axis, motor, motor_motion, transmission, report).map(AxisMechanics::Bodies),
     };
+    let switches = switches(axis, motor_motion, report);
+    let modulo = axis.modulo.optional().ok().map(Option::<&f64>::copied);
     Some(Axis {
         motion: motion?,
         motor_motion,
         transmission: transmission?,
         mechanics: mechanics?,
-        switches: Switches::default(),
-        modulo: None,
+        switches: switches?,
+        modulo: modulo?,
     })
 }
 
@@ -95,6 +97,37 @@ fn transmission(
             Some(1.0)
         }
     }
+}
+
+fn switches(axis: &file::Axis, motor_motion: Motion, report: &mut Report) -> Option<Switches> {
+    let turns = motor_motion == Motion::Rotary;
+    let Some(given) = axis.switches.optional().ok()? else {
+        return Some(Switches { index: turns.then_some(0.0), ..Switches::default() });
+    };
+    let ends = [&given.negative, &given.positive].map(|slot| slot.optional().map(Option::<&f64>::copied));
+    if let (Some(negative), Some(positive)) = (given.negative.at(), given.positive.at())
+        && negative.value >= positive.value
+    {
+        report.error(positive.span, "the positive end is not above the negative one", "swap them");
+    }
+    let home = given.home.optional().ok()?;
+    if let Some(home) = home
+        && let (Some(from), Some(to)) = (home.from.at(), home.to.at())
+        && from.value >= to.value
+    {
+        report.error(to.span, "the home switch ends at or below where it begins", "swap `from` and `to`");
+    }
+    let home = match home {
+        Some(home) => Some(HomeSwitch { from: *home.from.given()?, to: *home.to.given()? }),
+        None => None,
+    };
+    if let (false, Some(span)) = (turns, given.index.span()) {
+        report.error(span, "a linear motor has no index pulse", "a home switch is where homing can end");
+    }
+    // Just below a full revolution rounding makes it one, which is none.
+    let index = given.index.optional().ok()?.copied().unwrap_or(0.0).rem_euclid(TAU) % TAU;
+    let [negative, positive] = ends;
+    Some(Switches { negative: negative.ok()?, positive: positive.ok()?, home, index: turns.then_some(index) })
 }
 
 fn no_bodies_besides(axis: &file::Axis, report: &mut Report) {

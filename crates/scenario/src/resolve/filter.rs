@@ -3,6 +3,7 @@ use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file::{File, ShaperName};
 use crate::resolve::keys::{Keys, Said};
+use crate::resolve::whole;
 use crate::scenario::{Filter, Grid, Interpolation, Shaper, ShaperKind};
 use crate::source::At;
 use servobench_base::Rate;
@@ -90,14 +91,12 @@ pub(super) fn interpolation(
 /// A time that must be a whole number of base ticks.
 fn whole_ticks(key: &str, time: At<f64>, base_rate: Option<Rate>, said: &mut Said, report: &mut Report) -> Option<f64> {
     let hertz = f64::from(base_rate?.hertz());
-    let ticks = time.value * hertz;
-    if ticks.round() >= 1.0 && (ticks - ticks.round()).abs() <= 1e-9 * ticks {
+    match whole::number(key, time.value, hertz, "base ticks") {
         // Not as typed: what 83.33333333 us lacks of a tick at 12 kHz would add up over the samples of a move.
-        return Some(ticks.round() / hertz);
+        Ok(ticks) => Some(ticks / hertz),
+        Err((message, help)) => {
+            said.once(time.span, |report| report.error(time.span, message, help), report);
+            None
+        }
     }
-    let in_microseconds = |ticks: f64| ticks * base_rate.map_or(0.0, Rate::period) * 1e6;
-    let near = format!("{} us", in_microseconds(ticks.round().max(1.0)));
-    let message = format!("`{key}` is {ticks:.4} base ticks, not a whole number");
-    said.once(time.span, |report| report.error(time.span, message, format!("{near} fits")), report);
-    None
 }

@@ -3,7 +3,7 @@ use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file::{FollowRule, TableOfPoints, VelocityRule};
 use crate::models::read_beside;
-use crate::points::read_points;
+use crate::points::{PointsError, read_points};
 use crate::resolve::refuse;
 use crate::scenario::{Follow, Motion, TableMove, Velocities};
 use crate::source::{At, Sources};
@@ -25,6 +25,23 @@ pub(super) fn resolve(table: &At<TableOfPoints>, sources: &Sources, report: &mut
 /// The points of the file: time, position, velocity.
 fn points(own: &TableOfPoints, sources: &Sources, report: &mut Report) -> Option<Vec<(f64, f64, Option<f64>)>> {
     let file = own.file.at()?;
+    let points = read(file, "positions", sources, report, |text| {
+        let points = read_points(text)?;
+        Ok((points.motion, points))
+    })?;
+    let velocity = |i: usize| points.velocities.as_ref().and_then(|all| all[i]);
+    let both = points.times.iter().zip(&points.positions).enumerate();
+    Some(both.map(|(i, (t, x))| (*t, *x, velocity(i))).collect())
+}
+
+/// What `read` makes of the text of `file`, when it is for an axis of this kind; `values` are its values in words.
+pub(super) fn read<T>(
+    file: &At<String>,
+    values: &str,
+    sources: &Sources,
+    report: &mut Report,
+    read: impl FnOnce(&str) -> Result<(Motion, T), PointsError>,
+) -> Option<T> {
     let place = sources.place(file.span.source)?;
     let (path, text) = match read_beside(&file.value, place) {
         Ok(found) => found,
@@ -33,25 +50,23 @@ fn points(own: &TableOfPoints, sources: &Sources, report: &mut Report) -> Option
             return None;
         }
     };
-    let points = match read_points(&text) {
-        Ok(points) => points,
+    let (motion, table) = match read(&text) {
+        Ok(read) => read,
         Err(error) => {
             report.error(file.span, format!("{}:{error}", path.display()), "");
             return None;
         }
     };
-    if let Some(axis) = report.axis.filter(|axis| *axis != points.motion) {
+    if let Some(axis) = report.axis.filter(|axis| *axis != motion) {
         let (is, needs) = match axis {
             Motion::Linear => ("angles", "lengths"),
             Motion::Rotary => ("lengths", "angles"),
         };
-        let message = format!("the positions in {} are {is}, this axis needs {needs}", path.display());
+        let message = format!("the {values} in {} are {is}, this axis needs {needs}", path.display());
         report.error(file.span, message, "change the units of its heading");
         return None;
     }
-    let velocity = |i: usize| points.velocities.as_ref().and_then(|all| all[i]);
-    let both = points.times.iter().zip(&points.positions).enumerate();
-    Some(both.map(|(i, (t, x))| (*t, *x, velocity(i))).collect())
+    Some(table)
 }
 
 fn velocities(own: &TableOfPoints, report: &mut Report) -> Option<Velocities> {

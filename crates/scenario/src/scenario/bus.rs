@@ -34,7 +34,7 @@ pub struct Bus {
     pub units: DriveUnits,
     /// Whether the master makes the actual velocity of differences of positions.
     pub velocity_from_differences: bool,
-    /// Whether negative and positive switch are wired the other way round.
+    /// Whether the switches are wired normally closed: what the drive reports of them is inverted by the master.
     pub reverse_switches: bool,
     /// What goes wrong, in the order of the file.
     pub faults: Vec<BusFault>,

@@ -1,0 +1,129 @@
+//! `[bus]`: the fieldbus between the motion task and the drive.
+use crate::field::{not_negative, positive};
+use crate::list::Many;
+use crate::physical::Kind::{Axis as InAxis, Plain};
+use crate::physical::{POSITION, POSITION_GAIN, TIME};
+use crate::scenario::{BusMode, DriveInterpolation, EffortFeedforward, InterpolationMode, Sequencing};
+use crate::simple::Choice;
+use crate::table::table;
+
+impl Choice for BusMode {
+    const ALL: &'static [(&'static str, Self, &'static str)] = &[
+        ("csp", Self::CyclicPosition, "cyclic synchronous position: the master sends a position every cycle"),
+        ("csv", Self::CyclicVelocity, "cyclic synchronous velocity: the master closes the position loop"),
+        ("pp", Self::ProfilePosition, "profile position: the drive plans the way to each target"),
+        ("pv", Self::ProfileVelocity, "profile velocity: the drive ramps to each velocity"),
+        ("ip", Self::InterpolatedPosition, "interpolated position: the drive goes through the points of a buffer"),
+    ];
+}
+
+impl Choice for DriveInterpolation {
+    const ALL: &'static [(&'static str, Self, &'static str)] =
+        &[("linear", Self::Linear, "position linear"), ("cubic", Self::Cubic, "by positions and velocities")];
+}
+
+impl Choice for Sequencing {
+    const ALL: &'static [(&'static str, Self, &'static str)] = &[
+        ("strict", Self::Strict, "state after state of the power state machine, each awaited"),
+        ("simplified", Self::Simplified, "the last controlword at once, only the end awaited"),
+    ];
+}
+
+/// What goes wrong, by its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum FaultName {
+    Lost,
+    Late,
+    Jitter,
+    MasterStopped,
+    DriveSilent,
+    ExternalFault,
+}
+
+impl Choice for FaultName {
+    const ALL: &'static [(&'static str, Self, &'static str)] = &[
+        ("lost", Self::Lost, "the frame does not arrive"),
+        ("late", Self::Late, "the frame arrives late"),
+        ("jitter", Self::Jitter, "each frame arrives late by a random time"),
+        ("master-stopped", Self::MasterStopped, "the motion task does not run"),
+        ("drive-silent", Self::DriveSilent, "the drive does not answer"),
+        ("external-fault", Self::ExternalFault, "the fault input of the master is set"),
+    ];
+}
+
+table! {
+    /// The fieldbus between the motion task and the drive (CiA 402). Without it the drive has a set-point at every tick.
+    pub(crate) struct Bus requires ["cycle"] {
+        /// Cycle of the bus, a whole number of base ticks.
+        cycle: f64 = positive(Plain(&TIME), "1 ms"),
+        /// Mode of operation in which the axis moves; "csp" unless given.
+        mode: BusMode = (),
+        /// Cycle of the motion task, with `[[call]]` of the PLC, a whole number of bus cycles; one unless given.
+        motion_cycle: f64 = positive(Plain(&TIME), "4 ms"),
+        /// How the master fills the bus cycles between two of the motion task's; "cubic" unless given.
+        interpolation: InterpolationMode = (),
+        /// How the drive fills the ticks between two frames; "linear" unless given.
+        drive_interpolation: DriveInterpolation = (),
+        /// Bus cycles from the sampling of a frame to its effect; 1 unless given.
+        delay: u32 = 0..=1000,
+        /// Whether the velocity offset (60B1h) carries the velocity of the set-point; it does not unless given.
+        velocity_offset: bool = (),
+        /// Model of the torque or force that the torque offset (60B2h) carries, by the drive's `estimate`; "off" unless given.
+        effort_offset: EffortFeedforward = (),
+        /// How the master brings the drive to power; "strict" unless given.
+        sequencing: Sequencing = (),
+        /// How long the master waits for the drive; 0.5 s unless given.
+        drive_timeout: f64 = positive(Plain(&TIME), "0.5 s"),
+        /// Proportional gain of the master's position loop, with "csv".
+        position_gain: f64 = positive(Plain(&POSITION_GAIN), "100 1/s"),
+        /// Counter of the positions on the bus: it wraps.
+        counter: Counter = (),
+        /// Units of the positions on the bus; increments of the encoder that closes the position loop unless given.
+        units: DriveUnits = (),
+        /// Whether the master makes the actual velocity of differences of positions; the drive sends it unless given.
+        velocity_from_differences: bool = (),
+        /// Whether the switches are wired normally closed, so that the master inverts them; they are not unless given.
+        reverse_switches: bool = (),
+        /// What goes wrong; `[[bus.fault]]` for each.
+        fault: Many<BusFault> = (),
+    }
+}
+
+table! {
+    /// Counter of the positions on the bus: it wraps.
+    pub(crate) struct Counter {
+        /// Its width; 32 unless given.
+        bits: u32 = 8..=64,
+        /// Whether it counts from −2^(bits−1); it does unless given.
+        signed: bool = (),
+    }
+}
+
+table! {
+    /// Units of the positions on the bus: so many of them are so much of the axis.
+    pub(crate) struct DriveUnits requires ["drive", "axis"] {
+        /// Units of the drive.
+        drive: u32 = 1..=u32::MAX,
+        /// What they are of the axis.
+        axis: f64 = positive(InAxis(&POSITION), "5 mm"),
+    }
+}
+
+table! {
+    /// Something that goes wrong on the bus, for so many `cycles` or so long a `duration`. A lost or late frame is one unless
+    /// given, anything else lasts to the end of the run.
+    pub(crate) struct BusFault requires ["kind"] {
+        /// What goes wrong.
+        kind: FaultName = (),
+        /// Start: from the first bus cycle that is not before it; 0 unless given.
+        start: f64 = not_negative(Plain(&TIME), "0.5 s"),
+        /// How many bus cycles it concerns.
+        cycles: u32 = 1..=u32::MAX,
+        /// How long it lasts: it concerns the bus cycles that begin before its end.
+        duration: f64 = positive(Plain(&TIME), "20 ms"),
+        /// How late a "late" frame is, or one with "jitter" at most; a whole number of base ticks.
+        by: f64 = positive(Plain(&TIME), "250 us"),
+        /// Seed of the random numbers of "jitter"; 1 unless given.
+        seed: u32 = 0..=u32::MAX,
+    }
+}

@@ -1,0 +1,97 @@
+//! The columns of a table of points.
+use crate::physical::{ACCELERATION, POSITION, Physical, TIME, VELOCITY};
+use std::fmt;
+
+/// A column of a table of points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Column {
+    /// Time from any zero.
+    Time,
+    /// Absolute position.
+    Position,
+    /// Velocity at the point.
+    Velocity,
+    /// Acceleration at the point.
+    Acceleration,
+}
+
+/// Which columns a table has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Layout {
+    /// Positions, and velocities where they are known.
+    Positions,
+    /// Velocities alone.
+    Velocities,
+    /// Accelerations alone.
+    Accelerations,
+}
+
+impl Layout {
+    /// The columns that it must have; a cell of another may be empty.
+    pub(super) const fn needed(self) -> [Column; 2] {
+        match self {
+            Self::Positions => [Column::Time, Column::Position],
+            Self::Velocities => [Column::Time, Column::Velocity],
+            Self::Accelerations => [Column::Time, Column::Acceleration],
+        }
+    }
+
+    /// The columns that it can have.
+    pub(super) fn columns(self) -> impl Iterator<Item = Column> {
+        self.needed().into_iter().chain((self == Self::Positions).then_some(Column::Velocity))
+    }
+
+    /// A right heading.
+    pub(super) const fn example(self) -> &'static str {
+        match self {
+            Self::Positions => "time [ms],position [mm],velocity [mm/s]",
+            Self::Velocities | Self::Accelerations => self.shortest_example(),
+        }
+    }
+
+    /// The shortest right heading.
+    pub(super) const fn shortest_example(self) -> &'static str {
+        match self {
+            Self::Positions => "time [ms],position [mm]",
+            Self::Velocities => "time [ms],velocity [mm/s]",
+            Self::Accelerations => "time [ms],acceleration [mm/s2]",
+        }
+    }
+}
+
+impl Column {
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Time => "time",
+            Self::Position => "position",
+            Self::Velocity => "velocity",
+            Self::Acceleration => "acceleration",
+        }
+    }
+
+    /// What it may measure: linear first, then rotary.
+    pub(super) fn candidates(self) -> Vec<&'static Physical> {
+        match self {
+            Self::Time => vec![&TIME],
+            Self::Position => vec![&POSITION.linear, &POSITION.rotary],
+            Self::Velocity => vec![&VELOCITY.linear, &VELOCITY.rotary],
+            Self::Acceleration => vec![&ACCELERATION.linear, &ACCELERATION.rotary],
+        }
+    }
+
+    /// A unit that it might have.
+    pub(super) const fn proposal(self) -> &'static str {
+        match self {
+            Self::Time => "ms",
+            Self::Position => "mm",
+            Self::Velocity => "mm/s",
+            Self::Acceleration => "mm/s2",
+        }
+    }
+}
+
+impl fmt::Display for Column {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}

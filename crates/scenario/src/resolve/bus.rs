@@ -1,0 +1,254 @@
+//! `[bus]` and `[drive.objects]`: what is between the motion task and the drive.
+use crate::diagnostic::Report;
+use crate::field::Slot;
+use crate::file;
+use crate::file::File;
+use crate::resolve::{bus_fault, mode, need, refuse, whole};
+use crate::scenario::{
+    Actuator, Bus, BusMode, Counter, DriveUnits, EffortFeedforward, Estimate, Feedback, InterpolationMode, Motion,
+    ObjectWrite, Sequencing, Step,
+};
+use crate::source::At;
+use servobench_base::Rate;
+use std::f64::consts::TAU;
+
+/// The parts that are known by now.
+pub(super) struct Known<'a> {
+    pub(super) base_rate: Option<Rate>,
+    /// Length of the run (s), as far as the file says it.
+    pub(super) duration: Option<f64>,
+    pub(super) actuator: Option<&'a Actuator>,
+}
+
+/// Bus cycles from the sampling of a frame to its effect, unless given: what is sampled in one cycle acts in the next.
+const DELAY: u32 = 1;
+/// How long the master waits for the drive, unless given (s).
+const DRIVE_TIMEOUT: f64 = 0.5;
+/// The counter, unless given: the position actual value (6064h) is an `INTEGER32`.
+const COUNTER: Counter = Counter { bits: 32, signed: true };
+
+/// What is between the motion task and the drive, when there is something.
+#[expect(clippy::option_option, reason = "a wrong table is not the same as none")]
+pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Option<Option<Bus>> {
+    let objects = file.drive.given().map(|drive| &drive.objects);
+    let given = match &file.bus {
+        Slot::Absent => {
+            let why = "is for a drive on a fieldbus";
+            let switches = file.axis.given().and_then(|axis| axis.switches.span());
+            let written = objects.and_then(Slot::span);
+            refuse(&[("switches", switches), ("objects", written)], why, "give `[bus]`", report);
+            return Some(None);
+        }
+        Slot::Wrong(_) => return None,
+        Slot::Given(bus) => &bus.value,
+    };
+    refuse_without_a_drive(given, known.actuator, report);
+    refuse_a_second_interpolation(file, report);
+    let mode = given.mode.optional().ok().map(|mode| mode.copied().unwrap_or_default());
+    if let Some(mode) = mode {
+        refuse_by_mode(given, mode, report);
+    }
+    let cycle = given.cycle.at().and_then(|cycle| whole::ticks("cycle", *cycle, known.base_rate, report));
+    let motion_every = motion_every(given, cycle, known, report);
+    refuse_fast_cycle(given, cycle, known, report);
+    let position_gain = mode.and_then(|mode| position_gain(given, mode, report));
+    let effort_offset = effort_offset(given, known.actuator.and_then(Actuator::drive).map(|d| &d.estimate), report);
+    warn_of_what_is_added_twice(given, known.actuator, report);
+    let units = units(file, given, known.actuator, report);
+    let faults = bus_fault::faults(given, cycle, known, report);
+    let objects = match objects {
+        Some(Slot::Given(objects)) => Some(objects.value.0.clone()),
+        Some(Slot::Wrong(_)) => None,
+        Some(Slot::Absent) | None => Some(Vec::<ObjectWrite>::new()),
+    };
+    let flag = |slot: &Slot<bool>| slot.optional().ok().map(|value| value.copied().unwrap_or(false));
+    Some(Some(Bus {
+        cycle: cycle?,
+        mode: mode?,
+        motion_every: motion_every?,
+        interpolation: given.interpolation.optional().ok()?.copied().unwrap_or(InterpolationMode::Cubic),
+        drive_interpolation: given.drive_interpolation.optional().ok()?.copied().unwrap_or_default(),
+        delay: given.delay.optional().ok()?.copied().unwrap_or(DELAY),
+        velocity_offset: flag(&given.velocity_offset)?,
+        effort_offset: effort_offset?,
+        sequencing: given.sequencing.optional().ok()?.copied().unwrap_or(Sequencing::Strict),
+        drive_timeout: given.drive_timeout.optional().ok()?.copied().unwrap_or(DRIVE_TIMEOUT),
+        position_gain: position_gain?,
+        counter: counter(given)?,
+        units: units?,
+        velocity_from_differences: flag(&given.velocity_from_differences)?,
+        reverse_switches: flag(&given.reverse_switches)?,
+        faults: faults?,
+        objects: objects?,
+    }))
+}
+
+/// A bus leads to a drive that can move the axis.
+fn refuse_without_a_drive(given: &file::Bus, actuator: Option<&Actuator>, report: &mut Report) {
+    let (message, help) = match actuator {
+        Some(Actuator::Prescribed) => ("the motor follows the set-point exactly: there is no drive on the bus", ""),
+        Some(Actuator::Off) => {
+            ("the power stage is off for good", "leave `enabled` out of `[drive]`: the master powers the drive")
+        }
+        Some(Actuator::Pmsm { .. } | Actuator::IdealSource { .. }) | None => return,
+    };
+    report.error(given.span, message, help);
+}
+
+fn refuse_a_second_interpolation(file: &File, report: &mut Report) {
+    if let Some(span) = file.setpoint.given().and_then(|setpoint| setpoint.interpolation.span()) {
+        let help = "give `motion_cycle` and `interpolation` in `[bus]`";
+        report.error(span, "with a fieldbus it is the master that interpolates", help);
+    }
+}
+
+/// Objects to keys that another mode has.
+fn refuse_by_mode(given: &file::Bus, mode: BusMode, report: &mut Report) {
+    let offsets = [("velocity_offset", given.velocity_offset.span()), ("effort_offset", given.effort_offset.span())];
+    if !mode.is_cyclic() {
+        refuse(&offsets, "is for the modes \"csp\" and \"csv\"", "the drive makes the way itself here", report);
+    }
+    if mode != BusMode::CyclicPosition {
+        let key = [("drive_interpolation", given.drive_interpolation.span())];
+        refuse(&key, "is for the mode \"csp\"", "", report);
+    }
+}
+
+fn motion_every(given: &file::Bus, cycle: Option<u32>, known: &Known<'_>, report: &mut Report) -> Option<u32> {
+    let every = match &given.motion_cycle {
+        Slot::Absent => Some(1),
+        Slot::Wrong(_) => None,
+        Slot::Given(at) => whole::cycles("motion_cycle", *at, cycle, known.base_rate, report),
+    };
+    if every == Some(1) {
+        let key = [("interpolation", given.interpolation.span())];
+        let help = "give `motion_cycle`, or leave it out";
+        refuse(&key, "is for a motion task that is slower than the bus", help, report);
+    }
+    every
+}
+
+/// A drive that looks less often than frames come would miss some.
+fn refuse_fast_cycle(given: &file::Bus, cycle: Option<u32>, known: &Known<'_>, report: &mut Report) {
+    let (Some(cycle), Some(span), Some(base_rate)) = (cycle, given.cycle.span(), known.base_rate) else { return };
+    let Some(drive) = known.actuator.and_then(Actuator::drive) else { return };
+    let rate = drive.position.rate;
+    if u64::from(cycle) * u64::from(rate.hertz()) < u64::from(base_rate.hertz()) {
+        let message = format!("the bus is faster than the position loop of the drive, {} Hz", rate.hertz());
+        report.error(span, message, "give a longer `cycle`, or a higher `rate` in `[drive.position]`");
+    }
+}
+
+/// `K_v` of the master, where it closes the position loop.
+#[expect(clippy::option_option, reason = "a wrong gain is not the same as none")]
+fn position_gain(given: &file::Bus, mode: BusMode, report: &mut Report) -> Option<Option<f64>> {
+    if mode == BusMode::CyclicVelocity {
+        return need(&given.position_gain, "bus", "position_gain", given.span, report).map(Some);
+    }
+    if let Some(span) = given.position_gain.span() {
+        report.error(span, "`position_gain` is for the mode \"csv\"", "here the drive closes the position loop");
+    }
+    Some(None)
+}
+
+/// The model behind the torque offset, which must have what it computes with.
+fn effort_offset(given: &file::Bus, estimate: Option<&Estimate>, report: &mut Report) -> Option<EffortFeedforward> {
+    let Some(at) = given.effort_offset.at() else {
+        return given.effort_offset.optional().ok().map(|_| EffortFeedforward::Off);
+    };
+    let Some(estimate) = estimate else { return Some(at.value) };
+    let is_heavy = estimate.motor_inertia + estimate.load_inertia > 0.0;
+    let is_elastic = estimate.stiffness.is_finite() && estimate.load_inertia > 0.0;
+    if at.value != EffortFeedforward::Off && !is_heavy {
+        let help = "give `motor_inertia` in `[drive.estimate]`";
+        report.error(at.span, "nothing is known of the inertia of this axis", help);
+    } else if at.value == EffortFeedforward::TwoMass && !is_elastic {
+        let help = "write \"rigid\", or give `stiffness` and `load_inertia` in `[drive.estimate]`";
+        report.error(at.span, "the axis is rigid: there are no two masses", help);
+    }
+    Some(at.value)
+}
+
+/// Master and drive may both feed forward; together it is too much.
+fn warn_of_what_is_added_twice(given: &file::Bus, actuator: Option<&Actuator>, report: &mut Report) {
+    let Some(feedforward) = actuator.and_then(Actuator::drive).map(|drive| &drive.feedforward) else { return };
+    let velocity = given.velocity_offset.at().filter(|at| at.value && feedforward.velocity > 0.0);
+    let effort = given.effort_offset.at().filter(|at| at.value != EffortFeedforward::Off);
+    let effort = effort.filter(|_| feedforward.effort != EffortFeedforward::Off);
+    for (what, key, span) in [
+        ("the velocity", "velocity", velocity.map(|at| at.span)),
+        ("the torque or force", "effort", effort.map(|at| at.span)),
+    ] {
+        if let Some(span) = span {
+            let message = format!("the drive feeds {what} forward too: it is added twice");
+            report.warning(span, message, format!("leave `{key}` out of `[drive.feedforward]`, or this out"));
+        }
+    }
+}
+
+fn counter(given: &file::Bus) -> Option<Counter> {
+    let Some(given) = given.counter.optional().ok()? else { return Some(COUNTER) };
+    Some(Counter {
+        bits: given.bits.optional().ok()?.copied().unwrap_or(COUNTER.bits),
+        signed: given.signed.optional().ok()?.copied().unwrap_or(COUNTER.signed),
+    })
+}
+
+/// The units as given, or the increments of the encoder that closes the position loop.
+fn units(file: &File, given: &file::Bus, actuator: Option<&Actuator>, report: &mut Report) -> Option<DriveUnits> {
+    if let Some(units) = given.units.optional().ok()? {
+        return Some(DriveUnits { drive: *units.drive.given()?, axis: *units.axis.given()? });
+    }
+    let (axis, drive) = (file.axis.given()?, actuator?.drive()?);
+    let gear = axis.gear_ratio.optional().ok()?.copied().unwrap_or(1.0);
+    let (counts, step, per_step, per_turn) = match drive.position_feedback {
+        Feedback::Load(_) => {
+            let encoder = file.drive.given()?.load_encoder.given()?;
+            (&encoder.counts_per_rev, &encoder.step, 1.0, TAU)
+        }
+        Feedback::Motor => {
+            // The lead itself, not what 2π makes of it and back: units stay the decimal numbers that they are.
+            let per_turn = axis.lead.given().copied().unwrap_or(TAU) / gear;
+            let per_step = if report.motor == Some(Motion::Rotary) { per_turn / TAU } else { 1.0 };
+            match file.motor.given()?.encoder.optional().ok()? {
+                Some(encoder) => (&encoder.counts_per_rev, &encoder.step, per_step, per_turn),
+                None => (&Slot::Absent, &Slot::Absent, per_step, per_turn),
+            }
+        }
+    };
+    match (counts, step) {
+        (Slot::Given(At { value: counts, .. }), _) => Some(DriveUnits { drive: *counts, axis: per_turn }),
+        (_, Slot::Given(At { value: step, .. })) => Some(DriveUnits { drive: 1, axis: step * per_step }),
+        (Slot::Wrong(_), _) | (_, Slot::Wrong(_)) => None,
+        (Slot::Absent, Slot::Absent) => {
+            let help = "the encoder is ideal and has no increments";
+            report.missing_with_help("bus", "units", given.span, help);
+            None
+        }
+    }
+}
+
+/// Objects to calls or steps that the mode of the bus cannot carry.
+pub(super) fn refuse_by_program(file: &File, bus: &Bus, steps: Option<&[Step]>, report: &mut Report) {
+    if bus.mode.is_cyclic() {
+        return;
+    }
+    let mode_span = file.bus.given().and_then(|bus| bus.mode.span());
+    if let (Some(span), Some(calls)) = (mode_span, file.call.given())
+        && !calls.0.is_empty()
+    {
+        report.error(span, "function blocks make the set-points themselves", "write \"csp\" or \"csv\"");
+    }
+    let (Some(program), Some(steps)) = (file.program.given(), steps) else { return };
+    for (written, step) in program.0.iter().zip(steps) {
+        mode::refuse_step(bus.mode, step, written.value.span, report);
+    }
+}
+
+impl BusMode {
+    /// Whether the master sends a set-point every cycle.
+    #[must_use]
+    pub const fn is_cyclic(self) -> bool {
+        matches!(self, Self::CyclicPosition | Self::CyclicVelocity)
+    }
+}

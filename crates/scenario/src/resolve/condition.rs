@@ -1,0 +1,132 @@
+//! When something happens: references to outputs of calls, and what can never happen.
+use crate::block::BlockName;
+use crate::diagnostic::Report;
+use crate::field::Slot;
+use crate::file;
+use crate::nearest::suggestion;
+use crate::resolve::{Way, one_way};
+use crate::scenario::{Condition, Output};
+use crate::source::{At, Span};
+use crate::when::When;
+
+/// A call as others refer to it.
+#[derive(Debug)]
+pub(super) struct Instance {
+    /// Empty where it cannot be known.
+    pub(super) name: String,
+    pub(super) block: Option<BlockName>,
+    pub(super) span: Span,
+    /// Where its `start` is.
+    pub(super) start: Option<Span>,
+}
+
+/// What conditions refer to.
+pub(super) struct Context<'a> {
+    pub(super) instances: &'a [Instance],
+    /// Length of the run (s), as far as the file says it.
+    pub(super) duration: Option<f64>,
+}
+
+pub(super) fn resolve(when: &At<When>, context: &Context<'_>, report: &mut Report) -> Option<Condition> {
+    match &when.value {
+        When::Output(text) => {
+            let (call, output) = context.output(text, report)?;
+            Some(Condition::After { call, output, delay: 0.0 })
+        }
+        When::Condition(condition) => context.condition(condition, report),
+    }
+}
+
+impl Context<'_> {
+    fn condition(&self, given: &file::Condition, report: &mut Report) -> Option<Condition> {
+        let ways = [
+            ("at", given.at.span()),
+            ("after", given.after.span()),
+            ("above", given.above.span()),
+            ("below", given.below.span()),
+        ];
+        let way = one_way(&ways, report);
+        if let (Slot::Absent, Some(span)) = (&given.after, given.delay.span()) {
+            report.error(span, "`delay` is for `after`", "");
+        }
+        match way {
+            Way::Use(0) => self.in_time(&given.at, report).map(Condition::At),
+            Way::Use(1) => {
+                let delay = match given.delay {
+                    Slot::Absent => Some(0.0),
+                    _ => self.in_time(&given.delay, report),
+                };
+                let (call, output) = self.output(given.after.at()?, report)?;
+                Some(Condition::After { call, output, delay: delay? })
+            }
+            Way::Use(2) => given.above.given().copied().map(Condition::Above),
+            Way::Use(_) => given.below.given().copied().map(Condition::Below),
+            Way::Contradiction => None,
+            Way::None => {
+                report.error(given.span, "this says nothing of when", "give `at`, `after`, `above` or `below`");
+                None
+            }
+        }
+    }
+
+    /// A time within the run.
+    fn in_time(&self, slot: &Slot<f64>, report: &mut Report) -> Option<f64> {
+        let at = slot.at()?;
+        match self.duration {
+            Some(duration) if at.value >= duration => {
+                report.error(at.span, format!("the run is over by then: it lasts {duration} s"), "");
+                None
+            }
+            _ => Some(at.value),
+        }
+    }
+
+    /// The call and its output that `text` names: "first.Done".
+    fn output(&self, text: &At<String>, report: &mut Report) -> Option<(usize, Output)> {
+        let (name, output) = text.value.split_once('.').map_or((&*text.value, None), |(name, rest)| (name, Some(rest)));
+        let Some(call) = self.instances.iter().position(|instance| instance.name == name && !name.is_empty()) else {
+            let names = self.instances.iter().map(|instance| &*instance.name).filter(|name| !name.is_empty());
+            let help = suggestion(name, names.collect::<Vec<_>>());
+            report.error(text.span, format!("there is no call `{name}`"), help);
+            return None;
+        };
+        let interface = self.instances[call].block?.interface();
+        let found = output.and_then(|output| interface.outputs.iter().find(|own| own.name() == output));
+        if found.is_none() {
+            let message = match output {
+                Some(output) => format!("{} has no output `{output}`", interface.name),
+                None => format!("`{name}` is a call: name one of its outputs"),
+            };
+            let outputs: Vec<_> = interface.outputs.iter().map(|output| output.name()).collect();
+            report.error(text.span, message, format!("its outputs are {}", outputs.join(", ")));
+        }
+        found.map(|output| (call, *output))
+    }
+}
+
+/// Objects to calls that wait for each other, or for themselves: none of them ever starts. Each waits for one other at most,
+/// so that whoever follows the waiting either comes to an end or round.
+pub(super) fn refuse_circles(starts: &[Option<Condition>], instances: &[Instance], report: &mut Report) {
+    let waits_for = |call: usize| match starts[call] {
+        Some(Condition::After { call, .. }) => Some(call),
+        _ => None,
+    };
+    for first in 0..starts.len() {
+        let round = std::iter::successors(waits_for(first), |call| waits_for(*call)).take(starts.len());
+        let circle: Vec<usize> = round.take_while(|call| *call != first).collect();
+        let closes = circle.last().map_or(waits_for(first), |last| waits_for(*last)) == Some(first);
+        // Once is enough: at the call that comes first in the file.
+        if !closes || circle.iter().any(|call| *call < first) {
+            continue;
+        }
+        let name = |call: usize| format!("`{}`", instances[call].name);
+        let all: Vec<_> = std::iter::once(first).chain(circle.iter().copied()).chain([first]).map(name).collect();
+        let message = if circle.is_empty() {
+            format!("{} waits for itself", name(first))
+        } else {
+            format!("{}: none of them ever starts", all.join(" waits for "))
+        };
+        let span = instances[first].start.unwrap_or(instances[first].span);
+        report.error(span, message, "let one of them start by itself");
+    }
+}

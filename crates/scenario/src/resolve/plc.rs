@@ -1,0 +1,238 @@
+//! `[plc]` and `[[call]]`: the PLC program, and what it needs of the rest of the file.
+use crate::block::{BlockName, Trigger};
+use crate::diagnostic::Report;
+use crate::field::Slot;
+use crate::file;
+use crate::file::File;
+use crate::resolve::condition::{self, Instance};
+use crate::resolve::inputs::{Defaults, Inputs};
+use crate::resolve::keys::{Keys, Said};
+use crate::resolve::{block, refuse};
+use crate::scenario::{Call, Condition, Plc, Update};
+use crate::source::{At, Sources, Span};
+
+/// What the calls need to know of the rest of the file.
+pub(super) struct Known<'a> {
+    /// Length of the run (s), as far as the file says it.
+    pub(super) duration: Option<f64>,
+    pub(super) is_modulo: bool,
+    pub(super) sources: &'a Sources,
+}
+
+/// The PLC program, when there is one.
+#[expect(clippy::option_option, reason = "a wrong program is not the same as none")]
+pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Option<Option<Plc>> {
+    let calls = match &file.call {
+        Slot::Wrong(_) => return None,
+        Slot::Given(calls) if !calls.value.0.is_empty() => &calls.value.0,
+        Slot::Given(_) | Slot::Absent => {
+            let (plc, modulo) = (file.plc.span(), file.axis.given().and_then(|axis| axis.modulo.span()));
+            let keys = [("plc", plc), ("modulo", modulo)];
+            refuse(&keys, "is for function blocks", "give a `[[call]]`, or leave it out", report);
+            return Some(None);
+        }
+    };
+    check_surroundings(file, calls, report);
+    let instances = instances(calls, report);
+    let homing_required = match file.plc.optional().ok()? {
+        Some(plc) => plc.homing_required.optional().ok()?.copied().unwrap_or(true),
+        None => true,
+    };
+    warn_of_refusals(calls, homing_required, report);
+    let mut said = Said::default();
+    let defaults = Defaults::of(file.setpoint.given());
+    let reading = block::Context { defaults: &defaults, is_modulo: known.is_modulo, sources: known.sources };
+    let conditions = condition::Context { instances: &instances, duration: known.duration };
+    let resolved: Vec<_> = calls
+        .iter()
+        .zip(&instances)
+        .map(|(call, instance)| self::call(&call.value, &instance.name, &reading, &conditions, &mut said, report))
+        .collect();
+    let starts: Vec<Option<Condition>> = resolved.iter().map(|(start, _)| *start).collect();
+    condition::refuse_circles(&starts, &instances, report);
+    let calls = resolved.into_iter().map(|(_, call)| call).collect::<Option<Vec<_>>>();
+    Some(Some(Plc { homing_required, calls: calls? }))
+}
+
+/// Objects to what does not go with calls, and says what they need.
+fn check_surroundings(file: &File, calls: &[At<file::Call>], report: &mut Report) {
+    let Some(first) = calls.first().map(|call| call.value.span) else { return };
+    if file.program.given().is_some_and(|program| !program.0.is_empty()) {
+        let help = "write the moves as calls, or leave the calls out";
+        report.error(first, "`[[program]]` and `[[call]]` exclude each other", help);
+    }
+    if matches!(file.bus, Slot::Absent) {
+        report.missing_with_help("", "bus", first, "function blocks command a drive on a fieldbus: give its `cycle`");
+    }
+    if let Some(run) = file.run.given()
+        && matches!(run.duration, Slot::Absent)
+    {
+        let help = "how long calls take is not known beforehand";
+        report.missing_with_help("run", "duration", run.span, help);
+    }
+    if let Some(setpoint) = file.setpoint.given() {
+        let of_blocks = |key: &str| matches!(key, "order" | "velocity" | "acceleration" | "jerk" | "snap");
+        let unused: Vec<_> = Keys::of_setpoint(setpoint).named().filter(|(key, _)| !of_blocks(key)).collect();
+        refuse(&unused, "is not used by function blocks", "they plan from any state of motion", report);
+    }
+}
+
+/// The calls with their names.
+fn instances(calls: &[At<file::Call>], report: &mut Report) -> Vec<Instance> {
+    let mut instances: Vec<Instance> = Vec::new();
+    for call in calls {
+        let call = &call.value;
+        let block = call.block.given().copied();
+        let name = match (call.name.at(), block) {
+            (Some(name), _) => {
+                check_name(name, report);
+                name.value.clone()
+            }
+            (None, Some(block)) => {
+                let before = instances.iter().filter(|instance| instance.block == Some(block)).count();
+                format!("{}_{before}", block.name())
+            }
+            (None, None) => String::new(),
+        };
+        let is_taken = instances.iter().any(|other| !name.is_empty() && other.name.eq_ignore_ascii_case(&name));
+        if is_taken {
+            let span = call.name.span().unwrap_or(call.span);
+            report.error(span, format!("there is a call `{name}` already"), "each has a `name` of its own");
+        }
+        instances.push(Instance { name, block, span: call.span, start: call.start.span() });
+    }
+    instances
+}
+
+/// An instance has a name as programs write it (IEC 61131-3, identifiers).
+fn check_name(name: &At<String>, report: &mut Report) {
+    let mut letters = name.value.chars();
+    let begins = letters.next().is_some_and(|first| first.is_ascii_alphabetic() || first == '_');
+    if !begins || !letters.all(|letter| letter.is_ascii_alphanumeric() || letter == '_') {
+        let message = format!("\"{}\" is no name of an instance", name.value);
+        report.error(name.span, message, "write letters, digits and `_`, a letter first");
+    }
+}
+
+/// Says what will be refused when the blocks are executed: whoever wants to see that is not held up.
+fn warn_of_refusals(calls: &[At<file::Call>], homing_required: bool, report: &mut Report) {
+    let has = |block| calls.iter().any(|call| call.value.block.given() == Some(&block));
+    if calls.iter().any(|call| call.value.block.given().is_none()) {
+        return;
+    }
+    if let (false, Some(first)) = (has(BlockName::Power), calls.first()) {
+        let help = "call \"MC_Power\", and let the others wait for its `Status`";
+        report.warning(first.value.span, "nothing powers the axis", help);
+    }
+    let is_absolute = |call: &&At<file::Call>| {
+        let block = call.value.block.given();
+        matches!(block, Some(BlockName::MoveAbsolute | BlockName::MoveContinuousAbsolute))
+    };
+    if let (true, false, Some(absolute)) = (homing_required, has(BlockName::Home), calls.iter().find(is_absolute)) {
+        let help = "call \"MC_Home\" before, or write `homing_required = false` in `[plc]`";
+        report.warning(absolute.value.span, "the axis is never homed: this move will be refused", help);
+    }
+}
+
+/// When it starts, and the call.
+fn call(
+    given: &file::Call,
+    name: &str,
+    reading: &block::Context<'_>,
+    conditions: &condition::Context<'_>,
+    said: &mut Said,
+    report: &mut Report,
+) -> (Option<Condition>, Option<Call>) {
+    let start = match &given.start {
+        Slot::Absent => Some(Condition::AtOnce),
+        Slot::Wrong(_) => None,
+        Slot::Given(at) => condition::resolve(at, conditions, report),
+    };
+    let stop = match &given.stop {
+        Slot::Absent => Some(None),
+        Slot::Wrong(_) => None,
+        Slot::Given(at) => condition::resolve(at, conditions, report).map(Some),
+    };
+    if let (Some(Condition::At(on)), Some(Some(Condition::At(off))), Some(span)) = (start, stop, given.stop.span())
+        && off <= on
+    {
+        report.error(span, format!("it stops at {off} s and starts at {on} s: it is never TRUE"), "");
+    }
+    let timeout = timeout(given, start, conditions.duration, report);
+    let block = given.block.given().copied();
+    let inputs = Inputs::of_call(given);
+    if let Some(block) = block {
+        inputs.refuse_others(block, report);
+    }
+    let resolved = block.and_then(|block| reading.block(block, &inputs, said, report));
+    let updates = block.and_then(|block| updates(given, block, &inputs, reading, conditions, said, report));
+    let call = || {
+        let (start, stop, timeout) = (start?, stop?, timeout?);
+        Some(Call { name: name.to_owned(), block: resolved?, start, stop, timeout, updates: updates? })
+    };
+    (start, call())
+}
+
+/// How long `start` is waited for (s).
+fn timeout(given: &file::Call, start: Option<Condition>, duration: Option<f64>, report: &mut Report) -> Option<f64> {
+    let at = match &given.timeout {
+        Slot::Absent => return Some(f64::INFINITY),
+        Slot::Wrong(_) => return None,
+        Slot::Given(at) => at,
+    };
+    if let Some(Condition::AtOnce | Condition::At(_)) = start {
+        report.error(at.span, "`timeout` is for a `start` that may not come", "leave it out");
+    } else if let Some(duration) = duration.filter(|duration| at.value >= *duration) {
+        report.error(at.span, format!("the run is over by then: it lasts {duration} s"), "");
+    }
+    Some(at.value)
+}
+
+fn updates(
+    given: &file::Call,
+    block: BlockName,
+    inputs: &Inputs<'_>,
+    reading: &block::Context<'_>,
+    conditions: &condition::Context<'_>,
+    said: &mut Said,
+    report: &mut Report,
+) -> Option<Vec<Update>> {
+    let Some(all) = given.updates.optional().ok()? else { return Some(Vec::new()) };
+    if let Some(span) = given.updates.span() {
+        refuse_updates(given, block, span, report);
+    }
+    let mut before = inputs.clone();
+    let mut updates = Vec::new();
+    for update in &all.0 {
+        let update = &update.value;
+        let changes = Inputs::of_update(given, update);
+        changes.refuse_others(block, report);
+        if changes.named().all(|(_, span)| span.is_none()) {
+            report.error(update.span, "this update changes nothing", "");
+        }
+        before = changes.or(&before);
+        let resolved = reading.block(block, &before, said, report);
+        let when = update.when.at().and_then(|when| condition::resolve(when, conditions, report));
+        updates.push(when.zip(resolved).map(|(when, block)| Update { when, block }));
+    }
+    updates.into_iter().collect()
+}
+
+/// Inputs are latched at the rising edge of `Execute` unless `ContinuousUpdate` is TRUE (section 2.4 of the standard).
+fn refuse_updates(given: &file::Call, block: BlockName, span: Span, report: &mut Report) {
+    let interface = block.interface();
+    let help = if interface.trigger == Trigger::Enable {
+        if block == BlockName::SetOverride {
+            return;
+        }
+        ""
+    } else if interface.inputs.contains(&"continuous_update") {
+        if given.continuous_update.given() == Some(&true) || matches!(given.continuous_update, Slot::Wrong(_)) {
+            return;
+        }
+        "write `continuous_update = true`"
+    } else {
+        ""
+    };
+    report.error(span, format!("{} keeps the inputs that it was started with", interface.name), help);
+}
