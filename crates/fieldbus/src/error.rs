@@ -1,0 +1,51 @@
+//! Why a link or a bus cannot be built.
+use servobench_base::ParamError;
+use servobench_motion::PlanError;
+use thiserror::Error;
+
+/// A setting that is refused, with what would be accepted.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum FieldbusError {
+    /// A number out of its bound.
+    #[error(transparent)]
+    Parameter(#[from] ParamError),
+    /// A limit that no stop can be planned with.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// A position counter that the process data cannot carry.
+    #[error("a position counter of {bits} bits does not fit the 32 bits of 607Ah and 6064h: take one of 8 to 32 bits")]
+    WideCounter {
+        /// Its width (bit).
+        bits: u32,
+    },
+    /// More slack for late samples than the buffer holds samples.
+    #[error(
+        "`margin` must be at most {highest} ticks, two cycles of the motion task, got {margin}: let the samples come \
+         earlier, or the cycle be longer"
+    )]
+    Margin {
+        /// Rejected slack (base ticks).
+        margin: u32,
+        /// Largest one (base ticks).
+        highest: u64,
+    },
+    /// A time-out that the answer of a sound drive cannot keep.
+    #[error("`drive_timeout` must be longer than the round trip of {round_trip} ticks, got {timeout} ticks")]
+    ShortTimeout {
+        /// Rejected time-out (base ticks).
+        timeout: u64,
+        /// From a command to the first answer that knows of it (base ticks).
+        round_trip: u64,
+    },
+    /// A velocity of the axis that the drive's unit cannot express.
+    #[error(
+        "`velocity_limit` is {counts:e} in the drive's velocity unit, at most {highest} fits 32 bits: choose a coarser \
+         unit"
+    )]
+    FineVelocity {
+        /// The limit in the drive's unit.
+        counts: f64,
+        /// Largest value.
+        highest: i32,
+    },
+}

@@ -1,0 +1,255 @@
+//! The buffer of samples between motion task and link: which interval is read when.
+//!
+//! ```text
+//!                 samples of the interval that is read                  ahead of it
+//!   in time:      … k−1   k   ───────────────────────────────────────   k+1 … (at most AHEAD)
+//!   late by one:  … k     k'  k' predicted from k                        –
+//!   late by two:  … k'    k'' both predicted                             –
+//! ```
+//!
+//! Sample k is due at `tick(k) = tick(0) + k·cycle`. The interval that ends it `points/2 − 1` samples before is read from
+//! `tick(k) + margin` on, whenever the sample came: what is read at t is the motion of `t − delay`,
+//! `delay = (points/2)·cycle + margin`. That the samples after an interval's end have not come shows only when the interval
+//! is over. Then the next one is made with a predicted sample in the place of the late one, twice at most; when the late
+//! sample comes, it takes its place and the prediction behind it is made anew.
+//!
+//! A mode predicts by what it uses. Those that use the velocity go on along the parabola of the last sample, the others along
+//! the straight line through the last two.
+use core::array::from_fn;
+use servobench_motion::interpolate::{Command, Interval, Mode, Sample};
+
+/// Samples that may be there before they are needed.
+pub(crate) const AHEAD: usize = 4;
+/// Steps that are predicted at most.
+pub(crate) const PREDICTED: usize = 2;
+/// Samples that a mode uses at most.
+const POINTS: usize = 6;
+
+/// Mode and times, constant during a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Timing {
+    pub(crate) mode: Mode,
+    /// Cycle of the motion task (base ticks).
+    pub(crate) cycle: u64,
+    /// How late a sample may come without being predicted (base ticks).
+    pub(crate) margin: u64,
+    /// Length of a base tick (s).
+    pub(crate) tick: f64,
+}
+
+impl Timing {
+    /// Cycle of the motion task (s).
+    fn period(&self) -> f64 {
+        self.cycle as f64 * self.tick
+    }
+
+    /// By how much the motion that is read lies behind the samples (base ticks).
+    pub(crate) const fn delay(&self) -> u64 {
+        self.mode.delay_samples() as u64 * self.cycle + self.margin
+    }
+
+    fn predict(&self, before: Sample, last: Sample) -> Sample {
+        let t = self.period();
+        match self.mode {
+            Mode::Linear | Mode::CubicBSpline | Mode::QuinticBSpline => Sample { x: 2.0 * last.x - before.x, ..last },
+            Mode::Cubic | Mode::Quintic | Mode::AllLinear | Mode::AllCubic => {
+                Sample { x: last.x + t * (last.v + t / 2.0 * last.a), v: last.v + t * last.a, ..last }
+            }
+        }
+    }
+}
+
+/// What a sample has changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Taken {
+    /// Nothing of what is read now.
+    Kept,
+    /// What was predicted is known now.
+    Corrected,
+    /// There was no room: what is read starts again with the newest samples.
+    Overflow,
+}
+
+/// How far the reading is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Reading {
+    /// Nothing to read yet.
+    Waiting,
+    /// In the interval of the buffer that uses so many predicted samples, 0 to 2.
+    Interval(usize),
+    /// Past all that can be predicted; the buffer is empty now.
+    Underflow,
+}
+
+/// The samples and the interval that is read.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Buffer {
+    /// The last samples that were shifted in, the newest at the end; those predicted are the last ones.
+    window: [Sample; POINTS],
+    predicted: usize,
+    /// Samples in the window since the buffer was empty, as far as they matter.
+    received: usize,
+    /// Samples behind the window, the oldest first.
+    ahead: [Sample; AHEAD],
+    waiting: usize,
+    /// When the newest sample was due (base ticks).
+    newest: u64,
+    /// From when on the interval is read (base ticks).
+    begins: u64,
+    interval: Option<Interval>,
+}
+
+impl Buffer {
+    pub(crate) const EMPTY: Self = {
+        let none = Sample { x: 0.0, v: 0.0, a: 0.0, torque: 0.0 };
+        Self {
+            window: [none; POINTS],
+            predicted: 0,
+            received: 0,
+            ahead: [none; AHEAD],
+            waiting: 0,
+            newest: 0,
+            begins: 0,
+            interval: None,
+        }
+    };
+
+    /// Takes a sample that was due at `due`, `missed` samples after the last one, `now`.
+    ///
+    /// On the grid of the cycle a sample belongs where its tick says, off the grid behind the one before. What is missing in
+    /// between is predicted for good; too much of it, and the buffer starts again.
+    pub(crate) fn take(&mut self, timing: &Timing, sample: Sample, due: u64, missed: u64, now: u64) -> Taken {
+        if self.received == 0 {
+            self.newest = due.saturating_sub(timing.cycle);
+            return self.put(timing, sample, now);
+        }
+        let beyond = due.saturating_sub(self.newest + timing.cycle);
+        let skipped = if beyond.is_multiple_of(timing.cycle) { beyond / timing.cycle } else { 0 };
+        let missing = missed.max(skipped);
+        if missing > PREDICTED as u64 {
+            *self = Self::EMPTY;
+            self.newest = due.saturating_sub(timing.cycle);
+            return self.put(timing, sample, now);
+        }
+        let mut taken = Taken::Kept;
+        for _ in 0..missing {
+            let [before, last] = self.last_two();
+            taken = taken.max(self.put(timing, timing.predict(before, last), now));
+        }
+        taken.max(self.put(timing, sample, now))
+    }
+
+    fn put(&mut self, timing: &Timing, sample: Sample, now: u64) -> Taken {
+        self.newest += timing.cycle;
+        let points = timing.mode.points();
+        if self.received < points {
+            self.shift_in(sample);
+            if self.received == points {
+                self.begins = self.newest + timing.margin;
+                self.build(timing);
+            }
+            return Taken::Kept;
+        }
+        if self.predicted > 0 {
+            self.correct(timing, sample);
+            return Taken::Corrected;
+        }
+        if let Some(slot) = self.ahead.get_mut(self.waiting) {
+            *slot = sample;
+            self.waiting += 1;
+            return Taken::Kept;
+        }
+        self.start_again(timing, sample, now);
+        Taken::Overflow
+    }
+
+    /// The oldest predicted sample is known now.
+    fn correct(&mut self, timing: &Timing, sample: Sample) {
+        let known = POINTS - self.predicted;
+        self.window[known] = sample;
+        self.predicted -= 1;
+        for place in known + 1..POINTS {
+            self.window[place] = timing.predict(self.window[place - 2], self.window[place - 1]);
+        }
+        self.build(timing);
+    }
+
+    /// Of all samples that are there, the newest become those that are read from `now` on with the nominal delay.
+    fn start_again(&mut self, timing: &Timing, sample: Sample, now: u64) {
+        let all: [Sample; POINTS + AHEAD + 1] = from_fn(|i| match i {
+            i if i < POINTS => self.window[i],
+            i if i < POINTS + AHEAD => self.ahead[i - POINTS],
+            _ => sample,
+        });
+        // Samples that are not to be read yet: the margin is two cycles at most.
+        let early = (self.newest + timing.margin).saturating_sub(now).div_ceil(timing.cycle);
+        let waiting = usize::try_from(early).unwrap_or(AHEAD).min(AHEAD - 1);
+        let end = all.len() - waiting;
+        self.window.copy_from_slice(&all[end - POINTS..end]);
+        self.ahead[..waiting].copy_from_slice(&all[end..]);
+        self.waiting = waiting;
+        self.begins = (self.newest + timing.margin - waiting as u64 * timing.cycle).min(now);
+        self.build(timing);
+    }
+
+    /// Goes on to the interval that is read `now`.
+    pub(crate) fn advance(&mut self, timing: &Timing, now: u64) -> Reading {
+        if self.interval.is_none() || now < self.begins {
+            return Reading::Waiting;
+        }
+        let mut moved = false;
+        while now - self.begins >= timing.cycle {
+            if self.waiting > 0 {
+                let next = self.ahead[0];
+                self.ahead.rotate_left(1);
+                self.waiting -= 1;
+                self.shift_in(next);
+            } else if self.predicted < PREDICTED {
+                let [.., before, last] = self.window;
+                self.shift_in(timing.predict(before, last));
+                self.predicted += 1;
+            } else {
+                *self = Self::EMPTY;
+                return Reading::Underflow;
+            }
+            self.begins += timing.cycle;
+            moved = true;
+        }
+        if moved {
+            self.build(timing);
+        }
+        Reading::Interval(self.predicted)
+    }
+
+    /// The motion at `now`; along its derivatives where the interval is over. `None` while there is none.
+    pub(crate) fn at(&self, timing: &Timing, now: u64) -> Option<Command> {
+        let interval = self.interval.as_ref()?;
+        let passed = now.checked_sub(self.begins)?;
+        if passed <= timing.cycle {
+            return interval.at(passed as f64 / timing.cycle as f64).ok();
+        }
+        let end = interval.at(1.0).ok()?;
+        Some(Command { setpoint: end.setpoint.after((passed - timing.cycle) as f64 * timing.tick), ..end })
+    }
+
+    fn shift_in(&mut self, sample: Sample) {
+        self.window.rotate_left(1);
+        self.window[POINTS - 1] = sample;
+        self.received = (self.received + 1).min(POINTS);
+    }
+
+    /// The last two samples, predicted ones left out; while there is only one, it twice.
+    fn last_two(&self) -> [Sample; 2] {
+        let known = POINTS - self.predicted;
+        let last = |back: usize| match self.waiting.checked_sub(back) {
+            Some(place) => self.ahead[place],
+            None => self.window[known - (back - self.waiting)],
+        };
+        if self.received == 1 { [last(1); 2] } else { [last(2), last(1)] }
+    }
+
+    fn build(&mut self, timing: &Timing) {
+        // Samples are checked at the door, and so is the period: an interval is refused for nothing else.
+        self.interval = Interval::new(timing.mode, timing.period(), &self.window).ok();
+    }
+}

@@ -1,0 +1,132 @@
+//! What is put out: the motion that is read from the buffer, reached and left without a jump.
+//!
+//! Whenever what is read changes under the output – at the start, when a prediction turns out to be wrong, after a stop – the
+//! output goes on from where it is, and the difference to what is read from now on,
+//!
+//! ```text
+//! e(t) = output(t) − read(t),     e(now) and its velocity and acceleration as they are,
+//! ```
+//!
+//! is led to zero by a jerk-limited transition with the recovery limits. So the output never jumps, and its acceleration is at
+//! most what is read plus that of the recovery. A stop is the same kind of transition, to standstill. What torque differs by
+//! fades linearly over the same time.
+use servobench_base::Setpoint;
+use servobench_motion::Order;
+use servobench_motion::interpolate::Command;
+use servobench_motion::online::{DirectionalLimits, Effort, Target, Transition};
+
+/// How differences are led to zero, constant during a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Recovery {
+    pub(crate) limits: DirectionalLimits,
+    /// A difference in position that does not matter (m or rad).
+    pub(crate) resolution: f64,
+    /// Cycle of the motion task (base ticks).
+    pub(crate) cycle: f64,
+    /// Length of a base tick (s).
+    pub(crate) tick: f64,
+}
+
+impl Recovery {
+    /// Whether a difference is more than the resolution within a cycle of the motion task.
+    fn matters(&self, e: &Setpoint) -> bool {
+        let t = self.cycle * self.tick;
+        e.x.abs() + t * (e.v.abs() + t * e.a.abs()) > self.resolution
+    }
+}
+
+/// A transition that is under way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Way {
+    transition: Transition,
+    /// Torque at its start, zero at its end (N·m or N).
+    torque: f64,
+    /// When it started (base ticks).
+    from: u64,
+    /// Length (base ticks), not rounded: of the transition, and of a cycle of the motion task at least, for the torque.
+    length: f64,
+}
+
+impl Way {
+    fn plan(from: Command, target: Target, recovery: &Recovery, now: u64) -> Option<Self> {
+        let Recovery { limits, cycle, tick, .. } = recovery;
+        let transition = Transition::plan(Order::Third, &from.setpoint, &target, limits, Effort::Fast).ok()?;
+        let length = (transition.duration() / tick).max(*cycle);
+        Some(Self { transition, torque: from.torque, from: now, length })
+    }
+
+    fn at(&self, now: u64, tick: f64) -> Command {
+        let passed = now.saturating_sub(self.from) as f64;
+        let left = if passed < self.length { 1.0 - passed / self.length } else { 0.0 };
+        Command { setpoint: self.transition.at(passed * tick), torque: left * self.torque }
+    }
+
+    fn is_over(&self, now: u64) -> bool {
+        now.saturating_sub(self.from) as f64 >= self.length
+    }
+}
+
+/// What is put out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Course {
+    /// At rest at a position.
+    Rest(f64),
+    /// To standstill.
+    Stop(Way),
+    /// What is read.
+    Read,
+    /// What is read and what the output differs by.
+    Join(Way),
+}
+
+impl Course {
+    /// From `output` to standstill; at once where no stop can be planned.
+    pub(crate) fn stop(output: Command, recovery: &Recovery, now: u64) -> Self {
+        match Way::plan(output, Target::Velocity(0.0), recovery, now) {
+            Some(way) => Self::Stop(way),
+            None => Self::Rest(output.setpoint.x),
+        }
+    }
+
+    /// From `output` to what is read; `None` where that cannot be planned.
+    pub(crate) fn join(output: Command, read: Command, recovery: &Recovery, now: u64) -> Option<Self> {
+        let (o, r) = (output.setpoint, read.setpoint);
+        let e = Setpoint { x: o.x - r.x, v: o.v - r.v, a: o.a - r.a, j: 0.0, s: 0.0 };
+        let torque = output.torque - read.torque;
+        if !recovery.matters(&e) && torque == 0.0 {
+            return Some(Self::Read);
+        }
+        Way::plan(Command { setpoint: e, torque }, Target::Position { x: 0.0, v: 0.0 }, recovery, now).map(Self::Join)
+    }
+
+    /// The output at `now`, with what is read then.
+    pub(crate) fn at(&self, read: impl FnOnce() -> Option<Command>, now: u64, tick: f64) -> Option<Command> {
+        match self {
+            Self::Rest(x) => Some(Command { setpoint: Setpoint::at_rest(*x), torque: 0.0 }),
+            Self::Stop(way) => Some(way.at(now, tick)),
+            Self::Read => read(),
+            Self::Join(way) => read().map(|read| sum(read, way.at(now, tick))),
+        }
+    }
+
+    /// Drops a transition that is over.
+    pub(crate) fn settle(&mut self, now: u64, tick: f64) {
+        match self {
+            Self::Stop(way) if way.is_over(now) => *self = Self::Rest(way.at(now, tick).setpoint.x),
+            Self::Join(way) if way.is_over(now) => *self = Self::Read,
+            _ => {}
+        }
+    }
+
+    pub(crate) const fn reads(&self) -> bool {
+        matches!(self, Self::Read | Self::Join(_))
+    }
+}
+
+fn sum(a: Command, b: Command) -> Command {
+    let (p, q) = (a.setpoint, b.setpoint);
+    Command {
+        setpoint: Setpoint { x: p.x + q.x, v: p.v + q.v, a: p.a + q.a, j: p.j + q.j, s: p.s + q.s },
+        torque: a.torque + b.torque,
+    }
+}

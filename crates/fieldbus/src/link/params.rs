@@ -1,0 +1,139 @@
+//! What a link needs to know before it starts.
+use super::buffer::{PREDICTED, Timing};
+use super::course::Recovery;
+use super::stream::StreamParams;
+use super::units::Scale;
+use super::{Sequencing, Units};
+use crate::FieldbusError;
+use servobench_base::{Divider, Rate, finite, non_negative, positive};
+use servobench_motion::Limits;
+use servobench_motion::Order;
+use servobench_motion::interpolate::{Interval, Mode, Sample};
+use servobench_motion::online::{DirectionalLimits, Effort, Target, Transition};
+
+/// What the drive is commanded while the axis follows set-points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Control {
+    /// Positions (csp).
+    Position {
+        /// Whether 60B1h carries the velocity of the set-point.
+        velocity_offset: bool,
+        /// Whether 60B2h carries the torque of the sample.
+        torque_offset: bool,
+    },
+    /// Velocities of a position loop in the master (csv):
+    /// `v = gain·(x_set − x_actual) + feedforward·v_set`, within ±limit.
+    Velocity {
+        /// Position gain K_v (1/s).
+        gain: f64,
+        /// Share of the velocity of the set-point that goes straight on, 0 to 1.
+        feedforward: f64,
+        /// Largest velocity that is commanded (m/s or rad/s).
+        limit: f64,
+        /// Whether 60B2h carries the torque of the sample.
+        torque_offset: bool,
+    },
+}
+
+/// How a link is set up. Times are whole base ticks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Base rate of the run.
+    pub base_rate: Rate,
+    /// Cycle of the bus, and of the link.
+    pub bus_cycle: Divider,
+    /// Cycle of the motion task.
+    pub motion_cycle: Divider,
+    /// How the set-points between two samples are found.
+    pub interpolation: Mode,
+    /// How late a sample may come without being predicted (base ticks); adds to the delay. At most two cycles of the motion
+    /// task.
+    pub margin: u32,
+    /// What the drive is commanded.
+    pub control: Control,
+    /// How the drive is brought to power.
+    pub sequencing: Sequencing,
+    /// How long the drive may be silent, or take for what it is told (base ticks).
+    pub drive_timeout: u64,
+    /// Bus cycles from a command to the first answer that knows of it.
+    pub round_trip: u32,
+    /// Whether limit and home switches are closed where they are not actuated.
+    pub reverse_switches: bool,
+    /// How the drive counts.
+    pub units: Units,
+    /// Whether the actual velocity is made of differences of positions, for a drive that gives none.
+    pub velocity_from_differences: bool,
+    /// With how much velocity, acceleration and jerk the output is stopped, and a difference taken out beside the motion; the
+    /// snap is not used.
+    pub recovery: Limits,
+    /// Velocity that the axis can do (m/s or rad/s): the position command never moves faster.
+    pub velocity_limit: f64,
+}
+
+/// A link that is set up, constant during a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Params {
+    pub(crate) settings: Settings,
+    pub(crate) stream: StreamParams,
+    pub(crate) scale: Scale,
+    /// Velocity below which the axis does not move into a switch: a count per cycle of the motion task.
+    pub(crate) creep: f64,
+}
+
+impl Params {
+    /// # Errors
+    /// [`FieldbusError`] names what is refused, with what would be accepted.
+    pub fn new(settings: Settings) -> Result<Self, FieldbusError> {
+        let scale = settings.units.scale()?;
+        let (bus_cycle, cycle) = (u64::from(settings.bus_cycle.ticks()), u64::from(settings.motion_cycle.ticks()));
+        let tick = settings.base_rate.period();
+        let highest = PREDICTED as u64 * cycle;
+        if u64::from(settings.margin) > highest {
+            return Err(FieldbusError::Margin { margin: settings.margin, highest });
+        }
+        let round_trip = u64::from(settings.round_trip) * bus_cycle;
+        if settings.drive_timeout <= round_trip {
+            return Err(FieldbusError::ShortTimeout { timeout: settings.drive_timeout, round_trip });
+        }
+        if let Control::Velocity { gain, feedforward, limit, .. } = settings.control {
+            non_negative("control.gain", gain)?;
+            finite("control.feedforward", feedforward)?;
+            check_velocity(&scale, positive("control.limit", limit)?)?;
+        }
+        let velocity_limit = positive("velocity_limit", settings.velocity_limit)?;
+        check_velocity(&scale, velocity_limit)?;
+        let limits = DirectionalLimits::from(Limits { snap: 1.0, ..settings.recovery });
+        let timing = Timing { mode: settings.interpolation, cycle, margin: settings.margin.into(), tick };
+        // What the run will ask for, once: whatever is refused then is refused now.
+        Interval::new(timing.mode, cycle as f64 * tick, &[Sample::default(); 6])?;
+        let moving = servobench_base::Setpoint { v: velocity_limit, ..Default::default() };
+        Transition::plan(Order::Third, &moving, &Target::Velocity(0.0), &limits, Effort::Fast)?;
+        let recovery = Recovery { limits, resolution: scale.resolution() / 1000.0, cycle: cycle as f64, tick };
+        Ok(Self {
+            settings,
+            stream: StreamParams { timing, recovery, highest_step: velocity_limit * tick, bus_cycle },
+            scale,
+            creep: scale.resolution() / (cycle as f64 * tick),
+        })
+    }
+
+    /// The settings that it was made of.
+    #[must_use]
+    pub const fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// By how many base ticks the set-point that is put out lies behind the sample of the motion task, always: what is put out
+    /// at tick t is the motion that the samples describe at t − delay.
+    #[must_use]
+    pub const fn delay(&self) -> u64 {
+        self.stream.timing.delay()
+    }
+}
+
+fn check_velocity(scale: &Scale, v: f64) -> Result<(), FieldbusError> {
+    match scale.drive_velocity(v) {
+        Some(_) => Ok(()),
+        None => Err(FieldbusError::FineVelocity { counts: scale.drive_velocity_exactly(v), highest: i32::MAX }),
+    }
+}

@@ -1,0 +1,186 @@
+//! The set-points of the motion task as the drive gets them.
+use super::buffer::{Buffer, Reading, Taken, Timing};
+use super::course::{Course, Recovery};
+use crate::Interpolation;
+use servobench_base::Setpoint;
+use servobench_motion::interpolate::{Command, Sample};
+
+/// What a stream needs to know, constant during a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct StreamParams {
+    pub(crate) timing: Timing,
+    pub(crate) recovery: Recovery,
+    /// What the output may move by in a base tick (m or rad).
+    pub(crate) highest_step: f64,
+    /// Cycle of the bus (base ticks).
+    pub(crate) bus_cycle: u64,
+}
+
+/// A sample as it was read.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Arrival {
+    pub(crate) sample: Sample,
+    /// When it was due (base ticks).
+    pub(crate) due: u64,
+    /// Samples between it and the one before that were never read.
+    pub(crate) missed: u64,
+}
+
+/// What the mailbox held for the stream.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Post {
+    /// Nothing new.
+    Nothing,
+    /// Something torn.
+    Torn,
+    /// A sample.
+    Sample(Arrival),
+}
+
+/// What is put out and where it comes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Stream {
+    buffer: Buffer,
+    course: Course,
+    output: Command,
+    /// When that was put out (base ticks).
+    at: u64,
+    /// What went wrong and is not over yet.
+    trouble: Option<Interpolation>,
+    state: Interpolation,
+    limited: bool,
+}
+
+/// A difference to the output from which no way leads to what is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct NoWay;
+
+impl Stream {
+    pub(crate) const OFF: Self = Self {
+        buffer: Buffer::EMPTY,
+        course: Course::Rest(0.0),
+        output: Command { setpoint: Setpoint::at_rest(0.0), torque: 0.0 },
+        at: 0,
+        trouble: None,
+        state: Interpolation::Off,
+        limited: false,
+    };
+
+    pub(crate) const fn state(&self) -> Interpolation {
+        self.state
+    }
+
+    /// What was put out last.
+    pub(crate) const fn output(&self) -> &Command {
+        &self.output
+    }
+
+    /// Whether that was held back by the velocity limit.
+    pub(crate) const fn is_limited(&self) -> bool {
+        self.limited
+    }
+
+    /// What is put out at `now`, not before the last step.
+    pub(crate) fn at(&self, p: &StreamParams, now: u64) -> Command {
+        self.course.at(|| self.buffer.at(&p.timing, now), now, p.timing.tick).unwrap_or(self.output)
+    }
+
+    /// Puts out the actual position.
+    pub(crate) fn switch_off(&mut self, position: f64, now: u64) {
+        if self.state != Interpolation::Off {
+            *self = Self::OFF;
+        }
+        self.course = Course::Rest(position);
+        self.output = Command { setpoint: Setpoint::at_rest(position), torque: 0.0 };
+        self.at = now;
+    }
+
+    /// Takes what has come and puts out what is due now.
+    ///
+    /// # Errors
+    /// [`NoWay`]: then the output is on its way to standstill.
+    pub(crate) fn step(&mut self, p: &StreamParams, post: Post, now: u64) -> Result<(), NoWay> {
+        let elapsed = now.saturating_sub(self.at);
+        let expected = self.expected(p, elapsed);
+        let taken = self.take(p, post, now);
+        let reading = self.buffer.advance(&p.timing, now);
+        let read = self.buffer.at(&p.timing, now);
+        let mut result = Ok(());
+        match (reading, read) {
+            (Reading::Interval(_), Some(read)) => {
+                if !self.course.reads() || taken != Taken::Kept {
+                    result = self.join(p, expected, read, now);
+                }
+                self.trouble = self.trouble.filter(|trouble| *trouble != Interpolation::Underflow);
+            }
+            _ if self.course.reads() => {
+                self.trouble = self.trouble.or(Some(Interpolation::Underflow));
+                self.course = Course::stop(expected, &p.recovery, now);
+            }
+            _ => {}
+        }
+        self.state = if post == Post::Torn { Interpolation::Busy } else { self.trouble.unwrap_or(state_of(reading)) };
+        result.and(self.put_out(p, now, elapsed))
+    }
+
+    /// The output as it would go on by itself.
+    fn expected(&mut self, p: &StreamParams, elapsed: u64) -> Command {
+        if elapsed > 2 * p.bus_cycle {
+            // The link stood still, and with it the drive, at the last target.
+            self.course = Course::Rest(self.output.setpoint.x);
+            return Command { setpoint: Setpoint::at_rest(self.output.setpoint.x), ..self.output };
+        }
+        Command { setpoint: self.output.setpoint.after(elapsed as f64 * p.timing.tick), ..self.output }
+    }
+
+    fn take(&mut self, p: &StreamParams, post: Post, now: u64) -> Taken {
+        let Post::Sample(Arrival { sample, due, missed }) = post else { return Taken::Kept };
+        let taken = self.buffer.take(&p.timing, sample, due, missed, now);
+        self.trouble = match taken {
+            _ if missed > 0 => Some(Interpolation::Slow),
+            Taken::Overflow => Some(Interpolation::Overflow),
+            Taken::Kept | Taken::Corrected => self.trouble.filter(|trouble| *trouble == Interpolation::Underflow),
+        };
+        taken
+    }
+
+    fn join(&mut self, p: &StreamParams, output: Command, read: Command, now: u64) -> Result<(), NoWay> {
+        let course = Course::join(output, read, &p.recovery, now);
+        self.course = course.unwrap_or_else(|| Course::stop(output, &p.recovery, now));
+        if course.is_some() { Ok(()) } else { Err(NoWay) }
+    }
+
+    /// The output moves on, not farther than the axis can.
+    fn put_out(&mut self, p: &StreamParams, now: u64, elapsed: u64) -> Result<(), NoWay> {
+        self.course.settle(now, p.timing.tick);
+        let due = self.at(p, now);
+        let step = due.setpoint.x - self.output.setpoint.x;
+        let highest = p.highest_step * elapsed.min(2 * p.bus_cycle) as f64;
+        self.at = now;
+        self.limited = step.abs() > highest;
+        if !self.limited {
+            self.output = due;
+            return Ok(());
+        }
+        let x = self.output.setpoint.x + highest.copysign(step);
+        let v = (p.highest_step / p.timing.tick).copysign(step);
+        self.output = Command { setpoint: Setpoint { v, ..Setpoint::at_rest(x) }, ..due };
+        match self.buffer.at(&p.timing, now) {
+            Some(read) if self.course.reads() => self.join(p, self.output, read, now),
+            _ => {
+                self.course = Course::stop(self.output, &p.recovery, now);
+                Ok(())
+            }
+        }
+    }
+}
+
+const fn state_of(reading: Reading) -> Interpolation {
+    match reading {
+        Reading::Waiting => Interpolation::Wait,
+        Reading::Interval(0) => Interpolation::Run1,
+        Reading::Interval(1) => Interpolation::Run2,
+        Reading::Interval(_) => Interpolation::Run3,
+        Reading::Underflow => Interpolation::Underflow,
+    }
+}

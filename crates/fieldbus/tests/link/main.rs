@@ -1,0 +1,3 @@
+//! The link with a motion task and a drive around it.
+mod delayed;
+mod rig;

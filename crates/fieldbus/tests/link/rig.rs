@@ -1,0 +1,177 @@
+//! A motion task, a link and a drive that does what it is told, tick by tick.
+use servobench_base::{Rate, Setpoint, Tick};
+use servobench_cia402::counter::Counter;
+use servobench_cia402::{
+    Actuals, Commands, DriveFunction, Mode, PowerInputs, PowerMemory, PowerParams, StatusBit, step as step_power,
+};
+use servobench_fieldbus::link::{self, Control, Input, Mailbox, Params, Sequencing, Settings, State, Units};
+use servobench_fieldbus::{AxisCommand, AxisFeedback, Task};
+use servobench_motion::Limits;
+use servobench_motion::interpolate::{self, Sample};
+
+/// Base ticks per bus cycle: 1 ms at 16 kHz.
+pub(crate) const BUS: u64 = 16;
+/// Base ticks per cycle of the motion task: 20 ms.
+pub(crate) const MOTION: u64 = 320;
+/// Base rate (Hz).
+pub(crate) const RATE: f64 = 16e3;
+
+const fn hz(hz: u32) -> Rate {
+    Rate::new(hz).unwrap()
+}
+
+/// A linear axis of 1 µm per count.
+pub(crate) fn settings() -> Settings {
+    Settings {
+        base_rate: hz(16_000),
+        bus_cycle: hz(16_000).divider(hz(1_000)).unwrap(),
+        motion_cycle: hz(16_000).divider(hz(50)).unwrap(),
+        interpolation: interpolate::Mode::Quintic,
+        margin: 0,
+        control: Control::Position { velocity_offset: true, torque_offset: true },
+        sequencing: Sequencing::Strict,
+        drive_timeout: 1_600,
+        round_trip: 2,
+        reverse_switches: false,
+        units: Units {
+            drive_units: 1e6,
+            axis_units: 1.0,
+            velocity_factor: 1.0,
+            rated_effort: 10.0,
+            counter: Counter::signed(32).unwrap(),
+        },
+        velocity_from_differences: false,
+        recovery: Limits { velocity: 0.5, acceleration: 5.0, jerk: 200.0, snap: 0.0 },
+        velocity_limit: 4.0,
+    }
+}
+
+/// A drive that is where it is told to be, one cycle later.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Drive {
+    pub(crate) power: PowerParams,
+    pub(crate) memory: PowerMemory,
+    pub(crate) counter: Counter,
+    pub(crate) fault: bool,
+    /// Counts since the start, wraps included.
+    pub(crate) counts: i128,
+    pub(crate) actuals: Actuals,
+}
+
+impl Drive {
+    pub(crate) fn new(counter: Counter) -> Self {
+        let (power, memory) = (PowerParams::default(), PowerMemory::default());
+        Self { power, memory, counter, fault: false, counts: 0, actuals: Actuals::default() }
+    }
+
+    pub(crate) fn step(&mut self, commands: &Commands) -> Actuals {
+        let inputs = PowerInputs {
+            initialised: true,
+            fault: self.fault,
+            standstill: true,
+            remote: true,
+            main_voltage: true,
+            ..PowerInputs::default()
+        };
+        let outputs = step_power(&self.power, &mut self.memory, commands.controlword, inputs);
+        let before = self.counts;
+        let csp = Mode::CyclicSynchronousPosition.code();
+        if outputs.drive == DriveFunction::Follow && commands.mode == csp {
+            // The nearest position that the counter shows so.
+            let range = self.counter.range();
+            let way = (i128::from(commands.target_position) - self.counts).rem_euclid(range);
+            self.counts += if way >= range / 2 { way - range } else { way };
+        }
+        let rotating = (self.counts - before) * 1000;
+        self.actuals = Actuals {
+            statusword: outputs.statusword.with(StatusBit::ModeSpecific12, outputs.drive == DriveFunction::Follow),
+            mode: commands.mode,
+            position: low_bits(self.counter.wrap(self.counts)),
+            velocity: i32::try_from(rotating).unwrap(),
+            error_code: if self.fault { 0x7121 } else { self.actuals.error_code },
+            ..self.actuals
+        };
+        self.actuals
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "an unsigned counter uses all 32 bits of its object")]
+fn low_bits(reading: i128) -> i32 {
+    reading as i32
+}
+
+/// All of it.
+pub(crate) struct Rig {
+    pub(crate) params: Params,
+    pub(crate) state: State,
+    pub(crate) mailbox: Mailbox,
+    pub(crate) drive: Drive,
+    pub(crate) tick: u64,
+    pub(crate) commands: Commands,
+    /// What came from the drive in the last cycle.
+    pub(crate) answer: Option<Actuals>,
+    pub(crate) external_fault: bool,
+}
+
+impl Rig {
+    pub(crate) fn new(settings: Settings) -> Self {
+        Self {
+            params: Params::new(settings).unwrap(),
+            state: State::default(),
+            mailbox: Mailbox::default(),
+            drive: Drive::new(settings.units.counter),
+            tick: 0,
+            commands: Commands::default(),
+            answer: None,
+            external_fault: false,
+        }
+    }
+
+    /// The motion task's cycle that is due at `due` leaves its command.
+    pub(crate) fn write(&mut self, due: u64, command: AxisCommand) {
+        self.mailbox.write(Tick(due), command);
+    }
+
+    /// A cycle of the bus. The drive answers in the next one.
+    pub(crate) fn cycle(&mut self) -> Commands {
+        let input = Input {
+            tick: Tick(self.tick),
+            mailbox: &self.mailbox,
+            actuals: self.answer.take(),
+            external_fault: self.external_fault,
+        };
+        self.commands = link::step(&self.params, &mut self.state, input);
+        self.answer = Some(self.drive.step(&self.commands));
+        self.tick += BUS;
+        self.commands
+    }
+
+    /// Cycles of the motion task in which it comes in time.
+    pub(crate) fn run(&mut self, cycles: u64, command: impl Fn(u64) -> AxisCommand) {
+        for _ in 0..cycles * MOTION / BUS {
+            if self.tick.is_multiple_of(MOTION) {
+                self.write(self.tick, command(self.tick / MOTION));
+            }
+            self.cycle();
+        }
+    }
+
+    pub(crate) fn feedback(&self) -> AxisFeedback {
+        self.state.feedback(&self.params)
+    }
+
+    /// The set-point of the last cycle.
+    pub(crate) fn setpoint(&self) -> Setpoint {
+        self.state.setpoint(&self.params, Tick(self.tick - BUS))
+    }
+}
+
+/// Powered, following a sample.
+pub(crate) fn follow(sample: Sample) -> AxisCommand {
+    AxisCommand { power: true, reset: false, task: Task::Follow(sample) }
+}
+
+/// A sample of a set-point.
+pub(crate) fn sample(setpoint: Setpoint) -> Sample {
+    Sample { x: setpoint.x, v: setpoint.v, a: setpoint.a, torque: 0.5 * setpoint.a }
+}
