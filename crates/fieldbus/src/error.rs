@@ -48,4 +48,12 @@ pub enum FieldbusError {
         /// Largest value.
         highest: i32,
     },
+    /// A bus whose frames are on their way for longer than is kept.
+    #[error("`delay` must be at most {highest} bus cycles, got {delay}: take a longer cycle")]
+    Delay {
+        /// Rejected delay (bus cycles).
+        delay: u32,
+        /// Longest one (bus cycles).
+        highest: u32,
+    },
 }

@@ -2,6 +2,7 @@
 //!
 //! - [`AxisCommand`] and [`AxisFeedback`]: what motion task and axis tell each other, once per cycle of that task.
 //! - [`link`]: from one to the process data of a drive (CiA 402) and back, once per cycle of the bus.
+//! - [`bus`]: the wire to the drive, and what goes wrong on it.
 //!
 //! `no_std`, no heap.
 //!
@@ -50,6 +51,7 @@
 #![cfg_attr(not(test), no_std)]
 
 mod axis;
+pub mod bus;
 mod error;
 mod fault;
 mod interpolation;

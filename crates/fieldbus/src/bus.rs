@@ -1,0 +1,185 @@
+//! The wire between master and drive, and what goes wrong on it.
+//!
+//! Cycle n is due at n·cycle and happens at the first tick that is neither before `n·cycle + late(n)` nor at or before cycle
+//! n − 1; both directions are carried by the same frame. What was put in at cycle n comes out at cycle n + delay, if that frame
+//! was not lost. A frame is lost where it is put in: what is under way arrives.
+//!
+//! Everything is decided by the number of the cycle, so a run is the same every time: the jitter of a cycle is a hash of its
+//! number and the seed.
+//!
+//! ```
+//! use servobench_base::{Rate, Tick};
+//! use servobench_cia402::{Actuals, Commands};
+//! use servobench_fieldbus::bus::{self, BusFault, BusFaultKind, Params, State};
+//!
+//! let base = Rate::from_hertz(16e3)?;
+//! let faults = [BusFault { kind: BusFaultKind::Lost, cycles: 2..3 }];
+//! let params = Params::new(base.divider(Rate::from_hertz(1e3)?)?, 1, &faults)?;
+//! let mut state = State::default();
+//! let mut arrived = Vec::new();
+//! for tick in 0..80 {
+//!     if let Some(cycle) = bus::step(&params, &mut state, Tick(tick)) {
+//!         let _actuals = state.to_master(&params, &cycle, Actuals::default());
+//!         arrived.push(state.to_drive(&params, &cycle, Commands::default()).is_some());
+//!     }
+//! }
+//! // The first frame is on its way for a cycle, the third is lost.
+//! assert_eq!(arrived, [false, true, true, false, true]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+mod pipe;
+
+use crate::FieldbusError;
+use core::ops::Range;
+use pipe::Pipe;
+use servobench_base::{Divider, Tick};
+use servobench_cia402::{Actuals, Commands};
+
+/// Something that goes wrong in some cycles.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct BusFault {
+    /// What.
+    pub kind: BusFaultKind,
+    /// In which cycles, counted from 0.
+    pub cycles: Range<u64>,
+}
+
+/// What goes wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum BusFaultKind {
+    /// The frame is lost, in both directions.
+    Lost,
+    /// The cycle happens late.
+    Late {
+        /// By how much (base ticks).
+        by: u32,
+    },
+    /// Each cycle happens late, by a random time.
+    Jitter {
+        /// By how much at most (base ticks).
+        by: u32,
+        /// Seed of the random numbers.
+        seed: u32,
+    },
+    /// The motion task does not run.
+    MasterStopped,
+    /// The drive does not answer. It still hears.
+    DriveSilent,
+    /// The external fault signal of the master is set.
+    ExternalFault,
+}
+
+/// A bus, constant during a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Params<'a> {
+    cycle: u64,
+    delay: usize,
+    faults: &'a [BusFault],
+}
+
+impl<'a> Params<'a> {
+    /// Longest delay (bus cycles).
+    pub const LONGEST_DELAY: u32 = 15;
+
+    /// A bus with a frame every `cycle`, whose contents arrive `delay` cycles later in either direction.
+    ///
+    /// # Errors
+    /// [`FieldbusError::Delay`] above [`LONGEST_DELAY`](Self::LONGEST_DELAY).
+    pub const fn new(cycle: Divider, delay: u32, faults: &'a [BusFault]) -> Result<Self, FieldbusError> {
+        if delay > Self::LONGEST_DELAY {
+            return Err(FieldbusError::Delay { delay, highest: Self::LONGEST_DELAY });
+        }
+        Ok(Self { cycle: cycle.ticks() as u64, delay: delay as usize, faults })
+    }
+
+    fn faults_of(&self, cycle: u64) -> impl Iterator<Item = BusFaultKind> + '_ {
+        self.faults.iter().filter(move |fault| fault.cycles.contains(&cycle)).map(|fault| fault.kind)
+    }
+
+    /// When cycle `number` would happen if there were none before it.
+    fn time_of(&self, number: u64) -> u64 {
+        let late = self.faults_of(number).map(|kind| match kind {
+            BusFaultKind::Late { by } => u64::from(by),
+            BusFaultKind::Jitter { by, seed } => below(u64::from(by) + 1, seed, number),
+            _ => 0,
+        });
+        self.cycle * number + late.sum::<u64>()
+    }
+}
+
+/// What is on the wire, and when the next cycle happens.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct State {
+    next: Option<Tick>,
+    number: u64,
+    to_master: Pipe<Actuals>,
+    to_drive: Pipe<Commands>,
+}
+
+/// A cycle that happens.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a fault of its own, and any of them may come together")]
+pub struct Cycle {
+    /// Its number, from 0.
+    pub number: u64,
+    /// When it was due. A master does not know that it is late: it computes for this tick.
+    pub due: Tick,
+    /// Whether the frame is lost.
+    pub is_lost: bool,
+    /// Whether the drive does not answer.
+    pub is_silent: bool,
+    /// Whether the motion task does not run.
+    pub master_stopped: bool,
+    /// The external fault signal.
+    pub external_fault: bool,
+}
+
+/// The cycle that happens at this tick, if any; to be asked at every tick.
+#[inline]
+pub fn step(params: &Params<'_>, state: &mut State, tick: Tick) -> Option<Cycle> {
+    if state.next.is_some_and(|next| tick < next) {
+        return None;
+    }
+    state.turn(params, tick)
+}
+
+impl State {
+    fn turn(&mut self, params: &Params<'_>, tick: Tick) -> Option<Cycle> {
+        // The first cycle may be late, too.
+        if self.next.is_none() && tick.0 < params.time_of(0) {
+            self.next = Some(Tick(params.time_of(0)));
+            return None;
+        }
+        let number = self.number;
+        self.number += 1;
+        self.next = Some(Tick(params.time_of(self.number).max(tick.0 + 1)));
+        let has = |kind| params.faults_of(number).any(|found| found == kind);
+        Some(Cycle {
+            number,
+            due: Tick(number * params.cycle),
+            is_lost: has(BusFaultKind::Lost),
+            is_silent: has(BusFaultKind::DriveSilent),
+            master_stopped: has(BusFaultKind::MasterStopped),
+            external_fault: has(BusFaultKind::ExternalFault),
+        })
+    }
+
+    /// Puts in what the drive sends in this cycle; what arrives at the master in it.
+    pub fn to_master(&mut self, params: &Params<'_>, cycle: &Cycle, actuals: Actuals) -> Option<Actuals> {
+        let sent = (!cycle.is_lost && !cycle.is_silent).then_some(actuals);
+        self.to_master.carry(sent, params.delay)
+    }
+
+    /// Puts in what the master sends in this cycle; what arrives at the drive in it.
+    pub fn to_drive(&mut self, params: &Params<'_>, cycle: &Cycle, commands: Commands) -> Option<Commands> {
+        self.to_drive.carry((!cycle.is_lost).then_some(commands), params.delay)
+    }
+}
+
+/// A number below `bound`, at most 2³², by seed and cycle: `SplitMix64` (Steele, Lea & Flood 2014).
+fn below(bound: u64, seed: u32, cycle: u64) -> u64 {
+    let z = (u64::from(seed) << 32).wrapping_add(cycle.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    (((z ^ (z >> 31)) >> 32) * bound) >> 32
+}
