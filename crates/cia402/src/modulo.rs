@@ -118,18 +118,28 @@ impl PositionRange {
     /// Where an axis is that ran to a position without end.
     #[must_use]
     pub const fn wrap(self, position: i64) -> i32 {
-        // `position − min` could overflow; its remainder does not depend on how many turns are taken off before.
-        let (position, min, length) = (position % self.length(), self.min as i64, self.length());
+        let (min, length) = (self.min as i64, self.length());
+        let wrapped = if min <= position && position <= self.max as i64 {
+            position
+        } else {
+            // A difference that overflows is that of a position with its turns taken off.
+            let difference = match position.checked_sub(min) {
+                Some(difference) => difference,
+                None => position % length - min,
+            };
+            min + difference.rem_euclid(length)
+        };
         #[expect(clippy::cast_possible_truncation, reason = "from min to max, both 32 bits")]
         {
-            (min + (position - min).rem_euclid(length)) as i32
+            wrapped as i32
         }
     }
 
     /// The signed distance from one position to another, each wrapped into the range first; less than one turn.
     #[must_use]
     pub const fn way(self, from: i64, to: i64, direction: Direction) -> i64 {
-        let positive = (self.wrap(to) as i64 - self.wrap(from) as i64).rem_euclid(self.length());
+        let difference = self.wrap(to) as i64 - self.wrap(from) as i64;
+        let positive = if difference < 0 { difference + self.length() } else { difference };
         let negative = if positive == 0 { 0 } else { positive - self.length() };
         match direction {
             Direction::Positive | Direction::Current { negative: false } => positive,

@@ -33,6 +33,12 @@ impl Carry {
     pub fn step(&mut self, step: i128) -> Result<i128, UnitError> {
         let overflow = || UnitError::CountOverflow { value: step, numerator: self.ratio.numerator().into() };
         let step = if self.inverted { step.checked_neg().ok_or_else(overflow)? } else { step };
+        let narrow = i64::try_from(step).ok().and_then(|step| step.checked_mul(self.ratio.numerator()));
+        if let Some(numerator) = narrow.and_then(|product| product.checked_add(self.remainder)) {
+            let denominator = self.ratio.denominator();
+            self.remainder = numerator.rem_euclid(denominator);
+            return Ok(numerator.div_euclid(denominator).into());
+        }
         let numerator =
             product(step, self.ratio.numerator().into())?.checked_add(self.remainder.into()).ok_or_else(overflow)?;
         let denominator = i128::from(self.ratio.denominator());

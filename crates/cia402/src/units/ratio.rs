@@ -1,4 +1,7 @@
 //! A positive fraction of integers.
+//!
+//! A product that fits into 64 bits is divided there, which takes a quarter of the time of 128 bits, and a number whose
+//! rounding is beyond doubt is rounded as an `f64`; the results are the same.
 use super::UnitError;
 
 /// A positive fraction, always reduced: numerator and denominator up to 2⁶³ − 1 without a common divisor.
@@ -69,8 +72,9 @@ impl Ratio {
     ///
     /// # Errors
     /// [`UnitError::CountOverflow`] if the product with the numerator leaves 127 bits.
+    #[inline]
     pub fn of(self, count: i128) -> Result<i128, UnitError> {
-        Ok(nearest(product(count, self.numerator.into())?, self.denominator.into()))
+        nearest_product(count, self.numerator.into(), self.denominator.into())
     }
 
     /// `count` times the ratio to the nearest `f64`: one rounding.
@@ -80,11 +84,16 @@ impl Ratio {
     ///
     /// # Errors
     /// [`UnitError::CountOverflow`] as [`of`](Self::of).
+    #[inline]
     pub fn of_as_f64(self, count: i128) -> Result<f64, UnitError> {
-        let numerator = product(count, self.numerator.into())?;
-        if numerator == 0 {
-            return Ok(0.0);
+        let narrow = i64::try_from(count).ok().and_then(|count| count.checked_mul(self.numerator));
+        if let Some(numerator) = narrow.filter(|numerator| numerator.unsigned_abs() <= EXACT)
+            && self.denominator.unsigned_abs() <= EXACT
+        {
+            // A quotient of two numbers is rounded once.
+            return Ok(numerator as f64 / self.denominator as f64);
         }
+        let numerator = product(count, self.numerator.into())?;
         let denominator = u128::from(self.denominator.unsigned_abs());
         let shift = numerator.unsigned_abs().leading_zeros();
         let shifted = numerator.unsigned_abs() << shift;
@@ -96,7 +105,11 @@ impl Ratio {
     /// The number `x` times the ratio to the nearest integer, a half upwards: one rounding, since `x` is a fraction
     /// itself. `None` if `x` is not finite or the result leaves 127 bits.
     #[must_use]
+    #[inline]
     pub fn of_f64(self, x: f64) -> Option<i128> {
+        if let Some(whole) = self.of_f64_beyond_doubt(x) {
+            return Some(whole.into());
+        }
         let (mantissa, exponent) = mantissa_and_exponent(x)?;
         // 53 and 63 bits: no overflow.
         let numerator = i128::from(mantissa) * i128::from(self.numerator);
@@ -109,12 +122,63 @@ impl Ratio {
         let halves = (2 * numerator).div_euclid(denominator) >> exponent.unsigned_abs().min(127);
         Some((halves + 1) >> 1)
     }
+
+    /// [`of_f64`](Self::of_f64) in `f64`, unless the two roundings of the quotient could lead to another integer.
+    #[inline]
+    fn of_f64_beyond_doubt(self, x: f64) -> Option<i64> {
+        if self.numerator.unsigned_abs() > EXACT || self.denominator.unsigned_abs() > EXACT {
+            return None;
+        }
+        let quotient = x * self.numerator as f64 / self.denominator as f64;
+        // Product and quotient are off by 2^−53 each, so are the sums below: four of them are in the doubt, with room. From
+        // 2^49 on, and for what is not finite, it is always larger than what it may be.
+        let doubt = (quotient.abs() + 1.0) * EPSILON;
+        if doubt < 0.5 {
+            let [lowest, highest] = [floor(quotient - doubt + 0.5), floor(quotient + doubt + 0.5)];
+            return (lowest == highest).then_some(lowest);
+        }
+        None
+    }
+}
+
+/// Integers up to 2^53 are `f64` too.
+const EXACT: u64 = 1 << f64::MANTISSA_DIGITS;
+/// 2^−50.
+const EPSILON: f64 = 4.0 * f64::EPSILON;
+
+/// The largest integer not above `x`, which is far from the bounds of 64 bits.
+fn floor(x: f64) -> i64 {
+    #[expect(clippy::cast_possible_truncation, reason = "far from the bounds; towards zero, which is mended")]
+    let towards_zero = x as i64;
+    towards_zero - i64::from(towards_zero as f64 > x)
 }
 
 /// `numerator/denominator` to the nearest integer, a half upwards; the denominator is positive.
 pub(crate) fn nearest(numerator: i128, denominator: i128) -> i128 {
     let remainder = numerator.rem_euclid(denominator);
     numerator.div_euclid(denominator) + i128::from(remainder >= denominator - remainder)
+}
+
+/// `count·numerator/denominator` to the nearest integer, a half upwards; the denominator is positive.
+#[inline]
+pub(crate) fn nearest_product(count: i128, numerator: i128, denominator: i128) -> Result<i128, UnitError> {
+    match (i64::try_from(count), i64::try_from(numerator), i64::try_from(denominator)) {
+        (Ok(narrow_count), Ok(narrow_numerator), Ok(narrow_denominator)) => {
+            match narrow_count.checked_mul(narrow_numerator) {
+                Some(narrow) => Ok(nearest64(narrow, narrow_denominator).into()),
+                None => Ok(nearest(product(count, numerator)?, denominator)),
+            }
+        }
+        _ => Ok(nearest(product(count, numerator)?, denominator)),
+    }
+}
+
+/// [`nearest`] of what fits into 64 bits.
+#[inline]
+const fn nearest64(numerator: i64, denominator: i64) -> i64 {
+    // The magnitude of a quotient is at most that of the numerator: no overflow.
+    let (whole, remainder) = (numerator.div_euclid(denominator), numerator.rem_euclid(denominator));
+    whole + (remainder >= denominator - remainder) as i64
 }
 
 /// The product, refused beyond 127 bits.

@@ -1,7 +1,7 @@
 //! The conversions of a factor group.
 use core::f64::consts::TAU;
 
-use super::ratio::{nearest, product};
+use super::ratio::{nearest_product, product};
 use super::{Carry, Object, Ratio, UnitError};
 use crate::difference::Displacement;
 
@@ -70,7 +70,7 @@ impl Scaling {
         let increments = signed(displacement.increments(), self.velocity_inverted)?;
         // Two factors of 63 and 64 bits: no overflow.
         let denominator = i128::from(ratio.denominator()) * i128::from(displacement.nanoseconds());
-        Ok(nearest(product(increments, numerator)?, denominator))
+        nearest_product(increments, numerator, denominator)
     }
 
     /// [`velocity_of`](Self::velocity_of) as the velocity actual value (606Ch), a 32-bit integer.
@@ -95,13 +95,13 @@ impl Scaling {
     /// # Errors
     /// [`UnitError::NotCountable`] if the position is not finite or beyond 2⁶³ increments.
     pub fn increments_at(&self, metres_or_radians: f64) -> Result<i128, UnitError> {
+        let length = if self.radians { metres_or_radians / TAU } else { metres_or_radians };
         let circumference = if self.radians { TAU } else { 1.0 };
-        let sign = if self.position_inverted { -1.0 } else { 1.0 };
         let ratio = self.length_per_increment;
         let furthest = i128::from(i64::MAX);
         ratio
             .inverse()
-            .of_f64(sign * metres_or_radians / circumference)
+            .of_f64(if self.position_inverted { -length } else { length })
             .filter(|counts| counts.abs() <= furthest)
             .ok_or(UnitError::NotCountable {
                 name: "position",

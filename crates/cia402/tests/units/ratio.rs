@@ -56,6 +56,42 @@ fn numbers_are_rounded_to_the_nearest() {
     assert_eq!(ratio.of_f64(f64::NEG_INFINITY), None);
 }
 
+/// As near to a half as an `f64` gets, where a rounding by rounded numbers goes wrong.
+#[test]
+fn numbers_beside_a_half_are_rounded_to_the_nearest() {
+    let mut random = Random::seeded(7);
+    let mut halves = 0;
+    for _ in 0..5_000 {
+        let ratio = Ratio::new(random.magnitude(20), random.magnitude(20)).unwrap();
+        let (n, d) = (i128::from(ratio.numerator()), i128::from(ratio.denominator()));
+        let half = random.sign() as f64 * (random.magnitude(20) as f64 - 0.5);
+        let nearly = half * ratio.denominator() as f64 / ratio.numerator() as f64;
+        for x in [nearly.next_down(), nearly, nearly.next_up()] {
+            // x = mantissa/2^shift, of 53 bits: the products below take at most 53 + 20 and 20 + 20 + 73 bits.
+            let shift = 1075 - i128::from((x.to_bits() >> 52) & 0x7ff);
+            #[expect(clippy::cast_possible_truncation, reason = "a whole number of 53 bits")]
+            let mantissa = (x * 2.0_f64.powi(i32::try_from(shift).unwrap())) as i128;
+            assert!(is_nearest(ratio.of_f64(x).unwrap(), mantissa * n, d << shift), "{x}·{ratio:?}");
+            halves += u32::from((2 * mantissa * n).rem_euclid(d << shift) == 0);
+        }
+    }
+    assert!(halves > 500, "{halves} exact halves");
+}
+
+/// Products at the bounds of 64 bits, where the computation goes over to 128.
+#[test]
+fn counts_beside_the_bounds_of_64_bits_are_rounded_to_the_nearest() {
+    for (numerator, denominator) in [(1, 1), (1, 2), (1, 3), (3, 2), (7, 1 << 20), (i64::MAX, 2), (1, i64::MAX), (5, 7)]
+    {
+        let ratio = Ratio::new(numerator, denominator).unwrap();
+        let bound = i128::from(i64::MAX) / i128::from(numerator);
+        for count in (bound - 4..=bound + 4).flat_map(|count| [count, -count]) {
+            let product = count * i128::from(numerator);
+            assert!(is_nearest(ratio.of(count).unwrap(), product, denominator.into()), "{count}·{ratio:?}");
+        }
+    }
+}
+
 #[test]
 fn no_other_f64_is_nearer() {
     let mut random = Random::seeded(3);
