@@ -8,7 +8,7 @@ mod shared;
 
 use rsruckig::prelude::{InputParameter, Ruckig, ThrowErrorHandler, Trajectory};
 use servobench_base::Setpoint;
-use servobench_motion::online::{DirectionalLimits, Effort, Target, Transition};
+use servobench_motion::online::{DirectionalLimits, Effort, RampLimits, Sides, Target, Transition, passing_velocity};
 use servobench_motion::{Limits, Order, Profile};
 use shared::Random;
 use std::hint::black_box;
@@ -27,6 +27,19 @@ struct Request {
 }
 
 impl Request {
+    /// With half the acceleration to speed up with.
+    fn ramps(&self, order: Order) -> Option<Transition> {
+        let Limits { velocity, acceleration: deceleration, jerk, snap } = self.limits;
+        let (velocity, acceleration) = (Sides::both(velocity), 0.5 * deceleration);
+        let limits = RampLimits { velocity, acceleration, deceleration, jerk, snap };
+        let target = Target::Position { x: self.x, v: self.v };
+        Transition::plan_ramps(order, &self.from, &target, &limits, Effort::Fast).ok()
+    }
+
+    fn passing(&self, order: Order) -> Option<f64> {
+        passing_velocity(order, &self.from, self.x, &self.limits.into(), f64::MAX).ok()?
+    }
+
     fn plan(&self, order: Order, effort: Effort) -> Option<Transition> {
         let target = Target::Position { x: self.x, v: self.v };
         Transition::plan(order, &self.from, &target, &DirectionalLimits::from(self.limits), effort).ok()
@@ -120,6 +133,11 @@ fn main() {
         row(&format!("order 4 {what}, refined"), &times(requests, |r| r.plan(Order::Fourth, Effort::Refined)));
         row(&format!("order 3 {what}"), &times(requests, |r| r.plan(Order::Third, Effort::Fast)));
         row(&format!("order 3 {what}, rsruckig"), &times(requests, |r| peer.plan(&r.from, r)));
+        row(&format!("order 2 {what}"), &times(requests, |r| r.plan(Order::Second, Effort::Fast)));
+    }
+    for (order, name) in [(Order::Second, "order 2"), (Order::Third, "order 3"), (Order::Fourth, "order 4")] {
+        row(&format!("{name} to rest, two accelerations"), &times(&stopping, |r| r.ramps(order)));
+        row(&format!("{name}, passing velocity"), &times(&stopping, |r| r.passing(order)));
     }
     let at_rest = Setpoint::default();
     row("order 3 rest to rest, rsruckig", &times(&stopping, |r| peer.plan(&at_rest, r)));

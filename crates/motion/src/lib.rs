@@ -1,7 +1,7 @@
 //! Set-points over time.
 //!
 //! - [`Profile`]: rest-to-rest moves of order 2 (trapezoid), 3 (jerk-limited) and 4 (snap-limited), below.
-//! - [`online`]: transitions of order 3 and 4 from any state, planned while the axis moves.
+//! - [`online`]: transitions of order 2, 3 and 4 from any state, planned while the axis moves.
 //! - [`sampled`]: moves sample by sample.
 //! - [`rockwell`]: the two profiles of Rockwell's axis move.
 //! - [`pvt`]: tables of positions, velocities and times; [`position_profile`]: the same sent as velocity commands.

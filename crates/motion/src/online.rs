@@ -1,6 +1,6 @@
 //! Transitions from any state, planned while the axis moves: to a position at rest, to a position passed at a velocity, to a
-//! velocity. Order 3 (jerk-limited) is as short as Ruckig's; order 4 (snap-limited) is the shortest from rest to rest
-//! without a cruise, and near it elsewhere.
+//! velocity. Order 2 (trapezoid) is the shortest, in closed form; order 3 (jerk-limited) is as short as Ruckig's; order 4
+//! (snap-limited) is the shortest from rest to rest without a cruise, and near it elsewhere.
 //!
 //! # One idea for every order
 //!
@@ -13,28 +13,39 @@
 //! Who follows *away* for a time τ and goes *home* from there covers the more the longer τ is; the first τ that meets the
 //! target is taken. Where that would pass the limit, the limit is touched for an instant, with the one value of the highest
 //! state with which the target is met; where a touch at rest is not far enough, there is a cruise. So order n is a root in
-//! one unknown over order n − 1, and order 2 is two parabolas.
+//! one unknown over order n − 1, and order 2 is two parabolas. Where the velocity has a limit and rates that differ by its
+//! direction, as in a transition of order 2, `trapezoid` has them.
 //!
 //! How much farther one gets by a longer τ is known in closed form (`second::Way::grows`, `costate`), so that Newton's method
 //! finds each root in a few looks, and the inner one, which begins where the last one ended, in fewer.
 //!
 //! Order 4 adds the one thing that order 3 does not need: a state may be so near its velocity limit that the fastest way
 //! passes it though a slower one does not. `ladder` says what is tried then.
+//!
+//! # Accelerations that differ
+//!
+//! By its direction: [`DirectionalLimits`]. While the speed grows and while it falls, as a drive's and a block's:
+//! [`RampLimits`], with [`Transition::plan_ramps`].
 mod costate;
 mod first;
 mod fourth;
 mod ladder;
 mod newton;
+mod passing;
 mod path;
+mod ramps;
 mod second;
 mod third;
 mod transition;
+mod trapezoid;
 mod watch;
 
 use crate::limits::{in_range, within_range};
 use crate::{Limits, Order, PlanError};
 use servobench_base::{ParamError, finite, positive};
 
+pub use passing::{braking_velocity, passing_velocity};
+pub use ramps::RampLimits;
 pub use second::Sides;
 pub use transition::Transition;
 
@@ -68,9 +79,9 @@ pub struct DirectionalLimits {
     pub velocity: Sides,
     /// Acceleration (m/s² or rad/s²).
     pub acceleration: Sides,
-    /// Jerk (m/s³ or rad/s³), a magnitude.
+    /// Jerk (m/s³ or rad/s³), a magnitude; order 2 does not use it.
     pub jerk: f64,
-    /// Snap (m/s⁴ or rad/s⁴), a magnitude; order 3 does not use it.
+    /// Snap (m/s⁴ or rad/s⁴), a magnitude; orders 2 and 3 do not use it.
     pub snap: f64,
 }
 
@@ -83,25 +94,31 @@ impl From<Limits> for DirectionalLimits {
 
 impl DirectionalLimits {
     fn check(&self, order: Order) -> Result<(), PlanError> {
-        let remedy = "correct its unit";
-        for (name, value) in [
-            ("velocity.above", self.velocity.above),
-            ("velocity.below", self.velocity.below),
-            ("acceleration.above", self.acceleration.above),
-            ("acceleration.below", self.acceleration.below),
-            ("jerk", self.jerk),
-        ] {
-            in_range(name, positive(name, value)?, remedy)?;
-        }
-        if order == Order::Fourth {
-            in_range("snap", positive("snap", self.snap)?, "correct its unit or plan a lower order")?;
-        }
-        Ok(())
+        let Self { velocity, acceleration, jerk, snap } = *self;
+        let sides = [
+            ("velocity.above", velocity.above),
+            ("velocity.below", velocity.below),
+            ("acceleration.above", acceleration.above),
+            ("acceleration.below", acceleration.below),
+        ];
+        check_limits(order, sides, jerk, snap)
     }
 }
 
+/// The four that every order uses by their names, and those of the higher orders.
+fn check_limits(order: Order, named: [(&'static str, f64); 4], jerk: f64, snap: f64) -> Result<(), PlanError> {
+    let higher = [("jerk", jerk, Order::Third), ("snap", snap, Order::Fourth)];
+    for (name, value) in named {
+        in_range(name, positive(name, value)?, "correct its unit")?;
+    }
+    for (name, value, _) in higher.into_iter().filter(|(.., lowest)| order >= *lowest) {
+        in_range(name, positive(name, value)?, "correct its unit or plan a lower order")?;
+    }
+    Ok(())
+}
+
 impl Target {
-    fn check(&self, limits: &DirectionalLimits) -> Result<(), PlanError> {
+    fn check(&self, velocity: Sides) -> Result<(), PlanError> {
         let v = match self {
             Self::Position { x, v } => {
                 within_range("target.x", *x)?;
@@ -109,7 +126,7 @@ impl Target {
             }
             Self::Velocity(v) => finite("target.v", *v)?,
         };
-        if limits.velocity.excess(v).0 > 0.0 {
+        if velocity.excess(v).0 > 0.0 {
             return Err(ParamError { name: "target.v", value: v, bound: "within the limits of velocity" }.into());
         }
         Ok(())

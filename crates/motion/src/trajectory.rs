@@ -107,4 +107,37 @@ impl<const N: usize> Trajectory<N> {
             Segment { start: self.starts[i], length: self.end_of(i) - self.starts[i], value }
         })
     }
+
+    /// With `next` behind it, which begins where it ends.
+    ///
+    /// More than `N` segments of both are a defect of the caller.
+    pub(crate) fn then(mut self, next: &Self) -> Self {
+        for i in 0..next.count {
+            self.starts[self.count] = self.duration + next.starts[i];
+            self.anchors[self.count] = next.anchors[i];
+            self.count += 1;
+        }
+        self.duration += next.duration;
+        self.end = next.end;
+        self
+    }
+
+    /// Whether the velocity never leaves the side of `sign`, but by rounding.
+    pub(crate) fn keeps_direction(&self, sign: f64) -> bool {
+        /// As a part of the highest velocity.
+        const ROUNDING: f64 = 1e-11;
+        let (mut lowest, mut highest) = (0.0_f64, 0.0_f64);
+        for (i, anchor) in self.anchors[..self.count].iter().enumerate() {
+            let length = self.end_of(i) - self.starts[i];
+            // a + j·t + s·t²/2 = 0 without cancellation.
+            let root = libm::sqrt((anchor.j * anchor.j - 2.0 * anchor.s * anchor.a).max(0.0));
+            let sum = -anchor.j - root.copysign(anchor.j);
+            let turns = [sum / anchor.s, 2.0 * anchor.a / sum].into_iter().filter(|t| *t > 0.0 && *t < length);
+            for t in turns.chain([0.0, length]) {
+                let v = sign * anchor.after(t).v;
+                (lowest, highest) = (lowest.min(v), highest.max(v));
+            }
+        }
+        lowest >= -ROUNDING * highest
+    }
 }

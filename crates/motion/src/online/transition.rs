@@ -1,15 +1,21 @@
 //! A planned transition, and the set-point at any time of it.
 use super::first::State;
 use super::fourth::{Limits4, State4};
-use super::ladder::{self, Goal, STRETCHES};
+use super::ladder::{self, Goal};
 use super::path::Path;
 use super::second::{self, Limits2, Sides, State2};
 use super::third::{self, Limits3, State3};
-use super::{DirectionalLimits, Effort, Target};
+use super::trapezoid::{self, Rates};
+use super::watch::Watch;
+use super::{DirectionalLimits, Effort, RampLimits, Target};
 use crate::limits::within_range;
 use crate::stretch::LONGEST;
 use crate::{Order, Piece, PlanError, Segment, Trajectory};
-use servobench_base::{ParamError, Setpoint};
+use servobench_base::Setpoint;
+
+/// Stretches at most: those of a plan to a stop, at which there is neither a second way home nor a cruise, and those of one from
+/// rest, before which nothing is led back.
+const STRETCHES: usize = ladder::STRETCHES + third::STRETCHES;
 
 /// The way from one state to a target, in the axis unit (m or rad) and seconds from its start.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,12 +28,11 @@ impl Transition {
     /// Plans the way from `from` to `target`.
     ///
     /// `from` may be any state: that of a running move, or one beyond the limits, which is led back in the shortest way. Its
-    /// snap does not matter, at order 3 its jerk neither.
+    /// snap does not matter, at order 3 its jerk neither, at order 2 its acceleration neither.
     ///
     /// # Errors
     /// [`PlanError`] when a state is no number within ±1e30, a limit that the order uses is not positive or lies outside
-    /// 1e-30 … 1e30 (SI), or the velocity of the target is beyond its limits; when the way would take more than 1e60 s; and
-    /// at order 2, which has no transition.
+    /// 1e-30 … 1e30 (SI), or the velocity of the target is beyond its limits; and when the way would take more than 1e60 s.
     pub fn plan(
         order: Order,
         from: &Setpoint,
@@ -36,21 +41,66 @@ impl Transition {
         effort: Effort,
     ) -> Result<Self, PlanError> {
         limits.check(order)?;
-        target.check(limits)?;
-        for (name, value) in [("from.x", from.x), ("from.v", from.v), ("from.a", from.a)] {
-            within_range(name, value)?;
-        }
-        let planned = match order {
-            Order::Second => return Err(ParamError { name: "order", value: 2.0, bound: "3 or 4" }.into()),
+        target.check(limits.velocity)?;
+        check_state(order, from)?;
+        match order {
+            Order::Second => second_order(from, target, limits.velocity, &Rates::by_direction(limits.acceleration)),
             Order::Third => third_order(from, target, limits),
-            Order::Fourth => {
-                within_range("from.j", from.j)?;
-                fourth_order(from, target, limits, effort)
-            }
+            Order::Fourth => fourth_order(from, target, limits, effort),
+        }
+        .of_bounded_duration()
+    }
+
+    /// The same with one acceleration while the speed grows and another one while it falls.
+    ///
+    /// Order 2 is the shortest way that keeps them. At orders 3 and 4 so is the way of an axis that keeps its direction, planned
+    /// [`towards`](RampLimits::towards) it. An axis that has to turn round takes the shorter of two ways that keep every limit:
+    /// with the smaller of both accelerations all the way ([`either_way`](RampLimits::either_way)), unless it brakes harder
+    /// than that already; or to a stop, and from there. That takes four plans.
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan).
+    pub fn plan_ramps(
+        order: Order,
+        from: &Setpoint,
+        target: &Target,
+        limits: &RampLimits,
+        effort: Effort,
+    ) -> Result<Self, PlanError> {
+        limits.check(order)?;
+        target.check(limits.velocity)?;
+        check_state(order, from)?;
+        if order == Order::Second {
+            return second_order(from, target, limits.velocity, &limits.rates()).of_bounded_duration();
+        }
+        let plan = |from: &Setpoint, target: &Target, limits| Self::plan(order, from, target, &limits, effort);
+        let one_way = |from: &Setpoint| {
+            let sign = heading(order, from, target);
+            let planned = plan(from, target, limits.towards(sign))?;
+            let is_kept = limits.towards(sign) == limits.either_way() || planned.way.keeps_direction(sign);
+            Ok::<_, PlanError>(is_kept.then_some(planned))
         };
-        let value = planned.duration();
-        if value <= LONGEST {
+        if let Some(planned) = one_way(from)? {
             return Ok(planned);
+        }
+        let turning = plan(from, target, limits.either_way())?;
+        let stop = plan(from, &Target::Velocity(0.0), limits.towards(heading(order, from, target)))?;
+        let onwards = match one_way(&stop.way.end())? {
+            Some(planned) => planned,
+            None => plan(&stop.way.end(), target, limits.either_way())?,
+        };
+        let is_shorter = turning.duration() <= stop.duration() + onwards.duration();
+        if turning.excess == 0.0 && is_shorter { Ok(turning) } else { stop.then(&onwards).of_bounded_duration() }
+    }
+
+    fn then(self, next: &Self) -> Self {
+        Self { way: self.way.then(&next.way), excess: self.excess.max(next.excess) }
+    }
+
+    fn of_bounded_duration(self) -> Result<Self, PlanError> {
+        let value = self.duration();
+        if value <= LONGEST {
+            return Ok(self);
         }
         let remedy = "start nearer to the limits, or raise them";
         Err(PlanError::OutOfRange { name: "duration", value, lowest: 0.0, highest: LONGEST, remedy })
@@ -103,6 +153,39 @@ impl Transition {
     pub const fn excess(&self) -> f64 {
         self.excess
     }
+}
+
+/// The derivatives of a state that `order` uses.
+pub(super) fn check_state(order: Order, from: &Setpoint) -> Result<(), PlanError> {
+    let state = [("from.x", from.x), ("from.v", from.v), ("from.a", from.a), ("from.j", from.j)];
+    for (name, value) in &state[..order.derivative()] {
+        within_range(name, *value)?;
+    }
+    Ok(())
+}
+
+/// In which direction an axis that does not turn round moves.
+fn heading(order: Order, from: &Setpoint, target: &Target) -> f64 {
+    let state = &[from.v, from.a, from.j][..order.derivative() - 1];
+    let towards = match target {
+        Target::Position { x, v } => [x - from.x, *v],
+        Target::Velocity(v) => [*v, *v],
+    };
+    state.iter().chain(&towards).find(|value| **value != 0.0).map_or(1.0, |value| value.signum())
+}
+
+fn second_order(from: &Setpoint, target: &Target, velocity: Sides, rates: &Rates) -> Transition {
+    let path = match target {
+        Target::Position { x, v } => trapezoid::fastest(from.v, *v, x - from.x, velocity, rates),
+        Target::Velocity(v) => {
+            let mut path = Path::EMPTY;
+            rates.ramp(from.v, *v, &mut path);
+            path
+        }
+    };
+    // The speed never grows beyond where it begins.
+    let excess = Watch::new(velocity, from.v).most;
+    Transition::new(Order::Second, Setpoint { a: 0.0, j: 0.0, s: 0.0, ..*from }, &path, target, excess)
 }
 
 fn third_order(from: &Setpoint, target: &Target, limits: &DirectionalLimits) -> Transition {

@@ -2,6 +2,9 @@
 
 mod chained;
 mod outside;
+mod passing;
+mod ramps;
 mod random;
 mod rest;
 mod ruckig;
+mod trapezoid;

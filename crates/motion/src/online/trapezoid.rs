@@ -1,0 +1,94 @@
+//! Order 2 in closed form: one ramp to the highest velocity, a cruise there, and one ramp to the target's velocity.
+//!
+//! A ramp of the rate r from the velocity v to w covers (w² − v²)/2r upwards, and the opposite of that downwards. The rate may be
+//! one while the speed grows and another while it falls; then a ramp through zero is two, and each square has the rate of its own
+//! side. With u the rate at which the speed grows in the direction of the move and d that at which it falls, r₀ that of the ramp
+//! up at v₀ and r₁ that of the ramp down at v₁,
+//!
+//! ```text
+//! x₁ − x₀ = w²/2u − v₀²/2r₀ + w²/2d − v₁²/2r₁      w = √(2·(x₁ − x₀ + v₀²/2r₀ + v₁²/2r₁)·u·d/(u + d))
+//! ```
+//!
+//! gives the highest velocity w. The move is in that direction in which the ramp from v₀ straight to v₁ falls short of x₁; who
+//! has to go farther is the later at every velocity below, so that no other way is shorter (Athans & Falb, *Optimal Control*,
+//! §7.2).
+use super::path::Path;
+use super::second::Sides;
+
+/// Stretches at most: two ramps, each through zero, and the cruise.
+pub(crate) const STRETCHES: usize = 5;
+
+/// The rates of the velocity, each by its own direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Rates {
+    /// While the speed grows.
+    pub(crate) growing: Sides,
+    /// While it falls.
+    pub(crate) falling: Sides,
+}
+
+impl Rates {
+    /// The same whether the speed grows or falls.
+    pub(crate) const fn by_direction(acceleration: Sides) -> Self {
+        Self { growing: acceleration, falling: acceleration }
+    }
+
+    /// In the direction of `sign` at the velocity `v`, on its side of zero.
+    fn towards(&self, sign: f64, v: f64) -> f64 {
+        if sign * v > 0.0 { self.growing.towards(sign) } else { self.falling.towards(sign) }
+    }
+
+    /// v²/2r on a ramp in the direction of `sign`.
+    fn square(&self, sign: f64, v: f64) -> f64 {
+        0.5 * v * v / self.towards(sign, v)
+    }
+
+    /// What the ramp from `v` to `w` covers.
+    pub(crate) fn covered(&self, v: f64, w: f64) -> f64 {
+        let sign = direction(w - v);
+        sign * (self.square(sign, w) - self.square(sign, v))
+    }
+
+    /// The ramp from `v` to `w`, behind `path`.
+    pub(crate) fn ramp<const N: usize>(&self, v: f64, w: f64, path: &mut Path<N>) {
+        let sign = direction(w - v);
+        let mut from = v;
+        if sign * v < 0.0 && sign * w > 0.0 {
+            let rate = self.falling.towards(sign);
+            path.push(sign * rate, v.abs() / rate);
+            from = 0.0;
+        }
+        let rate = self.towards(sign, if from == 0.0 { w } else { from });
+        path.push(sign * rate, (w - from).abs() / rate);
+    }
+}
+
+fn direction(difference: f64) -> f64 {
+    if difference >= 0.0 { 1.0 } else { -1.0 }
+}
+
+/// The fastest way from the velocity `from` to the velocity `to` that covers `distance`.
+pub(crate) fn fastest(from: f64, to: f64, distance: f64, limit: Sides, rates: &Rates) -> Path<STRETCHES> {
+    let mut path = Path::EMPTY;
+    let missing = distance - rates.covered(from, to);
+    if missing == 0.0 {
+        rates.ramp(from, to, &mut path);
+        return path;
+    }
+    let sign = direction(missing);
+    let (up, down) = (rates.growing.towards(sign), rates.falling.towards(-sign));
+    let squares = rates.square(sign, from) + rates.square(-sign, to);
+    let free = libm::sqrt((2.0 * (sign * distance + squares) * up * down / (up + down)).max(0.0));
+    let (highest, limit) = (free.max(sign * from).max(sign * to), limit.towards(sign));
+    if highest <= limit {
+        rates.ramp(from, sign * highest, &mut path);
+        rates.ramp(sign * highest, to, &mut path);
+    } else {
+        let cruise = sign * limit;
+        let ramps = rates.covered(from, cruise) + rates.covered(cruise, to);
+        rates.ramp(from, cruise, &mut path);
+        path.push(0.0, (distance - ramps) / cruise);
+        rates.ramp(cruise, to, &mut path);
+    }
+    path
+}

@@ -1,0 +1,108 @@
+//! One acceleration to speed up with and another one to brake with.
+use crate::random::{Random, sweep_size};
+use servobench_base::Setpoint;
+use servobench_motion::Order;
+use servobench_motion::online::{DirectionalLimits, Effort, RampLimits, Sides, Target, Transition};
+
+const ORDERS: [Order; 3] = [Order::Second, Order::Third, Order::Fourth];
+
+fn ramps(random: &mut Random) -> RampLimits {
+    let t = random.decades(-2.0, 1.0);
+    let DirectionalLimits { velocity, acceleration, jerk, snap } = random.limits(1.0, t);
+    let deceleration = acceleration.above * random.decades(-0.7, 0.7);
+    RampLimits { velocity, acceleration: acceleration.above, deceleration, jerk, snap }
+}
+
+/// Moves that abort one another: as the speed grows and falls, each acceleration keeps its limit, by 1e-9 of it for rounding.
+#[test]
+fn accelerations_keep_the_limit_of_what_they_do() {
+    let mut random = Random::seeded(6);
+    for chain in 0..sweep_size(100_000) / 20 {
+        let (order, limits) = (ORDERS[chain % 3], ramps(&mut random));
+        let RampLimits { velocity, acceleration, deceleration, .. } = limits;
+        let length = velocity.above * velocity.above / acceleration.min(deceleration);
+        let mut from = Setpoint::default();
+        for _ in 0..10 {
+            let x = from.x + random.signed() * length * random.decades(-2.0, 1.0);
+            let v = if random.unit() < 0.7 { 0.0 } else { velocity.below.min(velocity.above) * random.signed() };
+            let target = Target::Position { x, v };
+            let planned = Transition::plan_ramps(order, &from, &target, &limits, Effort::Fast).unwrap();
+            let context = || format!("{order:?} from {from:?} to {target:?} within {limits:?}: {planned:?}");
+            for k in 0..=100 {
+                let at = planned.at(f64::from(k) / 100.0 * planned.duration());
+                // The last bits of a velocity that is zero have a sign, too.
+                let stands = at.v.abs() < 1e-9 * (velocity.above + velocity.below);
+                let limit = match at.v * at.a > 0.0 {
+                    _ if stands => acceleration.max(deceleration),
+                    true => acceleration,
+                    false => deceleration,
+                };
+                assert!(at.a.abs() <= limit * (1.0 + 1e-9), "{at:?} {}", context());
+                assert!(
+                    at.v <= velocity.above * (1.0 + 1e-9) && at.v >= -velocity.below * (1.0 + 1e-9),
+                    "{}",
+                    context()
+                );
+            }
+            let end = planned.at(planned.duration().next_down());
+            assert!((end.x - x).abs() <= 1e-9 * (length + (x - from.x).abs()), "{end:?} {}", context());
+            from = planned.at(random.unit() * planned.duration());
+        }
+    }
+}
+
+/// Oracle: by hand, with 1 m/s² to speed up and 4 m/s² to brake. 0.5 s and 0.5 m to stand; then w²/2 + w²/8 = 3.5 m back.
+#[test]
+fn a_trapezoid_brakes_with_its_deceleration_and_turns_with_its_acceleration() {
+    let limits = RampLimits {
+        velocity: Sides::both(10.0),
+        acceleration: 1.0,
+        deceleration: 4.0,
+        jerk: f64::NAN,
+        snap: f64::NAN,
+    };
+    let from = Setpoint { v: 2.0, ..Setpoint::default() };
+    let target = Target::Position { x: -3.0, v: 0.0 };
+    let planned = Transition::plan_ramps(Order::Second, &from, &target, &limits, Effort::Fast).unwrap();
+    let w = 5.6_f64.sqrt();
+    assert!((planned.duration() / (0.5 + w + w / 4.0) - 1.0).abs() < 1e-14, "{planned:?}");
+    let values: Vec<f64> = planned.segments().map(|segment| segment.value).collect();
+    assert_eq!(values, [-4.0, -1.0, 4.0]);
+    // To a velocity on the other side: 0.5 s to stand, 3 s to −3 m/s.
+    let reversed =
+        Transition::plan_ramps(Order::Second, &from, &Target::Velocity(-3.0), &limits, Effort::Fast).unwrap();
+    assert_eq!((reversed.duration(), reversed.at(reversed.duration()).v), (3.5, -3.0));
+}
+
+/// Who keeps the direction has each acceleration for what it is; who turns round the shorter way of the two that keep both.
+#[test]
+fn smooth_ways_choose_their_limits_by_the_direction() {
+    let limits =
+        RampLimits { velocity: Sides::both(1.0), acceleration: 2.0, deceleration: 5.0, jerk: 50.0, snap: 2000.0 };
+    let alike = RampLimits { deceleration: 2.1, ..limits };
+    let (rest, moving) = (Setpoint::default(), Setpoint { v: 0.5, ..Setpoint::default() });
+    let [ahead, behind] = [1.0, -1.0].map(|x| Target::Position { x, v: 0.0 });
+    for order in [Order::Third, Order::Fourth] {
+        let plain = |from: &Setpoint, target: &Target, limits: DirectionalLimits| {
+            Transition::plan(order, from, target, &limits, Effort::Fast).unwrap()
+        };
+        let ramps = |from: &Setpoint, target: &Target, limits: &RampLimits| {
+            Transition::plan_ramps(order, from, target, limits, Effort::Fast).unwrap()
+        };
+        assert_eq!(ramps(&moving, &ahead, &limits), plain(&moving, &ahead, limits.towards(1.0)));
+        assert_eq!(ramps(&rest, &behind, &limits), plain(&rest, &behind, limits.towards(-1.0)));
+        // From rest to rest forwards and backwards are mirror images.
+        let [forwards, backwards] = [ahead, behind].map(|target| ramps(&rest, &target, &limits).duration());
+        assert_eq!(forwards.to_bits(), backwards.to_bits());
+        assert_eq!(ramps(&moving, &behind, &alike), plain(&moving, &behind, alike.either_way()));
+        let stop = plain(&moving, &Target::Velocity(0.0), limits.towards(1.0));
+        let from_there = plain(&stop.at(f64::MAX), &behind, limits.towards(-1.0));
+        let stopping = ramps(&moving, &behind, &limits);
+        assert_eq!(stopping.duration().to_bits(), (stop.duration() + from_there.duration()).to_bits());
+        assert!(stopping.duration() < plain(&moving, &behind, limits.either_way()).duration());
+        for (part, t) in [(&stop, 0.07), (&from_there, 0.4)] {
+            let since = if t > stop.duration() { stop.duration() } else { 0.0 };
+            assert!((stopping.at(t).x - part.at(t - since).x).abs() < 1e-15, "{order:?} {t}");
+        }
+    }
+}
