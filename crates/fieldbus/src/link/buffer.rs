@@ -181,6 +181,8 @@ impl Buffer {
             i if i < POINTS + AHEAD => self.ahead[i - POINTS],
             _ => sample,
         });
+        // No sample comes before it is due: who is ahead of now counts in shorter cycles than the motion task's.
+        self.newest = self.newest.min(now);
         // Samples that are not to be read yet: the margin is two cycles at most.
         let early = (self.newest + timing.margin).saturating_sub(now).div_ceil(timing.cycle);
         let waiting = usize::try_from(early).unwrap_or(AHEAD).min(AHEAD - 1);
