@@ -1,4 +1,6 @@
 //! The link with a motion task and a drive around it.
 mod delayed;
+mod modes;
+mod power;
 mod rig;
 mod troubles;

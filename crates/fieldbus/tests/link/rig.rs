@@ -1,8 +1,10 @@
 //! A motion task, a link and a drive that does what it is told, tick by tick.
+use core::cmp::Ordering;
 use servobench_base::{Rate, Setpoint, Tick};
 use servobench_cia402::counter::Counter;
 use servobench_cia402::{
-    Actuals, Commands, DriveFunction, Mode, PowerInputs, PowerMemory, PowerParams, StatusBit, step as step_power,
+    Actuals, Commands, ControlBit, DriveFunction, Mode, PowerInputs, PowerMemory, PowerParams, StatusBit,
+    step as step_power,
 };
 use servobench_fieldbus::link::{self, Control, Input, Mailbox, Params, Sequencing, Settings, State, Units};
 use servobench_fieldbus::{AxisCommand, AxisFeedback, Task};
@@ -53,15 +55,23 @@ pub(crate) struct Drive {
     pub(crate) memory: PowerMemory,
     pub(crate) counter: Counter,
     pub(crate) fault: bool,
+    /// Whether it does what the controlword says.
+    pub(crate) deaf: bool,
     /// Counts since the start, wraps included.
     pub(crate) counts: i128,
+    /// Cycles since the start of homing, which takes `HOMING` and moves by 37 counts in each.
+    pub(crate) homing: Option<u32>,
     pub(crate) actuals: Actuals,
 }
+
+/// Cycles of homing.
+pub(crate) const HOMING: u32 = 50;
 
 impl Drive {
     pub(crate) fn new(counter: Counter) -> Self {
         let (power, memory) = (PowerParams::default(), PowerMemory::default());
-        Self { power, memory, counter, fault: false, counts: 0, actuals: Actuals::default() }
+        let actuals = Actuals::default();
+        Self { power, memory, counter, fault: false, deaf: false, counts: 0, homing: None, actuals }
     }
 
     pub(crate) fn step(&mut self, commands: &Commands) -> Actuals {
@@ -69,29 +79,56 @@ impl Drive {
             initialised: true,
             fault: self.fault,
             standstill: true,
-            remote: true,
+            remote: !self.deaf,
             main_voltage: true,
             ..PowerInputs::default()
         };
         let outputs = step_power(&self.power, &mut self.memory, commands.controlword, inputs);
         let before = self.counts;
-        let csp = Mode::CyclicSynchronousPosition.code();
-        if outputs.drive == DriveFunction::Follow && commands.mode == csp {
-            // The nearest position that the counter shows so.
-            let range = self.counter.range();
-            let way = (i128::from(commands.target_position) - self.counts).rem_euclid(range);
-            self.counts += if way >= range / 2 { way - range } else { way };
+        let (mut bit_10, mut bit_12, mut torque) = (true, false, 0);
+        if outputs.drive == DriveFunction::Follow {
+            match Mode::from_code(commands.mode) {
+                Some(Mode::CyclicSynchronousPosition) => {
+                    // The nearest position that the counter shows so.
+                    let range = self.counter.range();
+                    let way = (i128::from(commands.target_position) - self.counts).rem_euclid(range);
+                    self.counts += if way >= range / 2 { way - range } else { way };
+                }
+                Some(Mode::CyclicSynchronousVelocity) => self.counts += i128::from(commands.target_velocity / 1000),
+                Some(Mode::CyclicSynchronousTorque) => torque = commands.target_torque,
+                Some(Mode::Homing) => (bit_10, bit_12) = self.home(commands),
+                _ => {}
+            }
         }
-        let rotating = (self.counts - before) * 1000;
+        let mode = if self.deaf { self.actuals.mode } else { commands.mode };
         self.actuals = Actuals {
-            statusword: outputs.statusword.with(StatusBit::ModeSpecific12, outputs.drive == DriveFunction::Follow),
-            mode: commands.mode,
+            statusword: outputs
+                .statusword
+                .with(StatusBit::ModeSpecific12, bit_12)
+                .with(StatusBit::TargetReached, bit_10),
+            mode,
             position: low_bits(self.counter.wrap(self.counts)),
-            velocity: i32::try_from(rotating).unwrap(),
+            velocity: i32::try_from((self.counts - before) * 1000).unwrap_or(i32::MAX),
+            torque,
             error_code: if self.fault { 0x7121 } else { self.actuals.error_code },
             ..self.actuals
         };
         self.actuals
+    }
+
+    /// Bits 10 and 12 of the statusword. What was attained before is shown until bit 4 rises.
+    fn home(&mut self, commands: &Commands) -> (bool, bool) {
+        if !commands.controlword.has(ControlBit::ModeSpecific4) {
+            return (true, self.homing.take().is_some_and(|passed| passed > HOMING));
+        }
+        let passed = self.homing.get_or_insert(0);
+        *passed += 1;
+        match (*passed).cmp(&HOMING) {
+            Ordering::Less => self.counts += 37,
+            Ordering::Equal => self.counts = commands.home_offset.into(),
+            Ordering::Greater => {}
+        }
+        (*passed >= HOMING, *passed >= HOMING)
     }
 }
 

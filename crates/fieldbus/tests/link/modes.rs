@@ -1,0 +1,147 @@
+//! Counters that wrap, the position loop in the master, efforts and homing.
+use crate::rig::{BUS, HOMING, MOTION, RATE, Rig, follow, settings};
+use core::f64::consts::TAU;
+use servobench_cia402::counter::Counter;
+use servobench_fieldbus::link::{Control, Settings, Units};
+use servobench_fieldbus::{AxisCommand, Homing, Interpolation, Task};
+use servobench_motion::interpolate::Sample;
+
+const REST: AxisCommand = AxisCommand { power: true, reset: false, task: REST_TASK };
+const REST_TASK: Task = Task::Follow(Sample { x: 0.0, v: 0.0, a: 0.0, torque: 0.0 });
+
+/// Ten turns of the counter to one side, back, and ten to the other; the oracle is what the drive counts in 127 bits.
+fn through_a_counter(counter: Counter, drive_units: f64, axis_units: f64) {
+    const CYCLES: u64 = 400;
+    let units = Units { drive_units, axis_units, velocity_factor: 1e-3, counter, ..settings().units };
+    let mut rig = Rig::new(Settings { units, velocity_from_differences: true, ..settings() });
+    let turns = 10.0 * counter.range() as f64 * axis_units / drive_units;
+    let omega = TAU / (CYCLES * MOTION) as f64 * RATE;
+    // sin φ·(1 − cos φ) peaks at 1.299 on either side, and starts and ends at rest.
+    let motion = |cycle: u64| {
+        let phase = TAU * cycle.saturating_sub(5) as f64 / CYCLES as f64;
+        let (x, v) = (phase.sin() * (1.0 - phase.cos()), omega * (phase.cos() - (2.0 * phase).cos()));
+        follow(Sample { x: turns * x / 1.29, v: turns * v / 1.29, a: 0.0, torque: 0.0 })
+    };
+    // The drive's counts of the cycles before, the newest first.
+    let mut counts = [0_i128; 6];
+    let (mut highest, mut lowest) = (0, 0);
+    while rig.tick < (CYCLES + 5) * MOTION {
+        if rig.tick.is_multiple_of(MOTION) {
+            rig.write(rig.tick, motion(rig.tick / MOTION));
+        }
+        rig.cycle();
+        let feedback = rig.feedback();
+        assert_eq!(feedback.fault, None);
+        // What was heard is a cycle old. Three roundings.
+        let axis = |counts: i128| counts as f64 * axis_units / drive_units;
+        let expected = axis(counts[0]);
+        assert!((feedback.position - expected).abs() <= 1e-15 * expected.abs(), "{} {expected}", feedback.position);
+        let expected = axis(counts[0] - counts[4]) / (4 * BUS) as f64 * RATE;
+        assert!((feedback.velocity - expected).abs() <= 1e-15 * expected.abs(), "{} {expected}", feedback.velocity);
+        let step = axis(rig.drive.counts - counts[0]);
+        assert!(step.abs() <= 4.0 * BUS as f64 / RATE, "a jump of {step}");
+        counts.rotate_right(1);
+        counts[0] = rig.drive.counts;
+        (highest, lowest) = (highest.max(counts[0]), lowest.min(counts[0]));
+    }
+    assert!(highest > 10 * counter.range(), "{highest}");
+    assert!(lowest < -10 * counter.range(), "{lowest}");
+}
+
+#[test]
+fn no_count_is_lost_through_ten_turns_of_a_counter() {
+    for bits in [16, 32] {
+        for counter in [Counter::signed(bits).unwrap(), Counter::unsigned(bits).unwrap()] {
+            // Ten turns are 0.6 m.
+            let per_metre = counter.range() as f64 / 0.06;
+            through_a_counter(counter, per_metre, 1.0);
+            through_a_counter(counter, per_metre, -1.0);
+        }
+    }
+}
+
+#[test]
+fn the_position_loop_of_the_master_lags_by_velocity_over_gain() {
+    for (feedforward, lag) in [(0.0, 0.1 / 20.0), (1.0, 0.0), (0.5, 0.05 / 20.0)] {
+        let control = Control::Velocity { gain: 20.0, feedforward, limit: 0.2, torque_offset: false };
+        let mut rig = Rig::new(Settings { control, ..settings() });
+        rig.run(5, |_| REST);
+        rig.run(100, |cycle| follow(Sample { x: 0.002 * (cycle - 5) as f64, v: 0.1, a: 0.0, torque: 0.0 }));
+        assert_eq!(rig.commands.mode, 9);
+        let error = rig.setpoint().x - rig.feedback().position;
+        // The drive takes whole counts per cycle: 1 mm/s, of which the gain makes 50 µm.
+        assert!((error - lag).abs() < 51e-6, "{error} for {lag}");
+        assert!((f64::from(rig.commands.target_velocity) - 1e5).abs() < 1_001.0);
+        assert!(!rig.state.is_limited());
+        // A step of 0.1 m asks for 2 m/s but for the limit.
+        let x = rig.feedback().position + 0.1;
+        rig.run(2, |_| follow(Sample { x, v: 0.0, a: 0.0, torque: 0.0 }));
+        assert!(rig.commands.target_velocity <= 200_000);
+    }
+}
+
+#[test]
+fn efforts_are_reached_in_a_line_and_let_go_when_none_comes() {
+    let effort = |value| AxisCommand { power: true, reset: false, task: Task::Effort(value) };
+    let mut rig = Rig::new(settings());
+    rig.run(5, |_| effort(0.0));
+    assert_eq!((rig.commands.mode, rig.feedback().interpolation), (10, Interpolation::Run1));
+    // Rated 10 N: 5 N are 500 thousandths, reached within the 20 cycles of the bus.
+    rig.write(rig.tick, effort(5.0));
+    for cycle in 0..20 {
+        assert_eq!(rig.cycle().target_torque, 25 * cycle);
+    }
+    let mut states = Vec::new();
+    for _ in 0..100 {
+        rig.cycle();
+        let state = rig.feedback().interpolation;
+        if states.last() != Some(&state) {
+            states.push(state);
+        }
+    }
+    assert_eq!(states, [Interpolation::Run2, Interpolation::Run3, Interpolation::Underflow]);
+    assert_eq!((rig.commands.target_torque, rig.feedback().effort), (0, 0.0));
+}
+
+#[test]
+fn homing_is_started_by_bit_4_and_gives_the_position() {
+    let home = AxisCommand { power: true, reset: false, task: Task::Home { position: 0.25 } };
+    let mut rig = Rig::new(settings());
+    rig.run(5, |_| REST);
+    // Twice: the second time the drive still shows that it was attained.
+    for _ in 0..2 {
+        rig.write(rig.tick, home);
+        let (mut bits, mut homing) = (Vec::new(), Vec::new());
+        for _ in 0..HOMING + 20 {
+            let commands = rig.cycle();
+            let seen = (commands.mode, commands.controlword.bits());
+            if bits.last() != Some(&seen) {
+                bits.push(seen);
+            }
+            let seen = rig.feedback().homing;
+            if homing.last() != Some(&seen) {
+                homing.push(seen);
+            }
+        }
+        assert_eq!(bits, [(6, 0x000F), (6, 0x001F)]);
+        assert_eq!(homing, [Homing::Busy, Homing::Attained]);
+        assert_eq!(rig.commands.home_offset, 250_000);
+        assert!((rig.feedback().position - 0.25).abs() < 1e-12);
+        // On from there, without a jump.
+        rig.tick = rig.tick.next_multiple_of(MOTION);
+        let at = follow(Sample { x: 0.25, ..Sample::default() });
+        rig.run(5, |_| at);
+        assert_eq!((rig.drive.counts, rig.feedback().homing), (250_000, Homing::Idle));
+    }
+}
+
+#[test]
+fn homing_anchors_a_counter_that_cannot_show_the_position() {
+    let units = Units { counter: Counter::signed(16).unwrap(), ..settings().units };
+    let mut rig = Rig::new(Settings { units, ..settings() });
+    rig.run(5, |_| REST);
+    // 250 000 counts are 3.8 turns of the counter.
+    rig.run(5, |_| AxisCommand { power: true, reset: false, task: Task::Home { position: 0.25 } });
+    assert_eq!(rig.feedback().homing, Homing::Attained);
+    assert!((rig.feedback().position - 0.25).abs() < 1e-12);
+}

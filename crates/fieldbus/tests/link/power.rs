@@ -1,0 +1,232 @@
+//! The drive is brought to power, and stopped for what goes wrong.
+use crate::rig::{BUS, MOTION, Rig, follow, settings};
+use servobench_cia402::{PowerState, Statusword};
+use servobench_fieldbus::link::{Sequencing, Settings};
+use servobench_fieldbus::{AxisCommand, Fault, Interpolation, LinkFault, Power, Switches};
+use servobench_motion::interpolate::Sample;
+
+/// At `x`, moving at `v`.
+fn at(x: f64, v: f64) -> AxisCommand {
+    follow(Sample { x, v, a: 0.0, torque: 0.0 })
+}
+
+const REST: AxisCommand = AxisCommand { power: true, reset: false, task: REST_TASK };
+const REST_TASK: servobench_fieldbus::Task =
+    servobench_fieldbus::Task::Follow(Sample { x: 0.0, v: 0.0, a: 0.0, torque: 0.0 });
+const OFF: AxisCommand = AxisCommand { power: false, ..REST };
+const RESET: AxisCommand = AxisCommand { reset: true, ..REST };
+
+impl Rig {
+    /// Cycles of the bus with one command; each controlword that was new, and each `Power`.
+    fn words(&mut self, cycles: u32, command: AxisCommand) -> (Vec<u16>, Vec<Power>) {
+        let (mut words, mut powers) = (Vec::new(), Vec::new());
+        self.write(self.tick, command);
+        for _ in 0..cycles {
+            let word = self.cycle().controlword.bits();
+            if words.last() != Some(&word) {
+                words.push(word);
+            }
+            let power = self.feedback().power;
+            if powers.last() != Some(&power) {
+                powers.push(power);
+            }
+        }
+        (words, powers)
+    }
+
+    fn powered(settings: Settings) -> Self {
+        let mut rig = Self::new(settings);
+        rig.run(3, |_| REST);
+        assert_eq!(rig.feedback().power, Power::On);
+        rig
+    }
+
+    fn fault(&self) -> Option<Fault> {
+        self.feedback().fault
+    }
+}
+
+/// Oracle: 0006h, 0007h, 000Fh and back by 0007h, 0006h, as manuals print it.
+#[test]
+fn strict_sequencing_gives_one_command_per_state() {
+    let mut rig = Rig::new(settings());
+    let (words, powers) = rig.words(50, REST);
+    assert_eq!(words, [0x0000, 0x0006, 0x0007, 0x000F]);
+    assert_eq!(powers, [Power::Switching, Power::On]);
+    let (words, powers) = rig.words(50, OFF);
+    assert_eq!(words, [0x0007, 0x0006]);
+    assert_eq!(powers, [Power::Switching, Power::Off]);
+    assert_eq!(rig.drive.memory.state(), PowerState::ReadyToSwitchOn);
+    assert_eq!(rig.fault(), None);
+}
+
+#[test]
+fn simplified_sequencing_switches_the_word_at_once() {
+    let mut rig = Rig::new(Settings { sequencing: Sequencing::Simplified, ..settings() });
+    assert_eq!(rig.words(50, REST).0, [0x0006, 0x000F]);
+    assert_eq!(rig.words(50, OFF).0, [0x0006]);
+    assert_eq!(rig.words(50, REST).0, [0x000F]);
+    assert_eq!(rig.drive.memory.state(), PowerState::OperationEnabled);
+    rig.drive.fault = true;
+    assert_eq!(rig.words(50, REST).0, [0x000F, 0x0000]);
+    assert_eq!(rig.fault(), Some(Fault::Drive(0x7121)));
+    rig.drive.fault = false;
+    assert_eq!(rig.words(50, RESET).0, [0x0080, 0x0006, 0x000F]);
+    assert_eq!(rig.fault(), None);
+}
+
+#[test]
+fn a_fault_of_the_drive_waits_for_the_edge_of_a_reset() {
+    let mut rig = Rig::powered(settings());
+    rig.drive.fault = true;
+    assert_eq!(rig.words(20, REST).0, [0x000F, 0x0000]);
+    assert_eq!((rig.fault(), rig.feedback().power), (Some(Fault::Drive(0x7121)), Power::Off));
+    rig.drive.fault = false;
+    assert_eq!(rig.words(20, REST).0, [0x0000]);
+    let (words, powers) = rig.words(20, RESET);
+    assert_eq!(words, [0x0080, 0x0006, 0x0007, 0x000F]);
+    assert_eq!(powers, [Power::Off, Power::Switching, Power::On]);
+    // The same level again is no edge.
+    rig.drive.fault = true;
+    rig.words(20, RESET);
+    rig.drive.fault = false;
+    rig.words(20, RESET);
+    assert_eq!(rig.fault(), Some(Fault::Drive(0x7121)));
+}
+
+#[test]
+fn a_fault_that_persists_is_not_reset_for_ever() {
+    let mut rig = Rig::powered(settings());
+    rig.drive.fault = true;
+    rig.words(20, REST);
+    // 1600 ticks are 100 cycles.
+    assert_eq!(rig.words(150, RESET).0, [0x0080, 0x0000]);
+    rig.drive.fault = false;
+    rig.words(20, REST);
+    rig.words(20, RESET);
+    assert_eq!((rig.fault(), rig.feedback().power), (None, Power::On));
+}
+
+#[test]
+fn a_drive_that_does_not_do_what_it_is_told_times_out() {
+    let mut rig = Rig::new(settings());
+    rig.run(1, |_| OFF);
+    rig.drive.deaf = true;
+    let told = rig.tick;
+    rig.write(told, REST);
+    while rig.fault().is_none() {
+        rig.cycle();
+    }
+    assert_eq!(rig.fault(), Some(Fault::Link(LinkFault::DriveTimeout)));
+    // 1600 ticks after the command, at the first cycle after that.
+    assert_eq!(rig.tick - BUS - told, 1_600 + BUS);
+    rig.drive.deaf = false;
+    rig.words(20, OFF);
+    rig.words(20, RESET);
+    assert_eq!((rig.fault(), rig.feedback().power), (None, Power::On));
+}
+
+#[test]
+fn a_silent_drive_is_told_to_stop_quickly() {
+    let mut rig = Rig::powered(settings());
+    let silent = rig.tick;
+    while rig.fault().is_none() {
+        rig.answer = None;
+        rig.cycle();
+    }
+    assert_eq!(rig.fault(), Some(Fault::Link(LinkFault::DriveTimeout)));
+    assert_eq!(rig.tick - BUS - (silent - BUS), 1_600 + BUS);
+    assert_eq!(rig.commands.controlword.bits(), 0x0002);
+    // It is heard again: nothing happens before a reset.
+    rig.words(20, REST);
+    assert_eq!(rig.fault(), Some(Fault::Link(LinkFault::DriveTimeout)));
+    rig.words(20, RESET);
+    assert_eq!((rig.fault(), rig.feedback().power), (None, Power::On));
+}
+
+#[test]
+fn a_drive_that_leaves_operation_enabled_does_not_come_back_by_itself() {
+    let mut rig = Rig::powered(settings());
+    rig.answer = rig
+        .answer
+        .map(|actuals| servobench_cia402::Actuals { statusword: Statusword::of(PowerState::SwitchedOn), ..actuals });
+    let (words, _) = rig.words(20, REST);
+    assert_eq!(rig.fault(), Some(Fault::Link(LinkFault::DriveLeftOperation)));
+    assert!(!words.contains(&0x000F), "{words:04X?}");
+    rig.words(20, RESET);
+    assert_eq!((rig.fault(), rig.feedback().power), (None, Power::On));
+}
+
+#[test]
+fn the_external_fault_stops_quickly_for_as_long_as_it_is_there() {
+    let mut rig = Rig::powered(settings());
+    rig.external_fault = true;
+    let (words, _) = rig.words(20, REST);
+    // Quick stop; the default option code disables the drive when it is over.
+    assert_eq!(words, [0x0002, 0x0000]);
+    assert_eq!(rig.fault(), Some(Fault::Link(LinkFault::External)));
+    assert_eq!(rig.feedback().interpolation, Interpolation::Off);
+    rig.words(20, RESET);
+    assert_eq!(rig.fault(), Some(Fault::Link(LinkFault::External)));
+    rig.external_fault = false;
+    rig.words(20, REST);
+    assert_eq!(rig.fault(), Some(Fault::Link(LinkFault::External)));
+    rig.words(20, RESET);
+    assert_eq!((rig.fault(), rig.feedback().power), (None, Power::On));
+}
+
+/// The axis moves at 0.1 m/s in the direction of `sign` for so many cycles of the motion task, from where it is.
+fn moves(rig: &mut Rig, sign: f64, cycles: u64) {
+    let (x, start) = (rig.feedback().position, rig.tick / MOTION);
+    rig.run(cycles, |cycle| at(x + sign * 0.1 * 0.02 * (cycle - start) as f64, sign * 0.1));
+}
+
+#[test]
+fn a_limit_switch_halts_what_moves_into_it_and_nothing_else() {
+    let wired = |closed: u32, reverse: bool| if reverse { closed ^ 0b111 } else { closed };
+    for (sign, bit, fault) in [(-1.0, 0b001, LinkFault::NegativeLimit), (1.0, 0b010, LinkFault::PositiveLimit)] {
+        for reverse_switches in [false, true] {
+            // Lines: what starts abruptly must not swing back.
+            let interpolation = servobench_motion::interpolate::Mode::Linear;
+            let mut rig = Rig::new(Settings { reverse_switches, interpolation, ..settings() });
+            rig.drive.actuals.digital_inputs = wired(0, reverse_switches);
+            rig.run(3, |_| REST);
+            moves(&mut rig, sign, 10);
+            assert_eq!(rig.fault(), None);
+            rig.drive.actuals.digital_inputs = wired(bit, reverse_switches);
+            moves(&mut rig, sign, 5);
+            assert_eq!(rig.fault(), Some(Fault::Link(fault)));
+            assert_eq!(rig.commands.controlword.bits(), 0x010F, "halted, still powered");
+            let x = rig.feedback().position;
+            let switches = rig.feedback().switches;
+            let expected = Switches { negative_limit: sign < 0.0, home: false, positive_limit: sign > 0.0 };
+            assert_eq!(switches, expected);
+
+            // Reset at rest, out of the switch, back in.
+            let rest = at(x, 0.0);
+            rig.run(2, |_| AxisCommand { reset: true, ..rest });
+            rig.run(3, |_| rest);
+            assert_eq!(rig.fault(), None);
+            moves(&mut rig, -sign, 10);
+            assert_eq!(rig.fault(), None);
+            assert!(sign * (rig.feedback().position - x) < -1e-3);
+            moves(&mut rig, sign, 20);
+            assert_eq!(rig.fault(), Some(Fault::Link(fault)));
+        }
+    }
+}
+
+#[test]
+fn a_sample_that_is_no_number_is_refused_and_stops_the_axis() {
+    for sample in [f64::NAN, f64::INFINITY, 1e30] {
+        let mut rig = Rig::powered(settings());
+        rig.run(1, |_| at(sample, 0.0));
+        assert_eq!(rig.fault(), Some(Fault::Link(LinkFault::Command)));
+        assert_eq!(rig.drive.counts, 0);
+    }
+    for v in [f64::NAN, 1e300] {
+        let mut rig = Rig::powered(settings());
+        rig.run(1, |_| at(0.0, v));
+        assert_eq!(rig.fault(), Some(Fault::Link(LinkFault::Command)));
+    }
+}
