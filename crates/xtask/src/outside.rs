@@ -11,7 +11,12 @@ use std::path::PathBuf;
 use std::process::Command;
 
 /// The programs, in `tests/outside/`.
-const CLIENTS: [&str; 3] = ["online4_by_linear_program.py", "optimal_by_linear_program.py", "order3_by_ruckig.py"];
+const CLIENTS: [&str; 4] = [
+    "object_dictionary_by_canopen.py",
+    "online4_by_linear_program.py",
+    "optimal_by_linear_program.py",
+    "order3_by_ruckig.py",
+];
 
 /// The programs that can be run here, and why none can.
 #[derive(Debug)]

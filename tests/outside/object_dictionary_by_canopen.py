@@ -1,0 +1,187 @@
+"""The object dictionary against the Python package `canopen`, which masters of CANopen are written with.
+
+`canopen` reads the electronic data sheet (CiA 306). Then
+- every object of its reading is one of the table, which is read as JSON, with the same name, type, access, default and range;
+- a slave that `canopen` makes of the data sheet and the drive give the same bytes or the same abort code for every read of
+  every index around the areas of the drive, and for writes of every entry: what it holds, one byte more and one less;
+- the ends of every range that `canopen` read are taken, what is beyond is refused as too high or too low.
+"""
+
+import json
+import logging
+import subprocess
+import tempfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import canopen
+from canopen.objectdictionary import ODArray, ODVariable, datatypes
+
+ROOT = Path(__file__).resolve().parents[2]
+AREAS = (range(0x1000, 0x1020), range(0x2000, 0x2020), range(0x6030, 0x6120), range(0x64F0, 0x6510))
+SUBINDICES = range(0, 6)
+TYPES = {
+    "INTEGER8": datatypes.INTEGER8,
+    "INTEGER16": datatypes.INTEGER16,
+    "INTEGER32": datatypes.INTEGER32,
+    "UNSIGNED8": datatypes.UNSIGNED8,
+    "UNSIGNED16": datatypes.UNSIGNED16,
+    "UNSIGNED32": datatypes.UNSIGNED32,
+    "UNSIGNED64": datatypes.UNSIGNED64,
+}
+TOO_HIGH, TOO_LOW = "06090031", "06090032"
+
+# A line of a request to the drive: read or write, index, sub-index, bytes.
+Access = tuple[str, int, int, bytes]
+
+
+def example(*arguments: str, text: str | None = None) -> str:
+    """What the example `object_dictionary` prints."""
+    command = ["cargo", "run", "--quiet", "--release", "--package", "servobench-cia402", "--example", "object_dictionary"]
+    command += ["--", *arguments]
+    return subprocess.run(command, cwd=ROOT, input=text, stdout=subprocess.PIPE, text=True, check=True).stdout
+
+
+def read_data_sheet() -> canopen.ObjectDictionary:
+    """The data sheet as `canopen` reads it, which only warns of some mistakes."""
+    warnings: list[logging.LogRecord] = []
+    handler = logging.Handler()
+    handler.emit = warnings.append  # type: ignore[method-assign]
+    logging.getLogger("canopen").addHandler(handler)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "drive.eds"
+        path.write_text(example("eds", path.name, "11-21-2026", "08:00AM"), encoding="utf-8")
+        dictionary = canopen.import_od(str(path), node_id=1)
+    if warnings:
+        raise SystemExit(f"canopen warns of the data sheet: {[record.getMessage() for record in warnings]}")
+    return dictionary
+
+
+def variables(dictionary: canopen.ObjectDictionary) -> Iterator[ODVariable]:
+    """Every entry with a value, sub-indices 00h of arrays and records too."""
+    for entry in dictionary.values():
+        if isinstance(entry, ODVariable):
+            yield entry
+        else:
+            yield from entry.values()
+
+
+def compare_tables(dictionary: canopen.ObjectDictionary, table: Sequence[dict[str, Any]]) -> list[str]:
+    """Differences between the reading of `canopen` and the table."""
+    expected = {(entry["index"], entry["subindex"]): entry for entry in table}
+    wrong = []
+    for entry in variables(dictionary):
+        key = f"{entry.index:04X}h:{entry.subindex:02X}h"
+        known = expected.pop((entry.index, entry.subindex), None)
+        if known is None:
+            highest = sum(other["index"] == entry.index for other in table)
+            if (entry.subindex, entry.default, entry.data_type) != (0, highest, datatypes.UNSIGNED8):
+                wrong.append(f"{key} is not in the table")
+            continue
+        # In a data sheet the direction of process data belongs to the access.
+        access = {"RPDO": "rww", "TPDO": "rwr"}.get(known["pdo"]) if known["access"] == "rw" else None
+        lowest, highest = known.get("range", (None, None))
+        object_name = dictionary[entry.index].name
+        pairs = {
+            "object": (object_name, known["object"]),
+            "type": (entry.data_type, TYPES[known["type"]]),
+            "access": (entry.access_type, access or known["access"]),
+            "PDO": (entry.pdo_mappable, known["pdo"] != ""),
+            "default": (entry.default, known["default"]),
+            "range": ((entry.min, entry.max), (lowest, highest)),
+        }
+        wrong += [f"{key}: {what} read as {read}, in the table {is_}" for what, (read, is_) in pairs.items() if read != is_]
+        if not entry.name.startswith(known["name"]):
+            wrong.append(f"{key} is named {entry.name}, in the table {known['name']}")
+    wrong += [f"{index:04X}h:{subindex:02X}h is not in the data sheet" for index, subindex in expected]
+    return wrong
+
+
+def ask(accesses: Sequence[Access]) -> list[str]:
+    """The drive's answers: bytes in hexadecimal digits, or an abort code after `abort`."""
+    lines = (f"{verb} {index:04x} {subindex:02x} {data.hex()}\n" for verb, index, subindex, data in accesses)
+    answers = example("sdo", text="".join(lines)).splitlines()
+    if len(answers) != len(accesses):
+        raise SystemExit(f"{len(accesses)} accesses, {len(answers)} answers")
+    return [" ".join(answer.split()[:2]) for answer in answers]
+
+
+def slave_answer(slave: canopen.LocalNode, access: Access) -> str:
+    """What the slave of `canopen` answers, in the words of the drive."""
+    verb, index, subindex, data = access
+    try:
+        if verb == "read":
+            return slave.get_data(index, subindex, check_readable=True).hex()
+        slave.set_data(index, subindex, data, check_writable=True)
+    except canopen.SdoAbortedError as aborted:
+        return f"abort {aborted.code:08x}"
+    return ""
+
+
+def accesses(dictionary: canopen.ObjectDictionary) -> Iterator[Access]:
+    """Reads of everything there may be, and writes of every entry in its own and in wrong lengths."""
+    for index in (index for area in AREAS for index in area):
+        for subindex in SUBINDICES:
+            # Of variables and arrays, `canopen` has every sub-index.
+            entry = dictionary.get(index)
+            if isinstance(entry, ODVariable) and subindex > 0:
+                continue
+            if isinstance(entry, ODArray) and subindex > entry[0].default:
+                continue
+            yield "read", index, subindex, b""
+    for entry in variables(dictionary):
+        data = entry.encode_raw(entry.default)
+        for written in (data, data + b"\0", data[:-1]):
+            yield "write", entry.index, entry.subindex, written
+        yield "read", entry.index, entry.subindex, b""
+
+
+def compare_accesses(dictionary: canopen.ObjectDictionary, asked: Sequence[Access]) -> list[str]:
+    """Accesses that the drive and the slave of `canopen` answer differently."""
+    slave = canopen.LocalNode(1, dictionary)
+    wrong = []
+    for access, ours in zip(asked, ask(asked), strict=True):
+        theirs = slave_answer(slave, access)
+        if ours != theirs:
+            verb, index, subindex, data = access
+            wrong.append(f"{verb} {index:04X}h:{subindex:02X}h {data.hex()}: `{ours}`, canopen `{theirs}`")
+    return wrong
+
+
+def range_ends(dictionary: canopen.ObjectDictionary) -> list[tuple[Access, str]]:
+    """Writes at and beyond the ends of every range, as far as the type goes, and how each has to be answered."""
+    ends = []
+    for entry in variables(dictionary):
+        if entry.min is None or not entry.writable:
+            continue
+        steps = ((entry.max, ""), (entry.min, ""), (entry.max + 1, f"abort {TOO_HIGH}"), (entry.min - 1, f"abort {TOO_LOW}"))
+        signed = entry.data_type in datatypes.SIGNED_TYPES
+        size = len(entry) // 8
+        for value, answer in steps:
+            try:
+                data = value.to_bytes(size, "little", signed=signed)
+            except OverflowError:
+                continue
+            ends.append((("write", entry.index, entry.subindex, data), answer))
+    return ends
+
+
+def main() -> None:
+    """Compares the tables, the accesses and the ranges."""
+    dictionary, table = read_data_sheet(), json.loads(example("json"))
+    wrong = compare_tables(dictionary, table)
+    print(f"object dictionary: {len(dictionary)} objects with {len(table)} values, as canopen {canopen.__version__} reads them")
+    asked = list(accesses(dictionary))
+    wrong += compare_accesses(dictionary, asked)
+    print(f"{len(asked)} accesses answered by the drive and by a slave of canopen")
+    ends = range_ends(dictionary)
+    answers = ask([access for access, _ in ends])
+    wrong += [f"{access} is answered by `{is_}`, not `{due}`" for (access, due), is_ in zip(ends, answers, strict=True) if is_ != due]
+    print(f"{len(ends)} writes at and beyond the ends of ranges")
+    if wrong:
+        raise SystemExit(f"{len(wrong)} differences, the first: " + "; ".join(wrong[:5]))
+
+
+if __name__ == "__main__":
+    main()
