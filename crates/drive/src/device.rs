@@ -40,7 +40,7 @@ pub use window::{Dwell, Window};
 use crate::Demand;
 use crate::modes::stop::Ramp;
 use crate::modes::{Actual, Answer, Moment, Targets};
-use running::Running;
+use running::{Running, Said};
 use servobench_base::{ParamError, Setpoint};
 use servobench_cia402::{
     self as cia402, Actuals, Command, Commands, Deceleration, DriveFunction, Mode, PowerInputs, PowerMemory,
@@ -109,9 +109,12 @@ pub struct State {
     now: Moment,
     /// What the loops were asked at the last step, in the axis' coordinate.
     last: Demand,
-    target_is_cut: bool,
+    /// Whether the last frame asked for more than the limits.
+    is_cut: bool,
     /// Where the axis has its zero (increments).
     origin: i64,
+    /// What homing adds to every position from the next step on.
+    shift: Option<f64>,
     fault: Option<Fault>,
     beyond_following_error: Dwell,
     at_standstill: Dwell,
@@ -141,8 +144,9 @@ impl State {
                 period: p.period,
             },
             last: Demand::Off,
-            target_is_cut: false,
+            is_cut: false,
             origin: 0,
+            shift: None,
             fault: None,
             beyond_following_error: Dwell::default(),
             at_standstill: Dwell::default(),
@@ -219,7 +223,7 @@ pub fn step(p: &Params, x: &mut State, u: &Inputs) -> Outputs {
     // Without power nothing can be driven, whatever the state says.
     let asked = if u.main_voltage { answer.demand } else { Demand::Off };
     x.last = within(p.limits.effort, asked);
-    let is_limited = x.target_is_cut
+    let is_limited = x.is_cut
         || x.guard.is_active()
         || u.measured.effort_is_cut
         || x.running.as_ref().is_some_and(Running::is_limited)
@@ -230,8 +234,11 @@ pub fn step(p: &Params, x: &mut State, u: &Inputs) -> Outputs {
         .with(StatusBit::InternalLimitActive, is_limited)
         .with(StatusBit::ModeSpecific12, answer.bit_12)
         .with(StatusBit::ModeSpecific13, answer.bit_13);
-    let origin = p.units.metres_or_radians(x.origin);
-    Outputs { demand: shifted(x.last, origin), transition: power.transition, fault }
+    let demand = shifted(x.last, p.units.metres_or_radians(x.origin));
+    if let Some(shift) = x.shift.take() {
+        x.move_zero(p, shift);
+    }
+    Outputs { demand, transition: power.transition, fault }
 }
 
 impl State {
@@ -251,11 +258,18 @@ impl State {
         self.now.demanded = match self.last {
             Demand::Position { setpoint, .. } => setpoint.after(p.period),
             Demand::Velocity { setpoint, .. } => {
-                Setpoint { v: setpoint.v + p.period * setpoint.a, ..Setpoint::at_rest(actual.position) }
+                Setpoint { v: setpoint.after(p.period).v, ..Setpoint::at_rest(actual.position) }
             }
             Demand::Effort(_) | Demand::Off => Setpoint { v: actual.velocity, ..Setpoint::at_rest(actual.position) },
         };
         self.now.actual = actual;
+    }
+
+    /// Adds to every position, as far as whole increments go.
+    fn move_zero(&mut self, p: &Params, shift: f64) {
+        let increments = p.units.increments(shift);
+        self.origin -= increments;
+        self.last = shifted(self.last, p.units.metres_or_radians(increments));
     }
 
     /// Converts a frame.
@@ -270,26 +284,25 @@ impl State {
         };
         let position = p.units.from_position(target);
         let kept = p.limits.position.map_or(position, |[lowest, highest]| position.clamp(lowest, highest));
-        self.target_is_cut = kept.to_bits() != position.to_bits();
-        let or_else = |units: u32, set: f64, highest: f64| {
-            let asked = if units == 0 { set } else { p.units.from_rate(units) };
-            asked.min(highest)
+        let rate = |units: u32, set: f64| if units == 0 { set } else { p.units.from_rate(units) };
+        let profile_velocity = rate(frame.profile_velocity, p.profile.velocity);
+        self.is_cut = match self.wanted {
+            Some(Mode::CyclicSynchronousPosition) => kept.to_bits() != position.to_bits(),
+            Some(Mode::ProfilePosition) => profile_velocity > p.profile_limit(),
+            _ => false,
         };
         self.now.targets = Targets {
             controlword: frame.controlword,
-            position: kept,
+            position: if self.wanted == Some(Mode::ProfilePosition) { position } else { kept },
             distance: p.units.from_position(frame.target_position.into()),
             velocity: p.units.from_velocity(frame.target_velocity),
             effort: p.units.from_effort(frame.target_torque),
             velocity_offset: p.units.from_velocity(frame.velocity_offset),
             effort_offset: p.units.from_effort(frame.torque_offset),
-            profile_velocity: or_else(
-                frame.profile_velocity,
-                p.profile.velocity,
-                p.limits.profile_velocity.min(p.limits.velocity),
-            ),
-            profile_acceleration: or_else(frame.profile_acceleration, p.profile.acceleration, p.limits.acceleration),
-            profile_deceleration: or_else(frame.profile_deceleration, p.profile.deceleration, p.limits.deceleration),
+            profile_velocity: profile_velocity.min(p.profile_limit()),
+            profile_acceleration: rate(frame.profile_acceleration, p.profile.acceleration).min(p.limits.acceleration),
+            profile_deceleration: rate(frame.profile_deceleration, p.profile.deceleration).min(p.limits.deceleration),
+            home_offset: p.units.from_position(frame.home_offset.into()),
             is_new: true,
         };
     }
@@ -345,11 +358,10 @@ impl State {
     }
 
     fn switch_mode(&mut self) {
-        if let Some(wanted) = self.wanted.filter(|wanted| self.mode != Some(*wanted))
-            && Running::begin(wanted, &self.now).is_some()
+        if self.wanted != self.mode
+            && let Some(wanted) = self.wanted.filter(|wanted| running::has(*wanted))
         {
-            self.mode = Some(wanted);
-            self.running = None;
+            (self.mode, self.running) = (Some(wanted), None);
         }
     }
 
@@ -357,17 +369,22 @@ impl State {
         self.switch_mode();
         let was_stopped = self.stop.take().is_some();
         if self.running.is_none() {
-            self.running = self.mode.and_then(|mode| Running::begin(mode, &self.now));
+            self.running = self.mode.and_then(|mode| Running::begin(p, mode, &self.now));
             self.guard = guard::State::default();
         } else if was_stopped && let Some(running) = &mut self.running {
-            running.resume(&self.now);
+            running.resume(p, &self.now);
         }
         let Some(running) = &mut self.running else {
             // No mode yet: the axis is held where it is.
             return self.brake(p, Deceleration::SlowDownRamp, false);
         };
-        let answer = running.step(p, &self.now, beat);
-        Answer { demand: self.guard.step(p, &self.now, answer.demand), ..answer }
+        let Said { mut answer, shift } = running.step(p, &self.now, beat);
+        if !running.looks_for_ends() {
+            answer.demand = self.guard.step(p, &self.now, answer.demand);
+        }
+        answer.bit_13 |= running.tells_following_error() && !p.following_error.holds(self.measured.following_error);
+        self.shift = shift;
+        answer
     }
 
     /// Brakes and holds. Only a halt leaves the mode what it was doing.
@@ -408,14 +425,12 @@ fn within([forward, backward]: [f64; 2], demand: Demand) -> Demand {
     }
 }
 
-/// The demand in the encoder's coordinate.
-fn shifted(demand: Demand, origin: f64) -> Demand {
+/// The demand when every position is so much greater.
+fn shifted(demand: Demand, by: f64) -> Demand {
     match demand {
-        Demand::Position { setpoint, velocity_offset, effort_offset } => Demand::Position {
-            setpoint: Setpoint { x: setpoint.x + origin, ..setpoint },
-            velocity_offset,
-            effort_offset,
-        },
+        Demand::Position { setpoint, velocity_offset, effort_offset } => {
+            Demand::Position { setpoint: Setpoint { x: setpoint.x + by, ..setpoint }, velocity_offset, effort_offset }
+        }
         Demand::Off | Demand::Velocity { .. } | Demand::Effort(_) => demand,
     }
 }

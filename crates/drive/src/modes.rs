@@ -4,6 +4,7 @@
 //! the axis unit (m or rad), efforts in the motor's (N·m or N): drive units end at the door.
 pub mod cyclic;
 pub mod homing;
+pub mod profile;
 pub mod stop;
 
 use crate::Demand;
@@ -47,6 +48,8 @@ pub struct Targets {
     pub profile_acceleration: f64,
     /// Deceleration of a profile (6084h), a magnitude.
     pub profile_deceleration: f64,
+    /// Position that the reference gets when it is found (607Ch).
+    pub home_offset: f64,
     /// Whether the frame that brought these came since the last step.
     pub is_new: bool,
 }

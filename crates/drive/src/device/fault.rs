@@ -1,4 +1,5 @@
 //! What sends the drive into its fault reaction.
+use servobench_cia402::ErrorCode;
 
 /// A fault, with the code that the profile gives it (603Fh; IEC 61800-7-201, error codes).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -19,15 +20,13 @@ impl Fault {
     /// Value of 603Fh.
     #[must_use]
     pub const fn code(self) -> u16 {
-        match self {
-            // DC link under-voltage.
-            Self::MainsMissing => 0x3220,
-            // Sensor.
-            Self::Encoder => 0x7300,
-            // Sync controller.
-            Self::FramesMissing => 0x8700,
-            Self::FollowingError => 0x8611,
-            Self::External(code) => code,
-        }
+        let code = match self {
+            Self::MainsMissing => ErrorCode::DcLinkUnderVoltage,
+            Self::Encoder => ErrorCode::IncrementalSensor,
+            Self::FramesMissing => ErrorCode::SyncController,
+            Self::FollowingError => ErrorCode::FollowingError,
+            Self::External(code) => return code,
+        };
+        code as u16
     }
 }

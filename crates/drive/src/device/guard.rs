@@ -34,7 +34,7 @@ impl State {
             return demand;
         }
         if let Some(held) = &self.held
-            && leads_back(held, &demand)
+            && leads_back(held, now, &demand)
         {
             self.held = None;
         }
@@ -62,19 +62,21 @@ fn goes_beyond(p: &Params, now: &Moment, demand: &Demand, end: f64) -> bool {
     match demand {
         Demand::Off => false,
         Demand::Position { setpoint, .. } => end * setpoint.v > 0.0 && (at_switch || is_beyond(setpoint.x)),
-        Demand::Velocity { setpoint, .. } => end * setpoint.v > 0.0 && (at_switch || is_beyond(now.actual.position)),
+        Demand::Velocity { setpoint, .. } => {
+            end * setpoint.after(now.period).v > 0.0 && (at_switch || is_beyond(now.actual.position))
+        }
         Demand::Effort(effort) => end * effort > 0.0 && (at_switch || is_beyond(now.actual.position)),
     }
 }
 
 /// Whether the demand leads back from where the axis is held.
-fn leads_back(held: &Held, demand: &Demand) -> bool {
+fn leads_back(held: &Held, now: &Moment, demand: &Demand) -> bool {
     match demand {
         Demand::Off => true,
         Demand::Position { setpoint, .. } => {
             held.end * (setpoint.x - held.ramp.end()) <= 0.0 && held.end * setpoint.v <= 0.0
         }
-        Demand::Velocity { setpoint, .. } => held.end * setpoint.v <= 0.0,
+        Demand::Velocity { setpoint, .. } => held.end * setpoint.after(now.period).v <= 0.0,
         Demand::Effort(effort) => held.end * effort <= 0.0,
     }
 }

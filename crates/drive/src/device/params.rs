@@ -1,6 +1,7 @@
 //! What the drive is set to: the objects that do not come with every frame, in SI.
 use super::{Units, Window, cycle};
-use crate::modes::cyclic;
+use crate::modes::profile::position::Ramp;
+use crate::modes::{Moment, cyclic, homing, profile};
 use core::cmp::Ordering;
 use servobench_base::{ParamError, limit, positive};
 use servobench_cia402::PowerParams;
@@ -32,6 +33,8 @@ pub struct Params {
     pub velocity: Window,
     /// Velocity threshold and time (606Fh, 6070h): what counts as standstill.
     pub standstill: Window,
+    /// How the drive looks for its reference; the home offset comes with the frame.
+    pub homing: homing::Params,
 }
 
 /// What no mode may exceed.
@@ -62,6 +65,12 @@ pub struct Profile {
     pub deceleration: f64,
     /// 6085h.
     pub quick_stop_deceleration: f64,
+    /// Motion profile type (6086h).
+    pub ramp: Ramp,
+    /// Velocity with which a target position is passed (6082h); zero for a stop there.
+    pub end_velocity: f64,
+    /// Torque slope (6087h; N·m/s or N/s); infinite for steps.
+    pub effort_slope: f64,
 }
 
 impl Default for Params {
@@ -83,11 +92,27 @@ impl Default for Params {
                 effort: [f64::INFINITY; 2],
                 position: None,
             },
-            profile: Profile { velocity: 0.1, acceleration: 1.0, deceleration: 1.0, quick_stop_deceleration: 10.0 },
+            profile: Profile {
+                velocity: 0.1,
+                acceleration: 1.0,
+                deceleration: 1.0,
+                quick_stop_deceleration: 10.0,
+                ramp: Ramp::Linear,
+                end_velocity: 0.0,
+                effort_slope: f64::INFINITY,
+            },
             following_error: Window { width: f64::INFINITY, time: 0.0 },
             position: Window { width: 1e-5, time: 0.01 },
             velocity: Window { width: 1e-3, time: 0.01 },
             standstill: Window { width: 1e-3, time: 0.01 },
+            homing: homing::Params {
+                method: homing::Method::from_number(35).expect("a method of the profile"),
+                switch_speed: 0.05,
+                zero_speed: 0.005,
+                acceleration: 1.0,
+                jerk: None,
+                home_offset: 0.0,
+            },
         }
     }
 }
@@ -118,10 +143,39 @@ impl Params {
         positive("profile_acceleration", self.profile.acceleration)?;
         positive("profile_deceleration", self.profile.deceleration)?;
         positive("quick_stop_deceleration", self.profile.quick_stop_deceleration)?;
+        limit("torque_slope", self.profile.effort_slope)?;
+        self.profile_position().check()?;
+        self.homing.check()?;
         self.following_error.check(["following_error_window", "following_error_time_out"])?;
         self.position.check(["position_window", "position_window_time"])?;
         self.velocity.check(["velocity_window", "velocity_window_time"])?;
         self.standstill.check(["velocity_threshold", "velocity_threshold_time"])
+    }
+
+    /// Highest velocity of a profile.
+    pub(super) const fn profile_limit(&self) -> f64 {
+        self.limits.profile_velocity.min(self.limits.velocity)
+    }
+
+    pub(super) const fn profile_position(&self) -> profile::position::Params {
+        profile::position::Params {
+            ramp: self.profile.ramp,
+            end_velocity: self.profile.end_velocity,
+            window: self.position,
+            range: self.limits.position,
+        }
+    }
+
+    pub(super) const fn profile_velocity(&self) -> profile::velocity::Params {
+        profile::velocity::Params { limit: self.profile_limit(), window: self.velocity, threshold: self.standstill }
+    }
+
+    pub(super) const fn profile_effort(&self) -> profile::effort::Params {
+        profile::effort::Params { slope: self.profile.effort_slope }
+    }
+
+    pub(super) const fn homing(&self, now: &Moment) -> homing::Params {
+        homing::Params { home_offset: now.targets.home_offset, ..self.homing }
     }
 
     pub(super) const fn cyclic_position(&self) -> cyclic::position::Params {

@@ -1,60 +1,105 @@
 //! The mode that runs, with its state.
 use super::{Beat, Params};
-use crate::modes::cyclic::{effort, position, velocity};
-use crate::modes::{Answer, Moment};
+use crate::modes::{Answer, Moment, cyclic, homing, profile};
 use servobench_cia402::Mode;
 
 /// A mode, by its abbreviation, and its state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Running {
-    Csp(position::State),
-    Csv(velocity::State),
-    Cst(effort::State),
+    Pp(profile::position::State),
+    Pv(profile::velocity::State),
+    Tq(profile::effort::State),
+    Hm(homing::State),
+    Csp(cyclic::position::State),
+    Csv(cyclic::velocity::State),
+    Cst(cyclic::effort::State),
+}
+
+/// What a mode says, and what it has found out.
+pub(super) struct Said {
+    pub(super) answer: Answer,
+    /// What is added to every position from the next step on.
+    pub(super) shift: Option<f64>,
+}
+
+impl From<Answer> for Said {
+    fn from(answer: Answer) -> Self {
+        Self { answer, shift: None }
+    }
+}
+
+/// Whether the drive has a mode.
+pub(super) const fn has(mode: Mode) -> bool {
+    !matches!(mode, Mode::InterpolatedPosition)
 }
 
 impl Running {
     /// The mode takes over; `None` for one that the drive does not have.
-    pub(super) fn begin(mode: Mode, now: &Moment) -> Option<Self> {
+    pub(super) fn begin(p: &Params, mode: Mode, now: &Moment) -> Option<Self> {
         match mode {
-            Mode::CyclicSynchronousPosition => Some(Self::Csp(position::State::begin(now))),
-            Mode::CyclicSynchronousVelocity => Some(Self::Csv(velocity::State::begin(now))),
-            Mode::CyclicSynchronousTorque => Some(Self::Cst(effort::State::begin(now))),
-            Mode::ProfilePosition
-            | Mode::ProfileVelocity
-            | Mode::ProfileTorque
-            | Mode::Homing
-            | Mode::InterpolatedPosition => None,
+            Mode::ProfilePosition => Some(Self::Pp(profile::position::State::begin(&p.profile_position(), now))),
+            Mode::ProfileVelocity => Some(Self::Pv(profile::velocity::State::begin(now))),
+            Mode::ProfileTorque => Some(Self::Tq(profile::effort::State::begin(now))),
+            Mode::Homing => Some(Self::Hm(homing::State::begin(now))),
+            Mode::CyclicSynchronousPosition => Some(Self::Csp(cyclic::position::State::begin(now))),
+            Mode::CyclicSynchronousVelocity => Some(Self::Csv(cyclic::velocity::State::begin(now))),
+            Mode::CyclicSynchronousTorque => Some(Self::Cst(cyclic::effort::State::begin(now))),
+            Mode::InterpolatedPosition => None,
         }
     }
 
     /// Goes on after a halt, from where the axis stands.
-    pub(super) fn resume(&mut self, now: &Moment) {
+    pub(super) fn resume(&mut self, p: &Params, now: &Moment) {
         match self {
-            Self::Csp(x) => *x = position::State::begin(now),
-            Self::Csv(x) => *x = velocity::State::begin(now),
-            Self::Cst(x) => *x = effort::State::begin(now),
+            Self::Pp(x) => x.resume(&p.profile_position(), now),
+            Self::Pv(x) => *x = profile::velocity::State::begin(now),
+            Self::Tq(x) => *x = profile::effort::State::begin(now),
+            // It sees for itself that the loops follow something else meanwhile.
+            Self::Hm(_) => {}
+            Self::Csp(x) => *x = cyclic::position::State::begin(now),
+            Self::Csv(x) => *x = cyclic::velocity::State::begin(now),
+            Self::Cst(x) => *x = cyclic::effort::State::begin(now),
         }
     }
 
-    pub(super) fn step(&mut self, p: &Params, now: &Moment, beat: Beat) -> Answer {
+    pub(super) fn step(&mut self, p: &Params, now: &Moment, beat: Beat) -> Said {
         match self {
-            Self::Csp(x) => position::step(&p.cyclic_position(), x, now, beat),
-            Self::Csv(x) => velocity::step(&p.cyclic_velocity(), x, now, beat),
-            Self::Cst(x) => effort::step(p.cyclic_effort(), x, now, beat),
+            Self::Pp(x) => profile::position::step(&p.profile_position(), x, now).into(),
+            Self::Pv(x) => profile::velocity::step(&p.profile_velocity(), x, now).into(),
+            Self::Tq(x) => profile::effort::step(p.profile_effort(), x, now).into(),
+            Self::Hm(x) => {
+                let homing::Output { answer, shift } = homing::step(&p.homing(now), x, now);
+                Said { answer, shift }
+            }
+            Self::Csp(x) => cyclic::position::step(&p.cyclic_position(), x, now, beat).into(),
+            Self::Csv(x) => cyclic::velocity::step(&p.cyclic_velocity(), x, now, beat).into(),
+            Self::Cst(x) => cyclic::effort::step(p.cyclic_effort(), x, now, beat).into(),
         }
     }
 
     /// Whether it asks for less than the master does.
     pub(super) const fn is_limited(&self) -> bool {
         match self {
+            Self::Pp(x) => x.is_limited(),
+            Self::Pv(x) => x.is_limited(),
             Self::Csp(x) => x.is_limited(),
             Self::Csv(x) => x.is_limited(),
-            Self::Cst(_) => false,
+            Self::Tq(_) | Self::Hm(_) | Self::Cst(_) => false,
         }
     }
 
     /// Whether a frame has to come every cycle.
     pub(super) const fn needs_frames(&self) -> bool {
         matches!(self, Self::Csp(_) | Self::Csv(_) | Self::Cst(_))
+    }
+
+    /// Whether it goes to the ends of the axis by itself.
+    pub(super) const fn looks_for_ends(&self) -> bool {
+        matches!(self, Self::Hm(_))
+    }
+
+    /// Whether bit 13 tells a following error.
+    pub(super) const fn tells_following_error(&self) -> bool {
+        matches!(self, Self::Pp(_) | Self::Csp(_))
     }
 }

@@ -1,4 +1,12 @@
 //! The drive as a master sees it: frames in, demands and frames out, over an axis that follows every demand.
 mod axis;
 mod cyclic;
+mod ends;
+mod handshake;
 mod power;
+mod profile_position;
+mod profile_velocity;
+mod random;
+#[path = "../../../motion/tests/shared/random.rs"]
+mod shared;
+mod supervision;

@@ -1,0 +1,35 @@
+//! Profile torque (tq): the effort goes linearly to its target (6071h) by the torque slope (6087h). The target is reached (bit
+//! 10) when the demand is there.
+use super::ramp::Slopes;
+use crate::Demand;
+use crate::modes::{Answer, Moment};
+
+/// The slope.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Params {
+    /// Torque slope (6087h), a magnitude (N·m/s or N/s); infinite for a step.
+    pub slope: f64,
+}
+
+/// All that a snapshot must hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State {
+    /// Effort of the next step.
+    effort: f64,
+}
+
+impl State {
+    /// Goes on from the effort that the motor gives.
+    #[must_use]
+    pub const fn begin(now: &Moment) -> Self {
+        Self { effort: now.actual.effort }
+    }
+}
+
+/// The demand of a step.
+pub fn step(p: Params, x: &mut State, now: &Moment) -> Answer {
+    let effort = x.effort;
+    x.effort = Slopes { away: p.slope, back: p.slope }.next(effort, now.targets.effort, now.period);
+    let target_reached = effort.to_bits() == now.targets.effort.to_bits();
+    Answer { demand: Demand::Effort(effort), target_reached, bit_12: false, bit_13: false }
+}

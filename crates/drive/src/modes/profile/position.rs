@@ -1,0 +1,233 @@
+//! Profile position (pp): the drive plans a move to each set-point.
+//!
+//! # The handshake
+//!
+//! | | bit | |
+//! |---|---|---|
+//! | controlword | 4, new set-point | its rising edge gives the target position with the profile of the frame |
+//! | | 5, change set immediately | the set-point replaces the one under way and the one that waits |
+//! | | 6, relative | the target is a distance from the target before it (60F2h = 0) |
+//! | | 9, change on set-point | the axis does not stop on the set-point under way but goes on at its profile velocity, and to this one from there |
+//! | statusword | 10, target reached | the axis has been within the position window (6067h) for its time (6068h) and nothing waits |
+//! | | 12, set-point acknowledge | set when a set-point is taken; cleared when bit 4 is cleared and another one would be taken |
+//!
+//! One set-point may wait while another one is under way. One more is not taken: it is not acknowledged by a cleared bit 12, and
+//! the edge is lost. While the axis is halted nothing is taken; afterwards the move goes on.
+//!
+//! # The way
+//!
+//! Ramps are linear or jerk-limited (6086h), from whatever the axis is doing. Speeding up is by the profile's acceleration, slowing
+//! down by its deceleration. A target is passed at the end velocity (6082h), at less where the way is too short for it, and a
+//! set-point without a stop (bit 9) in the same way at the profile velocity: no axis turns back to gain a run-up.
+mod set_point;
+
+use crate::Demand;
+use crate::device::{Dwell, Window};
+use crate::modes::{Answer, Moment};
+use servobench_base::{ParamError, Setpoint, non_negative, positive};
+use servobench_cia402::ControlBit;
+use servobench_motion::Order;
+use servobench_motion::online::{Target, Transition};
+use set_point::SetPoint;
+
+/// How the velocity changes (6086h).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Ramp {
+    /// Linearly: the velocity is a trapezoid (0).
+    Linear,
+    /// With at most this jerk (m/s³ or rad/s³), a magnitude (3).
+    JerkLimited(f64),
+}
+
+/// What does not come with a set-point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Params {
+    /// Motion profile type (6086h).
+    pub ramp: Ramp,
+    /// Velocity with which a target is passed (6082h), a magnitude; zero for a stop there.
+    pub end_velocity: f64,
+    /// Position window and time (6067h, 6068h).
+    pub window: Window,
+    /// Lowest and highest target (607Dh).
+    pub range: Option<[f64; 2]>,
+}
+
+impl Params {
+    /// # Errors
+    /// [`ParamError`] names the first parameter out of its bound.
+    pub fn check(&self) -> Result<(), ParamError> {
+        if let Ramp::JerkLimited(jerk) = self.ramp {
+            positive("profile_jerk", jerk)?;
+        }
+        non_negative("end_velocity", self.end_velocity).map(|_| ())
+    }
+
+    const fn order(&self) -> Order {
+        match self.ramp {
+            Ramp::Linear => Order::Second,
+            Ramp::JerkLimited(_) => Order::Third,
+        }
+    }
+
+    const fn jerk(&self) -> f64 {
+        match self.ramp {
+            Ramp::Linear => f64::INFINITY,
+            Ramp::JerkLimited(jerk) => jerk,
+        }
+    }
+}
+
+/// A planned way and how far it has been gone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Way {
+    transition: Transition,
+    steps: u32,
+}
+
+impl Way {
+    /// The set-point of the next step, the first one being that of the start, and whether the end is reached.
+    fn next(&mut self, period: f64) -> (Setpoint, bool) {
+        let passed = f64::from(self.steps) * period;
+        self.steps = self.steps.saturating_add(1);
+        (self.transition.at(passed), passed >= self.transition.duration())
+    }
+}
+
+/// Bit 4 of the last controlword and bit 12 of the statusword.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Handshake {
+    asks: bool,
+    acknowledges: bool,
+}
+
+fn asks(now: &Moment) -> bool {
+    now.targets.controlword.has(ControlBit::ModeSpecific4)
+}
+
+/// All that a snapshot must hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State {
+    way: Option<Way>,
+    /// Where the axis is held without a way.
+    rest: f64,
+    active: Option<SetPoint>,
+    waiting: Option<SetPoint>,
+    /// Whether the active set-point is passed on the way to the one that waits.
+    is_passed: bool,
+    /// Where a relative set-point counts from.
+    target: f64,
+    handshake: Handshake,
+    within_window: Dwell,
+    is_limited: bool,
+}
+
+impl State {
+    /// Stops an axis that moves and waits for a set-point: a bit 4 that is set already gives none.
+    #[must_use]
+    pub fn begin(p: &Params, now: &Moment) -> Self {
+        let mut state = Self {
+            way: None,
+            rest: now.demanded.x,
+            active: None,
+            waiting: None,
+            is_passed: false,
+            target: now.demanded.x,
+            handshake: Handshake { asks: asks(now), acknowledges: false },
+            within_window: Dwell::default(),
+            is_limited: false,
+        };
+        let brake = SetPoint::at(now.demanded.x, &now.targets);
+        if let Ok(transition) = brake.plan(p, &now.demanded, &Target::Velocity(0.0)) {
+            state.target = transition.at(f64::INFINITY).x;
+            state.way = Some(Way { transition, steps: 0 });
+        }
+        state
+    }
+
+    /// Goes on after a halt, from where the axis stands.
+    pub fn resume(&mut self, p: &Params, now: &Moment) {
+        self.rest = now.demanded.x;
+        self.way = None;
+        if let Some(active) = self.active {
+            self.go_to(p, &active, &now.demanded);
+        }
+    }
+
+    /// Whether the last target was cut to the software limits, or could not be planned.
+    #[must_use]
+    pub const fn is_limited(&self) -> bool {
+        self.is_limited
+    }
+
+    /// A set-point was given.
+    fn take(&mut self, p: &Params, now: &Moment) {
+        let targets = &now.targets;
+        let has = |bit| targets.controlword.has(bit);
+        let at_once = has(ControlBit::ModeSpecific5) || self.active.is_none();
+        if !at_once && self.waiting.is_some() {
+            return;
+        }
+        let asked = if has(ControlBit::ModeSpecific6) { self.target + targets.distance } else { targets.position };
+        self.target = p.range.map_or(asked, |[lowest, highest]| asked.clamp(lowest, highest));
+        self.is_limited = self.target.to_bits() != asked.to_bits();
+        self.handshake.acknowledges = true;
+        let given = SetPoint::at(self.target, targets);
+        if at_once {
+            (self.active, self.waiting, self.is_passed) = (Some(given), None, false);
+            self.go_to(p, &given, &now.demanded);
+        } else {
+            self.waiting = Some(given);
+            self.is_passed = has(ControlBit::ModeSpecific9);
+            if let Some(active) = self.active.filter(|_| self.is_passed) {
+                self.go_to(p, &active, &now.demanded);
+            }
+        }
+    }
+
+    /// Sets out for the active set-point. When no way can be planned the axis goes on as it did, and the drive says so.
+    fn go_to(&mut self, p: &Params, active: &SetPoint, from: &Setpoint) {
+        self.within_window = Dwell::default();
+        let most = if self.is_passed { active.velocity } else { p.end_velocity.min(active.velocity) };
+        let velocity = active.passing(p, from, most);
+        if let Ok(transition) = velocity.and_then(|v| active.plan(p, from, &Target::Position { x: active.x, v })) {
+            self.way = Some(Way { transition, steps: 0 });
+        } else {
+            self.is_limited = true;
+        }
+    }
+}
+
+/// The demand of a step.
+pub fn step(p: &Params, x: &mut State, now: &Moment) -> Answer {
+    let asked_before = core::mem::replace(&mut x.handshake.asks, asks(now));
+    if x.handshake.asks && !asked_before {
+        x.take(p, now);
+    }
+    let (mut setpoint, mut is_there) =
+        x.way.as_mut().map_or((Setpoint::at_rest(x.rest), true), |way| way.next(now.period));
+    let goes_on = x.is_passed || p.end_velocity > 0.0;
+    if is_there
+        && goes_on
+        && let Some(next) = x.waiting.take()
+    {
+        (x.active, x.is_passed) = (Some(next), false);
+        x.go_to(p, &next, &setpoint);
+        if let Some(way) = &mut x.way {
+            (setpoint, is_there) = way.next(now.period);
+        }
+    }
+    let error = now.actual.position - x.active.map_or(x.target, |active| active.x);
+    let is_reached = x.within_window.step(is_there && p.window.holds(error), p.window.time, now.period);
+    if is_reached {
+        // The next one begins with the next step.
+        x.active = x.waiting.take();
+        if let Some(active) = x.active {
+            x.go_to(p, &active, &setpoint.after(now.period));
+        }
+    }
+    if !x.handshake.asks && x.waiting.is_none() {
+        x.handshake.acknowledges = false;
+    }
+    let demand = Demand::position(setpoint);
+    Answer { demand, target_reached: is_reached && x.active.is_none(), bit_12: x.handshake.acknowledges, bit_13: false }
+}

@@ -1,0 +1,56 @@
+//! One set-point: the profile of the frame that gave it, and the ways by that profile.
+use super::Params;
+use crate::modes::Targets;
+use servobench_base::Setpoint;
+use servobench_motion::PlanError;
+use servobench_motion::online::{Effort, RampLimits, Sides, Target, Transition, passing_velocity};
+
+/// A target with the profile that leads to it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct SetPoint {
+    pub(super) x: f64,
+    pub(super) velocity: f64,
+    acceleration: f64,
+    deceleration: f64,
+}
+
+impl SetPoint {
+    /// At `x`, with the profile of a frame.
+    pub(super) const fn at(x: f64, targets: &Targets) -> Self {
+        Self {
+            x,
+            velocity: targets.profile_velocity,
+            acceleration: targets.profile_acceleration,
+            deceleration: targets.profile_deceleration,
+        }
+    }
+
+    fn limits(&self, p: &Params) -> RampLimits {
+        RampLimits {
+            velocity: Sides::both(self.velocity),
+            acceleration: self.acceleration,
+            deceleration: self.deceleration,
+            jerk: p.jerk(),
+            snap: f64::INFINITY,
+        }
+    }
+
+    /// # Errors
+    /// [`PlanError`] when the state or the profile allow no plan.
+    pub(super) fn plan(&self, p: &Params, from: &Setpoint, target: &Target) -> Result<Transition, PlanError> {
+        Transition::plan_ramps(p.order(), from, target, &self.limits(p), Effort::Fast)
+    }
+
+    /// Velocity at which it is passed: `most` at most, none where the axis would have to turn back for it.
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan).
+    pub(super) fn passing(&self, p: &Params, from: &Setpoint, most: f64) -> Result<f64, PlanError> {
+        if most == 0.0 {
+            return Ok(0.0);
+        }
+        let sign = if self.x >= from.x { 1.0 } else { -1.0 };
+        let limits = self.limits(p).towards(sign);
+        Ok(passing_velocity(p.order(), from, self.x, &limits, most)?.map_or(0.0, |speed| sign * speed))
+    }
+}

@@ -1,0 +1,89 @@
+//! Limit switches and software limits.
+use crate::axis::{Axis, setpoint};
+use servobench_cia402::{Mode, StatusBit};
+use servobench_drive::Demand;
+use servobench_drive::device::{Limits, Params};
+
+/// Oracle: from 0.2 m/s by the 10 m/s² of the quick stop the axis needs 2 mm.
+#[test]
+fn a_limit_switch_stops_the_axis_in_its_direction_and_lets_it_go_back() {
+    for sign in [1, -1] {
+        let mut axis = Axis::enabled(&Params::default(), Mode::CyclicSynchronousPosition);
+        let mut target = 0;
+        let mut follow = |axis: &mut Axis, step: i32, cycles: i32| {
+            for _ in 0..cycles {
+                target += sign * step;
+                axis.frame.target_position = target;
+                axis.cycle();
+            }
+        };
+        follow(&mut axis, 200, 20);
+        assert!(!axis.has(StatusBit::InternalLimitActive));
+        let at_switch = axis.position;
+        (axis.measured.positive_limit, axis.measured.negative_limit) = (sign > 0, sign < 0);
+        follow(&mut axis, 200, 40);
+        let way = f64::from(sign) * (axis.position - at_switch);
+        assert!((way - 2e-3).abs() < 1e-12 && axis.velocity == 0.0, "{way}");
+        assert!(axis.has(StatusBit::InternalLimitActive));
+        // Back: held until the targets are on this side of where it stands, then followed.
+        follow(&mut axis, -200, 20);
+        assert!((f64::from(sign) * (axis.position - at_switch) - 2e-3).abs() < 1e-12);
+        follow(&mut axis, -200, 30);
+        assert!(!axis.has(StatusBit::InternalLimitActive));
+        assert!((axis.position - f64::from(axis.frame.target_position) * 1e-6).abs() < 1e-15);
+    }
+}
+
+/// The switch of the other end stops nothing.
+#[test]
+fn a_limit_switch_does_not_keep_the_axis_from_leaving_it() {
+    let mut axis = Axis::enabled(&Params::default(), Mode::ProfileVelocity);
+    axis.measured.negative_limit = true;
+    axis.frame.target_velocity = 100_000;
+    (0..200).for_each(|_| drop(axis.cycle()));
+    assert!((axis.velocity - 0.1).abs() < 1e-15 && !axis.has(StatusBit::InternalLimitActive));
+}
+
+#[test]
+fn velocities_and_efforts_are_held_at_a_switch_too() {
+    for mode in [Mode::ProfileVelocity, Mode::CyclicSynchronousVelocity, Mode::CyclicSynchronousTorque] {
+        let mut axis = Axis::enabled(&Params::default(), mode);
+        (axis.frame.target_velocity, axis.frame.target_torque) = (100_000, 100);
+        (0..200).for_each(|_| drop(axis.cycle()));
+        axis.velocity = 0.1;
+        axis.measured.positive_limit = true;
+        (0..200).for_each(|_| drop(axis.cycle()));
+        assert!(matches!(axis.last, Demand::Velocity { .. }) && setpoint(&axis.last).v == 0.0, "{mode:?}");
+        assert!(axis.has(StatusBit::InternalLimitActive));
+        (axis.frame.target_velocity, axis.frame.target_torque) = (-100_000, -100);
+        (0..200).for_each(|_| drop(axis.cycle()));
+        match axis.last {
+            Demand::Effort(effort) => assert!((effort + 0.1).abs() < 1e-15),
+            demand => assert!((setpoint(&demand).v + 0.1).abs() < 1e-15, "{mode:?}: {demand:?}"),
+        }
+    }
+}
+
+#[test]
+fn cyclic_targets_beyond_the_software_limits_are_cut() {
+    let limits = Limits { position: Some([-1e-3, 2e-3]), ..Params::default().limits };
+    let mut axis = Axis::enabled(&Params { limits, ..Params::default() }, Mode::CyclicSynchronousPosition);
+    for (target, reached) in [(1500, 1500), (2500, 2000), (2000, 2000), (-500, -500), (-4000, -1000), (0, 0)] {
+        axis.frame.target_position = target;
+        axis.cycle();
+        assert_eq!(axis.has(StatusBit::InternalLimitActive), target != reached, "{target}");
+        assert!((axis.position - f64::from(reached) * 1e-6).abs() < 1e-15, "{target}: {}", axis.position);
+    }
+}
+
+/// Oracle: the quick stop begins where the axis is at the limit: 5 mm and the 0.5 mm of 0.1 m/s by 10 m/s².
+#[test]
+fn a_velocity_that_leads_beyond_a_software_limit_is_braked_there() {
+    let limits = Limits { position: Some([-5e-3, 5e-3]), ..Params::default().limits };
+    let mut axis = Axis::enabled(&Params { limits, ..Params::default() }, Mode::CyclicSynchronousVelocity);
+    axis.frame.target_velocity = 100_000;
+    (0..100).for_each(|_| drop(axis.cycle()));
+    // Seen at the first step behind the limit, 25 µm later at most.
+    assert!((5.5e-3..5.53e-3).contains(&axis.position), "{}", axis.position);
+    assert!(setpoint(&axis.last).v == 0.0);
+}

@@ -1,0 +1,136 @@
+//! Faults: which, with which code, after which time, and what the drive does then.
+use crate::axis::{Axis, setpoint};
+use servobench_cia402::{Command, FaultReactionOption, Mode, PowerState, StatusBit};
+use servobench_drive::Demand;
+use servobench_drive::device::{Fault, Params, Window};
+
+fn running(params: &Params) -> Axis {
+    let mut axis = Axis::enabled(params, Mode::CyclicSynchronousPosition);
+    for n in 1..=20 {
+        axis.frame.target_position = 200 * n;
+        axis.cycle();
+    }
+    axis
+}
+
+/// Every fault is told by its code, brakes on the quick stop ramp, ends in Fault and is gone after a reset.
+#[test]
+fn every_fault_has_its_code_and_its_reaction() {
+    let following_error = Window { width: 1e-3, time: 0.0 };
+    let params = Params { following_error, ..Params::default() };
+    for (fault, code) in [
+        (Fault::External(0x9000), 0x9000),
+        (Fault::MainsMissing, 0x3220),
+        (Fault::Encoder, 0x7305),
+        (Fault::FollowingError, 0x8611),
+        (Fault::FramesMissing, 0x8700),
+    ] {
+        let mut axis = running(&params);
+        let mut with_frames = true;
+        match fault {
+            Fault::External(code) => axis.fault = Some(code),
+            Fault::MainsMissing => axis.main_voltage = false,
+            Fault::Encoder => axis.measured.effort = f64::NAN,
+            Fault::FollowingError => axis.measured.following_error = -1.1e-3,
+            Fault::FramesMissing => with_frames = false,
+        }
+        let raised = (0..20).find_map(|k| {
+            let outputs = axis.step(with_frames && k % 4 == 0);
+            outputs.fault.map(|fault| (fault, outputs))
+        });
+        let (found, outputs) = raised.unwrap();
+        assert_eq!((found, outputs.transition.unwrap().number), (fault, 13));
+        assert_eq!(
+            (axis.actuals().error_code, axis.state.power()),
+            (code, PowerState::FaultReactionActive),
+            "{fault:?}"
+        );
+        if fault == Fault::MainsMissing {
+            assert_eq!(outputs.demand, Demand::Off, "nothing brakes without power");
+            axis.velocity = 0.0;
+        } else {
+            let (v, a) = (setpoint(&outputs.demand).v, setpoint(&outputs.demand).a);
+            assert!((v - 0.2).abs() < 1e-12 && (a + 10.0).abs() < 1e-12, "{fault:?}: {outputs:?}");
+        }
+        (0..100).for_each(|_| drop(axis.cycle()));
+        assert_eq!((axis.state.power(), axis.last), (PowerState::Fault, Demand::Off), "{fault:?}");
+        // While its cause is there, some cannot be reset.
+        axis.command(Command::DisableVoltage);
+        axis.cycle();
+        axis.command(Command::FaultReset);
+        axis.cycle();
+        let stays = matches!(fault, Fault::External(_) | Fault::Encoder);
+        assert_eq!(axis.state.power() == PowerState::Fault, stays, "{fault:?}");
+        (axis.fault, axis.main_voltage, axis.measured.effort) = (None, true, 0.0);
+        axis.measured.following_error = 0.0;
+        axis.command(Command::DisableVoltage);
+        axis.cycle();
+        axis.command(Command::FaultReset);
+        axis.cycle();
+        assert_eq!((axis.state.power(), axis.actuals().error_code), (PowerState::SwitchOnDisabled, 0), "{fault:?}");
+        axis.enable(Mode::CyclicSynchronousPosition);
+        assert_eq!(axis.state.power(), PowerState::OperationEnabled, "{fault:?}");
+    }
+}
+
+#[test]
+fn the_fault_reaction_brakes_as_its_option_code_says() {
+    for (option, deceleration) in [
+        (FaultReactionOption::Disable, None),
+        (FaultReactionOption::SlowDownRamp, Some(1.0)),
+        (FaultReactionOption::QuickStopRamp, Some(10.0)),
+    ] {
+        let mut params = Params::default();
+        params.power.fault_reaction = option;
+        let mut axis = running(&params);
+        axis.fault = Some(0x2310);
+        let demand = axis.step(true).demand;
+        match deceleration {
+            None => assert_eq!(demand, Demand::Off),
+            Some(deceleration) => assert!((setpoint(&demand).a + deceleration).abs() < 1e-12, "{demand:?}"),
+        }
+    }
+}
+
+/// Oracle: counted. Bit 13 is set outside the window, the fault comes when that has lasted for the time-out.
+#[test]
+fn the_following_error_may_leave_its_window_for_the_time_out() {
+    let params = Params { following_error: Window { width: 1e-3, time: 5e-3 }, ..Params::default() };
+    let mut axis = running(&params);
+    let mut outside = |steps: usize, error: f64| {
+        axis.measured.following_error = error;
+        (0..steps).position(|k| {
+            axis.frame.target_position = 4000;
+            let outputs = axis.step(k % 4 == 0);
+            assert_eq!(axis.has(StatusBit::ModeSpecific13), error.abs() > 1e-3 && outputs.fault.is_none());
+            outputs.fault.is_some()
+        })
+    };
+    assert_eq!(outside(20, 1.5e-3), None, "19 periods");
+    assert_eq!(outside(4, 1e-3), None, "within");
+    assert_eq!(outside(40, -1.5e-3), Some(20), "20 periods of 0.25 ms");
+}
+
+#[test]
+fn nothing_is_supervised_that_is_not_driven() {
+    let params = Params { following_error: Window { width: 1e-3, time: 0.0 }, ..Params::default() };
+    let mut axis = Axis::new(&params);
+    axis.measured.following_error = 1.0;
+    axis.main_voltage = false;
+    axis.cycle();
+    (0..40).for_each(|_| assert_eq!(axis.step(false).fault, None));
+    let mut axis = Axis::enabled(&params, Mode::CyclicSynchronousVelocity);
+    axis.measured.following_error = 1.0;
+    assert!(axis.cycle().iter().all(|outputs| outputs.fault.is_none()), "there is no position loop");
+}
+
+#[test]
+fn what_the_master_reads_is_in_drive_units() {
+    let mut axis = running(&Params::default());
+    (axis.measured.effort, axis.measured.following_error) = (-0.25, 123.4e-6);
+    (axis.measured.home, axis.measured.negative_limit) = (true, true);
+    axis.step(true);
+    let actuals = axis.actuals();
+    assert_eq!((actuals.position, actuals.velocity, actuals.torque), (4000, 200_000, -250));
+    assert_eq!((actuals.following_error, actuals.digital_inputs), (123, 0b101));
+}
