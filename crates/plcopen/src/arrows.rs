@@ -1,0 +1,151 @@
+//! The arrows of the state diagram (PLCopen part 1, version 2.0, figure 2.1): one table, on which the axis runs, which the
+//! tests test and from which `docs/plcopen.md` is written.
+//!
+//! The standard has no numbers but for its six notes; arrows 1 to 6 are these.
+use crate::name::BlockName;
+use crate::state::AxisState::{
+    self, ContinuousMotion, Disabled, DiscreteMotion, ErrorStop, Homing, Standstill, Stopping,
+};
+
+/// What sets an arrow off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Cause {
+    /// An error of the axis: of its drive, its power, its reference or its own.
+    AxisError,
+    /// Enable of MC_Power is FALSE.
+    Unpowered,
+    /// MC_Reset took the error away, and Status of MC_Power is FALSE.
+    ResetUnpowered,
+    /// MC_Reset took the error away, and Enable and Status of MC_Power are TRUE.
+    ResetPowered,
+    /// Enable and Status of MC_Power are TRUE.
+    Powered,
+    /// Done of MC_Stop is TRUE and its Execute FALSE.
+    StopReleased,
+    /// The motion is over.
+    Done,
+    /// A block is executed.
+    Block(BlockName),
+}
+
+impl Cause {
+    /// Name in the words of the standard.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::AxisError => "an error of the axis",
+            Self::Unpowered => "MC_Power.Enable = FALSE",
+            Self::ResetUnpowered => "MC_Reset and MC_Power.Status = FALSE",
+            Self::ResetPowered => "MC_Reset and MC_Power.Status = TRUE and MC_Power.Enable = TRUE",
+            Self::Powered => "MC_Power.Enable = TRUE and MC_Power.Status = TRUE",
+            Self::StopReleased => "MC_Stop.Done = TRUE and MC_Stop.Execute = FALSE",
+            Self::Done => "Done",
+            Self::Block(block) => block.name(),
+        }
+    }
+}
+
+/// An arrow of the state diagram.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Arrow {
+    /// Its place in the table, from 1.
+    pub number: u8,
+    /// States that it leads out of.
+    pub from: &'static [AxisState],
+    /// State that it leads to.
+    pub to: AxisState,
+    /// What sets it off, any of them.
+    pub causes: &'static [Cause],
+}
+
+/// Every arrow, in the order of its number.
+pub const ARROWS: [Arrow; 13] = [
+    Arrow {
+        number: 1,
+        from: &[Disabled, Standstill, Homing, DiscreteMotion, ContinuousMotion, Stopping],
+        to: ErrorStop,
+        causes: &[Cause::AxisError],
+    },
+    Arrow {
+        number: 2,
+        from: &[Standstill, Homing, DiscreteMotion, ContinuousMotion, Stopping],
+        to: Disabled,
+        causes: &[Cause::Unpowered],
+    },
+    Arrow { number: 3, from: &[ErrorStop], to: Disabled, causes: &[Cause::ResetUnpowered] },
+    Arrow { number: 4, from: &[ErrorStop], to: Standstill, causes: &[Cause::ResetPowered] },
+    Arrow { number: 5, from: &[Disabled], to: Standstill, causes: &[Cause::Powered] },
+    Arrow { number: 6, from: &[Stopping], to: Standstill, causes: &[Cause::StopReleased] },
+    Arrow { number: 7, from: &[Standstill], to: Homing, causes: &[Cause::Block(BlockName::Home)] },
+    Arrow { number: 8, from: &[Homing, DiscreteMotion], to: Standstill, causes: &[Cause::Done] },
+    Arrow {
+        number: 9,
+        from: &[Standstill, Homing, DiscreteMotion, ContinuousMotion],
+        to: Stopping,
+        causes: &[Cause::Block(BlockName::Stop)],
+    },
+    Arrow {
+        number: 10,
+        from: &[Standstill, DiscreteMotion, ContinuousMotion],
+        to: DiscreteMotion,
+        causes: &[
+            Cause::Block(BlockName::MoveAbsolute),
+            Cause::Block(BlockName::MoveRelative),
+            Cause::Block(BlockName::MoveAdditive),
+            Cause::Block(BlockName::Halt),
+        ],
+    },
+    Arrow {
+        number: 11,
+        from: &[Standstill, DiscreteMotion],
+        to: DiscreteMotion,
+        causes: &[Cause::Block(BlockName::MoveSuperimposed)],
+    },
+    Arrow {
+        number: 12,
+        from: &[ContinuousMotion],
+        to: ContinuousMotion,
+        causes: &[Cause::Block(BlockName::MoveSuperimposed)],
+    },
+    Arrow {
+        number: 13,
+        from: &[Standstill, DiscreteMotion, ContinuousMotion],
+        to: ContinuousMotion,
+        causes: &[
+            Cause::Block(BlockName::MoveVelocity),
+            Cause::Block(BlockName::MoveContinuousAbsolute),
+            Cause::Block(BlockName::TorqueControl),
+            Cause::Block(BlockName::PositionProfile),
+            Cause::Block(BlockName::VelocityProfile),
+            Cause::Block(BlockName::AccelerationProfile),
+        ],
+    },
+];
+
+/// The arrow that `cause` sets off in `state`.
+pub(crate) fn arrow(state: AxisState, cause: Cause) -> Option<&'static Arrow> {
+    ARROWS.iter().find(|arrow| arrow.from.contains(&state) && arrow.causes.contains(&cause))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_arrow_stands_at_the_place_of_its_number() {
+        for (place, arrow) in ARROWS.iter().enumerate() {
+            assert_eq!(usize::from(arrow.number), place + 1);
+            assert!(!arrow.from.is_empty() && !arrow.causes.is_empty(), "{place}");
+        }
+    }
+
+    #[test]
+    fn a_cause_leads_to_one_state() {
+        for state in AxisState::ALL {
+            for cause in ARROWS.iter().flat_map(|arrow| arrow.causes) {
+                let due = ARROWS.iter().filter(|arrow| arrow.from.contains(&state) && arrow.causes.contains(cause));
+                assert!(due.count() <= 1, "{state} {}", cause.name());
+            }
+        }
+    }
+}

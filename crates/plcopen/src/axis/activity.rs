@@ -1,0 +1,245 @@
+//! What the axis is doing, and how it goes on from cycle to cycle.
+use super::Axis;
+use super::run::Run;
+use crate::arrows::Cause;
+use crate::command::{BufferMode, Command, Goal};
+use crate::error::{AxisError, BlockError};
+use crate::ledger::{CommandId, Progress};
+use crate::state::AxisState;
+use servobench_base::Setpoint;
+use servobench_fieldbus::Homing;
+use servobench_motion::online::Target;
+
+/// What the axis is doing.
+#[derive(Debug, Clone, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "there is no heap, and an axis has one")]
+pub(super) enum Activity {
+    /// Nothing.
+    Rest,
+    /// Follows a planned way.
+    Moving(Moving),
+    /// Gives an effort.
+    Effort(EffortRamp),
+    /// The drive looks for its reference.
+    Homing(HomingWait),
+    /// A block gives the set-points.
+    Led(Led),
+}
+
+/// A command on its planned way.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Moving {
+    pub(super) id: CommandId,
+    pub(super) command: Command,
+    /// Where it leads, in the unit of the drive and without the override.
+    pub(super) target: Target,
+    /// Position where it began.
+    pub(super) origin: f64,
+    /// Whether it rests because of a velocity override of zero.
+    pub(super) is_paused: bool,
+    pub(super) run: Run,
+}
+
+/// A command to an effort.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct EffortRamp {
+    pub(super) id: CommandId,
+    pub(super) command: Command,
+    pub(super) target: f64,
+    /// Per cycle.
+    pub(super) step: f64,
+    pub(super) present: f64,
+}
+
+/// A reference run of the drive.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct HomingWait {
+    pub(super) id: CommandId,
+    pub(super) position: f64,
+    /// Whether the drive has been seen without the result of an earlier run.
+    pub(super) has_begun: bool,
+}
+
+/// A command whose set-points its block gives.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Led {
+    pub(super) id: CommandId,
+    pub(super) command: Command,
+    /// Whether there was one for this cycle.
+    pub(super) is_fresh: bool,
+    /// Cycles since it began.
+    pub(super) cycles: u64,
+}
+
+impl Activity {
+    /// The command and its number, where there is one.
+    pub(super) fn command(&self) -> Option<(CommandId, &Command)> {
+        match self {
+            Self::Rest | Self::Homing(_) => None,
+            Self::Moving(Moving { id, command, .. })
+            | Self::Effort(EffortRamp { id, command, .. })
+            | Self::Led(Led { id, command, .. }) => Some((*id, command)),
+        }
+    }
+
+    /// The number of the command.
+    pub(super) fn id(&self) -> Option<CommandId> {
+        match self {
+            Self::Homing(homing) => Some(homing.id),
+            _ => self.command().map(|(id, _)| id),
+        }
+    }
+}
+
+impl Moving {
+    /// Whether the motion goes on when the way is over.
+    fn is_endless(&self) -> bool {
+        match self.command.goal {
+            Goal::Velocity { .. } => true,
+            Goal::Absolute { end_velocity, .. } => end_velocity != 0.0,
+            _ => false,
+        }
+    }
+}
+
+impl Axis {
+    /// One cycle on.
+    pub(super) fn advance(&mut self) {
+        let cycle_time = self.params.cycle_time;
+        match &mut self.activity {
+            Activity::Rest => {
+                let follows = match self.state {
+                    AxisState::Disabled => true,
+                    AxisState::ErrorStop => !self.is_powered(),
+                    _ => false,
+                };
+                if follows {
+                    self.base = Setpoint::at_rest(self.feedback.position);
+                }
+            }
+            Activity::Moving(moving) => match moving.run.advance(cycle_time) {
+                Ok(setpoint) => {
+                    self.base = setpoint;
+                    if moving.run.beyond(cycle_time) >= 0.0 && !moving.is_paused {
+                        self.arrive();
+                    }
+                }
+                Err(error) => self.fail(AxisError::PlanLost { error }),
+            },
+            Activity::Effort(effort) => {
+                self.base = Setpoint { v: self.feedback.velocity, ..Setpoint::at_rest(self.feedback.position) };
+                let (velocity, limit) = (self.feedback.velocity, effort.command.dynamics.velocity);
+                if velocity.abs() > limit {
+                    return self.fail(AxisError::Overspeed { velocity, limit });
+                }
+                let missing = effort.target - effort.present;
+                if missing.abs() > effort.step {
+                    effort.present += effort.step.copysign(missing);
+                } else {
+                    effort.present = effort.target;
+                    let (id, from) = (effort.id, self.base);
+                    self.go_on(id, from);
+                }
+            }
+            Activity::Homing(homing) => {
+                self.base = Setpoint::at_rest(self.feedback.position);
+                let id = homing.id;
+                match self.feedback.homing {
+                    Homing::Idle | Homing::Busy => homing.has_begun = true,
+                    Homing::Attained if homing.has_begun => {
+                        (self.is_homed, self.offset) = (true, 0.0);
+                        self.ledger.set(id, Progress::Done);
+                        self.rest();
+                    }
+                    Homing::Failed if homing.has_begun => self.fail(AxisError::HomingFailed),
+                    Homing::Attained | Homing::Failed => {}
+                }
+            }
+            Activity::Led(led) => {
+                led.cycles += 1;
+                if !core::mem::take(&mut led.is_fresh) {
+                    let block = led.command.block;
+                    self.fail(AxisError::NotLed { block });
+                }
+            }
+        }
+    }
+
+    /// The way of the active command is over.
+    fn arrive(&mut self) {
+        let Activity::Moving(moving) = &self.activity else { return };
+        let (id, end, beyond) = (moving.id, moving.run.end(), moving.run.beyond(self.params.cycle_time));
+        if moving.is_endless() {
+            return self.go_on(id, self.base);
+        }
+        match self.state {
+            AxisState::ErrorStop => self.activity = Activity::Rest,
+            AxisState::Stopping => {
+                self.ledger.set(id, Progress::Done);
+                self.activity = Activity::Rest;
+                if self.stop_holder.is_none() {
+                    self.follow(Cause::StopReleased);
+                }
+            }
+            _ => {
+                self.ledger.set(id, Progress::Done);
+                match self.queue.first().map(|next| next.buffer_mode) {
+                    None => self.rest(),
+                    Some(BufferMode::Aborting | BufferMode::Buffered) => self.take_next(end, 0.0),
+                    Some(_) => self.take_next(end, beyond),
+                }
+            }
+        }
+    }
+
+    /// A command without an end has what it wanted: the next one takes over, or it goes on.
+    fn go_on(&mut self, id: CommandId, from: Setpoint) {
+        if self.queue.first().is_some() {
+            self.ledger.set(id, Progress::Aborted);
+            self.take_next(from, 0.0);
+        } else {
+            self.ledger.set(id, Progress::InTarget);
+        }
+    }
+
+    /// The first command that waits becomes the active one, `lead` seconds ago, at `from`.
+    pub(super) fn take_next(&mut self, from: Setpoint, lead: f64) {
+        let Some((id, command)) = self.queue.pop() else { return };
+        match self.prepared(id, command, from, lead, self.queue.first()) {
+            Ok(activity) => {
+                self.activity = activity;
+                self.base = from;
+                if let Activity::Moving(moving) = &mut self.activity {
+                    self.base = moving.run.now(self.params.cycle_time);
+                }
+                self.ledger.set(id, Progress::Active);
+                self.follow(Cause::Block(command.block));
+            }
+            Err(BlockError::Plan { error, .. }) => {
+                self.ledger.set(id, Progress::Failed);
+                self.fail(AxisError::PlanLost { error });
+            }
+            Err(error) => {
+                self.refuse_waiting(id, error);
+            }
+        }
+    }
+
+    /// A command that waited is refused when its turn comes, since something was changed in between; the axis halts.
+    fn refuse_waiting(&mut self, id: CommandId, error: BlockError) {
+        self.ledger.set(id, Progress::Failed);
+        self.ledger.failure = Some(error);
+        self.abort_waiting();
+        self.halt();
+    }
+
+    /// Nothing is left to do.
+    pub(super) fn rest(&mut self) {
+        self.activity = Activity::Rest;
+        if self.superimposed.is_none() {
+            self.base = Setpoint::at_rest(self.base.x + self.shift);
+            self.shift = 0.0;
+            self.follow(Cause::Done);
+        }
+    }
+}

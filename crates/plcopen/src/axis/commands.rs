@@ -1,0 +1,344 @@
+//! Taking commands from blocks: what is refused, what waits, what begins at once.
+use super::Axis;
+use super::activity::{Activity, EffortRamp, HomingWait, Led, Moving};
+use super::blending::{Leg, Next, blended};
+use super::bounds::{Bounds, Override, heading};
+use super::modulo;
+use super::run::Run;
+use crate::arrows::{Cause, arrow};
+use crate::command::{BufferMode, Command, Direction, Goal, finite_input};
+use crate::error::BlockError;
+use crate::ledger::{CommandId, Progress};
+use crate::name::BlockName;
+use crate::state::AxisState;
+use servobench_base::Setpoint;
+use servobench_motion::PlanError;
+use servobench_motion::online::Target;
+
+impl Axis {
+    /// Takes a command: it begins, or waits behind others.
+    pub(crate) fn submit(&mut self, command: Command) -> Result<CommandId, BlockError> {
+        let block = command.block;
+        let Some(arrow) = arrow(self.state, Cause::Block(block)) else {
+            return Err(BlockError::State { block, state: self.state });
+        };
+        command.check(&self.params)?;
+        if let Goal::Absolute { position, .. } = command.goal
+            && self.params.needs_homing
+            && !self.is_homed
+        {
+            return Err(BlockError::NotHomed { block, value: position });
+        }
+        let is_aborting = command.buffer_mode == BufferMode::Aborting;
+        if !is_aborting {
+            if let Some(superimposed) = &self.superimposed {
+                self.check_sum(block, &superimposed.command, &command)?;
+            }
+            if !matches!(self.activity, Activity::Rest) {
+                return self.wait(command);
+            }
+        }
+        let from = if is_aborting { self.present() } else { self.base };
+        let activity = self.prepared(CommandId::OWN, command, from, 0.0, None)?;
+        if is_aborting {
+            self.end_all(Progress::Aborted);
+        }
+        let id = self.ledger.issue();
+        self.begin_activity(id, activity, from);
+        self.state = arrow.to;
+        Ok(id)
+    }
+
+    /// MC_Stop.
+    pub(crate) fn stop(&mut self, command: Command) -> Result<CommandId, BlockError> {
+        let block = command.block;
+        let Some(arrow) = arrow(self.state, Cause::Block(block)) else {
+            return Err(BlockError::State { block, state: self.state });
+        };
+        command.check(&self.params)?;
+        let from = self.present();
+        let activity = self.prepared(CommandId::OWN, command, from, 0.0, None)?;
+        self.end_all(Progress::Aborted);
+        let id = self.ledger.issue();
+        self.begin_activity(id, activity, from);
+        self.stop_holder = Some(id);
+        self.state = arrow.to;
+        Ok(id)
+    }
+
+    /// Execute of an MC_Stop is FALSE: it holds the axis no more.
+    pub(crate) fn release_stop(&mut self, id: CommandId) {
+        if self.stop_holder != Some(id) {
+            return;
+        }
+        self.stop_holder = None;
+        if self.state == AxisState::Stopping && matches!(self.activity, Activity::Rest) {
+            self.follow(Cause::StopReleased);
+        }
+    }
+
+    /// MC_Home.
+    pub(crate) fn home(&mut self, position: f64) -> Result<CommandId, BlockError> {
+        let block = BlockName::Home;
+        let Some(arrow) = arrow(self.state, Cause::Block(block)) else {
+            return Err(BlockError::State { block, state: self.state });
+        };
+        finite_input(block, "Position", position)?;
+        let id = self.ledger.issue();
+        self.ledger.set(id, Progress::Active);
+        self.is_homed = false;
+        self.activity = Activity::Homing(HomingWait { id, position, has_begun: false });
+        self.state = arrow.to;
+        Ok(id)
+    }
+
+    /// Changes the inputs of a command that runs or waits.
+    pub(crate) fn update(&mut self, id: CommandId, command: Command) -> Result<(), BlockError> {
+        command.check(&self.params)?;
+        if let Some(waiting) = self.queue.get_mut(id) {
+            *waiting = command;
+            return self.rejoin();
+        }
+        let from = self.base;
+        match &self.activity {
+            Activity::Moving(moving) if moving.id == id => {
+                let from_origin = Setpoint { x: moving.origin, ..from };
+                let reference = if matches!(command.goal, Goal::Relative(_)) { &from_origin } else { &from };
+                let target = self.target(&command, reference, moving.origin)?;
+                let (run, is_paused) = self.run(&command, &target, &from, 0.0, self.queue.first())?;
+                let origin = moving.origin;
+                self.activity = Activity::Moving(Moving { id, command, target, origin, is_paused, run });
+            }
+            Activity::Effort(effort) if effort.id == id => {
+                let present = effort.present;
+                if let Activity::Effort(changed) = self.prepared(id, command, from, 0.0, None)? {
+                    self.activity = Activity::Effort(EffortRamp { present, ..changed });
+                }
+            }
+            _ => return Err(BlockError::Ended { block: command.block }),
+        }
+        self.ledger.set(id, Progress::Active);
+        Ok(())
+    }
+
+    /// MC_SetOverride: what runs is planned anew from where it is.
+    pub(crate) fn set_factors(&mut self, factors: Override) -> Result<(), BlockError> {
+        if factors == self.factors {
+            return Ok(());
+        }
+        let before = core::mem::replace(&mut self.factors, factors);
+        let done = self.rejoin().and_then(|()| {
+            let Some(superimposed) = &self.superimposed else { return Ok(()) };
+            let planned = self.superimposed_run(&superimposed.command, &superimposed.now, superimposed.distance)?;
+            if let Some(superimposed) = &mut self.superimposed {
+                (superimposed.run, superimposed.is_paused) = planned;
+            }
+            Ok(())
+        });
+        if done.is_err() {
+            self.factors = before;
+        }
+        done
+    }
+
+    /// MC_SetPosition: `position` is what the program sees from now on where the axis actually is, or this much more than now.
+    pub(crate) fn set_position(&mut self, position: f64, is_relative: bool) -> Result<(), BlockError> {
+        finite_input(BlockName::SetPosition, "Position", position)?;
+        self.offset = if is_relative { self.offset + position } else { position - self.feedback.position };
+        Ok(())
+    }
+
+    /// The state from which an aborting command goes on: that of the set-point, or of the axis where nothing was set.
+    pub(super) fn present(&self) -> Setpoint {
+        match &self.activity {
+            Activity::Effort(_) | Activity::Homing(_) => {
+                Setpoint { v: self.feedback.velocity, ..Setpoint::at_rest(self.feedback.position) }
+            }
+            Activity::Rest | Activity::Moving(_) | Activity::Led(_) => self.setpoint,
+        }
+    }
+
+    fn wait(&mut self, command: Command) -> Result<CommandId, BlockError> {
+        let held = self.queue.len();
+        if held >= self.params.buffered_commands {
+            return Err(BlockError::BufferFull { block: command.block, held });
+        }
+        let id = self.ledger.issue();
+        self.queue.push(id, command);
+        if held == 0
+            && command.buffer_mode != BufferMode::Buffered
+            && let Err(error) = self.rejoin()
+        {
+            self.abort_waiting();
+            return Err(error);
+        }
+        Ok(id)
+    }
+
+    fn begin_activity(&mut self, id: CommandId, activity: Activity, from: Setpoint) {
+        self.activity = activity;
+        match &mut self.activity {
+            Activity::Moving(Moving { id: own, .. })
+            | Activity::Effort(EffortRamp { id: own, .. })
+            | Activity::Led(Led { id: own, .. }) => *own = id,
+            Activity::Rest | Activity::Homing(_) => {}
+        }
+        self.base = from;
+        self.ledger.set(id, Progress::Active);
+    }
+
+    /// Plans the rest of the active command anew, with what has changed.
+    fn rejoin(&mut self) -> Result<(), BlockError> {
+        let Activity::Moving(moving) = &self.activity else { return Ok(()) };
+        if moving.command.goal == Goal::Rest {
+            return Ok(());
+        }
+        let (run, is_paused) = self.run(&moving.command, &moving.target, &self.base, 0.0, self.queue.first())?;
+        if let Activity::Moving(moving) = &mut self.activity {
+            (moving.run, moving.is_paused) = (run, is_paused);
+            self.ledger.set(moving.id, Progress::Active);
+        }
+        Ok(())
+    }
+
+    /// `command` as it begins at `from`, `lead` seconds ago, with the one that waits behind it.
+    pub(super) fn prepared(
+        &self,
+        id: CommandId,
+        command: Command,
+        from: Setpoint,
+        lead: f64,
+        next: Option<&Command>,
+    ) -> Result<Activity, BlockError> {
+        let block = command.block;
+        match command.goal {
+            Goal::Effort { effort: target, ramp } => {
+                let (step, present) = (ramp * self.params.cycle_time, self.feedback.effort);
+                Ok(Activity::Effort(EffortRamp { id, command, target, step, present }))
+            }
+            Goal::Led => Ok(Activity::Led(Led { id, command, is_fresh: true, cycles: 0 })),
+            _ => {
+                // The place from which a blended command counts is the end of the one before, whatever its velocity there.
+                let is_blended = lead > 0.0 || command.buffer_mode.blending_velocity(1.0, 1.0).is_some();
+                let reference = if is_blended { Setpoint::at_rest(from.x) } else { from };
+                let target = self.target(&command, &reference, self.additive_origin(&from))?;
+                if let Some(input) = self.forbidden(direction_of(&from, &target)) {
+                    return Err(BlockError::NotPermitted { block, input });
+                }
+                let (run, is_paused) = self.run(&command, &target, &from, lead, next)?;
+                Ok(Activity::Moving(Moving { id, command, target, origin: from.x, is_paused, run }))
+            }
+        }
+    }
+
+    /// Where MC_MoveAdditive counts from.
+    fn additive_origin(&self, from: &Setpoint) -> f64 {
+        match (&self.activity, self.state) {
+            (Activity::Moving(Moving { target: Target::Position { x, .. }, .. }), AxisState::DiscreteMotion) => {
+                x + self.shift
+            }
+            _ => from.x,
+        }
+    }
+
+    /// Where a command leads, in the unit of the drive.
+    fn target(&self, command: &Command, from: &Setpoint, additive_origin: f64) -> Result<Target, BlockError> {
+        Ok(match command.goal {
+            Goal::Absolute { position, direction, end_velocity: v } => {
+                let position = position - self.offset;
+                let x = match self.params.modulo {
+                    None => position,
+                    Some(period) => {
+                        let stop = self.stopping_place(command, from)?;
+                        modulo::place(position, period, stop, direction, self.last_direction)
+                    }
+                };
+                Target::Position { x, v }
+            }
+            Goal::Relative(distance) => Target::Position { x: from.x + distance, v: 0.0 },
+            Goal::Additive(distance) => Target::Position { x: additive_origin + distance, v: 0.0 },
+            Goal::Velocity { velocity, direction } => Target::Velocity(match direction {
+                Direction::Positive | Direction::Shortest => velocity,
+                Direction::Negative => -velocity,
+                Direction::Current => velocity.copysign(velocity * self.last_direction),
+            }),
+            Goal::Rest | Goal::Effort { .. } | Goal::Led => Target::Velocity(0.0),
+        })
+    }
+
+    /// Where the axis comes to rest when `command` does nothing but brake.
+    fn stopping_place(&self, command: &Command, from: &Setpoint) -> Result<f64, BlockError> {
+        if from.v == 0.0 && from.a == 0.0 {
+            return Ok(from.x);
+        }
+        let unpaused = Override { velocity: 1.0, ..self.factors };
+        let bounds = Bounds::of(&command.dynamics, &self.params.limits, &unpaused);
+        let covered = bounds.covered(from, 0.0).map_err(|error| BlockError::Plan { block: command.block, error })?;
+        Ok(from.x + covered)
+    }
+
+    /// The way of `command` to `target`, blended with `next`; and whether the override holds it.
+    fn run(
+        &self,
+        command: &Command,
+        target: &Target,
+        from: &Setpoint,
+        lead: f64,
+        next: Option<&Command>,
+    ) -> Result<(Run, bool), BlockError> {
+        let plan_error = |error: PlanError| BlockError::Plan { block: command.block, error };
+        let limits = &self.params.limits;
+        if command.goal == Goal::Rest {
+            let bounds = Bounds::of(&command.dynamics, limits, &Override::NONE);
+            return Ok((Run::new(bounds.plan(from, target).map_err(plan_error)?, lead, None), false));
+        }
+        if self.factors.velocity == 0.0 {
+            let bounds = Bounds::of(&command.dynamics, limits, &Override { velocity: 1.0, ..self.factors });
+            let way = bounds.plan(from, &Target::Velocity(0.0)).map_err(plan_error)?;
+            return Ok((Run::new(way, lead, None), true));
+        }
+        let bounds = Bounds::of(&command.dynamics, limits, &self.factors);
+        let target = match *target {
+            Target::Velocity(v) => Target::Velocity(v * self.factors.velocity),
+            Target::Position { x, v } => Target::Position { x, v: v * self.factors.velocity },
+        };
+        if let Target::Position { x, v: 0.0 } = target
+            && let Some((next, wanted)) = self.passage(from, x, &bounds, next)?
+        {
+            let first = Leg { x, end_velocity: 0.0, bounds };
+            return Ok((blended(from, &first, &next, wanted, lead).map_err(plan_error)?, false));
+        }
+        Ok((Run::new(bounds.plan(from, &target).map_err(plan_error)?, lead, None), false))
+    }
+
+    /// What follows the passage of `x`, and the wanted velocity there; `None` where the axis stops.
+    fn passage(
+        &self,
+        from: &Setpoint,
+        x: f64,
+        bounds: &Bounds,
+        next: Option<&Command>,
+    ) -> Result<Option<(Next, f64)>, BlockError> {
+        let Some(command) = next else { return Ok(None) };
+        let next_bounds = Bounds::of(&command.dynamics, &self.params.limits, &self.factors);
+        let direction = heading(from, &Target::Position { x, v: 0.0 });
+        let following = self.target(command, &Setpoint::at_rest(x), x)?;
+        let (next, speed) = match (following, command.goal) {
+            (_, Goal::Rest | Goal::Effort { .. } | Goal::Led) => return Ok(None),
+            (Target::Position { x: next, v }, _) if direction * (next - x) > 0.0 => {
+                (Next::Position(Leg { x: next, end_velocity: v, bounds: next_bounds }), next_bounds.velocity)
+            }
+            (Target::Velocity(v), _) if direction * v > 0.0 => (Next::Velocity, v.abs() * self.factors.velocity),
+            _ => return Ok(None),
+        };
+        Ok(command.buffer_mode.blending_velocity(bounds.velocity, speed).map(|wanted| (next, wanted)))
+    }
+}
+
+/// The direction in which a way sets out that begins at rest; 0 when it does not move.
+fn direction_of(from: &Setpoint, target: &Target) -> f64 {
+    match target {
+        Target::Position { x, .. } => x - from.x,
+        Target::Velocity(v) => *v,
+    }
+}

@@ -1,0 +1,71 @@
+//! Motions whose set-points a block gives itself: its course is a table that the axis need not hold.
+use super::Axis;
+use super::activity::Activity;
+use crate::command::{BufferMode, Command, Direction, Goal};
+use crate::error::AxisError;
+use crate::ledger::{CommandId, Progress};
+use crate::name::BlockName;
+use servobench_base::Setpoint;
+
+/// What rounding may add to a limit, as a part of it.
+const ROUNDING: f64 = 1e-9;
+
+impl Axis {
+    /// Cycles since the command `id` became active; `None` when it is not.
+    #[must_use]
+    pub fn led_cycles(&self, id: CommandId) -> Option<u64> {
+        match &self.activity {
+            Activity::Led(led) if led.id == id => Some(led.cycles),
+            _ => None,
+        }
+    }
+
+    /// Gives the set-point of this cycle, as the program sees it, to the active command `id`, which has the goal
+    /// [`Led`](crate::Goal::Led). It is called in every cycle after the first until it is concluded; where it is not, or a
+    /// limit of the axis is not kept, the axis stops with an error.
+    pub fn lead(&mut self, id: CommandId, setpoint: Setpoint) {
+        let setpoint = Setpoint { x: setpoint.x - self.offset, ..setpoint };
+        let Activity::Led(led) = &mut self.activity else { return };
+        if led.id != id {
+            return;
+        }
+        led.is_fresh = true;
+        let (block, before, limits, h) = (led.command.block, self.base, &self.params.limits, self.params.cycle_time);
+        // What lies between two set-points: the mean velocity and acceleration.
+        let way = (setpoint.x - before.x) / h;
+        let gain = (setpoint.v - before.v) / h;
+        let checks = [
+            ("velocity", setpoint.v, limits.velocity),
+            ("step of position per cycle", way, limits.velocity + ROUNDING * setpoint.x.abs() / h),
+            ("acceleration", setpoint.a, limits.acceleration),
+            ("step of velocity per cycle", gain, limits.acceleration + ROUNDING * limits.velocity / h),
+            ("jerk", setpoint.j, limits.jerk),
+        ];
+        for (quantity, value, limit) in checks {
+            if value.is_nan() || value.abs() > limit * (1.0 + ROUNDING) {
+                return self.fail(AxisError::Profile { block, quantity, value, limit });
+            }
+        }
+        self.base = setpoint;
+        self.add_up();
+    }
+
+    /// The course of the command `id` has reached its end: it is done, and the axis keeps the velocity that it has there.
+    pub fn conclude(&mut self, id: CommandId) {
+        let Activity::Led(led) = &self.activity else { return };
+        if led.id != id {
+            return;
+        }
+        let (dynamics, from) = (led.command.dynamics, self.base);
+        self.ledger.set(id, Progress::Done);
+        if self.queue.first().is_some() {
+            return self.take_next(from, 0.0);
+        }
+        let goal = Goal::Velocity { velocity: from.v, direction: Direction::Positive };
+        let command = Command { block: BlockName::MoveVelocity, goal, dynamics, buffer_mode: BufferMode::Aborting };
+        match self.prepared(CommandId::OWN, command, from, 0.0, None) {
+            Ok(activity) => self.activity = activity,
+            Err(_) => self.halt(),
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! Positions that come round again.
+use crate::command::Direction;
+
+/// A position that is nearer than this part of the period counts as reached: it is rounding that keeps it from being so.
+const NEAR: f64 = 1e-9;
+
+/// The place of `position` on an axis of this `period` that is to be gone to from `from`, counted without the period.
+///
+/// `from` is where the axis can stop, so that nobody has to turn back for a place that lies before it.
+pub(crate) fn place(position: f64, period: f64, from: f64, direction: Direction, last: f64) -> f64 {
+    let turns = (from - position) / period;
+    let above = position + libm::ceil(turns - NEAR) * period;
+    let below = position + libm::floor(turns + NEAR) * period;
+    let upwards = match direction {
+        Direction::Positive => true,
+        Direction::Negative => false,
+        Direction::Shortest => above - from <= from - below,
+        Direction::Current => last >= 0.0,
+    };
+    if upwards { above } else { below }
+}
+
+/// `position` within one period.
+pub(crate) fn within(position: f64, period: f64) -> f64 {
+    let rest = position - libm::floor(position / period) * period;
+    if rest >= period { 0.0 } else { rest }
+}

@@ -1,0 +1,46 @@
+//! The commands that wait.
+use crate::command::Command;
+use crate::ledger::CommandId;
+
+/// Most commands that an axis can hold behind the active one.
+pub const MOST_BUFFERED: usize = 8;
+
+/// The commands that wait, in the order in which they were given.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Queue {
+    waiting: [Option<(CommandId, Command)>; MOST_BUFFERED],
+    count: usize,
+}
+
+impl Queue {
+    pub(crate) const EMPTY: Self = Self { waiting: [None; MOST_BUFFERED], count: 0 };
+
+    pub(crate) const fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Adds a command; the caller has seen that there is room.
+    pub(crate) fn push(&mut self, id: CommandId, command: Command) {
+        self.waiting[self.count] = Some((id, command));
+        self.count += 1;
+    }
+
+    pub(crate) fn first(&self) -> Option<&Command> {
+        self.waiting[0].as_ref().map(|(_, command)| command)
+    }
+
+    pub(crate) fn pop(&mut self) -> Option<(CommandId, Command)> {
+        let first = self.waiting[0].take()?;
+        self.waiting.rotate_left(1);
+        self.count -= 1;
+        Some(first)
+    }
+
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &(CommandId, Command)> {
+        self.waiting.iter().flatten()
+    }
+
+    pub(crate) fn get_mut(&mut self, id: CommandId) -> Option<&mut Command> {
+        self.waiting.iter_mut().flatten().find(|(waiting, _)| *waiting == id).map(|(_, command)| command)
+    }
+}

@@ -1,0 +1,219 @@
+//! Power, faults and the reset: the arrows that no motion command sets off.
+use super::Axis;
+use super::activity::{Activity, Moving};
+use super::bounds::Bounds;
+use super::run::Run;
+use crate::arrows::{Cause, arrow};
+use crate::command::{BufferMode, Command, Dynamics, Goal};
+use crate::error::{AxisError, BlockError};
+use crate::ledger::{CommandId, Progress};
+use crate::name::BlockName;
+use crate::state::AxisState;
+use servobench_base::Setpoint;
+use servobench_motion::online::Target;
+
+/// A commanded velocity below this part of the limit is rounding, not motion in a direction.
+const CREEP: f64 = 1e-6;
+
+/// What MC_Power asks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct PowerRequest {
+    pub(crate) enable: bool,
+    pub(crate) positive: bool,
+    pub(crate) negative: bool,
+}
+
+impl Default for PowerRequest {
+    fn default() -> Self {
+        Self { enable: false, positive: true, negative: true }
+    }
+}
+
+/// How far a reset is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum Reset {
+    /// Not asked for.
+    #[default]
+    Idle,
+    /// The signal is up.
+    Asked,
+    /// Asked for again: down for a cycle, so that there is an edge.
+    Again,
+}
+
+impl Reset {
+    pub(super) fn signal(&mut self) -> bool {
+        match self {
+            Self::Idle => false,
+            Self::Asked => true,
+            Self::Again => {
+                *self = Self::Asked;
+                false
+            }
+        }
+    }
+}
+
+impl Axis {
+    /// Takes the arrow of `cause`, if there is one.
+    pub(super) fn follow(&mut self, cause: Cause) {
+        if let Some(arrow) = arrow(self.state, cause) {
+            self.state = arrow.to;
+        }
+    }
+
+    /// Looks at the power and the faults of the axis.
+    pub(super) fn supervise(&mut self) {
+        if let Some(fault) = self.feedback.fault
+            && self.state != AxisState::ErrorStop
+        {
+            return self.fail(AxisError::DriveFault { fault });
+        }
+        let is_powered = self.is_powered();
+        match self.state {
+            AxisState::Disabled => self.try_enable(is_powered),
+            AxisState::ErrorStop => {
+                if !is_powered {
+                    self.activity = Activity::Rest;
+                }
+                self.try_reset(is_powered);
+            }
+            state if !is_powered => self.fail(AxisError::PowerLost { state }),
+            _ => {}
+        }
+    }
+
+    /// Leaves Disabled when the power is there that was asked for.
+    fn try_enable(&mut self, is_powered: bool) {
+        if self.power.enable && is_powered {
+            self.base = Setpoint::at_rest(self.feedback.position);
+            self.follow(Cause::Powered);
+        }
+    }
+
+    /// Leaves ErrorStop when a reset was asked for, the fault is gone and the axis at rest.
+    fn try_reset(&mut self, is_powered: bool) {
+        let is_clear = self.feedback.fault.is_none() && matches!(self.activity, Activity::Rest);
+        if self.reset == Reset::Idle || !is_clear {
+            return;
+        }
+        match (is_powered, self.power.enable) {
+            (true, true) => self.follow(Cause::ResetPowered),
+            (false, _) => self.follow(Cause::ResetUnpowered),
+            (true, false) => return,
+        }
+        (self.reset, self.error) = (Reset::Idle, None);
+    }
+
+    /// An error of the axis: it comes to rest if the power allows it, and takes no command until MC_Reset.
+    pub(super) fn fail(&mut self, error: AxisError) {
+        let from = self.present();
+        let block = self.activity.command().map_or(BlockName::Home, |(_, command)| command.block);
+        self.ledger.failure = Some(BlockError::Axis { block, error });
+        self.end_all(Progress::Failed);
+        self.error = Some(error);
+        self.follow(Cause::AxisError);
+        self.base = from;
+        if self.is_powered() {
+            self.halt_from(from);
+        }
+    }
+
+    /// MC_Power.
+    pub(crate) fn ask_power(&mut self, request: PowerRequest) {
+        self.power = request;
+        if !request.enable && arrow(self.state, Cause::Unpowered).is_some() {
+            self.end_all(Progress::Aborted);
+            self.follow(Cause::Unpowered);
+        }
+        if self.state == AxisState::Disabled {
+            self.try_enable(self.is_powered());
+        }
+    }
+
+    /// Status of MC_Power.
+    pub(crate) fn power_status(&self) -> bool {
+        self.power.enable && self.is_powered()
+    }
+
+    /// MC_Reset.
+    pub(crate) fn ask_reset(&mut self) -> Result<(), BlockError> {
+        if arrow(self.state, Cause::ResetPowered).is_none() {
+            return Err(BlockError::State { block: BlockName::Reset, state: self.state });
+        }
+        self.reset = if self.reset == Reset::Idle { Reset::Asked } else { Reset::Again };
+        Ok(())
+    }
+
+    /// Whether a reset is under way.
+    pub(crate) fn is_resetting(&self) -> bool {
+        self.reset != Reset::Idle
+    }
+
+    /// Fails when the axis moves in a direction that MC_Power does not permit.
+    pub(super) fn watch_permission(&mut self) {
+        if self.power.positive && self.power.negative || matches!(self.activity, Activity::Rest) {
+            return;
+        }
+        let (velocity, creep) = (self.setpoint.v, CREEP * self.params.limits.velocity);
+        let input = match velocity {
+            v if v > creep && !self.power.positive => "EnablePositive",
+            v if v < -creep && !self.power.negative => "EnableNegative",
+            _ => return,
+        };
+        if !matches!(self.state, AxisState::ErrorStop | AxisState::Stopping) {
+            self.fail(AxisError::PermissionLost { velocity, input });
+        }
+    }
+
+    /// The input of MC_Power that forbids a motion in the direction of `sign`.
+    pub(super) fn forbidden(&self, sign: f64) -> Option<&'static str> {
+        match sign {
+            s if s > 0.0 && !self.power.positive => Some("EnablePositive"),
+            s if s < 0.0 && !self.power.negative => Some("EnableNegative"),
+            _ => None,
+        }
+    }
+
+    /// Ends the active command with `progress` and all others as aborted.
+    pub(super) fn end_all(&mut self, progress: Progress) {
+        if let Some(id) = self.activity.id() {
+            self.ledger.set(id, progress);
+        }
+        if let Some(superimposed) = self.superimposed.take() {
+            self.ledger.set(superimposed.id, progress);
+        }
+        self.abort_waiting();
+        self.activity = Activity::Rest;
+        self.shift = 0.0;
+        self.stop_holder = None;
+    }
+
+    /// Takes the commands away that wait.
+    pub(super) fn abort_waiting(&mut self) {
+        while let Some((id, _)) = self.queue.pop() {
+            self.ledger.set(id, Progress::Aborted);
+        }
+    }
+
+    /// Brings the axis to rest, without a block that asked for it.
+    pub(super) fn halt(&mut self) {
+        let from = self.present();
+        self.end_all(Progress::Aborted);
+        self.base = from;
+        self.halt_from(from);
+    }
+
+    /// The axis's own stop; at once where it cannot be planned.
+    fn halt_from(&mut self, from: Setpoint) {
+        let (limits, target) = (&self.params.limits, Target::Velocity(0.0));
+        let bounds = Bounds::of_axis(limits);
+        self.activity = bounds.plan(&from, &target).map_or(Activity::Rest, |way| {
+            let dynamics = Dynamics::braking(limits.acceleration, None, None);
+            let command =
+                Command { block: BlockName::Halt, goal: Goal::Rest, dynamics, buffer_mode: BufferMode::Aborting };
+            let run = Run::new(way, 0.0, None);
+            Activity::Moving(Moving { id: CommandId::OWN, command, target, origin: from.x, is_paused: false, run })
+        });
+    }
+}

@@ -1,0 +1,190 @@
+//! `MC_ReadStatus`, `MC_ReadAxisError`, `MC_ReadActualPosition`, `MC_ReadActualVelocity`, `MC_ReadActualTorque`.
+//!
+//! They cannot fail: Error and ErrorID stay what they are without an error.
+use super::outputs::{FunctionBlock, Outputs, flag, number};
+use crate::axis::Axis;
+use crate::error::{AxisError, ErrorId};
+use crate::name::BlockName;
+use crate::state::AxisState;
+
+/// The state of the axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ReadStatus;
+
+/// The error for which the axis is in ErrorStop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ReadAxisError;
+
+/// The actual position.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ReadActualPosition;
+
+/// The actual velocity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ReadActualVelocity;
+
+/// The actual effort.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ReadActualTorque;
+
+/// Inputs of a block that reads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ReadInputs {
+    /// Enable.
+    pub enable: bool,
+}
+
+/// Outputs of [`ReadStatus`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ReadStatusOutputs {
+    /// Valid.
+    pub valid: bool,
+    /// The state, one of the outputs ErrorStop, Disabled, Stopping, Homing, Standstill, DiscreteMotion, ContinuousMotion,
+    /// SynchronizedMotion; `None` without Enable.
+    pub state: Option<AxisState>,
+}
+
+/// Outputs of [`ReadAxisError`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ReadAxisErrorOutputs {
+    /// Valid.
+    pub valid: bool,
+    /// AxisErrorID.
+    pub axis_error_id: ErrorId,
+    /// The code of the drive or its link, where the error is a fault of it; 0 without one. Beyond the standard.
+    pub drive_code: u16,
+}
+
+/// Outputs of a block that reads a value; the value is `Position`, `Velocity` or `Torque` in the standard.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ReadValueOutputs {
+    /// Valid.
+    pub valid: bool,
+    /// The value, in the axis unit; 0 while it is not valid.
+    pub value: f64,
+}
+
+impl ReadStatusOutputs {
+    /// The outputs of states, in the order of the standard; Synchronized Motion does not occur.
+    pub const STATES: [AxisState; 7] = [
+        AxisState::ErrorStop,
+        AxisState::Disabled,
+        AxisState::Stopping,
+        AxisState::Homing,
+        AxisState::Standstill,
+        AxisState::DiscreteMotion,
+        AxisState::ContinuousMotion,
+    ];
+}
+
+impl FunctionBlock for ReadStatus {
+    const NAME: BlockName = BlockName::ReadStatus;
+    type Inputs = ReadInputs;
+    type Outputs = ReadStatusOutputs;
+
+    #[inline]
+    fn step(&mut self, axis: &mut Axis, inputs: &ReadInputs) -> ReadStatusOutputs {
+        ReadStatusOutputs { valid: inputs.enable, state: inputs.enable.then_some(axis.state()) }
+    }
+}
+
+impl FunctionBlock for ReadAxisError {
+    const NAME: BlockName = BlockName::ReadAxisError;
+    type Inputs = ReadInputs;
+    type Outputs = ReadAxisErrorOutputs;
+
+    #[inline]
+    fn step(&mut self, axis: &mut Axis, inputs: &ReadInputs) -> ReadAxisErrorOutputs {
+        let error = axis.error().filter(|_| inputs.enable);
+        ReadAxisErrorOutputs {
+            valid: inputs.enable,
+            axis_error_id: error.map_or(ErrorId::None, AxisError::id),
+            drive_code: match error {
+                Some(AxisError::DriveFault { fault }) => fault.code(),
+                _ => 0,
+            },
+        }
+    }
+}
+
+impl FunctionBlock for ReadActualPosition {
+    const NAME: BlockName = BlockName::ReadActualPosition;
+    type Inputs = ReadInputs;
+    type Outputs = ReadValueOutputs;
+
+    #[inline]
+    fn step(&mut self, axis: &mut Axis, inputs: &ReadInputs) -> ReadValueOutputs {
+        ReadValueOutputs::of(*inputs, || axis.actual().position)
+    }
+}
+
+impl FunctionBlock for ReadActualVelocity {
+    const NAME: BlockName = BlockName::ReadActualVelocity;
+    type Inputs = ReadInputs;
+    type Outputs = ReadValueOutputs;
+
+    #[inline]
+    fn step(&mut self, axis: &mut Axis, inputs: &ReadInputs) -> ReadValueOutputs {
+        ReadValueOutputs::of(*inputs, || axis.actual().velocity)
+    }
+}
+
+impl FunctionBlock for ReadActualTorque {
+    const NAME: BlockName = BlockName::ReadActualTorque;
+    type Inputs = ReadInputs;
+    type Outputs = ReadValueOutputs;
+
+    #[inline]
+    fn step(&mut self, axis: &mut Axis, inputs: &ReadInputs) -> ReadValueOutputs {
+        ReadValueOutputs::of(*inputs, || axis.actual().effort)
+    }
+}
+
+impl ReadValueOutputs {
+    #[inline]
+    fn of(inputs: ReadInputs, value: impl FnOnce() -> f64) -> Self {
+        let value = if inputs.enable { value() } else { 0.0 };
+        Self { valid: inputs.enable, value }
+    }
+}
+
+impl Outputs for ReadStatusOutputs {
+    const NAMES: &'static [&'static str] = &[
+        "Valid",
+        "Busy",
+        "Error",
+        "ErrorID",
+        "ErrorStop",
+        "Disabled",
+        "Stopping",
+        "Homing",
+        "Standstill",
+        "DiscreteMotion",
+        "ContinuousMotion",
+        "SynchronizedMotion",
+    ];
+
+    fn each(&self, record: impl FnMut(f64)) {
+        let states = Self::STATES.map(|state| flag(self.state == Some(state)));
+        let valid = flag(self.valid);
+        [valid, valid, 0.0, 0.0].into_iter().chain(states).chain([0.0]).for_each(record);
+    }
+}
+
+impl Outputs for ReadAxisErrorOutputs {
+    const NAMES: &'static [&'static str] = &["Valid", "Busy", "Error", "ErrorID", "AxisErrorID", "DriveCode"];
+
+    fn each(&self, record: impl FnMut(f64)) {
+        let valid = flag(self.valid);
+        [valid, valid, 0.0, 0.0, number(self.axis_error_id), f64::from(self.drive_code)].into_iter().for_each(record);
+    }
+}
+
+impl Outputs for ReadValueOutputs {
+    const NAMES: &'static [&'static str] = &["Valid", "Busy", "Error", "ErrorID", "Value"];
+
+    fn each(&self, record: impl FnMut(f64)) {
+        let valid = flag(self.valid);
+        [valid, valid, 0.0, 0.0, self.value].into_iter().for_each(record);
+    }
+}

@@ -1,0 +1,34 @@
+//! `MC_Reset`: out of ErrorStop.
+use super::execution::{Execution, Report};
+use super::outputs::{DoneOutputs, FunctionBlock};
+use crate::axis::Axis;
+use crate::error::BlockError;
+use crate::name::BlockName;
+
+/// Takes the error of the axis away, once its cause is gone and the axis at rest.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Reset {
+    execution: Execution,
+}
+
+/// Inputs of [`Reset`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ResetInputs {
+    /// Execute.
+    pub execute: bool,
+}
+
+impl FunctionBlock for Reset {
+    const NAME: BlockName = BlockName::Reset;
+    type Inputs = ResetInputs;
+    type Outputs = DoneOutputs;
+
+    fn step(&mut self, axis: &mut Axis, inputs: &ResetInputs) -> DoneOutputs {
+        let report = self.execution.step(axis, inputs.execute, |axis| axis.ask_reset().map(|()| None));
+        if report == Report::Active && !axis.is_resetting() { self.execution.complete() } else { report }.into()
+    }
+
+    fn error(&self) -> Option<&BlockError> {
+        self.execution.error()
+    }
+}

@@ -1,0 +1,93 @@
+//! `MC_SetOverride`: slower.
+use super::outputs::{FunctionBlock, Outputs, flag, number};
+use crate::axis::{Axis, Override};
+use crate::error::{BlockError, ErrorId};
+use crate::name::BlockName;
+
+/// Scales velocity, acceleration and jerk of all commands but MC_Stop and MC_Halt while Enable is TRUE; the factors stay when it
+/// falls. A command that runs is planned anew from where it is, so that nothing jumps.
+///
+/// A lower acceleration or jerk needs a longer way to brake: set near a target, the axis passes it and comes back.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SetOverride {
+    error: Option<BlockError>,
+}
+
+/// Inputs of [`SetOverride`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SetOverrideInputs {
+    /// Enable.
+    pub enable: bool,
+    /// VelFactor, from 0, which holds the axis without ending its command, to 1.
+    pub vel_factor: f64,
+    /// AccFactor, above 0 up to 1, of acceleration and deceleration.
+    pub acc_factor: f64,
+    /// JerkFactor, above 0 up to 1, of jerk and snap.
+    pub jerk_factor: f64,
+}
+
+impl Default for SetOverrideInputs {
+    fn default() -> Self {
+        Self { enable: false, vel_factor: 1.0, acc_factor: 1.0, jerk_factor: 1.0 }
+    }
+}
+
+/// Outputs of [`SetOverride`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct SetOverrideOutputs {
+    /// Enabled: the factors act.
+    pub enabled: bool,
+    /// Busy.
+    pub busy: bool,
+    /// Error.
+    pub error: bool,
+    /// ErrorID.
+    pub error_id: ErrorId,
+}
+
+impl SetOverride {
+    fn set(axis: &mut Axis, inputs: &SetOverrideInputs) -> Result<(), BlockError> {
+        let SetOverrideInputs { vel_factor: velocity, acc_factor: acceleration, jerk_factor: jerk, .. } = *inputs;
+        let block = Self::NAME;
+        if !(0.0..=1.0).contains(&velocity) {
+            return Err(BlockError::Input { block, input: "VelFactor", value: velocity, bound: "from 0 to 1" });
+        }
+        for (input, value) in [("AccFactor", acceleration), ("JerkFactor", jerk)] {
+            if !(value > 0.0 && value <= 1.0) {
+                return Err(BlockError::Input { block, input, value, bound: "above 0 and at most 1" });
+            }
+        }
+        axis.set_factors(Override { velocity, acceleration, jerk })
+    }
+}
+
+impl FunctionBlock for SetOverride {
+    const NAME: BlockName = BlockName::SetOverride;
+    type Inputs = SetOverrideInputs;
+    type Outputs = SetOverrideOutputs;
+
+    #[inline]
+    fn step(&mut self, axis: &mut Axis, inputs: &SetOverrideInputs) -> SetOverrideOutputs {
+        if !inputs.enable {
+            self.error = None;
+            return SetOverrideOutputs::default();
+        }
+        self.error = Self::set(axis, inputs).err();
+        let error_id = self.error.as_ref().map_or(ErrorId::None, BlockError::id);
+        let error = error_id != ErrorId::None;
+        SetOverrideOutputs { enabled: !error, busy: !error, error, error_id }
+    }
+
+    fn error(&self) -> Option<&BlockError> {
+        self.error.as_ref()
+    }
+}
+
+impl Outputs for SetOverrideOutputs {
+    const NAMES: &'static [&'static str] = &["Enabled", "Busy", "Error", "ErrorID"];
+
+    fn each(&self, record: impl FnMut(f64)) {
+        let Self { enabled, busy, error, error_id } = *self;
+        [enabled, busy, error].map(flag).into_iter().chain([number(error_id)]).for_each(record);
+    }
+}

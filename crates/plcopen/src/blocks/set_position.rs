@@ -1,0 +1,44 @@
+//! `MC_SetPosition`: what the program sees as the position.
+use super::execution::Execution;
+use super::outputs::{DoneOutputs, FunctionBlock};
+use crate::axis::Axis;
+use crate::error::BlockError;
+use crate::name::BlockName;
+
+/// Shifts what the program sees as position, actual and commanded alike, without a motion; commands that run go on to where they
+/// lead. ExecutionMode is left out: it is always immediately.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SetPosition {
+    execution: Execution,
+}
+
+/// Inputs of [`SetPosition`].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SetPositionInputs {
+    /// Execute.
+    pub execute: bool,
+    /// Position (m or rad): the actual one from now on; with Relative, what is added to it.
+    pub position: f64,
+    /// Relative.
+    pub relative: bool,
+}
+
+impl FunctionBlock for SetPosition {
+    const NAME: BlockName = BlockName::SetPosition;
+    type Inputs = SetPositionInputs;
+    type Outputs = DoneOutputs;
+
+    fn step(&mut self, axis: &mut Axis, inputs: &SetPositionInputs) -> DoneOutputs {
+        let mut is_set = false;
+        let report = self.execution.step(axis, inputs.execute, |axis| {
+            axis.set_position(inputs.position, inputs.relative)?;
+            is_set = true;
+            Ok(None)
+        });
+        if is_set { self.execution.complete() } else { report }.into()
+    }
+
+    fn error(&self) -> Option<&BlockError> {
+        self.execution.error()
+    }
+}

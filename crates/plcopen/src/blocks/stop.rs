@@ -1,0 +1,112 @@
+//! `MC_Halt` and `MC_Stop`: to rest.
+use super::execution::Execution;
+use super::motion::{MotionBlock, MotionInputs};
+use super::outputs::{FunctionBlock, MotionOutputs};
+use crate::axis::Axis;
+use crate::command::{BufferMode, Command, Dynamics, Goal};
+use crate::error::BlockError;
+use crate::ledger::CommandId;
+use crate::name::BlockName;
+use servobench_motion::Limits;
+
+/// To rest; another command may take the axis on the way.
+pub type Halt = MotionBlock<HaltInputs>;
+
+/// Inputs of [`Halt`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HaltInputs {
+    /// Execute.
+    pub execute: bool,
+    /// Deceleration (m/s² or rad/s²).
+    pub deceleration: f64,
+    /// Jerk (m/s³ or rad/s³); `None` leaves it to the axis.
+    pub jerk: Option<f64>,
+    /// Snap (m/s⁴ or rad/s⁴), beyond the standard; `None` leaves it to the axis.
+    pub snap: Option<f64>,
+    /// BufferMode.
+    pub buffer_mode: BufferMode,
+}
+
+impl HaltInputs {
+    /// As fast as `limits` allow, not executed.
+    #[must_use]
+    pub fn within(limits: &Limits) -> Self {
+        let StopInputs { execute, deceleration, jerk, snap } = StopInputs::within(limits);
+        Self { execute, deceleration, jerk, snap, buffer_mode: BufferMode::default() }
+    }
+}
+
+impl MotionInputs for HaltInputs {
+    const NAME: BlockName = BlockName::Halt;
+    type Outputs = MotionOutputs;
+
+    fn execute(&self) -> bool {
+        self.execute
+    }
+
+    fn command(&self) -> Command {
+        let Self { deceleration, jerk, snap, buffer_mode, .. } = *self;
+        let dynamics = Dynamics::braking(deceleration, jerk, snap);
+        Command { block: Self::NAME, goal: Goal::Rest, dynamics, buffer_mode }
+    }
+}
+
+/// To rest; the axis takes no other command until Execute is FALSE and it stands still.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Stop {
+    execution: Execution,
+    /// The command while Execute is TRUE.
+    holding: Option<CommandId>,
+}
+
+/// Inputs of [`Stop`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StopInputs {
+    /// Execute.
+    pub execute: bool,
+    /// Deceleration (m/s² or rad/s²).
+    pub deceleration: f64,
+    /// Jerk (m/s³ or rad/s³); `None` leaves it to the axis.
+    pub jerk: Option<f64>,
+    /// Snap (m/s⁴ or rad/s⁴), beyond the standard; `None` leaves it to the axis.
+    pub snap: Option<f64>,
+}
+
+impl StopInputs {
+    /// As fast as `limits` allow, not executed.
+    #[must_use]
+    pub fn within(limits: &Limits) -> Self {
+        Self {
+            execute: false,
+            deceleration: limits.acceleration,
+            jerk: Some(limits.jerk).filter(|jerk| jerk.is_finite()),
+            snap: Some(limits.snap).filter(|snap| snap.is_finite()),
+        }
+    }
+}
+
+impl FunctionBlock for Stop {
+    const NAME: BlockName = BlockName::Stop;
+    type Inputs = StopInputs;
+    type Outputs = MotionOutputs;
+
+    fn step(&mut self, axis: &mut Axis, inputs: &StopInputs) -> MotionOutputs {
+        let StopInputs { execute, deceleration, jerk, snap } = *inputs;
+        if !execute && let Some(id) = self.holding.take() {
+            axis.release_stop(id);
+        }
+        let holding = &mut self.holding;
+        let report = self.execution.step(axis, execute, |axis| {
+            let dynamics = Dynamics::braking(deceleration, jerk, snap);
+            let buffer_mode = BufferMode::Aborting;
+            let id = axis.stop(Command { block: Self::NAME, goal: Goal::Rest, dynamics, buffer_mode })?;
+            *holding = Some(id);
+            Ok(Some(id))
+        });
+        report.into()
+    }
+
+    fn error(&self) -> Option<&BlockError> {
+        self.execution.error()
+    }
+}

@@ -1,0 +1,228 @@
+//! What a block asks of the axis.
+use crate::error::BlockError;
+use crate::name::BlockName;
+use crate::params::AxisParams;
+use servobench_base::{finite, positive};
+use servobench_motion::Limits;
+
+/// How a command follows those before it (MC_BUFFER_MODE).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum BufferMode {
+    /// At once; what ran or waited is aborted.
+    #[default]
+    Aborting,
+    /// When the command before it is done.
+    Buffered,
+    /// The same, without a stop: the end of the command before is passed at the lower of both velocities.
+    BlendingLow,
+    /// At the velocity of the command before.
+    BlendingPrevious,
+    /// At the velocity of this command.
+    BlendingNext,
+    /// At the higher of both velocities.
+    BlendingHigh,
+}
+
+impl BufferMode {
+    /// The velocity with which the end of the command before is to be passed; `None` where that one is done first.
+    pub(crate) fn blending_velocity(self, before: f64, this: f64) -> Option<f64> {
+        match self {
+            Self::Aborting | Self::Buffered => None,
+            Self::BlendingLow => Some(before.min(this)),
+            Self::BlendingPrevious => Some(before),
+            Self::BlendingNext => Some(this),
+            Self::BlendingHigh => Some(before.max(this)),
+        }
+    }
+}
+
+/// Which way round (MC_DIRECTION).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Direction {
+    /// Upwards.
+    Positive,
+    /// The shorter way, upwards where both are as long.
+    #[default]
+    Shortest,
+    /// Downwards.
+    Negative,
+    /// The way the axis goes, or went last.
+    Current,
+}
+
+impl Direction {
+    /// Name in the spelling of the standard.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Positive => "mcPositiveDirection",
+            Self::Shortest => "mcShortestWay",
+            Self::Negative => "mcNegativeDirection",
+            Self::Current => "mcCurrentDirection",
+        }
+    }
+}
+
+/// Velocity and its derivatives as a block limits them, magnitudes in the axis unit (m or rad).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dynamics {
+    /// Velocity (m/s or rad/s); infinite where the block has no such input.
+    pub velocity: f64,
+    /// Acceleration (m/s² or rad/s²).
+    pub acceleration: f64,
+    /// Deceleration (m/s² or rad/s²).
+    pub deceleration: f64,
+    /// Jerk (m/s³ or rad/s³); `None` leaves it to the axis.
+    pub jerk: Option<f64>,
+    /// Snap (m/s⁴ or rad/s⁴), beyond the standard; `None` leaves it to the axis.
+    pub snap: Option<f64>,
+}
+
+impl Dynamics {
+    /// Those of a stop.
+    #[must_use]
+    pub const fn braking(deceleration: f64, jerk: Option<f64>, snap: Option<f64>) -> Self {
+        Self { velocity: f64::INFINITY, acceleration: deceleration, deceleration, jerk, snap }
+    }
+
+    /// # Errors
+    /// [`BlockError`] names the first input that is not positive or above the limit of the axis.
+    pub(crate) fn check(&self, block: BlockName, limits: &Limits) -> Result<(), BlockError> {
+        let inputs = [
+            ("Velocity", Some(self.velocity).filter(|velocity| *velocity < f64::INFINITY), limits.velocity),
+            ("Acceleration", Some(self.acceleration), limits.acceleration),
+            ("Deceleration", Some(self.deceleration), limits.acceleration),
+            ("Jerk", self.jerk, limits.jerk),
+            ("Snap", self.snap, limits.snap),
+        ];
+        for (input, value, limit) in inputs.into_iter().filter_map(|(input, value, limit)| Some((input, value?, limit)))
+        {
+            check_input(block, input, value, limit)?;
+        }
+        if self.snap.is_some() && self.jerk.unwrap_or(limits.jerk) == f64::INFINITY {
+            let bound = "given where Snap is";
+            return Err(BlockError::Input { block, input: "Jerk", value: f64::INFINITY, bound });
+        }
+        Ok(())
+    }
+}
+
+/// Where a motion leads, in the unit of the axis as the program sees it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Goal {
+    /// To a position, passed at a velocity with a sign, zero to stop there.
+    Absolute {
+        /// Position (m or rad).
+        position: f64,
+        /// Which way round on a modulo axis.
+        direction: Direction,
+        /// Velocity there (m/s or rad/s).
+        end_velocity: f64,
+    },
+    /// By a distance from where the motion begins.
+    Relative(f64),
+    /// By a distance from where the command before leads.
+    Additive(f64),
+    /// To a velocity, kept from then on; its sign counts in the direction.
+    Velocity {
+        /// Velocity (m/s or rad/s).
+        velocity: f64,
+        /// Which way.
+        direction: Direction,
+    },
+    /// To rest.
+    Rest,
+    /// To an effort, kept from then on.
+    Effort {
+        /// Effort (N·m or N).
+        effort: f64,
+        /// Its rate (N·m/s or N/s), infinite for a step.
+        ramp: f64,
+    },
+    /// Along a course that the block itself gives, a set-point per cycle: see [`Axis::lead`](crate::Axis::lead).
+    Led,
+}
+
+/// A command as the axis takes it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Command {
+    /// The block.
+    pub block: BlockName,
+    /// Where it leads.
+    pub goal: Goal,
+    /// What it may not exceed.
+    pub dynamics: Dynamics,
+    /// How it follows those before it.
+    pub buffer_mode: BufferMode,
+}
+
+impl Command {
+    /// Checks what does not depend on the state of the axis.
+    pub(crate) fn check(&self, params: &AxisParams) -> Result<(), BlockError> {
+        let block = self.block;
+        if !matches!(self.goal, Goal::Effort { .. }) {
+            self.dynamics.check(block, &params.limits)?;
+        }
+        match self.goal {
+            Goal::Absolute { position, direction, end_velocity } => {
+                finite_input(block, "Position", position)?;
+                finite_input(block, "EndVelocity", end_velocity)?;
+                if end_velocity.abs() > self.dynamics.velocity {
+                    let (value, bound) = (end_velocity, "at most Velocity in magnitude");
+                    return Err(BlockError::Input { block, input: "EndVelocity", value, bound });
+                }
+                match params.modulo {
+                    Some(period) if !(0.0..period).contains(&position) => {
+                        let bound = "within the modulo period, from 0 on";
+                        return Err(BlockError::Input { block, input: "Position", value: position, bound });
+                    }
+                    None if direction != Direction::Shortest => {
+                        let (value, bound) = (direction.name(), "mcShortestWay on an axis with ends");
+                        return Err(BlockError::Direction { block, value, bound });
+                    }
+                    _ => {}
+                }
+            }
+            Goal::Relative(distance) | Goal::Additive(distance) => finite_input(block, "Distance", distance)?,
+            Goal::Velocity { velocity, direction } => {
+                finite_input(block, "Velocity", velocity)?;
+                if velocity.abs() > params.limits.velocity {
+                    let (value, limit) = (velocity, params.limits.velocity);
+                    return Err(BlockError::AboveLimit { block, input: "Velocity", value, limit });
+                }
+                if direction == Direction::Shortest {
+                    let (value, bound) = (direction.name(), "a direction to run in");
+                    return Err(BlockError::Direction { block, value, bound });
+                }
+            }
+            Goal::Effort { effort, ramp } => {
+                finite_input(block, "Torque", effort)?;
+                if ramp.is_nan() || ramp <= 0.0 {
+                    return Err(BlockError::Input { block, input: "TorqueRamp", value: ramp, bound: "positive" });
+                }
+                return check_input(block, "Velocity", self.dynamics.velocity, params.limits.velocity);
+            }
+            Goal::Rest | Goal::Led => {}
+        }
+        Ok(())
+    }
+}
+
+pub(crate) fn finite_input(block: BlockName, input: &'static str, value: f64) -> Result<(), BlockError> {
+    match finite(input, value) {
+        Ok(_) if value.abs() <= LARGEST => Ok(()),
+        _ => Err(BlockError::Input { block, input, value, bound: "a number within ±1e15" }),
+    }
+}
+
+/// A magnitude up to `limit`.
+fn check_input(block: BlockName, input: &'static str, value: f64, limit: f64) -> Result<(), BlockError> {
+    match positive(input, value) {
+        Ok(_) if value > limit => Err(BlockError::AboveLimit { block, input, value, limit }),
+        Ok(_) if (1.0 / LARGEST..=LARGEST).contains(&value) => Ok(()),
+        _ => Err(BlockError::Input { block, input, value, bound: "positive, from 1e-15 to 1e15" }),
+    }
+}
+
+/// What is larger, or smaller than its inverse, was written in the wrong unit; within it every plan is well within `f64`.
+const LARGEST: f64 = 1e15;

@@ -1,0 +1,314 @@
+//! Why a block refuses, and why an axis stops.
+//!
+//! The standard leaves the numbers of ErrorID to the supplier. Here the thousands are the class: 1 an input, 2 the state of the
+//! axis, 3 the plan of a move, 4 the axis itself.
+use crate::name::BlockName;
+use crate::state::AxisState;
+use servobench_fieldbus::Fault;
+use servobench_motion::PlanError;
+use thiserror::Error;
+
+/// The output ErrorID.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[repr(u16)]
+pub enum ErrorId {
+    /// No error.
+    #[default]
+    None = 0,
+    /// An input is no number of the right sign.
+    Input = 0x1001,
+    /// An input is above a limit of the axis.
+    AboveLimit = 0x1002,
+    /// Two motions on top of each other are together above a limit of the axis.
+    SumAboveLimit = 0x1003,
+    /// The input Direction does not fit the axis.
+    Direction = 0x1004,
+    /// The state of the axis does not allow the block.
+    State = 0x2001,
+    /// The axis has no reference.
+    NotHomed = 0x2002,
+    /// The axis holds no more buffered commands.
+    BufferFull = 0x2003,
+    /// MC_Power does not permit motion in this direction.
+    NotPermitted = 0x2004,
+    /// The motion cannot be changed any more.
+    Ended = 0x2005,
+    /// The move cannot be planned.
+    Plan = 0x3001,
+    /// The drive or its link reports a fault.
+    DriveFault = 0x4001,
+    /// The power failed.
+    PowerLost = 0x4002,
+    /// The reference was not found.
+    HomingFailed = 0x4003,
+    /// The axis moved in a direction that MC_Power does not permit any more.
+    PermissionLost = 0x4004,
+    /// The axis ran faster than MC_TorqueControl allows.
+    Overspeed = 0x4005,
+    /// A profile gave no set-point, or one beyond the limits of the axis.
+    Profile = 0x4006,
+    /// A move that had been accepted could not be planned when its turn came.
+    PlanLost = 0x4007,
+}
+
+impl ErrorId {
+    /// Every number but that of no error.
+    pub const ALL: [Self; 17] = [
+        Self::Input,
+        Self::AboveLimit,
+        Self::SumAboveLimit,
+        Self::Direction,
+        Self::State,
+        Self::NotHomed,
+        Self::BufferFull,
+        Self::NotPermitted,
+        Self::Ended,
+        Self::Plan,
+        Self::DriveFault,
+        Self::PowerLost,
+        Self::HomingFailed,
+        Self::PermissionLost,
+        Self::Overspeed,
+        Self::Profile,
+        Self::PlanLost,
+    ];
+
+    /// The number on the output.
+    #[must_use]
+    pub const fn number(self) -> u16 {
+        self as u16
+    }
+
+    /// What it means.
+    #[must_use]
+    pub const fn meaning(self) -> &'static str {
+        match self {
+            Self::None => "no error",
+            Self::Input => "an input is no number of the right sign or range",
+            Self::AboveLimit => "an input is above a limit of the axis",
+            Self::SumAboveLimit => "a superimposed motion and the one below are together above a limit of the axis",
+            Self::Direction => "the input Direction does not fit the axis",
+            Self::State => "the state of the axis does not allow the block",
+            Self::NotHomed => "an absolute position is asked of an axis without a reference",
+            Self::BufferFull => "the axis holds no more buffered commands",
+            Self::NotPermitted => "MC_Power does not permit motion in this direction",
+            Self::Ended => "the motion is over and cannot be changed any more",
+            Self::Plan => "the move cannot be planned",
+            Self::DriveFault => "the drive or its link reports a fault",
+            Self::PowerLost => "the power failed, or never came back",
+            Self::HomingFailed => "the drive did not find its reference",
+            Self::PermissionLost => "MC_Power took the permission for the direction of the running motion away",
+            Self::Overspeed => "the axis ran faster than the input Velocity of MC_TorqueControl",
+            Self::Profile => "a profile gave no set-point, or one beyond the limits of the axis",
+            Self::PlanLost => "a move that had been accepted could not be planned when its turn came",
+        }
+    }
+}
+
+/// A call that is refused, or a command that failed.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum BlockError {
+    /// An input is no number of the right sign.
+    #[error("{block}: `{input}` must be {bound}, got {value}: correct the input")]
+    Input {
+        /// The block.
+        block: BlockName,
+        /// Input in the spelling of the standard.
+        input: &'static str,
+        /// Rejected value (SI).
+        value: f64,
+        /// What the value must be, in words.
+        bound: &'static str,
+    },
+    /// An input is above a limit of the axis.
+    #[error(
+        "{block}: `{input}` must be at most {limit}, the limit of the axis, got {value}: lower it or raise the limit"
+    )]
+    AboveLimit {
+        /// The block.
+        block: BlockName,
+        /// Input in the spelling of the standard.
+        input: &'static str,
+        /// Rejected value (SI).
+        value: f64,
+        /// Limit of the axis (SI).
+        limit: f64,
+    },
+    /// Two motions on top of each other are together above a limit of the axis.
+    #[error(
+        "{block}: `{input}` and that of the other motion must together be at most {limit}, the limit of the axis, got \
+         {value}: lower one of them"
+    )]
+    SumAboveLimit {
+        /// The block.
+        block: BlockName,
+        /// Input in the spelling of the standard.
+        input: &'static str,
+        /// Rejected sum (SI).
+        value: f64,
+        /// Limit of the axis (SI).
+        limit: f64,
+    },
+    /// The input Direction does not fit the axis.
+    #[error("{block}: `Direction` must be {bound}, got {value}: correct the input")]
+    Direction {
+        /// The block.
+        block: BlockName,
+        /// Rejected direction, in the spelling of the standard.
+        value: &'static str,
+        /// What it must be, in words.
+        bound: &'static str,
+    },
+    /// The state of the axis does not allow the block.
+    #[error("{block}: the state of the axis, {state}, does not allow it: {}", state.way_out())]
+    State {
+        /// The block.
+        block: BlockName,
+        /// State of the axis.
+        state: AxisState,
+    },
+    /// The axis has no reference.
+    #[error("{block}: `Position` {value} means nothing on an axis without a reference: execute MC_Home first")]
+    NotHomed {
+        /// The block.
+        block: BlockName,
+        /// Rejected position (SI).
+        value: f64,
+    },
+    /// The axis holds no more buffered commands.
+    #[error("{block}: `BufferMode`: {held} commands wait, as many as the axis holds: wait for the Done of one")]
+    BufferFull {
+        /// The block.
+        block: BlockName,
+        /// Number of commands that wait.
+        held: usize,
+    },
+    /// MC_Power does not permit motion in this direction.
+    #[error("{block}: leads in a direction that MC_Power does not permit: set `{input}` of MC_Power")]
+    NotPermitted {
+        /// The block.
+        block: BlockName,
+        /// Input of MC_Power.
+        input: &'static str,
+    },
+    /// The motion cannot be changed any more.
+    #[error("{block}: `ContinuousUpdate`: the motion is over: start it again with a rising edge of `Execute`")]
+    Ended {
+        /// The block.
+        block: BlockName,
+    },
+    /// The move cannot be planned.
+    #[error("{block}: {error}")]
+    Plan {
+        /// The block.
+        block: BlockName,
+        /// Why.
+        error: PlanError,
+    },
+    /// The axis stopped with an error.
+    #[error("{block}: {error}")]
+    Axis {
+        /// The block.
+        block: BlockName,
+        /// Why.
+        error: AxisError,
+    },
+}
+
+impl BlockError {
+    /// The output ErrorID.
+    #[must_use]
+    pub const fn id(&self) -> ErrorId {
+        match self {
+            Self::Input { .. } => ErrorId::Input,
+            Self::AboveLimit { .. } => ErrorId::AboveLimit,
+            Self::SumAboveLimit { .. } => ErrorId::SumAboveLimit,
+            Self::Direction { .. } => ErrorId::Direction,
+            Self::State { .. } => ErrorId::State,
+            Self::NotHomed { .. } => ErrorId::NotHomed,
+            Self::BufferFull { .. } => ErrorId::BufferFull,
+            Self::NotPermitted { .. } => ErrorId::NotPermitted,
+            Self::Ended { .. } => ErrorId::Ended,
+            Self::Plan { .. } => ErrorId::Plan,
+            Self::Axis { error, .. } => error.id(),
+        }
+    }
+}
+
+/// An error of the axis: it leads to ErrorStop.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum AxisError {
+    /// The drive or its link reports a fault.
+    #[error("{fault}: remove its cause and call MC_Reset")]
+    DriveFault {
+        /// What was found.
+        fault: Fault,
+    },
+    /// The power failed.
+    #[error("the power of the axis failed in {state}: see why the drive left it, and call MC_Reset")]
+    PowerLost {
+        /// State of the axis at that time.
+        state: AxisState,
+    },
+    /// The reference was not found.
+    #[error("the drive did not find its reference: see to its switches, and call MC_Reset")]
+    HomingFailed,
+    /// The axis moved in a direction that is not permitted any more.
+    #[error("the axis moves at {velocity} while `{input}` of MC_Power is FALSE: stop it before")]
+    PermissionLost {
+        /// Commanded velocity (SI).
+        velocity: f64,
+        /// Input of MC_Power.
+        input: &'static str,
+    },
+    /// The axis ran faster than MC_TorqueControl allows.
+    #[error(
+        "MC_TorqueControl: the axis runs at {velocity}, `Velocity` allows {limit}: lower `Torque` or raise `Velocity`"
+    )]
+    Overspeed {
+        /// Actual velocity (SI).
+        velocity: f64,
+        /// Largest magnitude (SI).
+        limit: f64,
+    },
+    /// A profile gave a set-point beyond the limits of the axis.
+    #[error("{block}: its {quantity} {value} is beyond {limit}, the limit of the axis: change the profile")]
+    Profile {
+        /// The block.
+        block: BlockName,
+        /// Velocity, acceleration or jerk.
+        quantity: &'static str,
+        /// Value (SI).
+        value: f64,
+        /// Limit of the axis (SI).
+        limit: f64,
+    },
+    /// A block that leads the axis was not called.
+    #[error("{block}: gave no set-point in this cycle: call it in every cycle")]
+    NotLed {
+        /// The block.
+        block: BlockName,
+    },
+    /// A move that had been accepted could not be planned when its turn came.
+    #[error("{error}")]
+    PlanLost {
+        /// Why.
+        error: PlanError,
+    },
+}
+
+impl AxisError {
+    /// The output AxisErrorID.
+    #[must_use]
+    pub const fn id(&self) -> ErrorId {
+        match self {
+            Self::DriveFault { .. } => ErrorId::DriveFault,
+            Self::PowerLost { .. } => ErrorId::PowerLost,
+            Self::HomingFailed => ErrorId::HomingFailed,
+            Self::PermissionLost { .. } => ErrorId::PermissionLost,
+            Self::Overspeed { .. } => ErrorId::Overspeed,
+            Self::Profile { .. } | Self::NotLed { .. } => ErrorId::Profile,
+            Self::PlanLost { .. } => ErrorId::PlanLost,
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! What became of the commands: each block asks for its own by number.
+use crate::error::BlockError;
+
+/// The number of a command, counted from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct CommandId(u32);
+
+impl CommandId {
+    /// The axis's own: stops that no block asked for.
+    pub(crate) const OWN: Self = Self(0);
+}
+
+/// What became of a command.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Progress {
+    /// Waits for those before it.
+    Buffered,
+    /// Commands the axis.
+    Active,
+    /// The same, and is at the velocity or effort that it was to reach.
+    InTarget,
+    /// Is done.
+    Done,
+    /// Another one, or the loss of power that was asked for, took the axis from it.
+    #[default]
+    Aborted,
+    /// The axis stopped with an error.
+    Failed,
+}
+
+/// Number of commands that are remembered.
+const REMEMBERED: u32 = 64;
+
+/// The last 64 commands. A block that is not called while 64 others are given hears that its own was aborted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Ledger {
+    last: u32,
+    progress: [Progress; REMEMBERED as usize],
+    /// Why the last one failed that did.
+    pub(crate) failure: Option<BlockError>,
+}
+
+impl Ledger {
+    pub(crate) const fn new() -> Self {
+        Self { last: 0, progress: [Progress::Aborted; REMEMBERED as usize], failure: None }
+    }
+
+    /// The next command, which waits.
+    pub(crate) fn issue(&mut self) -> CommandId {
+        self.last = self.last.wrapping_add(1).max(1);
+        let id = CommandId(self.last);
+        self.progress[Self::place(id)] = Progress::Buffered;
+        id
+    }
+
+    #[inline]
+    pub(crate) fn set(&mut self, id: CommandId, progress: Progress) {
+        if id != CommandId::OWN {
+            self.progress[Self::place(id)] = progress;
+        }
+    }
+
+    #[inline]
+    pub(crate) fn progress(&self, id: CommandId) -> Progress {
+        if self.last.wrapping_sub(id.0) < REMEMBERED { self.progress[Self::place(id)] } else { Progress::Aborted }
+    }
+
+    const fn place(id: CommandId) -> usize {
+        (id.0 % REMEMBERED) as usize
+    }
+}

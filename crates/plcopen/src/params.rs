@@ -1,0 +1,48 @@
+//! What an axis is told once.
+use crate::axis::MOST_BUFFERED;
+use servobench_base::{ParamError, limit, positive};
+use servobench_motion::Limits;
+
+/// Parameters of an axis, in the axis unit (m or rad); constant while it runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AxisParams {
+    /// Time of a PLC cycle (s).
+    pub cycle_time: f64,
+    /// What no command may exceed. Jerk and snap may be infinite: an order of moves is the highest derivative that either the
+    /// axis or the command limits.
+    pub limits: Limits,
+    /// Whether an absolute position needs MC_Home before.
+    pub needs_homing: bool,
+    /// After this much the position of a modulo axis begins anew (m or rad); `None` for an axis with ends.
+    pub modulo: Option<f64>,
+    /// How many commands may wait behind the active one, at most [`MOST_BUFFERED`].
+    pub buffered_commands: usize,
+}
+
+impl AxisParams {
+    /// An axis with ends, to be homed, which holds one buffered command.
+    #[must_use]
+    pub const fn new(cycle_time: f64, limits: Limits) -> Self {
+        Self { cycle_time, limits, needs_homing: true, modulo: None, buffered_commands: 1 }
+    }
+
+    /// # Errors
+    /// [`ParamError`] names the first parameter outside its bound.
+    pub(crate) fn check(&self) -> Result<(), ParamError> {
+        positive("cycle_time", self.cycle_time)?;
+        positive("limits.velocity", self.limits.velocity)?;
+        positive("limits.acceleration", self.limits.acceleration)?;
+        let jerk = limit("limits.jerk", self.limits.jerk)?;
+        if limit("limits.snap", self.limits.snap)? < f64::INFINITY {
+            positive("limits.jerk", jerk)?;
+        }
+        if let Some(period) = self.modulo {
+            positive("modulo", period)?;
+        }
+        if self.buffered_commands > MOST_BUFFERED {
+            let value = self.buffered_commands as f64;
+            return Err(ParamError { name: "buffered_commands", value, bound: "at most 8" });
+        }
+        Ok(())
+    }
+}

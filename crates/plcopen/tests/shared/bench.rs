@@ -1,0 +1,80 @@
+//! An axis with a drive that follows at once: what is commanded in one cycle is fed back in the next.
+use servobench_fieldbus::{AxisCommand, AxisFeedback, Homing, Power, Task};
+use servobench_motion::Limits;
+use servobench_plcopen::{Axis, AxisParams, AxisState, FunctionBlock, Power as MovePower, PowerInputs};
+
+pub(crate) const CYCLE_TIME: f64 = 1e-3;
+/// The published example of a snap-limited move: 1 m in 1.35 s (Lambrechts, Boerlage & Steinbuch 2005).
+pub(crate) const LIMITS: Limits = Limits { velocity: 1.0, acceleration: 5.0, jerk: 50.0, snap: 1000.0 };
+
+/// Axis, drive and MC_Power.
+pub(crate) struct Bench {
+    pub(crate) axis: Axis,
+    pub(crate) feedback: AxisFeedback,
+    pub(crate) enable: bool,
+    pub(crate) command: Option<AxisCommand>,
+    /// What the drive says of homing while it is asked to.
+    pub(crate) homing: Homing,
+}
+
+impl Bench {
+    pub(crate) fn disabled(params: AxisParams) -> Self {
+        let axis = Axis::new(params).unwrap();
+        Self { axis, feedback: AxisFeedback::default(), enable: false, command: None, homing: Homing::Busy }
+    }
+
+    pub(crate) fn params() -> AxisParams {
+        AxisParams { needs_homing: false, buffered_commands: 4, ..AxisParams::new(CYCLE_TIME, LIMITS) }
+    }
+
+    /// At Standstill at position 0.
+    pub(crate) fn standstill() -> Self {
+        Self::powered(Self::params())
+    }
+
+    pub(crate) fn powered(params: AxisParams) -> Self {
+        let mut bench = Self::disabled(params);
+        bench.enable = true;
+        for _ in 0..3 {
+            bench.cycle(|_| ());
+        }
+        assert_eq!(bench.axis.state(), AxisState::Standstill);
+        bench
+    }
+
+    /// One cycle: feedback, MC_Power, what `program` calls, and the command.
+    pub(crate) fn cycle<T>(&mut self, program: impl FnOnce(&mut Axis) -> T) -> T {
+        self.axis.begin(&self.feedback);
+        let inputs = PowerInputs { enable: self.enable, ..PowerInputs::default() };
+        MovePower.step(&mut self.axis, &inputs);
+        let answer = program(&mut self.axis);
+        let command = self.axis.end();
+        self.command = Some(command);
+        self.feedback.power = if command.power && self.feedback.fault.is_none() { Power::On } else { Power::Off };
+        self.feedback.homing = Homing::Idle;
+        match command.task {
+            Task::Follow(sample) => {
+                (self.feedback.position, self.feedback.velocity) = (sample.x, sample.v);
+            }
+            Task::Home { position } => {
+                self.feedback.homing = self.homing;
+                if self.homing == Homing::Attained {
+                    self.feedback.position = position;
+                }
+            }
+            Task::Effort(effort) => self.feedback.effort = effort,
+        }
+        answer
+    }
+
+    /// Cycles without a call until `state`, at most 10 000.
+    pub(crate) fn until(&mut self, state: AxisState) {
+        for _ in 0..10_000 {
+            if self.axis.state() == state {
+                return;
+            }
+            self.cycle(|_| ());
+        }
+        panic!("the axis is in {}, not in {state}", self.axis.state());
+    }
+}
