@@ -433,12 +433,11 @@ const fn is_halt(fault: LinkFault) -> bool {
     matches!(fault, LinkFault::NegativeLimit | LinkFault::PositiveLimit)
 }
 
-/// Whether a sample is one that the drive can be led along.
+/// Whether a sample is one that the axis can be led along: its numbers fit the drive's units, and its velocity, and what its
+/// acceleration makes of it within a cycle, are not beyond twice the velocity limit.
 fn is_followable(p: &Params, sample: &Sample) -> bool {
-    // Beyond it an interval refuses samples.
-    const HIGHEST: f64 = 1e30;
     let Sample { x, v, a, torque } = *sample;
-    p.scale.counts(x).is_some()
-        && [v, a].iter().all(|value| value.abs() <= HIGHEST)
-        && p.scale.thousandths(torque).is_some()
+    let highest = 2.0 * p.settings.velocity_limit;
+    let within = |v: f64| v.abs() <= highest;
+    p.scale.counts(x).is_some() && within(v) && within(a * p.cycle) && p.scale.thousandths(torque).is_some()
 }

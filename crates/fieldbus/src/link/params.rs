@@ -66,7 +66,8 @@ pub struct Settings {
     /// With how much velocity, acceleration and jerk the output is stopped, and a difference taken out beside the motion; the
     /// snap is not used.
     pub recovery: Limits,
-    /// Velocity that the axis can do (m/s or rad/s): the position command never moves faster.
+    /// Velocity that the axis can do (m/s or rad/s): the position command never moves faster. Samples with more than twice of it
+    /// are refused.
     pub velocity_limit: f64,
 }
 
@@ -76,6 +77,8 @@ pub struct Params {
     pub(crate) settings: Settings,
     pub(crate) stream: StreamParams,
     pub(crate) scale: Scale,
+    /// Cycle of the motion task (s).
+    pub(crate) cycle: f64,
     /// Velocity below which the axis does not move into a switch: a count per cycle of the motion task.
     pub(crate) creep: f64,
 }
@@ -113,6 +116,7 @@ impl Params {
             settings,
             stream: StreamParams { timing, recovery, highest_step: velocity_limit * tick, bus_cycle },
             scale,
+            cycle: cycle as f64 * tick,
             creep: scale.resolution() / (cycle as f64 * tick),
         })
     }

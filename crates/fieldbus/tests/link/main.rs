@@ -2,5 +2,6 @@
 mod delayed;
 mod modes;
 mod power;
+mod random;
 mod rig;
 mod troubles;

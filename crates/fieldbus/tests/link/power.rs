@@ -224,7 +224,7 @@ fn a_sample_that_is_no_number_is_refused_and_stops_the_axis() {
         assert_eq!(rig.fault(), Some(Fault::Link(LinkFault::Command)));
         assert_eq!(rig.drive.counts, 0);
     }
-    for v in [f64::NAN, 1e300] {
+    for v in [f64::NAN, -8.001] {
         let mut rig = Rig::powered(settings());
         rig.run(1, |_| at(0.0, v));
         assert_eq!(rig.fault(), Some(Fault::Link(LinkFault::Command)));
