@@ -117,6 +117,7 @@ impl Interval {
     ///
     /// # Errors
     /// [`PlanError::Parameter`] when the fraction is not between 0 and 1: outside, the polynomial is not meant to be used.
+    #[inline]
     pub fn at(&self, fraction: f64) -> Result<Command, PlanError> {
         if !(0.0..=1.0).contains(&fraction) {
             return Err(ParamError { name: "fraction", value: fraction, bound: "between 0 and 1" }.into());
