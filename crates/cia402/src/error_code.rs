@@ -1,7 +1,8 @@
 //! Why a drive is faulty: the error codes (603Fh) and the error register (1001h).
 //!
 //! Codes of IEC 61800-7-201 (CiA 402-2, error codes of the emergency message), those of communication of CiA 301
-//! (table 26). The profile has none for homing, limit switches and the position range: FF00h to FFFFh are the device's own.
+//! (table 26). The profile has none for homing, limit switches and the position range: FF00h to FFFFh are the device's own,
+//! and those that a link to the drive takes for itself (FF01h, FF04h, FF05h) are left out.
 use core::fmt;
 
 /// Declares the error codes: number, class in the error register, text.
@@ -53,7 +54,7 @@ error_codes! {
     /// Parameters that do not go together.
     Parameter = 0x6320, 0, "parameter error";
     /// The encoder.
-    IncrementalSensor = 0x7305, PROFILE, "incremental sensor 1 fault";
+    Sensor = 0x7300, PROFILE, "sensor";
     /// The master is silent for too long.
     Communication = 0x8100, COMMUNICATION, "communication";
     /// Life guarding or heartbeat ran out.
@@ -74,14 +75,14 @@ error_codes! {
     SyncController = 0x8700, PROFILE | COMMUNICATION, "sync controller";
     /// Something outside the drive asks for it.
     External = 0x9000, 0, "external error";
-    /// The reference was not found.
-    Homing = 0xFF01, MANUFACTURER, "homing error";
     /// The switch at the negative end was met.
     NegativeLimitSwitch = 0xFF02, MANUFACTURER, "negative limit switch";
     /// The switch at the positive end was met.
     PositiveLimitSwitch = 0xFF03, MANUFACTURER, "positive limit switch";
+    /// The reference was not found.
+    Homing = 0xFF11, MANUFACTURER, "homing error";
     /// The position left what its counter or its object can hold.
-    PositionRange = 0xFF04, MANUFACTURER, "position range";
+    PositionRange = 0xFF12, MANUFACTURER, "position range";
 }
 
 impl ErrorCode {
