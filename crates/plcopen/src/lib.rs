@@ -33,6 +33,7 @@ mod axis;
 mod blocks;
 mod command;
 mod error;
+pub mod generator;
 mod ledger;
 mod name;
 mod params;

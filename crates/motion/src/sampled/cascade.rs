@@ -45,6 +45,19 @@ impl Cascade {
         now
     }
 
+    /// The set-point `steps` samples later, at which `highest` is still sent as in all before: in closed form, so that the rounding
+    /// of a long run is that of one step.
+    #[inline]
+    #[must_use]
+    pub fn ahead(&self, highest: f64, steps: u64) -> Setpoint {
+        after(self.sending(highest), self.sample_time, steps as f64)
+    }
+
+    /// Goes on by all samples of `run`.
+    pub fn skip(&mut self, run: Run) {
+        self.state = self.ahead(run.value, run.count);
+    }
+
     /// The set-point of the next sample, its highest derivative zero.
     #[must_use]
     pub const fn state(&self) -> Setpoint {
