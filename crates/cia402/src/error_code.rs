@@ -54,7 +54,7 @@ error_codes! {
     /// Parameters that do not go together.
     Parameter = 0x6320, 0, "parameter error";
     /// The encoder.
-    Sensor = 0x7300, PROFILE, "sensor";
+    IncrementalSensor = 0x7305, PROFILE, "incremental sensor 1 fault";
     /// The master is silent for too long.
     Communication = 0x8100, COMMUNICATION, "communication";
     /// Life guarding or heartbeat ran out.
