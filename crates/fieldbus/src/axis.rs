@@ -58,7 +58,7 @@ pub enum Power {
     Off,
     /// On the way from one to the other.
     Switching,
-    /// The axis follows its task.
+    /// The axis is powered and does what is asked of it, unless there is a fault.
     On,
 }
 

@@ -3,7 +3,7 @@ use crate::rig::{BUS, HOMING, MOTION, RATE, Rig, follow, settings};
 use core::f64::consts::TAU;
 use servobench_cia402::counter::Counter;
 use servobench_fieldbus::link::{Control, Settings, Units};
-use servobench_fieldbus::{AxisCommand, Homing, Interpolation, Task};
+use servobench_fieldbus::{AxisCommand, Homing, Interpolation, Power, Task};
 use servobench_motion::interpolate::Sample;
 
 const REST: AxisCommand = AxisCommand { power: true, reset: false, task: REST_TASK };
@@ -114,6 +114,7 @@ fn homing_is_started_by_bit_4_and_gives_the_position() {
         let (mut bits, mut homing) = (Vec::new(), Vec::new());
         for _ in 0..HOMING + 20 {
             let commands = rig.cycle();
+            assert_eq!(rig.feedback().power, Power::On, "while the mode changes, too");
             let seen = (commands.mode, commands.controlword.bits());
             if bits.last() != Some(&seen) {
                 bits.push(seen);

@@ -1,0 +1,72 @@
+//! What comes in: the answer of the drive, and the command of the motion task.
+use super::mailbox::{Letter, Mailbox};
+use super::position::Position;
+use super::stream::{Arrival, Post};
+use super::{Params, Procedure, State};
+use crate::{LinkFault, Task};
+use servobench_cia402::Actuals;
+use servobench_motion::interpolate::Sample;
+
+impl State {
+    pub(super) fn hear(&mut self, p: &Params, actuals: Option<Actuals>, now: u64) {
+        let Some(actuals) = actuals else { return };
+        (self.actuals, self.heard) = (actuals, now);
+        self.sequencer.hear(actuals.statusword, now);
+        let followed = match &mut self.position {
+            Some(position) => position.follow(&p.scale, actuals.position, now),
+            none => Position::start(&p.scale, actuals.position, now).map(|position| *none = Some(position)),
+        };
+        if followed.is_err() {
+            self.fault = self.fault.or(Some(LinkFault::PositionLost));
+        }
+    }
+
+    /// Reads the command, and the sample in it where there is a new one.
+    pub(super) fn open(&mut self, p: &Params, mailbox: &Mailbox) -> Post {
+        let Some(Letter { number, tick, command }) = mailbox.read() else { return Post::Torn };
+        if number == self.read {
+            return Post::Nothing;
+        }
+        let missed = number.wrapping_sub(self.read).saturating_sub(1);
+        let missed = if self.read == 0 { 0 } else { missed };
+        self.read = number;
+        if command.reset && !self.command.reset {
+            self.reset(p);
+        }
+        if core::mem::discriminant(&command.task) != core::mem::discriminant(&self.command.task) {
+            self.homing = Procedure::Idle;
+        }
+        let (before, sample) = (self.command, command.task);
+        self.command = command;
+        match sample {
+            Task::Follow(sample) if is_followable(p, &sample) => Post::Sample(Arrival { sample, due: tick, missed }),
+            Task::Effort(effort) if p.scale.thousandths(effort).is_some() => {
+                let sample = Sample { torque: effort, ..Sample::default() };
+                Post::Sample(Arrival { sample, due: tick, missed })
+            }
+            Task::Home { .. } => Post::Nothing,
+            Task::Follow(_) | Task::Effort(_) => {
+                self.command.task = before.task;
+                self.fault = self.fault.or(Some(LinkFault::Command));
+                Post::Nothing
+            }
+        }
+    }
+
+    pub(super) fn reset(&mut self, p: &Params) {
+        self.sequencer.reset();
+        if self.fault == Some(LinkFault::PositionLost) {
+            self.position = Position::start(&p.scale, self.actuals.position, self.heard).ok();
+        }
+        self.fault = None;
+    }
+}
+
+/// Whether a sample is one that the axis can be led along: its numbers fit the drive's units, and its velocity, and what its
+/// acceleration makes of it within a cycle, are not beyond twice the velocity limit.
+fn is_followable(p: &Params, sample: &Sample) -> bool {
+    let Sample { x, v, a, torque } = *sample;
+    let highest = 2.0 * p.settings.velocity_limit;
+    let within = |v: f64| v.abs() <= highest;
+    p.scale.counts(x).is_some() && within(v) && within(a * p.cycle) && p.scale.thousandths(torque).is_some()
+}

@@ -1,0 +1,143 @@
+//! What goes out: the frame for the drive.
+use super::effort::Ramp;
+use super::position::Position;
+use super::stream::Post;
+use super::{Control, Params, Sequencing, State};
+use crate::{LinkFault, Task};
+use servobench_cia402::{Commands, Mode};
+use servobench_motion::interpolate;
+
+impl State {
+    /// Asks for the mode that the task needs, and for how long.
+    pub(super) fn ask_for_the_mode(&mut self, p: &Params, now: u64) {
+        let mode = match (&self.command.task, &p.settings.control) {
+            (Task::Follow(_), Control::Position { .. }) => Mode::CyclicSynchronousPosition,
+            (Task::Follow(_), Control::Velocity { .. }) => Mode::CyclicSynchronousVelocity,
+            (Task::Effort(_), _) => Mode::CyclicSynchronousTorque,
+            (Task::Home { .. }, _) => Mode::Homing,
+        };
+        if self.commands.mode != mode.code() || !self.was_on {
+            (self.commands.mode, self.mode_since) = (mode.code(), now);
+        }
+        let missing = self.was_on && !self.is_in_mode(p);
+        if missing && now.saturating_sub(self.mode_since) > p.settings.drive_timeout {
+            self.fault = self.fault.or(Some(LinkFault::DriveTimeout));
+        }
+    }
+
+    /// Whether the drive shows the mode that it is asked for; the simplified sequence does not ask.
+    pub(super) fn is_in_mode(&self, p: &Params) -> bool {
+        p.settings.sequencing == Sequencing::Simplified || self.actuals.mode == self.commands.mode
+    }
+
+    /// Whether the drive does what the task asks for.
+    pub(super) fn follows(&self, p: &Params) -> bool {
+        self.was_on && self.fault.is_none() && self.is_in_mode(p)
+    }
+
+    pub(super) fn put_out(&mut self, p: &Params, post: Post, now: u64) {
+        let follows = self.follows(p);
+        let actual = self.position(p);
+        if !(follows && matches!(self.command.task, Task::Follow(_))) {
+            self.stream.switch_off(actual, now);
+        }
+        if !(follows && matches!(self.command.task, Task::Effort(_))) {
+            self.ramp = Ramp::OFF;
+        }
+        self.limited = false;
+        match self.command.task {
+            Task::Follow(_) if follows => self.follow(p, post, actual, now),
+            Task::Effort(_) if follows => self.push(p, post, now),
+            Task::Follow(_) | Task::Effort(_) => self.rest(p),
+            Task::Home { position } => {
+                self.rest(p);
+                self.home(p, position, follows, now);
+            }
+        }
+    }
+
+    pub(super) fn follow(&mut self, p: &Params, post: Post, actual: f64, now: u64) {
+        if self.stream.step(&p.stream, post, now).is_err() {
+            self.fault = self.fault.or(Some(LinkFault::Command));
+        }
+        self.limited = self.stream.is_limited();
+        let interpolate::Command { setpoint, torque } = *self.stream.output();
+        let offset = |wanted: bool, value: f64| if wanted { value } else { 0.0 };
+        let target = p.scale.counts(setpoint.x).map(|counts| p.scale.target(counts));
+        let mut sent = Sent { commands: &mut self.commands, complete: true };
+        sent.set(target, |commands| &mut commands.target_position);
+        match p.settings.control {
+            Control::Position { velocity_offset, torque_offset } => {
+                let (v, torque) = (offset(velocity_offset, setpoint.v), offset(torque_offset, torque));
+                sent.set(p.scale.drive_velocity(v), |commands| &mut commands.velocity_offset);
+                sent.set(p.scale.thousandths(torque), |commands| &mut commands.torque_offset);
+            }
+            Control::Velocity { gain, feedforward, limit, torque_offset } => {
+                let v = gain * (setpoint.x - actual) + feedforward * setpoint.v;
+                self.limited |= v.abs() > limit;
+                sent.set(p.scale.drive_velocity(v.clamp(-limit, limit)), |commands| &mut commands.target_velocity);
+                sent.set(p.scale.thousandths(offset(torque_offset, torque)), |commands| &mut commands.torque_offset);
+            }
+        }
+        if !sent.complete {
+            self.fault = self.fault.or(Some(LinkFault::Command));
+        }
+    }
+
+    /// Asks for what the axis does anyway: for its position and for neither velocity nor effort.
+    pub(super) fn rest(&mut self, p: &Params) {
+        let commands = &mut self.commands;
+        if let Some(position) = &self.position {
+            commands.target_position = p.scale.target(position.counts());
+        }
+        (commands.target_velocity, commands.target_torque) = (0, 0);
+        (commands.velocity_offset, commands.torque_offset) = (0, 0);
+    }
+
+    pub(super) fn push(&mut self, p: &Params, post: Post, now: u64) {
+        let effort = match post {
+            Post::Sample(arrival) => Some(arrival.sample.torque),
+            Post::Nothing | Post::Torn => None,
+        };
+        let effort = self.ramp.step(&p.stream.timing, effort, now);
+        self.rest(p);
+        // Between efforts that fit.
+        self.commands.target_torque = p.scale.thousandths(effort).unwrap_or(0);
+    }
+
+    pub(super) fn home(&mut self, p: &Params, position: f64, follows: bool, now: u64) {
+        let reference = p.scale.counts(position).and_then(|counts| i32::try_from(counts).ok());
+        let Some(reference) = reference else {
+            self.fault = self.fault.or(Some(LinkFault::Command));
+            return;
+        };
+        self.commands.home_offset = reference;
+        if !follows {
+            return self.homing.fail();
+        }
+        let round_trip = u64::from(p.settings.round_trip) * p.stream.bus_cycle;
+        // What was heard now answers what was told a round trip ago.
+        if self.homing.step(self.actuals.statusword, self.heard.saturating_sub(round_trip), now) {
+            match Position::near(&p.scale, reference.into(), self.actuals.position, self.heard) {
+                Ok(position) => self.position = Some(position),
+                Err(_) => self.fault = self.fault.or(Some(LinkFault::PositionLost)),
+            }
+        }
+    }
+}
+
+/// A frame that is filled.
+struct Sent<'a> {
+    commands: &'a mut Commands,
+    /// Whether the drive's units could express everything; what they could not is as it was.
+    complete: bool,
+}
+
+impl Sent<'_> {
+    fn set<T>(&mut self, value: Option<T>, object: impl FnOnce(&mut Commands) -> &mut T) {
+        match value {
+            Some(value) => *object(self.commands) = value,
+            None => self.complete = false,
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! What the axis must be stopped for, and how.
+use super::sequencer::Wanted;
+use super::{Params, State};
+use crate::{Interpolation, LinkFault, Task};
+
+impl State {
+    /// Looks for what the axis must be stopped for.
+    pub(super) fn supervise(&mut self, p: &Params, external_fault: bool, now: u64) {
+        let enabled = self.sequencer.is_enabled(p.settings.sequencing);
+        let silent = self.command.power && now.saturating_sub(self.heard) > p.settings.drive_timeout;
+        let found = if external_fault {
+            Some(LinkFault::External)
+        } else if silent {
+            Some(LinkFault::DriveTimeout)
+        } else if self.was_on && !enabled && !self.sequencer.is_faulty() {
+            Some(LinkFault::DriveLeftOperation)
+        } else {
+            self.runs_into(p)
+        };
+        // A halt does not hide what needs a quick stop.
+        if self.fault.is_none() || (self.halts() && found.is_some_and(|fault| !is_halt(fault))) {
+            self.fault = found;
+        }
+    }
+
+    /// The limit switch that the axis is commanded into.
+    pub(super) fn runs_into(&self, p: &Params) -> Option<LinkFault> {
+        let direction = match self.command.task {
+            Task::Follow(_) if self.stream.state() != Interpolation::Off => self.stream.output().setpoint.v / p.creep,
+            Task::Effort(effort) if self.ramp.state() != Interpolation::Off => effort / p.scale.effort(1).abs(),
+            Task::Follow(_) | Task::Effort(_) | Task::Home { .. } => 0.0,
+        };
+        let switches = self.switches(p);
+        if switches.negative_limit && direction < -1.0 {
+            Some(LinkFault::NegativeLimit)
+        } else if switches.positive_limit && direction > 1.0 {
+            Some(LinkFault::PositiveLimit)
+        } else {
+            None
+        }
+    }
+
+    pub(super) const fn wanted(&self) -> Wanted {
+        match self.fault {
+            _ if !self.command.power => Wanted::Off,
+            Some(fault) if !is_halt(fault) => Wanted::QuickStop,
+            _ => Wanted::On,
+        }
+    }
+
+    pub(super) const fn halts(&self) -> bool {
+        matches!(self.fault, Some(fault) if is_halt(fault))
+    }
+}
+
+const fn is_halt(fault: LinkFault) -> bool {
+    matches!(fault, LinkFault::NegativeLimit | LinkFault::PositiveLimit)
+}
