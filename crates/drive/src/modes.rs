@@ -4,12 +4,16 @@
 //! the axis unit (m or rad), efforts in the motor's (N·m or N): drive units end at the door.
 pub mod cyclic;
 pub mod homing;
+pub mod interpolated;
 pub mod profile;
+mod ramp;
 pub mod stop;
 
 use crate::Demand;
 use servobench_base::Setpoint;
 use servobench_cia402::Controlword;
+
+pub use ramp::Steepness;
 
 /// What a mode sees at a step of the drive.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -26,12 +26,11 @@
 //! Bonfiglioli, *Active Cube, application manual Positioning*, 04/08, table 5.2, which the tests hold the methods against).
 mod leg;
 mod method;
-mod ramp;
 mod search;
 
+use super::ramp::{Ramp, Steepness};
 use super::{Answer, Moment};
 use crate::Demand;
-use ramp::Ramp;
 use search::{Finding, Search};
 use servobench_base::{ParamError, Setpoint, finite, positive};
 use servobench_cia402::ControlBit;
@@ -64,10 +63,13 @@ impl Params {
     pub fn check(&self) -> Result<(), ParamError> {
         positive("switch_speed", self.switch_speed)?;
         positive("zero_speed", self.zero_speed)?;
-        positive("acceleration", self.acceleration)?;
-        self.jerk.map_or(Ok(0.0), |jerk| positive("jerk", jerk))?;
+        self.steepness().check()?;
         finite("home_offset", self.home_offset)?;
         Ok(())
+    }
+
+    const fn steepness(&self) -> Steepness {
+        Steepness { acceleration: self.acceleration, jerk: self.jerk }
     }
 }
 
@@ -157,7 +159,7 @@ pub fn step(params: &Params, state: &mut State, moment: &Moment) -> Output {
     if moment.targets.controlword.has(ControlBit::Halt) {
         velocity = 0.0;
     }
-    let setpoint = state.ramp.step(params, velocity, moment).unwrap_or_else(|_| {
+    let setpoint = state.ramp.step(&params.steepness(), velocity, moment).unwrap_or_else(|_| {
         state.phase = Phase::Failed(Failure::Motion);
         Setpoint::at_rest(moment.demanded.x)
     });

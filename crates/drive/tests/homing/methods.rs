@@ -122,7 +122,7 @@ const STARTS: [f64; 13] = [-1.03, -1.0, -0.9, -0.563, 0.1, 0.137, 0.2, 0.237, 0.
 fn every_method_finds_what_the_published_table_names_from_every_side() {
     for row in published::TABLE {
         for at in STARTS {
-            for jerk in [Some(50.0), Some(200.0)] {
+            for jerk in [None, Some(200.0)] {
                 check(row, 0.1, at, jerk);
             }
         }

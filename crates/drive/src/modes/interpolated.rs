@@ -1,0 +1,256 @@
+//! Interpolated position (ip, mode 7): the drive follows points that the master keeps sending to a [`Buffer`].
+//!
+//! Points come through three doors, in counts, 0.1 counts/s and milliseconds; all lead to the same buffer:
+//!
+//! - [`SegmentCommand`]: the eight bytes of 2010h,
+//! - [`DataRecord`]: the standard's 60C1h, in the sub-modes of 60C0h,
+//! - [`serial`]: parameter 115h.
+//!
+//! # A move
+//!
+//! The rising edge of the controlword's bit 4 starts it, or the start move command of the serial interface; bit 12 of the
+//! statusword is set as long as it lasts. What the first point means depends on the sub-mode:
+//!
+//! | sub-mode | |
+//! |---|---|
+//! | 0 | the buffer is emptied at the start; once three points are there, the axis goes to the first one in the time of a segment |
+//! | −1 | the axis goes to the first point in the time of a segment |
+//! | −2, −3, serial | the axis is at the first point, to a count, or the move is not started |
+//!
+//! In sub-mode 0 a segment is a period of the drive longer when fewer than three points wait as it begins, and one shorter when
+//! more do: clocks may differ by one such period per segment.
+//!
+//! A move ends where its last point says, by a time of 0. It is broken off when bit 4 is taken back (unless it was started by the
+//! serial interface), by a halt, when the buffer is cleared, and when the next point is not there, which is an underflow, moving or
+//! not. Then, and at a last point that has a velocity, the axis is stopped within [`Params::stop`] from the state that it has:
+//! position and velocity do not jump, with a jerk nor does the acceleration.
+//!
+//! # Errors
+//!
+//! Underflow, overflow and a break in the sequence of 2010h are latched in the status of the buffer (2012h) until they are cleared:
+//! bit by bit with 2010h, all by clearing the buffer through the serial interface, which has no other way. As long as one is
+//! latched, no move is started; behind a point that was lost, none is added.
+//!
+//! Sources: Copley Controls, *PVT Trajectory Calculations*, rev. 00 (2020); *CANopen Programmer's Manual*, 95-00271-000 rev. 7
+//! (2012), sections 9, 2010h to 2013h; IEC 61800-7-201, interpolated position mode.
+mod buffer;
+mod course;
+mod data_record;
+mod segment_command;
+pub mod serial;
+
+use super::ramp::{Ramp, Steepness};
+use super::{Answer, Moment};
+use crate::Demand;
+use course::{Course, HELD, Pace, Step, next_knot};
+use servobench_base::{ParamError, Setpoint};
+use servobench_cia402::ControlBit;
+use thiserror::Error;
+
+pub use buffer::{Buffer, BufferError, CAPACITY, Point, Refusal};
+pub use data_record::{DataRecord, RecordError, SubMode, TimePeriod};
+pub use segment_command::{SegmentCommand, SegmentError};
+
+/// How the drive follows the points; constant while the mode runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Params {
+    /// 60C0h.
+    pub sub_mode: SubMode,
+    /// 60C2h.
+    pub period: TimePeriod,
+    /// Metres or radians per count, negative where the counter runs the other way.
+    pub count: f64,
+    /// How a move that is broken off is stopped: quick stop deceleration (6085h) and its jerk.
+    pub stop: Steepness,
+}
+
+impl Params {
+    /// # Errors
+    /// [`ParamError`] names the first value out of its bound.
+    pub fn check(&self) -> Result<(), ParamError> {
+        if !(self.count != 0.0 && self.count.is_finite()) {
+            return Err(ParamError { name: "count", value: self.count, bound: "finite and not zero" });
+        }
+        self.stop.check()
+    }
+}
+
+/// All that a snapshot must hold, beside the buffer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State {
+    phase: Phase,
+    /// Bit 4 at the last step, unless halted.
+    asked: bool,
+    refused: Option<StartRefused>,
+    ramp: Ramp,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Phase {
+    /// At rest, or on the way there.
+    Resting,
+    /// For the points of sub-mode 0.
+    Waiting,
+    Following {
+        course: Course,
+        pace: Pace,
+        by_bus: bool,
+    },
+}
+
+/// Why a move was not started.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum StartRefused {
+    /// Errors of the buffer are latched.
+    #[error("errors {errors:#04x} of the trajectory buffer are latched (2012h): clear them first")]
+    Latched {
+        /// As in the highest byte of 2012h.
+        errors: u8,
+    },
+    /// A move runs.
+    #[error("a move runs: wait for its end, or break it off")]
+    Running,
+    /// The axis would jump to the first point.
+    #[error(
+        "the first point is at {first} counts, the axis at {axis}: begin within a count of the axis, or relative to it"
+    )]
+    FarPoint {
+        /// Position of the first point (counts).
+        first: i64,
+        /// Commanded position of the axis (counts).
+        axis: i64,
+    },
+}
+
+impl State {
+    /// The mode takes over: a bit 4 that is set already starts nothing.
+    #[must_use]
+    pub fn begin(now: &Moment) -> Self {
+        Self { phase: Phase::Resting, asked: asks(now), refused: None, ramp: Ramp::default() }
+    }
+
+    /// Why the last start was refused, if it was.
+    #[must_use]
+    pub const fn refused(&self) -> Option<StartRefused> {
+        self.refused
+    }
+
+    /// Whether a move runs (bit 12 of the statusword).
+    #[must_use]
+    pub const fn is_following(&self) -> bool {
+        matches!(self.phase, Phase::Following { .. })
+    }
+
+    /// A start by the bus or the serial interface.
+    fn start(&mut self, p: &Params, buffer: &mut Buffer, now: &Moment, by_bus: bool) {
+        self.refused = None;
+        if buffer.errors() != 0 {
+            self.refused = Some(StartRefused::Latched { errors: buffer.errors() });
+        } else if by_bus && p.sub_mode == SubMode::LinearAdapted {
+            buffer.flush();
+            self.phase = Phase::Waiting;
+        } else if by_bus && p.sub_mode == SubMode::Linear {
+            self.approach(p, buffer, now, Pace::Given);
+        } else {
+            self.set_out(p, buffer, now, by_bus);
+        }
+    }
+
+    /// To the first point in the time of a segment.
+    fn approach(&mut self, p: &Params, buffer: &mut Buffer, now: &Moment, pace: Pace) {
+        let at = now.demanded.x;
+        let duration = f64::from(p.period.microseconds()) / 1e6;
+        let course = Course::approach(at, nearest(at / p.count), duration, p.count, buffer);
+        self.follow(course, pace, true, buffer);
+    }
+
+    /// From the first point, at which the axis is.
+    fn set_out(&mut self, p: &Params, buffer: &mut Buffer, now: &Moment, by_bus: bool) {
+        let at = now.demanded.x;
+        let here = nearest(at / p.count);
+        let as_before = *buffer;
+        let Some(first) = next_knot(buffer, here) else {
+            return buffer.latch(BufferError::Underflow);
+        };
+        if first.counts.abs_diff(here) > 1 {
+            *buffer = as_before;
+            self.refused = Some(StartRefused::FarPoint { first: first.counts, axis: here });
+        } else if !first.is_last() {
+            self.follow(Course::from_knot(first, at, p.count, buffer), Pace::Given, by_bus, buffer);
+        }
+    }
+
+    fn follow(&mut self, course: Option<Course>, pace: Pace, by_bus: bool, buffer: &mut Buffer) {
+        match course {
+            Some(course) => self.phase = Phase::Following { course, pace, by_bus },
+            None => buffer.latch(BufferError::Underflow),
+        }
+    }
+
+    /// Whether bit 4 keeps the move up.
+    const fn needs_bit(&self) -> bool {
+        matches!(self.phase, Phase::Waiting | Phase::Following { by_bus: true, .. })
+    }
+}
+
+/// Follows the points.
+///
+/// The parameters must have passed [`Params::check`].
+pub fn step(p: &Params, x: &mut State, buffer: &mut Buffer, now: &Moment) -> Answer {
+    let asked = asks(now);
+    let rises = asked && !x.asked;
+    x.asked = asked;
+    let starts = buffer.take_start() || rises;
+    if buffer.take_abort() || now.targets.controlword.has(ControlBit::Halt) || !asked && x.needs_bit() {
+        x.phase = Phase::Resting;
+    }
+    if let Phase::Following { course, pace, .. } = &mut x.phase {
+        if starts {
+            x.refused = Some(StartRefused::Running);
+        }
+        match course.step(now.period, p.count, *pace, buffer) {
+            Step::Along(setpoint) => return answer(setpoint, true),
+            Step::Ended(end) => {
+                x.phase = Phase::Resting;
+                if end.v == 0.0 {
+                    return answer(end, false);
+                }
+            }
+            Step::Starved => {
+                buffer.latch(BufferError::Underflow);
+                x.phase = Phase::Resting;
+            }
+        }
+    } else if starts {
+        x.start(p, buffer, now, rises);
+    }
+    if matches!(x.phase, Phase::Waiting) && buffer.count() >= HELD {
+        x.approach(p, buffer, now, Pace::Adapted);
+    }
+    if let Phase::Following { course, .. } = &x.phase {
+        return answer(course.start(), true);
+    }
+    let rest = x.ramp.step(&p.stop, 0.0, now);
+    // What the loops follow is a state of motion; otherwise they hold the axis.
+    answer(rest.unwrap_or(Setpoint::at_rest(now.demanded.x)), false)
+}
+
+fn answer(setpoint: Setpoint, is_following: bool) -> Answer {
+    Answer {
+        demand: Demand::position(setpoint),
+        target_reached: !is_following && setpoint.v == 0.0 && setpoint.a == 0.0,
+        bit_12: is_following,
+        bit_13: false,
+    }
+}
+
+const fn asks(now: &Moment) -> bool {
+    let word = now.targets.controlword;
+    word.has(ControlBit::ModeSpecific4) && !word.has(ControlBit::Halt)
+}
+
+/// The nearest count, at the ends of the range beyond it.
+#[expect(clippy::cast_possible_truncation, reason = "saturates, which is meant")]
+fn nearest(counts: f64) -> i64 {
+    libm::round(counts) as i64
+}

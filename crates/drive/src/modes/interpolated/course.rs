@@ -1,0 +1,157 @@
+//! The course of a move: from point to point, as they come out of the buffer.
+//!
+//! The polynomials are those of [`Table`](servobench_motion::pvt::Table), formed one at a time:
+//!
+//! ```text
+//! with h the time of the segment, s = (P1 − P0)/h:    linear  v = s    cubic  a0 = 2(3s − 2V0 − V1)/h,  j = 6(V0 + V1 − 2s)/h²
+//! ```
+//!
+//! A cubic segment behind a linear one begins with the velocity of that; behind a first point without a velocity, at rest.
+use super::buffer::{Buffer, Entry, Point};
+use servobench_base::Setpoint;
+
+/// Unit of a drive's velocity (counts/s).
+const VELOCITY_UNIT: f64 = 0.1;
+
+/// A point with its position made absolute.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Knot {
+    /// Position (counts); relative points may leave the 32 bits of a counter.
+    pub(super) counts: i64,
+    point: Point,
+}
+
+/// The next point of the buffer; a relative one counts from `origin` (counts).
+pub(super) fn next_knot(buffer: &mut Buffer, mut origin: i64) -> Option<Knot> {
+    loop {
+        match buffer.pop()? {
+            Entry::Base(position) => origin = position.into(),
+            Entry::Point(point) => {
+                let from = if point.is_relative { origin } else { 0 };
+                return Some(Knot { counts: from + i64::from(point.position), point });
+            }
+        }
+    }
+}
+
+/// The segment under way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Course {
+    /// State at the beginning of the segment, and the derivatives that hold for all of it.
+    start: Setpoint,
+    /// Time since then (s).
+    passed: f64,
+    duration: f64,
+    end: Knot,
+}
+
+/// What a step of the course comes to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Step {
+    /// The set-point of now.
+    Along(Setpoint),
+    /// The last point is reached: where, and at what velocity.
+    Ended(Setpoint),
+    /// The next point is not there.
+    Starved,
+}
+
+/// How long segments of constant time last in the end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Pace {
+    /// As long as the points say.
+    Given,
+    /// A period of the drive less or more, so that the buffer holds [`HELD`] points as a segment begins.
+    Adapted,
+}
+
+/// Points that sub-mode 0 waits for, and keeps in the buffer.
+pub(super) const HELD: usize = 3;
+
+impl Course {
+    /// From a first point on, which lasts until the second; `None` without that.
+    ///
+    /// The axis sets out from where it is, within a count of the first point.
+    pub(super) fn from_knot(first: Knot, at: f64, unit: f64, buffer: &mut Buffer) -> Option<Self> {
+        let v = first.velocity(unit).unwrap_or(0.0);
+        let start = Setpoint { v, ..Setpoint::at_rest(at) };
+        let end = next_knot(buffer, first.counts)?;
+        Some(Self::segment(start, first.duration(), end, unit, end.offset(at, unit)))
+    }
+
+    /// From where the axis is to the first point in a constant time (s).
+    pub(super) fn approach(at: f64, counts: i64, duration: f64, unit: f64, buffer: &mut Buffer) -> Option<Self> {
+        let end = next_knot(buffer, counts)?;
+        Some(Self::segment(Setpoint::at_rest(at), duration, end, unit, end.offset(at, unit)))
+    }
+
+    /// From `start` to `end`, which is `distance` away.
+    fn segment(start: Setpoint, duration: f64, end: Knot, unit: f64, distance: f64) -> Self {
+        let slope = distance / duration;
+        let (v0, h) = (start.v, duration);
+        let start = match end.velocity(unit) {
+            None => Setpoint { v: slope, ..Setpoint::at_rest(start.x) },
+            Some(v1) => {
+                let (a, j) = ((3.0 * slope - 2.0 * v0 - v1) * 2.0 / h, (v0 + v1 - 2.0 * slope) * 6.0 / h / h);
+                Setpoint { x: start.x, v: v0, a, j, s: 0.0 }
+            }
+        };
+        Self { start, passed: 0.0, duration, end }
+    }
+
+    /// The first set-point.
+    pub(super) const fn start(&self) -> Setpoint {
+        self.start
+    }
+
+    /// One period of the drive on.
+    pub(super) fn step(&mut self, period: f64, unit: f64, pace: Pace, buffer: &mut Buffer) -> Step {
+        self.passed += period;
+        while self.passed >= self.duration {
+            let v = self.end.velocity(unit).unwrap_or(self.start.v);
+            let at = Setpoint { v, ..Setpoint::at_rest(self.end.counts as f64 * unit) };
+            if self.end.point.time == 0 {
+                return Step::Ended(Setpoint { v: self.end.velocity(unit).unwrap_or(0.0), ..at });
+            }
+            let waiting = buffer.count();
+            let Some(next) = next_knot(buffer, self.end.counts) else { return Step::Starved };
+            let distance = (next.counts - self.end.counts) as f64 * unit;
+            let duration = match pace {
+                Pace::Given => self.end.duration(),
+                Pace::Adapted => adapted(self.end.duration(), waiting, period),
+            };
+            let passed = self.passed - self.duration;
+            *self = Self { passed, ..Self::segment(at, duration, next, unit, distance) };
+        }
+        Step::Along(self.start.after(self.passed))
+    }
+}
+
+/// A period shorter when more points than [`HELD`] wait, a period longer when fewer do.
+fn adapted(duration: f64, waiting: usize, period: f64) -> f64 {
+    match waiting.cmp(&HELD) {
+        core::cmp::Ordering::Less => duration + period,
+        core::cmp::Ordering::Equal => duration,
+        core::cmp::Ordering::Greater => (duration - period).max(period),
+    }
+}
+
+impl Knot {
+    /// How far the point is from `at`.
+    fn offset(&self, at: f64, unit: f64) -> f64 {
+        self.counts as f64 * unit - at
+    }
+
+    /// Whether the move ends there.
+    pub(super) const fn is_last(&self) -> bool {
+        self.point.time == 0
+    }
+
+    fn velocity(&self, unit: f64) -> Option<f64> {
+        self.point.velocity.map(|velocity| f64::from(velocity) * VELOCITY_UNIT * unit)
+    }
+
+    fn duration(&self) -> f64 {
+        f64::from(self.point.time) / 1e6
+    }
+}

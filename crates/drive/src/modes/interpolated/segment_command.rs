@@ -1,0 +1,167 @@
+//! The IP move segment command (2010h): a point, or a command to the buffer, in eight bytes.
+//!
+//! | byte 0 | bytes 1–7, lowest byte first |
+//! |---|---|
+//! | bit 7 clear, bits 0–2 integrity counter, bits 3–6 format 0 | time (ms), position (24 bits), velocity (24 bits, 0.1 counts/s) |
+//! | format 1 | the same, velocity in 10 counts/s |
+//! | formats 2, 3 | as 0 and 1, the position relative to the point before |
+//! | format 4 | position (32 bits), from which the next relative point counts; no point of its own |
+//! | format 5 | time (ms), position (32 bits); the approach is linear |
+//! | format 6 | the same, relative |
+//! | 80h | clear the buffer and abort the move |
+//! | 81h | byte 1: remove so many of the points that were added last |
+//! | 82h | byte 1: clear the latched errors whose bits are set |
+//! | 83h | number the next segment 0 |
+//! | 84h | nothing |
+//!
+//! The integrity counter is that of the next segment's number, its lowest three bits. Source: Copley Controls, *CANopen
+//! Programmer's Manual*, 95-00271-000 rev. 7 (2012), section 9, "IP move segment command"; format 6 and command 84h from
+//! 16-01195 (2017), section 11.2.
+use super::buffer::{Buffer, Entry, Point, Refusal};
+use thiserror::Error;
+
+/// What 2010h says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SegmentCommand {
+    /// Add a point whose time is whole milliseconds.
+    Point {
+        /// The lowest three bits of the segment's number.
+        counter: u8,
+        /// The point.
+        point: Point,
+    },
+    /// Let the next relative point count from here.
+    Base {
+        /// The lowest three bits of the segment's number.
+        counter: u8,
+        /// Position (counts).
+        position: i32,
+    },
+    /// Empty the buffer, abort the move.
+    Clear,
+    /// Remove so many of the points that were added last.
+    Remove(u8),
+    /// Clear the latched errors whose bits are set.
+    ClearErrors(u8),
+    /// Number the next segment 0.
+    ResetSegment,
+    /// Nothing.
+    NoOperation,
+}
+
+/// Eight bytes that are no command.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum SegmentError {
+    /// A format that is reserved.
+    #[error("byte 0 of the move segment command is {byte:#04x}: format {format} is reserved, formats 0 to 6 are known")]
+    Format {
+        /// Byte 0.
+        byte: u8,
+        /// Its bits 3 to 6.
+        format: u8,
+    },
+    /// A command that is reserved.
+    #[error(
+        "byte 0 of the move segment command is {byte:#04x}: command {command} is reserved, commands 0 to 4 are known"
+    )]
+    Command {
+        /// Byte 0.
+        byte: u8,
+        /// Its bits 0 to 6.
+        command: u8,
+    },
+}
+
+/// Coarse velocities are so many fine ones.
+const COARSE: i32 = 100;
+
+impl SegmentCommand {
+    /// What `bytes` say.
+    ///
+    /// # Errors
+    /// [`SegmentError`] for what is reserved.
+    pub fn decode(bytes: [u8; 8]) -> Result<Self, SegmentError> {
+        let [byte, one, two, three, four, five, six, seven] = bytes;
+        let (format, counter) = (byte >> 3 & 0xF, byte & 7);
+        if byte & 0x80 != 0 {
+            return match byte & 0x7F {
+                0 => Ok(Self::Clear),
+                1 => Ok(Self::Remove(one)),
+                2 => Ok(Self::ClearErrors(one)),
+                3 => Ok(Self::ResetSegment),
+                4 => Ok(Self::NoOperation),
+                command => Err(SegmentError::Command { byte, command }),
+            };
+        }
+        let (position, velocity) = match format {
+            0..=3 => {
+                let velocity = signed_24([five, six, seven]) * if format & 1 == 0 { 1 } else { COARSE };
+                (signed_24([two, three, four]), Some(velocity))
+            }
+            4 => return Ok(Self::Base { counter, position: i32::from_le_bytes([one, two, three, four]) }),
+            5 | 6 => (i32::from_le_bytes([two, three, four, five]), None),
+            _ => return Err(SegmentError::Format { byte, format }),
+        };
+        let is_relative = matches!(format, 2 | 3 | 6);
+        let time = u32::from(one) * 1000;
+        Ok(Self::Point { counter, point: Point { position, is_relative, velocity, time } })
+    }
+
+    /// Does it.
+    ///
+    /// # Errors
+    /// [`Refusal`] of a point.
+    pub fn apply(self, buffer: &mut Buffer) -> Result<(), Refusal> {
+        match self {
+            Self::Point { counter, point } => return buffer.push_numbered(counter, Entry::Point(point)),
+            Self::Base { counter, position } => return buffer.push_numbered(counter, Entry::Base(position)),
+            Self::Clear => buffer.clear(),
+            Self::Remove(number) => buffer.remove(number),
+            Self::ClearErrors(mask) => buffer.clear_errors(mask),
+            Self::ResetSegment => buffer.reset_segment(),
+            Self::NoOperation => {}
+        }
+        Ok(())
+    }
+
+    /// The eight bytes; `None` for a point that none of the formats can hold: its time is not 0 to 255 whole milliseconds, or
+    /// its position or velocity, with a point that has one, does not fit into 24 bits.
+    #[must_use]
+    pub fn encode(self) -> Option<[u8; 8]> {
+        let command = |code: u8, data: u8| Some([0x80 | code, data, 0, 0, 0, 0, 0, 0]);
+        match self {
+            Self::Clear => command(0, 0),
+            Self::Remove(number) => command(1, number),
+            Self::ClearErrors(mask) => command(2, mask),
+            Self::ResetSegment => command(3, 0),
+            Self::NoOperation => command(4, 0),
+            Self::Base { counter, position } => {
+                let [a, b, c, d] = position.to_le_bytes();
+                Some([counter & 7 | 4 << 3, a, b, c, d, 0, 0, 0])
+            }
+            Self::Point { counter, point: Point { position, is_relative, velocity, time } } => {
+                let time = u8::try_from(time / 1000).ok().filter(|_| time % 1000 == 0)?;
+                let byte = |format: u8| counter & 7 | format << 3;
+                let Some(velocity) = velocity else {
+                    let [a, b, c, d] = position.to_le_bytes();
+                    return Some([byte(if is_relative { 6 } else { 5 }), time, a, b, c, d, 0, 0]);
+                };
+                let [a, b, c] = as_24(position)?;
+                let (coarse, [d, e, f]) = match as_24(velocity) {
+                    Some(fine) => (0, fine),
+                    None => (1, as_24(velocity / COARSE).filter(|_| velocity % COARSE == 0)?),
+                };
+                Some([byte(if is_relative { 2 } else { 0 } | coarse), time, a, b, c, d, e, f])
+            }
+        }
+    }
+}
+
+fn signed_24([a, b, c]: [u8; 3]) -> i32 {
+    i32::from_le_bytes([0, a, b, c]) >> 8
+}
+
+fn as_24(value: i32) -> Option<[u8; 3]> {
+    let [a, b, c, _] = value.to_le_bytes();
+    (signed_24([a, b, c]) == value).then_some([a, b, c])
+}

@@ -1,0 +1,88 @@
+//! From one velocity to another within an acceleration and a jerk: legs of a search, and stops.
+use super::Moment;
+use servobench_base::{ParamError, Setpoint, positive};
+use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target, Transition};
+use servobench_motion::{Order, PlanError};
+
+/// How steep a ramp is, in both directions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Steepness {
+    /// Acceleration and deceleration (m/s² or rad/s²).
+    pub acceleration: f64,
+    /// Jerk (m/s³ or rad/s³); without it velocity is a trapezoid.
+    pub jerk: Option<f64>,
+}
+
+impl Steepness {
+    /// # Errors
+    /// [`ParamError`] names the first value that is not positive.
+    pub fn check(&self) -> Result<(), ParamError> {
+        positive("acceleration", self.acceleration)?;
+        self.jerk.map_or(Ok(0.0), |jerk| positive("jerk", jerk)).map(|_| ())
+    }
+}
+
+/// The ramp under way, and how far it is.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Ramp {
+    way: Option<Transition>,
+    /// Velocity that it leads to.
+    velocity: f64,
+    /// Time since it began (s).
+    since: f64,
+    /// The last set-point.
+    last: Setpoint,
+}
+
+impl Ramp {
+    /// The set-point of now on the way to `velocity`. When the loops follow something else than the last one, the ramp begins
+    /// anew from there.
+    ///
+    /// # Errors
+    /// [`PlanError`] when what the loops follow is no state of motion.
+    #[inline]
+    pub(super) fn step(
+        &mut self,
+        steepness: &Steepness,
+        velocity: f64,
+        moment: &Moment,
+    ) -> Result<Setpoint, PlanError> {
+        let demanded = moment.demanded;
+        if velocity == 0.0 && demanded.v == 0.0 && demanded.a == 0.0 {
+            return Ok(Setpoint::at_rest(demanded.x));
+        }
+        let own = self.way.as_ref().filter(|_| self.last.after(moment.period) == demanded);
+        let since = self.since + moment.period;
+        let now = own.map_or(demanded, |way| way.at(since));
+        #[expect(clippy::float_cmp, reason = "whether it is the same request, not whether it is near")]
+        let goes_on = own.is_some() && self.velocity == velocity;
+        if goes_on {
+            (self.since, self.last) = (since, now);
+        } else {
+            self.begin(steepness, velocity, &now)?;
+        }
+        Ok(self.last)
+    }
+
+    /// Apart from the ordinary step, which has no room for a plan.
+    #[inline(never)]
+    fn begin(&mut self, steepness: &Steepness, velocity: f64, now: &Setpoint) -> Result<(), PlanError> {
+        let way = plan(steepness, velocity, now)?;
+        *self = Self { way: Some(way), velocity, since: 0.0, last: way.at(0.0) };
+        Ok(())
+    }
+}
+
+/// Largest velocity that a plan takes: a ramp from one velocity to another needs no limit between them.
+const UNLIMITED: f64 = 1e30;
+
+fn plan(steepness: &Steepness, velocity: f64, from: &Setpoint) -> Result<Transition, PlanError> {
+    let order = if steepness.jerk.is_some() { Order::Third } else { Order::Second };
+    let limits = DirectionalLimits {
+        velocity: Sides::both(UNLIMITED),
+        acceleration: Sides::both(steepness.acceleration),
+        jerk: steepness.jerk.unwrap_or(UNLIMITED),
+        snap: UNLIMITED,
+    };
+    Transition::plan(order, from, &Target::Velocity(velocity), &limits, Effort::Fast)
+}

@@ -1,0 +1,13 @@
+//! Interpolated position: moves through the trajectory buffer, and what goes wrong with it.
+#[path = "../../../motion/tests/shared/random.rs"]
+mod random;
+
+mod adapted;
+mod axis;
+mod broken_off;
+mod buffer;
+mod commands;
+mod doors;
+mod fuzz;
+mod starts;
+mod streamed;

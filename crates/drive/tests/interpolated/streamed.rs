@@ -1,0 +1,127 @@
+//! A long move, streamed by a master that comes when it can.
+use crate::axis::{Axis, COUNT, PERIOD, assert_near, idle, run, whole};
+use crate::random::Random;
+use servobench_drive::modes::interpolated::{BufferError, Point, SegmentCommand, SubMode};
+use servobench_motion::pvt::{self, Knot, Table, to_knots};
+
+const POINTS: usize = 10_000;
+
+/// Points on a sum of sines, 5 to 20 ms apart, from rest to rest. Every position and velocity fits into 24 bits.
+fn move_along_sines(random: &mut Random) -> Vec<pvt::Point> {
+    let along = |t: f64| {
+        let rise = (t / 5.0).min(1.0);
+        let waves = [(0.9e6, 0.31), (0.4e6, 0.73), (0.1e6, 1.9)];
+        let x: f64 = waves.iter().map(|(a, w)| a * (1.0 - (w * t).cos())).sum();
+        let v: f64 = waves.iter().map(|(a, w)| a * w * (w * t).sin()).sum();
+        (rise * x, rise * v)
+    };
+    let mut t = 0.0;
+    let mut points: Vec<pvt::Point> = (0..POINTS)
+        .map(|_| {
+            let (x, v) = along(t);
+            let time_ms = 5 + u8::try_from(random.next() % 16).unwrap();
+            t += f64::from(time_ms) / 1e3;
+            let (position, velocity) = (whole(x), Some(whole(v / 0.1)));
+            pvt::Point { position, velocity, time_ms, relative: false }
+        })
+        .collect();
+    points[0].velocity = Some(0);
+    let last = points.len() - 1;
+    (points[last].velocity, points[last].time_ms) = (Some(0), 0);
+    points
+}
+
+/// A master that wakes every 20 ms and up to 100 ms late, and sends no more than there is room for.
+struct Master<'a> {
+    points: &'a [pvt::Point],
+    sent: usize,
+    wakes: f64,
+    random: Random,
+}
+
+impl Master<'_> {
+    fn send(&mut self, axis: &mut Axis, t: f64) {
+        if t < self.wakes {
+            return;
+        }
+        self.wakes += 0.02 + 0.1 * self.random.unit();
+        // 2012h is all that it knows of the buffer: free places, and the number of the next segment.
+        let free = usize::try_from(axis.buffer.status() >> 16 & 0xFF).unwrap();
+        for point in self.points.iter().skip(self.sent).take(free) {
+            let counter = axis.buffer.status().to_le_bytes()[0] & 7;
+            let bytes = SegmentCommand::Point { counter, point: Point::from(*point) }.encode().unwrap();
+            SegmentCommand::decode(bytes).unwrap().apply(&mut axis.buffer).unwrap();
+            self.sent += 1;
+        }
+    }
+}
+
+#[test]
+fn a_master_that_comes_late_keeps_ten_thousand_points_flowing() {
+    let mut random = Random::seeded(4);
+    let points = move_along_sines(&mut random);
+    let mut knots = vec![Knot::default(); points.len()];
+    let table = Table::new(to_knots(&points, 0, COUNT, &mut knots).unwrap()).unwrap();
+    let mut cursor = table.cursor();
+
+    let mut axis = Axis::at(0, SubMode::Cubic);
+    let mut master = Master { points: &points, sent: 0, wakes: 0.0, random };
+    master.send(&mut axis, 0.0);
+    axis.step(idle());
+    let (mut fewest, mut furthest) = (usize::MAX, [0.0_f64; 2]);
+    let mut k = 0_u32;
+    loop {
+        let t = f64::from(k) * PERIOD;
+        master.send(&mut axis, t);
+        let setpoint = axis.step(run());
+        if !axis.answer.bit_12 {
+            break;
+        }
+        let expected = cursor.at(t);
+        // Positions of metres, summed from pieces: some roundings of 2e-16 each, and those of the time in a segment, of a
+        // microsecond's 1e-12 at a metre per second.
+        assert_near(setpoint.x, expected.x, 1e-12);
+        assert_near(setpoint.v, expected.v, 1e-11);
+        furthest = [furthest[0].max((setpoint.x - expected.x).abs()), furthest[1].max((setpoint.v - expected.v).abs())];
+        if master.sent < POINTS {
+            fewest = fewest.min(32 - axis.buffer.free());
+        }
+        k += 1;
+    }
+    assert_near(f64::from(k) * PERIOD, table.duration(), PERIOD);
+    assert_eq!((master.sent, axis.errors()), (POINTS, 0));
+    assert!(!axis.buffer.has(BufferError::Underflow) && axis.answer.target_reached);
+    assert_near(axis.last.x, f64::from(points[POINTS - 1].position) * COUNT, 0.0);
+    println!("at least {fewest} points waited; positions to {:e} m, velocities to {:e} m/s", furthest[0], furthest[1]);
+    assert!(fewest < 25, "the master is late enough to matter: {fewest}");
+}
+
+#[test]
+fn linear_points_and_cubic_ones_mix_as_in_a_table() {
+    let points = [
+        pvt::Point { position: 1000, velocity: None, time_ms: 10, relative: false },
+        pvt::Point { position: 3000, velocity: None, time_ms: 20, relative: false },
+        pvt::Point { position: -500, velocity: Some(-300_000), time_ms: 7, relative: true },
+        pvt::Point { position: 9000, velocity: Some(200_000), time_ms: 30, relative: false },
+        pvt::Point { position: -2000, velocity: None, time_ms: 10, relative: true },
+        pvt::Point { position: 7000, velocity: Some(0), time_ms: 0, relative: false },
+    ];
+    let mut knots = [Knot::default(); 6];
+    let table = Table::new(to_knots(&points, 1000, COUNT, &mut knots).unwrap()).unwrap();
+    let mut axis = Axis::at(1000, SubMode::Cubic);
+    axis.add(&points.map(Point::from));
+    for k in 0..308 {
+        let setpoint = axis.step(run());
+        assert!(axis.answer.bit_12, "{k}");
+        // Not at a point itself: there it is a matter of rounding to which segment the instant belongs.
+        if k % 4 != 0 {
+            let expected = table.at(f64::from(k) * PERIOD);
+            // The time in a segment is summed here and subtracted there: 1e-17 s at 1 m/s, and a few roundings of 1e-18 m.
+            assert_near(setpoint.x, expected.x, 1e-16);
+            assert_near(setpoint.v, expected.v, 1e-13);
+            assert_near(setpoint.a, expected.a, 1e-10);
+        }
+    }
+    axis.step(run());
+    assert_eq!((axis.last.x, axis.last.v, axis.answer.bit_12), (7000.0 * COUNT, 0.0, false));
+}
