@@ -1,13 +1,10 @@
 //! From the inputs of a block, the limits of the axis and the override factors to a planned way.
 //!
-//! # Acceleration and Deceleration
-//!
-//! A way that goes on in one direction speeds up with Acceleration and slows down with Deceleration. One that turns back has
-//! both in the same direction: it brakes before the turn and speeds up after it. Where they differ, such a way has the smaller
-//! of both all along, so that neither is exceeded.
+//! Acceleration is for a speed that grows, Deceleration for one that falls. An axis that has to turn round does both in the same
+//! direction: [`Transition::plan_ramps`] says how both are kept.
 use crate::command::Dynamics;
 use servobench_base::Setpoint;
-use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target, Transition};
+use servobench_motion::online::{Effort, RampLimits, Sides, Target, Transition};
 use servobench_motion::{Limits, Order, PlanError};
 
 /// The factors of MC_SetOverride.
@@ -51,7 +48,17 @@ impl Bounds {
         Self { velocity, acceleration, deceleration: acceleration, jerk, snap }
     }
 
-    fn order(&self) -> Order {
+    /// The same with room for `speed`.
+    pub(crate) fn faster(self, speed: f64) -> Self {
+        Self { velocity: self.velocity.max(speed), ..self }
+    }
+
+    /// Those of the same way run backwards.
+    pub(crate) const fn backwards(self) -> Self {
+        Self { acceleration: self.deceleration, deceleration: self.acceleration, ..self }
+    }
+
+    pub(crate) fn order(&self) -> Order {
         if self.snap < f64::INFINITY {
             Order::Fourth
         } else if self.jerk < f64::INFINITY {
@@ -61,25 +68,14 @@ impl Bounds {
         }
     }
 
-    /// The way from `from` to `target`.
-    pub(crate) fn plan(&self, from: &Setpoint, target: &Target) -> Result<Transition, PlanError> {
-        let (acceleration, deceleration) = (self.acceleration, self.deceleration);
-        let direct = match heading(from, target) {
-            1.0 => Sides { above: acceleration, below: deceleration },
-            _ => Sides { above: deceleration, below: acceleration },
-        };
-        let way = self.within(direct, from, target)?;
-        let is_symmetric = (acceleration - deceleration).abs() == 0.0;
-        if is_symmetric || !turns_back(&way, TURN * self.velocity) {
-            return Ok(way);
-        }
-        self.within(Sides::both(acceleration.min(deceleration)), from, target)
+    pub(crate) const fn limits(&self) -> RampLimits {
+        let Self { velocity, acceleration, deceleration, jerk, snap } = *self;
+        RampLimits { velocity: Sides::both(velocity), acceleration, deceleration, jerk, snap }
     }
 
-    fn within(&self, acceleration: Sides, from: &Setpoint, target: &Target) -> Result<Transition, PlanError> {
-        let Self { jerk, snap, .. } = *self;
-        let limits = DirectionalLimits { velocity: Sides::both(self.velocity), acceleration, jerk, snap };
-        Transition::plan(self.order(), from, target, &limits, Effort::Fast)
+    /// The way from `from` to `target`.
+    pub(crate) fn plan(&self, from: &Setpoint, target: &Target) -> Result<Transition, PlanError> {
+        Transition::plan_ramps(self.order(), from, target, &self.limits(), Effort::Fast)
     }
 
     /// How far it is from `from` to the velocity `v`.
@@ -87,36 +83,4 @@ impl Bounds {
         let way = self.plan(from, &Target::Velocity(v))?;
         Ok(way.at(way.duration()).x - from.x)
     }
-}
-
-/// A velocity against the direction of a way that is no more than this part of the limit is rounding, not a turn.
-const TURN: f64 = 1e-6;
-
-/// The direction, 1 or −1, in which a way goes that does not turn back.
-pub(crate) fn heading(from: &Setpoint, target: &Target) -> f64 {
-    let towards = match *target {
-        Target::Position { x, .. } if (x - from.x).abs() > 0.0 => x - from.x,
-        Target::Velocity(v) if v != 0.0 => v,
-        Target::Position { .. } | Target::Velocity(_) => from.v,
-    };
-    if towards < 0.0 { -1.0 } else { 1.0 }
-}
-
-/// Whether velocities above `threshold` of both signs occur on `way`.
-fn turns_back(way: &Transition, threshold: f64) -> bool {
-    let (mut lowest, mut highest) = (0.0_f64, 0.0_f64);
-    let mut see = |v: f64| (lowest, highest) = (lowest.min(v), highest.max(v));
-    see(way.at(0.0).v);
-    see(way.at(way.duration()).v);
-    for segment in way.segments() {
-        let start = way.at(segment.start);
-        see(start.v);
-        // a + j·t + s·t²/2 = 0
-        let root = libm::sqrt((start.j * start.j - 2.0 * start.s * start.a).max(0.0));
-        let turns = [-2.0 * start.a / (start.j + root), -2.0 * start.a / (start.j - root)];
-        for turn in turns.into_iter().filter(|turn| *turn > 0.0 && *turn < segment.length) {
-            see(start.after(turn).v);
-        }
-    }
-    lowest < -threshold && highest > threshold
 }

@@ -1,8 +1,8 @@
 //! Taking commands from blocks: what is refused, what waits, what begins at once.
 use super::Axis;
 use super::activity::{Activity, EffortRamp, HomingWait, Led, Moving};
-use super::blending::{Leg, Next, blended};
-use super::bounds::{Bounds, Override, heading};
+use super::blending::{Next, blended};
+use super::bounds::{Bounds, Override};
 use super::modulo;
 use super::run::Run;
 use crate::arrows::{Cause, arrow};
@@ -305,8 +305,7 @@ impl Axis {
         if let Target::Position { x, v: 0.0 } = target
             && let Some((next, wanted)) = self.passage(from, x, &bounds, next)?
         {
-            let first = Leg { x, end_velocity: 0.0, bounds };
-            return Ok((blended(from, &first, &next, wanted, lead).map_err(plan_error)?, false));
+            return Ok((blended(from, x, &bounds, &next, wanted, lead).map_err(plan_error)?, false));
         }
         Ok((Run::new(bounds.plan(from, &target).map_err(plan_error)?, lead, None), false))
     }
@@ -321,12 +320,14 @@ impl Axis {
     ) -> Result<Option<(Next, f64)>, BlockError> {
         let Some(command) = next else { return Ok(None) };
         let next_bounds = Bounds::of(&command.dynamics, &self.params.limits, &self.factors);
-        let direction = heading(from, &Target::Position { x, v: 0.0 });
+        let direction = x - from.x;
         let following = self.target(command, &Setpoint::at_rest(x), x)?;
         let (next, speed) = match (following, command.goal) {
             (_, Goal::Rest | Goal::Effort { .. } | Goal::Led) => return Ok(None),
-            (Target::Position { x: next, v }, _) if direction * (next - x) > 0.0 => {
-                (Next::Position(Leg { x: next, end_velocity: v, bounds: next_bounds }), next_bounds.velocity)
+            (Target::Position { x: end, v }, _) if direction * (end - x) > 0.0 => {
+                // Who is to turn round behind the end comes to rest there.
+                let end_velocity = if direction * v > 0.0 { v * self.factors.velocity } else { 0.0 };
+                (Next::Position { x: end, end_velocity, bounds: next_bounds }, next_bounds.velocity)
             }
             (Target::Velocity(v), _) if direction * v > 0.0 => (Next::Velocity, v.abs() * self.factors.velocity),
             _ => return Ok(None),

@@ -1,5 +1,7 @@
 //! The outputs of the blocks over time.
 #[path = "../shared/bench.rs"]
 mod bench;
+mod blending;
 mod execute;
 mod figures;
+mod motions;

@@ -1,0 +1,219 @@
+//! Every arrow of the state diagram by its number, and every absent one.
+#[path = "../shared/bench.rs"]
+mod bench;
+mod lead;
+
+use bench::{Bench, LIMITS};
+use lead::{execute, led_to};
+use servobench_fieldbus::{Fault, Homing, Power};
+use servobench_plcopen::AxisState::{
+    self, ContinuousMotion, Disabled, DiscreteMotion, ErrorStop, Homing as HomingState, Standstill, Stopping,
+};
+use servobench_plcopen::{
+    ARROWS, AxisError, BlockName, Cause, ErrorId, FunctionBlock, MoveVelocity, MoveVelocityInputs, Reset, ResetInputs,
+    Stop, StopInputs,
+};
+
+const FAULT: Fault = Fault::Drive(0x7305);
+
+#[test]
+fn arrow_1_is_an_error_of_the_axis_in_any_state() {
+    for state in ARROWS[0].from {
+        let mut bench = led_to(*state);
+        bench.feedback.fault = Some(FAULT);
+        bench.cycle(|_| ());
+        assert_eq!(bench.axis.state(), ErrorStop, "{state}");
+        assert_eq!(bench.axis.error(), Some(&AxisError::DriveFault { fault: FAULT }));
+    }
+}
+
+#[test]
+fn arrow_1_is_a_loss_of_power_that_nobody_asked_for() {
+    for state in [Standstill, HomingState, DiscreteMotion, ContinuousMotion, Stopping] {
+        let mut bench = led_to(state);
+        bench.feedback.power = Power::Off;
+        bench.cycle(|_| ());
+        assert_eq!(bench.axis.state(), ErrorStop, "{state}");
+        assert_eq!(bench.axis.error(), Some(&AxisError::PowerLost { state }));
+    }
+}
+
+#[test]
+fn arrow_2_is_an_enable_that_falls() {
+    for state in ARROWS[1].from {
+        let mut bench = led_to(*state);
+        bench.enable = false;
+        bench.cycle(|_| ());
+        assert_eq!(bench.axis.state(), Disabled, "{state}");
+        assert!(!bench.command.unwrap().power);
+        assert_eq!(bench.axis.error(), None);
+    }
+}
+
+#[test]
+fn an_error_outlasts_an_enable_that_falls() {
+    let mut bench = led_to(ErrorStop);
+    bench.enable = false;
+    bench.cycle(|_| ());
+    assert_eq!(bench.axis.state(), ErrorStop);
+}
+
+/// Removes the fault and resets.
+fn reset(bench: &mut Bench) {
+    let mut block = Reset::default();
+    bench.feedback.fault = None;
+    for _ in 0..1000 {
+        if bench.cycle(|axis| block.step(axis, &ResetInputs { execute: true })).done {
+            return;
+        }
+        assert!(bench.command.unwrap().reset || bench.axis.error().is_none());
+    }
+    panic!("no reset in {}", bench.axis.state());
+}
+
+#[test]
+fn arrow_3_is_a_reset_without_power() {
+    let mut bench = led_to(ErrorStop);
+    bench.enable = false;
+    bench.cycle(|_| ());
+    bench.feedback.power = Power::Off;
+    reset(&mut bench);
+    assert_eq!((bench.axis.state(), bench.axis.error()), (Disabled, None));
+}
+
+#[test]
+fn arrow_4_is_a_reset_with_power() {
+    let mut bench = led_to(ErrorStop);
+    bench.feedback.power = Power::On;
+    reset(&mut bench);
+    assert_eq!((bench.axis.state(), bench.axis.error()), (Standstill, None));
+}
+
+#[test]
+fn a_reset_waits_for_the_fault_to_go_and_the_axis_to_stop() {
+    let mut bench = led_to(ContinuousMotion);
+    let velocity = bench.axis.commanded().v;
+    assert!(velocity > 0.1);
+    bench.feedback.fault = Some(FAULT);
+    bench.cycle(|_| ());
+    bench.feedback.power = Power::On;
+    let mut block = Reset::default();
+    for _ in 0..20 {
+        assert!(bench.cycle(|axis| block.step(axis, &ResetInputs { execute: true })).busy);
+        bench.feedback.power = Power::On;
+    }
+    bench.feedback.fault = None;
+    let mut cycles = 0;
+    while bench.cycle(|axis| block.step(axis, &ResetInputs { execute: true })).busy {
+        cycles += 1;
+        assert_eq!(bench.axis.state(), ErrorStop);
+    }
+    assert!(cycles > 10, "it brakes after the fault is gone: {cycles}");
+    assert_eq!(bench.axis.commanded().v.to_bits(), 0.0_f64.to_bits());
+}
+
+#[test]
+fn arrow_5_is_power_that_is_there() {
+    let mut bench = Bench::disabled(Bench::params());
+    bench.cycle(|_| ());
+    assert_eq!(bench.axis.state(), Disabled);
+    bench.enable = true;
+    bench.cycle(|_| ());
+    assert_eq!(bench.axis.state(), Disabled, "asked for, but not there yet");
+    bench.cycle(|_| ());
+    assert_eq!(bench.axis.state(), Standstill);
+}
+
+#[test]
+fn arrow_6_is_a_stop_that_is_done_and_released() {
+    let mut bench = led_to(ContinuousMotion);
+    let mut stop = Stop::default();
+    let inputs = |execute| StopInputs { execute, ..StopInputs::within(&LIMITS) };
+    bench.cycle(|axis| stop.step(axis, &inputs(true)));
+    let released = bench.cycle(|axis| stop.step(axis, &inputs(false)));
+    assert!(released.busy);
+    assert_eq!(bench.axis.state(), Stopping, "released, but not done");
+    while bench.axis.state() == Stopping {
+        bench.cycle(|axis| stop.step(axis, &inputs(false)));
+    }
+    assert_eq!((bench.axis.state(), bench.axis.commanded().v.to_bits()), (Standstill, 0));
+}
+
+#[test]
+fn arrow_7_is_homing_at_standstill() {
+    let mut bench = led_to(Standstill);
+    assert_eq!(execute(&mut bench, BlockName::Home), Ok(()));
+    assert_eq!(bench.axis.state(), HomingState);
+}
+
+#[test]
+fn arrow_8_is_the_done_of_homing() {
+    let mut bench = led_to(HomingState);
+    bench.homing = Homing::Attained;
+    bench.until(Standstill);
+    assert!(bench.axis.is_homed());
+}
+
+#[test]
+fn homing_that_fails_is_an_error_of_the_axis() {
+    let mut bench = led_to(HomingState);
+    bench.homing = Homing::Failed;
+    bench.until(ErrorStop);
+    assert_eq!(bench.axis.error(), Some(&AxisError::HomingFailed));
+    assert!(!bench.axis.is_homed());
+}
+
+#[test]
+fn arrow_8_is_the_done_of_a_discrete_motion() {
+    led_to(DiscreteMotion).until(Standstill);
+}
+
+#[test]
+fn arrows_7_and_9_to_13_are_the_blocks() {
+    for arrow in &ARROWS[6..] {
+        for (cause, state) in arrow.causes.iter().flat_map(|cause| arrow.from.iter().map(move |state| (cause, state))) {
+            let Cause::Block(block) = cause else { continue };
+            if lead::is_a_profile(*block) {
+                continue;
+            }
+            let mut bench = led_to(*state);
+            assert_eq!(execute(&mut bench, *block), Ok(()), "{} in {state}", cause.name());
+            assert_eq!(bench.axis.state(), arrow.to, "{} in {state}", cause.name());
+        }
+    }
+}
+
+#[test]
+fn every_absent_arrow_is_refused() {
+    let mut refusals = 0;
+    for state in AxisState::ALL {
+        for block in
+            BlockName::COMMANDS.into_iter().chain([BlockName::Reset]).filter(|block| !lead::is_a_profile(*block))
+        {
+            let is_drawn =
+                |cause| ARROWS.iter().any(|arrow| arrow.from.contains(&state) && arrow.causes.contains(&cause));
+            if is_drawn(Cause::Block(block)) || (block == BlockName::Reset && is_drawn(Cause::ResetPowered)) {
+                continue;
+            }
+            let mut bench = led_to(state);
+            assert_eq!(execute(&mut bench, block), Err(ErrorId::State), "{block} in {state}");
+            assert_eq!(bench.axis.state(), state, "{block}");
+            refusals += 1;
+        }
+    }
+    // 11 blocks in 7 states, less the 30 that the diagram draws.
+    assert_eq!(refusals, 11 * 7 - 30);
+}
+
+#[test]
+fn a_motion_without_an_end_is_never_done() {
+    let mut bench = led_to(Standstill);
+    let mut go = MoveVelocity::default();
+    let inputs = MoveVelocityInputs { execute: true, velocity: 0.3, ..MoveVelocityInputs::within(&LIMITS) };
+    let mut reached = 0;
+    for _ in 0..1000 {
+        reached += usize::from(bench.cycle(|axis| go.step(axis, &inputs)).in_velocity);
+    }
+    assert_eq!(bench.axis.state(), ContinuousMotion);
+    assert!(reached > 700, "{reached}");
+}
