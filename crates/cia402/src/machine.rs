@@ -13,7 +13,7 @@ use crate::option_code::{
 };
 use crate::state::PowerState;
 use crate::statusword::{StatusBit, Statusword};
-use crate::transitions::{Cause, Transition, leaving};
+use crate::transitions::{Cause, Causes, Transition, set_off};
 
 /// The option codes of a drive; those of [`Default`] are the profile's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -94,6 +94,7 @@ pub struct PowerOutputs {
 }
 
 /// Takes the transition that is due, if any.
+#[inline]
 pub fn step(
     params: &PowerParams,
     memory: &mut PowerMemory,
@@ -106,9 +107,8 @@ pub fn step(
         memory.controlword = controlword;
     }
     let resets = memory.controlword.gives(Command::FaultReset) && !before.gives(Command::FaultReset);
-    let moment = Moment { params, memory: *memory, inputs, resets };
-    let due = leaving(memory.state).filter(|transition| moment.is_due(transition));
-    let transition = due.max_by_key(|transition| transition.causes.contains(&Cause::Fault));
+    let moment = Moment { params, memory: *memory, inputs };
+    let transition = moment.due(moment.given(resets));
     if let Some(transition) = transition {
         memory.state = transition.to;
         memory.was_powered = was_powered;
@@ -121,30 +121,28 @@ struct Moment<'a> {
     params: &'a PowerParams,
     memory: PowerMemory,
     inputs: PowerInputs,
-    /// Bit 7 of the controlword has risen.
-    resets: bool,
 }
 
 impl Moment<'_> {
-    /// Whether a transition that leads out of the present state is to be taken.
-    fn is_due(&self, transition: &Transition) -> bool {
-        transition.causes.iter().any(|cause| self.is_given(*cause)) && self.is_allowed(transition.number)
+    /// What could set a transition off; a fault reset does when its bit has risen.
+    fn given(&self, resets: bool) -> Causes {
+        let quick_stop = self.params.quick_stop;
+        let reaction = self.params.fault_reaction.deceleration();
+        Causes::of(self.memory.controlword)
+            .without(Cause::Command(Command::FaultReset))
+            .with(Cause::Command(Command::FaultReset), resets)
+            .with(Cause::Initialised, self.inputs.initialised)
+            .with(Cause::QuickStopCompleted, !quick_stop.stays() && self.has_stopped(quick_stop.deceleration()))
+            .with(Cause::Fault, self.inputs.fault)
+            .with(Cause::FaultReactionCompleted, !self.memory.was_powered || self.has_stopped(reaction))
     }
 
-    fn is_given(&self, cause: Cause) -> bool {
-        match cause {
-            Cause::Start => false,
-            Cause::Initialised => self.inputs.initialised,
-            Cause::Command(Command::FaultReset) => self.resets,
-            Cause::Command(command) => self.memory.controlword.gives(command),
-            Cause::QuickStopCompleted => {
-                !self.params.quick_stop.stays() && self.has_stopped(self.params.quick_stop.deceleration())
-            }
-            Cause::Fault => self.inputs.fault,
-            Cause::FaultReactionCompleted => {
-                !self.memory.was_powered || self.has_stopped(self.params.fault_reaction.deceleration())
-            }
-        }
+    /// The transition to be taken.
+    fn due(&self, given: Causes) -> Option<&'static Transition> {
+        let fault = Causes::NONE.with(Cause::Fault, self.inputs.fault);
+        set_off(self.memory.state, fault)
+            .next()
+            .or_else(|| set_off(self.memory.state, given).find(|transition| self.is_allowed(transition.number)))
     }
 
     /// The column "condition" of the table.

@@ -1,6 +1,6 @@
 //! The transitions of the power state machine (IEC 61800-7-201, finite state automaton): one table, from which the machine
 //! steps, the tests test and `docs/cia402.md` is written.
-use crate::controlword::Command;
+use crate::controlword::{Command, Controlword};
 use crate::state::PowerState::{
     self, Fault, FaultReactionActive, NotReadyToSwitchOn, OperationEnabled, QuickStopActive, ReadyToSwitchOn,
     SwitchOnDisabled, SwitchedOn,
@@ -195,17 +195,93 @@ pub const TRANSITIONS: [Transition; 17] = [
     },
 ];
 
-/// The transitions that lead out of `state`, by number.
-pub(crate) fn leaving(state: PowerState) -> impl Iterator<Item = &'static Transition> {
+/// Several causes at once, a bit each: the drive asks at each of its cycles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Causes(u16);
+
+impl Causes {
+    pub(crate) const NONE: Self = Self(0);
+
+    pub(crate) const fn with(self, cause: Cause, is_given: bool) -> Self {
+        Self(self.0 | (is_given as u16) << cause.place())
+    }
+
+    /// The commands that a controlword gives.
+    pub(crate) const fn of(word: Controlword) -> Self {
+        // Bits 7 and 3 to 0 decide.
+        const GIVEN: [Causes; 32] = {
+            let mut given = [Causes::NONE; 32];
+            let mut place: u16 = 0;
+            while place < 32 {
+                let word = Controlword::from_bits((place & 0x10) << 3 | place & 0x0F);
+                let mut command = 0;
+                while command < Command::ALL.len() {
+                    let asked = Command::ALL[command];
+                    let known = given[place as usize];
+                    given[place as usize] = known.with(Cause::Command(asked), word.gives(asked));
+                    command += 1;
+                }
+                place += 1;
+            }
+            given
+        };
+        let bits = word.bits();
+        GIVEN[(bits >> 3 & 0x10 | bits & 0x0F) as usize]
+    }
+
+    pub(crate) const fn without(self, cause: Cause) -> Self {
+        Self(self.0 & !(1 << cause.place()))
+    }
+
+    const fn has_any_of(self, others: Self) -> bool {
+        self.0 & others.0 != 0
+    }
+}
+
+impl Cause {
+    const fn place(self) -> u32 {
+        match self {
+            Self::Start => 0,
+            Self::Initialised => 1,
+            Self::QuickStopCompleted => 2,
+            Self::Fault => 3,
+            Self::FaultReactionCompleted => 4,
+            Self::Command(command) => 5 + command as u32,
+        }
+    }
+}
+
+/// The transitions that lead out of `state` and that one of `given` sets off, by number.
+pub(crate) fn set_off(state: PowerState, given: Causes) -> impl Iterator<Item = &'static Transition> {
     let mut left = LEAVING[state as usize];
     core::iter::from_fn(move || {
-        let transition = TRANSITIONS.get(left.trailing_zeros() as usize)?;
-        left &= left - 1;
-        Some(transition)
+        loop {
+            let number = left.trailing_zeros() as usize;
+            let transition = TRANSITIONS.get(number)?;
+            left &= left - 1;
+            if given.has_any_of(CAUSES[number]) {
+                return Some(transition);
+            }
+        }
     })
 }
 
-/// Per state, a bit for each transition that leads out of it: the drive asks at each of its cycles.
+/// The causes of each transition.
+const CAUSES: [Causes; TRANSITIONS.len()] = {
+    let mut causes = [Causes::NONE; TRANSITIONS.len()];
+    let mut number = 0;
+    while number < TRANSITIONS.len() {
+        let mut place = 0;
+        while place < TRANSITIONS[number].causes.len() {
+            causes[number] = causes[number].with(TRANSITIONS[number].causes[place], true);
+            place += 1;
+        }
+        number += 1;
+    }
+    causes
+};
+
+/// Per state, a bit for each transition that leads out of it.
 const LEAVING: [u32; PowerState::ALL.len()] = {
     let mut leaving = [0; PowerState::ALL.len()];
     let mut number = 0;
@@ -249,11 +325,24 @@ mod tests {
         assert!(listed(Command::EnableOperation).eq([4, 16]));
         assert!(listed(Command::FaultReset).eq([15]));
     }
+
+    #[test]
+    fn a_controlword_gives_the_causes_that_its_commands_are() {
+        for bits in 0..=u16::MAX {
+            let word = Controlword::from_bits(bits);
+            for transition in &TRANSITIONS {
+                let is_commanded = |cause: &Cause| matches!(cause, Cause::Command(command) if word.gives(*command));
+                let is_given = Causes::of(word).has_any_of(CAUSES[usize::from(transition.number)]);
+                assert_eq!(is_given, transition.causes.iter().any(is_commanded), "{bits:04X}h, {}", transition.number);
+            }
+        }
+    }
+
     #[test]
     fn a_state_is_left_by_the_transitions_that_name_it() {
         for state in PowerState::ALL {
             let named = TRANSITIONS.iter().filter(|transition| transition.from.contains(&state));
-            assert!(leaving(state).eq(named), "{state}");
+            assert!(set_off(state, Causes(u16::MAX)).eq(named), "{state}");
         }
     }
 }

@@ -40,7 +40,7 @@ pub use window::{Dwell, Window};
 use crate::Demand;
 use crate::modes::stop::Ramp;
 use crate::modes::{Actual, Answer, Moment, Targets};
-use running::{Running, Said};
+use running::Running;
 use servobench_base::{ParamError, Setpoint};
 use servobench_cia402::{
     self as cia402, Actuals, Command, Commands, Deceleration, DriveFunction, Mode, PowerInputs, PowerMemory,
@@ -119,7 +119,8 @@ pub struct State {
     beyond_following_error: Dwell,
     at_standstill: Dwell,
     statusword: Statusword,
-    measured: Measured,
+    increments: i64,
+    following_error: f64,
 }
 
 impl State {
@@ -151,7 +152,8 @@ impl State {
             beyond_following_error: Dwell::default(),
             at_standstill: Dwell::default(),
             statusword: Statusword::default(),
-            measured: Measured::default(),
+            increments: 0,
+            following_error: 0.0,
         })
     }
 
@@ -176,17 +178,16 @@ impl State {
     /// The frame for the master, as of the last step.
     #[must_use]
     pub fn actuals(&self, p: &Params) -> Actuals {
-        let Measured { increments, velocity, effort, following_error, .. } = self.measured;
-        let Measured { negative_limit, positive_limit, home, .. } = self.measured;
+        let Actual { velocity, effort, negative_limit, positive_limit, home, .. } = self.now.actual;
         let follows_position = matches!(self.last, Demand::Position { .. });
         Actuals {
             statusword: self.statusword,
             mode: self.mode.map_or(0, Mode::code),
             #[expect(clippy::cast_possible_truncation, reason = "the counter of the bus wraps")]
-            position: p.units.position(increments.wrapping_sub(self.origin)) as i32,
+            position: p.units.position(self.increments.wrapping_sub(self.origin)) as i32,
             velocity: p.units.velocity(velocity),
             torque: p.units.effort(effort),
-            following_error: if follows_position { p.units.distance(following_error) } else { 0 },
+            following_error: if follows_position { p.units.distance(self.following_error) } else { 0 },
             error_code: self.fault.map_or(0, Fault::code),
             digital_inputs: u32::from(negative_limit) | u32::from(positive_limit) << 1 | u32::from(home) << 2,
             ..Actuals::default()
@@ -215,36 +216,38 @@ pub fn step(p: &Params, x: &mut State, u: &Inputs) -> Outputs {
     };
     let power = cia402::step(&p.power, &mut x.power, x.now.targets.controlword, inputs);
     let fault = x.remember(found, power.transition);
-    let answer = match power.drive {
+    let mut answer = match power.drive {
         DriveFunction::Disabled => x.idle(),
         DriveFunction::Follow => x.follow(p, beat),
         DriveFunction::Brake(how) => x.brake(p, how, standstill),
     };
-    // Without power nothing can be driven, whatever the state says.
-    let asked = if u.main_voltage { answer.demand } else { Demand::Off };
-    x.last = within(p.limits.effort, asked);
-    let is_limited = x.is_cut
+    if !u.main_voltage {
+        // Without power nothing can be driven, whatever the state says.
+        answer.demand = Demand::Off;
+    }
+    let is_limited = keep_within(p.limits.effort, &mut answer.demand)
+        || x.is_cut
         || x.guard.is_active()
         || u.measured.effort_is_cut
-        || x.running.as_ref().is_some_and(Running::is_limited)
-        || x.last != asked;
+        || x.running.as_ref().is_some_and(Running::is_limited);
+    x.last = answer.demand;
     x.statusword = power
         .statusword
         .with(StatusBit::TargetReached, answer.target_reached)
         .with(StatusBit::InternalLimitActive, is_limited)
         .with(StatusBit::ModeSpecific12, answer.bit_12)
         .with(StatusBit::ModeSpecific13, answer.bit_13);
-    let demand = shifted(x.last, p.units.metres_or_radians(x.origin));
+    move_by(p.units.metres_or_radians(x.origin), &mut answer.demand);
     if let Some(shift) = x.shift.take() {
         x.move_zero(p, shift);
     }
-    Outputs { demand, transition: power.transition, fault }
+    Outputs { demand: answer.demand, transition: power.transition, fault }
 }
 
 impl State {
     /// Reads the sensors: where the axis is, and where the loops go on from.
     fn measure(&mut self, p: &Params, measured: &Measured) {
-        self.measured = *measured;
+        (self.increments, self.following_error) = (measured.increments, measured.following_error);
         let position = |increments: i64| p.units.metres_or_radians(increments.wrapping_sub(self.origin));
         let actual = Actual {
             position: position(measured.increments),
@@ -269,13 +272,13 @@ impl State {
     fn move_zero(&mut self, p: &Params, shift: f64) {
         let increments = p.units.increments(shift);
         self.origin -= increments;
-        self.last = shifted(self.last, p.units.metres_or_radians(increments));
+        move_by(p.units.metres_or_radians(increments), &mut self.last);
     }
 
     /// Converts a frame.
     fn take(&mut self, p: &Params, frame: &Commands) {
         self.wanted = Mode::from_code(frame.mode);
-        let here = p.units.position(self.measured.increments.wrapping_sub(self.origin));
+        let here = p.units.position(self.increments.wrapping_sub(self.origin));
         #[expect(clippy::cast_possible_truncation, reason = "the counter of the bus wraps")]
         let shown = here as i32;
         let target = match self.wanted {
@@ -378,12 +381,11 @@ impl State {
             // No mode yet: the axis is held where it is.
             return self.brake(p, Deceleration::SlowDownRamp, false);
         };
-        let Said { mut answer, shift } = running.step(p, &self.now, beat);
+        let mut answer = running.step(p, &self.now, beat, &mut self.shift);
         if !running.looks_for_ends() {
-            answer.demand = self.guard.step(p, &self.now, answer.demand);
+            self.guard.step(p, &self.now, &mut answer.demand);
         }
-        answer.bit_13 |= running.tells_following_error() && !p.following_error.holds(self.measured.following_error);
-        self.shift = shift;
+        answer.bit_13 |= running.tells_following_error() && !p.following_error.holds(self.following_error);
         answer
     }
 
@@ -410,27 +412,24 @@ impl State {
     }
 }
 
-/// The demand with its efforts within the limits of both directions.
-fn within([forward, backward]: [f64; 2], demand: Demand) -> Demand {
-    let cut = |effort: f64| effort.clamp(-backward, forward);
-    match demand {
-        Demand::Off => Demand::Off,
-        Demand::Position { setpoint, velocity_offset, effort_offset } => {
-            Demand::Position { setpoint, velocity_offset, effort_offset: cut(effort_offset) }
-        }
-        Demand::Velocity { setpoint, effort_offset } => {
-            Demand::Velocity { setpoint, effort_offset: cut(effort_offset) }
-        }
-        Demand::Effort(effort) => Demand::Effort(cut(effort)),
-    }
+/// Cuts the efforts of a demand to the limits of both directions; whether there was anything to cut.
+#[inline]
+fn keep_within([forward, backward]: [f64; 2], demand: &mut Demand) -> bool {
+    let (Demand::Position { effort_offset: effort, .. }
+    | Demand::Velocity { effort_offset: effort, .. }
+    | Demand::Effort(effort)) = demand
+    else {
+        return false;
+    };
+    let is_beyond = *effort > forward || *effort < -backward;
+    *effort = effort.clamp(-backward, forward);
+    is_beyond
 }
 
-/// The demand when every position is so much greater.
-fn shifted(demand: Demand, by: f64) -> Demand {
-    match demand {
-        Demand::Position { setpoint, velocity_offset, effort_offset } => {
-            Demand::Position { setpoint: Setpoint { x: setpoint.x + by, ..setpoint }, velocity_offset, effort_offset }
-        }
-        Demand::Off | Demand::Velocity { .. } | Demand::Effort(_) => demand,
+/// The same demand on an axis that counts from elsewhere.
+#[inline]
+fn move_by(distance: f64, demand: &mut Demand) {
+    if let Demand::Position { setpoint, .. } = demand {
+        setpoint.x += distance;
     }
 }

@@ -27,26 +27,31 @@ impl State {
         self.held.is_some()
     }
 
-    /// What is left of the demand.
+    /// Replaces the demand where it goes on towards an end that is reached.
     #[inline]
-    pub(super) fn step(&mut self, p: &Params, now: &Moment, demand: Demand) -> Demand {
-        if self.held.is_none() && !may_be_reached(p, now) {
-            return demand;
+    pub(super) fn step(&mut self, p: &Params, now: &Moment, demand: &mut Demand) {
+        if self.held.is_some() || may_be_reached(p, now) {
+            self.hold_back(p, now, demand);
         }
+    }
+
+    fn hold_back(&mut self, p: &Params, now: &Moment, demand: &mut Demand) {
         if let Some(held) = &self.held
-            && leads_back(held, now, &demand)
+            && leads_back(held, now, demand)
         {
             self.held = None;
         }
         if self.held.is_none() {
-            let end = [1.0, -1.0].into_iter().find(|end| goes_beyond(p, now, &demand, *end));
+            let end = [1.0, -1.0].into_iter().find(|end| goes_beyond(p, now, demand, *end));
             self.held = end.map(|end| {
                 let closes_position = matches!(demand, Demand::Position { .. });
                 let deceleration = Some(p.profile.quick_stop_deceleration);
                 Held { end, ramp: Ramp::begin(&now.demanded, deceleration, closes_position) }
             });
         }
-        self.held.as_mut().map_or(demand, |held| held.ramp.step(p.period))
+        if let Some(held) = &mut self.held {
+            *demand = held.ramp.step(p.period);
+        }
     }
 }
 

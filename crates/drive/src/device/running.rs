@@ -15,19 +15,6 @@ pub(super) enum Running {
     Cst(cyclic::effort::State),
 }
 
-/// What a mode says, and what it has found out.
-pub(super) struct Said {
-    pub(super) answer: Answer,
-    /// What is added to every position from the next step on.
-    pub(super) shift: Option<f64>,
-}
-
-impl From<Answer> for Said {
-    fn from(answer: Answer) -> Self {
-        Self { answer, shift: None }
-    }
-}
-
 /// Whether the drive has a mode.
 pub(super) const fn has(mode: Mode) -> bool {
     !matches!(mode, Mode::InterpolatedPosition)
@@ -62,18 +49,21 @@ impl Running {
         }
     }
 
-    pub(super) fn step(&mut self, p: &Params, now: &Moment, beat: Beat) -> Said {
+    /// What the mode says; `shift` gets what homing adds to every position from the next step on.
+    #[inline]
+    pub(super) fn step(&mut self, p: &Params, now: &Moment, beat: Beat, shift: &mut Option<f64>) -> Answer {
         match self {
-            Self::Pp(x) => profile::position::step(&p.profile_position(), x, now).into(),
-            Self::Pv(x) => profile::velocity::step(&p.profile_velocity(), x, now).into(),
-            Self::Tq(x) => profile::effort::step(p.profile_effort(), x, now).into(),
+            Self::Pp(x) => profile::position::step(&p.profile_position(), x, now),
+            Self::Pv(x) => profile::velocity::step(&p.profile_velocity(), x, now),
+            Self::Tq(x) => profile::effort::step(p.profile_effort(), x, now),
             Self::Hm(x) => {
-                let homing::Output { answer, shift } = homing::step(&p.homing(now), x, now);
-                Said { answer, shift }
+                let homing::Output { answer, shift: found } = homing::step(&p.homing(now), x, now);
+                *shift = found;
+                answer
             }
-            Self::Csp(x) => cyclic::position::step(&p.cyclic_position(), x, now, beat).into(),
-            Self::Csv(x) => cyclic::velocity::step(&p.cyclic_velocity(), x, now, beat).into(),
-            Self::Cst(x) => cyclic::effort::step(p.cyclic_effort(), x, now, beat).into(),
+            Self::Csp(x) => cyclic::position::step(&p.cyclic_position(), x, now, beat),
+            Self::Csv(x) => cyclic::velocity::step(&p.cyclic_velocity(), x, now, beat),
+            Self::Cst(x) => cyclic::effort::step(p.cyclic_effort(), x, now, beat),
         }
     }
 

@@ -27,6 +27,7 @@ impl State {
 }
 
 /// The demand of a step.
+#[inline]
 pub fn step(p: Params, x: &mut State, now: &Moment, beat: Beat) -> Answer {
     if beat != Beat::Between {
         x.progress = Progress::default();

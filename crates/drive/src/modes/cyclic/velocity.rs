@@ -44,6 +44,7 @@ impl State {
 }
 
 /// The demand of a step.
+#[inline]
 pub fn step(p: &Params, x: &mut State, now: &Moment, beat: Beat) -> Answer {
     let targets = &now.targets;
     if beat != Beat::Between {

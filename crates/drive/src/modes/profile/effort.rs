@@ -27,6 +27,7 @@ impl State {
 }
 
 /// The demand of a step.
+#[inline]
 pub fn step(p: Params, x: &mut State, now: &Moment) -> Answer {
     let effort = x.effort;
     x.effort = Slopes { away: p.slope, back: p.slope }.next(effort, now.targets.effort, now.period);

@@ -26,8 +26,8 @@ use crate::device::{Dwell, Window};
 use crate::modes::{Answer, Moment};
 use servobench_base::{ParamError, Setpoint, non_negative, positive};
 use servobench_cia402::ControlBit;
-use servobench_motion::Order;
 use servobench_motion::online::{Target, Transition};
+use servobench_motion::{Order, Piece};
 use set_point::SetPoint;
 
 /// How the velocity changes (6086h).
@@ -81,15 +81,25 @@ impl Params {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Way {
     transition: Transition,
+    /// The part of it that is being gone.
+    piece: Piece,
     steps: u32,
 }
 
 impl Way {
+    fn along(transition: &Transition) -> Self {
+        Self { transition: *transition, piece: transition.piece(0.0), steps: 0 }
+    }
+
     /// The set-point of the next step, the first one being that of the start, and whether the end is reached.
+    #[inline]
     fn next(&mut self, period: f64) -> (Setpoint, bool) {
         let passed = f64::from(self.steps) * period;
         self.steps = self.steps.saturating_add(1);
-        (self.transition.at(passed), passed >= self.transition.duration())
+        if !self.piece.holds(passed) {
+            self.piece = self.transition.piece(passed);
+        }
+        (self.piece.at(passed), passed >= self.transition.duration())
     }
 }
 
@@ -139,7 +149,7 @@ impl State {
         let brake = SetPoint::at(now.demanded.x, &now.targets);
         if let Ok(transition) = brake.plan(p, &now.demanded, &Target::Velocity(0.0)) {
             state.target = transition.at(f64::INFINITY).x;
-            state.way = Some(Way { transition, steps: 0 });
+            state.way = Some(Way::along(&transition));
         }
         state
     }
@@ -190,7 +200,7 @@ impl State {
         let most = if self.is_passed { active.velocity } else { p.end_velocity.min(active.velocity) };
         let velocity = active.passing(p, from, most);
         if let Ok(transition) = velocity.and_then(|v| active.plan(p, from, &Target::Position { x: active.x, v })) {
-            self.way = Some(Way { transition, steps: 0 });
+            self.way = Some(Way::along(&transition));
         } else {
             self.is_limited = true;
         }
@@ -198,6 +208,7 @@ impl State {
 }
 
 /// The demand of a step.
+#[inline]
 pub fn step(p: &Params, x: &mut State, now: &Moment) -> Answer {
     let asked_before = core::mem::replace(&mut x.handshake.asks, asks(now));
     if x.handshake.asks && !asked_before {

@@ -58,6 +58,7 @@ impl State {
 }
 
 /// The demand of a step.
+#[inline]
 pub fn step(p: &Params, x: &mut State, now: &Moment) -> Answer {
     let Moment { targets, actual, period, .. } = now;
     let target = targets.velocity.clamp(-p.limit, p.limit);
