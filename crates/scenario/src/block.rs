@@ -59,7 +59,7 @@ pub(crate) struct Interface {
 }
 
 const MOTION: &[Output] = &[Output::Done, Output::Busy, Output::Active, Output::CommandAborted, Output::Error];
-const READING: &[Output] = &[Output::Valid, Output::Busy, Output::Error];
+const READING: &[Output] = &[Output::Valid];
 
 /// Every block: its name, its meaning, what triggers it, its inputs and its outputs.
 pub(crate) const BLOCKS: &[Interface] = {
@@ -81,21 +81,14 @@ pub(crate) const BLOCKS: &[Interface] = {
     }
     &[
         block(B::Power, "MC_Power", "powers the axis as long as it is enabled", Enable, &[], &[Status, Valid, Error]),
-        block(
-            B::Home,
-            "MC_Home",
-            "homes by the method of the drive (6098h)",
-            Execute,
-            &["position", "buffer_mode"],
-            MOTION,
-        ),
+        block(B::Home, "MC_Home", "homes by the method of the drive (6098h)", Execute, &["position"], MOTION),
         block(
             B::Stop,
             "MC_Stop",
             "brakes to rest and lets no other motion begin while `Execute` is TRUE",
             Execute,
             &["deceleration", "jerk", "snap"],
-            &[Done, Busy, CommandAborted, Error],
+            MOTION,
         ),
         block(
             B::Halt,
@@ -163,8 +156,8 @@ pub(crate) const BLOCKS: &[Interface] = {
             "MC_MoveSuperimposed",
             "moves by a distance on top of the motion under way",
             Execute,
-            &["distance", "velocity_difference", "acceleration", "deceleration", "jerk", "snap", "continuous_update"],
-            &[Done, Busy, CommandAborted, Error],
+            &["distance", "velocity_difference", "acceleration", "deceleration", "jerk", "snap"],
+            MOTION,
         ),
         block(
             B::MoveVelocity,
@@ -267,7 +260,7 @@ pub(crate) const BLOCKS: &[Interface] = {
             "tells the state of the axis",
             Enable,
             &[],
-            &[Valid, Busy, Error, ErrorStop, Disabled, Stopping, Homing, Standstill, DiscreteMotion, ContinuousMotion],
+            &[Valid, ErrorStop, Disabled, Stopping, Homing, Standstill, DiscreteMotion, ContinuousMotion],
         ),
         block(B::ReadAxisError, "MC_ReadAxisError", "tells the error of the axis", Enable, &[], READING),
         block(B::ReadActualPosition, "MC_ReadActualPosition", "tells the actual position", Enable, &[], READING),

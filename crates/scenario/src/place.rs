@@ -94,15 +94,6 @@ wait = "2 s"
     }
 
     #[test]
-    fn objects_are_found_however_their_sub_index_is_written() {
-        let objects = "[drive.objects]\n\"6065h\" = 1\n\"607Dh.1\" = 2\n607Eh.0 = 3\n";
-        let loaded = parse("a.toml", &format!("{TEXT}{objects}"), None).err().map(|error| error.to_string());
-        // The drive is prescribed: it has no objects, but they are where they are.
-        let said = loaded.unwrap_or_default();
-        assert!(said.starts_with("a.toml:12:1: `objects` is for a drive on a fieldbus"), "{said}");
-    }
-
-    #[test]
     fn lines_of_the_mjcf_file_say_where_it_is_named() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("arm.xml"), "<mujoco>\n  <equality/>\n</mujoco>\n").unwrap();

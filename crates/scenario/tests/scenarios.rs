@@ -198,12 +198,21 @@ fn as_json(text: &str) -> Json {
     convert(&toml::Value::Table(text.parse().unwrap()))
 }
 
+/// The first is a whole scenario, the others are parts of one that has its axis and drive.
 #[test]
-fn the_example_of_the_reference_loads() {
+fn the_examples_of_the_reference_load() {
     let text = read(&repository().join("docs/scenario.md"));
-    let example = text.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
-    let loaded = parse("example.toml", example, None).unwrap_or_else(|e| panic!("{e}"));
-    assert_eq!(loaded.warnings, []);
+    let examples: Vec<_> = text.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    let [whole, moves, bus, calls] = examples.as_slice() else { panic!("{} examples", examples.len()) };
+    let (axis, _) = whole.split_once("[[program]]\n").unwrap();
+    let axis = axis.replace("feedforward = { velocity = true, effort = \"rigid\" }\n", "");
+    let long = axis.replace("[run]\n", "[run]\nduration = \"4 s\"\n");
+    for example in
+        [(*whole).to_owned(), format!("{axis}{moves}"), format!("{axis}{bus}"), format!("{long}{bus}{calls}")]
+    {
+        let loaded = parse("example.toml", &example, None).unwrap_or_else(|e| panic!("{e}\n{example}"));
+        assert_eq!(loaded.warnings, [], "{example}");
+    }
 }
 
 const BEGIN: &str = "<!-- generated: keys -->\n";

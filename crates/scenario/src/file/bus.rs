@@ -65,7 +65,7 @@ table! {
         /// How the drive fills the ticks between two frames; "linear" unless given.
         drive_interpolation: DriveInterpolation = (),
         /// Bus cycles from the sampling of a frame to its effect; 1 unless given.
-        delay: u32 = 0..=1000,
+        delay: u32 = 0..=15,
         /// Whether the velocity offset (60B1h) carries the velocity of the set-point; it does not unless given.
         velocity_offset: bool = (),
         /// Model of the torque or force that the torque offset (60B2h) carries, by the drive's `estimate`; "off" unless given.

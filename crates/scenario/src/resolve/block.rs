@@ -34,9 +34,7 @@ impl Context<'_> {
             BlockName::ReadActualPosition => Some(Block::ReadActualPosition),
             BlockName::ReadActualVelocity => Some(Block::ReadActualVelocity),
             BlockName::ReadActualTorque => Some(Block::ReadActualTorque),
-            BlockName::Home => {
-                Some(Block::Home { position: read.or("position", 0.0)?, buffer_mode: read.buffer_mode()? })
-            }
+            BlockName::Home => read.or("position", 0.0).map(|position| Block::Home { position }),
             BlockName::Stop => read.braking().map(Block::Stop),
             BlockName::Halt => Some(Block::Halt { braking: read.braking()?, buffer_mode: read.buffer_mode()? }),
             BlockName::MoveAbsolute => {
@@ -56,8 +54,8 @@ impl Context<'_> {
             }
             BlockName::MoveSuperimposed => {
                 let (distance, motion) = (read.required("distance"), read.motion("velocity_difference"));
-                let (dynamics, Command { continuous_update, .. }) = motion?;
-                Some(Block::MoveSuperimposed { distance: distance?, dynamics, continuous_update })
+                let (dynamics, _) = motion?;
+                Some(Block::MoveSuperimposed { distance: distance?, dynamics })
             }
             BlockName::MoveVelocity => read.move_velocity(),
             BlockName::MoveContinuousAbsolute => read.move_continuous_absolute(),
@@ -156,6 +154,7 @@ impl<'a> Reading<'a, '_> {
             let message = format!("`{velocity}` of {} must be above zero", self.name.name());
             self.report.error(span, message, "the target says in which direction");
         }
+        self.warn_beyond_the_axis();
         let acceleration = self.needed_limit("acceleration");
         let deceleration = self.inputs.quantity("deceleration").optional().ok();
         let (jerk_and_snap, command) = (self.jerk_and_snap(), self.command());
@@ -165,7 +164,25 @@ impl<'a> Reading<'a, '_> {
         Some((Dynamics { velocity: most?, acceleration, deceleration, jerk, snap }, command?))
     }
 
+    /// A block refuses what is beyond the limits of its axis.
+    fn warn_beyond_the_axis(&mut self) {
+        let both = LIMITS.map(|name| (name, name)).into_iter().chain([("deceleration", "acceleration")]);
+        for (input, limit) in both {
+            let (Some(own), Some(most)) =
+                (self.inputs.quantity(input).at(), self.context.defaults.limit(limit).given())
+            else {
+                continue;
+            };
+            if own.value.abs() > *most {
+                let message = format!("beyond the `{limit}` of `[setpoint]`, {most} in SI: the block will refuse it");
+                let say = |report: &mut Report| report.warning(own.span, message, "lower it or raise that");
+                self.said.once(own.span, say, self.report);
+            }
+        }
+    }
+
     fn braking(&mut self) -> Option<Braking> {
+        self.warn_beyond_the_axis();
         let own = self.inputs.quantity("deceleration");
         let slot = either(own, self.context.defaults.limit("acceleration"));
         if matches!(slot, Slot::Absent) {

@@ -45,6 +45,11 @@ impl Context<'_> {
             ("above", given.above.span()),
             ("below", given.below.span()),
         ];
+        let mut there = ways.iter().filter_map(|(way, span)| span.map(|span| (way, span)));
+        if let (Some((first, _)), Some((second, span))) = (there.next(), there.next()) {
+            report.error(span, format!("`{first}` and `{second}` in one condition"), "give one of them");
+            return None;
+        }
         let way = one_way(&ways, report);
         if let (Slot::Absent, Some(span)) = (&given.after, given.delay.span()) {
             report.error(span, "`delay` is for `after`", "");

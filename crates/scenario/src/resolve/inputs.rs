@@ -125,6 +125,15 @@ impl<'a> Defaults<'a> {
         Self(std::array::from_fn(|i| if i < order { limits[i] } else { &Slot::Absent }))
     }
 
+    /// All of them; infinite where there is none.
+    pub(super) fn limits(&self) -> Option<[f64; 4]> {
+        let mut limits = [f64::INFINITY; 4];
+        for (limit, slot) in limits.iter_mut().zip(self.0) {
+            *limit = slot.optional().ok()?.copied().unwrap_or(f64::INFINITY);
+        }
+        Some(limits)
+    }
+
     /// A limit by its name.
     pub(super) fn limit(&self, name: &str) -> &'a Slot<f64> {
         LIMITS.iter().position(|own| *own == name).map_or(&Slot::Absent, |which| self.0[which])

@@ -10,7 +10,7 @@ pub(super) fn refuse_step(mode: BusMode, step: &Step, span: Span, report: &mut R
         BusMode::CyclicPosition | BusMode::CyclicVelocity => return,
         BusMode::ProfilePosition => {
             let goes = matches!(step.way, Way::Rest(_) | Way::Online(OnlineMove { goal: Goal::Position(..), .. }));
-            (goes, "pp", "moves to positions: `move_to`, `move_by`")
+            (goes, "pp", "`move_to` and `move_by`")
         }
         BusMode::ProfileVelocity => {
             let goes = match &step.way {

@@ -51,7 +51,7 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
     let starts: Vec<Option<Condition>> = resolved.iter().map(|(start, _)| *start).collect();
     condition::refuse_circles(&starts, &instances, report);
     let calls = resolved.into_iter().map(|(_, call)| call).collect::<Option<Vec<_>>>();
-    Some(Some(Plc { homing_required, calls: calls? }))
+    Some(Some(Plc { homing_required, limits: defaults.limits()?, calls: calls? }))
 }
 
 /// Objects to what does not go with calls, and says what they need.

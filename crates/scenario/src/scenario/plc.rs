@@ -6,6 +6,8 @@ use super::program::TableMove;
 pub struct Plc {
     /// Whether absolute moves of an axis that was not homed are refused.
     pub homing_required: bool,
+    /// What no command may exceed, of `[setpoint]`: |velocity|, |acceleration|, |jerk|, |snap|; infinite where there is none.
+    pub limits: [f64; 4],
     /// The calls, at least one, in the order in which every cycle executes them.
     pub calls: Vec<Call>,
 }
@@ -67,8 +69,6 @@ pub enum Block {
     Home {
         /// Position of the reference from then on.
         position: f64,
-        /// What becomes of the motion under way.
-        buffer_mode: BufferMode,
     },
     /// `MC_Stop`.
     Stop(Braking),
@@ -116,8 +116,6 @@ pub enum Block {
         distance: f64,
         /// What leads to it; its velocity is the largest difference of velocity.
         dynamics: Dynamics,
-        /// Whether inputs count that change while `Execute` is TRUE.
-        continuous_update: bool,
     },
     /// `MC_MoveVelocity`.
     MoveVelocity {

@@ -1,4 +1,6 @@
 //! What is said of each kind of mistake, and where.
+mod bus;
+mod calls;
 mod names;
 mod quantities;
 mod rules;
@@ -79,6 +81,10 @@ fn shortened(line: &str) -> String {
 fn after(old: &str, new: &str) -> Vec<String> {
     assert_eq!(AXIS.matches(old).count(), 1, "`{old}` must be there once");
     mistakes(&AXIS.replace(old, new))
+}
+
+fn strings(all: &[&str]) -> Vec<String> {
+    all.iter().map(ToString::to_string).collect()
 }
 
 fn warnings(text: &str) -> Vec<String> {

@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Every scenario that we ship, and nothing at all.
-const SCENARIOS: [&str; 15] = [
+const SCENARIOS: [&str; 19] = [
     "",
     include_str!("../../../../scenarios/demo/jerk.toml"),
     include_str!("../../../../scenarios/demo/snap.toml"),
@@ -20,6 +20,10 @@ const SCENARIOS: [&str; 15] = [
     include_str!("../../../../scenarios/feed-axis-stick-slip.toml"),
     include_str!("../../../../scenarios/lambrechts-snap.toml"),
     include_str!("../../../../scenarios/own-mjcf.toml"),
+    include_str!("../../../../scenarios/plc/buffered.toml"),
+    include_str!("../../../../scenarios/plc/bus-jitter.toml"),
+    include_str!("../../../../scenarios/plc/figure-3b.toml"),
+    include_str!("../../../../scenarios/plc/homing.toml"),
     include_str!("../../../../scenarios/two-mass.toml"),
     include_str!("../../../../scenarios/two-mass-held.toml"),
     include_str!("../../../../scenarios/two-mass-ring-down.toml"),
@@ -39,6 +43,8 @@ const WORDS: &[&str] = &[
     "lead = \"10 mm\"\n", "gear_ratio = 5\n", "motion = \"rotary\"\n", "model = \"emps\"\n", "model = \"lambrechts\"\n",
     "move_by = \"-1 mm\"\n", "wait = \"1 s\"\n", "order = 2\n", "order = 4\n", "duration = \"2 s\"\n",
     "sample_time = \"1 ms\"\n", "mass = \"1 kg\"\n", "inertia = \"1 kg m2\"\n", "gain = \"1 N/V\"\n", "limit = \"10 V\"\n",
+    "[bus]\n", "[[bus.fault]]\n", "[[call]]\n", "[plc]\n", "[drive.objects]\n", "[axis.switches]\n", "block = \"MC_Halt\"\n",
+    "cycle = \"1 ms\"\n", "mode = \"csv\"\n", "start = \"power.Status\"\n", "\"607Dh.2\" = 5\n", "modulo = \"360 deg\"\n",
     "static = \"1 N\"\n", "coulomb = \"1 Nm\"\n", "bandwidth = \"10 Hz\"\n", "rate = \"1 kHz\"\n", "enabled = false\n",
     "counts_per_rev = 4294967295\n", "true", "false", "auto", "exact", "rapier", "load", "motor", "linear", "rotary",
     "m", "mm", "km", "um", "s", "min", "ms", "Hz", "kHz", "rad", "deg", "rev", "rpm", "krpm", "N", "Nm", "kg", "A", "Apk",
@@ -112,7 +118,7 @@ fn models(target: Target, (folder, table): (&str, &str), users: &[&str]) {
 const DEMO: &str = SCENARIOS[1];
 const EMPS: &str = SCENARIOS[3];
 const LAMBRECHTS: &str = SCENARIOS[7];
-const TWO_MASS: &str = SCENARIOS[9];
+const TWO_MASS: &str = SCENARIOS[13];
 
 #[test]
 fn axis_models() {

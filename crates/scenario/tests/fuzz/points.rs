@@ -1,7 +1,7 @@
 //! Tables of points.
 use crate::WORDS;
 use servobench_fuzz::{Splice, check, fuzz};
-use servobench_scenario::read_points;
+use servobench_scenario::{Column, PointsError, read_points, read_profile};
 
 const TABLES: [&str; 4] = [
     "time [ms],position [mm],velocity [mm/s]\n0,0,0\n10,5,\n20,15,750\n30,20,0\n",
@@ -26,10 +26,35 @@ fn points() {
             let mut values = points.times.into_iter().chain(points.positions).chain(velocities.flatten());
             assert!(values.all(|value| value.abs() <= 1e30));
         }
-        Err(error) => {
-            assert!(error.line <= text.lines().count().max(1), "{error}");
-            let line = text.lines().nth(error.line - 1).unwrap_or("");
-            assert!((1..=line.chars().count() + 1).contains(&error.column), "{error}");
+        Err(error) => check_place(&error, text),
+    });
+}
+
+const PROFILES: [&str; 3] = [
+    "time [ms],velocity [mm/s]\n0,0\n10,5\n20,0\n",
+    "acceleration [deg/s2],time [s]\r\n0,0\r\n-90,.5\r\n",
+    "time [us],velocity [rpm]\n-1,0\n1e6,5\n",
+];
+
+/// The same of a profile, which has a value for each point.
+#[test]
+fn profiles() {
+    fuzz(check!(), 3_000, Splice::text(&PROFILES, WORDS), |text| {
+        for column in [Column::Velocity, Column::Acceleration] {
+            match read_profile(text, column) {
+                Ok(profile) => {
+                    assert!(profile.times.len() >= 2 && profile.values.len() == profile.times.len(), "{profile:?}");
+                    assert!(profile.times.windows(2).all(|pair| pair[0] < pair[1]), "{profile:?}");
+                    assert!(profile.times.into_iter().chain(profile.values).all(|value| value.abs() <= 1e30));
+                }
+                Err(error) => check_place(&error, text),
+            }
         }
     });
+}
+
+fn check_place(error: &PointsError, text: &str) {
+    assert!(error.line <= text.lines().count().max(1), "{error}");
+    let line = text.lines().nth(error.line - 1).unwrap_or("");
+    assert!((1..=line.chars().count() + 1).contains(&error.column), "{error}");
 }

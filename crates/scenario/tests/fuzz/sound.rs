@@ -34,6 +34,15 @@ pub(crate) fn check(scenario: &Scenario) {
         }
     }
     scenario.program.iter().for_each(step);
+    switches(axis);
+    optional("modulo", axis.modulo);
+    if let Some(bus) = &scenario.bus {
+        self::bus(bus, scenario);
+    }
+    if let Some(plc) = &scenario.plc {
+        assert!(scenario.bus.is_some() && scenario.duration.is_some() && scenario.program.is_empty());
+        self::plc(plc);
+    }
     for disturbance in &scenario.disturbances {
         not_negative("start", disturbance.start);
         limit("duration", disturbance.duration);
@@ -199,6 +208,108 @@ fn way(way: &Way, order: u8) -> usize {
             0
         }
     }
+}
+
+fn switches(axis: &Axis) {
+    let Switches { negative, positive, home, index } = axis.switches;
+    for end in [negative, positive].into_iter().flatten() {
+        finite("switch", end);
+    }
+    assert!(negative.zip(positive).is_none_or(|(negative, positive)| negative < positive));
+    assert!(home.is_none_or(|home| home.from < home.to));
+    assert!(index.is_none_or(|index| (0.0..std::f64::consts::TAU).contains(&index)));
+    assert_eq!(index.is_some(), axis.motor_motion == Motion::Rotary);
+}
+
+fn bus(bus: &Bus, scenario: &Scenario) {
+    assert!(scenario.actuator.drive().is_some());
+    assert!(bus.cycle >= 1 && bus.motion_every >= 1 && (8..=64).contains(&bus.counter.bits), "{bus:?}");
+    assert_eq!(bus.position_gain.is_some(), bus.mode == BusMode::CyclicVelocity);
+    optional("position_gain", bus.position_gain);
+    positive("drive_timeout", bus.drive_timeout);
+    assert!(bus.units.drive >= 1);
+    positive("units.axis", bus.units.axis);
+    assert!(bus.faults.iter().all(|fault| !fault.cycles.is_empty()), "{bus:?}");
+    let mut objects: Vec<_> = bus.objects.iter().map(|object| (object.index, object.subindex)).collect();
+    objects.sort_unstable();
+    objects.dedup();
+    assert_eq!(objects.len(), bus.objects.len());
+}
+
+fn plc(plc: &Plc) {
+    assert!(!plc.calls.is_empty());
+    plc.limits.iter().for_each(|most| limit("limit of the axis", *most));
+    for call in &plc.calls {
+        let conditions = [Some(call.start), call.stop].into_iter().flatten();
+        for condition in conditions.chain(call.updates.iter().map(|update| update.when)) {
+            self::condition(condition, plc);
+        }
+        limit("timeout", call.timeout);
+        let same = |update: &Update| std::mem::discriminant(&update.block) == std::mem::discriminant(&call.block);
+        assert!(!call.name.is_empty() && call.updates.iter().all(same));
+        for block in [&call.block].into_iter().chain(call.updates.iter().map(|update| &update.block)) {
+            self::block(block);
+        }
+    }
+}
+
+fn condition(condition: Condition, plc: &Plc) {
+    match condition {
+        Condition::AtOnce => {}
+        Condition::At(time) => not_negative("at", time),
+        Condition::After { call, delay, .. } => {
+            assert!(call < plc.calls.len());
+            not_negative("delay", delay);
+        }
+        Condition::Above(position) | Condition::Below(position) => finite("position", position),
+    }
+}
+
+fn block(block: &Block) {
+    match block {
+        Block::MoveAbsolute { dynamics, .. }
+        | Block::MoveRelative { dynamics, .. }
+        | Block::MoveAdditive { dynamics, .. }
+        | Block::MoveSuperimposed { dynamics, .. }
+        | Block::MoveContinuousAbsolute { dynamics, .. }
+        | Block::TorqueControl { dynamics, .. } => {
+            positive("velocity", dynamics.velocity);
+            self::dynamics(dynamics);
+        }
+        Block::MoveVelocity { velocity, dynamics, .. } => {
+            assert_eq!(velocity.abs().to_bits(), dynamics.velocity.to_bits());
+            not_negative("velocity", dynamics.velocity);
+            self::dynamics(dynamics);
+        }
+        Block::Stop(braking) | Block::Halt { braking, .. } => positive("deceleration", braking.deceleration),
+        Block::PositionProfile { table, .. } => assert!(table.points.len() >= 2),
+        Block::VelocityProfile { points, .. } | Block::AccelerationProfile { points, .. } => {
+            assert!(points.windows(2).all(|pair| pair[0].0 < pair[1].0));
+        }
+        Block::SetOverride { factors } => factors.iter().for_each(|factor| not_negative("factor", *factor)),
+        Block::Profile4th { limits, settling_time, .. } => {
+            for limit in limits {
+                positive("limit", *limit);
+            }
+            positive("settling_time", *settling_time);
+        }
+        Block::Home { position } | Block::SetPosition { position, .. } => finite("position", *position),
+        Block::Power
+        | Block::Reset
+        | Block::ReadStatus
+        | Block::ReadAxisError
+        | Block::ReadActualPosition
+        | Block::ReadActualVelocity
+        | Block::ReadActualTorque => {}
+    }
+}
+
+fn dynamics(dynamics: &Dynamics) {
+    positive("acceleration", dynamics.acceleration);
+    positive("deceleration", dynamics.deceleration);
+    limit("jerk", dynamics.jerk);
+    limit("snap", dynamics.snap);
+    assert!(dynamics.jerk.is_finite() || dynamics.snap.is_infinite(), "{dynamics:?}");
 }
 
 fn finite(what: &str, value: f64) {
