@@ -75,6 +75,17 @@ impl LinkFault {
         }
     }
 
+    /// What the drive is told.
+    #[must_use]
+    pub const fn response(self) -> &'static str {
+        match self {
+            Self::NegativeLimit | Self::PositiveLimit => "halt (bit 8): the axis stays powered",
+            Self::DriveTimeout | Self::DriveLeftOperation | Self::External | Self::PositionLost | Self::Command => {
+                "Quick stop, and Disable voltage when it is over"
+            }
+        }
+    }
+
     /// Its error code: that of CiA 301 (emergency error codes) where there is one that says the same, a device-specific one
     /// (FFxxh) otherwise.
     #[must_use]

@@ -62,6 +62,22 @@ impl Interpolation {
         }
     }
 
+    /// What it means for the axis.
+    #[must_use]
+    pub const fn meaning(self) -> &'static str {
+        match self {
+            Self::Off => "no set-points are asked for, or the drive does not follow: the actual position is put out",
+            Self::Wait => "too few samples yet: the axis waits where it is",
+            Self::Run1 => "every sample came in time",
+            Self::Run2 => "a sample is late: its interval is made with a predicted one until it comes",
+            Self::Run3 => "two steps are predicted",
+            Self::Overflow => "samples come in shorter cycles than they are read: the oldest are thrown away",
+            Self::Underflow => "samples stay away: the axis is brought to rest and starts again with the next ones",
+            Self::Busy => "the sample was being written: what is there is read on",
+            Self::Slow => "samples were overwritten before they were read: up to two are predicted instead",
+        }
+    }
+
     /// Whether the axis follows the motion task, by samples or by their prediction.
     #[must_use]
     pub const fn is_running(self) -> bool {

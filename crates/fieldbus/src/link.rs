@@ -11,17 +11,8 @@
 //! `t − delay`, with the constant [`Params::delay`] = (points/2)·cycle + margin. Following errors are to be measured against
 //! that.
 //!
-//! | state | |
-//! |---|---|
-//! | Off | no set-points are asked for, or the drive does not follow: the actual position is put out |
-//! | Wait | too few samples yet |
-//! | Run1 | every sample came in time |
-//! | Run2 | a sample is late; its interval is made with a predicted one, until it comes |
-//! | Run3 | two steps are predicted |
-//! | Underflow | it is later than that: the axis is brought to rest; starts again with the next samples |
-//! | Overflow | samples come in shorter cycles than they are read: the oldest are thrown away |
-//! | Busy | the mailbox was being written; what is there is read on |
-//! | Slow | samples were overwritten before they were read; up to two are predicted instead |
+//! A sample that is late is predicted, for two cycles at most; [`Interpolation`] says how that fares and
+//! [`Interpolation::meaning`] what is done.
 //!
 //! Where what is read changes under the output – at the start, by a correction, after a stop – the output goes on from where
 //! it is, and the difference is led to zero within [`Settings::recovery`], beside the motion. It never moves faster than
@@ -29,12 +20,9 @@
 //!
 //! # What goes wrong
 //!
-//! | what happens | what the drive is told | what the motion task hears |
-//! |---|---|---|
-//! | fault of the drive | Disable voltage, until reset | `Fault::Drive` with 603Fh |
-//! | external fault, drive time-out, command or position lost | quick stop | its `LinkFault` |
-//! | motion into a limit switch | halt (bit 8); powered on | `NegativeLimit`, `PositiveLimit` |
-//! | drive leaves Operation enabled | quick stop: it does not come back by itself | `DriveLeftOperation` |
+//! A fault of the drive is answered with Disable voltage until it is reset, a [`LinkFault`] as its
+//! [`response`](LinkFault::response) says: limit switches by halt, the others by quick stop. A drive that left Operation enabled
+//! does not come back by itself.
 //!
 //! Each holds until the rising edge of `reset`, and as long as its cause. After a limit switch the axis may move out of it only.
 //! Without power, and in each of these, what is put out is the actual position, so that nothing jumps when the drive follows

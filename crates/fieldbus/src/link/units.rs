@@ -131,3 +131,61 @@ fn whole(x: f64, highest: f64) -> Option<i64> {
     let counts = nearest as i64;
     (nearest.abs() <= highest).then_some(counts)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use servobench_cia402::units::{AxisUnit, FactorGroup, Ratio};
+
+    fn units(drive_units: f64, axis_units: f64) -> Units {
+        let counter = Counter::signed(32).unwrap();
+        Units { drive_units, axis_units, velocity_factor: 1.0, rated_effort: 2.4, counter }
+    }
+
+    proptest! {
+        /// Oracle: the factor group in integers, rounded once. Two roundings here: a count may differ within 1e-6 of a half.
+        #[test]
+        fn counts_are_those_of_the_factor_group(
+            encoder in 1_u32..1 << 24, gear in 1_u32..1000, feed in 1_u32..100_000, x in -100.0..100.0_f64,
+            inverted: bool,
+        ) {
+            let factors = FactorGroup {
+                position_encoder_resolution: [encoder, 1],
+                gear_ratio: [gear, 7],
+                feed_constant: [feed, 1],
+                polarity: if inverted { 0x80 } else { 0 },
+                ..FactorGroup::default()
+            };
+            let scaling = factors.scaling(AxisUnit::Metre(Ratio::new(1, 1_000_000).unwrap())).unwrap();
+            let axis_units = f64::from(feed) * 7e-6 * if inverted { -1.0 } else { 1.0 };
+            let scale = units(f64::from(encoder) * f64::from(gear), axis_units).scale().unwrap();
+            let counts = scale.counts(x).unwrap();
+            let expected = scaling.increments_at(x).unwrap();
+            let exact = scale.counts * x;
+            let is_half = ((exact - exact.floor()) - 0.5).abs() < 1e-6 + exact.abs() * 4.0 * f64::EPSILON;
+            prop_assert!(i128::from(counts) == expected || is_half, "{counts} for {expected}");
+            let back = scaling.metres_or_radians(counts.into()).unwrap();
+            prop_assert!((scale.position(counts) - back).abs() <= 4.0 * f64::EPSILON * back.abs());
+        }
+
+        #[test]
+        fn readings_are_told_back(bits in 8_u32..=32, signed: bool, counts in -1_000_000_000_000..1_000_000_000_000_i64) {
+            let counter = if signed { Counter::signed(bits) } else { Counter::unsigned(bits) }.unwrap();
+            let scale = Units { counter, ..units(1e6, 1.0) }.scale().unwrap();
+            prop_assert_eq!(scale.reading(scale.target(counts)), counter.wrap(counts.into()));
+        }
+    }
+
+    #[test]
+    fn efforts_and_velocities_are_in_the_drive_s_units() {
+        let scale = Units { velocity_factor: 60.0, ..units(1e6, -1.0) }.scale().unwrap();
+        assert_eq!((scale.drive_velocity(0.001), scale.thousandths(1.2)), (Some(-60_000), Some(-500)));
+        assert!((scale.velocity(-60_000) - 0.001).abs() < 1e-15 && (scale.effort(-500) - 1.2).abs() < 1e-15);
+        assert_eq!((scale.drive_velocity(40.0), scale.thousandths(80.0), scale.counts(1e10)), (None, None, None));
+        assert_eq!(
+            (scale.drive_velocity(f64::NAN), scale.thousandths(f64::NAN), scale.counts(f64::NAN)),
+            (None, None, None)
+        );
+    }
+}

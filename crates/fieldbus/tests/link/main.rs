@@ -4,4 +4,5 @@ mod modes;
 mod power;
 mod random;
 mod rig;
+mod settings;
 mod troubles;
