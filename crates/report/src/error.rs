@@ -28,6 +28,44 @@ pub enum ReportError {
         /// Sample time of the plan (s).
         sample_time: f64,
     },
+    /// A recording without anything that a timing diagram shows.
+    #[error(
+        "there is nothing to draw: no signals are recorded, and none of the channels `setpoint.velocity`, \
+         `load.velocity`, `setpoint.position` and `load.position`"
+    )]
+    NothingToDraw,
+    /// A timing diagram of signals that are not there.
+    #[error("no signals of `{name}` are recorded; there are {known}")]
+    UnknownSource {
+        /// Whose signals were asked for.
+        name: String,
+        /// Whose signals there are, in words.
+        known: String,
+    },
+    /// A timing diagram of no time.
+    #[error(
+        "nothing is recorded from {from:?} s to {to:?} s: choose a stretch of at least 1 ns between {start:?} s and {end:?} s"
+    )]
+    NoSuchTime {
+        /// Beginning that was asked for (s).
+        from: f64,
+        /// End that was asked for (s).
+        to: f64,
+        /// Beginning of the recording (s).
+        start: f64,
+        /// End of the recording (s).
+        end: f64,
+    },
+    /// A drawing too narrow to read or too wide to print.
+    #[error("a drawing of {width} pixels; it is from {least} to {most} pixels wide")]
+    Width {
+        /// Width that was asked for (pixels).
+        width: u32,
+        /// Narrowest (pixels).
+        least: u32,
+        /// Widest (pixels).
+        most: u32,
+    },
     /// The operating system refused.
     #[error(transparent)]
     Io(#[from] std::io::Error),

@@ -1,10 +1,12 @@
-//! What a person or a machine reads of a run: tables, comparison in words, `results.json`, JUnit, the drawing of a plan.
+//! What a person or a machine reads of a run: tables, comparison in words, `results.json`, JUnit, the drawing of a plan,
+//! the timing diagram of a run.
 //!
 //! What is said of runs is made from [`Results`], which hold nothing that differs between two runs of the same scenario:
 //! no wall-clock time, no host. So every text here is the same to the byte, too.
 
 mod bound_limits;
 mod compare;
+mod drawing;
 mod error;
 mod junit;
 mod metric_table;
@@ -15,6 +17,7 @@ mod results;
 mod samples;
 mod style;
 mod text;
+mod timing;
 mod verdict_table;
 
 pub use compare::{Compared, Comparison};
@@ -23,4 +26,5 @@ pub use junit::junit;
 pub use plan::PlannedMove;
 pub use results::{Outcome, Results, RunIdentity, RunResult};
 pub use style::Style;
+pub use timing::{TimingOptions, timing_diagram};
 pub use verdict_table::verdict_table;

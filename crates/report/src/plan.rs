@@ -1,5 +1,4 @@
 //! A move on paper, whatever planned it: for a person, as JSON, as a table of samples, as a drawing.
-mod axis;
 mod csv;
 mod curve;
 mod drawing;
@@ -10,7 +9,6 @@ mod panel;
 mod rows;
 mod sheet;
 mod table;
-mod ticks;
 mod times;
 mod unit;
 mod words;

@@ -1,6 +1,6 @@
 //! Curves as SVG paths, exact in every part.
-use super::axis::Axis;
 use super::derivatives;
+use crate::drawing::Axis;
 use servobench_base::Setpoint;
 use servobench_planner::Span;
 use std::fmt::Write;

@@ -1,10 +1,10 @@
 //! A plan as a drawing: position and its derivatives over time, one panel each, with their limits.
-use super::axis::unit_at;
 use super::curve::Curve;
 use super::envelope::Envelope;
 use super::panel::{Line, Panel};
 use super::sheet::{Sheet, four_digits};
 use super::{NAMES, PlannedMove, derivatives};
+use crate::drawing::unit_at;
 use crate::text::wrapped;
 use servobench_motion::Profile;
 use servobench_motion::online::Sides;
@@ -90,7 +90,7 @@ fn range_of_position(spans: &[Span], start: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::super::panel::HEIGHT;
-    use super::super::sheet::{GAP, LEFT, RIGHT, TOP, WIDTH, escaped};
+    use super::super::sheet::{GAP, LEFT, RIGHT, TOP, WIDTH};
     use super::super::{PlannedMove, moves};
     use servobench_base::Setpoint;
     use servobench_motion::pvt::Knot;
@@ -306,10 +306,5 @@ mod tests {
             let svg = plan.svg();
             assert!(svg.len() < 200_000 && svg.contains("class=\"v\""), "{} bytes", svg.len());
         }
-    }
-
-    #[test]
-    fn words_are_escaped() {
-        assert_eq!(escaped("a < b & \"c\" > d"), "a &lt; b &amp; &quot;c&quot; &gt; d");
     }
 }

@@ -1,6 +1,6 @@
 //! What is seen of a plan of very many polynomials: the lowest and the highest value in each column of pixels.
-use super::axis::Axis;
 use super::derivatives;
+use crate::drawing::Axis;
 use servobench_planner::Span;
 use std::fmt::Write;
 

@@ -1,5 +1,5 @@
 //! Marks where a bound binds.
-use super::axis::Axis;
+use crate::drawing::Axis;
 use servobench_motion::online::Sides;
 use servobench_planner::Binding;
 use std::fmt::Write;

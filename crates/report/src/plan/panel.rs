@@ -1,11 +1,8 @@
 //! One quantity of a plan over time.
-use super::axis::{Axis, unit_at};
 use super::curve::Curve;
 use super::envelope::Envelope;
-use super::sheet::escaped;
-use super::ticks::ticks;
 use super::unit::Unit;
-use servobench_metrics::{round_above, round_below};
+use crate::drawing::{Axis, about_four, escaped, unit_at, with_zero};
 use servobench_motion::online::Sides;
 
 /// Height of a panel.
@@ -42,7 +39,7 @@ impl Panel<'_> {
     pub(super) fn draw_scale(&self, svg: &mut Vec<String>, time: &Axis, value: &Axis) {
         let (_, scale) = self.shown_unit();
         let (left, right) = (time.from, time.to);
-        for (tick, label) in marks(value.low / scale, value.high / scale) {
+        for (tick, label) in about_four(value.low / scale, value.high / scale) {
             let (y, class) = (value.at(tick * scale), if tick == 0.0 { "z" } else { "g" });
             svg.push(format!(
                 "<line class=\"{class}\" x1=\"{left}\" x2=\"{right}\" y1=\"{y:.2}\" y2=\"{y:.2}\"/>\n\
@@ -136,11 +133,7 @@ impl Panel<'_> {
 
     /// Room for the values, for zero unless they are far from it, and for the limit on each side that the values go to.
     pub(super) fn axis(&self, top: f64) -> Axis {
-        let (mut low, mut high) = self.range;
-        let is_near_zero = low.max(-high) <= high - low;
-        if is_near_zero {
-            (low, high) = (low.min(0.0), high.max(0.0));
-        }
+        let (mut low, mut high) = with_zero(self.range);
         let tiny = 1e-9 * self.peak();
         let (below, above) = (low < -tiny, high > tiny);
         if let Some(limit) = self.in_sight(self.limit.below).filter(|_| below) {
@@ -149,21 +142,8 @@ impl Panel<'_> {
         if let Some(limit) = self.in_sight(self.limit.above).filter(|_| above || !below) {
             high = high.max(limit);
         }
-        let span = match high - low {
-            span if span > 0.0 => span,
-            _ if high != 0.0 => high.abs(),
-            _ => 1.0,
-        };
-        let room = |side: f64| if side == 0.0 { 0.02 } else { 0.08 } * span;
-        Axis { low: low - room(low), high: high + room(high), from: top + HEIGHT, to: top }
+        Axis::upright((low, high), top, HEIGHT)
     }
-}
-
-/// About four ticks from `low` to `high`. Where their round step leaves a single one, a finer step leaves three at least.
-fn marks(low: f64, high: f64) -> Vec<(f64, String)> {
-    let span = high - low;
-    let few = ticks(low, high, round_above(span / 4.0));
-    if few.len() > 1 { few } else { ticks(low, high, round_below(span / 3.0)) }
 }
 
 #[cfg(test)]

@@ -1,8 +1,7 @@
 //! Panels below each other, with what stands above, below and beside them.
-use super::axis::{Axis, unit_at};
 use super::marks::Marks;
 use super::panel::{HEIGHT, Panel};
-use super::ticks::ticks;
+use crate::drawing::{Axis, COLOURS, STYLE as SHARED, escaped, ticks, unit_at};
 use servobench_metrics::round_above;
 use servobench_planner::Binding;
 
@@ -15,12 +14,7 @@ pub(super) const TOP: f64 = 96.0;
 const LINE: f64 = 17.0;
 const BOTTOM: f64 = 46.0;
 pub(super) const GAP: f64 = 22.0;
-/// One colour for each panel, distinguishable without colour vision by position anyway.
-const COLOURS: [&str; 5] = ["#1f5fa8", "#0f7f72", "#9a5b00", "#8a2f78", "#4a4fb0"];
-const STYLE: &str = "text{font-family:'DejaVu Sans','Segoe UI',Helvetica,Arial,sans-serif;fill:#1c2330}\
-.t{font-size:17px;font-weight:600}.s{font-size:12.5px;fill:#5b6472}.n{font-size:13px;font-weight:600}\
-.k{font-size:11px;fill:#5b6472}.e{font-size:11px;font-weight:600}.g{stroke:#e4e8ee;stroke-width:1}.b{stroke:#aab3c0;stroke-width:1;stroke-dasharray:1.5 3}\
-.z{stroke:#9aa3b0;stroke-width:1}\
+const STYLE: &str = ".b{stroke:#aab3c0;stroke-width:1;stroke-dasharray:1.5 3}\
 .l{stroke:#c2303a;stroke-width:1.2;stroke-dasharray:6 4}.lt{font-size:11px;fill:#c2303a}.c{fill:none;\
 stroke-width:2;stroke-linejoin:round}.f{stroke:none;opacity:.09}.v{stroke-width:1.2;stroke-linejoin:round}\
 .m{fill:none;stroke:#c2303a;stroke-width:4}.d{fill:none;stroke:#c2303a;stroke-width:7;stroke-linecap:round}";
@@ -57,7 +51,7 @@ impl Sheet<'_> {
                 "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" \
                  height=\"{height}\" role=\"img\">"
             ),
-            format!("<title>{title}</title>\n<style>{STYLE}</style>"),
+            format!("<title>{title}</title>\n<style>{SHARED}{STYLE}</style>"),
             format!("<rect width=\"{WIDTH}\" height=\"{height}\" fill=\"#ffffff\"/>"),
             format!("<text class=\"t\" x=\"{LEFT}\" y=\"34\">{title}</text>"),
         ];
@@ -140,9 +134,4 @@ impl Sheet<'_> {
 pub(super) fn four_digits(value: f64) -> String {
     let rounded = format!("{value:.3e}").parse().unwrap_or(value);
     format!("{rounded}")
-}
-
-/// `text` fit for XML.
-pub(super) fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

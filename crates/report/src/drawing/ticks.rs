@@ -1,7 +1,8 @@
 //! Round numbers along an axis.
+use servobench_metrics::{round_above, round_below};
 
 /// Multiples of `step` from `low` to `high`, each with its label.
-pub(super) fn ticks(low: f64, high: f64, step: f64) -> Vec<(f64, String)> {
+pub(crate) fn ticks(low: f64, high: f64, step: f64) -> Vec<(f64, String)> {
     let exponent: i32 = format!("{step:e}").split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0);
     let decimals = usize::try_from(-exponent).unwrap_or(0);
     let (first, last) = ((low / step - 1e-9).ceil(), (high / step + 1e-9).floor());
@@ -15,6 +16,13 @@ pub(super) fn ticks(low: f64, high: f64, step: f64) -> Vec<(f64, String)> {
         k += 1.0;
     }
     ticks
+}
+
+/// About four ticks from `low` to `high`. Where their round step leaves a single one, a finer step leaves three at least.
+pub(crate) fn about_four(low: f64, high: f64) -> Vec<(f64, String)> {
+    let span = high - low;
+    let few = ticks(low, high, round_above(span / 4.0));
+    if few.len() > 1 { few } else { ticks(low, high, round_below(span / 3.0)) }
 }
 
 #[cfg(test)]

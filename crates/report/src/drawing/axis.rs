@@ -3,19 +3,37 @@ use servobench_metrics::Quantity;
 
 /// A linear scale from values to pixels.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Axis {
-    pub(super) low: f64,
-    pub(super) high: f64,
+pub(crate) struct Axis {
+    pub(crate) low: f64,
+    pub(crate) high: f64,
     /// Pixel of `low`.
-    pub(super) from: f64,
+    pub(crate) from: f64,
     /// Pixel of `high`.
-    pub(super) to: f64,
+    pub(crate) to: f64,
 }
 
 impl Axis {
-    pub(super) fn at(&self, value: f64) -> f64 {
+    /// An upright scale of that `height` from `top` down, with a room of 8 % beyond `low` and `high`, of 2 % where that is zero.
+    pub(crate) fn upright((low, high): (f64, f64), top: f64, height: f64) -> Self {
+        let span = match high - low {
+            span if span > 0.0 => span,
+            _ if high != 0.0 => high.abs(),
+            _ => 1.0,
+        };
+        let room = |side: f64| if side == 0.0 { 0.02 } else { 0.08 } * span;
+        Self { low: low - room(low), high: high + room(high), from: top + height, to: top }
+    }
+
+    /// Pixel of `value`.
+    pub(crate) fn at(&self, value: f64) -> f64 {
         self.from + (value - self.low) / (self.high - self.low) * (self.to - self.from)
     }
+}
+
+/// The range from `low` to `high`, and zero too unless it is far away.
+pub(crate) fn with_zero((low, high): (f64, f64)) -> (f64, f64) {
+    let is_near = low.max(-high) <= high - low;
+    if is_near { (low.min(0.0), high.max(0.0)) } else { (low, high) }
 }
 
 /// Numbers at an axis from here on are written with a power of ten at its unit.
@@ -23,7 +41,7 @@ const LONG: f64 = 1e4;
 
 /// The unit of an axis up to `largest`, with a power of ten where no prefix makes its numbers short, and how much of the plain
 /// unit it is: `×10⁶ m/s⁴` and 1e6. Only a unit of the SI takes a prefix.
-pub(super) fn unit_at(largest: f64, unit: &str, takes_prefix: bool) -> (String, f64) {
+pub(crate) fn unit_at(largest: f64, unit: &str, takes_prefix: bool) -> (String, f64) {
     let (symbol, scale) = if takes_prefix { Quantity::axis_unit(largest, unit) } else { (unit.to_owned(), 1.0) };
     let shown = largest / scale;
     if shown < LONG || !shown.is_finite() {

@@ -1,0 +1,10 @@
+//! What drawings have in common: scales, round numbers along them, text in XML and how wide it is, colours.
+mod axis;
+mod markup;
+mod text_width;
+mod ticks;
+
+pub(crate) use axis::{Axis, unit_at, with_zero};
+pub(crate) use markup::{COLOURS, STYLE, escaped};
+pub(crate) use text_width::{fitted, text_width};
+pub(crate) use ticks::{about_four, ticks};

@@ -1,0 +1,79 @@
+//! A run as a timing diagram, as PLCopen's standard draws what its blocks do: velocity and position over the outputs of
+//! the blocks and the states of axis and drive, on one axis of time. docs/timing.md says how to read it.
+mod curves;
+mod group;
+mod guides;
+mod key;
+mod sheet;
+mod stretch;
+mod trace;
+mod window;
+
+use crate::error::ReportError;
+use group::Group;
+use servobench_trace::Recording;
+use sheet::Sheet;
+use window::Window;
+
+/// Widths that are drawn (pixels).
+const LEAST: u32 = 480;
+const MOST: u32 = 4000;
+
+/// What a timing diagram shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TimingOptions {
+    /// Beginning (s); `None` for that of the recording.
+    pub from: Option<f64>,
+    /// End (s); `None` for that of the recording.
+    pub to: Option<f64>,
+    /// Width (pixels), from 480 to 4000.
+    pub width: u32,
+    /// Whose signals are shown, in the order of the recording; all where there is none.
+    pub sources: Vec<String>,
+    /// Whether signals are shown that are FALSE all the time. They are where there is nothing else.
+    pub with_idle: bool,
+}
+
+impl Default for TimingOptions {
+    /// The whole recording, 860 pixels wide; all sources, without signals that are FALSE all the time.
+    fn default() -> Self {
+        Self { from: None, to: None, width: 860, sources: vec![], with_idle: false }
+    }
+}
+
+/// `recording` as a timing diagram in SVG, complete in itself and the same to the byte each time.
+///
+/// Its size is bounded by its width and the number of signals, however long the recording is: of a curve the lowest and the
+/// highest value in each column of pixels are drawn, and where a signal changes too often to be seen, a grey block.
+///
+/// # Errors
+/// [`ReportError::NothingToDraw`], [`ReportError::UnknownSource`], [`ReportError::NoSuchTime`], [`ReportError::Width`].
+pub fn timing_diagram(recording: &Recording, options: &TimingOptions) -> Result<String, ReportError> {
+    if !(LEAST..=MOST).contains(&options.width) {
+        return Err(ReportError::Width { width: options.width, least: LEAST, most: MOST });
+    }
+    let is_known = |name: &&String| recording.signals.iter().any(|signal| signal.source == **name);
+    if let Some(name) = options.sources.iter().find(|name| !is_known(name)) {
+        return Err(ReportError::UnknownSource { name: name.clone(), known: sources_in_words(recording) });
+    }
+    let window = Window::of(recording, options.from, options.to)?;
+    let curves = curves::panels(recording, window, f64::from(options.width));
+    let all = Group::all(recording, &options.sources, window);
+    if curves.is_empty() && all.is_empty() {
+        return Err(ReportError::NothingToDraw);
+    }
+    let is_all_idle = curves.is_empty() && all.iter().all(Group::is_idle);
+    let (groups, idle) = if options.with_idle || is_all_idle { (all, vec![]) } else { group::without_idle(all) };
+    Ok(Sheet { about: &recording.about, window, width: f64::from(options.width), curves, groups, idle }.to_svg())
+}
+
+/// Whose signals there are.
+fn sources_in_words(recording: &Recording) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    for signal in &recording.signals {
+        if !names.contains(&signal.source.as_str()) {
+            names.push(&signal.source);
+        }
+    }
+    if names.is_empty() { "none at all".to_owned() } else { format!("those of `{}`", names.join("`, `")) }
+}
