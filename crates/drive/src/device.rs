@@ -38,6 +38,7 @@ pub use units::Units;
 pub use window::{Dwell, Window};
 
 use crate::Demand;
+use crate::modes::interpolated::{Buffer, SegmentCommand};
 use crate::modes::stop::Ramp;
 use crate::modes::{Actual, Answer, Moment, Targets};
 use running::Running;
@@ -106,6 +107,9 @@ pub struct State {
     stop: Option<(Deceleration, Ramp)>,
     guard: guard::State,
     cycle: cycle::State,
+    buffer: Buffer,
+    /// Whether the last point of the master could not be read.
+    has_refused_point: bool,
     now: Moment,
     /// What the loops were asked at the last step, in the axis' coordinate.
     last: Demand,
@@ -138,6 +142,8 @@ impl State {
             stop: None,
             guard: guard::State::default(),
             cycle: cycle::State::default(),
+            buffer: Buffer::default(),
+            has_refused_point: false,
             now: Moment {
                 targets: Targets::default(),
                 actual: Actual::default(),
@@ -190,7 +196,8 @@ impl State {
             following_error: if follows_position { p.units.distance(self.following_error) } else { 0 },
             error_code: self.fault.map_or(0, Fault::code),
             digital_inputs: u32::from(negative_limit) | u32::from(positive_limit) << 1 | u32::from(home) << 2,
-            ..Actuals::default()
+            buffer_free: u16::try_from(self.buffer.free()).unwrap_or(u16::MAX),
+            buffer_status: self.buffer.status(),
         }
     }
 }
@@ -211,7 +218,7 @@ pub fn step(p: &Params, x: &mut State, u: &Inputs) -> Outputs {
         standstill,
         remote: true,
         main_voltage: u.main_voltage,
-        warning: x.cycle.missed() > 0,
+        warning: x.cycle.missed() > 0 || x.has_refused_point,
         ..PowerInputs::default()
     };
     let power = cia402::step(&p.power, &mut x.power, x.now.targets.controlword, inputs);
@@ -278,6 +285,13 @@ impl State {
     /// Converts a frame.
     fn take(&mut self, p: &Params, frame: &Commands) {
         self.wanted = Mode::from_code(frame.mode);
+        if let Some(bytes) = frame.trajectory_point {
+            // What the buffer itself refuses is latched in its status (2012h).
+            self.has_refused_point = match SegmentCommand::decode(bytes) {
+                Ok(command) => command.apply(&mut self.buffer).is_err(),
+                Err(_) => true,
+            };
+        }
         let here = p.units.position(self.increments.wrapping_sub(self.origin));
         #[expect(clippy::cast_possible_truncation, reason = "the counter of the bus wraps")]
         let shown = here as i32;
@@ -361,10 +375,8 @@ impl State {
     }
 
     fn switch_mode(&mut self) {
-        if self.wanted != self.mode
-            && let Some(wanted) = self.wanted.filter(|wanted| running::has(*wanted))
-        {
-            (self.mode, self.running) = (Some(wanted), None);
+        if self.wanted.is_some() && self.wanted != self.mode {
+            (self.mode, self.running) = (self.wanted, None);
         }
     }
 
@@ -372,7 +384,7 @@ impl State {
         self.switch_mode();
         let was_stopped = self.stop.take().is_some();
         if self.running.is_none() {
-            self.running = self.mode.and_then(|mode| Running::begin(p, mode, &self.now));
+            self.running = self.mode.map(|mode| Running::begin(p, mode, &self.now));
             self.guard = guard::State::default();
         } else if was_stopped && let Some(running) = &mut self.running {
             running.resume(p, &self.now);
@@ -381,7 +393,7 @@ impl State {
             // No mode yet: the axis is held where it is.
             return self.brake(p, Deceleration::SlowDownRamp, false);
         };
-        let mut answer = running.step(p, &self.now, beat, &mut self.shift);
+        let mut answer = running.step(p, &self.now, beat, &mut self.buffer, &mut self.shift);
         if !running.looks_for_ends() {
             self.guard.step(p, &self.now, &mut answer.demand);
         }

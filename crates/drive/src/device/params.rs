@@ -1,7 +1,8 @@
 //! What the drive is set to: the objects that do not come with every frame, in SI.
 use super::{Units, Window, cycle};
+use crate::modes::interpolated::{SubMode, TimePeriod};
 use crate::modes::profile::position::Ramp;
-use crate::modes::{Moment, cyclic, homing, profile};
+use crate::modes::{Moment, Steepness, cyclic, homing, interpolated, profile};
 use core::cmp::Ordering;
 use servobench_base::{ParamError, limit, positive};
 use servobench_cia402::PowerParams;
@@ -35,6 +36,10 @@ pub struct Params {
     pub standstill: Window,
     /// How the drive looks for its reference; the home offset comes with the frame.
     pub homing: homing::Params,
+    /// How points of the buffer are followed (60C0h).
+    pub sub_mode: SubMode,
+    /// Time of a segment between two points where they have none of their own (60C2h).
+    pub segment: TimePeriod,
 }
 
 /// What no mode may exceed.
@@ -113,6 +118,8 @@ impl Default for Params {
                 jerk: None,
                 home_offset: 0.0,
             },
+            sub_mode: SubMode::LinearAdapted,
+            segment: TimePeriod::new(1, -3).expect("a millisecond is in range"),
         }
     }
 }
@@ -176,6 +183,19 @@ impl Params {
 
     pub(super) const fn homing(&self, now: &Moment) -> homing::Params {
         homing::Params { home_offset: now.targets.home_offset, ..self.homing }
+    }
+
+    pub(super) fn interpolated(&self) -> interpolated::Params {
+        let jerk = match self.profile.ramp {
+            Ramp::Linear => None,
+            Ramp::JerkLimited(jerk) => Some(jerk),
+        };
+        interpolated::Params {
+            sub_mode: self.sub_mode,
+            period: self.segment,
+            count: self.units.from_position(1),
+            stop: Steepness { acceleration: self.profile.quick_stop_deceleration, jerk },
+        }
     }
 
     pub(super) const fn cyclic_position(&self) -> cyclic::position::Params {

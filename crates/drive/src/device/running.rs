@@ -1,6 +1,7 @@
 //! The mode that runs, with its state.
 use super::{Beat, Params};
-use crate::modes::{Answer, Moment, cyclic, homing, profile};
+use crate::modes::interpolated::Buffer;
+use crate::modes::{Answer, Moment, cyclic, homing, interpolated, profile};
 use servobench_cia402::Mode;
 
 /// A mode, by its abbreviation, and its state.
@@ -10,28 +11,24 @@ pub(super) enum Running {
     Pv(profile::velocity::State),
     Tq(profile::effort::State),
     Hm(homing::State),
+    Ip(interpolated::State),
     Csp(cyclic::position::State),
     Csv(cyclic::velocity::State),
     Cst(cyclic::effort::State),
 }
 
-/// Whether the drive has a mode.
-pub(super) const fn has(mode: Mode) -> bool {
-    !matches!(mode, Mode::InterpolatedPosition)
-}
-
 impl Running {
-    /// The mode takes over; `None` for one that the drive does not have.
-    pub(super) fn begin(p: &Params, mode: Mode, now: &Moment) -> Option<Self> {
+    /// The mode takes over.
+    pub(super) fn begin(p: &Params, mode: Mode, now: &Moment) -> Self {
         match mode {
-            Mode::ProfilePosition => Some(Self::Pp(profile::position::State::begin(&p.profile_position(), now))),
-            Mode::ProfileVelocity => Some(Self::Pv(profile::velocity::State::begin(now))),
-            Mode::ProfileTorque => Some(Self::Tq(profile::effort::State::begin(now))),
-            Mode::Homing => Some(Self::Hm(homing::State::begin(now))),
-            Mode::CyclicSynchronousPosition => Some(Self::Csp(cyclic::position::State::begin(now))),
-            Mode::CyclicSynchronousVelocity => Some(Self::Csv(cyclic::velocity::State::begin(now))),
-            Mode::CyclicSynchronousTorque => Some(Self::Cst(cyclic::effort::State::begin(now))),
-            Mode::InterpolatedPosition => None,
+            Mode::ProfilePosition => Self::Pp(profile::position::State::begin(&p.profile_position(), now)),
+            Mode::ProfileVelocity => Self::Pv(profile::velocity::State::begin(now)),
+            Mode::ProfileTorque => Self::Tq(profile::effort::State::begin(now)),
+            Mode::Homing => Self::Hm(homing::State::begin(now)),
+            Mode::CyclicSynchronousPosition => Self::Csp(cyclic::position::State::begin(now)),
+            Mode::CyclicSynchronousVelocity => Self::Csv(cyclic::velocity::State::begin(now)),
+            Mode::CyclicSynchronousTorque => Self::Cst(cyclic::effort::State::begin(now)),
+            Mode::InterpolatedPosition => Self::Ip(interpolated::State::begin(now)),
         }
     }
 
@@ -41,8 +38,8 @@ impl Running {
             Self::Pp(x) => x.resume(&p.profile_position(), now),
             Self::Pv(x) => *x = profile::velocity::State::begin(now),
             Self::Tq(x) => *x = profile::effort::State::begin(now),
-            // It sees for itself that the loops follow something else meanwhile.
-            Self::Hm(_) => {}
+            // They see for themselves that the loops follow something else meanwhile.
+            Self::Hm(_) | Self::Ip(_) => {}
             Self::Csp(x) => *x = cyclic::position::State::begin(now),
             Self::Csv(x) => *x = cyclic::velocity::State::begin(now),
             Self::Cst(x) => *x = cyclic::effort::State::begin(now),
@@ -51,7 +48,14 @@ impl Running {
 
     /// What the mode says; `shift` gets what homing adds to every position from the next step on.
     #[inline]
-    pub(super) fn step(&mut self, p: &Params, now: &Moment, beat: Beat, shift: &mut Option<f64>) -> Answer {
+    pub(super) fn step(
+        &mut self,
+        p: &Params,
+        now: &Moment,
+        beat: Beat,
+        buffer: &mut Buffer,
+        shift: &mut Option<f64>,
+    ) -> Answer {
         match self {
             Self::Pp(x) => profile::position::step(&p.profile_position(), x, now),
             Self::Pv(x) => profile::velocity::step(&p.profile_velocity(), x, now),
@@ -61,6 +65,7 @@ impl Running {
                 *shift = found;
                 answer
             }
+            Self::Ip(x) => interpolated::step(&p.interpolated(), x, buffer, now),
             Self::Csp(x) => cyclic::position::step(&p.cyclic_position(), x, now, beat),
             Self::Csv(x) => cyclic::velocity::step(&p.cyclic_velocity(), x, now, beat),
             Self::Cst(x) => cyclic::effort::step(p.cyclic_effort(), x, now, beat),
@@ -74,7 +79,7 @@ impl Running {
             Self::Pv(x) => x.is_limited(),
             Self::Csp(x) => x.is_limited(),
             Self::Csv(x) => x.is_limited(),
-            Self::Tq(_) | Self::Hm(_) | Self::Cst(_) => false,
+            Self::Tq(_) | Self::Hm(_) | Self::Ip(_) | Self::Cst(_) => false,
         }
     }
 

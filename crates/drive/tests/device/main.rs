@@ -3,6 +3,8 @@ mod axis;
 mod cyclic;
 mod ends;
 mod handshake;
+mod homing;
+mod interpolated;
 mod power;
 mod profile_position;
 mod profile_velocity;

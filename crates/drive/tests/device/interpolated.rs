@@ -1,0 +1,50 @@
+//! Interpolated position through the drive: points of the master, free places and the status of the buffer.
+use crate::axis::Axis;
+use servobench_cia402::{ControlBit, Mode, StatusBit};
+use servobench_drive::device::Params;
+use servobench_drive::modes::interpolated::{Point, SegmentCommand, SubMode};
+
+impl Axis {
+    fn send(&mut self, command: SegmentCommand) {
+        self.frame.trajectory_point = command.encode();
+        assert!(self.frame.trajectory_point.is_some(), "{command:?}");
+        self.cycle();
+        self.frame.trajectory_point = None;
+    }
+}
+
+/// Oracle: 50 µm in 10 ms from rest to rest and back by cubics; in the middle of each the axis is half way, at 1.5 times the mean
+/// velocity.
+#[test]
+fn points_of_the_master_are_followed_and_an_empty_buffer_is_an_underflow() {
+    let params = Params { sub_mode: SubMode::Cubic, ..Params::default() };
+    let mut axis = Axis::enabled(&params, Mode::InterpolatedPosition);
+    assert_eq!(axis.actuals().buffer_free, 32);
+    for (counter, position) in (0..).zip([0, 50, 0, 50]) {
+        let point = Point { position, velocity: Some(0), time: 10_000, is_relative: false };
+        axis.send(SegmentCommand::Point { counter, point });
+    }
+    assert_eq!((axis.actuals().buffer_free, axis.actuals().buffer_status), (28, 28 << 16 | 4));
+    axis.frame.controlword = axis.frame.controlword.with(ControlBit::ModeSpecific4, true);
+    let mut way = Vec::new();
+    for k in 0..140 {
+        axis.step(k % 4 == 0);
+        way.push((axis.position * 1e6, axis.has(StatusBit::ModeSpecific12)));
+    }
+    // The axis has done a step at the end of it.
+    for (k, x) in [(19, 25.0), (39, 50.0), (59, 25.0), (79, 0.0), (99, 25.0), (119, 50.0)] {
+        assert!((way[k].0 - x).abs() < 1e-9, "step {k}: {:?}", way[k]);
+    }
+    assert!(way[100].1 && !way[130].1, "bit 12 as long as the axis moves by points");
+    assert_eq!(axis.actuals().buffer_status >> 24, 0x84, "underflow, empty");
+}
+
+#[test]
+fn a_point_that_cannot_be_read_is_a_warning_until_a_good_one_comes() {
+    let mut axis = Axis::enabled(&Params::default(), Mode::InterpolatedPosition);
+    axis.frame.trajectory_point = Some([0x7F; 8]);
+    axis.cycle();
+    assert!(axis.has(StatusBit::Warning));
+    axis.send(SegmentCommand::NoOperation);
+    assert!(!axis.has(StatusBit::Warning));
+}
