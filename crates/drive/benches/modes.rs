@@ -39,7 +39,8 @@ fn interpolated(bencher: Bencher, ms: u8) {
     let params = params(ms);
     bencher.counter(ItemsCount::new(STEPS)).bench_local(|| {
         let mut now = moment(0x0F, Setpoint::default());
-        let (mut state, mut buffer) = (interpolated::State::begin(&now), Buffer::default());
+        let mut buffer = Buffer::default();
+        let mut state = interpolated::State::begin(&mut buffer, &now);
         let point = Point { position: 0, is_relative: true, velocity: Some(0), time: 1000 * u32::from(ms) };
         for step in 0..STEPS {
             if step % 16 == 0 {
@@ -72,7 +73,8 @@ fn interpolated_at_rest(bencher: Bencher) {
     let params = params(10);
     bencher.counter(ItemsCount::new(STEPS)).bench_local(|| {
         let mut now = moment(0x0F, Setpoint::default());
-        let (mut state, mut buffer) = (interpolated::State::begin(&now), Buffer::default());
+        let mut buffer = Buffer::default();
+        let mut state = interpolated::State::begin(&mut buffer, &now);
         for _ in 0..STEPS {
             let answer = interpolated::step(black_box(&params), &mut state, &mut buffer, &now);
             now = moment(0x0F, follow(&answer));

@@ -13,10 +13,12 @@
 //! | 1 | 0 | 1 | failed, the axis is at rest |
 //!
 //! A search fails when the axis meets a limit switch that its method does not expect in that direction, and stays failed until
-//! bit 4 rises again. An edge of a switch counts while the axis moves in the direction of the leg, so that a home switch which is
-//! narrower than the way in which the axis reverses is not mistaken for its other edge. It is where the axis was at the first step
-//! that saw it, late by one period at the speed for zero; an index pulse is where it came, and one in the step in which the edge
-//! before it was seen does not count.
+//! bit 4 rises again.
+//!
+//! An edge of a switch or a pulse counts while the axis is asked to move in the direction of the leg and is not seen to move back, so
+//! that the far edge of a narrow home switch, which the axis passes before it has reversed, is not mistaken for the near one. An edge
+//! is where the axis was at the first step that saw it, late by one period at the speed for zero; an index pulse is where it came,
+//! and one in the step in which the edge before it was seen does not count.
 //!
 //! The reference gets the home offset as its position, as ETG.6010 and most drives have it; where the profile says that zero is
 //! the offset away from the reference, other drives take the opposite sign.
@@ -149,7 +151,7 @@ pub fn step(params: &Params, state: &mut State, moment: &Moment) -> Output {
     }
     let mut velocity = 0.0;
     if let Phase::Searching(search) = &mut state.phase {
-        match search.look(&moment.actual) {
+        match search.look(params, moment) {
             _ if !asked => state.phase = Phase::Idle,
             Finding::Leg(leg) => velocity = leg.direction.sign() * speed(params, leg),
             Finding::Reference(reference) => state.phase = Phase::Found { reference },

@@ -123,9 +123,11 @@ pub enum StartRefused {
 }
 
 impl State {
-    /// The mode takes over: a bit 4 that is set already starts nothing.
+    /// The mode takes over, or goes on after a halt: a bit 4 that is set already starts nothing, nor does a start move command
+    /// that came before.
     #[must_use]
-    pub fn begin(now: &Moment) -> Self {
+    pub fn begin(buffer: &mut Buffer, now: &Moment) -> Self {
+        buffer.take_start();
         Self { phase: Phase::Resting, asked: asks(now), refused: None, ramp: Ramp::default() }
     }
 

@@ -6,7 +6,9 @@ use servobench_drive::modes::homing::{Output, Params, State, step};
 use servobench_drive::modes::{Actual, Moment, Targets};
 use std::ops::RangeInclusive;
 
-pub(crate) const PERIOD: f64 = 1.0 / 4000.0;
+pub(crate) const PERIOD: f64 = 1.0 / 2000.0;
+/// Of the encoder of an axis that lags behind: at the speed for zero there is one every other period.
+pub(crate) const INCREMENT: f64 = 10e-6;
 /// Where the limit switches go on.
 pub(crate) const ENDS: (f64, f64) = (-1.0, 1.0);
 
@@ -41,6 +43,10 @@ impl Machine {
 
 /// The axis under the drive.
 pub(crate) struct Axis<'a> {
+    /// Time by which it is behind what it is asked (s).
+    pub(crate) lag: f64,
+    /// Where it is, if it lags behind.
+    behind: f64,
     machine: &'a Machine,
     /// The last set-point, in the machine's coordinate.
     pub(crate) demanded: Setpoint,
@@ -73,12 +79,15 @@ impl<'a> Axis<'a> {
     pub(crate) fn new(machine: &'a Machine, params: Params, at: f64) -> Self {
         let demanded = Setpoint::at_rest(at);
         let moment = Moment { targets: targets(idle()), actual: Actual::default(), demanded, period: PERIOD };
-        Self { machine, demanded, shift: 0.0, last: at, params, state: State::begin(&moment) }
+        Self { lag: 0.0, behind: at, machine, demanded, shift: 0.0, last: at, params, state: State::begin(&moment) }
     }
 
     pub(crate) fn step(&mut self, controlword: Controlword) -> Seen {
-        let at = self.demanded.after(PERIOD);
-        let [negative_limit, positive_limit, home] = self.machine.switches(at.x);
+        let asked = self.demanded.after(PERIOD);
+        let at = self.place(asked);
+        // The switches know nothing of increments.
+        let truly = if self.lag == 0.0 { at.x } else { self.behind };
+        let [negative_limit, positive_limit, home] = self.machine.switches(truly);
         let crossed =
             |pulse: &&f64| (self.last < **pulse && **pulse <= at.x) || (at.x <= **pulse && **pulse < self.last);
         let actual = Actual {
@@ -98,6 +107,21 @@ impl<'a> Axis<'a> {
         self.demanded = Setpoint { x: setpoint.x - self.shift, ..setpoint };
         self.shift += output.shift.unwrap_or(0.0);
         Seen { at, demanded: self.demanded, output }
+    }
+}
+
+impl Axis<'_> {
+    /// Where the axis is when it is asked to be somewhere: there, or behind, with an encoder by whose increments its velocity is
+    /// measured.
+    fn place(&mut self, asked: Setpoint) -> Setpoint {
+        if self.lag == 0.0 {
+            return asked;
+        }
+        let increment = |x: f64| (x / INCREMENT).round() * INCREMENT;
+        let before = increment(self.behind);
+        self.behind += (asked.x - self.behind) * PERIOD / self.lag;
+        let x = increment(self.behind);
+        Setpoint { x, v: (x - before) / PERIOD, ..Setpoint::default() }
     }
 }
 

@@ -1,5 +1,5 @@
 //! Every method from every side of its switch.
-use crate::axis::{Axis, ENDS, Machine, PERIOD, Seen, idle, start};
+use crate::axis::{Axis, ENDS, INCREMENT, Machine, PERIOD, Seen, idle, start};
 use crate::published::{self, Fine, LimitSwitch, Main};
 use servobench_drive::modes::homing::{Failure, Method, Params, Switch, UnknownMethod};
 
@@ -135,6 +135,31 @@ fn a_switch_that_is_narrower_than_the_reversal_is_found_by_the_same_edge() {
     for row in published::TABLE {
         for at in [-0.9, -0.1, 0.2005, 0.21, 0.9] {
             check(row, 0.001, at, Some(200.0));
+        }
+    }
+}
+
+/// It still runs on as the demand turns round: what it passes then is passed in the wrong direction. By the width of the switch,
+/// that is its far edge, or is not.
+#[test]
+fn an_axis_that_lags_behind_finds_the_same_edge() {
+    for (number, main, fine, _) in published::TABLE {
+        for width in [0.006, 0.0065, 0.007, 0.0075, 0.008, 0.0085] {
+            let (machine, edge) = machine(main, width);
+            let expected = match fine {
+                Fine::PulseLeft => machine.pulse_left_of(edge),
+                Fine::PulseRight => machine.pulse_right_of(edge),
+                Fine::Falling | Fine::Rising => edge,
+            };
+            let at = 0.2 - 0.04 * f64::from(number % 2) + 0.05 * f64::from(number % 3);
+            let mut axis = Axis::new(&machine, params(number), at);
+            axis.lag = 0.03;
+            axis.step(idle());
+            let homed = (0..LONGEST).find(|_| axis.step(start()).output.shift.is_some());
+            let case = format!("method {number} from {at}, switch {width} wide");
+            assert!(homed.is_some(), "{case}: {:?}", axis.state);
+            // A step at the speed for zero, and an increment of the encoder.
+            assert_near(0.5 - axis.shift, expected, ZERO_SPEED * PERIOD + INCREMENT, &case);
         }
     }
 }

@@ -106,6 +106,25 @@ fn a_cleared_buffer_a_bit_taken_back_and_a_halt_break_off_alike() {
 }
 
 #[test]
+fn without_a_jerk_the_velocity_falls_linearly_at_once() {
+    let mut axis = start();
+    axis.params.stop.jerk = None;
+    for _ in 0..417 {
+        axis.step(run());
+    }
+    let begin = axis.last.after(PERIOD);
+    let stop = axis.until_rest(idle());
+    // v² / 2a, a period before which it is not seen to rest.
+    let (a, v) = (STOP.acceleration, begin.v);
+    assert_near(axis.last.x, begin.x + v * v / (2.0 * a), 1e-12);
+    assert_near(stop.len() as f64 * PERIOD, v / a + PERIOD, PERIOD);
+    for (k, now) in stop.iter().enumerate() {
+        let t = k as f64 * PERIOD;
+        assert_near(now.v, (v - a * t).max(0.0), 1e-12);
+    }
+}
+
+#[test]
 fn a_linear_move_is_stopped_from_its_velocity() {
     let mut axis = Axis::at(0, SubMode::LinearTimed);
     axis.add(&[linear(0, 10), linear(5_000, 10), linear(10_000, 10)]);

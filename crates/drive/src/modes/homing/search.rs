@@ -1,7 +1,8 @@
 //! A search under way: the leg that the axis is on, and what its switches and the index pulse say of it.
-use super::leg::{Event, Leg, Switch};
+use super::Params;
+use super::leg::{Direction, Event, Leg, Switch};
 use super::method::{Method, Start};
-use crate::modes::Actual;
+use crate::modes::{Actual, Moment};
 
 /// Where a search is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,7 +32,8 @@ impl Search {
         Self { method, start: if was_on { Start::On } else { Start::Off }, leg: 0, was_on }
     }
 
-    pub(super) fn look(&mut self, actual: &Actual) -> Finding {
+    pub(super) fn look(&mut self, params: &Params, moment: &Moment) -> Finding {
+        let actual = &moment.actual;
         let is_on = self.method.switch().is_some_and(|switch| switch.is_on(actual));
         let was_on = core::mem::replace(&mut self.was_on, is_on);
         let Some(leg) = self.present() else { return Finding::Reference(actual.position) };
@@ -40,7 +42,7 @@ impl Search {
             Event::Off => (was_on && !is_on).then_some(actual.position),
             Event::Index => actual.index,
         };
-        if let Some(position) = event.filter(|_| actual.velocity * leg.direction.sign() > 0.0) {
+        if let Some(position) = event.filter(|_| moves(params, moment, leg.direction)) {
             self.leg += 1;
             return self.present().map_or(Finding::Reference(position), Finding::Leg);
         }
@@ -59,4 +61,11 @@ impl Search {
     fn present(&self) -> Option<Leg> {
         self.method.leg(self.start, self.leg)
     }
+}
+
+/// Whether the axis moves in a direction: it is asked to, and is not seen to go back as one that lags behind does. What noise makes
+/// of the slowest motion counts as no motion back.
+fn moves(params: &Params, moment: &Moment, direction: Direction) -> bool {
+    let sign = direction.sign();
+    moment.demanded.v * sign > 0.0 && moment.actual.velocity * sign > -0.5 * params.zero_speed
 }
