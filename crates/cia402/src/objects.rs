@@ -1,7 +1,7 @@
 //! The object dictionary: what a master may read and write, one table for the drive, the documents and the exports.
 //!
 //! Names, types and defaults are those of IEC 61800-7-201 (CiA 402-2) and, below 2000h, of CiA 301; ranges are narrower
-//! where a value could not be meant: a scale, an acceleration or a speed of zero, an option code, a mode or a
+//! where a value could not be meant: a scale, an acceleration, a speed, a limit or a window of zero, an option code, a mode or a
 //! homing method that the drive does not know. 2010h to 2012h are those of Copley's drives.
 //!
 //! The master's side takes any index, any value and any bytes, and says with an [`SdoError`](crate::SdoError) what it does not take. The

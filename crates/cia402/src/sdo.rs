@@ -207,21 +207,15 @@ pub enum SdoError {
 pub enum Side {
     /// Less than it.
     Below,
-    /// Not above it.
-    AtMost,
     /// Greater than it.
     Above,
-    /// Not below it.
-    AtLeast,
 }
 
 impl fmt::Display for Side {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Below => "below",
-            Self::AtMost => "at most",
             Self::Above => "above",
-            Self::AtLeast => "at least",
         })
     }
 }

@@ -26,6 +26,7 @@
 mod cycle;
 mod fault;
 mod guard;
+mod objects;
 mod params;
 mod running;
 mod units;
@@ -33,6 +34,7 @@ mod window;
 
 pub use cycle::{Beat, Params as CycleParams, State as CycleState};
 pub use fault::Fault;
+pub use objects::ObjectsError;
 pub use params::{Limits, Params, Profile};
 pub use units::Units;
 pub use window::{Dwell, Window};

@@ -121,25 +121,15 @@ impl Dictionary {
 
     /// Whether the value, stored already, goes with those of the objects that it belongs to.
     fn fits_the_others(&self, object: Object, name: &'static str, value: Value) -> Result<(), SdoError> {
-        let crossed = |side, bound| Err(SdoError::CrossedBounds { object, name, value, side, bound });
-        match (object.index, object.subindex) {
-            (0x607B, _) => {
-                let (min, max) = (self.get(p::MIN_POSITION_RANGE_LIMIT), self.get(p::MAX_POSITION_RANGE_LIMIT));
-                match object.subindex {
-                    _ if min < max => Ok(()),
-                    1 => crossed(Side::Below, max),
-                    _ => crossed(Side::Above, min),
-                }
-            }
-            (0x607D, _) => {
-                let (min, max) = (self.get(p::MIN_POSITION_LIMIT), self.get(p::MAX_POSITION_LIMIT));
-                match object.subindex {
-                    _ if min <= max => Ok(()),
-                    1 => crossed(Side::AtMost, max),
-                    _ => crossed(Side::AtLeast, min),
-                }
-            }
-            (0x608F | 0x6091 | 0x6092 | 0x6096, _) => self
+        let apart = |min: i32, max: i32| match object.subindex {
+            _ if min < max => Ok(()),
+            1 => Err(SdoError::CrossedBounds { object, name, value, side: Side::Below, bound: max }),
+            _ => Err(SdoError::CrossedBounds { object, name, value, side: Side::Above, bound: min }),
+        };
+        match object.index {
+            0x607B => apart(self.get(p::MIN_POSITION_RANGE_LIMIT), self.get(p::MAX_POSITION_RANGE_LIMIT)),
+            0x607D => apart(self.get(p::MIN_POSITION_LIMIT), self.get(p::MAX_POSITION_LIMIT)),
+            0x608F | 0x6091 | 0x6092 | 0x6096 => self
                 .factor_group()
                 .scaling(AxisUnit::Metre(Ratio::ONE))
                 .map(|_| ())

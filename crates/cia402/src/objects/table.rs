@@ -39,21 +39,21 @@ const SUPPORTED_MODES: i64 = {
     bits
 };
 
-/// The homing methods that 6098h takes and 60E3h lists; 0 is none.
+/// The homing methods that 6098h takes and 60E3h lists.
 ///
 /// 1 and 2: limit switch and index pulse; 3 to 6: home switch and index pulse; 7 to 14: home switch, limit switch and
 /// index pulse; 17 to 30: the same without index pulse; 33 and 34: index pulse; 35 and 37: where the axis stands.
 pub const HOMING_METHODS: &[i64] = &[
-    0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 33, 34,
-    35, 37,
+    1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 33, 34, 35,
+    37,
 ];
 
-/// 60E3h: every method but none.
-const SUPPORTED_METHODS: [Entry; HOMING_METHODS.len() - 1] = {
-    let mut entries = [constant(Integer8, 0).named("Supported homing method"); HOMING_METHODS.len() - 1];
+/// 60E3h.
+const SUPPORTED_METHODS: [Entry; HOMING_METHODS.len()] = {
+    let mut entries = [constant(Integer8, 0).named("Supported homing method"); HOMING_METHODS.len()];
     let mut at = 0;
     while at < entries.len() {
-        entries[at].default = HOMING_METHODS[at + 1];
+        entries[at].default = HOMING_METHODS[at];
         at += 1;
     }
     entries
@@ -97,20 +97,20 @@ pub static OBJECTS: [ObjectDescription; 80] = [
     variable(0x6062, "Position demand value", actual(Integer32).unit(POSITION)),
     variable(0x6063, "Position actual internal value", actual(Integer32).unit("increments")),
     variable(0x6064, "Position actual value", actual(Integer32).unit(POSITION)),
-    variable(0x6065, "Following error window", parameter(Unsigned32, 0xFFFF_FFFF).unit(POSITION)),
+    variable(0x6065, "Following error window", parameter(Unsigned32, 0xFFFF_FFFF).at_least_one().unit(POSITION)),
     variable(0x6066, "Following error time out", parameter(Unsigned16, 0).unit(MILLISECOND)),
-    variable(0x6067, "Position window", parameter(Unsigned32, 0xFFFF_FFFF).unit(POSITION)),
+    variable(0x6067, "Position window", parameter(Unsigned32, 0xFFFF_FFFF).at_least_one().unit(POSITION)),
     variable(0x6068, "Position window time", parameter(Unsigned16, 0).unit(MILLISECOND)),
     // Velocity.
     variable(0x606B, "Velocity demand value", actual(Integer32).unit(VELOCITY)),
     variable(0x606C, "Velocity actual value", actual(Integer32).unit(VELOCITY)),
-    variable(0x606D, "Velocity window", parameter(Unsigned16, 0).unit(VELOCITY)),
+    variable(0x606D, "Velocity window", parameter(Unsigned16, 1).at_least_one().unit(VELOCITY)),
     variable(0x606E, "Velocity window time", parameter(Unsigned16, 0).unit(MILLISECOND)),
-    variable(0x606F, "Velocity threshold", parameter(Unsigned16, 0).unit(VELOCITY)),
+    variable(0x606F, "Velocity threshold", parameter(Unsigned16, 1).at_least_one().unit(VELOCITY)),
     variable(0x6070, "Velocity threshold time", parameter(Unsigned16, 0).unit(MILLISECOND)),
     // Torque.
     variable(0x6071, "Target torque", parameter(Integer16, 0).unit(TORQUE).received()),
-    variable(0x6072, "Max torque", parameter(Unsigned16, 3_000).unit(TORQUE).received()),
+    variable(0x6072, "Max torque", parameter(Unsigned16, 3_000).at_least_one().unit(TORQUE).received()),
     variable(0x6073, "Max current", parameter(Unsigned16, 3_000).unit(CURRENT)),
     variable(0x6074, "Torque demand", actual(Integer16).unit(TORQUE)),
     variable(0x6075, "Motor rated current", parameter(Unsigned32, 1_000).at_least_one().unit("mA").disabled_only()),
@@ -176,7 +176,7 @@ pub static OBJECTS: [ObjectDescription; 80] = [
     ),
     array(0x6096, "Velocity factor", &[factor().named("Numerator"), factor().named("Divisor")]),
     // Homing.
-    variable(0x6098, "Homing method", parameter(Integer8, 0).one_of(HOMING_METHODS).disabled_only()),
+    variable(0x6098, "Homing method", parameter(Integer8, 35).one_of(HOMING_METHODS).disabled_only()),
     array(
         0x6099,
         "Homing speeds",
@@ -217,8 +217,16 @@ pub static OBJECTS: [ObjectDescription; 80] = [
     ),
     variable(0x60C5, "Max acceleration", acceleration()),
     variable(0x60C6, "Max deceleration", acceleration()),
-    variable(0x60E0, "Positive torque limit value", parameter(Unsigned16, 3_000).unit(TORQUE).received()),
-    variable(0x60E1, "Negative torque limit value", parameter(Unsigned16, 3_000).unit(TORQUE).received()),
+    variable(
+        0x60E0,
+        "Positive torque limit value",
+        parameter(Unsigned16, 3_000).at_least_one().unit(TORQUE).received(),
+    ),
+    variable(
+        0x60E1,
+        "Negative torque limit value",
+        parameter(Unsigned16, 3_000).at_least_one().unit(TORQUE).received(),
+    ),
     array(0x60E3, "Supported homing methods", &SUPPORTED_METHODS),
     variable(0x60F2, "Positioning option code", parameter(Unsigned16, 0).bits(POSITIONING_OPTION_BITS).received()),
     variable(0x60F4, "Following error actual value", actual(Integer32).unit(POSITION)),

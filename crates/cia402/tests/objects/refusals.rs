@@ -100,6 +100,6 @@ fn a_window_with_its_ends_exchanged() {
     dictionary.write(object(0x607D, 1), Value::Integer32(10), state).unwrap();
     let refused = dictionary.write(object(0x607D, 2), Value::Integer32(-10), state).unwrap_err();
     let message =
-        "`Max position limit` (607Dh:02h) must be at least 10, the other end, got -10: write the other end first";
+        "`Max position limit` (607Dh:02h) must be above 10, the other end, got -10: write the other end first";
     assert_refused(refused, 0x0609_0036, message);
 }

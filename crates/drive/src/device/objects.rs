@@ -1,0 +1,265 @@
+//! The settings of a drive as its object dictionary has them, and back.
+//!
+//! A drive takes them at power-on and whenever the [generation](Dictionary::generation) has changed. Objects without a
+//! setting here: those that come with every frame, and 6073h, 6075h, 607Bh, 6088h and 60F2h.
+use super::{Params, Units, cycle};
+use crate::modes::homing;
+use crate::modes::profile::position::Ramp;
+use servobench_base::ParamError;
+use servobench_cia402::objects::{DataType, Dictionary, Value, parameter as p};
+use servobench_cia402::units::{AxisUnit, Object, UnitError};
+use servobench_cia402::{PowerState, SdoError};
+use thiserror::Error;
+
+/// Objects and settings that do not go together.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum ObjectsError {
+    /// A factor group that is refused.
+    #[error(transparent)]
+    Unit(#[from] UnitError),
+    /// A setting that the drive does not take.
+    #[error(transparent)]
+    Setting(#[from] ParamError),
+    /// A homing method that the drive does not have.
+    #[error(transparent)]
+    Homing(#[from] homing::UnknownMethod),
+    /// A value that its object does not take.
+    #[error(transparent)]
+    Refused(#[from] SdoError),
+    /// A setting that its object cannot hold.
+    #[error("{object} cannot hold {units:e} of its units: choose a coarser unit (6092h, 6096h), or set it lower")]
+    NotHeld {
+        /// The object.
+        object: Object,
+        /// Setting in the unit of the object.
+        units: f64,
+    },
+    /// A time between two frames that the drive's clock does not count.
+    #[error("interpolation time period (60C2h) must be a multiple of the drive's period, {period:e} s, got {time:e} s")]
+    Cycle {
+        /// Time by the object (s).
+        time: f64,
+        /// Time between two steps of the drive (s).
+        period: f64,
+    },
+}
+
+/// What one unit of an object is.
+#[derive(Debug, Clone, Copy)]
+enum Scale {
+    /// User-defined position unit.
+    Position,
+    /// User-defined velocity unit, or that per second, or per second².
+    Rate,
+    /// One revolution of the motor a minute.
+    Revolution,
+    /// Thousandth of the rated effort, or that per second.
+    Effort,
+    /// Millisecond.
+    Time,
+}
+
+/// An object that holds a quantity.
+#[derive(Debug, Clone, Copy)]
+struct Quantity {
+    object: Object,
+    scale: Scale,
+    /// Whether the largest value of the object stands for infinity: no limit, or no supervision (IEC 61800-7-201, 6065h).
+    is_open: bool,
+}
+
+/// A quantity and the setting that it is.
+type Binding = (Quantity, fn(&mut Params) -> &mut f64);
+
+const fn value(index: u16, subindex: u8, scale: Scale) -> Quantity {
+    Quantity { object: Object { index, subindex }, scale, is_open: false }
+}
+
+const fn open(index: u16, scale: Scale) -> Quantity {
+    Quantity { is_open: true, ..value(index, 0, scale) }
+}
+
+const MAX_TORQUE: Quantity = open(0x6072, Scale::Effort);
+const PROFILE_JERK: Quantity = value(0x60A4, 1, Scale::Rate);
+const RATED_TORQUE: Object = Object { index: 0x6076, subindex: 0 };
+/// Motion profile types (6086h).
+const LINEAR: i16 = 0;
+const JERK_LIMITED: i16 = 3;
+
+/// Which setting each quantity is.
+static BINDINGS: [Binding; 23] = [
+    (open(0x6065, Scale::Position), |s| &mut s.following_error.width),
+    (value(0x6066, 0, Scale::Time), |s| &mut s.following_error.time),
+    (open(0x6067, Scale::Position), |s| &mut s.position.width),
+    (value(0x6068, 0, Scale::Time), |s| &mut s.position.time),
+    (value(0x606D, 0, Scale::Rate), |s| &mut s.velocity.width),
+    (value(0x606E, 0, Scale::Time), |s| &mut s.velocity.time),
+    (value(0x606F, 0, Scale::Rate), |s| &mut s.standstill.width),
+    (value(0x6070, 0, Scale::Time), |s| &mut s.standstill.time),
+    (open(0x607F, Scale::Rate), |s| &mut s.limits.profile_velocity),
+    (open(0x6080, Scale::Revolution), |s| &mut s.limits.velocity),
+    (value(0x6081, 0, Scale::Rate), |s| &mut s.profile.velocity),
+    (value(0x6082, 0, Scale::Rate), |s| &mut s.profile.end_velocity),
+    (value(0x6083, 0, Scale::Rate), |s| &mut s.profile.acceleration),
+    (value(0x6084, 0, Scale::Rate), |s| &mut s.profile.deceleration),
+    (value(0x6085, 0, Scale::Rate), |s| &mut s.profile.quick_stop_deceleration),
+    (open(0x6087, Scale::Effort), |s| &mut s.profile.effort_slope),
+    (value(0x6099, 1, Scale::Rate), |s| &mut s.homing.switch_speed),
+    (value(0x6099, 2, Scale::Rate), |s| &mut s.homing.zero_speed),
+    (value(0x609A, 0, Scale::Rate), |s| &mut s.homing.acceleration),
+    (open(0x60C5, Scale::Rate), |s| &mut s.limits.acceleration),
+    (open(0x60C6, Scale::Rate), |s| &mut s.limits.deceleration),
+    (open(0x60E0, Scale::Effort), |s| &mut s.limits.effort[0]),
+    (open(0x60E1, Scale::Effort), |s| &mut s.limits.effort[1]),
+];
+
+impl Params {
+    /// These settings with those of the objects, `unit` being the user-defined position unit.
+    ///
+    /// # Errors
+    /// [`ObjectsError`] says what the drive does not follow.
+    pub fn with_objects(&self, objects: &Dictionary, unit: AxisUnit) -> Result<Self, ObjectsError> {
+        let rated_effort = f64::from(objects.get(p::MOTOR_RATED_TORQUE)) / 1000.0;
+        let units = Units::new(&objects.factor_group(), unit, rated_effort)?;
+        let cycle = cycle::Params { steps: self.steps_per_frame(objects)?, ..self.cycle };
+        let mut settings = Self { cycle, power: objects.power_params(), units, ..*self };
+        for (quantity, setting) in &BINDINGS {
+            *setting(&mut settings) = quantity.read(objects, &units)?;
+        }
+        let max_effort = MAX_TORQUE.read(objects, &units)?;
+        settings.limits.effort = settings.limits.effort.map(|effort| effort.min(max_effort));
+        settings.limits.position = software_limits(objects, &units);
+        settings.profile.ramp = match objects.get(p::MOTION_PROFILE_TYPE) {
+            JERK_LIMITED => Ramp::JerkLimited(PROFILE_JERK.read(objects, &units)?),
+            _ => Ramp::Linear,
+        };
+        settings.homing.method = homing::Method::from_number(objects.get(p::HOMING_METHOD))?;
+        settings.check()?;
+        Ok(settings)
+    }
+
+    /// Writes these settings into the objects of a drive without power, each rounded to the unit of its object. The factor
+    /// group of the objects is already the one that these settings' units were made of.
+    ///
+    /// # Errors
+    /// [`ObjectsError`] names the first object that does not hold its setting; those before it are written.
+    pub fn store_in(&self, objects: &mut Dictionary) -> Result<(), ObjectsError> {
+        let (mut settings, units) = (*self, &self.units);
+        for (quantity, setting) in &BINDINGS {
+            quantity.write(objects, units, *setting(&mut settings))?;
+        }
+        let [forward, backward] = self.limits.effort;
+        MAX_TORQUE.write(objects, units, forward.max(backward))?;
+        // In mN·m or mN: a thousand thousandths, times 1000.
+        put(objects, RATED_TORQUE, held(RATED_TORQUE, DataType::Unsigned32, false, 1e6 * units.from_effort(1))?)?;
+        let ramp = match self.profile.ramp {
+            Ramp::Linear => LINEAR,
+            Ramp::JerkLimited(jerk) => {
+                PROFILE_JERK.write(objects, units, jerk)?;
+                JERK_LIMITED
+            }
+        };
+        let power = &self.power;
+        for (index, code) in [
+            (0x605A, power.quick_stop.code()),
+            (0x605B, power.shutdown.code()),
+            (0x605C, power.disable_operation.code()),
+            (0x605D, power.halt.code()),
+            (0x605E, power.fault_reaction.code()),
+            (0x6086, ramp),
+        ] {
+            put(objects, Object { index, subindex: 0 }, code.into())?;
+        }
+        put(objects, Object { index: 0x6098, subindex: 0 }, self.homing.method.number().into())?;
+        self.store_software_limits(objects)
+    }
+
+    /// How many steps lie between two frames (60C2h).
+    fn steps_per_frame(&self, objects: &Dictionary) -> Result<u32, ObjectsError> {
+        let [value, index] =
+            [i32::from(objects.get(p::INTERPOLATION_TIME_PERIOD)), i32::from(objects.get(p::INTERPOLATION_TIME_INDEX))];
+        let time = f64::from(value) * libm::pow(10.0, index.into());
+        let steps = libm::rint(time / self.period);
+        // Decimal fractions of a second are no binary ones.
+        if steps >= 1.0 && (steps * self.period - time).abs() <= 1e-9 * time {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole, and at least one")]
+            return Ok(steps as u32);
+        }
+        Err(ObjectsError::Cycle { time, period: self.period })
+    }
+
+    fn store_software_limits(&self, objects: &mut Dictionary) -> Result<(), ObjectsError> {
+        let [min, max] = [1, 2].map(|subindex| Object { index: 0x607D, subindex });
+        let unit = self.units.from_position(1);
+        let [lowest, highest] = match self.limits.position {
+            None => [i32::MIN, i32::MAX].map(f64::from),
+            Some([lowest, highest]) if unit > 0.0 => [lowest / unit, highest / unit],
+            Some([lowest, highest]) => [highest / unit, lowest / unit],
+        };
+        let [lowest, highest] =
+            [held(min, DataType::Integer32, false, lowest)?, held(max, DataType::Integer32, false, highest)?];
+        // Out of the way first: the ends do not change places.
+        put(objects, min, i32::MIN.into())?;
+        put(objects, max, highest)?;
+        put(objects, min, lowest)
+    }
+}
+
+impl Quantity {
+    /// The quantity in SI.
+    fn read(self, objects: &Dictionary, units: &Units) -> Result<f64, ObjectsError> {
+        let value = objects.read(self.object)?;
+        if self.is_open && value.number() == value.data_type().highest() {
+            return Ok(f64::INFINITY);
+        }
+        Ok(value.number() as f64 * self.scale.unit(objects, units))
+    }
+
+    fn write(self, objects: &mut Dictionary, units: &Units, quantity: f64) -> Result<(), ObjectsError> {
+        let data_type = objects.read(self.object)?.data_type();
+        let value = held(self.object, data_type, self.is_open, quantity / self.scale.unit(objects, units))?;
+        put(objects, self.object, value)
+    }
+}
+
+impl Scale {
+    /// One unit in SI.
+    fn unit(self, objects: &Dictionary, units: &Units) -> f64 {
+        match self {
+            Self::Position => units.from_position(1).abs(),
+            Self::Rate => units.from_rate(1),
+            Self::Revolution => {
+                let [increments, revolutions] = objects.factor_group().position_encoder_resolution.map(f64::from);
+                units.metres_or_radians(1) * (increments / revolutions) / 60.0
+            }
+            Self::Effort => units.from_effort(1),
+            Self::Time => 1e-3,
+        }
+    }
+}
+
+/// The software position limits (607Dh) in the direction of the axis; none where they are the whole range of positions.
+fn software_limits(objects: &Dictionary, units: &Units) -> Option<[f64; 2]> {
+    let [min, max] = [p::MIN_POSITION_LIMIT, p::MAX_POSITION_LIMIT].map(|limit| objects.get(limit));
+    let [one, other] = [min, max].map(|limit| units.from_position(limit.into()));
+    ([min, max] != [i32::MIN, i32::MAX]).then_some([one.min(other), one.max(other)])
+}
+
+/// The nearest whole number of units, as the object holds it.
+fn held(object: Object, data_type: DataType, is_open: bool, units: f64) -> Result<Value, ObjectsError> {
+    let (lowest, highest) = (data_type.lowest() as f64, data_type.highest() as f64);
+    let last = if is_open { highest - 1.0 } else { highest };
+    let whole = libm::rint(units);
+    let whole = match units {
+        f64::INFINITY if is_open => highest,
+        _ if (lowest..=last).contains(&whole) => whole,
+        _ => return Err(ObjectsError::NotHeld { object, units }),
+    };
+    #[expect(clippy::cast_possible_truncation, reason = "whole, and of at most 32 bits")]
+    let bytes = (whole as i64).to_le_bytes();
+    Value::of_bytes(data_type, &bytes[..data_type.size()]).ok_or(ObjectsError::NotHeld { object, units })
+}
+
+fn put(objects: &mut Dictionary, object: Object, value: Value) -> Result<(), ObjectsError> {
+    Ok(objects.write(object, value, PowerState::SwitchOnDisabled)?)
+}
