@@ -23,12 +23,15 @@ mod move_relative;
 mod move_superimposed;
 mod move_velocity;
 mod outputs;
+mod position_profile;
 mod power;
+mod profile;
 mod read;
 mod reset;
 mod set_override;
 mod set_position;
 mod stop;
+mod time_profile;
 mod torque_control;
 
 pub use execution::Report;
@@ -43,7 +46,9 @@ pub use move_relative::{MoveRelative, MoveRelativeInputs};
 pub use move_superimposed::{MoveSuperimposed, MoveSuperimposedInputs, MoveSuperimposedOutputs};
 pub use move_velocity::{MoveVelocity, MoveVelocityInputs, MoveVelocityOutputs};
 pub use outputs::{DoneOutputs, FunctionBlock, MotionOutputs, Outputs};
+pub use position_profile::{Follow, PositionProfile, PositionProfileInputs, TimePosition, VelocityCommands};
 pub use power::{Power, PowerInputs, PowerOutputs};
+pub use profile::Pair;
 pub use read::{
     ReadActualPosition, ReadActualTorque, ReadActualVelocity, ReadAxisError, ReadAxisErrorOutputs, ReadInputs,
     ReadStatus, ReadStatusOutputs, ReadValueOutputs,
@@ -52,4 +57,7 @@ pub use reset::{Reset, ResetInputs};
 pub use set_override::{SetOverride, SetOverrideInputs, SetOverrideOutputs};
 pub use set_position::{SetPosition, SetPositionInputs};
 pub use stop::{Halt, HaltInputs, Stop, StopInputs};
+pub use time_profile::{
+    AccelerationProfile, AccelerationProfileInputs, ProfileOutputs, VelocityProfile, VelocityProfileInputs,
+};
 pub use torque_control::{TorqueControl, TorqueControlInputs, TorqueControlOutputs};

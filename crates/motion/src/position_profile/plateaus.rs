@@ -51,12 +51,25 @@ impl<'a> Plateaus<'a> {
         Ok(Self { knots, alpha })
     }
 
+    /// The profile of `knots` in which an earlier [`solve`](Self::solve) with this `alpha` has left its velocities, for who
+    /// cannot keep what it gave; nothing is looked at again.
+    #[must_use]
+    pub const fn solved(knots: &'a [Knot], alpha: f64) -> Self {
+        Self { knots, alpha }
+    }
+
     /// The set-point at `t` (s), found in log N steps. Before the first point it is that of the first point, as for
     /// NaN; from the last one on it goes on at V_e.
     #[must_use]
     pub fn at(&self, t: f64) -> Setpoint {
+        self.piece(t).at(t)
+    }
+
+    /// The polynomial that [`at`](Self::at) evaluates at `t` (s).
+    #[must_use]
+    pub fn piece(&self, t: f64) -> Piece {
         let segment = self.knots.partition_point(|knot| knot.t <= t).saturating_sub(1);
-        self.piece_in(segment, t).at(t)
+        self.piece_in(segment, t)
     }
 
     /// Reads the set-points in the order of time.

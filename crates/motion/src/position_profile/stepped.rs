@@ -25,6 +25,13 @@ impl<'a> Spline<'a> {
         Ok(Self { table: Table::new(knots)? })
     }
 
+    /// The spline of `knots` in which an earlier [`solve`](Self::solve) has left its velocities, for who cannot keep what it
+    /// gave; nothing is looked at again.
+    #[must_use]
+    pub const fn solved(knots: &'a [Knot]) -> Self {
+        Self { table: Table::solved(knots) }
+    }
+
     /// The set-points of the spline itself.
     #[must_use]
     pub const fn table(&self) -> Table<'a> {

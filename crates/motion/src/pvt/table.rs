@@ -22,6 +22,10 @@ impl<'a> Table<'a> {
         Ok(Self { knots })
     }
 
+    pub(crate) const fn solved(knots: &'a [Knot]) -> Self {
+        Self { knots }
+    }
+
     /// The set-point at `t` (s), found in log N steps. Before the first point it is that of the first point, as for
     /// NaN; from the last one on it goes on at the velocity of that point, zero if it has none.
     ///

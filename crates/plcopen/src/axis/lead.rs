@@ -24,7 +24,7 @@ impl Axis {
     /// [`Led`](crate::Goal::Led). It is called in every cycle after the first until it is concluded; where it is not, or a
     /// limit of the axis is not kept, the axis stops with an error.
     pub fn lead(&mut self, id: CommandId, setpoint: Setpoint) {
-        let setpoint = Setpoint { x: setpoint.x - self.offset, ..setpoint };
+        let setpoint = Setpoint { x: setpoint.x - self.offset - self.shift, ..setpoint };
         let Activity::Led(led) = &mut self.activity else { return };
         if led.id != id {
             return;

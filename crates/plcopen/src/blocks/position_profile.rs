@@ -1,0 +1,274 @@
+//! `MC_PositionProfile`: along a table of positions.
+//!
+//! The standard leaves open how the axis goes from position to position. Here are the two ways of N. D. Baikov and A. N. Godunov,
+//! *An Approach to Implementing Functional Blocks of the PLCopen Specification*, sections 4 and 5: plateaus of velocity, and the
+//! cubic spline. Both begin with the velocity that the axis has. The axis follows the profile itself, set-point by set-point;
+//! and the [commands](PositionProfile::commands) are what the paper sends to a drive in the profile velocity mode instead.
+use super::outputs::{FunctionBlock, MotionOutputs};
+use super::profile::{Course, Leading, Names, Pair, Scales};
+use crate::axis::Axis;
+use crate::command::BufferMode;
+use crate::error::BlockError;
+use crate::name::BlockName;
+use servobench_base::Setpoint;
+use servobench_motion::position_profile::{Command, PlateauCommands, Plateaus, Spline, SteppedCommands};
+use servobench_motion::pvt::Knot;
+use servobench_motion::{Piece, PlanError};
+
+/// `MC_TP_REF`: positions and the times between them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TimePosition<'a> {
+    /// `MC_TP_Array`, as long as `NumberOfPairs` says.
+    pub pairs: &'a [Pair],
+    /// `IsAbsolute`; otherwise the positions count from where the profile begins.
+    pub is_absolute: bool,
+}
+
+/// How the axis goes from position to position.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Follow {
+    /// At a constant velocity in each segment, but for this share of its time at either end, above 0 up to 1/2.
+    Plateaus(f64),
+    /// Along the cubic spline, whose acceleration is continuous.
+    Spline,
+}
+
+/// Along a table of positions.
+#[derive(Debug, PartialEq)]
+pub struct PositionProfile<'m> {
+    leading: Leading,
+    way: Way<'m>,
+}
+
+/// Inputs of [`PositionProfile`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PositionProfileInputs<'a> {
+    /// Execute.
+    pub execute: bool,
+    /// TimePosition.
+    pub time_position: TimePosition<'a>,
+    /// TimeScale.
+    pub time_scale: f64,
+    /// PositionScale.
+    pub position_scale: f64,
+    /// Offset (m or rad).
+    pub offset: f64,
+    /// How the axis goes from position to position, beyond the standard.
+    pub follow: Follow,
+    /// Velocity at the last position (m/s or rad/s), beyond the standard.
+    pub end_velocity: f64,
+    /// BufferMode.
+    pub buffer_mode: BufferMode,
+}
+
+impl<'a> PositionProfileInputs<'a> {
+    /// Along the absolute positions of `pairs` as they are, by the spline, to rest; not executed.
+    #[must_use]
+    pub fn along(pairs: &'a [Pair]) -> Self {
+        let Scales { time: time_scale, value: position_scale, offset } = Scales::NONE;
+        Self {
+            execute: false,
+            time_position: TimePosition { pairs, is_absolute: true },
+            time_scale,
+            position_scale,
+            offset,
+            follow: Follow::Spline,
+            end_velocity: 0.0,
+            buffer_mode: BufferMode::default(),
+        }
+    }
+
+    const fn scales(&self) -> Scales {
+        Scales { time: self.time_scale, value: self.position_scale, offset: self.offset }
+    }
+}
+
+impl<'m> PositionProfile<'m> {
+    /// With the memory for a table of one pair less than `knots` and `scratch` hold.
+    #[must_use]
+    pub fn new(knots: &'m mut [Knot], scratch: &'m mut [f64]) -> Self {
+        let way = Way {
+            knots,
+            scratch,
+            count: 0,
+            follow: Follow::Spline,
+            is_absolute: true,
+            end_velocity: 0.0,
+            is_solved: false,
+            piece: Piece::at_rest(0.0),
+        };
+        Self { leading: Leading::default(), way }
+    }
+
+    /// The commands of the profile velocity mode for the profile that was begun last, in its time; `rate` of them per second
+    /// (1/s) for the spline. The drive meets the positions of plateaus, and those of the spline but for the error that
+    /// [`Stepped`](servobench_motion::position_profile::Stepped) announces. None before a profile has begun.
+    ///
+    /// # Errors
+    /// [`PlanError`] where [`Spline::stepped`] refuses the rate.
+    pub fn commands(&self, rate: f64) -> Result<VelocityCommands<'_>, PlanError> {
+        let way = &self.way;
+        Ok(VelocityCommands(match (way.is_solved, way.follow) {
+            (false, _) => Source::None,
+            (true, Follow::Plateaus(share)) => Source::Plateaus(Plateaus::solved(way.points(), share).commands()),
+            (true, Follow::Spline) => Source::Spline(Spline::solved(way.points()).stepped(rate)?.commands()),
+        }))
+    }
+}
+
+impl PositionProfileInputs<'_> {
+    fn check(&self, way: &Way<'_>, axis: &Axis) -> Result<(), BlockError> {
+        const NAMES: Names = Names { table: "TimePosition", scale: "PositionScale", may_jump: false };
+        let (block, pairs) = (BlockName::PositionProfile, self.time_position.pairs);
+        self.scales().check(block, &NAMES, pairs)?;
+        let refuse = |input, value, bound| Err(BlockError::Input { block, input, value, bound });
+        if pairs.iter().all(|pair| pair.delta_time == 0.0) {
+            return refuse(NAMES.table, 0.0, "a table that takes some time");
+        }
+        match self.follow {
+            Follow::Plateaus(share) if !(1e-15..=0.5).contains(&share) => {
+                return refuse("Follow", share, "a share above 0 and at most 0.5");
+            }
+            _ => {}
+        }
+        let (value, limit) = (self.end_velocity, axis.params().limits.velocity);
+        if value.is_nan() || value.abs() > limit {
+            return Err(BlockError::AboveLimit { block, input: "EndVelocity", value, limit });
+        }
+        if self.time_position.is_absolute && axis.params().needs_homing && !axis.is_homed() {
+            return Err(BlockError::NotHomed { block, value: pairs[0].value });
+        }
+        for (name, length) in [("knots", way.knots.len()), ("scratch", way.scratch.len())] {
+            let points = pairs.len() + 1;
+            if length < points {
+                return Err(BlockError::Plan { block, error: PlanError::ShortSlice { name, length, points } });
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<'m> FunctionBlock for PositionProfile<'m> {
+    const NAME: BlockName = BlockName::PositionProfile;
+    type Inputs = PositionProfileInputs<'m>;
+    type Outputs = MotionOutputs;
+
+    fn step(&mut self, axis: &mut Axis, inputs: &PositionProfileInputs<'m>) -> MotionOutputs {
+        let call = (Self::NAME, inputs.execute, inputs.buffer_mode);
+        let check = |way: &Way<'m>, axis: &Axis| inputs.check(way, axis);
+        self.leading.step(axis, call, &mut self.way, check, |way| way.load(inputs)).into()
+    }
+
+    fn error(&self) -> Option<&BlockError> {
+        self.leading.execution.error()
+    }
+}
+
+/// A table on its way.
+#[derive(Debug, PartialEq)]
+struct Way<'m> {
+    knots: &'m mut [Knot],
+    scratch: &'m mut [f64],
+    count: usize,
+    follow: Follow,
+    is_absolute: bool,
+    end_velocity: f64,
+    is_solved: bool,
+    piece: Piece,
+}
+
+impl Way<'_> {
+    /// Takes the table over, behind a first point that is where the profile will begin.
+    fn load(&mut self, inputs: &PositionProfileInputs<'_>) {
+        let (scales, pairs) = (inputs.scales(), inputs.time_position.pairs);
+        let (mut t, mut count) = (0.0, 1);
+        self.knots[0] = Knot::default();
+        for pair in pairs {
+            let Pair { delta_time, value } = scales.of(pair);
+            t += delta_time;
+            if t == 0.0 {
+                // The first pair says where the profile begins.
+                self.knots[0] = Knot::moving(0.0, value, 0.0);
+                continue;
+            }
+            self.knots[count] = Knot::new(t, value);
+            count += 1;
+        }
+        (self.count, self.is_solved) = (count, false);
+        (self.follow, self.end_velocity) = (inputs.follow, inputs.end_velocity);
+        self.is_absolute = inputs.time_position.is_absolute;
+    }
+
+    fn points(&self) -> &[Knot] {
+        &self.knots[..self.count]
+    }
+
+    fn solve(&mut self, start: f64) -> Result<(), PlanError> {
+        let (knots, end) = (&mut self.knots[..self.count], self.end_velocity);
+        match self.follow {
+            Follow::Plateaus(share) => Plateaus::solve(knots, start, end, share, self.scratch).map(|_| ()),
+            Follow::Spline => Spline::solve(knots, start, end, self.scratch).map(|_| ()),
+        }
+    }
+}
+
+impl Course for Way<'_> {
+    fn begin(&mut self, from: &Setpoint) {
+        let origin = if self.is_absolute { 0.0 } else { from.x };
+        let says_where = self.knots[0].v.is_some();
+        for knot in &mut self.knots[..self.count] {
+            knot.x += origin;
+        }
+        if !says_where {
+            self.knots[0].x = from.x;
+        }
+        self.is_solved = self.solve(from.v).is_ok();
+        // Whatever cannot be solved is beyond every limit.
+        let beyond = Setpoint { v: f64::NAN, ..*from };
+        self.piece = if self.is_solved { self.look_up(0.0) } else { Piece::held(beyond, f64::INFINITY) };
+    }
+
+    fn at(&mut self, t: f64) -> Setpoint {
+        if self.is_solved && !self.piece.holds(t) {
+            self.piece = self.look_up(t);
+        }
+        let setpoint = self.piece.at(t);
+        if t >= self.duration() { Setpoint { a: 0.0, j: 0.0, ..setpoint } } else { setpoint }
+    }
+
+    fn duration(&self) -> f64 {
+        self.knots[self.count - 1].t
+    }
+}
+
+impl Way<'_> {
+    fn look_up(&self, t: f64) -> Piece {
+        match self.follow {
+            Follow::Plateaus(share) => Plateaus::solved(self.points(), share).piece(t),
+            Follow::Spline => Spline::solved(self.points()).table().piece(t),
+        }
+    }
+}
+
+/// Commands of the profile velocity mode, in the order of time.
+#[derive(Debug, Clone)]
+pub struct VelocityCommands<'a>(Source<'a>);
+
+#[derive(Debug, Clone)]
+enum Source<'a> {
+    None,
+    Plateaus(PlateauCommands<'a>),
+    Spline(SteppedCommands<'a>),
+}
+
+impl Iterator for VelocityCommands<'_> {
+    type Item = Command;
+
+    fn next(&mut self) -> Option<Command> {
+        match &mut self.0 {
+            Source::None => None,
+            Source::Plateaus(commands) => commands.next(),
+            Source::Spline(commands) => commands.next(),
+        }
+    }
+}

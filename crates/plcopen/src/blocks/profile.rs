@@ -1,0 +1,175 @@
+//! What the blocks that follow a table have in common: its pairs, and how the axis is led along it.
+//!
+//! # The table
+//!
+//! PLCopen part 1, version 2.0, sections 3.14 to 3.16, leaves the type of the table to the supplier and gives an example, which
+//! is the one here: pairs of the time since the pair before and a value, for any number of them. Between the pairs position,
+//! velocity or acceleration goes in the way that the block says; where the axis is when the block takes it is before the first.
+//! A first pair without time says where the axis must be then: what it would have to jump is beyond its limits.
+//!
+//! Each value is scaled and moved by the offset, each time scaled by `TimeScale`.
+//!
+//! # On the way
+//!
+//! The set-points are those of the profile at the cycles. A block that follows a profile is called in every cycle until it is
+//! done; a limit of the axis that the profile does not keep stops the axis with an error, in the cycle in which that is seen.
+//! `MC_SetOverride` does not act on it (which the standard leaves to the supplier).
+use super::execution::{Execution, Report};
+use crate::axis::Axis;
+use crate::command::{BufferMode, Command, Dynamics, Goal};
+use crate::error::BlockError;
+use crate::ledger::{CommandId, Progress};
+use crate::name::BlockName;
+use servobench_base::Setpoint;
+
+/// A row of a table: `DeltaTime` and `Position`, `Velocity` or `Acceleration`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Pair {
+    /// Time since the pair before, or since the start (s): positive, but for the first pair, and those of accelerations that jump.
+    pub delta_time: f64,
+    /// Position, velocity or acceleration (SI).
+    pub value: f64,
+}
+
+/// What the inputs of the block make of a table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Scales {
+    pub(super) time: f64,
+    pub(super) value: f64,
+    pub(super) offset: f64,
+}
+
+impl Scales {
+    pub(super) const NONE: Self = Self { time: 1.0, value: 1.0, offset: 0.0 };
+
+    /// `pair` after scaling.
+    pub(super) fn of(&self, pair: &Pair) -> Pair {
+        Pair { delta_time: self.time * pair.delta_time, value: self.value * pair.value + self.offset }
+    }
+
+    /// Checks the inputs by the names that they have at `block`, and the table that they are for.
+    pub(super) fn check(&self, block: BlockName, names: &Names, pairs: &[Pair]) -> Result<(), BlockError> {
+        let Self { time, value, offset } = *self;
+        let refuse = |input, value, bound| Err(BlockError::Input { block, input, value, bound });
+        if !(1.0 / LARGEST..=LARGEST).contains(&time) {
+            return refuse("TimeScale", time, "positive, from 1e-15 to 1e15");
+        }
+        if !(1.0 / LARGEST..=LARGEST).contains(&value.abs()) {
+            return refuse(names.scale, value, "other than zero, from 1e-15 to 1e15 in magnitude");
+        }
+        if !within(offset) {
+            return refuse("Offset", offset, "a number within ±1e15");
+        }
+        if pairs.is_empty() {
+            return refuse(names.table, 0.0, "a table of one pair at least");
+        }
+        for (i, pair) in pairs.iter().enumerate() {
+            let Pair { delta_time, value } = self.of(pair);
+            if !within(delta_time) || delta_time < 0.0 {
+                return refuse(names.table, pair.delta_time, "a table of times since the pair before, none negative");
+            }
+            if delta_time < 1.0 / LARGEST && i > 0 && !names.may_jump {
+                return refuse(names.table, pair.delta_time, "a table of positive times since the pair before");
+            }
+            if !within(value) {
+                return refuse(names.table, pair.value, "a table of values within ±1e15, scaled and moved");
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What is larger, or smaller than its inverse, was written in the wrong unit.
+const LARGEST: f64 = 1e15;
+
+fn within(value: f64) -> bool {
+    value.abs() <= LARGEST
+}
+
+/// What the inputs of a block are called.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Names {
+    pub(super) table: &'static str,
+    pub(super) scale: &'static str,
+    /// Whether a value may jump.
+    pub(super) may_jump: bool,
+}
+
+/// What a block leads the axis along.
+pub(super) trait Course {
+    /// Begins where the axis is.
+    fn begin(&mut self, from: &Setpoint);
+
+    /// The set-point `t` seconds after the beginning; asked in the order of time.
+    fn at(&mut self, t: f64) -> Setpoint;
+
+    /// Duration (s).
+    fn duration(&self) -> f64;
+}
+
+/// A profile that ends nearer to a cycle than this part of its time ends in that cycle.
+const ROUNDING: f64 = 1e-9;
+
+/// Execute and the command that leads the axis.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Leading {
+    pub(super) execution: Execution,
+    id: Option<CommandId>,
+}
+
+impl Leading {
+    /// One call: `check` looks at the inputs, before anything is changed, and `load` takes them over.
+    pub(super) fn step<C: Course>(
+        &mut self,
+        axis: &mut Axis,
+        (block, execute, buffer_mode): (BlockName, bool, BufferMode),
+        course: &mut C,
+        check: impl FnOnce(&C, &Axis) -> Result<(), BlockError>,
+        load: impl FnOnce(&mut C),
+    ) -> Report {
+        self.go_on(axis, course);
+        let Self { execution, id } = self;
+        let report = execution.step(axis, execute, |axis| {
+            check(course, axis)?;
+            if id.is_some() && buffer_mode != BufferMode::Aborting {
+                // One instance holds one course.
+                return Err(BlockError::BufferFull { block, held: 1 });
+            }
+            let command = Command { block, goal: Goal::Led, dynamics: dynamics(axis), buffer_mode };
+            let issued = axis.submit(command)?;
+            load(course);
+            *id = Some(issued);
+            Ok(*id)
+        });
+        if let Some(0) = self.id.and_then(|id| axis.led_cycles(id)) {
+            course.begin(&axis.commanded());
+        }
+        report
+    }
+
+    /// Gives the set-point of this cycle, where the command has the axis.
+    fn go_on(&mut self, axis: &mut Axis, course: &mut impl Course) {
+        let Some(id) = self.id else { return };
+        if matches!(axis.progress(id), Progress::Done | Progress::Aborted | Progress::Failed) {
+            self.id = None;
+            return;
+        }
+        let (cycle_time, Some(cycles)) = (axis.params().cycle_time, axis.led_cycles(id)) else { return };
+        if cycles > 0 {
+            let (t, end) = (cycles as f64 * cycle_time, course.duration());
+            let is_over = t >= end - ROUNDING * cycle_time;
+            axis.lead(id, course.at(if is_over { t.max(end) } else { t }));
+            if is_over {
+                axis.conclude(id);
+                self.id = None;
+            }
+        }
+    }
+}
+
+/// What the axis does with the velocity at the end, when nothing follows: it keeps it, within its limits.
+fn dynamics(axis: &Axis) -> Dynamics {
+    let limits = &axis.params().limits;
+    let (velocity, acceleration) = (limits.velocity, limits.acceleration);
+    Dynamics { velocity, acceleration, deceleration: acceleration, jerk: None, snap: None }
+}

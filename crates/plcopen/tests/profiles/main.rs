@@ -1,0 +1,8 @@
+//! Blocks that follow a table, on an axis whose drive follows at once.
+#![expect(clippy::float_cmp, reason = "scales of one and offsets of zero change nothing")]
+
+#[path = "../shared/bench.rs"]
+mod bench;
+mod edges;
+mod positions;
+mod rates;
