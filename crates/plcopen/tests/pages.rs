@@ -1,9 +1,10 @@
 //! `docs/plcopen.md` holds the tables of the arrows, the ErrorIDs and the outputs.
 //! `SERVOBENCH_WRITE_DOCS=1 cargo test -p servobench-plcopen` writes them.
 use servobench_plcopen::{
-    ARROWS, ErrorId, FunctionBlock, Halt, Home, MoveAbsolute, MoveAdditive, MoveContinuousAbsolute, MoveRelative,
-    MoveSuperimposed, MoveVelocity, Outputs, Power, ReadActualPosition, ReadActualTorque, ReadActualVelocity,
-    ReadAxisError, ReadStatus, Reset, SetOverride, SetPosition, Stop, TorqueControl,
+    ARROWS, AccelerationProfile, ErrorId, FunctionBlock, Halt, Home, MoveAbsolute, MoveAdditive,
+    MoveContinuousAbsolute, MoveRelative, MoveSuperimposed, MoveVelocity, Outputs, PositionProfile, Power,
+    ReadActualPosition, ReadActualTorque, ReadActualVelocity, ReadAxisError, ReadStatus, Reset, SetOverride,
+    SetPosition, Stop, TorqueControl, VelocityProfile,
 };
 use std::fmt::Write as _;
 use std::path::Path;
@@ -65,6 +66,9 @@ fn outputs() -> String {
     row(of::<MoveVelocity>());
     row(of::<MoveContinuousAbsolute>());
     row(of::<TorqueControl>());
+    row(of::<PositionProfile<'_>>());
+    row(of::<VelocityProfile<'_>>());
+    row(of::<AccelerationProfile<'_>>());
     row(of::<SetPosition>());
     row(of::<SetOverride>());
     row(of::<ReadStatus>());
