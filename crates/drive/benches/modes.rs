@@ -40,7 +40,7 @@ fn interpolated(bencher: Bencher, ms: u8) {
     bencher.counter(ItemsCount::new(STEPS)).bench_local(|| {
         let mut now = moment(0x0F, Setpoint::default());
         let mut buffer = Buffer::default();
-        let mut state = interpolated::State::begin(&mut buffer, &now);
+        let mut state = interpolated::State::begin(&now);
         let point = Point { position: 0, is_relative: true, velocity: Some(0), time: 1000 * u32::from(ms) };
         for step in 0..STEPS {
             if step % 16 == 0 {
@@ -74,7 +74,7 @@ fn interpolated_at_rest(bencher: Bencher) {
     bencher.counter(ItemsCount::new(STEPS)).bench_local(|| {
         let mut now = moment(0x0F, Setpoint::default());
         let mut buffer = Buffer::default();
-        let mut state = interpolated::State::begin(&mut buffer, &now);
+        let mut state = interpolated::State::begin(&now);
         for _ in 0..STEPS {
             let answer = interpolated::step(black_box(&params), &mut state, &mut buffer, &now);
             now = moment(0x0F, follow(&answer));

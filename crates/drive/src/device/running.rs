@@ -38,8 +38,9 @@ impl Running {
             Self::Pp(x) => x.resume(&p.profile_position(), now),
             Self::Pv(x) => *x = profile::velocity::State::begin(now),
             Self::Tq(x) => *x = profile::effort::State::begin(now),
-            // They see for themselves that the loops follow something else meanwhile.
-            Self::Hm(_) | Self::Ip(_) => {}
+            // It sees for itself that the loops follow something else meanwhile.
+            Self::Hm(_) => {}
+            Self::Ip(x) => *x = interpolated::State::begin(now),
             Self::Csp(x) => *x = cyclic::position::State::begin(now),
             Self::Csv(x) => *x = cyclic::velocity::State::begin(now),
             Self::Cst(x) => *x = cyclic::effort::State::begin(now),

@@ -87,6 +87,8 @@ pub struct State {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Phase {
+    /// Before the first step.
+    TakingOver,
     /// At rest, or on the way there.
     Resting,
     /// For the points of sub-mode 0.
@@ -126,9 +128,8 @@ impl State {
     /// The mode takes over, or goes on after a halt: a bit 4 that is set already starts nothing, nor does a start move command
     /// that came before.
     #[must_use]
-    pub fn begin(buffer: &mut Buffer, now: &Moment) -> Self {
-        buffer.take_start();
-        Self { phase: Phase::Resting, asked: asks(now), refused: None, ramp: Ramp::default() }
+    pub fn begin(now: &Moment) -> Self {
+        Self { phase: Phase::TakingOver, asked: asks(now), refused: None, ramp: Ramp::default() }
     }
 
     /// Why the last start was refused, if it was.
@@ -202,8 +203,10 @@ pub fn step(p: &Params, x: &mut State, buffer: &mut Buffer, now: &Moment) -> Ans
     let asked = asks(now);
     let rises = asked && !x.asked;
     x.asked = asked;
-    let starts = buffer.take_start() || rises;
-    if buffer.take_abort() || now.targets.controlword.has(ControlBit::Halt) || !asked && x.needs_bit() {
+    let takes_over = matches!(x.phase, Phase::TakingOver);
+    let starts = buffer.take_start() && !takes_over || rises;
+    let breaks_off = buffer.take_abort() || takes_over || now.targets.controlword.has(ControlBit::Halt);
+    if breaks_off || !asked && x.needs_bit() {
         x.phase = Phase::Resting;
     }
     if let Phase::Following { course, pace, .. } = &mut x.phase {

@@ -26,8 +26,8 @@ pub(crate) struct Axis {
 impl Axis {
     pub(crate) fn at(counts: i32, sub_mode: SubMode) -> Self {
         let last = Setpoint::at_rest(f64::from(counts) * COUNT);
-        let mut buffer = Buffer::default();
-        let state = State::begin(&mut buffer, &moment(idle(), last));
+        let buffer = Buffer::default();
+        let state = State::begin(&moment(idle(), last));
         let answer = Answer { demand: Demand::position(last), target_reached: true, bit_12: false, bit_13: false };
         Self { params: params(sub_mode), state, buffer, last, answer }
     }

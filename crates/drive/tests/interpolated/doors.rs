@@ -81,6 +81,10 @@ fn a_move_through_the_serial_interface() {
     let mut port = Port::default();
     assert_eq!(port.command(&mut axis.buffer, 17), Err(SerialError::NoMode));
     port.write(&mut axis.buffer, 0xC8, 3, &[]).unwrap();
+    // Before the mode has taken over, nothing starts.
+    port.command(&mut axis.buffer, 17).unwrap();
+    axis.step(idle());
+    assert_eq!((axis.errors(), axis.answer.bit_12), (0, false));
     // The S-curve of the application note: 100 ms each, J = 1000/(2·0.1³) counts/s³, in four segments to 1000 counts.
     let (positions, velocities) = ([0, 83, 500, 917, 1000], [0, 25_000, 50_000, 25_000, 0]);
     for k in 0..5 {
