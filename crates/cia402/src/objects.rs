@@ -38,6 +38,6 @@ pub use dictionary::Dictionary;
 pub use eds::{Eds, FileInfo};
 pub use entry::{Access, Admitted, Contents, Entry, Mapping, ObjectDescription};
 pub use json::Json;
-pub use place::{Parameter, Signal, parameter, signal};
+pub use place::{Parameter, Signal, entry_of, parameter, signal};
 pub use table::{HOMING_METHODS, OBJECTS};
 pub use value::{DataType, Value};

@@ -126,9 +126,9 @@ pub enum SdoError {
         /// Its name.
         name: &'static str,
         /// Rejected value.
-        value: Value,
+        value: i128,
         /// Largest value that it takes.
-        highest: i64,
+        highest: i128,
     },
     /// A value below the range.
     #[error("`{name}` ({object}) must be at least {lowest}, got {value}")]
@@ -138,9 +138,9 @@ pub enum SdoError {
         /// Its name.
         name: &'static str,
         /// Rejected value.
-        value: Value,
+        value: i128,
         /// Smallest value that it takes.
-        lowest: i64,
+        lowest: i128,
     },
     /// A value that is none of those with a meaning.
     #[error("`{name}` ({object}) must be one of {accepted:?}, got {value}")]

@@ -98,6 +98,17 @@ impl Dictionary {
         self.store(object, entry, place, value, state)
     }
 
+    /// [`write`](Self::write) of a number, as the type of the object has it.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write); [`SdoError::TooHigh`] and [`SdoError::TooLow`] for what the type does not hold, too.
+    pub fn write_number(&mut self, object: Object, number: i64, state: PowerState) -> Result<(), SdoError> {
+        let (entry, place) = writable(object)?;
+        let bounds = [entry.data_type.lowest(), entry.data_type.highest()];
+        within(object, entry.name, number.into(), bounds)?;
+        self.store(object, entry, place, entry.data_type.value(number.cast_unsigned()), state)
+    }
+
     fn store(
         &mut self,
         object: Object,
@@ -243,16 +254,23 @@ fn writable(object: Object) -> Result<(&'static Entry, usize), SdoError> {
 fn admit(object: Object, entry: &'static Entry, value: Value) -> Result<(), SdoError> {
     let (name, number) = (entry.name, value.number());
     match entry.admitted {
-        Admitted::Range(_, highest) if number > highest.into() => {
-            Err(SdoError::TooHigh { object, name, value, highest })
-        }
-        Admitted::Range(lowest, _) if number < lowest.into() => Err(SdoError::TooLow { object, name, value, lowest }),
+        Admitted::Range(lowest, highest) => within(object, name, number, [lowest.into(), highest.into()]),
         Admitted::OneOf(accepted) if !accepted.iter().any(|one| i128::from(*one) == number) => {
             Err(SdoError::NotListed { object, name, value, accepted })
         }
         Admitted::Bits(bits) if number & !i128::from(bits) != 0 => {
             Err(SdoError::ReservedBits { object, name, value, bits })
         }
-        _ => Ok(()),
+        Admitted::Any | Admitted::OneOf(_) | Admitted::Bits(_) => Ok(()),
+    }
+}
+
+fn within(object: Object, name: &'static str, value: i128, [lowest, highest]: [i128; 2]) -> Result<(), SdoError> {
+    if value > highest {
+        Err(SdoError::TooHigh { object, name, value, highest })
+    } else if value < lowest {
+        Err(SdoError::TooLow { object, name, value, lowest })
+    } else {
+        Ok(())
     }
 }

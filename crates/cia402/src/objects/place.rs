@@ -45,6 +45,15 @@ pub(super) fn find(object: Object) -> Result<Found, SdoError> {
     }
 }
 
+/// What the table says of an object; `None` if there is no such one, or it is the sub-index 00h of several.
+#[must_use]
+pub fn entry_of(object: Object) -> Option<&'static Entry> {
+    match find(object) {
+        Ok(Found::Entry(entry, _)) => Some(entry),
+        _ => None,
+    }
+}
+
 /// The entry with its place, at compile time.
 ///
 /// # Panics

@@ -1,6 +1,8 @@
 //! What is written is read, by whatever way.
 use crate::object;
-use servobench_cia402::objects::{Access, DataType, Dictionary, OBJECTS, ObjectDescription, Value, parameter, signal};
+use servobench_cia402::objects::{
+    Access, DataType, Dictionary, OBJECTS, ObjectDescription, Value, entry_of, parameter, signal,
+};
 use servobench_cia402::units::{FactorGroup, Object};
 use servobench_cia402::{
     Actuals, Commands, Controlword, HaltOption, Mode, PowerParams, PowerState, QuickStopOption, StatusBit, Statusword,
@@ -73,6 +75,22 @@ fn bytes_and_values_are_one() {
     assert_eq!(bytes[..length], [2]);
     dictionary.download(object(0x2010, 0), &[1, 2, 3, 4, 5, 6, 7, 0x80], DISABLED).unwrap();
     assert_eq!(dictionary.signal(signal::IP_MOVE_SEGMENT_COMMAND).to_le_bytes(), [1, 2, 3, 4, 5, 6, 7, 0x80]);
+}
+
+#[test]
+fn numbers_are_written_as_their_object_has_them() {
+    let mut dictionary = Dictionary::new();
+    let mut write =
+        |index, number| dictionary.write_number(object(index, 0), number, DISABLED).map_err(|r| r.to_string());
+    assert_eq!(write(0x607A, -7), Ok(()));
+    assert_eq!(write(0x6065, 4_294_967_295), Ok(()));
+    let message = "`Following error window` (6065h:00h) must be at most 4294967295, got 4294967296";
+    assert_eq!(write(0x6065, 4_294_967_296).unwrap_err(), message);
+    assert_eq!(write(0x6040, -1).unwrap_err(), "`Controlword` (6040h:00h) must be at least 0, got -1");
+    assert_eq!(write(0x605A, 9).unwrap_err(), "`Quick stop option code` (605Ah:00h) must be at most 8, got 9");
+    assert_eq!(dictionary.signal(signal::TARGET_POSITION), -7);
+    assert_eq!(entry_of(object(0x6091, 2)).unwrap().name, "Driving shaft revolutions");
+    assert!(entry_of(object(0x6091, 0)).is_none() && entry_of(object(0x6091, 3)).is_none());
 }
 
 #[test]
