@@ -4,6 +4,7 @@
 //! setting here: those that come with every frame, and 6073h, 6075h, 607Bh, 6088h and 60F2h.
 use super::{Params, Units, cycle};
 use crate::modes::homing;
+use crate::modes::interpolated::{RecordError, SubMode, TimePeriod};
 use crate::modes::profile::position::Ramp;
 use servobench_base::ParamError;
 use servobench_cia402::objects::{DataType, Dictionary, Value, parameter as p};
@@ -23,6 +24,9 @@ pub enum ObjectsError {
     /// A homing method that the drive does not have.
     #[error(transparent)]
     Homing(#[from] homing::UnknownMethod),
+    /// A sub-mode or a time that the interpolated position does not have.
+    #[error(transparent)]
+    Interpolation(#[from] RecordError),
     /// A value that its object does not take.
     #[error(transparent)]
     Refused(#[from] SdoError),
@@ -134,6 +138,8 @@ impl Params {
             _ => Ramp::Linear,
         };
         settings.homing.method = homing::Method::from_number(objects.get(p::HOMING_METHOD))?;
+        settings.sub_mode = SubMode::from_code(objects.get(p::INTERPOLATION_SUB_MODE))?;
+        settings.segment = segment(objects)?;
         settings.check()?;
         Ok(settings)
     }
@@ -167,6 +173,7 @@ impl Params {
             (0x605D, power.halt.code()),
             (0x605E, power.fault_reaction.code()),
             (0x6086, ramp),
+            (0x60C0, self.sub_mode.code()),
         ] {
             put(objects, Object { index, subindex: 0 }, code.into())?;
         }
@@ -176,9 +183,7 @@ impl Params {
 
     /// How many steps lie between two frames (60C2h).
     fn steps_per_frame(&self, objects: &Dictionary) -> Result<u32, ObjectsError> {
-        let [value, index] =
-            [i32::from(objects.get(p::INTERPOLATION_TIME_PERIOD)), i32::from(objects.get(p::INTERPOLATION_TIME_INDEX))];
-        let time = f64::from(value) * libm::pow(10.0, index.into());
+        let time = f64::from(segment(objects)?.microseconds()) / 1e6;
         let steps = libm::rint(time / self.period);
         // Decimal fractions of a second are no binary ones.
         if steps >= 1.0 && (steps * self.period - time).abs() <= 1e-9 * time {
@@ -236,6 +241,12 @@ impl Scale {
             Self::Time => 1e-3,
         }
     }
+}
+
+/// The interpolation time period (60C2h).
+fn segment(objects: &Dictionary) -> Result<TimePeriod, ObjectsError> {
+    let (units, index) = (objects.get(p::INTERPOLATION_TIME_PERIOD), objects.get(p::INTERPOLATION_TIME_INDEX));
+    Ok(TimePeriod::new(units, index)?)
 }
 
 /// The software position limits (607Dh) in the direction of the axis; none where they are the whole range of positions.
