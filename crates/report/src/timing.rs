@@ -30,12 +30,12 @@ pub struct TimingOptions {
     pub width: u32,
     /// Whose signals are shown, in the order of the recording; all where there is none.
     pub sources: Vec<String>,
-    /// Whether signals are shown that are FALSE all the time. They are where there is nothing else.
+    /// Whether signals are shown in which nothing happens: they stay FALSE, 0 or none. They are where there is nothing else.
     pub with_idle: bool,
 }
 
 impl Default for TimingOptions {
-    /// The whole recording, 860 pixels wide; all sources, without signals that are FALSE all the time.
+    /// The whole recording, 860 pixels wide; all sources, without signals in which nothing happens.
     fn default() -> Self {
         Self { from: None, to: None, width: 860, sources: vec![], with_idle: false }
     }

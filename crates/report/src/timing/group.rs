@@ -3,6 +3,9 @@ use super::stretch::{Stretch, stretches};
 use super::window::Window;
 use servobench_trace::{Recording, Signal};
 
+/// Values of a signal in which nothing happens.
+const IDLE: [&str; 4] = ["FALSE", "0", "16#0000", "none"];
+
 /// The signals of one source.
 #[derive(Debug)]
 pub(super) struct Group<'a> {
@@ -49,9 +52,10 @@ impl<'a> Row<'a> {
         Self { name: &signal.name, stretches: stretches(signal, window), is_logic }
     }
 
-    /// Whether it is never anything but FALSE.
+    /// Whether nothing happens in it: it has no value, or stays FALSE, 0 or none.
     fn is_idle(&self) -> bool {
-        self.stretches.iter().all(|stretch| stretch.value == "FALSE")
+        let first = self.stretches.first().map_or(IDLE[0], |stretch| stretch.value);
+        IDLE.contains(&first) && self.stretches.iter().all(|stretch| stretch.value == first)
     }
 
     /// When it becomes TRUE (s).

@@ -34,10 +34,10 @@ const APART: f64 = 26.0;
 /// A set-point is a broad line in colour, what the load does a thin dark one; TRUE and states are blue, what went wrong red,
 /// in dark enough shades to be told apart in black and white.
 const STYLE: &str = ".c{fill:none;stroke-width:2.6;stroke-linejoin:round}.a{fill:none;stroke:#1c2330;stroke-width:1;\
-stroke-linejoin:round}.w,.x{fill:none;stroke:#1f5fa8;stroke-width:1.5}.x{stroke:#c2303a}.wf{fill:#1f5fa8;opacity:.22}\
-.xf{fill:#c2303a;opacity:.3}.q{fill:#7d8794}.bs,.bo,.bx{fill:#e3ecf7;stroke:#1f5fa8;stroke-width:1}.bo{fill:#ffffff;\
-stroke:#7d8794}.bx{fill:#f8dcde;stroke:#c2303a}.bt{font-size:11px}.r{font-size:11px}.h{stroke:#9aa3b0;stroke-width:1}\
-.gb,.ge,.gc{fill:none;stroke:#5b6472;stroke-width:.9}.gb{stroke-dasharray:1 3}.ge{stroke-dasharray:6 3}\
+stroke-linejoin:round}.w{fill:none;stroke:#1f5fa8;stroke-width:1.5}.f{fill:#1f5fa8;opacity:.22}.x{fill:#c2303a;\
+fill-opacity:.3;stroke:#c2303a;stroke-width:1.5}.q{fill:#7d8794}.bs,.bo,.bx{fill:#e3ecf7;stroke:#1f5fa8;stroke-width:1}\
+.bo{fill:#ffffff;stroke:#7d8794}.bx{fill:#f8dcde;stroke:#c2303a}.bt{font-size:11px}.r{font-size:11px}.h{stroke:#9aa3b0;\
+stroke-width:1}.gb,.ge,.gc{fill:none;stroke:#5b6472;stroke-width:.9}.gb{stroke-dasharray:1 3}.ge{stroke-dasharray:6 3}\
 .gc{stroke-dasharray:6 3 1 3}.o{fill:#1c2330}";
 
 /// A timing diagram.
@@ -47,7 +47,7 @@ pub(super) struct Sheet<'a> {
     pub(super) width: f64,
     pub(super) curves: Vec<Panel<'a>>,
     pub(super) groups: Vec<Group<'a>>,
-    /// Names of the signals that are left out as they are never TRUE.
+    /// Names of the signals that are left out as nothing happens in them.
     pub(super) idle: Vec<String>,
 }
 
@@ -164,8 +164,8 @@ impl Sheet<'_> {
         if !self.idle.is_empty() {
             let (count, names) = (self.idle.len(), self.idle.join(", "));
             let note = match count {
-                1 => format!("1 signal left out, as it is never TRUE: {names}"),
-                _ => format!("{count} signals left out, as they are never TRUE: {names}"),
+                1 => format!("1 signal left out, in which nothing happens: {names}"),
+                _ => format!("{count} signals left out, in which nothing happens: {names}"),
             };
             notes.extend(fitted(&note, self.width - 2.0 * MARGIN, LETTERS));
         }

@@ -15,7 +15,7 @@ const LETTERS: f64 = 11.0;
 const MARGIN: f64 = 3.0;
 
 /// Values that say that something is off.
-const OFF: [&str; 4] = ["none", "Off", "Disabled", "0"];
+const OFF: [&str; 6] = ["FALSE", "0", "16#0000", "none", "Off", "Disabled"];
 /// Parts of values and of names of signals that say that something went wrong.
 const WRONG: [&str; 6] = ["Error", "Fault", "fault", "Aborted", "Underflow", "Overflow"];
 
@@ -27,7 +27,7 @@ fn is_wrong(text: &str) -> bool {
 /// Draws `row` with its top at `top`.
 pub(super) fn draw(svg: &mut Vec<String>, row: &Row<'_>, time: &Axis, top: f64) {
     let seen = seen(&row.stretches, time);
-    if row.is_logic { logic(svg, row.name, &seen, top) } else { bars(svg, &seen, top) }
+    if row.is_logic { logic(svg, row.name, &seen, top) } else { bars(svg, row.name, &seen, top) }
 }
 
 /// A line that is low or high, and filled below where it is high.
@@ -55,25 +55,32 @@ fn logic(svg: &mut Vec<String>, name: &str, seen: &[Seen<'_>], top: f64) {
         debug_assert!([written, along, filled].iter().all(Result::is_ok), "a string takes everything");
         here = Some(y);
     }
-    let kind = if is_wrong(name) { "x" } else { "w" };
-    for (class, path) in [(format!("{kind}f"), fill), ("q".to_owned(), blocks), (kind.to_owned(), line)] {
-        if !path.is_empty() {
-            svg.push(format!("<path class=\"{class}\" d=\"{path}\"/>"));
-        }
-    }
+    // What went wrong is in front of the line, with an edge of its own.
+    let parts = if is_wrong(name) {
+        [("q", blocks), ("w", line), ("x", fill)]
+    } else {
+        [("f", fill), ("q", blocks), ("w", line)]
+    };
+    let seen = parts.into_iter().filter(|(_, path)| !path.is_empty());
+    svg.extend(seen.map(|(class, path)| format!("<path class=\"{class}\" d=\"{path}\"/>")));
 }
 
 /// A bar for each state with its name, as far as it fits. Those that say that something went wrong are in front: a short
 /// one is not hidden by the edges of its neighbours.
-fn bars(svg: &mut Vec<String>, seen: &[Seen<'_>], top: f64) {
-    let is_in_front = |stretch: &&Seen<'_>| matches!(stretch, Seen::One { value, .. } if is_wrong(value));
+fn bars(svg: &mut Vec<String>, name: &str, seen: &[Seen<'_>], top: f64) {
+    let class = |value: &str| match value {
+        _ if OFF.contains(&value) => "bo",
+        _ if is_wrong(value) || is_wrong(name) => "bx",
+        _ => "bs",
+    };
+    let is_in_front = |stretch: &&Seen<'_>| matches!(stretch, Seen::One { value, .. } if class(value) == "bx");
     let (front, back): (Vec<_>, Vec<_>) = seen.iter().partition(is_in_front);
     for stretch in back.into_iter().chain(front) {
-        bar(svg, stretch, top);
+        bar(svg, stretch, class, top);
     }
 }
 
-fn bar(svg: &mut Vec<String>, stretch: &Seen<'_>, top: f64) {
+fn bar(svg: &mut Vec<String>, stretch: &Seen<'_>, class: impl Fn(&str) -> &'static str, top: f64) {
     let rect = |class: &str, from: f64, to: f64| {
         let (y, width, height) = (top + BAR.0, to - from, BAR.1 - BAR.0);
         format!("<rect class=\"{class}\" x=\"{from:.2}\" y=\"{y:.1}\" width=\"{width:.2}\" height=\"{height}\"")
@@ -83,12 +90,7 @@ fn bar(svg: &mut Vec<String>, stretch: &Seen<'_>, top: f64) {
             svg.push(format!("{}><title>{count} changes</title></rect>", rect("q", from, to)));
         }
         Seen::One { from, to, value } => {
-            let class = match value {
-                _ if is_wrong(value) => "bx",
-                _ if OFF.contains(&value) => "bo",
-                _ => "bs",
-            };
-            let (rect, shown) = (rect(class, from, to), fitted(value, to - from - 2.0 * MARGIN, LETTERS));
+            let (rect, shown) = (rect(class(value), from, to), fitted(value, to - from - 2.0 * MARGIN, LETTERS));
             svg.push(if shown.as_deref() == Some(value) {
                 format!("{rect}/>")
             } else {

@@ -7,15 +7,10 @@ use servobench_report::{TimingOptions, timing_diagram};
 /// Rounding to a hundredth of a pixel, twice, beside that of the labels from which the scale is read.
 const ROUNDING: f64 = 0.02;
 
-/// The logic traces of `document` from top to bottom, those of something that went wrong too.
+/// The logic traces of `document` from top to bottom.
 fn traces(document: &Document<'_>) -> Vec<Vec<(f64, f64)>> {
-    let mut traces: Vec<Vec<(f64, f64)>> = ["w", "x"]
-        .iter()
-        .flat_map(|class| elements(document, "path", class))
-        .map(|node| corners(node.attribute("d").unwrap()))
-        .collect();
-    traces.sort_by(|one, other| one[0].1.total_cmp(&other[0].1));
-    traces
+    let paths = elements(document, "path", "w");
+    paths.into_iter().map(|node| corners(node.attribute("d").unwrap())).collect()
 }
 
 /// Where a trace goes up and down.

@@ -42,22 +42,39 @@ fn a_state_is_cut_to_its_bar_and_whole_in_its_tooltip() {
 }
 
 #[test]
-fn signals_that_are_never_true_are_counted() {
+fn signals_in_which_nothing_happens_are_counted() {
     let names = |svg: &str| {
         let document = Document::parse(svg).unwrap();
         elements(&document, "text", "r").into_iter().map(|node| text(node).to_owned()).collect::<Vec<_>>()
     };
-    let svg = whole(&aborted());
-    let note =
-        "4 signals left out, as they are never TRUE: First.Done, First.Error, Second.CommandAborted, Second.Error";
+    let mut recording = aborted();
+    recording.signals.extend([signal("First", "ErrorID", &[(0.0, "0")]), signal("First", "Status", &[(0.0, "TRUE")])]);
+    let svg = whole(&recording);
+    let note = "5 signals left out, in which nothing happens: First.Done, First.Error, First.ErrorID, Second.CommandAborted, \
+                Second.Error";
     assert!(svg.contains(note), "{svg}");
-    assert_eq!(names(&svg).len(), 12);
-    let all = timing_diagram(&aborted(), &TimingOptions { with_idle: true, ..TimingOptions::default() }).unwrap();
+    assert_eq!(names(&svg).len(), 13);
+    let all = timing_diagram(&recording, &TimingOptions { with_idle: true, ..TimingOptions::default() }).unwrap();
     assert!(!all.contains("left out"));
-    assert_eq!(names(&all).len(), 16);
+    assert_eq!(names(&all).len(), 18);
     // Where there is nothing else, they are shown.
     let idle = Recording { signals: vec![logic("First", "Done", &[])], ..empty() };
     assert_eq!(names(&whole(&idle)), ["Done"]);
+}
+
+/// An error is red from where it rises to where it falls, a fault wherever it is.
+#[test]
+fn what_went_wrong_is_red() {
+    let signals = vec![
+        logic("First", "Error", &[1.0, 2.0]),
+        signal("First", "ErrorID", &[(0.0, "0"), (1.0, "16#2001"), (2.0, "0")]),
+        signal("drive", "state", &[(0.0, "Switch on disabled"), (3.0, "Fault")]),
+    ];
+    let svg = whole(&Recording { signals, ..aborted() });
+    let document = Document::parse(&svg).unwrap();
+    assert_eq!(elements(&document, "path", "x").len(), 1);
+    let texts = |class: &'static str| elements(&document, "rect", class).len();
+    assert_eq!((texts("bx"), texts("bo"), texts("bs")), (2, 2, 1));
 }
 
 #[test]
