@@ -38,8 +38,7 @@ impl Running {
             Self::Pp(x) => x.resume(&p.profile_position(), now),
             Self::Pv(x) => *x = profile::velocity::State::begin(now),
             Self::Tq(x) => *x = profile::effort::State::begin(now),
-            // It sees for itself that the loops follow something else meanwhile.
-            Self::Hm(_) => {}
+            Self::Hm(x) => x.resume(now),
             Self::Ip(x) => *x = interpolated::State::begin(now),
             Self::Csp(x) => *x = cyclic::position::State::begin(now),
             Self::Csv(x) => *x = cyclic::velocity::State::begin(now),

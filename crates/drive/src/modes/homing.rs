@@ -1,7 +1,7 @@
 //! Homing (hm, mode 6): the drive looks for its reference (IEC 61800-7-201, homing mode).
 //!
 //! The controlword's bit 4 starts the search with its rising edge and interrupts it when it is taken back; halt (bit 8)
-//! stops the axis on its leg. Either stops within the homing acceleration.
+//! stops the axis on its leg. Either stops within the homing acceleration, unless the drive itself stops the axis for a halt.
 //!
 //! | bit 13, homing error | bit 12, homing attained | bit 10, target reached | |
 //! |---|---|---|---|
@@ -111,6 +111,14 @@ impl State {
     #[must_use]
     pub fn begin(now: &Moment) -> Self {
         Self { phase: Phase::Idle, asked: asks(now), ramp: Ramp::default() }
+    }
+
+    /// Goes on after the drive has stopped the axis without asking the mode, as for a halt: what switches said meanwhile is not
+    /// known, so that the search begins anew from here.
+    pub fn resume(&mut self, now: &Moment) {
+        if let Phase::Searching(search) = &mut self.phase {
+            search.restart(&now.actual);
+        }
     }
 
     /// Whether the last search that was started has found the reference, and the axis has stopped.

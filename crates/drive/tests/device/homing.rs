@@ -48,3 +48,32 @@ fn an_index_pulse_is_the_zero_where_it_came() {
     let (shown, behind) = (axis.actuals().position, (axis.position - pulse) * 1e6);
     assert!((f64::from(shown) - behind).abs() <= 0.5 && (-16.0..-12.0).contains(&behind), "{shown} {behind}");
 }
+
+/// The switch goes on while the axis brakes for the halt: the search begins anew, on the switch.
+#[test]
+fn a_switch_that_is_passed_during_a_halt_is_found_all_the_same() {
+    let mut params = Params::default();
+    params.homing.method = servobench_drive::modes::homing::Method::from_number(19).unwrap();
+    params.homing.switch_speed = 0.1;
+    params.profile.deceleration = 1.0;
+    let mut axis = Axis::new(&params);
+    axis.enable(Mode::Homing);
+    let run = axis.frame.controlword.with(ControlBit::ModeSpecific4, true);
+    // 0.1 m/s brakes within 5 mm: from 18 mm to 23 mm.
+    let edge = 0.02;
+    let mut is_halted = false;
+    for k in 0..40_000 {
+        is_halted |= axis.position > 0.018;
+        axis.frame.controlword = run.with(ControlBit::Halt, is_halted && k < 4000);
+        axis.measured.home = axis.position >= edge;
+        axis.step(k % 4 == 0);
+        if axis.has(StatusBit::ModeSpecific12) && axis.has(StatusBit::TargetReached) {
+            break;
+        }
+    }
+    assert!(axis.has(StatusBit::ModeSpecific12) && !axis.has(StatusBit::ModeSpecific13));
+    // A period at the speed for zero late, and rounded to a unit of the bus.
+    let late = params.homing.zero_speed * params.period * 1e6 + 1.0;
+    let shown = f64::from(axis.actuals().position);
+    assert!((shown - (axis.position - edge) * 1e6).abs() <= late, "{shown} at {}", axis.position);
+}

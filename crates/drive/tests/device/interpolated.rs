@@ -48,3 +48,25 @@ fn a_point_that_cannot_be_read_is_a_warning_until_a_good_one_comes() {
     axis.send(SegmentCommand::NoOperation);
     assert!(!axis.has(StatusBit::Warning));
 }
+
+/// Halted and let go again, with bit 4 set all the time: the course has gone on without the axis and is not taken up again.
+#[test]
+fn a_halt_ends_the_move_and_nothing_jumps() {
+    let params = Params { sub_mode: SubMode::Cubic, ..Params::default() };
+    let mut axis = Axis::enabled(&params, Mode::InterpolatedPosition);
+    for (counter, position) in (0..).zip([0, 500, 1500, 2000, 2500]) {
+        let point = Point { position, velocity: Some(500_000), time: 10_000, is_relative: false };
+        axis.send(SegmentCommand::Point { counter, point });
+    }
+    let run = axis.frame.controlword.with(ControlBit::ModeSpecific4, true);
+    let mut last = axis.position;
+    for k in 0..1000 {
+        axis.frame.controlword = run.with(ControlBit::Halt, (60..400).contains(&k));
+        axis.step(k % 4 == 0);
+        // Beyond 0.125 m/s the cubics do not go: 31.25 µm per period.
+        assert!((axis.position - last).abs() < 32e-6, "step {k}: {last} {}", axis.position);
+        last = axis.position;
+        assert_eq!(axis.has(StatusBit::ModeSpecific12), k < 60, "step {k}");
+    }
+    assert!(axis.velocity == 0.0 && axis.actuals().buffer_status >> 24 == 0, "neither a move nor an underflow");
+}

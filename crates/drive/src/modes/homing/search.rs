@@ -32,6 +32,11 @@ impl Search {
         Self { method, start: if was_on { Start::On } else { Start::Off }, leg: 0, was_on }
     }
 
+    /// Anew from where the axis is.
+    pub(super) fn restart(&mut self, actual: &Actual) {
+        *self = Self::begin(self.method, actual);
+    }
+
     pub(super) fn look(&mut self, params: &Params, moment: &Moment) -> Finding {
         let actual = &moment.actual;
         let is_on = self.method.switch().is_some_and(|switch| switch.is_on(actual));
