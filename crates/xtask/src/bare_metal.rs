@@ -1,4 +1,5 @@
-//! Bare metal: the set-point generators are linked for a machine that has neither `std` nor an allocator.
+//! Bare metal: set-point generators, function blocks and the link to a drive are linked for a machine that has neither `std` nor
+//! an allocator.
 //!
 //! The core library for that machine is a part of the Rust toolchain that `rustup` fetches once. Where it cannot be had, the
 //! step is left out, and it is said.
@@ -42,7 +43,9 @@ impl BareMetal {
     /// Says what is left out, if it is.
     pub(crate) fn report(&self) {
         if let Self::Missing(why) = self {
-            println!("LEFT OUT, bare metal: that the set-point generators need neither `std` nor a heap\n  {why}");
+            println!(
+                "LEFT OUT, bare metal: that set-point generators, function blocks and link need no `std` and no heap\n  {why}"
+            );
         }
     }
 }

@@ -37,7 +37,7 @@ const PLAN: [(&str, May); 23] = [
     ("view", May::On(&["base", "trace", "metrics"])),
     ("cli", May::OnAll),
     ("tests", May::OnAll),
-    ("bare-metal", May::On(&["cia402", "motion", "fieldbus", "plcopen"])),
+    ("bare-metal", May::On(&["base", "cia402", "motion", "fieldbus", "plcopen"])),
     ("features", May::On(&[])),
     ("fuzz", May::On(&[])),
     ("xtask", May::On(&[])),
