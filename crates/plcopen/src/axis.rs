@@ -7,11 +7,13 @@
 mod activity;
 mod blending;
 mod bounds;
+mod calming;
 mod commands;
 mod lead;
 mod modulo;
 mod queue;
 mod run;
+mod sharing;
 mod superimposed;
 mod supervision;
 

@@ -56,7 +56,7 @@ pub use read::{
 pub use reset::{Reset, ResetInputs};
 pub use set_override::{SetOverride, SetOverrideInputs, SetOverrideOutputs};
 pub use set_position::{SetPosition, SetPositionInputs};
-pub use stop::{Halt, HaltInputs, Stop, StopInputs};
+pub use stop::{Halt, HaltInputs, Stop, StopInputs, StopOutputs};
 pub use time_profile::{
     AccelerationProfile, AccelerationProfileInputs, ProfileOutputs, VelocityProfile, VelocityProfileInputs,
 };

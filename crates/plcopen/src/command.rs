@@ -138,6 +138,8 @@ pub enum Goal {
         effort: f64,
         /// Its rate (N·m/s or N/s), infinite for a step.
         ramp: f64,
+        /// Which way.
+        direction: Direction,
     },
     /// Along a course that the block itself gives, a set-point per cycle: see [`Axis::lead`](crate::Axis::lead).
     Led,
@@ -190,13 +192,11 @@ impl Command {
                     let (value, limit) = (velocity, params.limits.velocity);
                     return Err(BlockError::AboveLimit { block, input: "Velocity", value, limit });
                 }
-                if direction == Direction::Shortest {
-                    let (value, bound) = (direction.name(), "a direction to run in");
-                    return Err(BlockError::Direction { block, value, bound });
-                }
+                endless_direction(block, direction)?;
             }
-            Goal::Effort { effort, ramp } => {
+            Goal::Effort { effort, ramp, direction } => {
                 finite_input(block, "Torque", effort)?;
+                endless_direction(block, direction)?;
                 if ramp.is_nan() || ramp <= 0.0 {
                     return Err(BlockError::Input { block, input: "TorqueRamp", value: ramp, bound: "positive" });
                 }
@@ -205,6 +205,15 @@ impl Command {
             Goal::Rest | Goal::Led => {}
         }
         Ok(())
+    }
+}
+
+/// What has no end has no shortest way to it.
+fn endless_direction(block: BlockName, direction: Direction) -> Result<(), BlockError> {
+    let value = direction.name();
+    match direction {
+        Direction::Shortest => Err(BlockError::Direction { block, value, bound: "a direction to run in" }),
+        Direction::Positive | Direction::Negative | Direction::Current => Ok(()),
     }
 }
 

@@ -120,7 +120,7 @@ impl Axis {
             Activity::Moving(moving) => match moving.run.advance(cycle_time) {
                 Ok(setpoint) => {
                     self.base = setpoint;
-                    if moving.run.beyond(cycle_time) >= 0.0 && !moving.is_paused {
+                    if moving.run.is_over(cycle_time) && !moving.is_paused {
                         self.arrive();
                     }
                 }
@@ -214,6 +214,9 @@ impl Axis {
                 }
                 self.ledger.set(id, Progress::Active);
                 self.follow(Cause::Block(command.block));
+                if lead > 0.0 {
+                    self.arrive_early();
+                }
             }
             Err(BlockError::Plan { error, .. }) => {
                 self.ledger.set(id, Progress::Failed);
@@ -222,6 +225,16 @@ impl Axis {
             Err(error) => {
                 self.refuse_waiting(id, error);
             }
+        }
+    }
+
+    /// A way may be so short that it is over in the cycle in which it is blended in; then the next one follows in that cycle.
+    fn arrive_early(&mut self) {
+        if let Activity::Moving(moving) = &self.activity
+            && moving.run.is_over(self.params.cycle_time)
+            && !moving.is_paused
+        {
+            self.arrive();
         }
     }
 

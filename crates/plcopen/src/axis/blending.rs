@@ -7,6 +7,7 @@
 //! Where that is above the velocity of the first command, the axis goes at the latter until only the distance is left that the
 //! rise takes; where there is not so much, it rises at once.
 use super::bounds::Bounds;
+use super::calming::planned;
 use super::run::Run;
 use servobench_base::Setpoint;
 use servobench_motion::PlanError;
@@ -21,11 +22,11 @@ pub(crate) enum Next {
     Velocity,
 }
 
-/// The way from `from` to `x`, begun `lead` seconds ago, which is passed at a speed of at most `wanted` on the way to `next`.
+/// The way from `from` to `x` within `bounds` on an axis with the bounds `axis`, begun `lead` seconds ago, which is passed at a speed of at most `wanted` on the way to `next`.
 pub(crate) fn blended(
     from: &Setpoint,
     x: f64,
-    bounds: &Bounds,
+    [bounds, axis]: [&Bounds; 2],
     next: &Next,
     wanted: f64,
     lead: f64,
@@ -42,7 +43,7 @@ pub(crate) fn blended(
     let speed = speed_at(from, x, &fast, followed)?;
     let target = Target::Position { x, v: direction * speed };
     if speed <= bounds.velocity {
-        return Ok(Run::new(bounds.plan(from, &target)?, lead, None));
+        return planned(from, &target, bounds, axis, lead);
     }
     let cruise = Setpoint { v: direction * bounds.velocity, ..Setpoint::default() };
     let rise = x - fast.covered(&cruise, direction * speed)?;
@@ -50,7 +51,7 @@ pub(crate) fn blended(
         let way = bounds.plan(from, &Target::Position { x: rise, v: cruise.v })?;
         return Ok(Run::new(way, lead, Some((target, fast))));
     }
-    Ok(Run::new(fast.plan(from, &target)?, lead, None))
+    planned(from, &target, &fast, axis, lead)
 }
 
 /// The highest speed up to `most` with which `x` can be passed; zero where there is none.

@@ -3,6 +3,7 @@ use super::Axis;
 use super::activity::{Activity, EffortRamp, HomingWait, Led, Moving};
 use super::blending::{Next, blended};
 use super::bounds::{Bounds, Override};
+use super::calming::planned;
 use super::modulo;
 use super::run::Run;
 use crate::arrows::{Cause, arrow};
@@ -95,6 +96,9 @@ impl Axis {
     /// Changes the inputs of a command that runs or waits.
     pub(crate) fn update(&mut self, id: CommandId, command: Command) -> Result<(), BlockError> {
         command.check(&self.params)?;
+        if let Some(superimposed) = &self.superimposed {
+            self.check_sum(command.block, &superimposed.command, &command)?;
+        }
         if let Some(waiting) = self.queue.get_mut(id) {
             *waiting = command;
             return self.rejoin();
@@ -105,7 +109,7 @@ impl Axis {
                 let from_origin = Setpoint { x: moving.origin, ..from };
                 let reference = if matches!(command.goal, Goal::Relative(_)) { &from_origin } else { &from };
                 let target = self.target(&command, reference, moving.origin)?;
-                let (run, is_paused) = self.run(&command, &target, &from, 0.0, self.queue.first())?;
+                let (run, is_paused) = self.run(&command, &target, &from, &self.beside(), 0.0, self.queue.first())?;
                 let origin = moving.origin;
                 self.activity = Activity::Moving(Moving { id, command, target, origin, is_paused, run });
             }
@@ -193,7 +197,8 @@ impl Axis {
         if moving.command.goal == Goal::Rest {
             return Ok(());
         }
-        let (run, is_paused) = self.run(&moving.command, &moving.target, &self.base, 0.0, self.queue.first())?;
+        let (run, is_paused) =
+            self.run(&moving.command, &moving.target, &self.base, &self.beside(), 0.0, self.queue.first())?;
         if let Activity::Moving(moving) = &mut self.activity {
             (moving.run, moving.is_paused) = (run, is_paused);
             self.ledger.set(moving.id, Progress::Active);
@@ -212,7 +217,8 @@ impl Axis {
     ) -> Result<Activity, BlockError> {
         let block = command.block;
         match command.goal {
-            Goal::Effort { effort: target, ramp } => {
+            Goal::Effort { effort, ramp, direction } => {
+                let target = self.directed(effort, direction);
                 let (step, present) = (ramp * self.params.cycle_time, self.feedback.effort);
                 Ok(Activity::Effort(EffortRamp { id, command, target, step, present }))
             }
@@ -225,7 +231,10 @@ impl Axis {
                 if let Some(input) = self.forbidden(direction_of(&from, &target)) {
                     return Err(BlockError::NotPermitted { block, input });
                 }
-                let (run, is_paused) = self.run(&command, &target, &from, lead, next)?;
+                // An aborting command has the axis for itself.
+                let is_aborting = command.buffer_mode == BufferMode::Aborting;
+                let axis = if is_aborting { self.spare(None) } else { self.beside() };
+                let (run, is_paused) = self.run(&command, &target, &from, &axis, lead, next)?;
                 Ok(Activity::Moving(Moving { id, command, target, origin: from.x, is_paused, run }))
             }
         }
@@ -257,13 +266,18 @@ impl Axis {
             }
             Goal::Relative(distance) => Target::Position { x: from.x + distance, v: 0.0 },
             Goal::Additive(distance) => Target::Position { x: additive_origin + distance, v: 0.0 },
-            Goal::Velocity { velocity, direction } => Target::Velocity(match direction {
-                Direction::Positive | Direction::Shortest => velocity,
-                Direction::Negative => -velocity,
-                Direction::Current => velocity.copysign(velocity * self.last_direction),
-            }),
+            Goal::Velocity { velocity, direction } => Target::Velocity(self.directed(velocity, direction)),
             Goal::Rest | Goal::Effort { .. } | Goal::Led => Target::Velocity(0.0),
         })
+    }
+
+    /// `value` with the sign that it has in `direction`.
+    fn directed(&self, value: f64, direction: Direction) -> f64 {
+        match direction {
+            Direction::Positive | Direction::Shortest => value,
+            Direction::Negative => -value,
+            Direction::Current => value.copysign(value * self.last_direction),
+        }
     }
 
     /// Where the axis comes to rest when `command` does nothing but brake.
@@ -277,12 +291,13 @@ impl Axis {
         Ok(from.x + covered)
     }
 
-    /// The way of `command` to `target`, blended with `next`; and whether the override holds it.
+    /// The way of `command` to `target` on what there is of the axis, blended with `next`; and whether the override holds it.
     fn run(
         &self,
         command: &Command,
         target: &Target,
         from: &Setpoint,
+        axis: &Bounds,
         lead: f64,
         next: Option<&Command>,
     ) -> Result<(Run, bool), BlockError> {
@@ -290,12 +305,11 @@ impl Axis {
         let limits = &self.params.limits;
         if command.goal == Goal::Rest {
             let bounds = Bounds::of(&command.dynamics, limits, &Override::NONE);
-            return Ok((Run::new(bounds.plan(from, target).map_err(plan_error)?, lead, None), false));
+            return Ok((planned(from, target, &bounds, axis, lead).map_err(plan_error)?, false));
         }
         if self.factors.velocity == 0.0 {
             let bounds = Bounds::of(&command.dynamics, limits, &Override { velocity: 1.0, ..self.factors });
-            let way = bounds.plan(from, &Target::Velocity(0.0)).map_err(plan_error)?;
-            return Ok((Run::new(way, lead, None), true));
+            return Ok((planned(from, &Target::Velocity(0.0), &bounds, axis, lead).map_err(plan_error)?, true));
         }
         let bounds = Bounds::of(&command.dynamics, limits, &self.factors);
         let target = match *target {
@@ -305,9 +319,10 @@ impl Axis {
         if let Target::Position { x, v: 0.0 } = target
             && let Some((next, wanted)) = self.passage(from, x, &bounds, next)?
         {
-            return Ok((blended(from, x, &bounds, &next, wanted, lead).map_err(plan_error)?, false));
+            let run = blended(from, x, [&bounds, axis], &next, wanted, lead).map_err(plan_error)?;
+            return Ok((run, false));
         }
-        Ok((Run::new(bounds.plan(from, &target).map_err(plan_error)?, lead, None), false))
+        Ok((planned(from, &target, &bounds, axis, lead).map_err(plan_error)?, false))
     }
 
     /// What follows the passage of `x`, and the wanted velocity there; `None` where the axis stops.

@@ -57,6 +57,17 @@ impl Run {
         self.time(cycle_time) - self.way.duration()
     }
 
+    /// Whether its end is reached, and nothing follows.
+    #[inline]
+    pub(crate) fn is_over(&self, cycle_time: f64) -> bool {
+        self.then.is_none() && self.beyond(cycle_time) >= 0.0
+    }
+
+    /// Whether something follows that is not yet planned.
+    pub(crate) const fn is_preliminary(&self) -> bool {
+        self.then.is_some()
+    }
+
     /// The set-point at its end.
     pub(crate) fn end(&self) -> Setpoint {
         self.way.at(self.way.duration())

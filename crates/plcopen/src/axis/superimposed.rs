@@ -2,9 +2,10 @@
 use super::Axis;
 use super::activity::Activity;
 use super::bounds::Bounds;
+use super::calming::planned;
 use super::run::Run;
 use crate::arrows::{Cause, arrow};
-use crate::command::{Command, Goal, finite_input};
+use crate::command::{Command, finite_input};
 use crate::error::{AxisError, BlockError};
 use crate::ledger::{CommandId, Progress};
 use servobench_base::Setpoint;
@@ -15,6 +16,8 @@ use servobench_motion::online::Target;
 pub(super) struct Superimposed {
     pub(super) id: CommandId,
     pub(super) command: Command,
+    /// Where the one before had come to that this one replaced.
+    pub(super) origin: f64,
     pub(super) distance: f64,
     pub(super) is_paused: bool,
     pub(super) run: Run,
@@ -42,16 +45,12 @@ impl Axis {
         let Some(arrow) = arrow(self.state, Cause::Block(block)) else {
             return Err(BlockError::State { block, state: self.state });
         };
-        finite_input(block, "Distance", distance)?;
-        command.dynamics.check(block, &self.params.limits)?;
+        self.check_superimposed(command, distance)?;
         if let Some(input) = self.forbidden(distance) {
             return Err(BlockError::NotPermitted { block, input });
         }
         if matches!(self.activity, Activity::Effort(_) | Activity::Led(_)) {
             return Err(BlockError::State { block, state: self.state });
-        }
-        for (_, below) in self.activity.command().into_iter().chain(self.queue.iter().map(|(id, below)| (*id, below))) {
-            self.check_sum(block, command, below)?;
         }
         let from = self.superimposed.as_ref().map_or(Setpoint::default(), |running| running.now);
         let (run, is_paused) = self.superimposed_run(command, &from, from.x + distance)?;
@@ -59,45 +58,52 @@ impl Axis {
         if let Some(before) = &self.superimposed {
             self.ledger.set(before.id, Progress::Aborted);
         }
-        let distance = from.x + distance;
-        self.superimposed = Some(Superimposed { id, command: *command, distance, is_paused, run, now: from });
+        let (origin, distance) = (from.x, from.x + distance);
+        self.superimposed = Some(Superimposed { id, command: *command, origin, distance, is_paused, run, now: from });
         self.ledger.set(id, Progress::Active);
         self.state = arrow.to;
         Ok(id)
     }
 
-    /// What a superimposed motion has covered since it, or the ones that it replaced, began.
-    pub(crate) fn covered(&self, id: CommandId) -> Option<f64> {
-        self.superimposed.as_ref().filter(|superimposed| superimposed.id == id).map(|superimposed| superimposed.now.x)
-    }
-
-    /// Two motions on top of each other keep the limits of the axis together.
-    pub(super) fn check_sum(
-        &self,
-        block: crate::name::BlockName,
-        one: &Command,
-        other: &Command,
+    /// Changes the inputs of a superimposed motion that runs.
+    pub(crate) fn update_superimposed(
+        &mut self,
+        id: CommandId,
+        command: &Command,
+        distance: f64,
     ) -> Result<(), BlockError> {
-        if other.goal == Goal::Rest {
-            return Ok(());
-        }
-        let limits = &self.params.limits;
-        let [one, other] = [one, other].map(|command| {
-            let dynamics = &command.dynamics;
-            let velocity = match command.goal {
-                Goal::Velocity { velocity, .. } => velocity.abs(),
-                _ => dynamics.velocity,
-            };
-            [velocity, dynamics.acceleration.max(dynamics.deceleration), dynamics.jerk.unwrap_or(limits.jerk)]
-        });
-        let bounds = [("Velocity", limits.velocity), ("Acceleration", limits.acceleration), ("Jerk", limits.jerk)];
-        for ((input, limit), (one, other)) in bounds.into_iter().zip(one.into_iter().zip(other)) {
-            let value = one + other;
-            if value > limit {
-                return Err(BlockError::SumAboveLimit { block, input, value, limit });
-            }
+        self.check_superimposed(command, distance)?;
+        let Some(running) = self.superimposed.as_ref().filter(|running| running.id == id) else {
+            return Err(BlockError::Ended { block: command.block });
+        };
+        let target = running.origin + distance;
+        let (run, is_paused) = self.superimposed_run(command, &running.now, target)?;
+        if let Some(running) = &mut self.superimposed {
+            (running.command, running.distance, running.run, running.is_paused) = (*command, target, run, is_paused);
         }
         Ok(())
+    }
+
+    fn check_superimposed(&self, command: &Command, distance: f64) -> Result<(), BlockError> {
+        finite_input(command.block, "Distance", distance)?;
+        command.dynamics.check(command.block, &self.params.limits)?;
+        if let Activity::Moving(moving) = &self.activity
+            && moving.run.is_preliminary()
+        {
+            return Err(self.nothing_to_spare(command));
+        }
+        for (_, below) in self.activity.command().into_iter().chain(self.queue.iter().map(|(id, below)| (*id, below))) {
+            self.check_sum(command.block, command, below)?;
+        }
+        Ok(())
+    }
+
+    /// What a superimposed motion has covered since it began.
+    pub(crate) fn covered(&self, id: CommandId) -> Option<f64> {
+        self.superimposed
+            .as_ref()
+            .filter(|superimposed| superimposed.id == id)
+            .map(|superimposed| superimposed.now.x - superimposed.origin)
     }
 
     /// One cycle on.
@@ -108,7 +114,7 @@ impl Axis {
             Ok(now) => superimposed.now = now,
             Err(error) => return self.fail(AxisError::PlanLost { error }),
         }
-        if superimposed.run.beyond(cycle_time) >= 0.0 && !superimposed.is_paused {
+        if superimposed.run.is_over(cycle_time) && !superimposed.is_paused {
             self.shift += superimposed.distance;
             self.ledger.set(superimposed.id, Progress::Done);
             self.superimposed = None;
@@ -129,7 +135,7 @@ impl Axis {
         let factors = super::Override { velocity: if is_paused { 1.0 } else { self.factors.velocity }, ..self.factors };
         let bounds = Bounds::of(&command.dynamics, &self.params.limits, &factors);
         let target = if is_paused { Target::Velocity(0.0) } else { Target::Position { x, v: 0.0 } };
-        let way = bounds.plan(from, &target).map_err(|error| BlockError::Plan { block: command.block, error })?;
-        Ok((Run::new(way, 0.0, None), is_paused))
+        let run = planned(from, &target, &bounds, &self.spare(self.activity.command().map(|(_, below)| below)), 0.0);
+        Ok((run.map_err(|error| BlockError::Plan { block: command.block, error })?, is_paused))
     }
 }

@@ -125,6 +125,8 @@ impl Axis {
         if !request.enable && arrow(self.state, Cause::Unpowered).is_some() {
             self.end_all(Progress::Aborted);
             self.follow(Cause::Unpowered);
+            self.base = Setpoint::at_rest(self.feedback.position);
+            self.add_up();
         }
         if self.state == AxisState::Disabled {
             self.try_enable(self.is_powered());

@@ -2,6 +2,7 @@
 use super::execution::Execution;
 use super::outputs::{FunctionBlock, MotionOutputs};
 use crate::axis::Axis;
+use crate::command::BufferMode;
 use crate::error::BlockError;
 use crate::name::BlockName;
 
@@ -11,13 +12,15 @@ pub struct Home {
     execution: Execution,
 }
 
-/// Inputs of [`Home`]. BufferMode is left out: homing begins at Standstill, where no command is before it.
+/// Inputs of [`Home`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct HomeInputs {
     /// Execute.
     pub execute: bool,
     /// Position of the reference (m or rad).
     pub position: f64,
+    /// BufferMode. Homing begins at Standstill, where no command is before it, so that all are the same.
+    pub buffer_mode: BufferMode,
 }
 
 impl FunctionBlock for Home {

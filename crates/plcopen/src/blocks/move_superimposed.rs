@@ -1,9 +1,9 @@
 //! `MC_MoveSuperimposed`: by a distance, on top of what runs.
-use super::execution::Execution;
-use super::outputs::{FunctionBlock, MotionOutputs, Outputs};
+use super::execution::{Execution, Report};
+use super::outputs::{FunctionBlock, MotionOutputs, Outputs, flag, number};
 use crate::axis::Axis;
 use crate::command::{BufferMode, Command, Dynamics, Goal};
-use crate::error::BlockError;
+use crate::error::{BlockError, ErrorId};
 use crate::name::BlockName;
 use servobench_motion::Limits;
 
@@ -14,8 +14,9 @@ use servobench_motion::Limits;
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MoveSuperimposed {
     execution: Execution,
+    /// The inputs that act.
+    latched: Option<MoveSuperimposedInputs>,
     covered: f64,
-    distance: f64,
 }
 
 /// Inputs of [`MoveSuperimposed`].
@@ -23,6 +24,8 @@ pub struct MoveSuperimposed {
 pub struct MoveSuperimposedInputs {
     /// Execute.
     pub execute: bool,
+    /// ContinuousUpdate.
+    pub continuous_update: bool,
     /// Distance (m or rad).
     pub distance: f64,
     /// VelocityDiff: the velocity on top (m/s or rad/s).
@@ -43,6 +46,7 @@ impl MoveSuperimposedInputs {
     pub fn within(limits: &Limits) -> Self {
         Self {
             execute: false,
+            continuous_update: false,
             distance: 0.0,
             velocity_diff: limits.velocity,
             acceleration: limits.acceleration,
@@ -53,11 +57,32 @@ impl MoveSuperimposedInputs {
     }
 }
 
+impl MoveSuperimposedInputs {
+    fn command(&self) -> Command {
+        let Self { velocity_diff: velocity, acceleration, deceleration, jerk, snap, .. } = *self;
+        Command {
+            block: BlockName::MoveSuperimposed,
+            goal: Goal::Relative(self.distance),
+            dynamics: Dynamics { velocity, acceleration, deceleration, jerk, snap },
+            buffer_mode: BufferMode::Aborting,
+        }
+    }
+}
+
 /// Outputs of [`MoveSuperimposed`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an output of the standard")]
 pub struct MoveSuperimposedOutputs {
-    /// Done, Busy, Active, CommandAborted, Error, ErrorID.
-    pub motion: MotionOutputs,
+    /// Done: the distance is covered.
+    pub done: bool,
+    /// Busy: it is not yet.
+    pub busy: bool,
+    /// CommandAborted: another command took the axis.
+    pub command_aborted: bool,
+    /// Error.
+    pub error: bool,
+    /// ErrorID.
+    pub error_id: ErrorId,
     /// CoveredDistance since the motion on top began (m or rad).
     pub covered_distance: f64,
 }
@@ -68,27 +93,30 @@ impl FunctionBlock for MoveSuperimposed {
     type Outputs = MoveSuperimposedOutputs;
 
     fn step(&mut self, axis: &mut Axis, inputs: &MoveSuperimposedInputs) -> MoveSuperimposedOutputs {
-        let Self { execution, covered, distance } = self;
-        let motion: MotionOutputs = execution
-            .step(axis, inputs.execute, |axis| {
-                let MoveSuperimposedInputs { velocity_diff: velocity, acceleration, deceleration, jerk, snap, .. } =
-                    *inputs;
-                let command = Command {
-                    block: Self::NAME,
-                    goal: Goal::Relative(inputs.distance),
-                    dynamics: Dynamics { velocity, acceleration, deceleration, jerk, snap },
-                    buffer_mode: BufferMode::Aborting,
-                };
-                (*covered, *distance) = (0.0, inputs.distance);
-                axis.superimpose(&command, inputs.distance).map(Some)
-            })
-            .into();
-        if let Some(now) = execution.running().and_then(|id| axis.covered(id)) {
-            *covered = now;
+        let Self { execution, latched, covered } = self;
+        let mut report = execution.step(axis, inputs.execute, |axis| {
+            (*latched, *covered) = (Some(*inputs), 0.0);
+            axis.superimpose(&inputs.command(), inputs.distance).map(Some)
+        });
+        if let Some(id) = execution.running() {
+            if let Some(latched) = latched
+                && latched.continuous_update
+                && inputs.execute
+                && latched != inputs
+            {
+                *latched = *inputs;
+                if let Err(error) = axis.update_superimposed(id, &inputs.command(), inputs.distance) {
+                    report = execution.fail(error);
+                }
+            }
+            *covered = axis.covered(id).unwrap_or(*covered);
+        } else if report == Report::Done {
+            *covered = latched.map_or(0.0, |latched| latched.distance);
+        } else if report == Report::Idle {
+            *covered = 0.0;
         }
-        let covered_distance = if motion.done { *distance } else { *covered };
-        let is_idle = !(motion.done || motion.busy || motion.command_aborted || motion.error);
-        MoveSuperimposedOutputs { motion, covered_distance: if is_idle { 0.0 } else { covered_distance } }
+        let MotionOutputs { done, busy, command_aborted, error, error_id, .. } = report.into();
+        MoveSuperimposedOutputs { done, busy, command_aborted, error, error_id, covered_distance: *covered }
     }
 
     fn error(&self) -> Option<&BlockError> {
@@ -97,11 +125,11 @@ impl FunctionBlock for MoveSuperimposed {
 }
 
 impl Outputs for MoveSuperimposedOutputs {
-    const NAMES: &'static [&'static str] =
-        &["Done", "Busy", "Active", "CommandAborted", "Error", "ErrorID", "CoveredDistance"];
+    const NAMES: &'static [&'static str] = &["Done", "Busy", "CommandAborted", "Error", "ErrorID", "CoveredDistance"];
 
-    fn each(&self, mut record: impl FnMut(f64)) {
-        self.motion.each(&mut record);
-        record(self.covered_distance);
+    fn each(&self, record: impl FnMut(f64)) {
+        let Self { done, busy, command_aborted, error, error_id, covered_distance } = *self;
+        let flags = [done, busy, command_aborted, error].map(flag);
+        flags.into_iter().chain([number(error_id), covered_distance]).for_each(record);
     }
 }

@@ -1,10 +1,10 @@
 //! `MC_Halt` and `MC_Stop`: to rest.
-use super::execution::Execution;
+use super::execution::{Execution, Report};
 use super::motion::{MotionBlock, MotionInputs};
-use super::outputs::{FunctionBlock, MotionOutputs};
+use super::outputs::{FunctionBlock, MotionOutputs, Outputs, flag, number};
 use crate::axis::Axis;
 use crate::command::{BufferMode, Command, Dynamics, Goal};
-use crate::error::BlockError;
+use crate::error::{BlockError, ErrorId};
 use crate::ledger::CommandId;
 use crate::name::BlockName;
 use servobench_motion::Limits;
@@ -85,12 +85,44 @@ impl StopInputs {
     }
 }
 
+/// Outputs of [`Stop`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an output of the standard")]
+pub struct StopOutputs {
+    /// Done: the axis stands still.
+    pub done: bool,
+    /// Busy: it brakes.
+    pub busy: bool,
+    /// CommandAborted: the power was taken away.
+    pub command_aborted: bool,
+    /// Error.
+    pub error: bool,
+    /// ErrorID.
+    pub error_id: ErrorId,
+}
+
+impl From<Report> for StopOutputs {
+    fn from(report: Report) -> Self {
+        let MotionOutputs { done, busy, command_aborted, error, error_id, .. } = report.into();
+        Self { done, busy, command_aborted, error, error_id }
+    }
+}
+
+impl Outputs for StopOutputs {
+    const NAMES: &'static [&'static str] = &["Done", "Busy", "CommandAborted", "Error", "ErrorID"];
+
+    fn each(&self, record: impl FnMut(f64)) {
+        let Self { done, busy, command_aborted, error, error_id } = *self;
+        [done, busy, command_aborted, error].map(flag).into_iter().chain([number(error_id)]).for_each(record);
+    }
+}
+
 impl FunctionBlock for Stop {
     const NAME: BlockName = BlockName::Stop;
     type Inputs = StopInputs;
-    type Outputs = MotionOutputs;
+    type Outputs = StopOutputs;
 
-    fn step(&mut self, axis: &mut Axis, inputs: &StopInputs) -> MotionOutputs {
+    fn step(&mut self, axis: &mut Axis, inputs: &StopInputs) -> StopOutputs {
         let StopInputs { execute, deceleration, jerk, snap } = *inputs;
         if !execute && let Some(id) = self.holding.take() {
             axis.release_stop(id);

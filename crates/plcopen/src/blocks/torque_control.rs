@@ -2,7 +2,7 @@
 use super::execution::Report;
 use super::motion::{MotionBlock, MotionInputs};
 use super::outputs::{Outputs, flag, number};
-use crate::command::{BufferMode, Command, Dynamics, Goal};
+use crate::command::{BufferMode, Command, Direction, Dynamics, Goal};
 use crate::error::ErrorId;
 use crate::name::BlockName;
 use servobench_motion::Limits;
@@ -20,12 +20,14 @@ pub struct TorqueControlInputs {
     pub execute: bool,
     /// ContinuousUpdate.
     pub continuous_update: bool,
-    /// Torque (N·m or N), with its sign.
+    /// Torque (N·m or N); a sign counts in the direction.
     pub torque: f64,
     /// TorqueRamp (N·m/s or N/s); infinite for a step.
     pub torque_ramp: f64,
     /// Velocity (m/s or rad/s) that the axis may not exceed.
     pub velocity: f64,
+    /// Direction: positive, negative or current.
+    pub direction: Direction,
     /// BufferMode.
     pub buffer_mode: BufferMode,
 }
@@ -40,6 +42,7 @@ impl TorqueControlInputs {
             torque: 0.0,
             torque_ramp: f64::INFINITY,
             velocity: limits.velocity,
+            direction: Direction::Positive,
             buffer_mode: BufferMode::default(),
         }
     }
@@ -58,9 +61,9 @@ impl MotionInputs for TorqueControlInputs {
     }
 
     fn command(&self) -> Command {
-        let Self { torque: effort, torque_ramp: ramp, velocity, buffer_mode, .. } = *self;
+        let Self { torque: effort, torque_ramp: ramp, velocity, direction, buffer_mode, .. } = *self;
         let dynamics = Dynamics { velocity, ..Dynamics::braking(f64::INFINITY, None, None) };
-        Command { block: Self::NAME, goal: Goal::Effort { effort, ramp }, dynamics, buffer_mode }
+        Command { block: Self::NAME, goal: Goal::Effort { effort, ramp, direction }, dynamics, buffer_mode }
     }
 }
 

@@ -43,9 +43,9 @@ pub(crate) fn is_a_profile(block: BlockName) -> bool {
 /// One call of a new instance of `block` with Execute; its ErrorID.
 pub(crate) fn execute(bench: &mut Bench, block: BlockName) -> Result<(), ErrorId> {
     let (execute, half) = (true, 0.5 * LIMITS.velocity);
-    let limits = servobench_motion::Limits { acceleration: 2.0, jerk: 20.0, ..LIMITS };
+    let limits = servobench_motion::Limits { acceleration: 2.0, jerk: 20.0, snap: 500.0, ..LIMITS };
     match block {
-        BlockName::Home => call::<Home>(bench, &HomeInputs { execute, position: 1.5 }),
+        BlockName::Home => call::<Home>(bench, &HomeInputs { execute, position: 1.5, ..HomeInputs::default() }),
         BlockName::Stop => call::<Stop>(bench, &StopInputs { execute, ..StopInputs::within(&limits) }),
         BlockName::Halt => call::<Halt>(bench, &HaltInputs { execute, ..HaltInputs::within(&limits) }),
         BlockName::Reset => call::<Reset>(bench, &ResetInputs { execute }),

@@ -2,7 +2,7 @@
 use crate::bench::{Bench, LIMITS};
 use servobench_plcopen::{
     Axis, AxisState, BufferMode, ErrorId, FunctionBlock, Halt, HaltInputs, MotionOutputs, MoveAbsolute,
-    MoveAbsoluteInputs, MoveVelocity, MoveVelocityInputs, Stop, StopInputs,
+    MoveAbsoluteInputs, MoveVelocity, MoveVelocityInputs, Stop, StopInputs, StopOutputs,
 };
 
 fn to(execute: bool, position: f64) -> MoveAbsoluteInputs {
@@ -140,7 +140,10 @@ fn stop_holds_the_axis_until_execute_falls() {
     let mut done = None;
     for cycle in 0..600 {
         let (_, stopped) = bench.cycle(|axis| (go.step(axis, &run), stop.step(axis, &halted(true))));
-        exclusive(stopped);
+        assert_eq!(
+            [stopped.done, stopped.busy, stopped.command_aborted, stopped.error].map(usize::from).iter().sum::<usize>(),
+            1
+        );
         assert_eq!(bench.axis.state(), AxisState::Stopping);
         if stopped.done && done.is_none() {
             done = Some(cycle);
@@ -155,7 +158,7 @@ fn stop_holds_the_axis_until_execute_falls() {
         "MC_MoveVelocity: the state of the axis, Stopping, does not allow it: wait for Done of MC_Stop and let its \
          Execute fall"
     );
-    assert_eq!(bench.cycle(|axis| stop.step(axis, &halted(false))), MotionOutputs::default());
+    assert_eq!(bench.cycle(|axis| stop.step(axis, &halted(false))), StopOutputs::default());
     assert_eq!(bench.axis.state(), AxisState::Standstill);
 }
 

@@ -57,7 +57,14 @@ fn an_additive_move_counts_from_the_last_target() {
 fn a_superimposed_move_adds_its_distance_and_leaves_the_other_alone() {
     let mut bench = Bench::standstill();
     let (mut go, mut on_top) = (MoveAbsolute::default(), MoveSuperimposed::default());
-    let below = MoveAbsoluteInputs { velocity: 0.5, acceleration: 2.0, deceleration: 2.0, jerk: Some(20.0), ..to(1.0) };
+    let below = MoveAbsoluteInputs {
+        velocity: 0.5,
+        acceleration: 2.0,
+        deceleration: 2.0,
+        jerk: Some(20.0),
+        snap: Some(500.0),
+        ..to(1.0)
+    };
     let top = MoveSuperimposedInputs {
         execute: true,
         distance: 0.125,
@@ -65,6 +72,7 @@ fn a_superimposed_move_adds_its_distance_and_leaves_the_other_alone() {
         acceleration: 2.0,
         deceleration: 2.0,
         jerk: Some(20.0),
+        snap: Some(500.0),
         ..MoveSuperimposedInputs::within(&LIMITS)
     };
     let (mut below_done, mut top_done, mut highest) = (None, None, 0.0_f64);
@@ -73,9 +81,9 @@ fn a_superimposed_move_adds_its_distance_and_leaves_the_other_alone() {
             let below = go.step(axis, &below);
             (below, on_top.step(axis, &MoveSuperimposedInputs { execute: cycle >= 500, ..top }))
         });
-        assert!(!below.command_aborted && !below.error && !top.motion.error);
+        assert!(!below.command_aborted && !below.error && !top.error);
         below_done = below_done.or(below.done.then_some(cycle));
-        if top.motion.done && top_done.is_none() {
+        if top.done && top_done.is_none() {
             assert_eq!(top.covered_distance.to_bits(), 0.125_f64.to_bits());
             top_done = Some(cycle);
         }
@@ -92,7 +100,13 @@ fn an_abort_takes_the_superimposed_move_along() {
     let mut bench = Bench::standstill();
     let (mut go, mut on_top, mut other) =
         (MoveVelocity::default(), MoveSuperimposed::default(), MoveAbsolute::default());
-    let below = MoveVelocityInputs { acceleration: 2.0, deceleration: 2.0, jerk: Some(20.0), ..running(0.5) };
+    let below = MoveVelocityInputs {
+        acceleration: 2.0,
+        deceleration: 2.0,
+        jerk: Some(20.0),
+        snap: Some(500.0),
+        ..running(0.5)
+    };
     let top = MoveSuperimposedInputs {
         execute: true,
         distance: 0.5,
@@ -100,6 +114,7 @@ fn an_abort_takes_the_superimposed_move_along() {
         acceleration: 2.0,
         deceleration: 2.0,
         jerk: Some(20.0),
+        snap: Some(500.0),
         ..MoveSuperimposedInputs::within(&LIMITS)
     };
     for _ in 0..600 {
@@ -107,7 +122,7 @@ fn an_abort_takes_the_superimposed_move_along() {
     }
     bench.cycle(|axis| other.step(axis, &to(1.0)));
     let (below, top) = bench.cycle(|axis| (go.step(axis, &below), on_top.step(axis, &top)));
-    assert!(below.command_aborted && top.motion.command_aborted);
+    assert!(below.command_aborted && top.command_aborted);
     bench.until(AxisState::Standstill);
     at(&bench, 1.0);
 }
@@ -121,7 +136,7 @@ fn two_motions_together_may_not_exceed_the_axis() {
         go.step(axis, &to(1.0));
         on_top.step(axis, &top)
     });
-    assert_eq!(outputs.motion.error_id, ErrorId::SumAboveLimit);
+    assert_eq!(outputs.error_id, ErrorId::SumAboveLimit);
     assert_eq!(
         on_top.error().unwrap().to_string(),
         "MC_MoveSuperimposed: `Velocity` and that of the other motion must together be at most 1, the limit of the axis, \
@@ -203,7 +218,7 @@ fn homing_gives_the_reference_that_absolute_moves_need() {
         go.error().unwrap().to_string(),
         "MC_MoveAbsolute: `Position` 0.5 means nothing on an axis without a reference: execute MC_Home first"
     );
-    let homing = HomeInputs { execute: true, position: 2.0 };
+    let homing = HomeInputs { execute: true, position: 2.0, ..HomeInputs::default() };
     bench.feedback.homing = Homing::Attained;
     for _ in 0..10 {
         assert!(bench.cycle(|axis| home.step(axis, &homing)).active);
