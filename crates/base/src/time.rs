@@ -126,6 +126,15 @@ impl Rate {
 }
 
 impl Divider {
+    /// A task that turns every `ticks` base ticks; `None` for zero.
+    #[must_use]
+    pub const fn new(ticks: u32) -> Option<Self> {
+        match NonZeroU32::new(ticks) {
+            Some(ticks) => Some(Self(ticks)),
+            None => None,
+        }
+    }
+
     /// Base ticks per period.
     #[must_use]
     pub const fn ticks(self) -> u32 {

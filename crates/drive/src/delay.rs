@@ -13,8 +13,9 @@ pub const CAPACITY: usize = 30;
 pub struct Params {
     /// Whole task periods, rounded up.
     whole: usize,
-    /// What the rounding added (s).
+    /// What the rounding added (s), and as a share of a task period.
     rest: f64,
+    share: f64,
 }
 
 /// All that a snapshot must hold: the last set-points.
@@ -40,7 +41,15 @@ impl Params {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to CAPACITY")]
         let whole = if whole > 0.0 { whole as usize } else { 0 };
         let rest = (whole as f64 * period - delay).max(0.0);
-        Ok(Self { whole, rest })
+        Ok(Self { whole, rest, share: rest / period })
+    }
+}
+
+impl Params {
+    /// How long, in a task of the period `period` (s).
+    #[must_use]
+    pub fn length(&self, period: f64) -> f64 {
+        self.whole as f64 * period - self.rest
     }
 }
 
@@ -50,6 +59,32 @@ impl State {
     pub const fn new(start: Setpoint) -> Self {
         Self { kept: [start; CAPACITY + 2], newest: 0 }
     }
+}
+
+/// The last values of something that is no set-point and between two samples a line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Values {
+    kept: [f64; CAPACITY + 2],
+    /// Index of the newest.
+    newest: usize,
+}
+
+impl Values {
+    /// Filled with `start`.
+    #[must_use]
+    pub const fn new(start: f64) -> Self {
+        Self { kept: [start; CAPACITY + 2], newest: 0 }
+    }
+}
+
+/// Takes the value of this task tick and returns the one that is as old as `p` says.
+pub fn step_value(p: &Params, x: &mut Values, now: f64) -> f64 {
+    let size = x.kept.len();
+    x.newest = if x.newest + 1 == size { 0 } else { x.newest + 1 };
+    x.kept[x.newest] = now;
+    let ago = |periods: usize| x.kept[if x.newest >= periods { x.newest - periods } else { x.newest + size - periods }];
+    let earlier = ago(p.whole);
+    if p.share == 0.0 { earlier } else { earlier + p.share * (ago(p.whole - 1) - earlier) }
 }
 
 /// Takes the set-point of this task tick and returns the one that is as old as `p` says.
@@ -79,6 +114,20 @@ mod tests {
                     let exact = start.after(t - delay);
                     assert!((found.x - exact.x).abs() < 1e-14 && (found.v - exact.v).abs() < 1e-13, "{delay} {k}");
                 }
+            }
+        }
+    }
+
+    /// Oracle: a line is its own interpolation.
+    #[test]
+    fn a_value_is_as_late_as_a_set_point() {
+        let period = 1e-3;
+        for delay in [0.0, 0.25e-3, 1e-3, 2.6e-3, 30e-3] {
+            let (p, mut x) = (Params::new(delay, period).unwrap(), Values::new(0.0));
+            for k in 0..100 {
+                let t = f64::from(k) * period;
+                let found = step_value(&p, &mut x, 7.0 + 3.0 * t);
+                assert!(k < 31 || (found - (7.0 + 3.0 * (t - delay))).abs() < 1e-14, "{delay} {k}: {found}");
             }
         }
     }

@@ -34,6 +34,17 @@ pub struct Sensors {
     pub current: AlphaBeta,
 }
 
+impl Sensors {
+    /// Position of the encoder that closes the position loop, in its own coordinate.
+    #[must_use]
+    pub const fn closing_position(&self) -> f64 {
+        match self.feedback {
+            Feedback::Motor => self.motor_position,
+            Feedback::Load(position) => position,
+        }
+    }
+}
+
 /// What goes to the power stage from tick k on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Command {
@@ -79,6 +90,8 @@ pub struct Held {
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
     delay: delay::State,
+    /// Velocity offsets wait with the set-points that they belong to.
+    offset_delay: delay::Values,
     velocity: velocity::State,
     current: current::State,
     /// Velocity after the filter (motor coordinate).
@@ -100,6 +113,7 @@ impl State {
         p.check()?;
         Ok(Self {
             delay: delay::State::new(start),
+            offset_delay: delay::Values::new(0.0),
             velocity: velocity::State::default(),
             current: current::State::default(),
             filtered_velocity: 0.0,
@@ -110,6 +124,22 @@ impl State {
             current_turn: Countdown::default(),
             held: Held::default(),
         })
+    }
+
+    /// Velocity as the velocity loop sees it (axis coordinate).
+    #[must_use]
+    pub fn velocity(&self, p: &Params) -> f64 {
+        p.transmission * self.filtered_velocity
+    }
+
+    /// What the position loop would correct now: its reference less the position (axis coordinate).
+    #[must_use]
+    pub fn following_error(&self, p: &Params, sensors: &Sensors) -> f64 {
+        let (reference, motor_reference) = self.references(p);
+        match sensors.feedback {
+            Feedback::Load(position) => reference.x - position,
+            Feedback::Motor => motor_reference.position - p.transmission * sensors.motor_position,
+        }
     }
 
     /// What the loops said at their last turn.
@@ -164,9 +194,10 @@ fn take(p: &Params, x: &mut State, demand: &Demand, sensors: &Sensors) {
             if x.closed != Closed::Position {
                 x.close(Closed::Position);
                 x.delay = delay::State::new(setpoint);
+                x.offset_delay = delay::Values::new(velocity_offset);
             }
             position_loop(p, x, setpoint, sensors);
-            x.held.velocity_reference += velocity_offset;
+            x.held.velocity_reference += delay::step_value(&p.reference_delay, &mut x.offset_delay, velocity_offset);
             x.held.feedforward += effort_offset;
         }
         Demand::Velocity { setpoint, effort_offset } => {

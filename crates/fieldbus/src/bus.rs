@@ -92,6 +92,12 @@ impl<'a> Params<'a> {
         Ok(Self { cycle: cycle.ticks() as u64, delay: delay as usize, faults })
     }
 
+    /// The same bus, on which other things go wrong.
+    #[must_use]
+    pub const fn with_faults<'b>(&self, faults: &'b [BusFault]) -> Params<'b> {
+        Params { cycle: self.cycle, delay: self.delay, faults }
+    }
+
     fn faults_of(&self, cycle: u64) -> impl Iterator<Item = BusFaultKind> + '_ {
         self.faults.iter().filter(move |fault| fault.cycles.contains(&cycle)).map(|fault| fault.kind)
     }

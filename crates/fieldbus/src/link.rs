@@ -90,6 +90,8 @@ pub struct State {
     /// Since when the mode that is asked for has been (base ticks).
     mode_since: u64,
     limited: bool,
+    /// What is left of the last torque that went out, in thousandths of the rated one.
+    torque_rest: f64,
 }
 
 impl Default for State {
@@ -109,6 +111,7 @@ impl Default for State {
             commands: Commands::default(),
             mode_since: 0,
             limited: false,
+            torque_rest: 0.0,
         }
     }
 }

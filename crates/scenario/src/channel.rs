@@ -21,6 +21,9 @@ macro_rules! channels {
 
 // U is the unit of the axis, m or rad; E that of the motor's effort, N or N m; F that of an effort on the load.
 channels! {
+    "task.position" "U" "set-point of the motion task, before it goes over the bus",
+    "task.velocity" "U/s" "its velocity",
+    "bus.position" "U" "actual position as the master reads it",
     "setpoint.position" "U" "position of the set-point",
     "setpoint.velocity" "U/s" "its velocity",
     "setpoint.acceleration" "U/s²" "its acceleration",

@@ -1,6 +1,6 @@
 //! From a scenario and an engine to everything that the loop needs.
 
-mod firmware;
+pub(crate) mod firmware;
 mod objections;
 mod plant;
 
@@ -8,11 +8,12 @@ use crate::channels::{Amplifier, Equipment, Selection, WriterRates};
 use crate::disturbance::Disturbances;
 use crate::error::{BuildError, check_length};
 use crate::limit_watch::LimitWatch;
+use crate::network::Network;
 use crate::power::PowerStage;
 use crate::program::Program;
 use servobench_base::{Rate, Setpoint};
 use servobench_drive as drive;
-use servobench_plant::{Encoder, Engine, Mechanics};
+use servobench_plant::{Encoder, Engine, Mechanics, Switches};
 use servobench_scenario::{self as scenario, Actuator, Feedback, Scenario};
 use servobench_trace::{About, Event, Recorder};
 
@@ -25,7 +26,7 @@ const RECORDING_LIMIT: f64 = 4.0;
 pub struct Bench {
     pub(crate) base_rate: Rate,
     pub(crate) ticks: u64,
-    pub(crate) program: Program,
+    pub(crate) source: Source,
     pub(crate) control: Option<Control>,
     pub(crate) power: PowerStage,
     pub(crate) mechanics: Box<dyn Mechanics>,
@@ -40,6 +41,17 @@ pub struct Bench {
     pub(crate) record_every: u32,
     pub(crate) ticks_to_row: u32,
     pub(crate) watch: LimitWatch,
+    /// Limit and home switches, index pulse; and where the motor was at the last tick.
+    pub(crate) switches: Switches,
+    pub(crate) motor_before: f64,
+}
+
+/// Where the loops have their demand from.
+pub(crate) enum Source {
+    /// Every tick has its set-point.
+    Program(Box<Program>),
+    /// A motion task sends it over a fieldbus; the loops follow so long after it (s).
+    Network(Box<Network>, f64),
 }
 
 /// The firmware and the sensors it is wired to.
@@ -60,54 +72,36 @@ impl Bench {
         let base_rate = scenario.base_rate;
         let program = Program::new(scenario)?;
         let duration = scenario.duration.unwrap_or(program.end() + TAIL);
+        let bus = scenario.bus.as_ref();
         check_length(None, duration)?;
         let ticks = base_rate.tick_at(duration).0 + 1;
         let disturbances = Disturbances::new(&scenario.disturbances, base_rate, ticks)?;
 
         let (mechanics, bodies) = plant::mechanics(scenario, engine)?;
+        let motor_before = mechanics.bodies()[0].position;
         let power = plant::power_stage(&scenario.actuator, mechanics.bodies()[0].velocity)?;
         let control = match &scenario.actuator {
             Actuator::Prescribed | Actuator::Off => None,
             Actuator::Pmsm { motor, current, drive, .. } => {
                 let stage = firmware::current_stage(base_rate, current)?;
-                Some(Control::new(firmware::params(base_rate, drive, stage)?, motor.encoder, drive.position_feedback)?)
+                Some(Control::new(
+                    firmware::params(base_rate, drive, bus, stage)?,
+                    motor.encoder,
+                    drive.position_feedback,
+                )?)
             }
             Actuator::IdealSource { source, estimated_gain, drive } => {
                 let stage = drive::Stage::Direct { gain: *estimated_gain };
-                Some(Control::new(firmware::params(base_rate, drive, stage)?, source.encoder, drive.position_feedback)?)
+                Some(Control::new(
+                    firmware::params(base_rate, drive, bus, stage)?,
+                    source.encoder,
+                    drive.position_feedback,
+                )?)
             }
         };
 
-        let rotary = |motion| motion == scenario::Motion::Rotary;
-        let effort_unit = if rotary(scenario.axis.motor_motion) { "N m" } else { "N" };
-        let equipment = Equipment {
-            axis_unit: if rotary(scenario.axis.motion) { "rad" } else { "m" },
-            effort_unit,
-            load_effort_unit: if rotary(scenario.axis.motion) { "N m" } else { "N" },
-            disturbed: [scenario::DisturbedBody::Motor, scenario::DisturbedBody::Load]
-                .map(|body| scenario.disturbances.iter().any(|disturbance| disturbance.on == body)),
-            table: bodies.len() == 3,
-            amplifier: match &scenario.actuator {
-                Actuator::Prescribed | Actuator::Off => None,
-                Actuator::Pmsm { .. } => Some(Amplifier::Current),
-                Actuator::IdealSource { source, .. } => Some(Amplifier::Ideal {
-                    output_unit: match source.output {
-                        scenario::SourceOutput::Voltage => "V",
-                        scenario::SourceOutput::Effort => effort_unit,
-                    },
-                }),
-            },
-        };
-        let drive = scenario.actuator.drive();
-        let rates = WriterRates {
-            base: base_rate,
-            position: drive.map_or(base_rate, |drive| drive.position.rate),
-            velocity: drive.map_or(base_rate, |drive| drive.velocity.rate),
-            current: match &scenario.actuator {
-                Actuator::Pmsm { current, .. } => current.rate,
-                Actuator::Prescribed | Actuator::Off | Actuator::IdealSource { .. } => base_rate,
-            },
-        };
+        let equipment = equipment(scenario, bodies.len() == 3);
+        let rates = writer_rates(scenario);
         let selection = Selection::new(&scenario.record.channels, &equipment, &rates)?;
         let (rate, record_every) = recorded_rate(scenario, selection.specs.len(), ticks, duration)?;
         let rows = ticks.div_ceil(u64::from(record_every));
@@ -122,13 +116,23 @@ impl Bench {
         if record_every > 1 {
             recorder.note_event(thinned_event(rate, duration));
         }
-        for made in program.moves(equipment.axis_unit) {
-            recorder.note_move(made);
-        }
+        let source = match (bus, &control) {
+            (None, _) => {
+                for made in program.moves(equipment.axis_unit) {
+                    recorder.note_move(made);
+                }
+                Source::Program(Box::new(program))
+            }
+            (Some(_), None) => return Err(BuildError::NoDriveOnTheBus),
+            (Some(bus), Some(control)) => {
+                let (network, delays) = Network::new(scenario, bus, program, &control.params, &mut recorder)?;
+                Source::Network(Box::new(network), delays.sum() as f64 * base_rate.period())
+            }
+        };
         Ok(Self {
             base_rate,
             ticks,
-            program,
+            source,
             control,
             power,
             mechanics,
@@ -140,6 +144,8 @@ impl Bench {
             record_every,
             ticks_to_row: 0,
             watch: LimitWatch::default(),
+            switches: plant::switches(&scenario.axis.switches)?,
+            motor_before,
         })
     }
 }
@@ -153,6 +159,50 @@ impl Control {
             Feedback::Load(encoder) => Some(plant::encoder(encoder)?),
         };
         Ok(Self { params, state, motor_encoder: plant::encoder(motor)?, load_encoder })
+    }
+}
+
+/// Which channels the axis of `scenario` has; `table` is a body between motor and load.
+fn equipment(scenario: &Scenario, table: bool) -> Equipment {
+    let rotary = |motion| motion == scenario::Motion::Rotary;
+    let effort_unit = if rotary(scenario.axis.motor_motion) { "N m" } else { "N" };
+    Equipment {
+        axis_unit: if rotary(scenario.axis.motion) { "rad" } else { "m" },
+        effort_unit,
+        load_effort_unit: if rotary(scenario.axis.motion) { "N m" } else { "N" },
+        disturbed: [scenario::DisturbedBody::Motor, scenario::DisturbedBody::Load]
+            .map(|body| scenario.disturbances.iter().any(|disturbance| disturbance.on == body)),
+        table,
+        bus: scenario.bus.is_some(),
+        amplifier: match &scenario.actuator {
+            Actuator::Prescribed | Actuator::Off => None,
+            Actuator::Pmsm { .. } => Some(Amplifier::Current),
+            Actuator::IdealSource { source, .. } => Some(Amplifier::Ideal {
+                output_unit: match source.output {
+                    scenario::SourceOutput::Voltage => "V",
+                    scenario::SourceOutput::Effort => effort_unit,
+                },
+            }),
+        },
+    }
+}
+
+/// How often each writer renews its channels.
+fn writer_rates(scenario: &Scenario) -> WriterRates {
+    let base_rate = scenario.base_rate;
+    let drive = scenario.actuator.drive();
+    let every = |ticks: u32| Rate::new(base_rate.hertz() / ticks.max(1)).unwrap_or(base_rate);
+    let bus = scenario.bus.as_ref();
+    WriterRates {
+        base: base_rate,
+        task: bus.map_or(base_rate, |bus| every(bus.cycle.saturating_mul(bus.motion_every))),
+        bus: bus.map_or(base_rate, |bus| every(bus.cycle)),
+        position: drive.map_or(base_rate, |drive| drive.position.rate),
+        velocity: drive.map_or(base_rate, |drive| drive.velocity.rate),
+        current: match &scenario.actuator {
+            Actuator::Pmsm { current, .. } => current.rate,
+            Actuator::Prescribed | Actuator::Off | Actuator::IdealSource { .. } => base_rate,
+        },
     }
 }
 

@@ -22,6 +22,10 @@ pub(crate) struct Instant {
     pub(crate) current_reference: f64,
     pub(crate) voltage: servobench_base::Dq,
     pub(crate) output: f64,
+    /// Set-point of the motion task, before it goes over the bus.
+    pub(crate) task: Setpoint,
+    /// Actual position as the master reads it.
+    pub(crate) bus_position: f64,
     /// External efforts over the coming tick: on the motor in its own coordinate, on the load in the axis coordinate.
     pub(crate) motor_disturbance: f64,
     pub(crate) load_disturbance: f64,
@@ -43,6 +47,8 @@ pub(crate) struct Equipment {
     pub(crate) load_effort_unit: &'static str,
     /// Whether something disturbs the motor, and the load.
     pub(crate) disturbed: [bool; 2],
+    /// Whether there is a fieldbus between the motion task and the drive.
+    pub(crate) bus: bool,
     /// What the firmware commands; `None` without firmware.
     pub(crate) amplifier: Option<Amplifier>,
 }
@@ -63,9 +69,12 @@ pub(crate) struct WriterRates {
     pub(crate) position: Rate,
     pub(crate) velocity: Rate,
     pub(crate) current: Rate,
+    /// Of the motion task and of the bus.
+    pub(crate) task: Rate,
+    pub(crate) bus: Rate,
 }
 
-const COUNT: usize = 30;
+const COUNT: usize = 33;
 
 /// Every channel there is, in the order of [`row`].
 fn all(equipment: &Equipment, rates: &WriterRates) -> [(bool, ChannelSpec); COUNT] {
@@ -89,6 +98,9 @@ fn all(equipment: &Equipment, rates: &WriterRates) -> [(bool, ChannelSpec); COUN
     let disturbance =
         |there: bool, name: &str, unit: &str| channel(there, name, unit.into(), "disturbance", rates.base);
     [
+        channel(equipment.bus, "task.position", u.into(), "motion task", rates.task),
+        channel(equipment.bus, "task.velocity", per(u, ""), "motion task", rates.task),
+        channel(equipment.bus, "bus.position", u.into(), "fieldbus", rates.bus),
         setpoint("setpoint.position", u.into()),
         setpoint("setpoint.velocity", per(u, "")),
         setpoint("setpoint.acceleration", per(u, "²")),
@@ -132,6 +144,9 @@ fn all(equipment: &Equipment, rates: &WriterRates) -> [(bool, ChannelSpec); COUN
 fn row(now: &Instant) -> [f64; COUNT] {
     let Setpoint { x, v, a, j, s } = now.setpoint;
     [
+        now.task.x,
+        now.task.v,
+        now.bus_position,
         x,
         v,
         a,

@@ -1,5 +1,7 @@
 //! Why a run could not be built.
 use servobench_base::{ParamError, RateError};
+use servobench_cia402::units::UnitError;
+use servobench_fieldbus::FieldbusError;
 use servobench_motion::PlanError;
 use servobench_plant::MechanicsError;
 use servobench_scenario::LONGEST_RUN;
@@ -36,6 +38,15 @@ pub enum BuildError {
         /// How long that lasts (s).
         lasts: f64,
     },
+    /// A fieldbus without a drive at its end.
+    #[error("a fieldbus leads to a drive, and this motor has none: give the motor a drive, or leave `bus` out")]
+    NoDriveOnTheBus,
+    /// The units of the bus are none that a drive can count with.
+    #[error(transparent)]
+    Units(#[from] UnitError),
+    /// The link to the drive cannot be set up.
+    #[error(transparent)]
+    Link(#[from] FieldbusError),
     /// The engine refuses the mechanics.
     #[error(transparent)]
     Mechanics(#[from] MechanicsError),

@@ -7,6 +7,7 @@ mod channels;
 mod disturbance;
 mod error;
 mod limit_watch;
+mod network;
 mod power;
 mod program;
 mod run;

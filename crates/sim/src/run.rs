@@ -1,7 +1,8 @@
 //! The closed loop, in execution order.
-use crate::bench::Bench;
+use crate::bench::{Bench, Control, Source};
 use crate::channels::Instant;
 use crate::limit_watch::PerLimit;
+use crate::network::Seen;
 use servobench_base::Tick;
 use servobench_drive::velocity::Cut;
 use servobench_drive::{self as drive, Command, Demand, Feedback, Sensors};
@@ -50,8 +51,7 @@ impl Bench {
             t = self.base_rate.time(Tick(k));
 
             let (mut now, motor) = self.sample();
-            now.setpoint = self.program.at(t);
-            let command = self.control(motor, &mut now);
+            let command = self.control(k, t, motor, &mut now);
             // The mean effort over the coming tick belongs into the row of this one; the current is the one at k.
             now.current = self.power.current();
             now.output = self.power.output(command);
@@ -73,6 +73,10 @@ impl Bench {
             }
         }
         self.watch.finish(t, &mut self.recorder);
+        if let Source::Network(network, delay) = &self.source {
+            let unit = self.recorder.about().axis_unit.clone();
+            network.finish(&unit, *delay, &mut self.recorder);
+        }
         progress(1.0);
         Outcome { recording: self.recorder.finish(), failure }
     }
@@ -88,9 +92,13 @@ impl Bench {
         (Instant { motor, table, load, ..Instant::default() }, own)
     }
 
-    /// control(k): the firmware sees its sensors and the set-point. `motor` is in the motor's own coordinate.
-    fn control(&mut self, motor: BodyState, now: &mut Instant) -> Command {
+    /// set-point(k) and control(k): the firmware sees its sensors and what it is to do. `motor` is in the motor's own
+    /// coordinate.
+    fn control(&mut self, k: u64, t: f64, motor: BodyState, now: &mut Instant) -> Command {
         let Some(control) = &mut self.control else {
+            if let Source::Program(program) = &mut self.source {
+                now.setpoint = program.at(t);
+            }
             now.reference = now.setpoint.x;
             now.motor_reference = now.setpoint.x;
             return Command::Output(0.0);
@@ -105,10 +113,37 @@ impl Bench {
             },
             current: self.power.measured_current(motor),
         };
-        let command = drive::step(&control.params, &mut control.state, &Demand::position(now.setpoint), &sensors);
-        let (held, (reference, motor_reference)) = (control.state.held(), control.state.references(&control.params));
-        now.reference = reference.x;
-        now.motor_reference = motor_reference.position;
+        let Control { params, state, .. } = control;
+        let command = match &mut self.source {
+            Source::Program(program) => {
+                now.setpoint = program.at(t);
+                let command = drive::step(params, state, &Demand::position(now.setpoint), &sensors);
+                let (reference, motor_reference) = state.references(params);
+                (now.reference, now.motor_reference) = (reference.x, motor_reference.position);
+                command
+            }
+            Source::Network(network, _) => {
+                let seen = Seen {
+                    position: sensors.closing_position(),
+                    velocity: state.velocity(params),
+                    effort: state.held().effort.effort,
+                    effort_is_cut: state.held().effort.cut.is_some(),
+                    following_error: state.following_error(params, &sensors),
+                    switches: self.switches.read(now.load.position, self.motor_before, motor.position),
+                };
+                self.motor_before = motor.position;
+                let demand = network.step(k, t, &seen, &mut self.recorder);
+                let command = drive::step(params, state, demand, &sensors);
+                now.setpoint = network.setpoint(now.motor.position);
+                (now.task, now.bus_position) = network.told();
+                (now.reference, now.motor_reference) = match network.reference(t) {
+                    Some((reference, motor)) => (reference.x, motor.position),
+                    None => (now.load.position, now.motor.position),
+                };
+                command
+            }
+        };
+        let held = state.held();
         now.velocity_reference = held.velocity_reference;
         now.effort_reference = held.effort.effort;
         now.current_reference = held.current_reference;

@@ -50,6 +50,12 @@ impl Recorder {
         self.block.clear();
     }
 
+    /// What the recording is of.
+    #[must_use]
+    pub const fn about(&self) -> &About {
+        &self.recording.about
+    }
+
     /// Notes a move.
     pub fn note_move(&mut self, made: Move) {
         self.recording.moves.push(made);

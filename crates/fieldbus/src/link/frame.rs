@@ -1,4 +1,7 @@
 //! What goes out: the frame for the drive.
+//!
+//! Torques are whole thousandths of the rated one (6071h, 60B2h), often coarser than what a model of the axis feeds forward. What
+//! is rounded off one goes into the next, so that their mean is exact: the axis integrates them twice and hardly sees the steps.
 use super::effort::Ramp;
 use super::position::Position;
 use super::stream::Post;
@@ -64,19 +67,22 @@ impl State {
         let interpolate::Command { setpoint, torque } = *self.stream.output();
         let offset = |wanted: bool, value: f64| if wanted { value } else { 0.0 };
         let target = p.scale.counts(setpoint.x).map(|counts| p.scale.target(counts));
+        let rest = &mut self.torque_rest;
         let mut sent = Sent { commands: &mut self.commands, complete: true };
         sent.set(target, |commands| &mut commands.target_position);
         match p.settings.control {
             Control::Position { velocity_offset, torque_offset } => {
                 let (v, torque) = (offset(velocity_offset, setpoint.v), offset(torque_offset, torque));
                 sent.set(p.scale.drive_velocity(v), |commands| &mut commands.velocity_offset);
-                sent.set(p.scale.thousandths(torque), |commands| &mut commands.torque_offset);
+                sent.set(p.scale.thousandths_with(torque, rest), |commands| &mut commands.torque_offset);
             }
             Control::Velocity { gain, feedforward, limit, torque_offset } => {
                 let v = gain * (setpoint.x - actual) + feedforward * setpoint.v;
                 self.limited |= v.abs() > limit;
                 sent.set(p.scale.drive_velocity(v.clamp(-limit, limit)), |commands| &mut commands.target_velocity);
-                sent.set(p.scale.thousandths(offset(torque_offset, torque)), |commands| &mut commands.torque_offset);
+                sent.set(p.scale.thousandths_with(offset(torque_offset, torque), rest), |commands| {
+                    &mut commands.torque_offset
+                });
             }
         }
         if !sent.complete {
@@ -92,6 +98,7 @@ impl State {
         }
         (commands.target_velocity, commands.target_torque) = (0, 0);
         (commands.velocity_offset, commands.torque_offset) = (0, 0);
+        self.torque_rest = 0.0;
     }
 
     pub(super) fn push(&mut self, p: &Params, post: Post, now: u64) {
@@ -100,9 +107,11 @@ impl State {
             Post::Nothing | Post::Torn => None,
         };
         let effort = self.ramp.step(&p.stream.timing, effort, now);
+        let mut left = self.torque_rest;
         self.rest(p);
         // Between efforts that fit.
-        self.commands.target_torque = p.scale.thousandths(effort).unwrap_or(0);
+        self.commands.target_torque = p.scale.thousandths_with(effort, &mut left).unwrap_or(0);
+        self.torque_rest = left;
     }
 
     pub(super) fn home(&mut self, p: &Params, position: f64, follows: bool, now: u64) {

@@ -116,7 +116,16 @@ impl Scale {
     }
 
     pub(crate) fn thousandths(&self, effort: f64) -> Option<i16> {
-        whole(self.thousandths * effort, i16::MAX.into()).and_then(|torque| i16::try_from(torque).ok())
+        self.thousandths_with(effort, &mut 0.0)
+    }
+
+    /// The thousandths for `effort` and for what was left when the last one was rounded, `rest` (thousandths), which is then
+    /// what is left of this one: their mean is the effort, however coarse they are.
+    pub(crate) fn thousandths_with(&self, effort: f64, rest: &mut f64) -> Option<i16> {
+        let exact = self.thousandths * effort + *rest;
+        let torque = whole(exact, i16::MAX.into()).and_then(|torque| i16::try_from(torque).ok())?;
+        *rest = exact - f64::from(torque);
+        Some(torque)
     }
 
     pub(crate) fn effort(&self, thousandths: i16) -> f64 {

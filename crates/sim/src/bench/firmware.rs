@@ -4,27 +4,15 @@ use servobench_base::{Dq, Rate};
 use servobench_drive::{self as drive, current, delay, feedforward, velocity};
 use servobench_scenario as scenario;
 
-/// Parameters of the firmware that is set as `drive` says and commands `stage`.
+/// Parameters of the firmware that is set as `drive` says, hears its set-points over `bus` and commands `stage`.
 pub(super) fn params(
     base_rate: Rate,
     drive: &scenario::Drive,
+    bus: Option<&scenario::Bus>,
     stage: drive::Stage,
 ) -> Result<drive::Params, BuildError> {
     let estimate = &drive.estimate;
-    let model = match drive.feedforward.effort {
-        scenario::EffortFeedforward::Off => feedforward::Model::Off,
-        scenario::EffortFeedforward::Rigid => feedforward::Model::Rigid {
-            inertia: estimate.motor_inertia + estimate.load_inertia,
-            viscous: estimate.motor_viscous + estimate.load_viscous,
-        },
-        scenario::EffortFeedforward::TwoMass => feedforward::Model::TwoMass {
-            motor_inertia: estimate.motor_inertia,
-            load_inertia: estimate.load_inertia,
-            stiffness: estimate.stiffness,
-            motor_viscous: estimate.motor_viscous,
-            load_viscous: estimate.load_viscous,
-        },
-    };
+    let model = model(estimate, drive.feedforward.effort);
     let friction = |value: f64| if drive.feedforward.friction { value } else { 0.0 };
     let mut params = drive::Params {
         base_rate,
@@ -47,11 +35,30 @@ pub(super) fn params(
         reference_delay: delay::Params::default(),
         stage,
     };
-    // Without effort feedforward there is nothing to wait for.
-    let path = if model == feedforward::Model::Off { 0.0 } else { params.effort_path_delay() };
+    // Without effort feedforward, the drive's own or the master's, there is nothing to wait for.
+    let sent = bus.is_some_and(|bus| bus.effort_offset != scenario::EffortFeedforward::Off);
+    let path = if model == feedforward::Model::Off && !sent { 0.0 } else { params.effort_path_delay() };
     let delay = drive.feedforward.delay.unwrap_or(path);
     params.reference_delay = delay::Params::new(delay, params.period(params.position_every))?;
     Ok(params)
+}
+
+/// The model of an axis of which `estimate` is known.
+pub(crate) fn model(estimate: &scenario::Estimate, effort: scenario::EffortFeedforward) -> feedforward::Model {
+    match effort {
+        scenario::EffortFeedforward::Off => feedforward::Model::Off,
+        scenario::EffortFeedforward::Rigid => feedforward::Model::Rigid {
+            inertia: estimate.motor_inertia + estimate.load_inertia,
+            viscous: estimate.motor_viscous + estimate.load_viscous,
+        },
+        scenario::EffortFeedforward::TwoMass => feedforward::Model::TwoMass {
+            motor_inertia: estimate.motor_inertia,
+            load_inertia: estimate.load_inertia,
+            stiffness: estimate.stiffness,
+            motor_viscous: estimate.motor_viscous,
+            load_viscous: estimate.load_viscous,
+        },
+    }
 }
 
 /// The current loop of a synchronous motor.

@@ -2,7 +2,7 @@
 use crate::error::BuildError;
 use crate::power::PowerStage;
 use servobench_base::{Dq, Rotation};
-use servobench_plant::{self as plant, BodyState, Chain, Encoder, Engine, Mechanics, MechanicsSetup, pmsm};
+use servobench_plant::{self as plant, BodyState, Chain, Encoder, Engine, Mechanics, MechanicsSetup, Switches, pmsm};
 use servobench_scenario::{self as scenario, Actuator, Scenario};
 
 /// The mechanics at tick 0 and the names of its bodies.
@@ -78,6 +78,13 @@ pub(super) fn encoder(encoder: scenario::Encoder) -> Result<Encoder, BuildError>
     let encoder = Encoder { increment: encoder.resolution };
     encoder.check()?;
     Ok(encoder)
+}
+
+pub(super) fn switches(switches: &scenario::Switches) -> Result<Switches, BuildError> {
+    let scenario::Switches { negative, positive, home, index } = *switches;
+    let switches = Switches { negative, positive, home: home.map(|home| home.from..=home.to), index };
+    switches.check()?;
+    Ok(switches)
 }
 
 /// What turns the drive's command into effort, with the motor at `speed` (its own coordinate, per second).

@@ -1,0 +1,177 @@
+//! A motion task, a fieldbus and the door of a drive (CiA 402) in front of the loops.
+//!
+//! ```text
+//! motion task → mailbox → link → frame → bus → drive → demand for the loops
+//!      ↑                   ↑ ←── frame ←── bus ←── ┘
+//!      └──── feedback ─────┘
+//! ```
+//!
+//! At a base tick, in this order: in a cycle of the bus the answer of the drive's last step goes to the master, the motion task
+//! turns, when it is due, and the link makes the next frame; then the drive steps, when its position loop turns, with the frame
+//! that has arrived. Either way takes the delay of the bus.
+mod build;
+mod moves;
+mod reference;
+mod signals;
+mod units;
+
+use moves::Moves;
+use reference::DelayedReference;
+use servobench_base::{Countdown, Divider, Setpoint, Tick};
+use servobench_cia402::Commands;
+use servobench_drive::{Demand, device, feedforward};
+use servobench_fieldbus::bus::{self, BusFault};
+use servobench_fieldbus::link::{self, Mailbox};
+use servobench_motion::interpolate::Sample;
+use servobench_plant::SwitchReading;
+use servobench_trace::Recorder;
+use signals::Signals;
+
+/// From the motion task to the door of the drive.
+#[derive(Debug)]
+pub(crate) struct Network {
+    task: Moves,
+    /// Model of the axis that the motion task feeds forward with.
+    model: feedforward::Params,
+    /// Axis coordinate per motor coordinate, as the master knows it.
+    transmission: f64,
+    mailbox: Mailbox,
+    link: (link::Params, link::State),
+    drive: (device::Params, device::State),
+    bus: (bus::Params<'static>, bus::State),
+    faults: Vec<BusFault>,
+    /// Cycle of the motion task (bus cycles).
+    motion_every: u64,
+    drive_every: Divider,
+    drive_turn: Countdown,
+    /// What has arrived at the drive since its last step.
+    frame: Option<Commands>,
+    demand: Demand,
+    reference: DelayedReference,
+    /// The set-point of the motion task's last cycle.
+    asked: Setpoint,
+    bus_position: f64,
+    /// Length of an increment of the encoder that closes the position loop (its own coordinate).
+    increment: f64,
+    /// The same per axis coordinate, for the index pulse of the motor.
+    index_increment: f64,
+    /// Where the last index pulse was since the drive's last step.
+    index: Option<i64>,
+    tick: f64,
+    signals: Signals,
+}
+
+/// What the drive's sensors say at a tick.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Seen {
+    /// Reading of the encoder that closes the position loop (its own coordinate).
+    pub(crate) position: f64,
+    /// Velocity as the velocity loop sees it (axis coordinate).
+    pub(crate) velocity: f64,
+    /// Effort that the loops ask for (motor coordinate).
+    pub(crate) effort: f64,
+    /// Whether a limit cut it.
+    pub(crate) effort_is_cut: bool,
+    /// Reference less position, as the position loop saw them (axis coordinate).
+    pub(crate) following_error: f64,
+    /// The switches.
+    pub(crate) switches: SwitchReading,
+}
+
+impl Network {
+    /// Goes through base tick `k`, at `t` (s), and returns what the loops are to do.
+    pub(crate) fn step(&mut self, k: u64, t: f64, seen: &Seen, recorder: &mut Recorder) -> &Demand {
+        if let Some(pulse) = seen.switches.index {
+            self.index = Some(counts(pulse / self.index_increment));
+        }
+        let (params, state) = &mut self.bus;
+        if let Some(cycle) = bus::step(&params.with_faults(&self.faults), state, Tick(k)) {
+            self.step_bus(&cycle, t, recorder);
+        }
+        if self.drive_turn.is_due(self.drive_every) {
+            self.step_drive(t, seen, recorder);
+        }
+        &self.demand
+    }
+
+    fn step_drive(&mut self, t: f64, seen: &Seen, recorder: &mut Recorder) {
+        let (params, state) = &mut self.drive;
+        let frame = self.frame.take();
+        let measured = device::Measured {
+            increments: counts(seen.position / self.increment),
+            velocity: seen.velocity,
+            effort: seen.effort,
+            following_error: seen.following_error,
+            effort_is_cut: seen.effort_is_cut,
+            negative_limit: seen.switches.negative,
+            positive_limit: seen.switches.positive,
+            home: seen.switches.home,
+            index: self.index.take(),
+        };
+        let inputs = device::Inputs { frame: frame.as_ref(), measured, fault: None, main_voltage: true };
+        self.demand = device::step(params, state, &inputs).demand;
+        self.signals.of_drive(t, state, recorder);
+    }
+
+    fn step_bus(&mut self, cycle: &bus::Cycle, t: f64, recorder: &mut Recorder) {
+        let (params, state) = &mut self.link;
+        let (wire, frames) = &mut self.bus;
+        let actuals = frames.to_master(wire, cycle, self.drive.1.actuals(&self.drive.0));
+        if cycle.number.is_multiple_of(self.motion_every) && !cycle.master_stopped {
+            let (command, setpoint) = self.task.cycle(&state.feedback(params), |setpoint| {
+                let motor = self.model.motor_reference(setpoint);
+                let torque = self.transmission * self.model.effort(setpoint);
+                Sample { x: motor.position, v: motor.velocity, a: setpoint.a, torque }
+            });
+            self.asked = setpoint;
+            self.reference.push(t, setpoint);
+            self.mailbox.write(cycle.due, command);
+        }
+        let input =
+            link::Input { tick: cycle.due, mailbox: &self.mailbox, actuals, external_fault: cycle.external_fault };
+        let commands = link::step(params, state, input);
+        self.bus_position = state.feedback(params).position;
+        if let Some(arrived) = frames.to_drive(wire, cycle, commands) {
+            self.frame = Some(arrived);
+        }
+        self.signals.of_link(t, state, recorder);
+    }
+
+    /// The set-point that the loops follow, so long after the drive's last step.
+    pub(crate) fn setpoint(&self, position: f64) -> Setpoint {
+        let since = f64::from(self.drive_turn.since(self.drive_every)) * self.tick;
+        match self.demand {
+            Demand::Position { setpoint, .. } => setpoint.after(since),
+            Demand::Velocity { setpoint, .. } => {
+                Setpoint { x: position, v: setpoint.v + since * setpoint.a, ..setpoint }
+            }
+            Demand::Off | Demand::Effort(_) => Setpoint::at_rest(position),
+        }
+    }
+
+    /// Where the motion task wanted the load and the motor, as much later as the way to the loops takes; `None` where nothing
+    /// is to be followed.
+    pub(crate) fn reference(&mut self, t: f64) -> Option<(Setpoint, feedforward::MotorReference)> {
+        let followed = matches!(self.demand, Demand::Position { .. } | Demand::Velocity { .. });
+        let reference = self.reference.at(t)?;
+        followed.then(|| (reference, self.model.motor_reference(reference)))
+    }
+
+    /// The set-point of the motion task, and the actual position as the master reads it.
+    pub(crate) const fn told(&self) -> (Setpoint, f64) {
+        (self.asked, self.bus_position)
+    }
+
+    /// Notes what is known at the end only.
+    pub(crate) fn finish(&self, unit: &str, delay: f64, recorder: &mut Recorder) {
+        for made in self.task.moves(unit, delay) {
+            recorder.note_move(made);
+        }
+    }
+}
+
+/// The nearest whole number of increments.
+#[expect(clippy::cast_possible_truncation, reason = "saturates, far beyond any axis")]
+fn counts(increments: f64) -> i64 {
+    libm::round(increments) as i64
+}

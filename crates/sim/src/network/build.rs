@@ -1,0 +1,266 @@
+//! From a scenario to the network.
+use super::Network;
+use super::moves::Moves;
+use super::reference::DelayedReference;
+use super::signals::Signals;
+use super::units::{Counted, units};
+use crate::error::BuildError;
+use crate::program::Program;
+use servobench_base::{Countdown, Divider, ParamError, Setpoint};
+use servobench_cia402::counter::Counter;
+use servobench_drive::{self as drive, Demand, device, feedforward};
+use servobench_fieldbus::bus::{self, BusFault, BusFaultKind};
+use servobench_fieldbus::link::{self, Mailbox};
+use servobench_motion::Limits;
+use servobench_motion::interpolate::Mode;
+use servobench_scenario::{self as scenario, Bus, DriveInterpolation, Feedback, InterpolationMode, Scenario};
+use servobench_trace::Recorder;
+
+/// Cycles that the bus lets the drive miss before it gives up.
+const BRIDGED: u32 = 2;
+/// How much faster than any move of the program an axis may become.
+const RESERVE: f64 = 2.0;
+
+/// How long a set-point is under way (base ticks).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Delays {
+    /// In the link.
+    pub(crate) link: u64,
+    /// From a cycle of the bus until its frame is at the drive.
+    pub(crate) frame: u64,
+    /// In the drive, from the arrival of a frame until its target is reached.
+    pub(crate) drive: u64,
+}
+
+impl Delays {
+    pub(crate) const fn sum(self) -> u64 {
+        self.link + self.frame + self.drive
+    }
+}
+
+/// What an axis is to be capable of: the most of all its moves.
+#[derive(Debug, Clone, Copy)]
+struct Dynamics {
+    velocity: f64,
+    acceleration: f64,
+    jerk: f64,
+}
+
+impl Network {
+    /// The network of `scenario` in front of `loops`, and how much later than the motion task the loops are.
+    ///
+    /// # Errors
+    /// [`BuildError`] says which part of the scenario cannot be built.
+    pub(crate) fn new(
+        scenario: &Scenario,
+        bus: &Bus,
+        program: Program,
+        loops: &drive::Params,
+        recorder: &mut Recorder,
+    ) -> Result<(Self, Delays), BuildError> {
+        let base_rate = scenario.base_rate;
+        let tick = base_rate.period();
+        let bus_every = divider("bus.cycle", bus.cycle)?;
+        let motion_cycle = divider("bus.motion_cycle", bus.cycle.saturating_mul(bus.motion_every))?;
+        let drive_every = loops.position_every;
+        if !bus_every.is_multiple_of(drive_every) {
+            let bound = "a whole number of periods of the position loop";
+            return Err(ParamError { name: "bus.cycle", value: f64::from(bus.cycle) * tick, bound }.into());
+        }
+        let dynamics = dynamics(&program);
+
+        let rated_effort = rated_effort(scenario);
+        let counted = counted(scenario, loops)?;
+        let (units, increment) = units(&counted, scenario.axis.motion, bus.units, rated_effort)?;
+        let device = device_params(bus, loops, units, bus.cycle / drive_every.ticks(), &dynamics);
+        let drive = (device, device::State::new(&device)?);
+
+        let model = master_model(bus, loops, scenario);
+        let frame_delay = u64::from(bus.delay) * u64::from(bus.cycle);
+        let settings = link::Settings {
+            base_rate,
+            bus_cycle: bus_every,
+            motion_cycle,
+            interpolation: interpolation(bus.interpolation),
+            margin: 0,
+            control: control(bus, &dynamics),
+            sequencing: match bus.sequencing {
+                scenario::Sequencing::Strict => link::Sequencing::Strict,
+                scenario::Sequencing::Simplified => link::Sequencing::Simplified,
+            },
+            drive_timeout: base_rate.tick_at(bus.drive_timeout).0,
+            round_trip: 2 * bus.delay + 1,
+            reverse_switches: bus.reverse_switches,
+            units: link::Units {
+                drive_units: bus.units.drive.into(),
+                axis_units: bus.units.axis,
+                velocity_factor: 1.0,
+                rated_effort,
+                counter: if bus.counter.signed { Counter::signed } else { Counter::unsigned }(bus.counter.bits)?,
+            },
+            velocity_from_differences: bus.velocity_from_differences,
+            recovery: Limits {
+                velocity: dynamics.velocity,
+                acceleration: dynamics.acceleration,
+                jerk: dynamics.jerk,
+                snap: f64::INFINITY,
+            },
+            velocity_limit: RESERVE * dynamics.velocity,
+        };
+        let link = link::Params::new(settings)?;
+        let steps = match device.interpolation {
+            Mode::CubicBSpline => 2,
+            _ => 1,
+        };
+        let delays = Delays {
+            link: link.delay(),
+            frame: frame_delay,
+            drive: u64::from(device.cycle.shift * drive_every.ticks()) + steps * u64::from(bus.cycle),
+        };
+        let period = f64::from(motion_cycle.ticks()) * tick;
+        let delay = delays.sum() as f64 * tick + loops.reference_delay.length(loops.period(drive_every));
+        let network = Self {
+            task: Moves::new(program, period),
+            model,
+            transmission: loops.transmission,
+            mailbox: Mailbox::default(),
+            link: (link, link::State::default()),
+            drive,
+            bus: (bus::Params::new(bus_every, bus.delay, &[])?, bus::State::default()),
+            faults: bus.faults.iter().map(fault).collect(),
+            motion_every: bus.motion_every.into(),
+            drive_every,
+            drive_turn: Countdown::default(),
+            frame: None,
+            demand: Demand::Off,
+            reference: DelayedReference::new(period, delay),
+            asked: Setpoint::default(),
+            bus_position: 0.0,
+            increment,
+            index_increment: index_increment(&counted, increment, loops),
+            index: None,
+            tick,
+            signals: Signals::new(recorder),
+        };
+        Ok((network, delays))
+    }
+}
+
+fn fault(fault: &scenario::BusFault) -> BusFault {
+    let kind = match fault.kind {
+        scenario::BusFaultKind::Lost => BusFaultKind::Lost,
+        scenario::BusFaultKind::Late { by } => BusFaultKind::Late { by },
+        scenario::BusFaultKind::Jitter { by, seed } => BusFaultKind::Jitter { by, seed },
+        scenario::BusFaultKind::MasterStopped => BusFaultKind::MasterStopped,
+        scenario::BusFaultKind::DriveSilent => BusFaultKind::DriveSilent,
+        scenario::BusFaultKind::ExternalFault => BusFaultKind::ExternalFault,
+    };
+    BusFault { kind, cycles: fault.cycles.clone() }
+}
+
+fn divider(name: &'static str, ticks: u32) -> Result<Divider, ParamError> {
+    Divider::new(ticks).ok_or(ParamError { name, value: f64::from(ticks), bound: "a base tick at least" })
+}
+
+/// The most of every move, with a jerk where no move has one: the acceleration within 10 ms.
+fn dynamics(program: &Program) -> Dynamics {
+    let most = |k: usize, otherwise: f64| {
+        let peaks = program.moves("").map(|made| made.peaks[k]).filter(|peak| peak.is_finite() && *peak > 0.0);
+        let most = peaks.fold(0.0, f64::max);
+        if most > 0.0 { most } else { otherwise }
+    };
+    let velocity = most(0, 1.0);
+    let acceleration = most(1, 10.0 * velocity);
+    Dynamics { velocity, acceleration, jerk: most(2, 100.0 * acceleration) }
+}
+
+/// What a thousand of 6071h stands for: the largest effort of the drive, or one unit where it has no limit.
+fn rated_effort(scenario: &Scenario) -> f64 {
+    let most = scenario.actuator.max_effort();
+    if most.is_finite() { most } else { 1.0 }
+}
+
+fn counted(scenario: &Scenario, loops: &drive::Params) -> Result<Counted, BuildError> {
+    let feedback = scenario.actuator.drive().map_or(Feedback::Motor, |drive| drive.position_feedback);
+    Ok(match (feedback, &scenario.actuator) {
+        (Feedback::Load(encoder), _) => {
+            Counted { motion: scenario.axis.motion, increment: encoder.resolution, transmission: 1.0 }
+        }
+        (Feedback::Motor, scenario::Actuator::Pmsm { motor, .. }) => Counted {
+            motion: scenario.axis.motor_motion,
+            increment: motor.encoder.resolution,
+            transmission: loops.transmission,
+        },
+        (Feedback::Motor, scenario::Actuator::IdealSource { source, .. }) => Counted {
+            motion: scenario.axis.motor_motion,
+            increment: source.encoder.resolution,
+            transmission: loops.transmission,
+        },
+        (Feedback::Motor, scenario::Actuator::Prescribed | scenario::Actuator::Off) => {
+            return Err(BuildError::NoDriveOnTheBus);
+        }
+    })
+}
+
+/// Length of an increment of the position loop's encoder in the motor's coordinate.
+fn index_increment(counted: &Counted, increment: f64, loops: &drive::Params) -> f64 {
+    increment * counted.transmission / loops.transmission
+}
+
+fn device_params(
+    bus: &Bus,
+    loops: &drive::Params,
+    units: device::Units,
+    steps: u32,
+    dynamics: &Dynamics,
+) -> device::Params {
+    device::Params {
+        period: loops.period(loops.position_every),
+        cycle: device::CycleParams { steps, shift: 0, bridged: BRIDGED },
+        interpolation: match bus.drive_interpolation {
+            DriveInterpolation::Linear => Mode::Linear,
+            DriveInterpolation::Cubic => Mode::Cubic,
+        },
+        units,
+        profile: device::Profile {
+            velocity: dynamics.velocity,
+            acceleration: dynamics.acceleration,
+            deceleration: dynamics.acceleration,
+            quick_stop_deceleration: RESERVE * dynamics.acceleration,
+            ..device::Params::default().profile
+        },
+        ..device::Params::default()
+    }
+}
+
+/// What the motion task knows of the axis: the estimate of the drive, for the model that the torque offset carries.
+fn master_model(bus: &Bus, loops: &drive::Params, scenario: &Scenario) -> feedforward::Params {
+    let model =
+        scenario.actuator.drive().map(|drive| crate::bench::firmware::model(&drive.estimate, bus.effort_offset));
+    feedforward::Params { model: model.unwrap_or(feedforward::Model::Off), ..loops.feedforward }
+}
+
+fn control(bus: &Bus, dynamics: &Dynamics) -> link::Control {
+    let torque_offset = bus.effort_offset != scenario::EffortFeedforward::Off;
+    match bus.position_gain {
+        Some(gain) => link::Control::Velocity {
+            gain,
+            feedforward: f64::from(u8::from(bus.velocity_offset)),
+            limit: RESERVE * dynamics.velocity,
+            torque_offset,
+        },
+        None => link::Control::Position { velocity_offset: bus.velocity_offset, torque_offset },
+    }
+}
+
+const fn interpolation(mode: InterpolationMode) -> Mode {
+    match mode {
+        InterpolationMode::Linear => Mode::Linear,
+        InterpolationMode::Cubic => Mode::Cubic,
+        InterpolationMode::Quintic => Mode::Quintic,
+        InterpolationMode::CubicBSpline => Mode::CubicBSpline,
+        InterpolationMode::QuinticBSpline => Mode::QuinticBSpline,
+        InterpolationMode::AllLinear => Mode::AllLinear,
+        InterpolationMode::AllCubic => Mode::AllCubic,
+    }
+}

@@ -1,0 +1,62 @@
+//! States of drive and link, noted when they change.
+use servobench_cia402::{Mode, PowerState};
+use servobench_drive::device;
+use servobench_fieldbus::link;
+use servobench_fieldbus::{Fault, Interpolation};
+use servobench_trace::{Recorder, SignalId};
+
+/// A state of which only the changes are noted.
+#[derive(Debug)]
+struct Watched<T> {
+    id: SignalId,
+    last: Option<T>,
+}
+
+impl<T: Copy + PartialEq> Watched<T> {
+    fn new(source: &str, name: &str, recorder: &mut Recorder) -> Self {
+        Self { id: recorder.add_signal(source, name), last: None }
+    }
+
+    #[inline]
+    fn note(&mut self, t: f64, value: T, recorder: &mut Recorder, words: impl FnOnce(T) -> String) {
+        if self.last != Some(value) {
+            self.last = Some(value);
+            recorder.note_value(self.id, t, &words(value));
+        }
+    }
+}
+
+/// What there is to say of drive and link.
+#[derive(Debug)]
+pub(super) struct Signals {
+    power: Watched<PowerState>,
+    mode: Watched<Option<Mode>>,
+    drive_fault: Watched<Option<device::Fault>>,
+    interpolation: Watched<Interpolation>,
+    link_fault: Watched<Option<Fault>>,
+}
+
+impl Signals {
+    pub(super) fn new(recorder: &mut Recorder) -> Self {
+        Self {
+            power: Watched::new("drive", "state", recorder),
+            mode: Watched::new("drive", "mode", recorder),
+            drive_fault: Watched::new("drive", "fault", recorder),
+            interpolation: Watched::new("link", "interpolation", recorder),
+            link_fault: Watched::new("link", "fault", recorder),
+        }
+    }
+
+    pub(super) fn of_drive(&mut self, t: f64, drive: &device::State, recorder: &mut Recorder) {
+        self.power.note(t, drive.power(), recorder, |state| state.to_string());
+        self.mode.note(t, drive.mode(), recorder, |mode| mode.map_or("none", Mode::abbreviation).into());
+        self.drive_fault.note(t, drive.fault(), recorder, |fault| {
+            fault.map_or("none".into(), |fault| format!("{:04X}h", fault.code()))
+        });
+    }
+
+    pub(super) fn of_link(&mut self, t: f64, link: &link::State, recorder: &mut Recorder) {
+        self.interpolation.note(t, link.interpolation(), recorder, |state| state.name().into());
+        self.link_fault.note(t, link.fault(), recorder, |fault| fault.map_or("none".into(), |fault| fault.to_string()));
+    }
+}
