@@ -33,4 +33,26 @@ impl Demand {
     pub const fn position(setpoint: Setpoint) -> Self {
         Self::Position { setpoint, velocity_offset: 0.0, effort_offset: 0.0 }
     }
+
+    /// Cuts the efforts to the limits of both directions; whether there was anything to cut.
+    #[inline]
+    pub(crate) fn keep_within(&mut self, [forward, backward]: [f64; 2]) -> bool {
+        let (Self::Position { effort_offset: effort, .. }
+        | Self::Velocity { effort_offset: effort, .. }
+        | Self::Effort(effort)) = self
+        else {
+            return false;
+        };
+        let is_beyond = *effort > forward || *effort < -backward;
+        *effort = effort.clamp(-backward, forward);
+        is_beyond
+    }
+
+    /// Makes it the same demand on an axis that counts from elsewhere.
+    #[inline]
+    pub(crate) fn move_by(&mut self, distance: f64) {
+        if let Self::Position { setpoint, .. } = self {
+            setpoint.x += distance;
+        }
+    }
 }

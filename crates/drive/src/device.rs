@@ -28,7 +28,9 @@ mod fault;
 mod guard;
 mod objects;
 mod params;
+mod process_data;
 mod running;
+mod supervision;
 mod units;
 mod window;
 
@@ -40,14 +42,14 @@ pub use units::Units;
 pub use window::{Dwell, Window};
 
 use crate::Demand;
-use crate::modes::interpolated::{Buffer, SegmentCommand};
+use crate::modes::interpolated::Buffer;
 use crate::modes::stop::Ramp;
 use crate::modes::{Actual, Answer, Moment, Targets};
 use running::Running;
 use servobench_base::{ParamError, Setpoint};
 use servobench_cia402::{
-    self as cia402, Actuals, Command, Commands, Deceleration, DriveFunction, Mode, PowerInputs, PowerMemory,
-    PowerState, StatusBit, Statusword, Transition,
+    self as cia402, Command, Commands, Deceleration, DriveFunction, Mode, PowerInputs, PowerMemory, PowerState,
+    StatusBit, Statusword, Transition,
 };
 
 /// What the drive sees at a step.
@@ -182,26 +184,6 @@ impl State {
     pub const fn fault(&self) -> Option<Fault> {
         self.fault
     }
-
-    /// The frame for the master, as of the last step.
-    #[must_use]
-    pub fn actuals(&self, p: &Params) -> Actuals {
-        let Actual { velocity, effort, negative_limit, positive_limit, home, .. } = self.now.actual;
-        let follows_position = matches!(self.last, Demand::Position { .. });
-        Actuals {
-            statusword: self.statusword,
-            mode: self.mode.map_or(0, Mode::code),
-            #[expect(clippy::cast_possible_truncation, reason = "the counter of the bus wraps")]
-            position: p.units.position(self.increments.wrapping_sub(self.origin)) as i32,
-            velocity: p.units.velocity(velocity),
-            torque: p.units.effort(effort),
-            following_error: if follows_position { p.units.distance(self.following_error) } else { 0 },
-            error_code: self.fault.map_or(0, Fault::code),
-            digital_inputs: u32::from(negative_limit) | u32::from(positive_limit) << 1 | u32::from(home) << 2,
-            buffer_free: u16::try_from(self.buffer.free()).unwrap_or(u16::MAX),
-            buffer_status: self.buffer.status(),
-        }
-    }
 }
 
 /// One period of the position loop.
@@ -231,10 +213,11 @@ pub fn step(p: &Params, x: &mut State, u: &Inputs) -> Outputs {
         DriveFunction::Brake(how) => x.brake(p, how, standstill),
     };
     if !u.main_voltage {
-        // Without power nothing can be driven, whatever the state says.
+        // Without power nothing can be driven, whatever the state says; when it is back, all begins where the axis is then.
         answer.demand = Demand::Off;
+        (x.running, x.stop) = (None, None);
     }
-    let is_limited = keep_within(p.limits.effort, &mut answer.demand)
+    let is_limited = answer.demand.keep_within(p.limits.effort)
         || x.is_cut
         || x.guard.is_active()
         || u.measured.effort_is_cut
@@ -246,7 +229,7 @@ pub fn step(p: &Params, x: &mut State, u: &Inputs) -> Outputs {
         .with(StatusBit::InternalLimitActive, is_limited)
         .with(StatusBit::ModeSpecific12, answer.bit_12)
         .with(StatusBit::ModeSpecific13, answer.bit_13);
-    move_by(p.units.metres_or_radians(x.origin), &mut answer.demand);
+    answer.demand.move_by(p.units.metres_or_radians(x.origin));
     if let Some(shift) = x.shift.take() {
         x.move_zero(p, shift);
     }
@@ -281,92 +264,7 @@ impl State {
     fn move_zero(&mut self, p: &Params, shift: f64) {
         let increments = p.units.increments(shift);
         self.origin -= increments;
-        move_by(p.units.metres_or_radians(increments), &mut self.last);
-    }
-
-    /// Converts a frame.
-    fn take(&mut self, p: &Params, frame: &Commands) {
-        self.wanted = Mode::from_code(frame.mode);
-        if let Some(bytes) = frame.trajectory_point {
-            // What the buffer itself refuses is latched in its status (2012h).
-            self.has_refused_point = match SegmentCommand::decode(bytes) {
-                Ok(command) => command.apply(&mut self.buffer).is_err(),
-                Err(_) => true,
-            };
-        }
-        let here = p.units.position(self.increments.wrapping_sub(self.origin));
-        #[expect(clippy::cast_possible_truncation, reason = "the counter of the bus wraps")]
-        let shown = here as i32;
-        let target = match self.wanted {
-            Some(Mode::ProfilePosition) => here - i64::from(shown) + i64::from(frame.target_position),
-            _ => here + i64::from(frame.target_position.wrapping_sub(shown)),
-        };
-        let position = p.units.from_position(target);
-        let kept = p.limits.position.map_or(position, |[lowest, highest]| position.clamp(lowest, highest));
-        let rate = |units: u32, set: f64| if units == 0 { set } else { p.units.from_rate(units) };
-        let profile_velocity = rate(frame.profile_velocity, p.profile.velocity);
-        self.is_cut = match self.wanted {
-            Some(Mode::CyclicSynchronousPosition) => kept.to_bits() != position.to_bits(),
-            Some(Mode::ProfilePosition) => profile_velocity > p.profile_limit(),
-            _ => false,
-        };
-        self.now.targets = Targets {
-            controlword: frame.controlword,
-            position: if self.wanted == Some(Mode::ProfilePosition) { position } else { kept },
-            distance: p.units.from_position(frame.target_position.into()),
-            velocity: p.units.from_velocity(frame.target_velocity),
-            effort: p.units.from_effort(frame.target_torque),
-            velocity_offset: p.units.from_velocity(frame.velocity_offset),
-            effort_offset: p.units.from_effort(frame.torque_offset),
-            profile_velocity: profile_velocity.min(p.profile_limit()),
-            profile_acceleration: rate(frame.profile_acceleration, p.profile.acceleration).min(p.limits.acceleration),
-            profile_deceleration: rate(frame.profile_deceleration, p.profile.deceleration).min(p.limits.deceleration),
-            home_offset: p.units.from_position(frame.home_offset.into()),
-            is_new: true,
-        };
-    }
-
-    /// The fault that is present, the gravest first.
-    fn find_fault(&mut self, p: &Params, u: &Inputs, beat: Beat) -> Option<Fault> {
-        let is_enabled = self.power.state().is_drive_function_enabled();
-        let follows_position = matches!(self.last, Demand::Position { .. });
-        let is_beyond = follows_position && !p.following_error.holds(u.measured.following_error);
-        let has_lost_position = self.beyond_following_error.step(is_beyond, p.following_error.time, p.period);
-        let lacks_frames = beat == Beat::Missed
-            && self.cycle.missed() > p.cycle.bridged
-            && self.running.as_ref().is_some_and(Running::needs_frames);
-        if let Some(code) = u.fault {
-            Some(Fault::External(code))
-        } else if is_enabled && !u.main_voltage {
-            Some(Fault::MainsMissing)
-        } else if !(u.measured.velocity.is_finite() && u.measured.effort.is_finite()) {
-            Some(Fault::Encoder)
-        } else if lacks_frames {
-            Some(Fault::FramesMissing)
-        } else {
-            has_lost_position.then_some(Fault::FollowingError)
-        }
-    }
-
-    /// Keeps the first fault until it is reset; returns it at the step at which it acts.
-    fn remember(&mut self, found: Option<Fault>, transition: Option<&Transition>) -> Option<Fault> {
-        match transition?.to {
-            PowerState::FaultReactionActive => {
-                self.fault = found;
-                found
-            }
-            PowerState::SwitchOnDisabled => {
-                self.fault = None;
-                None
-            }
-            _ => None,
-        }
-    }
-
-    /// Whether the axis stands, and is asked to stand, for long enough.
-    fn stands_still(&mut self, p: &Params) -> bool {
-        let stands = p.standstill.holds(self.now.actual.velocity) && p.standstill.holds(self.now.demanded.v);
-        self.at_standstill.step(stands, p.standstill.time, p.period)
+        self.last.move_by(p.units.metres_or_radians(increments));
     }
 
     fn idle(&mut self) -> Answer {
@@ -384,17 +282,17 @@ impl State {
 
     fn follow(&mut self, p: &Params, beat: Beat) -> Answer {
         self.switch_mode();
-        let was_stopped = self.stop.take().is_some();
-        if self.running.is_none() {
-            self.running = self.mode.map(|mode| Running::begin(p, mode, &self.now));
-            self.guard = guard::State::default();
-        } else if was_stopped && let Some(running) = &mut self.running {
-            running.resume(p, &self.now);
-        }
-        let Some(running) = &mut self.running else {
-            // No mode yet: the axis is held where it is.
+        let Some(mode) = self.mode else {
+            // None yet: the axis is held where it is.
             return self.brake(p, Deceleration::SlowDownRamp, false);
         };
+        let (begins, was_stopped) = (self.running.is_none(), self.stop.take().is_some());
+        let running = self.running.get_or_insert_with(|| Running::begin(p, mode, &self.now));
+        if begins {
+            self.guard = guard::State::default();
+        } else if was_stopped {
+            running.resume(p, &self.now);
+        }
         let mut answer = running.step(p, &self.now, beat, &mut self.buffer, &mut self.shift);
         if !running.looks_for_ends() {
             self.guard.step(p, &self.now, &mut answer.demand);
@@ -423,27 +321,5 @@ impl State {
         }
         let demand = self.stop.as_mut().map_or(Demand::Off, |(_, ramp)| ramp.step(p.period));
         Answer { demand, target_reached: standstill, bit_12: false, bit_13: false }
-    }
-}
-
-/// Cuts the efforts of a demand to the limits of both directions; whether there was anything to cut.
-#[inline]
-fn keep_within([forward, backward]: [f64; 2], demand: &mut Demand) -> bool {
-    let (Demand::Position { effort_offset: effort, .. }
-    | Demand::Velocity { effort_offset: effort, .. }
-    | Demand::Effort(effort)) = demand
-    else {
-        return false;
-    };
-    let is_beyond = *effort > forward || *effort < -backward;
-    *effort = effort.clamp(-backward, forward);
-    is_beyond
-}
-
-/// The same demand on an axis that counts from elsewhere.
-#[inline]
-fn move_by(distance: f64, demand: &mut Demand) {
-    if let Demand::Position { setpoint, .. } = demand {
-        setpoint.x += distance;
     }
 }

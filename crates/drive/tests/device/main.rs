@@ -12,3 +12,4 @@ mod random;
 #[path = "../../../motion/tests/shared/random.rs"]
 mod shared;
 mod supervision;
+mod units;

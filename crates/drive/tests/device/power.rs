@@ -178,3 +178,33 @@ fn without_a_mode_an_enabled_axis_is_held() {
     assert_eq!((axis.state.power(), axis.actuals().mode), (PowerState::OperationEnabled, 0));
     assert!((setpoint(&axis.last).x - 0.01).abs() < 1e-15);
 }
+
+/// Without a mode an axis that moves when it is enabled is braked to standstill, and stays there.
+#[test]
+fn without_a_mode_an_axis_that_moves_is_stopped() {
+    let mut axis = Axis::new(&Params::default());
+    axis.velocity = 0.0313;
+    for command in [Command::DisableVoltage, Command::Shutdown, Command::SwitchOn, Command::EnableOperation] {
+        axis.command(command);
+        axis.cycle();
+    }
+    // 31.3 ms at 1 m/s².
+    (0..40).for_each(|_| drop(axis.cycle()));
+    for outputs in axis.cycle() {
+        assert!(setpoint(&outputs.demand).v == 0.0, "{outputs:?}");
+    }
+}
+
+/// When the power comes back during the fault reaction, the axis is braked from where it has got to.
+#[test]
+fn power_that_comes_back_brakes_the_axis_from_where_it_is() {
+    let mut axis = moving(&Params::default(), Mode::CyclicSynchronousPosition);
+    axis.main_voltage = false;
+    (0..10).for_each(|_| drop(axis.cycle()));
+    assert_eq!((axis.last, axis.state.power()), (Demand::Off, PowerState::FaultReactionActive));
+    axis.main_voltage = true;
+    let (x, v) = (axis.position, axis.velocity);
+    let got = setpoint(&axis.step(true).demand);
+    // To an increment of 1 µm.
+    assert!((got.x - x).abs() <= 0.5e-6 && (got.v - v).abs() < 1e-15 && v > 0.19, "{got:?} {x} {v}");
+}

@@ -1,0 +1,70 @@
+//! The door between the bus and the drive: frames to targets, measurements to frames.
+use super::{Fault, Params, State};
+use crate::Demand;
+use crate::modes::interpolated::SegmentCommand;
+use crate::modes::{Actual, Targets};
+use servobench_cia402::{Actuals, Commands, Mode};
+
+impl State {
+    /// The frame for the master, as of the last step.
+    #[must_use]
+    pub fn actuals(&self, p: &Params) -> Actuals {
+        let Actual { velocity, effort, negative_limit, positive_limit, home, .. } = self.now.actual;
+        let follows_position = matches!(self.last, Demand::Position { .. });
+        Actuals {
+            statusword: self.statusword,
+            mode: self.mode.map_or(0, Mode::code),
+            #[expect(clippy::cast_possible_truncation, reason = "the counter of the bus wraps")]
+            position: p.units.position(self.increments.wrapping_sub(self.origin)) as i32,
+            velocity: p.units.velocity(velocity),
+            torque: p.units.effort(effort),
+            following_error: if follows_position { p.units.distance(self.following_error) } else { 0 },
+            error_code: self.fault.map_or(0, Fault::code),
+            digital_inputs: u32::from(negative_limit) | u32::from(positive_limit) << 1 | u32::from(home) << 2,
+            buffer_free: u16::try_from(self.buffer.free()).unwrap_or(u16::MAX),
+            buffer_status: self.buffer.status(),
+        }
+    }
+
+    /// Converts a frame.
+    pub(super) fn take(&mut self, p: &Params, frame: &Commands) {
+        self.wanted = Mode::from_code(frame.mode);
+        if let Some(bytes) = frame.trajectory_point {
+            // What the buffer itself refuses is latched in its status (2012h).
+            self.has_refused_point = match SegmentCommand::decode(bytes) {
+                Ok(command) => command.apply(&mut self.buffer).is_err(),
+                Err(_) => true,
+            };
+        }
+        let here = p.units.position(self.increments.wrapping_sub(self.origin));
+        #[expect(clippy::cast_possible_truncation, reason = "the counter of the bus wraps")]
+        let shown = here as i32;
+        let target = match self.wanted {
+            Some(Mode::ProfilePosition) => here - i64::from(shown) + i64::from(frame.target_position),
+            _ => here + i64::from(frame.target_position.wrapping_sub(shown)),
+        };
+        let position = p.units.from_position(target);
+        let kept = p.limits.position.map_or(position, |[lowest, highest]| position.clamp(lowest, highest));
+        let rate = |units: u32, set: f64| if units == 0 { set } else { p.units.from_rate(units) };
+        let profile_velocity = rate(frame.profile_velocity, p.profile.velocity);
+        self.is_cut = match self.wanted {
+            Some(Mode::CyclicSynchronousPosition) => kept.to_bits() != position.to_bits(),
+            Some(Mode::ProfilePosition) => profile_velocity > p.profile_limit(),
+            _ => false,
+        };
+        self.now.targets = Targets {
+            controlword: frame.controlword,
+            position: if self.wanted == Some(Mode::ProfilePosition) { position } else { kept },
+            distance: p.units.from_position(frame.target_position.into()),
+            velocity: p.units.from_velocity(frame.target_velocity),
+            effort: p.units.from_effort(frame.target_torque),
+            velocity_offset: p.units.from_velocity(frame.velocity_offset),
+            effort_offset: p.units.from_effort(frame.torque_offset),
+            profile_velocity: profile_velocity.min(p.profile_limit()),
+            profile_acceleration: rate(frame.profile_acceleration, p.profile.acceleration).min(p.limits.acceleration),
+            profile_deceleration: rate(frame.profile_deceleration, p.profile.deceleration).min(p.limits.deceleration),
+            home_offset: p.units.from_position(frame.home_offset.into()),
+            is_new: true,
+        };
+    }
+}

@@ -1,0 +1,49 @@
+//! What the drive watches: faults and standstill.
+use super::{Beat, Fault, Inputs, Params, Running, State};
+use crate::Demand;
+use servobench_cia402::{PowerState, Transition};
+
+impl State {
+    /// The fault that is present, the gravest first.
+    pub(super) fn find_fault(&mut self, p: &Params, u: &Inputs, beat: Beat) -> Option<Fault> {
+        let is_enabled = self.power.state().is_drive_function_enabled();
+        let follows_position = matches!(self.last, Demand::Position { .. });
+        let is_beyond = follows_position && !p.following_error.holds(u.measured.following_error);
+        let has_lost_position = self.beyond_following_error.step(is_beyond, p.following_error.time, p.period);
+        let lacks_frames = beat == Beat::Missed
+            && self.cycle.missed() > p.cycle.bridged
+            && self.running.as_ref().is_some_and(Running::needs_frames);
+        if let Some(code) = u.fault {
+            Some(Fault::External(code))
+        } else if is_enabled && !u.main_voltage {
+            Some(Fault::MainsMissing)
+        } else if !(u.measured.velocity.is_finite() && u.measured.effort.is_finite()) {
+            Some(Fault::Encoder)
+        } else if lacks_frames {
+            Some(Fault::FramesMissing)
+        } else {
+            has_lost_position.then_some(Fault::FollowingError)
+        }
+    }
+
+    /// Keeps the first fault until it is reset; returns it at the step at which it acts.
+    pub(super) fn remember(&mut self, found: Option<Fault>, transition: Option<&Transition>) -> Option<Fault> {
+        match transition?.to {
+            PowerState::FaultReactionActive => {
+                self.fault = found;
+                found
+            }
+            PowerState::SwitchOnDisabled => {
+                self.fault = None;
+                None
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether the axis stands, and is asked to stand, for long enough.
+    pub(super) fn stands_still(&mut self, p: &Params) -> bool {
+        let stands = p.standstill.holds(self.now.actual.velocity) && p.standstill.holds(self.now.demanded.v);
+        self.at_standstill.step(stands, p.standstill.time, p.period)
+    }
+}

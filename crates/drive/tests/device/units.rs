@@ -1,0 +1,101 @@
+//! Drive units at the door: factor group, polarity, counters that wrap.
+use crate::axis::{Axis, setpoint};
+use servobench_cia402::Mode;
+use servobench_cia402::units::{AxisUnit, FactorGroup, POLARITY_POSITION, POLARITY_VELOCITY, Ratio};
+use servobench_drive::Demand;
+use servobench_drive::device::{Params, Units};
+
+fn micrometre() -> AxisUnit {
+    AxisUnit::Metre(Ratio::new(1, 1_000_000).unwrap())
+}
+
+/// 1000 increments per revolution of a screw of 10 mm: 10 µm per increment, velocities in mm/min.
+fn screw(polarity: u8) -> Params {
+    let factors = FactorGroup {
+        position_encoder_resolution: [1000, 1],
+        feed_constant: [10_000, 1],
+        velocity_factor: [60, 1000],
+        polarity,
+        ..FactorGroup::default()
+    };
+    Params { units: Units::new(&factors, micrometre(), 2.0).unwrap(), ..Params::default() }
+}
+
+/// Oracle: by hand.
+#[test]
+fn targets_and_measurements_go_through_the_factor_group() {
+    let mut axis = Axis::enabled(&screw(0), Mode::CyclicSynchronousPosition);
+    (axis.frame.target_position, axis.frame.velocity_offset) = (2_000, 6_000);
+    axis.frame.torque_offset = 250;
+    axis.cycle();
+    axis.cycle();
+    let Demand::Position { setpoint, velocity_offset, effort_offset } = axis.last else { panic!("{:?}", axis.last) };
+    assert!((setpoint.x - 2e-3).abs() < 1e-15 && (velocity_offset - 0.1).abs() < 1e-15, "{:?}", axis.last);
+    assert!((effort_offset - 0.5).abs() < 1e-15, "{:?}", axis.last);
+    axis.measured.following_error = 55e-6;
+    (axis.velocity, axis.measured.effort) = (0.2, -1.0);
+    axis.step(false);
+    let actuals = axis.actuals();
+    assert_eq!((actuals.position, actuals.velocity, actuals.torque), (2_000, 12_000, -500));
+    assert_eq!(actuals.following_error, 55);
+}
+
+/// The master sees the axis the other way round, the loops see the encoder.
+#[test]
+fn polarity_turns_set_points_and_measurements_round() {
+    for (polarity, position, velocity) in [
+        (POLARITY_POSITION, -1.0, 1.0),
+        (POLARITY_VELOCITY, 1.0, -1.0),
+        (POLARITY_POSITION | POLARITY_VELOCITY, -1.0, -1.0),
+    ] {
+        let mut axis = Axis::enabled(&screw(polarity), Mode::CyclicSynchronousPosition);
+        axis.frame.target_position = 500;
+        axis.cycle();
+        axis.step(true);
+        assert!((setpoint(&axis.last).x - position * 5e-4).abs() < 1e-15, "{polarity:#x}: {:?}", axis.last);
+        assert_eq!(axis.actuals().position, 500);
+        let mut axis = Axis::enabled(&screw(polarity), Mode::CyclicSynchronousVelocity);
+        axis.frame.target_velocity = 3_000;
+        axis.cycle();
+        axis.step(true);
+        assert!((setpoint(&axis.last).v - velocity * 0.05).abs() < 1e-15, "{polarity:#x}: {:?}", axis.last);
+        assert_eq!(axis.actuals().velocity, 3_000);
+    }
+}
+
+#[test]
+fn a_rotary_axis_is_in_radians() {
+    // 3600 increments and 360 000 units (thousandths of a degree) per revolution.
+    let factors =
+        FactorGroup { position_encoder_resolution: [3600, 1], feed_constant: [360_000, 1], ..FactorGroup::default() };
+    let unit = AxisUnit::Revolution(Ratio::new(1, 360_000).unwrap());
+    let params = Params { units: Units::new(&factors, unit, 1.0).unwrap(), ..Params::default() };
+    let mut axis = Axis::enabled(&params, Mode::CyclicSynchronousPosition);
+    axis.frame.target_position = 90_000;
+    axis.cycle();
+    axis.step(true);
+    assert!((setpoint(&axis.last).x - core::f64::consts::FRAC_PI_2).abs() < 1e-15, "{:?}", axis.last);
+}
+
+/// Ten times through the 32-bit counter: targets wrap as the counter does, the axis never jumps and ends where it should.
+#[test]
+fn cyclic_targets_run_through_the_end_of_the_counter() {
+    let mut axis = Axis::enabled(&Params::default(), Mode::CyclicSynchronousPosition);
+    // 1 km a millisecond: 10·2³² µm are 42 950 km.
+    let step = 1_000_000_000_i64;
+    let mut target = 0_i64;
+    for n in 1..=43 {
+        target += step;
+        #[expect(clippy::cast_possible_truncation, reason = "the counter of the bus wraps")]
+        let shown = target as i32;
+        axis.frame.target_position = shown;
+        for outputs in axis.cycle() {
+            let v = setpoint(&outputs.demand).v;
+            assert!((v - 1e6).abs() < 1e-6, "cycle {n}: {v}");
+        }
+    }
+    axis.cycle();
+    // Doubles at 43 000 km resolve 7e-9 m.
+    assert!((axis.position - target as f64 * 1e-6).abs() < 1e-6, "{}", axis.position);
+    assert_eq!(axis.actuals().position, axis.frame.target_position);
+}
