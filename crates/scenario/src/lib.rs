@@ -39,7 +39,9 @@ pub use channel::CHANNELS;
 pub use diagnostic::{Diagnostic, Invalid, LoadError};
 pub use load::{Loaded, load, parse};
 pub use models::{embedded_demo, embedded_models};
-pub use points::{Column, MOST_POINTS, Points, PointsError, PointsMistake, Profile, read_points, read_profile};
+pub use points::{
+    Column, MOST_POINTS, Points, PointsError, PointsMistake, Profile, read_accelerations, read_points, read_velocities,
+};
 pub use scenario::{
     Actuator, Axis, AxisMechanics, Block, Body, Braking, BufferMode, Bus, BusFault, BusFaultKind, BusMode, Call,
     Command, Condition, Counter, Coupling, CurrentGain, CurrentLoop, Direction, Disturbance, DisturbedBody, Drive,

@@ -12,13 +12,13 @@
 //! A profile is such a table of times and of velocities or accelerations alone.
 mod column;
 mod mistake;
+mod rows;
 
-use crate::quantity::Scale;
-use crate::reading::{self, ReadError, names};
 use crate::scenario::Motion;
+use column::Layout;
+use rows::{Head, read_rows};
 
 pub use column::Column;
-use column::Layout;
 pub use mistake::{PointsError, PointsMistake};
 
 /// Points at most: a table of more is taken for a mistake.
@@ -50,34 +50,6 @@ pub struct Profile {
     pub values: Vec<f64>,
 }
 
-/// A column of the heading.
-#[derive(Debug)]
-struct Head {
-    column: Column,
-    unit: String,
-    scale: Scale,
-    /// Which of its candidates it measures.
-    which: usize,
-    /// Its column in characters.
-    at: usize,
-}
-
-/// A cell of a row.
-#[derive(Debug, Clone, Copy)]
-struct Cell<'a> {
-    /// What stands in it, without the spaces around it.
-    text: &'a str,
-    /// What stands before that in the row.
-    before: &'a str,
-}
-
-impl Cell<'_> {
-    /// Where its text begins, from 1.
-    fn at(&self) -> usize {
-        self.before.chars().count() + 1
-    }
-}
-
 /// Reads a table of points.
 ///
 /// # Errors
@@ -86,12 +58,23 @@ pub fn read_points(text: &str) -> Result<Points, PointsError> {
     read(text, MOST_POINTS)
 }
 
-/// Reads a profile of the values `column`, velocities or accelerations.
+/// Reads a profile of velocities.
 ///
 /// # Errors
 /// [`PointsError`], the first mistake.
-pub fn read_profile(text: &str, column: Column) -> Result<Profile, PointsError> {
-    let layout = if column == Column::Acceleration { Layout::Accelerations } else { Layout::Velocities };
+pub fn read_velocities(text: &str) -> Result<Profile, PointsError> {
+    read_profile(text, Layout::Velocities)
+}
+
+/// Reads a profile of accelerations.
+///
+/// # Errors
+/// [`PointsError`], the first mistake.
+pub fn read_accelerations(text: &str) -> Result<Profile, PointsError> {
+    read_profile(text, Layout::Accelerations)
+}
+
+fn read_profile(text: &str, layout: Layout) -> Result<Profile, PointsError> {
     let (mut times, mut values) = (Vec::new(), Vec::new());
     let heads = read_rows(text, layout, MOST_POINTS, |column, value| match column {
         Column::Time => times.extend(value),
@@ -125,179 +108,9 @@ fn motion(heads: &[Head]) -> Motion {
     if is_rotary { Motion::Rotary } else { Motion::Linear }
 }
 
-/// Reads a table of `most` points at most, and gives what stands in its cells to `take`: nothing where one is empty.
-fn read_rows(
-    text: &str,
-    layout: Layout,
-    most: usize,
-    mut take: impl FnMut(Column, Option<f64>),
-) -> Result<Vec<Head>, PointsError> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut rows = (1..).zip(text.lines()).filter(|(_, row)| !row.trim().is_empty());
-    let Some((line, row)) = rows.next() else {
-        return Err(wrong(1, 1, PointsMistake::NoHeading { like: layout.example() }));
-    };
-    let heads = heading(line, row, layout)?;
-    let (mut points, mut last) = (0, (line, f64::NEG_INFINITY));
-    for (line, row) in rows {
-        if points == most {
-            return Err(wrong(line, 1, PointsMistake::TooMany { most }));
-        }
-        last = (line, read_row(&heads, layout, line, row, last.1, &mut take)?);
-        points += 1;
-    }
-    match points {
-        0 | 1 => Err(wrong(last.0, 1, PointsMistake::TooFew { points })),
-        _ => Ok(heads),
-    }
-}
-
-const fn wrong(line: usize, column: usize, mistake: PointsMistake) -> PointsError {
-    PointsError { line, column, mistake }
-}
-
-fn cells(row: &str) -> impl Iterator<Item = Cell<'_>> {
-    let mut next = 0;
-    row.split(',').map(move |cell| {
-        let (text, spaces) = (cell.trim(), cell.len() - cell.trim_start().len());
-        let begin = next + spaces;
-        next += cell.len() + 1;
-        Cell { text, before: &row[..begin] }
-    })
-}
-
-/// The columns in their order.
-fn heading(line: usize, row: &str, layout: Layout) -> Result<Vec<Head>, PointsError> {
-    for (found, name) in [(';', ";"), ('\t', "tab")] {
-        if let Some((before, _)) = row.split_once(found).filter(|_| !row.contains(',')) {
-            return Err(wrong(
-                line,
-                before.chars().count() + 1,
-                PointsMistake::Separator { found: name, like: layout.shortest_example() },
-            ));
-        }
-    }
-    let mut heads: Vec<Head> = Vec::new();
-    for cell in cells(row) {
-        let (name, unit) = match cell.text.split_once('[') {
-            Some((name, rest)) => (name.trim_end(), rest.strip_suffix(']').map(str::trim)),
-            None => (cell.text, None),
-        };
-        let fail = |mistake| wrong(line, cell.at(), mistake);
-        let Some(column) = layout.columns().find(|column| column.name() == name) else {
-            return Err(fail(PointsMistake::UnknownColumn { name: name.to_owned(), like: layout.example() }));
-        };
-        if heads.iter().any(|head| head.column == column) {
-            return Err(fail(PointsMistake::Twice { column }));
-        }
-        let Some(unit) = unit.filter(|unit| !unit.is_empty()) else {
-            return Err(fail(PointsMistake::NoUnit { column, proposal: column.proposal() }));
-        };
-        let (scale, which) = read_unit(column, unit)
-            .map_err(|message| fail(PointsMistake::Unit { column, unit: unit.to_owned(), message }))?;
-        heads.push(Head { column, unit: unit.to_owned(), scale, which, at: cell.at() });
-    }
-    for column in layout.needed() {
-        if heads.iter().all(|head| head.column != column) {
-            return Err(wrong(line, 1, PointsMistake::Missing { column, proposal: column.proposal() }));
-        }
-    }
-    agreeing(line, heads)
-}
-
-/// `heads`, unless positions and velocities are those of different axes.
-fn agreeing(line: usize, heads: Vec<Head>) -> Result<Vec<Head>, PointsError> {
-    let of = |column| heads.iter().find(|head| head.column == column);
-    if let (Some(position), Some(velocity)) = (of(Column::Position), of(Column::Velocity))
-        && position.which != velocity.which
-    {
-        let needed = Column::Velocity.candidates()[position.which].name;
-        let message = format!("positions are in `{}`, {needed} is needed", position.unit);
-        let mistake = PointsMistake::Unit { column: Column::Velocity, unit: velocity.unit.clone(), message };
-        return Err(wrong(line, velocity.at, mistake));
-    }
-    Ok(heads)
-}
-
-/// The scale of `unit`, and which of the candidates of `column` it measures.
-fn read_unit(column: Column, unit: &str) -> Result<(Scale, usize), String> {
-    let candidates = column.candidates();
-    let with = |message: &str, help: &str| if help.is_empty() { message.into() } else { format!("{message}; {help}") };
-    let (which, _) = reading::read(&format!("1 {unit}"), &candidates).map_err(|error| match error {
-        ReadError::NoQuantity(error) => with(&error.message, &error.help),
-        ReadError::NoUnit => format!("{} has a unit", names(&candidates)),
-        ReadError::OtherDimension { is, help } => {
-            with(&format!("{} is needed, this is {is}", names(&candidates)), help)
-        }
-    })?;
-    let scale = Scale::read(unit).map_err(|error| with(&error.message, &error.help))?;
-    Ok((scale, which))
-}
-
-/// Gives a point to `take` that must be later than `before` (s); its time (s).
-fn read_row(
-    heads: &[Head],
-    layout: Layout,
-    line: usize,
-    row: &str,
-    before: f64,
-    take: &mut impl FnMut(Column, Option<f64>),
-) -> Result<f64, PointsError> {
-    let (mut read, mut time) = (0, before);
-    for (head, cell) in heads.iter().zip(cells(row)) {
-        let column = head.column;
-        read += 1;
-        if cell.text.is_empty() && !layout.needed().contains(&column) {
-            take(column, None);
-            continue;
-        }
-        let value = number(&head.scale, cell.text).map_err(|reason| {
-            // A row of another width is told as such: its values are in the wrong columns.
-            width(line, row, heads.len()).err().unwrap_or_else(|| {
-                wrong(line, cell.at(), PointsMistake::Value { column, text: shown(cell.text), reason })
-            })
-        })?;
-        if column == Column::Time {
-            if value <= before {
-                return Err(wrong(line, cell.at(), PointsMistake::Order { time: value, before }));
-            }
-            time = value;
-        }
-        take(column, Some(value));
-    }
-    if read < heads.len() || row.bytes().filter(|byte| *byte == b',').count() + 1 != heads.len() {
-        width(line, row, heads.len())?;
-    }
-    Ok(time)
-}
-
-/// Nothing, if `row` has `expected` values.
-fn width(line: usize, row: &str, expected: usize) -> Result<(), PointsError> {
-    match cells(row).count() {
-        found if found == expected => Ok(()),
-        found => Err(wrong(line, 1, PointsMistake::Width { found, expected })),
-    }
-}
-
-/// The value (SI) of `text`.
-fn number(scale: &Scale, text: &str) -> Result<f64, &'static str> {
-    match text.parse::<f64>() {
-        Ok(number) if number.is_finite() => scale.value(text),
-        Ok(_) if text.contains(|c: char| c.is_ascii_digit()) => Err("the number is too large: above 1e30 in SI"),
-        Ok(_) => Err("the number must be finite"),
-        Err(_) if text.is_empty() => Err("write a number; only `velocity` may be left empty"),
-        Err(_) => Err("write a number like `12.5`, its unit stands in the heading"),
-    }
-}
-
-/// As much of a cell as belongs into a message.
-fn shown(text: &str) -> String {
-    const MOST: usize = 40;
-    if text.chars().count() <= MOST { text.to_owned() } else { text.chars().take(MOST).chain(['…']).collect() }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::rows::wrong;
     use super::*;
 
     #[test]
@@ -309,6 +122,43 @@ mod tests {
         assert_eq!(points.positions, [0.0, 0.25, 1.0]);
         assert_eq!(points.velocities, Some(vec![Some(0.0), None, Some(-0.5)]));
         assert_eq!(points.units.map(Option::unwrap), ["ms", "mm", "m/min"]);
+    }
+
+    #[test]
+    fn a_profile_is_times_and_values() {
+        let profile = read_velocities("velocity [m/min],time [ms]\n0,0\n30,10").unwrap();
+        let expected = Profile { motion: Motion::Linear, times: vec![0.0, 0.01], values: vec![0.0, 0.5] };
+        assert_eq!(profile, expected);
+        let profile = read_accelerations("time [s],acceleration [rad/s2]\n0,0\n1,-2").unwrap();
+        let expected = Profile { motion: Motion::Rotary, times: vec![0.0, 1.0], values: vec![0.0, -2.0] };
+        assert_eq!(profile, expected);
+        for (read, text, said) in [
+            (
+                read_velocities as fn(&str) -> _,
+                "",
+                "1:1: the table is empty: begin with a heading like `time [ms],velocity [mm/s]`",
+            ),
+            (
+                read_velocities,
+                "time [s];velocity [m/s]",
+                "1:9: columns are separated by commas, not by `;`: write `time [ms],velocity [mm/s]`, numbers with a point",
+            ),
+            (read_velocities, "time [s]\n0\n1", "1:1: the column `velocity` is missing: add `velocity [mm/s]`"),
+            (
+                read_accelerations,
+                "time [s],acceleration [m/s]\n",
+                "1:10: `acceleration` cannot be in `m/s`: an acceleration or an angular acceleration is needed, this is a \
+                 velocity (m/s)",
+            ),
+            (
+                read_accelerations,
+                "time [s],acceleration [m/s2]\n0,\n",
+                "2:3: `acceleration` is ``: write a number; only `velocity` beside `position` may be left empty",
+            ),
+        ] {
+            let found: Result<Profile, PointsError> = read(text);
+            assert_eq!(found.unwrap_err().to_string(), said, "{text}");
+        }
     }
 
     #[test]
@@ -363,7 +213,7 @@ mod tests {
             ),
             (
                 "time [s],position [mm]\n0,\n",
-                "2:3: `position` is ``: write a number; only `velocity` may be left empty",
+                "2:3: `position` is ``: write a number; only `velocity` beside `position` may be left empty",
             ),
         ] {
             assert_eq!(read_points(text).unwrap_err().to_string(), said, "{text}");

@@ -96,7 +96,8 @@ table! {
         settling_time: f64 = positive(Plain(&TIME), "50 ms"),
         /// Whether the motor is mounted the other way round; it is not unless given.
         reversed: bool = (),
-        /// Points of a profile.
+        /// Points of a profile. The file of MC_VelocityProfile has the columns `time` and `velocity`, that of MC_AccelerationProfile
+        /// `time` and `acceleration`.
         table: TableOfPoints = (),
     }
 }

@@ -1,7 +1,7 @@
 //! The tables of profile blocks.
 use crate::diagnostic::Report;
 use crate::file::TableOfPoints;
-use crate::points::{Column, read_profile};
+use crate::points::{PointsError, Profile, read_accelerations, read_velocities};
 use crate::resolve::{points, refuse};
 use crate::scenario::TableMove;
 use crate::source::{At, Sources};
@@ -13,7 +13,7 @@ pub(super) fn positions(table: &At<TableOfPoints>, sources: &Sources, report: &m
 
 /// Times (s) and velocities.
 pub(super) fn velocities(table: &At<TableOfPoints>, sources: &Sources, report: &mut Report) -> Option<Vec<(f64, f64)>> {
-    values(table, Column::Velocity, sources, report)
+    values(table, "velocities", read_velocities, sources, report)
 }
 
 /// Times (s) and accelerations.
@@ -22,12 +22,13 @@ pub(super) fn accelerations(
     sources: &Sources,
     report: &mut Report,
 ) -> Option<Vec<(f64, f64)>> {
-    values(table, Column::Acceleration, sources, report)
+    values(table, "accelerations", read_accelerations, sources, report)
 }
 
 fn values(
     table: &At<TableOfPoints>,
-    column: Column,
+    words: &str,
+    read: impl FnOnce(&str) -> Result<Profile, PointsError>,
     sources: &Sources,
     report: &mut Report,
 ) -> Option<Vec<(f64, f64)>> {
@@ -42,9 +43,8 @@ fn values(
     ];
     refuse(&of_positions, "is for a table of positions", "", report);
     let file = own.file.at()?;
-    let words = if column == Column::Velocity { "velocities" } else { "accelerations" };
     let profile = points::read(file, words, sources, report, |text| {
-        let profile = read_profile(text, column)?;
+        let profile = read(text)?;
         Ok((profile.motion, profile))
     })?;
     Some(profile.times.into_iter().zip(profile.values).collect())

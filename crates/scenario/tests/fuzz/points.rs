@@ -1,7 +1,7 @@
 //! Tables of points.
 use crate::WORDS;
 use servobench_fuzz::{Splice, check, fuzz};
-use servobench_scenario::{Column, PointsError, read_points, read_profile};
+use servobench_scenario::{PointsError, read_accelerations, read_points, read_velocities};
 
 const TABLES: [&str; 4] = [
     "time [ms],position [mm],velocity [mm/s]\n0,0,0\n10,5,\n20,15,750\n30,20,0\n",
@@ -40,8 +40,8 @@ const PROFILES: [&str; 3] = [
 #[test]
 fn profiles() {
     fuzz(check!(), 3_000, Splice::text(&PROFILES, WORDS), |text| {
-        for column in [Column::Velocity, Column::Acceleration] {
-            match read_profile(text, column) {
+        for read in [read_velocities, read_accelerations] {
+            match read(text) {
                 Ok(profile) => {
                     assert!(profile.times.len() >= 2 && profile.values.len() == profile.times.len(), "{profile:?}");
                     assert!(profile.times.windows(2).all(|pair| pair[0] < pair[1]), "{profile:?}");

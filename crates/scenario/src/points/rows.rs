@@ -1,0 +1,204 @@
+//! The rows of a table of points: its heading, and what stands in its cells.
+use super::column::{Column, Layout};
+use super::mistake::{PointsError, PointsMistake};
+use crate::quantity::Scale;
+use crate::reading::{self, ReadError, names};
+
+/// A column of the heading.
+#[derive(Debug)]
+pub(super) struct Head {
+    pub(super) column: Column,
+    pub(super) unit: String,
+    scale: Scale,
+    /// Which of its candidates it measures.
+    pub(super) which: usize,
+    /// Its column in characters.
+    at: usize,
+}
+
+/// A cell of a row.
+#[derive(Debug, Clone, Copy)]
+struct Cell<'a> {
+    /// What stands in it, without the spaces around it.
+    text: &'a str,
+    /// What stands before that in the row.
+    before: &'a str,
+}
+
+impl Cell<'_> {
+    /// Where its text begins, from 1.
+    fn at(&self) -> usize {
+        self.before.chars().count() + 1
+    }
+}
+
+/// Reads a table of `most` points at most, and gives what stands in its cells to `take`: nothing where one is empty.
+pub(super) fn read_rows(
+    text: &str,
+    layout: Layout,
+    most: usize,
+    mut take: impl FnMut(Column, Option<f64>),
+) -> Result<Vec<Head>, PointsError> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut rows = (1..).zip(text.lines()).filter(|(_, row)| !row.trim().is_empty());
+    let Some((line, row)) = rows.next() else {
+        return Err(wrong(1, 1, PointsMistake::NoHeading { like: layout.example() }));
+    };
+    let heads = heading(line, row, layout)?;
+    let (mut points, mut last) = (0, (line, f64::NEG_INFINITY));
+    for (line, row) in rows {
+        if points == most {
+            return Err(wrong(line, 1, PointsMistake::TooMany { most }));
+        }
+        last = (line, read_row(&heads, layout, line, row, last.1, &mut take)?);
+        points += 1;
+    }
+    match points {
+        0 | 1 => Err(wrong(last.0, 1, PointsMistake::TooFew { points })),
+        _ => Ok(heads),
+    }
+}
+
+pub(super) const fn wrong(line: usize, column: usize, mistake: PointsMistake) -> PointsError {
+    PointsError { line, column, mistake }
+}
+
+fn cells(row: &str) -> impl Iterator<Item = Cell<'_>> {
+    let mut next = 0;
+    row.split(',').map(move |cell| {
+        let (text, spaces) = (cell.trim(), cell.len() - cell.trim_start().len());
+        let begin = next + spaces;
+        next += cell.len() + 1;
+        Cell { text, before: &row[..begin] }
+    })
+}
+
+/// The columns in their order.
+fn heading(line: usize, row: &str, layout: Layout) -> Result<Vec<Head>, PointsError> {
+    for (found, name) in [(';', ";"), ('\t', "tab")] {
+        if let Some((before, _)) = row.split_once(found).filter(|_| !row.contains(',')) {
+            return Err(wrong(
+                line,
+                before.chars().count() + 1,
+                PointsMistake::Separator { found: name, like: layout.shortest_example() },
+            ));
+        }
+    }
+    let mut heads: Vec<Head> = Vec::new();
+    for cell in cells(row) {
+        let (name, unit) = match cell.text.split_once('[') {
+            Some((name, rest)) => (name.trim_end(), rest.strip_suffix(']').map(str::trim)),
+            None => (cell.text, None),
+        };
+        let fail = |mistake| wrong(line, cell.at(), mistake);
+        let Some(column) = layout.columns().find(|column| column.name() == name) else {
+            return Err(fail(PointsMistake::UnknownColumn { name: name.to_owned(), like: layout.example() }));
+        };
+        if heads.iter().any(|head| head.column == column) {
+            return Err(fail(PointsMistake::Twice { column }));
+        }
+        let Some(unit) = unit.filter(|unit| !unit.is_empty()) else {
+            return Err(fail(PointsMistake::NoUnit { column, proposal: column.proposal() }));
+        };
+        let (scale, which) = read_unit(column, unit)
+            .map_err(|message| fail(PointsMistake::Unit { column, unit: unit.to_owned(), message }))?;
+        heads.push(Head { column, unit: unit.to_owned(), scale, which, at: cell.at() });
+    }
+    for column in layout.needed() {
+        if heads.iter().all(|head| head.column != column) {
+            return Err(wrong(line, 1, PointsMistake::Missing { column, proposal: column.proposal() }));
+        }
+    }
+    agreeing(line, heads)
+}
+
+/// `heads`, unless positions and velocities are those of different axes.
+fn agreeing(line: usize, heads: Vec<Head>) -> Result<Vec<Head>, PointsError> {
+    let of = |column| heads.iter().find(|head| head.column == column);
+    if let (Some(position), Some(velocity)) = (of(Column::Position), of(Column::Velocity))
+        && position.which != velocity.which
+    {
+        let needed = Column::Velocity.candidates()[position.which].name;
+        let message = format!("positions are in `{}`, {needed} is needed", position.unit);
+        let mistake = PointsMistake::Unit { column: Column::Velocity, unit: velocity.unit.clone(), message };
+        return Err(wrong(line, velocity.at, mistake));
+    }
+    Ok(heads)
+}
+
+/// The scale of `unit`, and which of the candidates of `column` it measures.
+fn read_unit(column: Column, unit: &str) -> Result<(Scale, usize), String> {
+    let candidates = column.candidates();
+    let with = |message: &str, help: &str| if help.is_empty() { message.into() } else { format!("{message}; {help}") };
+    let (which, _) = reading::read(&format!("1 {unit}"), &candidates).map_err(|error| match error {
+        ReadError::NoQuantity(error) => with(&error.message, &error.help),
+        ReadError::NoUnit => format!("{} has a unit", names(&candidates)),
+        ReadError::OtherDimension { is, help } => {
+            with(&format!("{} is needed, this is {is}", names(&candidates)), help)
+        }
+    })?;
+    let scale = Scale::read(unit).map_err(|error| with(&error.message, &error.help))?;
+    Ok((scale, which))
+}
+
+/// Gives a point to `take` that must be later than `before` (s); its time (s).
+fn read_row(
+    heads: &[Head],
+    layout: Layout,
+    line: usize,
+    row: &str,
+    before: f64,
+    take: &mut impl FnMut(Column, Option<f64>),
+) -> Result<f64, PointsError> {
+    let (mut read, mut time) = (0, before);
+    for (head, cell) in heads.iter().zip(cells(row)) {
+        let column = head.column;
+        read += 1;
+        if cell.text.is_empty() && !layout.needed().contains(&column) {
+            take(column, None);
+            continue;
+        }
+        let value = number(&head.scale, cell.text).map_err(|reason| {
+            // A row of another width is told as such: its values are in the wrong columns.
+            width(line, row, heads.len()).err().unwrap_or_else(|| {
+                wrong(line, cell.at(), PointsMistake::Value { column, text: shown(cell.text), reason })
+            })
+        })?;
+        if column == Column::Time {
+            if value <= before {
+                return Err(wrong(line, cell.at(), PointsMistake::Order { time: value, before }));
+            }
+            time = value;
+        }
+        take(column, Some(value));
+    }
+    if read < heads.len() || row.bytes().filter(|byte| *byte == b',').count() + 1 != heads.len() {
+        width(line, row, heads.len())?;
+    }
+    Ok(time)
+}
+
+/// Nothing, if `row` has `expected` values.
+fn width(line: usize, row: &str, expected: usize) -> Result<(), PointsError> {
+    match cells(row).count() {
+        found if found == expected => Ok(()),
+        found => Err(wrong(line, 1, PointsMistake::Width { found, expected })),
+    }
+}
+
+/// The value (SI) of `text`.
+fn number(scale: &Scale, text: &str) -> Result<f64, &'static str> {
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() => scale.value(text),
+        Ok(_) if text.contains(|c: char| c.is_ascii_digit()) => Err("the number is too large: above 1e30 in SI"),
+        Ok(_) => Err("the number must be finite"),
+        Err(_) if text.is_empty() => Err("write a number; only `velocity` beside `position` may be left empty"),
+        Err(_) => Err("write a number like `12.5`, its unit stands in the heading"),
+    }
+}
+
+/// As much of a cell as belongs into a message.
+fn shown(text: &str) -> String {
+    const MOST: usize = 40;
+    if text.chars().count() <= MOST { text.to_owned() } else { text.chars().take(MOST).chain(['…']).collect() }
+}
