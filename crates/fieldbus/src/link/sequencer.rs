@@ -1,7 +1,7 @@
 //! How the master brings the drive to power and back.
 //!
 //! Strict: one command per state of the power state machine, the next one when the statusword tells the next state, and a
-//! time-out for each. Simplified, for drives that want no sequence: of the statusword only the fault bit is looked at, and the
+//! time-out for each that does not wait for the axis to come to rest. Simplified, for drives that want no sequence: of the statusword only the fault bit is looked at, and the
 //! controlword switches between 0006h and 000Fh.
 //!
 //! | what is wanted | strict | simplified |
@@ -97,7 +97,7 @@ impl Sequencer {
             Sequencing::Strict => self.strict(wanted),
             Sequencing::Simplified => self.simplified(wanted),
         };
-        if word != self.word {
+        if word != self.word || self.brakes(wanted) {
             (self.word, self.since) = (word, now);
         }
         let waited = now.saturating_sub(self.since);
@@ -105,6 +105,15 @@ impl Sequencer {
             self.resetting = false;
         }
         arrived || waited <= timeout
+    }
+
+    /// Whether the drive may be bringing the axis to rest, which takes as long as it takes.
+    fn brakes(&self, wanted: Wanted) -> bool {
+        match self.state {
+            PowerState::QuickStopActive | PowerState::FaultReactionActive => true,
+            PowerState::OperationEnabled => wanted != Wanted::On,
+            _ => false,
+        }
     }
 
     /// The word of the strict sequence, and whether nothing has to happen.

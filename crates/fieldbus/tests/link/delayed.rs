@@ -64,3 +64,22 @@ fn offsets_carry_velocity_and_torque_of_the_set_point() {
     assert_eq!((rig.commands.velocity_offset, rig.commands.torque_offset), (500_000, 200));
     assert!((rig.setpoint().x - 0.5 * (rig.tick - BUS - MOTION) as f64 / RATE).abs() < 1e-9);
 }
+
+#[test]
+fn a_motion_task_as_fast_as_the_bus_is_followed_sample_by_sample() {
+    let mut rig = Rig::new(Settings { motion_cycle: settings().bus_cycle, ..settings() });
+    assert_eq!(rig.params.delay(), BUS);
+    let motion = |tick: u64| Setpoint { x: 0.1 * (1.0 - (tick as f64 / RATE).cos()), ..Setpoint::default() };
+    for _ in 0..2_000 {
+        let at = motion(rig.tick);
+        rig.write(rig.tick, follow(Sample { x: at.x, v: 0.1 * (rig.tick as f64 / RATE).sin(), ..Sample::default() }));
+        rig.cycle();
+        if rig.tick > 30 * BUS {
+            assert_eq!(rig.feedback().interpolation, Interpolation::Run1);
+        }
+        if rig.tick > 1_000 * BUS {
+            // The start is taken out: what is put out now is the sample of the cycle before.
+            assert!((rig.setpoint().x - motion(rig.tick - 2 * BUS).x).abs() < 1e-15);
+        }
+    }
+}

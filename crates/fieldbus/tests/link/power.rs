@@ -127,6 +127,41 @@ fn a_drive_that_does_not_do_what_it_is_told_times_out() {
 }
 
 #[test]
+fn braking_takes_as_long_as_it_takes() {
+    let mut rig = Rig::powered(settings());
+    rig.drive.rolls = true;
+    // 300 cycles are three time-outs.
+    assert_eq!(rig.words(300, OFF), (vec![0x0007], vec![Power::Switching]));
+    rig.drive.rolls = false;
+    assert_eq!(rig.words(20, OFF), (vec![0x0007, 0x0006], vec![Power::Switching, Power::Off]));
+    assert_eq!(rig.fault(), None);
+
+    // Reset while the quick stop brakes: the drive goes on to power when it is over.
+    rig.words(20, REST);
+    rig.drive.rolls = true;
+    rig.external_fault = true;
+    rig.words(20, REST);
+    assert_eq!(rig.drive.memory.state(), PowerState::QuickStopActive);
+    rig.external_fault = false;
+    rig.words(300, RESET);
+    assert_eq!(rig.fault(), None);
+    rig.drive.rolls = false;
+    rig.words(20, REST);
+    assert_eq!((rig.fault(), rig.feedback().power), (None, Power::On));
+
+    // Reset while the fault reaction brakes.
+    rig.drive.rolls = true;
+    rig.drive.fault = true;
+    rig.words(20, REST);
+    rig.drive.fault = false;
+    rig.words(300, RESET);
+    assert_eq!(rig.drive.memory.state(), PowerState::FaultReactionActive);
+    rig.drive.rolls = false;
+    rig.words(20, RESET);
+    assert_eq!((rig.fault(), rig.feedback().power), (None, Power::On));
+}
+
+#[test]
 fn a_silent_drive_is_told_to_stop_quickly() {
     let mut rig = Rig::powered(settings());
     let silent = rig.tick;

@@ -57,6 +57,8 @@ pub(crate) struct Drive {
     pub(crate) fault: bool,
     /// Whether it does what the controlword says.
     pub(crate) deaf: bool,
+    /// Whether the axis has not come to rest when it is braked.
+    pub(crate) rolls: bool,
     /// Counts since the start, wraps included.
     pub(crate) counts: i128,
     /// Cycles since the start of homing, which takes `HOMING` and moves by 37 counts in each.
@@ -71,14 +73,14 @@ impl Drive {
     pub(crate) fn new(counter: Counter) -> Self {
         let (power, memory) = (PowerParams::default(), PowerMemory::default());
         let actuals = Actuals::default();
-        Self { power, memory, counter, fault: false, deaf: false, counts: 0, homing: None, actuals }
+        Self { power, memory, counter, fault: false, deaf: false, rolls: false, counts: 0, homing: None, actuals }
     }
 
     pub(crate) fn step(&mut self, commands: &Commands) -> Actuals {
         let inputs = PowerInputs {
             initialised: true,
             fault: self.fault,
-            standstill: true,
+            standstill: !self.rolls,
             remote: !self.deaf,
             main_voltage: true,
             ..PowerInputs::default()
