@@ -140,7 +140,7 @@ pub struct Cycle {
     pub external_fault: bool,
 }
 
-/// The cycle that happens at this tick, if any; to be asked at every tick.
+/// The cycle that happens at this tick, if any; to be asked once at every tick.
 #[inline]
 pub fn step(params: &Params<'_>, state: &mut State, tick: Tick) -> Option<Cycle> {
     if state.next.is_some_and(|next| tick < next) {
@@ -158,7 +158,7 @@ impl State {
         }
         let number = self.number;
         self.number += 1;
-        self.next = Some(Tick(params.time_of(self.number).max(tick.0 + 1)));
+        self.next = Some(Tick(params.time_of(self.number)));
         let has = |kind| params.faults_of(number).any(|found| found == kind);
         Some(Cycle {
             number,

@@ -76,7 +76,8 @@ pub struct State {
     /// Number of the last command that was read.
     read: u64,
     actuals: Actuals,
-    /// When the drive was heard last (base ticks).
+    has_begun: bool,
+    /// When the drive was heard last, or the first step (base ticks).
     heard: u64,
     position: Option<Position>,
     sequencer: Sequencer,
@@ -100,9 +101,10 @@ impl Default for State {
             command: AxisCommand { power: false, reset: false, task: Task::Follow(Sample::default()) },
             read: 0,
             actuals: Actuals::default(),
+            has_begun: false,
             heard: 0,
             position: None,
-            sequencer: Sequencer::START,
+            sequencer: Sequencer::start(0),
             was_on: false,
             fault: None,
             stream: Stream::OFF,
@@ -119,6 +121,10 @@ impl Default for State {
 /// Tells the drive what comes next.
 pub fn step(params: &Params, state: &mut State, input: Input<'_>) -> Commands {
     let now = input.tick.0;
+    if !core::mem::replace(&mut state.has_begun, true) {
+        state.heard = now;
+        state.sequencer = Sequencer::start(now);
+    }
     state.hear(params, input.actuals, now);
     let post = state.open(params, input.mailbox);
     state.supervise(params, input.external_fault, now);

@@ -79,8 +79,6 @@ pub struct Params {
     pub(crate) scale: Scale,
     /// Cycle of the motion task (s).
     pub(crate) cycle: f64,
-    /// Velocity below which the axis does not move into a switch: a count per cycle of the motion task.
-    pub(crate) creep: f64,
 }
 
 impl Params {
@@ -112,13 +110,10 @@ impl Params {
         let moving = servobench_base::Setpoint { v: velocity_limit, ..Default::default() };
         Transition::plan(Order::Third, &moving, &Target::Velocity(0.0), &limits, Effort::Fast)?;
         let recovery = Recovery { limits, resolution: scale.resolution() / 1000.0, cycle: cycle as f64, tick };
-        Ok(Self {
-            settings,
-            stream: StreamParams { timing, recovery, highest_step: velocity_limit * tick, bus_cycle },
-            scale,
-            cycle: cycle as f64 * tick,
-            creep: scale.resolution() / (cycle as f64 * tick),
-        })
+        let (highest_step, count) = (velocity_limit * tick, scale.resolution());
+        let creep = count / (cycle as f64 * tick);
+        let stream = StreamParams { timing, recovery, highest_step, bus_cycle, count, creep };
+        Ok(Self { settings, stream, scale, cycle: cycle as f64 * tick })
     }
 
     /// The settings that it was made of.

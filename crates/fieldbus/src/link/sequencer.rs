@@ -43,13 +43,16 @@ pub(crate) struct Sequencer {
 }
 
 impl Sequencer {
-    pub(crate) const START: Self = Self {
-        state: PowerState::NotReadyToSwitchOn,
-        word: Controlword::of(Command::DisableVoltage),
-        since: 0,
-        resetting: false,
-        faulty: false,
-    };
+    /// Of a drive that was not heard yet.
+    pub(crate) const fn start(now: u64) -> Self {
+        Self {
+            state: PowerState::NotReadyToSwitchOn,
+            word: Controlword::of(Command::DisableVoltage),
+            since: now,
+            resetting: false,
+            faulty: false,
+        }
+    }
 
     pub(crate) const fn word(&self) -> Controlword {
         self.word

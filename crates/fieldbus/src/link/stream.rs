@@ -14,6 +14,10 @@ pub(crate) struct StreamParams {
     pub(crate) highest_step: f64,
     /// Cycle of the bus (base ticks).
     pub(crate) bus_cycle: u64,
+    /// Size of a count (m or rad).
+    pub(crate) count: f64,
+    /// Velocity below which it stands still: a count per cycle of the motion task.
+    pub(crate) creep: f64,
 }
 
 /// A sample as it was read.
@@ -83,6 +87,21 @@ impl Stream {
     /// What is put out at `now`, not before the last step.
     pub(crate) fn at(&self, p: &StreamParams, now: u64) -> Command {
         self.course.at(|| self.buffer.at(&p.timing, now), now, p.timing.tick).unwrap_or(self.output)
+    }
+
+    /// Whether it goes in the direction of `sign`, ±1: by the motion that is read, by two counts of recovery or by a stop from
+    /// there. Less than that is what an axis at rest on a switch is off by.
+    pub(crate) fn goes(&self, p: &StreamParams, sign: f64) -> bool {
+        if self.state == Interpolation::Off {
+            return false;
+        }
+        let output = &self.output.setpoint;
+        match self.buffer.at(&p.timing, self.at) {
+            Some(Command { setpoint: read, .. }) if self.course.reads() => {
+                sign * read.v > p.creep || sign * (read.x - output.x) > 2.0 * p.count
+            }
+            _ => sign * output.v > p.creep,
+        }
     }
 
     /// Puts out the actual position.

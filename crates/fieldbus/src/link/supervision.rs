@@ -24,16 +24,16 @@ impl State {
     }
 
     /// The limit switch that the axis is commanded into.
-    pub(super) fn runs_into(&self, p: &Params) -> Option<LinkFault> {
-        let direction = match self.command.task {
-            Task::Follow(_) if self.stream.state() != Interpolation::Off => self.stream.output().setpoint.v / p.creep,
-            Task::Effort(effort) if self.ramp.state() != Interpolation::Off => effort / p.scale.effort(1).abs(),
-            Task::Follow(_) | Task::Effort(_) | Task::Home { .. } => 0.0,
-        };
+    fn runs_into(&self, p: &Params) -> Option<LinkFault> {
         let switches = self.switches(p);
-        if switches.negative_limit && direction < -1.0 {
+        let goes = |sign: f64| match self.command.task {
+            Task::Follow(_) => self.stream.goes(&p.stream, sign),
+            Task::Effort(effort) => self.ramp.state() != Interpolation::Off && sign * effort > 0.0,
+            Task::Home { .. } => false,
+        };
+        if switches.negative_limit && goes(-1.0) {
             Some(LinkFault::NegativeLimit)
-        } else if switches.positive_limit && direction > 1.0 {
+        } else if switches.positive_limit && goes(1.0) {
             Some(LinkFault::PositiveLimit)
         } else {
             None

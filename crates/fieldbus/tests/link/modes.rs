@@ -104,6 +104,42 @@ fn efforts_are_reached_in_a_line_and_let_go_when_none_comes() {
 }
 
 #[test]
+fn an_effort_within_the_margin_is_in_time() {
+    let mut rig = Rig::new(Settings { margin: 64, ..settings() });
+    let effort = AxisCommand { power: true, reset: false, task: Task::Effort(1.0) };
+    rig.run(3, |_| effort);
+    for late in [0, 1, 4, 2, 3, 0] {
+        for cycle in 0..MOTION / BUS {
+            if cycle == late {
+                rig.write(rig.tick / MOTION * MOTION, effort);
+            }
+            rig.cycle();
+            assert_eq!(rig.feedback().interpolation, Interpolation::Run1);
+        }
+    }
+}
+
+#[test]
+fn a_torque_does_not_jump() {
+    let mut rig = Rig::new(settings());
+    let holding = |torque| follow(Sample { torque, ..Sample::default() });
+    let mut last = 0;
+    for (cycles, torque) in [(10, 5.0), (4, -5.0), (10, 5.0)] {
+        for cycle in 0..cycles * MOTION / BUS {
+            // The last time nothing comes, and the torque ends with the motion.
+            if rig.tick.is_multiple_of(MOTION) && (torque > 0.0 || cycle == 0) {
+                rig.write(rig.tick, holding(torque));
+            }
+            let offset = rig.cycle().torque_offset;
+            // At most from 500 thousandths to the opposite within the 20 cycles of the bus.
+            assert!((offset - last).abs() <= 51, "{last} to {offset}");
+            last = offset;
+        }
+    }
+    assert_eq!(last, 500);
+}
+
+#[test]
 fn homing_is_started_by_bit_4_and_gives_the_position() {
     let home = AxisCommand { power: true, reset: false, task: Task::Home { position: 0.25 } };
     let mut rig = Rig::new(settings());

@@ -237,18 +237,41 @@ fn a_limit_switch_halts_what_moves_into_it_and_nothing_else() {
             let expected = Switches { negative_limit: sign < 0.0, home: false, positive_limit: sign > 0.0 };
             assert_eq!(switches, expected);
 
-            // Reset at rest, out of the switch, back in.
-            let rest = at(x, 0.0);
-            rig.run(2, |_| AxisCommand { reset: true, ..rest });
-            rig.run(3, |_| rest);
+            // Reset at rest, a count and a half into the switch, ten counts, out of it, back in.
+            let reset = |rig: &mut Rig, counts: f64| {
+                let rest = at(x + sign * counts * 1e-6, 0.0);
+                rig.run(2, |_| AxisCommand { reset: true, ..rest });
+                rig.run(3, |_| rest);
+            };
+            reset(&mut rig, 1.5);
+            assert_eq!(rig.fault(), None);
+            reset(&mut rig, 10.0);
+            assert_eq!(rig.fault(), Some(Fault::Link(fault)));
+            reset(&mut rig, 0.0);
             assert_eq!(rig.fault(), None);
             moves(&mut rig, -sign, 10);
             assert_eq!(rig.fault(), None);
             assert!(sign * (rig.feedback().position - x) < -1e-3);
             moves(&mut rig, sign, 20);
             assert_eq!(rig.fault(), Some(Fault::Link(fault)));
+
+            // A halt does not hide what needs a quick stop.
+            rig.external_fault = true;
+            rig.run(1, |_| at(x, 0.0));
+            assert_eq!(rig.fault(), Some(Fault::Link(LinkFault::External)));
         }
     }
+}
+
+#[test]
+fn an_effort_into_a_limit_switch_halts_the_axis() {
+    let effort = |value| AxisCommand { task: servobench_fieldbus::Task::Effort(value), ..REST };
+    let mut rig = Rig::powered(settings());
+    rig.drive.actuals.digital_inputs = 0b010;
+    rig.run(3, |_| effort(-2.0));
+    assert_eq!(rig.fault(), None);
+    rig.run(1, |_| effort(2.0));
+    assert_eq!(rig.fault(), Some(Fault::Link(LinkFault::PositiveLimit)));
 }
 
 #[test]

@@ -50,6 +50,7 @@ pub(crate) fn settings() -> Settings {
 
 /// A drive that is where it is told to be, one cycle later.
 #[derive(Debug, Clone, Copy)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a signal of its own")]
 pub(crate) struct Drive {
     pub(crate) power: PowerParams,
     pub(crate) memory: PowerMemory,
@@ -62,7 +63,9 @@ pub(crate) struct Drive {
     /// Counts since the start, wraps included.
     pub(crate) counts: i128,
     /// Cycles since the start of homing, which takes `HOMING` and moves by 37 counts in each.
-    pub(crate) homing: Option<u32>,
+    pub(crate) homing: u32,
+    /// Whether bit 4 was set.
+    pub(crate) asked: bool,
     pub(crate) actuals: Actuals,
 }
 
@@ -72,8 +75,8 @@ pub(crate) const HOMING: u32 = 50;
 impl Drive {
     pub(crate) fn new(counter: Counter) -> Self {
         let (power, memory) = (PowerParams::default(), PowerMemory::default());
-        let actuals = Actuals::default();
-        Self { power, memory, counter, fault: false, deaf: false, rolls: false, counts: 0, homing: None, actuals }
+        let (homing, asked, actuals) = (0, false, Actuals::default());
+        Self { power, memory, counter, fault: false, deaf: false, rolls: false, counts: 0, homing, asked, actuals }
     }
 
     pub(crate) fn step(&mut self, commands: &Commands) -> Actuals {
@@ -120,17 +123,20 @@ impl Drive {
 
     /// Bits 10 and 12 of the statusword. What was attained before is shown until bit 4 rises.
     fn home(&mut self, commands: &Commands) -> (bool, bool) {
-        if !commands.controlword.has(ControlBit::ModeSpecific4) {
-            return (true, self.homing.take().is_some_and(|passed| passed > HOMING));
+        let asked = commands.controlword.has(ControlBit::ModeSpecific4);
+        if asked && !self.asked {
+            self.homing = 0;
         }
-        let passed = self.homing.get_or_insert(0);
-        *passed += 1;
-        match (*passed).cmp(&HOMING) {
-            Ordering::Less => self.counts += 37,
-            Ordering::Equal => self.counts = commands.home_offset.into(),
-            Ordering::Greater => {}
+        self.asked = asked;
+        if asked {
+            self.homing += 1;
+            match self.homing.cmp(&HOMING) {
+                Ordering::Less => self.counts += 37,
+                Ordering::Equal => self.counts = commands.home_offset.into(),
+                Ordering::Greater => {}
+            }
         }
-        (*passed >= HOMING, *passed >= HOMING)
+        (!asked || self.homing >= HOMING, self.homing >= HOMING)
     }
 }
 

@@ -3,6 +3,7 @@ use crate::rig::{BUS, MOTION, RATE, Rig, follow, sample, settings};
 use servobench_base::{Rate, Setpoint, Tick};
 use servobench_fieldbus::Interpolation::{self, Busy, Overflow, Run1, Run2, Run3, Slow, Underflow, Wait};
 use servobench_fieldbus::link::Settings;
+use servobench_motion::interpolate::Mode;
 use servobench_motion::{Limits, Order, Profile};
 
 const LIMITS: Limits = Limits { velocity: 1.0, acceleration: 5.0, jerk: 50.0, snap: 1000.0 };
@@ -25,13 +26,15 @@ struct Watched {
     states: Vec<Interpolation>,
     /// Largest acceleration between three cycles.
     acceleration: f64,
+    /// Largest difference of accelerations between two cycles, by their time.
+    jerk: f64,
     velocity: f64,
 }
 
 impl Watched {
     fn new(settings: Settings) -> Self {
         let last = [Setpoint::default(); 2];
-        Self { rig: Rig::new(settings), last, states: Vec::new(), acceleration: 0.0, velocity: 0.0 }
+        Self { rig: Rig::new(settings), last, states: Vec::new(), acceleration: 0.0, jerk: 0.0, velocity: 0.0 }
     }
 
     fn cycle(&mut self) -> Interpolation {
@@ -40,6 +43,7 @@ impl Watched {
         let h = BUS as f64 / RATE;
         self.velocity = self.velocity.max(((now.x - before.x) / h).abs());
         self.acceleration = self.acceleration.max(((now.x - 2.0 * before.x + first.x) / (h * h)).abs());
+        self.jerk = self.jerk.max(((now.a - before.a) / h).abs());
         self.last = [now, before];
         let state = self.rig.state.interpolation();
         if self.states.last() != Some(&state) {
@@ -174,6 +178,56 @@ fn without_samples_the_axis_is_brought_to_rest_and_starts_again_by_itself() {
 
 /// Cycle of a motion task whose samples are to be 320 ticks apart.
 const FAST: u64 = MOTION - 3 * BUS;
+
+#[test]
+fn a_stop_and_a_new_start_while_the_motion_goes_on_are_smooth() {
+    let mut axis = Watched::new(settings());
+    let gap = MIDDLE * MOTION..(MIDDLE + 6) * MOTION;
+    axis.run(END, |tick| in_time(tick).filter(|tick| !gap.contains(tick)));
+    axis.assert_bounded();
+    axis.assert_arrived();
+    assert_eq!(axis.states[2..], [Run1, Run2, Run3, Underflow, Run1]);
+    // Motion and recovery; the quintic of a snap that switches has up to snap·T/2 more.
+    let bound = LIMITS.jerk + settings().recovery.jerk + LIMITS.snap * MOTION as f64 / RATE / 2.0;
+    assert!(axis.jerk < bound, "{} m/s³ of {bound}", axis.jerk);
+}
+
+#[test]
+fn a_constant_velocity_is_predicted_exactly_in_every_mode() {
+    for interpolation in Mode::ALL {
+        let mut rig = Rig::new(Settings { interpolation, ..settings() });
+        let delay = rig.params.delay();
+        let at = |tick: u64| Setpoint { v: 0.5, ..Setpoint::at_rest(0.5 * tick as f64 / RATE) };
+        let mut predicted = 0;
+        while rig.tick < 200 * MOTION {
+            // From some time on every third sample is half a cycle late.
+            let (cycle, tick) = (rig.tick / MOTION, rig.tick);
+            let late = if cycle > 150 && cycle % 3 == 0 { MOTION / 2 } else { 0 };
+            if tick == cycle * MOTION + late {
+                rig.write(cycle * MOTION, follow(sample(at(cycle * MOTION))));
+            }
+            rig.cycle();
+            predicted += u32::from(rig.state.interpolation() == Run2);
+            if cycle > 140 {
+                let (x, expected) = (rig.setpoint().x, at(tick - delay).x);
+                assert!((x - expected).abs() < 1e-12, "{interpolation:?}: {x} for {expected}");
+            }
+        }
+        assert!(predicted > 100, "{predicted}");
+    }
+}
+
+#[test]
+fn a_link_that_starts_late_is_not_slow() {
+    let mut axis = Watched::new(settings());
+    for cycle in 0..10 {
+        axis.rig.write(cycle * MOTION, follow(sample(motion(0))));
+    }
+    axis.rig.tick = 9 * MOTION;
+    axis.run_in_time(END);
+    assert!(!axis.states.contains(&Slow), "{:?}", axis.states);
+    axis.assert_arrived();
+}
 
 #[test]
 fn a_motion_task_that_is_too_fast_overflows_the_buffer() {
