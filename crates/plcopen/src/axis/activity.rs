@@ -120,7 +120,7 @@ impl Axis {
             Activity::Moving(moving) => match moving.run.advance(cycle_time) {
                 Ok(setpoint) => {
                     self.base = setpoint;
-                    if moving.run.is_over(cycle_time) && !moving.is_paused {
+                    if moving.run.is_over() && !moving.is_paused {
                         self.arrive();
                     }
                 }
@@ -168,7 +168,7 @@ impl Axis {
     /// The way of the active command is over.
     fn arrive(&mut self) {
         let Activity::Moving(moving) = &self.activity else { return };
-        let (id, end, beyond) = (moving.id, moving.run.end(), moving.run.beyond(self.params.cycle_time));
+        let (id, end, beyond) = (moving.id, moving.run.end(), moving.run.beyond());
         if moving.is_endless() {
             return self.go_on(id, self.base);
         }
@@ -210,7 +210,7 @@ impl Axis {
                 self.activity = activity;
                 self.base = from;
                 if let Activity::Moving(moving) = &mut self.activity {
-                    self.base = moving.run.now(self.params.cycle_time);
+                    self.base = moving.run.now();
                 }
                 self.ledger.set(id, Progress::Active);
                 self.follow(Cause::Block(command.block));
@@ -231,7 +231,7 @@ impl Axis {
     /// A way may be so short that it is over in the cycle in which it is blended in; then the next one follows in that cycle.
     fn arrive_early(&mut self) {
         if let Activity::Moving(moving) = &self.activity
-            && moving.run.is_over(self.params.cycle_time)
+            && moving.run.is_over()
             && !moving.is_paused
         {
             self.arrive();

@@ -227,12 +227,13 @@ impl Axis {
                 // The place from which a blended command counts is the end of the one before, whatever its velocity there.
                 let is_blended = lead > 0.0 || command.buffer_mode.blending_velocity(1.0, 1.0).is_some();
                 let reference = if is_blended { Setpoint::at_rest(from.x) } else { from };
-                let target = self.target(&command, &reference, self.additive_origin(&from))?;
+                let is_aborting = command.buffer_mode == BufferMode::Aborting;
+                let origin = if is_aborting { self.last_target().unwrap_or(from.x) } else { from.x };
+                let target = self.target(&command, &reference, origin)?;
                 if let Some(input) = self.forbidden(direction_of(&from, &target)) {
                     return Err(BlockError::NotPermitted { block, input });
                 }
                 // An aborting command has the axis for itself.
-                let is_aborting = command.buffer_mode == BufferMode::Aborting;
                 let axis = if is_aborting { self.spare(None) } else { self.beside() };
                 let (run, is_paused) = self.run(&command, &target, &from, &axis, lead, next)?;
                 Ok(Activity::Moving(Moving { id, command, target, origin: from.x, is_paused, run }))
@@ -240,13 +241,14 @@ impl Axis {
         }
     }
 
-    /// Where MC_MoveAdditive counts from.
-    fn additive_origin(&self, from: &Setpoint) -> f64 {
+    /// Where the command that runs leads, together with what ended superimposed motions have added: MC_MoveAdditive counts from
+    /// there.
+    fn last_target(&self) -> Option<f64> {
         match (&self.activity, self.state) {
             (Activity::Moving(Moving { target: Target::Position { x, .. }, .. }), AxisState::DiscreteMotion) => {
-                x + self.shift
+                Some(x + self.shift)
             }
-            _ => from.x,
+            _ => None,
         }
     }
 

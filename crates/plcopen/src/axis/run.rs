@@ -15,7 +15,9 @@ pub(crate) struct Run {
     /// Time at cycle 0 (s).
     lead: f64,
     cycles: u64,
-    /// What follows at the end of the way: the rest of a passage that is faster than the way to it.
+    /// Time of this cycle (s).
+    time: f64,
+    /// What follows at the end of the way, planned when it is reached.
     then: Option<(Target, Bounds)>,
 }
 
@@ -23,44 +25,42 @@ impl Run {
     /// `way`, begun `lead` seconds before this cycle.
     #[expect(clippy::large_types_passed_by_value, reason = "it is moved in, once per command")]
     pub(crate) fn new(way: Transition, lead: f64, then: Option<(Target, Bounds)>) -> Self {
-        Self { piece: way.piece(lead), way, lead, cycles: 0, then }
+        Self { piece: way.piece(lead), way, lead, cycles: 0, time: lead, then }
     }
 
     /// The set-point one cycle later.
     #[inline]
     pub(crate) fn advance(&mut self, cycle_time: f64) -> Result<Setpoint, PlanError> {
         self.cycles += 1;
-        let setpoint = self.now(cycle_time);
-        match self.then {
-            Some((target, bounds)) if self.beyond(cycle_time) >= 0.0 => {
-                let end = self.way.at(self.way.duration());
-                *self = Self::new(bounds.plan(&end, &target)?, self.beyond(cycle_time), None);
-                Ok(self.now(cycle_time))
-            }
-            _ => Ok(setpoint),
+        let (time, end) = (self.lead + self.cycles as f64 * cycle_time, self.way.duration());
+        self.time = if (time - end).abs() <= ROUNDING * cycle_time { end } else { time };
+        if let Some((target, bounds)) = self.then
+            && self.beyond() >= 0.0
+        {
+            *self = Self::new(bounds.plan(&self.end(), &target)?, self.beyond(), None);
         }
+        Ok(self.now())
     }
 
     /// The set-point of this cycle.
     #[inline]
-    pub(crate) fn now(&mut self, cycle_time: f64) -> Setpoint {
-        let t = self.time(cycle_time);
-        if !self.piece.holds(t) {
-            self.piece = self.way.piece(t);
+    pub(crate) fn now(&mut self) -> Setpoint {
+        if !self.piece.holds(self.time) {
+            self.piece = self.way.piece(self.time);
         }
-        self.piece.at(t)
+        self.piece.at(self.time)
     }
 
     /// By how much its end is behind (s), below zero before it.
     #[inline]
-    pub(crate) fn beyond(&self, cycle_time: f64) -> f64 {
-        self.time(cycle_time) - self.way.duration()
+    pub(crate) fn beyond(&self) -> f64 {
+        self.time - self.way.duration()
     }
 
     /// Whether its end is reached, and nothing follows.
     #[inline]
-    pub(crate) fn is_over(&self, cycle_time: f64) -> bool {
-        self.then.is_none() && self.beyond(cycle_time) >= 0.0
+    pub(crate) fn is_over(&self) -> bool {
+        self.beyond() >= 0.0 && self.then.is_none()
     }
 
     /// Whether something follows that is not yet planned.
@@ -71,11 +71,5 @@ impl Run {
     /// The set-point at its end.
     pub(crate) fn end(&self) -> Setpoint {
         self.way.at(self.way.duration())
-    }
-
-    #[inline]
-    fn time(&self, cycle_time: f64) -> f64 {
-        let (time, end) = (self.lead + self.cycles as f64 * cycle_time, self.way.duration());
-        if (time - end).abs() <= ROUNDING * cycle_time { end } else { time }
     }
 }

@@ -114,7 +114,7 @@ impl Axis {
             Ok(now) => superimposed.now = now,
             Err(error) => return self.fail(AxisError::PlanLost { error }),
         }
-        if superimposed.run.is_over(cycle_time) && !superimposed.is_paused {
+        if superimposed.run.is_over() && !superimposed.is_paused {
             self.shift += superimposed.distance;
             self.ledger.set(superimposed.id, Progress::Done);
             self.superimposed = None;
