@@ -184,6 +184,11 @@ impl State {
     pub const fn fault(&self) -> Option<Fault> {
         self.fault
     }
+
+    /// The trajectory buffer, for points that come without a frame: through the data record (60C1h) or the serial interface.
+    pub const fn trajectory_buffer(&mut self) -> &mut Buffer {
+        &mut self.buffer
+    }
 }
 
 /// One period of the position loop.

@@ -2,7 +2,8 @@
 use crate::axis::Axis;
 use servobench_cia402::{ControlBit, Mode, StatusBit};
 use servobench_drive::device::Params;
-use servobench_drive::modes::interpolated::{Point, SegmentCommand, SubMode};
+use servobench_drive::modes::interpolated::serial::Port;
+use servobench_drive::modes::interpolated::{DataRecord, Point, SegmentCommand, SubMode, TimePeriod};
 
 impl Axis {
     fn send(&mut self, command: SegmentCommand) {
@@ -47,6 +48,44 @@ fn a_point_that_cannot_be_read_is_a_warning_until_a_good_one_comes() {
     assert!(axis.has(StatusBit::Warning));
     axis.send(SegmentCommand::NoOperation);
     assert!(!axis.has(StatusBit::Warning));
+}
+
+/// Oracle: 100 µm per 10 ms, on a line from where the axis is.
+#[test]
+fn points_come_through_the_data_record_too() {
+    let period = TimePeriod::new(10, -3).unwrap();
+    let params = Params { sub_mode: SubMode::Linear, segment: period, ..Params::default() };
+    let mut axis = Axis::enabled(&params, Mode::InterpolatedPosition);
+    let mut record = DataRecord::default();
+    for position in [100, 200, 300] {
+        record.write(SubMode::Linear, period, axis.state.trajectory_buffer(), 1, position).unwrap();
+    }
+    axis.frame.controlword = axis.frame.controlword.with(ControlBit::ModeSpecific4, true);
+    for k in 1..=100 {
+        axis.step(k % 4 == 1);
+        assert!((axis.position - 2.5e-6 * f64::from(k)).abs() < 1e-15, "step {k}: {}", axis.position);
+    }
+}
+
+/// Oracle: a cubic of 1 mm in 100 ms from rest to rest is half way after half the time; bit 4 stays cleared.
+#[test]
+fn a_move_through_the_serial_interface_needs_no_bit() {
+    let mut axis = Axis::enabled(&Params::default(), Mode::InterpolatedPosition);
+    let (mut port, buffer) = (Port::default(), axis.state.trajectory_buffer());
+    port.write(buffer, 0xC8, 3, &[]).unwrap();
+    port.write(buffer, 0x115, 100, &[0, 0]).unwrap();
+    port.write(buffer, 0x115, 0, &[1000, 0]).unwrap();
+    port.command(buffer, 17).unwrap();
+    assert_eq!(port.read(buffer, 0x115), Ok([30, 0, 0]));
+    for k in 1..=400 {
+        axis.step(k % 4 == 1);
+        if k == 200 {
+            assert!((axis.position - 5e-4).abs() < 1e-15 && axis.has(StatusBit::ModeSpecific12), "{}", axis.position);
+        }
+    }
+    assert!((axis.position - 1e-3).abs() < 1e-15);
+    axis.cycle();
+    assert!(!axis.has(StatusBit::ModeSpecific12) && axis.has(StatusBit::TargetReached));
 }
 
 /// Halted and let go again, with bit 4 set all the time: the course has gone on without the axis and is not taken up again.
