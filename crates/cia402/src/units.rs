@@ -32,6 +32,7 @@
 //! ```
 
 mod carry;
+mod divisor;
 mod error;
 mod factor_group;
 mod ratio;

@@ -35,9 +35,9 @@ impl Carry {
         let step = if self.inverted { step.checked_neg().ok_or_else(overflow)? } else { step };
         let narrow = i64::try_from(step).ok().and_then(|step| step.checked_mul(self.ratio.numerator()));
         if let Some(numerator) = narrow.and_then(|product| product.checked_add(self.remainder)) {
-            let denominator = self.ratio.denominator();
-            self.remainder = numerator.rem_euclid(denominator);
-            return Ok(numerator.div_euclid(denominator).into());
+            let (whole, remainder) = self.ratio.split(numerator);
+            self.remainder = remainder;
+            return Ok(whole.into());
         }
         let numerator =
             product(step, self.ratio.numerator().into())?.checked_add(self.remainder.into()).ok_or_else(overflow)?;

@@ -1,7 +1,7 @@
 //! The conversions of a factor group.
 use core::f64::consts::TAU;
 
-use super::ratio::{nearest_product, product};
+use super::ratio::{nearest, product};
 use super::{Carry, Object, Ratio, UnitError};
 use crate::difference::Displacement;
 
@@ -70,7 +70,7 @@ impl Scaling {
         let increments = signed(displacement.increments(), self.velocity_inverted)?;
         // Two factors of 63 and 64 bits: no overflow.
         let denominator = i128::from(ratio.denominator()) * i128::from(displacement.nanoseconds());
-        nearest_product(increments, numerator, denominator)
+        Ok(nearest(product(increments, numerator)?, denominator))
     }
 
     /// [`velocity_of`](Self::velocity_of) as the velocity actual value (606Ch), a 32-bit integer.
