@@ -26,6 +26,23 @@
 //!
 //! By its direction: [`DirectionalLimits`]. While the speed grows and while it falls, as a drive's and a block's:
 //! [`RampLimits`], with [`Transition::plan_ramps`].
+//!
+//! # Passing a target
+//!
+//! [`passing_velocity`] is the highest velocity at which a target can be passed without turning back, [`braking_velocity`] the
+//! one from which a distance is enough to stop.
+//!
+//! # Cost
+//!
+//! Of one call, in µs, where `rsruckig` takes 0.43 to rest (median, and what one in a thousand takes; `cargo bench --bench online`):
+//!
+//! | | order 2 | order 3 | order 4 |
+//! |---|---|---|---|
+//! | [`Transition::plan`] | 0.2, 0.4 | 0.8, 1.3 | 7, 26 |
+//! | [`Transition::plan_ramps`] | 0.2, 0.3 | 1.2, 4 | 9, 115 |
+//! | [`passing_velocity`] | 0.3, 0.6 | 0.6, 1.1 | 5, 18 |
+//!
+//! The slowest start beyond their limits and have to turn round.
 mod costate;
 mod first;
 mod fourth;

@@ -48,7 +48,6 @@ impl Transition {
             Order::Third => third_order(from, target, limits),
             Order::Fourth => fourth_order(from, target, limits, effort),
         }
-        .of_bounded_duration()
     }
 
     /// The same with one acceleration while the speed grows and another one while it falls.
@@ -71,7 +70,7 @@ impl Transition {
         target.check(limits.velocity)?;
         check_state(order, from)?;
         if order == Order::Second {
-            return second_order(from, target, limits.velocity, &limits.rates()).of_bounded_duration();
+            return second_order(from, target, limits.velocity, &limits.rates());
         }
         let plan = |from: &Setpoint, target: &Target, limits| Self::plan(order, from, target, &limits, effort);
         let one_way = |from: &Setpoint| {
@@ -90,29 +89,31 @@ impl Transition {
             None => plan(&stop.way.end(), target, limits.either_way())?,
         };
         let is_shorter = turning.duration() <= stop.duration() + onwards.duration();
-        if turning.excess == 0.0 && is_shorter { Ok(turning) } else { stop.then(&onwards).of_bounded_duration() }
+        if turning.excess == 0.0 && is_shorter { Ok(turning) } else { Ok(stop.then(&onwards)) }
     }
 
     fn then(self, next: &Self) -> Self {
         Self { way: self.way.then(&next.way), excess: self.excess.max(next.excess) }
     }
 
-    fn of_bounded_duration(self) -> Result<Self, PlanError> {
-        let value = self.duration();
-        if value <= LONGEST {
-            return Ok(self);
+    fn new<const N: usize>(
+        order: Order,
+        from: Setpoint,
+        path: &Path<N>,
+        target: &Target,
+        excess: f64,
+    ) -> Result<Self, PlanError> {
+        let value = path.duration();
+        if value.is_nan() || value > LONGEST {
+            let remedy = "start nearer to the limits, or raise them";
+            return Err(PlanError::OutOfRange { name: "duration", value, lowest: 0.0, highest: LONGEST, remedy });
         }
-        let remedy = "start nearer to the limits, or raise them";
-        Err(PlanError::OutOfRange { name: "duration", value, lowest: 0.0, highest: LONGEST, remedy })
-    }
-
-    fn new<const N: usize>(order: Order, from: Setpoint, path: &Path<N>, target: &Target, excess: f64) -> Self {
         let segments = path.stretches().iter().map(|stretch| (stretch.value, stretch.length));
         let way = Trajectory::new(order, from, segments, |end| match target {
             Target::Position { x, v } => Setpoint { v: *v, ..Setpoint::at_rest(*x) },
             Target::Velocity(v) => Setpoint { v: *v, ..Setpoint::at_rest(end.x) },
         });
-        Self { way, excess: excess.max(0.0) }
+        Ok(Self { way, excess: excess.max(0.0) })
     }
 
     /// The set-point `t` seconds after the start; before it the first one, from the end on the target, which goes on at its
@@ -174,7 +175,7 @@ fn heading(order: Order, from: &Setpoint, target: &Target) -> f64 {
     state.iter().chain(&towards).find(|value| **value != 0.0).map_or(1.0, |value| value.signum())
 }
 
-fn second_order(from: &Setpoint, target: &Target, velocity: Sides, rates: &Rates) -> Transition {
+fn second_order(from: &Setpoint, target: &Target, velocity: Sides, rates: &Rates) -> Result<Transition, PlanError> {
     let path = match target {
         Target::Position { x, v } => trapezoid::fastest(from.v, *v, x - from.x, velocity, rates),
         Target::Velocity(v) => {
@@ -188,7 +189,7 @@ fn second_order(from: &Setpoint, target: &Target, velocity: Sides, rates: &Rates
     Transition::new(Order::Second, Setpoint { a: 0.0, j: 0.0, s: 0.0, ..*from }, &path, target, excess)
 }
 
-fn third_order(from: &Setpoint, target: &Target, limits: &DirectionalLimits) -> Transition {
+fn third_order(from: &Setpoint, target: &Target, limits: &DirectionalLimits) -> Result<Transition, PlanError> {
     let DirectionalLimits { velocity, acceleration, jerk, .. } = *limits;
     let start = State3 { p: from.x, v: from.v, a: from.a };
     let path = match target {
@@ -210,7 +211,12 @@ fn third_order(from: &Setpoint, target: &Target, limits: &DirectionalLimits) -> 
     Transition::new(Order::Third, Setpoint { j: 0.0, s: 0.0, ..*from }, &path, target, excess)
 }
 
-fn fourth_order(from: &Setpoint, target: &Target, limits: &DirectionalLimits, effort: Effort) -> Transition {
+fn fourth_order(
+    from: &Setpoint,
+    target: &Target,
+    limits: &DirectionalLimits,
+    effort: Effort,
+) -> Result<Transition, PlanError> {
     let DirectionalLimits { velocity, acceleration, jerk, snap } = *limits;
     let limits = Limits4 { v: velocity, a: acceleration, j: jerk, d: snap };
     // The distance alone matters.
