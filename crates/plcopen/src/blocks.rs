@@ -51,7 +51,7 @@ pub use power::{Power, PowerInputs, PowerOutputs};
 pub use profile::Pair;
 pub use read::{
     ReadActualPosition, ReadActualTorque, ReadActualVelocity, ReadAxisError, ReadAxisErrorOutputs, ReadInputs,
-    ReadStatus, ReadStatusOutputs, ReadValueOutputs,
+    ReadStatus, ReadStatusOutputs, ReadValueOutputs, ReadsValue,
 };
 pub use reset::{Reset, ResetInputs};
 pub use set_override::{SetOverride, SetOverrideInputs, SetOverrideOutputs};

@@ -6,6 +6,7 @@ use crate::axis::Axis;
 use crate::error::{AxisError, ErrorId};
 use crate::name::BlockName;
 use crate::state::AxisState;
+use core::marker::PhantomData;
 
 /// The state of the axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -55,13 +56,32 @@ pub struct ReadAxisErrorOutputs {
     pub drive_code: u16,
 }
 
-/// Outputs of a block that reads a value; the value is `Position`, `Velocity` or `Torque` in the standard.
+/// Outputs of `Block`, which reads a value.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct ReadValueOutputs {
+pub struct ReadValueOutputs<Block> {
     /// Valid.
     pub valid: bool,
-    /// The value, in the axis unit; 0 while it is not valid.
+    /// Position, Velocity or Torque, in the axis unit; 0 while it is not valid.
     pub value: f64,
+    block: PhantomData<Block>,
+}
+
+/// A block that reads a value.
+pub trait ReadsValue: Copy {
+    /// Name of the output that has the value.
+    const OUTPUT: &'static str;
+}
+
+impl ReadsValue for ReadActualPosition {
+    const OUTPUT: &'static str = "Position";
+}
+
+impl ReadsValue for ReadActualVelocity {
+    const OUTPUT: &'static str = "Velocity";
+}
+
+impl ReadsValue for ReadActualTorque {
+    const OUTPUT: &'static str = "Torque";
 }
 
 impl ReadStatusOutputs {
@@ -110,10 +130,10 @@ impl FunctionBlock for ReadAxisError {
 impl FunctionBlock for ReadActualPosition {
     const NAME: BlockName = BlockName::ReadActualPosition;
     type Inputs = ReadInputs;
-    type Outputs = ReadValueOutputs;
+    type Outputs = ReadValueOutputs<Self>;
 
     #[inline]
-    fn step(&mut self, axis: &mut Axis, inputs: &ReadInputs) -> ReadValueOutputs {
+    fn step(&mut self, axis: &mut Axis, inputs: &ReadInputs) -> ReadValueOutputs<Self> {
         ReadValueOutputs::of(*inputs, || axis.actual().position)
     }
 }
@@ -121,10 +141,10 @@ impl FunctionBlock for ReadActualPosition {
 impl FunctionBlock for ReadActualVelocity {
     const NAME: BlockName = BlockName::ReadActualVelocity;
     type Inputs = ReadInputs;
-    type Outputs = ReadValueOutputs;
+    type Outputs = ReadValueOutputs<Self>;
 
     #[inline]
-    fn step(&mut self, axis: &mut Axis, inputs: &ReadInputs) -> ReadValueOutputs {
+    fn step(&mut self, axis: &mut Axis, inputs: &ReadInputs) -> ReadValueOutputs<Self> {
         ReadValueOutputs::of(*inputs, || axis.actual().velocity)
     }
 }
@@ -132,19 +152,19 @@ impl FunctionBlock for ReadActualVelocity {
 impl FunctionBlock for ReadActualTorque {
     const NAME: BlockName = BlockName::ReadActualTorque;
     type Inputs = ReadInputs;
-    type Outputs = ReadValueOutputs;
+    type Outputs = ReadValueOutputs<Self>;
 
     #[inline]
-    fn step(&mut self, axis: &mut Axis, inputs: &ReadInputs) -> ReadValueOutputs {
+    fn step(&mut self, axis: &mut Axis, inputs: &ReadInputs) -> ReadValueOutputs<Self> {
         ReadValueOutputs::of(*inputs, || axis.actual().effort)
     }
 }
 
-impl ReadValueOutputs {
+impl<Block> ReadValueOutputs<Block> {
     #[inline]
     fn of(inputs: ReadInputs, value: impl FnOnce() -> f64) -> Self {
         let value = if inputs.enable { value() } else { 0.0 };
-        Self { valid: inputs.enable, value }
+        Self { valid: inputs.enable, value, block: PhantomData }
     }
 }
 
@@ -180,8 +200,8 @@ impl Outputs for ReadAxisErrorOutputs {
     }
 }
 
-impl Outputs for ReadValueOutputs {
-    const NAMES: &'static [&'static str] = &["Valid", "Busy", "Error", "ErrorID", "Value"];
+impl<Block: ReadsValue> Outputs for ReadValueOutputs<Block> {
+    const NAMES: &'static [&'static str] = &["Valid", "Busy", "Error", "ErrorID", Block::OUTPUT];
 
     fn each(&self, record: impl FnMut(f64)) {
         let valid = flag(self.valid);
