@@ -61,6 +61,12 @@ impl Axis {
         (0..self.params.cycle.steps).map(|k| self.step(k == 0)).collect()
     }
 
+    pub(crate) fn cycles(&mut self, count: u32) {
+        for _ in 0..count {
+            self.cycle();
+        }
+    }
+
     pub(crate) fn command(&mut self, command: Command) {
         self.frame.controlword = Controlword::of(command);
     }

@@ -115,6 +115,18 @@ fn a_missing_frame_is_bridged_at_the_last_velocity_and_too_many_are_a_fault() {
 }
 
 #[test]
+fn missing_frames_count_only_in_a_row() {
+    let mut axis = Axis::enabled(&Params::default(), Mode::CyclicSynchronousPosition);
+    for n in 0..20 {
+        axis.frame.target_position = 100 * n;
+        for k in 0..4 {
+            // Every other one, two of which would be one too many.
+            assert_eq!(axis.step(k == 0 && n % 2 == 0).fault, None, "frame {n}");
+        }
+    }
+}
+
+#[test]
 fn frames_that_come_late_by_less_than_the_shift_lose_nothing() {
     let cycle = CycleParams { steps: 4, shift: 2, bridged: 0 };
     let mut axis = Axis::enabled(&Params { cycle, ..Params::default() }, Mode::CyclicSynchronousPosition);

@@ -40,7 +40,7 @@ fn a_limit_switch_does_not_keep_the_axis_from_leaving_it() {
     let mut axis = Axis::enabled(&Params::default(), Mode::ProfileVelocity);
     axis.measured.negative_limit = true;
     axis.frame.target_velocity = 100_000;
-    (0..200).for_each(|_| drop(axis.cycle()));
+    axis.cycles(200);
     assert!((axis.velocity - 0.1).abs() < 1e-15 && !axis.has(StatusBit::InternalLimitActive));
 }
 
@@ -49,14 +49,14 @@ fn velocities_and_efforts_are_held_at_a_switch_too() {
     for mode in [Mode::ProfileVelocity, Mode::CyclicSynchronousVelocity, Mode::CyclicSynchronousTorque] {
         let mut axis = Axis::enabled(&Params::default(), mode);
         (axis.frame.target_velocity, axis.frame.target_torque) = (100_000, 100);
-        (0..200).for_each(|_| drop(axis.cycle()));
+        axis.cycles(200);
         axis.velocity = 0.1;
         axis.measured.positive_limit = true;
-        (0..200).for_each(|_| drop(axis.cycle()));
+        axis.cycles(200);
         assert!(matches!(axis.last, Demand::Velocity { .. }) && setpoint(&axis.last).v == 0.0, "{mode:?}");
         assert!(axis.has(StatusBit::InternalLimitActive));
         (axis.frame.target_velocity, axis.frame.target_torque) = (-100_000, -100);
-        (0..200).for_each(|_| drop(axis.cycle()));
+        axis.cycles(200);
         match axis.last {
             Demand::Effort(effort) => assert!((effort + 0.1).abs() < 1e-15),
             demand => assert!((setpoint(&demand).v + 0.1).abs() < 1e-15, "{mode:?}: {demand:?}"),
@@ -82,7 +82,7 @@ fn a_velocity_that_leads_beyond_a_software_limit_is_braked_there() {
     let limits = Limits { position: Some([-5e-3, 5e-3]), ..Params::default().limits };
     let mut axis = Axis::enabled(&Params { limits, ..Params::default() }, Mode::CyclicSynchronousVelocity);
     axis.frame.target_velocity = 100_000;
-    (0..100).for_each(|_| drop(axis.cycle()));
+    axis.cycles(100);
     // Seen at the first step behind the limit, 25 µm later at most.
     assert!((5.5e-3..5.53e-3).contains(&axis.position), "{}", axis.position);
     assert!(setpoint(&axis.last).v == 0.0);

@@ -189,7 +189,7 @@ fn without_a_mode_an_axis_that_moves_is_stopped() {
         axis.cycle();
     }
     // 31.3 ms at 1 m/s².
-    (0..40).for_each(|_| drop(axis.cycle()));
+    axis.cycles(40);
     for outputs in axis.cycle() {
         assert!(setpoint(&outputs.demand).v == 0.0, "{outputs:?}");
     }
@@ -200,11 +200,52 @@ fn without_a_mode_an_axis_that_moves_is_stopped() {
 fn power_that_comes_back_brakes_the_axis_from_where_it_is() {
     let mut axis = moving(&Params::default(), Mode::CyclicSynchronousPosition);
     axis.main_voltage = false;
-    (0..10).for_each(|_| drop(axis.cycle()));
+    axis.cycles(10);
     assert_eq!((axis.last, axis.state.power()), (Demand::Off, PowerState::FaultReactionActive));
     axis.main_voltage = true;
     let (x, v) = (axis.position, axis.velocity);
     let got = setpoint(&axis.step(true).demand);
     // To an increment of 1 µm.
     assert!((got.x - x).abs() <= 0.5e-6 && (got.v - v).abs() < 1e-15 && v > 0.19, "{got:?} {x} {v}");
+}
+
+#[test]
+fn a_quick_stop_that_stays_has_forgotten_the_move_when_it_is_over() {
+    let mut params = Params::default();
+    params.power.quick_stop = QuickStopOption::QuickStopRampAndStay;
+    let mut axis = moving(&params, Mode::ProfilePosition);
+    axis.command(Command::QuickStop);
+    axis.cycles(100);
+    let held = axis.position;
+    axis.command(Command::EnableOperation);
+    axis.cycles(100);
+    assert_eq!(axis.state.power(), PowerState::OperationEnabled);
+    assert!((axis.position - held).abs() < 1e-15 && held < 0.05, "{held} {}", axis.position);
+}
+
+/// Oracle: slopes, 1 m/s² on the ramp of the halt and 10 m/s² on that of the quick stop.
+#[test]
+fn a_harder_stop_takes_over_from_a_softer_one() {
+    let mut axis = moving(&Params::default(), Mode::CyclicSynchronousPosition);
+    axis.frame.controlword = axis.frame.controlword.with(ControlBit::Halt, true);
+    axis.cycles(25);
+    assert!((axis.velocity - 0.175).abs() < 1e-12, "{}", axis.velocity);
+    axis.command(Command::QuickStop);
+    axis.cycles(10);
+    assert!((axis.velocity - 0.075).abs() < 1e-12, "{}", axis.velocity);
+}
+
+/// An axis that sticks stands, but not by its ramp: 0.2 m/s by 1 m/s² take 0.2 s but for the last millisecond, at 1 mm/s.
+#[test]
+fn a_stop_is_not_over_before_its_ramp() {
+    let mut params = Params::default();
+    params.power.shutdown = ShutdownOption::SlowDownRamp;
+    params.standstill.time = 0.0;
+    let mut axis = moving(&params, Mode::CyclicSynchronousPosition);
+    axis.command(Command::Shutdown);
+    let steps = (0..2000).position(|k| {
+        axis.velocity = 0.0;
+        axis.step(k % 4 == 0).demand == Demand::Off
+    });
+    assert!((795..=801).contains(&steps.unwrap()), "{steps:?}");
 }

@@ -114,3 +114,15 @@ fn targets_count_from_the_turn_of_the_counter_in_which_the_axis_is() {
     positions(&mut axis, target, 2000);
     assert!((axis.position - 2147.5).abs() < 1e-11, "{}", axis.position);
 }
+
+/// The shorter way would lead through the end of the counter.
+#[test]
+fn an_absolute_target_is_not_reached_through_the_end_of_the_counter() {
+    let mut axis = Axis::new(&Params::default());
+    axis.position = 2000.0;
+    axis.enable(Mode::ProfilePosition);
+    axis.frame.profile_velocity = u32::MAX;
+    (axis.frame.profile_acceleration, axis.frame.profile_deceleration) = (u32::MAX, u32::MAX);
+    positions(&mut axis, -2_000_000_000, 10_000);
+    assert!((axis.position + 2000.0).abs() < 1e-9, "{}", axis.position);
+}

@@ -52,7 +52,7 @@ fn every_fault_has_its_code_and_its_reaction() {
             let (v, a) = (setpoint(&outputs.demand).v, setpoint(&outputs.demand).a);
             assert!((v - 0.2).abs() < 1e-12 && (a + 10.0).abs() < 1e-12, "{fault:?}: {outputs:?}");
         }
-        (0..100).for_each(|_| drop(axis.cycle()));
+        axis.cycles(100);
         assert_eq!((axis.state.power(), axis.last), (PowerState::Fault, Demand::Off), "{fault:?}");
         // While its cause is there, some cannot be reset.
         axis.command(Command::DisableVoltage);
