@@ -20,8 +20,8 @@
 //! is where the axis was at the first step that saw it, late by one period at the speed for zero; an index pulse is where it came,
 //! and one in the step in which the edge before it was seen does not count.
 //!
-//! The reference gets the home offset as its position, as ETG.6010 and most drives have it; where the profile says that zero is
-//! the offset away from the reference, other drives take the opposite sign.
+//! The reference gets the home offset as its position. The profile may be read the other way, zero being the offset away from the
+//! reference: for such a drive the sign is the other one.
 //!
 //! Which legs a method has is a [table](Method), printed in `docs/homing.md`. Sources: the drawings of DSP 402 v2, homing mode,
 //! as manuals print them (Control Techniques, *SM-EtherCAT User Guide*, issue 2, section 7.7; Brooks, *Homing methods 7 to 14*;

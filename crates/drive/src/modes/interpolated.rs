@@ -32,7 +32,7 @@
 //! latched, no move is started; behind a point that was lost, none is added.
 //!
 //! Sources: Copley Controls, *PVT Trajectory Calculations*, rev. 00 (2020); *CANopen Programmer's Manual*, 95-00271-000 rev. 7
-//! (2012), sections 9, 2010h to 2013h; IEC 61800-7-201, interpolated position mode.
+//! (2012), pp. 209–218, 2010h to 2013h; IEC 61800-7-201, interpolated position mode.
 mod buffer;
 mod course;
 mod data_record;
@@ -79,7 +79,7 @@ impl Params {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State {
     phase: Phase,
-    /// Bit 4 at the last step, unless halted.
+    /// Bit 4 at the last step.
     asked: bool,
     refused: Option<StartRefused>,
     ramp: Ramp,
@@ -201,11 +201,12 @@ impl State {
 /// The parameters must have passed [`Params::check`].
 pub fn step(p: &Params, x: &mut State, buffer: &mut Buffer, now: &Moment) -> Answer {
     let asked = asks(now);
-    let rises = asked && !x.asked;
+    let is_halted = now.targets.controlword.has(ControlBit::Halt);
+    let rises = asked && !x.asked && !is_halted;
     x.asked = asked;
     let takes_over = matches!(x.phase, Phase::TakingOver);
-    let starts = buffer.take_start() && !takes_over || rises;
-    let breaks_off = buffer.take_abort() || takes_over || now.targets.controlword.has(ControlBit::Halt);
+    let starts = buffer.take_start() && !takes_over && !is_halted || rises;
+    let breaks_off = buffer.take_abort() || takes_over || is_halted;
     if breaks_off || !asked && x.needs_bit() {
         x.phase = Phase::Resting;
     }
@@ -250,8 +251,7 @@ fn answer(setpoint: Setpoint, is_following: bool) -> Answer {
 }
 
 const fn asks(now: &Moment) -> bool {
-    let word = now.targets.controlword;
-    word.has(ControlBit::ModeSpecific4) && !word.has(ControlBit::Halt)
+    now.targets.controlword.has(ControlBit::ModeSpecific4)
 }
 
 /// The nearest count, at the ends of the range beyond it.

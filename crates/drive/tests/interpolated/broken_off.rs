@@ -99,9 +99,15 @@ fn a_cleared_buffer_a_bit_taken_back_and_a_halt_break_off_alike() {
         let word = act(&mut axis);
         break_off(&mut axis, word);
         assert_eq!(axis.errors(), 0);
-        // Nothing starts by itself.
-        axis.step(run());
-        assert!(!axis.answer.bit_12);
+        // Nothing starts by itself once the halt is over, nor by an edge during it.
+        if word == idle() {
+            continue;
+        }
+        let rest = axis.last;
+        for word in [run(), idle(), run().with(ControlBit::Halt, true), run()] {
+            axis.step(word);
+            assert!(!axis.answer.bit_12 && axis.state.refused().is_none() && axis.last == rest, "{word:?}");
+        }
     }
 }
 

@@ -15,8 +15,8 @@
 //! | 84h | nothing |
 //!
 //! The integrity counter is that of the next segment's number, its lowest three bits. Source: Copley Controls, *CANopen
-//! Programmer's Manual*, 95-00271-000 rev. 7 (2012), section 9, "IP move segment command"; format 6 and command 84h from
-//! 16-01195 (2017), section 11.2.
+//! Programmer's Manual*, 95-00271-000 rev. 7 (2012), pp. 214–215, "IP move segment command"; format 6 and command 84h from later
+//! editions.
 use super::buffer::{Buffer, Entry, Point, Refusal};
 use thiserror::Error;
 
