@@ -59,7 +59,8 @@ pub(crate) struct Interface {
 }
 
 const MOTION: &[Output] = &[Output::Done, Output::Busy, Output::Active, Output::CommandAborted, Output::Error];
-const READING: &[Output] = &[Output::Valid];
+const WITHOUT_ACTIVE: &[Output] = &[Output::Done, Output::Busy, Output::CommandAborted, Output::Error];
+const READING: &[Output] = &[Output::Valid, Output::Busy, Output::Error];
 
 /// Every block: its name, its meaning, what triggers it, its inputs and its outputs.
 pub(crate) const BLOCKS: &[Interface] = {
@@ -88,7 +89,7 @@ pub(crate) const BLOCKS: &[Interface] = {
             "brakes to rest and lets no other motion begin while `Execute` is TRUE",
             Execute,
             &["deceleration", "jerk", "snap"],
-            MOTION,
+            WITHOUT_ACTIVE,
         ),
         block(
             B::Halt,
@@ -157,7 +158,7 @@ pub(crate) const BLOCKS: &[Interface] = {
             "moves by a distance on top of the motion under way",
             Execute,
             &["distance", "velocity_difference", "acceleration", "deceleration", "jerk", "snap"],
-            MOTION,
+            WITHOUT_ACTIVE,
         ),
         block(
             B::MoveVelocity,
@@ -200,7 +201,7 @@ pub(crate) const BLOCKS: &[Interface] = {
             "MC_PositionProfile",
             "moves through a table of positions",
             Execute,
-            &["table", "buffer_mode"],
+            &["table", "end_velocity", "buffer_mode"],
             MOTION,
         ),
         block(
@@ -260,7 +261,7 @@ pub(crate) const BLOCKS: &[Interface] = {
             "tells the state of the axis",
             Enable,
             &[],
-            &[Valid, ErrorStop, Disabled, Stopping, Homing, Standstill, DiscreteMotion, ContinuousMotion],
+            &[Valid, Busy, Error, ErrorStop, Disabled, Stopping, Homing, Standstill, DiscreteMotion, ContinuousMotion],
         ),
         block(B::ReadAxisError, "MC_ReadAxisError", "tells the error of the axis", Enable, &[], READING),
         block(B::ReadActualPosition, "MC_ReadActualPosition", "tells the actual position", Enable, &[], READING),
@@ -269,10 +270,10 @@ pub(crate) const BLOCKS: &[Interface] = {
         block(
             B::Profile4th,
             "Profile4th",
-            "the generator of fourth order as a block: moves by a distance from where the axis is",
+            "the generator of fourth order as a block: moves to a position",
             Enable,
-            &["distance", "velocity", "acceleration", "jerk", "snap", "settling_time", "reversed"],
-            &[Ready, Busy, Done, Error],
+            &["position", "velocity", "acceleration", "jerk", "snap", "settling_time", "reversed"],
+            &[Ready, Done, Error],
         ),
     ]
 };

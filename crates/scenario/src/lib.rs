@@ -47,10 +47,10 @@ pub use scenario::{
     Command, Condition, Counter, Coupling, CurrentGain, CurrentLoop, Direction, Disturbance, DisturbedBody, Drive,
     DriveInterpolation, DriveUnits, Dynamics, EffortFeedforward, Encoder, EngineName, Estimate, Execution, Feedback,
     Feedforward, Filter, Follow, Goal, Grid, HomeSwitch, IdealSource, Initial, Interpolation, InterpolationMode,
-    LONGEST_RUN, Limit, Measure, Method, Mjcf, Motion, MotorEstimate, MoveStep, ObjectWrite, OnlineMove, Output,
-    PlanEffort, Plc, Pmsm, PositionLoop, Record, RestMove, RockwellJerk, RockwellMove, RockwellShape, Sampling,
-    Scenario, Sequencing, Shaper, ShaperKind, SourceOutput, Step, Switches, TableMove, Target, Update, Velocities,
-    VelocityLoop, Way,
+    LONGEST_RUN, Limit, Measure, Method, Mjcf, Motion, MotorEstimate, MoveStep, ObjectWrite, OnlineMove, Output, Pair,
+    PlanEffort, Plc, Pmsm, PositionLoop, ProfileFollow, Record, RestMove, RockwellJerk, RockwellMove, RockwellShape,
+    Sampling, Scenario, Sequencing, Shaper, ShaperKind, SourceOutput, Step, Switches, TableMove, Target, Update,
+    Velocities, VelocityLoop, Way,
 };
 pub use schema::json_schema;
 pub use source::{SourceId, Sources};

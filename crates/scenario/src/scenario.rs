@@ -23,7 +23,9 @@ pub use drive::{
 };
 pub use filter::{Filter, Interpolation, InterpolationMode, Shaper, ShaperKind};
 pub use motor::{Encoder, IdealSource, Pmsm, SourceOutput};
-pub use plc::{Block, Braking, BufferMode, Call, Command, Condition, Direction, Dynamics, Output, Plc, Update};
+pub use plc::{
+    Block, Braking, BufferMode, Call, Command, Condition, Direction, Dynamics, Output, Pair, Plc, ProfileFollow, Update,
+};
 pub use program::{
     Execution, Follow, Goal, Grid, Method, MoveStep, OnlineMove, PlanEffort, RestMove, RockwellJerk, RockwellMove,
     RockwellShape, Sampling, Step, TableMove, Target, Velocities, Way,

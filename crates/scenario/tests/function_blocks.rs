@@ -128,9 +128,9 @@ fn every_block_with_its_least_inputs() {
         ("MC_ReadActualTorque", "", Block::ReadActualTorque),
         (
             "Profile4th",
-            "distance = \"1 mm\"\nsettling_time = \"50 ms\"",
+            "position = \"1 mm\"\nsettling_time = \"50 ms\"",
             Block::Profile4th {
-                distance: 0.001,
+                position: 0.001,
                 limits: [0.5, 5.0, 100.0, 5000.0],
                 settling_time: 0.05,
                 reversed: false,
@@ -141,26 +141,44 @@ fn every_block_with_its_least_inputs() {
     }
 }
 
+/// Times count from the start of the profile, pairs from the one before.
 #[test]
 fn profiles_of_positions_velocities_and_accelerations() {
-    let aborting = BufferMode::Aborting;
-    let table = TableMove {
-        points: vec![(0.0, 0.0, None), (0.01, 0.005, None), (0.02, 0.0, None)],
-        is_relative: false,
-        velocities: Velocities::Given,
-        follow: Follow::Segments,
+    let buffer_mode = BufferMode::Aborting;
+    let pairs = |values: [f64; 3]| {
+        let times = [0.0, 0.01, 0.01];
+        times.into_iter().zip(values).map(|(delta_time, value)| Pair { delta_time, value }).collect()
     };
+    let positions = |is_relative, follow, end_velocity| Block::PositionProfile {
+        pairs: pairs([0.0, 0.005, 0.0]),
+        is_relative,
+        follow,
+        end_velocity,
+        buffer_mode,
+    };
+    let plateaus = |share| positions(false, ProfileFollow::Plateaus(share), 0.0);
     for (name, keys, block) in [
-        ("MC_PositionProfile", "table = { file = \"x.csv\" }", Block::PositionProfile { table, buffer_mode: aborting }),
+        ("MC_PositionProfile", "table = { file = \"x.csv\" }", positions(false, ProfileFollow::Spline, 0.0)),
+        (
+            "MC_PositionProfile",
+            "table = { file = \"x.csv\", relative = true, velocities = \"continuous\" }\nend_velocity = \"-0.1 m/s\"",
+            positions(true, ProfileFollow::Spline, -0.1),
+        ),
+        ("MC_PositionProfile", "table = { file = \"x.csv\", follow = \"plateaus\" }", plateaus(0.25)),
+        (
+            "MC_PositionProfile",
+            "table = { file = \"x.csv\", follow = \"plateaus\", plateau_share = 0.3 }",
+            plateaus(0.3),
+        ),
         (
             "MC_VelocityProfile",
             "table = { file = \"v.csv\" }",
-            Block::VelocityProfile { points: vec![(0.0, 0.0), (0.01, 0.005), (0.02, 0.0)], buffer_mode: aborting },
+            Block::VelocityProfile { pairs: pairs([0.0, 0.005, 0.0]), buffer_mode },
         ),
         (
             "MC_AccelerationProfile",
             "table = { file = \"a.csv\" }",
-            Block::AccelerationProfile { points: vec![(0.0, 0.0), (0.01, 5.0), (0.02, 0.0)], buffer_mode: aborting },
+            Block::AccelerationProfile { pairs: pairs([0.0, 5.0, 0.0]), buffer_mode },
         ),
     ] {
         assert_eq!(call(name, keys), alone(name, block));

@@ -61,7 +61,7 @@ table! {
         distance: f64 = any(InAxis(&POSITION), "-250 mm"),
         /// Velocity; of MC_MoveVelocity it may be negative.
         velocity: f64 = any(InAxis(&VELOCITY), "30 m/min"),
-        /// Velocity at the target, kept afterwards.
+        /// Velocity at the target, kept afterwards; of MC_PositionProfile at its last position, 0 unless given.
         end_velocity: f64 = any(InAxis(&VELOCITY), "5 m/min"),
         /// Largest velocity on top of the motion under way.
         velocity_difference: f64 = positive(InAxis(&VELOCITY), "5 m/min"),
@@ -96,8 +96,9 @@ table! {
         settling_time: f64 = positive(Plain(&TIME), "50 ms"),
         /// Whether the motor is mounted the other way round; it is not unless given.
         reversed: bool = (),
-        /// Points of a profile. The file of MC_VelocityProfile has the columns `time` and `velocity`, that of MC_AccelerationProfile
-        /// `time` and `acceleration`.
+        /// Table of a profile, whose times count from its start; a first row at 0 says where the axis is then. The file of
+        /// MC_PositionProfile has the columns `time` and `position`, that of MC_VelocityProfile `velocity`, that of
+        /// MC_AccelerationProfile `acceleration`. Positions are followed along the cubic spline, or by `follow = "plateaus"`.
         table: TableOfPoints = (),
     }
 }

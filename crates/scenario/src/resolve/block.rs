@@ -59,17 +59,14 @@ impl Context<'_> {
             }
             BlockName::MoveVelocity => read.move_velocity(),
             BlockName::MoveContinuousAbsolute => read.move_continuous_absolute(),
-            BlockName::PositionProfile => {
-                let table = read.table().and_then(|table| profile::positions(table, self.sources, read.report));
-                Some(Block::PositionProfile { table: table?, buffer_mode: read.buffer_mode()? })
-            }
+            BlockName::PositionProfile => read.position_profile(),
             BlockName::VelocityProfile => {
-                let table = read.table().and_then(|table| profile::velocities(table, self.sources, read.report));
-                Some(Block::VelocityProfile { points: table?, buffer_mode: read.buffer_mode()? })
+                let pairs = read.table().and_then(|table| profile::velocities(table, self.sources, read.report));
+                Some(Block::VelocityProfile { pairs: pairs?, buffer_mode: read.buffer_mode()? })
             }
             BlockName::AccelerationProfile => {
-                let table = read.table().and_then(|table| profile::accelerations(table, self.sources, read.report));
-                Some(Block::AccelerationProfile { points: table?, buffer_mode: read.buffer_mode()? })
+                let pairs = read.table().and_then(|table| profile::accelerations(table, self.sources, read.report));
+                Some(Block::AccelerationProfile { pairs: pairs?, buffer_mode: read.buffer_mode()? })
             }
             BlockName::SetPosition => {
                 let (position, relative) = (read.required("position"), flag(&inputs.call.relative));
@@ -267,8 +264,21 @@ impl<'a> Reading<'a, '_> {
         Some(Block::TorqueControl { torque, torque_ramp, direction, dynamics, command })
     }
 
+    fn position_profile(&mut self) -> Option<Block> {
+        let table = self.table()?;
+        let follow = profile::follow(table, self.report);
+        let pairs = profile::positions(table, self.context.sources, self.report);
+        Some(Block::PositionProfile {
+            pairs: pairs?,
+            is_relative: flag(&table.value.relative)?,
+            follow: follow?,
+            end_velocity: self.or("end_velocity", 0.0)?,
+            buffer_mode: self.buffer_mode()?,
+        })
+    }
+
     fn generator(&mut self) -> Option<Block> {
-        let distance = self.required("distance");
+        let position = self.required("position");
         let limits = LIMITS.map(|name| self.needed_limit(name));
         let call = self.inputs.call;
         if matches!(call.settling_time, Slot::Absent) {
@@ -277,7 +287,7 @@ impl<'a> Reading<'a, '_> {
         }
         let [velocity, acceleration, jerk, snap] = limits;
         Some(Block::Profile4th {
-            distance: distance?,
+            position: position?,
             limits: [velocity?, acceleration?, jerk?, snap?],
             settling_time: *call.settling_time.given()?,
             reversed: flag(&call.reversed)?,

@@ -11,7 +11,7 @@ use crate::source::{At, Sources};
 /// Passes of smoothing unless something is said: what the source of the formulas shows.
 const PASSES: u32 = 2;
 /// Share of a segment in which the velocity of plateaus changes, unless something is said.
-const PLATEAU_SHARE: f64 = 0.25;
+pub(super) const PLATEAU_SHARE: f64 = 0.25;
 
 pub(super) fn resolve(table: &At<TableOfPoints>, sources: &Sources, report: &mut Report) -> Option<TableMove> {
     let own = &table.value;

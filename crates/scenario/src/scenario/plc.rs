@@ -1,6 +1,4 @@
 //! The PLC program: calls of function blocks (PLCopen Motion Control, part 1, version 2.0).
-use super::program::TableMove;
-
 /// The PLC program. Its cycle is that of the motion task, [`Bus::motion_every`](super::Bus::motion_every).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plc {
@@ -143,22 +141,28 @@ pub enum Block {
     },
     /// `MC_PositionProfile`.
     PositionProfile {
-        /// Points, and how they are followed.
-        table: TableMove,
+        /// Positions.
+        pairs: Vec<Pair>,
+        /// Whether they count from where the profile begins.
+        is_relative: bool,
+        /// How the axis goes from one to the next.
+        follow: ProfileFollow,
+        /// Velocity at the last one.
+        end_velocity: f64,
         /// What becomes of the motion under way.
         buffer_mode: BufferMode,
     },
     /// `MC_VelocityProfile`.
     VelocityProfile {
-        /// Time (s) and velocity.
-        points: Vec<(f64, f64)>,
+        /// Velocities.
+        pairs: Vec<Pair>,
         /// What becomes of the motion under way.
         buffer_mode: BufferMode,
     },
     /// `MC_AccelerationProfile`.
     AccelerationProfile {
-        /// Time (s) and acceleration.
-        points: Vec<(f64, f64)>,
+        /// Accelerations.
+        pairs: Vec<Pair>,
         /// What becomes of the motion under way.
         buffer_mode: BufferMode,
     },
@@ -199,8 +203,8 @@ pub enum Block {
     ReadActualTorque,
     /// The generator of fourth order as a block of its own.
     Profile4th {
-        /// Distance from where the axis is.
-        distance: f64,
+        /// Target.
+        position: f64,
         /// Limits of |velocity|, |acceleration|, |jerk|, |snap|.
         limits: [f64; 4],
         /// From the end of a profile until the block is ready for the next (s).
@@ -208,6 +212,24 @@ pub enum Block {
         /// Whether the motor is mounted the other way round.
         reversed: bool,
     },
+}
+
+/// A pair of a profile.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pair {
+    /// Time since the pair before, or since the start (s): above zero, but for the first pair zero or more.
+    pub delta_time: f64,
+    /// Position, velocity or acceleration at its end.
+    pub value: f64,
+}
+
+/// How the axis goes from position to position of a profile.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ProfileFollow {
+    /// Along the cubic spline.
+    Spline,
+    /// By plateaus of velocity; the share of a segment at either end in which velocity changes.
+    Plateaus(f64),
 }
 
 /// Velocity and what leads to it (magnitudes).

@@ -21,6 +21,9 @@ fn said_of(axis: &str, before: &str, calls: &str) -> [Vec<String>; 2] {
     {
         std::fs::write(folder.path().join(name), format!("time [ms],{heading}\n0,0\n10,5\n20,0\n")).unwrap();
     }
+    let pvt = "time [ms],position [mm],velocity [mm/s]\n0,0,0\n10,5,0\n";
+    std::fs::write(folder.path().join("pvt.csv"), pvt).unwrap();
+    std::fs::write(folder.path().join("early.csv"), "time [ms],velocity [mm/s]\n-10,0\n10,5\n").unwrap();
     let parsed = parse("test.toml", &format!("{head}{calls}{tail}"), Some(folder.path()));
     let (sources, errors, warnings) = match parsed {
         Ok(loaded) => (loaded.sources, Vec::new(), loaded.warnings),
@@ -63,7 +66,7 @@ fn every_block_can_be_called() {
         ("MC_MoveSuperimposed", "distance = \"1 mm\"\nvelocity_difference = \"1 m/min\""),
         ("MC_MoveVelocity", "velocity = \"-1 m/min\"\ndirection = \"current\""),
         ("MC_MoveContinuousAbsolute", "position = \"1 mm\"\nend_velocity = \"-1 m/min\""),
-        ("MC_PositionProfile", "table = { file = \"x.csv\", velocities = \"average\", relative = true }"),
+        ("MC_PositionProfile", "table = { file = \"x.csv\", relative = true }\nend_velocity = \"1 mm/s\""),
         ("MC_VelocityProfile", "table = { file = \"v.csv\" }"),
         ("MC_AccelerationProfile", "table = { file = \"a.csv\" }\nbuffer_mode = \"buffered\""),
         ("MC_SetPosition", "position = \"1 mm\"\nrelative = true"),
@@ -74,7 +77,7 @@ fn every_block_can_be_called() {
         ("MC_ReadActualPosition", ""),
         ("MC_ReadActualVelocity", ""),
         ("MC_ReadActualTorque", ""),
-        ("Profile4th", "distance = \"1 mm\"\nsnap = \"1e4 m/s4\"\nsettling_time = \"50 ms\"\nreversed = true"),
+        ("Profile4th", "position = \"1 mm\"\nsnap = \"1e4 m/s4\"\nsettling_time = \"50 ms\"\nreversed = true"),
     ] {
         let started = format!("start = \"power.Status\"\nstop = {{ at = \"1 s\" }}\ntimeout = \"1 s\"\n{keys}");
         check(&[(&call(block, keys), &[]), (&call(block, &started), &[])]);
@@ -126,7 +129,7 @@ fn a_block_has_its_inputs_and_no_others() {
         (
             &call("Profile4th", ""),
             &[
-                "1:1: missing `distance` in `call`; Profile4th needs it",
+                "1:1: missing `position` in `call`; Profile4th needs it",
                 "1:1: missing `snap` in `setpoint`; Profile4th needs it, here or in the call",
                 "1:1: missing `settling_time` in `call`; from the end of a profile until the block is ready for the next",
             ],
@@ -338,6 +341,31 @@ fn tables_of_profiles() {
         (
             &call("MC_VelocityProfile", "table = { file = \"v.csv\", relative = true, follow = \"steps\" }"),
             &["3:38: `relative` is for a table of positions", "3:53: `follow` is for a table of positions"],
+        ),
+        (
+            &call("MC_PositionProfile", "table = { file = \"pvt.csv\" }"),
+            &[
+                "3:18: MC_PositionProfile goes through positions and chooses the velocities itself; leave its column `velocity` \
+               out; `end_velocity` is that at the last position",
+            ],
+        ),
+        (
+            &call("MC_PositionProfile", "table = { file = \"x.csv\", velocities = \"average\", follow = \"steps\" }"),
+            &[
+                "3:40: MC_PositionProfile does not choose its velocities so; it goes along the cubic spline, or by \"plateaus\"",
+                "3:60: MC_PositionProfile does not follow its table so; it goes along the cubic spline, or by \"plateaus\"",
+            ],
+        ),
+        (
+            &call("MC_PositionProfile", "table = { file = \"x.csv\", passes = 1, plateau_share = 0.3 }"),
+            &[
+                "3:36: `passes` is not for MC_PositionProfile; it goes along the cubic spline, or by \"plateaus\"",
+                "3:55: `plateau_share` is for \"plateaus\"",
+            ],
+        ),
+        (
+            &call("MC_VelocityProfile", "table = { file = \"early.csv\" }"),
+            &["3:18: the table begins at -0.01 s, before the profile; its times count from the start of the profile"],
         ),
     ]);
 }

@@ -282,10 +282,11 @@ fn block(block: &Block) {
             self::dynamics(dynamics);
         }
         Block::Stop(braking) | Block::Halt { braking, .. } => positive("deceleration", braking.deceleration),
-        Block::PositionProfile { table, .. } => assert!(table.points.len() >= 2),
-        Block::VelocityProfile { points, .. } | Block::AccelerationProfile { points, .. } => {
-            assert!(points.windows(2).all(|pair| pair[0].0 < pair[1].0));
+        Block::PositionProfile { pairs, end_velocity, .. } => {
+            self::pairs(pairs);
+            finite("end_velocity", *end_velocity);
         }
+        Block::VelocityProfile { pairs, .. } | Block::AccelerationProfile { pairs, .. } => self::pairs(pairs),
         Block::SetOverride { factors } => factors.iter().for_each(|factor| not_negative("factor", *factor)),
         Block::Profile4th { limits, settling_time, .. } => {
             for limit in limits {
@@ -302,6 +303,11 @@ fn block(block: &Block) {
         | Block::ReadActualVelocity
         | Block::ReadActualTorque => {}
     }
+}
+
+fn pairs(pairs: &[Pair]) {
+    assert!(pairs.len() >= 2 && pairs[0].delta_time >= 0.0);
+    assert!(pairs[1..].iter().all(|pair| pair.delta_time > 0.0 && pair.value.is_finite()));
 }
 
 fn dynamics(dynamics: &Dynamics) {
