@@ -54,7 +54,7 @@ pub struct Axis {
     shift: f64,
     /// Set-point of this cycle, both together.
     setpoint: Setpoint,
-    /// Sign of the last velocity that was not zero.
+    /// Direction of the last motion, 1 or −1.
     last_direction: f64,
     factors: Override,
     queue: Queue,
@@ -174,8 +174,6 @@ impl Axis {
             None => Setpoint { x: self.base.x + self.shift, ..self.base },
             Some(superimposed) => superimposed.on(&self.base, self.shift),
         };
-        if self.setpoint.v != 0.0 {
-            self.last_direction = self.setpoint.v;
-        }
+        self.last_direction = self.direction().unwrap_or(self.last_direction);
     }
 }

@@ -33,7 +33,7 @@ pub(super) struct Moving {
     pub(super) command: Command,
     /// Where it leads, in the unit of the drive and without the override.
     pub(super) target: Target,
-    /// Position where it began.
+    /// Position from which a distance counts: where it began, or the target before it.
     pub(super) origin: f64,
     /// Whether it rests because of a velocity override of zero.
     pub(super) is_paused: bool,
@@ -170,6 +170,7 @@ impl Axis {
         let Activity::Moving(moving) = &self.activity else { return };
         let (id, end, beyond) = (moving.id, moving.run.end(), moving.run.beyond());
         if moving.is_endless() {
+            self.forget_position();
             return self.go_on(id, self.base);
         }
         match self.state {
@@ -189,6 +190,15 @@ impl Axis {
                     Some(_) => self.take_next(end, beyond),
                 }
             }
+        }
+    }
+
+    /// A position that was passed is no target any more, whatever is planned anew.
+    fn forget_position(&mut self) {
+        if let Activity::Moving(Moving { target, .. }) = &mut self.activity
+            && let Target::Position { v, .. } = *target
+        {
+            *target = Target::Velocity(v);
         }
     }
 

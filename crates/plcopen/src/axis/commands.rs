@@ -106,11 +106,15 @@ impl Axis {
         let from = self.base;
         match &self.activity {
             Activity::Moving(moving) if moving.id == id => {
-                let from_origin = Setpoint { x: moving.origin, ..from };
-                let reference = if matches!(command.goal, Goal::Relative(_)) { &from_origin } else { &from };
-                let target = self.target(&command, reference, moving.origin)?;
-                let (run, is_paused) = self.run(&command, &target, &from, &self.beside(), 0.0, self.queue.first())?;
                 let origin = moving.origin;
+                let target = match (command.goal, moving.target) {
+                    // The position is behind; what goes on is the velocity.
+                    (Goal::Absolute { end_velocity, .. }, Target::Velocity(_)) => Target::Velocity(end_velocity),
+                    (Goal::Relative(distance), _) => Target::Position { x: origin + distance, v: 0.0 },
+                    _ => self.target(&command, &from, origin)?,
+                };
+                self.check_permission(command.block, &from, &target)?;
+                let (run, is_paused) = self.run(&command, &target, &from, &self.beside(), 0.0, self.queue.first())?;
                 self.activity = Activity::Moving(Moving { id, command, target, origin, is_paused, run });
             }
             Activity::Effort(effort) if effort.id == id => {
@@ -230,14 +234,25 @@ impl Axis {
                 let is_aborting = command.buffer_mode == BufferMode::Aborting;
                 let origin = if is_aborting { self.last_target().unwrap_or(from.x) } else { from.x };
                 let target = self.target(&command, &reference, origin)?;
-                if let Some(input) = self.forbidden(direction_of(&from, &target)) {
-                    return Err(BlockError::NotPermitted { block, input });
-                }
+                self.check_permission(block, &from, &target)?;
                 // An aborting command has the axis for itself.
                 let axis = if is_aborting { self.spare(None) } else { self.beside() };
                 let (run, is_paused) = self.run(&command, &target, &from, &axis, lead, next)?;
-                Ok(Activity::Moving(Moving { id, command, target, origin: from.x, is_paused, run }))
+                let origin = if matches!(command.goal, Goal::Additive(_)) { origin } else { from.x };
+                Ok(Activity::Moving(Moving { id, command, target, origin, is_paused, run }))
             }
+        }
+    }
+
+    /// MC_Power permits the direction in which a way to `target` leads.
+    fn check_permission(&self, block: BlockName, from: &Setpoint, target: &Target) -> Result<(), BlockError> {
+        let direction = match target {
+            Target::Position { x, .. } => x - from.x,
+            Target::Velocity(v) => *v,
+        };
+        match self.forbidden(direction) {
+            Some(input) => Err(BlockError::NotPermitted { block, input }),
+            None => Ok(()),
         }
     }
 
@@ -350,13 +365,5 @@ impl Axis {
             _ => return Ok(None),
         };
         Ok(command.buffer_mode.blending_velocity(bounds.velocity, speed).map(|wanted| (next, wanted)))
-    }
-}
-
-/// The direction in which a way sets out that begins at rest; 0 when it does not move.
-fn direction_of(from: &Setpoint, target: &Target) -> f64 {
-    match target {
-        Target::Position { x, .. } => x - from.x,
-        Target::Velocity(v) => *v,
     }
 }

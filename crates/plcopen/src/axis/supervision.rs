@@ -108,7 +108,9 @@ impl Axis {
     /// An error of the axis: it comes to rest if the power allows it, and takes no command until MC_Reset.
     pub(super) fn fail(&mut self, error: AxisError) {
         let from = self.present();
-        let block = self.activity.command().map_or(BlockName::Home, |(_, command)| command.block);
+        let on_top = self.superimposed.as_ref().map(|superimposed| &superimposed.command);
+        let command = self.activity.command().map(|(_, command)| command).or(on_top);
+        let block = command.map_or(BlockName::Home, |command| command.block);
         self.ledger.failure = Some(BlockError::Axis { block, error });
         self.end_all(Progress::Failed);
         self.error = Some(error);
@@ -152,17 +154,20 @@ impl Axis {
         self.reset != Reset::Idle
     }
 
+    /// The direction of the set-point, 1 or −1, while it moves.
+    pub(super) fn direction(&self) -> Option<f64> {
+        let moves = self.setpoint.v.abs() > CREEP * self.params.limits.velocity;
+        moves.then(|| 1.0_f64.copysign(self.setpoint.v))
+    }
+
     /// Fails when the axis moves in a direction that MC_Power does not permit.
     pub(super) fn watch_permission(&mut self) {
-        if self.power.positive && self.power.negative || matches!(self.activity, Activity::Rest) {
+        let is_at_rest = matches!(self.activity, Activity::Rest) && self.superimposed.is_none();
+        if self.power.positive && self.power.negative || is_at_rest {
             return;
         }
-        let (velocity, creep) = (self.setpoint.v, CREEP * self.params.limits.velocity);
-        let input = match velocity {
-            v if v > creep && !self.power.positive => "EnablePositive",
-            v if v < -creep && !self.power.negative => "EnableNegative",
-            _ => return,
-        };
+        let velocity = self.setpoint.v;
+        let Some(input) = self.direction().and_then(|direction| self.forbidden(direction)) else { return };
         if !matches!(self.state, AxisState::ErrorStop | AxisState::Stopping) {
             self.fail(AxisError::PermissionLost { velocity, input });
         }
@@ -203,6 +208,7 @@ impl Axis {
         let from = self.present();
         self.end_all(Progress::Aborted);
         self.base = from;
+        self.follow(Cause::Block(BlockName::Halt));
         self.halt_from(from);
     }
 

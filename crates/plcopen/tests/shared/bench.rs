@@ -12,6 +12,7 @@ pub(crate) struct Bench {
     pub(crate) axis: Axis,
     pub(crate) feedback: AxisFeedback,
     pub(crate) enable: bool,
+    pub(crate) permits_negative: bool,
     pub(crate) command: Option<AxisCommand>,
     /// What the drive says of homing while it is asked to.
     pub(crate) homing: Homing,
@@ -20,7 +21,14 @@ pub(crate) struct Bench {
 impl Bench {
     pub(crate) fn disabled(params: AxisParams) -> Self {
         let axis = Axis::new(params).unwrap();
-        Self { axis, feedback: AxisFeedback::default(), enable: false, command: None, homing: Homing::Busy }
+        Self {
+            axis,
+            feedback: AxisFeedback::default(),
+            enable: false,
+            permits_negative: true,
+            command: None,
+            homing: Homing::Busy,
+        }
     }
 
     pub(crate) fn params() -> AxisParams {
@@ -45,7 +53,7 @@ impl Bench {
     /// One cycle: feedback, MC_Power, what `program` calls, and the command.
     pub(crate) fn cycle<T>(&mut self, program: impl FnOnce(&mut Axis) -> T) -> T {
         self.axis.begin(&self.feedback);
-        let inputs = PowerInputs { enable: self.enable, ..PowerInputs::default() };
+        let inputs = PowerInputs { enable: self.enable, enable_positive: true, enable_negative: self.permits_negative };
         MovePower.step(&mut self.axis, &inputs);
         let answer = program(&mut self.axis);
         let command = self.axis.end();

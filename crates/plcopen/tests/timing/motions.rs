@@ -2,7 +2,7 @@
 use crate::bench::{Bench, LIMITS};
 use servobench_fieldbus::{Homing, Task};
 use servobench_plcopen::{
-    AxisError, AxisParams, AxisState, Direction, ErrorId, FunctionBlock, Home, HomeInputs, MoveAbsolute,
+    AxisError, AxisParams, AxisState, BufferMode, Direction, ErrorId, FunctionBlock, Home, HomeInputs, MoveAbsolute,
     MoveAbsoluteInputs, MoveAdditive, MoveAdditiveInputs, MoveContinuousAbsolute, MoveContinuousAbsoluteInputs,
     MoveRelative, MoveRelativeInputs, MoveSuperimposed, MoveSuperimposedInputs, MoveVelocity, MoveVelocityInputs,
     Power, PowerInputs, ReadActualPosition, ReadAxisError, ReadInputs, ReadStatus, SetOverride, SetOverrideInputs,
@@ -166,6 +166,70 @@ fn a_continuous_move_keeps_its_end_velocity() {
     assert!(x <= 0.5 && x > 0.5 - 0.2e-3 - 1e-12, "{x}");
     assert_eq!(bench.axis.commanded().v.to_bits(), (-0.2_f64).to_bits());
     assert_eq!(bench.axis.state(), AxisState::ContinuousMotion);
+}
+
+#[test]
+fn a_position_that_was_passed_is_not_gone_back_to() {
+    let mut bench = Bench::standstill();
+    let (mut go, mut slow) = (MoveContinuousAbsolute::default(), SetOverride::default());
+    for cycle in 0..3000 {
+        let velocity = if cycle < 2500 { 0.4 } else { 0.5 };
+        let inputs = MoveContinuousAbsoluteInputs {
+            execute: true,
+            continuous_update: true,
+            position: 0.5,
+            end_velocity: 0.2,
+            velocity,
+            ..MoveContinuousAbsoluteInputs::within(&LIMITS)
+        };
+        let vel_factor = if cycle < 2000 { 1.0 } else { 0.5 };
+        bench.cycle(|axis| {
+            slow.step(axis, &SetOverrideInputs { enable: true, vel_factor, ..SetOverrideInputs::default() });
+            go.step(axis, &inputs);
+        });
+        assert!(bench.axis.commanded().v >= 0.0, "cycle {cycle}");
+    }
+    assert!((bench.axis.commanded().v - 0.1).abs() < 1e-12);
+}
+
+#[test]
+fn an_additive_move_that_is_updated_goes_on_counting_from_the_last_target() {
+    let mut bench = Bench::standstill();
+    let (mut go, mut further) = (MoveAbsolute::default(), MoveAdditive::default());
+    for _ in 0..300 {
+        bench.cycle(|axis| go.step(axis, &to(0.5)));
+    }
+    for cycle in 0..3000 {
+        let distance = if cycle < 300 { 0.25 } else { 0.5 };
+        let inputs = MoveAdditiveInputs {
+            execute: true,
+            continuous_update: true,
+            distance,
+            ..MoveAdditiveInputs::within(&LIMITS)
+        };
+        bench.cycle(|axis| further.step(axis, &inputs));
+    }
+    at(&bench, 1.0);
+}
+
+/// What waits is judged again when its turn comes.
+#[test]
+fn a_command_that_is_not_permitted_any_more_when_its_turn_comes_halts_the_axis() {
+    let mut bench = Bench::standstill();
+    let (mut go, mut back) = (MoveVelocity::default(), MoveAbsolute::default());
+    let returning = MoveAbsoluteInputs { buffer_mode: BufferMode::Buffered, ..to(-1.0) };
+    let mut refused = false;
+    for cycle in 0..1000 {
+        bench.permits_negative = cycle < 10;
+        let outputs = bench.cycle(|axis| {
+            go.step(axis, &running(0.8));
+            back.step(axis, &returning)
+        });
+        refused |= outputs.error_id == ErrorId::NotPermitted;
+    }
+    assert!(refused);
+    assert_eq!(bench.axis.state(), AxisState::Standstill);
+    assert_eq!(bench.axis.commanded().v.to_bits(), 0.0_f64.to_bits());
 }
 
 #[test]
