@@ -90,6 +90,8 @@ pub struct State {
     commands: Commands,
     /// Since when the mode that is asked for has been (base ticks).
     mode_since: u64,
+    /// When the drive was last seen in that mode or without power (base ticks).
+    in_mode_or_off: u64,
     limited: bool,
     /// What is left of the last torque that went out, in thousandths of the rated one.
     torque_rest: f64,
@@ -112,6 +114,7 @@ impl Default for State {
             homing: Procedure::Idle,
             commands: Commands::default(),
             mode_since: 0,
+            in_mode_or_off: 0,
             limited: false,
             torque_rest: 0.0,
         }
@@ -134,7 +137,7 @@ pub fn step(params: &Params, state: &mut State, input: Input<'_>) -> Commands {
         state.fault = state.fault.or(Some(LinkFault::DriveTimeout));
     }
     let wanted = state.wanted();
-    state.was_on = wanted == Wanted::On && state.sequencer.is_enabled(params.settings.sequencing);
+    state.was_on = wanted == Wanted::On && state.is_enabled(params);
     state.ask_for_the_mode(params, now);
     state.put_out(params, post, now);
     state.commands.controlword = state
@@ -208,6 +211,11 @@ impl State {
         } else {
             Power::Off
         }
+    }
+
+    /// Whether the drive function is enabled, as far as the drive knows what it is told.
+    fn is_enabled(&self, params: &Params) -> bool {
+        self.sequencer.is_enabled(params.settings.sequencing, self.heard.saturating_sub(params.round_trip))
     }
 
     fn switches(&self, params: &Params) -> Switches {

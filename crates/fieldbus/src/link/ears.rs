@@ -28,7 +28,6 @@ impl State {
             return Post::Nothing;
         }
         let missed = number.wrapping_sub(self.read).saturating_sub(1);
-        let missed = if self.read == 0 { 0 } else { missed };
         self.read = number;
         if command.reset && !self.command.reset {
             self.reset(p);

@@ -19,18 +19,21 @@ impl State {
             (Task::Effort(_), _) => Mode::CyclicSynchronousTorque,
             (Task::Home { .. }, _) => Mode::Homing,
         };
-        if self.commands.mode != mode.code() || !self.was_on {
+        if self.commands.mode != mode.code() {
             (self.commands.mode, self.mode_since) = (mode.code(), now);
         }
-        let missing = self.was_on && !self.is_in_mode(p);
-        if missing && now.saturating_sub(self.mode_since) > p.settings.drive_timeout {
+        if !self.was_on || self.is_in_mode(p) {
+            self.in_mode_or_off = now;
+        }
+        if now.saturating_sub(self.in_mode_or_off) > p.settings.drive_timeout {
             self.fault = self.fault.or(Some(LinkFault::DriveTimeout));
         }
     }
 
-    /// Whether the drive shows the mode that it is asked for; the simplified sequence does not ask.
-    pub(super) fn is_in_mode(&self, p: &Params) -> bool {
-        p.settings.sequencing == Sequencing::Simplified || self.actuals.mode == self.commands.mode
+    /// Whether the drive shows the mode that it is asked for, and knows that it is; the simplified sequence does not ask.
+    fn is_in_mode(&self, p: &Params) -> bool {
+        p.settings.sequencing == Sequencing::Simplified
+            || self.actuals.mode == self.commands.mode && self.mode_since + p.round_trip <= self.heard
     }
 
     /// Whether the drive does what the task asks for.
@@ -124,9 +127,8 @@ impl State {
         if !follows {
             return self.homing.fail();
         }
-        let round_trip = u64::from(p.settings.round_trip) * p.stream.bus_cycle;
         // What was heard now answers what was told a round trip ago.
-        if self.homing.step(self.actuals.statusword, self.heard.saturating_sub(round_trip), now) {
+        if self.homing.step(self.actuals.statusword, self.heard.saturating_sub(p.round_trip), now) {
             match Position::near(&p.scale, reference.into(), self.actuals.position, self.heard) {
                 Ok(position) => self.position = Some(position),
                 Err(_) => self.fault = self.fault.or(Some(LinkFault::PositionLost)),

@@ -79,6 +79,8 @@ pub struct Params {
     pub(crate) scale: Scale,
     /// Cycle of the motion task (s).
     pub(crate) cycle: f64,
+    /// From a command to the first answer that knows of it (base ticks).
+    pub(crate) round_trip: u64,
 }
 
 impl Params {
@@ -113,7 +115,7 @@ impl Params {
         let (highest_step, count) = (velocity_limit * tick, scale.resolution());
         let creep = count / (cycle as f64 * tick);
         let stream = StreamParams { timing, recovery, highest_step, bus_cycle, count, creep };
-        Ok(Self { settings, stream, scale, cycle: cycle as f64 * tick })
+        Ok(Self { settings, stream, scale, cycle: cycle as f64 * tick, round_trip })
     }
 
     /// The settings that it was made of.

@@ -36,6 +36,8 @@ pub(crate) struct Sequencer {
     /// The last state that the statusword told.
     state: PowerState,
     word: Controlword,
+    /// When that word was given first (base ticks).
+    told: u64,
     /// Since when the drive is in that state and has been given that word (base ticks).
     since: u64,
     resetting: bool,
@@ -48,6 +50,7 @@ impl Sequencer {
         Self {
             state: PowerState::NotReadyToSwitchOn,
             word: Controlword::of(Command::DisableVoltage),
+            told: now,
             since: now,
             resetting: false,
             faulty: false,
@@ -58,11 +61,12 @@ impl Sequencer {
         self.word
     }
 
-    /// Whether the drive function may be used.
-    pub(crate) fn is_enabled(&self, sequencing: Sequencing) -> bool {
+    /// Whether the drive function may be used: of what was told up to `known` the drive has heard.
+    pub(crate) fn is_enabled(&self, sequencing: Sequencing, known: u64) -> bool {
+        let is_told = self.word.gives(Command::EnableOperation);
         match sequencing {
-            Sequencing::Strict => self.state == PowerState::OperationEnabled,
-            Sequencing::Simplified => !self.faulty && self.word.gives(Command::EnableOperation),
+            Sequencing::Strict => is_told && self.told <= known && self.state == PowerState::OperationEnabled,
+            Sequencing::Simplified => is_told && !self.faulty,
         }
     }
 
@@ -70,7 +74,7 @@ impl Sequencer {
     pub(crate) fn is_powered(&self, sequencing: Sequencing) -> bool {
         match sequencing {
             Sequencing::Strict => self.state.is_drive_function_enabled(),
-            Sequencing::Simplified => self.is_enabled(sequencing),
+            Sequencing::Simplified => !self.faulty && self.word.gives(Command::EnableOperation),
         }
     }
 
@@ -100,8 +104,11 @@ impl Sequencer {
             Sequencing::Strict => self.strict(wanted),
             Sequencing::Simplified => self.simplified(wanted),
         };
-        if word != self.word || self.brakes(wanted) {
-            (self.word, self.since) = (word, now);
+        if word != self.word {
+            (self.word, self.told, self.since) = (word, now, now);
+        }
+        if self.brakes(wanted) {
+            self.since = now;
         }
         let waited = now.saturating_sub(self.since);
         if waited > timeout {

@@ -6,7 +6,7 @@ use crate::{Interpolation, LinkFault, Task};
 impl State {
     /// Looks for what the axis must be stopped for.
     pub(super) fn supervise(&mut self, p: &Params, external_fault: bool, now: u64) {
-        let enabled = self.sequencer.is_enabled(p.settings.sequencing);
+        let enabled = self.is_enabled(p);
         let silent = self.command.power && now.saturating_sub(self.heard) > p.settings.drive_timeout;
         let found = if external_fault {
             Some(LinkFault::External)

@@ -193,6 +193,25 @@ fn a_drive_that_leaves_operation_enabled_does_not_come_back_by_itself() {
 }
 
 #[test]
+fn an_answer_to_an_earlier_word_is_no_answer() {
+    for cycles in 1..6 {
+        let mut rig = Rig::powered(settings());
+        let mut on_the_way = rig.answer;
+        let mut words = |rig: &mut Rig, cycles, command| {
+            rig.write(rig.tick, command);
+            for _ in 0..cycles {
+                core::mem::swap(&mut rig.answer, &mut on_the_way);
+                rig.cycle();
+            }
+        };
+        // Off and on again before the drive can have said that it is off.
+        words(&mut rig, cycles, OFF);
+        words(&mut rig, 30, REST);
+        assert_eq!((rig.fault(), rig.feedback().power), (None, Power::On), "{cycles}");
+    }
+}
+
+#[test]
 fn the_external_fault_stops_quickly_for_as_long_as_it_is_there() {
     let mut rig = Rig::powered(settings());
     rig.external_fault = true;
