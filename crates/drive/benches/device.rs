@@ -7,7 +7,7 @@ use divan::{Bencher, black_box};
 use servobench_cia402::{Command, Commands, ControlBit, Controlword, Mode};
 use servobench_drive::Demand;
 use servobench_drive::device::{self, Inputs, Measured, Params, State};
-use servobench_drive::modes::profile::position::Ramp;
+use servobench_drive::modes::profile::Ramp;
 use servobench_motion::interpolate;
 
 const STEPS: u32 = 1000;

@@ -257,9 +257,7 @@ impl State {
         };
         self.now.demanded = match self.last {
             Demand::Position { setpoint, .. } => setpoint.after(p.period),
-            Demand::Velocity { setpoint, .. } => {
-                Setpoint { v: setpoint.after(p.period).v, ..Setpoint::at_rest(actual.position) }
-            }
+            Demand::Velocity { setpoint, .. } => Setpoint { x: actual.position, ..setpoint.after(p.period) },
             Demand::Effort(_) | Demand::Off => Setpoint { v: actual.velocity, ..Setpoint::at_rest(actual.position) },
         };
         self.now.actual = actual;

@@ -4,7 +4,7 @@ use servobench_cia402::objects::{Dictionary, HOMING_METHODS, OBJECTS, Value};
 use servobench_cia402::units::{AxisUnit, Object, Ratio, UnitError};
 use servobench_drive::device::{ObjectsError, Params};
 use servobench_drive::modes::homing::Method;
-use servobench_drive::modes::profile::position::Ramp;
+use servobench_drive::modes::profile::Ramp;
 
 fn write(objects: &mut Dictionary, index: u16, subindex: u8, value: impl Into<Value>) {
     objects.write(Object { index, subindex }, value.into(), PowerState::SwitchOnDisabled).unwrap();

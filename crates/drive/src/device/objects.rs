@@ -5,7 +5,7 @@
 use super::{Params, Units, cycle};
 use crate::modes::homing;
 use crate::modes::interpolated::{RecordError, SubMode, TimePeriod};
-use crate::modes::profile::position::Ramp;
+use crate::modes::profile::Ramp;
 use servobench_base::ParamError;
 use servobench_cia402::objects::{DataType, Dictionary, Value, parameter as p};
 use servobench_cia402::units::{AxisUnit, Object, UnitError};

@@ -1,7 +1,7 @@
 //! What the drive is set to: the objects that do not come with every frame, in SI.
 use super::{Units, Window, cycle};
 use crate::modes::interpolated::{SubMode, TimePeriod};
-use crate::modes::profile::position::Ramp;
+use crate::modes::profile::Ramp;
 use crate::modes::{Moment, Steepness, cyclic, homing, interpolated, profile};
 use core::cmp::Ordering;
 use servobench_base::{ParamError, limit, positive};
@@ -174,7 +174,12 @@ impl Params {
     }
 
     pub(super) const fn profile_velocity(&self) -> profile::velocity::Params {
-        profile::velocity::Params { limit: self.profile_limit(), window: self.velocity, threshold: self.standstill }
+        profile::velocity::Params {
+            ramp: self.profile.ramp,
+            limit: self.profile_limit(),
+            window: self.velocity,
+            threshold: self.standstill,
+        }
     }
 
     pub(super) const fn profile_effort(&self) -> profile::effort::Params {

@@ -2,7 +2,7 @@
 use crate::axis::{Axis, setpoint};
 use servobench_cia402::{ControlBit, Mode, StatusBit};
 use servobench_drive::device::{Limits, Params};
-use servobench_drive::modes::profile::position::Ramp;
+use servobench_drive::modes::profile::Ramp;
 
 fn axis(params: &Params) -> Axis {
     let mut axis = Axis::enabled(params, Mode::ProfilePosition);

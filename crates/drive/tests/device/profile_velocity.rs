@@ -3,6 +3,7 @@ use crate::axis::{Axis, setpoint};
 use servobench_cia402::{Mode, StatusBit};
 use servobench_drive::Demand;
 use servobench_drive::device::{Limits, Params, Window};
+use servobench_drive::modes::profile::Ramp;
 
 fn axis(params: &Params) -> Axis {
     let mut axis = Axis::enabled(params, Mode::ProfileVelocity);
@@ -78,6 +79,31 @@ fn a_target_velocity_beyond_the_highest_is_approached_as_far_and_the_drive_says_
     axis.cycles(100);
     assert!((axis.velocity + 0.05).abs() < 1e-15 && axis.has(StatusBit::InternalLimitActive), "{}", axis.velocity);
     assert!(!axis.has(StatusBit::TargetReached), "the target is another one");
+}
+
+/// Oracle: from rest to V within A and J takes V/A + A/J; half way it is at V/2 with A.
+/// A new target on the way is taken without a jump of the acceleration.
+#[test]
+fn jerk_limited_velocities_keep_their_jerk() {
+    let mut params = Params::default();
+    params.profile.ramp = Ramp::JerkLimited(20.0);
+    let mut axis = axis(&params);
+    axis.frame.profile_deceleration = 1_000_000;
+    axis.frame.target_velocity = 100_000;
+    let ramp: Vec<_> = (0..800).map(|k| setpoint(&axis.step(k % 4 == 0).demand)).collect();
+    // 0.15 s: 300 steps are half of it.
+    assert!((ramp[300].v - 0.05).abs() < 1e-14 && (ramp[300].a - 1.0).abs() < 1e-12, "{:?}", ramp[300]);
+    assert!(ramp[599].v < 0.1 && (ramp[600].v - 0.1).abs() < 1e-15, "{:?} {:?}", ramp[599], ramp[600]);
+    axis.frame.target_velocity = -100_000;
+    let back = (0..500).map(|k| setpoint(&axis.step(k % 4 == 0).demand));
+    let mut way: Vec<_> = ramp.into_iter().chain(back).collect();
+    axis.frame.target_velocity = 50_000;
+    way.extend((0..1200).map(|k| setpoint(&axis.step(k % 4 == 0).demand)));
+    for (k, pair) in way.windows(2).enumerate() {
+        assert!((pair[1].a - pair[0].a).abs() <= 20.0 * 250e-6 + 1e-11, "step {k}: {pair:?}");
+        assert!(pair[0].a.abs() <= 1.0 + 1e-11, "step {k}: {pair:?}");
+    }
+    assert!((way.last().unwrap().v - 0.05).abs() < 1e-15);
 }
 
 /// Oracle: 100 N·m/s over 0.25 ms steps.

@@ -5,7 +5,7 @@ use servobench_base::Setpoint;
 use servobench_cia402::{Command, Commands, Controlword, Mode, PowerState};
 use servobench_drive::Demand;
 use servobench_drive::device::{Limits, Params, Window};
-use servobench_drive::modes::profile::position::Ramp;
+use servobench_drive::modes::profile::Ramp;
 use servobench_motion::interpolate;
 
 const VELOCITY: f64 = 0.5;

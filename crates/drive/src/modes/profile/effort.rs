@@ -1,6 +1,6 @@
 //! Profile torque (tq): the effort goes linearly to its target (6071h) by the torque slope (6087h). The target is reached (bit
 //! 10) when the demand is there.
-use super::ramp::Slopes;
+use super::slopes::Slopes;
 use crate::Demand;
 use crate::modes::{Answer, Moment};
 

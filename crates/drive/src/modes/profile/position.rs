@@ -21,23 +21,15 @@
 //! set-point without a stop (bit 9) in the same way at the profile velocity: no axis turns back to gain a run-up.
 mod set_point;
 
+use super::Ramp;
+use super::way::Way;
 use crate::Demand;
 use crate::device::{Dwell, Window};
 use crate::modes::{Answer, Moment};
-use servobench_base::{ParamError, Setpoint, non_negative, positive};
+use servobench_base::{ParamError, Setpoint, non_negative};
 use servobench_cia402::ControlBit;
-use servobench_motion::online::{Target, Transition};
-use servobench_motion::{Order, Piece};
+use servobench_motion::online::Target;
 use set_point::SetPoint;
-
-/// How the velocity changes (6086h).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Ramp {
-    /// Linearly: the velocity is a trapezoid (0).
-    Linear,
-    /// With at most this jerk (m/s³ or rad/s³), a magnitude (3).
-    JerkLimited(f64),
-}
 
 /// What does not come with a set-point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,50 +48,8 @@ impl Params {
     /// # Errors
     /// [`ParamError`] names the first parameter out of its bound.
     pub fn check(&self) -> Result<(), ParamError> {
-        if let Ramp::JerkLimited(jerk) = self.ramp {
-            positive("profile_jerk", jerk)?;
-        }
+        self.ramp.check()?;
         non_negative("end_velocity", self.end_velocity).map(|_| ())
-    }
-
-    const fn order(&self) -> Order {
-        match self.ramp {
-            Ramp::Linear => Order::Second,
-            Ramp::JerkLimited(_) => Order::Third,
-        }
-    }
-
-    const fn jerk(&self) -> f64 {
-        match self.ramp {
-            Ramp::Linear => f64::INFINITY,
-            Ramp::JerkLimited(jerk) => jerk,
-        }
-    }
-}
-
-/// A planned way and how far it has been gone.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Way {
-    transition: Transition,
-    /// The part of it that is being gone.
-    piece: Piece,
-    steps: u32,
-}
-
-impl Way {
-    fn along(transition: &Transition) -> Self {
-        Self { transition: *transition, piece: transition.piece(0.0), steps: 0 }
-    }
-
-    /// The set-point of the next step, the first one being that of the start, and whether the end is reached.
-    #[inline]
-    fn next(&mut self, period: f64) -> (Setpoint, bool) {
-        let passed = f64::from(self.steps) * period;
-        self.steps = self.steps.saturating_add(1);
-        if !self.piece.holds(passed) {
-            self.piece = self.transition.piece(passed);
-        }
-        (self.piece.at(passed), passed >= self.transition.duration())
     }
 }
 

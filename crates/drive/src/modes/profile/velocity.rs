@@ -1,5 +1,5 @@
-//! Profile velocity (pv): the velocity goes linearly to its target (60FFh), by the profile's acceleration (6083h) away from
-//! zero and by its deceleration (6084h) towards zero.
+//! Profile velocity (pv): the velocity goes to its target (60FFh) by the profile's acceleration (6083h) away from zero and by its
+//! deceleration (6084h) towards zero, linearly or jerk-limited (6086h).
 //!
 //! | bit | is set |
 //! |---|---|
@@ -8,15 +8,23 @@
 //! | 13, maximum slippage | never: there is none |
 //!
 //! A target beyond the highest velocity is approached as far as that (bit 11).
-use super::ramp::Slopes;
+use super::Ramp;
+use super::slopes::Slopes;
+use super::way::Way;
 use crate::Demand;
 use crate::device::{Dwell, Window};
 use crate::modes::{Answer, Moment};
 use servobench_base::Setpoint;
+use servobench_motion::online::{Effort, RampLimits, Sides, Target, Transition};
 
-/// Limit and windows.
+/// Highest velocity (m/s or rad/s) that a way is planned with when there is no limit.
+const UNLIMITED: f64 = 1e30;
+
+/// Ramps, limit and windows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Params {
+    /// Motion profile type (6086h).
+    pub ramp: Ramp,
     /// Highest velocity (the lower of 607Fh and 6080h), a magnitude; may be infinite.
     pub limit: f64,
     /// Velocity window and time (606Dh, 606Eh).
@@ -28,9 +36,13 @@ pub struct Params {
 /// All that a snapshot must hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State {
-    /// Velocity of the next step.
+    /// Velocity of the next step, on linear ramps.
     velocity: f64,
-    /// What the loops follow then, up to a rounding the same; anything else was asked of them by others, and is gone on from.
+    /// The way to the target, on jerk-limited ones, and what it was planned for: the bits of target, acceleration and
+    /// deceleration.
+    way: Option<Way>,
+    planned_for: [u64; 3],
+    /// What the loops follow at the next step; anything else was asked of them by others, and is gone on from.
     expected: f64,
     within_window: Dwell,
     above_threshold: Dwell,
@@ -43,6 +55,8 @@ impl State {
     pub fn begin(now: &Moment) -> Self {
         Self {
             velocity: now.demanded.v,
+            way: None,
+            planned_for: [0; 3],
             expected: now.demanded.v,
             within_window: Dwell::default(),
             above_threshold: Dwell::default(),
@@ -55,6 +69,30 @@ impl State {
     pub const fn is_limited(&self) -> bool {
         self.is_limited
     }
+
+    fn linear(&mut self, now: &Moment, goes_on: bool, target: f64) -> Setpoint {
+        let slopes = Slopes { away: now.targets.profile_acceleration, back: now.targets.profile_deceleration };
+        let velocity = if goes_on { self.velocity } else { now.demanded.v };
+        self.velocity = slopes.next(velocity, target, now.period);
+        Setpoint { v: velocity, a: (self.velocity - velocity) / now.period, ..Setpoint::at_rest(0.0) }
+    }
+
+    /// Without a plan the velocity stays, and the drive says that it is limited.
+    fn jerk_limited(&mut self, p: &Params, now: &Moment, goes_on: bool, target: f64) -> Setpoint {
+        let [acceleration, deceleration] = [now.targets.profile_acceleration, now.targets.profile_deceleration];
+        let asked = [target, acceleration, deceleration].map(f64::to_bits);
+        if !goes_on || asked != self.planned_for || self.way.is_none() {
+            let velocity = Sides::both(p.limit.min(UNLIMITED));
+            let limits = RampLimits { velocity, acceleration, deceleration, jerk: p.ramp.jerk(), snap: f64::INFINITY };
+            let to = Target::Velocity(target);
+            let planned = Transition::plan_ramps(p.ramp.order(), &now.demanded, &to, &limits, Effort::Fast);
+            self.is_limited |= planned.is_err();
+            self.way = planned.ok().as_ref().map(Way::along);
+            self.planned_for = asked;
+        }
+        let stays = Setpoint { v: now.demanded.v, ..Setpoint::at_rest(0.0) };
+        self.way.as_mut().map_or(stays, |way| way.next(now.period).0)
+    }
 }
 
 /// The demand of a step.
@@ -63,19 +101,17 @@ pub fn step(p: &Params, x: &mut State, now: &Moment) -> Answer {
     let Moment { targets, actual, period, .. } = now;
     let target = targets.velocity.clamp(-p.limit, p.limit);
     x.is_limited = targets.velocity.abs() > p.limit;
-    let slopes = Slopes { away: targets.profile_acceleration, back: targets.profile_deceleration };
     let goes_on = now.demanded.v.to_bits() == x.expected.to_bits();
-    let velocity = if goes_on { x.velocity } else { now.demanded.v };
-    let next = slopes.next(velocity, target, *period);
-    let setpoint = Setpoint { v: velocity, a: (next - velocity) / period, ..Setpoint::at_rest(actual.position) };
-    (x.velocity, x.expected) = (next, setpoint.after(*period).v);
+    let ramp = match p.ramp {
+        Ramp::Linear => x.linear(now, goes_on, target),
+        Ramp::JerkLimited(_) => x.jerk_limited(p, now, goes_on, target),
+    };
+    let setpoint = Setpoint { x: actual.position, ..ramp };
+    x.expected = setpoint.after(*period).v;
+    let error = actual.velocity - targets.velocity;
     Answer {
         demand: Demand::Velocity { setpoint, effort_offset: 0.0 },
-        target_reached: x.within_window.step(
-            p.window.holds(actual.velocity - targets.velocity),
-            p.window.time,
-            *period,
-        ),
+        target_reached: x.within_window.step(p.window.holds(error), p.window.time, *period),
         bit_12: !x.above_threshold.step(!p.threshold.holds(actual.velocity), p.threshold.time, *period),
         bit_13: false,
     }

@@ -30,7 +30,7 @@ impl SetPoint {
             velocity: Sides::both(self.velocity),
             acceleration: self.acceleration,
             deceleration: self.deceleration,
-            jerk: p.jerk(),
+            jerk: p.ramp.jerk(),
             snap: f64::INFINITY,
         }
     }
@@ -38,7 +38,7 @@ impl SetPoint {
     /// # Errors
     /// [`PlanError`] when the state or the profile allow no plan.
     pub(super) fn plan(&self, p: &Params, from: &Setpoint, target: &Target) -> Result<Transition, PlanError> {
-        Transition::plan_ramps(p.order(), from, target, &self.limits(p), Effort::Fast)
+        Transition::plan_ramps(p.ramp.order(), from, target, &self.limits(p), Effort::Fast)
     }
 
     /// Velocity at which it is passed: `most` at most, none where the axis would have to turn back for it.
@@ -51,6 +51,6 @@ impl SetPoint {
         }
         let sign = if self.x >= from.x { 1.0 } else { -1.0 };
         let limits = self.limits(p).towards(sign);
-        Ok(passing_velocity(p.order(), from, self.x, &limits, most)?.map_or(0.0, |speed| sign * speed))
+        Ok(passing_velocity(p.ramp.order(), from, self.x, &limits, most)?.map_or(0.0, |speed| sign * speed))
     }
 }
