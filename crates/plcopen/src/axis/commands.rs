@@ -32,9 +32,7 @@ impl Axis {
         }
         let is_aborting = command.buffer_mode == BufferMode::Aborting;
         if !is_aborting {
-            if let Some(superimposed) = &self.superimposed {
-                self.check_sum(block, &superimposed.command, &command)?;
-            }
+            self.check_beside(&command)?;
             if !matches!(self.activity, Activity::Rest) {
                 return self.wait(command);
             }
@@ -96,9 +94,7 @@ impl Axis {
     /// Changes the inputs of a command that runs or waits.
     pub(crate) fn update(&mut self, id: CommandId, command: Command) -> Result<(), BlockError> {
         command.check(&self.params)?;
-        if let Some(superimposed) = &self.superimposed {
-            self.check_sum(command.block, &superimposed.command, &command)?;
-        }
+        self.check_beside(&command)?;
         if let Some(waiting) = self.queue.get_mut(id) {
             *waiting = command;
             return self.rejoin();

@@ -4,7 +4,8 @@ use servobench_base::Setpoint;
 use servobench_motion::online::{Target, Transition};
 use servobench_motion::{Piece, PlanError};
 
-/// An end that is nearer to a cycle than this part of its time is in that cycle: only rounding keeps it from being there.
+/// What rounding may make of a whole: an end that is nearer to a cycle than this part of its time is in that cycle, a way that is
+/// beyond a limit by this part of it is not.
 const ROUNDING: f64 = 1e-9;
 
 /// A way and how much of it is behind.
@@ -63,9 +64,9 @@ impl Run {
         self.beyond() >= 0.0 && self.then.is_none()
     }
 
-    /// Whether something follows that is not yet planned.
-    pub(crate) const fn is_preliminary(&self) -> bool {
-        self.then.is_some()
+    /// Whether it may use more than its command does: on the way back into the limits of that, or before it.
+    pub(crate) fn is_leading_in(&self) -> bool {
+        self.then.is_some() || (self.way.excess() > ROUNDING && self.beyond() < 0.0)
     }
 
     /// The set-point at its end.

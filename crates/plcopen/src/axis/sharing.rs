@@ -29,6 +29,15 @@ const fn supply(limits: &Limits) -> [f64; 4] {
 }
 
 impl Axis {
+    /// Whether a command that does not abort leaves the superimposed motion what it needs.
+    pub(super) fn check_beside(&self, command: &Command) -> Result<(), BlockError> {
+        match &self.superimposed {
+            Some(superimposed) if superimposed.run.is_leading_in() => Err(self.nothing_to_spare(command)),
+            Some(superimposed) => self.check_sum(command.block, &superimposed.command, command),
+            None => Ok(()),
+        }
+    }
+
     /// Two motions on top of each other keep the limits of the axis together.
     pub(super) fn check_sum(&self, block: BlockName, one: &Command, other: &Command) -> Result<(), BlockError> {
         let limits = &self.params.limits;
@@ -50,10 +59,24 @@ impl Axis {
         self.spare(self.superimposed.as_ref().map(|superimposed| &superimposed.command))
     }
 
-    /// What the axis has beside the motion `used`.
-    pub(super) fn spare(&self, used: Option<&Command>) -> Bounds {
+    /// What the axis has beside the commands that run or wait below a superimposed motion.
+    pub(super) fn on_top(&self) -> Bounds {
+        self.spare(self.below())
+    }
+
+    /// The commands that run or wait, without the one on top of them.
+    pub(super) fn below(&self) -> impl Iterator<Item = &Command> {
+        let active = self.activity.command().map(|(_, command)| command);
+        active.into_iter().chain(self.queue.iter().map(|(_, command)| command))
+    }
+
+    /// What the axis has beside the most that one of `others` uses.
+    pub(super) fn spare<'a>(&self, others: impl IntoIterator<Item = &'a Command>) -> Bounds {
         let limits = &self.params.limits;
-        let used = used.map_or([0.0; 4], |command| demand(command, limits));
+        let used = others.into_iter().fold([0.0; 4], |used: [f64; 4], command| {
+            let demand = demand(command, limits);
+            core::array::from_fn(|k| used[k].max(demand[k]))
+        });
         let [velocity, acceleration, jerk, snap] = supply(limits);
         // Of an infinite limit all is left, whatever is used.
         let left = |limit: f64, used: f64| if limit < f64::INFINITY { limit - used } else { limit };

@@ -88,14 +88,11 @@ impl Axis {
         finite_input(command.block, "Distance", distance)?;
         command.dynamics.check(command.block, &self.params.limits)?;
         if let Activity::Moving(moving) = &self.activity
-            && moving.run.is_preliminary()
+            && moving.run.is_leading_in()
         {
             return Err(self.nothing_to_spare(command));
         }
-        for (_, below) in self.activity.command().into_iter().chain(self.queue.iter().map(|(id, below)| (*id, below))) {
-            self.check_sum(command.block, command, below)?;
-        }
-        Ok(())
+        self.below().try_for_each(|below| self.check_sum(command.block, command, below))
     }
 
     /// What a superimposed motion has covered since it began.
@@ -135,7 +132,7 @@ impl Axis {
         let factors = super::Override { velocity: if is_paused { 1.0 } else { self.factors.velocity }, ..self.factors };
         let bounds = Bounds::of(&command.dynamics, &self.params.limits, &factors);
         let target = if is_paused { Target::Velocity(0.0) } else { Target::Position { x, v: 0.0 } };
-        let run = planned(from, &target, &bounds, &self.spare(self.activity.command().map(|(_, below)| below)), 0.0);
+        let run = planned(from, &target, &bounds, &self.on_top(), 0.0);
         Ok((run.map_err(|error| BlockError::Plan { block: command.block, error })?, is_paused))
     }
 }
