@@ -1,8 +1,9 @@
 //! When the targets of the cyclic modes act.
 //!
-//! The drive keeps a clock of its own with the period of the frames. It starts with the first frame and is not moved by the
-//! later ones: a frame acts at the beginning of the cycle after it came, however early it came. A cycle that begins without a
-//! new frame is a missed one.
+//! The drive keeps a clock of its own with the period of the frames, which starts with the first one. A frame acts at the
+//! beginning of the cycle after it came, however early it came. A cycle that begins without a new frame is a missed one. When
+//! its frame comes after all, the cycle begins anew with it: the clock follows the latest of the frames, and who comes no later
+//! is in time from then on.
 
 /// Rates of the clock.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,6 +23,8 @@ pub enum Beat {
     Sample,
     /// A cycle begins without a new frame.
     Missed,
+    /// The frame of a missed cycle has come: the cycle begins anew, and its targets act.
+    Late,
     /// A cycle goes on, or none has begun.
     Between,
 }
@@ -52,6 +55,10 @@ pub(super) fn step(p: &Params, x: &mut State, came: bool) -> Beat {
     }
     match x.left {
         None => Beat::Between,
+        Some(1..) if came && x.missed > 0 => {
+            *x = State { left: Some(p.steps - 1), is_waiting: false, missed: 0 };
+            Beat::Late
+        }
         Some(0) => {
             x.left = Some(p.steps - 1);
             if core::mem::take(&mut x.is_waiting) {

@@ -7,6 +7,8 @@ pub mod effort;
 pub mod position;
 pub mod velocity;
 
+use crate::device::Beat;
+
 /// A value that goes linearly to each of its targets within a cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Linear {
@@ -19,8 +21,13 @@ impl Linear {
         Self { from: value, to: value }
     }
 
-    const fn go_to(&mut self, target: f64) {
-        *self = Self { from: self.to, to: target };
+    /// From where the cycle ended, or from where it was broken off.
+    const fn go_to(&mut self, target: f64, broken_off: Option<f64>) {
+        let from = match broken_off {
+            Some(passed) => self.at(passed),
+            None => self.to,
+        };
+        *self = Self { from, to: target };
     }
 
     /// After a fraction of the cycle.
@@ -36,6 +43,11 @@ struct Progress {
 }
 
 impl Progress {
+    /// The fraction at which a late frame breaks the cycle off.
+    fn broken_off(self, beat: Beat, steps: u32) -> Option<f64> {
+        (beat == Beat::Late).then(|| f64::from(self.steps) / f64::from(steps))
+    }
+
     /// The fraction that has passed at a step of a cycle of `steps`; counts the step. A cycle that lasts longer than it should
     /// has passed.
     fn next(&mut self, steps: u32) -> f64 {

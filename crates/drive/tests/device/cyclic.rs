@@ -143,6 +143,62 @@ fn frames_that_come_late_by_less_than_the_shift_lose_nothing() {
     }
 }
 
+/// Frame n of a line comes so many steps late; what the loops follow at each step, and whether a cycle is missing its frame.
+fn line_with_late_frames(params: &Params, late: &[i32]) -> Vec<(servobench_base::Setpoint, bool)> {
+    let mut axis = Axis::enabled(params, Mode::CyclicSynchronousPosition);
+    let mut seen = Vec::new();
+    for (n, late) in (1..).zip(late) {
+        axis.frame.target_position = 100 * n;
+        for k in 0..4 {
+            let outputs = axis.step(k == *late);
+            assert_eq!(outputs.fault, None, "frame {n}");
+            seen.push((setpoint(&outputs.demand), axis.has(StatusBit::Warning)));
+        }
+    }
+    seen
+}
+
+/// Oracle: by hand. Each frame that is later by a step than any before it moves the clock by a step, 25 µm on this line: the
+/// velocity of that cycle is 3/4 of the others'. Afterwards nothing tells frames in time from those up to two steps late.
+#[test]
+fn the_clock_follows_the_latest_of_the_frames() {
+    let late = [0, 0, 0, 1, 0, 2, 0, 0, 1, 2, 0, 1, 2, 2, 0, 0];
+    for interpolation in [interpolate::Mode::Linear, interpolate::Mode::CubicBSpline] {
+        let seen = line_with_late_frames(&Params { interpolation, ..Params::default() }, &late);
+        for (k, pair) in seen.windows(2).enumerate().skip(8) {
+            let [(before, _), (after, is_missing)] = [pair[0], pair[1]];
+            assert!((18.7e-6..25.1e-6).contains(&(after.x - before.x)), "{interpolation:?}, step {k}: {pair:?}");
+            assert!(k < 24 || !is_missing, "{interpolation:?}, step {k}");
+        }
+    }
+    // A step is 25 µm; the target of frame n is reached a cycle and two steps after it should have come.
+    let seen = line_with_late_frames(&Params::default(), &late);
+    for (k, (setpoint, _)) in (0..).zip(&seen).skip(48) {
+        assert!((setpoint.x - 25e-6 * f64::from(k - 2)).abs() < 1e-15, "step {k}: {setpoint:?}");
+    }
+}
+
+#[test]
+fn late_velocities_and_efforts_go_on_from_what_they_are() {
+    for mode in [Mode::CyclicSynchronousVelocity, Mode::CyclicSynchronousTorque] {
+        let mut axis = Axis::enabled(&Params::default(), mode);
+        let mut values = Vec::new();
+        for (n, late) in (1_i16..).zip([0, 0, 2, 0, 1, 0, 0]) {
+            (axis.frame.target_velocity, axis.frame.target_torque) = (10_000 * i32::from(n), 10 * n);
+            for k in 0..4 {
+                values.push(match axis.step(k == late).demand {
+                    Demand::Effort(effort) => effort,
+                    demand => setpoint(&demand).v,
+                });
+            }
+        }
+        for pair in values.windows(2) {
+            // At most the slope of the frames, 10 mm/s or 10 mN·m a cycle, and after a stretch without one twice that.
+            assert!((-1e-15..=0.0051).contains(&(pair[1] - pair[0])), "{mode:?}: {pair:?}");
+        }
+    }
+}
+
 /// Oracle: by hand: from 0 to 0.2 m/s in a millisecond is 200 m/s².
 #[test]
 fn cyclic_velocities_are_ramps_between_the_frames() {

@@ -30,9 +30,10 @@ impl State {
 #[inline]
 pub fn step(p: Params, x: &mut State, now: &Moment, beat: Beat) -> Answer {
     if beat != Beat::Between {
+        let broken_off = x.progress.broken_off(beat, p.steps);
         x.progress = Progress::default();
-        let targets = &now.targets;
-        x.effort.go_to(if beat == Beat::Sample { targets.effort + targets.effort_offset } else { x.effort.to });
+        let asked = now.targets.effort + now.targets.effort_offset;
+        x.effort.go_to(if beat == Beat::Missed { x.effort.to } else { asked }, broken_off);
     }
     let demand = Demand::Effort(x.effort.at(x.progress.next(p.steps)));
     Answer { demand, target_reached: false, bit_12: true, bit_13: false }

@@ -135,22 +135,23 @@ fn peak_velocity(start: &Setpoint, cycle: f64) -> f64 {
 #[inline]
 pub fn step(p: &Params, x: &mut State, now: &Moment, beat: Beat) -> Answer {
     let cycle = f64::from(p.steps) * now.period;
-    if beat != Beat::Between && !x.has_begun {
+    let broken_off = x.progress.broken_off(beat, p.steps);
+    if beat == Beat::Late || beat != Beat::Between && !x.has_begun {
         x.lay(cycle, now.demanded, p.interpolation);
     }
     match beat {
         Beat::Between => {}
-        Beat::Sample => {
+        Beat::Sample | Beat::Late => {
             let targets = &now.targets;
             x.go_to(p, cycle, Sample { x: targets.position, v: targets.velocity_offset, ..Sample::default() });
-            x.velocity_offset.go_to(targets.velocity_offset.clamp(-p.velocity, p.velocity));
-            x.effort_offset.go_to(targets.effort_offset);
+            x.velocity_offset.go_to(targets.velocity_offset.clamp(-p.velocity, p.velocity), broken_off);
+            x.effort_offset.go_to(targets.effort_offset, broken_off);
         }
         Beat::Missed => {
             let [.., before, last] = x.points;
             x.go_to(p, cycle, Sample { x: last.x + (last.x - before.x), ..last });
-            x.velocity_offset.go_to(x.velocity_offset.to);
-            x.effort_offset.go_to(x.effort_offset.to);
+            x.velocity_offset.go_to(x.velocity_offset.to, None);
+            x.effort_offset.go_to(x.effort_offset.to, None);
         }
     }
     let passed = x.progress.next(p.steps);

@@ -48,15 +48,16 @@ impl State {
 pub fn step(p: &Params, x: &mut State, now: &Moment, beat: Beat) -> Answer {
     let targets = &now.targets;
     if beat != Beat::Between {
+        let broken_off = x.progress.broken_off(beat, p.steps);
         x.progress = Progress::default();
-        let (velocity, effort_offset) = if beat == Beat::Sample {
-            (targets.velocity + targets.velocity_offset, targets.effort_offset)
-        } else {
+        let (velocity, effort_offset) = if beat == Beat::Missed {
             (x.velocity.to, x.effort_offset.to)
+        } else {
+            (targets.velocity + targets.velocity_offset, targets.effort_offset)
         };
         x.is_limited = velocity.abs() > p.velocity;
-        x.velocity.go_to(velocity.clamp(-p.velocity, p.velocity));
-        x.effort_offset.go_to(effort_offset);
+        x.velocity.go_to(velocity.clamp(-p.velocity, p.velocity), broken_off);
+        x.effort_offset.go_to(effort_offset, broken_off);
     }
     let cycle = f64::from(p.steps) * now.period;
     let passed = x.progress.next(p.steps);
