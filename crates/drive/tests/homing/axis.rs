@@ -82,6 +82,12 @@ impl<'a> Axis<'a> {
         Self { lag: 0.0, behind: at, machine, demanded, shift: 0.0, last: at, params, state: State::begin(&moment) }
     }
 
+    /// The mode takes over anew, at such a word.
+    pub(crate) fn take_over(&mut self, controlword: Controlword) {
+        let (demanded, actual) = (self.demanded, Actual::default());
+        self.state = State::begin(&Moment { targets: targets(controlword), actual, demanded, period: PERIOD });
+    }
+
     pub(crate) fn step(&mut self, controlword: Controlword) -> Seen {
         let asked = self.demanded.after(PERIOD);
         let at = self.place(asked);

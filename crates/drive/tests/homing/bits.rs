@@ -73,6 +73,16 @@ fn a_start_that_is_taken_back_interrupts_and_the_next_one_begins_anew() {
 }
 
 #[test]
+fn a_bit_that_is_set_as_the_mode_takes_over_starts_nothing() {
+    let machine = Machine::with_home(0.2..=0.3);
+    let mut axis = Axis::new(&machine, params(23), 0.0);
+    axis.take_over(start());
+    assert_eq!(bits(&axis.step(start())), NOT_STARTED);
+    assert_eq!(bits(&axis.step(idle())), NOT_STARTED);
+    assert_eq!(bits(&axis.step(start())), UNDER_WAY);
+}
+
+#[test]
 fn halt_stops_the_axis_on_its_leg_and_lets_it_go_on() {
     let machine = Machine::with_home(0.2..=0.3);
     let mut axis = Axis::new(&machine, params(8), 0.0);

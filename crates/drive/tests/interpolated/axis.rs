@@ -32,6 +32,11 @@ impl Axis {
         Self { params: params(sub_mode), state, buffer, last, answer }
     }
 
+    /// The mode takes over anew, at such a word.
+    pub(crate) fn take_over(&mut self, word: Controlword) {
+        self.state = State::begin(&moment(word, self.last));
+    }
+
     pub(crate) fn step(&mut self, word: Controlword) -> Setpoint {
         let moment = moment(word, self.last.after(PERIOD));
         self.answer = step(&self.params, &mut self.state, &mut self.buffer, &moment);

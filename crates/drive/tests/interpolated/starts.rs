@@ -1,6 +1,6 @@
 //! Where a move begins, by sub-mode.
 use crate::axis::{Axis, COUNT, PERIOD, assert_near, cubic, idle, linear, run};
-use servobench_drive::modes::interpolated::{Point, SegmentCommand, StartRefused, SubMode};
+use servobench_drive::modes::interpolated::{Point, SegmentCommand, StartRefused, SubMode, TimePeriod};
 
 #[test]
 fn a_move_begins_where_the_axis_is_or_not_at_all() {
@@ -38,9 +38,9 @@ fn a_relative_first_point_counts_from_the_commanded_position_or_from_a_base() {
     // As a master begins beyond 24 bits: the base, then relative points.
     axis.step(idle());
     axis.buffer.reset_segment();
-    let base = SegmentCommand::Base { counter: 0, position: 20_000_250 }.encode().unwrap();
+    let base = SegmentCommand::Base { counter: 0, position: 20_000_000 }.encode().unwrap();
     SegmentCommand::decode(base).unwrap().apply(&mut axis.buffer).unwrap();
-    axis.add(&[relative(0, 10), relative(-250, 0)]);
+    axis.add(&[relative(250, 10), relative(-250, 0)]);
     axis.until_rest(run());
     assert_eq!((axis.last.x, axis.state.refused()), (20.0, None));
 }
@@ -103,6 +103,10 @@ fn sub_mode_0_empties_the_buffer_and_waits_for_three_points() {
 #[test]
 fn a_start_needs_a_rising_edge_and_points() {
     let mut axis = Axis::at(0, SubMode::Cubic);
+    axis.take_over(run());
+    axis.step(run());
+    assert_eq!((axis.errors(), axis.answer.bit_12), (0, false), "set as the mode took over");
+    axis.step(idle());
     axis.step(run());
     assert_eq!((axis.errors(), axis.answer.bit_12), (4, false), "an empty buffer is an underflow");
     axis.buffer.clear_errors(4);
@@ -119,4 +123,24 @@ fn a_start_needs_a_rising_edge_and_points() {
     axis.step(idle());
     axis.until_rest(run());
     assert_eq!((axis.last.x, axis.errors()), (0.0, 0));
+}
+
+/// A line of 1 m/s in segments of 1.1 ms, and of 0.1 ms, of which a period of the drive holds two and a half.
+#[test]
+fn segments_that_are_no_whole_periods_lose_no_time() {
+    for (units, counts) in [(11, 1100), (1, 100)] {
+        let mut axis = Axis::at(0, SubMode::Linear);
+        axis.params.period = TimePeriod::new(units, -4).unwrap();
+        let (duration, mut sent) = (f64::from(units) * 1e-4, 0);
+        for k in 0..2000 {
+            while axis.buffer.free() > 0 && sent < 5000 {
+                sent += 1;
+                axis.add(&[Point { time: axis.params.period.microseconds(), ..linear(counts * sent, 0) }]);
+            }
+            let setpoint = axis.step(run());
+            // Sums of periods and of segments: a rounding of 1e-17 s each.
+            assert_near(setpoint.x, f64::from(k) * PERIOD, 1e-13);
+            assert!(axis.answer.bit_12, "{duration} s, step {k}");
+        }
+    }
 }

@@ -98,9 +98,18 @@ fn a_master_that_comes_late_keeps_ten_thousand_points_flowing() {
 
 #[test]
 fn linear_points_and_cubic_ones_mix_as_in_a_table() {
+    // The first one is approached by nothing: its velocity is what a cubic begins with.
+    for (first, second) in
+        [(None, None), (Some(1_000_000), None), (Some(1_000_000), Some(-400_000)), (None, Some(-400_000))]
+    {
+        follows_the_table(first, second);
+    }
+}
+
+fn follows_the_table(first: Option<i32>, second: Option<i32>) {
     let points = [
-        pvt::Point { position: 1000, velocity: None, time_ms: 10, relative: false },
-        pvt::Point { position: 3000, velocity: None, time_ms: 20, relative: false },
+        pvt::Point { position: 1000, velocity: first, time_ms: 10, relative: false },
+        pvt::Point { position: 3000, velocity: second, time_ms: 20, relative: false },
         pvt::Point { position: -500, velocity: Some(-300_000), time_ms: 7, relative: true },
         pvt::Point { position: 9000, velocity: Some(200_000), time_ms: 30, relative: false },
         pvt::Point { position: -2000, velocity: None, time_ms: 10, relative: true },

@@ -52,7 +52,7 @@ impl Search {
             return self.present().map_or(Finding::Reference(position), Finding::Leg);
         }
         let limit = leg.direction.limit_switch();
-        let is_sought = leg.until == Event::On && self.method.switch() == Some(limit);
+        let is_sought = self.method.switch() == Some(limit);
         if is_sought || !limit.is_on(actual) {
             return Finding::Leg(leg);
         }
