@@ -116,16 +116,17 @@ impl Buffer {
 
     /// Takes a sample that was due at `due`, `missed` samples after the last one, `now`.
     ///
-    /// On the grid of the cycle a sample belongs where its tick says, off the grid behind the one before. What is missing in
+    /// On the grid of the cycle a sample belongs where its tick says, off the grid behind those before it. What is missing in
     /// between is predicted for good; too much of it, and the buffer starts again.
     pub(crate) fn take(&mut self, timing: &Timing, sample: Sample, due: u64, missed: u64, now: u64) -> Taken {
         if self.received == 0 {
             self.newest = due.saturating_sub(timing.cycle);
             return self.put(timing, sample, now);
         }
-        let beyond = due.saturating_sub(self.newest + timing.cycle);
-        let skipped = if beyond.is_multiple_of(timing.cycle) { beyond / timing.cycle } else { 0 };
-        let missing = missed.max(skipped);
+        let missing = match due.checked_sub(self.newest + timing.cycle) {
+            Some(beyond) if beyond.is_multiple_of(timing.cycle) => beyond / timing.cycle,
+            _ => missed,
+        };
         if missing > PREDICTED as u64 {
             *self = Self::EMPTY;
             self.newest = due.saturating_sub(timing.cycle);

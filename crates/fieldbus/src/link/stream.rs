@@ -125,21 +125,22 @@ impl Stream {
         let reading = self.buffer.advance(&p.timing, now);
         let read = self.buffer.at(&p.timing, now);
         let mut result = Ok(());
-        match (reading, read) {
-            (Reading::Interval(_), Some(read)) => {
-                if !self.course.reads() || taken != Taken::Kept {
-                    result = self.join(p, expected, read, now);
-                }
-                self.trouble = self.trouble.filter(|trouble| *trouble != Interpolation::Underflow);
+        if let (Reading::Interval(_), Some(read)) = (reading, read) {
+            if !self.course.reads() || taken != Taken::Kept {
+                result = self.join(p, expected, read, now);
             }
-            _ if self.course.reads() => {
+            self.trouble = self.trouble.filter(|trouble| *trouble != Interpolation::Underflow);
+        } else {
+            if reading == Reading::Underflow {
+                self.trouble = Some(Interpolation::Underflow);
+            }
+            if self.course.reads() {
                 self.trouble = self.trouble.or(Some(Interpolation::Underflow));
                 self.course = Course::stop(expected, &p.recovery, now);
             }
-            _ => {}
         }
         self.state = if post == Post::Torn { Interpolation::Busy } else { self.trouble.unwrap_or(state_of(reading)) };
-        result.and(self.put_out(p, now, elapsed))
+        result.and(self.put_out(p, read, now, elapsed))
     }
 
     /// The output as it would go on by itself.
@@ -170,9 +171,9 @@ impl Stream {
     }
 
     /// The output moves on, not farther than the axis can.
-    fn put_out(&mut self, p: &StreamParams, now: u64, elapsed: u64) -> Result<(), NoWay> {
+    fn put_out(&mut self, p: &StreamParams, read: Option<Command>, now: u64, elapsed: u64) -> Result<(), NoWay> {
         self.course.settle(now, p.timing.tick);
-        let due = self.at(p, now);
+        let due = self.course.at(|| read, now, p.timing.tick).unwrap_or(self.output);
         let step = due.setpoint.x - self.output.setpoint.x;
         let highest = p.highest_step * elapsed.min(2 * p.bus_cycle) as f64;
         self.at = now;
@@ -184,7 +185,7 @@ impl Stream {
         let x = self.output.setpoint.x + highest.copysign(step);
         let v = (p.highest_step / p.timing.tick).copysign(step);
         self.output = Command { setpoint: Setpoint { v, ..Setpoint::at_rest(x) }, ..due };
-        match self.buffer.at(&p.timing, now) {
+        match read {
             Some(read) if self.course.reads() => self.join(p, self.output, read, now),
             _ => {
                 self.course = Course::stop(self.output, &p.recovery, now);

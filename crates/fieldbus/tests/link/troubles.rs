@@ -283,7 +283,21 @@ fn a_sample_that_was_overwritten_is_slow() {
     }
     assert_eq!(axis.cycle(), Slow);
     axis.run_in_time(END);
+    axis.assert_bounded();
     axis.assert_arrived();
+}
+
+#[test]
+fn an_underflow_after_a_sample_that_was_overwritten_is_one() {
+    let mut axis = Watched::new(settings());
+    let due = MIDDLE * MOTION;
+    axis.run_in_time(due);
+    for due in [due - MOTION / 2, due] {
+        axis.rig.write(due, follow(sample(motion(due))));
+    }
+    axis.run(due + 10 * MOTION, |_| None);
+    assert_eq!(axis.states[2..], [Run1, Slow, Underflow]);
+    axis.assert_bounded();
 }
 
 #[test]
