@@ -2,8 +2,9 @@
 use crate::rig::{BUS, HOMING, MOTION, RATE, Rig, follow, settings};
 use core::f64::consts::TAU;
 use servobench_cia402::counter::Counter;
+use servobench_cia402::{Actuals, StatusBit};
 use servobench_fieldbus::link::{Control, Settings, Units};
-use servobench_fieldbus::{AxisCommand, Homing, Interpolation, Power, Task};
+use servobench_fieldbus::{AxisCommand, Fault, Homing, Interpolation, LinkFault, Power, Task};
 use servobench_motion::interpolate::Sample;
 
 const REST: AxisCommand = AxisCommand { power: true, reset: false, task: REST_TASK };
@@ -76,7 +77,12 @@ fn the_position_loop_of_the_master_lags_by_velocity_over_gain() {
         // A step of 0.1 m asks for 2 m/s but for the limit.
         let x = rig.feedback().position + 0.1;
         rig.run(2, |_| follow(Sample { x, v: 0.0, a: 0.0, torque: 0.0 }));
-        assert!(rig.commands.target_velocity <= 200_000);
+        let mut limited = false;
+        for _ in 0..MOTION / BUS {
+            limited |= rig.state.is_limited();
+            assert!(rig.cycle().target_velocity <= 200_000);
+        }
+        assert!(limited);
     }
 }
 
@@ -174,6 +180,51 @@ fn homing_is_started_by_bit_4_and_gives_the_position() {
         let at = follow(Sample { x: 0.25, ..Sample::default() });
         rig.run(5, |_| at);
         assert_eq!((rig.drive.counts, rig.feedback().homing), (250_000, Homing::Idle));
+    }
+}
+
+#[test]
+fn homing_that_fails_says_so() {
+    let home = |position| AxisCommand { power: true, reset: false, task: Task::Home { position } };
+    let homing = || {
+        let mut rig = Rig::new(settings());
+        rig.run(5, |_| REST);
+        rig.run(1, |_| home(0.25));
+        assert_eq!(rig.feedback().homing, Homing::Busy);
+        rig
+    };
+    // By the drive: bit 13.
+    let mut rig = homing();
+    rig.answer = rig
+        .answer
+        .map(|actuals| Actuals { statusword: actuals.statusword.with(StatusBit::ModeSpecific13, true), ..actuals });
+    rig.cycle();
+    assert_eq!(rig.feedback().homing, Homing::Failed);
+    // By a fault.
+    let mut rig = homing();
+    rig.drive.fault = true;
+    rig.run(1, |_| home(0.25));
+    assert_eq!((rig.feedback().homing, rig.feedback().power), (Homing::Failed, Power::Off));
+    // By a position that 607Ch cannot hold.
+    let mut rig = Rig::new(settings());
+    rig.run(5, |_| home(2_147.5));
+    assert_eq!(rig.feedback().fault, Some(Fault::Link(LinkFault::Command)));
+}
+
+#[test]
+fn a_reading_that_loses_counts_stops_the_axis() {
+    let units = Units { counter: Counter::signed(16).unwrap(), ..settings().units };
+    for reading in [40_000, -32_768] {
+        let mut rig = Rig::new(Settings { units, ..settings() });
+        rig.run(5, |_| REST);
+        rig.answer = rig.answer.map(|actuals| Actuals { position: reading, ..actuals });
+        rig.cycle();
+        assert_eq!(rig.feedback().fault, Some(Fault::Link(LinkFault::PositionLost)), "{reading}");
+        // From where the counter shows, after a reset.
+        rig.run(2, |_| REST);
+        rig.run(3, |_| AxisCommand { reset: true, ..REST });
+        assert_eq!((rig.feedback().fault, rig.feedback().power), (None, Power::On));
+        assert_eq!(rig.drive.counts, 0);
     }
 }
 
