@@ -179,6 +179,12 @@ impl State {
         self.mode
     }
 
+    /// Where the axis has its zero (increments of the encoder).
+    #[must_use]
+    pub const fn origin(&self) -> i64 {
+        self.origin
+    }
+
     /// The fault that the drive is in, until it is reset.
     #[must_use]
     pub const fn fault(&self) -> Option<Fault> {

@@ -1,6 +1,8 @@
 //! Why a run could not be built.
 use servobench_base::{ParamError, RateError};
+use servobench_cia402::SdoError;
 use servobench_cia402::units::UnitError;
+use servobench_drive::device::ObjectsError;
 use servobench_fieldbus::FieldbusError;
 use servobench_motion::PlanError;
 use servobench_plant::MechanicsError;
@@ -38,6 +40,20 @@ pub enum BuildError {
         /// How long that lasts (s).
         lasts: f64,
     },
+    /// A value that an object of the drive does not take.
+    #[error("`{key}`: {error}")]
+    Object {
+        /// Key of the scenario.
+        key: String,
+        /// What the drive answers.
+        error: Box<SdoError>,
+    },
+    /// Settings that do not fit the objects of the drive.
+    #[error(transparent)]
+    Objects(Box<ObjectsError>),
+    /// A call of a block that the bench does not have.
+    #[error("the bench does not have this function block: take one of those in docs/scenario.md")]
+    NoSuchBlock,
     /// A fieldbus without a drive at its end.
     #[error("a fieldbus leads to a drive, and this motor has none: give the motor a drive, or leave `bus` out")]
     NoDriveOnTheBus,
@@ -113,4 +129,15 @@ pub enum BuildError {
 /// [`BuildError::TooLong`] otherwise.
 pub(crate) fn check_length(step: Option<usize>, end: f64) -> Result<(), BuildError> {
     if end <= LONGEST_RUN { Ok(()) } else { Err(BuildError::TooLong { step, end, limit: LONGEST_RUN }) }
+}
+impl From<ObjectsError> for BuildError {
+    fn from(error: ObjectsError) -> Self {
+        Self::Objects(Box::new(error))
+    }
+}
+
+impl From<SdoError> for BuildError {
+    fn from(error: SdoError) -> Self {
+        ObjectsError::Refused(error).into()
+    }
 }

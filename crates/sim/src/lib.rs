@@ -16,5 +16,5 @@ mod thinning;
 pub use bench::Bench;
 pub use error::BuildError;
 pub use program::Program;
-pub use run::{Failure, Outcome};
+pub use run::{Failure, Outcome, Reason};
 pub use thinning::thinned;

@@ -11,17 +11,20 @@
 //! that has arrived. Either way takes the delay of the bus.
 mod build;
 mod moves;
+mod plc;
 mod reference;
 mod signals;
 mod units;
 
 use moves::Moves;
+use plc::Plc;
 use reference::DelayedReference;
 use servobench_base::{Countdown, Divider, Setpoint, Tick};
-use servobench_cia402::Commands;
+use servobench_cia402::{Commands, Mode};
 use servobench_drive::{Demand, device, feedforward};
 use servobench_fieldbus::bus::{self, BusFault};
 use servobench_fieldbus::link::{self, Mailbox};
+use servobench_fieldbus::{AxisCommand, AxisFeedback};
 use servobench_motion::interpolate::Sample;
 use servobench_plant::SwitchReading;
 use servobench_trace::Recorder;
@@ -30,7 +33,7 @@ use signals::Signals;
 /// From the motion task to the door of the drive.
 #[derive(Debug)]
 pub(crate) struct Network {
-    task: Moves,
+    task: MotionTask,
     /// Model of the axis that the motion task feeds forward with.
     model: feedforward::Params,
     /// Axis coordinate per motor coordinate, as the master knows it.
@@ -50,6 +53,8 @@ pub(crate) struct Network {
     reference: DelayedReference,
     /// The set-point of the motion task's last cycle.
     asked: Setpoint,
+    /// Why the motion task gave up.
+    failure: Option<String>,
     bus_position: f64,
     /// Length of an increment of the encoder that closes the position loop (its own coordinate).
     increment: f64,
@@ -59,6 +64,42 @@ pub(crate) struct Network {
     index: Option<i64>,
     tick: f64,
     signals: Signals,
+}
+
+/// What commands the axis.
+#[derive(Debug)]
+enum MotionTask {
+    /// The moves of `[[program]]`.
+    Moves(Box<Moves>),
+    /// The calls of `[[call]]`.
+    Plc(Box<Plc>),
+}
+
+/// What a cycle of the motion task gives.
+#[derive(Debug)]
+struct Step {
+    command: AxisCommand,
+    /// What the axis is to follow; `None` where the drive finds its own way, or none.
+    setpoint: Option<Setpoint>,
+}
+
+impl MotionTask {
+    fn cycle(
+        &mut self,
+        t: f64,
+        feedback: &AxisFeedback,
+        origin: f64,
+        recorder: &mut Recorder,
+        sample: impl Fn(Setpoint) -> Sample,
+    ) -> Result<Step, String> {
+        match self {
+            Self::Moves(moves) => {
+                let (command, setpoint) = moves.cycle(feedback, sample);
+                Ok(Step { command, setpoint: Some(setpoint) })
+            }
+            Self::Plc(plc) => plc.cycle(t, feedback, origin, recorder, sample),
+        }
+    }
 }
 
 /// What the drive's sensors say at a tick.
@@ -114,18 +155,27 @@ impl Network {
     }
 
     fn step_bus(&mut self, cycle: &bus::Cycle, t: f64, recorder: &mut Recorder) {
+        let origin = self.origin();
         let (params, state) = &mut self.link;
         let (wire, frames) = &mut self.bus;
         let actuals = frames.to_master(wire, cycle, self.drive.1.actuals(&self.drive.0));
         if cycle.number.is_multiple_of(self.motion_every) && !cycle.master_stopped {
-            let (command, setpoint) = self.task.cycle(&state.feedback(params), |setpoint| {
+            let step = self.task.cycle(t, &state.feedback(params), origin, recorder, |setpoint| {
                 let motor = self.model.motor_reference(setpoint);
                 let torque = self.transmission * self.model.effort(setpoint);
                 Sample { x: motor.position, v: motor.velocity, a: setpoint.a, torque }
             });
-            self.asked = setpoint;
-            self.reference.push(t, setpoint);
-            self.mailbox.write(cycle.due, command);
+            match step {
+                Ok(Step { command, setpoint }) => {
+                    match setpoint {
+                        Some(setpoint) => self.reference.push(t, setpoint),
+                        None => self.reference.restart(),
+                    }
+                    self.asked = setpoint.unwrap_or(Setpoint::at_rest(self.bus_position));
+                    self.mailbox.write(cycle.due, command);
+                }
+                Err(reason) => self.failure = Some(reason),
+            }
         }
         let input =
             link::Input { tick: cycle.due, mailbox: &self.mailbox, actuals, external_fault: cycle.external_fault };
@@ -149,12 +199,34 @@ impl Network {
         }
     }
 
-    /// Where the motion task wanted the load and the motor, as much later as the way to the loops takes; `None` where nothing
-    /// is to be followed.
+    /// Where load and motor are to be: where the motion task wanted them, as much later as the way to the loops takes; what
+    /// the drive itself wants where it finds its own way; `None` where nothing is to be followed.
     pub(crate) fn reference(&mut self, t: f64) -> Option<(Setpoint, feedforward::MotorReference)> {
-        let followed = matches!(self.demand, Demand::Position { .. } | Demand::Velocity { .. });
-        let reference = self.reference.at(t)?;
-        followed.then(|| (reference, self.model.motor_reference(reference)))
+        let reference = self.reference.at(t);
+        let (_, drive) = &self.drive;
+        let follows = matches!(drive.mode(), Some(Mode::CyclicSynchronousPosition | Mode::CyclicSynchronousVelocity));
+        match (&self.demand, reference) {
+            (Demand::Position { .. } | Demand::Velocity { .. }, Some(reference)) if follows => {
+                let reference = Setpoint { x: reference.x + self.origin(), ..reference };
+                Some((reference, self.model.motor_reference(reference)))
+            }
+            (Demand::Position { .. }, _) => {
+                let reference = self.setpoint(0.0);
+                Some((reference, feedforward::MotorReference { position: reference.x, velocity: reference.v }))
+            }
+            _ => None,
+        }
+    }
+
+    /// Where the axis has its zero once it is homed, in the coordinate of its encoder.
+    fn origin(&self) -> f64 {
+        let (params, state) = &self.drive;
+        params.units.metres_or_radians(state.origin())
+    }
+
+    /// Why the motion task gave up, once.
+    pub(crate) const fn failure(&mut self) -> Option<String> {
+        self.failure.take()
     }
 
     /// The set-point of the motion task, and the actual position as the master reads it.
@@ -163,9 +235,10 @@ impl Network {
     }
 
     /// Notes what is known at the end only.
-    pub(crate) fn finish(&self, unit: &str, delay: f64, recorder: &mut Recorder) {
-        for made in self.task.moves(unit, delay) {
-            recorder.note_move(made);
+    pub(crate) fn finish(&mut self, t: f64, unit: &str, delay: f64, recorder: &mut Recorder) {
+        match &mut self.task {
+            MotionTask::Moves(moves) => moves.moves(unit, delay).for_each(|made| recorder.note_move(made)),
+            MotionTask::Plc(plc) => plc.finish(t, delay, recorder),
         }
     }
 }

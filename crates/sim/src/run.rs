@@ -22,12 +22,23 @@ pub struct Outcome {
 
 /// Why a run ended early.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("at {time} s: {error}")]
+#[error("at {time} s: {reason}")]
 pub struct Failure {
     /// When (s).
     pub time: f64,
+    /// Why.
+    pub reason: Reason,
+}
+
+/// What ended a run early.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Reason {
     /// What the engine says.
-    pub error: MechanicsError,
+    #[error(transparent)]
+    Mechanics(#[from] MechanicsError),
+    /// What the program waited for in vain.
+    #[error("{0}")]
+    Program(String),
 }
 
 /// How often a run reports its progress, in ticks.
@@ -67,15 +78,21 @@ impl Bench {
             if k + 1 == self.ticks {
                 break;
             }
+            if let Source::Network(network, _) = &mut self.source
+                && let Some(reason) = network.failure()
+            {
+                failure = Some(Failure { time: t, reason: Reason::Program(reason) });
+                break;
+            }
             if let Err(error) = self.integrate(&now) {
-                failure = Some(Failure { time: t, error });
+                failure = Some(Failure { time: t, reason: Reason::Mechanics(error) });
                 break;
             }
         }
         self.watch.finish(t, &mut self.recorder);
-        if let Source::Network(network, delay) = &self.source {
+        if let Source::Network(network, delay) = &mut self.source {
             let unit = self.recorder.about().axis_unit.clone();
-            network.finish(&unit, *delay, &mut self.recorder);
+            network.finish(t, &unit, *delay, &mut self.recorder);
         }
         progress(1.0);
         Outcome { recording: self.recorder.finish(), failure }

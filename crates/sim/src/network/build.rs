@@ -1,13 +1,17 @@
 //! From a scenario to the network.
-use super::Network;
 use super::moves::Moves;
+use super::plc::{self, Plc};
 use super::reference::DelayedReference;
 use super::signals::Signals;
-use super::units::{Counted, units};
+use super::units::{Counted, DriveUnits, units};
+use super::{MotionTask, Network};
 use crate::error::BuildError;
 use crate::program::Program;
 use servobench_base::{Countdown, Divider, ParamError, Setpoint};
+use servobench_cia402::PowerState;
 use servobench_cia402::counter::Counter;
+use servobench_cia402::objects::Dictionary;
+use servobench_cia402::units::Object;
 use servobench_drive::{self as drive, Demand, device, feedforward};
 use servobench_fieldbus::bus::{self, BusFault, BusFaultKind};
 use servobench_fieldbus::link::{self, Mailbox};
@@ -67,12 +71,14 @@ impl Network {
             let bound = "a whole number of periods of the position loop";
             return Err(ParamError { name: "bus.cycle", value: f64::from(bus.cycle) * tick, bound }.into());
         }
-        let dynamics = dynamics(&program);
+        let dynamics = scenario.plc.as_ref().map_or_else(|| dynamics(&program), dynamics_of_calls);
 
         let rated_effort = rated_effort(scenario);
         let counted = counted(scenario, loops)?;
-        let (units, increment) = units(&counted, scenario.axis.motion, bus.units, rated_effort)?;
-        let device = device_params(bus, loops, units, bus.cycle / drive_every.ticks(), &dynamics);
+        let units = units(&counted, scenario.axis.motion, bus.units, rated_effort)?;
+        let device = device_params(bus, loops, units.conversions, bus.cycle / drive_every.ticks(), &dynamics);
+        let (device, rated_effort) = with_objects(&device, bus, &units, rated_effort)?;
+        let increment = units.increment;
         let drive = (device, device::State::new(&device)?);
 
         let model = master_model(bus, loops, scenario);
@@ -119,8 +125,12 @@ impl Network {
         };
         let period = f64::from(motion_cycle.ticks()) * tick;
         let delay = delays.sum() as f64 * tick + loops.reference_delay.length(loops.period(drive_every));
+        let task = match &scenario.plc {
+            Some(plc) => MotionTask::Plc(Box::new(Plc::new(plc, scenario.axis.modulo, period, recorder)?)),
+            None => MotionTask::Moves(Box::new(Moves::new(program, period))),
+        };
         let network = Self {
-            task: Moves::new(program, period),
+            task,
             model,
             transmission: loops.transmission,
             mailbox: Mailbox::default(),
@@ -135,6 +145,7 @@ impl Network {
             demand: Demand::Off,
             reference: DelayedReference::new(period, delay),
             asked: Setpoint::default(),
+            failure: None,
             bus_position: 0.0,
             increment,
             index_increment: index_increment(&counted, increment, loops),
@@ -172,6 +183,12 @@ fn dynamics(program: &Program) -> Dynamics {
     let velocity = most(0, 1.0);
     let acceleration = most(1, 10.0 * velocity);
     Dynamics { velocity, acceleration, jerk: most(2, 100.0 * acceleration) }
+}
+
+/// The most of every call.
+fn dynamics_of_calls(calls: &scenario::Plc) -> Dynamics {
+    let Limits { velocity, acceleration, jerk, .. } = plc::limits(calls);
+    Dynamics { velocity, acceleration, jerk: if jerk.is_finite() { jerk } else { 100.0 * acceleration } }
 }
 
 /// What a thousand of 6071h stands for: the largest effort of the drive, or one unit where it has no limit.
@@ -231,6 +248,41 @@ fn device_params(
         },
         ..device::Params::default()
     }
+}
+
+/// The settings with what the master writes into the objects of the drive, and the rated effort after that.
+fn with_objects(
+    settings: &device::Params,
+    bus: &Bus,
+    units: &DriveUnits,
+    rated_effort: f64,
+) -> Result<(device::Params, f64), BuildError> {
+    if bus.objects.is_empty() {
+        return Ok((*settings, rated_effort));
+    }
+    let mut objects = Dictionary::new();
+    let factors = &units.factors;
+    for (index, values) in [
+        (0x608F, factors.position_encoder_resolution),
+        (0x6091, factors.gear_ratio),
+        (0x6092, factors.feed_constant),
+        (0x6096, factors.velocity_factor),
+    ] {
+        for (subindex, value) in (1..).zip(values) {
+            objects.write_number(Object { index, subindex }, value.into(), PowerState::SwitchOnDisabled)?;
+        }
+    }
+    settings.store_in(&mut objects)?;
+    for write in &bus.objects {
+        let object = Object { index: write.index, subindex: write.subindex };
+        objects
+            .write_number(object, write.value, PowerState::SwitchOnDisabled)
+            .map_err(|error| BuildError::Object { key: write.key.clone(), error: Box::new(error) })?;
+    }
+    let written = settings.with_objects(&objects, units.unit)?;
+    // How many steps there are between two frames is a matter of the bus.
+    let settings = device::Params { cycle: settings.cycle, ..written };
+    Ok((settings, 1000.0 * settings.units.from_effort(1)))
 }
 
 /// What the motion task knows of the axis: the estimate of the drive, for the model that the torque offset carries.

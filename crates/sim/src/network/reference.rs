@@ -38,6 +38,12 @@ impl DelayedReference {
         self.kept.push_back(setpoint);
     }
 
+    /// Forgets what was asked: nothing is followed until there are set-points again.
+    pub(super) fn restart(&mut self) {
+        self.kept.clear();
+        self.interval = None;
+    }
+
     /// What is followed at `t` (s), which does not go back; `None` before the first set-point has arrived.
     pub(super) fn at(&mut self, t: f64) -> Option<Setpoint> {
         let wanted = t - self.delay;

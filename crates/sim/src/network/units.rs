@@ -21,14 +21,26 @@ pub(super) struct Counted {
     pub(super) transmission: f64,
 }
 
-/// Conversions of a drive whose user-defined unit is `unit`, on an axis of `motion`, and the length of an increment in the
-/// encoder's coordinate (m or rad).
+/// The units of a drive in every form.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct DriveUnits {
+    /// The objects of the factor group.
+    pub(super) factors: FactorGroup,
+    /// User-defined position unit.
+    pub(super) unit: AxisUnit,
+    /// The conversions.
+    pub(super) conversions: Units,
+    /// Length of an increment in the encoder's coordinate (m or rad).
+    pub(super) increment: f64,
+}
+
+/// Units of a drive whose user-defined unit is `unit`, on an axis of `motion`.
 pub(super) fn units(
     counted: &Counted,
     motion: Motion,
     unit: scenario::DriveUnits,
     rated_effort: f64,
-) -> Result<(Units, f64), BuildError> {
+) -> Result<DriveUnits, BuildError> {
     // What a linear encoder does in a metre stands for a revolution.
     let revolution = match counted.motion {
         Motion::Rotary => TAU,
@@ -53,7 +65,7 @@ pub(super) fn units(
     let factors =
         FactorGroup { position_encoder_resolution: increments, feed_constant: feed, ..FactorGroup::default() };
     let increment = revolution * f64::from(increments[1]) / f64::from(increments[0]);
-    Ok((Units::new(&factors, unit, rated_effort)?, increment))
+    Ok(DriveUnits { factors, unit, conversions: Units::new(&factors, unit, rated_effort)?, increment })
 }
 
 /// How many increments of an ideal encoder there are in a unit.
@@ -107,7 +119,7 @@ mod tests {
     fn a_micrometre_is_what_the_screw_moves_in_a_fraction_of_a_turn() {
         let counted = Counted { motion: Motion::Rotary, increment: Some(TAU / 1_048_576.0), transmission: 5e-3 / TAU };
         let unit = scenario::DriveUnits { drive: 1000, axis: 1e-3 };
-        let (units, increment) = units(&counted, Motion::Linear, unit, 1.0).unwrap();
+        let DriveUnits { conversions: units, increment, .. } = units(&counted, Motion::Linear, unit, 1.0).unwrap();
         assert!((increment - TAU / 1_048_576.0).abs() < 1e-20);
         assert_eq!(units.position(1_048_576), 5000);
         assert!((units.from_position(250_000) - 0.25).abs() < 1e-15);

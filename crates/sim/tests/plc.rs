@@ -1,0 +1,105 @@
+//! Programs of function blocks: the scenarios of `scenarios/plc`.
+use servobench_plant::Exact;
+use servobench_scenario as scenario;
+use servobench_sim::{Bench, Outcome};
+use servobench_trace::Recording;
+use std::path::Path;
+
+/// Cycle of the programs below (s).
+const CYCLE: f64 = 1e-3;
+
+fn outcome(loaded: &scenario::Loaded) -> Outcome {
+    let bench = Bench::new(&loaded.scenario, &Exact).unwrap_or_else(|error| panic!("{error}"));
+    bench.run(&mut |_| {})
+}
+
+fn run(name: &str) -> Recording {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/plc").join(name);
+    let loaded = scenario::load(&path).unwrap_or_else(|error| panic!("{error}"));
+    let Outcome { recording, failure } = outcome(&loaded);
+    assert_eq!(failure, None, "{name}");
+    recording
+}
+
+/// When a signal first has a value (s).
+fn when(recording: &Recording, source: &str, name: &str, value: &str) -> f64 {
+    let signal = recording.signal(source, name).unwrap_or_else(|| panic!("no signal {source}.{name}"));
+    let change = signal.changes.iter().find(|(_, found)| found == value);
+    change.unwrap_or_else(|| panic!("{source}.{name} is never {value}: {:?}", signal.changes)).0
+}
+
+fn never(recording: &Recording, source: &str, name: &str) -> bool {
+    let signal = recording.signal(source, name).unwrap_or_else(|| panic!("no signal {source}.{name}"));
+    signal.changes.iter().all(|(_, value)| value != "TRUE")
+}
+
+fn last(recording: &Recording, name: &str) -> f64 {
+    let values = recording.channel(name).unwrap_or_else(|| panic!("no channel {name}"));
+    values.last().copied().unwrap_or_default()
+}
+
+/// The timing diagrams of a second `MC_MoveAbsolute` after the first is done, and while it moves (Pietrusewicz, Waszczuk &
+/// Kubicki 2019, figure 3): both end at the same position.
+#[test]
+fn a_second_move_ends_at_the_same_position_whether_the_first_was_done_or_not() {
+    let (after, during) = (run("figure-3a.toml"), run("figure-3b.toml"));
+
+    // After: Done of the first starts the second in the same cycle, further down in the program.
+    let done = when(&after, "first", "Done", "TRUE");
+    assert!((when(&after, "second", "Execute", "TRUE") - done).abs() < 1e-9);
+    assert!(never(&after, "first", "CommandAborted") && !never(&after, "second", "Done"));
+
+    // During: the first hears of it in its next call.
+    let executed = when(&during, "second", "Execute", "TRUE");
+    assert!((when(&during, "first", "CommandAborted", "TRUE") - executed - CYCLE).abs() < 1e-9);
+    assert!(never(&during, "first", "Done") && never(&during, "second", "CommandAborted"));
+    let state = |name: &str| when(&during, "axis", "state", name);
+    assert!(state("DiscreteMotion") < executed && executed < state("Standstill"));
+    assert!(when(&during, "second", "Done", "TRUE") < when(&after, "second", "Done", "TRUE"), "no stop between");
+
+    // The set-points to the bit; the load, which friction holds somewhere, to less than a nanometre.
+    assert_eq!(last(&after, "task.position").to_bits(), last(&during, "task.position").to_bits());
+    let [one, other] = [&after, &during].map(|recording| last(recording, "load.position"));
+    println!("the load rests at {one} m and {other} m: {:.2e} m apart", (one - other).abs());
+    assert!((one - other).abs() < 1e-9, "{one} {other}");
+}
+
+/// Oracle: the limits of the scenario, on what the loops of the drive follow.
+#[test]
+fn an_abort_is_smooth() {
+    let recording = run("figure-3b.toml");
+    let names = ["setpoint.position", "setpoint.velocity"];
+    let [x, v] = names.map(|name| recording.channel(name).unwrap_or_else(|| panic!("no channel {name}")));
+    let tick = recording.rate.period();
+    for k in 1..x.len() {
+        // The drive goes straight on between frames: the velocity changes by 5 m/s² · 1 ms and a unit per cycle at most, and
+        // within a tick that is the last of one line and the first of the next the position by that times the tick.
+        assert!((v[k] - v[k - 1]).abs() < 5.1e-3, "{k}: {} m/s", v[k] - v[k - 1]);
+        assert!((x[k] - x[k - 1] - v[k] * tick).abs() < 5.1e-3 * tick, "{k}");
+    }
+}
+
+#[test]
+fn a_homed_axis_moves_from_its_reference() {
+    let recording = run("homing.toml");
+    assert!(when(&recording, "axis", "homed", "TRUE") >= when(&recording, "home", "Done", "TRUE") - 1e-9);
+    assert!(when(&recording, "drive", "mode", "hm") > 0.0);
+    // The last index pulse below the home switch, which begins at 100 mm: the screw moves 10 mm a revolution, and the pulse
+    // comes at a quarter of it. The move ends 200 mm from there. Units are micrometres.
+    let made = recording.moves.last().unwrap_or_else(|| panic!("no move"));
+    let reference = made.to - 0.2;
+    assert!((reference - 0.0925).abs() < 1e-6, "{reference}");
+    assert!((last(&recording, "load.position") - made.to).abs() < 1e-5);
+}
+
+/// A program that waits for what does not come ends with the reason.
+#[test]
+fn waiting_in_vain_ends_with_the_reason() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/plc/figure-3a.toml");
+    let text = std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{error}"));
+    let text = text.replace("start = \"first.Done\"", "start = \"first.CommandAborted\"\ntimeout = \"1 s\"");
+    let loaded = scenario::parse("test", &text, None).unwrap_or_else(|error| panic!("{error}"));
+    let failure = outcome(&loaded).failure.map(|failure| failure.to_string()).unwrap_or_default();
+    assert!(failure.starts_with("at 1.00"), "{failure}");
+    assert!(failure.ends_with("`first.CommandAborted` did not become TRUE within 1 s"), "{failure}");
+}
