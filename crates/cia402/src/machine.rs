@@ -125,6 +125,7 @@ struct Moment<'a> {
 
 impl Moment<'_> {
     /// What could set a transition off; a fault reset does when its bit has risen.
+    #[inline]
     fn given(&self, resets: bool) -> Causes {
         let quick_stop = self.params.quick_stop;
         let reaction = self.params.fault_reaction.deceleration();
@@ -138,6 +139,7 @@ impl Moment<'_> {
     }
 
     /// The transition to be taken.
+    #[inline]
     fn due(&self, given: Causes) -> Option<&'static Transition> {
         let fault = Causes::NONE.with(Cause::Fault, self.inputs.fault);
         set_off(self.memory.state, fault)
@@ -162,6 +164,7 @@ impl Moment<'_> {
     }
 }
 
+#[inline]
 fn statusword(state: PowerState, inputs: PowerInputs) -> Statusword {
     Statusword::of(state)
         .with(StatusBit::VoltageEnabled, inputs.main_voltage)
@@ -171,6 +174,7 @@ fn statusword(state: PowerState, inputs: PowerInputs) -> Statusword {
         .with(StatusBit::InternalLimitActive, inputs.internal_limit)
 }
 
+#[inline]
 fn drive_function(params: &PowerParams, memory: PowerMemory) -> DriveFunction {
     let brake = |deceleration: Option<_>| deceleration.map_or(DriveFunction::Disabled, DriveFunction::Brake);
     match memory.state {
