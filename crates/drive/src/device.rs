@@ -22,7 +22,8 @@
 //!
 //! When the drive function is enabled, the demand begins where the axis is, at its velocity. When a mode follows another or a
 //! stop, it begins with what the loops follow. A mode that the drive does not have is not switched to: the display (6061h) says
-//! what runs. While the axis is braked, the mode stays.
+//! what runs. While the axis is braked, the mode stays. A halt (bit 8) stops the axis in every mode; pp goes on with its
+//! set-point afterwards.
 mod cycle;
 mod fault;
 mod guard;
@@ -272,7 +273,7 @@ impl State {
     /// Adds to every position, as far as whole increments go.
     fn move_zero(&mut self, p: &Params, shift: f64) {
         let increments = p.units.increments(shift);
-        self.origin -= increments;
+        self.origin = self.origin.wrapping_sub(increments);
         self.last.move_by(p.units.metres_or_radians(increments));
     }
 

@@ -1,4 +1,8 @@
 //! The door between the bus and the drive: frames to targets, measurements to frames.
+//!
+//! What a frame asks for beyond the limits is cut, and the drive says so (bit 11): targets of csp and pp to the software limits
+//! (607Dh), profile velocities to the highest one (607Fh, 6080h), accelerations to theirs (60C5h, 60C6h). A profile velocity, acceleration or deceleration of zero, which moves nothing, stands for one that the
+//! frame does not carry: that of the settings.
 use super::{Fault, Params, State};
 use crate::Demand;
 use crate::modes::interpolated::SegmentCommand;
@@ -40,16 +44,21 @@ impl State {
         #[expect(clippy::cast_possible_truncation, reason = "the counter of the bus wraps")]
         let shown = here as i32;
         let target = match self.wanted {
-            Some(Mode::ProfilePosition) => here - i64::from(shown) + i64::from(frame.target_position),
-            _ => here + i64::from(frame.target_position.wrapping_sub(shown)),
+            Some(Mode::ProfilePosition) => here.wrapping_sub(shown.into()).wrapping_add(frame.target_position.into()),
+            _ => here.wrapping_add(frame.target_position.wrapping_sub(shown).into()),
         };
         let position = p.units.from_position(target);
         let kept = p.limits.position.map_or(position, |[lowest, highest]| position.clamp(lowest, highest));
         let rate = |units: u32, set: f64| if units == 0 { set } else { p.units.from_rate(units) };
-        let profile_velocity = rate(frame.profile_velocity, p.profile.velocity);
+        let velocity = rate(frame.profile_velocity, p.profile.velocity);
+        let acceleration = rate(frame.profile_acceleration, p.profile.acceleration);
+        let deceleration = rate(frame.profile_deceleration, p.profile.deceleration);
+        let (profile_limit, limits) = (p.profile_limit(), &p.limits);
+        let is_too_steep = acceleration > limits.acceleration || deceleration > limits.deceleration;
         self.is_cut = match self.wanted {
             Some(Mode::CyclicSynchronousPosition) => kept.to_bits() != position.to_bits(),
-            Some(Mode::ProfilePosition) => profile_velocity > p.profile_limit(),
+            Some(Mode::ProfilePosition) => is_too_steep || velocity > profile_limit,
+            Some(Mode::ProfileVelocity) => is_too_steep,
             _ => false,
         };
         self.now.targets = Targets {
@@ -60,9 +69,9 @@ impl State {
             effort: p.units.from_effort(frame.target_torque),
             velocity_offset: p.units.from_velocity(frame.velocity_offset),
             effort_offset: p.units.from_effort(frame.torque_offset),
-            profile_velocity: profile_velocity.min(p.profile_limit()),
-            profile_acceleration: rate(frame.profile_acceleration, p.profile.acceleration).min(p.limits.acceleration),
-            profile_deceleration: rate(frame.profile_deceleration, p.profile.deceleration).min(p.limits.deceleration),
+            profile_velocity: velocity.min(profile_limit),
+            profile_acceleration: acceleration.min(limits.acceleration),
+            profile_deceleration: deceleration.min(limits.deceleration),
             home_offset: p.units.from_position(frame.home_offset.into()),
             is_new: true,
         };

@@ -9,6 +9,7 @@ mod power;
 mod profile_position;
 mod profile_velocity;
 mod random;
+mod settings;
 #[path = "../../../motion/tests/shared/random.rs"]
 mod shared;
 mod supervision;

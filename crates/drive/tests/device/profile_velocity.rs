@@ -81,6 +81,18 @@ fn a_target_velocity_beyond_the_highest_is_approached_as_far_and_the_drive_says_
     assert!(!axis.has(StatusBit::TargetReached), "the target is another one");
 }
 
+#[test]
+fn an_acceleration_beyond_the_highest_is_cut_and_the_drive_says_so() {
+    let limits = Limits { acceleration: 0.5, ..Params::default().limits };
+    let mut axis = axis(&Params { limits, ..Params::default() });
+    axis.frame.target_velocity = 100_000;
+    axis.cycles(50);
+    assert!((axis.velocity - 0.025).abs() < 1e-14 && axis.has(StatusBit::InternalLimitActive), "{}", axis.velocity);
+    axis.frame.profile_acceleration = 500_000;
+    axis.cycle();
+    assert!(!axis.has(StatusBit::InternalLimitActive));
+}
+
 /// Oracle: from rest to V within A and J takes V/A + A/J; half way it is at V/2 with A.
 /// A new target on the way is taken without a jump of the acceleration.
 #[test]
