@@ -40,6 +40,12 @@ fn a_late_cycle_is_late_alone_and_a_very_late_one_holds_the_next_ones_up() {
 }
 
 #[test]
+fn late_times_add_up() {
+    let faults = [fault(BusFaultKind::Late { by: 3 }, 1..3), fault(BusFaultKind::Late { by: 5 }, 2..4)];
+    assert!(cycles(&faults, 64).into_iter().map(|(tick, _)| tick).eq([0, 19, 40, 53]));
+}
+
+#[test]
 fn jitter_is_within_its_bound_uses_all_of_it_and_is_the_same_every_time() {
     let jitter = |seed| [fault(BusFaultKind::Jitter { by: 7, seed }, 0..u64::MAX)];
     let seen = cycles(&jitter(1), 16_000);

@@ -110,6 +110,24 @@ fn efforts_are_reached_in_a_line_and_let_go_when_none_comes() {
 }
 
 #[test]
+fn an_effort_from_before_a_fault_is_forgotten() {
+    let effort = AxisCommand { power: true, reset: false, task: Task::Effort(5.0) };
+    let mut rig = Rig::new(settings());
+    rig.run(5, |_| effort);
+    assert_eq!(rig.commands.target_torque, 500);
+    rig.external_fault = true;
+    rig.run(2, |_| effort);
+    rig.external_fault = false;
+    rig.write(rig.tick, AxisCommand { reset: true, ..effort });
+    for _ in 0..2 * MOTION / BUS {
+        assert_eq!(rig.cycle().target_torque, 0, "not before the next one");
+    }
+    assert_eq!((rig.feedback().power, rig.feedback().interpolation), (Power::On, Interpolation::Off));
+    rig.run(2, |_| effort);
+    assert_eq!(rig.commands.target_torque, 500);
+}
+
+#[test]
 fn an_effort_within_the_margin_is_in_time() {
     let mut rig = Rig::new(Settings { margin: 64, ..settings() });
     let effort = AxisCommand { power: true, reset: false, task: Task::Effort(1.0) };

@@ -3,7 +3,7 @@ use crate::rig::{BUS, MOTION, RATE, Rig, follow, sample, settings};
 use servobench_base::{Rate, Setpoint, Tick};
 use servobench_fieldbus::Interpolation::{self, Busy, Overflow, Run1, Run2, Run3, Slow, Underflow, Wait};
 use servobench_fieldbus::link::Settings;
-use servobench_motion::interpolate::Mode;
+use servobench_motion::interpolate::{Interval, Mode, Sample};
 use servobench_motion::{Limits, Order, Profile};
 
 const LIMITS: Limits = Limits { velocity: 1.0, acceleration: 5.0, jerk: 50.0, snap: 1000.0 };
@@ -243,6 +243,54 @@ fn a_motion_task_that_is_too_fast_overflows_the_buffer() {
     let pace = MOTION as f64 / FAST as f64;
     assert!(axis.velocity < pace * LIMITS.velocity + settings().recovery.velocity);
     assert!(axis.rig.state.fault().is_none() && !axis.rig.state.is_limited());
+}
+
+#[test]
+fn after_an_overflow_the_delay_is_the_nominal_one() {
+    let mut rig = Rig::new(Settings { margin: 64, ..settings() });
+    let at = |tick: u64| follow(sample(Setpoint { v: 0.5, ..Setpoint::at_rest(0.5 * tick as f64 / RATE) }));
+    while rig.state.interpolation() != Overflow {
+        if rig.tick.is_multiple_of(FAST) {
+            rig.write(rig.tick, at(rig.tick));
+        }
+        rig.cycle();
+    }
+    // In time from that sample on.
+    let first = rig.tick - BUS;
+    for _ in 0..200 * MOTION / BUS {
+        if (rig.tick - first).is_multiple_of(MOTION) {
+            rig.write(rig.tick, at(rig.tick));
+        }
+        rig.cycle();
+    }
+    let expected = 0.5 * (rig.tick - BUS - rig.params.delay()) as f64 / RATE;
+    assert!((rig.setpoint().x - expected).abs() < 1e-12, "{} for {expected}", rig.setpoint().x);
+}
+
+/// Oracle: the interval from the sample that came to the parabola's next point.
+#[test]
+fn what_is_predicted_behind_a_late_sample_is_predicted_from_it() {
+    // A recovery that is over within a few cycles of the bus.
+    let recovery = Limits { velocity: 10.0, acceleration: 1e5, jerk: 1e9, snap: 0.0 };
+    let mut rig = Rig::new(Settings { recovery, velocity_limit: 100.0, ..settings() });
+    let late = MIDDLE - 4;
+    // The jerk is at its highest there. Sample `late` comes when the interval behind it is read.
+    while rig.tick < (late + 2) * MOTION {
+        let cycle = rig.tick / MOTION;
+        if rig.tick.is_multiple_of(MOTION) && cycle < late {
+            rig.write(rig.tick, follow(sample(motion(rig.tick))));
+        } else if rig.tick == (late + 1) * MOTION + BUS {
+            rig.write(late * MOTION, follow(sample(motion(late * MOTION))));
+        }
+        rig.cycle();
+    }
+    assert_eq!(rig.state.interpolation(), Run2);
+    let t = MOTION as f64 / RATE;
+    let came = sample(motion(late * MOTION));
+    let next = Sample { x: came.x + t * (came.v + t / 2.0 * came.a), v: came.v + t * came.a, ..came };
+    let expected = Interval::new(Mode::Quintic, t, &[came, next]).unwrap().at((MOTION - BUS) as f64 / MOTION as f64);
+    let expected = expected.unwrap().setpoint.x;
+    assert!((rig.setpoint().x - expected).abs() < 1e-12, "{} for {expected}", rig.setpoint().x);
 }
 
 #[test]
