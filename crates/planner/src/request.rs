@@ -103,7 +103,7 @@ pub struct Replanning {
     pub from: Setpoint,
     /// Where to.
     pub target: Target,
-    /// Order of the profile, 3 or 4.
+    /// Order of the profile, 2, 3 or 4.
     pub order: Order,
     /// Limits by direction.
     pub limits: DirectionalLimits,
