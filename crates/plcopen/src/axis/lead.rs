@@ -50,6 +50,16 @@ impl Axis {
         self.add_up();
     }
 
+    /// The active command `id` leads beyond a limit of the axis: it stops with an error.
+    pub(crate) fn abandon(&mut self, id: CommandId, quantity: &'static str, value: f64, limit: f64) {
+        if let Activity::Led(led) = &self.activity
+            && led.id == id
+        {
+            let block = led.command.block;
+            self.fail(AxisError::Profile { block, quantity, value, limit });
+        }
+    }
+
     /// The course of the command `id` has reached its end: it is done, and the axis keeps the velocity that it has there.
     pub fn conclude(&mut self, id: CommandId) {
         let Activity::Led(led) = &self.activity else { return };

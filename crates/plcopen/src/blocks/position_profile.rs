@@ -5,7 +5,7 @@
 //! cubic spline. Both begin with the velocity that the axis has. The axis follows the profile itself, set-point by set-point;
 //! and the [commands](PositionProfile::commands) are what the paper sends to a drive in the profile velocity mode instead.
 use super::outputs::{FunctionBlock, MotionOutputs};
-use super::profile::{Course, Leading, Names, Pair, Scales};
+use super::profile::{Beyond, Course, Leading, Names, Pair, Scales};
 use crate::axis::Axis;
 use crate::command::BufferMode;
 use crate::error::BlockError;
@@ -13,7 +13,7 @@ use crate::name::BlockName;
 use servobench_base::Setpoint;
 use servobench_motion::position_profile::{Command, PlateauCommands, Plateaus, Spline, SteppedCommands};
 use servobench_motion::pvt::Knot;
-use servobench_motion::{Piece, PlanError};
+use servobench_motion::{Limits, Piece, PlanError};
 
 /// `MC_TP_REF`: positions and the times between them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -93,6 +93,8 @@ impl<'m> PositionProfile<'m> {
             count: 0,
             follow: Follow::Spline,
             is_absolute: true,
+            origin: 0.0,
+            says_where: false,
             end_velocity: 0.0,
             is_solved: false,
             piece: Piece::at_rest(0.0),
@@ -172,6 +174,10 @@ struct Way<'m> {
     count: usize,
     follow: Follow,
     is_absolute: bool,
+    /// From where the positions of the knots count now.
+    origin: f64,
+    /// Whether the table says where the profile begins.
+    says_where: bool,
     end_velocity: f64,
     is_solved: bool,
     piece: Piece,
@@ -182,13 +188,13 @@ impl Way<'_> {
     fn load(&mut self, inputs: &PositionProfileInputs<'_>) {
         let (scales, pairs) = (inputs.scales(), inputs.time_position.pairs);
         let (mut t, mut count) = (0.0, 1);
-        self.knots[0] = Knot::default();
+        (self.origin, self.says_where) = (0.0, false);
         for pair in pairs {
             let Pair { delta_time, value } = scales.of(pair);
             t += delta_time;
             if t == 0.0 {
-                // The first pair says where the profile begins.
-                self.knots[0] = Knot::moving(0.0, value, 0.0);
+                self.knots[0] = Knot::new(0.0, value);
+                self.says_where = true;
                 continue;
             }
             self.knots[count] = Knot::new(t, value);
@@ -215,12 +221,12 @@ impl Way<'_> {
 impl Course for Way<'_> {
     fn begin(&mut self, from: &Setpoint) {
         let origin = if self.is_absolute { 0.0 } else { from.x };
-        let says_where = self.knots[0].v.is_some();
+        let moved = origin - core::mem::replace(&mut self.origin, origin);
         for knot in &mut self.knots[..self.count] {
-            knot.x += origin;
+            knot.x += moved;
         }
-        if !says_where {
-            self.knots[0].x = from.x;
+        if !self.says_where {
+            self.knots[0] = Knot::new(0.0, from.x);
         }
         self.is_solved = self.solve(from.v).is_ok();
         // Whatever cannot be solved is beyond every limit.
@@ -238,6 +244,23 @@ impl Course for Way<'_> {
 
     fn duration(&self) -> f64 {
         self.knots[self.count - 1].t
+    }
+
+    fn beyond(&self, limits: &Limits) -> Option<Beyond> {
+        if !self.is_solved {
+            return Beyond::within(&self.piece.at(0.0), 0.0, limits);
+        }
+        let (mut t, end) = (0.0, self.duration());
+        while t < end {
+            let piece = self.look_up(t);
+            let until = piece.ends().min(end).max(t.next_up());
+            let found = Beyond::within(&piece.at(t), until - t, limits);
+            if found.is_some() {
+                return found;
+            }
+            t = until;
+        }
+        None
     }
 }
 

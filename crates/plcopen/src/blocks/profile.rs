@@ -12,15 +12,18 @@
 //! # On the way
 //!
 //! The set-points are those of the profile at the cycles. A block that follows a profile is called in every cycle until it is
-//! done; a limit of the axis that the profile does not keep stops the axis with an error, in the cycle in which that is seen.
-//! `MC_SetOverride` does not act on it (which the standard leaves to the supplier).
+//! done. A profile that does not keep the limits of the axis is refused; where it begins later, behind another command, or in
+//! the place of one of the same instance, it stops the axis with an error when it begins. `MC_SetOverride` does not act on it
+//! (which the standard leaves to the supplier).
 use super::execution::{Execution, Report};
 use crate::axis::Axis;
 use crate::command::{BufferMode, Command, Dynamics, Goal};
 use crate::error::BlockError;
 use crate::ledger::{CommandId, Progress};
 use crate::name::BlockName;
+use crate::state::AxisState;
 use servobench_base::Setpoint;
+use servobench_motion::Limits;
 
 /// A row of a table: `DeltaTime` and `Position`, `Velocity` or `Acceleration`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -97,7 +100,7 @@ pub(super) struct Names {
 
 /// What a block leads the axis along.
 pub(super) trait Course {
-    /// Begins where the axis is.
+    /// Begins where the axis is; as often as that is asked after it was loaded.
     fn begin(&mut self, from: &Setpoint);
 
     /// The set-point `t` seconds after the beginning; asked in the order of time.
@@ -105,10 +108,40 @@ pub(super) trait Course {
 
     /// Duration (s).
     fn duration(&self) -> f64;
+
+    /// What of it, once it has begun, is beyond `limits`, if anything is.
+    fn beyond(&self, limits: &Limits) -> Option<Beyond>;
 }
 
-/// A profile that ends nearer to a cycle than this part of its time ends in that cycle.
-const ROUNDING: f64 = 1e-9;
+/// A quantity beyond a limit of the axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Beyond {
+    quantity: &'static str,
+    value: f64,
+    limit: f64,
+}
+
+impl Beyond {
+    /// What is beyond `limits` from `from` on for `length` seconds, in which the jerk is constant.
+    pub(super) fn within(from: &Setpoint, length: f64, limits: &Limits) -> Option<Self> {
+        let (end, turn) = (from.after(length), -from.a / from.j);
+        let fastest = if turn > 0.0 && turn < length { from.after(turn).v } else { from.v };
+        let values = [
+            ("velocity of the profile", from.v, limits.velocity),
+            ("velocity of the profile", fastest, limits.velocity),
+            ("velocity of the profile", end.v, limits.velocity),
+            ("acceleration of the profile", from.a, limits.acceleration),
+            ("acceleration of the profile", end.a, limits.acceleration),
+            ("jerk of the profile", from.j, limits.jerk),
+        ];
+        let beyond = |value: f64, limit: f64| value.is_nan() || value.abs() > limit * (1.0 + ROUNDING);
+        let found = values.into_iter().find(|(_, value, limit)| beyond(*value, *limit));
+        found.map(|(quantity, value, limit)| Self { quantity, value, limit })
+    }
+}
+
+/// What rounding may be, as a part of a limit, or of a cycle in which a profile ends.
+pub(super) const ROUNDING: f64 = 1e-9;
 
 /// Execute and the command that leads the axis.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -125,26 +158,44 @@ impl Leading {
         (block, execute, buffer_mode): (BlockName, bool, BufferMode),
         course: &mut C,
         check: impl FnOnce(&C, &Axis) -> Result<(), BlockError>,
-        load: impl FnOnce(&mut C),
+        load: impl Fn(&mut C),
     ) -> Report {
         self.go_on(axis, course);
         let Self { execution, id } = self;
         let report = execution.step(axis, execute, |axis| {
             check(course, axis)?;
-            if id.is_some() && buffer_mode != BufferMode::Aborting {
+            let is_aborting = buffer_mode == BufferMode::Aborting;
+            let limits = &axis.params().limits;
+            if id.is_none() {
+                load(course);
+                if is_aborting || axis.state() == AxisState::Standstill {
+                    course.begin(&axis.commanded());
+                    if let Some(Beyond { quantity: input, value, limit }) = course.beyond(limits) {
+                        return Err(BlockError::AboveLimit { block, input, value, limit });
+                    }
+                }
+            } else if !is_aborting {
                 // One instance holds one course.
                 return Err(BlockError::BufferFull { block, held: 1 });
             }
-            let command = Command { block, goal: Goal::Led, dynamics: dynamics(axis), buffer_mode };
-            let issued = axis.submit(command)?;
-            load(course);
+            let issued = axis.submit(Command { block, goal: Goal::Led, dynamics: dynamics(axis), buffer_mode })?;
+            if id.is_some() {
+                load(course);
+            }
             *id = Some(issued);
             Ok(*id)
         });
-        if let Some(0) = self.id.and_then(|id| axis.led_cycles(id)) {
-            course.begin(&axis.commanded());
-        }
+        self.begin(axis, course);
         report
+    }
+
+    /// Begins where the command has just got the axis.
+    fn begin(&self, axis: &mut Axis, course: &mut impl Course) {
+        let Some(id) = self.id.filter(|id| axis.led_cycles(*id) == Some(0)) else { return };
+        course.begin(&axis.commanded());
+        if let Some(Beyond { quantity, value, limit }) = course.beyond(&axis.params().limits) {
+            axis.abandon(id, quantity, value, limit);
+        }
     }
 
     /// Gives the set-point of this cycle, where the command has the axis.

@@ -5,12 +5,13 @@
 //! sections 3.15 and 3.16), and the axis stays in Continuous Motion.
 use super::execution::Report;
 use super::outputs::{FunctionBlock, Outputs, flag, number};
-use super::profile::{Course, Leading, Names, Pair, Scales};
+use super::profile::{Beyond, Course, Leading, Names, Pair, ROUNDING, Scales};
 use crate::axis::Axis;
 use crate::command::BufferMode;
 use crate::error::{BlockError, ErrorId};
 use crate::name::BlockName;
 use servobench_base::Setpoint;
+use servobench_motion::Limits;
 
 /// Along a table of velocities.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -189,6 +190,22 @@ impl Course for Sequence<'_> {
 
     fn duration(&self) -> f64 {
         self.duration
+    }
+
+    fn beyond(&self, limits: &Limits) -> Option<Beyond> {
+        let mut ahead = *self;
+        while let Some((from, end, delta_time)) = ahead.stretch() {
+            // A jump of velocity is one that no acceleration makes.
+            let jump = Setpoint { a: f64::INFINITY, ..from };
+            let gap = (end.v - from.v).abs();
+            let is_jump = delta_time == 0.0 && gap > ROUNDING * limits.velocity;
+            let found = Beyond::within(if is_jump { &jump } else { &from }, delta_time, limits);
+            if found.is_some() {
+                return found;
+            }
+            (ahead.next, ahead.anchor) = (ahead.next + 1, end);
+        }
+        Beyond::within(&Setpoint { a: 0.0, j: 0.0, ..ahead.anchor }, 0.0, limits)
     }
 }
 

@@ -95,20 +95,40 @@ fn an_instance_that_has_the_axis_cannot_wait_for_itself() {
 }
 
 #[test]
-fn a_profile_beyond_the_limits_or_one_that_is_not_called_stops_the_axis() {
-    let (mut bench, mut block) = (Bench::standstill(), AccelerationProfile::default());
-    let pairs = [Pair { delta_time: 0.5, value: 6.0 }];
-    let inputs = AccelerationProfileInputs { execute: true, ..AccelerationProfileInputs::along(&pairs) };
+fn a_profile_beyond_the_limits_is_refused_before_it_begins() {
+    for (delta_time, value, quantity) in [(0.5, 4.5, "velocity"), (0.2, 5.5, "acceleration"), (0.01, 1.0, "jerk")] {
+        let (mut bench, mut block) = (Bench::standstill(), AccelerationProfile::default());
+        let pairs = [Pair { delta_time, value }];
+        let inputs = AccelerationProfileInputs { execute: true, ..AccelerationProfileInputs::along(&pairs) };
+        assert!(bench.cycle(|axis| block.step(axis, &inputs)).error);
+        let error = block.error().unwrap().to_string();
+        let expected = format!("MC_AccelerationProfile: `{quantity} of the profile` must be at most ");
+        assert!(error.starts_with(&expected), "{error}");
+        assert_eq!(bench.axis.state(), AxisState::Standstill);
+    }
+    // Behind a move, where it is known when it begins: the axis stops with an error.
+    let (mut bench, mut go, mut block) = (Bench::standstill(), MoveAbsolute::default(), VelocityProfile::default());
+    let inputs = MoveAbsoluteInputs { execute: true, position: 0.05, ..MoveAbsoluteInputs::within(&LIMITS) };
+    let steep = [Pair { delta_time: 0.1, value: 0.9 }];
+    let profile = VelocityProfileInputs {
+        execute: true,
+        buffer_mode: BufferMode::Buffered,
+        ..VelocityProfileInputs::along(&steep)
+    };
     let outputs = loop {
-        let outputs = bench.cycle(|axis| block.step(axis, &inputs));
-        if !outputs.busy {
+        let (moved, outputs) = bench.cycle(|axis| (go.step(axis, &inputs), block.step(axis, &profile)));
+        if moved.done {
             break outputs;
         }
     };
-    assert!(outputs.error && bench.axis.state() == AxisState::ErrorStop);
+    assert!(outputs.active || outputs.error);
+    assert_eq!(bench.axis.state(), AxisState::ErrorStop);
     let error = bench.axis.error().unwrap().to_string();
-    assert!(error.starts_with("MC_AccelerationProfile: its velocity 1.0") || error.contains("acceleration"), "{error}");
+    assert!(error.starts_with("MC_VelocityProfile: its acceleration of the profile 9"), "{error}");
+}
 
+#[test]
+fn a_profile_that_is_not_called_stops_the_axis() {
     let (mut bench, mut block) = (Bench::standstill(), VelocityProfile::default());
     bench.cycle(|axis| block.step(axis, &executed()));
     bench.cycle(|_| ());

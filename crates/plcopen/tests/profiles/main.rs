@@ -5,4 +5,5 @@
 mod bench;
 mod edges;
 mod positions;
+mod random;
 mod rates;

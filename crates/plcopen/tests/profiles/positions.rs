@@ -55,7 +55,12 @@ fn each_position_is_met_at_its_time() {
                     met += 1;
                 }
                 let is_over = met == points.len();
-                assert_eq!((outputs.done, outputs.busy, outputs.error), (is_over, !is_over, false), "{k}");
+                assert_eq!(
+                    (outputs.done, outputs.busy, outputs.error),
+                    (is_over, !is_over, false),
+                    "{k} {:?}",
+                    block.error()
+                );
                 if is_over {
                     break;
                 }
@@ -90,6 +95,7 @@ fn it_begins_with_the_velocity_of_the_axis_and_ends_with_the_one_asked_for() {
         loop {
             let outputs = bench.cycle(|axis| block.step(axis, &inputs));
             let at = bench.axis.commanded();
+            assert!(!outputs.error, "{:?}", block.error());
             assert!((at.v - before.v).abs() <= limits.acceleration * CYCLE_TIME * (1.0 + 1e-9), "{before:?} {at:?}");
             before = at;
             if outputs.done {
