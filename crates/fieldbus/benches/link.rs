@@ -56,13 +56,15 @@ struct Axis {
     state: link::State,
     mailbox: Mailbox,
     actuals: Actuals,
+    /// How late each sample comes (base ticks).
+    late: u64,
 }
 
 impl Axis {
     fn new(interpolation: Mode, control: Control) -> Self {
         let actuals = Actuals { statusword: Statusword::of(PowerState::OperationEnabled), ..Actuals::default() };
         let params = params(interpolation, control).unwrap();
-        let mut axis = Self { params, state: link::State::default(), mailbox: Mailbox::default(), actuals };
+        let mut axis = Self { params, state: link::State::default(), mailbox: Mailbox::default(), actuals, late: 0 };
         for tick in 0..TICKS {
             axis.tick(tick);
         }
@@ -71,7 +73,8 @@ impl Axis {
     }
 
     fn tick(&mut self, tick: u64) -> i32 {
-        if tick.is_multiple_of(MOTION) {
+        if tick % MOTION == self.late {
+            let tick = tick - self.late;
             let phase = core::f64::consts::TAU * (tick % TICKS) as f64 / RATE;
             let (x, v) = (0.01 * phase.sin(), 0.01 * core::f64::consts::TAU * phase.cos());
             let task = Task::Follow(Sample { x, v, a: 0.0, torque: 0.1 });
@@ -111,6 +114,12 @@ fn positions_by_the_base_tick(bencher: Bencher<'_, '_>, mode: Mode) {
 #[divan::bench]
 fn velocities_by_the_base_tick(bencher: Bencher<'_, '_>) {
     ticks(bencher, Axis::new(Mode::Quintic, CSV));
+}
+
+/// Every sample is late: each cycle of the motion task has a prediction and a correction, which plans a recovery.
+#[divan::bench]
+fn late_samples_by_the_base_tick(bencher: Bencher<'_, '_>) {
+    ticks(bencher, Axis { late: 10 * BUS, ..Axis::new(Mode::Quintic, CSP) });
 }
 
 /// The set-point in SI at every base tick, for a recording.
