@@ -162,6 +162,7 @@ impl Leading {
     ) -> Report {
         self.go_on(axis, course);
         let Self { execution, id } = self;
+        let mut has_begun = false;
         let report = execution.step(axis, execute, |axis| {
             check(course, axis)?;
             let is_aborting = buffer_mode == BufferMode::Aborting;
@@ -170,6 +171,7 @@ impl Leading {
                 load(course);
                 if is_aborting || axis.state() == AxisState::Standstill {
                     course.begin(&axis.commanded());
+                    has_begun = true;
                     if let Some(Beyond { quantity: input, value, limit }) = course.beyond(limits) {
                         return Err(BlockError::AboveLimit { block, input, value, limit });
                     }
@@ -185,7 +187,9 @@ impl Leading {
             *id = Some(issued);
             Ok(*id)
         });
-        self.begin(axis, course);
+        if !has_begun {
+            self.begin(axis, course);
+        }
         report
     }
 
