@@ -69,3 +69,30 @@ impl Ledger {
         (id.0 % REMEMBERED) as usize
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_became_of_a_command_is_known_until_64_others_are_given() {
+        let mut ledger = Ledger::new();
+        let id = ledger.issue();
+        ledger.set(id, Progress::Done);
+        for _ in 1..REMEMBERED {
+            let other = ledger.issue();
+            ledger.set(other, Progress::Active);
+            assert_eq!(ledger.progress(id), Progress::Done);
+        }
+        let other = ledger.issue();
+        ledger.set(other, Progress::Active);
+        assert_eq!(ledger.progress(id), Progress::Aborted);
+    }
+
+    #[test]
+    fn what_the_axis_does_on_its_own_is_not_kept() {
+        let mut ledger = Ledger::new();
+        ledger.set(CommandId::OWN, Progress::Done);
+        assert_eq!(ledger.progress(CommandId::OWN), Progress::Aborted);
+    }
+}

@@ -224,12 +224,9 @@ impl Axis {
             }
             Goal::Led => Ok(Activity::Led(Led { id, command, is_fresh: true, cycles: 0 })),
             _ => {
-                // The place from which a blended command counts is the end of the one before, whatever its velocity there.
-                let is_blended = lead > 0.0 || command.buffer_mode.blending_velocity(1.0, 1.0).is_some();
-                let reference = if is_blended { Setpoint::at_rest(from.x) } else { from };
                 let is_aborting = command.buffer_mode == BufferMode::Aborting;
                 let origin = if is_aborting { self.last_target().unwrap_or(from.x) } else { from.x };
-                let target = self.target(&command, &reference, origin)?;
+                let target = self.target(&command, &from, origin)?;
                 self.check_permission(block, &from, &target)?;
                 // An aborting command has the axis for itself.
                 let axis = if is_aborting { self.spare(None) } else { self.beside() };

@@ -217,3 +217,45 @@ fn a_motion_without_an_end_is_never_done() {
     assert_eq!(bench.axis.state(), ContinuousMotion);
     assert!(reached > 700, "{reached}");
 }
+
+#[test]
+fn a_reset_waits_for_the_power_to_be_as_it_is_asked_for() {
+    let mut bench = led_to(ErrorStop);
+    bench.feedback.fault = None;
+    bench.enable = false;
+    let mut block = Reset::default();
+    for _ in 0..5 {
+        bench.feedback.power = Power::On;
+        assert!(bench.cycle(|axis| block.step(axis, &ResetInputs { execute: true })).busy);
+        assert_eq!(bench.axis.state(), ErrorStop);
+    }
+    bench.feedback.power = Power::Off;
+    assert!(bench.cycle(|axis| block.step(axis, &ResetInputs { execute: true })).done);
+    assert_eq!(bench.axis.state(), Disabled);
+}
+
+#[test]
+fn a_reset_that_is_asked_for_again_is_an_edge_again() {
+    let mut bench = led_to(ErrorStop);
+    let mut signals = Vec::new();
+    let mut block = Reset::default();
+    for execute in [true, true, false, true, true] {
+        bench.cycle(|axis| block.step(axis, &ResetInputs { execute }));
+        signals.push(bench.command.unwrap().reset);
+    }
+    assert_eq!(signals, [true, true, true, false, true]);
+}
+
+#[test]
+fn power_that_goes_while_the_axis_brakes_in_an_error_leaves_it_where_it_is() {
+    let mut bench = led_to(ContinuousMotion);
+    bench.feedback.fault = Some(FAULT);
+    bench.cycle(|_| ());
+    bench.feedback.power = Power::On;
+    bench.cycle(|_| ());
+    assert!(bench.axis.commanded().v > 0.0, "it brakes");
+    (bench.feedback.power, bench.feedback.position) = (Power::Off, 0.7);
+    bench.cycle(|_| ());
+    let commanded = bench.axis.commanded();
+    assert_eq!((commanded.x.to_bits(), commanded.v.to_bits()), (0.7_f64.to_bits(), 0));
+}

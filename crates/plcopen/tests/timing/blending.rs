@@ -2,8 +2,8 @@
 use crate::bench::{Bench, CYCLE_TIME, LIMITS};
 use servobench_motion::Limits;
 use servobench_plcopen::{
-    Axis, AxisParams, AxisState, BufferMode, ErrorId, FunctionBlock, MoveAbsolute, MoveAbsoluteInputs, MoveVelocity,
-    MoveVelocityInputs,
+    Axis, AxisParams, AxisState, BufferMode, ErrorId, FunctionBlock, MoveAbsolute, MoveAbsoluteInputs,
+    MoveContinuousAbsolute, MoveContinuousAbsoluteInputs, MoveVelocity, MoveVelocityInputs,
 };
 
 /// Limits of orders 2, 3 and 4.
@@ -176,4 +176,84 @@ fn a_command_waits_for_the_velocity_of_the_one_before() {
     assert_eq!(taken_over.map(|(cycle, _)| cycle), Some(310));
     assert!(taken_over.is_some_and(|(_, v)| (v - 0.8).abs() < 1e-12));
     assert_eq!(bench.axis.commanded().x.to_bits(), 2.0_f64.to_bits());
+}
+
+/// Cruising all the way at 0.4 m/s and 5 m/s² takes 2/0.4 + 0.4/5 s, wherever the moves in between end.
+#[test]
+fn blended_moves_lose_no_time_between_the_cycles() {
+    for between in [&[1.00013][..]] {
+        let mut bench = Bench::powered(AxisParams { limits: ORDERS[0], ..Bench::params() });
+        let mut blocks = [MoveAbsolute::default(); 4];
+        let mut positions = between.to_vec();
+        positions.push(2.0);
+        let (mut cycles, mut last) = (0, 0.0);
+        loop {
+            let done = bench.cycle(|axis| {
+                let outputs = blocks.iter_mut().zip(&positions).map(|(block, position)| {
+                    let buffer_mode = BufferMode::BlendingPrevious;
+                    let inputs =
+                        MoveAbsoluteInputs { buffer_mode, velocity: 0.4, ..MoveAbsoluteInputs::within(&ORDERS[0]) };
+                    block.step(axis, &MoveAbsoluteInputs { execute: true, position: *position, ..inputs })
+                });
+                outputs.last().unwrap().done
+            });
+            let v = bench.axis.commanded().v;
+            assert!((v - last).abs() <= BETWEEN * (1.0 + 1e-9), "{between:?} cycle {cycles}: {last} {v}");
+            if done {
+                break;
+            }
+            (cycles, last) = (cycles + 1, v);
+        }
+        assert_eq!(cycles, 5080, "{between:?}");
+    }
+}
+
+/// Oracle: v² = 2·a·s with the deceleration of the second command.
+#[test]
+fn a_passage_is_braked_from_with_the_deceleration_of_the_next_command() {
+    let mut bench = Bench::powered(AxisParams { limits: ORDERS[0], ..Bench::params() });
+    let (mut first, mut second) = (MoveAbsolute::default(), MoveAbsolute::default());
+    let inputs = MoveAbsoluteInputs { execute: true, ..MoveAbsoluteInputs::within(&ORDERS[0]) };
+    let next = MoveAbsoluteInputs { deceleration: 2.0, buffer_mode: BufferMode::BlendingHigh, ..inputs };
+    let mut fastest = 0.0_f64;
+    loop {
+        let done = bench.cycle(|axis| {
+            first.step(axis, &MoveAbsoluteInputs { position: 1.0, ..inputs });
+            second.step(axis, &MoveAbsoluteInputs { position: 1.01, ..next }).done
+        });
+        let now = bench.axis.commanded();
+        assert!(now.v >= 0.0 && now.x <= 1.01);
+        if now.x >= 1.0 {
+            fastest = fastest.max(now.v);
+        }
+        if done {
+            break;
+        }
+    }
+    assert!((fastest - libm::sqrt(2.0 * 2.0 * 0.01)).abs() <= BETWEEN, "{fastest}");
+}
+
+/// Oracle: v² = v₂² + 2·a·s behind the passage.
+#[test]
+fn a_passage_before_a_velocity_is_as_fast_as_that_can_be_braked_to() {
+    let mut bench = Bench::powered(AxisParams { limits: ORDERS[0], ..Bench::params() });
+    let (mut first, mut second) = (MoveAbsolute::default(), MoveContinuousAbsolute::default());
+    let go = MoveAbsoluteInputs { execute: true, position: 1.0, ..MoveAbsoluteInputs::within(&ORDERS[0]) };
+    let pass = MoveContinuousAbsoluteInputs {
+        execute: true,
+        position: 1.01,
+        end_velocity: 0.4,
+        buffer_mode: BufferMode::BlendingHigh,
+        ..MoveContinuousAbsoluteInputs::within(&ORDERS[0])
+    };
+    let mut fastest = 0.0_f64;
+    while bench.axis.commanded().x < 1.5 {
+        bench.cycle(|axis| (first.step(axis, &go), second.step(axis, &pass)));
+        let now = bench.axis.commanded();
+        if now.x >= 1.0 {
+            fastest = fastest.max(now.v);
+        }
+    }
+    assert!((fastest - libm::sqrt(0.16 + 2.0 * 5.0 * 0.01)).abs() <= BETWEEN, "{fastest}");
+    assert_eq!(bench.axis.commanded().v.to_bits(), 0.4_f64.to_bits());
 }

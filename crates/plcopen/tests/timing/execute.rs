@@ -83,6 +83,7 @@ fn a_refusal_says_what_is_wrong_until_execute_falls() {
     assert_eq!(message, "MC_MoveAbsolute: `Velocity` must be positive, from 1e-15 to 1e15, got -1: correct the input");
     assert!(bench.cycle(|axis| block.step(axis, &refused(-1.0))).error, "level of Execute");
     assert_eq!(bench.cycle(|axis| block.step(axis, &to(false, 0.1))), MotionOutputs::default());
+    assert_eq!(block.error(), None);
     let outputs = bench.cycle(|axis| block.step(axis, &refused(2.0)));
     assert_eq!(outputs.error_id, ErrorId::AboveLimit);
     assert_eq!(

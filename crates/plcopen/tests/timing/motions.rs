@@ -96,6 +96,69 @@ fn a_superimposed_move_adds_its_distance_and_leaves_the_other_alone() {
 }
 
 #[test]
+fn superimposed_moves_add_up_and_each_counts_for_itself() {
+    let mut bench = Bench::standstill();
+    let below = MoveVelocityInputs {
+        acceleration: 2.0,
+        deceleration: 2.0,
+        jerk: Some(20.0),
+        snap: Some(500.0),
+        ..running(0.5)
+    };
+    let top = MoveSuperimposedInputs {
+        execute: true,
+        distance: 0.125,
+        velocity_diff: 0.25,
+        acceleration: 2.0,
+        deceleration: 2.0,
+        jerk: Some(20.0),
+        snap: Some(500.0),
+        ..MoveSuperimposedInputs::within(&LIMITS)
+    };
+    // The third replaces the second on its way: it counts from where that one has come to.
+    let (mut go, mut alone) = (MoveVelocity::default(), Bench::standstill());
+    let (mut reference, mut blocks) = (MoveVelocity::default(), [MoveSuperimposed::default(); 3]);
+    let mut replaced = 0.0;
+    for cycle in 0..4000 {
+        alone.cycle(|axis| reference.step(axis, &below));
+        let covered = bench.cycle(|axis| {
+            go.step(axis, &below);
+            let step = |(block, start): (&mut MoveSuperimposed, usize)| {
+                block.step(axis, &MoveSuperimposedInputs { execute: cycle >= start, ..top })
+            };
+            let outputs: Vec<_> = blocks.iter_mut().zip([500, 1500, 1800]).map(step).collect();
+            assert!(outputs.iter().all(|outputs| !outputs.error));
+            [outputs[1].covered_distance, outputs[2].covered_distance]
+        });
+        if cycle == 1800 {
+            replaced = covered[0];
+            assert!(replaced > 0.01 && covered[1] == 0.0, "{covered:?}");
+        }
+    }
+    let added = bench.axis.commanded().x - alone.axis.commanded().x;
+    // The one that was replaced is asked at its call, a cycle after the set-point from which the third goes on.
+    assert!((added - (0.25 + replaced)).abs() < 1e-12, "{added} {replaced}");
+    assert!((bench.axis.commanded().v - 0.5).abs() < 1e-12);
+}
+
+#[test]
+fn a_lower_acceleration_factor_is_for_braking_too() {
+    let mut bench = Bench::standstill();
+    let (mut go, mut slow) = (MoveAbsolute::default(), SetOverride::default());
+    let mut last = 0.0;
+    for _ in 0..4000 {
+        bench.cycle(|axis| {
+            slow.step(axis, &SetOverrideInputs { enable: true, acc_factor: 0.5, ..SetOverrideInputs::default() });
+            go.step(axis, &to(1.0));
+        });
+        let v = bench.axis.commanded().v;
+        assert!((v - last).abs() <= 0.5 * LIMITS.acceleration * 1e-3 * (1.0 + 1e-9));
+        last = v;
+    }
+    at(&bench, 1.0);
+}
+
+#[test]
 fn an_abort_takes_the_superimposed_move_along() {
     let mut bench = Bench::standstill();
     let (mut go, mut on_top, mut other) =
