@@ -296,13 +296,17 @@ impl State {
             // None yet: the axis is held where it is.
             return self.brake(p, Deceleration::SlowDownRamp, false);
         };
-        let (begins, was_stopped) = (self.running.is_none(), self.stop.take().is_some());
-        let running = self.running.get_or_insert_with(|| Running::begin(p, mode, &self.now));
-        if begins {
+        let was_stopped = self.stop.take().is_some();
+        if self.running.is_none() {
+            // Cyclic modes have no limit of acceleration, those that take over from them do.
+            let Setpoint { x, v, a, .. } = self.now.demanded;
+            let steepest = p.profile.quick_stop_deceleration;
+            self.now.demanded = Setpoint { v, a: a.clamp(-steepest, steepest), ..Setpoint::at_rest(x) };
             self.guard = guard::State::default();
-        } else if was_stopped {
+        } else if was_stopped && let Some(running) = &mut self.running {
             running.resume(p, &self.now);
         }
+        let running = self.running.get_or_insert_with(|| Running::begin(p, mode, &self.now));
         let mut answer = running.step(p, &self.now, beat, &mut self.buffer, &mut self.shift);
         if !running.looks_for_ends() {
             self.guard.step(p, &self.now, &mut answer.demand);

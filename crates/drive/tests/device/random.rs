@@ -5,6 +5,8 @@ use servobench_base::Setpoint;
 use servobench_cia402::{Command, Commands, Controlword, Mode, PowerState};
 use servobench_drive::Demand;
 use servobench_drive::device::{Limits, Params, Window};
+use servobench_drive::modes::homing::Method;
+use servobench_drive::modes::interpolated::{Point, SegmentCommand, SubMode};
 use servobench_drive::modes::profile::Ramp;
 use servobench_motion::interpolate;
 
@@ -30,6 +32,8 @@ fn params(random: &mut Random) -> Params {
     params.profile.effort_slope = 100.0;
     params.interpolation = [interpolate::Mode::Linear, interpolate::Mode::Cubic, interpolate::Mode::CubicBSpline]
         [(random.next() % 3) as usize];
+    params.sub_mode = SubMode::Cubic;
+    params.homing.method = Method::all().nth((random.next() % 32) as usize).unwrap_or(params.homing.method);
     params.following_error = Window { width: 0.05, time: 1e-3 };
     params
 }
@@ -64,6 +68,23 @@ fn scramble(random: &mut Random, frame: &mut Commands) {
     frame.home_offset = any() % 1000;
 }
 
+/// A point in sequence, of 127 µm in 10 ms at most, or an order to the buffer.
+#[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "any bits will do")]
+fn segment(random: &mut Random, status: u32) -> Option<[u8; 8]> {
+    let any = random.next() as u8;
+    let command = match random.next() % 64 {
+        0 => SegmentCommand::Clear,
+        1 => SegmentCommand::Remove(any % 4),
+        2 => SegmentCommand::ResetSegment,
+        3..8 => SegmentCommand::ClearErrors(any),
+        _ => {
+            let point = Point { position: (any as i8).into(), is_relative: true, velocity: Some(0), time: 10_000 };
+            SegmentCommand::Point { counter: (status & 7) as u8, point }
+        }
+    };
+    command.encode()
+}
+
 /// Whatever comes, an axis is driven only while its drive function is enabled, by numbers, and within the limits of its mode.
 #[test]
 fn no_frame_drives_a_disabled_axis_or_any_axis_beyond_its_limits() {
@@ -79,6 +100,8 @@ fn no_frame_drives_a_disabled_axis_or_any_axis_beyond_its_limits() {
         if with_frame && random.next().is_multiple_of(10) {
             scramble(&mut random, &mut axis.frame);
         }
+        let is_sent = with_frame && random.next().is_multiple_of(8);
+        axis.frame.trajectory_point = is_sent.then(|| segment(&mut random, axis.actuals().buffer_status)).flatten();
         if random.unit() < 0.002 {
             axis.measured.positive_limit = random.next().is_multiple_of(5);
             axis.measured.negative_limit = random.next().is_multiple_of(5);
@@ -114,7 +137,7 @@ fn no_frame_drives_a_disabled_axis_or_any_axis_beyond_its_limits() {
     }
     println!("enabled {enabled} of {}, by mode {reached:?}", 10 * sweep);
     assert!(
-        enabled > sweep && [1, 3, 4, 6, 8, 9, 10].into_iter().all(|code| reached[code] > sweep / 20),
+        enabled > sweep && [1, 3, 4, 6, 7, 8, 9, 10].into_iter().all(|code| reached[code] > sweep / 20),
         "{reached:?}"
     );
 }
