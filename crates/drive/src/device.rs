@@ -21,9 +21,9 @@
 //! # Take-over
 //!
 //! When the drive function is enabled, the demand begins where the axis is, at its velocity. When a mode follows another or a
-//! stop, it begins with what the loops follow. A mode that the drive does not have is not switched to: the display (6061h) says
-//! what runs. While the axis is braked, the mode stays. A halt (bit 8) stops the axis in every mode; pp goes on with its
-//! set-point afterwards.
+//! stop, it begins with the position and the velocity that the loops follow. A mode that the drive does not have is not switched
+//! to: the display (6061h) says what runs. While the axis is braked, the mode stays. A halt (bit 8) stops the axis in every mode;
+//! pp goes on with its set-point afterwards.
 mod cycle;
 mod fault;
 mod guard;
@@ -296,12 +296,13 @@ impl State {
             // None yet: the axis is held where it is.
             return self.brake(p, Deceleration::SlowDownRamp, false);
         };
-        let was_stopped = self.stop.take().is_some();
-        if self.running.is_none() {
-            // Cyclic modes have no limit of acceleration, those that take over from them do.
-            let Setpoint { x, v, a, .. } = self.now.demanded;
-            let steepest = p.profile.quick_stop_deceleration;
-            self.now.demanded = Setpoint { v, a: a.clamp(-steepest, steepest), ..Setpoint::at_rest(x) };
+        let (begins, was_stopped) = (self.running.is_none(), self.stop.take().is_some());
+        if begins || was_stopped || self.guard.is_active() {
+            // The acceleration of others may be beyond the limits of this mode.
+            let Setpoint { x, v, .. } = self.now.demanded;
+            self.now.demanded = Setpoint { v, ..Setpoint::at_rest(x) };
+        }
+        if begins {
             self.guard = guard::State::default();
         } else if was_stopped && let Some(running) = &mut self.running {
             running.resume(p, &self.now);
