@@ -65,6 +65,8 @@ fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
             let message = format!("engine `{engine}` does not support {what}");
             return vec![Objection { way_out: way_out.clone(), ..Objection::new(model_key(scenario), message) }];
         }
+        // The place says which object it is.
+        BuildError::Object { key, error } => return vec![Objection::new(key, error.to_string())],
         // The firmware calls its parameters as the file does.
         BuildError::Parameter(error) if error.name.contains('.') => error.name.to_owned(),
         BuildError::Mechanics(_) | BuildError::Parameter(_) => model_key(scenario).to_owned(),
@@ -76,6 +78,10 @@ fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
         BuildError::IdleDisturbance { index, .. } => format!("disturbance.{index}"),
         BuildError::TooMuchMemory { .. } => "record".to_owned(),
         BuildError::Rate(_) => "drive".to_owned(),
+        BuildError::Objects(_) => "drive.objects".to_owned(),
+        BuildError::Units(_) => "bus.units".to_owned(),
+        BuildError::Link(_) | BuildError::NoDriveOnTheBus => "bus".to_owned(),
+        BuildError::NoSuchBlock => "call".to_owned(),
     };
     vec![Objection::new(&key, error.to_string())]
 }
