@@ -215,7 +215,7 @@ impl Axis {
     /// The first command that waits becomes the active one, `lead` seconds ago, at `from`.
     pub(super) fn take_next(&mut self, from: Setpoint, lead: f64) {
         let Some((id, command)) = self.queue.pop() else { return };
-        match self.prepared(id, command, from, lead, self.queue.first()) {
+        match self.prepared(id, command, from, lead, &self.queue) {
             Ok(activity) => {
                 self.activity = activity;
                 self.base = from;

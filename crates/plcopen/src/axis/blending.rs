@@ -1,46 +1,35 @@
 //! The velocity with which the end of a command is passed when the next one is blended with it.
 //!
 //! The wanted velocity is that of the buffer mode, zero where the two lead in different directions. The highest up to it is taken
-//! to which the first command can bring the axis without turning back, and from which the next one can follow: that is the one
-//! to which the next one, run backwards, would bring it.
+//! to which the first command can bring the axis without turning back, and from which those that wait can follow: that is the
+//! one to which the next one, run backwards from its own end, would bring it. So the commands that wait are gone through from the
+//! last to the first.
 //!
 //! Where that is above the velocity of the first command, the axis goes at the latter until only the distance is left that the
 //! rise takes; where there is not so much, it rises at once.
+use super::Axis;
 use super::bounds::Bounds;
 use super::calming::planned;
+use super::queue::Queue;
 use super::run::Run;
+use crate::command::Goal;
+use crate::error::BlockError;
 use servobench_base::Setpoint;
 use servobench_motion::PlanError;
 use servobench_motion::online::{Target, passing_velocity};
 
-/// What follows a passage, in the same direction.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Next {
-    /// A position, passed at a velocity of which the sign is that of the direction, or at rest.
-    Position { x: f64, end_velocity: f64, bounds: Bounds },
-    /// A velocity, reached anywhere.
-    Velocity,
-}
-
-/// The way from `from` to `x` within `bounds` on an axis with the bounds `axis`, begun `lead` seconds ago, which is passed at a speed of at most `wanted` on the way to `next`.
-pub(crate) fn blended(
+/// The way from `from` to `x` within `bounds` on an axis with the bounds `axis`, begun `lead` seconds ago, which is passed at a
+/// speed of at most `wanted`.
+pub(super) fn blended(
     from: &Setpoint,
     x: f64,
     [bounds, axis]: [&Bounds; 2],
-    next: &Next,
     wanted: f64,
     lead: f64,
 ) -> Result<Run, PlanError> {
     let direction = if x < from.x { -1.0 } else { 1.0 };
     let fast = bounds.faster(wanted);
-    let followed = match next {
-        Next::Velocity => wanted,
-        Next::Position { x: end, end_velocity, bounds } => {
-            let start = Setpoint { v: *end_velocity, ..Setpoint::default() };
-            speed_at(&start, end - x, &bounds.faster(wanted).backwards(), wanted)?
-        }
-    };
-    let speed = speed_at(from, x, &fast, followed)?;
+    let speed = speed_at(from, x, &fast, wanted)?;
     let target = Target::Position { x, v: direction * speed };
     if speed <= bounds.velocity {
         return planned(from, &target, bounds, axis, lead);
@@ -58,4 +47,41 @@ pub(crate) fn blended(
 fn speed_at(from: &Setpoint, x: f64, bounds: &Bounds, most: f64) -> Result<f64, PlanError> {
     let limits = bounds.limits().towards(x - from.x);
     Ok(passing_velocity(bounds.order(), from, x, &limits, most)?.unwrap_or(0.0))
+}
+
+impl Axis {
+    /// The highest speed with which a command of the velocity `velocity` that leads to `x` in `direction` can be ended, so that
+    /// those that wait from this `place` in the queue on follow as they ask for it.
+    pub(super) fn exit_speed(
+        &self,
+        x: f64,
+        direction: f64,
+        velocity: f64,
+        queue: &Queue,
+        place: usize,
+    ) -> Result<f64, BlockError> {
+        let Some(command) = queue.get(place) else { return Ok(0.0) };
+        let bounds = Bounds::of(&command.dynamics, &self.params.limits, &self.factors);
+        let blending = |speed: f64| command.buffer_mode.blending_velocity(velocity, speed).unwrap_or(0.0);
+        let (end, end_velocity) = match (command.goal, self.target(command, &Setpoint::at_rest(x), x)?) {
+            (Goal::Rest | Goal::Effort { .. } | Goal::Led, _) => return Ok(0.0),
+            (_, Target::Velocity(v)) => {
+                let speed = direction * v * self.factors.velocity;
+                return Ok(if speed > 0.0 { blending(speed) } else { 0.0 });
+            }
+            (_, Target::Position { x, v }) => (x, direction * v * self.factors.velocity),
+        };
+        let (wanted, length) = (blending(bounds.velocity), direction * (end - x));
+        if length <= 0.0 || wanted == 0.0 {
+            return Ok(0.0);
+        }
+        // Who is to turn round behind the end comes to rest there.
+        let exit = match end_velocity {
+            0.0 => self.exit_speed(end, direction, bounds.velocity, queue, place + 1)?,
+            speed => speed.max(0.0),
+        };
+        let start = Setpoint { v: exit, ..Setpoint::default() };
+        let backwards = bounds.faster(wanted.max(exit)).backwards();
+        speed_at(&start, length, &backwards, wanted).map_err(|error| BlockError::Plan { block: command.block, error })
+    }
 }

@@ -1,10 +1,11 @@
 //! Taking commands from blocks: what is refused, what waits, what begins at once.
 use super::Axis;
 use super::activity::{Activity, EffortRamp, HomingWait, Led, Moving};
-use super::blending::{Next, blended};
+use super::blending::blended;
 use super::bounds::{Bounds, Override};
 use super::calming::planned;
 use super::modulo;
+use super::queue::Queue;
 use super::run::Run;
 use crate::arrows::{Cause, arrow};
 use crate::command::{BufferMode, Command, Direction, Goal, finite_input};
@@ -38,7 +39,7 @@ impl Axis {
             }
         }
         let from = if is_aborting { self.present() } else { self.base };
-        let activity = self.prepared(CommandId::OWN, command, from, 0.0, None)?;
+        let activity = self.prepared(CommandId::OWN, command, from, 0.0, &Queue::EMPTY)?;
         if is_aborting {
             self.end_all(Progress::Aborted);
         }
@@ -56,7 +57,7 @@ impl Axis {
         };
         command.check(&self.params)?;
         let from = self.present();
-        let activity = self.prepared(CommandId::OWN, command, from, 0.0, None)?;
+        let activity = self.prepared(CommandId::OWN, command, from, 0.0, &Queue::EMPTY)?;
         self.end_all(Progress::Aborted);
         let id = self.ledger.issue();
         self.begin_activity(id, activity, from);
@@ -110,12 +111,12 @@ impl Axis {
                     _ => self.target(&command, &from, origin)?,
                 };
                 self.check_permission(command.block, &from, &target)?;
-                let (run, is_paused) = self.run(&command, &target, &from, &self.beside(), 0.0, self.queue.first())?;
+                let (run, is_paused) = self.run(&command, &target, &from, &self.beside(), 0.0, &self.queue)?;
                 self.activity = Activity::Moving(Moving { id, command, target, origin, is_paused, run });
             }
             Activity::Effort(effort) if effort.id == id => {
                 let present = effort.present;
-                if let Activity::Effort(changed) = self.prepared(id, command, from, 0.0, None)? {
+                if let Activity::Effort(changed) = self.prepared(id, command, from, 0.0, &Queue::EMPTY)? {
                     self.activity = Activity::Effort(EffortRamp { present, ..changed });
                 }
             }
@@ -169,11 +170,11 @@ impl Axis {
         }
         let id = self.ledger.issue();
         self.queue.push(id, command);
-        if held == 0
-            && command.buffer_mode != BufferMode::Buffered
+        if command.buffer_mode != BufferMode::Buffered
             && let Err(error) = self.rejoin()
         {
-            self.abort_waiting();
+            self.queue.drop_last();
+            self.ledger.set(id, Progress::Aborted);
             return Err(error);
         }
         Ok(id)
@@ -198,7 +199,7 @@ impl Axis {
             return Ok(());
         }
         let (run, is_paused) =
-            self.run(&moving.command, &moving.target, &self.base, &self.beside(), 0.0, self.queue.first())?;
+            self.run(&moving.command, &moving.target, &self.base, &self.beside(), 0.0, &self.queue)?;
         if let Activity::Moving(moving) = &mut self.activity {
             (moving.run, moving.is_paused) = (run, is_paused);
             self.ledger.set(moving.id, Progress::Active);
@@ -206,14 +207,14 @@ impl Axis {
         Ok(())
     }
 
-    /// `command` as it begins at `from`, `lead` seconds ago, with the one that waits behind it.
+    /// `command` as it begins at `from`, `lead` seconds ago, with those that wait behind it.
     pub(super) fn prepared(
         &self,
         id: CommandId,
         command: Command,
         from: Setpoint,
         lead: f64,
-        next: Option<&Command>,
+        behind: &Queue,
     ) -> Result<Activity, BlockError> {
         let block = command.block;
         match command.goal {
@@ -230,7 +231,7 @@ impl Axis {
                 self.check_permission(block, &from, &target)?;
                 // An aborting command has the axis for itself.
                 let axis = if is_aborting { self.spare(None) } else { self.beside() };
-                let (run, is_paused) = self.run(&command, &target, &from, &axis, lead, next)?;
+                let (run, is_paused) = self.run(&command, &target, &from, &axis, lead, behind)?;
                 let origin = if matches!(command.goal, Goal::Additive(_)) { origin } else { from.x };
                 Ok(Activity::Moving(Moving { id, command, target, origin, is_paused, run }))
             }
@@ -261,7 +262,12 @@ impl Axis {
     }
 
     /// Where a command leads, in the unit of the drive.
-    fn target(&self, command: &Command, from: &Setpoint, additive_origin: f64) -> Result<Target, BlockError> {
+    pub(super) fn target(
+        &self,
+        command: &Command,
+        from: &Setpoint,
+        additive_origin: f64,
+    ) -> Result<Target, BlockError> {
         Ok(match command.goal {
             Goal::Absolute { position, direction, end_velocity: v } => {
                 let position = position - self.offset;
@@ -301,7 +307,7 @@ impl Axis {
         Ok(from.x + covered)
     }
 
-    /// The way of `command` to `target` on what there is of the axis, blended with `next`; and whether the override holds it.
+    /// The way of `command` to `target` on what there is of the axis, blended with those `behind`; and whether the override holds it.
     fn run(
         &self,
         command: &Command,
@@ -309,7 +315,7 @@ impl Axis {
         from: &Setpoint,
         axis: &Bounds,
         lead: f64,
-        next: Option<&Command>,
+        behind: &Queue,
     ) -> Result<(Run, bool), BlockError> {
         let plan_error = |error: PlanError| BlockError::Plan { block: command.block, error };
         let limits = &self.params.limits;
@@ -326,37 +332,13 @@ impl Axis {
             Target::Velocity(v) => Target::Velocity(v * self.factors.velocity),
             Target::Position { x, v } => Target::Position { x, v: v * self.factors.velocity },
         };
-        if let Target::Position { x, v: 0.0 } = target
-            && let Some((next, wanted)) = self.passage(from, x, &bounds, next)?
-        {
-            let run = blended(from, x, [&bounds, axis], &next, wanted, lead).map_err(plan_error)?;
-            return Ok((run, false));
+        if let Target::Position { x, v: 0.0 } = target {
+            let direction = if x < from.x { -1.0 } else { 1.0 };
+            let wanted = self.exit_speed(x, direction, bounds.velocity, behind, 0)?;
+            if wanted > 0.0 {
+                return Ok((blended(from, x, [&bounds, axis], wanted, lead).map_err(plan_error)?, false));
+            }
         }
         Ok((planned(from, &target, &bounds, axis, lead).map_err(plan_error)?, false))
-    }
-
-    /// What follows the passage of `x`, and the wanted velocity there; `None` where the axis stops.
-    fn passage(
-        &self,
-        from: &Setpoint,
-        x: f64,
-        bounds: &Bounds,
-        next: Option<&Command>,
-    ) -> Result<Option<(Next, f64)>, BlockError> {
-        let Some(command) = next else { return Ok(None) };
-        let next_bounds = Bounds::of(&command.dynamics, &self.params.limits, &self.factors);
-        let direction = x - from.x;
-        let following = self.target(command, &Setpoint::at_rest(x), x)?;
-        let (next, speed) = match (following, command.goal) {
-            (_, Goal::Rest | Goal::Effort { .. } | Goal::Led) => return Ok(None),
-            (Target::Position { x: end, v }, _) if direction * (end - x) > 0.0 => {
-                // Who is to turn round behind the end comes to rest there.
-                let end_velocity = if direction * v > 0.0 { v * self.factors.velocity } else { 0.0 };
-                (Next::Position { x: end, end_velocity, bounds: next_bounds }, next_bounds.velocity)
-            }
-            (Target::Velocity(v), _) if direction * v > 0.0 => (Next::Velocity, v.abs() * self.factors.velocity),
-            _ => return Ok(None),
-        };
-        Ok(command.buffer_mode.blending_velocity(bounds.velocity, speed).map(|wanted| (next, wanted)))
     }
 }

@@ -1,6 +1,7 @@
 //! Motions whose set-points a block gives itself: its course is a table that the axis need not hold.
 use super::Axis;
 use super::activity::Activity;
+use super::queue::Queue;
 use crate::command::{BufferMode, Command, Direction, Goal};
 use crate::error::AxisError;
 use crate::ledger::{CommandId, Progress};
@@ -73,7 +74,7 @@ impl Axis {
         }
         let goal = Goal::Velocity { velocity: from.v, direction: Direction::Positive };
         let command = Command { block: BlockName::MoveVelocity, goal, dynamics, buffer_mode: BufferMode::Aborting };
-        match self.prepared(CommandId::OWN, command, from, 0.0, None) {
+        match self.prepared(CommandId::OWN, command, from, 0.0, &Queue::EMPTY) {
             Ok(activity) => self.activity = activity,
             Err(_) => self.halt(),
         }

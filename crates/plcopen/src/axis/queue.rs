@@ -26,7 +26,17 @@ impl Queue {
     }
 
     pub(crate) fn first(&self) -> Option<&Command> {
-        self.waiting[0].as_ref().map(|(_, command)| command)
+        self.get(0)
+    }
+
+    pub(crate) fn get(&self, place: usize) -> Option<&Command> {
+        self.waiting.get(place)?.as_ref().map(|(_, command)| command)
+    }
+
+    /// Takes the last command away.
+    pub(crate) fn drop_last(&mut self) {
+        self.count = self.count.saturating_sub(1);
+        self.waiting[self.count] = None;
     }
 
     pub(crate) fn pop(&mut self) -> Option<(CommandId, Command)> {

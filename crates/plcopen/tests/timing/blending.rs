@@ -181,7 +181,7 @@ fn a_command_waits_for_the_velocity_of_the_one_before() {
 /// Cruising all the way at 0.4 m/s and 5 m/s² takes 2/0.4 + 0.4/5 s, wherever the moves in between end.
 #[test]
 fn blended_moves_lose_no_time_between_the_cycles() {
-    for between in [&[1.00013][..]] {
+    for between in [&[1.00013][..], &[1.0, 1.0001], &[1.0, 1.0001, 1.0002]] {
         let mut bench = Bench::powered(AxisParams { limits: ORDERS[0], ..Bench::params() });
         let mut blocks = [MoveAbsolute::default(); 4];
         let mut positions = between.to_vec();
