@@ -35,7 +35,7 @@ mod supervision;
 mod units;
 mod window;
 
-pub use cycle::{Beat, Params as CycleParams, State as CycleState};
+pub use cycle::{Beat, Params as CycleParams};
 pub use fault::Fault;
 pub use objects::ObjectsError;
 pub use params::{Limits, Params, Profile};

@@ -31,7 +31,7 @@ pub enum Beat {
 
 /// All that a snapshot must hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct State {
+pub(super) struct State {
     /// Steps until the next cycle begins; none before the first frame.
     left: Option<u32>,
     is_waiting: bool,
@@ -40,8 +40,7 @@ pub struct State {
 
 impl State {
     /// Cycles in a row that began without a new frame.
-    #[must_use]
-    pub const fn missed(&self) -> u32 {
+    pub(super) const fn missed(&self) -> u32 {
         self.missed
     }
 }

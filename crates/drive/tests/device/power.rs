@@ -146,6 +146,21 @@ fn every_change_of_mode_is_without_a_jump() {
     }
 }
 
+/// Halted while it brakes without a set-point and let go before it stands: the velocity falls on, by no more than 1 m/s².
+#[test]
+fn a_halt_that_is_over_before_the_axis_stands_leaves_no_jump() {
+    let mut axis = moving(&Params::default(), Mode::CyclicSynchronousVelocity);
+    axis.frame.mode = Mode::ProfilePosition.code();
+    let mut last = axis.velocity;
+    for k in 0..1000 {
+        axis.frame.controlword = axis.frame.controlword.with(ControlBit::Halt, (200..400).contains(&k));
+        let v = setpoint(&axis.step(k % 4 == 0).demand).v;
+        assert!((0.0..=250e-6 + 1e-12).contains(&(last - v)), "step {k}: {last} {v}");
+        last = v;
+    }
+    assert!(last == 0.0);
+}
+
 #[test]
 fn a_torque_mode_begins_with_the_effort_that_the_motor_gives() {
     for mode in [Mode::ProfileTorque, Mode::CyclicSynchronousTorque] {

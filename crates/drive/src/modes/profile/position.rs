@@ -96,20 +96,25 @@ impl State {
             within_window: Dwell::default(),
             is_limited: false,
         };
-        let brake = SetPoint::at(now.demanded.x, &now.targets);
-        if let Ok(transition) = brake.plan(p, &now.demanded, &Target::Velocity(0.0)) {
-            state.target = transition.at(f64::INFINITY).x;
-            state.way = Some(Way::along(&transition));
-        }
+        state.stop(p, now);
         state
     }
 
-    /// Goes on after a halt, from where the axis stands.
+    /// Goes on after a halt, from what is left of the motion.
     pub fn resume(&mut self, p: &Params, now: &Moment) {
-        self.rest = now.demanded.x;
-        self.way = None;
-        if let Some(active) = self.active {
-            self.go_to(p, &active, &now.demanded);
+        (self.way, self.rest) = (None, now.demanded.x);
+        match self.active {
+            Some(active) => self.go_to(p, &active, &now.demanded),
+            None => self.stop(p, now),
+        }
+    }
+
+    /// Sets out for standstill, which is the target then.
+    fn stop(&mut self, p: &Params, now: &Moment) {
+        let brake = SetPoint::at(now.demanded.x, &now.targets);
+        if let Ok(transition) = brake.plan(p, &now.demanded, &Target::Velocity(0.0)) {
+            self.target = transition.at(f64::INFINITY).x;
+            self.way = Some(Way::along(&transition));
         }
     }
 
