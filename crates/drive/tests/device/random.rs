@@ -111,7 +111,7 @@ fn no_frame_drives_a_disabled_axis_or_any_axis_beyond_its_limits() {
             axis.fault = random.next().is_multiple_of(10).then_some(0x2310);
             axis.main_voltage = !random.next().is_multiple_of(20);
         }
-        let before = axis.last;
+        let (before, mode_before) = (axis.last, axis.state.mode());
         let outputs = axis.step(with_frame);
         let is_enabled = axis.state.power().is_drive_function_enabled();
         let what = || format!("step {k}: {:?} {:?} {before:?} {outputs:?}", axis.state.power(), axis.state.mode());
@@ -119,6 +119,13 @@ fn no_frame_drives_a_disabled_axis_or_any_axis_beyond_its_limits() {
         enabled += u32::from(axis.state.power() == PowerState::OperationEnabled);
         #[expect(clippy::cast_sign_loss, reason = "codes of modes are positive")]
         let code = axis.actuals().mode as usize;
+        if let (Some(v), Some(v_before)) = (velocity(&outputs.demand), velocity(&before))
+            && axis.state.mode() == mode_before
+            && [1, 3, 6].contains(&code)
+        {
+            let most = QUICK_STOP * axis.params.period * (1.0 + 1e-9);
+            assert!((v - v_before).abs() <= most, "{}", what());
+        }
         reached[code] += u32::from(outputs.demand != Demand::Off);
         match outputs.demand {
             Demand::Off => axis.velocity = 0.0,
@@ -140,6 +147,14 @@ fn no_frame_drives_a_disabled_axis_or_any_axis_beyond_its_limits() {
         enabled > sweep && [1, 3, 4, 6, 7, 8, 9, 10].into_iter().all(|code| reached[code] > sweep / 20),
         "{reached:?}"
     );
+}
+
+/// The velocity that a demand follows.
+fn velocity(demand: &Demand) -> Option<f64> {
+    match demand {
+        Demand::Position { setpoint, .. } | Demand::Velocity { setpoint, .. } => Some(setpoint.v),
+        Demand::Effort(_) | Demand::Off => None,
+    }
 }
 
 /// Velocity within the limit, and the acceleration of the modes that have one.
