@@ -4,6 +4,10 @@ mod bench;
 
 mod aborts;
 mod blending;
+mod calls;
 mod execute;
 mod figures;
+mod modulo;
 mod motions;
+mod overrides;
+mod superimposed;
