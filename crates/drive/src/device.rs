@@ -192,6 +192,12 @@ impl State {
         self.fault
     }
 
+    /// State of the trajectory buffer (2012h).
+    #[must_use]
+    pub fn buffer_status(&self) -> u32 {
+        self.buffer.status()
+    }
+
     /// The trajectory buffer, for points that come without a frame: through the data record (60C1h) or the serial interface.
     pub const fn trajectory_buffer(&mut self) -> &mut Buffer {
         &mut self.buffer

@@ -27,6 +27,38 @@ pub enum Task {
         /// What the position of the reference is from then on.
         position: f64,
     },
+    /// Leaves the way to the drive.
+    Drive(Way),
+}
+
+/// A way that the drive makes itself, in a mode of its own. Velocities and accelerations that are zero are left to the drive.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Way {
+    /// To a position, at rest (pp). Another number is another set-point; it begins where the last one ends.
+    Position {
+        /// Number of the set-point, from 1.
+        number: u32,
+        /// Where to.
+        position: f64,
+        /// Largest velocity.
+        velocity: f64,
+        /// Largest acceleration and deceleration.
+        acceleration: f64,
+    },
+    /// To a velocity, on a straight ramp (pv).
+    Velocity {
+        /// Velocity.
+        velocity: f64,
+        /// Acceleration and deceleration.
+        acceleration: f64,
+    },
+    /// Along the points of its buffer (ip).
+    Points {
+        /// A point for the buffer, or a command to it, in the eight bytes of 2010h; sent once.
+        point: Option<[u8; 8]>,
+        /// Whether the points are followed.
+        follow: bool,
+    },
 }
 
 /// What the motion task hears of the axis.
@@ -46,8 +78,25 @@ pub struct AxisFeedback {
     pub interpolation: Interpolation,
     /// How far homing is.
     pub homing: Homing,
+    /// How far the drive is on a way of its own.
+    pub way: WayFeedback,
     /// The switches, inverted where they are wired so.
     pub switches: Switches,
+}
+
+/// How far the drive is on a way of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct WayFeedback {
+    /// Number of the last set-point that it has acknowledged.
+    pub acknowledged: u32,
+    /// Whether it says that the target is reached (bit 10).
+    pub target_reached: bool,
+    /// Whether it follows points (bit 12 in ip).
+    pub is_active: bool,
+    /// Free points of its buffer (2011h).
+    pub buffer_free: u16,
+    /// State of its buffer (2012h).
+    pub buffer_status: u32,
 }
 
 /// How far the power of an axis is.

@@ -57,7 +57,7 @@ mod fault;
 mod interpolation;
 pub mod link;
 
-pub use axis::{AxisCommand, AxisFeedback, Homing, Power, Switches, Task};
+pub use axis::{AxisCommand, AxisFeedback, Homing, Power, Switches, Task, Way, WayFeedback};
 pub use error::FieldbusError;
 pub use fault::{Fault, LinkFault};
 pub use interpolation::Interpolation;

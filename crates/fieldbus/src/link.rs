@@ -34,6 +34,7 @@ mod effort;
 mod frame;
 mod homing;
 mod mailbox;
+mod own_way;
 mod params;
 mod position;
 mod sequencer;
@@ -49,6 +50,7 @@ pub use units::Units;
 use crate::{AxisCommand, AxisFeedback, Fault, Interpolation, LinkFault, Power, Switches, Task};
 use effort::Ramp;
 use homing::Procedure;
+use own_way::OwnWay;
 use position::Position;
 use sequencer::{Sequencer, Wanted};
 use servobench_base::{Setpoint, Tick};
@@ -87,6 +89,7 @@ pub struct State {
     stream: Stream,
     ramp: Ramp,
     homing: Procedure,
+    own_way: OwnWay,
     commands: Commands,
     /// Since when the mode that is asked for has been (base ticks).
     mode_since: u64,
@@ -112,6 +115,7 @@ impl Default for State {
             stream: Stream::OFF,
             ramp: Ramp::OFF,
             homing: Procedure::Idle,
+            own_way: OwnWay::default(),
             commands: Commands::default(),
             mode_since: 0,
             in_mode_or_off: 0,
@@ -144,11 +148,20 @@ pub fn step(params: &Params, state: &mut State, input: Input<'_>) -> Commands {
         .sequencer
         .word()
         .with(ControlBit::Halt, state.halts())
-        .with(ControlBit::ModeSpecific4, matches!(state.command.task, Task::Home { .. }) && state.homing.is_started());
+        .with(ControlBit::ModeSpecific4, state.asks_to_start());
     state.commands
 }
 
 impl State {
+    /// Bit 4 of the controlword, which starts what the drive does by itself.
+    const fn asks_to_start(&self) -> bool {
+        match self.command.task {
+            Task::Home { .. } => self.homing.is_started(),
+            Task::Drive(_) => self.own_way.asks_to_start(),
+            Task::Follow(_) | Task::Effort(_) => false,
+        }
+    }
+
     /// What the motion task hears.
     #[must_use]
     pub fn feedback(&self, params: &Params) -> AxisFeedback {
@@ -167,6 +180,7 @@ impl State {
             fault: self.fault(),
             interpolation: self.interpolation(),
             homing: self.homing.feedback(matches!(self.command.task, Task::Home { .. })),
+            way: self.own_way.feedback(&self.actuals),
             switches: self.switches(params),
         }
     }
@@ -183,7 +197,7 @@ impl State {
     pub const fn interpolation(&self) -> Interpolation {
         match self.command.task {
             Task::Effort(_) => self.ramp.state(),
-            Task::Follow(_) | Task::Home { .. } => self.stream.state(),
+            Task::Follow(_) | Task::Home { .. } | Task::Drive(_) => self.stream.state(),
         }
     }
 

@@ -1,4 +1,5 @@
 //! Why a run could not be built.
+use crate::network::Unsendable;
 use servobench_base::{ParamError, RateError};
 use servobench_cia402::SdoError;
 use servobench_cia402::units::UnitError;
@@ -54,6 +55,9 @@ pub enum BuildError {
     /// A call of a block that the bench does not have.
     #[error("the bench does not have this function block: take one of those in docs/scenario.md")]
     NoSuchBlock,
+    /// A table that cannot be sent to the buffer of the drive.
+    #[error(transparent)]
+    Points(#[from] Unsendable),
     /// A fieldbus without a drive at its end.
     #[error("a fieldbus leads to a drive, and this motor has none: give the motor a drive, or leave `bus` out")]
     NoDriveOnTheBus,

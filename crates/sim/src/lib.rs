@@ -15,6 +15,7 @@ mod thinning;
 
 pub use bench::Bench;
 pub use error::BuildError;
+pub use network::Unsendable;
 pub use program::Program;
 pub use run::{Failure, Outcome, Reason};
 pub use thinning::thinned;

@@ -11,12 +11,17 @@
 //! that has arrived. Either way takes the delay of the bus.
 mod build;
 mod moves;
+mod own_way;
 mod plc;
+mod points;
 mod reference;
 mod signals;
 mod units;
 
+pub use points::Unsendable;
+
 use moves::Moves;
+use own_way::OwnWay;
 use plc::Plc;
 use reference::DelayedReference;
 use servobench_base::{Countdown, Divider, Setpoint, Tick};
@@ -71,6 +76,8 @@ pub(crate) struct Network {
 enum MotionTask {
     /// The moves of `[[program]]`.
     Moves(Box<Moves>),
+    /// The same, left to the drive.
+    OwnWay(Box<OwnWay>),
     /// The calls of `[[call]]`.
     Plc(Box<Plc>),
 }
@@ -97,6 +104,7 @@ impl MotionTask {
                 let (command, setpoint) = moves.cycle(feedback, sample);
                 Ok(Step { command, setpoint: Some(setpoint) })
             }
+            Self::OwnWay(way) => Ok(way.cycle(feedback)),
             Self::Plc(plc) => plc.cycle(t, feedback, origin, recorder, sample),
         }
     }
@@ -238,6 +246,7 @@ impl Network {
     pub(crate) fn finish(&mut self, t: f64, unit: &str, delay: f64, recorder: &mut Recorder) {
         match &mut self.task {
             MotionTask::Moves(moves) => moves.moves(unit, delay).for_each(|made| recorder.note_move(made)),
+            MotionTask::OwnWay(way) => way.moves(unit, delay).for_each(|made| recorder.note_move(made)),
             MotionTask::Plc(plc) => plc.finish(t, delay, recorder),
         }
     }

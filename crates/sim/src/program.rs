@@ -115,6 +115,11 @@ impl Program {
         self.course.moves.iter().map(|planned| planned.end - planned.start)
     }
 
+    /// When each move starts (s), where from, and its plan.
+    pub(crate) fn plans(&self) -> impl Iterator<Item = (f64, f64, &Plan)> {
+        self.course.moves.iter().map(|planned| (planned.start, planned.from, &planned.plan))
+    }
+
     /// What a recording says of the moves; `unit` is the axis unit.
     pub fn moves(&self, unit: &str) -> impl Iterator<Item = Move> {
         let delay = self.fine.as_ref().map_or(0.0, Fine::delay);

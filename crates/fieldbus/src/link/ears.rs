@@ -23,17 +23,20 @@ impl State {
 
     /// Reads the command, and the sample in it where there is a new one.
     pub(super) fn open(&mut self, p: &Params, mailbox: &Mailbox) -> Post {
+        self.own_way.has_news = false;
         let Some(Letter { number, tick, command }) = mailbox.read() else { return Post::Torn };
         if number == self.read {
             return Post::Nothing;
         }
         let missed = number.wrapping_sub(self.read).saturating_sub(1);
         self.read = number;
+        self.own_way.has_news = true;
         if command.reset && !self.command.reset {
             self.reset(p);
         }
         if core::mem::discriminant(&command.task) != core::mem::discriminant(&self.command.task) {
             self.homing = Procedure::Idle;
+            self.own_way.restart();
         }
         let (before, sample) = (self.command, command.task);
         self.command = command;
@@ -43,7 +46,7 @@ impl State {
                 let sample = Sample { torque: effort, ..Sample::default() };
                 Post::Sample(Arrival { sample, due: tick, missed })
             }
-            Task::Home { .. } => Post::Nothing,
+            Task::Home { .. } | Task::Drive(_) => Post::Nothing,
             Task::Follow(_) | Task::Effort(_) => {
                 self.command.task = before.task;
                 self.fault = self.fault.or(Some(LinkFault::Command));

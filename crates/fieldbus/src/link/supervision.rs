@@ -29,7 +29,8 @@ impl State {
         let goes = |sign: f64| match self.command.task {
             Task::Follow(_) => self.stream.goes(&p.stream, sign),
             Task::Effort(effort) => self.ramp.state() != Interpolation::Off && sign * effort > 0.0,
-            Task::Home { .. } => false,
+            // The drive itself keeps to its switches.
+            Task::Home { .. } | Task::Drive(_) => false,
         };
         if switches.negative_limit && goes(-1.0) {
             Some(LinkFault::NegativeLimit)

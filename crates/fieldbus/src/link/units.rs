@@ -101,7 +101,16 @@ impl Scale {
         whole(self.velocity * v, i32::MAX.into()).and_then(|v| i32::try_from(v).ok())
     }
 
-    /// The same, neither rounded nor bounded.
+    /// A magnitude of velocity, or of acceleration in velocity units per second: the nearest, at least 1 where it is not zero,
+    /// the largest there is beyond it.
+    pub(crate) fn rate(&self, rate: f64) -> u32 {
+        let units = (self.velocity * rate).abs();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, which is meant")]
+        let nearest = (units + 0.5) as u32;
+        if units > 0.0 { nearest.max(1) } else { 0 }
+    }
+
+    /// The velocity in units of the drive, neither rounded nor bounded.
     pub(crate) const fn drive_velocity_exactly(&self, v: f64) -> f64 {
         self.velocity * v
     }

@@ -1,5 +1,6 @@
 //! From a scenario to the network.
 use super::moves::Moves;
+use super::own_way::OwnWay;
 use super::plc::{self, Plc};
 use super::reference::DelayedReference;
 use super::signals::Signals;
@@ -12,6 +13,7 @@ use servobench_cia402::PowerState;
 use servobench_cia402::counter::Counter;
 use servobench_cia402::objects::Dictionary;
 use servobench_cia402::units::Object;
+use servobench_drive::modes::interpolated::SubMode;
 use servobench_drive::{self as drive, Demand, device, feedforward};
 use servobench_fieldbus::bus::{self, BusFault, BusFaultKind};
 use servobench_fieldbus::link::{self, Mailbox};
@@ -123,10 +125,14 @@ impl Network {
             frame: frame_delay,
             drive: u64::from(device.cycle.shift * drive_every.ticks()) + steps * u64::from(bus.cycle),
         };
+        let delays = if bus.mode.is_cyclic() { delays } else { Delays { link: 0, drive: 0, ..delays } };
         let period = f64::from(motion_cycle.ticks()) * tick;
         let delay = delays.sum() as f64 * tick + loops.reference_delay.length(loops.period(drive_every));
         let task = match &scenario.plc {
             Some(plc) => MotionTask::Plc(Box::new(Plc::new(plc, scenario.axis.modulo, period, recorder)?)),
+            None if !bus.mode.is_cyclic() => {
+                MotionTask::OwnWay(Box::new(OwnWay::new(program, bus.mode, bus.units, period)?))
+            }
             None => MotionTask::Moves(Box::new(Moves::new(program, period))),
         };
         let network = Self {
@@ -246,6 +252,8 @@ fn device_params(
             quick_stop_deceleration: RESERVE * dynamics.acceleration,
             ..device::Params::default().profile
         },
+        // Points with times and velocities of their own.
+        sub_mode: SubMode::Cubic,
         ..device::Params::default()
     }
 }

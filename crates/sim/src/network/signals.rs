@@ -1,6 +1,7 @@
 //! States of drive and link, noted when they change.
 use servobench_cia402::{Mode, PowerState};
 use servobench_drive::device;
+use servobench_drive::modes::interpolated::BufferError;
 use servobench_fieldbus::link;
 use servobench_fieldbus::{Fault, Interpolation};
 use servobench_trace::{Recorder, SignalId};
@@ -26,12 +27,27 @@ impl<T: Copy + PartialEq> Watched<T> {
     }
 }
 
+/// The errors that a trajectory buffer latches, in the highest byte of its status (2012h).
+const ERRORS: u32 = BufferError::Sequence as u32 | BufferError::Overflow as u32 | BufferError::Underflow as u32;
+
+/// What the buffer has latched.
+fn latched(errors: u32) -> String {
+    let names = [
+        (BufferError::Sequence, "point missing"),
+        (BufferError::Overflow, "Overflow"),
+        (BufferError::Underflow, "Underflow"),
+    ];
+    let found: Vec<_> = names.iter().filter(|(error, _)| errors & *error as u32 != 0).map(|(_, name)| *name).collect();
+    if found.is_empty() { "none".into() } else { found.join(", ") }
+}
+
 /// What there is to say of drive and link.
 #[derive(Debug)]
 pub(super) struct Signals {
     power: Watched<PowerState>,
     mode: Watched<Option<Mode>>,
     drive_fault: Watched<Option<device::Fault>>,
+    buffer: Watched<u32>,
     interpolation: Watched<Interpolation>,
     link_fault: Watched<Option<Fault>>,
 }
@@ -42,6 +58,7 @@ impl Signals {
             power: Watched::new("drive", "state", recorder),
             mode: Watched::new("drive", "mode", recorder),
             drive_fault: Watched::new("drive", "fault", recorder),
+            buffer: Watched::new("drive", "buffer", recorder),
             interpolation: Watched::new("link", "interpolation", recorder),
             link_fault: Watched::new("link", "fault", recorder),
         }
@@ -53,6 +70,7 @@ impl Signals {
         self.drive_fault.note(t, drive.fault(), recorder, |fault| {
             fault.map_or("none".into(), |fault| format!("{:04X}h", fault.code()))
         });
+        self.buffer.note(t, drive.buffer_status() >> 24 & ERRORS, recorder, latched);
     }
 
     pub(super) fn of_link(&mut self, t: f64, link: &link::State, recorder: &mut Recorder) {

@@ -1,0 +1,92 @@
+//! A way that the drive makes itself: what its modes need to be told.
+//!
+//! In profile position a set-point is handed over by bit 4 of the controlword and bit 12 of the statusword (IEC 61800-7-201,
+//! profile position mode): bit 4 rises with the target, bit 12 answers, both fall, and the next one can come.
+use super::{Params, State};
+use crate::{Way, WayFeedback};
+use servobench_cia402::{Actuals, Mode, StatusBit};
+
+/// What a link remembers of it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct OwnWay {
+    /// Whether the command is one that was not there at the last step.
+    pub(super) has_news: bool,
+    /// Number of the set-point that the drive has taken.
+    acknowledged: u32,
+    starts: bool,
+}
+
+impl OwnWay {
+    /// Another task has begun.
+    pub(super) const fn restart(&mut self) {
+        (self.acknowledged, self.starts) = (0, false);
+    }
+
+    pub(super) const fn asks_to_start(self) -> bool {
+        self.starts
+    }
+
+    pub(super) const fn feedback(self, actuals: &Actuals) -> WayFeedback {
+        WayFeedback {
+            acknowledged: self.acknowledged,
+            target_reached: actuals.statusword.has(StatusBit::TargetReached),
+            is_active: actuals.statusword.has(StatusBit::ModeSpecific12),
+            buffer_free: actuals.buffer_free,
+            buffer_status: actuals.buffer_status,
+        }
+    }
+
+    /// A step of the handshake for set-point `number`.
+    const fn hand_over(&mut self, number: u32, acknowledges: bool) {
+        if self.starts && acknowledges {
+            (self.acknowledged, self.starts) = (number, false);
+        } else if !self.starts && !acknowledges && number != self.acknowledged {
+            self.starts = true;
+        }
+    }
+}
+
+/// The mode that makes the way.
+pub(super) const fn mode(way: &Way) -> Mode {
+    match way {
+        Way::Position { .. } => Mode::ProfilePosition,
+        Way::Velocity { .. } => Mode::ProfileVelocity,
+        Way::Points { .. } => Mode::InterpolatedPosition,
+    }
+}
+
+impl State {
+    /// Leaves `way` to the drive.
+    pub(super) fn leave(&mut self, p: &Params, way: &Way, follows: bool) {
+        self.commands.trajectory_point = None;
+        if !follows {
+            self.own_way.starts = false;
+            return;
+        }
+        let rate = |rate: f64| p.scale.rate(rate);
+        match *way {
+            Way::Position { number, position, velocity, acceleration } => {
+                let acknowledges = self.actuals.statusword.has(StatusBit::ModeSpecific12);
+                self.own_way.hand_over(number, acknowledges);
+                if let Some(counts) = p.scale.counts(position) {
+                    self.commands.target_position = p.scale.target(counts);
+                }
+                self.commands.profile_velocity = rate(velocity);
+                self.set_acceleration(rate(acceleration));
+            }
+            Way::Velocity { velocity, acceleration } => {
+                self.own_way.starts = false;
+                self.commands.target_velocity = p.scale.drive_velocity(velocity).unwrap_or(0);
+                self.set_acceleration(rate(acceleration));
+            }
+            Way::Points { point, follow } => {
+                self.own_way.starts = follow;
+                self.commands.trajectory_point = point.filter(|_| self.own_way.has_news);
+            }
+        }
+    }
+
+    const fn set_acceleration(&mut self, acceleration: u32) {
+        (self.commands.profile_acceleration, self.commands.profile_deceleration) = (acceleration, acceleration);
+    }
+}

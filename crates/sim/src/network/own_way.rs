@@ -1,0 +1,147 @@
+//! The moves of a program as a drive makes them by itself, in profile position, profile velocity or interpolated position.
+//!
+//! What the drive is sent stands in the plans of the moves: their targets, the commands of a position profile, or the points of
+//! a table. Times count from the cycle in which the axis is powered.
+use super::Step;
+use super::points::{Points, Unsendable};
+use crate::program::Program;
+use servobench_drive::modes::interpolated::SegmentCommand;
+use servobench_fieldbus::{AxisCommand, AxisFeedback, Power, Task, Way};
+use servobench_motion::position_profile::Command;
+use servobench_planner::Told;
+use servobench_scenario::{BusMode, DriveUnits};
+use servobench_trace::Move;
+
+/// How far before its time a cycle may be by rounding (s).
+const ROUNDING: f64 = 1e-9;
+/// Points that are in the buffer before they are followed, when there are so many.
+const AHEAD: usize = 16;
+
+/// A program of ways under way.
+#[derive(Debug)]
+pub(super) struct OwnWay {
+    program: Program,
+    /// Cycle of the motion task (s).
+    period: f64,
+    /// Cycles before the axis was powered, and since then.
+    waited: u64,
+    passed: u64,
+    orders: Orders,
+}
+
+/// What is sent.
+#[derive(Debug)]
+enum Orders {
+    /// Set-points: when, where to, and the largest velocity and acceleration.
+    Positions { set_points: Vec<(f64, [f64; 3])>, sent: usize },
+    /// Velocities: when, and which.
+    Velocities { commands: Vec<Command>, next: usize, now: Command },
+    /// Tables: when, and the points of each.
+    Tables { tables: Vec<(f64, Points)>, now: usize, is_following: bool, was_active: bool },
+}
+
+impl OwnWay {
+    /// The way of `program` in `mode`, with a cycle of `period` (s).
+    ///
+    /// # Errors
+    /// [`Unsendable`] names a point of a table that 2010h does not hold.
+    pub(super) fn new(program: Program, mode: BusMode, units: DriveUnits, period: f64) -> Result<Self, Unsendable> {
+        let orders = match mode {
+            BusMode::ProfileVelocity => {
+                let told = program.plans().flat_map(|(start, _, plan)| commands_of(start, plan.told(), plan.end().v));
+                let now = Command { t: 0.0, velocity: 0.0, acceleration: 0.0 };
+                Orders::Velocities { commands: told.collect(), next: 0, now }
+            }
+            BusMode::InterpolatedPosition => {
+                let tables = program.plans().map(|(start, from, plan)| Ok((start, Points::of(plan, from, units)?)));
+                let tables = tables.collect::<Result<_, _>>()?;
+                Orders::Tables { tables, now: 0, is_following: false, was_active: false }
+            }
+            BusMode::ProfilePosition | BusMode::CyclicPosition | BusMode::CyclicVelocity => {
+                let set_points = program.plans().map(|(start, from, plan)| {
+                    let [velocity, acceleration, ..] = plan.limits().map(|sides| sides.above);
+                    (start, [from + plan.end().x, velocity, acceleration])
+                });
+                Orders::Positions { set_points: set_points.collect(), sent: 0 }
+            }
+        };
+        Ok(Self { program, period, waited: 0, passed: 0, orders })
+    }
+
+    /// One cycle.
+    pub(super) fn cycle(&mut self, feedback: &AxisFeedback) -> Step {
+        if self.passed > 0 || feedback.power == Power::On {
+            self.passed += 1;
+        } else {
+            self.waited += 1;
+        }
+        // Before the axis is powered nothing is due.
+        let now = self.passed.checked_sub(1).map_or(f64::NEG_INFINITY, |passed| passed as f64 * self.period + ROUNDING);
+        let way = self.orders.way(now, feedback);
+        Step { command: AxisCommand { power: true, reset: false, task: Task::Drive(way) }, setpoint: None }
+    }
+
+    /// What a recording says of the moves; they reach the axis `delay` (s) later.
+    pub(super) fn moves(&self, unit: &str, delay: f64) -> impl Iterator<Item = Move> {
+        let begun = self.waited as f64 * self.period + delay;
+        self.program.moves(unit).map(move |made| Move {
+            start: made.start + begun,
+            end: made.end + begun,
+            cruise: (made.cruise.0 + begun, made.cruise.1),
+            ..made
+        })
+    }
+}
+
+/// The velocities of a move that begins at `start` (s) and ends at `end`.
+fn commands_of(start: f64, told: &Told, end: f64) -> Vec<Command> {
+    match told {
+        Told::Commands { commands, .. } => {
+            commands.iter().map(|command| Command { t: start + command.t, ..*command }).collect()
+        }
+        _ => vec![Command { t: start, velocity: end, acceleration: 0.0 }],
+    }
+}
+
+impl Orders {
+    /// What is sent at `now` (s).
+    fn way(&mut self, now: f64, feedback: &AxisFeedback) -> Way {
+        match self {
+            Self::Positions { set_points, sent } => {
+                // The next one is asked for when its time has come and the drive has taken the last.
+                let taken = feedback.way.acknowledged as usize == *sent;
+                if taken && set_points.get(*sent).is_some_and(|(start, _)| *start <= now) {
+                    *sent += 1;
+                }
+                let asked = sent.checked_sub(1).and_then(|index| set_points.get(index));
+                let [position, velocity, acceleration] =
+                    asked.map_or([feedback.position, 0.0, 0.0], |(_, set_point)| *set_point);
+                #[expect(clippy::cast_possible_truncation, reason = "a program has fewer steps")]
+                Way::Position { number: *sent as u32, position, velocity, acceleration }
+            }
+            Self::Velocities { commands, next, now: present } => {
+                while let Some(command) = commands.get(*next).filter(|command| command.t <= now) {
+                    *present = *command;
+                    *next += 1;
+                }
+                let Command { velocity, acceleration, .. } = *present;
+                Way::Velocity { velocity, acceleration }
+            }
+            Self::Tables { tables, now: index, is_following, was_active } => {
+                let Some((_, points)) = tables.get_mut(*index).filter(|(start, _)| *start <= now) else {
+                    return Way::Points { point: None, follow: *is_following };
+                };
+                // Between a frame and the answer that knows of it a few points are under way.
+                let point = points.next(feedback.way.buffer_free).and_then(SegmentCommand::encode);
+                *is_following |= points.sent() >= AHEAD || points.is_over();
+                if *was_active && !feedback.way.is_active && points.is_over() {
+                    (*is_following, *was_active) = (false, false);
+                    *index += 1;
+                } else {
+                    *was_active |= feedback.way.is_active && *is_following;
+                }
+                Way::Points { point, follow: *is_following }
+            }
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! Ways that the drive makes itself: profile velocity, interpolated position, profile position.
+use servobench_plant::Exact;
+use servobench_scenario as scenario;
+use servobench_sim::{Bench, Outcome, Program};
+use servobench_trace::Recording;
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// A ball screw under a stiff drive; the bus is to be given.
+const AXIS: &str = r#"
+[run]
+base_rate = "16 kHz"
+[axis]
+model = "ball-screw"
+[motor]
+model = "wittenstein-premo-1f"
+encoder = { counts_per_rev = 1048576 }
+[drive]
+model = "servo-16khz"
+dc_link = "320 V"
+max_torque = "6.09 Nm"
+[drive.feedforward]
+velocity = true
+effort = "rigid"
+friction = true
+"#;
+
+fn run(text: &str) -> Recording {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/plc");
+    let loaded = scenario::parse("test", text, Some(&folder)).unwrap_or_else(|error| panic!("{error}"));
+    let bench = Bench::new(&loaded.scenario, &Exact).unwrap_or_else(|error| panic!("{error}"));
+    let Outcome { recording, failure } = bench.run(&mut |_| {});
+    assert_eq!(failure, None);
+    recording
+}
+
+fn stored(name: &str) -> Recording {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/plc").join(name);
+    run(&std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{error}")))
+}
+
+fn values<'a>(recording: &'a Recording, name: &str) -> &'a [f64] {
+    recording.channel(name).unwrap_or_else(|| panic!("no channel {name}"))
+}
+
+fn peak(recording: &Recording, name: &str) -> f64 {
+    values(recording, name).iter().fold(0.0, |peak, value| value.abs().max(peak))
+}
+
+/// Baikov & Godunov: plateaus meet every position, and the spline followed by steps of velocity is off by what the plan
+/// announces. Oracle: the plan of the moves, and the table; the drive's velocity is summed up.
+#[test]
+fn a_position_profile_in_profile_velocity_mode_meets_its_positions() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/plc/pv-position-profile.toml");
+    let loaded = scenario::load(&path).unwrap_or_else(|error| panic!("{error}"));
+    let recording = stored("pv-position-profile.toml");
+    let velocity = values(&recording, "setpoint.velocity");
+    let table = [5.0, 20.0, 45.0, 70.0, 90.0, 100.0, 102.0, 101.0, 100.0, 100.0].map(|millimetres| 1e-3 * millimetres);
+    let tick = recording.rate.period();
+    let powered = recording.moves[0].start - 0.1;
+    for (made, announced) in recording.moves.iter().zip([0.0, 20e-6]) {
+        let mut program = Program::new(&loaded.scenario).unwrap_or_else(|error| panic!("{error}"));
+        let (start, mut x) = (recording.index_at(made.start), 0.0);
+        let (mut worst, mut from_plan) = (0.0_f64, 0.0_f64);
+        for (k, pair) in velocity[start..].windows(2).take(8000).enumerate() {
+            x += tick * f64::midpoint(pair[0], pair[1]);
+            let planned = program.at(recording.time_of(start + k + 1) - powered).x - made.from;
+            from_plan = from_plan.max((x - planned).abs());
+            // A point every 50 ms.
+            if (k + 1) % 800 == 0 {
+                worst = worst.max((x - table[k / 800]).abs());
+            }
+        }
+        println!("{}: {from_plan:.2e} m from its plan, {worst:.2e} m from its points", made.label);
+        // The drive is sent whole increments per second, 1e-8 m/s, and is between two of its steps for a tick.
+        assert!(from_plan < 0.1e-6, "{}: {from_plan}", made.label);
+        assert!(worst <= announced + 0.1e-6, "{}: {worst}", made.label);
+    }
+}
+
+/// About 3 rad/s: whole periods of so many points, one every 10 ms.
+fn frequency(points: u32) -> f64 {
+    let length = 0.01 * f64::from(points - 1);
+    TAU * (3.0 * length / TAU).round() / length
+}
+
+/// So many points of a sine, from rest to rest, as CSV.
+fn sine(points: u32) -> tempfile::NamedTempFile {
+    let omega = frequency(points);
+    let mut text = "time [ms],position [mm],velocity [mm/s]\n".to_owned();
+    for k in 0..points {
+        let t = 0.01 * f64::from(k);
+        let (x, v) = (50.0 * (1.0 - (omega * t).cos()), 50.0 * omega * (omega * t).sin());
+        let v = if k == 0 || k + 1 == points { 0.0 } else { v };
+        let _ = writeln!(text, "{},{x},{v}", 10 * k);
+    }
+    let mut file = tempfile::Builder::new().suffix(".csv").tempfile().unwrap_or_else(|error| panic!("{error}"));
+    std::io::Write::write_all(&mut file, text.as_bytes()).unwrap_or_else(|error| panic!("{error}"));
+    file
+}
+
+fn streamed(file: &tempfile::NamedTempFile, faults: &str) -> Recording {
+    let table = format!(
+        "[bus]\ncycle = \"1 ms\"\nmode = \"ip\"\nunits = {{ drive = 1000, axis = \"1 mm\" }}\n{faults}\n\
+         [[program]]\ntable = {{ file = \"{}\" }}\n",
+        file.path().display()
+    );
+    run(&format!("{AXIS}{table}"))
+}
+
+/// What the buffer of the drive has latched, one after the other.
+fn buffer(recording: &Recording) -> Vec<&str> {
+    let signal = recording.signal("drive", "buffer").unwrap_or_else(|| panic!("no buffer"));
+    signal.changes.iter().map(|(_, value)| value.as_str()).collect()
+}
+
+/// Oracle: the sine itself. A cubic by positions and velocities is off by ω⁴·A·T⁴/384 of it, 1e-10 m; the points are whole
+/// micrometres.
+#[test]
+fn ten_thousand_points_are_streamed_with_jitter_and_none_is_missing() {
+    let file = sine(10_000);
+    let recording = streamed(&file, "[[bus.fault]]\nkind = \"jitter\"\nby = \"500 us\"\nseed = 3\n");
+    assert_eq!(buffer(&recording), ["none"]);
+    let omega = frequency(10_000);
+    let setpoint = values(&recording, "setpoint.position");
+    let begins = setpoint.iter().position(|x| *x > 0.0).unwrap_or_else(|| panic!("nothing moves"));
+    let tick = recording.rate.period();
+    // The first segment begins at most one step of the drive before the position is above zero.
+    let off = |shift: usize| {
+        let errors = setpoint[begins - shift..]
+            .iter()
+            .take(1_590_000)
+            .enumerate()
+            .map(|(k, x)| (x - 0.05 * (1.0 - (omega * k as f64 * tick).cos())).abs());
+        errors.fold(0.0, f64::max)
+    };
+    let best = (0..200).map(off).fold(f64::INFINITY, f64::min);
+    println!("10 000 points: off by {best:.2e} m at most");
+    assert!(best < 1.5e-6, "{best}");
+}
+
+/// The master stops: the buffer runs empty, which is latched, and the axis comes to rest within its limits.
+#[test]
+fn a_master_that_stops_leaves_an_underflow_and_a_stop() {
+    let file = sine(1_000);
+    let recording = streamed(&file, "[[bus.fault]]\nkind = \"master-stopped\"\nstart = \"2.03 s\"\n");
+    assert_eq!(buffer(&recording), ["none", "Underflow"]);
+    let velocity = values(&recording, "setpoint.velocity");
+    let stop = velocity.iter().rposition(|v| v.abs() > 0.0).map_or(0.0, |row| recording.time_of(row));
+    println!("at rest at {stop} s");
+    assert!(stop > 2.03 && stop < 2.6, "the points in the buffer, then a ramp: {stop}");
+    // At the turns of the position loop, every fourth tick: between them a set-point goes straight on.
+    let turns: Vec<f64> = velocity.iter().step_by(4).copied().collect();
+    let steepest = turns.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+    // The quick stop has twice the largest acceleration of the table.
+    let quick_stop = 2.0 * recording.moves[0].peaks[1];
+    println!("{} m/s² of {quick_stop}", steepest / recording.rate.period());
+    assert!(steepest <= 1.000_001 * quick_stop * 250e-6, "{steepest} m/s in a turn, {quick_stop} m/s²");
+    assert!(peak(&recording, "following_error.motor") < 1e-3);
+}
