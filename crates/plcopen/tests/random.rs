@@ -359,6 +359,7 @@ impl Program {
                     feedback.homing = Homing::Failed;
                 }
             }
+            Task::Drive(way) => panic!("no block leaves its way to the drive: {way:?}"),
         }
     }
 }

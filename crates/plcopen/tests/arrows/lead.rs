@@ -1,11 +1,13 @@
 //! Into each state, and each block executed there.
 use crate::bench::{Bench, LIMITS};
 use servobench_fieldbus::Fault;
+use servobench_motion::pvt::Knot;
 use servobench_plcopen::{
-    AxisState, BlockName, ErrorId, FunctionBlock, Halt, HaltInputs, Home, HomeInputs, MoveAbsolute, MoveAbsoluteInputs,
-    MoveAdditive, MoveAdditiveInputs, MoveContinuousAbsolute, MoveContinuousAbsoluteInputs, MoveRelative,
-    MoveRelativeInputs, MoveSuperimposed, MoveSuperimposedInputs, MoveVelocity, MoveVelocityInputs, Outputs, Reset,
-    ResetInputs, Stop, StopInputs, TorqueControl, TorqueControlInputs,
+    AccelerationProfile, AccelerationProfileInputs, AxisState, BlockName, ErrorId, FunctionBlock, Halt, HaltInputs,
+    Home, HomeInputs, MoveAbsolute, MoveAbsoluteInputs, MoveAdditive, MoveAdditiveInputs, MoveContinuousAbsolute,
+    MoveContinuousAbsoluteInputs, MoveRelative, MoveRelativeInputs, MoveSuperimposed, MoveSuperimposedInputs,
+    MoveVelocity, MoveVelocityInputs, Outputs, Pair, PositionProfile, PositionProfileInputs, Reset, ResetInputs, Stop,
+    StopInputs, TimePosition, TorqueControl, TorqueControlInputs, VelocityProfile, VelocityProfileInputs,
 };
 
 /// An axis that a program has led to `state`; in motion where the state has one.
@@ -33,11 +35,6 @@ pub(crate) fn led_to(state: AxisState) -> Bench {
     }
     assert_eq!(bench.axis.state(), state);
     bench
-}
-
-/// The blocks whose course is a table; they are tested with their tables.
-pub(crate) fn is_a_profile(block: BlockName) -> bool {
-    matches!(block, BlockName::PositionProfile | BlockName::VelocityProfile | BlockName::AccelerationProfile)
 }
 
 /// One call of a new instance of `block` with Execute; its ErrorID.
@@ -79,12 +76,32 @@ pub(crate) fn execute(bench: &mut Bench, block: BlockName) -> Result<(), ErrorId
             bench,
             &TorqueControlInputs { execute, torque: 0.2, ..TorqueControlInputs::within(&limits) },
         ),
+        BlockName::PositionProfile => {
+            let pairs = [Pair { delta_time: 0.5, value: 0.15 }, Pair { delta_time: 0.5, value: 0.3 }];
+            let (mut knots, mut scratch) = ([Knot::default(); 3], [0.0; 3]);
+            let time_position = TimePosition { pairs: &pairs, is_absolute: false };
+            let inputs = PositionProfileInputs { execute, time_position, ..PositionProfileInputs::along(&pairs) };
+            call_of(PositionProfile::new(&mut knots, &mut scratch), bench, &inputs)
+        }
+        BlockName::VelocityProfile => {
+            let pairs = [Pair { delta_time: 0.2, value: 0.4 }];
+            let inputs = VelocityProfileInputs { execute, ..VelocityProfileInputs::along(&pairs) };
+            call_of(VelocityProfile::default(), bench, &inputs)
+        }
+        BlockName::AccelerationProfile => {
+            let pairs = [Pair { delta_time: 0.1, value: 0.0 }];
+            let inputs = AccelerationProfileInputs { execute, ..AccelerationProfileInputs::along(&pairs) };
+            call_of(AccelerationProfile::default(), bench, &inputs)
+        }
         _ => unreachable!("{block} is no command"),
     }
 }
 
 fn call<B: FunctionBlock + Default>(bench: &mut Bench, inputs: &B::Inputs) -> Result<(), ErrorId> {
-    let mut block = B::default();
+    call_of(B::default(), bench, inputs)
+}
+
+fn call_of<B: FunctionBlock>(mut block: B, bench: &mut Bench, inputs: &B::Inputs) -> Result<(), ErrorId> {
     let outputs = bench.cycle(|axis| block.step(axis, inputs));
     let place = B::Outputs::NAMES.iter().position(|name| *name == "Error").unwrap();
     let mut values = Vec::new();

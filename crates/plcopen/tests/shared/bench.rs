@@ -71,6 +71,7 @@ impl Bench {
                 }
             }
             Task::Effort(effort) => self.feedback.effort = effort,
+            Task::Drive(way) => panic!("no block leaves its way to the drive: {way:?}"),
         }
         answer
     }
