@@ -23,6 +23,13 @@ const FEEDBACK: AxisFeedback = AxisFeedback {
     fault: None,
     interpolation: servobench_fieldbus::Interpolation::Off,
     homing: servobench_fieldbus::Homing::Idle,
+    way: servobench_fieldbus::WayFeedback {
+        acknowledged: 0,
+        target_reached: false,
+        is_active: false,
+        buffer_free: 0,
+        buffer_status: 0,
+    },
     switches: servobench_fieldbus::Switches { negative_limit: false, home: false, positive_limit: false },
 };
 const CYCLES: usize = 1000;
