@@ -1,11 +1,13 @@
 //! The program as its users see it: output, files, exit codes. It belongs to the crate `cli`, whose binary it runs.
 mod check;
 mod compare;
+mod objects;
 mod output;
 mod plan;
 mod plan_families;
 mod plan_mistakes;
 mod run;
+mod timing;
 #[cfg(unix)]
 mod view;
 
@@ -82,3 +84,12 @@ move_to = "50 mm"
 [measure]
 window = "10 um"
 "#;
+
+/// [`SLIDE`] behind a fieldbus, with these lines of `[drive.objects]`.
+fn on_a_bus(objects: &str) -> String {
+    // The master or the drive feeds forward, not both.
+    let feedforward = "[drive.feedforward]\nvelocity = true\neffort = \"rigid\"\n";
+    assert!(SLIDE.contains(feedforward));
+    let bus = "[bus]\ncycle = \"1 ms\"\nvelocity_offset = true\nunits = { drive = 1, axis = \"1 um\" }\n";
+    SLIDE.replace(feedforward, &format!("[drive.objects]\n{objects}\n{bus}"))
+}

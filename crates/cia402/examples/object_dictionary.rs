@@ -18,8 +18,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let mut out = BufWriter::new(io::stdout().lock());
     match words.as_slice() {
-        ["eds"] => write!(out, "{}", Eds(FileInfo { name: "drive.eds", date: "01-01-2026", time: "12:00AM" }))?,
-        ["eds", name, date, time] => write!(out, "{}", Eds(FileInfo { name, date, time }))?,
+        ["eds"] => write!(out, "{}", data_sheet("drive.eds", "01-01-2026", "12:00AM"))?,
+        ["eds", name, date, time] => write!(out, "{}", data_sheet(name, date, time))?,
         ["json"] => write!(out, "{}", Json(&Dictionary::new()))?,
         ["sdo"] => {
             let mut dictionary = Dictionary::new();
@@ -36,6 +36,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         _ => return Err("usage: object_dictionary eds [NAME MM-DD-YYYY HH:MMAM] | json | sdo".into()),
     }
     Ok(out.flush()?)
+}
+
+fn data_sheet<'a>(name: &'a str, date: &'a str, time: &'a str) -> Eds<'a> {
+    Eds { file: FileInfo { name, date, time }, configured: None }
 }
 
 /// One access.

@@ -22,14 +22,16 @@ pub(crate) struct Cli {
 const AFTER_HELP: &str = "Exit codes: 0 every limit is kept, 2 the input is wrong, 3 a run could not be carried out \
                           or its results not be written, 4 a limit was missed.";
 
-const COLUMNS: &str = "Columns: MOVE is the set-point's duration, SETTLING the time after it until the load stays in \
-                       its window, PEAK ERR the peak following error of the load, VIBR P-P its residual vibration, \
-                       peak-to-peak.";
+const AFTER_RUN: &str = "Columns: MOVE is the set-point's duration, SETTLING the time after it until the load stays in \
+                         its window, PEAK ERR the peak following error of the load, VIBR P-P its residual vibration, \
+                         peak-to-peak.\n\n\
+                         A run with signals (of function blocks, axis, link and drive) leaves a timing diagram beside \
+                         its recording, RUN.timing.svg; servobench timing draws other stretches of it.";
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Run scenarios and judge them; without a file, run the demo.
-    #[command(after_help = COLUMNS)]
+    #[command(after_help = AFTER_RUN)]
     Run(RunArgs),
     /// Validate scenario files without running them: every mistake in one go.
     Check(CheckArgs),
@@ -42,6 +44,10 @@ pub(crate) enum Command {
     Compare(CompareArgs),
     /// Open a recording in the Rerun viewer.
     View(ViewArgs),
+    /// Draw the timing diagram of a recording: velocity and position over the signals of blocks, axis, link and drive.
+    Timing(TimingArgs),
+    /// Show the object dictionary of the drive (CiA 402): as a table, an electronic data sheet or JSON.
+    Objects(ObjectsArgs),
     /// Run one scenario in a process of its own (started by `run` and `compare`).
     #[command(hide = true)]
     Worker(WorkerArgs),
@@ -119,6 +125,53 @@ pub(crate) struct ViewArgs {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct TimingArgs {
+    /// A recording (.parquet).
+    pub(crate) recording: PathBuf,
+    /// Write the SVG there [default: standard output].
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Beginning, as "1.5 s" [default: that of the recording].
+    #[arg(long, value_name = "TIME", value_parser = instant)]
+    pub(crate) from: Option<f64>,
+    /// End, as "2500 ms" [default: that of the recording].
+    #[arg(long, value_name = "TIME", value_parser = instant)]
+    pub(crate) to: Option<f64>,
+    /// Show only the signals of this source (a block by its name, axis, link, drive); may be given several times.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) source: Vec<String>,
+    /// Width in pixels, 480 to 4000 [default: 860].
+    #[arg(long, value_name = "PX")]
+    pub(crate) width: Option<u32>,
+    /// Show signals too in which nothing happens.
+    #[arg(long)]
+    pub(crate) idle: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ObjectsArgs {
+    /// A scenario, for the values that its drive.objects writes; without it the values after power-on.
+    pub(crate) scenario: Option<PathBuf>,
+    /// How the dictionary is written.
+    #[arg(long, value_enum, default_value_t = ObjectsFormat::Table)]
+    pub(crate) format: ObjectsFormat,
+    /// Write to this file [default: standard output].
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+/// How an object dictionary is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ObjectsFormat {
+    /// For a person: index, name, type, access, value, unit, range.
+    Table,
+    /// Electronic data sheet (CiA 306); values of a scenario as ParameterValue.
+    Eds,
+    /// For a program: everything that the table says, and PDO mapping and defaults.
+    Json,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct WorkerArgs {
     #[arg(long, value_parser = engine())]
     pub(crate) engine: EngineName,
@@ -147,6 +200,11 @@ fn time(text: &str) -> Result<Duration, String> {
         Ok(time) if !time.is_zero() => Ok(time),
         _ => Err("it must be longer than nothing and shorter than an age".into()),
     }
+}
+
+/// An instant of a recording (s), as "1.5 s".
+fn instant(text: &str) -> Result<f64, String> {
+    servobench_scenario::time(text).map_err(|error| error.message)
 }
 
 #[cfg(test)]

@@ -1,16 +1,20 @@
 //! The commands, one module each.
 mod check;
 mod compare;
+mod objects;
 mod plan;
 mod run;
 mod schema;
+mod timing;
 mod view;
 mod worker;
 
 pub(crate) use check::check;
 pub(crate) use compare::compare;
+pub(crate) use objects::objects;
 pub(crate) use plan::plan;
 pub(crate) use run::run;
 pub(crate) use schema::schema;
+pub(crate) use timing::timing;
 pub(crate) use view::view;
 pub(crate) use worker::worker;

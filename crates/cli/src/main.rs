@@ -31,6 +31,8 @@ fn dispatch(command: &Command) -> Exit {
         Command::Plan(args) => commands::plan(args),
         Command::Compare(args) => commands::compare(args),
         Command::View(args) => commands::view(args),
+        Command::Timing(args) => commands::timing(args),
+        Command::Objects(args) => commands::objects(args),
         Command::Worker(args) => commands::worker(args),
     };
     done.unwrap_or_else(|error| {

@@ -1,6 +1,8 @@
-//! What a run leaves on the disk: recordings, results, reports. Each file is there whole or not at all.
+//! What a command leaves on the disk: recordings, results, diagrams, reports. Each file is there whole or not at all.
+use crate::console::print;
 use crate::exit::CliError;
-use servobench_report::{Results, RunIdentity};
+use jiff::Timestamp;
+use servobench_report::{Results, RunIdentity, TimingOptions, timing_diagram};
 use servobench_scenario::Scenario;
 use servobench_suite::{Job, channel_limits};
 use servobench_trace::Recording;
@@ -27,11 +29,34 @@ pub(crate) fn write_file(path: &Path, text: &str) -> Result<(), CliError> {
         .map_err(|error| CliError::Run(format!("cannot write `{}`: {error}", path.display())))
 }
 
-/// Writes the recording of `job` into `folder`, for the Rerun viewer too when `rrd` says so, and returns its name.
+/// Writes the whole file or nothing; without a path to standard output.
+pub(crate) fn print_or_write(path: Option<&Path>, text: &str) -> Result<(), CliError> {
+    path.map_or_else(|| print(text), |path| write_file(path, text))
+}
+
+/// When a file that says so was written: now, or at the time that the build asks for, by the convention of reproducible
+/// builds (<https://reproducible-builds.org/specs/source-date-epoch/>).
+pub(crate) fn write_time() -> Result<Timestamp, CliError> {
+    let Some(told) = std::env::var_os("SOURCE_DATE_EPOCH") else { return Ok(Timestamp::now()) };
+    let seconds = told.to_str().and_then(|text| text.parse().ok());
+    seconds.and_then(|seconds| Timestamp::from_second(seconds).ok()).ok_or_else(|| {
+        CliError::Input(format!(
+            "the variable SOURCE_DATE_EPOCH is `{}`; it is a number of seconds since 1970, or unset",
+            told.display()
+        ))
+    })
+}
+
+/// Writes the recording of `job` into `folder`, and returns its name. Beside it goes its timing diagram where it has
+/// signals, and when `rrd` says so the recording for the Rerun viewer.
 pub(crate) fn write_recording(job: &Job, recording: &Recording, folder: &Path, rrd: bool) -> Result<String, CliError> {
     let name = format!("{}.parquet", job.id);
     let failed = |error: &dyn Display| CliError::Run(error.to_string());
     recording.write_parquet(folder.join(&name)).map_err(|error| failed(&error))?;
+    if !recording.signals.is_empty() {
+        let diagram = timing_diagram(recording, &TimingOptions::default()).map_err(|error| failed(&error))?;
+        write_file(&folder.join(format!("{}.timing.svg", job.id)), &diagram)?;
+    }
     if rrd {
         let path = folder.join(format!("{}.rrd", job.id));
         servobench_view::write_rrd(recording, path, &view_options(&job.scenario)).map_err(|error| failed(&error))?;

@@ -31,7 +31,7 @@ pub enum ReportError {
     /// A recording without anything that a timing diagram shows.
     #[error(
         "there is nothing to draw: no signals are recorded, and none of the channels `setpoint.velocity`, \
-         `load.velocity`, `setpoint.position` and `load.position`"
+         `load.velocity`, `setpoint.position` and `load.position`: name one in `record.channels`"
     )]
     NothingToDraw,
     /// A timing diagram of signals that are not there.

@@ -1,5 +1,5 @@
 //! What a person or a machine reads of a run: tables, comparison in words, `results.json`, JUnit, the drawing of a plan,
-//! the timing diagram of a run.
+//! the timing diagram of a run, the object dictionary of a drive.
 //!
 //! What is said of runs is made from [`Results`], which hold nothing that differs between two runs of the same scenario:
 //! no wall-clock time, no host. So every text here is the same to the byte, too.
@@ -10,6 +10,7 @@ mod drawing;
 mod error;
 mod junit;
 mod metric_table;
+mod object_table;
 mod ordered;
 mod plan;
 mod results;
@@ -23,6 +24,7 @@ mod verdict_table;
 pub use compare::{Compared, Comparison};
 pub use error::ReportError;
 pub use junit::junit;
+pub use object_table::object_table;
 pub use plan::PlannedMove;
 pub use results::{Outcome, Results, RunIdentity, RunResult};
 pub use style::Style;

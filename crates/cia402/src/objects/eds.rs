@@ -1,7 +1,9 @@
 //! The table as an electronic data sheet (EDS, CiA 306-1), which tools and masters of CANopen read.
+use super::dictionary::Dictionary;
 use super::entry::{Access, Contents, Entry, HIGHEST_SUBINDEX, Mapping, ObjectDescription};
 use super::table::OBJECTS;
 use super::value::DataType;
+use crate::units::Object;
 use core::fmt::{self, Display, Formatter};
 
 /// What the file says of itself.
@@ -15,22 +17,30 @@ pub struct FileInfo<'a> {
     pub time: &'a str,
 }
 
-/// The electronic data sheet of the drive, to be written where text goes.
+/// The electronic data sheet of the drive, to be written where text goes: ASCII, lines that a line feed ends, as CiA 306-1
+/// has them.
 ///
 /// ```
 /// use servobench_cia402::objects::{Eds, FileInfo};
-/// let eds = Eds(FileInfo { name: "drive.eds", date: "11-21-2026", time: "08:00AM" }).to_string();
+/// let file = FileInfo { name: "drive.eds", date: "11-21-2026", time: "08:00AM" };
+/// let eds = Eds { file, configured: None }.to_string();
 /// assert!(eds.contains("[6041]\nParameterName=Statusword\nObjectType=0x7\nDataType=0x0006\nAccessType=ro\n"));
 /// ```
 #[derive(Debug, Clone, Copy)]
-pub struct Eds<'a>(pub FileInfo<'a>);
+pub struct Eds<'a> {
+    /// What the file says of itself.
+    pub file: FileInfo<'a>,
+    /// Values to configure the drive with. Those that it does not have after power-on are added as `ParameterValue`, as a
+    /// device configuration file (DCF) has them.
+    pub configured: Option<&'a Dictionary>,
+}
 
 /// Objects that every device has (CiA 301).
 const MANDATORY: [u16; 3] = [0x1000, 0x1001, 0x1018];
 
 impl Display for Eds<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let FileInfo { name, date, time } = self.0;
+        let FileInfo { name, date, time } = self.file;
         writeln!(f, "[FileInfo]\nFileName={name}\nFileVersion=1\nFileRevision=1\nEDSVersion=4.0")?;
         writeln!(f, "Description=Simulated servo drive, profile CiA 402")?;
         for verb in ["Creation", "Modification"] {
@@ -51,7 +61,7 @@ impl Display for Eds<'_> {
         list(f, "MandatoryObjects", |index| MANDATORY.contains(&index))?;
         list(f, "OptionalObjects", |index| !MANDATORY.contains(&index) && !is_manufacturers(index))?;
         list(f, "ManufacturerObjects", is_manufacturers)?;
-        OBJECTS.iter().try_for_each(|object| sections(f, object))
+        OBJECTS.iter().try_for_each(|object| self.sections(f, object))
     }
 }
 
@@ -70,49 +80,56 @@ fn list(f: &mut Formatter<'_>, name: &str, belongs: impl Fn(u16) -> bool) -> fmt
     writeln!(f)
 }
 
-/// The section of an object and those of its sub-indices.
-fn sections(f: &mut Formatter<'_>, object: &ObjectDescription) -> fmt::Result {
-    let (index, name) = (object.index, object.name);
-    let (object_type, entries) = match object.contents {
-        Contents::Variable(entry) => {
-            writeln!(f, "[{index:04X}]")?;
-            return variable(f, &entry, entry.name, None);
+impl Eds<'_> {
+    /// The section of an object and those of its sub-indices.
+    fn sections(&self, f: &mut Formatter<'_>, object: &ObjectDescription) -> fmt::Result {
+        let (index, name) = (object.index, object.name);
+        let (object_type, entries) = match object.contents {
+            Contents::Variable(entry) => {
+                writeln!(f, "[{index:04X}]")?;
+                return self.variable(f, Object { index, subindex: 0 }, &entry, None);
+            }
+            Contents::Array(entries) => (8, entries),
+            Contents::Record(entries) => (9, entries),
+        };
+        writeln!(
+            f,
+            "[{index:04X}]\nParameterName={name}\nObjectType=0x{object_type}\nSubNumber=0x{:X}\n",
+            entries.len() + 1
+        )?;
+        let unsigned8 = DataType::Unsigned8.code();
+        writeln!(f, "[{index:04X}sub0]\nParameterName={HIGHEST_SUBINDEX}\nObjectType=0x7\nDataType=0x{unsigned8:04X}")?;
+        writeln!(f, "AccessType=const\nDefaultValue={}\nPDOMapping=0\n", entries.len())?;
+        for (subindex, entry) in (1..).zip(entries) {
+            writeln!(f, "[{index:04X}sub{subindex:X}]")?;
+            // Readers find entries by name too: several of one name get a number.
+            let alike = entries.iter().filter(|other| other.name == entry.name).count();
+            self.variable(f, Object { index, subindex }, entry, (alike > 1).then_some(subindex))?;
         }
-        Contents::Array(entries) => (8, entries),
-        Contents::Record(entries) => (9, entries),
-    };
-    writeln!(
-        f,
-        "[{index:04X}]\nParameterName={name}\nObjectType=0x{object_type}\nSubNumber=0x{:X}\n",
-        entries.len() + 1
-    )?;
-    let unsigned8 = DataType::Unsigned8.code();
-    writeln!(f, "[{index:04X}sub0]\nParameterName={HIGHEST_SUBINDEX}\nObjectType=0x7\nDataType=0x{unsigned8:04X}")?;
-    writeln!(f, "AccessType=const\nDefaultValue={}\nPDOMapping=0\n", entries.len())?;
-    for (subindex, entry) in (1..).zip(entries) {
-        writeln!(f, "[{index:04X}sub{subindex:X}]")?;
-        // Readers find entries by name too: several of one name get a number.
-        let alike = entries.iter().filter(|other| other.name == entry.name).count();
-        variable(f, entry, entry.name, (alike > 1).then_some(subindex))?;
+        Ok(())
     }
-    Ok(())
-}
 
-/// The keys of a section that describes a value.
-fn variable(f: &mut Formatter<'_>, entry: &Entry, name: &str, number: Option<usize>) -> fmt::Result {
-    write!(f, "ParameterName={name}")?;
-    if let Some(number) = number {
-        write!(f, " {number}")?;
+    /// The keys of a section that describes a value.
+    fn variable(&self, f: &mut Formatter<'_>, object: Object, entry: &Entry, number: Option<u8>) -> fmt::Result {
+        write!(f, "ParameterName={}", entry.name)?;
+        if let Some(number) = number {
+            write!(f, " {number}")?;
+        }
+        let access = match (entry.access, entry.mapping) {
+            (Access::ReadWrite, Mapping::Receive) => "rww",
+            (Access::ReadWrite, Mapping::Transmit) => "rwr",
+            (access, _) => access.abbreviation(),
+        };
+        writeln!(f, "\nObjectType=0x7\nDataType=0x{:04X}\nAccessType={access}", entry.data_type.code())?;
+        writeln!(f, "DefaultValue={}\nPDOMapping={}", entry.default_value(), u8::from(entry.mapping != Mapping::No))?;
+        if let Some((lowest, highest)) = entry.range() {
+            writeln!(f, "LowLimit={lowest}\nHighLimit={highest}")?;
+        }
+        if let Some(Ok(value)) = self.configured.map(|values| values.read(object))
+            && value != entry.default_value()
+        {
+            writeln!(f, "ParameterValue={value}")?;
+        }
+        writeln!(f)
     }
-    let access = match (entry.access, entry.mapping) {
-        (Access::ReadWrite, Mapping::Receive) => "rww",
-        (Access::ReadWrite, Mapping::Transmit) => "rwr",
-        (access, _) => access.abbreviation(),
-    };
-    writeln!(f, "\nObjectType=0x7\nDataType=0x{:04X}\nAccessType={access}", entry.data_type.code())?;
-    writeln!(f, "DefaultValue={}\nPDOMapping={}", entry.default_value(), u8::from(entry.mapping != Mapping::No))?;
-    if let Some((lowest, highest)) = entry.range() {
-        writeln!(f, "LowLimit={lowest}\nHighLimit={highest}")?;
-    }
-    writeln!(f)
 }

@@ -93,7 +93,7 @@ fn what_is_missing_is_said() {
     assert_eq!(
         refusal(&empty(), &options()),
         "there is nothing to draw: no signals are recorded, and none of the channels `setpoint.velocity`, \
-         `load.velocity`, `setpoint.position` and `load.position`"
+         `load.velocity`, `setpoint.position` and `load.position`: name one in `record.channels`"
     );
     let other = Recording { channels: vec![channel("current.q", "A", vec![1.0; 10])], ..empty() };
     assert!(refusal(&other, &options()).starts_with("there is nothing to draw"));

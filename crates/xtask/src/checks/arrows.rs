@@ -33,7 +33,7 @@ const PLAN: [(&str, May); 23] = [
         ]),
     ),
     ("suite", May::On(&["base", "plant", "sim", "scenario", "trace", "metrics"])),
-    ("report", May::On(&["base", "motion", "planner", "trace", "metrics"])),
+    ("report", May::On(&["base", "cia402", "motion", "planner", "trace", "metrics"])),
     ("view", May::On(&["base", "trace", "metrics"])),
     ("cli", May::OnAll),
     ("tests", May::OnAll),
