@@ -81,6 +81,7 @@ fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
         BuildError::Objects(_) => "drive.objects".to_owned(),
         BuildError::Units(_) => "bus.units".to_owned(),
         BuildError::Link(_) | BuildError::NoDriveOnTheBus => "bus".to_owned(),
+        BuildError::Points(_) => "program".to_owned(),
         BuildError::NoSuchBlock => "call".to_owned(),
     };
     vec![Objection::new(&key, error.to_string())]
