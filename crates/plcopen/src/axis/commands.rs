@@ -49,12 +49,13 @@ impl Axis {
         Ok(id)
     }
 
-    /// MC_Stop.
-    pub(crate) fn stop(&mut self, command: Command) -> Result<CommandId, BlockError> {
+    /// MC_Stop. An instance whose stop `before` still brakes may stop anew; no other one may.
+    pub(crate) fn stop(&mut self, command: Command, before: Option<CommandId>) -> Result<CommandId, BlockError> {
         let block = command.block;
-        let Some(arrow) = arrow(self.state, Cause::Block(block)) else {
+        let is_its_own = self.state == AxisState::Stopping && before.is_some() && self.activity.id() == before;
+        if arrow(self.state, Cause::Block(block)).is_none() && !is_its_own {
             return Err(BlockError::State { block, state: self.state });
-        };
+        }
         command.check(&self.params)?;
         let from = self.present();
         let activity = self.prepared(CommandId::OWN, command, from, 0.0, &Queue::EMPTY)?;
@@ -62,7 +63,7 @@ impl Axis {
         let id = self.ledger.issue();
         self.begin_activity(id, activity, from);
         self.stop_holder = Some(id);
-        self.state = arrow.to;
+        self.follow(Cause::Block(block));
         Ok(id)
     }
 

@@ -127,11 +127,11 @@ impl FunctionBlock for Stop {
         if !execute && let Some(id) = self.holding.take() {
             axis.release_stop(id);
         }
-        let holding = &mut self.holding;
+        let (holding, before) = (&mut self.holding, self.execution.running());
         let report = self.execution.step(axis, execute, |axis| {
             let dynamics = Dynamics::braking(deceleration, jerk, snap);
             let buffer_mode = BufferMode::Aborting;
-            let id = axis.stop(Command { block: Self::NAME, goal: Goal::Rest, dynamics, buffer_mode })?;
+            let id = axis.stop(Command { block: Self::NAME, goal: Goal::Rest, dynamics, buffer_mode }, before)?;
             *holding = Some(id);
             Ok(Some(id))
         });

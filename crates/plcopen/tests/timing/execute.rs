@@ -163,6 +163,31 @@ fn stop_holds_the_axis_until_execute_falls() {
     assert_eq!(bench.axis.state(), AxisState::Standstill);
 }
 
+/// Execute falls while the axis brakes, and rises again before it stands: a second edge of the same instance.
+#[test]
+fn a_stop_that_is_executed_again_while_it_brakes_holds_the_axis_again() {
+    let mut bench = Bench::standstill();
+    let (mut go, mut stop, mut other) = (MoveVelocity::default(), Stop::default(), Stop::default());
+    let run = MoveVelocityInputs { execute: true, velocity: 0.5, ..MoveVelocityInputs::within(&LIMITS) };
+    for _ in 0..400 {
+        bench.cycle(|axis| go.step(axis, &run));
+    }
+    let stopping = |execute| StopInputs { execute, ..StopInputs::within(&LIMITS) };
+    for execute in [true, true, false, true] {
+        let outputs = bench.cycle(|axis| stop.step(axis, &stopping(execute)));
+        assert!(outputs.busy && !outputs.error, "{execute} {outputs:?}");
+    }
+    assert_eq!(bench.cycle(|axis| other.step(axis, &stopping(true))).error_id, ErrorId::State, "another instance");
+    let mut outputs = StopOutputs::default();
+    for _ in 0..1000 {
+        outputs = bench.cycle(|axis| stop.step(axis, &stopping(true)));
+    }
+    assert!(outputs.done);
+    assert_eq!((bench.axis.state(), bench.axis.commanded().v.to_bits()), (AxisState::Stopping, 0));
+    bench.cycle(|axis| stop.step(axis, &stopping(false)));
+    assert_eq!(bench.axis.state(), AxisState::Standstill);
+}
+
 #[test]
 fn halt_can_be_taken_over_on_the_way() {
     let mut bench = Bench::standstill();
