@@ -62,7 +62,10 @@ fn arguments_choose_what_is_drawn() {
     assert_eq!(has(&["--source", "Second", "--idle"]), [false, true, true]);
     // What is left out as idle is named in a note.
     assert_eq!(has(&["--source", "Second"]), [false, true, false]);
-    assert_eq!(has(&["--source", "First", "--source", "Second", "--to", "200 ms", "--from", "50 ms"])[0], true);
+    assert_eq!(has(&["--source", "First", "--source", "Second", "--idle"]), [true, true, true]);
+    // The second starts after that stretch.
+    let is_left_out = |more: &[&str]| drawn(&path, more).contains("nothing happens: Second.Execute");
+    assert_eq!([is_left_out(&["--from", "50 ms", "--to", "200 ms"]), is_left_out(&[])], [true, false]);
     assert!(drawn(&path, &["--width", "1200"]).contains("width=\"1200\""));
 
     let svg = work.path().join("part.svg");
