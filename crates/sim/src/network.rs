@@ -212,7 +212,10 @@ impl Network {
     pub(crate) fn reference(&mut self, t: f64) -> Option<(Setpoint, feedforward::MotorReference)> {
         let reference = self.reference.at(t);
         let (_, drive) = &self.drive;
-        let follows = matches!(drive.mode(), Some(Mode::CyclicSynchronousPosition | Mode::CyclicSynchronousVelocity));
+        let follows = matches!(
+            drive.mode(),
+            Some(Mode::CyclicSynchronousPosition | Mode::CyclicSynchronousVelocity | Mode::ProfileVelocity)
+        );
         match (&self.demand, reference) {
             (Demand::Position { .. } | Demand::Velocity { .. }, Some(reference)) if follows => {
                 let reference = Setpoint { x: reference.x + self.origin(), ..reference };

@@ -5,7 +5,7 @@ use crate::layout::{Layout, Node, View};
 use crate::legend;
 use crate::planned::PlannedPlot;
 use crate::scene::Scene;
-use rerun::EntityPath;
+use crate::signals::Lanes;
 use rerun::blueprint::components::{BackgroundKind, ContainerKind, LinkAxis};
 use rerun::datatypes::{TimeInt, TimeRange, TimeRangeBoundary};
 use rerun::external::re_sdk_types::blueprint::archetypes::{
@@ -19,7 +19,7 @@ pub(crate) fn layout(
     plots: &[PlannedPlot<'_>],
     scene: Option<&Scene>,
     happenings: &Happenings,
-    signals: Vec<EntityPath>,
+    signals: Lanes,
     duration: f64,
 ) -> Layout {
     let on = |page: Page| plots.iter().filter(move |plot| plot.page == page).map(|plot| (share(plot), plot_view(plot)));
@@ -32,13 +32,21 @@ pub(crate) fn layout(
         .into_iter()
         .filter_map(|(share, parts)| Some((share, Node::of(ContainerKind::Vertical, None, parts)?)));
     let mut blocks: Vec<(f32, Node)> = Vec::new();
-    if !signals.is_empty() {
-        blocks.extend(on(Page::Motion));
-        blocks.push((2.0, Node::View(View::new("StateTimeline", "Blocks, axis and drive", signals))));
+    if !signals.paths.is_empty() {
+        blocks.extend(on(Page::Motion).map(|(_, plot)| (0.5, plot)));
+        blocks.push((2.0, Node::View(View::new("StateTimeline", "Blocks, axis and drive", signals.paths))));
     }
-    let pages = [
+    let mut first = [
         Node::of(ContainerKind::Horizontal, Some("Axis"), columns.collect()),
         Node::of(ContainerKind::Vertical, Some("Program"), blocks),
+    ];
+    if signals.has_program {
+        first.reverse();
+    }
+    let [one, two] = first;
+    let pages = [
+        one,
+        two,
         Node::of(ContainerKind::Grid, Some("Set-point"), on(Page::SetPoint).collect()),
         Node::of(ContainerKind::Vertical, Some("Drive"), on(Page::Electrical).collect()),
         Node::of(ContainerKind::Vertical, Some("Log"), log_view(happenings).into_iter().collect()),

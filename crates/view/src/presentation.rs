@@ -75,7 +75,7 @@ impl<'a> Presentation<'a> {
             &self.plots,
             self.scene.as_ref(),
             &Happenings::of(&self.runs),
-            signals::paths(&self.runs),
+            signals::lanes(&self.runs),
             duration,
         )
     }

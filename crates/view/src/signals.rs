@@ -10,19 +10,29 @@ const COLOURS: [Rgb; 6] =
     [style::MOTOR, style::LOAD, style::TABLE, style::AUXILIARY, style::DISTURBANCE, style::REFERENCE];
 
 /// Values that say that something is off.
-const OFF: [&str; 4] = ["FALSE", "none", "Off", "Disabled"];
+const OFF: [&str; 5] = ["FALSE", "0", "none", "Off", "Disabled"];
 /// Parts of values that say that something went wrong.
 const WRONG: [&str; 5] = ["Error", "Fault", "fault", "Underflow", "Overflow"];
 
-/// Entities of the lanes of `runs`.
-pub(crate) fn paths(runs: &[Run<'_>]) -> Vec<EntityPath> {
-    let lanes = |run: &Run<'_>| run.recording.signals.iter().map(|signal| path(run, signal)).collect::<Vec<_>>();
-    runs.iter().flat_map(lanes).collect()
+/// Lanes of signals.
+#[derive(Debug)]
+pub(crate) struct Lanes {
+    /// Their entities.
+    pub(crate) paths: Vec<EntityPath>,
+    /// Whether there is a program of function blocks.
+    pub(crate) has_program: bool,
+}
+
+/// The lanes of `runs`.
+pub(crate) fn lanes(runs: &[Run<'_>]) -> Lanes {
+    let lanes = |run: &Run<'_>| eventful(run).map(|signal| path(run, signal)).collect::<Vec<_>>();
+    let has_program = |run: &Run<'_>| run.recording.signals.iter().any(|signal| signal.source == "axis");
+    Lanes { paths: runs.iter().flat_map(lanes).collect(), has_program: runs.iter().any(has_program) }
 }
 
 /// Logs the signals of `run`.
 pub(crate) fn log(stream: &RecordingStream, run: &Run<'_>) -> RecordingStreamResult<()> {
-    run.recording.signals.iter().filter(|signal| !signal.changes.is_empty()).try_for_each(|signal| {
+    eventful(run).try_for_each(|signal| {
         let path = path(run, signal);
         let times = TimeColumn::new_duration_secs(TIMELINE, signal.changes.iter().map(|(time, _)| *time));
         let values = signal.changes.iter().map(|(_, value)| value.as_str());
@@ -35,8 +45,18 @@ pub(crate) fn log(stream: &RecordingStream, run: &Run<'_>) -> RecordingStreamRes
     })
 }
 
+/// The signals in which something happens: those of a block that is never in error would hide the others.
+fn eventful<'a>(run: &Run<'a>) -> impl Iterator<Item = &'a Signal> {
+    let happens = |signal: &&Signal| signal.changes.iter().any(|(_, value)| !OFF.contains(&value.as_str()));
+    run.recording.signals.iter().filter(happens)
+}
+
 fn path(run: &Run<'_>, signal: &Signal) -> EntityPath {
-    run.path(&["signals", &signal.source, &signal.name])
+    // The viewer sorts lanes by their paths: the axis, the blocks, what is below them.
+    match signal.source.as_str() {
+        source @ ("axis" | "drive" | "link") => run.path(&[source, &signal.name]),
+        block => run.path(&["blocks", block, &signal.name]),
+    }
 }
 
 /// The values of `signal` with their colours.

@@ -127,7 +127,9 @@ impl Network {
         };
         let delays = if bus.mode.is_cyclic() { delays } else { Delays { link: 0, drive: 0, ..delays } };
         let period = f64::from(motion_cycle.ticks()) * tick;
-        let delay = delays.sum() as f64 * tick + loops.reference_delay.length(loops.period(drive_every));
+        // Velocities go past the position loop, in which set-points wait for the feedforward.
+        let waits = if bus.mode.is_cyclic() { loops.reference_delay.length(loops.period(drive_every)) } else { 0.0 };
+        let delay = delays.sum() as f64 * tick + waits;
         let task = match &scenario.plc {
             Some(plc) => MotionTask::Plc(Box::new(Plc::new(plc, scenario.axis.modulo, period, recorder)?)),
             None if !bus.mode.is_cyclic() => {

@@ -37,13 +37,13 @@ impl Moves {
         (AxisCommand { power: true, reset: false, task: Task::Follow(sample(setpoint)) }, setpoint)
     }
 
-    /// What a recording says of the moves; their ends reach the axis `delay` (s) later.
+    /// What a recording says of the moves; they reach the axis `delay` (s) later.
     pub(super) fn moves(&self, unit: &str, delay: f64) -> impl Iterator<Item = Move> {
-        let begun = self.waited as f64 * self.period;
+        let begun = self.waited as f64 * self.period + delay;
         self.program.moves(unit).map(move |made| Move {
             start: made.start + begun,
-            end: made.end + begun + delay,
-            cruise: (made.cruise.0 + begun + delay, made.cruise.1),
+            end: made.end + begun,
+            cruise: (made.cruise.0 + begun, made.cruise.1),
             ..made
         })
     }

@@ -78,7 +78,10 @@ impl OwnWay {
         // Before the axis is powered nothing is due.
         let now = self.passed.checked_sub(1).map_or(f64::NEG_INFINITY, |passed| passed as f64 * self.period + ROUNDING);
         let way = self.orders.way(now, feedback);
-        Step { command: AxisCommand { power: true, reset: false, task: Task::Drive(way) }, setpoint: None }
+        // In profile velocity the drive knows no position: the plan says where the axis is to be. In the other modes the drive's
+        // own set-point does.
+        let setpoint = matches!(self.orders, Orders::Velocities { .. }).then(|| self.program.at(now.max(0.0)));
+        Step { command: AxisCommand { power: true, reset: false, task: Task::Drive(way) }, setpoint }
     }
 
     /// What a recording says of the moves; they reach the axis `delay` (s) later.

@@ -106,15 +106,15 @@ impl Plc {
         }
     }
 
-    /// Notes at the end of the run, at `t` (s), what moved the axis and what was never executed; the ends of moves reach the
-    /// axis `delay` (s) later.
+    /// Notes at the end of the run, at `t` (s), what moved the axis and what was never executed; moves reach the axis
+    /// `delay` (s) later.
     pub(super) fn finish(&mut self, t: f64, delay: f64, recorder: &mut Recorder) {
         for call in &mut self.calls {
             call.end_motion(t, self.followed, &mut self.made);
         }
         self.made.sort_by(|one, other| one.start.total_cmp(&other.start));
         for made in self.made.drain(..) {
-            recorder.note_move(Move { end: made.end + delay, ..made });
+            recorder.note_move(Move { start: made.start + delay, end: made.end + delay, ..made });
         }
         for call in &self.calls {
             if let Some(message) = call.never_executed(&self.known) {
