@@ -110,7 +110,7 @@ impl MotionTask {
     }
 }
 
-/// What the drive's sensors say at a tick.
+/// What the drive's sensors say at one of its steps.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Seen {
     /// Reading of the encoder that closes the position loop (its own coordinate).
@@ -128,9 +128,17 @@ pub(crate) struct Seen {
 }
 
 impl Network {
-    /// Goes through base tick `k`, at `t` (s), and returns what the loops are to do.
-    pub(crate) fn step(&mut self, k: u64, t: f64, seen: &Seen, recorder: &mut Recorder) -> &Demand {
-        if let Some(pulse) = seen.switches.index {
+    /// Goes through base tick `k`, at `t` (s), and returns what the loops are to do. `pulse` is where an index pulse came in
+    /// this tick; the drive looks at its sensors when it steps.
+    pub(crate) fn step(
+        &mut self,
+        k: u64,
+        t: f64,
+        pulse: Option<f64>,
+        see: impl FnOnce() -> Seen,
+        recorder: &mut Recorder,
+    ) -> &Demand {
+        if let Some(pulse) = pulse {
             self.index = Some(counts(pulse / self.index_increment));
         }
         let (params, state) = &mut self.bus;
@@ -138,7 +146,7 @@ impl Network {
             self.step_bus(&cycle, t, recorder);
         }
         if self.drive_turn.is_due(self.drive_every) {
-            self.step_drive(t, seen, recorder);
+            self.step_drive(t, &see(), recorder);
         }
         &self.demand
     }

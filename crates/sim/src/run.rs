@@ -140,16 +140,17 @@ impl Bench {
                 command
             }
             Source::Network(network, _) => {
-                let seen = Seen {
+                let switches = self.switches.read(now.load.position, self.motor_before, motor.position);
+                self.motor_before = motor.position;
+                let see = || Seen {
                     position: sensors.closing_position(),
                     velocity: state.velocity(params),
                     effort: state.held().effort.effort,
                     effort_is_cut: state.held().effort.cut.is_some(),
                     following_error: state.following_error(params, &sensors),
-                    switches: self.switches.read(now.load.position, self.motor_before, motor.position),
+                    switches,
                 };
-                self.motor_before = motor.position;
-                let demand = network.step(k, t, &seen, &mut self.recorder);
+                let demand = network.step(k, t, switches.index, see, &mut self.recorder);
                 let command = drive::step(params, state, demand, &sensors);
                 now.setpoint = network.setpoint(now.motor.position);
                 (now.task, now.bus_position) = network.told();
