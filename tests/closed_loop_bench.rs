@@ -2,6 +2,8 @@
 //!
 //! `cargo xtask bench [--json]`. The loop: 16 kHz current control of a synchronous motor, two bodies, 20 recorded
 //! channels. The bare step goes through the same motion of the same model: the engine's own library and nothing of ours.
+//! On `exact` the axis also moves by function blocks of a PLC over a fieldbus; what that costs more is the price of blocks,
+//! bus and the drive's state machine with its modes.
 //!
 //! Short rounds of all candidates alternate, so that a busy machine slows all of them; the least of each counts.
 use servobench_plant::{BodyState, Engine, Exact, Input, Mechanics, MechanicsError, MechanicsSetup};
@@ -44,9 +46,34 @@ velocity = "100 rad/s"
 acceleration = "1500 rad/s2"
 jerk = "6e4 rad/s3"
 snap = "6e6 rad/s4"
+"#;
+
+/// The axis is fed its set-points directly.
+const DIRECT: &str = r#"
 [[program]]
 move_to = "15 rad"
 "#;
+
+/// The same move by function blocks, executed every 4 ms, over a bus with a frame every millisecond.
+const ON_A_BUS: &str = r#"
+[bus]
+cycle = "1 ms"
+motion_cycle = "4 ms"
+units = { drive = 1048576, axis = "1 rev" }
+[plc]
+homing_required = false
+[[call]]
+block = "MC_Power"
+name = "power"
+[[call]]
+block = "MC_MoveAbsolute"
+name = "move"
+start = "power.Status"
+position = "15 rad"
+"#;
+
+/// Name of the candidate that is driven over a bus.
+const BY_BLOCKS: &str = "by blocks";
 
 /// What is measured: one round of it returns nanoseconds per tick.
 struct Candidate {
@@ -82,14 +109,16 @@ fn main() {
             Some(Line { engine, tick, bare: of(format!("bare {engine}")), in_turn: of(format!("{engine} in turn")) })
         })
         .collect();
-    if json { print_json(&lines) } else { print_table(&lines) }
+    let by_blocks = of(BY_BLOCKS.to_owned()).map_or(f64::NAN, |tick| tick - exact_tick(&lines));
+    if json { print_json(&lines, by_blocks) } else { print_table(&lines, by_blocks) }
 }
 
 fn exact_tick(lines: &[Line]) -> f64 {
     lines.iter().find(|line| line.engine == Exact.name()).map_or(f64::NAN, |line| line.tick)
 }
 
-fn print_json(lines: &[Line]) {
+/// `by_blocks` is what blocks, drive and bus add to a tick (ns).
+fn print_json(lines: &[Line], by_blocks: f64) {
     let number = |value: Option<f64>| value.map_or("null".to_owned(), |value| format!("{value:.1}"));
     let exact = exact_tick(lines);
     let engines: Vec<String> = lines
@@ -107,10 +136,14 @@ fn print_json(lines: &[Line]) {
             )
         })
         .collect();
-    println!("{{\"base_rate_hz\":{BASE_RATE},\"channels\":{CHANNELS},\"engines\":[{}]}}", engines.join(","));
+    println!(
+        "{{\"base_rate_hz\":{BASE_RATE},\"channels\":{CHANNELS},\"blocks_drive_and_bus_add_ns\":{by_blocks:.1},\
+         \"engines\":[{}]}}",
+        engines.join(",")
+    );
 }
 
-fn print_table(lines: &[Line]) {
+fn print_table(lines: &[Line], by_blocks: f64) {
     let number = |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.0} ns"));
     let exact = exact_tick(lines);
     println!("{:8} {:>9} {:>12} {:>10} {:>19} {:>9}", "", "", "", "", "above bare + exact", "");
@@ -130,12 +163,19 @@ fn print_table(lines: &[Line]) {
         );
     }
     println!("apart: both measured alone, each with the caches to itself; in turn: one after the other at every tick");
+    println!(
+        "blocks, drive and bus add {by_blocks:.0} ns per tick: MC_Power and MC_MoveAbsolute every 4 ms, a frame every 1 ms"
+    );
 }
 
 fn candidates() -> Vec<Candidate> {
-    let axis = with_twenty_channels(scenario(AXIS));
-    let motion = Arc::new(Motion::of(&scenario(AXIS)));
-    let mut all = Vec::new();
+    let direct = scenario(&[AXIS, DIRECT].concat());
+    let motion = Arc::new(Motion::of(&direct));
+    let axis = with_twenty_channels(direct);
+    let mut on_a_bus = scenario(&[AXIS, ON_A_BUS].concat());
+    on_a_bus.record.channels.clone_from(&axis.record.channels);
+    assert_moves(&on_a_bus);
+    let mut all = vec![candidate(BY_BLOCKS.into(), move || loop_round(&on_a_bus, &Exact))];
     for engine in servobench_tests::engines() {
         let looped = axis.clone();
         all.push(candidate(engine.name().into(), move || loop_round(&looped, engine)));
@@ -146,6 +186,13 @@ fn candidates() -> Vec<Candidate> {
         all.push(candidate(format!("{} in turn", engine.name()), move || loop_round(&looped, &in_turn)));
     }
     all
+}
+
+/// Blocks that move nothing would cost less.
+fn assert_moves(axis: &Scenario) {
+    let recording = servobench_tests::run(axis, &Exact);
+    let position = recording.channel("load.position").and_then(|values| values.last().copied());
+    assert!(position.is_some_and(|position| position > 5.0), "the axis ends at {position:?} rad");
 }
 
 fn candidate(name: String, round: impl FnMut() -> f64 + 'static) -> Candidate {

@@ -1,4 +1,5 @@
-//! `cargo xtask bench`: cost of a tick of the closed loop on every engine, beside the bare engine step.
+//! `cargo xtask bench`: cost of a tick of the closed loop on every engine, beside the bare engine step, and of function blocks,
+//! bus and drive in front of it.
 use crate::failure::Failure;
 use crate::wheel;
 use crate::workspace::{Workspace, run as run_command};
