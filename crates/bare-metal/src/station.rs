@@ -24,10 +24,8 @@ const COUNTS: f64 = 1e6;
 #[expect(unsafe_code, reason = "the name is for a caller in C, and no other symbol of the program has it")]
 #[unsafe(no_mangle)]
 extern "C" fn servobench_station_position(position: f64, bus_cycles: u32) -> f64 {
-    let (mut knots, mut scratch) = ([Knot::default(); 3], [0.0; 3]);
-    let back_and_forth = PositionProfile::new(&mut knots, &mut scratch);
     let Some(params) = link_params() else { return f64::NAN };
-    let Some(mut program) = Program::new(position, back_and_forth) else { return f64::NAN };
+    let Some(mut program) = Program::new(position) else { return f64::NAN };
     let (mut link, mut mailbox, mut drive) = (link::State::default(), Mailbox::default(), Drive::default());
     let mut actuals = None;
     for cycle in 0..u64::from(bus_cycles) {
@@ -71,18 +69,19 @@ fn link_params() -> Option<Params> {
 }
 
 /// The program of the PLC: power, a move, a table.
-struct Program<'m> {
+struct Program {
     axis: Axis,
     power: Power,
     go: MoveAbsolute,
-    back_and_forth: PositionProfile<'m>,
+    back_and_forth: PositionProfile<[Knot; 3], [f64; 3]>,
     position: f64,
 }
 
-impl<'m> Program<'m> {
-    fn new(position: f64, back_and_forth: PositionProfile<'m>) -> Option<Self> {
+impl Program {
+    fn new(position: f64) -> Option<Self> {
         let params = AxisParams { needs_homing: false, ..AxisParams::new(10e-3, LIMITS) };
         let axis = Axis::new(params).ok()?;
+        let back_and_forth = PositionProfile::new([Knot::default(); 3], [0.0; 3]);
         Some(Self { axis, power: Power, go: MoveAbsolute::default(), back_and_forth, position })
     }
 

@@ -1,7 +1,8 @@
 //! The arrows of the state diagram (PLCopen part 1, version 2.0, figure 2.1): one table, on which the axis runs, which the
 //! tests test and from which `docs/plcopen.md` is written.
 //!
-//! The standard has no numbers but for its six notes; arrows 1 to 6 are these.
+//! The standard has no numbers but for its six notes; arrows 1 to 6 are these. Arrow 14 is ours: the generator
+//! of order 4 moves from rest to rest.
 use crate::name::BlockName;
 use crate::state::AxisState::{
     self, ContinuousMotion, Disabled, DiscreteMotion, ErrorStop, Homing, Standstill, Stopping,
@@ -59,7 +60,7 @@ pub struct Arrow {
 }
 
 /// Every arrow, in the order of its number.
-pub const ARROWS: [Arrow; 13] = [
+pub const ARROWS: [Arrow; 14] = [
     Arrow {
         number: 1,
         from: &[Disabled, Standstill, Homing, DiscreteMotion, ContinuousMotion, Stopping],
@@ -120,6 +121,7 @@ pub const ARROWS: [Arrow; 13] = [
             Cause::Block(BlockName::AccelerationProfile),
         ],
     },
+    Arrow { number: 14, from: &[Standstill], to: DiscreteMotion, causes: &[Cause::Block(BlockName::Profile4th)] },
 ];
 
 /// The arrow that `cause` sets off in `state`.

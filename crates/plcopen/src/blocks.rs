@@ -26,6 +26,7 @@ mod outputs;
 mod position_profile;
 mod power;
 mod profile;
+mod profile_4th;
 mod read;
 mod reset;
 mod set_override;
@@ -48,7 +49,8 @@ pub use move_velocity::{MoveVelocity, MoveVelocityInputs, MoveVelocityOutputs};
 pub use outputs::{DoneOutputs, FunctionBlock, MotionOutputs, Outputs};
 pub use position_profile::{Follow, PositionProfile, PositionProfileInputs, TimePosition, VelocityCommands};
 pub use power::{Power, PowerInputs, PowerOutputs};
-pub use profile::Pair;
+pub use profile::{Memory, Pair};
+pub use profile_4th::{Profile4th, Profile4thInputs, Profile4thOutputs};
 pub use read::{
     ReadActualPosition, ReadActualTorque, ReadActualVelocity, ReadAxisError, ReadAxisErrorOutputs, ReadInputs,
     ReadStatus, ReadStatusOutputs, ReadValueOutputs, ReadsValue,

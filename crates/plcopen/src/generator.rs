@@ -39,6 +39,8 @@
 //! ([`Method`]); `ActRefPos` and `pref_add`, which are taken for the two ends of "increment from an actual position to the new one"
 //! (section 3): the move goes from `ActRefPos`, as it is at the start, by `pref_add = ±(pref − ActRefPos)`; and `CmdDone`, taken for
 //! the end of what (65) waits for. Its flags are of type LREAL, and BOOL here.
+//!
+//! [`Profile4th`](crate::Profile4th) has an axis follow it.
 use servobench_base::{ParamError, Setpoint, non_negative, positive};
 use servobench_motion::sampled::{Cascade, Execution, Run};
 use servobench_motion::{Limits, Order, PlanError, Profile};
@@ -188,6 +190,11 @@ impl State {
             Ok(course) => (self.total, self.added, self.course) = (Some(course.total), distance, Some(course)),
             Err(error) => (self.total, self.added, self.error) = (None, 0.0, Some(error)),
         }
+    }
+
+    /// Whether a move has been asked for in this sample, or is under way.
+    pub(crate) const fn is_moving(&self) -> bool {
+        self.is_starting || self.course.is_some()
     }
 
     /// (65); `t_final` is (54) in samples.

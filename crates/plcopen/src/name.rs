@@ -1,7 +1,7 @@
 //! The names of the function blocks.
 use core::fmt;
 
-/// A function block of the standard.
+/// A function block: of the standard, but for `Profile4th`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum BlockName {
     /// `MC_Power`.
@@ -34,6 +34,8 @@ pub enum BlockName {
     VelocityProfile,
     /// `MC_AccelerationProfile`.
     AccelerationProfile,
+    /// `Profile4th`, beyond the standard.
+    Profile4th,
     /// `MC_SetPosition`.
     SetPosition,
     /// `MC_SetOverride`.
@@ -52,7 +54,7 @@ pub enum BlockName {
 
 impl BlockName {
     /// The blocks that ask for a motion or for its end, those of the state diagram.
-    pub const COMMANDS: [Self; 13] = [
+    pub const COMMANDS: [Self; 14] = [
         Self::Home,
         Self::Stop,
         Self::Halt,
@@ -66,9 +68,10 @@ impl BlockName {
         Self::PositionProfile,
         Self::VelocityProfile,
         Self::AccelerationProfile,
+        Self::Profile4th,
     ];
 
-    /// Name in the spelling of the standard.
+    /// Name in the spelling of the standard, or of the paper.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -87,6 +90,7 @@ impl BlockName {
             Self::PositionProfile => "MC_PositionProfile",
             Self::VelocityProfile => "MC_VelocityProfile",
             Self::AccelerationProfile => "MC_AccelerationProfile",
+            Self::Profile4th => "Profile4th",
             Self::SetPosition => "MC_SetPosition",
             Self::SetOverride => "MC_SetOverride",
             Self::ReadStatus => "MC_ReadStatus",

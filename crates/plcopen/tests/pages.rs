@@ -1,10 +1,11 @@
 //! `docs/plcopen.md` holds the tables of the arrows, the ErrorIDs and the outputs.
 //! `SERVOBENCH_WRITE_DOCS=1 cargo test -p servobench-plcopen` writes them.
+use servobench_motion::pvt::Knot;
 use servobench_plcopen::{
     ARROWS, AccelerationProfile, ErrorId, FunctionBlock, Halt, Home, MoveAbsolute, MoveAdditive,
-    MoveContinuousAbsolute, MoveRelative, MoveSuperimposed, MoveVelocity, Outputs, PositionProfile, Power,
-    ReadActualPosition, ReadActualTorque, ReadActualVelocity, ReadAxisError, ReadStatus, Reset, SetOverride,
-    SetPosition, Stop, TorqueControl, VelocityProfile,
+    MoveContinuousAbsolute, MoveRelative, MoveSuperimposed, MoveVelocity, Outputs, Pair, PositionProfile, Power,
+    Profile4th, ReadActualPosition, ReadActualTorque, ReadActualVelocity, ReadAxisError, ReadStatus, Reset,
+    SetOverride, SetPosition, Stop, TorqueControl, VelocityProfile,
 };
 use std::fmt::Write as _;
 use std::path::Path;
@@ -66,9 +67,10 @@ fn outputs() -> String {
     row(of::<MoveVelocity>());
     row(of::<MoveContinuousAbsolute>());
     row(of::<TorqueControl>());
-    row(of::<PositionProfile<'_>>());
-    row(of::<VelocityProfile<'_>>());
-    row(of::<AccelerationProfile<'_>>());
+    row(of::<PositionProfile<[Knot; 0], [f64; 0]>>());
+    row(of::<VelocityProfile<[Pair; 0]>>());
+    row(of::<AccelerationProfile<[Pair; 0]>>());
+    row(of::<Profile4th>());
     row(of::<SetPosition>());
     row(of::<SetOverride>());
     row(of::<ReadStatus>());

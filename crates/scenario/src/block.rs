@@ -273,7 +273,7 @@ pub(crate) const BLOCKS: &[Interface] = {
             "the generator of fourth order as a block: moves to a position",
             Enable,
             &["position", "velocity", "acceleration", "jerk", "snap", "settling_time", "reversed"],
-            &[Ready, Done, Error],
+            &[Ready, Done, Busy, Active, CommandAborted, Error],
         ),
     ]
 };

@@ -52,9 +52,6 @@ pub enum BuildError {
     /// Settings that do not fit the objects of the drive.
     #[error(transparent)]
     Objects(Box<ObjectsError>),
-    /// A call of a block that the bench does not have.
-    #[error("the bench does not have this function block: take one of those in docs/scenario.md")]
-    NoSuchBlock,
     /// A table that cannot be sent to the buffer of the drive.
     #[error(transparent)]
     Points(#[from] Unsendable),

@@ -103,3 +103,64 @@ fn waiting_in_vain_ends_with_the_reason() {
     assert!(failure.starts_with("at 1.00"), "{failure}");
     assert!(failure.ends_with("`first.CommandAborted` did not become TRUE within 1 s"), "{failure}");
 }
+
+/// Position and velocity that the motion task commands at `t` (s).
+fn commanded(recording: &Recording, t: f64) -> [f64; 2] {
+    let channel = |name| recording.channel(name).unwrap_or_else(|| panic!("no channel {name}"));
+    let tick = (0..1_000_000).position(|tick| f64::from(tick) * recording.rate.period() > t - 1e-9).unwrap_or_default();
+    ["task.position", "task.velocity"].map(|name| channel(name)[tick])
+}
+
+/// Oracle: the table. Every position is commanded at its time, in the cycle on which it falls, by the spline and by plateaus.
+#[test]
+fn a_position_profile_meets_its_positions_at_their_times() {
+    const POSITIONS: [f64; 11] = [0.0, 0.005, 0.02, 0.045, 0.07, 0.09, 0.1, 0.102, 0.101, 0.1, 0.1];
+    let recording = run("position-profile.toml");
+    for (call, from) in [("spline", 0.0), ("plateaus", 0.1)] {
+        let start = when(&recording, call, "Execute", "TRUE");
+        for (k, position) in POSITIONS.iter().enumerate() {
+            let [x, _] = commanded(&recording, start + 0.05 * k as f64);
+            // Sums of some hundred cycles.
+            assert!((x - from - position).abs() < 1e-12, "{call} {k}: {x} {position}");
+        }
+        assert!((when(&recording, call, "Done", "TRUE") - start - 0.5).abs() < 1e-9);
+    }
+    assert!((last(&recording, "load.position") - 0.2).abs() < 1e-5);
+}
+
+/// Oracle: areas under the lines of velocity by hand.
+#[test]
+fn a_velocity_profile_goes_by_its_lines_and_keeps_the_last_velocity() {
+    let recording = run("velocity-profile.toml");
+    let start = when(&recording, "profile", "Execute", "TRUE");
+    let points = [(0.1, 0.01, 0.2), (0.2, 0.03, 0.2), (0.3, 0.05, 0.2), (0.4, 0.0625, 0.05), (0.5, 0.0675, 0.05)];
+    for (t, position, velocity) in points {
+        let [x, v] = commanded(&recording, start + t);
+        assert!((x - position).abs() < 1e-12 && (v - velocity).abs() < 1e-12, "{t}: {x} {v}");
+    }
+    assert!((when(&recording, "profile", "ProfileCompleted", "TRUE") - start - 0.4).abs() < 1e-9);
+    // The halt begins 0.2 s later and brakes with the 8 m/s² of the scenario: v²/2a more.
+    let end = 0.0725 + 0.05 * 0.05 / 16.0;
+    assert!((last(&recording, "task.position") - end).abs() < 1e-9, "{}", last(&recording, "task.position"));
+    assert!(when(&recording, "halt", "Done", "TRUE") > start + 0.6);
+}
+
+/// Oracle: the targets; and the samples of the plan, by the closed form of a move that reaches all limits but that of the velocity
+/// in whole samples: d/v + v/a + a/j + j/s.
+#[test]
+fn the_generator_of_fourth_order_ends_on_its_targets() {
+    let recording = run("profile-4th.toml");
+    let (there, back) = (when(&recording, "there", "Done", "TRUE"), when(&recording, "back", "Done", "TRUE"));
+    let moves: Vec<_> = recording.moves.iter().map(|made| (made.from, made.to)).collect();
+    assert_eq!(moves.len(), 2, "{moves:?}");
+    assert!((moves[0].1 - 0.25).abs() < 1e-15 && moves[1].1.abs() < 1e-15, "{moves:?}");
+    let [x, v] = commanded(&recording, there);
+    assert!((x - 0.25).abs() < 1e-15 && v.to_bits() == 0, "{x} {v}");
+    // 0.25/0.5 + 0.5/5 + 5/100 + 100/5000 = 0.67 s and the settling time; a cycle from the edge to the start, and as `t_exec` is
+    // half a cycle less than a whole number of them from there on, one more to the first that is beyond both.
+    let duration = there - when(&recording, "there", "Enable", "TRUE");
+    assert!((duration - 0.67 - 0.05 - 2.0 * CYCLE).abs() < 1e-9, "{duration}");
+    let state = |name: &str| when(&recording, "axis", "state", name);
+    assert!(state("DiscreteMotion") < there && back > there);
+    assert!(last(&recording, "load.position").abs() < 1e-5);
+}

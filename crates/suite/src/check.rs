@@ -82,7 +82,6 @@ fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
         BuildError::Units(_) => "bus.units".to_owned(),
         BuildError::Link(_) | BuildError::NoDriveOnTheBus => "bus".to_owned(),
         BuildError::Points(_) => "program".to_owned(),
-        BuildError::NoSuchBlock => "call".to_owned(),
     };
     vec![Objection::new(&key, error.to_string())]
 }

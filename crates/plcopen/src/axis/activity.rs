@@ -65,6 +65,8 @@ pub(super) struct HomingWait {
 pub(super) struct Led {
     pub(super) id: CommandId,
     pub(super) command: Command,
+    /// From where the program counted when it began: MC_SetPosition moves nothing.
+    pub(super) offset: f64,
     /// Whether there was one for this cycle.
     pub(super) is_fresh: bool,
     /// Cycles since it began.

@@ -224,7 +224,7 @@ impl Axis {
                 let (step, present) = (ramp * self.params.cycle_time, self.feedback.effort);
                 Ok(Activity::Effort(EffortRamp { id, command, target, step, present }))
             }
-            Goal::Led => Ok(Activity::Led(Led { id, command, is_fresh: true, cycles: 0 })),
+            Goal::Led => Ok(Activity::Led(Led { id, command, offset: self.offset, is_fresh: true, cycles: 0 })),
             _ => {
                 let is_aborting = command.buffer_mode == BufferMode::Aborting;
                 let origin = if is_aborting { self.last_target().unwrap_or(from.x) } else { from.x };

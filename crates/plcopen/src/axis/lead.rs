@@ -1,4 +1,4 @@
-//! Motions whose set-points a block gives itself: its course is a table that the axis need not hold.
+//! Motions whose set-points a block gives itself: its course is one that the axis need not hold.
 use super::Axis;
 use super::activity::Activity;
 use super::queue::Queue;
@@ -6,6 +6,7 @@ use crate::command::{BufferMode, Command, Direction, Goal};
 use crate::error::AxisError;
 use crate::ledger::{CommandId, Progress};
 use crate::name::BlockName;
+use crate::state::AxisState;
 use servobench_base::Setpoint;
 
 /// What rounding may add to a limit, as a part of it.
@@ -21,15 +22,15 @@ impl Axis {
         }
     }
 
-    /// Gives the set-point of this cycle, as the program sees it, to the active command `id`, which has the goal
-    /// [`Led`](crate::Goal::Led). It is called in every cycle after the first until it is concluded; where it is not, or a
-    /// limit of the axis is not kept, the axis stops with an error.
+    /// Gives the set-point of this cycle to the active command `id`, which has the goal [`Led`](crate::Goal::Led), in the
+    /// coordinate that the program had when it began. It is called in every cycle after the first until it is concluded; where
+    /// it is not, or a limit of the axis is not kept, the axis stops with an error.
     pub fn lead(&mut self, id: CommandId, setpoint: Setpoint) {
-        let setpoint = Setpoint { x: setpoint.x - self.offset - self.shift, ..setpoint };
         let Activity::Led(led) = &mut self.activity else { return };
         if led.id != id {
             return;
         }
+        let setpoint = Setpoint { x: setpoint.x - led.offset - self.shift, ..setpoint };
         led.is_fresh = true;
         let (block, before, limits, h) = (led.command.block, self.base, &self.params.limits, self.params.cycle_time);
         // What lies between two set-points: the mean velocity and acceleration.
@@ -51,6 +52,15 @@ impl Axis {
         self.add_up();
     }
 
+    /// The active command `id` begins where the program sees the axis now.
+    pub(crate) fn begin_leading(&mut self, id: CommandId) {
+        if let Activity::Led(led) = &mut self.activity
+            && led.id == id
+        {
+            led.offset = self.offset;
+        }
+    }
+
     /// The active command `id` leads beyond a limit of the axis: it stops with an error.
     pub(crate) fn abandon(&mut self, id: CommandId, quantity: &'static str, value: f64, limit: f64) {
         if let Activity::Led(led) = &self.activity
@@ -61,7 +71,8 @@ impl Axis {
         }
     }
 
-    /// The course of the command `id` has reached its end: it is done, and the axis keeps the velocity that it has there.
+    /// The course of the command `id` has reached its end: it is done. In Continuous Motion the axis keeps the velocity
+    /// that it has there.
     pub fn conclude(&mut self, id: CommandId) {
         let Activity::Led(led) = &self.activity else { return };
         if led.id != id {
@@ -71,6 +82,9 @@ impl Axis {
         self.ledger.set(id, Progress::Done);
         if self.queue.first().is_some() {
             return self.take_next(from, 0.0);
+        }
+        if self.state == AxisState::DiscreteMotion {
+            return self.rest();
         }
         let goal = Goal::Velocity { velocity: from.v, direction: Direction::Positive };
         let command = Command { block: BlockName::MoveVelocity, goal, dynamics, buffer_mode: BufferMode::Aborting };

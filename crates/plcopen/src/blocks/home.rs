@@ -25,7 +25,7 @@ pub struct HomeInputs {
 
 impl FunctionBlock for Home {
     const NAME: BlockName = BlockName::Home;
-    type Inputs = HomeInputs;
+    type Inputs<'i> = HomeInputs;
     type Outputs = MotionOutputs;
 
     fn step(&mut self, axis: &mut Axis, inputs: &HomeInputs) -> MotionOutputs {

@@ -41,7 +41,7 @@ impl<I> Default for MotionBlock<I> {
 
 impl<I: MotionInputs> FunctionBlock for MotionBlock<I> {
     const NAME: BlockName = I::NAME;
-    type Inputs = I;
+    type Inputs<'i> = I;
     type Outputs = I::Outputs;
 
     #[inline]

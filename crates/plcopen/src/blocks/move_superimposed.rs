@@ -89,7 +89,7 @@ pub struct MoveSuperimposedOutputs {
 
 impl FunctionBlock for MoveSuperimposed {
     const NAME: BlockName = BlockName::MoveSuperimposed;
-    type Inputs = MoveSuperimposedInputs;
+    type Inputs<'i> = MoveSuperimposedInputs;
     type Outputs = MoveSuperimposedOutputs;
 
     fn step(&mut self, axis: &mut Axis, inputs: &MoveSuperimposedInputs) -> MoveSuperimposedOutputs {

@@ -8,13 +8,13 @@ use crate::name::BlockName;
 pub trait FunctionBlock {
     /// Its name.
     const NAME: BlockName;
-    /// Its inputs.
-    type Inputs;
+    /// Its inputs, borrowed for a call at most.
+    type Inputs<'i>;
     /// Its outputs.
     type Outputs: Outputs;
 
     /// One call: between [`Axis::begin`] and [`Axis::end`], once per cycle.
-    fn step(&mut self, axis: &mut Axis, inputs: &Self::Inputs) -> Self::Outputs;
+    fn step(&mut self, axis: &mut Axis, inputs: &Self::Inputs<'_>) -> Self::Outputs;
 
     /// What ErrorID stands for, in words; `None` while Error is FALSE.
     fn error(&self) -> Option<&BlockError> {

@@ -5,7 +5,7 @@
 //! cubic spline. Both begin with the velocity that the axis has. The axis follows the profile itself, set-point by set-point;
 //! and the [commands](PositionProfile::commands) are what the paper sends to a drive in the profile velocity mode instead.
 use super::outputs::{FunctionBlock, MotionOutputs};
-use super::profile::{Beyond, Course, Leading, Names, Pair, Scales};
+use super::profile::{Beyond, Course, Leading, Memory, Names, Pair, Scales, check_room};
 use crate::axis::Axis;
 use crate::command::BufferMode;
 use crate::error::BlockError;
@@ -33,11 +33,11 @@ pub enum Follow {
     Spline,
 }
 
-/// Along a table of positions.
-#[derive(Debug, PartialEq)]
-pub struct PositionProfile<'m> {
+/// Along a table of positions, which it keeps in the memory `K` and `S`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PositionProfile<K, S> {
     leading: Leading,
-    way: Way<'m>,
+    way: Way<K, S>,
 }
 
 /// Inputs of [`PositionProfile`].
@@ -83,10 +83,10 @@ impl<'a> PositionProfileInputs<'a> {
     }
 }
 
-impl<'m> PositionProfile<'m> {
+impl<K: Memory<Knot>, S: Memory<f64>> PositionProfile<K, S> {
     /// With the memory for a table of one pair less than `knots` and `scratch` hold.
     #[must_use]
-    pub fn new(knots: &'m mut [Knot], scratch: &'m mut [f64]) -> Self {
+    pub fn new(knots: K, scratch: S) -> Self {
         let way = Way {
             knots,
             scratch,
@@ -119,7 +119,7 @@ impl<'m> PositionProfile<'m> {
 }
 
 impl PositionProfileInputs<'_> {
-    fn check(&self, way: &Way<'_>, axis: &Axis) -> Result<(), BlockError> {
+    fn check<K: Memory<Knot>, S: Memory<f64>>(&self, way: &Way<K, S>, axis: &Axis) -> Result<(), BlockError> {
         const NAMES: Names = Names { table: "TimePosition", scale: "PositionScale", may_jump: false };
         let (block, pairs) = (BlockName::PositionProfile, self.time_position.pairs);
         self.scales().check(block, &NAMES, pairs)?;
@@ -140,24 +140,20 @@ impl PositionProfileInputs<'_> {
         if self.time_position.is_absolute && axis.params().needs_homing && !axis.is_homed() {
             return Err(BlockError::NotHomed { block, value: pairs[0].value });
         }
-        for (name, length) in [("knots", way.knots.len()), ("scratch", way.scratch.len())] {
-            let points = pairs.len() + 1;
-            if length < points {
-                return Err(BlockError::Plan { block, error: PlanError::ShortSlice { name, length, points } });
-            }
-        }
-        Ok(())
+        let points = pairs.len() + 1;
+        check_room(block, "knots", way.knots.as_ref(), points)?;
+        check_room(block, "scratch", way.scratch.as_ref(), points)
     }
 }
 
-impl<'m> FunctionBlock for PositionProfile<'m> {
+impl<K: Memory<Knot>, S: Memory<f64>> FunctionBlock for PositionProfile<K, S> {
     const NAME: BlockName = BlockName::PositionProfile;
-    type Inputs = PositionProfileInputs<'m>;
+    type Inputs<'i> = PositionProfileInputs<'i>;
     type Outputs = MotionOutputs;
 
-    fn step(&mut self, axis: &mut Axis, inputs: &PositionProfileInputs<'m>) -> MotionOutputs {
+    fn step(&mut self, axis: &mut Axis, inputs: &PositionProfileInputs<'_>) -> MotionOutputs {
         let call = (Self::NAME, inputs.execute, inputs.buffer_mode);
-        let check = |way: &Way<'m>, axis: &Axis| inputs.check(way, axis);
+        let check = |way: &Way<K, S>, axis: &Axis| inputs.check(way, axis);
         self.leading.step(axis, call, &mut self.way, check, |way| way.load(inputs)).into()
     }
 
@@ -167,10 +163,10 @@ impl<'m> FunctionBlock for PositionProfile<'m> {
 }
 
 /// A table on its way.
-#[derive(Debug, PartialEq)]
-struct Way<'m> {
-    knots: &'m mut [Knot],
-    scratch: &'m mut [f64],
+#[derive(Debug, Clone, PartialEq)]
+struct Way<K, S> {
+    knots: K,
+    scratch: S,
     count: usize,
     follow: Follow,
     is_absolute: bool,
@@ -183,21 +179,22 @@ struct Way<'m> {
     piece: Piece,
 }
 
-impl Way<'_> {
+impl<K: Memory<Knot>, S: Memory<f64>> Way<K, S> {
     /// Takes the table over, behind a first point that is where the profile will begin.
     fn load(&mut self, inputs: &PositionProfileInputs<'_>) {
         let (scales, pairs) = (inputs.scales(), inputs.time_position.pairs);
+        let knots = self.knots.as_mut();
         let (mut t, mut count) = (0.0, 1);
         (self.origin, self.says_where) = (0.0, false);
         for pair in pairs {
             let Pair { delta_time, value } = scales.of(pair);
             t += delta_time;
             if t == 0.0 {
-                self.knots[0] = Knot::new(0.0, value);
+                knots[0] = Knot::new(0.0, value);
                 self.says_where = true;
                 continue;
             }
-            self.knots[count] = Knot::new(t, value);
+            knots[count] = Knot::new(t, value);
             count += 1;
         }
         (self.count, self.is_solved) = (count, false);
@@ -206,27 +203,28 @@ impl Way<'_> {
     }
 
     fn points(&self) -> &[Knot] {
-        &self.knots[..self.count]
+        &self.knots.as_ref()[..self.count]
     }
 
     fn solve(&mut self, start: f64) -> Result<(), PlanError> {
-        let (knots, end) = (&mut self.knots[..self.count], self.end_velocity);
+        let (knots, end) = (&mut self.knots.as_mut()[..self.count], self.end_velocity);
         match self.follow {
-            Follow::Plateaus(share) => Plateaus::solve(knots, start, end, share, self.scratch).map(|_| ()),
-            Follow::Spline => Spline::solve(knots, start, end, self.scratch).map(|_| ()),
+            Follow::Plateaus(share) => Plateaus::solve(knots, start, end, share, self.scratch.as_mut()).map(|_| ()),
+            Follow::Spline => Spline::solve(knots, start, end, self.scratch.as_mut()).map(|_| ()),
         }
     }
 }
 
-impl Course for Way<'_> {
+impl<K: Memory<Knot>, S: Memory<f64>> Course for Way<K, S> {
     fn begin(&mut self, from: &Setpoint) {
         let origin = if self.is_absolute { 0.0 } else { from.x };
         let moved = origin - core::mem::replace(&mut self.origin, origin);
-        for knot in &mut self.knots[..self.count] {
+        let knots = &mut self.knots.as_mut()[..self.count];
+        for knot in &mut *knots {
             knot.x += moved;
         }
         if !self.says_where {
-            self.knots[0] = Knot::new(0.0, from.x);
+            knots[0] = Knot::new(0.0, from.x);
         }
         self.is_solved = self.solve(from.v).is_ok();
         // Whatever cannot be solved is beyond every limit.
@@ -243,7 +241,7 @@ impl Course for Way<'_> {
     }
 
     fn duration(&self) -> f64 {
-        self.knots[self.count - 1].t
+        self.points()[self.count - 1].t
     }
 
     fn beyond(&self, limits: &Limits) -> Option<Beyond> {
@@ -264,7 +262,7 @@ impl Course for Way<'_> {
     }
 }
 
-impl Way<'_> {
+impl<K: Memory<Knot>, S: Memory<f64>> Way<K, S> {
     fn look_up(&self, t: f64) -> Piece {
         match self.follow {
             Follow::Plateaus(share) => Plateaus::solved(self.points(), share).piece(t),

@@ -40,7 +40,7 @@ pub struct PowerOutputs {
 
 impl FunctionBlock for Power {
     const NAME: BlockName = BlockName::Power;
-    type Inputs = PowerInputs;
+    type Inputs<'i> = PowerInputs;
     type Outputs = PowerOutputs;
 
     #[inline]

@@ -23,7 +23,7 @@ use crate::ledger::{CommandId, Progress};
 use crate::name::BlockName;
 use crate::state::AxisState;
 use servobench_base::Setpoint;
-use servobench_motion::Limits;
+use servobench_motion::{Limits, PlanError};
 
 /// A row of a table: `DeltaTime` and `Position`, `Velocity` or `Acceleration`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -32,6 +32,26 @@ pub struct Pair {
     pub delta_time: f64,
     /// Position, velocity or acceleration (SI).
     pub value: f64,
+}
+
+/// Memory for a table: an array, a slice that is lent, or a vector.
+pub trait Memory<T>: AsRef<[T]> + AsMut<[T]> {}
+
+impl<T, M: AsRef<[T]> + AsMut<[T]>> Memory<T> for M {}
+
+/// # Errors
+/// [`BlockError::Plan`] when the memory `name` is shorter than `points`.
+pub(super) fn check_room(
+    block: BlockName,
+    name: &'static str,
+    memory: &[impl Sized],
+    points: usize,
+) -> Result<(), BlockError> {
+    let length = memory.len();
+    if length < points {
+        return Err(BlockError::Plan { block, error: PlanError::ShortSlice { name, length, points } });
+    }
+    Ok(())
 }
 
 /// What the inputs of the block make of a table.
@@ -197,6 +217,7 @@ impl Leading {
     fn begin(&self, axis: &mut Axis, course: &mut impl Course) {
         let Some(id) = self.id.filter(|id| axis.led_cycles(*id) == Some(0)) else { return };
         course.begin(&axis.commanded());
+        axis.begin_leading(id);
         if let Some(Beyond { quantity, value, limit }) = course.beyond(&axis.params().limits) {
             axis.abandon(id, quantity, value, limit);
         }

@@ -99,7 +99,7 @@ impl ReadStatusOutputs {
 
 impl FunctionBlock for ReadStatus {
     const NAME: BlockName = BlockName::ReadStatus;
-    type Inputs = ReadInputs;
+    type Inputs<'i> = ReadInputs;
     type Outputs = ReadStatusOutputs;
 
     #[inline]
@@ -110,7 +110,7 @@ impl FunctionBlock for ReadStatus {
 
 impl FunctionBlock for ReadAxisError {
     const NAME: BlockName = BlockName::ReadAxisError;
-    type Inputs = ReadInputs;
+    type Inputs<'i> = ReadInputs;
     type Outputs = ReadAxisErrorOutputs;
 
     #[inline]
@@ -129,7 +129,7 @@ impl FunctionBlock for ReadAxisError {
 
 impl FunctionBlock for ReadActualPosition {
     const NAME: BlockName = BlockName::ReadActualPosition;
-    type Inputs = ReadInputs;
+    type Inputs<'i> = ReadInputs;
     type Outputs = ReadValueOutputs<Self>;
 
     #[inline]
@@ -140,7 +140,7 @@ impl FunctionBlock for ReadActualPosition {
 
 impl FunctionBlock for ReadActualVelocity {
     const NAME: BlockName = BlockName::ReadActualVelocity;
-    type Inputs = ReadInputs;
+    type Inputs<'i> = ReadInputs;
     type Outputs = ReadValueOutputs<Self>;
 
     #[inline]
@@ -151,7 +151,7 @@ impl FunctionBlock for ReadActualVelocity {
 
 impl FunctionBlock for ReadActualTorque {
     const NAME: BlockName = BlockName::ReadActualTorque;
-    type Inputs = ReadInputs;
+    type Inputs<'i> = ReadInputs;
     type Outputs = ReadValueOutputs<Self>;
 
     #[inline]

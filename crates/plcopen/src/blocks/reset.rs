@@ -20,7 +20,7 @@ pub struct ResetInputs {
 
 impl FunctionBlock for Reset {
     const NAME: BlockName = BlockName::Reset;
-    type Inputs = ResetInputs;
+    type Inputs<'i> = ResetInputs;
     type Outputs = DoneOutputs;
 
     fn step(&mut self, axis: &mut Axis, inputs: &ResetInputs) -> DoneOutputs {

@@ -63,7 +63,7 @@ impl SetOverride {
 
 impl FunctionBlock for SetOverride {
     const NAME: BlockName = BlockName::SetOverride;
-    type Inputs = SetOverrideInputs;
+    type Inputs<'i> = SetOverrideInputs;
     type Outputs = SetOverrideOutputs;
 
     #[inline]

@@ -25,7 +25,7 @@ pub struct SetPositionInputs {
 
 impl FunctionBlock for SetPosition {
     const NAME: BlockName = BlockName::SetPosition;
-    type Inputs = SetPositionInputs;
+    type Inputs<'i> = SetPositionInputs;
     type Outputs = DoneOutputs;
 
     fn step(&mut self, axis: &mut Axis, inputs: &SetPositionInputs) -> DoneOutputs {

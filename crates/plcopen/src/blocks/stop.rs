@@ -119,7 +119,7 @@ impl Outputs for StopOutputs {
 
 impl FunctionBlock for Stop {
     const NAME: BlockName = BlockName::Stop;
-    type Inputs = StopInputs;
+    type Inputs<'i> = StopInputs;
     type Outputs = StopOutputs;
 
     fn step(&mut self, axis: &mut Axis, inputs: &StopInputs) -> StopOutputs {

@@ -5,7 +5,7 @@
 //! sections 3.15 and 3.16), and the axis stays in Continuous Motion.
 use super::execution::Report;
 use super::outputs::{FunctionBlock, Outputs, flag, number};
-use super::profile::{Beyond, Course, Leading, Names, Pair, ROUNDING, Scales};
+use super::profile::{Beyond, Course, Leading, Memory, Names, Pair, ROUNDING, Scales, check_room};
 use crate::axis::Axis;
 use crate::command::BufferMode;
 use crate::error::{BlockError, ErrorId};
@@ -13,18 +13,34 @@ use crate::name::BlockName;
 use servobench_base::Setpoint;
 use servobench_motion::Limits;
 
-/// Along a table of velocities.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct VelocityProfile<'a> {
+/// Along a table of velocities, which it keeps in the memory `M`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VelocityProfile<M> {
     leading: Leading,
-    sequence: Sequence<'a>,
+    sequence: Sequence<M>,
 }
 
-/// Along a table of accelerations.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct AccelerationProfile<'a> {
+/// Along a table of accelerations, which it keeps in the memory `M`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AccelerationProfile<M> {
     leading: Leading,
-    sequence: Sequence<'a>,
+    sequence: Sequence<M>,
+}
+
+impl<M: Memory<Pair>> VelocityProfile<M> {
+    /// With the memory for a table of as many pairs as `pairs` holds.
+    #[must_use]
+    pub fn new(pairs: M) -> Self {
+        Self { leading: Leading::default(), sequence: Sequence::new(pairs, Quantity::Velocity) }
+    }
+}
+
+impl<M: Memory<Pair>> AccelerationProfile<M> {
+    /// With the memory for a table of as many pairs as `pairs` holds.
+    #[must_use]
+    pub fn new(pairs: M) -> Self {
+        Self { leading: Leading::default(), sequence: Sequence::new(pairs, Quantity::Acceleration) }
+    }
 }
 
 /// Inputs of [`VelocityProfile`].
@@ -81,19 +97,22 @@ impl<'a> AccelerationProfileInputs<'a> {
     }
 }
 
-impl<'a> FunctionBlock for VelocityProfile<'a> {
+impl<M: Memory<Pair>> FunctionBlock for VelocityProfile<M> {
     const NAME: BlockName = BlockName::VelocityProfile;
-    type Inputs = VelocityProfileInputs<'a>;
+    type Inputs<'i> = VelocityProfileInputs<'i>;
     type Outputs = ProfileOutputs;
 
-    fn step(&mut self, axis: &mut Axis, inputs: &VelocityProfileInputs<'a>) -> ProfileOutputs {
+    fn step(&mut self, axis: &mut Axis, inputs: &VelocityProfileInputs<'_>) -> ProfileOutputs {
         let VelocityProfileInputs { execute, time_velocity: pairs, buffer_mode, .. } = *inputs;
         let scales = Scales { time: inputs.time_scale, value: inputs.velocity_scale, offset: inputs.offset };
         let names = Names { table: "TimeVelocity", scale: "VelocityScale", may_jump: false };
-        let sequence = Sequence::new(pairs, scales, Quantity::Velocity);
         let call = (Self::NAME, execute, buffer_mode);
-        let check = |_: &Sequence<'_>, _: &Axis| scales.check(Self::NAME, &names, pairs);
-        self.leading.step(axis, call, &mut self.sequence, check, |course| *course = sequence).into()
+        let check = |sequence: &Sequence<M>, _: &Axis| {
+            scales.check(Self::NAME, &names, pairs)?;
+            check_room(Self::NAME, "pairs", sequence.memory.as_ref(), pairs.len())
+        };
+        let load = |sequence: &mut Sequence<M>| sequence.load(pairs, &scales);
+        self.leading.step(axis, call, &mut self.sequence, check, load).into()
     }
 
     fn error(&self) -> Option<&BlockError> {
@@ -101,19 +120,22 @@ impl<'a> FunctionBlock for VelocityProfile<'a> {
     }
 }
 
-impl<'a> FunctionBlock for AccelerationProfile<'a> {
+impl<M: Memory<Pair>> FunctionBlock for AccelerationProfile<M> {
     const NAME: BlockName = BlockName::AccelerationProfile;
-    type Inputs = AccelerationProfileInputs<'a>;
+    type Inputs<'i> = AccelerationProfileInputs<'i>;
     type Outputs = ProfileOutputs;
 
-    fn step(&mut self, axis: &mut Axis, inputs: &AccelerationProfileInputs<'a>) -> ProfileOutputs {
+    fn step(&mut self, axis: &mut Axis, inputs: &AccelerationProfileInputs<'_>) -> ProfileOutputs {
         let AccelerationProfileInputs { execute, time_acceleration: pairs, buffer_mode, .. } = *inputs;
         let scales = Scales { time: inputs.time_scale, value: inputs.acceleration_scale, offset: inputs.offset };
         let names = Names { table: "TimeAcceleration", scale: "AccelerationScale", may_jump: true };
-        let sequence = Sequence::new(pairs, scales, Quantity::Acceleration);
         let call = (Self::NAME, execute, buffer_mode);
-        let check = |_: &Sequence<'_>, _: &Axis| scales.check(Self::NAME, &names, pairs);
-        self.leading.step(axis, call, &mut self.sequence, check, |course| *course = sequence).into()
+        let check = |sequence: &Sequence<M>, _: &Axis| {
+            scales.check(Self::NAME, &names, pairs)?;
+            check_room(Self::NAME, "pairs", sequence.memory.as_ref(), pairs.len())
+        };
+        let load = |sequence: &mut Sequence<M>| sequence.load(pairs, &scales);
+        self.leading.step(axis, call, &mut self.sequence, check, load).into()
     }
 
     fn error(&self) -> Option<&BlockError> {
@@ -122,70 +144,89 @@ impl<'a> FunctionBlock for AccelerationProfile<'a> {
 }
 
 /// What the values of a table are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Quantity {
-    #[default]
     Velocity,
     Acceleration,
 }
 
 /// A table on its way.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Sequence<'a> {
-    pairs: &'a [Pair],
-    scales: Scales,
+#[derive(Debug, Clone, PartialEq)]
+struct Sequence<M> {
+    /// The pairs after scaling are the first `count`.
+    memory: M,
+    count: usize,
     quantity: Quantity,
     duration: f64,
-    /// The pair to which the way leads now, and where and when it began.
+    place: Place,
+}
+
+/// The pair to which the way leads now, and where and when it began.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Place {
     next: usize,
     anchor: Setpoint,
     began: f64,
 }
 
-impl Default for Sequence<'_> {
-    fn default() -> Self {
-        Self::new(&[], Scales::NONE, Quantity::Velocity)
-    }
+/// What holds from a place on, and where it leads.
+struct Stretch {
+    from: Setpoint,
+    length: f64,
+    end: Place,
 }
 
-impl<'a> Sequence<'a> {
-    fn new(pairs: &'a [Pair], scales: Scales, quantity: Quantity) -> Self {
-        Self { pairs, scales, quantity, duration: 0.0, next: 0, anchor: Setpoint::default(), began: 0.0 }
+impl<M: Memory<Pair>> Sequence<M> {
+    fn new(memory: M, quantity: Quantity) -> Self {
+        Self { memory, count: 0, quantity, duration: 0.0, place: Place::default() }
     }
 
-    /// What holds from the anchor on, and where it leads when; `None` behind the last pair.
-    fn stretch(&self) -> Option<(Setpoint, Setpoint, f64)> {
-        let Pair { delta_time, value } = self.scales.of(self.pairs.get(self.next)?);
-        let is_jump = delta_time == 0.0;
-        let slope = |from: f64| if is_jump { 0.0 } else { (value - from) / delta_time };
+    /// Takes the table over.
+    fn load(&mut self, pairs: &[Pair], scales: &Scales) {
+        self.count = pairs.len();
+        for (own, pair) in self.memory.as_mut().iter_mut().zip(pairs) {
+            *own = scales.of(pair);
+        }
+    }
+
+    fn pairs(&self) -> &[Pair] {
+        &self.memory.as_ref()[..self.count]
+    }
+
+    /// The stretch from `place` on; `None` behind the last pair.
+    fn stretch(&self, place: &Place) -> Option<Stretch> {
+        let Place { next, anchor, began } = *place;
+        let Pair { delta_time: length, value } = *self.pairs().get(next)?;
+        let is_jump = length == 0.0;
+        let slope = |from: f64| if is_jump { 0.0 } else { (value - from) / length };
         let from = match self.quantity {
-            Quantity::Velocity => Setpoint { a: slope(self.anchor.v), j: 0.0, ..self.anchor },
-            Quantity::Acceleration => Setpoint { j: slope(self.anchor.a), ..self.anchor },
+            Quantity::Velocity => Setpoint { a: slope(anchor.v), j: 0.0, ..anchor },
+            Quantity::Acceleration => Setpoint { j: slope(anchor.a), ..anchor },
         };
-        let end = from.after(delta_time);
-        let end = match self.quantity {
+        let end = from.after(length);
+        let anchor = match self.quantity {
             Quantity::Velocity => Setpoint { v: value, ..end },
             Quantity::Acceleration => Setpoint { a: value, ..end },
         };
-        Some((from, end, delta_time))
+        Some(Stretch { from, length, end: Place { next: next + 1, anchor, began: began + length } })
     }
 }
 
-impl Course for Sequence<'_> {
+impl<M: Memory<Pair>> Course for Sequence<M> {
     fn begin(&mut self, from: &Setpoint) {
-        (self.next, self.began, self.anchor) = (0, 0.0, Setpoint { j: 0.0, s: 0.0, ..*from });
-        self.duration = self.pairs.iter().map(|pair| self.scales.of(pair).delta_time).sum();
+        self.place = Place { next: 0, anchor: Setpoint { j: 0.0, s: 0.0, ..*from }, began: 0.0 };
+        self.duration = self.pairs().iter().map(|pair| pair.delta_time).sum();
     }
 
     fn at(&mut self, t: f64) -> Setpoint {
-        while let Some((from, end, delta_time)) = self.stretch() {
-            if t < self.began + delta_time {
-                return from.after(t - self.began);
+        while let Some(Stretch { from, end, .. }) = self.stretch(&self.place) {
+            if t < end.began {
+                return from.after(t - self.place.began);
             }
-            (self.next, self.anchor, self.began) = (self.next + 1, end, self.began + delta_time);
+            self.place = end;
         }
         // Behind the last pair, at its velocity.
-        Setpoint { a: 0.0, j: 0.0, ..self.anchor }.after(t - self.began)
+        Setpoint { a: 0.0, j: 0.0, ..self.place.anchor }.after(t - self.place.began)
     }
 
     fn duration(&self) -> f64 {
@@ -193,17 +234,17 @@ impl Course for Sequence<'_> {
     }
 
     fn beyond(&self, limits: &Limits) -> Option<Beyond> {
-        let mut ahead = *self;
-        while let Some((from, end, delta_time)) = ahead.stretch() {
+        let mut ahead = self.place;
+        while let Some(Stretch { from, length, end }) = self.stretch(&ahead) {
             // A jump of velocity is one that no acceleration makes.
             let jump = Setpoint { a: f64::INFINITY, ..from };
-            let gap = (end.v - from.v).abs();
-            let is_jump = delta_time == 0.0 && gap > ROUNDING * limits.velocity;
-            let found = Beyond::within(if is_jump { &jump } else { &from }, delta_time, limits);
+            let gap = (end.anchor.v - from.v).abs();
+            let is_jump = length == 0.0 && gap > ROUNDING * limits.velocity;
+            let found = Beyond::within(if is_jump { &jump } else { &from }, length, limits);
             if found.is_some() {
                 return found;
             }
-            (ahead.next, ahead.anchor) = (ahead.next + 1, end);
+            ahead = end;
         }
         Beyond::within(&Setpoint { a: 0.0, j: 0.0, ..ahead.anchor }, 0.0, limits)
     }

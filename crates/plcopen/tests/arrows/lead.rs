@@ -6,8 +6,9 @@ use servobench_plcopen::{
     AccelerationProfile, AccelerationProfileInputs, AxisState, BlockName, ErrorId, FunctionBlock, Halt, HaltInputs,
     Home, HomeInputs, MoveAbsolute, MoveAbsoluteInputs, MoveAdditive, MoveAdditiveInputs, MoveContinuousAbsolute,
     MoveContinuousAbsoluteInputs, MoveRelative, MoveRelativeInputs, MoveSuperimposed, MoveSuperimposedInputs,
-    MoveVelocity, MoveVelocityInputs, Outputs, Pair, PositionProfile, PositionProfileInputs, Reset, ResetInputs, Stop,
-    StopInputs, TimePosition, TorqueControl, TorqueControlInputs, VelocityProfile, VelocityProfileInputs,
+    MoveVelocity, MoveVelocityInputs, Outputs, Pair, PositionProfile, PositionProfileInputs, Profile4th,
+    Profile4thInputs, Reset, ResetInputs, Stop, StopInputs, TimePosition, TorqueControl, TorqueControlInputs,
+    VelocityProfile, VelocityProfileInputs,
 };
 
 /// An axis that a program has led to `state`; in motion where the state has one.
@@ -78,30 +79,32 @@ pub(crate) fn execute(bench: &mut Bench, block: BlockName) -> Result<(), ErrorId
         ),
         BlockName::PositionProfile => {
             let pairs = [Pair { delta_time: 0.5, value: 0.15 }, Pair { delta_time: 0.5, value: 0.3 }];
-            let (mut knots, mut scratch) = ([Knot::default(); 3], [0.0; 3]);
             let time_position = TimePosition { pairs: &pairs, is_absolute: false };
             let inputs = PositionProfileInputs { execute, time_position, ..PositionProfileInputs::along(&pairs) };
-            call_of(PositionProfile::new(&mut knots, &mut scratch), bench, &inputs)
+            call_of(PositionProfile::new([Knot::default(); 3], [0.0; 3]), bench, &inputs)
         }
         BlockName::VelocityProfile => {
             let pairs = [Pair { delta_time: 0.2, value: 0.4 }];
             let inputs = VelocityProfileInputs { execute, ..VelocityProfileInputs::along(&pairs) };
-            call_of(VelocityProfile::default(), bench, &inputs)
+            call_of(VelocityProfile::new([Pair::default(); 1]), bench, &inputs)
         }
         BlockName::AccelerationProfile => {
             let pairs = [Pair { delta_time: 0.1, value: 0.0 }];
             let inputs = AccelerationProfileInputs { execute, ..AccelerationProfileInputs::along(&pairs) };
-            call_of(AccelerationProfile::default(), bench, &inputs)
+            call_of(AccelerationProfile::new([Pair::default(); 1]), bench, &inputs)
+        }
+        BlockName::Profile4th => {
+            call::<Profile4th>(bench, &Profile4thInputs { enable: execute, ..Profile4thInputs::to(0.2, limits) })
         }
         _ => unreachable!("{block} is no command"),
     }
 }
 
-fn call<B: FunctionBlock + Default>(bench: &mut Bench, inputs: &B::Inputs) -> Result<(), ErrorId> {
+fn call<B: FunctionBlock + Default>(bench: &mut Bench, inputs: &B::Inputs<'_>) -> Result<(), ErrorId> {
     call_of(B::default(), bench, inputs)
 }
 
-fn call_of<B: FunctionBlock>(mut block: B, bench: &mut Bench, inputs: &B::Inputs) -> Result<(), ErrorId> {
+fn call_of<B: FunctionBlock>(mut block: B, bench: &mut Bench, inputs: &B::Inputs<'_>) -> Result<(), ErrorId> {
     let outputs = bench.cycle(|axis| block.step(axis, inputs));
     let place = B::Outputs::NAMES.iter().position(|name| *name == "Error").unwrap();
     let mut values = Vec::new();

@@ -16,7 +16,7 @@ fn executed() -> VelocityProfileInputs<'static> {
 #[test]
 fn outputs_last_as_long_as_execute_and_a_cycle_at_least() {
     for held in [true, false] {
-        let (mut bench, mut block) = (Bench::standstill(), VelocityProfile::default());
+        let (mut bench, mut block) = (Bench::standstill(), VelocityProfile::new([Pair::default(); 4]));
         let mut completed = 0;
         for k in 0..250 {
             let execute = k == 0 || (held && k < 240);
@@ -31,7 +31,8 @@ fn outputs_last_as_long_as_execute_and_a_cycle_at_least() {
 
 #[test]
 fn another_command_takes_the_axis_without_a_jump() {
-    let (mut bench, mut block, mut halt) = (Bench::standstill(), VelocityProfile::default(), Halt::default());
+    let (mut bench, mut block, mut halt) =
+        (Bench::standstill(), VelocityProfile::new([Pair::default(); 4]), Halt::default());
     for _ in 0..60 {
         bench.cycle(|axis| block.step(axis, &executed()));
     }
@@ -51,8 +52,7 @@ fn another_command_takes_the_axis_without_a_jump() {
 #[test]
 fn a_profile_waits_for_the_move_before_it() {
     let (mut bench, mut go) = (Bench::standstill(), MoveAbsolute::default());
-    let (mut knots, mut scratch) = ([Knot::default(); 3], [0.0; 3]);
-    let mut block = PositionProfile::new(&mut knots, &mut scratch);
+    let mut block = PositionProfile::new([Knot::default(); 3], [0.0; 3]);
     let inputs = MoveAbsoluteInputs { execute: true, position: 0.05, ..MoveAbsoluteInputs::within(&LIMITS) };
     let pairs = [Pair { delta_time: 0.4, value: 0.1 }, Pair { delta_time: 0.4, value: 0.06 }];
     let profile = PositionProfileInputs {
@@ -81,7 +81,7 @@ fn a_profile_waits_for_the_move_before_it() {
 
 #[test]
 fn an_instance_that_has_the_axis_cannot_wait_for_itself() {
-    let (mut bench, mut block) = (Bench::standstill(), VelocityProfile::default());
+    let (mut bench, mut block) = (Bench::standstill(), VelocityProfile::new([Pair::default(); 4]));
     let inputs = VelocityProfileInputs { buffer_mode: BufferMode::Buffered, ..executed() };
     for k in 0..300 {
         // A second edge in cycle 50.
@@ -97,7 +97,7 @@ fn an_instance_that_has_the_axis_cannot_wait_for_itself() {
 #[test]
 fn a_profile_beyond_the_limits_is_refused_before_it_begins() {
     for (delta_time, value, quantity) in [(0.5, 4.5, "velocity"), (0.2, 5.5, "acceleration"), (0.01, 1.0, "jerk")] {
-        let (mut bench, mut block) = (Bench::standstill(), AccelerationProfile::default());
+        let (mut bench, mut block) = (Bench::standstill(), AccelerationProfile::new([Pair::default(); 4]));
         let pairs = [Pair { delta_time, value }];
         let inputs = AccelerationProfileInputs { execute: true, ..AccelerationProfileInputs::along(&pairs) };
         assert!(bench.cycle(|axis| block.step(axis, &inputs)).error);
@@ -107,7 +107,8 @@ fn a_profile_beyond_the_limits_is_refused_before_it_begins() {
         assert_eq!(bench.axis.state(), AxisState::Standstill);
     }
     // Behind a move, where it is known when it begins: the axis stops with an error.
-    let (mut bench, mut go, mut block) = (Bench::standstill(), MoveAbsolute::default(), VelocityProfile::default());
+    let (mut bench, mut go, mut block) =
+        (Bench::standstill(), MoveAbsolute::default(), VelocityProfile::new([Pair::default(); 4]));
     let inputs = MoveAbsoluteInputs { execute: true, position: 0.05, ..MoveAbsoluteInputs::within(&LIMITS) };
     let steep = [Pair { delta_time: 0.1, value: 0.9 }];
     let profile = VelocityProfileInputs {
@@ -129,7 +130,7 @@ fn a_profile_beyond_the_limits_is_refused_before_it_begins() {
 
 #[test]
 fn a_profile_that_is_not_called_stops_the_axis() {
-    let (mut bench, mut block) = (Bench::standstill(), VelocityProfile::default());
+    let (mut bench, mut block) = (Bench::standstill(), VelocityProfile::new([Pair::default(); 4]));
     bench.cycle(|axis| block.step(axis, &executed()));
     bench.cycle(|_| ());
     bench.cycle(|_| ());
@@ -146,7 +147,7 @@ fn tables_and_scales_that_mean_nothing_are_refused_at_the_edge() {
     let start_only = [Pair { delta_time: 0.0, value: 0.0 }];
     let velocity = |inputs: VelocityProfileInputs<'static>| {
         refusal(|axis, execute| {
-            let mut block = VelocityProfile::default();
+            let mut block = VelocityProfile::new([Pair::default(); 4]);
             block.step(axis, &VelocityProfileInputs { execute, ..inputs });
             block.error().copied()
         })
@@ -176,8 +177,7 @@ fn tables_and_scales_that_mean_nothing_are_refused_at_the_edge() {
         (&[UP[0]; 5], "`knots` must hold a value for each of 6 points, got room for 3: pass a longer slice"),
     ] {
         let said = refusal(|axis, execute| {
-            let (mut knots, mut scratch) = ([Knot::default(); 3], [0.0; 3]);
-            let mut block = PositionProfile::new(&mut knots, &mut scratch);
+            let mut block = PositionProfile::new([Knot::default(); 3], [0.0; 3]);
             block.step(axis, &PositionProfileInputs { execute, ..PositionProfileInputs::along(pairs) });
             block.error().copied()
         });

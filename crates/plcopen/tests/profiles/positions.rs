@@ -33,8 +33,7 @@ fn each_position_is_met_at_its_time() {
             let mut bench = Bench::disabled(Bench::params());
             (bench.feedback.position, bench.enable) = (0.07, true);
             bench.until(AxisState::Standstill);
-            let (mut knots, mut scratch) = ([Knot::default(); 5], [0.0; 5]);
-            let mut block = PositionProfile::new(&mut knots, &mut scratch);
+            let mut block = PositionProfile::new([Knot::default(); 5], [0.0; 5]);
             let start = if is_absolute { 0.0 } else { 0.07 };
             let inputs = PositionProfileInputs {
                 execute: true,
@@ -81,8 +80,7 @@ fn it_begins_with_the_velocity_of_the_axis_and_ends_with_the_one_asked_for() {
         let mut run = MoveVelocity::default();
         let inputs = MoveVelocityInputs { execute: true, velocity: 0.2, ..MoveVelocityInputs::within(&limits) };
         while !bench.cycle(|axis| run.step(axis, &inputs)).in_velocity {}
-        let (mut knots, mut scratch) = ([Knot::default(); 5], [0.0; 5]);
-        let mut block = PositionProfile::new(&mut knots, &mut scratch);
+        let mut block = PositionProfile::new([Knot::default(); 5], [0.0; 5]);
         let inputs = PositionProfileInputs {
             execute: true,
             time_position: TimePosition { pairs: &PAIRS, is_absolute: false },
@@ -116,8 +114,7 @@ fn a_drive_in_profile_velocity_mode_meets_the_positions_with_the_commands() {
     const RATE: f64 = 100.0;
     for follow in FOLLOWED {
         let mut bench = Bench::standstill();
-        let (mut knots, mut scratch) = ([Knot::default(); 5], [0.0; 5]);
-        let mut block = PositionProfile::new(&mut knots, &mut scratch);
+        let mut block = PositionProfile::new([Knot::default(); 5], [0.0; 5]);
         assert_eq!(block.commands(RATE).unwrap().count(), 0);
         let inputs = PositionProfileInputs { execute: true, follow, ..PositionProfileInputs::along(&PAIRS) };
         bench.cycle(|axis| block.step(axis, &inputs));
@@ -158,8 +155,7 @@ fn a_drive_in_profile_velocity_mode_meets_the_positions_with_the_commands() {
 #[test]
 fn an_absolute_table_needs_a_reference() {
     let mut bench = Bench::powered(AxisParams { needs_homing: true, ..Bench::params() });
-    let (mut knots, mut scratch) = ([Knot::default(); 5], [0.0; 5]);
-    let mut block = PositionProfile::new(&mut knots, &mut scratch);
+    let mut block = PositionProfile::new([Knot::default(); 5], [0.0; 5]);
     let inputs = PositionProfileInputs { execute: true, ..PositionProfileInputs::along(&PAIRS) };
     assert!(bench.cycle(|axis| block.step(axis, &inputs)).error);
     let refused = block.error().unwrap().to_string();

@@ -39,9 +39,8 @@ proptest! {
         end_velocity in -0.5..0.5_f64,
         calls in proptest::collection::vec((0..5_u8, any::<bool>(), 1..200_usize), 1..40),
     ) {
-        let (mut knots, mut scratch) = ([Knot::default(); 6], [0.0; 6]);
-        let mut by_positions = PositionProfile::new(&mut knots, &mut scratch);
-        let (mut by_velocities, mut by_accelerations) = (VelocityProfile::default(), AccelerationProfile::default());
+        let mut by_positions = PositionProfile::new([Knot::default(); 6], [0.0; 6]);
+        let (mut by_velocities, mut by_accelerations) = (VelocityProfile::new([Pair::default(); 6]), AccelerationProfile::new([Pair::default(); 6]));
         let (mut halt, mut reset) = (Halt::default(), Reset::default());
         let mut bench = Bench::standstill();
         let mut before = bench.axis.commanded();

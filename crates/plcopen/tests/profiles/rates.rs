@@ -38,7 +38,7 @@ fn velocities_go_in_straight_lines_and_the_last_one_is_kept() {
         offset: 0.1,
         ..VelocityProfileInputs::along(&table)
     };
-    let (mut bench, mut block) = (Bench::standstill(), VelocityProfile::default());
+    let (mut bench, mut block) = (Bench::standstill(), VelocityProfile::new([Pair::default(); 4]));
     let way = followed(&mut bench, |axis| block.step(axis, &inputs));
     // To 0.2 m/s in 0.1 s, that for 0.2 s, to −0.1 m/s in 0.1 s.
     assert_eq!(way.len(), 400);
@@ -64,7 +64,7 @@ fn velocities_go_in_straight_lines_and_the_last_one_is_kept() {
 fn accelerations_go_in_straight_lines_and_end_at_zero() {
     let table = pairs([(0.1, 2.0), (0.1, 2.0), (0.0, -1.0), (0.1, -1.0)]);
     let inputs = AccelerationProfileInputs { execute: true, ..AccelerationProfileInputs::along(&table) };
-    let (mut bench, mut block) = (Bench::standstill(), AccelerationProfile::default());
+    let (mut bench, mut block) = (Bench::standstill(), AccelerationProfile::new([Pair::default(); 4]));
     let way = followed(&mut bench, |axis| block.step(axis, &inputs));
     assert_eq!(way.len(), 300);
     let exact = |t: f64| match t {
@@ -88,7 +88,7 @@ fn a_first_pair_without_time_is_where_the_axis_must_be() {
     for (first, is_kept) in [(0.0, true), (0.5, false)] {
         let table = pairs([(0.0, first), (0.2, 0.5)]);
         let inputs = VelocityProfileInputs { execute: true, ..VelocityProfileInputs::along(&table) };
-        let (mut bench, mut block) = (Bench::standstill(), VelocityProfile::default());
+        let (mut bench, mut block) = (Bench::standstill(), VelocityProfile::new([Pair::default(); 4]));
         let outputs = bench.cycle(|axis| block.step(axis, &inputs));
         assert_eq!((outputs.active, outputs.error), (is_kept, !is_kept), "{first}");
         assert_eq!(bench.axis.state() == AxisState::Standstill, !is_kept);

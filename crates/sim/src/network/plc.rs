@@ -34,7 +34,7 @@ impl Plc {
     /// The program `plc`, executed every `cycle` (s).
     ///
     /// # Errors
-    /// [`BuildError`] when a block cannot be built.
+    /// [`BuildError`] when the limits are none that an axis can have.
     pub(super) fn new(
         plc: &scenario::Plc,
         modulo: Option<f64>,
@@ -50,8 +50,8 @@ impl Plc {
         let axis = Axis::new(params)?;
         let state = (recorder.add_signal("axis", "state"), None);
         let homed = (recorder.add_signal("axis", "homed"), None);
-        let calls = plc.calls.iter().map(|call| Ok(Call::new(call, block(&call.block)?, recorder)));
-        let calls = calls.collect::<Result<Vec<_>, BuildError>>()?;
+        let calls = plc.calls.iter().map(|call| Call::new(call, block(&call.block), recorder));
+        let calls: Vec<Call> = calls.collect();
         let known = Known { t: 0.0, position: 0.0, rises: calls.iter().map(Call::rises).collect() };
         Ok(Self { axis, calls, known, state, homed, followed: Setpoint::default(), made: Vec::new() })
     }

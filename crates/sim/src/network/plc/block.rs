@@ -1,8 +1,9 @@
 //! Function blocks behind one door: whatever their inputs and outputs are, a program executes them and reads numbers.
 mod inputs;
 
-use crate::error::BuildError;
 use core::fmt;
+use inputs::{Positions, Rates};
+use servobench_motion::pvt::Knot;
 use servobench_plcopen::{self as plcopen, Axis, FunctionBlock, Outputs};
 use servobench_scenario as scenario;
 use servobench_scenario::Block as Said;
@@ -25,22 +26,26 @@ pub(super) trait Block: fmt::Debug {
     fn error(&self) -> Option<String>;
 }
 
-/// A block with its inputs as a scenario says them.
-struct Instance<B: FunctionBlock> {
+/// A block and what it keeps of its inputs, which are lent to it for each call.
+struct Instance<B: FunctionBlock, K> {
     block: B,
-    inputs: B::Inputs,
-    read: fn(&Said) -> Option<B::Inputs>,
-    trigger: fn(&mut B::Inputs) -> &mut bool,
+    /// Nothing where they were said of another block.
+    kept: Option<K>,
+    read: fn(&Said) -> Option<K>,
+    lend: Lend<B, K>,
     is_enabled: bool,
 }
 
-impl<B: FunctionBlock> fmt::Debug for Instance<B> {
+/// The inputs of a call, with Execute or Enable as it is then.
+type Lend<B, K> = for<'i> fn(&'i K, bool) -> <B as FunctionBlock>::Inputs<'i>;
+
+impl<B: FunctionBlock, K> fmt::Debug for Instance<B, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(B::NAME.name())
     }
 }
 
-impl<B: FunctionBlock> Block for Instance<B> {
+impl<B: FunctionBlock, K> Block for Instance<B, K> {
     fn name(&self) -> &'static str {
         B::NAME.name()
     }
@@ -58,15 +63,14 @@ impl<B: FunctionBlock> Block for Instance<B> {
     }
 
     fn load(&mut self, said: &Said) {
-        if let Some(mut inputs) = (self.read)(said) {
-            *(self.trigger)(&mut inputs) = *(self.trigger)(&mut self.inputs);
-            self.inputs = inputs;
+        if let Some(kept) = (self.read)(said) {
+            self.kept = Some(kept);
         }
     }
 
     fn step(&mut self, axis: &mut Axis, execute: bool, values: &mut [f64]) {
-        *(self.trigger)(&mut self.inputs) = execute;
-        let outputs = self.block.step(axis, &self.inputs);
+        let Some(kept) = &self.kept else { return };
+        let outputs = self.block.step(axis, &(self.lend)(kept, execute));
         let mut places = values.iter_mut();
         outputs.each(|value| {
             if let Some(place) = places.next() {
@@ -81,91 +85,130 @@ impl<B: FunctionBlock> Block for Instance<B> {
 }
 
 /// The block of a call.
-///
-/// # Errors
-/// [`BuildError::NoSuchBlock`] for one that the bench does not have.
-pub(super) fn block(said: &Said) -> Result<Box<dyn Block>, BuildError> {
-    let made = match said {
-        Said::Power => enabled(plcopen::Power, said, inputs::power, |inputs| &mut inputs.enable),
-        Said::SetOverride { .. } => {
-            enabled(plcopen::SetOverride::default(), said, inputs::set_override, |inputs| &mut inputs.enable)
+pub(super) fn block(said: &Said) -> Box<dyn Block> {
+    match said {
+        Said::Power => {
+            enabled(said, plcopen::Power, inputs::power, |kept, enable| plcopen::PowerInputs { enable, ..*kept })
         }
-        Said::ReadStatus => reading(plcopen::ReadStatus, said),
-        Said::ReadAxisError => reading(plcopen::ReadAxisError, said),
-        Said::ReadActualPosition => reading(plcopen::ReadActualPosition, said),
-        Said::ReadActualVelocity => reading(plcopen::ReadActualVelocity, said),
-        Said::ReadActualTorque => reading(plcopen::ReadActualTorque, said),
-        Said::Home { .. } => executed(plcopen::Home::default(), said, inputs::home, |inputs| &mut inputs.execute),
-        Said::Stop(_) => executed(plcopen::Stop::default(), said, inputs::stop, |inputs| &mut inputs.execute),
-        Said::Halt { .. } => executed(plcopen::Halt::default(), said, inputs::halt, |inputs| &mut inputs.execute),
-        Said::Reset => executed(plcopen::Reset::default(), said, inputs::reset, |inputs| &mut inputs.execute),
+        Said::SetOverride { .. } => {
+            enabled(said, plcopen::SetOverride::default(), inputs::set_override, |kept, enable| {
+                plcopen::SetOverrideInputs { enable, ..*kept }
+            })
+        }
+        Said::Profile4th { .. } => {
+            enabled(said, plcopen::Profile4th::default(), inputs::profile_4th, |kept, enable| {
+                plcopen::Profile4thInputs { enable, ..*kept }
+            })
+        }
+        Said::ReadStatus => reading(said, plcopen::ReadStatus),
+        Said::ReadAxisError => reading(said, plcopen::ReadAxisError),
+        Said::ReadActualPosition => reading(said, plcopen::ReadActualPosition),
+        Said::ReadActualVelocity => reading(said, plcopen::ReadActualVelocity),
+        Said::ReadActualTorque => reading(said, plcopen::ReadActualTorque),
+        Said::Home { .. } => executed(said, plcopen::Home::default(), inputs::home, |kept, execute| {
+            plcopen::HomeInputs { execute, ..*kept }
+        }),
+        Said::Stop(_) => executed(said, plcopen::Stop::default(), inputs::stop, |kept, execute| plcopen::StopInputs {
+            execute,
+            ..*kept
+        }),
+        Said::Halt { .. } => executed(said, plcopen::Halt::default(), inputs::halt, |kept, execute| {
+            plcopen::HaltInputs { execute, ..*kept }
+        }),
+        Said::Reset => {
+            executed(said, plcopen::Reset::default(), inputs::reset, |_, execute| plcopen::ResetInputs { execute })
+        }
         Said::MoveAbsolute { .. } => {
-            executed(plcopen::MoveAbsolute::default(), said, inputs::move_absolute, |inputs| &mut inputs.execute)
+            executed(said, plcopen::MoveAbsolute::default(), inputs::move_absolute, |kept, execute| {
+                plcopen::MoveAbsoluteInputs { execute, ..*kept }
+            })
         }
         Said::MoveRelative { .. } => {
-            executed(plcopen::MoveRelative::default(), said, inputs::move_relative, |inputs| &mut inputs.execute)
+            executed(said, plcopen::MoveRelative::default(), inputs::move_relative, |kept, execute| {
+                plcopen::MoveRelativeInputs { execute, ..*kept }
+            })
         }
         Said::MoveAdditive { .. } => {
-            executed(plcopen::MoveAdditive::default(), said, inputs::move_additive, |inputs| &mut inputs.execute)
+            executed(said, plcopen::MoveAdditive::default(), inputs::move_additive, |kept, execute| {
+                plcopen::MoveAdditiveInputs { execute, ..*kept }
+            })
         }
         Said::MoveSuperimposed { .. } => {
-            executed(plcopen::MoveSuperimposed::default(), said, inputs::move_superimposed, |inputs| {
-                &mut inputs.execute
+            executed(said, plcopen::MoveSuperimposed::default(), inputs::move_superimposed, |kept, execute| {
+                plcopen::MoveSuperimposedInputs { execute, ..*kept }
             })
         }
         Said::MoveVelocity { .. } => {
-            executed(plcopen::MoveVelocity::default(), said, inputs::move_velocity, |inputs| &mut inputs.execute)
+            executed(said, plcopen::MoveVelocity::default(), inputs::move_velocity, |kept, execute| {
+                plcopen::MoveVelocityInputs { execute, ..*kept }
+            })
         }
-        Said::MoveContinuousAbsolute { .. } => {
-            let block = plcopen::MoveContinuousAbsolute::default();
-            executed(block, said, inputs::move_continuous_absolute, |inputs| &mut inputs.execute)
-        }
+        Said::MoveContinuousAbsolute { .. } => executed(
+            said,
+            plcopen::MoveContinuousAbsolute::default(),
+            inputs::move_continuous_absolute,
+            |kept, execute| plcopen::MoveContinuousAbsoluteInputs { execute, ..*kept },
+        ),
         Said::SetPosition { .. } => {
-            executed(plcopen::SetPosition::default(), said, inputs::set_position, |inputs| &mut inputs.execute)
+            executed(said, plcopen::SetPosition::default(), inputs::set_position, |kept, execute| {
+                plcopen::SetPositionInputs { execute, ..*kept }
+            })
         }
         Said::TorqueControl { .. } => {
-            executed(plcopen::TorqueControl::default(), said, inputs::torque_control, |inputs| &mut inputs.execute)
+            executed(said, plcopen::TorqueControl::default(), inputs::torque_control, |kept, execute| {
+                plcopen::TorqueControlInputs { execute, ..*kept }
+            })
         }
-        Said::PositionProfile { .. }
-        | Said::VelocityProfile { .. }
-        | Said::AccelerationProfile { .. }
-        | Said::Profile4th { .. } => None,
-    };
-    made.ok_or(BuildError::NoSuchBlock)
+        Said::PositionProfile { pairs, .. } => {
+            // Where the profile begins is a point too.
+            let points = pairs.len() + 1;
+            let block = plcopen::PositionProfile::new(vec![Knot::default(); points], vec![0.0; points]);
+            executed(said, block, Positions::of, |kept, execute| plcopen::PositionProfileInputs {
+                execute,
+                ..kept.inputs()
+            })
+        }
+        Said::VelocityProfile { pairs, .. } => {
+            let block = plcopen::VelocityProfile::new(vec![plcopen::Pair::default(); pairs.len()]);
+            executed(said, block, Rates::of_velocities, |kept, execute| plcopen::VelocityProfileInputs {
+                execute,
+                ..kept.velocities()
+            })
+        }
+        Said::AccelerationProfile { pairs, .. } => {
+            let block = plcopen::AccelerationProfile::new(vec![plcopen::Pair::default(); pairs.len()]);
+            executed(said, block, Rates::of_accelerations, |kept, execute| plcopen::AccelerationProfileInputs {
+                execute,
+                ..kept.accelerations()
+            })
+        }
+    }
 }
 
 /// A block that is executed by the edge of Execute.
-fn executed<B>(
-    block: B,
-    said: &Said,
-    read: fn(&Said) -> Option<B::Inputs>,
-    trigger: fn(&mut B::Inputs) -> &mut bool,
-) -> Option<Box<dyn Block>>
+fn executed<B, K>(said: &Said, block: B, read: fn(&Said) -> Option<K>, lend: Lend<B, K>) -> Box<dyn Block>
 where
     B: FunctionBlock + 'static,
+    K: 'static,
 {
-    read(said).map(|inputs| Box::new(Instance { block, inputs, read, trigger, is_enabled: false }) as Box<dyn Block>)
+    Box::new(Instance { block, kept: read(said), read, lend, is_enabled: false })
 }
 
 /// A block that works as long as Enable is TRUE.
-fn enabled<B>(
-    block: B,
-    said: &Said,
-    read: fn(&Said) -> Option<B::Inputs>,
-    trigger: fn(&mut B::Inputs) -> &mut bool,
-) -> Option<Box<dyn Block>>
+fn enabled<B, K>(said: &Said, block: B, read: fn(&Said) -> Option<K>, lend: Lend<B, K>) -> Box<dyn Block>
 where
     B: FunctionBlock + 'static,
+    K: 'static,
 {
-    read(said).map(|inputs| Box::new(Instance { block, inputs, read, trigger, is_enabled: true }) as Box<dyn Block>)
+    Box::new(Instance { block, kept: read(said), read, lend, is_enabled: true })
 }
 
 /// A block that reads something of the axis.
-fn reading<B>(block: B, said: &Said) -> Option<Box<dyn Block>>
+fn reading<B>(said: &Said, block: B) -> Box<dyn Block>
 where
-    B: FunctionBlock<Inputs = plcopen::ReadInputs> + 'static,
+    B: for<'i> FunctionBlock<Inputs<'i> = plcopen::ReadInputs> + 'static,
 {
-    enabled(block, said, inputs::reading, |inputs| &mut inputs.enable)
+    enabled(said, block, inputs::reading, |_, enable| plcopen::ReadInputs { enable })
 }
 
 /// Velocity, acceleration, jerk and snap that a block asks of its axis; zero for what it does not ask for.

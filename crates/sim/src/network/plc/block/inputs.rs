@@ -1,5 +1,11 @@
 //! The inputs of the blocks, from how a scenario says them; `None` for those of another block.
+mod table;
+
+pub(super) use table::{Positions, Rates};
+
+use servobench_motion::Limits;
 use servobench_plcopen as plcopen;
+use servobench_plcopen::generator::Mounting;
 use servobench_scenario as scenario;
 use servobench_scenario::Block as Said;
 
@@ -165,6 +171,20 @@ pub(super) fn torque_control(said: &Said) -> Option<plcopen::TorqueControlInputs
         velocity: dynamics.velocity,
         direction: direction(*way),
         buffer_mode: buffer_mode(command.buffer_mode),
+    })
+}
+
+pub(super) fn profile_4th(said: &Said) -> Option<plcopen::Profile4thInputs> {
+    let Said::Profile4th { position, limits: [velocity, acceleration, jerk, snap], settling_time, reversed } = *said
+    else {
+        return None;
+    };
+    Some(plcopen::Profile4thInputs {
+        enable: false,
+        position,
+        limits: Limits { velocity, acceleration, jerk, snap },
+        settling_time,
+        mounting: if reversed { Mounting::Opposite } else { Mounting::Same },
     })
 }
 

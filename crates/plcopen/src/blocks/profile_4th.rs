@@ -1,0 +1,204 @@
+//! `Profile4th`: an axis that follows the published [generator](crate::generator) of order 4.
+//!
+//! The generator knows of no axis: it makes a reference. Here its set-points are what the axis follows, as it follows those of a
+//! profile block, from where the axis is commanded to be. As each move goes from rest to rest and ends by itself, it is one of
+//! Discrete Motion, and begins at Standstill only; Done of the axis comes with its last set-point, `CmdDone` of the generator
+//! `T_set` later.
+//!
+//! | output | TRUE |
+//! |---|---|
+//! | Ready | a rise of Enable starts a move |
+//! | Done | the last move is over, and its settling time too |
+//! | Busy | from the start of a move until Ready |
+//! | Active | the axis follows the generator |
+//! | CommandAborted, Error | until Enable is FALSE, and a cycle at least |
+//!
+//! As at the generator, a falling Enable does not end the move, and one that stays TRUE starts again as soon as the block is
+//! ready: here, when `pref` is another than that of the last start.
+use super::outputs::{FunctionBlock, Outputs, flag, number};
+use crate::axis::Axis;
+use crate::command::{BufferMode, Command, Dynamics, Goal};
+use crate::error::{BlockError, ErrorId};
+use crate::generator::{self, Input, Method, Mounting};
+use crate::ledger::{CommandId, Progress};
+use crate::name::BlockName;
+use servobench_base::Setpoint;
+use servobench_motion::Limits;
+
+/// Follows the generator of order 4.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Profile4th {
+    generator: generator::State,
+    id: Option<CommandId>,
+    /// Where the last start leads, as long as Enable is TRUE.
+    reference: Option<f64>,
+    is_aborted: bool,
+    error: Option<BlockError>,
+}
+
+/// Inputs of [`Profile4th`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Profile4thInputs {
+    /// `TriggerEnable`.
+    pub enable: bool,
+    /// `pref`: where to (m or rad).
+    pub position: f64,
+    /// `vel_bnd`, `acc_bnd`, `jerk_bnd` and `djerk_bnd`.
+    pub limits: Limits,
+    /// `T_set`: from the end of a move until the block is ready for the next (s).
+    pub settling_time: f64,
+    /// Whether the axis goes the opposite way.
+    pub mounting: Mounting,
+}
+
+/// Outputs of [`Profile4th`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an output of the block")]
+pub struct Profile4thOutputs {
+    /// `Ready`.
+    pub ready: bool,
+    /// `CmdDone`.
+    pub done: bool,
+    /// Busy.
+    pub busy: bool,
+    /// Active.
+    pub active: bool,
+    /// CommandAborted: another command took the axis.
+    pub command_aborted: bool,
+    /// Error.
+    pub error: bool,
+    /// ErrorID.
+    pub error_id: ErrorId,
+}
+
+impl Profile4thInputs {
+    /// To `position` by `limits`, ready as soon as it is there; not enabled.
+    #[must_use]
+    pub const fn to(position: f64, limits: Limits) -> Self {
+        Self { enable: false, position, limits, settling_time: 0.0, mounting: Mounting::Same }
+    }
+}
+
+impl FunctionBlock for Profile4th {
+    const NAME: BlockName = BlockName::Profile4th;
+    type Inputs<'i> = Profile4thInputs;
+    type Outputs = Profile4thOutputs;
+
+    fn step(&mut self, axis: &mut Axis, inputs: &Profile4thInputs) -> Profile4thOutputs {
+        if !inputs.enable {
+            (self.reference, self.is_aborted, self.error) = (None, false, None);
+        }
+        self.watch(axis);
+        if self.is_aborted || self.error.is_some() {
+            return self.outputs(&generator::Output::default());
+        }
+        let generated = self.generate(axis, inputs).unwrap_or_else(|error| {
+            self.release(axis);
+            self.error = Some(error);
+            generator::Output::default()
+        });
+        self.outputs(&generated)
+    }
+
+    fn error(&self) -> Option<&BlockError> {
+        self.error.as_ref()
+    }
+}
+
+impl Profile4th {
+    /// Sees whether the axis still follows.
+    fn watch(&mut self, axis: &Axis) {
+        let Some(id) = self.id else { return };
+        match axis.progress(id) {
+            Progress::Aborted => self.is_aborted = true,
+            Progress::Failed => self.error = axis.ledger().failure,
+            Progress::Buffered | Progress::Active | Progress::InTarget | Progress::Done => return,
+        }
+        (self.id, self.generator) = (None, generator::State::default());
+    }
+
+    /// One sample of the generator, and the axis led to it.
+    fn generate(&mut self, axis: &mut Axis, inputs: &Profile4thInputs) -> Result<generator::Output, BlockError> {
+        let &Profile4thInputs { enable, position, limits, settling_time, mounting } = inputs;
+        let params = generator::Params::new(axis.params().cycle_time, settling_time).map_err(|_| {
+            let (input, bound) = ("T_set", "zero or more");
+            BlockError::Input { block: Self::NAME, input, value: settling_time, bound }
+        })?;
+        let stands = axis.commanded().x;
+        let input = Input {
+            method: Method::Step,
+            reference: self.reference.unwrap_or(position),
+            limits,
+            enable: enable && self.reference != Some(position),
+            actual_reference: stands,
+            mounting,
+        };
+        let generated = generator::step(&params, &mut self.generator, &input);
+        match self.id {
+            None if self.generator.is_moving() => {
+                self.id = Some(begin(axis, &limits, position)?);
+                self.reference = Some(position);
+            }
+            None => {}
+            Some(id) => {
+                if let Some(error) = generated.error {
+                    return Err(BlockError::Plan { block: Self::NAME, error });
+                }
+                if axis.led_cycles(id) == Some(1) {
+                    // The start: the generator counts from where the axis stands in this cycle.
+                    axis.begin_leading(id);
+                }
+                axis.lead(id, generated.set_point);
+                if !self.generator.is_moving() {
+                    axis.conclude(id);
+                    self.id = None;
+                }
+            }
+        }
+        Ok(generated)
+    }
+
+    /// Lets go of an axis that has not been moved.
+    fn release(&mut self, axis: &mut Axis) {
+        self.generator = generator::State::default();
+        if let Some(id) = self.id.take() {
+            axis.lead(id, Setpoint::at_rest(axis.commanded().x));
+            axis.conclude(id);
+        }
+    }
+
+    fn outputs(&self, generated: &generator::Output) -> Profile4thOutputs {
+        let (active, has_ended) = (self.id.is_some(), self.is_aborted || self.error.is_some());
+        let ready = generated.ready && !active;
+        Profile4thOutputs {
+            ready,
+            done: ready && generated.done,
+            busy: !ready && !has_ended,
+            active,
+            command_aborted: self.is_aborted,
+            error: self.error.is_some(),
+            error_id: self.error.as_ref().map_or(ErrorId::None, BlockError::id),
+        }
+    }
+}
+
+/// Has the axis follow.
+fn begin(axis: &mut Axis, limits: &Limits, position: f64) -> Result<CommandId, BlockError> {
+    let block = BlockName::Profile4th;
+    if axis.params().needs_homing && !axis.is_homed() {
+        return Err(BlockError::NotHomed { block, value: position });
+    }
+    let Limits { velocity, acceleration, jerk, snap } = *limits;
+    let dynamics = Dynamics { velocity, acceleration, deceleration: acceleration, jerk: Some(jerk), snap: Some(snap) };
+    axis.submit(Command { block, goal: Goal::Led, dynamics, buffer_mode: BufferMode::Aborting })
+}
+
+impl Outputs for Profile4thOutputs {
+    const NAMES: &'static [&'static str] = &["Ready", "Done", "Busy", "Active", "CommandAborted", "Error", "ErrorID"];
+
+    fn each(&self, record: impl FnMut(f64)) {
+        let Self { ready, done, busy, active, command_aborted, error, error_id } = *self;
+        let flags = [ready, done, busy, active, command_aborted, error].map(flag);
+        flags.into_iter().chain([number(error_id)]).for_each(record);
+    }
+}

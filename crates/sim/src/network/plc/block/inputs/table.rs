@@ -1,0 +1,72 @@
+//! The inputs of the blocks that follow a table, which a call keeps and lends to its block.
+use super::buffer_mode;
+use servobench_plcopen as plcopen;
+use servobench_plcopen::Pair;
+use servobench_scenario as scenario;
+use servobench_scenario::Block as Said;
+
+/// A table of positions.
+pub(in super::super) struct Positions {
+    pairs: Vec<Pair>,
+    is_absolute: bool,
+    follow: plcopen::Follow,
+    end_velocity: f64,
+    buffer_mode: plcopen::BufferMode,
+}
+
+impl Positions {
+    pub(in super::super) fn of(said: &Said) -> Option<Self> {
+        let Said::PositionProfile { pairs: said, is_relative, follow, end_velocity, buffer_mode: mode } = said else {
+            return None;
+        };
+        let follow = match *follow {
+            scenario::ProfileFollow::Spline => plcopen::Follow::Spline,
+            scenario::ProfileFollow::Plateaus(share) => plcopen::Follow::Plateaus(share),
+        };
+        let (is_absolute, end_velocity, buffer_mode) = (!is_relative, *end_velocity, buffer_mode(*mode));
+        Some(Self { pairs: pairs(said), is_absolute, follow, end_velocity, buffer_mode })
+    }
+
+    pub(in super::super) fn inputs(&self) -> plcopen::PositionProfileInputs<'_> {
+        let Self { ref pairs, is_absolute, follow, end_velocity, buffer_mode } = *self;
+        plcopen::PositionProfileInputs {
+            time_position: plcopen::TimePosition { pairs, is_absolute },
+            follow,
+            end_velocity,
+            buffer_mode,
+            ..plcopen::PositionProfileInputs::along(pairs)
+        }
+    }
+}
+
+/// A table of velocities or accelerations.
+pub(in super::super) struct Rates {
+    pairs: Vec<Pair>,
+    buffer_mode: plcopen::BufferMode,
+}
+
+impl Rates {
+    pub(in super::super) fn of_velocities(said: &Said) -> Option<Self> {
+        let Said::VelocityProfile { pairs: said, buffer_mode: mode } = said else { return None };
+        Some(Self { pairs: pairs(said), buffer_mode: buffer_mode(*mode) })
+    }
+
+    pub(in super::super) fn of_accelerations(said: &Said) -> Option<Self> {
+        let Said::AccelerationProfile { pairs: said, buffer_mode: mode } = said else { return None };
+        Some(Self { pairs: pairs(said), buffer_mode: buffer_mode(*mode) })
+    }
+
+    pub(in super::super) fn velocities(&self) -> plcopen::VelocityProfileInputs<'_> {
+        let Self { ref pairs, buffer_mode } = *self;
+        plcopen::VelocityProfileInputs { buffer_mode, ..plcopen::VelocityProfileInputs::along(pairs) }
+    }
+
+    pub(in super::super) fn accelerations(&self) -> plcopen::AccelerationProfileInputs<'_> {
+        let Self { ref pairs, buffer_mode } = *self;
+        plcopen::AccelerationProfileInputs { buffer_mode, ..plcopen::AccelerationProfileInputs::along(pairs) }
+    }
+}
+
+fn pairs(said: &[scenario::Pair]) -> Vec<Pair> {
+    said.iter().map(|&scenario::Pair { delta_time, value }| Pair { delta_time, value }).collect()
+}
