@@ -5,9 +5,9 @@ use servobench_tests::{run, scenario_file};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The first ticks of axes that have everything between them: a synchronous motor with a table before the load, an
-/// ideal source, a load that is pushed; and something that pushes the motor.
-fn axes() -> [Scenario; 3] {
-    ["demo/snap.toml", "lambrechts-snap.toml", "feed-axis-load-step.toml"].map(|file| {
+/// ideal source, a load that is pushed, a fieldbus; and something that pushes the motor.
+fn axes() -> [Scenario; 4] {
+    ["demo/snap.toml", "lambrechts-snap.toml", "feed-axis-load-step.toml", "plc/bus-jitter.toml"].map(|file| {
         let mut scenario = scenario_file(file);
         scenario.duration = Some(1e-3);
         scenario.record.channels.clear();
