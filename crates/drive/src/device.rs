@@ -246,7 +246,7 @@ pub fn step(p: &Params, x: &mut State, u: &Inputs) -> Outputs {
         .with(StatusBit::TargetReached, answer.target_reached)
         .with(StatusBit::InternalLimitActive, is_limited)
         .with(StatusBit::ModeSpecific12, answer.bit_12)
-        .with(StatusBit::ModeSpecific13, answer.bit_13);
+        .with(StatusBit::ModeSpecific13, answer.bit_13 || x.tells_following_error());
     answer.demand.move_by(p.units.metres_or_radians(x.origin));
     if let Some(shift) = x.shift.take() {
         x.move_zero(p, shift);
@@ -318,7 +318,6 @@ impl State {
         if !running.looks_for_ends() {
             self.guard.step(p, &self.now, &mut answer.demand);
         }
-        answer.bit_13 |= running.tells_following_error() && !p.following_error.holds(self.following_error);
         answer
     }
 

@@ -92,9 +92,4 @@ impl Running {
     pub(super) const fn looks_for_ends(&self) -> bool {
         matches!(self, Self::Hm(_))
     }
-
-    /// Whether bit 13 tells a following error.
-    pub(super) const fn tells_following_error(&self) -> bool {
-        matches!(self, Self::Pp(_) | Self::Csp(_))
-    }
 }

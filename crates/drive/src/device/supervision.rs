@@ -1,7 +1,7 @@
 //! What the drive watches: faults and standstill.
 use super::{Beat, Fault, Inputs, Params, Running, State};
 use crate::Demand;
-use servobench_cia402::{PowerState, Transition};
+use servobench_cia402::{Mode, PowerState, Transition};
 
 impl State {
     /// The fault that is present, the gravest first.
@@ -39,6 +39,13 @@ impl State {
             }
             _ => None,
         }
+    }
+
+    /// Whether bit 13 says that the following error has been out of its window (6065h) for the time-out (6066h), in the modes
+    /// in which it has that meaning: the fault that this is (8611h), until it is reset.
+    pub(super) const fn tells_following_error(&self) -> bool {
+        matches!(self.fault, Some(Fault::FollowingError))
+            && matches!(self.mode, Some(Mode::ProfilePosition | Mode::CyclicSynchronousPosition))
     }
 
     /// Whether the axis stands, and is asked to stand, for long enough.

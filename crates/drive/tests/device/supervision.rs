@@ -92,7 +92,7 @@ fn the_fault_reaction_brakes_as_its_option_code_says() {
     }
 }
 
-/// Oracle: counted. Bit 13 is set outside the window, the fault comes when that has lasted for the time-out.
+/// Oracle: counted. Bit 13 and the fault come together when the error has been outside for the time-out (IEC 61800-7-201, 6066h).
 #[test]
 fn the_following_error_may_leave_its_window_for_the_time_out() {
     let params = Params { following_error: Window { width: 1e-3, time: 5e-3 }, ..Params::default() };
@@ -102,13 +102,41 @@ fn the_following_error_may_leave_its_window_for_the_time_out() {
         (0..steps).position(|k| {
             axis.frame.target_position = 4000;
             let outputs = axis.step(k % 4 == 0);
-            assert_eq!(axis.has(StatusBit::ModeSpecific13), error.abs() > 1e-3 && outputs.fault.is_none());
+            assert_eq!(axis.has(StatusBit::ModeSpecific13), outputs.fault.is_some());
             outputs.fault.is_some()
         })
     };
     assert_eq!(outside(20, 1.5e-3), None, "19 periods");
     assert_eq!(outside(4, 1e-3), None, "within");
     assert_eq!(outside(40, -1.5e-3), Some(20), "20 periods of 0.25 ms");
+}
+
+/// Bit 13 tells a lost position until the fault is reset, only that fault and only in the modes that give it this meaning.
+#[test]
+fn bit_13_tells_a_lost_position_until_the_reset() {
+    use PowerState::{Fault as Faulty, FaultReactionActive, SwitchOnDisabled};
+    let following_error = Window { width: 1e-3, time: 0.0 };
+    let params = Params { following_error, ..Params::default() };
+    for (mode, is_lost, told) in [
+        (Mode::CyclicSynchronousPosition, true, true),
+        (Mode::ProfilePosition, true, true),
+        (Mode::Homing, true, false),
+        (Mode::CyclicSynchronousPosition, false, false),
+    ] {
+        let mut axis = Axis::enabled(&params, mode);
+        (axis.measured.following_error, axis.fault) = if is_lost { (2e-3, None) } else { (0.0, Some(0x9000)) };
+        axis.step(true);
+        let shown = |axis: &Axis| (axis.state.power(), axis.has(StatusBit::ModeSpecific13));
+        assert_eq!(shown(&axis), (FaultReactionActive, told), "{mode:?}");
+        (axis.measured.following_error, axis.fault) = (0.0, None);
+        axis.cycles(100);
+        assert_eq!(shown(&axis), (Faulty, told), "{mode:?}");
+        axis.command(Command::DisableVoltage);
+        axis.cycle();
+        axis.command(Command::FaultReset);
+        axis.cycle();
+        assert_eq!(shown(&axis), (SwitchOnDisabled, false), "{mode:?}");
+    }
 }
 
 #[test]
