@@ -23,7 +23,8 @@
 //! When the drive function is enabled, the demand begins where the axis is, at its velocity. When a mode follows another or a
 //! stop, it begins with the position and the velocity that the loops follow. A mode that the drive does not have is not switched
 //! to: the display (6061h) says what runs. While the axis is braked, the mode stays. A halt (bit 8) stops the axis in every mode;
-//! pp goes on with its set-point afterwards.
+//! pp goes on with its set-point afterwards. Bits 12 and 13 of the statusword keep their meaning during a halt: what a cyclic
+//! mode does then is not to follow the master, and a reference is attained in homing once its search is over.
 mod cycle;
 mod fault;
 mod guard;
@@ -340,6 +341,7 @@ impl State {
             self.stop = Some((how, Ramp::begin(&self.now.demanded, deceleration, closes_position)));
         }
         let demand = self.stop.as_mut().map_or(Demand::Off, |(_, ramp)| ramp.step(p.period));
-        Answer { demand, target_reached: standstill, bit_12: false, bit_13: false }
+        let [bit_12, bit_13] = self.running.as_mut().map_or([false; 2], |running| running.halted(p, &self.now));
+        Answer { demand, target_reached: standstill, bit_12, bit_13 }
     }
 }

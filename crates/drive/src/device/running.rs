@@ -36,13 +36,24 @@ impl Running {
     pub(super) fn resume(&mut self, p: &Params, now: &Moment) {
         match self {
             Self::Pp(x) => x.resume(&p.profile_position(), now),
-            Self::Pv(x) => *x = profile::velocity::State::begin(now),
+            Self::Pv(x) => x.resume(now),
             Self::Tq(x) => *x = profile::effort::State::begin(now),
             Self::Hm(x) => x.resume(now),
             Self::Ip(x) => *x = interpolated::State::begin(now),
             Self::Csp(x) => *x = cyclic::position::State::begin(now),
             Self::Csv(x) => *x = cyclic::velocity::State::begin(now),
             Self::Cst(x) => *x = cyclic::effort::State::begin(now),
+        }
+    }
+
+    /// Bits 12 and 13 of a step at which the axis is halted: they keep the meaning that the mode gives them. A mode that
+    /// follows the master does not do so now.
+    pub(super) fn halted(&mut self, p: &Params, now: &Moment) -> [bool; 2] {
+        match self {
+            Self::Pp(x) => [x.halted(now), false],
+            Self::Pv(x) => [x.stands(&p.profile_velocity(), now), false],
+            Self::Hm(x) => [x.is_homed(), x.failure().is_some()],
+            Self::Tq(_) | Self::Ip(_) | Self::Csp(_) | Self::Csv(_) | Self::Cst(_) => [false; 2],
         }
     }
 

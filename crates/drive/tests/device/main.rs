@@ -2,6 +2,7 @@
 mod axis;
 mod cyclic;
 mod ends;
+mod halt;
 mod handshake;
 mod homing;
 mod interpolated;

@@ -12,7 +12,8 @@
 //! | | 12, set-point acknowledge | set when a set-point is taken; cleared when bit 4 is cleared and another one would be taken |
 //!
 //! One set-point may wait while another one is under way. One more is not taken: it is not acknowledged by a cleared bit 12, and
-//! the edge is lost. While the axis is halted nothing is taken; afterwards the move goes on.
+//! the edge is lost. While the axis is halted nothing is taken, but bit 12 falls as ever. Afterwards the move goes on, and an edge is
+//! taken whose bit 4 is still set.
 //!
 //! # The way
 //!
@@ -109,6 +110,21 @@ impl State {
         }
     }
 
+    /// A step of a halt; whether the last set-point is acknowledged. A bit 4 that is cleared is seen, one that is set waits for
+    /// the end of the halt.
+    pub fn halted(&mut self, now: &Moment) -> bool {
+        self.handshake.asks &= asks(now);
+        self.release();
+        self.handshake.acknowledges
+    }
+
+    /// Ends the acknowledgement when bit 4 is cleared and another set-point would be taken.
+    const fn release(&mut self) {
+        if !self.handshake.asks && self.waiting.is_none() {
+            self.handshake.acknowledges = false;
+        }
+    }
+
     /// Sets out for standstill, which is the target then.
     fn stop(&mut self, p: &Params, now: &Moment) {
         let brake = SetPoint::at(now.demanded.x, &now.targets);
@@ -191,9 +207,7 @@ pub fn step(p: &Params, x: &mut State, now: &Moment) -> Answer {
             x.go_to(p, &active, &setpoint.after(now.period));
         }
     }
-    if !x.handshake.asks && x.waiting.is_none() {
-        x.handshake.acknowledges = false;
-    }
+    x.release();
     let demand = Demand::position(setpoint);
     Answer { demand, target_reached: is_reached && x.active.is_none(), bit_12: x.handshake.acknowledges, bit_13: false }
 }

@@ -64,6 +64,16 @@ impl State {
         }
     }
 
+    /// Goes on after a halt, from the velocity of then.
+    pub fn resume(&mut self, now: &Moment) {
+        *self = Self { above_threshold: self.above_threshold, ..Self::begin(now) };
+    }
+
+    /// A step; whether the axis stands (bit 12), whoever moves it.
+    pub fn stands(&mut self, p: &Params, now: &Moment) -> bool {
+        !self.above_threshold.step(!p.threshold.holds(now.actual.velocity), p.threshold.time, now.period)
+    }
+
     /// Whether the target is beyond the highest velocity.
     #[must_use]
     pub const fn is_limited(&self) -> bool {
@@ -112,7 +122,7 @@ pub fn step(p: &Params, x: &mut State, now: &Moment) -> Answer {
     Answer {
         demand: Demand::Velocity { setpoint, effort_offset: 0.0 },
         target_reached: x.within_window.step(p.window.holds(error), p.window.time, *period),
-        bit_12: !x.above_threshold.step(!p.threshold.holds(actual.velocity), p.threshold.time, *period),
+        bit_12: x.stands(p, now),
         bit_13: false,
     }
 }
