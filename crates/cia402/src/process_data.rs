@@ -17,6 +17,8 @@ pub struct Commands {
     pub target_velocity: i32,
     /// 6071h.
     pub target_torque: i16,
+    /// Added to the target position of the cyclic synchronous position (60B0h); the sum wraps as positions do.
+    pub position_offset: i32,
     /// Added to the velocity that the position loop asks for (60B1h).
     pub velocity_offset: i32,
     /// Added to the torque that the velocity loop asks for (60B2h).

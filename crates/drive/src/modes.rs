@@ -34,7 +34,7 @@ pub struct Moment {
 pub struct Targets {
     /// With the bits that a mode gives a meaning of its own.
     pub controlword: Controlword,
-    /// Target position (607Ah).
+    /// Target position (607Ah), in csp with the position offset (60B0h).
     pub position: f64,
     /// Target position (607Ah) as a distance, for set-points that are relative.
     pub distance: f64,

@@ -180,6 +180,7 @@ impl Dictionary {
         self.set(signal::TARGET_POSITION, commands.target_position);
         self.set(signal::TARGET_VELOCITY, commands.target_velocity);
         self.set(signal::TARGET_TORQUE, commands.target_torque);
+        self.set(signal::POSITION_OFFSET, commands.position_offset);
         self.set(signal::VELOCITY_OFFSET, commands.velocity_offset);
         self.set(signal::TORQUE_OFFSET, commands.torque_offset);
         if let Some(mode) = Mode::from_code(commands.mode) {

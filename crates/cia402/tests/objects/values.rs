@@ -139,6 +139,7 @@ fn process_data_are_read_by_sdo_too() {
         target_position: -1,
         target_velocity: i32::MIN,
         target_torque: -3,
+        position_offset: -2,
         velocity_offset: 4,
         torque_offset: -5,
         ..Commands::default()
@@ -162,6 +163,7 @@ fn process_data_are_read_by_sdo_too() {
         (0x607A, -1),
         (0x60FF, i32::MIN.into()),
         (0x6071, -3),
+        (0x60B0, -2),
         (0x60B1, 4),
         (0x60B2, -5),
         (0x6041, 0x0208),

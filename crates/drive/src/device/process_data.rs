@@ -43,9 +43,13 @@ impl State {
         let here = p.units.position(self.increments.wrapping_sub(self.origin));
         #[expect(clippy::cast_possible_truncation, reason = "the counter of the bus wraps")]
         let shown = here as i32;
+        let asked = match self.wanted {
+            Some(Mode::CyclicSynchronousPosition) => frame.target_position.wrapping_add(frame.position_offset),
+            _ => frame.target_position,
+        };
         let target = match self.wanted {
-            Some(Mode::ProfilePosition) => here.wrapping_sub(shown.into()).wrapping_add(frame.target_position.into()),
-            _ => here.wrapping_add(frame.target_position.wrapping_sub(shown).into()),
+            Some(Mode::ProfilePosition) => here.wrapping_sub(shown.into()).wrapping_add(asked.into()),
+            _ => here.wrapping_add(asked.wrapping_sub(shown).into()),
         };
         let position = p.units.from_position(target);
         let kept = p.limits.position.map_or(position, |[lowest, highest]| position.clamp(lowest, highest));

@@ -61,7 +61,7 @@ fn scramble(random: &mut Random, frame: &mut Commands) {
     let mut any = || (random.next() as i64 % range.max(1)) as i32;
     frame.target_position = any();
     frame.target_velocity = any();
-    frame.velocity_offset = any();
+    (frame.position_offset, frame.velocity_offset) = (any(), any());
     (frame.target_torque, frame.torque_offset) = (any() as i16, any() as i16);
     frame.profile_velocity = any().unsigned_abs();
     (frame.profile_acceleration, frame.profile_deceleration) = (any().unsigned_abs(), any().unsigned_abs());

@@ -1,6 +1,7 @@
 //! Cyclic synchronous position (csp).
 //!
-//! Between two targets the position is that of [`interpolate`](servobench_motion::interpolate), in one of three ways:
+//! A target is the sum of target position (607Ah) and position offset (60B0h). Between two targets the position is that of
+//! [`interpolate`](servobench_motion::interpolate), in one of three ways:
 //!
 //! | interpolation | by | target reached after |
 //! |---|---|---|
