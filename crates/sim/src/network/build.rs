@@ -24,6 +24,8 @@ use servobench_trace::Recorder;
 
 /// Cycles that the bus lets the drive miss before it gives up.
 const BRIDGED: u32 = 2;
+/// Width of the position that the drive sends (6064h).
+const DRIVE_COUNTER: u32 = 32;
 /// How much faster than any move of the program an axis may become.
 const RESERVE: f64 = 2.0;
 
@@ -72,6 +74,10 @@ impl Network {
         if !bus_every.is_multiple_of(drive_every) {
             let bound = "a whole number of periods of the position loop";
             return Err(ParamError { name: "bus.cycle", value: f64::from(bus.cycle) * tick, bound }.into());
+        }
+        if bus.counter.bits != DRIVE_COUNTER {
+            let (name, value) = ("bus.counter.bits", f64::from(bus.counter.bits));
+            return Err(ParamError { name, value, bound: "32, the width of the drive's counter" }.into());
         }
         let dynamics = scenario.plc.as_ref().map_or_else(|| dynamics(&program), dynamics_of_calls);
 
