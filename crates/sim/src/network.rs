@@ -10,17 +10,16 @@
 //! turns, when it is due, and the link makes the next frame; then the drive steps, when its position loop turns, with the frame
 //! that has arrived. Either way takes the delay of the bus.
 mod build;
-mod moves;
 mod own_way;
 mod plc;
 mod points;
 mod reference;
 mod signals;
+mod underway;
 mod units;
 
 pub use points::Unsendable;
 
-use moves::Moves;
 use own_way::OwnWay;
 use plc::Plc;
 use reference::DelayedReference;
@@ -29,11 +28,12 @@ use servobench_cia402::{Commands, Mode};
 use servobench_drive::{Demand, device, feedforward};
 use servobench_fieldbus::bus::{self, BusFault};
 use servobench_fieldbus::link::{self, Mailbox};
-use servobench_fieldbus::{AxisCommand, AxisFeedback};
+use servobench_fieldbus::{AxisCommand, AxisFeedback, Task};
 use servobench_motion::interpolate::Sample;
 use servobench_plant::SwitchReading;
 use servobench_trace::Recorder;
 use signals::Signals;
+use underway::Underway;
 
 /// From the motion task to the door of the drive.
 #[derive(Debug)]
@@ -75,7 +75,7 @@ pub(crate) struct Network {
 #[derive(Debug)]
 enum MotionTask {
     /// The moves of `[[program]]`.
-    Moves(Box<Moves>),
+    Moves(Box<Underway>),
     /// The same, left to the drive.
     OwnWay(Box<OwnWay>),
     /// The calls of `[[call]]`.
@@ -101,7 +101,9 @@ impl MotionTask {
     ) -> Result<Step, String> {
         match self {
             Self::Moves(moves) => {
-                let (command, setpoint) = moves.cycle(feedback, sample);
+                let now = moves.turn(feedback).unwrap_or(0.0);
+                let setpoint = moves.at(now);
+                let command = AxisCommand { power: true, reset: false, task: Task::Follow(sample(setpoint)) };
                 Ok(Step { command, setpoint: Some(setpoint) })
             }
             Self::OwnWay(way) => Ok(way.cycle(feedback)),
@@ -257,7 +259,7 @@ impl Network {
     pub(crate) fn finish(&mut self, t: f64, unit: &str, delay: f64, recorder: &mut Recorder) {
         match &mut self.task {
             MotionTask::Moves(moves) => moves.moves(unit, delay).for_each(|made| recorder.note_move(made)),
-            MotionTask::OwnWay(way) => way.moves(unit, delay).for_each(|made| recorder.note_move(made)),
+            MotionTask::OwnWay(way) => way.moves().moves(unit, delay).for_each(|made| recorder.note_move(made)),
             MotionTask::Plc(plc) => plc.finish(t, delay, recorder),
         }
     }

@@ -1,5 +1,5 @@
 //! The program of moves as a set-point over time.
-mod fine;
+pub(crate) mod fine;
 mod request;
 
 use crate::error::{BuildError, check_length};

@@ -93,6 +93,7 @@ fn what_the_loops_follow_is_the_program_as_much_later_as_the_way_takes() {
     assert!(behind > 20e-3, "the motion task is far ahead: {behind} m");
     // The torque is a line between the set-points: off by m·s·T²/8 = 30·1000·0.02²/8 = 1.5 N while the snap acts, against a
     // position loop of 2.8 kN·s/m · 25/s = 71 N/mm: 21 µm if it lasted. An undelayed reference would be 22 mm ahead.
+    println!("{:.2e} m against the delayed reference", peak(&recording, "following_error.load"));
     assert!(peak(&recording, "following_error.load") < 21e-6, "{}", peak(&recording, "following_error.load"));
     assert_eq!(states(&recording, "link", "interpolation"), ["Off", "Wait", "Run1"]);
 }
@@ -116,4 +117,20 @@ fn a_counter_that_the_drive_does_not_have_is_refused() {
     let parsed = scenario::parse("network", &text, None).unwrap_or_else(|error| panic!("{error}"));
     let refused = Bench::new(&parsed.scenario, &Exact).err().map(|error| error.to_string());
     assert_eq!(refused.as_deref(), Some("`bus.counter.bits` must be 32, the width of the drive's counter, got 16"));
+}
+
+/// csv: the position loop is the master's. Its measurement is as old as the frame that brought it, so the axis lags in motion;
+/// it ends at the target.
+#[test]
+fn the_master_can_close_the_position_loop() {
+    let recording = run(&format!("{BUS}mode = \"csv\"\nposition_gain = \"25 1/s\"\n"));
+    let last = values(&recording, "load.position").last().copied().unwrap_or_default();
+    println!(
+        "csv: {:.2e} m in motion, rests {:.1e} m off",
+        peak(&recording, "following_error.load"),
+        (last - 1.0).abs()
+    );
+    assert_eq!(states(&recording, "drive", "mode"), ["none", "csv"]);
+    // A unit of a nanometre, held by whole units of velocity.
+    assert!((last - 1.0).abs() < 1e-6, "{last}");
 }

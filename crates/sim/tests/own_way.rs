@@ -1,4 +1,6 @@
 //! Ways that the drive makes itself: profile velocity, interpolated position, profile position.
+use servobench_motion::position_profile::Spline;
+use servobench_motion::pvt::Knot;
 use servobench_plant::Exact;
 use servobench_scenario as scenario;
 use servobench_sim::{Bench, Outcome, Program};
@@ -59,7 +61,14 @@ fn a_position_profile_in_profile_velocity_mode_meets_its_positions() {
     let table = [5.0, 20.0, 45.0, 70.0, 90.0, 100.0, 102.0, 101.0, 100.0, 100.0].map(|millimetres| 1e-3 * millimetres);
     let tick = recording.rate.period();
     let powered = recording.moves[0].start - 0.1;
-    for (made, announced) in recording.moves.iter().zip([0.0, 20e-6]) {
+    let mut knots = [Knot::default(); 11];
+    for (k, (knot, x)) in (1_u32..).zip(knots[1..].iter_mut().zip(table)) {
+        *knot = Knot::new(0.05 * f64::from(k), x);
+    }
+    let mut scratch = [0.0; 11];
+    let spline = Spline::solve(&mut knots, 0.0, 0.0, &mut scratch).unwrap_or_else(|error| panic!("{error}"));
+    let stepped = spline.stepped(200.0).unwrap_or_else(|error| panic!("{error}"));
+    for (made, announced) in recording.moves.iter().zip([0.0, stepped.largest_error()]) {
         let mut program = Program::new(&loaded.scenario).unwrap_or_else(|error| panic!("{error}"));
         let (start, mut x) = (recording.index_at(made.start), 0.0);
         let (mut worst, mut from_plan) = (0.0_f64, 0.0_f64);
@@ -72,7 +81,10 @@ fn a_position_profile_in_profile_velocity_mode_meets_its_positions() {
                 worst = worst.max((x - table[k / 800]).abs());
             }
         }
-        println!("{}: {from_plan:.2e} m from its plan, {worst:.2e} m from its points", made.label);
+        println!(
+            "{}: {from_plan:.1e} m from its plan, {worst:.2e} m from its points, {announced:.2e} m announced",
+            made.label
+        );
         // The drive is sent whole increments per second, 1e-8 m/s, and is between two of its steps for a tick.
         assert!(from_plan < 0.1e-6, "{}: {from_plan}", made.label);
         assert!(worst <= announced + 0.1e-6, "{}: {worst}", made.label);
@@ -157,5 +169,29 @@ fn a_master_that_stops_leaves_an_underflow_and_a_stop() {
     let quick_stop = 2.0 * recording.moves[0].peaks[1];
     println!("{} m/s² of {quick_stop}", steepest / recording.rate.period());
     assert!(steepest <= 1.000_001 * quick_stop * 250e-6, "{steepest} m/s in a turn, {quick_stop} m/s²");
+    assert!(peak(&recording, "following_error.motor") < 1e-3);
+}
+
+/// Profile position: the drive plans each move itself. Oracle: a trapezoid by hand, 100 mm at 0.5 m/s and 5 m/s² take
+/// 0.1/0.5 + 0.5/5 = 0.3 s, and back again after the pause.
+#[test]
+fn moves_in_profile_position_are_the_drives_own() {
+    let recording = run(&format!(
+        "{AXIS}[bus]\ncycle = \"1 ms\"\nmode = \"pp\"\nunits = {{ drive = 1000, axis = \"1 mm\" }}\n\
+         [setpoint]\norder = 2\nvelocity = \"0.5 m/s\"\nacceleration = \"5 m/s2\"\n\
+         [[program]]\nmove_to = \"100 mm\"\n[[program]]\nwait = \"0.1 s\"\n[[program]]\nmove_by = \"-100 mm\"\n"
+    ));
+    let (x, v) = (values(&recording, "setpoint.position"), values(&recording, "setpoint.velocity"));
+    let moving: Vec<usize> = (0..v.len()).filter(|row| v[*row].abs() > 0.0).collect();
+    let ways: Vec<(f64, f64)> = moving
+        .chunk_by(|row, next| next - row < 16)
+        .map(|rows| (rows.len() as f64 * recording.rate.period(), x[rows[rows.len() - 1]]))
+        .collect();
+    println!("{ways:?}");
+    assert_eq!(ways.len(), 2, "{ways:?}");
+    for ((length, end), target) in ways.iter().zip([0.1, 0.0]) {
+        assert!((length - 0.3).abs() < 1e-3 && (end - target).abs() < 1e-5, "{ways:?}");
+    }
+    assert!((peak(&recording, "setpoint.velocity") - 0.5).abs() < 1e-9);
     assert!(peak(&recording, "following_error.motor") < 1e-3);
 }

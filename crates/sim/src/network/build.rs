@@ -1,13 +1,13 @@
 //! From a scenario to the network.
-use super::moves::Moves;
 use super::own_way::OwnWay;
 use super::plc::{self, Plc};
 use super::reference::DelayedReference;
 use super::signals::Signals;
+use super::underway::Underway;
 use super::units::{Counted, DriveUnits, units};
 use super::{MotionTask, Network};
 use crate::error::BuildError;
-use crate::program::Program;
+use crate::program::{Program, fine};
 use servobench_base::{Countdown, Divider, ParamError, Setpoint};
 use servobench_cia402::PowerState;
 use servobench_cia402::counter::Counter;
@@ -19,7 +19,7 @@ use servobench_fieldbus::bus::{self, BusFault, BusFaultKind};
 use servobench_fieldbus::link::{self, Mailbox};
 use servobench_motion::Limits;
 use servobench_motion::interpolate::Mode;
-use servobench_scenario::{self as scenario, Bus, DriveInterpolation, Feedback, InterpolationMode, Scenario};
+use servobench_scenario::{self as scenario, Bus, DriveInterpolation, Feedback, Scenario};
 use servobench_trace::Recorder;
 
 /// Cycles that the bus lets the drive miss before it gives up.
@@ -95,7 +95,7 @@ impl Network {
             base_rate,
             bus_cycle: bus_every,
             motion_cycle,
-            interpolation: interpolation(bus.interpolation),
+            interpolation: fine::mode(bus.interpolation),
             margin: 0,
             control: control(bus, &dynamics),
             sequencing: match bus.sequencing {
@@ -139,9 +139,10 @@ impl Network {
         let task = match &scenario.plc {
             Some(plc) => MotionTask::Plc(Box::new(Plc::new(plc, scenario.axis.modulo, period, recorder)?)),
             None if !bus.mode.is_cyclic() => {
-                MotionTask::OwnWay(Box::new(OwnWay::new(program, bus.mode, bus.units, period)?))
+                let moves = Underway::new(program, period);
+                MotionTask::OwnWay(Box::new(OwnWay::new(moves, bus.mode, bus.units)?))
             }
-            None => MotionTask::Moves(Box::new(Moves::new(program, period))),
+            None => MotionTask::Moves(Box::new(Underway::new(program, period))),
         };
         let network = Self {
             task,
@@ -318,17 +319,5 @@ fn control(bus: &Bus, dynamics: &Dynamics) -> link::Control {
             torque_offset,
         },
         None => link::Control::Position { velocity_offset: bus.velocity_offset, torque_offset },
-    }
-}
-
-const fn interpolation(mode: InterpolationMode) -> Mode {
-    match mode {
-        InterpolationMode::Linear => Mode::Linear,
-        InterpolationMode::Cubic => Mode::Cubic,
-        InterpolationMode::Quintic => Mode::Quintic,
-        InterpolationMode::CubicBSpline => Mode::CubicBSpline,
-        InterpolationMode::QuinticBSpline => Mode::QuinticBSpline,
-        InterpolationMode::AllLinear => Mode::AllLinear,
-        InterpolationMode::AllCubic => Mode::AllCubic,
     }
 }

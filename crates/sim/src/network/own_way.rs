@@ -4,13 +4,12 @@
 //! a table. Times count from the cycle in which the axis is powered.
 use super::Step;
 use super::points::{Points, Unsendable};
-use crate::program::Program;
+use super::underway::Underway;
 use servobench_drive::modes::interpolated::SegmentCommand;
-use servobench_fieldbus::{AxisCommand, AxisFeedback, Power, Task, Way};
+use servobench_fieldbus::{AxisCommand, AxisFeedback, Task, Way};
 use servobench_motion::position_profile::Command;
 use servobench_planner::Told;
 use servobench_scenario::{BusMode, DriveUnits};
-use servobench_trace::Move;
 
 /// How far before its time a cycle may be by rounding (s).
 const ROUNDING: f64 = 1e-9;
@@ -20,12 +19,7 @@ const AHEAD: usize = 16;
 /// A program of ways under way.
 #[derive(Debug)]
 pub(super) struct OwnWay {
-    program: Program,
-    /// Cycle of the motion task (s).
-    period: f64,
-    /// Cycles before the axis was powered, and since then.
-    waited: u64,
-    passed: u64,
+    moves: Underway,
     orders: Orders,
 }
 
@@ -41,11 +35,12 @@ enum Orders {
 }
 
 impl OwnWay {
-    /// The way of `program` in `mode`, with a cycle of `period` (s).
+    /// The way of `moves` in `mode`.
     ///
     /// # Errors
     /// [`Unsendable`] names a point of a table that 2010h does not hold.
-    pub(super) fn new(program: Program, mode: BusMode, units: DriveUnits, period: f64) -> Result<Self, Unsendable> {
+    pub(super) fn new(moves: Underway, mode: BusMode, units: DriveUnits) -> Result<Self, Unsendable> {
+        let program = moves.program();
         let orders = match mode {
             BusMode::ProfileVelocity => {
                 let told = program.plans().flat_map(|(start, _, plan)| commands_of(start, plan.told(), plan.end().v));
@@ -65,34 +60,22 @@ impl OwnWay {
                 Orders::Positions { set_points: set_points.collect(), sent: 0 }
             }
         };
-        Ok(Self { program, period, waited: 0, passed: 0, orders })
+        Ok(Self { moves, orders })
+    }
+
+    pub(super) const fn moves(&self) -> &Underway {
+        &self.moves
     }
 
     /// One cycle.
     pub(super) fn cycle(&mut self, feedback: &AxisFeedback) -> Step {
-        if self.passed > 0 || feedback.power == Power::On {
-            self.passed += 1;
-        } else {
-            self.waited += 1;
-        }
+        let now = self.moves.turn(feedback);
         // Before the axis is powered nothing is due.
-        let now = self.passed.checked_sub(1).map_or(f64::NEG_INFINITY, |passed| passed as f64 * self.period + ROUNDING);
-        let way = self.orders.way(now, feedback);
+        let way = self.orders.way(now.map_or(f64::NEG_INFINITY, |now| now + ROUNDING), feedback);
         // In profile velocity the drive knows no position: the plan says where the axis is to be. In the other modes the drive's
         // own set-point does.
-        let setpoint = matches!(self.orders, Orders::Velocities { .. }).then(|| self.program.at(now.max(0.0)));
+        let setpoint = matches!(self.orders, Orders::Velocities { .. }).then(|| self.moves.at(now.unwrap_or(0.0)));
         Step { command: AxisCommand { power: true, reset: false, task: Task::Drive(way) }, setpoint }
-    }
-
-    /// What a recording says of the moves; they reach the axis `delay` (s) later.
-    pub(super) fn moves(&self, unit: &str, delay: f64) -> impl Iterator<Item = Move> {
-        let begun = self.waited as f64 * self.period + delay;
-        self.program.moves(unit).map(move |made| Move {
-            start: made.start + begun,
-            end: made.end + begun,
-            cruise: (made.cruise.0 + begun, made.cruise.1),
-            ..made
-        })
     }
 }
 

@@ -4,17 +4,17 @@ mod call;
 mod made;
 
 use super::Step;
+use super::signals::{Watched, word};
 use crate::error::BuildError;
 use block::block;
 use call::{Call, Known};
-
 use servobench_base::Setpoint;
 use servobench_fieldbus::{AxisFeedback, Task};
 use servobench_motion::Limits;
 use servobench_motion::interpolate::Sample;
 use servobench_plcopen::{Axis, AxisParams, AxisState, MOST_BUFFERED};
 use servobench_scenario as scenario;
-use servobench_trace::{Event, Move, Recorder, SignalId};
+use servobench_trace::{Event, Move, Recorder};
 
 /// A program of function blocks and the axis that they command.
 #[derive(Debug)]
@@ -22,8 +22,8 @@ pub(super) struct Plc {
     axis: Axis,
     calls: Vec<Call>,
     known: Known,
-    state: (SignalId, Option<AxisState>),
-    homed: (SignalId, Option<bool>),
+    state: Watched<AxisState>,
+    homed: Watched<bool>,
     /// What is followed in this cycle, in the coordinate of the machine.
     followed: Setpoint,
     /// What moved the axis, noted at the end.
@@ -48,8 +48,8 @@ impl Plc {
             ..AxisParams::new(cycle, limits(plc))
         };
         let axis = Axis::new(params)?;
-        let state = (recorder.add_signal("axis", "state"), None);
-        let homed = (recorder.add_signal("axis", "homed"), None);
+        let state = Watched::new("axis", "state", recorder);
+        let homed = Watched::new("axis", "homed", recorder);
         let calls = plc.calls.iter().map(|call| Call::new(call, block(&call.block), recorder));
         let calls: Vec<Call> = calls.collect();
         let known = Known { t: 0.0, position: 0.0, rises: calls.iter().map(Call::rises).collect() };
@@ -92,18 +92,12 @@ impl Plc {
     }
 
     fn note(&mut self, t: f64, recorder: &mut Recorder) {
-        let (state, homed) = (self.axis.state(), self.axis.is_homed());
-        if self.state.1 != Some(state) {
-            self.state.1 = Some(state);
-            recorder.note_value(self.state.0, t, state.name());
-            if let (AxisState::ErrorStop, Some(error)) = (state, self.axis.error()) {
-                recorder.note_event(Event { start: t, end: t, source: "axis".into(), message: error.to_string() });
-            }
+        let state = self.axis.state();
+        let is_other = self.state.note(t, state, recorder, |state| state.name().into());
+        if let (true, AxisState::ErrorStop, Some(error)) = (is_other, state, self.axis.error()) {
+            recorder.note_event(Event { start: t, end: t, source: "axis".into(), message: error.to_string() });
         }
-        if self.homed.1 != Some(homed) {
-            self.homed.1 = Some(homed);
-            recorder.note_value(self.homed.0, t, if homed { "TRUE" } else { "FALSE" });
-        }
+        self.homed.note(t, self.axis.is_homed(), recorder, word);
     }
 
     /// Notes at the end of the run, at `t` (s), what moved the axis and what was never executed; moves reach the axis

@@ -8,23 +8,31 @@ use servobench_trace::{Recorder, SignalId};
 
 /// A state of which only the changes are noted.
 #[derive(Debug)]
-struct Watched<T> {
+pub(super) struct Watched<T> {
     id: SignalId,
     last: Option<T>,
 }
 
 impl<T: Copy + PartialEq> Watched<T> {
-    fn new(source: &str, name: &str, recorder: &mut Recorder) -> Self {
+    pub(super) fn new(source: &str, name: &str, recorder: &mut Recorder) -> Self {
         Self { id: recorder.add_signal(source, name), last: None }
     }
 
+    /// Notes `value` where it is another one, and says whether it is.
     #[inline]
-    fn note(&mut self, t: f64, value: T, recorder: &mut Recorder, words: impl FnOnce(T) -> String) {
-        if self.last != Some(value) {
+    pub(super) fn note(&mut self, t: f64, value: T, recorder: &mut Recorder, words: impl FnOnce(T) -> String) -> bool {
+        let is_other = self.last != Some(value);
+        if is_other {
             self.last = Some(value);
             recorder.note_value(self.id, t, &words(value));
         }
+        is_other
     }
+}
+
+/// How a recording writes a BOOL.
+pub(super) fn word(value: bool) -> String {
+    if value { "TRUE" } else { "FALSE" }.into()
 }
 
 /// The errors that a trajectory buffer latches, in the highest byte of its status (2012h).

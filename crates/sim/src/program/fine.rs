@@ -13,24 +13,28 @@ pub(super) struct Fine {
     passed: u64,
 }
 
+/// How a scenario's interpolation is called by its generator.
+pub(crate) const fn mode(mode: InterpolationMode) -> Mode {
+    match mode {
+        InterpolationMode::Linear => Mode::Linear,
+        InterpolationMode::Cubic => Mode::Cubic,
+        InterpolationMode::Quintic => Mode::Quintic,
+        InterpolationMode::CubicBSpline => Mode::CubicBSpline,
+        InterpolationMode::QuinticBSpline => Mode::QuinticBSpline,
+        InterpolationMode::AllLinear => Mode::AllLinear,
+        InterpolationMode::AllCubic => Mode::AllCubic,
+    }
+}
+
 impl Fine {
     pub(super) fn new(interpolation: &Interpolation, base_rate: Rate) -> Result<Self, ParamError> {
-        let mode = match interpolation.mode {
-            InterpolationMode::Linear => Mode::Linear,
-            InterpolationMode::Cubic => Mode::Cubic,
-            InterpolationMode::Quintic => Mode::Quintic,
-            InterpolationMode::CubicBSpline => Mode::CubicBSpline,
-            InterpolationMode::QuinticBSpline => Mode::QuinticBSpline,
-            InterpolationMode::AllLinear => Mode::AllLinear,
-            InterpolationMode::AllCubic => Mode::AllCubic,
-        };
         let Tick(every) = base_rate.tick_at(interpolation.period);
         let refused =
             ParamError { name: "setpoint.interpolation.period", value: interpolation.period, bound: "a tick at least" };
         if every == 0 {
             return Err(refused);
         }
-        let interpolator = Interpolator::new(mode, interpolation.period).map_err(|_| refused)?;
+        let interpolator = Interpolator::new(mode(interpolation.mode), interpolation.period).map_err(|_| refused)?;
         Ok(Self { interpolator, every, passed: 0 })
     }
 

@@ -1,6 +1,7 @@
 //! A call of a function block: when it is executed, and what it says.
 use super::block::Block;
 use super::made::Made;
+use crate::network::signals::{Watched, word};
 use servobench_base::Setpoint;
 use servobench_plcopen::Axis;
 use servobench_scenario as scenario;
@@ -27,7 +28,7 @@ pub(super) struct Call {
     has_ended: bool,
     /// Signals of Execute or Enable and of the outputs, with the values noted last.
     signals: Vec<(SignalId, f64)>,
-    execute_signal: (SignalId, Option<bool>),
+    trigger: Watched<bool>,
     values: Vec<f64>,
     made: Option<Made>,
 }
@@ -36,7 +37,7 @@ impl Call {
     pub(super) fn new(call: &scenario::Call, block: Box<dyn Block>, recorder: &mut Recorder) -> Self {
         let names = block.outputs();
         let trigger = if block.is_enabled() { "Enable" } else { "Execute" };
-        let execute_signal = (recorder.add_signal(&call.name, trigger), None);
+        let trigger = Watched::new(&call.name, trigger, recorder);
         let signals = names.iter().map(|name| (recorder.add_signal(&call.name, name), f64::NAN)).collect();
         Self {
             name: call.name.clone(),
@@ -50,7 +51,7 @@ impl Call {
             has_ended: false,
             values: vec![0.0; names.len()],
             signals,
-            execute_signal,
+            trigger,
             block,
             made: None,
         }
@@ -72,10 +73,7 @@ impl Call {
         if self.started.is_none() && t > self.timeout {
             return Err(format!("{} within {} s", self.waiting(known), self.timeout));
         }
-        if self.execute_signal.1 != Some(self.execute) {
-            self.execute_signal.1 = Some(self.execute);
-            recorder.note_value(self.execute_signal.0, t, word(f64::from(u8::from(self.execute))));
-        }
+        self.trigger.note(t, self.execute, recorder, word);
         self.block.step(axis, self.execute, &mut self.values);
         for (index, name) in self.block.outputs().iter().enumerate() {
             self.note(own, index, name, known, recorder);
@@ -134,7 +132,7 @@ impl Call {
                     recorder.note_event(Event { start: t, end: t, source, message });
                 }
             }
-            _ => recorder.note_value(*signal, t, word(value)),
+            _ => recorder.note_value(*signal, t, &word(value > 0.0)),
         }
         self.has_ended |= value > 0.0 && matches!(name, "Done" | "CommandAborted" | "Error");
     }
@@ -215,8 +213,4 @@ impl Known {
         let (_, rises) = self.rises.get(call)?;
         rises.iter().find(|(name, _)| *name == output.name())?.1
     }
-}
-
-fn word(value: f64) -> &'static str {
-    if value > 0.0 { "TRUE" } else { "FALSE" }
 }

@@ -1,13 +1,12 @@
-//! The moves of a program as a motion task gives them: one set-point per cycle, from the moment on at which the axis is powered.
+//! A program of moves under way: its time begins with the cycle in which the axis is powered.
 use crate::program::Program;
 use servobench_base::Setpoint;
-use servobench_fieldbus::{AxisCommand, AxisFeedback, Power, Task};
-use servobench_motion::interpolate::Sample;
+use servobench_fieldbus::{AxisFeedback, Power};
 use servobench_trace::Move;
 
-/// A program of moves under way.
+/// A program, and how far it is.
 #[derive(Debug, Clone)]
-pub(super) struct Moves {
+pub(super) struct Underway {
     program: Program,
     /// Cycle of the motion task (s).
     period: f64,
@@ -16,25 +15,28 @@ pub(super) struct Moves {
     passed: u64,
 }
 
-impl Moves {
+impl Underway {
     pub(super) const fn new(program: Program, period: f64) -> Self {
         Self { program, period, waited: 0, passed: 0 }
     }
 
-    /// One cycle: the command and the set-point in it, which `sample` makes fit for the axis.
-    pub(super) fn cycle(
-        &mut self,
-        feedback: &AxisFeedback,
-        sample: impl Fn(Setpoint) -> Sample,
-    ) -> (AxisCommand, Setpoint) {
-        let is_moving = self.passed > 0 || feedback.power == Power::On;
-        let setpoint = self.program.at(self.passed as f64 * self.period);
-        if is_moving {
-            self.passed += 1;
-        } else {
+    pub(super) const fn program(&self) -> &Program {
+        &self.program
+    }
+
+    /// One cycle: the time of the program in it (s); `None` before the axis is powered.
+    pub(super) fn turn(&mut self, feedback: &AxisFeedback) -> Option<f64> {
+        if self.passed == 0 && feedback.power != Power::On {
             self.waited += 1;
+            return None;
         }
-        (AxisCommand { power: true, reset: false, task: Task::Follow(sample(setpoint)) }, setpoint)
+        self.passed += 1;
+        Some((self.passed - 1) as f64 * self.period)
+    }
+
+    /// Set-point at a time of the program (s), which does not go back.
+    pub(super) fn at(&mut self, t: f64) -> Setpoint {
+        self.program.at(t)
     }
 
     /// What a recording says of the moves; they reach the axis `delay` (s) later.
