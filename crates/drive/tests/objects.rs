@@ -1,8 +1,8 @@
 //! Settings and objects of the drive, each made of the other.
 use servobench_cia402::PowerState;
 use servobench_cia402::objects::{Dictionary, HOMING_METHODS, OBJECTS, Value};
-use servobench_cia402::units::{AxisUnit, Object, Ratio, UnitError};
-use servobench_drive::device::{ObjectsError, Params};
+use servobench_cia402::units::{AxisUnit, FactorGroup, Object, Ratio, UnitError};
+use servobench_drive::device::{ObjectsError, Params, Units, Window};
 use servobench_drive::modes::homing::Method;
 use servobench_drive::modes::profile::Ramp;
 
@@ -98,19 +98,14 @@ fn what_is_stored_is_read_again() {
     let again = default.with_objects(&objects, micrometre()).unwrap();
     let mut stored = Dictionary::new();
     again.store_in(&mut stored).unwrap();
-    // Whole units are kept to the bit; settings in whole micrometres come back within the roundings of their product.
+    // A setting that its object shows is kept to the bit.
     for index in 0x6000..=0x60FF {
         for subindex in 0..=2 {
             let object = Object { index, subindex };
             assert_eq!(stored.read(object), objects.read(object), "{object}");
         }
     }
-    assert_near(again.profile.velocity, default.profile.velocity);
-    assert_near(again.homing.switch_speed, default.homing.switch_speed);
-    assert_near(again.position.width, default.position.width);
-    assert_eq!((again.limits, again.power, again.cycle), (default.limits, default.power, default.cycle));
-    assert_eq!(again.homing.method, default.homing.method);
-    assert_eq!(again.profile.ramp, default.profile.ramp);
+    assert_eq!(again, default);
 }
 
 #[test]
@@ -128,18 +123,40 @@ fn what_does_not_go_together_is_refused_in_words() {
         refused.to_string(),
         "interpolation time period (60C2h) must be a multiple of the drive's period, 2.5e-4 s, got 1e-4 s"
     );
-    let mut fast = Params::default();
-    fast.profile.velocity = 5_000.0;
-    let refused = fast.store_in(&mut Dictionary::new()).unwrap_err();
-    assert!(matches!(refused, ObjectsError::NotHeld { .. }));
-    assert_eq!(
-        refused.to_string(),
-        "6081h:00h cannot hold 5e9 of its units: choose a coarser unit (6092h, 6096h), or set it lower"
-    );
-    let mut slow = Params::default();
-    slow.homing.zero_speed = 1e-7;
-    let refused = slow.store_in(&mut Dictionary::new()).unwrap_err();
-    assert_eq!(refused.to_string(), "`Speed during search for zero` (6099h:02h) must be at least 1, got 0");
+}
+
+/// An axis in nanometres: 1 mm/s are a million units, which 16 bits do not hold; the velocities of 100 mm/s are held. What
+/// the master does not write stays as it is, to the bit.
+#[test]
+fn an_object_that_cannot_hold_its_setting_shows_its_end_and_the_setting_stays() {
+    let nanometre = AxisUnit::Metre(Ratio::new(1, 1_000_000_000).unwrap());
+    let units = Units::new(&FactorGroup::default(), nanometre, 0.0004).unwrap();
+    let velocity = Window { width: 1e-3, time: 0.01 };
+    let mut set = Params { units, velocity, standstill: velocity, ..Params::default() };
+    set.profile.velocity = 5.0;
+    set.homing.zero_speed = 3.3e-10;
+    let mut objects = Dictionary::new();
+    set.store_in(&mut objects).unwrap();
+    let shown = |objects: &Dictionary, index, subindex| objects.read(Object { index, subindex }).unwrap();
+    assert_eq!(shown(&objects, 0x606D, 0), u16::MAX.into());
+    assert_eq!(shown(&objects, 0x606F, 0), u16::MAX.into());
+    assert_eq!(shown(&objects, 0x6081, 0), u32::MAX.into());
+    assert_eq!(shown(&objects, 0x6099, 1), 50_000_000_u32.into());
+    // A third of a unit, and 0.4 mN: their objects take no zero.
+    assert_eq!(shown(&objects, 0x6099, 2), 1_u32.into());
+    assert_eq!(shown(&objects, 0x6076, 0), 1_u32.into());
+    assert_eq!(set.with_objects(&objects, nanometre).unwrap(), Params { cycle: set.cycle, ..set });
+    write(&mut objects, 0x6068, 0, 7_u16);
+    let mut expected = set;
+    expected.position.time = 0.007;
+    assert_eq!(set.with_objects(&objects, nanometre).unwrap(), expected);
+    // What the master writes counts, and be it what the object showed.
+    write(&mut objects, 0x606D, 0, u16::MAX);
+    let taken = set.with_objects(&objects, nanometre).unwrap();
+    assert_near(taken.velocity.width, 65_535e-9);
+    assert_near(taken.standstill.width, 1e-3);
+    let refused = objects.write_number(Object { index: 0x606D, subindex: 0 }, 1_000_000, PowerState::SwitchOnDisabled);
+    assert_eq!(refused.unwrap_err().to_string(), "`Velocity window` (606Dh:00h) must be at most 65535, got 1000000");
 }
 
 /// A dictionary that a master filled at random is one that the drive follows, but for times that its clock does not count.

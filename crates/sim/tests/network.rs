@@ -134,3 +134,20 @@ fn the_master_can_close_the_position_loop() {
     // A unit of a nanometre, held by whole units of velocity.
     assert!((last - 1.0).abs() < 1e-6, "{last}");
 }
+
+/// In units of a nanometre the velocity windows of the bench (606Dh, 606Fh) are more than 16 bits hold: what nobody wrote stays as
+/// it is, and only what is written is refused. Oracle: the same bus without objects.
+#[test]
+fn a_written_object_leaves_the_others_as_they_are() {
+    let without = run(BUS);
+    let with = run(&format!("{BUS}[drive.objects]\n\"6068h\" = 7\n"));
+    for name in ["setpoint.position", "following_error.load"] {
+        let bits = |recording: &Recording| values(recording, name).iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        assert!(bits(&with) == bits(&without), "{name}");
+    }
+    let text = format!("{AXIS}{BUS}[drive.objects]\n\"606Dh\" = 1000000\n");
+    let parsed = scenario::parse("network", &text, None).unwrap_or_else(|error| panic!("{error}"));
+    let refused = Bench::new(&parsed.scenario, &Exact).err().map(|error| error.to_string());
+    let expected = "`drive.objects.606Dh`: `Velocity window` (606Dh:00h) must be at most 65535, got 1000000";
+    assert_eq!(refused.as_deref(), Some(expected));
+}

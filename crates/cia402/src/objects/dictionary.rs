@@ -19,6 +19,8 @@ use crate::{
 pub struct Dictionary {
     /// The bits of each value.
     bits: [u64; PLACES],
+    /// Whether the master has written each of them.
+    is_written: [bool; PLACES],
     generation: u32,
 }
 
@@ -46,7 +48,7 @@ impl Dictionary {
             }
             bits
         };
-        Self { bits: DEFAULTS, generation: 0 }
+        Self { bits: DEFAULTS, is_written: [false; PLACES], generation: 0 }
     }
 
     /// What the master reads.
@@ -120,13 +122,41 @@ impl Dictionary {
         if entry.disabled_only && state.is_drive_function_enabled() {
             return Err(SdoError::State { object, name: entry.name, state });
         }
+        self.replace(object, entry, place, value)?;
+        self.is_written[place] = true;
+        self.generation = self.generation.wrapping_add(1);
+        Ok(())
+    }
+
+    /// What the drive itself has the object hold from power-on, as far as the object takes it. It is none of the master's
+    /// writes: the generation stays.
+    ///
+    /// # Errors
+    /// [`SdoError`] if there is no such object that a master writes, or it does not take the value.
+    pub fn preset(&mut self, object: Object, value: Value) -> Result<(), SdoError> {
+        let (entry, place) = writable(object)?;
+        let (name, data_type) = (entry.name, entry.data_type);
+        if value.data_type() != data_type {
+            return Err(SdoError::Type { object, name, data_type, value });
+        }
+        self.replace(object, entry, place, value)?;
+        self.is_written[place] = false;
+        Ok(())
+    }
+
+    /// Whether the master has written the object since power-on, or since the drive preset it.
+    #[must_use]
+    pub fn is_written(&self, object: Object) -> bool {
+        matches!(find(object), Ok(Found::Entry(_, place)) if self.is_written[place])
+    }
+
+    fn replace(&mut self, object: Object, entry: &'static Entry, place: usize, value: Value) -> Result<(), SdoError> {
         admit(object, entry, value)?;
         let before = core::mem::replace(&mut self.bits[place], value.bits());
         if let Err(refused) = self.fits_the_others(object, entry.name, value) {
             self.bits[place] = before;
             return Err(refused);
         }
-        self.generation = self.generation.wrapping_add(1);
         Ok(())
     }
 

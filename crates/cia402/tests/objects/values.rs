@@ -191,3 +191,20 @@ fn types_are_named_as_in_the_standard() {
     assert_eq!(names[..3], [(2, "INTEGER8"), (3, "INTEGER16"), (4, "INTEGER32")]);
     assert_eq!(names[3..6], [(5, "UNSIGNED8"), (6, "UNSIGNED16"), (7, "UNSIGNED32")]);
 }
+
+#[test]
+fn what_the_drive_presets_is_not_written_by_the_master() {
+    let mut dictionary = Dictionary::new();
+    let (window, signal) = (object(0x606D, 0), object(0x6041, 0));
+    dictionary.preset(window, 40_u16.into()).unwrap();
+    assert_eq!(dictionary.read(window), Ok(40_u16.into()));
+    assert!(!dictionary.is_written(window) && dictionary.generation() == 0);
+    assert!(dictionary.preset(window, 0_u16.into()).is_err(), "below its range");
+    assert!(dictionary.preset(window, 1_u32.into()).is_err(), "of another type");
+    assert!(dictionary.preset(signal, 1_u16.into()).is_err(), "read only");
+    assert!(dictionary.write(window, 0_u16.into(), DISABLED).is_err() && !dictionary.is_written(window));
+    write(&mut dictionary, window, 40_u16);
+    assert!(dictionary.is_written(window) && !dictionary.is_written(object(0x606F, 0)));
+    dictionary.preset(window, 40_u16.into()).unwrap();
+    assert!(!dictionary.is_written(window));
+}

@@ -2,14 +2,19 @@
 //!
 //! A drive takes them at power-on and whenever the [generation](Dictionary::generation) has changed. Objects without a
 //! setting here: those that come with every frame, and 6073h, 6075h, 607Bh, 6088h and 60F2h.
+//!
+//! An object holds whole units within its range, and that range may be too narrow for a setting: 65 535 velocity units of
+//! 1 nm/s are a velocity window (606Dh) of 66 µm/s. Then it shows the nearest that it can. A setting is as the object says only
+//! where the object does not show it so or the master has written it ([`Dictionary::is_written`]): neither the range nor the
+//! unit of an object changes what nobody wrote.
 use super::{Params, Units, cycle};
 use crate::modes::homing;
 use crate::modes::interpolated::{RecordError, SubMode, TimePeriod};
 use crate::modes::profile::Ramp;
 use servobench_base::ParamError;
-use servobench_cia402::objects::{DataType, Dictionary, Value, parameter as p};
+use servobench_cia402::SdoError;
+use servobench_cia402::objects::{Dictionary, Value, entry_of, parameter as p};
 use servobench_cia402::units::{AxisUnit, Object, UnitError};
-use servobench_cia402::{PowerState, SdoError};
 use thiserror::Error;
 
 /// Objects and settings that do not go together.
@@ -30,14 +35,6 @@ pub enum ObjectsError {
     /// A value that its object does not take.
     #[error(transparent)]
     Refused(#[from] SdoError),
-    /// A setting that its object cannot hold.
-    #[error("{object} cannot hold {units:e} of its units: choose a coarser unit (6092h, 6096h), or set it lower")]
-    NotHeld {
-        /// The object.
-        object: Object,
-        /// Setting in the unit of the object.
-        units: f64,
-    },
     /// A time between two frames that the drive's clock does not count.
     #[error("interpolation time period (60C2h) must be a multiple of the drive's period, {period:e} s, got {time:e} s")]
     Cycle {
@@ -86,6 +83,8 @@ const fn open(index: u16, scale: Scale) -> Quantity {
 const MAX_TORQUE: Quantity = open(0x6072, Scale::Effort);
 const PROFILE_JERK: Quantity = value(0x60A4, 1, Scale::Rate);
 const RATED_TORQUE: Object = Object { index: 0x6076, subindex: 0 };
+const MIN_POSITION_LIMIT: Object = Object { index: 0x607D, subindex: 1 };
+const MAX_POSITION_LIMIT: Object = Object { index: 0x607D, subindex: 2 };
 /// Motion profile types (6086h).
 const LINEAR: i16 = 0;
 const JERK_LIMITED: i16 = 3;
@@ -123,18 +122,24 @@ impl Params {
     /// # Errors
     /// [`ObjectsError`] says what the drive does not follow.
     pub fn with_objects(&self, objects: &Dictionary, unit: AxisUnit) -> Result<Self, ObjectsError> {
-        let rated_effort = f64::from(objects.get(p::MOTOR_RATED_TORQUE)) / 1000.0;
+        let rated_effort = if shows(objects, RATED_TORQUE, self.rated_torque())? {
+            1000.0 * self.units.from_effort(1)
+        } else {
+            f64::from(objects.get(p::MOTOR_RATED_TORQUE)) / 1000.0
+        };
         let units = Units::new(&objects.factor_group(), unit, rated_effort)?;
         let cycle = cycle::Params { steps: self.steps_per_frame(objects)?, ..self.cycle };
         let mut settings = Self { cycle, power: objects.power_params(), units, ..*self };
         for (quantity, setting) in &BINDINGS {
-            *setting(&mut settings) = quantity.read(objects, &units)?;
+            let setting = setting(&mut settings);
+            *setting = quantity.read(objects, &units, *setting)?;
         }
-        let max_effort = MAX_TORQUE.read(objects, &units)?;
+        let max_effort = MAX_TORQUE.read(objects, &units, self.max_effort())?;
         settings.limits.effort = settings.limits.effort.map(|effort| effort.min(max_effort));
-        settings.limits.position = software_limits(objects, &units);
-        settings.profile.ramp = match objects.get(p::MOTION_PROFILE_TYPE) {
-            JERK_LIMITED => Ramp::JerkLimited(PROFILE_JERK.read(objects, &units)?),
+        settings.limits.position = self.software_limits(objects, &units)?;
+        settings.profile.ramp = match (objects.get(p::MOTION_PROFILE_TYPE), self.profile.ramp) {
+            (JERK_LIMITED, Ramp::JerkLimited(jerk)) => Ramp::JerkLimited(PROFILE_JERK.read(objects, &units, jerk)?),
+            (JERK_LIMITED, Ramp::Linear) => Ramp::JerkLimited(PROFILE_JERK.units(objects)? * units.from_rate(1)),
             _ => Ramp::Linear,
         };
         settings.homing.method = homing::Method::from_number(objects.get(p::HOMING_METHOD))?;
@@ -144,20 +149,18 @@ impl Params {
         Ok(settings)
     }
 
-    /// Writes these settings into the objects of a drive without power, each rounded to the unit of its object. The factor
-    /// group of the objects is already the one that these settings' units were made of.
+    /// Has the objects show these settings, each as the nearest whole unit that its object takes. The factor group of the
+    /// objects is already the one that these settings' units were made of.
     ///
     /// # Errors
-    /// [`ObjectsError`] names the first object that does not hold its setting; those before it are written.
+    /// [`ObjectsError`] names the first object that is not preset; those before it are.
     pub fn store_in(&self, objects: &mut Dictionary) -> Result<(), ObjectsError> {
         let (mut settings, units) = (*self, &self.units);
         for (quantity, setting) in &BINDINGS {
             quantity.write(objects, units, *setting(&mut settings))?;
         }
-        let [forward, backward] = self.limits.effort;
-        MAX_TORQUE.write(objects, units, forward.max(backward))?;
-        // In mN·m or mN: a thousand thousandths, times 1000.
-        put(objects, RATED_TORQUE, held(RATED_TORQUE, DataType::Unsigned32, false, 1e6 * units.from_effort(1))?)?;
+        MAX_TORQUE.write(objects, units, self.max_effort())?;
+        objects.preset(RATED_TORQUE, nearest(RATED_TORQUE, self.rated_torque())?)?;
         let ramp = match self.profile.ramp {
             Ramp::Linear => LINEAR,
             Ramp::JerkLimited(jerk) => {
@@ -175,10 +178,24 @@ impl Params {
             (0x6086, ramp),
             (0x60C0, self.sub_mode.code()),
         ] {
-            put(objects, Object { index, subindex: 0 }, code.into())?;
+            objects.preset(Object { index, subindex: 0 }, code.into())?;
         }
-        put(objects, Object { index: 0x6098, subindex: 0 }, self.homing.method.number().into())?;
-        self.store_software_limits(objects)
+        objects.preset(Object { index: 0x6098, subindex: 0 }, self.homing.method.number().into())?;
+        let [min, max] = software_limits_shown(units, self.limits.position)?;
+        // Out of the way first: the ends do not change places.
+        objects.preset(MIN_POSITION_LIMIT, i32::MIN.into())?;
+        objects.preset(MAX_POSITION_LIMIT, max)?;
+        Ok(objects.preset(MIN_POSITION_LIMIT, min)?)
+    }
+
+    const fn max_effort(&self) -> f64 {
+        let [forward, backward] = self.limits.effort;
+        forward.max(backward)
+    }
+
+    /// 6076h (mN·m or mN): a thousand thousandths, times 1000.
+    fn rated_torque(&self) -> f64 {
+        1e6 * self.units.from_effort(1)
     }
 
     /// How many steps lie between two frames (60C2h).
@@ -193,37 +210,49 @@ impl Params {
         Err(ObjectsError::Cycle { time, period: self.period })
     }
 
-    fn store_software_limits(&self, objects: &mut Dictionary) -> Result<(), ObjectsError> {
-        let [min, max] = [1, 2].map(|subindex| Object { index: 0x607D, subindex });
-        let unit = self.units.from_position(1);
-        let [lowest, highest] = match self.limits.position {
-            None => [i32::MIN, i32::MAX].map(f64::from),
-            Some([lowest, highest]) if unit > 0.0 => [lowest / unit, highest / unit],
-            Some([lowest, highest]) => [highest / unit, lowest / unit],
-        };
-        let [lowest, highest] =
-            [held(min, DataType::Integer32, false, lowest)?, held(max, DataType::Integer32, false, highest)?];
-        // Out of the way first: the ends do not change places.
-        put(objects, min, i32::MIN.into())?;
-        put(objects, max, highest)?;
-        put(objects, min, lowest)
+    /// The software position limits (607Dh) in the direction of the axis; none where they are the whole range of positions.
+    fn software_limits(&self, objects: &Dictionary, units: &Units) -> Result<Option<[f64; 2]>, ObjectsError> {
+        let limits = [MIN_POSITION_LIMIT, MAX_POSITION_LIMIT];
+        let values = [objects.read(limits[0])?, objects.read(limits[1])?];
+        let is_written = limits.into_iter().any(|limit| objects.is_written(limit));
+        if !is_written && values == software_limits_shown(units, self.limits.position)? {
+            return Ok(self.limits.position);
+        }
+        let [min, max] = [p::MIN_POSITION_LIMIT, p::MAX_POSITION_LIMIT].map(|limit| objects.get(limit));
+        let [one, other] = [min, max].map(|limit| units.from_position(limit.into()));
+        Ok(([min, max] != [i32::MIN, i32::MAX]).then_some([one.min(other), one.max(other)]))
     }
 }
 
 impl Quantity {
-    /// The quantity in SI.
-    fn read(self, objects: &Dictionary, units: &Units) -> Result<f64, ObjectsError> {
-        let value = objects.read(self.object)?;
-        if self.is_open && value.number() == value.data_type().highest() {
-            return Ok(f64::INFINITY);
+    /// The quantity in SI: `setting` where the object shows that, what the object says otherwise.
+    fn read(self, objects: &Dictionary, units: &Units, setting: f64) -> Result<f64, ObjectsError> {
+        let unit = self.scale.unit(objects, units);
+        if shows(objects, self.object, self.shown(setting / unit))? {
+            Ok(setting)
+        } else {
+            Ok(self.units(objects)? * unit)
         }
-        Ok(value.number() as f64 * self.scale.unit(objects, units))
+    }
+
+    /// What the object says, in its units.
+    fn units(self, objects: &Dictionary) -> Result<f64, ObjectsError> {
+        let value = objects.read(self.object)?;
+        let stands_for_none = self.is_open && value.number() == value.data_type().highest();
+        Ok(if stands_for_none { f64::INFINITY } else { value.number() as f64 })
     }
 
     fn write(self, objects: &mut Dictionary, units: &Units, quantity: f64) -> Result<(), ObjectsError> {
-        let data_type = objects.read(self.object)?.data_type();
-        let value = held(self.object, data_type, self.is_open, quantity / self.scale.unit(objects, units))?;
-        put(objects, self.object, value)
+        let shown = self.shown(quantity / self.scale.unit(objects, units));
+        Ok(objects.preset(self.object, nearest(self.object, shown)?)?)
+    }
+
+    /// The units that the object is asked to hold: the value that stands for infinity is for nothing else.
+    fn shown(self, units: f64) -> f64 {
+        match bounds(self.object) {
+            Ok([_, highest]) if self.is_open && units.is_finite() => units.min(highest - 1.0),
+            _ => units,
+        }
     }
 }
 
@@ -249,28 +278,42 @@ fn segment(objects: &Dictionary) -> Result<TimePeriod, ObjectsError> {
     Ok(TimePeriod::new(units, index)?)
 }
 
-/// The software position limits (607Dh) in the direction of the axis; none where they are the whole range of positions.
-fn software_limits(objects: &Dictionary, units: &Units) -> Option<[f64; 2]> {
-    let [min, max] = [p::MIN_POSITION_LIMIT, p::MAX_POSITION_LIMIT].map(|limit| objects.get(limit));
-    let [one, other] = [min, max].map(|limit| units.from_position(limit.into()));
-    ([min, max] != [i32::MIN, i32::MAX]).then_some([one.min(other), one.max(other)])
-}
-
-/// The nearest whole number of units, as the object holds it.
-fn held(object: Object, data_type: DataType, is_open: bool, units: f64) -> Result<Value, ObjectsError> {
-    let (lowest, highest) = (data_type.lowest() as f64, data_type.highest() as f64);
-    let last = if is_open { highest - 1.0 } else { highest };
-    let whole = libm::rint(units);
-    let whole = match units {
-        f64::INFINITY if is_open => highest,
-        _ if (lowest..=last).contains(&whole) => whole,
-        _ => return Err(ObjectsError::NotHeld { object, units }),
+/// The software position limits as 607Dh shows them.
+fn software_limits_shown(units: &Units, limits: Option<[f64; 2]>) -> Result<[Value; 2], ObjectsError> {
+    let unit = units.from_position(1);
+    let [min, max] = match limits {
+        None => [f64::NEG_INFINITY, f64::INFINITY],
+        Some([lowest, highest]) if unit > 0.0 => [lowest / unit, highest / unit],
+        Some([lowest, highest]) => [highest / unit, lowest / unit],
     };
-    #[expect(clippy::cast_possible_truncation, reason = "whole, and of at most 32 bits")]
-    let bytes = (whole as i64).to_le_bytes();
-    Value::of_bytes(data_type, &bytes[..data_type.size()]).ok_or(ObjectsError::NotHeld { object, units })
+    Ok([nearest(MIN_POSITION_LIMIT, min)?, nearest(MAX_POSITION_LIMIT, max)?])
 }
 
-fn put(objects: &mut Dictionary, object: Object, value: Value) -> Result<(), ObjectsError> {
-    Ok(objects.write(object, value, PowerState::SwitchOnDisabled)?)
+/// Whether an object that the master has not written holds the nearest to so many units.
+fn shows(objects: &Dictionary, object: Object, units: f64) -> Result<bool, ObjectsError> {
+    Ok(!objects.is_written(object) && objects.read(object)? == nearest(object, units)?)
+}
+
+/// The smallest and the largest value that an object takes.
+fn bounds(object: Object) -> Result<[f64; 2], SdoError> {
+    let entry = entry_of(object).ok_or(SdoError::NoObject { index: object.index })?;
+    Ok(match entry.range() {
+        Some((lowest, highest)) => [lowest as f64, highest as f64],
+        None => [entry.data_type.lowest() as f64, entry.data_type.highest() as f64],
+    })
+}
+
+/// The nearest whole number of units that an object takes.
+fn nearest(object: Object, units: f64) -> Result<Value, SdoError> {
+    let entry = entry_of(object).ok_or(SdoError::NoObject { index: object.index })?;
+    let [lowest, highest] = bounds(object)?;
+    #[expect(clippy::cast_possible_truncation, reason = "whole, and of at most 32 bits")]
+    let whole = libm::rint(units.clamp(lowest, highest)) as i64;
+    let (name, data_type, bytes) = (entry.name, entry.data_type, whole.to_le_bytes());
+    Value::of_bytes(data_type, &bytes[..data_type.size()]).ok_or(SdoError::Length {
+        object,
+        name,
+        data_type,
+        length: bytes.len(),
+    })
 }

@@ -286,7 +286,7 @@ fn with_objects(
         (0x6096, factors.velocity_factor),
     ] {
         for (subindex, value) in (1..).zip(values) {
-            objects.write_number(Object { index, subindex }, value.into(), PowerState::SwitchOnDisabled)?;
+            objects.preset(Object { index, subindex }, value.into())?;
         }
     }
     settings.store_in(&mut objects)?;
