@@ -18,6 +18,12 @@
 //! a cyclic mode is the one of all that show the same value which is nearest to the axis, one of a profile lies in the same turn
 //! of the counter as the axis.
 //!
+//! # A lost encoder
+//!
+//! A velocity or an effort that is no number leaves nothing to close a loop by. Whatever the fault reaction option code (605Eh)
+//! says, the power stage is then switched off at once and the axis coasts; so it is when the encoder fails while another fault
+//! is being braked.
+//!
 //! # Take-over
 //!
 //! When the drive function is enabled, the demand begins where the axis is, at its velocity. When a mode follows another or a
@@ -126,6 +132,8 @@ pub struct State {
     /// What homing adds to every position from the next step on.
     shift: Option<f64>,
     fault: Option<Fault>,
+    /// Whether the encoder failed before or during the fault that the drive is in.
+    has_lost_encoder: bool,
     beyond_following_error: Dwell,
     at_standstill: Dwell,
     statusword: Statusword,
@@ -161,6 +169,7 @@ impl State {
             origin: 0,
             shift: None,
             fault: None,
+            has_lost_encoder: false,
             beyond_following_error: Dwell::default(),
             at_standstill: Dwell::default(),
             statusword: Statusword::default(),
@@ -224,7 +233,8 @@ pub fn step(p: &Params, x: &mut State, u: &Inputs) -> Outputs {
         warning: x.cycle.missed() > 0 || x.has_refused_point,
         ..PowerInputs::default()
     };
-    let power = cia402::step(&p.power, &mut x.power, x.now.targets.controlword, inputs);
+    let reactions = x.reactions(p, &u.measured);
+    let power = cia402::step(&reactions, &mut x.power, x.now.targets.controlword, inputs);
     let fault = x.remember(found, power.transition);
     let mut answer = match power.drive {
         DriveFunction::Disabled => x.idle(),

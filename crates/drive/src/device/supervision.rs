@@ -1,7 +1,14 @@
 //! What the drive watches: faults and standstill.
-use super::{Beat, Fault, Inputs, Params, Running, State};
+use super::{Beat, Fault, Inputs, Measured, Params, Running, State};
 use crate::Demand;
-use servobench_cia402::{Mode, PowerState, Transition};
+use servobench_cia402::{FaultReactionOption, Mode, PowerParams, PowerState, Transition};
+
+impl Measured {
+    /// Whether there is something to close a loop by.
+    const fn is_valid(&self) -> bool {
+        self.velocity.is_finite() && self.effort.is_finite()
+    }
+}
 
 impl State {
     /// The fault that is present, the gravest first.
@@ -17,12 +24,22 @@ impl State {
             Some(Fault::External(code))
         } else if is_enabled && !u.main_voltage {
             Some(Fault::MainsMissing)
-        } else if !(u.measured.velocity.is_finite() && u.measured.effort.is_finite()) {
+        } else if !u.measured.is_valid() {
             Some(Fault::Encoder)
         } else if lacks_frames {
             Some(Fault::FramesMissing)
         } else {
             has_lost_position.then_some(Fault::FollowingError)
+        }
+    }
+
+    /// How the axis stops: by the option codes, but for a lost encoder, which leaves no loop to brake by.
+    pub(super) const fn reactions(&mut self, p: &Params, measured: &Measured) -> PowerParams {
+        self.has_lost_encoder |= !measured.is_valid();
+        if self.has_lost_encoder {
+            PowerParams { fault_reaction: FaultReactionOption::Disable, ..p.power }
+        } else {
+            p.power
         }
     }
 
@@ -34,7 +51,7 @@ impl State {
                 found
             }
             PowerState::SwitchOnDisabled => {
-                self.fault = None;
+                (self.fault, self.has_lost_encoder) = (None, false);
                 None
             }
             _ => None,

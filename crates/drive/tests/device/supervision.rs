@@ -13,7 +13,7 @@ fn running(params: &Params) -> Axis {
     axis
 }
 
-/// Every fault is told by its code, brakes on the quick stop ramp, ends in Fault and is gone after a reset.
+/// Every fault is told by its code, brakes on the quick stop ramp where it can, ends in Fault and is gone after a reset.
 #[test]
 fn every_fault_has_its_code_and_its_reaction() {
     let following_error = Window { width: 1e-3, time: 0.0 };
@@ -45,8 +45,8 @@ fn every_fault_has_its_code_and_its_reaction() {
             (code, PowerState::FaultReactionActive),
             "{fault:?}"
         );
-        if fault == Fault::MainsMissing {
-            assert_eq!(outputs.demand, Demand::Off, "nothing brakes without power");
+        if matches!(fault, Fault::MainsMissing | Fault::Encoder) {
+            assert_eq!(outputs.demand, Demand::Off, "nothing brakes without power or encoder");
             axis.velocity = 0.0;
         } else {
             let (v, a) = (setpoint(&outputs.demand).v, setpoint(&outputs.demand).a);
@@ -70,6 +70,44 @@ fn every_fault_has_its_code_and_its_reaction() {
         assert_eq!((axis.state.power(), axis.actuals().error_code), (PowerState::SwitchOnDisabled, 0), "{fault:?}");
         axis.enable(Mode::CyclicSynchronousPosition);
         assert_eq!(axis.state.power(), PowerState::OperationEnabled, "{fault:?}");
+    }
+}
+
+/// From the step on at which the encoder fails nothing is asked of a loop, whatever the option code, the mode and the order of
+/// faults: the power stage is off, and Fault is reached at the next step, without waiting for a standstill that nobody sees.
+#[test]
+fn without_an_encoder_no_loop_is_closed() {
+    for option in FaultReactionOption::CODES {
+        for mode in
+            [Mode::CyclicSynchronousPosition, Mode::ProfileVelocity, Mode::CyclicSynchronousTorque, Mode::Homing]
+        {
+            for (other, order) in [(None, "alone"), (Some(0x9000), "with another"), (Some(0x9000), "after another")] {
+                let mut params = Params::default();
+                params.power.fault_reaction = FaultReactionOption::try_from(*option).unwrap();
+                let mut axis = Axis::enabled(&params, mode);
+                (axis.frame.target_velocity, axis.frame.target_torque) = (100_000, 100);
+                axis.cycles(50);
+                axis.velocity = 0.2;
+                axis.fault = other;
+                if order == "after another" {
+                    axis.step(true);
+                    assert_eq!(axis.state.power(), PowerState::FaultReactionActive);
+                }
+                let what = format!("605Eh = {option}, {mode:?}, {order}");
+                let velocity = axis.velocity;
+                axis.measured.effort = f64::NAN;
+                for k in 0..400 {
+                    assert_eq!(axis.step(k % 4 == 0).demand, Demand::Off, "{what}, step {k}");
+                    if k > 0 {
+                        assert_eq!(axis.state.power(), PowerState::Fault, "{what}, step {k}");
+                    }
+                    // One good reading does not bring the loops back.
+                    axis.measured.effort = if k == 100 { 0.0 } else { f64::NAN };
+                }
+                assert!((axis.velocity - velocity).abs() < 1e-15, "{what}: it coasts");
+                assert_eq!(axis.actuals().error_code, other.unwrap_or(0x7305), "{what}: the first fault is told");
+            }
+        }
     }
 }
 
