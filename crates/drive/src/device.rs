@@ -30,7 +30,8 @@
 //! stop, it begins with the position and the velocity that the loops follow. A mode that the drive does not have is not switched
 //! to: the display (6061h) says what runs. While the axis is braked, the mode stays. A halt (bit 8) stops the axis in every mode;
 //! pp goes on with its set-point afterwards. Bits 12 and 13 of the statusword keep their meaning during a halt: what a cyclic
-//! mode does then is not to follow the master, and a reference is attained in homing once its search is over.
+//! mode does then is not to follow the master, nor does it while an end of the axis keeps it from that, and a reference is
+//! attained in homing once its search is over.
 mod cycle;
 mod fault;
 mod guard;
@@ -328,6 +329,10 @@ impl State {
         let mut answer = running.step(p, &self.now, beat, &mut self.buffer, &mut self.shift);
         if !running.looks_for_ends() {
             self.guard.step(p, &self.now, &mut answer.demand);
+        }
+        if running.follows_master() {
+            // Targets of csp that are cut at a software limit (607Dh) never reach the guard.
+            answer.bit_12 = !(self.guard.is_active() || self.is_cut);
         }
         answer
     }

@@ -94,8 +94,8 @@ impl Running {
         }
     }
 
-    /// Whether a frame has to come every cycle.
-    pub(super) const fn needs_frames(&self) -> bool {
+    /// Whether it follows a target of the master in every cycle (bit 12): a frame has to come in each.
+    pub(super) const fn follows_master(&self) -> bool {
         matches!(self, Self::Csp(_) | Self::Csv(_) | Self::Cst(_))
     }
 

@@ -19,7 +19,7 @@ impl State {
         let has_lost_position = self.beyond_following_error.step(is_beyond, p.following_error.time, p.period);
         let lacks_frames = beat == Beat::Missed
             && self.cycle.missed() > p.cycle.bridged
-            && self.running.as_ref().is_some_and(Running::needs_frames);
+            && self.running.as_ref().is_some_and(Running::follows_master);
         if let Some(code) = u.fault {
             Some(Fault::External(code))
         } else if is_enabled && !u.main_voltage {

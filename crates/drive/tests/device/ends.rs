@@ -4,6 +4,11 @@ use servobench_cia402::{Mode, StatusBit};
 use servobench_drive::Demand;
 use servobench_drive::device::{Limits, Params};
 
+/// Bits 11 and 12.
+fn bits(axis: &Axis) -> [bool; 2] {
+    [axis.has(StatusBit::InternalLimitActive), axis.has(StatusBit::ModeSpecific12)]
+}
+
 /// Oracle: from 0.2 m/s by the 10 m/s² of the quick stop the axis needs 2 mm.
 #[test]
 fn a_limit_switch_stops_the_axis_in_its_direction_and_lets_it_go_back() {
@@ -18,18 +23,20 @@ fn a_limit_switch_stops_the_axis_in_its_direction_and_lets_it_go_back() {
             }
         };
         follow(&mut axis, 200, 20);
-        assert!(!axis.has(StatusBit::InternalLimitActive));
+        // Limited (bit 11), follows the command value (bit 12).
+        assert_eq!(bits(&axis), [false, true]);
         let at_switch = axis.position;
         (axis.measured.positive_limit, axis.measured.negative_limit) = (sign > 0, sign < 0);
         follow(&mut axis, 200, 40);
         let way = f64::from(sign) * (axis.position - at_switch);
         assert!((way - 2e-3).abs() < 1e-12 && axis.velocity == 0.0, "{way}");
-        assert!(axis.has(StatusBit::InternalLimitActive));
+        assert_eq!(bits(&axis), [true, false]);
         // Back: held until the targets are on this side of where it stands, then followed.
         follow(&mut axis, -200, 20);
         assert!((f64::from(sign) * (axis.position - at_switch) - 2e-3).abs() < 1e-12);
+        assert_eq!(bits(&axis), [true, false]);
         follow(&mut axis, -200, 30);
-        assert!(!axis.has(StatusBit::InternalLimitActive));
+        assert_eq!(bits(&axis), [false, true]);
         assert!((axis.position - f64::from(axis.frame.target_position) * 1e-6).abs() < 1e-15);
     }
 }
@@ -55,8 +62,11 @@ fn velocities_and_efforts_are_held_at_a_switch_too() {
         axis.cycles(200);
         assert!(matches!(axis.last, Demand::Velocity { .. }) && setpoint(&axis.last).v == 0.0, "{mode:?}");
         assert!(axis.has(StatusBit::InternalLimitActive));
+        // In profile velocity bit 12 says that the axis stands; a cyclic mode does not follow the master here.
+        assert_eq!(axis.has(StatusBit::ModeSpecific12), mode == Mode::ProfileVelocity, "{mode:?}");
         (axis.frame.target_velocity, axis.frame.target_torque) = (-100_000, -100);
         axis.cycles(200);
+        assert_eq!(axis.has(StatusBit::ModeSpecific12), mode != Mode::ProfileVelocity, "{mode:?}");
         match axis.last {
             Demand::Effort(effort) => assert!((effort + 0.1).abs() < 1e-15),
             demand => assert!((setpoint(&demand).v + 0.1).abs() < 1e-15, "{mode:?}: {demand:?}"),
@@ -71,7 +81,7 @@ fn cyclic_targets_beyond_the_software_limits_are_cut() {
     for (target, reached) in [(1500, 1500), (2500, 2000), (2000, 2000), (-500, -500), (-4000, -1000), (0, 0)] {
         axis.frame.target_position = target;
         axis.cycle();
-        assert_eq!(axis.has(StatusBit::InternalLimitActive), target != reached, "{target}");
+        assert_eq!(bits(&axis), [target != reached, target == reached], "{target}");
         assert!((axis.position - f64::from(reached) * 1e-6).abs() < 1e-15, "{target}: {}", axis.position);
     }
 }
