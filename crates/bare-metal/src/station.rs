@@ -59,6 +59,7 @@ fn link_params() -> Option<Params> {
         sequencing: Sequencing::Strict,
         drive_timeout: 1600,
         round_trip: 2,
+        answer_age: 0,
         reverse_switches: false,
         units,
         velocity_from_differences: false,

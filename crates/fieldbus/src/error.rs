@@ -37,6 +37,14 @@ pub enum FieldbusError {
         /// From a command to the first answer that knows of it (base ticks).
         round_trip: u64,
     },
+    /// A position loop in the master that would hear of the axis too late.
+    #[error("`round_trip` and `answer_age` must be at most {highest} ticks together, got {delay}: take a longer cycle")]
+    OldAnswer {
+        /// Rejected sum (base ticks).
+        delay: u64,
+        /// Largest one (base ticks).
+        highest: u64,
+    },
     /// A velocity of the axis that the drive's unit cannot express.
     #[error(
         "`velocity_limit` is {counts:e} in the drive's velocity unit, at most {highest} fits 32 bits: choose a coarser \

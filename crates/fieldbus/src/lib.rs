@@ -26,6 +26,7 @@
 //!     sequencing: Sequencing::Strict,
 //!     drive_timeout: 1600,
 //!     round_trip: 2,
+//!     answer_age: 0,
 //!     reverse_switches: false,
 //!     // A thousand counts are a millimetre.
 //!     units: Units {

@@ -18,6 +18,14 @@
 //! it is, and the difference is led to zero within [`Settings::recovery`], beside the motion. It never moves faster than
 //! [`Settings::velocity_limit`]; where that binds, [`State::is_limited`] says so.
 //!
+//! # The position loop in the master
+//!
+//! With [`Control::Velocity`] (csv) the link closes the position loop. The position that it hears at t is on its way for as long as
+//! the round trip of the bus and the [age of the answer](Settings::answer_age), together D, and is compared with the set-point
+//! that was put out at t − D. That makes up for the way at any velocity, and leaves the loop as stable as it was:
+//! [`Params::gain_margin`] is about π/(2·K·D). With the velocity of the set-point fed forward the error is, as long as
+//! K·D ≤ 1/e, at most (a·τ + j·T²/12)/K of an axis whose velocity lags by τ, and the units of the bus.
+//!
 //! # What goes wrong
 //!
 //! A fault of the drive is answered with Disable voltage until it is reset, a [`LinkFault`] as its
@@ -37,6 +45,7 @@ mod mailbox;
 mod own_way;
 mod params;
 mod position;
+mod position_loop;
 mod sequencer;
 mod stream;
 mod supervision;
@@ -52,6 +61,7 @@ use effort::Ramp;
 use homing::Procedure;
 use own_way::OwnWay;
 use position::Position;
+use position_loop::PositionLoop;
 use sequencer::{Sequencer, Wanted};
 use servobench_base::{Setpoint, Tick};
 use servobench_cia402::{Actuals, Commands, ControlBit};
@@ -82,6 +92,7 @@ pub struct State {
     /// When the drive was heard last, or the first step (base ticks).
     heard: u64,
     position: Option<Position>,
+    position_loop: PositionLoop,
     sequencer: Sequencer,
     /// Whether the drive was enabled and to stay so at the last step.
     was_on: bool,
@@ -109,6 +120,7 @@ impl Default for State {
             has_begun: false,
             heard: 0,
             position: None,
+            position_loop: PositionLoop::OPEN,
             sequencer: Sequencer::start(0),
             was_on: false,
             fault: None,

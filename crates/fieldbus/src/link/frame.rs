@@ -8,6 +8,7 @@ use super::position::Position;
 use super::stream::Post;
 use super::{Control, Params, Sequencing, State};
 use crate::{LinkFault, Task};
+use servobench_base::Setpoint;
 use servobench_cia402::{Commands, Mode};
 use servobench_motion::interpolate;
 
@@ -48,13 +49,14 @@ impl State {
         let actual = self.position(p);
         if !(follows && matches!(self.command.task, Task::Follow(_))) {
             self.stream.switch_off(actual, now);
+            self.position_loop.open();
         }
         if !(follows && matches!(self.command.task, Task::Effort(_))) {
             self.ramp = Ramp::OFF;
         }
         self.limited = false;
         match self.command.task {
-            Task::Follow(_) if follows => self.follow(p, post, actual, now),
+            Task::Follow(_) if follows => self.follow(p, post, now),
             Task::Effort(_) if follows => self.push(p, post, now),
             Task::Follow(_) | Task::Effort(_) => self.rest(p),
             Task::Home { position } => {
@@ -68,12 +70,13 @@ impl State {
         }
     }
 
-    pub(super) fn follow(&mut self, p: &Params, post: Post, actual: f64, now: u64) {
+    pub(super) fn follow(&mut self, p: &Params, post: Post, now: u64) {
         if self.stream.step(&p.stream, post, now).is_err() {
             self.fault = self.fault.or(Some(LinkFault::Command));
         }
         self.limited = self.stream.is_limited();
         let interpolate::Command { setpoint, torque } = *self.stream.output();
+        let error = self.error_of_the_axis(p, &setpoint, now);
         let offset = |wanted: bool, value: f64| if wanted { value } else { 0.0 };
         let target = p.scale.counts(setpoint.x).map(|counts| p.scale.target(counts));
         let rest = &mut self.torque_rest;
@@ -86,7 +89,7 @@ impl State {
                 sent.set(p.scale.thousandths_with(torque, rest), |commands| &mut commands.torque_offset);
             }
             Control::Velocity { gain, feedforward, limit, torque_offset } => {
-                let v = gain * (setpoint.x - actual) + feedforward * setpoint.v;
+                let v = gain * error + feedforward * setpoint.v;
                 self.limited |= v.abs() > limit;
                 sent.set(p.scale.drive_velocity(v.clamp(-limit, limit)), |commands| &mut commands.target_velocity);
                 sent.set(p.scale.thousandths_with(offset(torque_offset, torque), rest), |commands| {
@@ -97,6 +100,19 @@ impl State {
         if !sent.complete {
             self.fault = self.fault.or(Some(LinkFault::Command));
         }
+    }
+
+    /// What the axis was off by when it was measured last.
+    fn error_of_the_axis(&mut self, p: &Params, setpoint: &Setpoint, now: u64) -> f64 {
+        if matches!(p.settings.control, Control::Position { .. }) {
+            return 0.0;
+        }
+        self.position_loop.put_out(now, setpoint);
+        if self.heard == now {
+            let then = now.saturating_sub(p.reference_delay);
+            self.position_loop.hear(self.position(p), then, p.stream.timing.tick);
+        }
+        self.position_loop.error()
     }
 
     /// Asks for what the axis does anyway: for its position and for neither velocity nor effort.

@@ -1,6 +1,7 @@
 //! What a link needs to know before it starts.
 use super::buffer::{PREDICTED, Timing};
 use super::course::Recovery;
+use super::position_loop;
 use super::stream::StreamParams;
 use super::units::Scale;
 use super::{Sequencing, Units};
@@ -21,8 +22,9 @@ pub enum Control {
         /// Whether 60B2h carries the torque of the sample.
         torque_offset: bool,
     },
-    /// Velocities of a position loop in the master (csv):
-    /// `v = gain·(x_set − x_actual) + feedforward·v_set`, within ±limit.
+    /// Velocities of a position loop in the master (csv): `v = gain·(x_set − x_actual) + feedforward·v_set`, within ±limit, of the
+    /// position and the set-point of the time when it was measured; the [module documentation](super#the-position-loop-in-the-master)
+    /// says which that is.
     Velocity {
         /// Position gain K_v (1/s).
         gain: f64,
@@ -57,6 +59,9 @@ pub struct Settings {
     pub drive_timeout: u64,
     /// Bus cycles from a command to the first answer that knows of it.
     pub round_trip: u32,
+    /// How old the actual position is in the answer of a drive when the bus takes it (base ticks): a step of a drive that
+    /// measures at its steps.
+    pub answer_age: u32,
     /// Whether limit and home switches are closed where they are not actuated.
     pub reverse_switches: bool,
     /// How the drive counts.
@@ -81,6 +86,8 @@ pub struct Params {
     pub(crate) cycle: f64,
     /// From a command to the first answer that knows of it (base ticks).
     pub(crate) round_trip: u64,
+    /// How much earlier than it is heard an actual position was to follow what was put out (base ticks).
+    pub(crate) reference_delay: u64,
 }
 
 impl Params {
@@ -98,7 +105,12 @@ impl Params {
         if settings.drive_timeout <= round_trip {
             return Err(FieldbusError::ShortTimeout { timeout: settings.drive_timeout, round_trip });
         }
+        let reference_delay = round_trip + u64::from(settings.answer_age);
         if let Control::Velocity { gain, feedforward, limit, .. } = settings.control {
+            let highest = position_loop::LONGEST * bus_cycle;
+            if reference_delay > highest {
+                return Err(FieldbusError::OldAnswer { delay: reference_delay, highest });
+            }
             non_negative("control.gain", gain)?;
             finite("control.feedforward", feedforward)?;
             check_velocity(&scale, positive("control.limit", limit)?)?;
@@ -115,7 +127,7 @@ impl Params {
         let (highest_step, count) = (velocity_limit * tick, scale.resolution());
         let creep = count / (cycle as f64 * tick);
         let stream = StreamParams { timing, recovery, highest_step, bus_cycle, count, creep };
-        Ok(Self { settings, stream, scale, cycle: cycle as f64 * tick, round_trip })
+        Ok(Self { settings, stream, scale, cycle: cycle as f64 * tick, round_trip, reference_delay })
     }
 
     /// The settings that it was made of.
@@ -129,6 +141,19 @@ impl Params {
     #[must_use]
     pub const fn delay(&self) -> u64 {
         self.stream.timing.delay()
+    }
+
+    /// How many times as large the gain of the position loop in the master (csv) may be until it oscillates, on an axis that
+    /// takes the velocities as it is told: `2/(K·T)·tan(π·T/(4D))`, a little more than π/(2·K·D). Infinite without a gain, `None`
+    /// where the drive closes that loop.
+    #[must_use]
+    pub fn gain_margin(&self) -> Option<f64> {
+        let Control::Velocity { gain, .. } = self.settings.control else { return None };
+        let tick = self.stream.timing.tick;
+        let cycle = self.stream.bus_cycle as f64 * tick;
+        // The drive takes a cycle to get there.
+        let delay = (self.reference_delay as f64 * tick).max(cycle);
+        Some(position_loop::ultimate_gain(cycle, delay) / gain)
     }
 }
 

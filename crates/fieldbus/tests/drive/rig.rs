@@ -33,6 +33,7 @@ fn settings() -> Settings {
         sequencing: Sequencing::Strict,
         drive_timeout: 8_000,
         round_trip: 2 * DELAY + 1,
+        answer_age: 0,
         reverse_switches: false,
         units: Units {
             drive_units: 1e6,

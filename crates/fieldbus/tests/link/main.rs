@@ -1,6 +1,7 @@
 //! The link with a motion task and a drive around it.
 mod delayed;
 mod modes;
+mod position_loop;
 mod power;
 mod random;
 mod rig;

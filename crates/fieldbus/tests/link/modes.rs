@@ -69,7 +69,8 @@ fn the_position_loop_of_the_master_lags_by_velocity_over_gain() {
         rig.run(5, |_| REST);
         rig.run(100, |cycle| follow(Sample { x: 0.002 * (cycle - 5) as f64, v: 0.1, a: 0.0, torque: 0.0 }));
         assert_eq!(rig.commands.mode, 9);
-        let error = rig.setpoint().x - rig.feedback().position;
+        // What is heard is compared with what was put out a round trip before: two cycles.
+        let error = rig.setpoint().x - 0.1 * 2.0 * BUS as f64 / RATE - rig.feedback().position;
         // The drive takes whole counts per cycle: 1 mm/s, of which the gain makes 50 µm.
         assert!((error - lag).abs() < 51e-6, "{error} for {lag}");
         assert!((f64::from(rig.commands.target_velocity) - 1e5).abs() < 1_001.0);

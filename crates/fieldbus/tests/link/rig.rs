@@ -34,6 +34,7 @@ pub(crate) fn settings() -> Settings {
         sequencing: Sequencing::Strict,
         drive_timeout: 1_600,
         round_trip: 2,
+        answer_age: 0,
         reverse_switches: false,
         units: Units {
             drive_units: 1e6,

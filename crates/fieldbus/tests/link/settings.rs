@@ -37,6 +37,12 @@ fn every_refusal_names_field_value_bound_and_way_out() {
     assert_eq!(message(Settings { recovery, ..s }), "`jerk` must be finite and positive, got 0");
     let control = Control::Velocity { gain: 1.0, feedforward: f64::NAN, limit: 1.0, torque_offset: false };
     assert_eq!(message(Settings { control, ..s }), "`control.feedforward` must be finite, got NaN");
+    let control = Control::Velocity { gain: 1.0, feedforward: 1.0, limit: 1.0, torque_offset: false };
+    assert_eq!(
+        message(Settings { control, round_trip: 31, answer_age: 33, ..s }),
+        "`round_trip` and `answer_age` must be at most 528 ticks together, got 529: take a longer cycle"
+    );
+    assert!(Params::new(Settings { control, round_trip: 31, answer_age: 32, ..s }).is_ok());
 }
 
 #[test]

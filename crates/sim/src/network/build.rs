@@ -104,6 +104,8 @@ impl Network {
             },
             drive_timeout: base_rate.tick_at(bus.drive_timeout).0,
             round_trip: 2 * bus.delay + 1,
+            // What the master hears is of the drive's last step.
+            answer_age: drive_every.ticks(),
             reverse_switches: bus.reverse_switches,
             units: link::Units {
                 drive_units: bus.units.drive.into(),
@@ -133,9 +135,7 @@ impl Network {
         };
         let delays = if bus.mode.is_cyclic() { delays } else { Delays { link: 0, drive: 0, ..delays } };
         let period = f64::from(motion_cycle.ticks()) * tick;
-        // Velocities go past the position loop, in which set-points wait for the feedforward.
-        let waits = if bus.mode.is_cyclic() { loops.reference_delay.length(loops.period(drive_every)) } else { 0.0 };
-        let delay = delays.sum() as f64 * tick + waits;
+        let delay = delays.sum() as f64 * tick + wait(bus.mode, loops, drive_every);
         let task = match &scenario.plc {
             Some(plc) => MotionTask::Plc(Box::new(Plc::new(plc, scenario.axis.modulo, period, recorder)?)),
             None if !bus.mode.is_cyclic() => {
@@ -182,6 +182,14 @@ fn fault(fault: &scenario::BusFault) -> BusFault {
         scenario::BusFaultKind::ExternalFault => BusFaultKind::ExternalFault,
     };
     BusFault { kind, cycles: fault.cycles.clone() }
+}
+
+/// How long a set-point of `mode` waits for the feedforward (s): in the drive's position loop, which a velocity goes past.
+fn wait(mode: scenario::BusMode, loops: &drive::Params, drive_every: Divider) -> f64 {
+    match mode {
+        scenario::BusMode::CyclicPosition => loops.reference_delay.length(loops.period(drive_every)),
+        _ => 0.0,
+    }
 }
 
 fn divider(name: &'static str, ticks: u32) -> Result<Divider, ParamError> {
