@@ -1,9 +1,9 @@
 //! Why an access to the object dictionary is refused: the abort codes of CiA 301 (table 22) with the reason.
 //!
 //! The same codes end an SDO transfer over EtherCAT (ETG.1000.6, table 41).
-use crate::PowerState;
 use crate::objects::{DataType, Value};
 use crate::units::{Object, UnitError};
+use crate::{Mode, PowerState};
 use core::fmt;
 use thiserror::Error;
 
@@ -200,6 +200,20 @@ pub enum SdoError {
         /// State of the drive.
         state: PowerState,
     },
+    /// A write that would change a motion under way.
+    #[error(
+        "`{name}` ({object}) cannot be written while a motion of {} is under way: wait for its end, or take bit 4 of the \
+         controlword back",
+        mode.abbreviation()
+    )]
+    UnderWay {
+        /// The object.
+        object: Object,
+        /// Its name.
+        name: &'static str,
+        /// The mode that makes the motion.
+        mode: Mode,
+    },
 }
 
 /// A side of a bound.
@@ -235,7 +249,7 @@ impl SdoError {
             Self::NotListed { .. } | Self::ReservedBits { .. } => AbortCode::OutOfRange,
             Self::CrossedBounds { .. } => AbortCode::MaximumBelowMinimum,
             Self::FactorGroup { .. } => AbortCode::Incompatible,
-            Self::State { .. } => AbortCode::DeviceState,
+            Self::State { .. } | Self::UnderWay { .. } => AbortCode::DeviceState,
         }
     }
 }

@@ -85,7 +85,12 @@ fn objects() -> String {
 fn row(table: &mut String, object: &ObjectDescription, subindex: &str, entry: &Entry, default: &str) {
     let index = object.index;
     let name = if object.name == entry.name { object.name.into() } else { format!("{}: {}", object.name, entry.name) };
-    let access = entry.access.abbreviation().to_owned() + if entry.disabled_only { "¹" } else { "" };
+    let footnote = match entry.governs {
+        _ if entry.disabled_only => "¹",
+        Some(_) => "²",
+        None => "",
+    };
+    let access = entry.access.abbreviation().to_owned() + footnote;
     let (data_type, pdo) = (entry.data_type.name(), or_dash(entry.mapping.abbreviation()));
     let (values, unit) = (values(entry), or_dash(entry.unit));
     writeln!(

@@ -51,7 +51,7 @@ pub fn object_table(dictionary: &Dictionary, style: Style) -> String {
             table += &row.lines(name, style);
         }
     }
-    table += "\n¹ written only while the drive function is disabled\n";
+    table += "\n¹ written only while the drive function is disabled\n² not written during a homing search or while points are followed\n";
     if is_marked {
         table += "* not the value after power-on\n";
     }
@@ -71,11 +71,16 @@ struct Row<'a> {
 impl Row<'_> {
     /// As many lines as its longest text needs.
     fn lines(&self, name: usize, style: Style) -> String {
-        let Entry { data_type, access, disabled_only, unit, .. } = *self.entry;
+        let Entry { data_type, access, disabled_only, governs, unit, .. } = *self.entry;
         let names = wrapped(self.entry.name, name);
         let (units, ranges) = (wrapped(unit, UNIT), wrapped(&range(self.entry), RANGE));
         let data_type = data_type.name().replace("INTEGER", "INT").replace("UNSIGNED", "UINT");
-        let access = format!("{}{}", access.abbreviation(), if disabled_only { "¹" } else { "" });
+        let footnote = match governs {
+            _ if disabled_only => "¹",
+            Some(_) => "²",
+            None => "",
+        };
+        let access = format!("{}{footnote}", access.abbreviation());
         let value = if self.is_marked {
             style.paint(Ink::Heading, &format!("{:>VALUE$}", format!("*{}", self.value)))
         } else {

@@ -8,7 +8,7 @@ use crate::sdo::{SdoError, Side};
 use crate::units::{AxisUnit, FactorGroup, Object, Ratio};
 use crate::{
     Actuals, Commands, DisableOperationOption, FaultReactionOption, HaltOption, Mode, OptionCodeError, PowerParams,
-    PowerState, QuickStopOption, ShutdownOption,
+    PowerState, QuickStopOption, ShutdownOption, StatusBit, Statusword,
 };
 
 /// Every value of the object dictionary.
@@ -122,10 +122,32 @@ impl Dictionary {
         if entry.disabled_only && state.is_drive_function_enabled() {
             return Err(SdoError::State { object, name: entry.name, state });
         }
+        if let Some(mode) = entry.governs.filter(|mode| self.is_under_way(*mode, state)) {
+            return Err(SdoError::UnderWay { object, name: entry.name, mode });
+        }
         self.replace(object, entry, place, value)?;
         self.is_written[place] = true;
         self.generation = self.generation.wrapping_add(1);
         Ok(())
+    }
+
+    /// Whether the axis is in a motion that a mode makes by itself, as far as the statusword (6041h) and the mode (6061h) tell
+    /// that went to the master last: a search of homing that is neither over (bits 12, 13) nor at rest (bit 10), points of
+    /// interpolated position that are followed (bit 12).
+    fn is_under_way(&self, mode: Mode, state: PowerState) -> bool {
+        let statusword = Statusword::from_bits(self.signal(signal::STATUSWORD));
+        let says = |bit| statusword.has(bit);
+        state == PowerState::OperationEnabled
+            && Mode::from_code(self.signal(signal::MODES_OF_OPERATION_DISPLAY)) == Some(mode)
+            && match mode {
+                Mode::Homing => {
+                    !(says(StatusBit::TargetReached)
+                        || says(StatusBit::ModeSpecific12)
+                        || says(StatusBit::ModeSpecific13))
+                }
+                Mode::InterpolatedPosition => says(StatusBit::ModeSpecific12),
+                _ => false,
+            }
     }
 
     /// What the drive itself has the object hold from power-on, as far as the object takes it. It is none of the master's

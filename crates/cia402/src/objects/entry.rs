@@ -1,5 +1,6 @@
 //! What the table says of an object.
 use super::value::{DataType, Value};
+use crate::Mode;
 
 /// Who may read and write an entry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -57,6 +58,8 @@ pub struct Entry {
     pub unit: &'static str,
     /// Whether it may be written only while the drive function is disabled.
     pub disabled_only: bool,
+    /// The mode whose motion goes by it: while that is under way it may not be written.
+    pub governs: Option<Mode>,
 }
 
 /// The entries of an object.
@@ -188,6 +191,10 @@ impl Entry {
 
     pub(super) const fn disabled_only(self) -> Self {
         Self { disabled_only: true, ..self }
+    }
+
+    pub(super) const fn governs(self, mode: Mode) -> Self {
+        Self { governs: Some(mode), ..self }
     }
 
     pub(super) const fn named(self, name: &'static str) -> Self {

@@ -38,6 +38,9 @@ fn description(f: &mut Formatter<'_>, entry: &Entry) -> fmt::Result {
     let (data_type, access, mapping) = (data_type.name(), access.abbreviation(), mapping.abbreviation());
     write!(f, ", \"name\": \"{name}\", \"type\": \"{data_type}\", \"access\": \"{access}\", \"pdo\": \"{mapping}\"")?;
     write!(f, ", \"unit\": \"{unit}\", \"disabled_only\": {disabled_only}, \"default\": {}", entry.default_value())?;
+    if let Some(mode) = entry.governs {
+        write!(f, ", \"governs\": \"{}\"", mode.abbreviation())?;
+    }
     match entry.admitted {
         Admitted::Any => Ok(()),
         Admitted::Range(lowest, highest) => write!(f, ", \"range\": [{lowest}, {highest}]"),

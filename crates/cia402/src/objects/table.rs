@@ -176,7 +176,7 @@ pub static OBJECTS: [ObjectDescription; 80] = [
     ),
     array(0x6096, "Velocity factor", &[factor().named("Numerator"), factor().named("Divisor")]),
     // Homing.
-    variable(0x6098, "Homing method", parameter(Integer8, 35).one_of(HOMING_METHODS).disabled_only()),
+    variable(0x6098, "Homing method", parameter(Integer8, 35).one_of(HOMING_METHODS).governs(Mode::Homing)),
     array(
         0x6099,
         "Homing speeds",
@@ -197,7 +197,11 @@ pub static OBJECTS: [ObjectDescription; 80] = [
     variable(0x60B1, "Velocity offset", parameter(Integer32, 0).unit(VELOCITY).received()),
     variable(0x60B2, "Torque offset", parameter(Integer16, 0).unit(TORQUE).received()),
     // Interpolated position; sub-modes and the additional records are those of Copley's drives.
-    variable(0x60C0, "Interpolation sub mode select", parameter(Integer16, 0).within(-3, 0).disabled_only()),
+    variable(
+        0x60C0,
+        "Interpolation sub mode select",
+        parameter(Integer16, 0).within(-3, 0).governs(Mode::InterpolatedPosition),
+    ),
     record(
         0x60C1,
         "Interpolation data record",
@@ -267,6 +271,7 @@ const fn parameter(data_type: DataType, default: i64) -> Entry {
         admitted: Admitted::Any,
         unit: "",
         disabled_only: false,
+        governs: None,
     }
 }
 

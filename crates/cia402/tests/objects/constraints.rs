@@ -2,7 +2,7 @@
 use crate::object;
 use servobench_cia402::objects::{Dictionary, Value};
 use servobench_cia402::units::Object;
-use servobench_cia402::{AbortCode, PowerState};
+use servobench_cia402::{AbortCode, Actuals, Commands, PowerState, Statusword};
 
 const DISABLED: PowerState = PowerState::ReadyToSwitchOn;
 
@@ -48,14 +48,13 @@ fn factors_that_do_not_multiply_are_refused_together() {
 
 #[test]
 fn what_scales_the_axis_waits_until_it_is_not_driven() {
-    let writes: [(Object, Value); 7] = [
+    let writes: [(Object, Value); 6] = [
         (object(0x607E, 0), 0x80_u8.into()),
         (object(0x608F, 1), 4_096_u32.into()),
         (object(0x6091, 2), 3_u32.into()),
         (object(0x6092, 1), 10_u32.into()),
         (object(0x6096, 1), 60_u32.into()),
         (object(0x607B, 1), 0_i32.into()),
-        (object(0x6098, 0), 35_i8.into()),
     ];
     for state in PowerState::ALL {
         let is_driven = matches!(
@@ -70,5 +69,37 @@ fn what_scales_the_axis_waits_until_it_is_not_driven() {
         // Windows and set-points do not wait.
         assert!(Dictionary::new().write(object(0x6065, 0), 5_u32.into(), state).is_ok());
         assert!(Dictionary::new().write(object(0x607A, 0), 5_i32.into(), state).is_ok());
+    }
+}
+
+/// Oracle: the tables of bits 10, 12 and 13 in the profile, homing mode and interpolated position mode. In every other state, mode
+/// and outcome the method and the sub-mode are written.
+#[test]
+fn what_a_motion_goes_by_waits_for_its_end() {
+    let writes: [(Object, Value, i8); 2] =
+        [(object(0x6098, 0), 7_i8.into(), 6), (object(0x60C0, 0), (-2_i16).into(), 7)];
+    for (at, value, governing) in writes {
+        for state in PowerState::ALL {
+            for mode in [0, 1, 3, 4, 6, 7, 8, 9, 10] {
+                for bits in 0..8_u16 {
+                    let [reached, bit_12, bit_13] = [1, 2, 4].map(|bit| bits & bit != 0);
+                    let word = Statusword::of(state).bits()
+                        | u16::from(reached) << 10
+                        | u16::from(bit_12) << 12
+                        | u16::from(bit_13) << 13;
+                    let mut dictionary = Dictionary::new();
+                    let actuals = Actuals { statusword: Statusword::from_bits(word), mode, ..Actuals::default() };
+                    dictionary.mirror(&Commands::default(), &actuals);
+                    let is_under_way = if mode == 6 { bits == 0 } else { bit_12 };
+                    let is_refused = state == PowerState::OperationEnabled && mode == governing && is_under_way;
+                    let code = dictionary.write(at, value, state).err().map(|refused| refused.abort_code());
+                    assert_eq!(
+                        code,
+                        is_refused.then_some(AbortCode::DeviceState),
+                        "{at} in {state}, {mode}, {bits:03b}"
+                    );
+                }
+            }
+        }
     }
 }

@@ -2,7 +2,7 @@
 use crate::object;
 use servobench_cia402::objects::{Dictionary, Value};
 use servobench_cia402::units::Object;
-use servobench_cia402::{PowerState, SdoError};
+use servobench_cia402::{Actuals, Commands, PowerState, SdoError, Statusword};
 
 /// Codes by CiA 301, table 22.
 fn assert_refused(refused: SdoError, code: u32, message: &str) {
@@ -90,6 +90,17 @@ fn a_drive_that_is_driving() {
     let refused = dictionary.write(at, Value::Unsigned32(5), PowerState::OperationEnabled).unwrap_err();
     let message =
         "`Motor shaft revolutions` (6091h:01h) cannot be written in Operation enabled: disable operation first";
+    assert_refused(refused, 0x0800_0022, message);
+}
+
+#[test]
+fn a_search_that_is_under_way() {
+    let (mut dictionary, state) = (Dictionary::new(), PowerState::OperationEnabled);
+    let actuals = Actuals { statusword: Statusword::of(state), mode: 6, ..Actuals::default() };
+    dictionary.mirror(&Commands::default(), &actuals);
+    let refused = dictionary.write(object(0x6098, 0), Value::Integer8(17), state).unwrap_err();
+    let message = "`Homing method` (6098h:00h) cannot be written while a motion of hm is under way: wait for its end, or take \
+                   bit 4 of the controlword back";
     assert_refused(refused, 0x0800_0022, message);
 }
 
