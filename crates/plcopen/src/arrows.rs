@@ -1,8 +1,11 @@
 //! The arrows of the state diagram (PLCopen part 1, version 2.0, figure 2.1): one table, on which the axis runs, which the
 //! tests test and from which `docs/plcopen.md` is written.
 //!
-//! The standard has no numbers but for its six notes; arrows 1 to 6 are these. Arrow 14 is ours: the generator
-//! of order 4 moves from rest to rest.
+//! The standard has no numbers but for its six notes; arrows 1 to 6 are these. Arrows 14 and 15 are ours: the generator of order 4
+//! moves from rest to rest, and a table of positions may end with a velocity.
+//!
+//! `MC_PositionProfile` leads to a last position and says Done there, so that it is a Discrete Motion; of the profiles of velocity
+//! and acceleration the standard says (sections 3.15 and 3.16) that the axis stays in Continuous Motion.
 use crate::name::BlockName;
 use crate::state::AxisState::{
     self, ContinuousMotion, Disabled, DiscreteMotion, ErrorStop, Homing, Standstill, Stopping,
@@ -23,8 +26,10 @@ pub enum Cause {
     Powered,
     /// Done of MC_Stop is TRUE and its Execute FALSE.
     StopReleased,
-    /// The motion is over.
+    /// The motion is over, and the axis at rest.
     Done,
+    /// The motion is over, and the axis keeps a velocity.
+    DoneMoving,
     /// A block is executed.
     Block(BlockName),
 }
@@ -41,6 +46,7 @@ impl Cause {
             Self::Powered => "MC_Power.Enable = TRUE and MC_Power.Status = TRUE",
             Self::StopReleased => "MC_Stop.Done = TRUE and MC_Stop.Execute = FALSE",
             Self::Done => "Done",
+            Self::DoneMoving => "Done of MC_PositionProfile, with a velocity",
             Self::Block(block) => block.name(),
         }
     }
@@ -60,7 +66,7 @@ pub struct Arrow {
 }
 
 /// Every arrow, in the order of its number.
-pub const ARROWS: [Arrow; 14] = [
+pub const ARROWS: [Arrow; 15] = [
     Arrow {
         number: 1,
         from: &[Disabled, Standstill, Homing, DiscreteMotion, ContinuousMotion, Stopping],
@@ -94,6 +100,7 @@ pub const ARROWS: [Arrow; 14] = [
             Cause::Block(BlockName::MoveRelative),
             Cause::Block(BlockName::MoveAdditive),
             Cause::Block(BlockName::Halt),
+            Cause::Block(BlockName::PositionProfile),
         ],
     },
     Arrow {
@@ -116,12 +123,12 @@ pub const ARROWS: [Arrow; 14] = [
             Cause::Block(BlockName::MoveVelocity),
             Cause::Block(BlockName::MoveContinuousAbsolute),
             Cause::Block(BlockName::TorqueControl),
-            Cause::Block(BlockName::PositionProfile),
             Cause::Block(BlockName::VelocityProfile),
             Cause::Block(BlockName::AccelerationProfile),
         ],
     },
     Arrow { number: 14, from: &[Standstill], to: DiscreteMotion, causes: &[Cause::Block(BlockName::Profile4th)] },
+    Arrow { number: 15, from: &[DiscreteMotion], to: ContinuousMotion, causes: &[Cause::DoneMoving] },
 ];
 
 /// The arrow that `cause` sets off in `state`.

@@ -142,7 +142,16 @@ pub enum Goal {
         direction: Direction,
     },
     /// Along a course that the block itself gives, a set-point per cycle: see [`Axis::lead`](crate::Axis::lead).
-    Led,
+    Led(Ending),
+}
+
+/// What a course that a block gives leads to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ending {
+    /// To rest.
+    AtRest,
+    /// To a velocity, which the axis keeps.
+    Moving,
 }
 
 /// A command as the axis takes it.
@@ -202,7 +211,7 @@ impl Command {
                 }
                 return check_input(block, "Velocity", self.dynamics.velocity, params.limits.velocity);
             }
-            Goal::Rest | Goal::Led => {}
+            Goal::Rest | Goal::Led(_) => {}
         }
         Ok(())
     }

@@ -42,7 +42,7 @@ mod state;
 pub use arrows::{ARROWS, Arrow, Cause};
 pub use axis::{Axis, MOST_BUFFERED};
 pub use blocks::*;
-pub use command::{BufferMode, Command, Direction, Dynamics, Goal};
+pub use command::{BufferMode, Command, Direction, Dynamics, Ending, Goal};
 pub use error::{AxisError, BlockError, ErrorId};
 pub use ledger::{CommandId, Progress};
 pub use name::BlockName;

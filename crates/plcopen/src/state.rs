@@ -11,9 +11,9 @@ pub enum AxisState {
     Standstill,
     /// The drive looks for its reference.
     Homing,
-    /// On the way to a position, or to rest by MC_Halt.
+    /// On the way to a position, through a table of positions, or to rest by MC_Halt.
     DiscreteMotion,
-    /// On the way without an end: at a velocity, an effort or along a profile.
+    /// On the way without an end: at a velocity, an effort or along a table of velocities or accelerations.
     ContinuousMotion,
     /// Braked by MC_Stop, which holds the axis until its Execute falls.
     Stopping,

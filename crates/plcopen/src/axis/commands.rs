@@ -224,7 +224,7 @@ impl Axis {
                 let (step, present) = (ramp * self.params.cycle_time, self.feedback.effort);
                 Ok(Activity::Effort(EffortRamp { id, command, target, step, present }))
             }
-            Goal::Led => Ok(Activity::Led(Led { id, command, offset: self.offset, is_fresh: true, cycles: 0 })),
+            Goal::Led(_) => Ok(Activity::Led(Led { id, command, offset: self.offset, is_fresh: true, cycles: 0 })),
             _ => {
                 let is_aborting = command.buffer_mode == BufferMode::Aborting;
                 let origin = if is_aborting { self.last_target().unwrap_or(from.x) } else { from.x };
@@ -284,7 +284,7 @@ impl Axis {
             Goal::Relative(distance) => Target::Position { x: from.x + distance, v: 0.0 },
             Goal::Additive(distance) => Target::Position { x: additive_origin + distance, v: 0.0 },
             Goal::Velocity { velocity, direction } => Target::Velocity(self.directed(velocity, direction)),
-            Goal::Rest | Goal::Effort { .. } | Goal::Led => Target::Velocity(0.0),
+            Goal::Rest | Goal::Effort { .. } | Goal::Led(_) => Target::Velocity(0.0),
         })
     }
 

@@ -2,11 +2,11 @@
 use super::Axis;
 use super::activity::Activity;
 use super::queue::Queue;
-use crate::command::{BufferMode, Command, Direction, Goal};
+use crate::arrows::Cause;
+use crate::command::{BufferMode, Command, Direction, Ending, Goal};
 use crate::error::AxisError;
 use crate::ledger::{CommandId, Progress};
 use crate::name::BlockName;
-use crate::state::AxisState;
 use servobench_base::Setpoint;
 
 /// What rounding may add to a limit, as a part of it.
@@ -71,21 +71,22 @@ impl Axis {
         }
     }
 
-    /// The course of the command `id` has reached its end: it is done. In Continuous Motion the axis keeps the velocity
-    /// that it has there.
+    /// The course of the command `id` has reached its end: it is done. The axis rests there, or keeps the velocity that it has
+    /// there, as the goal of the command says.
     pub fn conclude(&mut self, id: CommandId) {
         let Activity::Led(led) = &self.activity else { return };
         if led.id != id {
             return;
         }
-        let (dynamics, from) = (led.command.dynamics, self.base);
+        let (Command { goal, dynamics, .. }, from) = (led.command, self.base);
         self.ledger.set(id, Progress::Done);
         if self.queue.first().is_some() {
             return self.take_next(from, 0.0);
         }
-        if self.state == AxisState::DiscreteMotion {
+        if goal == Goal::Led(Ending::AtRest) {
             return self.rest();
         }
+        self.follow(Cause::DoneMoving);
         let goal = Goal::Velocity { velocity: from.v, direction: Direction::Positive };
         let command = Command { block: BlockName::MoveVelocity, goal, dynamics, buffer_mode: BufferMode::Aborting };
         match self.prepared(CommandId::OWN, command, from, 0.0, &Queue::EMPTY) {

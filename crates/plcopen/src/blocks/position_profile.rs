@@ -5,9 +5,9 @@
 //! cubic spline. Both begin with the velocity that the axis has. The axis follows the profile itself, set-point by set-point;
 //! and the [commands](PositionProfile::commands) are what the paper sends to a drive in the profile velocity mode instead.
 use super::outputs::{FunctionBlock, MotionOutputs};
-use super::profile::{Beyond, Course, Leading, Memory, Names, Pair, Scales, check_room};
+use super::profile::{Beyond, Call, Course, Leading, Memory, Names, Pair, Scales, check_room};
 use crate::axis::Axis;
-use crate::command::BufferMode;
+use crate::command::{BufferMode, Ending};
 use crate::error::BlockError;
 use crate::name::BlockName;
 use servobench_base::Setpoint;
@@ -152,7 +152,9 @@ impl<K: Memory<Knot>, S: Memory<f64>> FunctionBlock for PositionProfile<K, S> {
     type Outputs = MotionOutputs;
 
     fn step(&mut self, axis: &mut Axis, inputs: &PositionProfileInputs<'_>) -> MotionOutputs {
-        let call = (Self::NAME, inputs.execute, inputs.buffer_mode);
+        let ending = if inputs.end_velocity == 0.0 { Ending::AtRest } else { Ending::Moving };
+        let PositionProfileInputs { execute, buffer_mode, .. } = *inputs;
+        let call = Call { block: Self::NAME, execute, ending, buffer_mode };
         let check = |way: &Way<K, S>, axis: &Axis| inputs.check(way, axis);
         self.leading.step(axis, call, &mut self.way, check, |way| way.load(inputs)).into()
     }
@@ -236,8 +238,14 @@ impl<K: Memory<Knot>, S: Memory<f64>> Course for Way<K, S> {
         if self.is_solved && !self.piece.holds(t) {
             self.piece = self.look_up(t);
         }
-        let setpoint = self.piece.at(t);
-        if t >= self.duration() { Setpoint { a: 0.0, j: 0.0, ..setpoint } } else { setpoint }
+        if t < self.duration() {
+            return self.piece.at(t);
+        }
+        if self.end_velocity == 0.0 {
+            // The end to the bit.
+            return Setpoint::at_rest(self.points()[self.count - 1].x);
+        }
+        Setpoint { a: 0.0, j: 0.0, ..self.piece.at(t) }
     }
 
     fn duration(&self) -> f64 {

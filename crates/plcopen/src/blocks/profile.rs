@@ -17,7 +17,7 @@
 //! (which the standard leaves to the supplier).
 use super::execution::{Execution, Report};
 use crate::axis::Axis;
-use crate::command::{BufferMode, Command, Dynamics, Goal};
+use crate::command::{BufferMode, Command, Dynamics, Ending, Goal};
 use crate::error::BlockError;
 use crate::ledger::{CommandId, Progress};
 use crate::name::BlockName;
@@ -163,6 +163,15 @@ impl Beyond {
 /// What rounding may be, as a part of a limit, or of a cycle in which a profile ends.
 pub(super) const ROUNDING: f64 = 1e-9;
 
+/// The inputs of a call that are not the table's.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Call {
+    pub(super) block: BlockName,
+    pub(super) execute: bool,
+    pub(super) ending: Ending,
+    pub(super) buffer_mode: BufferMode,
+}
+
 /// Execute and the command that leads the axis.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Leading {
@@ -175,11 +184,12 @@ impl Leading {
     pub(super) fn step<C: Course>(
         &mut self,
         axis: &mut Axis,
-        (block, execute, buffer_mode): (BlockName, bool, BufferMode),
+        call: Call,
         course: &mut C,
         check: impl FnOnce(&C, &Axis) -> Result<(), BlockError>,
         load: impl Fn(&mut C),
     ) -> Report {
+        let Call { block, execute, ending, buffer_mode } = call;
         self.go_on(axis, course);
         let Self { execution, id } = self;
         let mut has_begun = false;
@@ -200,7 +210,8 @@ impl Leading {
                 // One instance holds one course.
                 return Err(BlockError::BufferFull { block, held: 1 });
             }
-            let issued = axis.submit(Command { block, goal: Goal::Led, dynamics: dynamics(axis), buffer_mode })?;
+            let goal = Goal::Led(ending);
+            let issued = axis.submit(Command { block, goal, dynamics: dynamics(axis), buffer_mode })?;
             if id.is_some() {
                 load(course);
             }

@@ -17,7 +17,7 @@
 //! ready: here, when `pref` is another than that of the last start.
 use super::outputs::{FunctionBlock, Outputs, flag, number};
 use crate::axis::Axis;
-use crate::command::{BufferMode, Command, Dynamics, Goal};
+use crate::command::{BufferMode, Command, Dynamics, Ending, Goal};
 use crate::error::{BlockError, ErrorId};
 use crate::generator::{self, Input, Method, Mounting};
 use crate::ledger::{CommandId, Progress};
@@ -190,7 +190,7 @@ fn begin(axis: &mut Axis, limits: &Limits, position: f64) -> Result<CommandId, B
     }
     let Limits { velocity, acceleration, jerk, snap } = *limits;
     let dynamics = Dynamics { velocity, acceleration, deceleration: acceleration, jerk: Some(jerk), snap: Some(snap) };
-    axis.submit(Command { block, goal: Goal::Led, dynamics, buffer_mode: BufferMode::Aborting })
+    axis.submit(Command { block, goal: Goal::Led(Ending::AtRest), dynamics, buffer_mode: BufferMode::Aborting })
 }
 
 impl Outputs for Profile4thOutputs {

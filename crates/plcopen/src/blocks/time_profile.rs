@@ -5,9 +5,9 @@
 //! sections 3.15 and 3.16), and the axis stays in Continuous Motion.
 use super::execution::Report;
 use super::outputs::{FunctionBlock, Outputs, flag, number};
-use super::profile::{Beyond, Course, Leading, Memory, Names, Pair, ROUNDING, Scales, check_room};
+use super::profile::{Beyond, Call, Course, Leading, Memory, Names, Pair, ROUNDING, Scales, check_room};
 use crate::axis::Axis;
-use crate::command::BufferMode;
+use crate::command::{BufferMode, Ending};
 use crate::error::{BlockError, ErrorId};
 use crate::name::BlockName;
 use servobench_base::Setpoint;
@@ -106,7 +106,7 @@ impl<M: Memory<Pair>> FunctionBlock for VelocityProfile<M> {
         let VelocityProfileInputs { execute, time_velocity: pairs, buffer_mode, .. } = *inputs;
         let scales = Scales { time: inputs.time_scale, value: inputs.velocity_scale, offset: inputs.offset };
         let names = Names { table: "TimeVelocity", scale: "VelocityScale", may_jump: false };
-        let call = (Self::NAME, execute, buffer_mode);
+        let call = Call { block: Self::NAME, execute, ending: Ending::Moving, buffer_mode };
         let check = |sequence: &Sequence<M>, _: &Axis| {
             scales.check(Self::NAME, &names, pairs)?;
             check_room(Self::NAME, "pairs", sequence.memory.as_ref(), pairs.len())
@@ -129,7 +129,7 @@ impl<M: Memory<Pair>> FunctionBlock for AccelerationProfile<M> {
         let AccelerationProfileInputs { execute, time_acceleration: pairs, buffer_mode, .. } = *inputs;
         let scales = Scales { time: inputs.time_scale, value: inputs.acceleration_scale, offset: inputs.offset };
         let names = Names { table: "TimeAcceleration", scale: "AccelerationScale", may_jump: true };
-        let call = (Self::NAME, execute, buffer_mode);
+        let call = Call { block: Self::NAME, execute, ending: Ending::Moving, buffer_mode };
         let check = |sequence: &Sequence<M>, _: &Axis| {
             scales.check(Self::NAME, &names, pairs)?;
             check_room(Self::NAME, "pairs", sequence.memory.as_ref(), pairs.len())

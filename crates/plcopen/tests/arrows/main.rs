@@ -3,15 +3,16 @@
 mod bench;
 mod lead;
 
-use bench::{Bench, LIMITS};
+use bench::{Bench, CYCLE_TIME, LIMITS};
 use lead::{execute, led_to};
 use servobench_fieldbus::{Fault, Homing, Power};
+use servobench_motion::pvt::Knot;
 use servobench_plcopen::AxisState::{
     self, ContinuousMotion, Disabled, DiscreteMotion, ErrorStop, Homing as HomingState, Standstill, Stopping,
 };
 use servobench_plcopen::{
-    ARROWS, AxisError, BlockName, Cause, ErrorId, FunctionBlock, MoveVelocity, MoveVelocityInputs, Reset, ResetInputs,
-    Stop, StopInputs,
+    ARROWS, AxisError, BlockName, Cause, ErrorId, FunctionBlock, MoveVelocity, MoveVelocityInputs, Pair,
+    PositionProfile, PositionProfileInputs, Reset, ResetInputs, Stop, StopInputs, TimePosition,
 };
 
 const FAULT: Fault = Fault::Drive(0x7305);
@@ -166,6 +167,56 @@ fn homing_that_fails_is_an_error_of_the_axis() {
 #[test]
 fn arrow_8_is_the_done_of_a_discrete_motion() {
     led_to(DiscreteMotion).until(Standstill);
+}
+
+/// Oracle: the table of `execute`, 0.15 m and then 0.3 m, half a second each, from where the axis is.
+#[test]
+fn arrow_8_is_the_done_of_a_table_of_positions() {
+    for state in [Standstill, DiscreteMotion, ContinuousMotion] {
+        let (mut bench, mut block) = (led_to(state), profile());
+        let from = bench.axis.commanded();
+        let start = from.x + from.v * CYCLE_TIME;
+        let pairs = [Pair { delta_time: 0.5, value: 0.15 }, Pair { delta_time: 0.5, value: 0.3 }];
+        run(&mut bench, &mut block, &along(&pairs, 0.0), DiscreteMotion);
+        assert_eq!(bench.axis.state(), Standstill, "after {state}");
+        // What the acceleration of the axis makes of the first cycle.
+        assert!((bench.axis.commanded().x - start - 0.3).abs() < LIMITS.acceleration * CYCLE_TIME * CYCLE_TIME);
+        assert_eq!(execute(&mut bench, BlockName::Home), Ok(()), "after {state}");
+    }
+}
+
+#[test]
+fn arrow_15_is_the_done_of_a_table_of_positions_with_a_velocity() {
+    let (mut bench, mut block) = (led_to(Standstill), profile());
+    let pairs = [Pair { delta_time: 0.5, value: 0.1 }, Pair { delta_time: 0.5, value: 0.2 }];
+    run(&mut bench, &mut block, &along(&pairs, 0.2), DiscreteMotion);
+    assert_eq!(bench.axis.state(), ContinuousMotion);
+    for _ in 0..100 {
+        bench.cycle(|_| ());
+    }
+    assert!((bench.axis.commanded().v - 0.2).abs() < 1e-12);
+    assert_eq!(execute(&mut bench, BlockName::Home), Err(ErrorId::State));
+}
+
+fn profile() -> PositionProfile<[Knot; 3], [f64; 3]> {
+    PositionProfile::new([Knot::default(); 3], [0.0; 3])
+}
+
+fn along(pairs: &[Pair], end_velocity: f64) -> PositionProfileInputs<'_> {
+    let time_position = TimePosition { pairs, is_absolute: false };
+    PositionProfileInputs { execute: true, time_position, end_velocity, ..PositionProfileInputs::along(pairs) }
+}
+
+/// Until Done, in `state` all the time.
+fn run(
+    bench: &mut Bench,
+    block: &mut PositionProfile<[Knot; 3], [f64; 3]>,
+    inputs: &PositionProfileInputs<'_>,
+    state: AxisState,
+) {
+    while !bench.cycle(|axis| block.step(axis, inputs)).done {
+        assert_eq!((block.error(), bench.axis.state()), (None, state));
+    }
 }
 
 #[test]

@@ -65,8 +65,9 @@ fn each_position_is_met_at_its_time() {
                 }
             }
             let at = bench.axis.commanded();
-            assert!(at.v.abs() < 1e-13 && at.a == 0.0, "{at:?}");
-            assert_eq!(bench.axis.state(), AxisState::ContinuousMotion);
+            let end = points[points.len() - 1].1;
+            assert!((at.x - end).abs() < 1e-15 && at.v.to_bits() == 0 && at.a.to_bits() == 0, "{at:?} {end}");
+            assert_eq!(bench.axis.state(), AxisState::Standstill);
         }
     }
 }
@@ -104,6 +105,7 @@ fn it_begins_with_the_velocity_of_the_axis_and_ends_with_the_one_asked_for() {
         bench.cycle(|axis| block.step(axis, &inputs));
         let at = bench.axis.commanded();
         assert!((at.x - before.x - 0.25 * CYCLE_TIME).abs() < 1e-14, "{at:?}");
+        assert_eq!(bench.axis.state(), AxisState::ContinuousMotion);
     }
 }
 
