@@ -24,6 +24,19 @@ pub enum BufferMode {
 }
 
 impl BufferMode {
+    /// Name in the spelling of the standard.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Aborting => "mcAborting",
+            Self::Buffered => "mcBuffered",
+            Self::BlendingLow => "mcBlendingLow",
+            Self::BlendingPrevious => "mcBlendingPrevious",
+            Self::BlendingNext => "mcBlendingNext",
+            Self::BlendingHigh => "mcBlendingHigh",
+        }
+    }
+
     /// The velocity with which the end of the command before is to be passed; `None` where that one is done first.
     pub(crate) fn blending_velocity(self, before: f64, this: f64) -> Option<f64> {
         match self {
@@ -79,6 +92,10 @@ pub struct Dynamics {
 }
 
 impl Dynamics {
+    /// Those of a command for which nothing is planned.
+    pub(crate) const NONE: Self =
+        Self { velocity: 0.0, acceleration: 0.0, deceleration: 0.0, jerk: Some(0.0), snap: Some(0.0) };
+
     /// Those of a stop.
     #[must_use]
     pub const fn braking(deceleration: f64, jerk: Option<f64>, snap: Option<f64>) -> Self {
@@ -132,6 +149,8 @@ pub enum Goal {
     },
     /// To rest.
     Rest,
+    /// To the reference that the drive looks for, which has this position (m or rad).
+    Reference(f64),
     /// To an effort, kept from then on.
     Effort {
         /// Effort (N·m or N).
@@ -171,7 +190,7 @@ impl Command {
     /// Checks what does not depend on the state of the axis.
     pub(crate) fn check(&self, params: &AxisParams) -> Result<(), BlockError> {
         let block = self.block;
-        if !matches!(self.goal, Goal::Effort { .. }) {
+        if !matches!(self.goal, Goal::Effort { .. } | Goal::Reference(_)) {
             self.dynamics.check(block, &params.limits)?;
         }
         match self.goal {
@@ -211,9 +230,33 @@ impl Command {
                 }
                 return check_input(block, "Velocity", self.dynamics.velocity, params.limits.velocity);
             }
+            Goal::Reference(position) => {
+                finite_input(block, "Position", position)?;
+                if !matches!(self.buffer_mode, BufferMode::Aborting | BufferMode::Buffered) {
+                    return Err(self.wrong_buffer_mode("mcAborting or mcBuffered, as homing begins at Standstill"));
+                }
+            }
             Goal::Rest | Goal::Led(_) => {}
         }
         Ok(())
+    }
+
+    /// Whether the axis is at Standstill when it is done.
+    pub(crate) fn ends_at_standstill(&self) -> bool {
+        match self.goal {
+            Goal::Absolute { .. } => self.block == BlockName::MoveAbsolute,
+            Goal::Relative(_) | Goal::Additive(_) | Goal::Rest | Goal::Reference(_) | Goal::Led(Ending::AtRest) => true,
+            Goal::Velocity { .. } | Goal::Effort { .. } | Goal::Led(Ending::Moving) => false,
+        }
+    }
+
+    /// Whether it waits for the axis to be at Standstill, rather than for the command before it.
+    pub(crate) const fn begins_at_standstill(&self) -> bool {
+        matches!(self.goal, Goal::Reference(_))
+    }
+
+    pub(crate) const fn wrong_buffer_mode(&self, bound: &'static str) -> BlockError {
+        BlockError::BufferMode { block: self.block, value: self.buffer_mode.name(), bound }
     }
 }
 

@@ -23,6 +23,8 @@ pub enum ErrorId {
     SumAboveLimit = 0x1003,
     /// The input Direction does not fit the axis.
     Direction = 0x1004,
+    /// The input BufferMode does not fit the block, or the command before it.
+    BufferMode = 0x1005,
     /// The state of the axis does not allow the block.
     State = 0x2001,
     /// The axis has no reference.
@@ -53,11 +55,12 @@ pub enum ErrorId {
 
 impl ErrorId {
     /// Every number but that of no error.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::Input,
         Self::AboveLimit,
         Self::SumAboveLimit,
         Self::Direction,
+        Self::BufferMode,
         Self::State,
         Self::NotHomed,
         Self::BufferFull,
@@ -88,6 +91,7 @@ impl ErrorId {
             Self::AboveLimit => "an input is above a limit of the axis",
             Self::SumAboveLimit => "a superimposed motion and the one below are together above a limit of the axis",
             Self::Direction => "the input Direction does not fit the axis",
+            Self::BufferMode => "the input BufferMode does not fit the block, or the command before it",
             Self::State => "the state of the axis does not allow the block",
             Self::NotHomed => "an absolute position is asked of an axis without a reference",
             Self::BufferFull => "the axis holds no more buffered commands",
@@ -159,6 +163,16 @@ pub enum BlockError {
         /// What it must be, in words.
         bound: &'static str,
     },
+    /// The input BufferMode does not fit the block, or the command before it.
+    #[error("{block}: `BufferMode` must be {bound}, got {value}: correct the input")]
+    BufferMode {
+        /// The block.
+        block: BlockName,
+        /// Rejected mode, in the spelling of the standard.
+        value: &'static str,
+        /// What it must be, in words.
+        bound: &'static str,
+    },
     /// The state of the axis does not allow the block.
     #[error("{block}: the state of the axis, {state}, does not allow it: {}", state.way_out())]
     State {
@@ -224,6 +238,7 @@ impl BlockError {
             Self::AboveLimit { .. } => ErrorId::AboveLimit,
             Self::SumAboveLimit { .. } => ErrorId::SumAboveLimit,
             Self::Direction { .. } => ErrorId::Direction,
+            Self::BufferMode { .. } => ErrorId::BufferMode,
             Self::State { .. } => ErrorId::State,
             Self::NotHomed { .. } => ErrorId::NotHomed,
             Self::BufferFull { .. } => ErrorId::BufferFull,

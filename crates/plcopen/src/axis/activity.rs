@@ -55,6 +55,7 @@ pub(super) struct EffortRamp {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct HomingWait {
     pub(super) id: CommandId,
+    pub(super) command: Command,
     pub(super) position: f64,
     /// Whether the drive has been seen without the result of an earlier run.
     pub(super) has_begun: bool,
@@ -77,19 +78,17 @@ impl Activity {
     /// The command and its number, where there is one.
     pub(super) fn command(&self) -> Option<(CommandId, &Command)> {
         match self {
-            Self::Rest | Self::Homing(_) => None,
+            Self::Rest => None,
             Self::Moving(Moving { id, command, .. })
             | Self::Effort(EffortRamp { id, command, .. })
+            | Self::Homing(HomingWait { id, command, .. })
             | Self::Led(Led { id, command, .. }) => Some((*id, command)),
         }
     }
 
     /// The number of the command.
     pub(super) fn id(&self) -> Option<CommandId> {
-        match self {
-            Self::Homing(homing) => Some(homing.id),
-            _ => self.command().map(|(id, _)| id),
-        }
+        self.command().map(|(id, _)| id)
     }
 }
 
@@ -186,9 +185,10 @@ impl Axis {
             }
             _ => {
                 self.ledger.set(id, Progress::Done);
-                match self.queue.first().map(|next| next.buffer_mode) {
+                match self.queue.first() {
                     None => self.rest(),
-                    Some(BufferMode::Aborting | BufferMode::Buffered) => self.take_next(end, 0.0),
+                    Some(next) if next.begins_at_standstill() => self.rest(),
+                    Some(next) if next.buffer_mode == BufferMode::Buffered => self.take_next(end, 0.0),
                     Some(_) => self.take_next(end, beyond),
                 }
             }
@@ -219,8 +219,7 @@ impl Axis {
         let Some((id, command)) = self.queue.pop() else { return };
         match self.prepared(id, command, from, lead, &self.queue) {
             Ok(activity) => {
-                self.activity = activity;
-                self.base = from;
+                self.activate(activity, from);
                 if let Activity::Moving(moving) = &mut self.activity {
                     self.base = moving.run.now();
                 }
@@ -238,6 +237,12 @@ impl Axis {
                 self.refuse_waiting(id, error);
             }
         }
+    }
+
+    /// From now on the axis does this, at `from`.
+    pub(super) fn activate(&mut self, activity: Activity, from: Setpoint) {
+        self.is_homed &= !matches!(activity, Activity::Homing(_));
+        (self.activity, self.base) = (activity, from);
     }
 
     /// A way may be so short that it is over in the cycle in which it is blended in; then the next one follows in that cycle.
@@ -258,13 +263,14 @@ impl Axis {
         self.halt();
     }
 
-    /// Nothing is left to do.
+    /// Nothing is left to do but for a motion on top; without one the axis rests, and what waits for that begins.
     pub(super) fn rest(&mut self) {
         self.activity = Activity::Rest;
         if self.superimposed.is_none() {
             self.base = Setpoint::at_rest(self.base.x + self.shift);
             self.shift = 0.0;
             self.follow(Cause::Done);
+            self.take_next(self.base, 0.0);
         }
     }
 }

@@ -64,7 +64,7 @@ impl Axis {
         let bounds = Bounds::of(&command.dynamics, &self.params.limits, &self.factors);
         let blending = |speed: f64| command.buffer_mode.blending_velocity(velocity, speed).unwrap_or(0.0);
         let (end, end_velocity) = match (command.goal, self.target(command, &Setpoint::at_rest(x), x)?) {
-            (Goal::Rest | Goal::Effort { .. } | Goal::Led(_), _) => return Ok(0.0),
+            (Goal::Rest | Goal::Reference(_) | Goal::Effort { .. } | Goal::Led(_), _) => return Ok(0.0),
             (_, Target::Velocity(v)) => {
                 let speed = direction * v * self.factors.velocity;
                 return Ok(if speed > 0.0 { blending(speed) } else { 0.0 });

@@ -21,20 +21,23 @@ impl Axis {
     /// Takes a command: it begins, or waits behind others.
     pub(crate) fn submit(&mut self, command: Command) -> Result<CommandId, BlockError> {
         let block = command.block;
-        let Some(arrow) = arrow(self.state, Cause::Block(block)) else {
+        let Some(arrow) = arrow(self.state_before(&command)?, Cause::Block(block)) else {
             return Err(BlockError::State { block, state: self.state });
         };
         command.check(&self.params)?;
         if let Goal::Absolute { position, .. } = command.goal
-            && self.params.needs_homing
-            && !self.is_homed
+            && !self.has_reference(command.buffer_mode)
         {
             return Err(BlockError::NotHomed { block, value: position });
         }
         let is_aborting = command.buffer_mode == BufferMode::Aborting;
         if !is_aborting {
-            self.check_beside(&command)?;
-            if !matches!(self.activity, Activity::Rest) {
+            let is_beside = !command.begins_at_standstill();
+            if is_beside {
+                self.check_beside(&command)?;
+            }
+            let is_free = matches!(self.activity, Activity::Rest) && self.queue.first().is_none();
+            if !is_free || !is_beside && self.superimposed.is_some() {
                 return self.wait(command);
             }
         }
@@ -78,19 +81,26 @@ impl Axis {
         }
     }
 
-    /// MC_Home.
-    pub(crate) fn home(&mut self, position: f64) -> Result<CommandId, BlockError> {
-        let block = BlockName::Home;
-        let Some(arrow) = arrow(self.state, Cause::Block(block)) else {
-            return Err(BlockError::State { block, state: self.state });
-        };
-        finite_input(block, "Position", position)?;
-        let id = self.ledger.issue();
-        self.ledger.set(id, Progress::Active);
-        self.is_homed = false;
-        self.activity = Activity::Homing(HomingWait { id, position, has_begun: false });
-        self.state = arrow.to;
-        Ok(id)
+    /// The state of the axis out of which `command` leads: the present one, or Standstill where it waits for that.
+    fn state_before(&self, command: &Command) -> Result<AxisState, BlockError> {
+        if command.buffer_mode == BufferMode::Aborting {
+            return Ok(self.state);
+        }
+        let before = self.queue.last().or(self.activity.command().map(|(_, command)| command));
+        if command.begins_at_standstill() && before.is_some_and(|before| !before.ends_at_standstill()) {
+            return Err(command.wrong_buffer_mode("behind a command that ends at Standstill"));
+        }
+        Ok(match self.state {
+            AxisState::Homing => AxisState::Standstill,
+            AxisState::DiscreteMotion if command.begins_at_standstill() => AxisState::Standstill,
+            state => state,
+        })
+    }
+
+    /// Whether a position of the program will mean something when a command with this mode begins.
+    pub(crate) fn has_reference(&self, buffer_mode: BufferMode) -> bool {
+        let is_homing = |command: &Command| matches!(command.goal, Goal::Reference(_));
+        !self.params.needs_homing || self.is_homed || buffer_mode != BufferMode::Aborting && self.below().any(is_homing)
     }
 
     /// Changes the inputs of a command that runs or waits.
@@ -182,14 +192,14 @@ impl Axis {
     }
 
     fn begin_activity(&mut self, id: CommandId, activity: Activity, from: Setpoint) {
-        self.activity = activity;
+        self.activate(activity, from);
         match &mut self.activity {
             Activity::Moving(Moving { id: own, .. })
             | Activity::Effort(EffortRamp { id: own, .. })
+            | Activity::Homing(HomingWait { id: own, .. })
             | Activity::Led(Led { id: own, .. }) => *own = id,
-            Activity::Rest | Activity::Homing(_) => {}
+            Activity::Rest => {}
         }
-        self.base = from;
         self.ledger.set(id, Progress::Active);
     }
 
@@ -224,6 +234,7 @@ impl Axis {
                 let (step, present) = (ramp * self.params.cycle_time, self.feedback.effort);
                 Ok(Activity::Effort(EffortRamp { id, command, target, step, present }))
             }
+            Goal::Reference(position) => Ok(Activity::Homing(HomingWait { id, command, position, has_begun: false })),
             Goal::Led(_) => Ok(Activity::Led(Led { id, command, offset: self.offset, is_fresh: true, cycles: 0 })),
             _ => {
                 let is_aborting = command.buffer_mode == BufferMode::Aborting;
@@ -284,7 +295,7 @@ impl Axis {
             Goal::Relative(distance) => Target::Position { x: from.x + distance, v: 0.0 },
             Goal::Additive(distance) => Target::Position { x: additive_origin + distance, v: 0.0 },
             Goal::Velocity { velocity, direction } => Target::Velocity(self.directed(velocity, direction)),
-            Goal::Rest | Goal::Effort { .. } | Goal::Led(_) => Target::Velocity(0.0),
+            Goal::Rest | Goal::Reference(_) | Goal::Effort { .. } | Goal::Led(_) => Target::Velocity(0.0),
         })
     }
 

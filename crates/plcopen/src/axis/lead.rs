@@ -80,7 +80,7 @@ impl Axis {
         }
         let (Command { goal, dynamics, .. }, from) = (led.command, self.base);
         self.ledger.set(id, Progress::Done);
-        if self.queue.first().is_some() {
+        if self.queue.first().is_some_and(|next| !next.begins_at_standstill()) {
             return self.take_next(from, 0.0);
         }
         if goal == Goal::Led(Ending::AtRest) {

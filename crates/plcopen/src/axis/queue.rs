@@ -25,6 +25,10 @@ impl Queue {
         self.count += 1;
     }
 
+    pub(crate) fn last(&self) -> Option<&Command> {
+        self.get(self.count.checked_sub(1)?)
+    }
+
     pub(crate) fn first(&self) -> Option<&Command> {
         self.get(0)
     }

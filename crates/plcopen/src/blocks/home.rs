@@ -2,7 +2,7 @@
 use super::execution::Execution;
 use super::outputs::{FunctionBlock, MotionOutputs};
 use crate::axis::Axis;
-use crate::command::BufferMode;
+use crate::command::{BufferMode, Command, Dynamics, Goal};
 use crate::error::BlockError;
 use crate::name::BlockName;
 
@@ -19,7 +19,7 @@ pub struct HomeInputs {
     pub execute: bool,
     /// Position of the reference (m or rad).
     pub position: f64,
-    /// BufferMode. Homing begins at Standstill, where no command is before it, so that all are the same.
+    /// BufferMode: aborting at Standstill, where there is nothing to abort, or buffered behind a command that ends there.
     pub buffer_mode: BufferMode,
 }
 
@@ -29,7 +29,10 @@ impl FunctionBlock for Home {
     type Outputs = MotionOutputs;
 
     fn step(&mut self, axis: &mut Axis, inputs: &HomeInputs) -> MotionOutputs {
-        self.execution.step(axis, inputs.execute, |axis| axis.home(inputs.position).map(Some)).into()
+        let HomeInputs { execute, position, buffer_mode } = *inputs;
+        let (goal, dynamics) = (Goal::Reference(position), Dynamics::NONE);
+        let command = Command { block: Self::NAME, goal, dynamics, buffer_mode };
+        self.execution.step(axis, execute, |axis| axis.submit(command).map(Some)).into()
     }
 
     fn error(&self) -> Option<&BlockError> {

@@ -137,7 +137,7 @@ impl PositionProfileInputs<'_> {
         if value.is_nan() || value.abs() > limit {
             return Err(BlockError::AboveLimit { block, input: "EndVelocity", value, limit });
         }
-        if self.time_position.is_absolute && axis.params().needs_homing && !axis.is_homed() {
+        if self.time_position.is_absolute && !axis.has_reference(self.buffer_mode) {
             return Err(BlockError::NotHomed { block, value: pairs[0].value });
         }
         let points = pairs.len() + 1;

@@ -185,7 +185,7 @@ impl Profile4th {
 /// Has the axis follow.
 fn begin(axis: &mut Axis, limits: &Limits, position: f64) -> Result<CommandId, BlockError> {
     let block = BlockName::Profile4th;
-    if axis.params().needs_homing && !axis.is_homed() {
+    if !axis.has_reference(BufferMode::Aborting) {
         return Err(BlockError::NotHomed { block, value: position });
     }
     let Limits { velocity, acceleration, jerk, snap } = *limits;

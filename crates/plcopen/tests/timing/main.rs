@@ -7,6 +7,7 @@ mod blending;
 mod calls;
 mod execute;
 mod figures;
+mod homing;
 mod modulo;
 mod motions;
 mod overrides;
