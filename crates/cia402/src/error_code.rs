@@ -1,20 +1,19 @@
-//! Why a drive is faulty: the error codes (603Fh) and the error register (1001h).
+//! Why an axis is not available: the error codes that the drive (603Fh) and the link to it give, and the error register (1001h).
 //!
-//! Codes of IEC 61800-7-201 (CiA 402-2, error codes of the emergency message), those of communication of CiA 301
-//! (table 26). The profile has none for homing, limit switches and the position range: FF00h to FFFFh are the device's own,
-//! and those that a link to the drive takes for itself (FF01h, FF04h, FF05h) are left out.
+//! Codes of IEC 61800-7-201 (CiA 402-2, error codes of the emergency message), and those of CiA 301 (table 26) for communication
+//! and for what is outside. Neither has one for a limit switch or for what the link finds: FF00h to FFFFh are the device's own.
 use core::fmt;
 
-/// Declares the error codes: number, class in the error register, text.
+/// Declares the error codes: number, who gives it, text, when.
 macro_rules! error_codes {
-    ($($(#[$doc:meta])* $name:ident = $code:literal, $class:expr, $text:literal;)*) => {
-        /// What a drive gives as the reason of a fault.
+    ($($name:ident = $code:literal, $source:expr, $text:literal, $when:literal;)*) => {
+        /// Why an axis is not available.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         #[repr(u16)]
-        pub enum ErrorCode { $($(#[$doc])* $name = $code,)* }
+        pub enum ErrorCode { $(#[doc = concat!($when, ".")] $name = $code,)* }
 
         impl ErrorCode {
-            /// Every code that a simulated drive gives.
+            /// Every code that the drive and the link give.
             pub const ALL: &[Self] = &[$(Self::$name),*];
 
             /// Text, in the words of the standard where it has one.
@@ -23,79 +22,90 @@ macro_rules! error_codes {
                 match self { $(Self::$name => $text,)* }
             }
 
-            /// What the error register (1001h) tells while the error is present.
+            /// When it is given.
             #[must_use]
-            pub const fn register(self) -> u8 {
-                GENERIC | match self { $(Self::$name => $class,)* }
+            pub const fn when(self) -> &'static str {
+                match self { $(Self::$name => $when,)* }
+            }
+
+            /// Who gives it.
+            #[must_use]
+            pub const fn source(self) -> Source {
+                match self { $(Self::$name => $source,)* }
             }
         }
     };
 }
 
+/// Who gives an error code.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Source {
+    /// The drive, which goes into its fault reaction and tells it as 603Fh.
+    Drive {
+        /// The error register (1001h) while the error is present.
+        register: u8,
+    },
+    /// The link between motion task and drive, which knows it for itself.
+    Link,
+}
+
 /// Bits of the error register (CiA 301, 1001h). The first one is set with every error.
 const GENERIC: u8 = 1 << 0;
-const CURRENT: u8 = 1 << 1;
 const VOLTAGE: u8 = 1 << 2;
 const COMMUNICATION: u8 = 1 << 4;
 const PROFILE: u8 = 1 << 5;
-const MANUFACTURER: u8 = 1 << 7;
+
+const fn drive(class: u8) -> Source {
+    Source::Drive { register: GENERIC | class }
+}
 
 error_codes! {
-    /// Anything that no other code tells.
-    Generic = 0x1000, 0, "generic error";
-    /// More current to the motor than the power stage bears.
-    ContinuousOverCurrent = 0x2310, CURRENT, "continuous over current (device output side)";
-    /// The DC link is charged beyond its limit.
-    DcLinkOverVoltage = 0x3210, VOLTAGE, "DC link over-voltage";
-    /// The DC link is not charged enough to drive the motor.
-    DcLinkUnderVoltage = 0x3220, VOLTAGE, "DC link under-voltage";
-    /// The drive's own software.
-    InternalSoftware = 0x6100, 0, "internal software";
-    /// Parameters that do not go together.
-    Parameter = 0x6320, 0, "parameter error";
-    /// The encoder.
-    IncrementalSensor = 0x7305, PROFILE, "incremental sensor 1 fault";
-    /// The master is silent for too long.
-    Communication = 0x8100, COMMUNICATION, "communication";
-    /// Life guarding or heartbeat ran out.
-    Heartbeat = 0x8130, COMMUNICATION, "life guard error or heartbeat error";
-    /// Process data did not come in time.
-    RpdoTimeOut = 0x8250, COMMUNICATION, "RPDO time-out";
-    /// The motor turns faster than it may.
-    VelocityController = 0x8400, PROFILE, "velocity speed controller";
-    /// The position loop cannot go on.
-    PositionController = 0x8500, PROFILE, "position controller";
-    /// The interpolated position ran out of points, or got too many.
-    PositioningController = 0x8600, PROFILE, "positioning controller";
-    /// The following error was outside its window (6065h) for longer than its time-out (6066h).
-    FollowingError = 0x8611, PROFILE, "following error";
-    /// The reference is beyond a software position limit (607Dh).
-    ReferenceLimit = 0x8612, PROFILE, "reference limit";
-    /// The cycle of the master and that of the drive lost each other.
-    SyncController = 0x8700, PROFILE | COMMUNICATION, "sync controller";
-    /// Something outside the drive asks for it.
-    External = 0x9000, 0, "external error";
-    /// The switch at the negative end was met.
-    NegativeLimitSwitch = 0xFF02, MANUFACTURER, "negative limit switch";
-    /// The switch at the positive end was met.
-    PositiveLimitSwitch = 0xFF03, MANUFACTURER, "positive limit switch";
-    /// The reference was not found.
-    Homing = 0xFF11, MANUFACTURER, "homing error";
-    /// The position left what its counter or its object can hold.
-    PositionRange = 0xFF12, MANUFACTURER, "position range";
+    DcLinkUnderVoltage = 0x3220, drive(VOLTAGE), "DC link under-voltage",
+        "The power was gone while the drive function was enabled";
+    IncrementalSensor = 0x7305, drive(PROFILE), "incremental sensor 1 fault",
+        "A velocity or an effort that is no number was measured";
+    DriveTimeout = 0x8130, Source::Link, "drive time-out",
+        "The drive was silent, or did not do what it was told, for longer than the drive time-out";
+    FollowingError = 0x8611, drive(PROFILE), "following error",
+        "The following error was outside its window (6065h) for longer than its time-out (6066h)";
+    SyncController = 0x8700, drive(PROFILE | COMMUNICATION), "sync controller",
+        "More cycles of a cyclic mode began without a frame than the drive bridges";
+    External = 0x9000, Source::Link, "external fault",
+        "The external fault signal came";
+    DriveLeftOperation = 0xFF01, Source::Link, "drive left Operation enabled",
+        "The drive left Operation enabled without having been told to and without a fault";
+    NegativeLimitSwitch = 0xFF02, Source::Link, "negative limit switch",
+        "A motion went into the switch of the negative end";
+    PositiveLimitSwitch = 0xFF03, Source::Link, "positive limit switch",
+        "A motion went into the switch of the positive end";
+    PositionLost = 0xFF04, Source::Link, "position lost",
+        "A position was read that its counter cannot show, or so far from the one before that counts are lost";
+    Command = 0xFF05, Source::Link, "command that cannot be followed",
+        "The motion task gave a value that is no number, or one that the drive's units cannot express";
 }
 
 impl ErrorCode {
-    /// Value of 603Fh.
+    /// Its number.
     #[must_use]
     pub const fn code(self) -> u16 {
         self as u16
     }
 
-    /// The error with this code; `None` for 0, no error, and for what a simulated drive does not give.
+    /// The error with this code; `None` for 0, no error, and for what neither drive nor link give by themselves.
     #[must_use]
     pub fn from_code(code: u16) -> Option<Self> {
         Self::ALL.iter().copied().find(|error| error.code() == code)
+    }
+
+    /// The error register (1001h) of a drive that tells `code` (603Fh).
+    #[must_use]
+    pub fn register(code: u16) -> u8 {
+        match Self::from_code(code).map(Self::source) {
+            Some(Source::Drive { register }) => register,
+            // From outside: what class of error it is only its sender knows.
+            _ if code != 0 => GENERIC,
+            _ => 0,
+        }
     }
 }
 
@@ -116,17 +126,12 @@ mod tests {
         assert_eq!(ErrorCode::FollowingError.to_string(), "following error (8611h)");
     }
 
+    /// CiA 301, 1001h: bit 0 with every error, bit 2 for voltage (3xxxh), bit 4 for communication, bit 5 for what the profile has.
     #[test]
-    fn classes_are_those_of_the_leading_digits() {
-        for error in ErrorCode::ALL {
-            let class = match error.code() >> 12 {
-                0x2 => CURRENT,
-                0x3 => VOLTAGE,
-                0xF => MANUFACTURER,
-                _ => 0,
-            };
-            assert_eq!(error.register() & (CURRENT | VOLTAGE | MANUFACTURER), class, "{error}");
-            assert_eq!(error.register() & GENERIC, GENERIC, "{error}");
+    fn the_register_tells_the_class() {
+        for (code, register) in [(0, 0), (0x3220, 0x05), (0x7305, 0x21), (0x8611, 0x21), (0x8700, 0x31), (0x9000, 0x01)]
+        {
+            assert_eq!(ErrorCode::register(code), register, "{code:04X}h");
         }
     }
 }

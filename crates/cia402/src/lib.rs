@@ -40,7 +40,7 @@ mod transitions;
 pub mod units;
 
 pub use controlword::{Command, ControlBit, Controlword};
-pub use error_code::ErrorCode;
+pub use error_code::{ErrorCode, Source};
 pub use machine::{DriveFunction, PowerInputs, PowerMemory, PowerOutputs, PowerParams, step};
 pub use mode::Mode;
 pub use option_code::{

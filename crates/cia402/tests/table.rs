@@ -1,6 +1,6 @@
 //! Pages of `docs/` with tables made of the source. `SERVOBENCH_WRITE_DOCS=1 cargo test -p servobench-cia402` writes them.
 use servobench_cia402::objects::{Access, Admitted, Entry, OBJECTS, ObjectDescription};
-use servobench_cia402::{AbortCode, ErrorCode, TRANSITIONS};
+use servobench_cia402::{AbortCode, ErrorCode, Source, TRANSITIONS};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -27,9 +27,14 @@ fn the_page_lists_every_abort_code() {
 
 #[test]
 fn the_page_lists_every_error_code() {
-    let mut table = String::from("| 603Fh | error | 1001h |\n|---|---|---|\n");
+    let mut table = String::from("| code | error | given by | 1001h | when |\n|---|---|---|---|---|\n");
     for error in ErrorCode::ALL {
-        writeln!(table, "| {:04X}h | {} | {:02X}h |", error.code(), error.text(), error.register()).unwrap();
+        let (source, register) = match error.source() {
+            Source::Drive { register } => ("drive", format!("{register:02X}h")),
+            Source::Link => ("link", "–".into()),
+        };
+        let (code, text, when) = (error.code(), error.text(), error.when());
+        writeln!(table, "| {code:04X}h | {text} | {source} | {register} | {when} |").unwrap();
     }
     hold("objects.md", "error codes", &table);
 }

@@ -1,5 +1,6 @@
 //! Why an axis is not available.
 use core::fmt;
+use servobench_cia402::ErrorCode;
 
 /// Why an axis is not available: a fault of the drive, or one of the link to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -90,16 +91,16 @@ impl LinkFault {
     /// (FFxxh) otherwise.
     #[must_use]
     pub const fn code(self) -> u16 {
-        match self {
+        let error = match self {
             // Life guard error or heartbeat error.
-            Self::DriveTimeout => 0x8130,
-            // External error.
-            Self::External => 0x9000,
-            Self::DriveLeftOperation => 0xff01,
-            Self::NegativeLimit => 0xff02,
-            Self::PositiveLimit => 0xff03,
-            Self::PositionLost => 0xff04,
-            Self::Command => 0xff05,
-        }
+            Self::DriveTimeout => ErrorCode::DriveTimeout,
+            Self::External => ErrorCode::External,
+            Self::DriveLeftOperation => ErrorCode::DriveLeftOperation,
+            Self::NegativeLimit => ErrorCode::NegativeLimitSwitch,
+            Self::PositiveLimit => ErrorCode::PositiveLimitSwitch,
+            Self::PositionLost => ErrorCode::PositionLost,
+            Self::Command => ErrorCode::Command,
+        };
+        error.code()
     }
 }

@@ -7,8 +7,8 @@ use crate::modulo::PositionRange;
 use crate::sdo::{SdoError, Side};
 use crate::units::{AxisUnit, FactorGroup, Object, Ratio};
 use crate::{
-    Actuals, Commands, DisableOperationOption, FaultReactionOption, HaltOption, Mode, OptionCodeError, PowerParams,
-    PowerState, QuickStopOption, ShutdownOption, StatusBit, Statusword,
+    Actuals, Commands, DisableOperationOption, ErrorCode, FaultReactionOption, HaltOption, Mode, OptionCodeError,
+    PowerParams, PowerState, QuickStopOption, ShutdownOption, StatusBit, Statusword,
 };
 
 /// Every value of the object dictionary.
@@ -245,6 +245,7 @@ impl Dictionary {
         self.set(signal::TORQUE_ACTUAL_VALUE, actuals.torque);
         self.set(signal::FOLLOWING_ERROR_ACTUAL_VALUE, actuals.following_error);
         self.set(signal::ERROR_CODE, actuals.error_code);
+        self.set(signal::ERROR_REGISTER, ErrorCode::register(actuals.error_code));
         self.set(signal::DIGITAL_INPUTS, actuals.digital_inputs);
         self.set(signal::TRAJECTORY_BUFFER_FREE_COUNT, actuals.buffer_free);
         self.set(signal::TRAJECTORY_BUFFER_STATUS, actuals.buffer_status);

@@ -12,11 +12,14 @@ pub enum Fault {
     FramesMissing,
     /// The following error was outside its window (6065h) for longer than its time-out (6066h).
     FollowingError,
-    /// Something outside the axis: a code of its own.
+    /// Something outside the axis, with the code that is told.
     External(u16),
 }
 
 impl Fault {
+    /// Every fault that the drive finds itself.
+    pub const OWN: [Self; 4] = [Self::MainsMissing, Self::Encoder, Self::FramesMissing, Self::FollowingError];
+
     /// Value of 603Fh.
     #[must_use]
     pub const fn code(self) -> u16 {

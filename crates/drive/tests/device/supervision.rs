@@ -1,6 +1,6 @@
 //! Faults: which, with which code, after which time, and what the drive does then.
 use crate::axis::{Axis, setpoint};
-use servobench_cia402::{Command, FaultReactionOption, Mode, PowerState, StatusBit};
+use servobench_cia402::{Command, ErrorCode, FaultReactionOption, Mode, PowerState, Source, StatusBit};
 use servobench_drive::Demand;
 use servobench_drive::device::{Fault, Params, Window};
 
@@ -109,6 +109,17 @@ fn without_an_encoder_no_loop_is_closed() {
             }
         }
     }
+}
+
+/// The table of `docs/objects.md`: it has the faults of the drive, and no others as the drive's.
+#[test]
+fn every_code_of_the_drive_has_its_fault() {
+    let of_drive = |error: &&ErrorCode| matches!(error.source(), Source::Drive { .. });
+    let mut listed: Vec<u16> = ErrorCode::ALL.iter().filter(of_drive).map(|error| error.code()).collect();
+    let mut found = Fault::OWN.map(Fault::code);
+    listed.sort_unstable();
+    found.sort_unstable();
+    assert_eq!(listed, found);
 }
 
 #[test]
