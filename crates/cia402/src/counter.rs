@@ -81,6 +81,12 @@ impl Counter {
         Self { bits: self.bits, signed: true }.wrap(to - from)
     }
 
+    /// The position nearest to `position` at which the counter shows what it shows at `target`.
+    #[must_use]
+    pub const fn nearest(self, target: i128, position: i128) -> i128 {
+        position + self.way(position, target)
+    }
+
     fn reading(self, reading: i128) -> Result<i128, UnitError> {
         let (lowest, highest) = (self.lowest(), self.highest());
         if (lowest..=highest).contains(&reading) {

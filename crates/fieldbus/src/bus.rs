@@ -183,7 +183,7 @@ impl State {
 }
 
 /// A number below `bound`, at most 2³², by seed and cycle: `SplitMix64` (Steele, Lea & Flood 2014).
-fn below(bound: u64, seed: u32, cycle: u64) -> u64 {
+pub(crate) fn below(bound: u64, seed: u32, cycle: u64) -> u64 {
     let z = (u64::from(seed) << 32).wrapping_add(cycle.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
     let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

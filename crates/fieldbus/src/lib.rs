@@ -3,6 +3,7 @@
 //! - [`AxisCommand`] and [`AxisFeedback`]: what motion task and axis tell each other, once per cycle of that task.
 //! - [`link`]: from one to the process data of a drive (CiA 402) and back, once per cycle of the bus.
 //! - [`bus`]: the wire to the drive, and what goes wrong on it.
+//! - [`task`]: when the motion task runs, and what goes wrong with it.
 //!
 //! `no_std`, no heap.
 //!
@@ -57,6 +58,7 @@ mod error;
 mod fault;
 mod interpolation;
 pub mod link;
+pub mod task;
 
 pub use axis::{AxisCommand, AxisFeedback, Homing, Power, Switches, Task, Way, WayFeedback};
 pub use error::FieldbusError;

@@ -36,6 +36,7 @@ fn a_bus_that_says_its_cycle_alone() {
         delay: 1,
         velocity_offset: false,
         effort_offset: EffortFeedforward::Off,
+        margin: 0,
         sequencing: Sequencing::Strict,
         drive_timeout: 0.5,
         position_gain: None,
@@ -58,6 +59,7 @@ interpolation = "quintic"
 delay = 0
 velocity_offset = true
 effort_offset = "rigid"
+margin = "1.5 ms"
 sequencing = "simplified"
 drive_timeout = "20 ms"
 position_gain = "80 1/s"
@@ -75,6 +77,7 @@ reverse_switches = true
         delay: 0,
         velocity_offset: true,
         effort_offset: EffortFeedforward::Rigid,
+        margin: 24,
         sequencing: Sequencing::Simplified,
         drive_timeout: 0.02,
         position_gain: Some(80.0),
@@ -126,6 +129,7 @@ fn units_are_increments_of_the_encoder_that_closes_the_loop() {
 #[test]
 fn faults_concern_whole_cycles() {
     let faults = bus(r#"
+motion_cycle = "4 ms"
 [[bus.fault]]
 kind = "lost"
 start = "0.5 s"
@@ -148,6 +152,23 @@ start = "10.1 ms"
 duration = "1.8 ms"
 [[bus.fault]]
 kind = "external-fault"
+[[bus.fault]]
+kind = "task-late"
+start = "10.1 ms"
+by = "6 ms"
+[[bus.fault]]
+kind = "task-jitter"
+by = "2 ms"
+[[bus.fault]]
+kind = "task-lost"
+start = "10.1 ms"
+cycles = 2
+[[bus.fault]]
+kind = "task-torn"
+[[bus.fault]]
+kind = "task-fast"
+by = "1 ms"
+duration = "20 ms"
 "#)
     .faults;
     let fault = |kind, cycles| BusFault { kind, cycles };
@@ -158,6 +179,12 @@ kind = "external-fault"
         fault(BusFaultKind::MasterStopped, 300..320),
         fault(BusFaultKind::DriveSilent, 11..12),
         fault(BusFaultKind::ExternalFault, 0..u64::MAX),
+        // In cycles of the motion task, 4 ms each.
+        fault(BusFaultKind::TaskLate { by: 96 }, 3..4),
+        fault(BusFaultKind::TaskJitter { by: 32, seed: 1 }, 0..u64::MAX),
+        fault(BusFaultKind::TaskLost, 3..5),
+        fault(BusFaultKind::TaskTorn, 0..1),
+        fault(BusFaultKind::TaskFast { by: 16 }, 0..5),
     ];
     assert_eq!(faults, expected);
 }

@@ -338,7 +338,7 @@ fn kind(value: &Json) -> String {
             let is_said = |one: &&Json| one["type"] != "array" && !is_percentage(one);
             let kinds: Vec<String> = all.iter().filter(is_said).map(kind).collect();
             let more = if all.iter().any(|one| one["type"] == "array") { ", or a list" } else { "" };
-            return if kinds.len() > 8 { format!("a name{more}") } else { format!("{}{more}", kinds.join(", ")) };
+            return if kinds.len() > 12 { format!("a name{more}") } else { format!("{}{more}", kinds.join(", ")) };
         }
     }
     match value["type"].as_str().unwrap() {

@@ -28,6 +28,7 @@ use servobench_cia402::{Commands, Mode};
 use servobench_drive::{Demand, device, feedforward};
 use servobench_fieldbus::bus::{self, BusFault};
 use servobench_fieldbus::link::{self, Mailbox};
+use servobench_fieldbus::task::{self, TaskFault};
 use servobench_fieldbus::{AxisCommand, AxisFeedback, Task};
 use servobench_motion::interpolate::Sample;
 use servobench_plant::SwitchReading;
@@ -48,8 +49,9 @@ pub(crate) struct Network {
     drive: (device::Params, device::State),
     bus: (bus::Params<'static>, bus::State),
     faults: Vec<BusFault>,
-    /// Cycle of the motion task (bus cycles).
-    motion_every: u64,
+    /// When the motion task runs.
+    turns: (task::Params<'static>, task::State),
+    task_faults: Vec<TaskFault>,
     drive_every: Divider,
     drive_turn: Countdown,
     /// What has arrived at the drive since its last step.
@@ -177,7 +179,11 @@ impl Network {
         let (params, state) = &mut self.link;
         let (wire, frames) = &mut self.bus;
         let actuals = frames.to_master(wire, cycle, self.drive.1.actuals(&self.drive.0));
-        if cycle.number.is_multiple_of(self.motion_every) && !cycle.master_stopped {
+        let mut torn = None;
+        while let Some(turn) = task::step(&self.turns.0.with_faults(&self.task_faults), &mut self.turns.1, cycle.due) {
+            if cycle.master_stopped {
+                continue;
+            }
             let step = self.task.cycle(t, &state.feedback(params), origin, recorder, |setpoint| {
                 let motor = self.model.motor_reference(setpoint);
                 let torque = self.transmission * self.model.effort(setpoint);
@@ -186,11 +192,16 @@ impl Network {
             match step {
                 Ok(Step { command, setpoint }) => {
                     match setpoint {
-                        Some(setpoint) => self.reference.push(t, setpoint),
+                        Some(setpoint) => self.reference.push(turn.due.0 as f64 * self.tick, setpoint),
                         None => self.reference.restart(),
                     }
                     self.asked = setpoint.unwrap_or(Setpoint::at_rest(self.bus_position));
-                    self.mailbox.write(cycle.due, command);
+                    torn = turn.is_torn.then_some((turn.due, command));
+                    if turn.is_torn {
+                        self.mailbox.begin();
+                    } else if !turn.is_lost {
+                        self.mailbox.write(turn.due, command);
+                    }
                 }
                 Err(reason) => self.failure = Some(reason),
             }
@@ -198,6 +209,13 @@ impl Network {
         let input =
             link::Input { tick: cycle.due, mailbox: &self.mailbox, actuals, external_fault: cycle.external_fault };
         let commands = link::step(params, state, input);
+        if let Some((due, command)) = torn {
+            self.mailbox.finish(due, command);
+        }
+        if state.fault().is_some() {
+            // What the motion task asks for meanwhile is not followed.
+            self.reference.restart();
+        }
         self.bus_position = state.feedback(params).position;
         if let Some(arrived) = frames.to_drive(wire, cycle, commands) {
             self.frame = Some(arrived);

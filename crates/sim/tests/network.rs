@@ -110,15 +110,6 @@ fn the_drive_is_led_to_power_state_by_state() {
     assert!((last - 1.0).abs() < 1e-9, "{last}");
 }
 
-/// A drive that counts in other bits than the link would be led anywhere.
-#[test]
-fn a_counter_that_the_drive_does_not_have_is_refused() {
-    let text = format!("{AXIS}{BUS}counter = {{ bits = 16 }}\n");
-    let parsed = scenario::parse("network", &text, None).unwrap_or_else(|error| panic!("{error}"));
-    let refused = Bench::new(&parsed.scenario, &Exact).err().map(|error| error.to_string());
-    assert_eq!(refused.as_deref(), Some("`bus.counter.bits` must be 32, the width of the drive's counter, got 16"));
-}
-
 /// csv: the position loop is the master's, on a bus whose frames are on their way for up to three cycles.
 ///
 /// Oracle: the same move fed to the drive at every tick, and what the loop leaves of a velocity that lags by τ, half a period of

@@ -6,6 +6,7 @@ use crate::modes::{Moment, Steepness, cyclic, homing, interpolated, profile};
 use core::cmp::Ordering;
 use servobench_base::{ParamError, limit, positive};
 use servobench_cia402::PowerParams;
+use servobench_cia402::counter::Counter;
 use servobench_cia402::units::{AxisUnit, FactorGroup, Ratio};
 use servobench_motion::interpolate;
 
@@ -22,6 +23,8 @@ pub struct Params {
     pub power: PowerParams,
     /// Drive units.
     pub units: Units,
+    /// Counter of the positions on the bus (607Ah, 6064h), up to 32 bits.
+    pub counter: Counter,
     /// What no mode may exceed.
     pub limits: Limits,
     /// The profile that a frame's own values replace where they are not zero.
@@ -89,6 +92,7 @@ impl Default for Params {
             interpolation: interpolate::Mode::Linear,
             power: PowerParams::default(),
             units: units.expect("ratios of ones and a million are in range"),
+            counter: Counter::signed(32).expect("a width from 8 to 64"),
             limits: Limits {
                 velocity: f64::INFINITY,
                 profile_velocity: f64::INFINITY,
@@ -131,6 +135,10 @@ impl Params {
         positive("period", self.period)?;
         positive("interpolation_time_period", f64::from(self.cycle.steps))?;
         self.units.check()?;
+        let bits = self.counter.range().trailing_zeros();
+        if bits > i32::BITS {
+            return Err(ParamError { name: "counter", value: bits.into(), bound: "at most the 32 bits of its object" });
+        }
         self.cyclic_position().check()?;
         let Limits { velocity, profile_velocity, acceleration, deceleration, effort: [forward, backward], position } =
             self.limits;

@@ -18,8 +18,11 @@ impl State {
         Actuals {
             statusword: self.statusword,
             mode: self.mode.map_or(0, Mode::code),
-            #[expect(clippy::cast_possible_truncation, reason = "the counter of the bus wraps")]
-            position: p.units.position(self.increments.wrapping_sub(self.origin)) as i32,
+            #[expect(
+                clippy::cast_possible_truncation,
+                reason = "32 bits of an object, as an unsigned counter uses them"
+            )]
+            position: p.counter.wrap(self.position(p)) as i32,
             velocity: p.units.velocity(velocity),
             torque: p.units.effort(effort),
             following_error: if follows_position { p.units.distance(self.following_error) } else { 0 },
@@ -28,6 +31,11 @@ impl State {
             buffer_free: u16::try_from(self.buffer.free()).unwrap_or(u16::MAX),
             buffer_status: self.buffer.status(),
         }
+    }
+
+    /// Position in user-defined units, which the counter of the bus shows the end of.
+    fn position(&self, p: &Params) -> i128 {
+        p.units.position(self.increments.wrapping_sub(self.origin)).into()
     }
 
     /// Converts a frame.
@@ -40,18 +48,18 @@ impl State {
                 Err(_) => true,
             };
         }
-        let here = p.units.position(self.increments.wrapping_sub(self.origin));
-        #[expect(clippy::cast_possible_truncation, reason = "the counter of the bus wraps")]
-        let shown = here as i32;
-        let asked = match self.wanted {
-            Some(Mode::CyclicSynchronousPosition) => frame.target_position.wrapping_add(frame.position_offset),
-            _ => frame.target_position,
+        let here = self.position(p);
+        let offset = match self.wanted {
+            Some(Mode::CyclicSynchronousPosition) => frame.position_offset,
+            _ => 0,
         };
+        let asked = i128::from(frame.target_position) + i128::from(offset);
         let target = match self.wanted {
-            Some(Mode::ProfilePosition) => here.wrapping_sub(shown.into()).wrapping_add(asked.into()),
-            _ => here.wrapping_add(asked.wrapping_sub(shown).into()),
+            Some(Mode::ProfilePosition) => here - p.counter.wrap(here) + p.counter.wrap(asked),
+            _ => p.counter.nearest(asked, here),
         };
-        let position = p.units.from_position(target);
+        #[expect(clippy::cast_possible_truncation, reason = "within a turn of the counter of 64 bits of units")]
+        let position = p.units.from_position(target as i64);
         let kept = p.limits.position.map_or(position, |[lowest, highest]| position.clamp(lowest, highest));
         let rate = |units: u32, set: f64| if units == 0 { set } else { p.units.from_rate(units) };
         let velocity = rate(frame.profile_velocity, p.profile.velocity);

@@ -1,6 +1,7 @@
 //! Drive units at the door: factor group, polarity, counters that wrap.
 use crate::axis::{Axis, setpoint};
 use servobench_cia402::Mode;
+use servobench_cia402::counter::Counter;
 use servobench_cia402::units::{AxisUnit, FactorGroup, POLARITY_POSITION, POLARITY_VELOCITY, Ratio};
 use servobench_drive::Demand;
 use servobench_drive::device::{Params, Units};
@@ -98,4 +99,28 @@ fn cyclic_targets_run_through_the_end_of_the_counter() {
     // Doubles at 43 000 km resolve 7e-9 m.
     assert!((axis.position - target as f64 * 1e-6).abs() < 1e-6, "{}", axis.position);
     assert_eq!(axis.actuals().position, axis.frame.target_position);
+}
+
+/// Counters of every width, and without a sign: oracle is the motion, cycle by cycle.
+#[test]
+fn cyclic_targets_run_through_the_end_of_narrow_counters() {
+    for (bits, signed) in [(16, true), (16, false), (8, true), (31, false), (32, false)] {
+        let counter = if signed { Counter::signed(bits) } else { Counter::unsigned(bits) }.unwrap();
+        let mut axis = Axis::enabled(&Params { counter, ..Params::default() }, Mode::CyclicSynchronousPosition);
+        // A third of the range in a cycle, forwards and back: ten turns each.
+        let step = i64::try_from(counter.range() / 3).unwrap();
+        let mut target = 0_i64;
+        for n in 0..60 {
+            target += if n < 30 { step } else { -step };
+            #[expect(clippy::cast_possible_truncation, reason = "32 bits of an object")]
+            let shown = counter.wrap(target.into()) as i32;
+            axis.frame.target_position = shown;
+            axis.cycle();
+        }
+        axis.cycle();
+        assert!((axis.position - target as f64 * 1e-6).abs() < 1e-6, "{bits} {signed}: {}", axis.position);
+        assert_eq!(axis.actuals().position, axis.frame.target_position, "{bits} {signed}");
+    }
+    let params = Params { counter: Counter::signed(33).unwrap(), ..Params::default() };
+    assert_eq!(params.check().map_err(|error| error.name), Err("counter"));
 }

@@ -111,7 +111,8 @@ impl Axis {
             Activity::Rest => {
                 let follows = match self.state {
                     AxisState::Disabled => true,
-                    AxisState::ErrorStop => !self.is_powered(),
+                    // Under a fault the link puts out where the axis is, whatever is commanded.
+                    AxisState::ErrorStop => !self.is_powered() || self.feedback.fault.is_some(),
                     _ => false,
                 };
                 if follows {

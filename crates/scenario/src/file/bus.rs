@@ -38,6 +38,11 @@ pub(crate) enum FaultName {
     MasterStopped,
     DriveSilent,
     ExternalFault,
+    TaskLate,
+    TaskJitter,
+    TaskLost,
+    TaskTorn,
+    TaskFast,
 }
 
 impl Choice for FaultName {
@@ -48,7 +53,24 @@ impl Choice for FaultName {
         ("master-stopped", Self::MasterStopped, "the motion task does not run"),
         ("drive-silent", Self::DriveSilent, "the drive does not answer"),
         ("external-fault", Self::ExternalFault, "the fault input of the master is set"),
+        ("task-late", Self::TaskLate, "the motion task runs late, and with it the cycles that it holds up"),
+        ("task-jitter", Self::TaskJitter, "each cycle of the motion task runs late by a random time"),
+        ("task-lost", Self::TaskLost, "the command of the motion task is lost"),
+        ("task-torn", Self::TaskTorn, "the master reads the command while the motion task writes it"),
+        ("task-fast", Self::TaskFast, "the clock of the motion task runs fast: its cycles are too short"),
     ];
+}
+
+impl FaultName {
+    /// Whether it is the motion task that something is wrong with.
+    pub(crate) const fn is_of_task(self) -> bool {
+        match self {
+            Self::TaskLate | Self::TaskJitter | Self::TaskLost | Self::TaskTorn | Self::TaskFast => true,
+            Self::Lost | Self::Late | Self::Jitter | Self::MasterStopped | Self::DriveSilent | Self::ExternalFault => {
+                false
+            }
+        }
+    }
 }
 
 table! {
@@ -70,6 +92,9 @@ table! {
         velocity_offset: bool = (),
         /// Model of the torque or force that the torque offset (60B2h) carries, by the drive's `estimate`; "off" unless given.
         effort_offset: EffortFeedforward = (),
+        /// How late a command of the motion task may come without being predicted, a whole number of base ticks and two of the
+        /// task's cycles at most; it makes the way to the drive longer. None unless given.
+        margin: f64 = positive(Plain(&TIME), "1 ms"),
         /// How the master brings the drive to power; "strict" unless given.
         sequencing: Sequencing = (),
         /// How long the master waits for the drive; 0.5 s unless given.
@@ -93,7 +118,7 @@ table! {
     /// Counter of the positions on the bus: it wraps.
     pub(crate) struct Counter {
         /// Its width; 32 unless given.
-        bits: u32 = 8..=64,
+        bits: u32 = 8..=32,
         /// Whether it counts from −2^(bits−1); it does unless given.
         signed: bool = (),
     }
@@ -110,20 +135,22 @@ table! {
 }
 
 table! {
-    /// Something that goes wrong on the bus, for so many `cycles` or so long a `duration`. A lost or late frame is one unless
-    /// given, anything else lasts to the end of the run.
+    /// Something that goes wrong on the bus or with the motion task, for so many `cycles` or so long a `duration`: of the
+    /// motion task for the kinds "task-…", of the bus for the others. What is lost, late or torn is one unless given, anything
+    /// else lasts to the end of the run.
     pub(crate) struct BusFault requires ["kind"] {
         /// What goes wrong.
         kind: FaultName = (),
-        /// Start: from the first bus cycle that is not before it; 0 unless given.
+        /// Start: from the first cycle that is not before it; 0 unless given.
         start: f64 = not_negative(Plain(&TIME), "0.5 s"),
-        /// How many bus cycles it concerns.
+        /// How many cycles it concerns.
         cycles: u32 = 1..=u32::MAX,
-        /// How long it lasts: it concerns the bus cycles that begin before its end.
+        /// How long it lasts: it concerns the cycles that begin before its end.
         duration: f64 = positive(Plain(&TIME), "20 ms"),
-        /// How late a "late" frame is, or one with "jitter" at most; a whole number of base ticks.
+        /// How late what is "late" is, what has "jitter" at most, or how much too short a cycle is with "task-fast"; a whole
+        /// number of base ticks.
         by: f64 = positive(Plain(&TIME), "250 us"),
-        /// Seed of the random numbers of "jitter"; 1 unless given.
+        /// Seed of the random numbers of "jitter" and "task-jitter"; 1 unless given.
         seed: u32 = 0..=u32::MAX,
     }
 }

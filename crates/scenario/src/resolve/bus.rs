@@ -54,8 +54,9 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
     let position_gain = mode.and_then(|mode| position_gain(given, mode, report));
     let effort_offset = effort_offset(given, known.actuator.and_then(Actuator::drive).map(|d| &d.estimate), report);
     warn_of_what_is_added_twice(given, known.actuator, report);
+    let margin = margin(given, cycle.zip(motion_every), known, report);
     let units = units(file, given, known.actuator, report);
-    let faults = bus_fault::faults(given, cycle, known, report);
+    let faults = bus_fault::faults(given, cycle.zip(motion_every), known, report);
     let objects = match objects {
         Some(Slot::Given(objects)) => Some(objects.value.0.clone()),
         Some(Slot::Wrong(_)) => None,
@@ -71,6 +72,7 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
         delay: given.delay.optional().ok()?.copied().unwrap_or(DELAY),
         velocity_offset: flag(&given.velocity_offset)?,
         effort_offset: effort_offset?,
+        margin: margin?,
         sequencing: given.sequencing.optional().ok()?.copied().unwrap_or(Sequencing::Strict),
         drive_timeout: given.drive_timeout.optional().ok()?.copied().unwrap_or(DRIVE_TIMEOUT),
         position_gain: position_gain?,
@@ -108,6 +110,10 @@ fn refuse_by_mode(given: &file::Bus, mode: BusMode, report: &mut Report) {
     if !mode.is_cyclic() {
         refuse(&offsets, "is for the modes \"csp\" and \"csv\"", "the drive makes the way itself here", report);
     }
+    if !mode.is_cyclic() {
+        let key = [("margin", given.margin.span())];
+        refuse(&key, "is for the modes \"csp\" and \"csv\"", "elsewhere nothing is predicted", report);
+    }
     if mode != BusMode::CyclicPosition {
         let key = [("drive_interpolation", given.drive_interpolation.span())];
         refuse(&key, "is for the mode \"csp\"", "", report);
@@ -126,6 +132,18 @@ fn motion_every(given: &file::Bus, cycle: Option<u32>, known: &Known<'_>, report
         refuse(&key, "is for a motion task that is slower than the bus", help, report);
     }
     every
+}
+
+/// Slack for late commands: what the master can keep of them is two cycles.
+fn margin(given: &file::Bus, cycles: Option<(u32, u32)>, known: &Known<'_>, report: &mut Report) -> Option<u32> {
+    let Some(at) = given.margin.at() else { return given.margin.optional().ok().map(|_| 0) };
+    let margin = whole::ticks("margin", *at, known.base_rate, report)?;
+    let (cycle, every) = cycles?;
+    if u64::from(margin) > 2 * u64::from(cycle) * u64::from(every) {
+        report.error(at.span, "more than two cycles of the motion task cannot be waited for", "make it shorter");
+        return None;
+    }
+    Some(margin)
 }
 
 /// A drive that looks less often than frames come would miss some.

@@ -1,4 +1,4 @@
-//! `[[bus.fault]]`: what goes wrong, in bus cycles.
+//! `[[bus.fault]]`: what goes wrong, in cycles of the bus or of the motion task.
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
@@ -11,40 +11,67 @@ use std::ops::Range;
 /// Seed of the random numbers, unless given.
 const SEED: u32 = 1;
 
+/// The faults on a bus of `cycles`: base ticks in one of them, and how many there are in one of the motion task's.
 pub(super) fn faults(
     given: &file::Bus,
-    cycle: Option<u32>,
+    cycles: Option<(u32, u32)>,
     known: &Known<'_>,
     report: &mut Report,
 ) -> Option<Vec<BusFault>> {
     let Some(all) = given.fault.optional().ok()? else { return Some(Vec::new()) };
-    let resolved: Vec<_> = all.0.iter().map(|one| fault(&one.value, cycle, known, report)).collect();
+    let resolved: Vec<_> = all.0.iter().map(|one| fault(&one.value, cycles, known, report)).collect();
     resolved.into_iter().collect()
 }
 
-fn fault(given: &file::BusFault, cycle: Option<u32>, known: &Known<'_>, report: &mut Report) -> Option<BusFault> {
-    let kind = kind(given, known, report);
-    let cycles = cycles(given, cycle, known, report);
+fn fault(
+    given: &file::BusFault,
+    cycles: Option<(u32, u32)>,
+    known: &Known<'_>,
+    report: &mut Report,
+) -> Option<BusFault> {
+    let task_cycle = cycles.map(|(cycle, every)| cycle.saturating_mul(every));
+    let kind = kind(given, task_cycle, known, report);
+    let is_of_task = given.kind.given()?.is_of_task();
+    let cycle = if is_of_task { task_cycle } else { cycles.map(|(cycle, _)| cycle) };
+    let cycles = concerned(given, cycle, known, report);
     Some(BusFault { kind: kind?, cycles: cycles? })
 }
 
-fn kind(given: &file::BusFault, known: &Known<'_>, report: &mut Report) -> Option<BusFaultKind> {
+fn kind(
+    given: &file::BusFault,
+    task_cycle: Option<u32>,
+    known: &Known<'_>,
+    report: &mut Report,
+) -> Option<BusFaultKind> {
     let name = given.kind.at()?;
-    let is_late = matches!(name.value, FaultName::Late | FaultName::Jitter);
-    if let (false, Some(span)) = (is_late, given.by.span()) {
-        report.error(span, "`by` is for what is \"late\" and for \"jitter\"", "");
+    let is_random = matches!(name.value, FaultName::Jitter | FaultName::TaskJitter);
+    let is_fast = name.value == FaultName::TaskFast;
+    let needs_time = is_random || is_fast || matches!(name.value, FaultName::Late | FaultName::TaskLate);
+    if let (false, Some(span)) = (needs_time, given.by.span()) {
+        report.error(span, "`by` is for what is \"late\", has \"jitter\" or is \"fast\"", "");
     }
-    if let (true, Some(span)) = (name.value != FaultName::Jitter, given.seed.span()) {
+    if let (false, Some(span)) = (is_random, given.seed.span()) {
         report.error(span, "`seed` is for \"jitter\"", "");
     }
     let by = match &given.by {
-        _ if !is_late => Some(0),
+        _ if !needs_time => Some(0),
         Slot::Absent => {
-            report.missing_with_help("bus.fault", "by", given.span, "how late a frame is");
+            report.missing_with_help(
+                "bus.fault",
+                "by",
+                given.span,
+                if is_fast { "how much too short a cycle is" } else { "how late it is" },
+            );
             None
         }
         Slot::Wrong(_) => None,
-        Slot::Given(at) => whole::ticks("by", *at, known.base_rate, report),
+        Slot::Given(at) => whole::ticks("by", *at, known.base_rate, report).filter(|by| {
+            let leaves_nothing = is_fast && task_cycle.is_some_and(|cycle| *by >= cycle);
+            if leaves_nothing {
+                report.error(at.span, "nothing is left of the cycle of the motion task", "make it shorter");
+            }
+            !leaves_nothing
+        }),
     };
     let seed = given.seed.optional().ok().map(|seed| seed.copied().unwrap_or(SEED));
     Some(match name.value {
@@ -54,11 +81,16 @@ fn kind(given: &file::BusFault, known: &Known<'_>, report: &mut Report) -> Optio
         FaultName::MasterStopped => BusFaultKind::MasterStopped,
         FaultName::DriveSilent => BusFaultKind::DriveSilent,
         FaultName::ExternalFault => BusFaultKind::ExternalFault,
+        FaultName::TaskLate => BusFaultKind::TaskLate { by: by? },
+        FaultName::TaskJitter => BusFaultKind::TaskJitter { by: by?, seed: seed? },
+        FaultName::TaskLost => BusFaultKind::TaskLost,
+        FaultName::TaskTorn => BusFaultKind::TaskTorn,
+        FaultName::TaskFast => BusFaultKind::TaskFast { by: by? },
     })
 }
 
-/// The bus cycles that it concerns.
-fn cycles(given: &file::BusFault, cycle: Option<u32>, known: &Known<'_>, report: &mut Report) -> Option<Range<u64>> {
+/// The cycles that it concerns, each of `cycle` base ticks.
+fn concerned(given: &file::BusFault, cycle: Option<u32>, known: &Known<'_>, report: &mut Report) -> Option<Range<u64>> {
     let start = given.start.optional().ok()?.copied().unwrap_or(0.0);
     if let (Some(at), Some(duration)) = (given.start.at(), known.duration)
         && at.value >= duration
@@ -75,7 +107,7 @@ fn cycles(given: &file::BusFault, cycle: Option<u32>, known: &Known<'_>, report:
             let end = first_from((start + duration.value) * per_second);
             if end == first {
                 let message =
-                    format!("no bus cycle begins between its start and its end, they are {} s apart", 1.0 / per_second);
+                    format!("no cycle begins between its start and its end, they are {} s apart", 1.0 / per_second);
                 report.error(duration.span, message, "");
                 return None;
             }
@@ -83,10 +115,15 @@ fn cycles(given: &file::BusFault, cycle: Option<u32>, known: &Known<'_>, report:
         }
         Way::Contradiction => return None,
         Way::None => match given.kind.given()? {
-            FaultName::Lost | FaultName::Late => first.saturating_add(1),
-            FaultName::Jitter | FaultName::MasterStopped | FaultName::DriveSilent | FaultName::ExternalFault => {
-                u64::MAX
+            FaultName::Lost | FaultName::Late | FaultName::TaskLate | FaultName::TaskLost | FaultName::TaskTorn => {
+                first.saturating_add(1)
             }
+            FaultName::Jitter
+            | FaultName::MasterStopped
+            | FaultName::DriveSilent
+            | FaultName::ExternalFault
+            | FaultName::TaskJitter
+            | FaultName::TaskFast => u64::MAX,
         },
     };
     Some(first..end)

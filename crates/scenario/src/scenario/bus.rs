@@ -22,6 +22,8 @@ pub struct Bus {
     pub velocity_offset: bool,
     /// Model of the effort that the torque offset (60B2h) carries.
     pub effort_offset: EffortFeedforward,
+    /// How late a command of the motion task may come without being predicted (base ticks).
+    pub margin: u32,
     /// How the master brings the drive to power.
     pub sequencing: Sequencing,
     /// How long the master waits for the drive (s).
@@ -96,16 +98,17 @@ pub struct DriveUnits {
     pub axis: f64,
 }
 
-/// Something that goes wrong in some cycles of the bus.
+/// Something that goes wrong in some cycles of the bus or of the motion task.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BusFault {
     /// What.
     pub kind: BusFaultKind,
-    /// In which cycles, the first of the run is 0; to `u64::MAX` where it does not end.
+    /// In which cycles, the first of the run is 0; to `u64::MAX` where it does not end. Those of the motion task, where it is
+    /// the task that something is wrong with.
     pub cycles: Range<u64>,
 }
 
-/// What goes wrong on the bus.
+/// What goes wrong on the bus or with the motion task.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BusFaultKind {
     /// The frame does not arrive.
@@ -128,6 +131,27 @@ pub enum BusFaultKind {
     DriveSilent,
     /// The fault input of the master is set.
     ExternalFault,
+    /// The motion task runs late.
+    TaskLate {
+        /// How late (base ticks).
+        by: u32,
+    },
+    /// Each cycle of the motion task runs late, by a random time.
+    TaskJitter {
+        /// The most (base ticks).
+        by: u32,
+        /// Seed of the random numbers.
+        seed: u32,
+    },
+    /// The command of the motion task is lost.
+    TaskLost,
+    /// The command of the motion task is read while it is written.
+    TaskTorn,
+    /// The cycle of the motion task is too short.
+    TaskFast {
+        /// By how much (base ticks), less than the cycle.
+        by: u32,
+    },
 }
 
 /// A value for an object of the drive. Whether the drive takes it is for its object dictionary to say.

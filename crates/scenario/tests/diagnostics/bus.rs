@@ -109,7 +109,7 @@ fn keys_belong_to_modes() {
         ),
         (&bus("mode = \"cst\"\n"), &["4:8: `mode` has no value \"cst\"; did you mean `csp`?"]),
         (&bus("delay = 16\n"), &["4:9: `delay` must be a whole number from 0 to 15, got 16"]),
-        (&bus("counter = { bits = 65 }\n"), &["4:20: `bits` must be a whole number from 8 to 64, got 65"]),
+        (&bus("counter = { bits = 33 }\n"), &["4:20: `bits` must be a whole number from 8 to 32, got 33"]),
     ]);
 }
 
@@ -184,22 +184,30 @@ fn faults_are_in_the_run_and_have_what_they_need() {
         (&fault("kind = \"drive-silent\"\nduration = \"20 ms\"\n"), &[]),
         (&fault("kind = \"jitter\"\nby = \"250 us\"\nseed = 0\n"), &[]),
         (&fault("cycles = 1\n"), &["4:1: missing `kind` in `bus.fault`"]),
-        (&fault("kind = \"late\"\n"), &["4:1: missing `by` in `bus.fault`; how late a frame is"]),
+        (&fault("kind = \"late\"\n"), &["4:1: missing `by` in `bus.fault`; how late it is"]),
         (
             &fault("kind = \"late\"\nby = \"100 us\"\n"),
             &["6:6: `by` is 1.6000 base ticks, not a whole number; 125 us fits"],
         ),
         (
             &fault("kind = \"lost\"\nby = \"250 us\"\nseed = 3\n"),
-            &["6:6: `by` is for what is \"late\" and for \"jitter\"", "7:8: `seed` is for \"jitter\""],
+            &["6:6: `by` is for what is \"late\", has \"jitter\" or is \"fast\"", "7:8: `seed` is for \"jitter\""],
         ),
+        (&fault("kind = \"task-torn\"\n"), &[]),
+        (&fault("kind = \"task-fast\"\nby = \"250 us\"\n"), &[]),
+        (&fault("kind = \"task-fast\"\n"), &["4:1: missing `by` in `bus.fault`; how much too short a cycle is"]),
+        (
+            &fault("kind = \"task-fast\"\nby = \"1 ms\"\n"),
+            &["6:6: nothing is left of the cycle of the motion task; make it shorter"],
+        ),
+        (&fault("kind = \"task-late\"\nby = \"1 ms\"\nseed = 3\n"), &["7:8: `seed` is for \"jitter\""]),
         (
             &fault("kind = \"lost\"\ncycles = 3\nduration = \"2 ms\"\n"),
             &["7:12: `cycles` and `duration` say the same thing; give one of them"],
         ),
         (
             &fault("kind = \"lost\"\nstart = \"100 us\"\nduration = \"200 us\"\n"),
-            &["7:12: no bus cycle begins between its start and its end, they are 0.001 s apart"],
+            &["7:12: no cycle begins between its start and its end, they are 0.001 s apart"],
         ),
     ]);
     let short = bare().replace("base_rate = \"16 kHz\"\n", "base_rate = \"16 kHz\"\nduration = \"2 s\"\n");

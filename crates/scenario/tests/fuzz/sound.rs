@@ -223,7 +223,7 @@ fn switches(axis: &Axis) {
 
 fn bus(bus: &Bus, scenario: &Scenario) {
     assert!(scenario.actuator.drive().is_some());
-    assert!(bus.cycle >= 1 && bus.motion_every >= 1 && (8..=64).contains(&bus.counter.bits), "{bus:?}");
+    assert!(bus.cycle >= 1 && bus.motion_every >= 1 && (8..=32).contains(&bus.counter.bits), "{bus:?}");
     assert_eq!(bus.position_gain.is_some(), bus.mode == BusMode::CyclicVelocity);
     optional("position_gain", bus.position_gain);
     positive("drive_timeout", bus.drive_timeout);

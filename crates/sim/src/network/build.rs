@@ -17,6 +17,7 @@ use servobench_drive::modes::interpolated::SubMode;
 use servobench_drive::{self as drive, Demand, device, feedforward};
 use servobench_fieldbus::bus::{self, BusFault, BusFaultKind};
 use servobench_fieldbus::link::{self, Mailbox};
+use servobench_fieldbus::task::{self, TaskFault, TaskFaultKind};
 use servobench_motion::Limits;
 use servobench_motion::interpolate::Mode;
 use servobench_scenario::{self as scenario, Bus, DriveInterpolation, Feedback, Scenario};
@@ -24,8 +25,6 @@ use servobench_trace::Recorder;
 
 /// Cycles that the bus lets the drive miss before it gives up.
 const BRIDGED: u32 = 2;
-/// Width of the position that the drive sends (6064h).
-const DRIVE_COUNTER: u32 = 32;
 /// How much faster than any move of the program an axis may become.
 const RESERVE: f64 = 2.0;
 
@@ -75,16 +74,14 @@ impl Network {
             let bound = "a whole number of periods of the position loop";
             return Err(ParamError { name: "bus.cycle", value: f64::from(bus.cycle) * tick, bound }.into());
         }
-        if bus.counter.bits != DRIVE_COUNTER {
-            let (name, value) = ("bus.counter.bits", f64::from(bus.counter.bits));
-            return Err(ParamError { name, value, bound: "32, the width of the drive's counter" }.into());
-        }
         let dynamics = scenario.plc.as_ref().map_or_else(|| dynamics(&program), dynamics_of_calls);
 
         let rated_effort = rated_effort(scenario);
         let counted = counted(scenario, loops)?;
         let units = units(&counted, scenario.axis.motion, bus.units, rated_effort)?;
+        let counter = if bus.counter.signed { Counter::signed } else { Counter::unsigned }(bus.counter.bits)?;
         let device = device_params(bus, loops, units.conversions, bus.cycle / drive_every.ticks(), &dynamics);
+        let device = device::Params { counter, ..device };
         let (device, rated_effort) = with_objects(&device, bus, &units, rated_effort)?;
         let increment = units.increment;
         let drive = (device, device::State::new(&device)?);
@@ -96,7 +93,7 @@ impl Network {
             bus_cycle: bus_every,
             motion_cycle,
             interpolation: fine::mode(bus.interpolation),
-            margin: 0,
+            margin: bus.margin,
             control: control(bus, &dynamics),
             sequencing: match bus.sequencing {
                 scenario::Sequencing::Strict => link::Sequencing::Strict,
@@ -112,7 +109,7 @@ impl Network {
                 axis_units: bus.units.axis,
                 velocity_factor: 1.0,
                 rated_effort,
-                counter: if bus.counter.signed { Counter::signed } else { Counter::unsigned }(bus.counter.bits)?,
+                counter,
             },
             velocity_from_differences: bus.velocity_from_differences,
             recovery: Limits {
@@ -152,8 +149,9 @@ impl Network {
             link: (link, link::State::default()),
             drive,
             bus: (bus::Params::new(bus_every, bus.delay, &[])?, bus::State::default()),
-            faults: bus.faults.iter().map(fault).collect(),
-            motion_every: bus.motion_every.into(),
+            faults: bus.faults.iter().filter_map(bus_fault).collect(),
+            turns: (task::Params::new(motion_cycle, &[]), task::State::default()),
+            task_faults: bus.faults.iter().filter_map(task_fault).collect(),
             drive_every,
             drive_turn: Countdown::default(),
             frame: None,
@@ -172,16 +170,40 @@ impl Network {
     }
 }
 
-fn fault(fault: &scenario::BusFault) -> BusFault {
+/// What goes wrong on the bus.
+fn bus_fault(fault: &scenario::BusFault) -> Option<BusFault> {
+    use scenario::BusFaultKind as Kind;
     let kind = match fault.kind {
-        scenario::BusFaultKind::Lost => BusFaultKind::Lost,
-        scenario::BusFaultKind::Late { by } => BusFaultKind::Late { by },
-        scenario::BusFaultKind::Jitter { by, seed } => BusFaultKind::Jitter { by, seed },
-        scenario::BusFaultKind::MasterStopped => BusFaultKind::MasterStopped,
-        scenario::BusFaultKind::DriveSilent => BusFaultKind::DriveSilent,
-        scenario::BusFaultKind::ExternalFault => BusFaultKind::ExternalFault,
+        Kind::Lost => BusFaultKind::Lost,
+        Kind::Late { by } => BusFaultKind::Late { by },
+        Kind::Jitter { by, seed } => BusFaultKind::Jitter { by, seed },
+        Kind::MasterStopped => BusFaultKind::MasterStopped,
+        Kind::DriveSilent => BusFaultKind::DriveSilent,
+        Kind::ExternalFault => BusFaultKind::ExternalFault,
+        Kind::TaskLate { .. } | Kind::TaskJitter { .. } | Kind::TaskLost | Kind::TaskTorn | Kind::TaskFast { .. } => {
+            return None;
+        }
     };
-    BusFault { kind, cycles: fault.cycles.clone() }
+    Some(BusFault { kind, cycles: fault.cycles.clone() })
+}
+
+/// What goes wrong with the motion task.
+fn task_fault(fault: &scenario::BusFault) -> Option<TaskFault> {
+    use scenario::BusFaultKind as Kind;
+    let kind = match fault.kind {
+        Kind::TaskLate { by } => TaskFaultKind::Late { by },
+        Kind::TaskJitter { by, seed } => TaskFaultKind::Jitter { by, seed },
+        Kind::TaskLost => TaskFaultKind::Lost,
+        Kind::TaskTorn => TaskFaultKind::Torn,
+        Kind::TaskFast { by } => TaskFaultKind::Short { by },
+        Kind::Lost
+        | Kind::Late { .. }
+        | Kind::Jitter { .. }
+        | Kind::MasterStopped
+        | Kind::DriveSilent
+        | Kind::ExternalFault => return None,
+    };
+    Some(TaskFault { kind, cycles: fault.cycles.clone() })
 }
 
 /// How long a set-point of `mode` waits for the feedforward (s): in the drive's position loop, which a velocity goes past.

@@ -7,16 +7,20 @@ use servobench_base::Setpoint;
 use servobench_motion::interpolate::{Interval, Mode, Sample};
 use std::collections::VecDeque;
 
+/// Cycles of the motion task for which the link goes on without a set-point.
+const PREDICTED: f64 = 2.0;
+/// For the rounding of differences of times (s).
+const ROUNDING: f64 = 5e-10;
+
 /// The set-points of the motion task and the way between them.
 #[derive(Debug, Clone)]
 pub(super) struct DelayedReference {
-    /// Time from one set-point to the next (s).
+    /// Time from one set-point to the next (s), when nothing goes wrong.
     period: f64,
     /// How much later the loops follow (s).
     delay: f64,
-    /// Set-points, the oldest first; its time is `first` (s).
-    kept: VecDeque<Setpoint>,
-    first: f64,
+    /// Set-points and their times (s), the oldest first.
+    kept: VecDeque<(f64, Setpoint)>,
     /// Between the first two of them.
     interval: Option<Interval>,
 }
@@ -27,15 +31,17 @@ impl DelayedReference {
         // One interval is read, those of the delay wait, and one is being filled.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few cycles")]
         let room = (delay / period) as usize + 4;
-        Self { period, delay, kept: VecDeque::with_capacity(room), first: 0.0, interval: None }
+        Self { period, delay, kept: VecDeque::with_capacity(room), interval: None }
     }
 
-    /// Takes the set-point of the time `t` (s), a period after the last one.
+    /// Takes the set-point of the time `t` (s), later than the last one. A motion task that was away for longer than the link
+    /// goes on without it begins anew.
     pub(super) fn push(&mut self, t: f64, setpoint: Setpoint) {
-        if self.kept.is_empty() {
-            self.first = t;
+        let most = (PREDICTED + 1.0) * self.period + ROUNDING;
+        if self.kept.back().is_some_and(|(last, _)| t - last > most) {
+            self.restart();
         }
-        self.kept.push_back(setpoint);
+        self.kept.push_back((t, setpoint));
     }
 
     /// Forgets what was asked: nothing is followed until there are set-points again.
@@ -44,24 +50,29 @@ impl DelayedReference {
         self.interval = None;
     }
 
-    /// What is followed at `t` (s), which does not go back; `None` before the first set-point has arrived.
+    /// What is followed at `t` (s), which does not go back; `None` before the first set-point has arrived, and when none has
+    /// come for so long that the link has stopped the axis. Set-points that are late are predicted as the link does it.
     pub(super) fn at(&mut self, t: f64) -> Option<Setpoint> {
         let wanted = t - self.delay;
-        // Half a nanosecond for the rounding of the difference.
-        while self.kept.len() > 2 && wanted - self.first >= self.period - 5e-10 {
+        while self.kept.len() > 2 && self.kept.get(1).is_some_and(|(end, _)| wanted - end >= -ROUNDING) {
             self.kept.pop_front();
-            self.first += self.period;
             self.interval = None;
         }
-        let (from, to) = (self.kept.front()?, self.kept.get(1)?);
-        if wanted < self.first - 5e-10 {
+        let ((begin, from), (end, to)) = (self.kept.front()?, self.kept.get(1)?);
+        if wanted < begin - ROUNDING {
             return None;
         }
+        let beyond = wanted - end;
+        if beyond > ROUNDING {
+            let parabola = Setpoint { x: to.x, v: to.v, a: to.a, ..Setpoint::default() };
+            return (beyond <= PREDICTED * self.period).then(|| parabola.after(beyond));
+        }
+        let length = end - begin;
         let interval = match &self.interval {
             Some(interval) => interval,
-            None => self.interval.insert(between(self.period, from, to)?),
+            None => self.interval.insert(between(length, from, to)?),
         };
-        let fraction = ((wanted - self.first) / self.period).clamp(0.0, 1.0);
+        let fraction = ((wanted - begin) / length).clamp(0.0, 1.0);
         interval.at(fraction).ok().map(|command| command.setpoint)
     }
 }
@@ -94,5 +105,26 @@ mod tests {
             }
             assert!(reference.kept.capacity() == reference.kept.capacity().min(8), "does not grow");
         }
+    }
+
+    /// Oracle: a constant acceleration, which a parabola predicts.
+    #[test]
+    fn what_is_late_is_predicted_and_what_stays_away_is_not_followed() {
+        let at = |t: f64| Setpoint { x: t * t, v: 2.0 * t, a: 2.0, ..Setpoint::default() };
+        let (period, delay) = (4e-3, 4e-3);
+        let mut reference = DelayedReference::new(period, delay);
+        for k in 0..4 {
+            reference.push(f64::from(k) * period, at(f64::from(k) * period));
+        }
+        // The last one is that of 12 ms, followed until 16 ms.
+        for (t, is_followed) in [(15e-3, true), (18e-3, true), (24e-3, true), (24.1e-3, false)] {
+            let found = reference.at(t);
+            assert_eq!(found.is_some(), is_followed, "{t}");
+            assert!(found.is_none_or(|found| (found.x - at(t - delay).x).abs() < 1e-15), "{t}: {found:?}");
+        }
+        reference.push(28e-3, at(28e-3));
+        assert_eq!(reference.at(28e-3), None);
+        reference.push(32e-3, at(32e-3));
+        assert!(reference.at(34e-3).is_some_and(|found| (found.x - at(30e-3).x).abs() < 1e-15));
     }
 }

@@ -1,0 +1,137 @@
+//! When a motion task runs, and what goes wrong with it.
+//!
+//! Cycle n is due at `due(n) = due(n−1) + cycle − short(n−1)`, `due(0) = 0`, and runs at `due(n) + late(n)`, not before cycle
+//! n − 1. A task that was held up makes the cycles that it owes in a burst.
+//!
+//! Everything is decided by the number of the cycle, so a run is the same every time.
+//!
+//! ```
+//! use servobench_base::{Rate, Tick};
+//! use servobench_fieldbus::task::{self, Params, State, TaskFault, TaskFaultKind};
+//!
+//! let base = Rate::from_hertz(16e3)?;
+//! let faults = [TaskFault { kind: TaskFaultKind::Late { by: 100 }, cycles: 1..2 }];
+//! let params = Params::new(base.divider(Rate::from_hertz(250.0)?)?, &faults);
+//! let mut state = State::default();
+//! let mut ran = Vec::new();
+//! for tick in 0..256 {
+//!     while let Some(cycle) = task::step(&params, &mut state, Tick(tick)) {
+//!         ran.push((tick, cycle.due.0));
+//!     }
+//! }
+//! // The second cycle, 100 ticks late, holds the third one up.
+//! assert_eq!(ran, [(0, 0), (164, 64), (164, 128), (192, 192)]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+use crate::bus::below;
+use core::ops::Range;
+use servobench_base::{Divider, Tick};
+
+/// Something that goes wrong in some cycles of the motion task.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TaskFault {
+    /// What.
+    pub kind: TaskFaultKind,
+    /// In which cycles, counted from 0.
+    pub cycles: Range<u64>,
+}
+
+/// What goes wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum TaskFaultKind {
+    /// The cycle runs late.
+    Late {
+        /// By how much (base ticks).
+        by: u32,
+    },
+    /// Each cycle runs late, by a random time.
+    Jitter {
+        /// By how much at most (base ticks).
+        by: u32,
+        /// Seed of the random numbers.
+        seed: u32,
+    },
+    /// The command of the cycle is lost: nobody reads it.
+    Lost,
+    /// The clock of the task runs fast: the cycle is shorter, down to a base tick.
+    Short {
+        /// By how much (base ticks).
+        by: u32,
+    },
+    /// The link reads while the command is being written.
+    Torn,
+}
+
+/// A motion task, constant during a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Params<'a> {
+    cycle: u64,
+    faults: &'a [TaskFault],
+}
+
+impl<'a> Params<'a> {
+    /// A task that runs every `cycle`.
+    #[must_use]
+    pub const fn new(cycle: Divider, faults: &'a [TaskFault]) -> Self {
+        Self { cycle: cycle.ticks() as u64, faults }
+    }
+
+    /// The same task, with which other things go wrong.
+    #[must_use]
+    pub const fn with_faults<'b>(&self, faults: &'b [TaskFault]) -> Params<'b> {
+        Params { cycle: self.cycle, faults }
+    }
+
+    fn faults_of(&self, cycle: u64) -> impl Iterator<Item = TaskFaultKind> + '_ {
+        self.faults.iter().filter(move |fault| fault.cycles.contains(&cycle)).map(|fault| fault.kind)
+    }
+
+    fn lateness_of(&self, cycle: u64) -> u64 {
+        let late = self.faults_of(cycle).map(|kind| match kind {
+            TaskFaultKind::Late { by } => u64::from(by),
+            TaskFaultKind::Jitter { by, seed } => below(u64::from(by) + 1, seed, cycle),
+            TaskFaultKind::Lost | TaskFaultKind::Short { .. } | TaskFaultKind::Torn => 0,
+        });
+        late.sum()
+    }
+
+    fn length_of(&self, cycle: u64) -> u64 {
+        let short = self.faults_of(cycle).map(|kind| match kind {
+            TaskFaultKind::Short { by } => u64::from(by),
+            _ => 0,
+        });
+        self.cycle.saturating_sub(short.sum()).max(1)
+    }
+}
+
+/// Which cycle is next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct State {
+    number: u64,
+    due: u64,
+}
+
+/// A cycle that runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Cycle {
+    /// Its number, from 0.
+    pub number: u64,
+    /// When it was due, by the task's own clock. A task does not know that it is late: it computes for this tick.
+    pub due: Tick,
+    /// Whether its command is lost.
+    pub is_lost: bool,
+    /// Whether the link finds its command torn.
+    pub is_torn: bool,
+}
+
+/// The next cycle that has run by `tick`, if any; to be asked until there is none.
+#[inline]
+pub fn step(params: &Params<'_>, state: &mut State, tick: Tick) -> Option<Cycle> {
+    let State { number, due } = *state;
+    if tick.0 < due || tick.0 < due + params.lateness_of(number) {
+        return None;
+    }
+    *state = State { number: number + 1, due: due + params.length_of(number) };
+    let has = |kind| params.faults_of(number).any(|found| found == kind);
+    Some(Cycle { number, due: Tick(due), is_lost: has(TaskFaultKind::Lost), is_torn: has(TaskFaultKind::Torn) })
+}

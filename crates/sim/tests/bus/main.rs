@@ -1,0 +1,6 @@
+//! A drive over a fieldbus on which things go wrong, and counters that wrap, end to end.
+mod bench;
+mod counters;
+mod faults;
+mod modes;
+mod task;

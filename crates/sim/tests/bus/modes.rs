@@ -1,0 +1,55 @@
+//! The position loop in the master, and efforts over the bus.
+use crate::bench::{BUS, MOVE, SCREW, last, peak, run, states, values, when};
+
+/// The master closes the position loop every millisecond, two cycles behind: the loop gain times the dead time is a fifth.
+#[test]
+fn the_master_closes_the_position_loop() {
+    let recording = run(&format!("{SCREW}{BUS}mode = \"csv\"\nposition_gain = \"60 1/s\"\n{MOVE}"));
+    assert_eq!(states(&recording, "drive", "mode").last(), Some(&"csv"));
+    let error = peak(&recording, "following_error.load");
+    println!("{error:.3e} m with feedforward, {:.3e} m at the end", last(&recording, "load.position") - 0.25);
+    assert!((last(&recording, "load.position") - 0.25).abs() < 10e-6, "{}", last(&recording, "load.position"));
+    // What feedforward spares is v/K_v = 0.5/60 m. The rest, which both have, is that the actual position is as old as the bus
+    // makes it, so that the axis is ahead by v times that.
+    let bare = BUS.replace("velocity_offset = true\n", "");
+    let bare = run(&format!("{SCREW}{bare}mode = \"csv\"\nposition_gain = \"60 1/s\"\n{MOVE}"));
+    let lag = peak(&bare, "following_error.load");
+    println!("{lag:.3e} m without");
+    assert!(((error + lag) / (0.5 / 60.0) - 1.0).abs() < 0.01, "{lag}");
+    assert!(error < 4.0 * 1e-3 * 0.5, "four cycles: {error}");
+}
+
+/// Oracle: the call itself.
+#[test]
+fn a_torque_over_the_bus_is_the_motor_s() {
+    let text = SCREW.replace("base_rate = \"16 kHz\"\n", "base_rate = \"16 kHz\"\nduration = \"1 s\"\n");
+    let recording = run(&format!(
+        r#"{text}{BUS}
+[[call]]
+block = "MC_Power"
+name = "power"
+[[call]]
+block = "MC_TorqueControl"
+name = "push"
+start = "power.Status"
+torque = "0.5 Nm"
+torque_ramp = "10 Nm/s"
+[[call]]
+block = "MC_Halt"
+name = "halt"
+start = {{ after = "push.InTorque", delay = "50 ms" }}
+"#
+    ));
+    let modes = states(&recording, "drive", "mode");
+    println!("{modes:?} {:?}", states(&recording, "axis", "state"));
+    assert!(modes.contains(&"cst") && modes.last() == Some(&"csp"), "{modes:?}");
+    let reached = when(&recording, "push", "InTorque", "TRUE");
+    let begun = when(&recording, "push", "Active", "TRUE");
+    assert!((reached - begun - 0.05).abs() < 5e-3, "0.5 N·m at 10 N·m/s: {} s", reached - begun);
+    let torque = values(&recording, "effort.motor");
+    let held = torque[recording.index_at(reached + 0.03)];
+    // A thousandth of 6.09 N·m, and the ripple of the current loop.
+    assert!((held - 0.5).abs() < 0.01, "{held}");
+    assert!(when(&recording, "halt", "Done", "TRUE") > reached);
+    assert!(last(&recording, "motor.velocity").abs() < 1e-3);
+}
