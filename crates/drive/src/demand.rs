@@ -27,11 +27,35 @@ pub enum Demand {
     Effort(f64),
 }
 
+/// What is fed forward beside a set-point.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Offsets {
+    /// To the velocity loop (m/s or rad/s).
+    pub velocity: f64,
+    /// To the current loop, in the motor's coordinate (N·m or N).
+    pub effort: f64,
+}
+
+impl Offsets {
+    pub(crate) const fn scaled(self, by: f64) -> Self {
+        Self { velocity: self.velocity * by, effort: self.effort * by }
+    }
+}
+
 impl Demand {
     /// The position loop follows `setpoint`, without offsets.
     #[must_use]
     pub const fn position(setpoint: Setpoint) -> Self {
         Self::Position { setpoint, velocity_offset: 0.0, effort_offset: 0.0 }
+    }
+
+    /// What it feeds forward; an effort that is demanded itself is none.
+    pub(crate) const fn offsets(&self) -> Offsets {
+        match *self {
+            Self::Position { velocity_offset: velocity, effort_offset: effort, .. } => Offsets { velocity, effort },
+            Self::Velocity { effort_offset: effort, .. } => Offsets { velocity: 0.0, effort },
+            Self::Effort(_) | Self::Off => Offsets { velocity: 0.0, effort: 0.0 },
+        }
     }
 
     /// Cuts the efforts to the limits of both directions; whether there was anything to cut.

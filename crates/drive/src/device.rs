@@ -327,7 +327,9 @@ impl State {
         }
         let running = self.running.get_or_insert_with(|| Running::begin(p, mode, &self.now));
         let mut answer = running.step(p, &self.now, beat, &mut self.buffer, &mut self.shift);
-        if !running.looks_for_ends() {
+        if running.looks_for_ends() {
+            self.guard = guard::State::default();
+        } else {
             self.guard.step(p, &self.now, &mut answer.demand);
         }
         if running.follows_master() {
@@ -344,7 +346,6 @@ impl State {
         if !is_halt {
             self.running = None;
         }
-        self.guard = guard::State::default();
         let deceleration = match how {
             Deceleration::SlowDownRamp => Some(self.now.targets.profile_deceleration),
             Deceleration::QuickStopRamp => Some(p.profile.quick_stop_deceleration),
@@ -353,9 +354,12 @@ impl State {
         let closes_position =
             deceleration.is_some() && !matches!(self.last, Demand::Velocity { .. } | Demand::Effort(_));
         if self.stop.is_none_or(|(as_before, _)| as_before != how) {
-            self.stop = Some((how, Ramp::begin(&self.now.demanded, deceleration, closes_position)));
+            let ramp = Ramp::begin(&self.now.demanded, self.last.offsets(), deceleration, closes_position);
+            self.stop = Some((how, ramp));
         }
-        let demand = self.stop.as_mut().map_or(Demand::Off, |(_, ramp)| ramp.step(p.period));
+        let mut demand = self.stop.as_mut().map_or(Demand::Off, |(_, ramp)| ramp.step(p.period));
+        // At an end of the axis no ramp is gentler than the one that keeps it from going on.
+        self.guard.step(p, &self.now, &mut demand);
         let [bit_12, bit_13] = self.running.as_mut().map_or([false; 2], |running| running.halted(p, &self.now));
         Answer { demand, target_reached: standstill, bit_12, bit_13 }
     }

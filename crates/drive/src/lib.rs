@@ -14,6 +14,6 @@ pub mod modes;
 mod params;
 pub mod velocity;
 
-pub use demand::Demand;
+pub use demand::{Demand, Offsets};
 pub use firmware::{Command, Feedback, Held, Sensors, State, step};
 pub use params::{Params, Stage};

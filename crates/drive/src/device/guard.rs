@@ -46,7 +46,7 @@ impl State {
             self.held = end.map(|end| {
                 let closes_position = matches!(demand, Demand::Position { .. });
                 let deceleration = Some(p.profile.quick_stop_deceleration);
-                Held { end, ramp: Ramp::begin(&now.demanded, deceleration, closes_position) }
+                Held { end, ramp: Ramp::begin(&now.demanded, demand.offsets(), deceleration, closes_position) }
             });
         }
         if let Some(held) = &mut self.held {

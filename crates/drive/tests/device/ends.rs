@@ -1,6 +1,6 @@
 //! Limit switches and software limits.
 use crate::axis::{Axis, setpoint};
-use servobench_cia402::{Mode, StatusBit};
+use servobench_cia402::{ControlBit, Mode, StatusBit};
 use servobench_drive::Demand;
 use servobench_drive::device::{Limits, Params};
 
@@ -96,4 +96,23 @@ fn a_velocity_that_leads_beyond_a_software_limit_is_braked_there() {
     // Seen at the first step behind the limit, 25 µm later at most.
     assert!((5.5e-3..5.53e-3).contains(&axis.position), "{}", axis.position);
     assert!(setpoint(&axis.last).v == 0.0);
+}
+
+/// A master that hears of the switch halts the axis by the deceleration of the profile, which is gentler than the quick stop.
+#[test]
+fn a_halt_at_a_limit_switch_does_not_make_the_way_longer() {
+    let mut axis = Axis::enabled(&Params::default(), Mode::CyclicSynchronousPosition);
+    let mut at_switch = 0.0;
+    for n in 1..=22 {
+        if n == 21 {
+            (at_switch, axis.measured.positive_limit) = (axis.position, true);
+        }
+        axis.frame.target_position = 200 * n;
+        axis.cycle();
+    }
+    axis.frame.controlword = axis.frame.controlword.with(ControlBit::Halt, true);
+    axis.cycles(40);
+    let way = axis.position - at_switch;
+    assert!((way - 2e-3).abs() < 1e-12 && axis.velocity == 0.0, "{way}");
+    assert!(axis.has(StatusBit::InternalLimitActive));
 }

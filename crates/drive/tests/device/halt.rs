@@ -1,6 +1,7 @@
 //! Bits 12 and 13 of the statusword while the axis is halted: what they mean depends on the mode, not on the halt.
 use crate::axis::Axis;
-use servobench_cia402::{ControlBit, HaltOption, Mode, StatusBit};
+use servobench_cia402::{Command, ControlBit, HaltOption, Mode, StatusBit};
+use servobench_drive::Demand;
 use servobench_drive::device::{Params, Window};
 use servobench_drive::modes::homing::Method;
 
@@ -111,5 +112,27 @@ fn a_halted_drive_does_not_follow_the_master() {
         for is_halted in [false, true, true, false] {
             assert_eq!(axis.with(ControlBit::Halt, is_halted), [!is_halted, false], "{mode:?}");
         }
+    }
+}
+
+/// What the master feeds forward is faded with the velocity of the ramp. Oracle: by hand, 0.2 m/s by 10 m/s² of the quick stop.
+#[test]
+fn what_was_fed_forward_goes_with_the_velocity() {
+    let mut axis = Axis::enabled(&Params::default(), Mode::CyclicSynchronousPosition);
+    for n in 1..=20 {
+        axis.frame.target_position = 200 * n;
+        (axis.frame.velocity_offset, axis.frame.torque_offset) = (200_000, 100);
+        axis.cycle();
+    }
+    axis.command(Command::QuickStop);
+    let outputs: Vec<_> = (0..30).flat_map(|_| axis.cycle()).collect();
+    for (k, outputs) in outputs.iter().enumerate() {
+        let Demand::Position { setpoint, velocity_offset, effort_offset } = outputs.demand else {
+            assert!(k > 80, "step {k}: {:?}", outputs.demand);
+            continue;
+        };
+        let left = (0.2 - 10.0 * k as f64 * axis.params.period).max(0.0);
+        assert!((setpoint.v - left).abs() < 1e-12 && (velocity_offset - left).abs() < 1e-12, "step {k}: {setpoint:?}");
+        assert!((effort_offset - 0.1 * left / 0.2).abs() < 1e-12, "step {k}: {effort_offset}");
     }
 }
