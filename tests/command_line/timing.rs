@@ -106,3 +106,20 @@ fn what_cannot_be_drawn_is_told_with_file_value_and_way_out() {
     assert_eq!(code(&output), 3);
     assert!(said(&output).contains("cannot write") && said(&output).contains("part.svg"), "{}", said(&output));
 }
+
+/// Nothing is lost: a recording is not drawn over itself, a scenario not by its own data sheet.
+#[test]
+fn what_is_read_is_not_written_over() {
+    let (work, recording) = recorded();
+    let before = fs::read(&recording).unwrap();
+    let output = servobench(&["timing", recording.to_str().unwrap(), "-o", recording.to_str().unwrap()]);
+    assert_eq!(code(&output), 2, "{}", said(&output));
+    assert!(said(&output).contains("name another file"), "{}", said(&output));
+    assert_eq!(fs::read(&recording).unwrap(), before);
+
+    let scenario = work.path().join("slide.toml");
+    let before = fs::read(&scenario).unwrap();
+    let output = servobench(&["objects", scenario.to_str().unwrap(), "-o", scenario.to_str().unwrap()]);
+    assert_eq!(code(&output), 2, "{}", said(&output));
+    assert_eq!(fs::read(&scenario).unwrap(), before);
+}

@@ -29,6 +29,18 @@ pub(crate) fn write_file(path: &Path, text: &str) -> Result<(), CliError> {
         .map_err(|error| CliError::Run(format!("cannot write `{}`: {error}", path.display())))
 }
 
+/// Refuses to write over `input`, which the output is made of.
+pub(crate) fn spares(input: &Path, output: Option<&Path>) -> Result<(), CliError> {
+    let place = |path: &Path| path.canonicalize().ok();
+    match output {
+        Some(output) if place(output).is_some() && place(output) == place(input) => Err(CliError::Input(format!(
+            "-o: `{}` is what is read here and would be lost; name another file",
+            output.display()
+        ))),
+        _ => Ok(()),
+    }
+}
+
 /// Writes the whole file or nothing; without a path to standard output.
 pub(crate) fn print_or_write(path: Option<&Path>, text: &str) -> Result<(), CliError> {
     path.map_or_else(|| print(text), |path| write_file(path, text))

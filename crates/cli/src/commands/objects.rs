@@ -3,7 +3,7 @@ use crate::args::{ObjectsArgs, ObjectsFormat};
 use crate::console::style;
 use crate::diagnostics::mistakes;
 use crate::exit::{CliError, Exit};
-use crate::output::{print_or_write, write_time};
+use crate::output::{print_or_write, spares, write_time};
 use crate::sources;
 use servobench_cia402::PowerState;
 use servobench_cia402::objects::{Dictionary, Eds, FileInfo, Json};
@@ -16,6 +16,9 @@ const DATA_SHEET: &str = "drive.eds";
 
 /// Shows the dictionary with the values after power-on, or with those that a scenario writes.
 pub(crate) fn objects(args: &ObjectsArgs) -> Result<Exit, CliError> {
+    if let Some(scenario) = &args.scenario {
+        spares(scenario, args.output.as_deref())?;
+    }
     let configured = args.scenario.as_deref().map(as_written).transpose()?;
     let values = configured.clone().unwrap_or_default();
     let text = match args.format {

@@ -1,12 +1,13 @@
 //! `servobench timing`: the timing diagram of a stored recording.
 use crate::args::TimingArgs;
 use crate::exit::{CliError, Exit};
-use crate::output::print_or_write;
+use crate::output::{print_or_write, spares};
 use servobench_report::{ReportError, TimingOptions, timing_diagram};
 use servobench_trace::Recording;
 
 /// Draws the diagram.
 pub(crate) fn timing(args: &TimingArgs) -> Result<Exit, CliError> {
+    spares(&args.recording, args.output.as_deref())?;
     let recording = Recording::read_parquet(&args.recording).map_err(|error| CliError::Input(error.to_string()))?;
     let default = TimingOptions::default();
     let options = TimingOptions {
