@@ -1,0 +1,49 @@
+//! What is coupled.
+
+/// An input over a step: its value at the start and its first two derivatives to the time there.
+pub type Input = [f64; 3];
+
+/// How far a step has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// To its end.
+    Done,
+    /// To this time (s) before its end; the rest is to be asked for.
+    Until(f64),
+    /// To this time (s), where the block wants the simulation to end.
+    Terminated(f64),
+}
+
+/// A part of a simulation that is stepped for itself: an FMU, or the axis.
+pub trait Block {
+    /// Why it could not go on.
+    type Error;
+
+    /// Whether its state can be saved and restored.
+    fn saves_state(&self) -> bool;
+
+    /// Goes from `time` to `time + length` (s).
+    ///
+    /// # Errors
+    /// The block's own; the simulation ends.
+    fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<Step, Self::Error>;
+
+    /// Reads all outputs. `inputs`, if given, are the present ones, for outputs that follow them without a step (direct
+    /// feedthrough).
+    ///
+    /// # Errors
+    /// The block's own.
+    fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), Self::Error>;
+
+    /// Saves its state, in place of the one saved before.
+    ///
+    /// # Errors
+    /// The block's own.
+    fn save(&mut self) -> Result<(), Self::Error>;
+
+    /// Goes back to the saved state; it can do so again.
+    ///
+    /// # Errors
+    /// The block's own.
+    fn restore(&mut self) -> Result<(), Self::Error>;
+}

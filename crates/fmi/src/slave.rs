@@ -1,0 +1,172 @@
+//! A co-simulation FMU that is initialised, whichever version it is of, and whether it runs here or in a process of its own.
+use thiserror::Error;
+
+/// A scalar that is exchanged: a variable, or an element of an array.
+///
+/// Whatever its type is, it is exchanged as a number: integers and enumerations by value, FALSE and TRUE as 0 and 1. A number
+/// that its type cannot hold is [`SlaveError::Value`].
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct Port {
+    /// Name in the model description.
+    pub variable: String,
+    /// Position in the array in row-major order, from 0; 0 for a scalar.
+    pub element: usize,
+}
+
+/// How far a step has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Progress {
+    /// To its end.
+    Done,
+    /// To this time (s) before its end: an event was met, or the FMU returned early. The rest is to be asked for.
+    Until(f64),
+    /// To this time (s), where the FMU wants the simulation to end.
+    Terminated(f64),
+}
+
+/// What an FMU can do beyond stepping.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Capabilities {
+    /// Its state can be saved and restored (`canGetAndSetFMUState`).
+    pub saves_state: bool,
+    /// It takes derivatives of its inputs (FMI 2.0: `canInterpolateInputs`).
+    pub interpolates_inputs: bool,
+    /// It takes communication steps of any length (`canHandleVariableCommunicationStepSize`).
+    pub variable_step: bool,
+}
+
+/// How much a line of an FMU's log matters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// The status OK: it informs.
+    Info,
+    /// The status warning.
+    Warning,
+    /// The statuses discard, error and fatal.
+    Error,
+}
+
+/// What an FMU said.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LogLine {
+    /// How much it matters.
+    pub severity: Severity,
+    /// Category as the FMU names it.
+    pub category: String,
+    /// The text.
+    pub message: String,
+}
+
+/// An initialised FMU that is stepped. Its inputs and outputs are those that it was wired with.
+///
+/// After an error it can only be dropped, [`SlaveError::Discarded`] apart.
+pub trait Slave: Send {
+    /// What it can do.
+    fn capabilities(&self) -> Capabilities;
+
+    /// Goes from `time` to `time + length` (s). Each input is its value at `time` with its first and second derivative to the
+    /// time; an FMU that takes none gets the mean over the step, u + u'·H/2 + u''·H²/6.
+    ///
+    /// # Errors
+    /// [`SlaveError`]
+    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError>;
+
+    /// Reads all outputs. With `inputs`, which an FMU between two steps may answer without one (direct feedthrough), these are
+    /// set before.
+    ///
+    /// # Errors
+    /// [`SlaveError`]
+    fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError>;
+
+    /// Saves its state, in place of the one saved before.
+    ///
+    /// # Errors
+    /// [`SlaveError`], also if it cannot.
+    fn save(&mut self) -> Result<(), SlaveError>;
+
+    /// Goes back to the state that was saved; it can do so again.
+    ///
+    /// # Errors
+    /// [`SlaveError`], also if there is none.
+    fn restore(&mut self) -> Result<(), SlaveError>;
+
+    /// What it has said since the last time.
+    fn take_log(&mut self) -> Vec<LogLine>;
+}
+
+/// Why an FMU did not do what it was asked for.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum SlaveError {
+    /// It returned the status discard: the step was not taken, its state is that before it.
+    #[error("the FMU discarded {call} at {time} s")]
+    Discarded {
+        /// Function of the standard.
+        call: &'static str,
+        /// When (s).
+        time: f64,
+    },
+    /// It returned the status error or fatal.
+    #[error("the FMU failed in {call} at {time} s ({status}){}", said(.message))]
+    Failed {
+        /// Function of the standard.
+        call: &'static str,
+        /// When (s).
+        time: f64,
+        /// Status as the standard names it.
+        status: &'static str,
+        /// The last that it logged; empty if nothing.
+        message: String,
+    },
+    /// An output is not a finite number.
+    #[error("the FMU's output `{variable}` is {value} at {time} s")]
+    NotFinite {
+        /// Name of the variable.
+        variable: String,
+        /// What it is.
+        value: f64,
+        /// When (s).
+        time: f64,
+    },
+    /// A variable cannot take the number.
+    #[error("`{variable}` of the FMU takes {bound}, got {value} at {time} s")]
+    Value {
+        /// Name of the variable.
+        variable: String,
+        /// What it takes.
+        bound: &'static str,
+        /// What it should have taken.
+        value: f64,
+        /// When (s).
+        time: f64,
+    },
+    /// It does not have what it was asked for.
+    #[error("the FMU cannot {what}: its model description does not say `{capability}`")]
+    Unable {
+        /// What it was asked for.
+        what: &'static str,
+        /// Attribute that it lacks.
+        capability: &'static str,
+    },
+    /// Its process ended.
+    #[error("the FMU's process ended at {time} s: {how}")]
+    Crashed {
+        /// When (s).
+        time: f64,
+        /// Signal or exit code, and what it left on standard error.
+        how: String,
+    },
+    /// It did not come back in time.
+    #[error("the FMU did not come back from {call} at {time} s within {patience} s of real time; it was ended")]
+    Hung {
+        /// Function of the standard.
+        call: &'static str,
+        /// When (s).
+        time: f64,
+        /// How long it was waited for (s).
+        patience: f64,
+    },
+}
+
+fn said(message: &str) -> String {
+    if message.is_empty() { String::new() } else { format!(": {message}") }
+}
