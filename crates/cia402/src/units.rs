@@ -40,6 +40,6 @@ mod scaling;
 
 pub use carry::Carry;
 pub use error::{Object, UnitError};
-pub use factor_group::{AxisUnit, FactorGroup, POLARITY_POSITION, POLARITY_VELOCITY};
+pub use factor_group::{AxisUnit, FactorGroup, POLARITY_BITS, POLARITY_POSITION, POLARITY_TORQUE, POLARITY_VELOCITY};
 pub use ratio::Ratio;
 pub use scaling::Scaling;

@@ -90,6 +90,25 @@ fn an_inverted_axis_has_its_limits_the_other_way_round() {
     }
 }
 
+/// 60E0h limits what the master counts as positive torque.
+#[test]
+fn an_inverted_torque_has_its_limits_the_other_way_round() {
+    let mut objects = screw();
+    write(&mut objects, 0x607E, 0, 0xE0_u8);
+    write(&mut objects, 0x60E0, 0, 250_u16);
+    let settings = Params::default().with_objects(&objects, micrometre()).unwrap();
+    assert_near(settings.limits.effort[0], 7.2);
+    assert_near(settings.limits.effort[1], 0.6);
+    assert_near(settings.units.rated_effort(), 2.4);
+    let mut stored = screw();
+    write(&mut stored, 0x607E, 0, 0xE0_u8);
+    settings.store_in(&mut stored).unwrap();
+    for (index, thousandths) in [(0x60E0, 250_u16), (0x60E1, 3000)] {
+        assert_eq!(stored.read(Object { index, subindex: 0 }), Ok(thousandths.into()));
+    }
+    assert_eq!(settings.with_objects(&stored, micrometre()).unwrap(), settings);
+}
+
 #[test]
 fn what_is_stored_is_read_again() {
     let default = Params::default();

@@ -3,7 +3,7 @@ use super::entry::{Access, Admitted, Contents, Entry, Mapping, ObjectDescription
 use super::value::DataType::{self, Integer8, Integer16, Integer32, Unsigned8, Unsigned16, Unsigned32, Unsigned64};
 use crate::Mode;
 use crate::modulo::POSITIONING_OPTION_BITS;
-use crate::units::{POLARITY_POSITION, POLARITY_VELOCITY};
+use crate::units::POLARITY_BITS;
 
 /// User-defined units of the factor group.
 const POSITION: &str = "position unit";
@@ -134,11 +134,7 @@ pub static OBJECTS: [ObjectDescription; 80] = [
         "Software position limit",
         &[position_limit(i32::MIN).named("Min position limit"), position_limit(i32::MAX).named("Max position limit")],
     ),
-    variable(
-        0x607E,
-        "Polarity",
-        parameter(Unsigned8, 0).bits((POLARITY_POSITION | POLARITY_VELOCITY) as u32).disabled_only(),
-    ),
+    variable(0x607E, "Polarity", parameter(Unsigned8, 0).bits(POLARITY_BITS as u32).disabled_only()),
     variable(
         0x607F,
         "Max profile velocity",

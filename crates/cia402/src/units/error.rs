@@ -38,7 +38,7 @@ pub enum UnitError {
         value: i64,
     },
     /// A polarity with a bit that has no meaning.
-    #[error("polarity (607Eh:00h) must have no bits but 7 and 6, got {polarity:#04x}: clear bits {reserved:#04x}")]
+    #[error("polarity (607Eh:00h) must have no bits but 7, 6 and 5, got {polarity:#04x}: clear bits {reserved:#04x}")]
     ReservedPolarity {
         /// The byte as written.
         polarity: u8,

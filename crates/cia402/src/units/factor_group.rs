@@ -5,6 +5,11 @@ use super::{Object, Ratio, Scaling, UnitError};
 pub const POLARITY_POSITION: u8 = 1 << 7;
 /// Bit 6 of the polarity (607Eh): velocities are multiplied by −1.
 pub const POLARITY_VELOCITY: u8 = 1 << 6;
+/// Bit 5 of the polarity (607Eh): torques are multiplied by −1. The standard leaves this bit reserved; Mitsubishi's MR-J5-G gives
+/// it this meaning, for 6071h, 60B2h, 6074h and 6077h.
+pub const POLARITY_TORQUE: u8 = 1 << 5;
+/// The bits that have a meaning.
+pub const POLARITY_BITS: u8 = POLARITY_POSITION | POLARITY_VELOCITY | POLARITY_TORQUE;
 
 /// The objects as they are written, `[sub-index 01h, sub-index 02h]`; all ones without polarity by default.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -18,7 +23,7 @@ pub struct FactorGroup {
     /// 6096h: numerator and denominator that make position units per second the user-defined velocity unit, `[60, 1]`
     /// for a minute.
     pub velocity_factor: [u32; 2],
-    /// 607Eh: [`POLARITY_POSITION`], [`POLARITY_VELOCITY`], both or 0.
+    /// 607Eh: any of [`POLARITY_POSITION`], [`POLARITY_VELOCITY`] and [`POLARITY_TORQUE`]; all three turn the axis round.
     pub polarity: u8,
 }
 
@@ -57,7 +62,7 @@ impl FactorGroup {
         let feed = fraction(0x6092, ["feed", "driving shaft revolutions"], self.feed_constant)?;
         let factor =
             fraction(0x6096, ["velocity factor numerator", "velocity factor denominator"], self.velocity_factor)?;
-        let reserved = self.polarity & !(POLARITY_POSITION | POLARITY_VELOCITY);
+        let reserved = self.polarity & !POLARITY_BITS;
         if reserved != 0 {
             return Err(UnitError::ReservedPolarity { polarity: self.polarity, reserved });
         }

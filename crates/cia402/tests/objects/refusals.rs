@@ -65,7 +65,7 @@ fn values_out_of_range() {
     assert_refused(refused(object(0x605D, 0), 0_i16), 0x0609_0032, message);
     let message = "`Modes of operation` (6060h:00h) must be one of [0, 1, 3, 4, 6, 7, 8, 9, 10], got 2";
     assert_refused(refused(object(0x6060, 0), 2_i8), 0x0609_0030, message);
-    let message = "`Polarity` (607Eh:00h) must have no bits but 0xc0, got 0x81: clear the others";
+    let message = "`Polarity` (607Eh:00h) must have no bits but 0xe0, got 0x81: clear the others";
     assert_refused(refused(object(0x607E, 0), 0x81_u8), 0x0609_0030, message);
     let refused = refused(object(0x6098, 0), 36_i8);
     assert_eq!(refused.abort_code().to_string(), "0609 0030h");

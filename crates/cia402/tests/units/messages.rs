@@ -35,7 +35,7 @@ fn zero_in_any_factor_is_refused_by_its_object() {
 fn factors_that_do_not_fit_are_refused() {
     assert_eq!(
         message(scaling(FactorGroup { polarity: 0xc1, ..FactorGroup::default() })),
-        "polarity (607Eh:00h) must have no bits but 7 and 6, got 0xc1: clear bits 0x01"
+        "polarity (607Eh:00h) must have no bits but 7, 6 and 5, got 0xc1: clear bits 0x01"
     );
     assert_eq!(
         message(Ratio::new(1, -2)),

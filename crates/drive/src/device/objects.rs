@@ -123,17 +123,19 @@ impl Params {
     /// [`ObjectsError`] says what the drive does not follow.
     pub fn with_objects(&self, objects: &Dictionary, unit: AxisUnit) -> Result<Self, ObjectsError> {
         let rated_effort = if shows(objects, RATED_TORQUE, self.rated_torque())? {
-            1000.0 * self.units.from_effort(1)
+            self.units.rated_effort()
         } else {
             f64::from(objects.get(p::MOTOR_RATED_TORQUE)) / 1000.0
         };
         let units = Units::new(&objects.factor_group(), unit, rated_effort)?;
         let cycle = cycle::Params { steps: self.steps_per_frame(objects)?, ..self.cycle };
         let mut settings = Self { cycle, power: objects.power_params(), units, ..*self };
+        settings.turn_limits(&units);
         for (quantity, setting) in &BINDINGS {
             let setting = setting(&mut settings);
             *setting = quantity.read(objects, &units, *setting)?;
         }
+        settings.turn_limits(&units);
         let max_effort = MAX_TORQUE.read(objects, &units, self.max_effort())?;
         settings.limits.effort = settings.limits.effort.map(|effort| effort.min(max_effort));
         settings.limits.position = self.software_limits(objects, &units)?;
@@ -156,6 +158,7 @@ impl Params {
     /// [`ObjectsError`] names the first object that is not preset; those before it are.
     pub fn store_in(&self, objects: &mut Dictionary) -> Result<(), ObjectsError> {
         let (mut settings, units) = (*self, &self.units);
+        settings.turn_limits(units);
         for (quantity, setting) in &BINDINGS {
             quantity.write(objects, units, *setting(&mut settings))?;
         }
@@ -188,14 +191,21 @@ impl Params {
         Ok(objects.preset(MIN_POSITION_LIMIT, min)?)
     }
 
+    /// Effort limits as the master counts efforts from as the loops do, or back.
+    fn turn_limits(&mut self, units: &Units) {
+        if units.turn_effort() {
+            self.limits.effort.reverse();
+        }
+    }
+
     const fn max_effort(&self) -> f64 {
         let [forward, backward] = self.limits.effort;
         forward.max(backward)
     }
 
-    /// 6076h (mN·m or mN): a thousand thousandths, times 1000.
+    /// 6076h (mN·m or mN).
     fn rated_torque(&self) -> f64 {
-        1e6 * self.units.from_effort(1)
+        1e3 * self.units.rated_effort()
     }
 
     /// How many steps lie between two frames (60C2h).
@@ -266,7 +276,7 @@ impl Scale {
                 let [increments, revolutions] = objects.factor_group().position_encoder_resolution.map(f64::from);
                 units.metres_or_radians(1) * (increments / revolutions) / 60.0
             }
-            Self::Effort => units.from_effort(1),
+            Self::Effort => units.rated_effort() / 1000.0,
             Self::Time => 1e-3,
         }
     }

@@ -1,12 +1,13 @@
 //! Where drive units end: the factor group as the drive uses it.
 //!
 //! The loops count from the encoder's zero in the encoder's direction; polarity (607Eh) and user-defined units are only in what
-//! goes over the bus. Velocities are in the user-defined velocity unit, accelerations in that unit per second, efforts in
+//! goes over the bus. An axis that is turned round has all three bits of the polarity: with those of position and velocity alone,
+//! the two that the standard has, a torque offset (60B2h) would act against the motion. Velocities are in the user-defined velocity unit, accelerations in that unit per second, efforts in
 //! thousandths of the rated one (6076h).
 use core::f64::consts::TAU;
 use servobench_base::{ParamError, positive};
 use servobench_cia402::units::{
-    AxisUnit, FactorGroup, POLARITY_POSITION, POLARITY_VELOCITY, Ratio, Scaling, UnitError,
+    AxisUnit, FactorGroup, POLARITY_POSITION, POLARITY_TORQUE, POLARITY_VELOCITY, Ratio, Scaling, UnitError,
 };
 
 /// The conversions between the bus and the loops.
@@ -19,7 +20,7 @@ pub struct Units {
     position: f64,
     /// m/s or rad/s per user-defined velocity unit, with the sign of the polarity.
     velocity: f64,
-    /// N·m or N per thousandth.
+    /// N·m or N per thousandth, with the sign of the polarity.
     effort: f64,
 }
 
@@ -41,14 +42,25 @@ impl Units {
             increment: scaling.metres_or_radians(1)?.abs(),
             position: sign(POLARITY_POSITION) * length,
             velocity: sign(POLARITY_VELOCITY) * length * (denominator / numerator),
-            effort: rated_effort / 1000.0,
+            effort: sign(POLARITY_TORQUE) * rated_effort / 1000.0,
         })
     }
 
     /// # Errors
     /// [`ParamError`] unless the rated effort is positive.
     pub fn check(&self) -> Result<(), ParamError> {
-        positive("rated_effort", 1000.0 * self.effort).map(|_| ())
+        positive("rated_effort", self.rated_effort()).map(|_| ())
+    }
+
+    /// Rated effort (6076h; N·m or N).
+    #[must_use]
+    pub const fn rated_effort(&self) -> f64 {
+        1000.0 * self.effort.abs()
+    }
+
+    /// Whether the master counts efforts the other way round than the loops.
+    pub(super) fn turn_effort(&self) -> bool {
+        self.effort < 0.0
     }
 
     /// Metres or radians at so many increments.

@@ -14,4 +14,5 @@ mod settings;
 #[path = "../../../motion/tests/shared/random.rs"]
 mod shared;
 mod supervision;
+mod turned;
 mod units;

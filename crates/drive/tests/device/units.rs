@@ -2,7 +2,7 @@
 use crate::axis::{Axis, setpoint};
 use servobench_cia402::Mode;
 use servobench_cia402::counter::Counter;
-use servobench_cia402::units::{AxisUnit, FactorGroup, POLARITY_POSITION, POLARITY_VELOCITY, Ratio};
+use servobench_cia402::units::{AxisUnit, FactorGroup, POLARITY_POSITION, POLARITY_TORQUE, POLARITY_VELOCITY, Ratio};
 use servobench_drive::Demand;
 use servobench_drive::device::{Params, Units};
 
@@ -61,6 +61,21 @@ fn polarity_turns_set_points_and_measurements_round() {
         axis.step(true);
         assert!((setpoint(&axis.last).v - velocity * 0.05).abs() < 1e-15, "{polarity:#x}: {:?}", axis.last);
         assert_eq!(axis.actuals().velocity, 3_000);
+    }
+}
+
+/// Bit 5 turns what the master sends and reads, and nothing else does.
+#[test]
+fn torque_has_a_polarity_of_its_own() {
+    for (polarity, sign) in [(0, 1), (POLARITY_POSITION | POLARITY_VELOCITY, 1), (POLARITY_TORQUE, -1), (0xE0, -1)] {
+        let mut axis = Axis::enabled(&screw(polarity), Mode::CyclicSynchronousTorque);
+        (axis.frame.target_torque, axis.frame.torque_offset) = (200, 50);
+        axis.cycle();
+        axis.measured.effort = 1.0;
+        axis.step(true);
+        // 250 ‰ of 2 N, and 1 N of these.
+        assert_eq!(axis.last, Demand::Effort(f64::from(sign) * 0.5), "{polarity:#x}");
+        assert_eq!(axis.actuals().torque, sign * 500, "{polarity:#x}");
     }
 }
 

@@ -329,7 +329,7 @@ fn with_objects(
     let written = settings.with_objects(&objects, units.unit)?;
     // How many steps there are between two frames is a matter of the bus.
     let settings = device::Params { cycle: settings.cycle, ..written };
-    Ok((settings, 1000.0 * settings.units.from_effort(1)))
+    Ok((settings, settings.units.rated_effort()))
 }
 
 /// What the motion task knows of the axis: the estimate of the drive, for the model that the torque offset carries.
