@@ -81,8 +81,22 @@ pub(crate) const BLOCKS: &[Interface] = {
         Interface { block, name, meaning, trigger, inputs, outputs }
     }
     &[
-        block(B::Power, "MC_Power", "powers the axis as long as it is enabled", Enable, &[], &[Status, Valid, Error]),
-        block(B::Home, "MC_Home", "homes by the method of the drive (6098h)", Execute, &["position"], MOTION),
+        block(
+            B::Power,
+            "MC_Power",
+            "powers the axis as long as it is enabled",
+            Enable,
+            &["enable_positive", "enable_negative"],
+            &[Status, Valid, Error],
+        ),
+        block(
+            B::Home,
+            "MC_Home",
+            "homes by the method of the drive (6098h)",
+            Execute,
+            &["position", "buffer_mode"],
+            MOTION,
+        ),
         block(
             B::Stop,
             "MC_Stop",
@@ -157,7 +171,7 @@ pub(crate) const BLOCKS: &[Interface] = {
             "MC_MoveSuperimposed",
             "moves by a distance on top of the motion under way",
             Execute,
-            &["distance", "velocity_difference", "acceleration", "deceleration", "jerk", "snap"],
+            &["distance", "velocity_difference", "acceleration", "deceleration", "jerk", "snap", "continuous_update"],
             WITHOUT_ACTIVE,
         ),
         block(

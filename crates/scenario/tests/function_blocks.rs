@@ -62,8 +62,8 @@ fn alone(name: &str, block: Block) -> Call {
 fn every_block_with_its_least_inputs() {
     let (aborting, command) = (BufferMode::Aborting, Command::default());
     for (name, keys, block) in [
-        ("MC_Power", "", Block::Power),
-        ("MC_Home", "", Block::Home { position: 0.0 }),
+        ("MC_Power", "", Block::Power { positive: true, negative: true }),
+        ("MC_Home", "", Block::Home { position: 0.0, buffer_mode: aborting }),
         ("MC_Stop", "", Block::Stop(BRAKING)),
         ("MC_Halt", "", Block::Halt { braking: BRAKING, buffer_mode: aborting }),
         ("MC_Reset", "", Block::Reset),
@@ -85,7 +85,11 @@ fn every_block_with_its_least_inputs() {
         (
             "MC_MoveSuperimposed",
             "distance = \"1 mm\"\nvelocity_difference = \"0.1 m/s\"",
-            Block::MoveSuperimposed { distance: 0.001, dynamics: Dynamics { velocity: 0.1, ..DYNAMICS } },
+            Block::MoveSuperimposed {
+                distance: 0.001,
+                dynamics: Dynamics { velocity: 0.1, ..DYNAMICS },
+                continuous_update: false,
+            },
         ),
         (
             "MC_MoveVelocity",
@@ -219,7 +223,19 @@ fn every_block_with_inputs_of_its_own() {
         call("MC_SetPosition", "position = \"1 mm\"\nrelative = true").block,
         Block::SetPosition { position: 0.001, relative: true }
     );
-    assert_eq!(call("MC_Home", "position = \"-1 mm\"").block, Block::Home { position: -0.001 });
+    assert_eq!(
+        call("MC_Home", "position = \"-1 mm\"\nbuffer_mode = \"buffered\"").block,
+        Block::Home { position: -0.001, buffer_mode: BufferMode::Buffered }
+    );
+    assert_eq!(
+        call("MC_MoveSuperimposed", "distance = \"0 mm\"\nvelocity_difference = \"0.1 m/s\"\ncontinuous_update = true")
+            .block,
+        Block::MoveSuperimposed {
+            distance: 0.0,
+            dynamics: Dynamics { velocity: 0.1, ..DYNAMICS },
+            continuous_update: true
+        }
+    );
     for (name, mode) in [
         ("aborting", BufferMode::Aborting),
         ("blending-low", BufferMode::BlendingLow),
@@ -307,6 +323,18 @@ stop = "state.Standstill"
         (Condition::Below(-0.05), Some(after(4, Output::Standstill, 0.0)), never),
     ];
     assert_eq!(starts, expected);
+}
+
+/// What MC_Power permits changes while it is enabled.
+#[test]
+fn permissions_change_under_power() {
+    let when =
+        "{ when = { at = \"1 s\" }, enable_positive = false }, { when = { at = \"1.5 s\" }, enable_negative = true }";
+    let call = call("MC_Power", &format!("enable_negative = false\nupdates = [{when}]"));
+    assert_eq!(call.block, Block::Power { positive: true, negative: false });
+    let blocks: Vec<_> = call.updates.into_iter().map(|update| update.block).collect();
+    let denied = |negative| Block::Power { positive: false, negative };
+    assert_eq!(blocks, [denied(false), denied(true)]);
 }
 
 /// An update says what changes; what it does not say is as the update before left it.

@@ -45,7 +45,7 @@ fn said(block: &str, input: &str) -> String {
         "torque" => "\"0.1 Nm\"",
         "torque_ramp" => "\"1 Nm/s\"",
         "velocity_factor" | "acceleration_factor" | "jerk_factor" => "0.5",
-        "continuous_update" | "relative" | "reversed" => "true",
+        "continuous_update" | "relative" | "reversed" | "enable_positive" | "enable_negative" => "true",
         "settling_time" => "\"50 ms\"",
         "table" => return format!("table = {{ file = \"{block}.csv\" }}\n"),
         other => panic!("{block}.{other} is an input that nobody knows here"),

@@ -104,6 +104,66 @@ fn waiting_in_vain_ends_with_the_reason() {
     assert!(failure.ends_with("`first.CommandAborted` did not become TRUE within 1 s"), "{failure}");
 }
 
+/// The recording of a program of `scenarios/plc` with something else in the place of what it says.
+fn changed(name: &str, changes: &[(&str, &str)]) -> Recording {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/plc").join(name);
+    let text = std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{error}"));
+    let text = changes.iter().fold(text, |text, (said, instead)| {
+        assert_eq!(text.matches(said).count(), 1, "{said}");
+        text.replace(said, instead)
+    });
+    let loaded = scenario::parse("test", &text, None).unwrap_or_else(|error| panic!("{error}"));
+    let Outcome { recording, failure } = outcome(&loaded);
+    assert_eq!(failure, None, "{name}");
+    recording
+}
+
+/// A move, homing behind it and an absolute move behind that, all executed at once.
+#[test]
+fn homing_waits_for_a_move_and_a_move_for_homing() {
+    let first =
+        "[[call]]\nblock = \"MC_MoveRelative\"\nname = \"away\"\nstart = \"power.Status\"\ndistance = \"20 mm\"\n\n";
+    let recording = changed(
+        "homing.toml",
+        &[
+            (
+                "[[call]]\nblock = \"MC_Home\"\n",
+                &format!("{first}[[call]]\nblock = \"MC_Home\"\nbuffer_mode = \"buffered\"\n"),
+            ),
+            ("start = \"home.Done\"\ntimeout = \"5 s\"\n", "start = \"power.Status\"\nbuffer_mode = \"buffered\"\n"),
+        ],
+    );
+    for (before, behind) in [("away", "home"), ("home", "move")] {
+        let (done, active) = (when(&recording, before, "Done", "TRUE"), when(&recording, behind, "Active", "TRUE"));
+        assert!((done - active).abs() < 1e-9, "{before} {done} {behind} {active}");
+    }
+    assert!(when(&recording, "axis", "state", "Homing") > when(&recording, "axis", "state", "DiscreteMotion"));
+    // The reference of `a_homed_axis_moves_from_its_reference`.
+    let made = recording.moves.last().unwrap_or_else(|| panic!("no move"));
+    assert!((made.to - 0.2925).abs() < 1e-6, "{}", made.to);
+    assert!((last(&recording, "load.position") - made.to).abs() < 1e-5);
+}
+
+/// Upwards only: the way back is refused; and no more upwards while the axis moves so: an error of the axis.
+#[test]
+fn power_permits_directions() {
+    let back = ("position = \"400 mm\"", "position = \"100 mm\"");
+    let power = "name = \"power\"\n";
+    let recording = changed("figure-3a.toml", &[back, (power, &format!("{power}enable_negative = false\n"))]);
+    let refused = when(&recording, "second", "Error", "TRUE");
+    assert!((refused - when(&recording, "first", "Done", "TRUE")).abs() < 1e-9);
+    assert!((when(&recording, "second", "ErrorID", &0x2004.to_string()) - refused).abs() < 1e-9);
+    assert!((last(&recording, "task.position") - 0.24).abs() < 1e-9);
+
+    let taken = format!("{power}updates = [{{ when = {{ at = \"0.5 s\" }}, enable_positive = false }}]\n");
+    let recording = changed("figure-3a.toml", &[(power, &taken)]);
+    let stopped = when(&recording, "axis", "state", "ErrorStop");
+    // MC_Power is told in the cycle, and the axis looks at the next one.
+    assert!((stopped - 0.5 - CYCLE).abs() < CYCLE + 1e-9, "{stopped}");
+    when(&recording, "first", "ErrorID", &0x4004.to_string());
+    assert!(never(&recording, "first", "Done"));
+}
+
 /// Position and velocity that the motion task commands at `t` (s).
 fn commanded(recording: &Recording, t: f64) -> [f64; 2] {
     let channel = |name| recording.channel(name).unwrap_or_else(|| panic!("no channel {name}"));

@@ -53,7 +53,8 @@ table! {
         stop: When = (),
         /// Fails the run when `start` has not come by then, with the reason; the end of the run unless given.
         timeout: f64 = positive(Plain(&TIME), "2 s"),
-        /// New inputs while `Execute` is TRUE, of a block with `continuous_update`, or while `Enable` is.
+        /// New inputs while `Execute` is TRUE, of a block with `continuous_update`, or while `Enable` is, of MC_Power and
+        /// MC_SetOverride.
         updates: Many<Update> = (),
         /// Target position, of MC_Home and MC_SetPosition the position that the axis is given.
         position: f64 = any(InAxis(&POSITION), "250 mm"),
@@ -96,6 +97,10 @@ table! {
         settling_time: f64 = positive(Plain(&TIME), "50 ms"),
         /// Whether the motor is mounted the other way round; it is not unless given.
         reversed: bool = (),
+        /// Whether MC_Power permits motion upwards; it does unless given.
+        enable_positive: bool = (),
+        /// Whether MC_Power permits motion downwards; it does unless given.
+        enable_negative: bool = (),
         /// Table of a profile, whose times count from its start; a first row at 0 says where the axis is then. The file of
         /// MC_PositionProfile has the columns `time` and `position`, that of MC_VelocityProfile `velocity`, that of
         /// MC_AccelerationProfile `acceleration`. Positions are followed along the cubic spline, or by `follow = "plateaus"`.
@@ -138,6 +143,10 @@ table! {
         acceleration_factor: f64 = positive(Plain(&RATIO), "50 %"),
         /// Factor of all jerks.
         jerk_factor: f64 = positive(Plain(&RATIO), "50 %"),
+        /// Whether MC_Power permits motion upwards.
+        enable_positive: bool = (),
+        /// Whether MC_Power permits motion downwards.
+        enable_negative: bool = (),
     }
 }
 

@@ -27,14 +27,19 @@ impl Context<'_> {
     ) -> Option<Block> {
         let mut read = Reading { context: self, name, inputs, said, report };
         match name {
-            BlockName::Power => Some(Block::Power),
+            BlockName::Power => {
+                let [positive, negative] = inputs.permissions.map(|slot| flag_or(slot, true));
+                Some(Block::Power { positive: positive?, negative: negative? })
+            }
             BlockName::Reset => Some(Block::Reset),
             BlockName::ReadStatus => Some(Block::ReadStatus),
             BlockName::ReadAxisError => Some(Block::ReadAxisError),
             BlockName::ReadActualPosition => Some(Block::ReadActualPosition),
             BlockName::ReadActualVelocity => Some(Block::ReadActualVelocity),
             BlockName::ReadActualTorque => Some(Block::ReadActualTorque),
-            BlockName::Home => read.or("position", 0.0).map(|position| Block::Home { position }),
+            BlockName::Home => {
+                Some(Block::Home { position: read.or("position", 0.0)?, buffer_mode: read.buffer_mode()? })
+            }
             BlockName::Stop => read.braking().map(Block::Stop),
             BlockName::Halt => Some(Block::Halt { braking: read.braking()?, buffer_mode: read.buffer_mode()? }),
             BlockName::MoveAbsolute => {
@@ -54,8 +59,8 @@ impl Context<'_> {
             }
             BlockName::MoveSuperimposed => {
                 let (distance, motion) = (read.required("distance"), read.motion("velocity_difference"));
-                let (dynamics, _) = motion?;
-                Some(Block::MoveSuperimposed { distance: distance?, dynamics })
+                let (dynamics, Command { continuous_update, .. }) = motion?;
+                Some(Block::MoveSuperimposed { distance: distance?, dynamics, continuous_update })
             }
             BlockName::MoveVelocity => read.move_velocity(),
             BlockName::MoveContinuousAbsolute => read.move_continuous_absolute(),
@@ -297,5 +302,9 @@ impl<'a> Reading<'a, '_> {
 
 /// Something that is not so unless the call says it.
 fn flag(slot: &Slot<bool>) -> Option<bool> {
-    slot.optional().ok().map(|value| value.copied().unwrap_or(false))
+    flag_or(slot, false)
+}
+
+fn flag_or(slot: &Slot<bool>, otherwise: bool) -> Option<bool> {
+    slot.optional().ok().map(|value| value.copied().unwrap_or(otherwise))
 }

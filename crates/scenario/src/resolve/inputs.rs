@@ -30,6 +30,8 @@ const QUANTITIES: [&str; 14] = [
 pub(super) struct Inputs<'a> {
     quantities: [&'a Slot<f64>; QUANTITIES.len()],
     pub(super) direction: &'a Slot<Direction>,
+    /// `enable_positive` and `enable_negative`.
+    pub(super) permissions: [&'a Slot<bool>; 2],
     /// The call, for the inputs that no update has.
     pub(super) call: &'a file::Call,
     is_update: bool,
@@ -56,6 +58,7 @@ macro_rules! inputs_of {
                 &$table.jerk_factor,
             ],
             direction: &$table.direction,
+            permissions: [&$table.enable_positive, &$table.enable_negative],
             call: $call,
             is_update: $is_update,
         }
@@ -74,7 +77,9 @@ impl<'a> Inputs<'a> {
     /// These, and where one is absent that of `before`.
     pub(super) fn or(&self, before: &Self) -> Self {
         let quantities = std::array::from_fn(|i| either(self.quantities[i], before.quantities[i]));
-        Self { quantities, direction: either(self.direction, before.direction), call: self.call, is_update: true }
+        let permissions = std::array::from_fn(|i| either(self.permissions[i], before.permissions[i]));
+        let direction = either(self.direction, before.direction);
+        Self { quantities, direction, permissions, call: self.call, is_update: true }
     }
 
     /// A quantity by its name.
@@ -96,7 +101,10 @@ impl<'a> Inputs<'a> {
             ("table", call.table.span()),
         ];
         let fixed = fixed.into_iter().filter(|_| !self.is_update);
-        quantities.chain([("direction", self.direction.span())]).chain(fixed)
+        let [positive, negative] = self.permissions.map(Slot::span);
+        let changeable =
+            [("direction", self.direction.span()), ("enable_positive", positive), ("enable_negative", negative)];
+        quantities.chain(changeable).chain(fixed)
     }
 
     /// Objects to inputs that the block does not have.

@@ -8,7 +8,7 @@ use crate::resolve::condition::{self, Instance};
 use crate::resolve::inputs::{Defaults, Inputs};
 use crate::resolve::keys::{Keys, Said};
 use crate::resolve::{block, refuse};
-use crate::scenario::{Call, Condition, Plc, Update};
+use crate::scenario::{BufferMode, Call, Condition, Plc, Update};
 use crate::source::{At, Sources, Span};
 
 /// What the calls need to know of the rest of the file.
@@ -124,6 +124,16 @@ fn warn_of_refusals(calls: &[At<file::Call>], homing_required: bool, report: &mu
         let help = "call \"MC_Power\", and let the others wait for its `Status`";
         report.warning(first.value.span, "nothing powers the axis", help);
     }
+    let is_blended = |call: &&At<file::Call>| {
+        let modes = [BufferMode::Aborting, BufferMode::Buffered];
+        call.value.block.given() == Some(&BlockName::Home)
+            && call.value.buffer_mode.given().is_some_and(|mode| !modes.contains(mode))
+    };
+    for home in calls.iter().filter(is_blended) {
+        let help = "write \"buffered\", or leave it out";
+        let span = home.value.buffer_mode.span().unwrap_or(home.value.span);
+        report.warning(span, "homing begins at Standstill and blends with nothing: MC_Home will refuse it", help);
+    }
     let is_absolute = |call: &&At<file::Call>| {
         let block = call.value.block.given();
         matches!(block, Some(BlockName::MoveAbsolute | BlockName::MoveContinuousAbsolute))
@@ -222,7 +232,7 @@ fn updates(
 fn refuse_updates(given: &file::Call, block: BlockName, span: Span, report: &mut Report) {
     let interface = block.interface();
     let help = if interface.trigger == Trigger::Enable {
-        if block == BlockName::SetOverride {
+        if matches!(block, BlockName::SetOverride | BlockName::Power) {
             return;
         }
         ""

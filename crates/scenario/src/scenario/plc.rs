@@ -62,11 +62,18 @@ pub enum Condition {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Block {
     /// `MC_Power`.
-    Power,
+    Power {
+        /// Whether motion upwards is permitted.
+        positive: bool,
+        /// Whether motion downwards is permitted.
+        negative: bool,
+    },
     /// `MC_Home`: the drive's homing method.
     Home {
         /// Position of the reference from then on.
         position: f64,
+        /// What becomes of the motion under way.
+        buffer_mode: BufferMode,
     },
     /// `MC_Stop`.
     Stop(Braking),
@@ -114,6 +121,8 @@ pub enum Block {
         distance: f64,
         /// What leads to it; its velocity is the largest difference of velocity.
         dynamics: Dynamics,
+        /// Whether inputs count that change while `Execute` is TRUE.
+        continuous_update: bool,
     },
     /// `MC_MoveVelocity`.
     MoveVelocity {

@@ -294,8 +294,8 @@ fn block(block: &Block) {
             }
             positive("settling_time", *settling_time);
         }
-        Block::Home { position } | Block::SetPosition { position, .. } => finite("position", *position),
-        Block::Power
+        Block::Home { position, .. } | Block::SetPosition { position, .. } => finite("position", *position),
+        Block::Power { .. }
         | Block::Reset
         | Block::ReadStatus
         | Block::ReadAxisError

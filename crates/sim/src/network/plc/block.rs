@@ -87,7 +87,7 @@ impl<B: FunctionBlock, K> Block for Instance<B, K> {
 /// The block of a call.
 pub(super) fn block(said: &Said) -> Box<dyn Block> {
     match said {
-        Said::Power => {
+        Said::Power { .. } => {
             enabled(said, plcopen::Power, inputs::power, |kept, enable| plcopen::PowerInputs { enable, ..*kept })
         }
         Said::SetOverride { .. } => {

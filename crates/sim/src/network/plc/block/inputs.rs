@@ -10,7 +10,8 @@ use servobench_scenario as scenario;
 use servobench_scenario::Block as Said;
 
 pub(super) fn power(said: &Said) -> Option<plcopen::PowerInputs> {
-    matches!(said, Said::Power).then(plcopen::PowerInputs::default)
+    let Said::Power { positive: enable_positive, negative: enable_negative } = *said else { return None };
+    Some(plcopen::PowerInputs { enable: false, enable_positive, enable_negative })
 }
 
 pub(super) fn reading(said: &Said) -> Option<plcopen::ReadInputs> {
@@ -30,8 +31,8 @@ pub(super) fn reset(said: &Said) -> Option<plcopen::ResetInputs> {
 }
 
 pub(super) fn home(said: &Said) -> Option<plcopen::HomeInputs> {
-    let Said::Home { position } = said else { return None };
-    Some(plcopen::HomeInputs { execute: false, position: *position, buffer_mode: plcopen::BufferMode::Aborting })
+    let Said::Home { position, buffer_mode: mode } = said else { return None };
+    Some(plcopen::HomeInputs { execute: false, position: *position, buffer_mode: buffer_mode(*mode) })
 }
 
 pub(super) fn stop(said: &Said) -> Option<plcopen::StopInputs> {
@@ -99,10 +100,10 @@ pub(super) fn move_additive(said: &Said) -> Option<plcopen::MoveAdditiveInputs> 
 }
 
 pub(super) fn move_superimposed(said: &Said) -> Option<plcopen::MoveSuperimposedInputs> {
-    let Said::MoveSuperimposed { distance, dynamics } = said else { return None };
+    let Said::MoveSuperimposed { distance, dynamics, continuous_update } = said else { return None };
     Some(plcopen::MoveSuperimposedInputs {
         execute: false,
-        continuous_update: false,
+        continuous_update: *continuous_update,
         distance: *distance,
         velocity_diff: dynamics.velocity,
         acceleration: dynamics.acceleration,
