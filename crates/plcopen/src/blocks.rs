@@ -7,7 +7,8 @@
 //!
 //! - Busy, Done, CommandAborted and Error exclude each other; Active goes with Busy while the command has the axis.
 //! - Done, CommandAborted and Error stay until Execute is FALSE. When it was FALSE before they came, they last one cycle.
-//! - A falling edge does not end the command. A new rising edge starts a new one, and nothing more is said of the old one.
+//! - A falling edge does not end the command. A new rising edge starts a new one, and nothing more is said of the old one. Where
+//!   the new one is refused, Error is TRUE for that, and the old one goes on unreported: errors of blocks do not stop the axis.
 //! - InVelocity, InEndVelocity and InTorque go with Busy and Active, as long as the command has the axis.
 //!
 //! # Enable

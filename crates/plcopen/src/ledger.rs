@@ -1,5 +1,6 @@
 //! What became of the commands: each block asks for its own by number.
 use crate::error::BlockError;
+use crate::name::BlockName;
 
 /// The number of a command, counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -36,21 +37,37 @@ const REMEMBERED: u32 = 64;
 pub(crate) struct Ledger {
     last: u32,
     progress: [Progress; REMEMBERED as usize],
+    /// The blocks that gave them.
+    blocks: [BlockName; REMEMBERED as usize],
     /// Why the last one failed that did.
-    pub(crate) failure: Option<BlockError>,
+    failure: Option<BlockError>,
 }
 
 impl Ledger {
     pub(crate) const fn new() -> Self {
-        Self { last: 0, progress: [Progress::Aborted; REMEMBERED as usize], failure: None }
+        const PLACES: usize = REMEMBERED as usize;
+        Self { last: 0, progress: [Progress::Aborted; PLACES], blocks: [BlockName::Home; PLACES], failure: None }
     }
 
-    /// The next command, which waits.
-    pub(crate) fn issue(&mut self) -> CommandId {
+    /// The next command, of `block`, which waits.
+    pub(crate) fn issue(&mut self, block: BlockName) -> CommandId {
         self.last = self.last.wrapping_add(1).max(1);
         let id = CommandId(self.last);
-        self.progress[Self::place(id)] = Progress::Buffered;
+        (self.progress[Self::place(id)], self.blocks[Self::place(id)]) = (Progress::Buffered, block);
         id
+    }
+
+    /// The command that runs, and whatever waits or moves with it, fails for this reason.
+    pub(crate) const fn fail(&mut self, error: BlockError) {
+        self.failure = Some(error);
+    }
+
+    /// Why the command failed: each block speaks for itself of an error of the axis.
+    pub(crate) fn failure(&self, id: CommandId) -> Option<BlockError> {
+        match self.failure? {
+            BlockError::Axis { error, .. } => Some(BlockError::Axis { block: self.blocks[Self::place(id)], error }),
+            other => Some(other),
+        }
     }
 
     #[inline]
@@ -77,14 +94,14 @@ mod tests {
     #[test]
     fn what_became_of_a_command_is_known_until_64_others_are_given() {
         let mut ledger = Ledger::new();
-        let id = ledger.issue();
+        let id = ledger.issue(BlockName::Halt);
         ledger.set(id, Progress::Done);
         for _ in 1..REMEMBERED {
-            let other = ledger.issue();
+            let other = ledger.issue(BlockName::Halt);
             ledger.set(other, Progress::Active);
             assert_eq!(ledger.progress(id), Progress::Done);
         }
-        let other = ledger.issue();
+        let other = ledger.issue(BlockName::Halt);
         ledger.set(other, Progress::Active);
         assert_eq!(ledger.progress(id), Progress::Aborted);
     }

@@ -234,9 +234,7 @@ impl Axis {
                 self.ledger.set(id, Progress::Failed);
                 self.fail(AxisError::PlanLost { error });
             }
-            Err(error) => {
-                self.refuse_waiting(id, error);
-            }
+            Err(error) => self.refuse_waiting(id, error, from, lead),
         }
     }
 
@@ -256,12 +254,20 @@ impl Axis {
         }
     }
 
-    /// A command that waited is refused when its turn comes, since something was changed in between; the axis halts.
-    fn refuse_waiting(&mut self, id: CommandId, error: BlockError) {
+    /// A command that waited is refused when its turn comes at `from`, `lead` seconds ago, since something was changed in
+    /// between: the one behind it takes its place (PLCopen part 1, section 2.2.2). Without one the axis halts.
+    fn refuse_waiting(&mut self, id: CommandId, error: BlockError, from: Setpoint, lead: f64) {
         self.ledger.set(id, Progress::Failed);
-        self.ledger.failure = Some(error);
-        self.abort_waiting();
-        self.halt();
+        self.ledger.fail(error);
+        let is_at_rest = from.v == 0.0 && from.a == 0.0;
+        match self.queue.first() {
+            Some(next) if !next.begins_at_standstill() => self.take_next(from, lead),
+            Some(_) if is_at_rest => self.rest(),
+            _ => {
+                self.end_waiting(Progress::Aborted);
+                self.halt();
+            }
+        }
     }
 
     /// Nothing is left to do but for a motion on top; without one the axis rests, and what waits for that begins.

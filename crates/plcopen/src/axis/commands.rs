@@ -46,7 +46,7 @@ impl Axis {
         if is_aborting {
             self.end_all(Progress::Aborted);
         }
-        let id = self.ledger.issue();
+        let id = self.ledger.issue(block);
         self.begin_activity(id, activity, from);
         self.state = arrow.to;
         Ok(id)
@@ -63,7 +63,7 @@ impl Axis {
         let from = self.present();
         let activity = self.prepared(CommandId::OWN, command, from, 0.0, &Queue::EMPTY)?;
         self.end_all(Progress::Aborted);
-        let id = self.ledger.issue();
+        let id = self.ledger.issue(block);
         self.begin_activity(id, activity, from);
         self.stop_holder = Some(id);
         self.follow(Cause::Block(block));
@@ -159,7 +159,11 @@ impl Axis {
 
     /// MC_SetPosition: `position` is what the program sees from now on where the axis actually is, or this much more than now.
     pub(crate) fn set_position(&mut self, position: f64, is_relative: bool) -> Result<(), BlockError> {
-        finite_input(BlockName::SetPosition, "Position", position)?;
+        let block = BlockName::SetPosition;
+        if self.state == AxisState::Homing {
+            return Err(BlockError::State { block, state: self.state });
+        }
+        finite_input(block, "Position", position)?;
         self.offset = if is_relative { self.offset + position } else { position - self.feedback.position };
         Ok(())
     }
@@ -179,7 +183,7 @@ impl Axis {
         if held >= self.params.buffered_commands {
             return Err(BlockError::BufferFull { block: command.block, held });
         }
-        let id = self.ledger.issue();
+        let id = self.ledger.issue(command.block);
         self.queue.push(id, command);
         if command.buffer_mode != BufferMode::Buffered
             && let Err(error) = self.rejoin()

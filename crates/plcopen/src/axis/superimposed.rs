@@ -54,7 +54,7 @@ impl Axis {
         }
         let from = self.superimposed.as_ref().map_or(Setpoint::default(), |running| running.now);
         let (run, is_paused) = self.superimposed_run(command, &from, from.x + distance)?;
-        let id = self.ledger.issue();
+        let id = self.ledger.issue(block);
         if let Some(before) = &self.superimposed {
             self.ledger.set(before.id, Progress::Aborted);
         }

@@ -108,10 +108,8 @@ impl Axis {
     /// An error of the axis: it comes to rest if the power allows it, and takes no command until MC_Reset.
     pub(super) fn fail(&mut self, error: AxisError) {
         let from = self.present();
-        let on_top = self.superimposed.as_ref().map(|superimposed| &superimposed.command);
-        let command = self.activity.command().map(|(_, command)| command).or(on_top);
-        let block = command.map_or(BlockName::Home, |command| command.block);
-        self.ledger.failure = Some(BlockError::Axis { block, error });
+        self.ledger.fail(BlockError::Axis { block: BlockName::Power, error });
+        self.end_waiting(Progress::Failed);
         self.end_all(Progress::Failed);
         self.error = Some(error);
         self.follow(Cause::AxisError);
@@ -190,16 +188,16 @@ impl Axis {
         if let Some(superimposed) = self.superimposed.take() {
             self.ledger.set(superimposed.id, progress);
         }
-        self.abort_waiting();
+        self.end_waiting(Progress::Aborted);
         self.activity = Activity::Rest;
         self.shift = 0.0;
         self.stop_holder = None;
     }
 
     /// Takes the commands away that wait.
-    pub(super) fn abort_waiting(&mut self) {
+    pub(super) fn end_waiting(&mut self, progress: Progress) {
         while let Some((id, _)) = self.queue.pop() {
-            self.ledger.set(id, Progress::Aborted);
+            self.ledger.set(id, progress);
         }
     }
 

@@ -104,7 +104,7 @@ impl Execution {
             Progress::Done => Report::Done,
             Progress::Aborted => Report::Aborted,
             Progress::Failed => {
-                self.error = axis.ledger().failure;
+                self.error = axis.ledger().failure(id);
                 Report::Error(self.error.as_ref().map_or(ErrorId::State, BlockError::id))
             }
         };

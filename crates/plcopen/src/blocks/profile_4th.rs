@@ -111,7 +111,7 @@ impl Profile4th {
         let Some(id) = self.id else { return };
         match axis.progress(id) {
             Progress::Aborted => self.is_aborted = true,
-            Progress::Failed => self.error = axis.ledger().failure,
+            Progress::Failed => self.error = axis.ledger().failure(id),
             Progress::Buffered | Progress::Active | Progress::InTarget | Progress::Done => return,
         }
         (self.id, self.generator) = (None, generator::State::default());

@@ -6,7 +6,7 @@ use crate::error::BlockError;
 use crate::name::BlockName;
 
 /// Shifts what the program sees as position, actual and commanded alike, without a motion; commands that run go on to where they
-/// lead. ExecutionMode is left out: it is always immediately.
+/// lead. Refused in Homing, which sets the position itself. ExecutionMode is left out: it is always immediately.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SetPosition {
     execution: Execution,

@@ -3,9 +3,9 @@ use crate::bench::{Bench, CYCLE_TIME, LIMITS};
 use servobench_fieldbus::{Fault, Homing};
 use servobench_motion::Limits;
 use servobench_plcopen::{
-    AxisParams, AxisState, ErrorId, FunctionBlock, Home, HomeInputs, MoveAbsolute, MoveAbsoluteInputs, MoveAdditive,
-    MoveAdditiveInputs, MoveRelative, MoveRelativeInputs, MoveSuperimposed, MoveSuperimposedInputs, MoveVelocity,
-    MoveVelocityInputs, Power, PowerInputs, Stop, StopInputs,
+    AxisParams, AxisState, BufferMode, ErrorId, FunctionBlock, Home, HomeInputs, MoveAbsolute, MoveAbsoluteInputs,
+    MoveAdditive, MoveAdditiveInputs, MoveRelative, MoveRelativeInputs, MoveSuperimposed, MoveSuperimposedInputs,
+    MoveVelocity, MoveVelocityInputs, Power, PowerInputs, Stop, StopInputs,
 };
 
 const ORDERS: [Limits; 3] =
@@ -130,11 +130,17 @@ fn a_stop_aborts_homing() {
     assert_eq!((bench.axis.state(), bench.axis.is_homed()), (AxisState::Standstill, false));
 }
 
+/// PLCopen part 1, section 2.2.2: not CommandAborted.
 #[test]
-fn a_fault_ends_the_active_command_with_an_error_and_aborts_those_that_wait() {
+fn a_fault_ends_the_active_command_and_those_that_wait_with_an_error() {
     let mut bench = Bench::standstill();
-    let (mut go, mut next) = (MoveAbsolute::default(), MoveAbsolute::default());
-    let waiting = MoveAbsoluteInputs { buffer_mode: servobench_plcopen::BufferMode::Buffered, ..to(&LIMITS, 1.0) };
+    let (mut go, mut next) = (MoveAbsolute::default(), MoveRelative::default());
+    let waiting = MoveRelativeInputs {
+        execute: true,
+        distance: 0.5,
+        buffer_mode: BufferMode::Buffered,
+        ..MoveRelativeInputs::within(&LIMITS)
+    };
     bench.cycle(|axis| (go.step(axis, &to(&LIMITS, 0.5)), next.step(axis, &waiting)));
     bench.feedback.fault = Some(Fault::Drive(0x7305));
     let (active, waited) = bench.cycle(|axis| (go.step(axis, &to(&LIMITS, 0.5)), next.step(axis, &waiting)));
@@ -143,7 +149,11 @@ fn a_fault_ends_the_active_command_with_an_error_and_aborts_those_that_wait() {
         go.error().unwrap().to_string(),
         "MC_MoveAbsolute: fault 7305h of the drive: remove its cause and call MC_Reset"
     );
-    assert!(waited.command_aborted && !waited.error);
+    assert_eq!((waited.command_aborted, waited.error_id), (false, ErrorId::DriveFault));
+    assert_eq!(
+        next.error().unwrap().to_string(),
+        "MC_MoveRelative: fault 7305h of the drive: remove its cause and call MC_Reset"
+    );
     let power = bench.cycle(|axis| Power.step(axis, &PowerInputs { enable: true, ..PowerInputs::default() }));
     assert!(power.error && !power.valid);
 }

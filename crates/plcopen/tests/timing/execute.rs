@@ -93,6 +93,21 @@ fn a_refusal_says_what_is_wrong_until_execute_falls() {
     assert_eq!(bench.axis.state(), AxisState::Standstill, "errors of blocks are not errors of the axis");
 }
 
+/// The new command is refused; the one before goes on, though no block tells of it any more.
+#[test]
+fn an_edge_that_is_refused_leaves_the_motion_before_alone() {
+    let (mut bench, mut block) = (Bench::standstill(), MoveAbsolute::default());
+    for cycle in 0..100 {
+        bench.cycle(|axis| block.step(axis, &to(cycle < 50, 0.1)));
+    }
+    let outputs = bench.cycle(|axis| block.step(axis, &MoveAbsoluteInputs { velocity: -1.0, ..to(true, 0.2) }));
+    assert_eq!((outputs.error_id, outputs.busy), (ErrorId::Input, false));
+    assert_eq!(bench.axis.state(), AxisState::DiscreteMotion);
+    bench.until(AxisState::Standstill);
+    assert_eq!(bench.axis.commanded().x.to_bits(), 0.1_f64.to_bits());
+    assert!(bench.cycle(|axis| block.step(axis, &to(true, 0.2))).error, "no Done of the one before");
+}
+
 #[test]
 fn two_blocks_in_one_cycle_resolve_in_the_order_of_their_calls() {
     let mut bench = Bench::standstill();

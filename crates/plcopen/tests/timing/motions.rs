@@ -1,7 +1,7 @@
 //! What each of the other motion blocks does.
 use crate::bench::{Bench, LIMITS};
 use crate::calls::{at, running, to};
-use servobench_fieldbus::{Homing, Task};
+use servobench_fieldbus::{AxisFeedback, Fault, Homing, Task};
 use servobench_plcopen::{
     AxisError, AxisParams, AxisState, BufferMode, ErrorId, FunctionBlock, Home, HomeInputs, MoveAbsolute,
     MoveAbsoluteInputs, MoveAdditive, MoveAdditiveInputs, MoveContinuousAbsolute, MoveContinuousAbsoluteInputs,
@@ -129,6 +129,30 @@ fn a_command_that_is_not_permitted_any_more_when_its_turn_comes_halts_the_axis()
     assert_eq!(bench.axis.commanded().v.to_bits(), 0.0_f64.to_bits());
 }
 
+/// The same with a third command behind it, which takes its place.
+#[test]
+fn the_next_command_takes_the_place_of_one_that_is_not_permitted_any_more() {
+    for buffer_mode in [BufferMode::Buffered, BufferMode::BlendingPrevious] {
+        let mut bench = Bench::standstill();
+        let (mut go, mut back, mut on) = (MoveAbsolute::default(), MoveAbsolute::default(), MoveAbsolute::default());
+        let returning = MoveAbsoluteInputs { buffer_mode: BufferMode::Buffered, ..to(-1.0) };
+        let further = MoveAbsoluteInputs { buffer_mode, ..to(0.75) };
+        for cycle in 0..5000 {
+            bench.permits_negative = cycle < 10;
+            let (first, refused, outputs) =
+                bench.cycle(|axis| (go.step(axis, &to(0.25)), back.step(axis, &returning), on.step(axis, &further)));
+            let expected = if first.done { ErrorId::NotPermitted } else { ErrorId::None };
+            assert_eq!((refused.error_id, refused.command_aborted), (expected, false), "{cycle}");
+            assert_eq!(outputs.active || outputs.done, first.done, "{cycle}");
+            if outputs.done {
+                break;
+            }
+        }
+        assert_eq!(bench.axis.state(), AxisState::Standstill);
+        at(&bench, 0.75);
+    }
+}
+
 #[test]
 fn an_effort_rises_on_its_ramp_and_a_move_takes_over_from_the_actual_state() {
     let mut bench = Bench::standstill();
@@ -214,6 +238,41 @@ fn a_shifted_position_moves_nothing() {
     bench.until(AxisState::Standstill);
     let Some(Task::Follow(sample)) = bench.command.map(|command| command.task) else { panic!("no set-point") };
     assert_eq!(sample.x.to_bits(), 0.0_f64.to_bits());
+}
+
+/// Section 3.17 of the standard: actual and commanded position by the same value, so that the following error stays.
+#[test]
+fn a_position_that_is_set_leaves_the_following_error_as_it_is() {
+    let mut bench = Bench::standstill();
+    let (mut go, mut set) = (MoveAbsolute::default(), SetPosition::default());
+    for _ in 0..400 {
+        bench.cycle(|axis| go.step(axis, &to(0.5)));
+    }
+    // The drive is 0.01 m behind the set-point of this cycle.
+    bench.axis.begin(&bench.feedback);
+    let lagging = AxisFeedback { position: bench.axis.commanded().x - 0.01, ..bench.feedback };
+    bench.axis.begin(&lagging);
+    let error = bench.axis.commanded().x - lagging.position;
+    set.step(&mut bench.axis, &SetPositionInputs { execute: true, position: 7.0, relative: false });
+    assert_eq!(bench.axis.actual().position.to_bits(), 7.0_f64.to_bits());
+    assert!((bench.axis.commanded().x - 7.0 - error).abs() < 1e-14);
+}
+
+/// It moves nothing, so that it needs no state but one in which the position is not about to be set by the drive.
+#[test]
+fn a_position_is_set_in_any_state_but_homing() {
+    for (fault, state) in [(None, AxisState::Standstill), (Some(Fault::Drive(0x7305)), AxisState::ErrorStop)] {
+        let (mut bench, mut set) = (Bench::standstill(), SetPosition::default());
+        bench.feedback.fault = fault;
+        let inputs = SetPositionInputs { execute: true, position: 3.0, relative: false };
+        assert!(bench.cycle(|axis| set.step(axis, &inputs)).done);
+        assert_eq!((bench.axis.state(), bench.axis.actual().position.to_bits()), (state, 3.0_f64.to_bits()));
+    }
+    let (mut bench, mut home, mut set) = (Bench::standstill(), Home::default(), SetPosition::default());
+    let inputs = SetPositionInputs { execute: true, position: 3.0, relative: false };
+    let homing = HomeInputs { execute: true, ..HomeInputs::default() };
+    let (_, outputs) = bench.cycle(|axis| (home.step(axis, &homing), set.step(axis, &inputs)));
+    assert_eq!(outputs.error_id, ErrorId::State);
 }
 
 #[test]
