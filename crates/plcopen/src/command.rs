@@ -194,23 +194,18 @@ impl Command {
             self.dynamics.check(block, &params.limits)?;
         }
         match self.goal {
-            Goal::Absolute { position, direction, end_velocity } => {
+            Goal::Absolute { position, end_velocity, .. } => {
                 finite_input(block, "Position", position)?;
                 finite_input(block, "EndVelocity", end_velocity)?;
                 if end_velocity.abs() > self.dynamics.velocity {
                     let (value, bound) = (end_velocity, "at most Velocity in magnitude");
                     return Err(BlockError::Input { block, input: "EndVelocity", value, bound });
                 }
-                match params.modulo {
-                    Some(period) if !(0.0..period).contains(&position) => {
-                        let bound = "within the modulo period, from 0 on";
-                        return Err(BlockError::Input { block, input: "Position", value: position, bound });
-                    }
-                    None if direction != Direction::Shortest => {
-                        let (value, bound) = (direction.name(), "mcShortestWay on an axis with ends");
-                        return Err(BlockError::Direction { block, value, bound });
-                    }
-                    _ => {}
+                if let Some(period) = params.modulo
+                    && !(0.0..period).contains(&position)
+                {
+                    let bound = "within the modulo period, from 0 on";
+                    return Err(BlockError::Input { block, input: "Position", value: position, bound });
                 }
             }
             Goal::Relative(distance) | Goal::Additive(distance) => finite_input(block, "Distance", distance)?,

@@ -21,7 +21,7 @@ pub enum ErrorId {
     AboveLimit = 0x1002,
     /// Two motions on top of each other are together above a limit of the axis.
     SumAboveLimit = 0x1003,
-    /// The input Direction does not fit the axis.
+    /// The input Direction does not fit the block.
     Direction = 0x1004,
     /// The input BufferMode does not fit the block, or the command before it.
     BufferMode = 0x1005,
@@ -90,7 +90,7 @@ impl ErrorId {
             Self::Input => "an input is no number of the right sign or range",
             Self::AboveLimit => "an input is above a limit of the axis",
             Self::SumAboveLimit => "a superimposed motion and the one below are together above a limit of the axis",
-            Self::Direction => "the input Direction does not fit the axis",
+            Self::Direction => "the input Direction does not fit the block",
             Self::BufferMode => "the input BufferMode does not fit the block, or the command before it",
             Self::State => "the state of the axis does not allow the block",
             Self::NotHomed => "an absolute position is asked of an axis without a reference",
@@ -153,7 +153,7 @@ pub enum BlockError {
         /// Limit of the axis (SI).
         limit: f64,
     },
-    /// The input Direction does not fit the axis.
+    /// The input Direction does not fit the block.
     #[error("{block}: `Direction` must be {bound}, got {value}: correct the input")]
     Direction {
         /// The block.

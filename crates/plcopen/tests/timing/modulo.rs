@@ -36,6 +36,21 @@ fn each_direction_goes_its_way_round_a_modulo_axis() {
     }
 }
 
+/// Section 3.5 of the standard: where there is one way only, the input is ignored.
+#[test]
+fn a_direction_says_nothing_on_an_axis_with_ends() {
+    for direction in [Direction::Positive, Direction::Negative, Direction::Shortest, Direction::Current] {
+        let (mut bench, mut go) = (Bench::standstill(), MoveAbsolute::default());
+        for position in [0.5, -0.25] {
+            bench.cycle(|axis| go.step(axis, &MoveAbsoluteInputs { direction, ..to(position) }));
+            assert_eq!(go.error(), None);
+            bench.until(AxisState::Standstill);
+            assert_eq!(bench.axis.commanded().x.to_bits(), position.to_bits(), "{direction:?}");
+            bench.cycle(|axis| go.step(axis, &MoveAbsoluteInputs { execute: false, ..to(position) }));
+        }
+    }
+}
+
 #[test]
 fn a_place_before_the_stop_is_gone_to_in_the_next_turn() {
     let mut bench = Bench::powered(AxisParams { modulo: Some(1.0), ..Bench::params() });

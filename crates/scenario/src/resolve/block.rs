@@ -208,8 +208,9 @@ impl<'a> Reading<'a, '_> {
     /// Which way round a modulo axis.
     fn way(&mut self) -> Option<Direction> {
         if let (false, Some(span)) = (self.context.is_modulo, self.inputs.direction.span()) {
-            let help = "give the period `modulo` in `[axis]`, or leave it out: the target says in which direction";
-            self.report.error(span, "`direction` of a move to a position is for a modulo axis", help);
+            let message = "`direction` is ignored: on an axis with ends one way leads to a position";
+            let help = "give the period `modulo` in `[axis]`, or leave it out";
+            self.said.once(span, |report| report.warning(span, message, help), self.report);
         }
         self.inputs.direction.optional().ok().map(|way| way.copied().unwrap_or(Direction::Shortest))
     }
@@ -217,15 +218,9 @@ impl<'a> Reading<'a, '_> {
     /// Direction of a velocity or torque beside its sign.
     fn sign(&mut self) -> Option<Direction> {
         let given = self.inputs.direction.optional().ok()?.copied().unwrap_or(Direction::Positive);
-        let is_known = match given {
-            Direction::Positive | Direction::Negative => true,
-            Direction::Current => self.name == BlockName::MoveVelocity,
-            Direction::Shortest => false,
-        };
-        if let (false, Some(span)) = (is_known, self.inputs.direction.span()) {
-            let current = if self.name == BlockName::MoveVelocity { " or \"current\"" } else { "" };
+        if let (Direction::Shortest, Some(span)) = (given, self.inputs.direction.span()) {
             let message = format!("{} does not go this way", self.name.name());
-            self.report.error(span, message, format!("write \"positive\", \"negative\"{current}"));
+            self.report.error(span, message, "write \"positive\", \"negative\" or \"current\"");
         }
         Some(given)
     }

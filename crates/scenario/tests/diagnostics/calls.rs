@@ -153,21 +153,18 @@ fn a_block_has_its_inputs_and_no_others() {
 fn directions_belong_to_blocks() {
     check(&[
         (
-            &call("MC_MoveAbsolute", "position = \"1 mm\"\ndirection = \"positive\""),
-            &[
-                "4:13: `direction` of a move to a position is for a modulo axis; give the period `modulo` in `[axis]`, or leave \
-               it out: the target says in which direction",
-            ],
-        ),
-        (
             &call("MC_MoveVelocity", "direction = \"shortest\""),
             &["3:13: MC_MoveVelocity does not go this way; write \"positive\", \"negative\" or \"current\""],
         ),
         (
-            &call("MC_TorqueControl", "torque = \"1 Nm\"\ndirection = \"current\""),
-            &["4:13: MC_TorqueControl does not go this way; write \"positive\", \"negative\""],
+            &call("MC_TorqueControl", "torque = \"1 Nm\"\ndirection = \"shortest\""),
+            &["4:13: MC_TorqueControl does not go this way; write \"positive\", \"negative\" or \"current\""],
         ),
     ]);
+    let ignored = "4:13: `direction` is ignored: on an axis with ends one way leads to a position; give the period `modulo` in \
+                   `[axis]`, or leave it out";
+    let positive = call("MC_MoveAbsolute", "position = \"1 mm\"\ndirection = \"positive\"");
+    assert_eq!(said(&positive), [strings(&[]), strings(&[ignored])]);
 }
 
 /// What `[setpoint]` says is what the axis can do: a block refuses more, which a run may want to show.
