@@ -43,23 +43,46 @@ pub enum Direction {
 }
 
 /// The rotary axis direction option of the positioning option code.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[repr(u16)]
 pub enum RotaryAxisOption {
     /// As on a linear axis: a target beyond the range is so many turns away.
-    Linear,
-    /// In one direction, or the shorter one.
-    Modulo(Direction),
+    #[default]
+    Linear = 0b00,
+    /// With decreasing position.
+    Negative = 0b01,
+    /// With increasing position.
+    Positive = 0b10,
+    /// The shorter way.
+    Shortest = 0b11,
 }
 
 impl RotaryAxisOption {
+    /// 60F2h with this option and nothing else.
+    #[must_use]
+    pub const fn code(self) -> u16 {
+        (self as u16) << 6
+    }
+
+    /// The direction on a modulo axis; `None` as on a linear one.
+    #[must_use]
+    pub const fn direction(self) -> Option<Direction> {
+        match self {
+            Self::Linear => None,
+            Self::Negative => Some(Direction::Negative),
+            Self::Positive => Some(Direction::Positive),
+            Self::Shortest => Some(Direction::Shortest),
+        }
+    }
+
     /// The option in bits 7 and 6 of 60F2h.
     #[must_use]
     pub const fn of_code(positioning_option_code: u16) -> Self {
         match (positioning_option_code >> 6) & 0b11 {
             0b00 => Self::Linear,
-            0b01 => Self::Modulo(Direction::Negative),
-            0b10 => Self::Modulo(Direction::Positive),
-            _ => Self::Modulo(Direction::Shortest),
+            0b01 => Self::Negative,
+            0b10 => Self::Positive,
+            _ => Self::Shortest,
         }
     }
 }
@@ -157,9 +180,9 @@ impl PositionRange {
     /// The distance of a move by the positioning option code (60F2h).
     #[must_use]
     pub const fn way_by_option(self, from: i32, to: i32, option: RotaryAxisOption) -> i64 {
-        match option {
-            RotaryAxisOption::Linear => to as i64 - from as i64,
-            RotaryAxisOption::Modulo(direction) => self.way(from as i64, to as i64, direction),
+        match option.direction() {
+            None => to as i64 - from as i64,
+            Some(direction) => self.way(from as i64, to as i64, direction),
         }
     }
 }

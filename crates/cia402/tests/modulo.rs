@@ -79,6 +79,9 @@ fn the_option_code_chooses_by_bits_7_and_6() {
     let way = |code| turn.way_by_option(350, 730, RotaryAxisOption::of_code(code));
     assert_eq!([way(0x00), way(0x40), way(0x80), way(0xC0)], [380, -340, 20, 20]);
     assert_eq!(RotaryAxisOption::of_code(0xFF3F), RotaryAxisOption::Linear);
+    for code in [0x00, 0x40, 0x80, 0xC0] {
+        assert_eq!(RotaryAxisOption::of_code(code).code(), code);
+    }
 }
 
 #[test]

@@ -38,6 +38,7 @@ mod guard;
 mod objects;
 mod params;
 mod process_data;
+mod rotary;
 mod running;
 mod supervision;
 mod units;
@@ -47,6 +48,7 @@ pub use cycle::{Beat, Params as CycleParams};
 pub use fault::Fault;
 pub use objects::ObjectsError;
 pub use params::{Limits, Params, Profile};
+pub use rotary::Rotary;
 pub use units::Units;
 pub use window::{Dwell, Window};
 

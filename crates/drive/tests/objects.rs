@@ -1,8 +1,9 @@
 //! Settings and objects of the drive, each made of the other.
 use servobench_cia402::PowerState;
+use servobench_cia402::modulo::{PositionRange, RotaryAxisOption};
 use servobench_cia402::objects::{Dictionary, HOMING_METHODS, OBJECTS, Value};
 use servobench_cia402::units::{AxisUnit, FactorGroup, Object, Ratio, UnitError};
-use servobench_drive::device::{ObjectsError, Params, Units, Window};
+use servobench_drive::device::{ObjectsError, Params, Rotary, Units, Window};
 use servobench_drive::modes::homing::Method;
 use servobench_drive::modes::profile::Ramp;
 
@@ -47,6 +48,9 @@ fn objects_mean_what_the_profile_says() {
     write(&mut objects, 0x6098, 0, 17_i8);
     write(&mut objects, 0x6099, 2, 1_500_u32);
     write(&mut objects, 0x60C2, 1, 2_u8);
+    write(&mut objects, 0x607B, 2, 4_999_i32);
+    write(&mut objects, 0x607B, 1, 0_i32);
+    write(&mut objects, 0x60F2, 0, 0x80_u16);
     let settings = Params::default().with_objects(&objects, micrometre()).unwrap();
     assert_near(settings.following_error.width, 2e-3);
     assert_near(settings.following_error.time, 0.02);
@@ -69,6 +73,12 @@ fn objects_mean_what_the_profile_says() {
     assert_near(settings.homing.zero_speed, 1.5e-3);
     // 2 ms over steps of 250 µs.
     assert_eq!(settings.cycle.steps, 8);
+    let rotary = Rotary { range: Some(PositionRange::new(0, 4_999).unwrap()), direction: RotaryAxisOption::Positive };
+    assert_eq!(settings.rotary, rotary);
+    let mut stored = screw();
+    settings.store_in(&mut stored).unwrap();
+    assert_eq!(stored.position_range(), objects.position_range());
+    assert_eq!(Params::default().with_objects(&stored, micrometre()).unwrap().rotary, rotary);
 }
 
 #[test]

@@ -150,9 +150,17 @@ fn a_written_object_leaves_the_others_as_they_are() {
         let bits = |recording: &Recording| values(recording, name).iter().map(|x| x.to_bits()).collect::<Vec<_>>();
         assert!(bits(&with) == bits(&without), "{name}");
     }
-    let text = format!("{AXIS}{BUS}[drive.objects]\n\"606Dh\" = 1000000\n");
-    let parsed = scenario::parse("network", &text, None).unwrap_or_else(|error| panic!("{error}"));
-    let refused = Bench::new(&parsed.scenario, &Exact).err().map(|error| error.to_string());
-    let expected = "`drive.objects.606Dh`: `Velocity window` (606Dh:00h) must be at most 65535, got 1000000";
-    assert_eq!(refused.as_deref(), Some(expected));
+    for (object, value, expected) in [
+        ("606Dh", 1_000_000, "`drive.objects.606Dh`: `Velocity window` (606Dh:00h) must be at most 65535, got 1000000"),
+        (
+            "607Bh.2",
+            359_999,
+            "`drive.objects.607Bh.2` must be the whole range: the link counts through the end of its counter, got 359999",
+        ),
+    ] {
+        let text = format!("{AXIS}{BUS}[drive.objects]\n\"{object}\" = {value}\n");
+        let parsed = scenario::parse("network", &text, None).unwrap_or_else(|error| panic!("{error}"));
+        let refused = Bench::new(&parsed.scenario, &Exact).err().map(|error| error.to_string());
+        assert_eq!(refused.as_deref(), Some(expected));
+    }
 }

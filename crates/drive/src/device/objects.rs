@@ -1,18 +1,19 @@
 //! The settings of a drive as its object dictionary has them, and back.
 //!
 //! A drive takes them at power-on and whenever the [generation](Dictionary::generation) has changed. Objects without a
-//! setting here: those that come with every frame, and 6073h, 6075h, 607Bh, 6088h and 60F2h.
+//! setting here: those that come with every frame, and 6073h, 6075h and 6088h.
 //!
 //! An object holds whole units within its range, and that range may be too narrow for a setting: 65 535 velocity units of
 //! 1 nm/s are a velocity window (606Dh) of 66 µm/s. Then it shows the nearest that it can. A setting is as the object says only
 //! where the object does not show it so or the master has written it ([`Dictionary::is_written`]): neither the range nor the
 //! unit of an object changes what nobody wrote.
-use super::{Params, Units, cycle};
+use super::{Params, Rotary, Units, cycle};
 use crate::modes::homing;
 use crate::modes::interpolated::{RecordError, SubMode, TimePeriod};
 use crate::modes::profile::Ramp;
 use servobench_base::ParamError;
 use servobench_cia402::SdoError;
+use servobench_cia402::modulo::{PositionRange, RotaryAxisOption};
 use servobench_cia402::objects::{Dictionary, Value, entry_of, parameter as p};
 use servobench_cia402::units::{AxisUnit, Object, UnitError};
 use thiserror::Error;
@@ -83,6 +84,8 @@ const fn open(index: u16, scale: Scale) -> Quantity {
 const MAX_TORQUE: Quantity = open(0x6072, Scale::Effort);
 const PROFILE_JERK: Quantity = value(0x60A4, 1, Scale::Rate);
 const RATED_TORQUE: Object = Object { index: 0x6076, subindex: 0 };
+const MIN_POSITION_RANGE_LIMIT: Object = Object { index: 0x607B, subindex: 1 };
+const MAX_POSITION_RANGE_LIMIT: Object = Object { index: 0x607B, subindex: 2 };
 const MIN_POSITION_LIMIT: Object = Object { index: 0x607D, subindex: 1 };
 const MAX_POSITION_LIMIT: Object = Object { index: 0x607D, subindex: 2 };
 /// Motion profile types (6086h).
@@ -144,6 +147,11 @@ impl Params {
             (JERK_LIMITED, Ramp::Linear) => Ramp::JerkLimited(PROFILE_JERK.units(objects)? * units.from_rate(1)),
             _ => Ramp::Linear,
         };
+        let range = objects.position_range();
+        settings.rotary = Rotary {
+            range: (range != PositionRange::default()).then_some(range),
+            direction: RotaryAxisOption::of_code(objects.get(p::POSITIONING_OPTION_CODE)),
+        };
         settings.homing.method = homing::Method::from_number(objects.get(p::HOMING_METHOD))?;
         settings.sub_mode = SubMode::from_code(objects.get(p::INTERPOLATION_SUB_MODE))?;
         settings.segment = segment(objects)?;
@@ -184,8 +192,14 @@ impl Params {
             objects.preset(Object { index, subindex: 0 }, code.into())?;
         }
         objects.preset(Object { index: 0x6098, subindex: 0 }, self.homing.method.number().into())?;
-        let [min, max] = software_limits_shown(units, self.limits.position)?;
+        let Rotary { range, direction } = self.rotary;
+        let range = range.unwrap_or_default();
+        objects.preset(Object { index: 0x60F2, subindex: 0 }, direction.code().into())?;
         // Out of the way first: the ends do not change places.
+        objects.preset(MIN_POSITION_RANGE_LIMIT, i32::MIN.into())?;
+        objects.preset(MAX_POSITION_RANGE_LIMIT, range.max().into())?;
+        objects.preset(MIN_POSITION_RANGE_LIMIT, range.min().into())?;
+        let [min, max] = software_limits_shown(units, self.limits.position)?;
         objects.preset(MIN_POSITION_LIMIT, i32::MIN.into())?;
         objects.preset(MAX_POSITION_LIMIT, max)?;
         Ok(objects.preset(MIN_POSITION_LIMIT, min)?)

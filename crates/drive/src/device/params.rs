@@ -1,5 +1,5 @@
 //! What the drive is set to: the objects that do not come with every frame, in SI.
-use super::{Units, Window, cycle};
+use super::{Rotary, Units, Window, cycle};
 use crate::modes::interpolated::{SubMode, TimePeriod};
 use crate::modes::profile::Ramp;
 use crate::modes::{Moment, Steepness, cyclic, homing, interpolated, profile};
@@ -25,6 +25,8 @@ pub struct Params {
     pub units: Units,
     /// Counter of the positions on the bus (607Ah, 6064h), up to 32 bits.
     pub counter: Counter,
+    /// Positions within a range (607Bh, 60F2h).
+    pub rotary: Rotary,
     /// What no mode may exceed.
     pub limits: Limits,
     /// The profile that a frame's own values replace where they are not zero.
@@ -93,6 +95,7 @@ impl Default for Params {
             power: PowerParams::default(),
             units: units.expect("ratios of ones and a million are in range"),
             counter: Counter::signed(32).expect("a width from 8 to 64"),
+            rotary: Rotary::default(),
             limits: Limits {
                 velocity: f64::INFINITY,
                 profile_velocity: f64::INFINITY,
@@ -139,6 +142,7 @@ impl Params {
         if bits > i32::BITS {
             return Err(ParamError { name: "counter", value: bits.into(), bound: "at most the 32 bits of its object" });
         }
+        self.check_rotary()?;
         self.cyclic_position().check()?;
         let Limits { velocity, profile_velocity, acceleration, deceleration, effort: [forward, backward], position } =
             self.limits;
@@ -172,12 +176,13 @@ impl Params {
         self.limits.profile_velocity.min(self.limits.velocity)
     }
 
-    pub(super) const fn profile_position(&self) -> profile::position::Params {
+    pub(super) fn profile_position(&self) -> profile::position::Params {
         profile::position::Params {
             ramp: self.profile.ramp,
             end_velocity: self.profile.end_velocity,
             window: self.position,
             range: self.limits.position,
+            turn: self.turn(),
         }
     }
 

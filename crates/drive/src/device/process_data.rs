@@ -22,7 +22,7 @@ impl State {
                 clippy::cast_possible_truncation,
                 reason = "32 bits of an object, as an unsigned counter uses them"
             )]
-            position: p.counter.wrap(self.position(p)) as i32,
+            position: p.shown(self.position(p)) as i32,
             velocity: p.units.velocity(velocity),
             torque: p.units.effort(effort),
             following_error: if follows_position { p.units.distance(self.following_error) } else { 0 },
@@ -34,8 +34,8 @@ impl State {
     }
 
     /// Position in user-defined units, which the counter of the bus shows the end of.
-    fn position(&self, p: &Params) -> i128 {
-        p.units.position(self.increments.wrapping_sub(self.origin)).into()
+    fn position(&self, p: &Params) -> i64 {
+        p.units.position(self.increments.wrapping_sub(self.origin))
     }
 
     /// Converts a frame.
@@ -53,10 +53,10 @@ impl State {
             Some(Mode::CyclicSynchronousPosition) => frame.position_offset,
             _ => 0,
         };
-        let asked = i128::from(frame.target_position) + i128::from(offset);
+        let asked = i64::from(frame.target_position) + i64::from(offset);
         let target = match self.wanted {
-            Some(Mode::ProfilePosition) => here - p.counter.wrap(here) + p.counter.wrap(asked),
-            _ => p.counter.nearest(asked, here),
+            Some(Mode::ProfilePosition) => i128::from(here) - p.shown(here) + p.counter.wrap(asked.into()),
+            _ => p.nearest(asked, here),
         };
         #[expect(clippy::cast_possible_truncation, reason = "within a turn of the counter of 64 bits of units")]
         let position = p.units.from_position(target as i64);

@@ -1,6 +1,6 @@
 //! A drive over an axis that does exactly what it is asked, with a master that holds its frame.
 use servobench_base::Setpoint;
-use servobench_cia402::{Actuals, Command, Commands, Controlword, Mode, StatusBit};
+use servobench_cia402::{Actuals, Command, Commands, ControlBit, Controlword, Mode, StatusBit};
 use servobench_drive::Demand;
 use servobench_drive::device::{self, Inputs, Measured, Outputs, Params, State};
 
@@ -85,6 +85,31 @@ impl Axis {
             self.frame.target_position = self.actuals().position;
             self.cycle();
         }
+    }
+
+    pub(crate) fn set(&mut self, bit: ControlBit, set: bool) {
+        self.frame.controlword = self.frame.controlword.with(bit, set);
+    }
+
+    /// Clears bit 4, sets it, and says whether the set-point was acknowledged at once.
+    pub(crate) fn give(&mut self, target: i32) -> bool {
+        self.set(ControlBit::ModeSpecific4, false);
+        self.step(true);
+        let was_free = !self.has(StatusBit::ModeSpecific12);
+        self.frame.target_position = target;
+        self.set(ControlBit::ModeSpecific4, true);
+        self.step(true);
+        was_free && self.has(StatusBit::ModeSpecific12)
+    }
+
+    /// Steps until the target is reached.
+    pub(crate) fn settle(&mut self) -> u32 {
+        (1..100_000)
+            .find(|_| {
+                self.step(true);
+                self.has(StatusBit::TargetReached)
+            })
+            .unwrap()
     }
 
     pub(crate) fn actuals(&self) -> Actuals {

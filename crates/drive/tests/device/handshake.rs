@@ -15,35 +15,10 @@ fn axis() -> Axis {
 }
 
 impl Axis {
-    fn set(&mut self, bit: ControlBit, set: bool) {
-        self.frame.controlword = self.frame.controlword.with(bit, set);
-    }
-
-    /// Clears bit 4, sets it, and says whether the set-point was acknowledged at once.
-    fn give(&mut self, target: i32) -> bool {
-        self.set(ControlBit::ModeSpecific4, false);
-        self.step(true);
-        let was_free = !self.has(StatusBit::ModeSpecific12);
-        self.frame.target_position = target;
-        self.set(ControlBit::ModeSpecific4, true);
-        self.step(true);
-        was_free && self.has(StatusBit::ModeSpecific12)
-    }
-
     fn steps(&mut self, count: u32) {
         for _ in 0..count {
             self.step(true);
         }
-    }
-
-    /// Steps until the target is reached.
-    fn settle(&mut self) -> u32 {
-        (1..100_000)
-            .find(|_| {
-                self.step(true);
-                self.has(StatusBit::TargetReached)
-            })
-            .unwrap()
     }
 
     fn micrometres(&self) -> f64 {

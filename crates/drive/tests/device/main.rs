@@ -6,6 +6,7 @@ mod halt;
 mod handshake;
 mod homing;
 mod interpolated;
+mod modulo;
 mod power;
 mod profile_position;
 mod profile_velocity;

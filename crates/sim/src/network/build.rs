@@ -327,6 +327,10 @@ fn with_objects(
             .map_err(|error| BuildError::Object { key: write.key.clone(), error: Box::new(error) })?;
     }
     let written = settings.with_objects(&objects, units.unit)?;
+    if let Some(range) = written.rotary.range {
+        let bound = "the whole range: the link counts through the end of its counter";
+        return Err(ParamError { name: "drive.objects.607Bh.2", value: range.max().into(), bound }.into());
+    }
     // How many steps there are between two frames is a matter of the bus.
     let settings = device::Params { cycle: settings.cycle, ..written };
     Ok((settings, settings.units.rated_effort()))

@@ -15,12 +15,17 @@
 //! the edge is lost. While the axis is halted nothing is taken, but bit 12 falls as ever. Afterwards the move goes on, and an edge is
 //! taken whose bit 4 is still set.
 //!
+//! On an axis whose positions repeat an absolute target is at the end of a [`Turn`] from where the axis is asked to be, or, for a
+//! set-point that has to wait, from the target before it. With a direction of its own (60F2h) a target may be too near for a moving
+//! axis to stop there: it is passed, and come back to.
+//!
 //! # The way
 //!
 //! Ramps are linear or jerk-limited (6086h), from whatever the axis is doing. Speeding up is by the profile's acceleration, slowing
 //! down by its deceleration. A target is passed at the end velocity (6082h), at less where the way is too short for it, and a
 //! set-point without a stop (bit 9) in the same way at the profile velocity: no axis turns back to gain a run-up.
 mod set_point;
+mod turn;
 
 use super::Ramp;
 use super::way::Way;
@@ -31,6 +36,8 @@ use servobench_base::{ParamError, Setpoint, non_negative};
 use servobench_cia402::ControlBit;
 use servobench_motion::online::Target;
 use set_point::SetPoint;
+
+pub use turn::Turn;
 
 /// What does not come with a set-point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,6 +50,8 @@ pub struct Params {
     pub window: Window,
     /// Lowest and highest target (607Dh).
     pub range: Option<[f64; 2]>,
+    /// How an absolute target is reached on an axis whose positions repeat; `None` straight.
+    pub turn: Option<Turn>,
 }
 
 impl Params {
@@ -148,7 +157,11 @@ impl State {
         if !at_once && self.waiting.is_some() {
             return;
         }
-        let asked = if has(ControlBit::ModeSpecific6) { self.target + targets.distance } else { targets.position };
+        let asked = match &p.turn {
+            _ if has(ControlBit::ModeSpecific6) => self.target + targets.distance,
+            Some(turn) => turn.target(if at_once { now.demanded.x } else { self.target }, targets.distance),
+            None => targets.position,
+        };
         self.target = p.range.map_or(asked, |[lowest, highest]| asked.clamp(lowest, highest));
         self.is_limited = self.target.to_bits() != asked.to_bits();
         self.handshake.acknowledges = true;
