@@ -22,6 +22,9 @@ pub trait Block {
     /// Whether its state can be saved and restored.
     fn saves_state(&self) -> bool;
 
+    /// Whether `output` follows `input` without a step (direct feedthrough); true where that is not known.
+    fn feeds_through(&self, output: usize, input: usize) -> bool;
+
     /// Goes from `time` to `time + length` (s).
     ///
     /// # Errors
@@ -46,4 +49,32 @@ pub trait Block {
     /// # Errors
     /// The block's own.
     fn restore(&mut self) -> Result<(), Self::Error>;
+}
+
+impl<B: Block + ?Sized> Block for Box<B> {
+    type Error = B::Error;
+
+    fn saves_state(&self) -> bool {
+        (**self).saves_state()
+    }
+
+    fn feeds_through(&self, output: usize, input: usize) -> bool {
+        (**self).feeds_through(output, input)
+    }
+
+    fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<Step, Self::Error> {
+        (**self).step(time, length, inputs)
+    }
+
+    fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), Self::Error> {
+        (**self).read(inputs, outputs)
+    }
+
+    fn save(&mut self) -> Result<(), Self::Error> {
+        (**self).save()
+    }
+
+    fn restore(&mut self) -> Result<(), Self::Error> {
+        (**self).restore()
+    }
 }
