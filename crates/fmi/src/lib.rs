@@ -5,6 +5,7 @@
 //!
 //! Source: Functional Mock-up Interface Specification 2.0.5 and 3.0.2, Modelica Association.
 
+pub mod abi;
 mod slave;
 
 pub use slave::{Capabilities, LogLine, Port, Progress, Severity, Slave, SlaveError};
