@@ -16,6 +16,7 @@ use crate::chain::Chain;
 use crate::friction::Grip;
 use crate::mechanics::{Actuation, BodyState, Drive, Engine, Input, Mechanics, MechanicsError, MechanicsSetup, Model};
 use nalgebra::DMatrix;
+use std::sync::Arc;
 
 const NAME: &str = "exact";
 const MAX_BODIES: usize = Chain::MAX_BODIES;
@@ -59,13 +60,14 @@ impl Engine for Exact {
 type Hold<const W: usize> = Vec<[f64; W]>;
 
 /// A chain under zero-order hold, `W` rows wide.
+#[derive(Clone)]
 struct ExactChain<const W: usize> {
-    chain: Chain,
+    chain: Arc<Chain>,
     prescribed: bool,
     /// Tick length (s).
     step: f64,
     /// One entry for each set of stuck bodies, body i being bit i; only those that dry friction can reach are there.
-    holds: Vec<Option<Hold<W>>>,
+    holds: Arc<[Option<Hold<W>>]>,
     y: [f64; W],
     bodies: Vec<BodyState>,
     /// Own coordinate per axis coordinate, of each body; and velocity per travel in a tick.
@@ -98,6 +100,7 @@ impl<const W: usize> ExactChain<W> {
         for i in 0..n {
             y[n - 1 + i] = setup.step * chain.bodies()[i].transmission * bodies[i].velocity;
         }
+        let chain = Arc::new(chain);
         Self { chain, prescribed, step: setup.step, holds, y, bodies, per_axis, per_travel, any_dry: can_stick != 0 }
     }
 
@@ -197,6 +200,10 @@ impl<const W: usize> Mechanics for ExactChain<W> {
         } else {
             Err(MechanicsError::Diverged { engine: NAME, message: "a position or velocity is not finite".into() })
         }
+    }
+
+    fn copy(&self) -> Option<Box<dyn Mechanics>> {
+        Some(Box::new(self.clone()))
     }
 }
 

@@ -60,6 +60,11 @@ pub trait Mechanics: Send {
     /// # Errors
     /// [`MechanicsError::Diverged`] or [`MechanicsError::Native`]; the mechanics must not be used afterwards.
     fn advance(&mut self, input: &Input) -> Result<(), MechanicsError>;
+
+    /// The same mechanics at the same tick; `None` where the engine cannot copy it.
+    fn copy(&self) -> Option<Box<dyn Mechanics>> {
+        None
+    }
 }
 
 /// What an engine simulates.

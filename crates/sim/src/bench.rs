@@ -5,15 +5,15 @@ mod objections;
 mod plant;
 
 use crate::channels::{Amplifier, Equipment, Selection, WriterRates};
+use crate::closed_loop::{ClosedLoop, Control, Source};
 use crate::disturbance::Disturbances;
 use crate::error::{BuildError, check_length};
 use crate::limit_watch::LimitWatch;
 use crate::network::Network;
-use crate::power::PowerStage;
 use crate::program::Program;
 use servobench_base::{Rate, Setpoint};
 use servobench_drive as drive;
-use servobench_plant::{Encoder, Engine, Mechanics, Switches};
+use servobench_plant::Engine;
 use servobench_scenario::{self as scenario, Actuator, Feedback, Scenario};
 use servobench_trace::{About, Event, Recorder};
 
@@ -22,45 +22,16 @@ const TAIL: f64 = 0.5;
 /// Memory granted to one recording (GB).
 const RECORDING_LIMIT: f64 = 4.0;
 
-/// A closed loop at tick 0.
+/// A closed loop at tick 0, and what is recorded of it.
 pub struct Bench {
-    pub(crate) base_rate: Rate,
     pub(crate) ticks: u64,
-    pub(crate) source: Source,
-    pub(crate) control: Option<Control>,
-    pub(crate) power: PowerStage,
-    pub(crate) mechanics: Box<dyn Mechanics>,
-    /// Whether the motor follows the set-point exactly.
-    pub(crate) prescribed: bool,
-    /// Axis coordinate per motor coordinate.
-    pub(crate) transmission: f64,
-    pub(crate) disturbances: Disturbances,
+    pub(crate) closed_loop: ClosedLoop,
     pub(crate) selection: Selection,
     pub(crate) recorder: Recorder,
     /// Base ticks from row to row, and to the next one. One, unless the run is too long for that.
     pub(crate) record_every: u32,
     pub(crate) ticks_to_row: u32,
     pub(crate) watch: LimitWatch,
-    /// Limit and home switches, index pulse; and where the motor was at the last tick.
-    pub(crate) switches: Switches,
-    pub(crate) motor_before: f64,
-}
-
-/// Where the loops have their demand from.
-pub(crate) enum Source {
-    /// Every tick has its set-point.
-    Program(Box<Program>),
-    /// A motion task sends it over a fieldbus; the loops follow so long after it (s).
-    Network(Box<Network>, f64),
-}
-
-/// The firmware and the sensors it is wired to.
-pub(crate) struct Control {
-    pub(crate) params: drive::Params,
-    pub(crate) state: drive::State,
-    pub(crate) motor_encoder: Encoder,
-    /// The encoder on the load, when it closes the position loop.
-    pub(crate) load_encoder: Option<Encoder>,
 }
 
 impl Bench {
@@ -129,24 +100,21 @@ impl Bench {
                 Source::Network(Box::new(network), delays.sum() as f64 * base_rate.period())
             }
         };
-        Ok(Self {
+        let closed_loop = ClosedLoop {
             base_rate,
-            ticks,
             source,
+            begun: None,
             control,
             power,
             mechanics,
             prescribed: matches!(scenario.actuator, Actuator::Prescribed),
             transmission: scenario.axis.transmission,
             disturbances,
-            selection,
-            recorder,
-            record_every,
-            ticks_to_row: 0,
-            watch: LimitWatch::default(),
             switches: plant::switches(&scenario.axis.switches)?,
             motor_before,
-        })
+        };
+        let watch = LimitWatch::default();
+        Ok(Self { ticks, closed_loop, selection, recorder, record_every, ticks_to_row: 0, watch })
     }
 }
 

@@ -4,6 +4,7 @@
 
 mod bench;
 mod channels;
+mod closed_loop;
 mod disturbance;
 mod error;
 mod limit_watch;
@@ -11,6 +12,7 @@ mod network;
 mod power;
 mod program;
 mod run;
+mod stepper;
 mod thinning;
 
 pub use bench::Bench;
@@ -18,4 +20,5 @@ pub use error::BuildError;
 pub use network::Unsendable;
 pub use program::Program;
 pub use run::{Failure, Outcome, Reason};
+pub use stepper::{Binding, External, Snapshot, States, Stepper};
 pub use thinning::thinned;

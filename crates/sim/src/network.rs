@@ -20,6 +20,7 @@ mod units;
 
 pub use points::Unsendable;
 
+use crate::stepper::States;
 use own_way::OwnWay;
 use plc::Plc;
 use reference::DelayedReference;
@@ -37,7 +38,7 @@ use signals::Signals;
 use underway::Underway;
 
 /// From the motion task to the door of the drive.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Network {
     task: MotionTask,
     /// Model of the axis that the motion task feeds forward with.
@@ -74,7 +75,7 @@ pub(crate) struct Network {
 }
 
 /// What commands the axis.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 enum MotionTask {
     /// The moves of `[[program]]`.
     Moves(Box<Underway>),
@@ -84,8 +85,28 @@ enum MotionTask {
     Plc(Box<Plc>),
 }
 
+/// What the motion task is told at a tick.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Asked {
+    /// The time (s).
+    pub(crate) t: f64,
+    /// The time of the program (s), which begins later where somebody else says when; `None` before that.
+    pub(crate) program: Option<f64>,
+    /// What the axis is to follow instead of the program.
+    pub(crate) setpoint: Option<Setpoint>,
+}
+
+/// What a cycle of the motion task is to do.
+#[derive(Debug, Clone, Copy)]
+enum Now {
+    /// The program, at its time (s).
+    Program(f64),
+    /// Somebody else's set-point.
+    Follow(Setpoint),
+}
+
 /// What a cycle of the motion task gives.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Step {
     command: AxisCommand,
     /// What the axis is to follow; `None` where the drive finds its own way, or none.
@@ -95,12 +116,19 @@ struct Step {
 impl MotionTask {
     fn cycle(
         &mut self,
-        t: f64,
+        now: Now,
         feedback: &AxisFeedback,
         origin: f64,
         recorder: &mut Recorder,
         sample: impl Fn(Setpoint) -> Sample,
     ) -> Result<Step, String> {
+        let t = match now {
+            Now::Program(t) => t,
+            Now::Follow(setpoint) => {
+                let command = AxisCommand { power: true, reset: false, task: Task::Follow(sample(setpoint)) };
+                return Ok(Step { command, setpoint: Some(setpoint) });
+            }
+        };
         match self {
             Self::Moves(moves) => {
                 let now = moves.turn(feedback).unwrap_or(0.0);
@@ -132,12 +160,12 @@ pub(crate) struct Seen {
 }
 
 impl Network {
-    /// Goes through base tick `k`, at `t` (s), and returns what the loops are to do. `pulse` is where an index pulse came in
+    /// Goes through base tick `k` and returns what the loops are to do. `pulse` is where an index pulse came in
     /// this tick; the drive looks at its sensors when it steps.
     pub(crate) fn step(
         &mut self,
         k: u64,
-        t: f64,
+        asked: &Asked,
         pulse: Option<f64>,
         see: impl FnOnce() -> Seen,
         recorder: &mut Recorder,
@@ -147,10 +175,10 @@ impl Network {
         }
         let (params, state) = &mut self.bus;
         if let Some(cycle) = bus::step(&params.with_faults(&self.faults), state, Tick(k)) {
-            self.step_bus(&cycle, t, recorder);
+            self.step_bus(&cycle, asked, recorder);
         }
         if self.drive_turn.is_due(self.drive_every) {
-            self.step_drive(t, &see(), recorder);
+            self.step_drive(asked.t, &see(), recorder);
         }
         &self.demand
     }
@@ -174,17 +202,20 @@ impl Network {
         self.signals.of_drive(t, state, recorder);
     }
 
-    fn step_bus(&mut self, cycle: &bus::Cycle, t: f64, recorder: &mut Recorder) {
+    fn step_bus(&mut self, cycle: &bus::Cycle, asked: &Asked, recorder: &mut Recorder) {
         let origin = self.origin();
         let (params, state) = &mut self.link;
         let (wire, frames) = &mut self.bus;
         let actuals = frames.to_master(wire, cycle, self.drive.1.actuals(&self.drive.0));
         let mut torn = None;
         while let Some(turn) = task::step(&self.turns.0.with_faults(&self.task_faults), &mut self.turns.1, cycle.due) {
-            if cycle.master_stopped {
-                continue;
-            }
-            let step = self.task.cycle(t, &state.feedback(params), origin, recorder, |setpoint| {
+            let now = match (asked.setpoint, asked.program) {
+                _ if cycle.master_stopped => continue,
+                (Some(setpoint), _) => Now::Follow(setpoint),
+                (None, Some(t)) => Now::Program(t),
+                (None, None) => continue,
+            };
+            let step = self.task.cycle(now, &state.feedback(params), origin, recorder, |setpoint| {
                 let motor = self.model.motor_reference(setpoint);
                 let torque = self.transmission * self.model.effort(setpoint);
                 Sample { x: motor.position, v: motor.velocity, a: setpoint.a, torque }
@@ -220,7 +251,7 @@ impl Network {
         if let Some(arrived) = frames.to_drive(wire, cycle, commands) {
             self.frame = Some(arrived);
         }
-        self.signals.of_link(t, state, recorder);
+        self.signals.of_link(asked.t, state, recorder);
     }
 
     /// The set-point that the loops follow, so long after the drive's last step.
@@ -261,6 +292,20 @@ impl Network {
     fn origin(&self) -> f64 {
         let (params, state) = &self.drive;
         params.units.metres_or_radians(state.origin())
+    }
+
+    /// The states of link, drive and axis.
+    pub(crate) fn states(&self) -> States {
+        let (drive, link) = (&self.drive.1, &self.link.1);
+        States {
+            drive: Some(drive.power()),
+            drive_fault: drive.fault().map_or(0, device::Fault::code),
+            link_fault: link.fault(),
+            axis: match &self.task {
+                MotionTask::Plc(plc) => Some(plc.state()),
+                MotionTask::Moves(_) | MotionTask::OwnWay(_) => None,
+            },
+        }
     }
 
     /// Why the motion task gave up, once.

@@ -16,6 +16,7 @@ pub struct Recorder {
     recording: Recording,
     /// Up to [`BLOCK`] rows, one after the other.
     block: Vec<f64>,
+    is_silent: bool,
 }
 
 impl Recorder {
@@ -25,7 +26,13 @@ impl Recorder {
         let block = Vec::with_capacity(BLOCK * channels.len());
         let channels = channels.into_iter().map(|spec| Channel { spec, values: Vec::with_capacity(rows) }).collect();
         let recording = Recording { about, rate, channels, moves: vec![], events: vec![], signals: vec![] };
-        Self { recording, block }
+        Self { recording, block, is_silent: false }
+    }
+
+    /// A recorder that keeps nothing, for a loop that nobody records and that may go on for ever.
+    #[must_use]
+    pub fn silent(about: About, rate: Rate) -> Self {
+        Self { is_silent: true, ..Self::new(about, rate, vec![], 0) }
     }
 
     /// Appends one value to every channel, in the order of the channels.
@@ -58,12 +65,16 @@ impl Recorder {
 
     /// Notes a move.
     pub fn note_move(&mut self, made: Move) {
-        self.recording.moves.push(made);
+        if !self.is_silent {
+            self.recording.moves.push(made);
+        }
     }
 
     /// Notes an event.
     pub fn note_event(&mut self, event: Event) {
-        self.recording.events.push(event);
+        if !self.is_silent {
+            self.recording.events.push(event);
+        }
     }
 
     /// A signal that has no value yet.
@@ -77,6 +88,9 @@ impl Recorder {
     /// # Panics
     /// When the signal is that of another recorder: the loop that notes it is wrong.
     pub fn note_value(&mut self, SignalId(index): SignalId, time: f64, value: &str) {
+        if self.is_silent {
+            return;
+        }
         let changes = &mut self.recording.signals[index].changes;
         if changes.last().is_none_or(|(_, last)| last != value) {
             changes.push((time, value.into()));

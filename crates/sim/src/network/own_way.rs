@@ -17,14 +17,14 @@ const ROUNDING: f64 = 1e-9;
 const AHEAD: usize = 16;
 
 /// A program of ways under way.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct OwnWay {
     moves: Underway,
     orders: Orders,
 }
 
 /// What is sent.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 enum Orders {
     /// Set-points: when, where to, and the largest velocity and acceleration.
     Positions { set_points: Vec<(f64, [f64; 3])>, sent: usize },

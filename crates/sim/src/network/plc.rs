@@ -17,7 +17,7 @@ use servobench_scenario as scenario;
 use servobench_trace::{Event, Move, Recorder};
 
 /// A program of function blocks and the axis that they command.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Plc {
     axis: Axis,
     calls: Vec<Call>,
@@ -54,6 +54,11 @@ impl Plc {
         let calls: Vec<Call> = calls.collect();
         let known = Known { t: 0.0, position: 0.0, rises: calls.iter().map(Call::rises).collect() };
         Ok(Self { axis, calls, known, state, homed, followed: Setpoint::default(), made: Vec::new() })
+    }
+
+    /// The state of the axis.
+    pub(super) fn state(&self) -> AxisState {
+        self.axis.state()
     }
 
     /// One cycle at `t` (s). The drive counts from `origin`, a position of the machine.

@@ -30,7 +30,7 @@ const FINE: f64 = 8_388_607.0;
 const COARSE: f64 = 100.0;
 
 /// The points of a table, each with the way from the one before.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Points {
     points: Vec<Point>,
     sent: usize,

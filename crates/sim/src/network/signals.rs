@@ -7,7 +7,7 @@ use servobench_fieldbus::{Fault, Interpolation};
 use servobench_trace::{Recorder, SignalId};
 
 /// A state of which only the changes are noted.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Watched<T> {
     id: SignalId,
     last: Option<T>,
@@ -50,7 +50,7 @@ fn latched(errors: u32) -> String {
 }
 
 /// What there is to say of drive and link.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Signals {
     power: Watched<PowerState>,
     mode: Watched<Option<Mode>>,

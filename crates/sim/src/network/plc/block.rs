@@ -22,6 +22,8 @@ pub(super) trait Block: fmt::Debug {
     fn load(&mut self, said: &Said);
     /// One call; fills `values` with the outputs, TRUE is 1.
     fn step(&mut self, axis: &mut Axis, execute: bool, values: &mut [f64]);
+    /// The same block in the same state.
+    fn copy(&self) -> Box<dyn Block>;
     /// What its error is, in words.
     fn error(&self) -> Option<String>;
 }
@@ -45,7 +47,18 @@ impl<B: FunctionBlock, K> fmt::Debug for Instance<B, K> {
     }
 }
 
-impl<B: FunctionBlock, K> Block for Instance<B, K> {
+impl Clone for Box<dyn Block> {
+    fn clone(&self) -> Self {
+        self.copy()
+    }
+}
+
+impl<B: FunctionBlock + Clone + 'static, K: Clone + 'static> Block for Instance<B, K> {
+    fn copy(&self) -> Box<dyn Block> {
+        let Self { read, lend, is_enabled, .. } = *self;
+        Box::new(Self { block: self.block.clone(), kept: self.kept.clone(), read, lend, is_enabled })
+    }
+
     fn name(&self) -> &'static str {
         B::NAME.name()
     }
@@ -188,8 +201,8 @@ pub(super) fn block(said: &Said) -> Box<dyn Block> {
 /// A block that is executed by the edge of Execute.
 fn executed<B, K>(said: &Said, block: B, read: fn(&Said) -> Option<K>, lend: Lend<B, K>) -> Box<dyn Block>
 where
-    B: FunctionBlock + 'static,
-    K: 'static,
+    B: FunctionBlock + Clone + 'static,
+    K: Clone + 'static,
 {
     Box::new(Instance { block, kept: read(said), read, lend, is_enabled: false })
 }
@@ -197,8 +210,8 @@ where
 /// A block that works as long as Enable is TRUE.
 fn enabled<B, K>(said: &Said, block: B, read: fn(&Said) -> Option<K>, lend: Lend<B, K>) -> Box<dyn Block>
 where
-    B: FunctionBlock + 'static,
-    K: 'static,
+    B: FunctionBlock + Clone + 'static,
+    K: Clone + 'static,
 {
     Box::new(Instance { block, kept: read(said), read, lend, is_enabled: true })
 }
@@ -206,7 +219,7 @@ where
 /// A block that reads something of the axis.
 fn reading<B>(said: &Said, block: B) -> Box<dyn Block>
 where
-    B: for<'i> FunctionBlock<Inputs<'i> = plcopen::ReadInputs> + 'static,
+    B: for<'i> FunctionBlock<Inputs<'i> = plcopen::ReadInputs> + Clone + 'static,
 {
     enabled(said, block, inputs::reading, |_, enable| plcopen::ReadInputs { enable })
 }

@@ -12,7 +12,7 @@ use servobench_trace::{Event, Move, Recorder, SignalId};
 const ROUNDING: f64 = 1e-9;
 
 /// A call under way.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Call {
     name: String,
     block: Box<dyn Block>,
@@ -184,7 +184,7 @@ impl Call {
 pub(super) type Rises = (String, Vec<(&'static str, Option<f64>)>);
 
 /// What conditions are about, in a cycle.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Known {
     /// Time (s).
     pub(super) t: f64,

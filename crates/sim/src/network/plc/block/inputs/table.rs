@@ -6,6 +6,7 @@ use servobench_scenario as scenario;
 use servobench_scenario::Block as Said;
 
 /// A table of positions.
+#[derive(Clone)]
 pub(in super::super) struct Positions {
     pairs: Vec<Pair>,
     is_absolute: bool,
@@ -40,6 +41,7 @@ impl Positions {
 }
 
 /// A table of velocities or accelerations.
+#[derive(Clone)]
 pub(in super::super) struct Rates {
     pairs: Vec<Pair>,
     buffer_mode: plcopen::BufferMode,

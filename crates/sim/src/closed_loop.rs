@@ -1,0 +1,201 @@
+//! The closed loop, in execution order.
+use crate::channels::Instant;
+use crate::disturbance::Disturbances;
+use crate::limit_watch::PerLimit;
+use crate::network::{Asked, Network, Seen};
+use crate::power::PowerStage;
+use crate::program::Program;
+use crate::run::Reason;
+use crate::stepper::External;
+use servobench_base::{Rate, Tick};
+use servobench_drive::velocity::Cut;
+use servobench_drive::{self as drive, Command, Demand, Feedback, Sensors};
+use servobench_plant::{Actuation, BodyState, Encoder, Input, Mechanics, Switches};
+use servobench_scenario::DisturbedBody;
+use servobench_trace::Recorder;
+
+/// All that a tick needs and leaves changed.
+pub(crate) struct ClosedLoop {
+    pub(crate) base_rate: Rate,
+    pub(crate) source: Source,
+    /// The tick at which the program began.
+    pub(crate) begun: Option<u64>,
+    pub(crate) control: Option<Control>,
+    pub(crate) power: PowerStage,
+    pub(crate) mechanics: Box<dyn Mechanics>,
+    /// Whether the motor follows the set-point exactly.
+    pub(crate) prescribed: bool,
+    /// Axis coordinate per motor coordinate.
+    pub(crate) transmission: f64,
+    pub(crate) disturbances: Disturbances,
+    /// Limit and home switches, index pulse; and where the motor was at the last tick.
+    pub(crate) switches: Switches,
+    pub(crate) motor_before: f64,
+}
+
+/// Where the loops have their demand from.
+#[derive(Clone)]
+pub(crate) enum Source {
+    /// Every tick has its set-point.
+    Program(Box<Program>),
+    /// A motion task sends it over a fieldbus; the loops follow so long after it (s).
+    Network(Box<Network>, f64),
+}
+
+/// The firmware and the sensors it is wired to.
+#[derive(Clone)]
+pub(crate) struct Control {
+    pub(crate) params: drive::Params,
+    pub(crate) state: drive::State,
+    pub(crate) motor_encoder: Encoder,
+    /// The encoder on the load, when it closes the position loop.
+    pub(crate) load_encoder: Option<Encoder>,
+}
+
+impl ClosedLoop {
+    /// Everything of tick `k` but the mechanics' way to the next one:
+    ///
+    /// ```text
+    /// sample → set-point → control → power stage → disturbances
+    /// ```
+    ///
+    /// Within control a slower loop's output reaches the faster loop in the same tick; the voltage of the current loop goes
+    /// out one period of that loop later. The power stage takes the motor's position and velocity at k, and its mean torque
+    /// over the tick drives the mechanics; a disturbance is held over the tick.
+    pub(crate) fn tick(&mut self, k: u64, external: &External, recorder: &mut Recorder) -> Instant {
+        if external.start && self.begun.is_none() {
+            self.begun = Some(k);
+        }
+        let (mut now, motor) = self.sample();
+        let command = self.control(k, external, motor, &mut now, recorder);
+        // The mean effort over the coming tick belongs into the row of this one; the current is the one at k.
+        now.current = self.power.current();
+        now.output = self.power.output(command);
+        now.effort = self.power.advance(command, motor, self.base_rate.period());
+        now.binds.voltage |= self.power.shortens_voltage();
+        now.motor_disturbance = self.disturbances.effort_at(DisturbedBody::Motor, k) + external.motor_effort;
+        now.load_disturbance = self.disturbances.effort_at(DisturbedBody::Load, k) + external.load_effort;
+        now.following_error = [now.motor_reference - now.motor.position, now.reference - now.load.position];
+        now
+    }
+
+    /// sample(k): the bodies in the axis coordinate, and the motor in its own.
+    pub(crate) fn sample(&self) -> (Instant, BodyState) {
+        let bodies = self.mechanics.bodies();
+        let own = bodies[0];
+        let motor =
+            BodyState { position: self.transmission * own.position, velocity: self.transmission * own.velocity };
+        let load = if bodies.len() == 1 { motor } else { bodies[bodies.len() - 1] };
+        let table = if bodies.len() == 3 { bodies[1] } else { BodyState::default() };
+        (Instant { motor, table, load, ..Instant::default() }, own)
+    }
+
+    /// set-point(k) and control(k): the firmware sees its sensors and what it is to do. `motor` is in the motor's own
+    /// coordinate.
+    fn control(
+        &mut self,
+        k: u64,
+        external: &External,
+        motor: BodyState,
+        now: &mut Instant,
+        recorder: &mut Recorder,
+    ) -> Command {
+        // Until the program begins it stays at its beginning.
+        let since = self.base_rate.time(Tick(k - self.begun.unwrap_or(k)));
+        let Some(control) = &mut self.control else {
+            if let Source::Program(program) = &mut self.source {
+                now.setpoint = external.setpoint.unwrap_or_else(|| program.at(since));
+            }
+            now.reference = now.setpoint.x;
+            now.motor_reference = now.setpoint.x;
+            return Command::Output(0.0);
+        };
+        let reading = control.motor_encoder.read(motor.position, motor.velocity);
+        let sensors = Sensors {
+            motor_position: reading.position,
+            motor_velocity: reading.velocity,
+            feedback: match control.load_encoder {
+                None => Feedback::Motor,
+                Some(encoder) => Feedback::Load(encoder.read(now.load.position, now.load.velocity).position),
+            },
+            current: self.power.measured_current(motor),
+        };
+        let Control { params, state, .. } = control;
+        let command = match &mut self.source {
+            Source::Program(program) => {
+                now.setpoint = external.setpoint.unwrap_or_else(|| program.at(since));
+                let command = drive::step(params, state, &Demand::position(now.setpoint), &sensors);
+                let (reference, motor_reference) = state.references(params);
+                (now.reference, now.motor_reference) = (reference.x, motor_reference.position);
+                command
+            }
+            Source::Network(network, _) => {
+                let switches = self.switches.read(now.load.position, self.motor_before, motor.position);
+                self.motor_before = motor.position;
+                let see = || Seen {
+                    position: sensors.closing_position(),
+                    velocity: state.velocity(params),
+                    effort: state.held().effort.effort,
+                    effort_is_cut: state.held().effort.cut.is_some(),
+                    following_error: state.following_error(params, &sensors),
+                    switches,
+                };
+                let t = self.base_rate.time(Tick(k));
+                let program = self.begun.map(|_| since);
+                let asked = Asked { t, program, setpoint: external.setpoint };
+                let demand = network.step(k, &asked, switches.index, see, recorder);
+                let command = drive::step(params, state, demand, &sensors);
+                now.setpoint = network.setpoint(now.motor.position);
+                (now.task, now.bus_position) = network.told();
+                (now.reference, now.motor_reference) = match network.reference(t) {
+                    Some((reference, motor)) => (reference.x, motor.position),
+                    None => (now.load.position, now.motor.position),
+                };
+                command
+            }
+        };
+        let held = state.held();
+        now.velocity_reference = held.velocity_reference;
+        now.effort_reference = held.effort.effort;
+        now.current_reference = held.current_reference;
+        now.voltage = held.current.computed;
+        now.binds = PerLimit {
+            voltage: held.current.saturated,
+            current: held.effort.cut == Some(Cut::Available),
+            effort: held.effort.cut == Some(Cut::Effort),
+        };
+        command
+    }
+
+    /// Integrates the mechanics to the next tick.
+    ///
+    /// # Errors
+    /// [`Reason`] why the loop cannot go on.
+    pub(crate) fn integrate(&mut self, now: &Instant) -> Result<(), Reason> {
+        if let Source::Network(network, _) = &mut self.source
+            && let Some(reason) = network.failure()
+        {
+            return Err(Reason::Program(reason));
+        }
+        let actuation = if self.prescribed { Actuation::Motion(now.setpoint) } else { Actuation::Effort(now.effort) };
+        self.mechanics.advance(&Input {
+            actuation,
+            motor_disturbance: now.motor_disturbance,
+            load_disturbance: now.load_disturbance,
+        })?;
+        Ok(())
+    }
+
+    /// The same loop at the same tick; `None` where the engine cannot copy its mechanics.
+    pub(crate) fn copy(&self) -> Option<Self> {
+        Some(Self {
+            source: self.source.clone(),
+            control: self.control.clone(),
+            power: self.power.clone(),
+            mechanics: self.mechanics.copy()?,
+            disturbances: self.disturbances.clone(),
+            switches: self.switches.clone(),
+            ..*self
+        })
+    }
+}
