@@ -71,6 +71,25 @@ fn an_aborting_move_takes_over_in_motion() {
     }
 }
 
+/// Oracle: by hand. At 0.3 s the axis is at 0.125 m with 0.5 m/s; it stops in 0.1 s at 0.15 m, and goes back 0.1 m in 0.1/0.5 + 0.5/5 s.
+#[test]
+fn an_aborting_move_of_order_2_takes_over_in_motion() {
+    let limits = "order = 2\nvelocity = \"0.5 m/s\"\n";
+    let (setpoints, moves) = run(&format!(
+        "[[program]]\nmove_to = \"1 m\"\n{limits}[[program]]\nmove_to = \"50 mm\"\naborts_after = \"0.3 s\"\n{limits}"
+    ));
+    // Of order 2 the velocity is continuous, the acceleration is not.
+    is_smooth(&setpoints, [0.5, 5.0, f64::INFINITY, f64::INFINITY]);
+    assert!((moves[1].0 - 0.3).abs() < 1e-12 && (moves[1].1 - 0.7).abs() < 1e-12, "{moves:?}");
+    for (tick, x, v) in
+        [(2400, 0.125, 0.5), (3200, 0.15, 0.0), (4000, 0.125, -0.5), (4800, 0.075, -0.5), (5600, 0.05, 0.0)]
+    {
+        let at = setpoints[tick];
+        assert!((at.x - x).abs() < 1e-12 && (at.v - v).abs() < 1e-12, "tick {tick}: {at:?}");
+    }
+    assert_eq!(*setpoints.last().unwrap(), Setpoint::at_rest(0.05));
+}
+
 #[test]
 fn what_has_ended_cannot_be_aborted() {
     let text = "[[program]]\nmove_to = \"1 m\"\n[[program]]\nmove_to = \"0 m\"\naborts_after = \"1.4 s\"\n";

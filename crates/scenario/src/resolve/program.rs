@@ -216,12 +216,6 @@ impl Context<'_> {
             }
         }
         let (order, limits) = self.keys.order_and_limits(self.step.span, said, report)?;
-        if order < 3 {
-            let span = self.keys.order.span().unwrap_or(self.step.span);
-            let message = "a move that is planned in motion has order 3 or 4, got 2";
-            said.once(span, |report| report.error(span, message, ""), report);
-            return None;
-        }
         let [velocity, acceleration] = self.keys.negative.map(Slot::optional);
         let negative = [velocity.ok()?.copied(), acceleration.ok()?.copied()];
         let effort = self.keys.online.optional().ok()?.copied().unwrap_or(PlanEffort::Fast);

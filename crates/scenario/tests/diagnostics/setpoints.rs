@@ -98,11 +98,6 @@ fn keys_that_a_way_does_not_have() {
         ),
         (
             "",
-            "[[program]]\nmove_to = \"1 mm\"\nonline = \"fast\"\norder = 2\n",
-            &["4:9: a move that is planned in motion has order 3 or 4, got 2"],
-        ),
-        (
-            "",
             &format!("[[program]]\nmove_to = \"1 mm\"\nend_velocity = \"31 m/min\"\n{TO}"),
             &["3:16: beyond the velocity limit, 0.5 in SI; lower it or raise the limit"],
         ),
