@@ -43,8 +43,9 @@ fn every_mistake_names_its_flag_and_the_way_out() {
             "--method is for a move from rest to rest: leave it out, or leave out --start-velocity",
         ),
         (
-            &format!("--order 2 {LIMITS} --end-velocity 1m/s"),
-            "--order must be 3 or 4 with --end-velocity: choose one, or leave out --end-velocity",
+            &format!("--order 2 {LIMITS} --start-acceleration 1m/s2"),
+            "--start-acceleration is not used by a move of order 2, whose acceleration may jump: leave it out, or choose \
+             --order 3",
         ),
         (&format!("--order 3 {LIMITS} --start-jerk 1m/s3"), "--start-jerk is not used by a move of order 3"),
         (

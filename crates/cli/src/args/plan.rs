@@ -3,7 +3,7 @@ use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
 const POINT_TO_POINT: &str = "From rest to rest (--profile point-to-point)";
-const ONLINE: &str = "From a state of motion, orders 3 and 4";
+const ONLINE: &str = "From a state of motion";
 const ROCKWELL: &str = "Rockwell axis move (--profile rockwell)";
 const TABLE: &str = "Through a table (--profile pvt, --profile position)";
 const FILTER: &str = "Behind the planner";

@@ -3,7 +3,6 @@ use super::arguments::Arguments;
 use super::point_to_point::order_and_limits;
 use crate::args::{PlanArgs, PlanOnline};
 use servobench_base::Setpoint;
-use servobench_motion::Order;
 use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target};
 use servobench_planner::{Replanning, Way};
 use servobench_scenario::Derivative;
@@ -41,13 +40,15 @@ pub(super) fn way(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Way>
     };
     let velocity = arguments.axis("to-velocity", Derivative::Velocity);
     let (order, limits) = order_and_limits(args, arguments);
-    if order == Some(Order::Second) {
-        arguments.mistake(format!("--order must be 3 or 4 with --{said}: choose one, or leave out --{said}"));
-    }
-    if args.order == Some(3) && arguments.is_given("start-jerk") {
-        arguments.mistake(
-            "--start-jerk is not used by a move of order 3, whose jerk may jump: leave it out, or choose --order 4",
-        );
+    for (flag, quantity, lowest) in [("start-acceleration", "acceleration", 3), ("start-jerk", "jerk", 4)] {
+        if let Some(own) = args.order.filter(|own| *own < lowest)
+            && arguments.is_given(flag)
+        {
+            arguments.mistake(format!(
+                "--{flag} is not used by a move of order {own}, whose {quantity} may jump: leave it out, or choose --order \
+                 {lowest}"
+            ));
+        }
     }
     let mut start = |name, derivative| {
         if arguments.is_given(name) { arguments.axis(name, derivative) } else { Some(0.0) }
