@@ -4,7 +4,8 @@
 - every object of its reading is one of the table, which is read as JSON, with the same name, type, access, default and range;
 - a slave that `canopen` makes of the data sheet and the drive give the same bytes or the same abort code for every read of
   every index around the areas of the drive, and for writes of every entry: what it holds, one byte more and one less;
-- the ends of every range that `canopen` read are taken, what is beyond is refused as too high or too low.
+- the ends of every range that `canopen` read are taken, what is beyond is refused as too high or too low;
+- `canopen` finds the process data objects in the data sheet by itself, and reads the values in a frame by their names.
 """
 
 import json
@@ -19,7 +20,8 @@ import canopen
 from canopen.objectdictionary import ODArray, ODVariable, datatypes
 
 ROOT = Path(__file__).resolve().parents[2]
-AREAS = (range(0x1000, 0x1020), range(0x2000, 0x2020), range(0x6030, 0x6120), range(0x64F0, 0x6510))
+PDO_AREAS = (range(0x1400, 0x1408), range(0x1600, 0x1608), range(0x1800, 0x1808), range(0x1A00, 0x1A08))
+AREAS = (range(0x1000, 0x1020), *PDO_AREAS, range(0x2000, 0x2020), range(0x6030, 0x6120), range(0x64F0, 0x6510))
 SUBINDICES = range(0, 6)
 TYPES = {
     "INTEGER8": datatypes.INTEGER8,
@@ -29,6 +31,21 @@ TYPES = {
     "UNSIGNED16": datatypes.UNSIGNED16,
     "UNSIGNED32": datatypes.UNSIGNED32,
     "UNSIGNED64": datatypes.UNSIGNED64,
+}
+# What CiA 402 maps by default: identifier of node 1, and the objects by name.
+PROCESS_DATA = {
+    "RPDO": [
+        (0x201, ["Controlword"]),
+        (0x301, ["Controlword", "Modes of operation"]),
+        (0x401, ["Controlword", "Target position"]),
+        (0x501, ["Controlword", "Target velocity"]),
+    ],
+    "TPDO": [
+        (0x181, ["Statusword"]),
+        (0x281, ["Statusword", "Modes of operation display"]),
+        (0x381, ["Statusword", "Position actual value"]),
+        (0x481, ["Statusword", "Velocity actual value"]),
+    ],
 }
 TOO_HIGH, TOO_LOW = "06090031", "06090032"
 
@@ -167,8 +184,27 @@ def range_ends(dictionary: canopen.ObjectDictionary) -> list[tuple[Access, str]]
     return ends
 
 
+def process_data(dictionary: canopen.ObjectDictionary) -> list[str]:
+    """What a master of `canopen` makes of the process data objects differently than CiA 402 has it."""
+    network = canopen.Network()
+    node = network.add_node(1, dictionary)
+    wrong = []
+    for kind, expected in PROCESS_DATA.items():
+        maps = node.rpdo if kind == "RPDO" else node.tpdo
+        maps.read(from_od=True)
+        found = [(pdo.cob_id, [variable.name for variable in pdo]) for pdo in maps.values() if pdo.enabled]
+        if found != expected:
+            wrong.append(f"{kind}s read as {found}")
+    # In Operation enabled at -1000000 units: little-endian, the statusword first.
+    network.notify(0x381, bytearray.fromhex("3702c0bdf0ff"), 0.0)
+    read = [variable.raw for variable in node.tpdo[3]]
+    if read != [0x0237, -1_000_000]:
+        wrong.append(f"a frame of TPDO 3 read as {read}")
+    return wrong
+
+
 def main() -> None:
-    """Compares the tables, the accesses and the ranges."""
+    """Compares the tables, the accesses, the ranges and the process data objects."""
     dictionary, table = read_data_sheet(), json.loads(example("json"))
     wrong = compare_tables(dictionary, table)
     print(f"object dictionary: {len(dictionary)} objects with {len(table)} values, as canopen {canopen.__version__} reads them")
@@ -179,6 +215,8 @@ def main() -> None:
     answers = ask([access for access, _ in ends])
     wrong += [f"{access} is answered by `{is_}`, not `{due}`" for (access, due), is_ in zip(ends, answers, strict=True) if is_ != due]
     print(f"{len(ends)} writes at and beyond the ends of ranges")
+    wrong += process_data(dictionary)
+    print(f"{sum(map(len, PROCESS_DATA.values()))} process data objects found by canopen")
     if wrong:
         raise SystemExit(f"{len(wrong)} differences, the first: " + "; ".join(wrong[:5]))
 

@@ -1,5 +1,5 @@
 //! Pages of `docs/` with tables made of the source. `SERVOBENCH_WRITE_DOCS=1 cargo test -p servobench-cia402` writes them.
-use servobench_cia402::objects::{Access, Admitted, Entry, OBJECTS, ObjectDescription};
+use servobench_cia402::objects::{Access, Admitted, Entry, NODE_ID, OBJECTS, ObjectDescription};
 use servobench_cia402::{AbortCode, ErrorCode, Source, TRANSITIONS};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -14,6 +14,27 @@ fn the_page_lists_every_transition() {
 #[test]
 fn the_page_lists_every_object() {
     hold("objects.md", "objects", &objects());
+}
+
+#[test]
+fn the_page_lists_every_process_data_object() {
+    let mut table = String::from("| PDO | parameters | COB-ID | mapping | objects |\n|---|---|---|---|---|\n");
+    let entries = |index: u16| OBJECTS.iter().find(|object| object.index == index).unwrap().entries();
+    for (kind, first) in [("RPDO", 0x1400), ("TPDO", 0x1800)] {
+        for number in 0..5 {
+            let (parameters, mapping) = (first + number, first + 0x200 + number);
+            let mapped: Vec<_> = entries(mapping).iter().map(|entry| format!("{:04X}h", entry.default >> 16)).collect();
+            // Bits 30 and 31 are not part of the identifier.
+            let identifier = match entries(parameters)[0].default & 0x7FF {
+                0 => "not valid".into(),
+                identifier => format!("{:X}h + node-ID", identifier - i64::from(NODE_ID)),
+            };
+            let (number, mapped) = (number + 1, mapped.join(", "));
+            writeln!(table, "| {kind} {number} | {parameters:04X}h | {identifier} | {mapping:04X}h | {mapped} |")
+                .unwrap();
+        }
+    }
+    hold("objects.md", "process data objects", &table);
 }
 
 #[test]
@@ -72,7 +93,8 @@ fn transitions() -> String {
 fn objects() -> String {
     let mut table = String::from("| object | name | type | access | PDO | default | values | unit |\n");
     table += "|---|---|---|---|---|---|---|---|\n";
-    for object in &OBJECTS {
+    let is_of_pdo = |object: &&ObjectDescription| (0x1400..0x1C00).contains(&object.index);
+    for object in OBJECTS.iter().filter(|object| !is_of_pdo(object)) {
         let is_list_of_constants = object.entries().iter().all(|entry| entry.access == Access::Constant);
         if is_list_of_constants && object.entries().len() > 4 {
             let values: Vec<String> = object.entries().iter().map(|entry| number(entry.default)).collect();

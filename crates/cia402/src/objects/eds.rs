@@ -1,6 +1,7 @@
 //! The table as an electronic data sheet (EDS, CiA 306-1), which tools and masters of CANopen read.
 use super::dictionary::Dictionary;
 use super::entry::{Access, Contents, Entry, HIGHEST_SUBINDEX, Mapping, ObjectDescription};
+use super::pdo::without_node_id;
 use super::table::OBJECTS;
 use super::value::DataType;
 use crate::units::Object;
@@ -53,7 +54,7 @@ impl Display for Eds<'_> {
             writeln!(f, "BaudRate_{kilobaud}=0")?;
         }
         f.write_str("SimpleBootUpMaster=0\nSimpleBootUpSlave=0\nGranularity=8\nDynamicChannelsSupported=0\n")?;
-        f.write_str("GroupMessaging=0\nNrOfRXPDO=0\nNrOfTXPDO=0\nLSS_Supported=0\n\n[DummyUsage]\n")?;
+        f.write_str("GroupMessaging=0\nNrOfRXPDO=5\nNrOfTXPDO=5\nLSS_Supported=0\n\n[DummyUsage]\n")?;
         for dummy in 1..=7 {
             writeln!(f, "Dummy{dummy:04}=0")?;
         }
@@ -121,7 +122,11 @@ impl Eds<'_> {
             (access, _) => access.abbreviation(),
         };
         writeln!(f, "\nObjectType=0x7\nDataType=0x{:04X}\nAccessType={access}", entry.data_type.code())?;
-        writeln!(f, "DefaultValue={}\nPDOMapping={}", entry.default_value(), u8::from(entry.mapping != Mapping::No))?;
+        match without_node_id(object.index, object.subindex, entry.default) {
+            Some(added) => writeln!(f, "DefaultValue=$NODEID+0x{added:X}")?,
+            None => writeln!(f, "DefaultValue={}", entry.default_value())?,
+        }
+        writeln!(f, "PDOMapping={}", u8::from(entry.mapping != Mapping::No))?;
         if let Some((lowest, highest)) = entry.range() {
             writeln!(f, "LowLimit={lowest}\nHighLimit={highest}")?;
         }

@@ -1,5 +1,6 @@
 //! The table of the objects.
 use super::entry::{Access, Admitted, Contents, Entry, Mapping, ObjectDescription};
+use super::pdo::{RPDO_MAPPINGS, RPDO_PARAMETERS, TPDO_MAPPINGS, TPDO_PARAMETERS};
 use super::value::DataType::{self, Integer8, Integer16, Integer32, Unsigned8, Unsigned16, Unsigned32, Unsigned64};
 use crate::Mode;
 use crate::modulo::POSITIONING_OPTION_BITS;
@@ -60,7 +61,7 @@ const SUPPORTED_METHODS: [Entry; HOMING_METHODS.len()] = {
 };
 
 /// Every object, by index.
-pub static OBJECTS: [ObjectDescription; 80] = [
+pub static OBJECTS: [ObjectDescription; 100] = [
     // Communication profile (CiA 301).
     variable(0x1000, "Device type", constant(Unsigned32, DEVICE_TYPE)),
     variable(0x1001, "Error register", actual(Unsigned8)),
@@ -74,6 +75,27 @@ pub static OBJECTS: [ObjectDescription; 80] = [
             constant(Unsigned32, 0).named("Serial number"),
         ],
     ),
+    // Process data objects.
+    RPDO_PARAMETERS[0],
+    RPDO_PARAMETERS[1],
+    RPDO_PARAMETERS[2],
+    RPDO_PARAMETERS[3],
+    RPDO_PARAMETERS[4],
+    RPDO_MAPPINGS[0],
+    RPDO_MAPPINGS[1],
+    RPDO_MAPPINGS[2],
+    RPDO_MAPPINGS[3],
+    RPDO_MAPPINGS[4],
+    TPDO_PARAMETERS[0],
+    TPDO_PARAMETERS[1],
+    TPDO_PARAMETERS[2],
+    TPDO_PARAMETERS[3],
+    TPDO_PARAMETERS[4],
+    TPDO_MAPPINGS[0],
+    TPDO_MAPPINGS[1],
+    TPDO_MAPPINGS[2],
+    TPDO_MAPPINGS[3],
+    TPDO_MAPPINGS[4],
     // Trajectory buffer.
     variable(
         0x2010,
@@ -252,12 +274,12 @@ const fn array(index: u16, name: &'static str, entries: &'static [Entry]) -> Obj
     ObjectDescription { index, name, contents: Contents::Array(entries) }
 }
 
-const fn record(index: u16, name: &'static str, entries: &'static [Entry]) -> ObjectDescription {
+pub(super) const fn record(index: u16, name: &'static str, entries: &'static [Entry]) -> ObjectDescription {
     ObjectDescription { index, name, contents: Contents::Record(entries) }
 }
 
 /// What the master reads and writes, every value of its type.
-const fn parameter(data_type: DataType, default: i64) -> Entry {
+pub(super) const fn parameter(data_type: DataType, default: i64) -> Entry {
     Entry {
         name: "",
         data_type,
@@ -277,7 +299,7 @@ const fn actual(data_type: DataType) -> Entry {
 }
 
 /// What never changes.
-const fn constant(data_type: DataType, value: i64) -> Entry {
+pub(super) const fn constant(data_type: DataType, value: i64) -> Entry {
     Entry { access: Access::Constant, ..parameter(data_type, value) }
 }
 

@@ -163,3 +163,38 @@ fn a_variable_is_named_once() {
         }
     }
 }
+
+/// Oracle: the default mapping of CiA 402 as drives have it (Kollmorgen S300, *CANopen*, 5.3.1.3 and 5.3.2.3; Erl, *PDO mapping*),
+/// and the identifiers of CiA 301, section 7.3.5, table 39.
+#[test]
+fn process_data_objects_are_those_of_the_profile() {
+    let defaults = |index: u16| -> Vec<i64> {
+        entries().filter(|(known, _)| *known == index).map(|(_, entry)| entry.default).collect()
+    };
+    let mapped = [
+        ([0x201, 255], vec![0x6040_0010]),
+        ([0x301, 255], vec![0x6040_0010, 0x6060_0008]),
+        ([0x401, 255], vec![0x6040_0010, 0x607A_0020]),
+        ([0x501, 255], vec![0x6040_0010, 0x60FF_0020]),
+        ([0x8000_0000, 255], vec![0x6040_0010, 0x6071_0010]),
+        ([0x4000_0181, 255], vec![0x6041_0010]),
+        ([0x4000_0281, 255], vec![0x6041_0010, 0x6061_0008]),
+        ([0x4000_0381, 255], vec![0x6041_0010, 0x6064_0020]),
+        ([0x4000_0481, 255], vec![0x6041_0010, 0x606C_0020]),
+        ([0xC000_0000, 255], vec![0x6041_0010, 0x6077_0010]),
+    ];
+    let indices = (0x1400..0x1405).chain(0x1800..0x1805);
+    for (index, (parameters, mapping)) in indices.zip(mapped) {
+        assert_eq!(defaults(index), parameters, "{index:04X}h");
+        assert_eq!(defaults(index + 0x200), mapping, "{:04X}h", index + 0x200);
+        let direction = if index < 0x1800 { Mapping::Receive } else { Mapping::Transmit };
+        for object in mapping {
+            let entry = entry(u16::try_from(object >> 16).unwrap());
+            assert_eq!(
+                (entry.mapping, 8 * entry.data_type.size()),
+                (direction, usize::try_from(object & 0xFF).unwrap()),
+                "{object:08X}h"
+            );
+        }
+    }
+}
