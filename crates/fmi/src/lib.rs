@@ -6,6 +6,16 @@
 //! Source: Functional Mock-up Interface Specification 2.0.5 and 3.0.2, Modelica Association.
 
 pub mod abi;
+mod archive;
+mod description;
+mod error;
 mod slave;
 
+pub use archive::{Archive, Limits, Unpacked};
+pub use description::{
+    Alias, BaseUnit, Causality, CoSimulation, DataType, DefaultExperiment, DependencyKind, Dimension, DisplayUnit,
+    Enumeration, Exponents, Initial, Item, LogCategory, ModelDescription, ModelStructure, Named, Unit, Unknown, Values,
+    Variability, Variable, Version,
+};
+pub use error::{ArchiveProblem, DescriptionProblem, FmuError};
 pub use slave::{Capabilities, LogLine, Port, Progress, Severity, Slave, SlaveError};

@@ -1,0 +1,138 @@
+//! Names in an archive.
+use crate::error::ArchiveProblem;
+use std::collections::HashMap;
+
+/// Names that can all be made within one folder.
+#[derive(Debug, Default)]
+pub(super) struct Names {
+    all: Vec<String>,
+    /// Files and folders, those between included, without a slash at the end.
+    known: HashMap<String, Kind>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    File(usize),
+    Folder,
+}
+
+impl Names {
+    /// Adds the name of the next entry; one that ends with a slash is a folder.
+    ///
+    /// # Errors
+    /// If it is no relative path downwards, or stands for something that is there.
+    pub(super) fn add(&mut self, name: String) -> Result<(), ArchiveProblem> {
+        let refuse = |why| Err(ArchiveProblem::Name { entry: name.escape_debug().to_string(), why });
+        if let Some(why) = mistake(&name) {
+            return refuse(why);
+        }
+        let path = name.strip_suffix('/').unwrap_or(&name);
+        let kind = if path.len() < name.len() { Kind::Folder } else { Kind::File(self.all.len()) };
+        for (end, _) in path.match_indices('/') {
+            if let Kind::File(_) = self.known.entry(path[..end].to_owned()).or_insert(Kind::Folder) {
+                return refuse("has a file of the archive as a folder");
+            }
+        }
+        if let Some(known) = self.known.insert(path.to_owned(), kind)
+            && (kind, known) != (Kind::Folder, Kind::Folder)
+        {
+            return refuse("is there twice");
+        }
+        self.all.push(name);
+        Ok(())
+    }
+
+    /// The name of an entry.
+    pub(super) fn name(&self, index: usize) -> &str {
+        &self.all[index]
+    }
+
+    /// The entry of a file.
+    pub(super) fn index(&self, file: &str) -> Option<usize> {
+        match self.known.get(file)? {
+            Kind::File(index) => Some(*index),
+            Kind::Folder => None,
+        }
+    }
+
+    pub(super) fn files(&self) -> impl Iterator<Item = &str> {
+        self.all.iter().map(String::as_str).filter(|name| !name.ends_with('/'))
+    }
+}
+
+/// Parts of a name. All its beginnings are kept.
+const DEEPEST: usize = 32;
+
+/// What is wrong with a name by itself.
+fn mistake(name: &str) -> Option<&'static str> {
+    if name.chars().any(char::is_control) {
+        return Some("has control characters");
+    }
+    if name.contains('\\') {
+        return Some("has a backslash; the standard separates folders by `/`");
+    }
+    if name.starts_with('/') || name.as_bytes().get(1) == Some(&b':') {
+        return Some("is absolute");
+    }
+    let path = name.strip_suffix('/').unwrap_or(name);
+    if path.split('/').count() > DEEPEST {
+        return Some("has more than 32 folders in each other");
+    }
+    path.split('/').find_map(|part| match part {
+        "" => Some("has a folder without a name"),
+        "." | ".." => Some("leads out of its folder"),
+        // The longest that file systems have.
+        _ if part.len() > 255 => Some("has a part of more than 255 bytes"),
+        _ => None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refusal(names: &[&str]) -> Option<&'static str> {
+        let mut known = Names::default();
+        names.iter().find_map(|name| match known.add((*name).to_owned()) {
+            Err(ArchiveProblem::Name { why, .. }) => Some(why),
+            _ => None,
+        })
+    }
+
+    #[test]
+    fn what_leads_out_is_refused() {
+        for name in [
+            "../a",
+            "a/../../b",
+            "a/..",
+            "..",
+            ".",
+            "./a",
+            "/a",
+            "//a",
+            "C:/a",
+            "c:a",
+            "a//b",
+            "",
+            "/",
+            "a\\..\\b",
+            "a\0b",
+            "a\nb",
+        ] {
+            assert!(refusal(&[name]).is_some(), "{name:?}");
+        }
+        for name in ["a", "a/b/c", "a/", "..a", "a..", ".hidden", "a b/ü.xml", "..."] {
+            assert_eq!(refusal(&[name]), None, "{name:?}");
+        }
+        assert_eq!(refusal(&[&"x".repeat(256)]), Some("has a part of more than 255 bytes"));
+    }
+
+    #[test]
+    fn a_file_is_no_folder_and_nothing_is_there_twice() {
+        assert_eq!(refusal(&["a", "a/b"]), Some("has a file of the archive as a folder"));
+        assert_eq!(refusal(&["a/b", "a"]), Some("is there twice"));
+        assert_eq!(refusal(&["a/", "a"]), Some("is there twice"));
+        assert_eq!(refusal(&["a", "a/"]), Some("is there twice"));
+        assert_eq!(refusal(&["a/b", "a/", "a/c"]), None, "folders may be named or not");
+    }
+}

@@ -1,0 +1,229 @@
+//! `modelDescription.xml`: what an FMU is and which variables it has, of both versions in one form.
+//!
+//! What contradicts itself or the standard so that a simulation could go wrong is refused at its line. What is only left out or
+//! superfluous, and has one meaning all the same, is taken and said in [`ModelDescription::remarks`]: files of many tools have
+//! such things.
+//!
+//! Source: FMI 2.0.5, §2.2 and §4.3.1; FMI 3.0.2, §2.4 and §4.4.
+
+mod bounds;
+mod combination;
+mod declared;
+mod element;
+mod interface;
+mod named;
+mod numeric;
+mod start;
+mod structure;
+mod unit;
+mod units;
+mod variable;
+mod variables;
+
+pub(crate) use bounds::MOST_BYTES;
+pub use declared::{Enumeration, Item};
+pub use interface::{CoSimulation, DefaultExperiment, LogCategory};
+pub use named::Named;
+pub use structure::{DependencyKind, ModelStructure, Unknown};
+pub use unit::{BaseUnit, DisplayUnit, Exponents, Unit};
+pub use variable::{Alias, Causality, DataType, Dimension, Initial, Values, Variability, Variable};
+
+use crate::error::{DescriptionProblem, FmuError};
+use declared::Declared;
+use element::Element;
+use roxmltree::{Document, ParsingOptions};
+use std::collections::HashMap;
+use units::Units;
+use variables::Variables;
+
+/// Version of the standard.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Version {
+    /// FMI 2.0.
+    Two,
+    /// FMI 3.0.
+    Three,
+}
+
+/// What an FMU is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModelDescription {
+    /// Version of the standard.
+    pub version: Version,
+    /// The version as the file has it.
+    pub fmi_version: String,
+    /// Name of the model.
+    pub model_name: String,
+    /// By which library and description know that they belong together: `guid` of FMI 2.0, `instantiationToken` of FMI 3.0.
+    pub instantiation_token: String,
+    /// What the model is; empty if it does not say, as all of the following.
+    pub description: String,
+    /// Who made the model.
+    pub author: String,
+    /// Version of the model.
+    pub model_version: String,
+    /// Copyright.
+    pub copyright: String,
+    /// Licence.
+    pub license: String,
+    /// Tool that made the FMU.
+    pub generation_tool: String,
+    /// When it was made.
+    pub generation_date_and_time: String,
+    /// What it can do.
+    pub co_simulation: CoSimulation,
+    /// How it is meant to be run.
+    pub default_experiment: DefaultExperiment,
+    /// Categories of its log.
+    pub log_categories: Vec<LogCategory>,
+    /// Units of its variables.
+    pub units: Vec<Unit>,
+    /// Enumerations of its variables.
+    pub enumerations: Vec<Enumeration>,
+    /// Variables in the order of the file.
+    pub variables: Vec<Variable>,
+    /// What depends on what.
+    pub structure: ModelStructure,
+    /// Where it departs from the standard without doing harm.
+    pub remarks: Vec<String>,
+    /// Position of each variable by its names.
+    positions: HashMap<String, usize>,
+}
+
+impl ModelDescription {
+    /// Reads the text of a model description, a file that messages call `file`.
+    ///
+    /// # Errors
+    /// [`FmuError::Description`], with the place.
+    pub fn read(text: &str, file: &str) -> Result<Self, FmuError> {
+        let at = |line, column, problem| FmuError::Description {
+            file: file.to_owned(),
+            line,
+            column,
+            problem: Box::new(problem),
+        };
+        // A mark of the byte order is no part of the XML.
+        let text = text.trim_start_matches('\u{feff}');
+        bounds::hold(text).map_err(|(byte, problem)| {
+            let (line, column) = place(text, byte);
+            at(line, column, problem)
+        })?;
+        let options = ParsingOptions { allow_dtd: false, nodes_limit: bounds::MOST_NODES };
+        let document = Document::parse_with_options(text, options).map_err(|error| {
+            let place = error.pos();
+            at(place.row, place.col, DescriptionProblem::Xml(error.to_string()))
+        })?;
+        Self::of(Element::root(&document, file))
+    }
+
+    fn of(root: Element) -> Result<Self, FmuError> {
+        if root.name() != "fmiModelDescription" {
+            let found = root.name().to_owned();
+            return Err(root.error(DescriptionProblem::Element { found, expected: "`<fmiModelDescription>`".into() }));
+        }
+        let version = version(root)?;
+        let co_simulation = interface::co_simulation(root)?;
+        let mut remarks = vec![];
+        let mut units = Units::read(root)?;
+        let declared = Declared::read(root, version, &mut units, &mut remarks)?;
+        let Variables { all: variables, positions } =
+            Variables::read(root, version, &mut units, &declared, &mut remarks)?;
+        let structure = ModelStructure::read(root, version, &variables)?;
+        let token = match version {
+            Version::Two => root.required("guid")?,
+            Version::Three => root.required("instantiationToken")?,
+        };
+        Ok(Self {
+            version,
+            fmi_version: root.text_or_empty("fmiVersion"),
+            model_name: root.required("modelName")?.to_owned(),
+            instantiation_token: token.to_owned(),
+            description: root.text_or_empty("description"),
+            author: root.text_or_empty("author"),
+            model_version: root.text_or_empty("version"),
+            copyright: root.text_or_empty("copyright"),
+            license: root.text_or_empty("license"),
+            generation_tool: root.text_or_empty("generationTool"),
+            generation_date_and_time: root.text_or_empty("generationDateAndTime"),
+            co_simulation,
+            default_experiment: DefaultExperiment::read(root)?,
+            log_categories: log_categories(root)?,
+            units: units.all,
+            enumerations: declared.enumerations,
+            variables,
+            structure,
+            remarks,
+            positions,
+        })
+    }
+
+    /// Position of the variable of this name, which may be an alias.
+    #[must_use]
+    pub fn position(&self, name: &str) -> Option<usize> {
+        self.positions.get(name).copied()
+    }
+
+    /// The variable of this name, which may be an alias.
+    #[must_use]
+    pub fn variable(&self, name: &str) -> Option<&Variable> {
+        self.variables.get(self.position(name)?)
+    }
+
+    /// The unit of a variable.
+    #[must_use]
+    pub fn unit(&self, variable: &Variable) -> Option<&Unit> {
+        self.units.get(variable.unit?)
+    }
+
+    /// The enumeration of a variable.
+    #[must_use]
+    pub fn enumeration(&self, variable: &Variable) -> Option<&Enumeration> {
+        self.enumerations.get(variable.enumeration?)
+    }
+
+    /// The extents of a variable as long as structural parameters keep their start values; none for a scalar.
+    #[must_use]
+    pub fn shape(&self, variable: &Variable) -> Vec<u64> {
+        let extent = |dimension: &Dimension| match dimension {
+            Dimension::Fixed(extent) => *extent,
+            Dimension::Structural(at) => match &self.variables[*at].start {
+                Some(Values::Integer(start)) => start.first().and_then(|&first| first.try_into().ok()).unwrap_or(0),
+                _ => 0,
+            },
+        };
+        variable.dimensions.iter().map(extent).collect()
+    }
+}
+
+/// Line and column of a byte, from 1.
+fn place(text: &str, byte: usize) -> (u32, u32) {
+    let before = &text[..byte];
+    let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+    let line = before.bytes().filter(|byte| *byte == b'\n').count() + 1;
+    (u32::try_from(line).unwrap_or(u32::MAX), u32::try_from(column).unwrap_or(u32::MAX))
+}
+
+/// The version of the standard, if it is one of the two.
+fn version(root: Element) -> Result<Version, FmuError> {
+    let text = root.required("fmiVersion")?;
+    let unsupported = |what: &str| {
+        let what = format!("{what} (`fmiVersion=\"{}\"`)", text.escape_debug());
+        let way_out = "export the model for FMI 2.0 or 3.0, co-simulation";
+        root.error_at("fmiVersion", DescriptionProblem::Unsupported { what, way_out })
+    };
+    let is_patch = |rest: &str| rest.strip_prefix('.').is_some_and(|patch| patch.parse::<u32>().is_ok());
+    match text.split_at_checked(3) {
+        Some(("2.0", rest)) if rest.is_empty() || is_patch(rest) => Ok(Version::Two),
+        Some(("3.0", rest)) if rest.is_empty() || is_patch(rest) => Ok(Version::Three),
+        Some(("1.0", _)) => Err(unsupported("FMI 1.0")),
+        _ => Err(unsupported("this version of FMI")),
+    }
+}
+
+fn log_categories(root: Element) -> Result<Vec<LogCategory>, FmuError> {
+    let category = |element: Element| {
+        let name = element.required("name")?.to_owned();
+        Ok(LogCategory { name, description: element.text_or_empty("description") })
+    };
+    root.grandchildren("LogCategories").filter(|child| child.name() == "Category").map(category).collect()
+}

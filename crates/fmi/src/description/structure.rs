@@ -1,0 +1,138 @@
+//! What depends on what.
+use super::element::Element;
+use super::named::Named;
+use super::{Version, variable::Variable};
+use crate::error::{DescriptionProblem, FmuError};
+use std::collections::HashMap;
+
+/// How an unknown depends on a variable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum DependencyKind {
+    /// Somehow.
+    Dependent,
+    /// Linearly, by a constant factor.
+    Constant,
+    /// Linearly, by a factor of fixed parameters.
+    Fixed,
+    /// Linearly, by a factor of tunable parameters.
+    Tunable,
+    /// Linearly, by a factor that changes at events.
+    Discrete,
+}
+
+impl Named for DependencyKind {
+    const ALL: &'static [(Self, &'static str)] = &[
+        (Self::Dependent, "dependent"),
+        (Self::Constant, "constant"),
+        (Self::Fixed, "fixed"),
+        (Self::Tunable, "tunable"),
+        (Self::Discrete, "discrete"),
+    ];
+}
+
+/// What an unknown depends on. Variables are known by their position in [`crate::ModelDescription::variables`].
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Unknown {
+    /// The variable.
+    pub variable: usize,
+    /// What it depends on; without it, it may be anything.
+    pub dependencies: Option<Vec<(usize, DependencyKind)>>,
+}
+
+/// The unknowns of an FMU.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct ModelStructure {
+    /// Outputs.
+    pub outputs: Vec<Unknown>,
+    /// Derivatives of continuous states.
+    pub derivatives: Vec<Unknown>,
+    /// What is computed during initialisation.
+    pub initial_unknowns: Vec<Unknown>,
+}
+
+impl ModelStructure {
+    /// Whether an output may follow an input at once, without a step. What the FMU does not exclude may be.
+    #[must_use]
+    pub fn feeds_through(&self, output: usize, input: usize) -> bool {
+        let unknown = self.outputs.iter().find(|unknown| unknown.variable == output);
+        let dependencies = unknown.and_then(|unknown| unknown.dependencies.as_ref());
+        dependencies.is_none_or(|all| all.iter().any(|(variable, _)| *variable == input))
+    }
+
+    pub(super) fn read(root: Element, version: Version, variables: &[Variable]) -> Result<Self, FmuError> {
+        let Some(element) = root.child("ModelStructure") else {
+            let parent = root.name().to_owned();
+            return Err(root.error(DescriptionProblem::NoElement { parent, expected: "`<ModelStructure>`" }));
+        };
+        let known = Known::of(version, variables);
+        let all = |group: &str, name: &str| -> Result<Vec<_>, FmuError> {
+            match version {
+                Version::Two => element.grandchildren(group).map(|unknown| known.unknown(unknown)).collect(),
+                Version::Three => element
+                    .children()
+                    .filter(|child| child.name() == name)
+                    .map(|unknown| known.unknown(unknown))
+                    .collect(),
+            }
+        };
+        Ok(Self {
+            outputs: all("Outputs", "Output")?,
+            derivatives: all("Derivatives", "ContinuousStateDerivative")?,
+            initial_unknowns: all("InitialUnknowns", "InitialUnknown")?,
+        })
+    }
+}
+
+/// How unknowns name variables.
+enum Known {
+    /// By the position from 1 (FMI 2.0).
+    Positions(usize),
+    /// By the value reference (FMI 3.0).
+    References(HashMap<u32, usize>),
+}
+
+impl Known {
+    fn of(version: Version, variables: &[Variable]) -> Self {
+        match version {
+            Version::Two => Self::Positions(variables.len()),
+            Version::Three => {
+                Self::References(variables.iter().enumerate().map(|(at, one)| (one.value_reference, at)).collect())
+            }
+        }
+    }
+
+    fn position(&self, number: u32) -> Option<usize> {
+        match self {
+            Self::Positions(count) => usize::try_from(number).ok()?.checked_sub(1).filter(|at| at < count),
+            Self::References(known) => known.get(&number).copied(),
+        }
+    }
+
+    fn unknown(&self, element: Element) -> Result<Unknown, FmuError> {
+        let (attribute, expected) = match self {
+            Self::Positions(count) => ("index", format!("the position of a variable, 1 to {count}")),
+            Self::References(_) => ("valueReference", "the value reference of a variable".to_owned()),
+        };
+        element.required(attribute)?;
+        let variable = element.read(attribute, &expected, |text| self.position(text.parse().ok()?))?;
+        let Some(variable) = variable else { return Err(element.wrong(attribute, expected)) };
+        let Some(numbers) = element.references("dependencies")? else {
+            return Ok(Unknown { variable, dependencies: None });
+        };
+        let positions: Option<Vec<_>> = numbers.iter().map(|number| self.position(*number)).collect();
+        let Some(positions) = positions else {
+            return Err(element.wrong("dependencies", format!("of each number: {expected}")));
+        };
+        let kinds = match element.text("dependenciesKind") {
+            None => vec![DependencyKind::Dependent; positions.len()],
+            Some(text) => {
+                let kinds: Option<Vec<_>> = text.split_ascii_whitespace().map(DependencyKind::from_name).collect();
+                kinds.filter(|kinds| kinds.len() == positions.len()).ok_or_else(|| {
+                    element
+                        .wrong("dependenciesKind", format!("a kind for each of the {} dependencies", positions.len()))
+                })?
+            }
+        };
+        Ok(Unknown { variable, dependencies: Some(positions.into_iter().zip(kinds).collect()) })
+    }
+}

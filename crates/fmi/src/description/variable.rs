@@ -1,0 +1,255 @@
+//! Variables.
+use super::named::Named;
+
+/// Who gives a variable its value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Causality {
+    /// The importer, before initialisation; a dimension of arrays (FMI 3.0).
+    StructuralParameter,
+    /// The importer, before or during initialisation.
+    Parameter,
+    /// The FMU, from parameters.
+    CalculatedParameter,
+    /// The importer, at every communication point.
+    Input,
+    /// The FMU; others may use it.
+    Output,
+    /// The FMU; for looking at only.
+    Local,
+    /// The independent variable, time.
+    Independent,
+}
+
+impl Named for Causality {
+    const ALL: &'static [(Self, &'static str)] = &[
+        (Self::StructuralParameter, "structuralParameter"),
+        (Self::Parameter, "parameter"),
+        (Self::CalculatedParameter, "calculatedParameter"),
+        (Self::Input, "input"),
+        (Self::Output, "output"),
+        (Self::Local, "local"),
+        (Self::Independent, "independent"),
+    ];
+}
+
+/// When a variable changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Variability {
+    /// Never.
+    Constant,
+    /// Not after initialisation.
+    Fixed,
+    /// When a tunable parameter does.
+    Tunable,
+    /// At events.
+    Discrete,
+    /// At any time.
+    Continuous,
+}
+
+impl Named for Variability {
+    const ALL: &'static [(Self, &'static str)] = &[
+        (Self::Constant, "constant"),
+        (Self::Fixed, "fixed"),
+        (Self::Tunable, "tunable"),
+        (Self::Discrete, "discrete"),
+        (Self::Continuous, "continuous"),
+    ];
+}
+
+/// How a variable is initialised.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Initial {
+    /// With its start value.
+    Exact,
+    /// By an iteration that begins with its start value.
+    Approx,
+    /// From other variables.
+    Calculated,
+}
+
+impl Named for Initial {
+    const ALL: &'static [(Self, &'static str)] =
+        &[(Self::Exact, "exact"), (Self::Approx, "approx"), (Self::Calculated, "calculated")];
+}
+
+/// Type of a variable. `Real` of FMI 2.0 is `Float64`, its `Integer` is `Int32`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum DataType {
+    /// Single precision.
+    Float32,
+    /// Double precision.
+    Float64,
+    /// Signed, 8 bits.
+    Int8,
+    /// Unsigned, 8 bits.
+    UInt8,
+    /// Signed, 16 bits.
+    Int16,
+    /// Unsigned, 16 bits.
+    UInt16,
+    /// Signed, 32 bits.
+    Int32,
+    /// Unsigned, 32 bits.
+    UInt32,
+    /// Signed, 64 bits.
+    Int64,
+    /// Unsigned, 64 bits.
+    UInt64,
+    /// TRUE or FALSE.
+    Boolean,
+    /// Text.
+    String,
+    /// Bytes.
+    Binary,
+    /// An item of an enumeration: signed, 64 bits in FMI 3.0, 32 in FMI 2.0.
+    Enumeration,
+    /// A clock: no value, it ticks.
+    Clock,
+}
+
+impl Named for DataType {
+    const ALL: &'static [(Self, &'static str)] = &[
+        (Self::Float32, "Float32"),
+        (Self::Float64, "Float64"),
+        (Self::Int8, "Int8"),
+        (Self::UInt8, "UInt8"),
+        (Self::Int16, "Int16"),
+        (Self::UInt16, "UInt16"),
+        (Self::Int32, "Int32"),
+        (Self::UInt32, "UInt32"),
+        (Self::Int64, "Int64"),
+        (Self::UInt64, "UInt64"),
+        (Self::Boolean, "Boolean"),
+        (Self::String, "String"),
+        (Self::Binary, "Binary"),
+        (Self::Enumeration, "Enumeration"),
+        (Self::Clock, "Clock"),
+    ];
+}
+
+impl DataType {
+    /// Whether it is a floating-point number.
+    #[must_use]
+    pub fn is_float(self) -> bool {
+        matches!(self, Self::Float32 | Self::Float64)
+    }
+
+    /// Least and greatest value of an integer type.
+    #[must_use]
+    pub fn integers(self) -> Option<(i128, i128)> {
+        Some(match self {
+            Self::Int8 => (i8::MIN.into(), i8::MAX.into()),
+            Self::UInt8 => (0, u8::MAX.into()),
+            Self::Int16 => (i16::MIN.into(), i16::MAX.into()),
+            Self::UInt16 => (0, u16::MAX.into()),
+            Self::Int32 => (i32::MIN.into(), i32::MAX.into()),
+            Self::UInt32 => (0, u32::MAX.into()),
+            Self::Int64 | Self::Enumeration => (i64::MIN.into(), i64::MAX.into()),
+            Self::UInt64 => (0, u64::MAX.into()),
+            _ => return None,
+        })
+    }
+}
+
+/// Values of a scalar or, in row-major order, of an array.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Values {
+    /// Of a floating-point type.
+    Float(Vec<f64>),
+    /// Of an integer type or an enumeration.
+    Integer(Vec<i128>),
+    /// TRUE or FALSE.
+    Boolean(Vec<bool>),
+    /// Text.
+    String(Vec<String>),
+    /// Bytes.
+    Binary(Vec<Vec<u8>>),
+}
+
+impl Values {
+    /// How many.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Float(all) => all.len(),
+            Self::Integer(all) => all.len(),
+            Self::Boolean(all) => all.len(),
+            Self::String(all) => all.len(),
+            Self::Binary(all) => all.len(),
+        }
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// An extent of an array.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dimension {
+    /// So many elements.
+    Fixed(u64),
+    /// As many as this structural parameter says, by its position in [`crate::ModelDescription::variables`].
+    Structural(usize),
+}
+
+/// Another name of a variable (FMI 3.0).
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Alias {
+    /// The name.
+    pub name: String,
+    /// What it is for.
+    pub description: String,
+    /// Unit before people; empty if as the variable.
+    pub display_unit: String,
+}
+
+/// A variable of an FMU.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Variable {
+    /// Its name.
+    pub name: String,
+    /// By which the functions of the standard know it. In FMI 2.0 several variables of a type may share one.
+    pub value_reference: u32,
+    /// What it is.
+    pub description: String,
+    /// Who gives it its value.
+    pub causality: Causality,
+    /// When it changes.
+    pub variability: Variability,
+    /// How it is initialised; the independent variable is not.
+    pub initial: Option<Initial>,
+    /// Its type.
+    pub data_type: DataType,
+    /// Name of its declared type; empty if none.
+    pub declared_type: String,
+    /// Its enumeration, by the position in [`crate::ModelDescription::enumerations`].
+    pub enumeration: Option<usize>,
+    /// Extents; none for a scalar.
+    pub dimensions: Vec<Dimension>,
+    /// Start value: one for each element, or one for all.
+    pub start: Option<Values>,
+    /// Least value, of what it counts in. 64-bit integers are rounded.
+    pub min: Option<f64>,
+    /// Greatest value.
+    pub max: Option<f64>,
+    /// Ordinary magnitude.
+    pub nominal: Option<f64>,
+    /// Physical quantity as the FMU names it; empty if it does not.
+    pub quantity: String,
+    /// Its unit, by the position in [`crate::ModelDescription::units`].
+    pub unit: Option<usize>,
+    /// Unit before people, one of the unit's; empty if none.
+    pub display_unit: String,
+    /// Whether it is a difference, to which the offset of its unit does not belong.
+    pub is_relative: bool,
+    /// The variable whose derivative to the time it is, by its position.
+    pub derivative_of: Option<usize>,
+    /// Value references of the clocks that it ticks with (FMI 3.0).
+    pub clocks: Vec<u32>,
+    /// Other names (FMI 3.0).
+    pub aliases: Vec<Alias>,
+}

@@ -1,0 +1,180 @@
+//! Why a file cannot be used as an FMU.
+use std::io;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// Why a file cannot be used as an FMU.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum FmuError {
+    /// The operating system refuses.
+    #[error("`{}` cannot be {what}: {source}", path.display())]
+    File {
+        /// File or folder.
+        path: PathBuf,
+        /// What was tried: read, written, made.
+        what: &'static str,
+        /// Its reason.
+        source: io::Error,
+    },
+    /// The archive is broken, hostile, or something else than an FMU.
+    #[error("`{}` cannot be used as an FMU: {problem}", path.display())]
+    Archive {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: ArchiveProblem,
+    },
+    /// The model description is not what the standard says.
+    #[error("{file}:{line}:{column}: {problem}")]
+    Description {
+        /// File as messages name it.
+        file: String,
+        /// Line, from 1.
+        line: u32,
+        /// Column in characters, from 1.
+        column: u32,
+        /// What is wrong there.
+        problem: Box<DescriptionProblem>,
+    },
+}
+
+/// What is wrong with an archive.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ArchiveProblem {
+    /// It cannot be read.
+    #[error("it is no readable zip archive ({0}); an FMU is one, with `modelDescription.xml` in it")]
+    Zip(String),
+    /// A file in it cannot be read.
+    #[error("`{entry}` in it cannot be read ({why})")]
+    Entry {
+        /// Name in the archive.
+        entry: String,
+        /// The reason.
+        why: String,
+    },
+    /// A name would be written outside the folder, or is no name of a file.
+    #[error("the name `{entry}` in it {why}; nothing was unpacked")]
+    Name {
+        /// Name in the archive, control characters escaped.
+        entry: String,
+        /// What is wrong with the name.
+        why: &'static str,
+    },
+    /// Something that is neither a file nor a folder.
+    #[error("`{entry}` in it is {what}; only files and folders are unpacked")]
+    Kind {
+        /// Name in the archive.
+        entry: String,
+        /// What it is.
+        what: &'static str,
+    },
+    /// More than a limit allows.
+    #[error("{what} is {value}, at most {most} is unpacked; raise the limit if the file is to be trusted")]
+    Limit {
+        /// What is limited.
+        what: String,
+        /// What it is.
+        value: u64,
+        /// The limit.
+        most: u64,
+    },
+    /// There is no model description.
+    #[error("it has no `modelDescription.xml` at its top level{hint}")]
+    NoDescription {
+        /// Where there is one, if anywhere.
+        hint: String,
+    },
+    /// It is a system structure and parameterisation package.
+    #[error(
+        "it is an SSP package (`{entry}`), a system of components, which is not supported; give one FMU of its `resources/`"
+    )]
+    Ssp {
+        /// What says so.
+        entry: String,
+    },
+}
+
+/// What is wrong at a place of a model description.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum DescriptionProblem {
+    /// It is no XML.
+    #[error("no well-formed XML: {0}")]
+    Xml(String),
+    /// More than a limit allows.
+    #[error("{what} is more than {most}, which no model description needs")]
+    Limit {
+        /// What is limited.
+        what: &'static str,
+        /// The limit.
+        most: usize,
+    },
+    /// Another element than the one that has to be here.
+    #[error("the element is `<{found}>`, expected {expected}")]
+    Element {
+        /// Its name.
+        found: String,
+        /// What may be here.
+        expected: String,
+    },
+    /// An element that has to be here is not.
+    #[error("`<{parent}>` has no element {expected}")]
+    NoElement {
+        /// The element that lacks it.
+        parent: String,
+        /// What has to be here.
+        expected: &'static str,
+    },
+    /// An attribute that has to be here is not.
+    #[error("`<{element}>` has no attribute `{attribute}`")]
+    NoAttribute {
+        /// The element that lacks it.
+        element: String,
+        /// Its name.
+        attribute: &'static str,
+    },
+    /// An attribute has another value than it may have.
+    #[error("`{attribute}=\"{value}\"` of `<{element}>`: expected {expected}")]
+    Attribute {
+        /// The element.
+        element: String,
+        /// Its attribute.
+        attribute: &'static str,
+        /// Its value.
+        value: String,
+        /// What it may be.
+        expected: String,
+    },
+    /// Two things have the same name or reference.
+    #[error("`{attribute}=\"{value}\"` of `<{element}>` stands for `{first}` already")]
+    Twice {
+        /// The element.
+        element: String,
+        /// Its attribute.
+        attribute: &'static str,
+        /// Its value.
+        value: String,
+        /// What has it already.
+        first: String,
+    },
+    /// Causality, variability and initial of a variable do not go together.
+    #[error("variable `{variable}`: {found} {} allowed; the standard has {allowed}", if found.contains(',') { "are not" } else { "is not" })]
+    Combination {
+        /// Its name.
+        variable: String,
+        /// What it has.
+        found: String,
+        /// What would be right.
+        allowed: String,
+    },
+    /// Something that is not supported.
+    #[error("{what} is not supported; {way_out}")]
+    Unsupported {
+        /// What it is.
+        what: String,
+        /// What to do.
+        way_out: &'static str,
+    },
+}
