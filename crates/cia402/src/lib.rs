@@ -47,7 +47,7 @@ pub use option_code::{
     Deceleration, DisableOperationOption, FaultReactionOption, HaltOption, OptionCodeError, QuickStopOption,
     ShutdownOption,
 };
-pub use process_data::{Actuals, Commands};
+pub use process_data::{Actuals, Commands, InterpolationData};
 pub use sdo::{AbortCode, SdoError, Side};
 pub use sequence::{Next, keeping, towards};
 pub use state::PowerState;

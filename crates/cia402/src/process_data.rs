@@ -33,6 +33,19 @@ pub struct Commands {
     pub home_offset: i32,
     /// A point for the trajectory buffer, or a command to it (2010h); sent when there is one.
     pub trajectory_point: Option<[u8; 8]>,
+    /// What is written to the interpolation data record (60C1h); sent when there is something.
+    pub interpolation_data: Option<InterpolationData>,
+}
+
+/// A point in the interpolation data record (60C1h). What the sub-mode (60C0h) does not use is not mapped and not written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct InterpolationData {
+    /// Position (60C1h.1, counts).
+    pub position: i32,
+    /// Time to the next point (60C1h.2, ms), 0 at the end of a move.
+    pub time: Option<u8>,
+    /// Velocity (60C1h.3, 0.1 counts/s).
+    pub velocity: Option<i32>,
 }
 
 /// What the drive sends.

@@ -53,7 +53,7 @@ pub use units::Units;
 pub use window::{Dwell, Window};
 
 use crate::Demand;
-use crate::modes::interpolated::Buffer;
+use crate::modes::interpolated::{Buffer, DataRecord};
 use crate::modes::stop::Ramp;
 use crate::modes::{Actual, Answer, Moment, Targets};
 use running::Running;
@@ -123,6 +123,7 @@ pub struct State {
     guard: guard::State,
     cycle: cycle::State,
     buffer: Buffer,
+    data_record: DataRecord,
     /// Whether the last point of the master could not be read.
     has_refused_point: bool,
     now: Moment,
@@ -160,6 +161,7 @@ impl State {
             guard: guard::State::default(),
             cycle: cycle::State::default(),
             buffer: Buffer::default(),
+            data_record: DataRecord::default(),
             has_refused_point: false,
             now: Moment {
                 targets: Targets::default(),
@@ -211,7 +213,8 @@ impl State {
         self.buffer.status()
     }
 
-    /// The trajectory buffer, for points that come without a frame: through the data record (60C1h) or the serial interface.
+    /// The trajectory buffer, for points that come without a frame: through the serial interface, or a data record (60C1h) that is
+    /// not mapped.
     pub const fn trajectory_buffer(&mut self) -> &mut Buffer {
         &mut self.buffer
     }

@@ -2,6 +2,7 @@
 //!
 //! Positions and velocities are in the axis unit (m or rad), efforts in the motor's (N·m or N).
 use crate::{Fault, Interpolation};
+use servobench_cia402::InterpolationData;
 use servobench_motion::interpolate::Sample;
 
 /// What the motion task wants of the axis.
@@ -54,11 +55,20 @@ pub enum Way {
     },
     /// Along the points of its buffer (ip).
     Points {
-        /// A point for the buffer, or a command to it, in the eight bytes of 2010h; sent once.
-        point: Option<[u8; 8]>,
+        /// A point for the buffer, or a command to it; sent once.
+        point: Option<TrajectoryPoint>,
         /// Whether the points are followed.
         follow: bool,
     },
+}
+
+/// A point on its way to the buffer of a drive, by one of the objects that lead there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TrajectoryPoint {
+    /// The eight bytes of the move segment command (2010h): a point, or a command to the buffer.
+    MoveSegment([u8; 8]),
+    /// The interpolation data record (60C1h).
+    DataRecord(InterpolationData),
 }
 
 /// What the motion task hears of the axis.

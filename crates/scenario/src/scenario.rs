@@ -15,7 +15,10 @@ mod program;
 
 pub use actuator::Actuator;
 pub use axis::{Axis, AxisMechanics, Body, Coupling, HomeSwitch, Mjcf, Motion, Switches};
-pub use bus::{Bus, BusFault, BusFaultKind, BusMode, Counter, DriveInterpolation, DriveUnits, ObjectWrite, Sequencing};
+pub use bus::{
+    Bus, BusFault, BusFaultKind, BusMode, Counter, DriveInterpolation, DriveUnits, ObjectWrite, Sequencing,
+    TrajectoryBuffer,
+};
 pub use disturbance::{Disturbance, DisturbedBody, Initial};
 pub use drive::{
     CurrentGain, CurrentLoop, Drive, EffortFeedforward, Estimate, Feedback, Feedforward, MotorEstimate, PositionLoop,

@@ -33,6 +33,7 @@ fn a_bus_that_says_its_cycle_alone() {
         motion_every: 1,
         interpolation: InterpolationMode::Cubic,
         drive_interpolation: DriveInterpolation::Linear,
+        trajectory_buffer: TrajectoryBuffer::MoveSegment,
         delay: 1,
         velocity_offset: false,
         effort_offset: EffortFeedforward::Off,
@@ -74,6 +75,7 @@ reverse_switches = true
         motion_every: 4,
         interpolation: InterpolationMode::Quintic,
         drive_interpolation: DriveInterpolation::Linear,
+        trajectory_buffer: TrajectoryBuffer::MoveSegment,
         delay: 0,
         velocity_offset: true,
         effort_offset: EffortFeedforward::Rigid,
@@ -95,6 +97,18 @@ reverse_switches = true
     {
         assert_eq!(bus(&format!("mode = \"{name}\"\n")).mode, mode);
     }
+}
+
+#[test]
+fn points_go_to_the_buffer_by_the_door_that_is_named() {
+    for (name, door) in [
+        ("2010h", TrajectoryBuffer::MoveSegment),
+        ("60C1h", TrajectoryBuffer::DataRecord),
+        ("115h", TrajectoryBuffer::Serial),
+    ] {
+        assert_eq!(bus(&format!("mode = \"ip\"\ntrajectory_buffer = \"{name}\"\n")).trajectory_buffer, door);
+    }
+    assert_eq!(bus("mode = \"ip\"\n").trajectory_buffer, TrajectoryBuffer::MoveSegment);
 }
 
 /// Oracle: the travel per increment by hand, from lead and gear.

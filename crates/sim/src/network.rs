@@ -15,6 +15,7 @@ mod plc;
 mod points;
 mod reference;
 mod signals;
+mod stream;
 mod underway;
 mod units;
 
@@ -26,6 +27,7 @@ use plc::Plc;
 use reference::DelayedReference;
 use servobench_base::{Countdown, Divider, Setpoint, Tick};
 use servobench_cia402::{Commands, Mode};
+use servobench_drive::modes::interpolated::serial::Port;
 use servobench_drive::{Demand, device, feedforward};
 use servobench_fieldbus::bus::{self, BusFault};
 use servobench_fieldbus::link::{self, Mailbox};
@@ -48,6 +50,8 @@ pub(crate) struct Network {
     mailbox: Mailbox,
     link: (link::Params, link::State),
     drive: (device::Params, device::State),
+    /// The serial interface of the drive.
+    serial: Port,
     bus: (bus::Params<'static>, bus::State),
     faults: Vec<BusFault>,
     /// When the motion task runs.
@@ -220,6 +224,12 @@ impl Network {
                 let torque = self.transmission * self.model.effort(setpoint);
                 Sample { x: motor.position, v: motor.velocity, a: setpoint.a, torque }
             });
+            if let MotionTask::OwnWay(way) = &mut self.task
+                && let Some(message) = way.message()
+                && let Err(error) = message.arrive(&mut self.serial, self.drive.1.trajectory_buffer())
+            {
+                self.failure = Some(format!("the serial interface of the drive: {error}"));
+            }
             match step {
                 Ok(Step { command, setpoint }) => {
                     match setpoint {

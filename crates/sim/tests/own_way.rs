@@ -195,3 +195,193 @@ fn moves_in_profile_position_are_the_drives_own() {
     assert!((peak(&recording, "setpoint.velocity") - 0.5).abs() < 1e-9);
     assert!(peak(&recording, "following_error.motor") < 1e-3);
 }
+
+/// A program of `steps` in interpolated position, its points by `door` in units of a micrometre, with `objects` of the drive.
+fn by_door(door: &str, objects: &str, steps: &str, faults: &str) -> String {
+    format!(
+        "{AXIS}[drive.objects]\n{objects}[bus]\ncycle = \"1 ms\"\nmode = \"ip\"\ntrajectory_buffer = \"{door}\"\n\
+         units = {{ drive = 1000, axis = \"1 mm\" }}\n{faults}{steps}"
+    )
+}
+
+fn table(file: &tempfile::NamedTempFile) -> String {
+    format!("[[program]]\ntable = {{ file = \"{}\" }}\n", file.path().display())
+}
+
+/// 60C0h, and 10 ms in 60C2h.
+fn sub_mode(code: i32) -> String {
+    format!("\"60C0h\" = {code}\n\"60C2h.1\" = 10\n\"60C2h.2\" = -3\n")
+}
+
+/// Positions of the points of `sine` in whole micrometres (m).
+fn micrometres(points: u32) -> Vec<f64> {
+    let omega = frequency(points);
+    let x = |k: u32| 50.0 * (1.0 - (omega * 0.01 * f64::from(k)).cos());
+    (0..points).map(|k| 1e-6 * (1e3 * x(k)).round()).collect()
+}
+
+/// The set-points of the drive at its turns, every fourth tick, from the last one at rest on.
+fn turns(recording: &Recording) -> Vec<f64> {
+    let setpoint = values(recording, "setpoint.position");
+    // What is less is a rounding, as the axis leaves its rest a step of the drive later than at once.
+    let moves = setpoint.iter().position(|x| x.abs() > 1e-12).unwrap_or_else(|| panic!("nothing moves"));
+    setpoint[moves - 1..].iter().step_by(4).copied().collect()
+}
+
+/// Turns of the drive in 10 ms.
+const SEGMENT: usize = 40;
+/// A few roundings of 0.1 m.
+const ROUNDING: f64 = 1e-15;
+
+/// Oracle: the door of 2010h. The points are the same, so the motion is, to the bit.
+#[test]
+fn points_with_velocities_are_the_same_motion_by_every_door() {
+    let file = sine(300);
+    let run_by = |door, objects: &str| run(&by_door(door, objects, &table(&file), ""));
+    let segments = run_by("2010h", "");
+    let expected = turns(&segments);
+    assert!(peak(&segments, "setpoint.position") > 0.0999);
+    for (door, objects) in [("60C1h", sub_mode(-3)), ("60C1h", String::new()), ("115h", String::new())] {
+        let recording = run_by(door, &objects);
+        assert_eq!(buffer(&recording), ["none"], "{door}");
+        let found = turns(&recording);
+        let moving = SEGMENT * 299;
+        let same = found.iter().zip(&expected).take(moving).filter(|(one, other)| one.to_bits() == other.to_bits());
+        assert_eq!(same.count(), moving, "{door} {objects}");
+        assert!((found[moving..].iter().fold(0.0_f64, |far, x| far.max((x - expected[moving]).abs()))) < ROUNDING);
+    }
+}
+
+/// Oracle: straight lines between the points by hand, 10 ms each; before and after it the axis rests.
+#[test]
+fn sub_modes_in_lines_go_straight_from_point_to_point() {
+    let file = sine(300);
+    let points = micrometres(300);
+    for code in [-2, -1] {
+        let recording = run(&by_door("60C1h", &sub_mode(code), &table(&file), ""));
+        assert_eq!(buffer(&recording), ["none"], "sub-mode {code}");
+        let found = turns(&recording);
+        let mut worst = 0.0_f64;
+        for (turn, x) in found.iter().enumerate() {
+            let (k, passed) = (turn / SEGMENT, (turn % SEGMENT) as f64 / SEGMENT as f64);
+            let expected = match points.get(k..k + 2) {
+                Some(ends) => ends[0] + passed * (ends[1] - ends[0]),
+                None => points[299],
+            };
+            worst = worst.max((x - expected).abs());
+        }
+        println!("sub-mode {code}: {worst:.1e} m from the lines");
+        assert!(worst < 1e-12, "sub-mode {code}: {worst}");
+    }
+}
+
+/// Sub-mode 0. Oracle: straight lines between the points by hand, each in a segment of 10 ms or of one turn of the drive, 250 µs,
+/// more or less: as many turns in the end as the master was late.
+#[test]
+fn sub_mode_0_goes_through_every_point_and_adapts_the_time() {
+    let file = sine(300);
+    let points = micrometres(300);
+    // A master that stops for 15 ms, 60 turns, sends every point that much later from then on.
+    let stopped = "[[bus.fault]]\nkind = \"master-stopped\"\nstart = \"1 s\"\nduration = \"15 ms\"\n";
+    for (faults, lost) in [("", 0), (stopped, 60)] {
+        let recording = run(&by_door("60C1h", &sub_mode(0), &table(&file), faults));
+        assert_eq!(buffer(&recording), ["none"]);
+        let found = turns(&recording);
+        // Where each segment may begin: on a line between equal points every length is possible.
+        let mut starts = vec![0_usize];
+        for ends in points.windows(2) {
+            let is_line = |start: usize, length: usize| {
+                (0..=length).all(|turn| {
+                    let expected = ends[0] + turn as f64 / length as f64 * (ends[1] - ends[0]);
+                    found.get(start + turn).is_some_and(|x| (x - expected).abs() < 1e-12)
+                })
+            };
+            let lengths = |start: usize| (SEGMENT - 1..=SEGMENT + 1).filter(move |length| is_line(start, *length));
+            let mut next: Vec<_> =
+                starts.iter().flat_map(|start| lengths(*start).map(move |length| start + length)).collect();
+            next.dedup();
+            assert!(!next.is_empty(), "no line from {} m to {} m at turns {starts:?}", ends[0], ends[1]);
+            starts = next;
+        }
+        let at = starts[0];
+        let strays = (0..300).filter(|k| (found[SEGMENT * k] - points[*k]).abs() > 1e-12).count();
+        println!("sub-mode 0: {at} turns for {}, {strays} points not at their time", SEGMENT * 299);
+        assert_eq!(strays > 0, lost > 0);
+        assert!(found[at..].iter().all(|x| (x - points[299]).abs() < 1e-12), "at rest at the last point");
+        // A turn in each segment is taken out of what was lost, until a segment begins within a turn of where it did.
+        assert!(at.abs_diff(SEGMENT * 299 + lost) <= 1, "{at} turns");
+    }
+}
+
+/// Oracle: where the tables end, and that nothing of the first is left when the second begins.
+#[test]
+fn tables_follow_each_other_by_every_door() {
+    // Not a multiple of eight points: the counter of 2010h goes on.
+    let file = sine(211);
+    let steps = format!("{}[[program]]\nwait = \"0.3 s\"\n{}", table(&file), table(&file));
+    let segments: Vec<f64> = micrometres(211);
+    for (door, code) in [("2010h", -3), ("60C1h", -3), ("60C1h", -2), ("60C1h", -1), ("60C1h", 0), ("115h", -3)] {
+        let recording = run(&by_door(door, &sub_mode(code), &steps, ""));
+        assert_eq!(buffer(&recording), ["none"], "{door} {code}");
+        let velocity = values(&recording, "setpoint.velocity");
+        let moving: Vec<usize> = (0..velocity.len()).filter(|row| velocity[*row].abs() > 0.0).collect();
+        // The sine stands still for a tick in its turning points; 0.1 s are not one of those.
+        let ways: Vec<_> = moving.chunk_by(|row, next| next - row < 1600).collect();
+        assert_eq!(ways.len(), 2, "{door} {code}");
+        for way in ways {
+            let length = way.len() as f64 * recording.rate.period();
+            assert!((length - 2.1).abs() < 0.02, "{door} {code}: {length} s");
+        }
+        let last = values(&recording, "setpoint.position").last().copied().unwrap_or_default();
+        assert!((last - 2.0 * segments[210]).abs() < 1.1e-6, "{door} {code}: {last}");
+        assert!(peak(&recording, "following_error.motor") < 1e-3, "{door} {code}");
+    }
+}
+
+#[test]
+fn points_that_the_door_cannot_take_are_refused() {
+    let file = sine(30);
+    let refused = |door, objects: &str| {
+        let text = by_door(door, objects, &table(&file), "");
+        let loaded = scenario::parse("test", &text, Some(Path::new("."))).unwrap_or_else(|error| panic!("{error}"));
+        Bench::new(&loaded.scenario, &Exact).err().map(|error| error.to_string()).unwrap_or_default()
+    };
+    for door in ["2010h", "115h"] {
+        assert_eq!(
+            refused(door, "\"60C0h\" = 0\n"),
+            format!(
+                "points by {door} have times of their own: the interpolation sub-mode (60C0h) must be -2 or -3, got 0: \
+                 write `trajectory_buffer = \"60C1h\"` in `[bus]`, or another sub-mode"
+            )
+        );
+    }
+    // 60C2h is a millisecond unless written.
+    assert_eq!(
+        refused("60C1h", "\"60C0h\" = -1\n"),
+        "point 1 of the table: a time to the next of 0.01 cannot be sent in a point of the trajectory buffer (60C1h), which \
+         holds that of 60C2h only; write the time between the points to 60C2h, or -2 to 60C0h"
+    );
+}
+
+/// Oracle: the same without the master's pause, and the pause.
+#[test]
+fn a_master_that_is_held_up_is_made_up_for() {
+    let text = |name: &str| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/plc").join(name);
+        std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{error}"))
+    };
+    let held_up = text("pt-two-clocks.toml");
+    let in_time = held_up.replace("start = \"4 s\"", "start = \"100 s\"");
+    assert_ne!(held_up, in_time);
+    let end = |text: &str| {
+        let recording = run(text);
+        assert_eq!(buffer(&recording), ["none"]);
+        assert!(peak(&recording, "following_error.load") < 100e-6);
+        let velocity = values(&recording, "setpoint.velocity");
+        recording.time_of(velocity.iter().rposition(|v| v.abs() > 0.0).unwrap_or_default())
+    };
+    let late = end(&held_up) - end(&in_time);
+    println!("{late} s late");
+    // To two steps of the drive.
+    assert!((late - 20e-3).abs() < 0.6e-3, "{late}");
+}

@@ -5,9 +5,9 @@
 //! frame does not carry: that of the settings.
 use super::{Fault, Params, State};
 use crate::Demand;
-use crate::modes::interpolated::SegmentCommand;
+use crate::modes::interpolated::{RecordError, SegmentCommand};
 use crate::modes::{Actual, Targets};
-use servobench_cia402::{Actuals, Commands, Mode};
+use servobench_cia402::{Actuals, Commands, InterpolationData, Mode};
 
 impl State {
     /// The frame for the master, as of the last step.
@@ -48,6 +48,9 @@ impl State {
                 Err(_) => true,
             };
         }
+        if let Some(data) = frame.interpolation_data {
+            self.has_refused_point = self.record(p, data).is_err();
+        }
         let here = self.position(p);
         let offset = match self.wanted {
             Some(Mode::CyclicSynchronousPosition) => frame.position_offset,
@@ -87,5 +90,17 @@ impl State {
             home_offset: p.units.from_position(frame.home_offset.into()),
             is_new: true,
         };
+    }
+
+    /// Writes the data record (60C1h), sub-index by sub-index.
+    fn record(&mut self, p: &Params, data: InterpolationData) -> Result<(), RecordError> {
+        let InterpolationData { position, time, velocity } = data;
+        let values = [Some(position), time.map(i32::from), velocity];
+        for (sub_index, value) in (1..).zip(values) {
+            if let Some(value) = value {
+                self.data_record.write(p.sub_mode, p.segment, &mut self.buffer, sub_index, value)?;
+            }
+        }
+        Ok(())
     }
 }

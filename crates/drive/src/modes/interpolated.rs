@@ -3,7 +3,7 @@
 //! Points come through three doors, in counts, 0.1 counts/s and milliseconds; all lead to the same buffer:
 //!
 //! - [`SegmentCommand`]: the eight bytes of 2010h,
-//! - [`DataRecord`]: the standard's 60C1h, in the sub-modes of 60C0h,
+//! - [`DataRecord`]: the standard's 60C1h, in the sub-modes of 60C0h, mapped to a frame or not,
 //! - [`serial`]: parameter 115h.
 //!
 //! # A move

@@ -1,9 +1,9 @@
 //! Interpolated position through the drive: points of the master, free places and the status of the buffer.
 use crate::axis::Axis;
-use servobench_cia402::{ControlBit, Mode, StatusBit};
+use servobench_cia402::{ControlBit, InterpolationData, Mode, StatusBit};
 use servobench_drive::device::Params;
 use servobench_drive::modes::interpolated::serial::Port;
-use servobench_drive::modes::interpolated::{DataRecord, Point, SegmentCommand, SubMode, TimePeriod};
+use servobench_drive::modes::interpolated::{Buffer, DataRecord, Point, SegmentCommand, SubMode, TimePeriod};
 
 impl Axis {
     fn send(&mut self, command: SegmentCommand) {
@@ -64,6 +64,33 @@ fn points_come_through_the_data_record_too() {
     for k in 1..=100 {
         axis.step(k % 4 == 1);
         assert!((axis.position - 2.5e-6 * f64::from(k)).abs() < 1e-15, "step {k}: {}", axis.position);
+    }
+}
+
+/// Oracle: the data record itself. What a frame carries beyond the sub-mode is refused, and the drive warns.
+#[test]
+fn a_frame_carries_the_data_record() {
+    let period = TimePeriod::new(10, -3).unwrap();
+    for sub_mode in SubMode::ALL {
+        let params = Params { sub_mode, segment: period, ..Params::default() };
+        let mut axis = Axis::enabled(&params, Mode::InterpolatedPosition);
+        let time = (!sub_mode.has_constant_time()).then_some(20_u8);
+        let velocity = (sub_mode == SubMode::Cubic).then_some(-5);
+        let data = InterpolationData { position: 70, time, velocity };
+        axis.frame.interpolation_data = Some(data);
+        axis.cycle();
+        let (mut record, mut expected) = (DataRecord::default(), Buffer::default());
+        for (sub_index, value) in [(1, Some(70)), (2, time.map(i32::from)), (3, velocity)] {
+            if let Some(value) = value {
+                record.write(sub_mode, period, &mut expected, sub_index, value).unwrap();
+            }
+        }
+        assert_eq!((*axis.state.trajectory_buffer(), axis.has(StatusBit::Warning)), (expected, false), "{sub_mode:?}");
+        if sub_mode != SubMode::Cubic {
+            axis.frame.interpolation_data = Some(InterpolationData { time: Some(20), velocity: Some(-5), ..data });
+            axis.cycle();
+            assert!(axis.has(StatusBit::Warning), "{sub_mode:?}");
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 //! In profile position a set-point is handed over by bit 4 of the controlword and bit 12 of the statusword (IEC 61800-7-201,
 //! profile position mode): bit 4 rises with the target, bit 12 answers, both fall, and the next one can come.
 use super::{Params, State};
-use crate::{Way, WayFeedback};
+use crate::{TrajectoryPoint, Way, WayFeedback};
 use servobench_cia402::{Actuals, Mode, StatusBit};
 
 /// What a link remembers of it.
@@ -58,7 +58,7 @@ pub(super) const fn mode(way: &Way) -> Mode {
 impl State {
     /// Leaves `way` to the drive.
     pub(super) fn leave(&mut self, p: &Params, way: &Way, follows: bool) {
-        self.commands.trajectory_point = None;
+        (self.commands.trajectory_point, self.commands.interpolation_data) = (None, None);
         if !follows {
             self.own_way.starts = false;
             return;
@@ -81,7 +81,11 @@ impl State {
             }
             Way::Points { point, follow } => {
                 self.own_way.starts = follow;
-                self.commands.trajectory_point = point.filter(|_| self.own_way.has_news);
+                match point.filter(|_| self.own_way.has_news) {
+                    Some(TrajectoryPoint::MoveSegment(bytes)) => self.commands.trajectory_point = Some(bytes),
+                    Some(TrajectoryPoint::DataRecord(data)) => self.commands.interpolation_data = Some(data),
+                    None => {}
+                }
             }
         }
     }

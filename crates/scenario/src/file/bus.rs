@@ -3,7 +3,9 @@ use crate::field::{not_negative, positive};
 use crate::list::Many;
 use crate::physical::Kind::{Axis as InAxis, Plain};
 use crate::physical::{POSITION, POSITION_GAIN, TIME};
-use crate::scenario::{BusMode, DriveInterpolation, EffortFeedforward, InterpolationMode, Sequencing};
+use crate::scenario::{
+    BusMode, DriveInterpolation, EffortFeedforward, InterpolationMode, Sequencing, TrajectoryBuffer,
+};
 use crate::simple::Choice;
 use crate::table::table;
 
@@ -20,6 +22,18 @@ impl Choice for BusMode {
 impl Choice for DriveInterpolation {
     const ALL: &'static [(&'static str, Self, &'static str)] =
         &[("linear", Self::Linear, "position linear"), ("cubic", Self::Cubic, "by positions and velocities")];
+}
+
+impl Choice for TrajectoryBuffer {
+    const ALL: &'static [(&'static str, Self, &'static str)] = &[
+        ("2010h", Self::MoveSegment, "move segment command of the drive: eight bytes of a frame"),
+        ("60C1h", Self::DataRecord, "interpolation data record, in the sub-mode (60C0h) of `[drive.objects]`"),
+        (
+            "115h",
+            Self::Serial,
+            "parameter of the serial interface, with trajectory mode 3 (C8h) and the start by op-code 17",
+        ),
+    ];
 }
 
 impl Choice for Sequencing {
@@ -86,6 +100,8 @@ table! {
         interpolation: InterpolationMode = (),
         /// How the drive fills the ticks between two frames; "linear" unless given.
         drive_interpolation: DriveInterpolation = (),
+        /// How points get into the buffer of the drive, with the mode "ip"; "2010h" unless given.
+        trajectory_buffer: TrajectoryBuffer = (),
         /// Bus cycles from the sampling of a frame to its effect; 1 unless given.
         delay: u32 = 0..=15,
         /// Whether the velocity offset (60B1h) carries the velocity of the set-point; it does not unless given.

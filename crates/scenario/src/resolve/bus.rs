@@ -69,6 +69,7 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
         motion_every: motion_every?,
         interpolation: given.interpolation.optional().ok()?.copied().unwrap_or(InterpolationMode::Cubic),
         drive_interpolation: given.drive_interpolation.optional().ok()?.copied().unwrap_or_default(),
+        trajectory_buffer: given.trajectory_buffer.optional().ok()?.copied().unwrap_or_default(),
         delay: given.delay.optional().ok()?.copied().unwrap_or(DELAY),
         velocity_offset: flag(&given.velocity_offset)?,
         effort_offset: effort_offset?,
@@ -117,6 +118,10 @@ fn refuse_by_mode(given: &file::Bus, mode: BusMode, report: &mut Report) {
     if mode != BusMode::CyclicPosition {
         let key = [("drive_interpolation", given.drive_interpolation.span())];
         refuse(&key, "is for the mode \"csp\"", "", report);
+    }
+    if mode != BusMode::InterpolatedPosition {
+        let key = [("trajectory_buffer", given.trajectory_buffer.span())];
+        refuse(&key, "is for the mode \"ip\"", "only there the drive goes through the points of a buffer", report);
     }
 }
 

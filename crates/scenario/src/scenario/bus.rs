@@ -38,6 +38,8 @@ pub struct Bus {
     pub velocity_from_differences: bool,
     /// Whether the switches are wired normally closed: what the drive reports of them is inverted by the master.
     pub reverse_switches: bool,
+    /// How the points of a table get into the buffer of the drive, with interpolated position.
+    pub trajectory_buffer: TrajectoryBuffer,
     /// What goes wrong, in the order of the file.
     pub faults: Vec<BusFault>,
     /// What the master writes into the drive's objects before the first cycle, in the order of the file.
@@ -68,6 +70,18 @@ pub enum DriveInterpolation {
     Linear,
     /// By positions and velocities.
     Cubic,
+}
+
+/// How the points of a table get into the buffer of the drive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum TrajectoryBuffer {
+    /// The move segment command (2010h), eight bytes in a frame.
+    #[default]
+    MoveSegment,
+    /// The interpolation data record (60C1h), in the sub-mode of 60C0h.
+    DataRecord,
+    /// Parameter 115h of the serial interface.
+    Serial,
 }
 
 /// How the master brings the drive to power.

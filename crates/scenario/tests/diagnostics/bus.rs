@@ -107,6 +107,16 @@ fn keys_belong_to_modes() {
                 "6:17: `effort_offset` is for the modes \"csp\" and \"csv\"; the drive makes the way itself here",
             ],
         ),
+        (
+            &bus("trajectory_buffer = \"60C1h\"\n"),
+            &[
+                "4:21: `trajectory_buffer` is for the mode \"ip\"; only there the drive goes through the points of a buffer",
+            ],
+        ),
+        (
+            &bus("trajectory_buffer = \"60C2h\"\nmode = \"ip\"\n"),
+            &["4:21: `trajectory_buffer` has no value \"60C2h\"; did you mean `60C1h`?"],
+        ),
         (&bus("mode = \"cst\"\n"), &["4:8: `mode` has no value \"cst\"; did you mean `csp`?"]),
         (&bus("delay = 16\n"), &["4:9: `delay` must be a whole number from 0 to 15, got 16"]),
         (&bus("counter = { bits = 33 }\n"), &["4:20: `bits` must be a whole number from 8 to 32, got 33"]),

@@ -13,7 +13,7 @@ use servobench_cia402::PowerState;
 use servobench_cia402::counter::Counter;
 use servobench_cia402::objects::Dictionary;
 use servobench_cia402::units::Object;
-use servobench_drive::modes::interpolated::SubMode;
+use servobench_drive::modes::interpolated::{SubMode, serial::Port};
 use servobench_drive::{self as drive, Demand, device, feedforward};
 use servobench_fieldbus::bus::{self, BusFault, BusFaultKind};
 use servobench_fieldbus::link::{self, Mailbox};
@@ -137,7 +137,7 @@ impl Network {
             Some(plc) => MotionTask::Plc(Box::new(Plc::new(plc, scenario.axis.modulo, period, recorder)?)),
             None if !bus.mode.is_cyclic() => {
                 let moves = Underway::new(program, period);
-                MotionTask::OwnWay(Box::new(OwnWay::new(moves, bus.mode, bus.units)?))
+                MotionTask::OwnWay(Box::new(OwnWay::new(moves, bus, &device)?))
             }
             None => MotionTask::Moves(Box::new(Underway::new(program, period))),
         };
@@ -148,6 +148,7 @@ impl Network {
             mailbox: Mailbox::default(),
             link: (link, link::State::default()),
             drive,
+            serial: Port::default(),
             bus: (bus::Params::new(bus_every, bus.delay, &[])?, bus::State::default()),
             faults: bus.faults.iter().filter_map(bus_fault).collect(),
             turns: (task::Params::new(motion_cycle, &[]), task::State::default()),

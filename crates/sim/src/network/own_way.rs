@@ -3,18 +3,17 @@
 //! What the drive is sent stands in the plans of the moves: their targets, the commands of a position profile, or the points of
 //! a table. Times count from the cycle in which the axis is powered.
 use super::Step;
-use super::points::{Points, Unsendable};
+use super::points::{Door, Unsendable, points};
+use super::stream::{Message, Stream};
 use super::underway::Underway;
-use servobench_drive::modes::interpolated::SegmentCommand;
+use servobench_drive::device;
 use servobench_fieldbus::{AxisCommand, AxisFeedback, Task, Way};
 use servobench_motion::position_profile::Command;
 use servobench_planner::Told;
-use servobench_scenario::{BusMode, DriveUnits};
+use servobench_scenario::{Bus, BusMode};
 
 /// How far before its time a cycle may be by rounding (s).
 const ROUNDING: f64 = 1e-9;
-/// Points that are in the buffer before they are followed, when there are so many.
-const AHEAD: usize = 16;
 
 /// A program of ways under way.
 #[derive(Debug, Clone)]
@@ -30,27 +29,28 @@ enum Orders {
     Positions { set_points: Vec<(f64, [f64; 3])>, sent: usize },
     /// Velocities: when, and which.
     Velocities { commands: Vec<Command>, next: usize, now: Command },
-    /// Tables: when, and the points of each.
-    Tables { tables: Vec<(f64, Points)>, now: usize, is_following: bool, was_active: bool },
+    /// Tables, point by point.
+    Tables(Stream),
 }
 
 impl OwnWay {
-    /// The way of `moves` in `mode`.
+    /// The way of `moves` over `bus`, made by `drive`.
     ///
     /// # Errors
-    /// [`Unsendable`] names a point of a table that 2010h does not hold.
-    pub(super) fn new(moves: Underway, mode: BusMode, units: DriveUnits) -> Result<Self, Unsendable> {
+    /// [`Unsendable`] names a point of a table that cannot be sent, or why none can.
+    pub(super) fn new(moves: Underway, bus: &Bus, drive: &device::Params) -> Result<Self, Unsendable> {
         let program = moves.program();
-        let orders = match mode {
+        let orders = match bus.mode {
             BusMode::ProfileVelocity => {
                 let told = program.plans().flat_map(|(start, _, plan)| commands_of(start, plan.told(), plan.end().v));
                 let now = Command { t: 0.0, velocity: 0.0, acceleration: 0.0 };
                 Orders::Velocities { commands: told.collect(), next: 0, now }
             }
             BusMode::InterpolatedPosition => {
-                let tables = program.plans().map(|(start, from, plan)| Ok((start, Points::of(plan, from, units)?)));
-                let tables = tables.collect::<Result<_, _>>()?;
-                Orders::Tables { tables, now: 0, is_following: false, was_active: false }
+                let door = Door::new(bus.trajectory_buffer, drive.sub_mode, drive.segment)?;
+                let tables =
+                    program.plans().map(|(start, from, plan)| Ok((start, points(plan, from, bus.units, door)?)));
+                Orders::Tables(Stream::new(door, tables.collect::<Result<_, _>>()?))
             }
             BusMode::ProfilePosition | BusMode::CyclicPosition | BusMode::CyclicVelocity => {
                 let set_points = program.plans().map(|(start, from, plan)| {
@@ -65,6 +65,14 @@ impl OwnWay {
 
     pub(super) const fn moves(&self) -> &Underway {
         &self.moves
+    }
+
+    /// What goes over the serial interface of the drive in this cycle.
+    pub(super) const fn message(&mut self) -> Option<Message> {
+        match &mut self.orders {
+            Orders::Tables(stream) => stream.message(),
+            Orders::Positions { .. } | Orders::Velocities { .. } => None,
+        }
     }
 
     /// One cycle.
@@ -113,21 +121,7 @@ impl Orders {
                 let Command { velocity, acceleration, .. } = *present;
                 Way::Velocity { velocity, acceleration }
             }
-            Self::Tables { tables, now: index, is_following, was_active } => {
-                let Some((_, points)) = tables.get_mut(*index).filter(|(start, _)| *start <= now) else {
-                    return Way::Points { point: None, follow: *is_following };
-                };
-                // Between a frame and the answer that knows of it a few points are under way.
-                let point = points.next(feedback.way.buffer_free).and_then(SegmentCommand::encode);
-                *is_following |= points.sent() >= AHEAD || points.is_over();
-                if *was_active && !feedback.way.is_active && points.is_over() {
-                    (*is_following, *was_active) = (false, false);
-                    *index += 1;
-                } else {
-                    *was_active |= feedback.way.is_active && *is_following;
-                }
-                Way::Points { point, follow: *is_following }
-            }
+            Self::Tables(stream) => stream.way(now, &feedback.way),
         }
     }
 }

@@ -1,0 +1,230 @@
+//! Tables on their way into the buffer of a drive, point by point, one in a cycle of the motion task.
+//!
+//! Points with times of their own are sent until the buffer is nearly full, and followed from then on, or when all are there; the
+//! last one ends the move. By the serial interface the mode is set first (C8h), and op-code 17 starts the move.
+//!
+//! In the sub-modes without times nothing ends a move but bit 4: behind the table its last position is sent again and again, and
+//! when the drive is on the way from one of them to the next, it is told to stop, and its buffer is emptied (2010h, 80h). In
+//! sub-mode 0 the drive is told to go first, since it forgets the points that came before; then they come by the clock of the
+//! master, one in each period (60C2h).
+use super::points::Door;
+use servobench_cia402::InterpolationData;
+use servobench_drive::modes::interpolated::serial::{self, PVT, Port, SerialError, TRAJECTORY_BUFFER, TRAJECTORY_MODE};
+use servobench_drive::modes::interpolated::{Buffer, CAPACITY, Point, SegmentCommand, SubMode};
+use servobench_fieldbus::{TrajectoryPoint, Way, WayFeedback};
+
+/// Points that stay free in the buffer: those under way between a frame and the answer that knows of it.
+const RESERVE: u16 = 6;
+/// Points that are in the buffer before they are followed, when there are so many.
+const AHEAD: usize = 16;
+/// For the rounding of times (s).
+const ROUNDING: f64 = 1e-9;
+/// Bit of 115h's word: the position is relative.
+const RELATIVE: u16 = 1 << 12;
+
+/// A message by the serial interface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Message {
+    /// The trajectory mode, PVT.
+    SetMode,
+    /// A point for the buffer.
+    Add(Point),
+    /// The start move command.
+    Start,
+}
+
+impl Message {
+    /// What it does to the drive.
+    ///
+    /// # Errors
+    /// What the drive answers.
+    pub(super) fn arrive(self, port: &mut Port, buffer: &mut Buffer) -> Result<(), SerialError> {
+        match self {
+            Self::SetMode => port.write(buffer, TRAJECTORY_MODE, PVT, &[]),
+            Self::Start => port.command(buffer, serial::START_MOVE),
+            Self::Add(Point { position, is_relative, velocity, time }) => {
+                let word = u16::from(milliseconds(time)) | if is_relative { RELATIVE } else { 0 };
+                let values = [position, velocity.unwrap_or(0)];
+                port.write(buffer, TRAJECTORY_BUFFER, word, &values[..if velocity.is_some() { 2 } else { 1 }])
+            }
+        }
+    }
+}
+
+/// Tables, and how far they are.
+#[derive(Debug, Clone)]
+pub(super) struct Stream {
+    door: Door,
+    /// When each begins (s), and its points.
+    tables: Vec<(f64, Vec<Point>)>,
+    table: usize,
+    /// Points of all tables that were sent, as the drive numbers them.
+    number: u16,
+    /// Points of this table that have arrived, and the number that the drive told with them.
+    arrived: i64,
+    seen: u16,
+    /// Points of this table that were sent, and last positions after it.
+    sent: usize,
+    /// When the next one is sent (s), where the master keeps the time.
+    due: f64,
+    stage: Stage,
+    message: Option<Message>,
+}
+
+/// How far a table is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Stage {
+    /// The serial interface is to be told the mode.
+    Setting,
+    /// Points are sent and wait.
+    Filling,
+    /// The drive is told to follow them.
+    Following {
+        /// Whether it was seen to.
+        was_active: bool,
+    },
+    /// The buffer is being emptied.
+    Emptying,
+}
+
+impl Stream {
+    pub(super) const fn new(door: Door, tables: Vec<(f64, Vec<Point>)>) -> Self {
+        let stage = if matches!(door, Door::Serial) { Stage::Setting } else { Stage::Filling };
+        Self { door, tables, table: 0, number: 0, arrived: 0, seen: 0, sent: 0, due: 0.0, stage, message: None }
+    }
+
+    /// What goes over the serial interface in this cycle.
+    pub(super) const fn message(&mut self) -> Option<Message> {
+        self.message.take()
+    }
+
+    /// What is sent at `now` (s).
+    pub(super) fn way(&mut self, now: f64, drive: &WayFeedback) -> Way {
+        let point = match self.tables.get(self.table) {
+            Some((start, points)) if *start <= now => {
+                let length = points.len();
+                self.turn(now, drive, length)
+            }
+            _ => None,
+        };
+        let follow = matches!(self.stage, Stage::Following { .. }) && self.door != Door::Serial;
+        Way::Points { point, follow }
+    }
+
+    /// A cycle of a table of so many points.
+    fn turn(&mut self, now: f64, drive: &WayFeedback, length: usize) -> Option<TrajectoryPoint> {
+        let is_endless = self.door.constant_time().is_some();
+        match self.stage {
+            Stage::Setting => {
+                self.message = Some(Message::SetMode);
+                self.stage = Stage::Filling;
+                None
+            }
+            Stage::Filling => {
+                if matches!(self.door, Door::DataRecord { sub_mode: SubMode::LinearAdapted, .. }) {
+                    self.follow(now);
+                    return None;
+                }
+                if self.door == Door::Serial && self.is_ready(length) {
+                    self.message = Some(Message::Start);
+                    self.follow(now);
+                    return None;
+                }
+                let point = self.next(now, drive);
+                if self.door != Door::Serial && self.is_ready(length) {
+                    self.follow(now);
+                }
+                point
+            }
+            Stage::Following { was_active } => {
+                let is_passed = if is_endless { self.passed(drive) > length } else { was_active && !drive.is_active };
+                if is_passed && self.sent >= length {
+                    if is_endless {
+                        self.stage = Stage::Emptying;
+                        return SegmentCommand::Clear.encode().map(TrajectoryPoint::MoveSegment);
+                    }
+                    self.go_on();
+                    return None;
+                }
+                self.stage = Stage::Following { was_active: was_active || drive.is_active };
+                self.next(now, drive)
+            }
+            Stage::Emptying => {
+                if !drive.is_active && usize::from(drive.buffer_free) == CAPACITY {
+                    self.go_on();
+                }
+                None
+            }
+        }
+    }
+
+    /// Whether as many points of so many are sent as are to wait.
+    const fn is_ready(&self, length: usize) -> bool {
+        self.sent >= AHEAD || self.sent >= length
+    }
+
+    /// Has the drive follow the points from `now` on.
+    const fn follow(&mut self, now: f64) {
+        (self.stage, self.due) = (Stage::Following { was_active: false }, now);
+    }
+
+    /// To the next table.
+    const fn go_on(&mut self) {
+        self.table += 1;
+        (self.sent, self.stage) = (0, Stage::Filling);
+        (self.arrived, self.seen) = (0, self.number);
+    }
+
+    /// Points of this table that have left the buffer, by the answer of the drive. Where some were lost on their way, they have
+    /// to come first.
+    fn passed(&mut self, drive: &WayFeedback) -> usize {
+        let [low, high, ..] = drive.buffer_status.to_le_bytes();
+        let number = u16::from_le_bytes([low, high]);
+        self.arrived += i64::from(number.wrapping_sub(self.seen).cast_signed());
+        self.seen = number;
+        let waiting = CAPACITY - usize::from(drive.buffer_free).min(CAPACITY);
+        usize::try_from(self.arrived).unwrap_or(0).saturating_sub(waiting)
+    }
+
+    /// The next point, when it is time for it and the buffer has room.
+    fn next(&mut self, now: f64, drive: &WayFeedback) -> Option<TrajectoryPoint> {
+        let (_, points) = self.tables.get(self.table)?;
+        let point = match (points.get(self.sent), self.door.constant_time()) {
+            (Some(point), _) => *point,
+            (None, Some(_)) => *points.last()?,
+            (None, None) => return None,
+        };
+        if drive.buffer_free <= RESERVE {
+            return None;
+        }
+        if let Door::DataRecord { sub_mode: SubMode::LinearAdapted, period } = self.door {
+            if now < self.due - ROUNDING {
+                return None;
+            }
+            self.due += f64::from(period.microseconds()) * 1e-6;
+        }
+        let number = self.number;
+        self.number = number.wrapping_add(1);
+        self.sent += 1;
+        match self.door {
+            Door::MoveSegment => {
+                let counter = number.to_le_bytes()[0] & 7;
+                SegmentCommand::Point { counter, point }.encode().map(TrajectoryPoint::MoveSegment)
+            }
+            Door::DataRecord { sub_mode, .. } => {
+                let time = (!sub_mode.has_constant_time()).then(|| milliseconds(point.time));
+                let data = InterpolationData { position: point.position, time, velocity: point.velocity };
+                Some(TrajectoryPoint::DataRecord(data))
+            }
+            Door::Serial => {
+                self.message = Some(Message::Add(point));
+                None
+            }
+        }
+    }
+}
+
+/// Whole milliseconds, 255 at most: points with others are not sent.
+fn milliseconds(microseconds: u32) -> u8 {
+    u8::try_from(microseconds / 1000).unwrap_or(u8::MAX)
+}
