@@ -1,0 +1,165 @@
+//! How one process tells another that it is its turn.
+//!
+//! Whoever waits looks at the word for a moment, then sleeps in the kernel (a futex that both processes see) until the other
+//! side rings. Looking pays only while the other side runs on another core: for as long as a sleep and a waking cost, so that
+//! it never costs more than twice what would have been best, and not for a while after it was in vain. On two cores that both
+//! have other work, processes that only look get milliseconds in each other's way.
+use rustix::thread::futex;
+use rustix::thread::futex::Timespec;
+use std::hint::spin_loop;
+use std::sync::atomic::{AtomicU32, Ordering::SeqCst};
+use std::time::{Duration, Instant};
+
+/// About what going to sleep and being woken costs.
+const LOOK: Duration = Duration::from_micros(5);
+/// Looks between two glances at the clock.
+const GLANCES: usize = 16;
+/// Turns without looking after it was in vain.
+const PAUSE: u32 = 256;
+
+/// A word in memory that both see.
+#[repr(C, align(64))]
+#[derive(Debug, Default)]
+pub(crate) struct Bell {
+    number: AtomicU32,
+    /// Not zero: somebody sleeps until it rings.
+    asleep: AtomicU32,
+}
+
+impl Bell {
+    /// Rings with `number`. What was written before is seen by who hears it.
+    pub(crate) fn ring(&self, number: u32) {
+        self.number.store(number, SeqCst);
+        // Either the sleeper's note is seen here, or the sleeper sees the new number before it sleeps.
+        if self.asleep.load(SeqCst) != 0 {
+            self.wake();
+        }
+    }
+
+    /// Wakes who waits, with a number that is no order's: the other side will not ring any more.
+    pub(crate) fn give_up(&self) {
+        self.number.fetch_xor(1 << 31, SeqCst);
+        self.wake();
+    }
+
+    fn wake(&self) {
+        // It fails for a wrong address only, and then nobody can sleep there.
+        futex::wake(&self.number, futex::Flags::empty(), 1).ok();
+    }
+
+    fn rings(&self, number: u32) -> bool {
+        self.number.load(SeqCst) == number
+    }
+
+    /// Sleeps while the number is `present`, at most for `limit`; may also return earlier.
+    fn sleep(&self, present: u32, limit: Duration) {
+        // A duration that is too long for the kernel's clock is as good as any: the caller comes back.
+        if let Ok(limit) = Timespec::try_from(limit) {
+            // The number has changed, the time is over or a signal came: the caller looks.
+            futex::wait(&self.number, futex::Flags::empty(), present, Some(&limit)).ok();
+        }
+    }
+}
+
+/// One that waits for a bell, and learns whether looking pays.
+#[derive(Debug, Default)]
+pub(crate) struct Listener {
+    /// Turns until it looks again.
+    pause: u32,
+}
+
+impl Listener {
+    /// Waits until `bell` rings with `number`. Meanwhile `go_on` is asked at least every `glance`, and before each sleep;
+    /// `false` when it said so first.
+    pub(crate) fn wait(&mut self, bell: &Bell, number: u32, glance: Duration, mut go_on: impl FnMut() -> bool) -> bool {
+        if self.look(bell, number) {
+            return true;
+        }
+        bell.asleep.store(1, SeqCst);
+        let rung = loop {
+            // Read before `go_on` is asked: what happens after that changes it, and nobody falls asleep over it.
+            let present = bell.number.load(SeqCst);
+            if present == number {
+                break true;
+            }
+            if !go_on() {
+                break false;
+            }
+            bell.sleep(present, glance);
+        };
+        bell.asleep.store(0, SeqCst);
+        rung
+    }
+
+    fn look(&mut self, bell: &Bell, number: u32) -> bool {
+        if self.pause > 0 {
+            self.pause -= 1;
+            return bell.rings(number);
+        }
+        let start = Instant::now();
+        loop {
+            for _ in 0..GLANCES {
+                if bell.rings(number) {
+                    return true;
+                }
+                spin_loop();
+            }
+            if start.elapsed() > LOOK {
+                self.pause = PAUSE;
+                return false;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::thread;
+
+    const GLANCE: Duration = Duration::from_mins(1);
+
+    /// Both sides count what they hear: no ring is lost, whether it is heard awake or asleep. A lost one would cost a minute.
+    #[test]
+    fn no_ring_is_lost() {
+        const TURNS: u32 = 20_000;
+        let (there, back) = (Bell::default(), Bell::default());
+        thread::scope(|scope| {
+            scope.spawn(|| {
+                let mut listener = Listener::default();
+                for turn in 1..=TURNS {
+                    assert!(listener.wait(&there, turn, GLANCE, || true));
+                    back.ring(turn);
+                }
+            });
+            let mut listener = Listener::default();
+            for turn in 1..=TURNS {
+                there.ring(turn);
+                assert!(listener.wait(&back, turn, GLANCE, || true));
+            }
+        });
+    }
+
+    #[test]
+    fn one_that_gives_up_wakes_who_waits() {
+        let bell = Bell::default();
+        let over = std::sync::atomic::AtomicBool::new(false);
+        thread::scope(|scope| {
+            let waits = scope.spawn(|| Listener::default().wait(&bell, 7, GLANCE, || !over.load(SeqCst)));
+            over.store(true, SeqCst);
+            bell.give_up();
+            assert!(!waits.join().unwrap());
+        });
+    }
+
+    #[test]
+    fn who_waits_in_vain_is_asked_again_and_again() {
+        let mut left = 3;
+        let go_on = || {
+            left -= 1;
+            left > 0
+        };
+        assert!(!Listener::default().wait(&Bell::default(), 7, Duration::from_micros(1), go_on));
+        assert_eq!(left, 0);
+    }
+}

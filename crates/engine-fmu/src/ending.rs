@@ -1,0 +1,116 @@
+//! How a process ended, in words.
+use crate::memory::in_words;
+use std::os::unix::process::ExitStatusExt;
+use std::process::ExitStatus;
+
+/// What libraries say when they get no memory: Rust's allocator, C++'s `new`, Python, and the system's own words (ENOMEM).
+const NO_MEMORY: [&str; 4] = ["memory allocation of ", "std::bad_alloc", "MemoryError", "Cannot allocate memory"];
+
+/// Ends with what the process held of its memory and what it left on standard error.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Ending {
+    /// How it ended, unless it was ended for its memory.
+    pub(crate) status: Option<ExitStatus>,
+    /// How much memory of its own it held when it crashed or was ended (B); 0 if that is not known.
+    pub(crate) held: u64,
+    /// How much it may have (B).
+    pub(crate) bound: u64,
+    /// The last of what it wrote on standard error.
+    pub(crate) last_words: String,
+}
+
+impl Ending {
+    /// Whether it ran out of its memory, as far as one can tell from outside.
+    ///
+    /// What grows by doubling asks for twice what it holds, and holds both while it copies: one that crashes with a third of
+    /// what it may have may have been refused more.
+    pub(crate) fn of_memory(&self) -> bool {
+        self.refused() || self.held >= self.bound / 3
+    }
+
+    /// Whether it was refused memory: it says so, or it holds all but what a program asks for at once.
+    fn refused(&self) -> bool {
+        self.held >= self.bound / 10 * 9 || NO_MEMORY.iter().any(|words| self.last_words.contains(words))
+    }
+
+    /// All that is to be said.
+    pub(crate) fn how(&self) -> String {
+        let bound = in_words(self.bound);
+        let memory = match (self.refused(), self.of_memory()) {
+            (true, _) => Some(format!("it asked for more memory than the {bound} that it may have")),
+            (_, true) => Some(format!(
+                "it held {} of the {bound} of memory that it may have and probably asked for more",
+                in_words(self.held)
+            )),
+            _ => None,
+        };
+        let parts = memory.into_iter().chain(self.status.map(status_in_words)).collect::<Vec<_>>().join(", then ");
+        if self.last_words.is_empty() { parts } else { format!("{parts}; its last words: {}", self.last_words) }
+    }
+}
+
+fn status_in_words(status: ExitStatus) -> String {
+    match (status.code(), status.signal()) {
+        (Some(code), _) => format!("exit code {code}"),
+        (None, Some(number)) => match name(number) {
+            Some(name) => format!("signal {number} ({name})"),
+            None => format!("signal {number}"),
+        },
+        (None, None) => status.to_string(),
+    }
+}
+
+/// Names of the signals that end processes, by their numbers on all kinds of machine that Linux names alike (POSIX.1-2017,
+/// `signal.h`; signal(7)).
+fn name(number: i32) -> Option<&'static str> {
+    Some(match number {
+        4 => "SIGILL: an illegal instruction",
+        5 => "SIGTRAP",
+        6 => "SIGABRT: it gave up itself",
+        7 => "SIGBUS: an address without memory",
+        8 => "SIGFPE: an integer division by zero or the like",
+        9 => "SIGKILL: ended from outside, which the system does when memory runs out",
+        11 => "SIGSEGV: an address that is not its own",
+        13 => "SIGPIPE",
+        14 => "SIGALRM",
+        15 => "SIGTERM: ended from outside",
+        24 => "SIGXCPU",
+        25 => "SIGXFSZ",
+        31 => "SIGSYS: a call of the system that it may not make",
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ending(raw: i32, held: u64, last_words: &str) -> Ending {
+        let status = Some(ExitStatus::from_raw(raw));
+        Ending { status, held, bound: 3_000_000_000, last_words: last_words.into() }
+    }
+
+    /// A wait status: the signal, or the exit code times 256 (wait(2)).
+    #[test]
+    fn signals_and_codes_are_named() {
+        assert_eq!(ending(11, 0, "").how(), "signal 11 (SIGSEGV: an address that is not its own)");
+        assert_eq!(ending(3 << 8, 0, "no licence").how(), "exit code 3; its last words: no licence");
+        assert_eq!(ending(40, 0, "").how(), "signal 40");
+    }
+
+    #[test]
+    fn one_that_ran_out_of_its_memory_is_called_so() {
+        let said = "it asked for more memory than the 3.0 GB that it may have";
+        assert!(ending(11, 2_700_000_000, "").how().starts_with(said));
+        let how = ending(11, 1_000_000_000, "").how();
+        assert!(
+            how.starts_with("it held 1.0 GB of the 3.0 GB of memory that it may have and probably asked for more"),
+            "{how}"
+        );
+        assert!(!ending(11, 999_999_999, "").of_memory());
+        let how = ending(6, 0, "memory allocation of 8 bytes failed").how();
+        assert!(how.starts_with(said) && how.contains("signal 6") && how.ends_with("8 bytes failed"), "{how}");
+        let ended = Ending { status: None, held: 3_000_000_000, bound: 3_000_000_000, last_words: String::new() };
+        assert_eq!(ended.how(), said);
+    }
+}

@@ -1,0 +1,241 @@
+//! The FMU's side: a process that loads one and does what it is asked for.
+use crate::bell::Listener;
+use crate::crash;
+use crate::error::HostError;
+use crate::page::Page;
+use crate::protocol::{Command, Message, Status, log_to_line};
+use rustix::process::{Pid, Resource, Rlimit, Signal, getppid, getrlimit, set_parent_process_death_signal, setrlimit};
+use serde::de::DeserializeOwned;
+use servobench_fmi::{LogLine, Progress, Slave, SlaveError};
+use std::fs::File;
+use std::io;
+use std::os::fd::AsFd;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::time::Duration;
+
+/// How often a host that has nothing to do looks for its parent. It ends with it anyway, unless the FMU has seen to that.
+const GLANCE: Duration = Duration::from_secs(1);
+/// Bytes of a text that are passed on.
+const LONGEST: usize = 8_000;
+
+/// Makes this process the host of one FMU: `load` makes it from what [`Isolated::start`](crate::Isolated::start) was given.
+/// Returns when it is no longer needed; the process should end then.
+///
+/// Standard input is the memory that both share, and is empty for the FMU. The process ends with its parent, leaves no core
+/// dump and gets no more memory than it may have.
+///
+/// # Errors
+/// [`HostError`] if nobody has started this process as a host. Everything else is told to who has.
+pub fn serve<S: DeserializeOwned>(load: impl FnOnce(S) -> Result<Box<dyn Slave>, String>) -> Result<(), HostError> {
+    let page = page()?;
+    limit(page)?;
+    let parent = page.header().told.parent.load(Relaxed);
+    let mut host = Host { page, parent, listener: Listener::default(), number: 0 };
+    if host.next() != Some(Command::Load) {
+        return Ok(());
+    }
+    let setup = serde_json::from_slice(&page.setup()).map_err(|error| error.to_string());
+    match setup.and_then(load) {
+        Ok(mut slave) => {
+            host.say(&Message::ready(slave.capabilities()));
+            host.pass_on(slave.take_log());
+            host.answer(Status::Message);
+            host.serve(slave);
+        }
+        Err(why) => {
+            host.say(&Message::Refused(clipped(why)));
+            host.answer(Status::Message);
+            // Until the parent has read it.
+            host.next();
+            host.answer(Status::Done);
+        }
+    }
+    Ok(())
+}
+
+/// The memory that is shared, in place of which standard input gets nothing.
+fn page() -> Result<&'static Page, HostError> {
+    let cannot = |action| move |source| HostError::System { action, source };
+    let file = io::stdin().as_fd().try_clone_to_owned().map_err(cannot("open standard input"))?;
+    let page = Page::adopt(&file).map_err(cannot("map standard input"))?.ok_or(HostError::NoPage)?;
+    let nothing = File::open("/dev/null").map_err(cannot("open /dev/null"))?;
+    rustix::stdio::dup2_stdin(&nothing).map_err(io::Error::from).map_err(cannot("close standard input"))?;
+    Ok(Box::leak(Box::new(page)))
+}
+
+/// Binds this process to its parent and to its memory.
+fn limit(page: &'static Page) -> Result<(), HostError> {
+    let cannot = |action| move |errno: rustix::io::Errno| HostError::System { action, source: errno.into() };
+    set_parent_process_death_signal(Some(Signal::KILL)).map_err(cannot("end with the parent"))?;
+    let memory = page.header().told.memory.load(Relaxed);
+    let most = getrlimit(Resource::Data).maximum.map_or(memory, |most| most.min(memory));
+    for (resource, bound) in [(Resource::Data, most), (Resource::Core, 0)] {
+        setrlimit(resource, Rlimit { current: Some(bound), maximum: Some(bound) }).map_err(cannot("bound memory"))?;
+    }
+    crash::note_in(page);
+    Ok(())
+}
+
+struct Host {
+    page: &'static Page,
+    /// Process id of the parent.
+    parent: u32,
+    listener: Listener,
+    /// Number of the last order.
+    number: u32,
+}
+
+impl Host {
+    /// The next order; `None` when there will be none.
+    fn next(&mut self) -> Option<Command> {
+        self.number = (self.number + 1) & (u32::MAX >> 1);
+        let header = self.page.header();
+        let there = || getppid().map(Pid::as_raw_pid).is_some_and(|pid| pid.cast_unsigned() == self.parent);
+        let heard = self.listener.wait(&header.order, self.number, GLANCE, there);
+        heard.then(|| Command::of(header.asked.command.load(Relaxed))).flatten()
+    }
+
+    fn answer(&self, status: Status) {
+        self.page.header().answered.status.store(status as u32, Relaxed);
+        self.page.header().answer.ring(self.number);
+    }
+
+    fn say(&self, message: &Message) {
+        // What cannot be said arrives as no message, which is an error there.
+        self.page.set_message(&serde_json::to_vec(message).unwrap_or_default());
+    }
+
+    /// Puts what the FMU has said where the parent finds it, whatever happens next.
+    fn pass_on(&self, log: Vec<LogLine>) {
+        for mut line in log {
+            line.message = clipped(line.message);
+            line.category = clipped(line.category);
+            if !log_to_line(line).is_some_and(|line| self.page.add_log(&line)) {
+                self.page.header().answered.log_dropped.fetch_add(1, Relaxed);
+            }
+        }
+    }
+
+    /// Does what it is asked for to the end.
+    fn serve(&mut self, mut slave: Box<dyn Slave>) {
+        let mut work = Work {
+            page: self.page,
+            inputs: vec![[0.0; 3]; self.page.inputs().len() / 3],
+            values: vec![0.0; self.page.inputs().len() / 3],
+            outputs: vec![0.0; self.page.outputs().len()],
+            failed: None,
+        };
+        while let Some(command) = self.next() {
+            if command == Command::End {
+                drop(slave);
+                self.answer(Status::Done);
+                return;
+            }
+            let status = work.of(command, slave.as_mut()).unwrap_or_else(|error| {
+                self.say(&Message::Failed(without_flood(error).into()));
+                Status::Message
+            });
+            self.pass_on(slave.take_log());
+            self.answer(status);
+        }
+    }
+}
+
+/// Room for what is exchanged.
+struct Work {
+    page: &'static Page,
+    inputs: Vec<[f64; 3]>,
+    values: Vec<f64>,
+    outputs: Vec<f64>,
+    /// Why the outputs after the last step could not be read, until somebody asks for them.
+    failed: Option<SlaveError>,
+}
+
+impl Work {
+    fn of(&mut self, command: Command, slave: &mut dyn Slave) -> Result<Status, SlaveError> {
+        match (command, self.failed.take()) {
+            (Command::Step, _) => return self.step(slave),
+            (Command::Read, Some(error)) => return Err(error),
+            (Command::Read, None) => self.read(slave)?,
+            (Command::ReadFor, _) => self.read_for(slave)?,
+            (Command::Save, _) => slave.save()?,
+            (Command::Restore, _) => slave.restore()?,
+            // Neither comes here.
+            (Command::Load | Command::End, _) => {}
+        }
+        Ok(Status::Done)
+    }
+
+    /// Takes a step, and reads the outputs at once: whoever asks for them next finds them.
+    fn step(&mut self, slave: &mut dyn Slave) -> Result<Status, SlaveError> {
+        let values = self.inputs.as_flattened_mut();
+        values.iter_mut().zip(self.page.inputs()).for_each(|(value, word)| *value = number(word));
+        let header = self.page.header();
+        let (time, length) = (number(&header.asked.time), number(&header.asked.length));
+        header.answered.fresh.store(0, Relaxed);
+        let (status, reached) = match slave.step(time, length, &self.inputs)? {
+            Progress::Done => (Status::Done, time + length),
+            Progress::Until(reached) => (Status::Until, reached),
+            Progress::Terminated(reached) => (Status::Terminated, reached),
+        };
+        header.answered.reached.store(reached.to_bits(), Relaxed);
+        match self.read(slave) {
+            Ok(()) => header.answered.fresh.store(1, Relaxed),
+            Err(error) => self.failed = Some(error),
+        }
+        Ok(status)
+    }
+
+    fn read(&mut self, slave: &mut dyn Slave) -> Result<(), SlaveError> {
+        slave.read(None, &mut self.outputs)?;
+        self.write_outputs();
+        Ok(())
+    }
+
+    fn read_for(&mut self, slave: &mut dyn Slave) -> Result<(), SlaveError> {
+        let values = self.page.inputs().iter().step_by(3);
+        self.values.iter_mut().zip(values).for_each(|(value, word)| *value = number(word));
+        slave.read(Some(&self.values), &mut self.outputs)?;
+        self.write_outputs();
+        Ok(())
+    }
+
+    fn write_outputs(&self) {
+        let words = self.page.outputs().iter();
+        words.zip(&self.outputs).for_each(|(word, value)| word.store(value.to_bits(), Relaxed));
+    }
+}
+
+fn number(word: &AtomicU64) -> f64 {
+    f64::from_bits(word.load(Relaxed))
+}
+
+fn without_flood(error: SlaveError) -> SlaveError {
+    match error {
+        SlaveError::Failed { call, time, status, message } => {
+            SlaveError::Failed { call, time, status, message: clipped(message) }
+        }
+        other => other,
+    }
+}
+
+/// The start of a text that may be of any length.
+fn clipped(text: String) -> String {
+    if text.len() <= LONGEST {
+        return text;
+    }
+    let (start, rest) = text.split_at(text.floor_char_boundary(LONGEST));
+    format!("{start} … ({} bytes more)", rest.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_texts_are_cut_between_characters() {
+        assert_eq!(clipped("µm".into()), "µm");
+        let cut = clipped("x".to_owned() + &"µ".repeat(10_000));
+        assert!(cut.starts_with("xµ") && cut.ends_with("µ … (12002 bytes more)"), "{}", &cut[cut.len() - 40..]);
+    }
+}

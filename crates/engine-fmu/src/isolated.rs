@@ -1,0 +1,277 @@
+//! The simulation's side of an FMU in a process of its own.
+use crate::bell::Listener;
+use crate::error::IsolationError;
+use crate::keeper::{HostCommand, Keeper};
+use crate::memory::in_words;
+use crate::page::{Answered, Asked, Page};
+use crate::protocol::{Command, Message, Status, log_of_lines};
+use serde::Serialize;
+use servobench_fmi::{Capabilities, LogLine, Progress, Severity, Slave, SlaveError};
+use std::sync::atomic::Ordering::Relaxed;
+use std::time::{Duration, Instant};
+
+/// How often the process is looked after while it works. Its end is told at once; this is for one that wrote over the
+/// memory that it would be told through.
+const GLANCE: Duration = Duration::from_millis(50);
+/// How long a process may take for its end after it has freed its FMU.
+const LEAVE: Duration = Duration::from_secs(1);
+const OVERWRITTEN: &str = "it wrote over the memory through which it is spoken to";
+
+/// What an FMU in a process of its own may take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Bounds {
+    /// Real time for any one call, loading and initialisation being one.
+    pub patience: Duration,
+    /// Memory that it may have for itself, the program's included (B). Files that it maps do not count.
+    pub memory: u64,
+}
+
+impl Default for Bounds {
+    /// A minute, and 2 GiB.
+    fn default() -> Self {
+        Self { patience: Duration::from_mins(1), memory: 2 << 30 }
+    }
+}
+
+/// How many numbers go in and out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Wires {
+    /// Inputs.
+    pub inputs: usize,
+    /// Outputs.
+    pub outputs: usize,
+}
+
+/// An FMU in a process of its own: whatever it does costs its own run only. It is ended when this is dropped.
+///
+/// What it has written on standard output and standard error is part of its log.
+#[derive(Debug)]
+pub struct Isolated {
+    keeper: Keeper,
+    capabilities: Capabilities,
+    patience: Duration,
+    listener: Listener,
+    /// Number of the last order, from 1.
+    number: u32,
+    /// Present time (s).
+    time: f64,
+    /// The outputs are there since the last step.
+    fresh: bool,
+    /// Why it cannot go on.
+    failed: Option<SlaveError>,
+}
+
+impl Isolated {
+    /// Starts the process, which loads and initialises what `setup` says; see [`serve`](crate::serve).
+    ///
+    /// # Errors
+    /// [`IsolationError`]
+    pub fn start<S: Serialize>(
+        command: &HostCommand,
+        setup: &S,
+        wires: Wires,
+        bounds: Bounds,
+    ) -> Result<Self, IsolationError> {
+        let system = |action| move |source| IsolationError::System { action, source };
+        let setup = serde_json::to_vec(setup).map_err(IsolationError::Setup)?;
+        let (page, file) = Page::new(wires.inputs, wires.outputs, &setup, bounds.memory)
+            .map_err(system("make memory that two processes share"))?;
+        let keeper = Keeper::new(command, page, file, bounds.memory)
+            .map_err(|source| IsolationError::Start { program: command.program.clone(), source })?;
+        let mut isolated = Self {
+            keeper,
+            capabilities: Capabilities::default(),
+            patience: bounds.patience,
+            listener: Listener::default(),
+            number: 0,
+            time: 0.0,
+            fresh: false,
+            failed: None,
+        };
+        match isolated.ask(Command::Load)? {
+            Status::Message => {}
+            _ => return Err(isolated.overwritten().into()),
+        }
+        match isolated.message()? {
+            Message::Ready { saves_state, interpolates_inputs, variable_step } => {
+                isolated.capabilities = Capabilities { saves_state, interpolates_inputs, variable_step };
+                Ok(isolated)
+            }
+            Message::Refused(why) => Err(IsolationError::Refused(why)),
+            Message::Failed(failure) => Err(SlaveError::from(failure).into()),
+        }
+    }
+
+    fn page(&self) -> &Page {
+        &self.keeper.shared.page
+    }
+
+    fn asked(&self) -> &Asked {
+        &self.page().header().asked
+    }
+
+    fn answered(&self) -> &Answered {
+        &self.page().header().answered
+    }
+
+    /// Gives an order and waits for the answer.
+    fn ask(&mut self, command: Command) -> Result<Status, SlaveError> {
+        if let Some(error) = &self.failed {
+            return Err(error.clone());
+        }
+        self.fresh = false;
+        // The highest bit is for a bell that has given up.
+        self.number = (self.number + 1) & (u32::MAX >> 1);
+        let shared = &self.keeper.shared;
+        let header = shared.page.header();
+        header.asked.command.store(command as u32, Relaxed);
+        header.order.ring(self.number);
+        let (patience, mut until) = (self.patience, None);
+        let heard = self.listener.wait(&header.answer, self.number, GLANCE, || {
+            let now = Instant::now();
+            shared.ending().is_none() && now < *until.get_or_insert_with(|| now + patience)
+        });
+        if shared.ending().is_some() || !heard {
+            return Err(self.lost(command));
+        }
+        let status = Status::of(header.answered.status.load(Relaxed)).filter(|_| shared.page.intact());
+        status.ok_or_else(|| self.overwritten())
+    }
+
+    /// It does not answer: why.
+    fn lost(&mut self, command: Command) -> SlaveError {
+        let ended_by_itself = self.keeper.shared.ending().is_some();
+        let (time, patience) = (self.time, self.patience.as_secs_f64());
+        let intact = self.page().intact();
+        let error = match self.keeper.end() {
+            Some(ending) if !intact => SlaveError::Crashed { time, how: format!("{OVERWRITTEN}: {}", ending.how()) },
+            Some(ending) if ended_by_itself => SlaveError::Crashed { time, how: ending.how() },
+            Some(ending) if ending.of_memory() => SlaveError::Crashed {
+                time,
+                how: crate::ending::Ending { status: None, ..ending.clone() }.how()
+                    + &format!("; it did not come back within {patience} s and was ended"),
+            },
+            _ => SlaveError::Hung { call: command.words(), time, patience },
+        };
+        self.fail(error)
+    }
+
+    /// The answer is none.
+    fn overwritten(&mut self) -> SlaveError {
+        self.keeper.end();
+        self.fail(SlaveError::Crashed { time: self.time, how: OVERWRITTEN.into() })
+    }
+
+    /// Notes that it cannot go on.
+    fn fail(&mut self, error: SlaveError) -> SlaveError {
+        self.failed = Some(error.clone());
+        error
+    }
+
+    fn message(&mut self) -> Result<Message, SlaveError> {
+        serde_json::from_slice(&self.page().message()).map_err(|_| self.overwritten())
+    }
+
+    /// An answer that is none to a step.
+    fn failure(&mut self, status: Status) -> SlaveError {
+        let failure = match (status, self.message()) {
+            (Status::Message, Ok(Message::Failed(failure))) => SlaveError::from(failure),
+            (_, Err(error)) => return error,
+            _ => return self.overwritten(),
+        };
+        match failure {
+            // It is where it was before, and can go on.
+            SlaveError::Discarded { .. } => failure,
+            _ => self.fail(failure),
+        }
+    }
+
+    /// Asks for something that is done or not.
+    fn order(&mut self, command: Command) -> Result<(), SlaveError> {
+        match self.ask(command)? {
+            Status::Done => Ok(()),
+            other => Err(self.failure(other)),
+        }
+    }
+}
+
+impl Slave for Isolated {
+    fn capabilities(&self) -> Capabilities {
+        self.capabilities
+    }
+
+    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+        let words = self.page().inputs();
+        assert_eq!(3 * inputs.len(), words.len(), "inputs are those that the FMU was wired with");
+        words.iter().zip(inputs.as_flattened()).for_each(|(word, value)| word.store(value.to_bits(), Relaxed));
+        self.asked().time.store(time.to_bits(), Relaxed);
+        self.asked().length.store(length.to_bits(), Relaxed);
+        self.time = time;
+        let status = self.ask(Command::Step)?;
+        self.fresh = self.answered().fresh.load(Relaxed) != 0;
+        let reached = f64::from_bits(self.answered().reached.load(Relaxed));
+        match status {
+            Status::Done => Ok(Progress::Done),
+            Status::Until => Ok(Progress::Until(reached)),
+            Status::Terminated => Ok(Progress::Terminated(reached)),
+            Status::Message => Err(self.failure(status)),
+        }
+    }
+
+    fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
+        assert_eq!(outputs.len(), self.page().outputs().len(), "outputs are those that the FMU was wired with");
+        if let Some(inputs) = inputs {
+            let words = self.page().inputs();
+            assert_eq!(3 * inputs.len(), words.len(), "inputs are those that the FMU was wired with");
+            words.iter().step_by(3).zip(inputs).for_each(|(word, value)| word.store(value.to_bits(), Relaxed));
+            self.order(Command::ReadFor)?;
+        } else if !self.fresh {
+            self.order(Command::Read)?;
+        }
+        let words = self.page().outputs().iter();
+        outputs.iter_mut().zip(words).for_each(|(value, word)| *value = f64::from_bits(word.load(Relaxed)));
+        Ok(())
+    }
+
+    fn save(&mut self) -> Result<(), SlaveError> {
+        self.order(Command::Save)
+    }
+
+    fn restore(&mut self) -> Result<(), SlaveError> {
+        self.order(Command::Restore)
+    }
+
+    fn take_log(&mut self) -> Vec<LogLine> {
+        let mut log: Vec<LogLine> =
+            if self.page().has_log() { log_of_lines(&self.page().take_log()).collect() } else { Vec::new() };
+        let dropped = self.answered().log_dropped.swap(0, Relaxed);
+        if dropped > 0 {
+            let message = format!("{dropped} more lines of its log were dropped: it says more than is read");
+            log.push(LogLine { severity: Severity::Warning, category: "isolation".into(), message });
+        }
+        let mut output = self.keeper.shared.output();
+        let written = [("standard output", output.stdout.take()), ("standard error", output.stderr.take())];
+        for (category, (text, dropped)) in written.into_iter().filter_map(|(name, some)| Some((name, some?))) {
+            let (severity, message) = match dropped {
+                0 => (Severity::Info, text),
+                _ => (Severity::Warning, format!("({} before this were dropped) {text}", in_words(dropped))),
+            };
+            log.push(LogLine { severity, category: category.into(), message });
+        }
+        log
+    }
+}
+
+impl Drop for Isolated {
+    fn drop(&mut self) {
+        // What cannot go on is ended; so is what does not end as it was asked to: its results are all there.
+        if self.keeper.shared.ending().is_none() && self.order(Command::End).is_ok() {
+            let leave = Instant::now() + LEAVE.min(self.patience);
+            let shared = &self.keeper.shared;
+            // Wakes when the process has ended.
+            let over = 1 << 31 | self.number;
+            let go_on = || shared.ending().is_none() && Instant::now() < leave;
+            Listener::default().wait(&shared.page.header().answer, over, GLANCE, go_on);
+        }
+    }
+}

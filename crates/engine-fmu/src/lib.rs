@@ -1,0 +1,38 @@
+//! FMUs in a process of their own.
+//!
+//! An FMU is somebody else's native code: it may crash, hang, ask for memory without end or print a gigabyte. In a process of
+//! its own that costs its run only, and is reported as what it is.
+//!
+//! ```text
+//! simulation: Isolated ── memory that both see, a bell for each direction ── serve: the FMU      (same program, another process)
+//!             keeper   ── standard output and error, its end ─────────────┘
+//! ```
+//! | what the FMU does | what is said |
+//! |---|---|
+//! | crashes, aborts, calls `exit` | signal or exit code, and the last that it wrote on standard error |
+//! | does not come back | which call, after how long; it is ended |
+//! | asks for memory without end | how much it may have (the process is bounded, `RLIMIT_DATA`) |
+//! | prints without end | how much was dropped; the end is kept |
+//! | writes over the memory that is shared | that it did; numbers are only numbers there and lengths are cut |
+//!
+//! It ends with the simulation, however that ends, and what it has started ends with it, unless that has left its process
+//! group. Nothing is left in the file system: the memory is an anonymous file.
+//!
+//! Linux only: futexes, memfd and pidfd (5.3 or later).
+
+mod bell;
+mod crash;
+mod ending;
+mod error;
+mod host;
+mod isolated;
+mod keeper;
+mod memory;
+mod output;
+mod page;
+mod protocol;
+
+pub use error::{HostError, IsolationError};
+pub use host::serve;
+pub use isolated::{Bounds, Isolated, Wires};
+pub use keeper::HostCommand;

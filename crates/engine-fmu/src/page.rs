@@ -1,0 +1,322 @@
+#![expect(unsafe_code, reason = "memory that is shared with another process is mapped, and seen as atomics")]
+//! The memory that both processes see.
+//!
+//! ```text
+//! header       the bells, the order and the answer, who wrote what: see `Header`
+//! inputs       of each: value, first and second derivative (f64)
+//! outputs      (f64)
+//! message      bytes of an answer that is more than numbers
+//! log          lines of JSON that the FMU said and nobody has taken yet
+//! setup        bytes of what the host is to load
+//! ```
+//! Everything in it is an atomic: whatever the FMU does to it, it is only wrong numbers. Lengths are the parent's own; those
+//! that come from the other side are cut to what there is. The file is sealed, so that it cannot shrink under the parent.
+use crate::bell::Bell;
+use rustix::fs::{MemfdFlags, SealFlags, fcntl_add_seals, fcntl_get_seals, fstat, ftruncate, memfd_create};
+use rustix::mm::{Advice, MapFlags, ProtFlags, madvise, mmap, munmap};
+use std::os::fd::OwnedFd;
+use std::ptr::NonNull;
+use std::sync::atomic::{AtomicU8, AtomicU32, AtomicU64, Ordering::Relaxed};
+use std::{io, ptr, slice};
+
+/// Says that a page is one, of this layout.
+const MAGIC: u64 = u64::from_le_bytes(*b"servofm1");
+/// Bytes of an answer that is more than numbers.
+const MESSAGE: usize = 1 << 16;
+/// Bytes of log between two visits.
+const LOG: usize = 1 << 18;
+
+/// What comes before the values; a cache line for each side and purpose.
+#[repr(C, align(64))]
+#[derive(Debug)]
+pub(crate) struct Header {
+    /// Rings for an order, with its number.
+    pub(crate) order: Bell,
+    /// Rings for an answer, with the number of the order.
+    pub(crate) answer: Bell,
+    pub(crate) told: Told,
+    pub(crate) asked: Asked,
+    pub(crate) answered: Answered,
+}
+
+/// What does not change.
+#[repr(C, align(64))]
+#[derive(Debug)]
+pub(crate) struct Told {
+    magic: AtomicU64,
+    inputs: AtomicU32,
+    outputs: AtomicU32,
+    setup: AtomicU32,
+    /// Process id of the parent.
+    pub(crate) parent: AtomicU32,
+    /// How much memory of its own the host may have (B).
+    pub(crate) memory: AtomicU64,
+}
+
+/// What the parent asks for.
+#[repr(C, align(64))]
+#[derive(Debug)]
+pub(crate) struct Asked {
+    /// One of [`Command`](crate::protocol::Command).
+    pub(crate) command: AtomicU32,
+    /// From when a step goes (s, bits of an f64).
+    pub(crate) time: AtomicU64,
+    /// How far (s, bits of an f64).
+    pub(crate) length: AtomicU64,
+}
+
+/// What the host answers.
+#[repr(C, align(64))]
+#[derive(Debug)]
+pub(crate) struct Answered {
+    /// One of [`Status`](crate::protocol::Status).
+    pub(crate) status: AtomicU32,
+    /// Not zero: the outputs are those after the step.
+    pub(crate) fresh: AtomicU32,
+    /// Bytes of the message.
+    message: AtomicU32,
+    /// Bytes of log.
+    log: AtomicU32,
+    /// Lines of the log that found no room.
+    pub(crate) log_dropped: AtomicU32,
+    /// How far a step has come (s, bits of an f64).
+    pub(crate) reached: AtomicU64,
+    /// Bytes of memory that the host had when it crashed.
+    pub(crate) held: AtomicU64,
+}
+
+/// Where things are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Layout {
+    inputs: usize,
+    outputs: usize,
+    setup: usize,
+}
+
+impl Layout {
+    /// Numbers: three for each input, one for each output.
+    fn numbers(self) -> usize {
+        3 * self.inputs + self.outputs
+    }
+
+    fn bytes(self) -> usize {
+        MESSAGE + LOG + self.setup
+    }
+
+    fn total(self) -> usize {
+        size_of::<Header>() + 8 * self.numbers() + self.bytes()
+    }
+}
+
+/// A mapped page.
+#[derive(Debug)]
+pub(crate) struct Page {
+    base: NonNull<Header>,
+    layout: Layout,
+}
+
+// SAFETY: what it points to lives as long as it does, and is seen as atomics only.
+unsafe impl Send for Page {}
+// SAFETY: as above.
+unsafe impl Sync for Page {}
+
+impl Page {
+    /// A page of the parent, and the file that the host finds it in.
+    pub(crate) fn new(inputs: usize, outputs: usize, setup: &[u8], memory: u64) -> io::Result<(Self, OwnedFd)> {
+        let layout = Layout { inputs, outputs, setup: setup.len() };
+        let as_u32 = |count: usize| u32::try_from(count).map_err(|_| io::Error::from(io::ErrorKind::FileTooLarge));
+        let (inputs, outputs, setup_bytes) = (as_u32(inputs)?, as_u32(outputs)?, as_u32(setup.len())?);
+        let file = memfd_create(c"servobench-fmu", MemfdFlags::CLOEXEC | MemfdFlags::ALLOW_SEALING)?;
+        ftruncate(&file, layout.total() as u64)?;
+        fcntl_add_seals(&file, SealFlags::SHRINK | SealFlags::GROW | SealFlags::SEAL)?;
+        let page = Self::map(&file, layout)?;
+        let told = &page.header().told;
+        told.inputs.store(inputs, Relaxed);
+        told.outputs.store(outputs, Relaxed);
+        told.setup.store(setup_bytes, Relaxed);
+        told.parent.store(std::process::id(), Relaxed);
+        told.memory.store(memory, Relaxed);
+        told.magic.store(MAGIC, Relaxed);
+        write(page.bytes(MESSAGE + LOG, setup.len()), setup);
+        Ok((page, file))
+    }
+
+    /// The page in a file that the parent has made; `None` if it is another kind of file.
+    ///
+    /// Processes that the FMU forks do not have it: only one answers.
+    pub(crate) fn adopt(file: &OwnedFd) -> io::Result<Option<Self>> {
+        let sealed = fcntl_get_seals(file).is_ok_and(|seals| seals.contains(SealFlags::SHRINK));
+        let total = usize::try_from(fstat(file)?.st_size).unwrap_or(0);
+        let empty = Layout { inputs: 0, outputs: 0, setup: 0 };
+        if !sealed || total < empty.total() {
+            return Ok(None);
+        }
+        let first = Self::map(file, empty)?;
+        let told = &first.header().told;
+        let count = |word: &AtomicU32| word.load(Relaxed) as usize;
+        let layout = Layout { inputs: count(&told.inputs), outputs: count(&told.outputs), setup: count(&told.setup) };
+        if told.magic.load(Relaxed) != MAGIC || layout.total() != total {
+            return Ok(None);
+        }
+        let page = Self::map(file, layout)?;
+        // SAFETY: the range is the mapping; forked processes that touch it fault, which ends them only.
+        unsafe { madvise(page.base.as_ptr().cast(), layout.total(), Advice::LinuxDontFork)? };
+        Ok(Some(page))
+    }
+
+    fn map(file: &OwnedFd, layout: Layout) -> io::Result<Self> {
+        let access = ProtFlags::READ | ProtFlags::WRITE;
+        // SAFETY: a mapping at an address that the kernel chooses aliases nothing; the file is at least that long and
+        // cannot shrink.
+        let base = unsafe { mmap(ptr::null_mut(), layout.total(), access, MapFlags::SHARED, file, 0)? };
+        let base = NonNull::new(base.cast()).ok_or(io::ErrorKind::AddrNotAvailable)?;
+        Ok(Self { base, layout })
+    }
+
+    pub(crate) fn header(&self) -> &Header {
+        // SAFETY: the mapping is at least a header long, aligned to memory pages, lives as long as `self`, and every bit
+        // pattern is a header of atomics.
+        unsafe { self.base.as_ref() }
+    }
+
+    fn numbers(&self) -> &[AtomicU64] {
+        // SAFETY: they follow the header, whose size is a multiple of their alignment; as in `header`.
+        unsafe { slice::from_raw_parts(self.base.as_ptr().add(1).cast(), self.layout.numbers()) }
+    }
+
+    fn bytes(&self, first: usize, count: usize) -> &[AtomicU8] {
+        // SAFETY: they follow the numbers; as in `header`.
+        let all: &[AtomicU8] = unsafe {
+            let numbers: *const AtomicU64 = self.base.as_ptr().add(1).cast();
+            slice::from_raw_parts(numbers.add(self.layout.numbers()).cast(), self.layout.bytes())
+        };
+        &all[first..first + count]
+    }
+
+    /// Whether what does not change is as it was: an FMU that writes where it should not may have written anywhere.
+    pub(crate) fn intact(&self) -> bool {
+        self.header().told.magic.load(Relaxed) == MAGIC
+    }
+
+    /// Value, first and second derivative of each input.
+    pub(crate) fn inputs(&self) -> &[AtomicU64] {
+        &self.numbers()[..3 * self.layout.inputs]
+    }
+
+    pub(crate) fn outputs(&self) -> &[AtomicU64] {
+        &self.numbers()[3 * self.layout.inputs..]
+    }
+
+    /// What the host is to load.
+    pub(crate) fn setup(&self) -> Vec<u8> {
+        read(self.bytes(MESSAGE + LOG, self.layout.setup))
+    }
+
+    /// Writes a message; of one that is too long nothing.
+    pub(crate) fn set_message(&self, message: &[u8]) {
+        let kept = if message.len() > MESSAGE { &[] } else { message };
+        write(self.bytes(0, kept.len()), kept);
+        self.header().answered.message.store(u32::try_from(kept.len()).unwrap_or(0), Relaxed);
+    }
+
+    pub(crate) fn message(&self) -> Vec<u8> {
+        read(self.bytes(0, (self.header().answered.message.load(Relaxed) as usize).min(MESSAGE)))
+    }
+
+    /// Adds to the log; `false` if there is no room.
+    pub(crate) fn add_log(&self, line: &[u8]) -> bool {
+        let answered = &self.header().answered;
+        let used = (answered.log.load(Relaxed) as usize).min(LOG);
+        let room = line.len() <= LOG - used;
+        if room {
+            write(self.bytes(MESSAGE + used, line.len()), line);
+            answered.log.store(u32::try_from(used + line.len()).unwrap_or(0), Relaxed);
+        }
+        room
+    }
+
+    /// Whether there is any log.
+    pub(crate) fn has_log(&self) -> bool {
+        self.header().answered.log.load(Relaxed) != 0
+    }
+
+    /// The log, which is empty afterwards.
+    pub(crate) fn take_log(&self) -> Vec<u8> {
+        read(self.bytes(MESSAGE, (self.header().answered.log.swap(0, Relaxed) as usize).min(LOG)))
+    }
+}
+
+impl Drop for Page {
+    fn drop(&mut self) {
+        // SAFETY: the range is the mapping, and nothing borrows from it any more.
+        let unmapped = unsafe { munmap(self.base.as_ptr().cast(), self.layout.total()) };
+        debug_assert!(unmapped.is_ok(), "the range is what was mapped");
+    }
+}
+
+fn write(to: &[AtomicU8], from: &[u8]) {
+    to.iter().zip(from).for_each(|(to, from)| to.store(*from, Relaxed));
+}
+
+fn read(from: &[AtomicU8]) -> Vec<u8> {
+    from.iter().map(|byte| byte.load(Relaxed)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Both sides see the same through mappings of their own.
+    #[test]
+    fn what_one_side_writes_the_other_reads() {
+        let (parent, file) = Page::new(2, 3, b"{\"some\":1}", 77).unwrap();
+        let host = Page::adopt(&file).unwrap().unwrap();
+        assert_eq!(host.layout, Layout { inputs: 2, outputs: 3, setup: 10 });
+        assert_eq!((host.setup(), host.header().told.memory.load(Relaxed)), (b"{\"some\":1}".to_vec(), 77));
+        assert_eq!((parent.inputs().len(), parent.outputs().len()), (6, 3));
+        for (k, word) in parent.inputs().iter().chain(parent.outputs()).enumerate() {
+            word.store(k as u64, Relaxed);
+        }
+        host.set_message(&vec![0xff; MESSAGE]);
+        assert!(host.add_log(b"one") && host.add_log(b", two"));
+        let numbers: Vec<u64> = host.inputs().iter().chain(host.outputs()).map(|word| word.load(Relaxed)).collect();
+        assert_eq!(numbers, [0, 1, 2, 3, 4, 5, 6, 7, 8]);
+        assert_eq!(parent.message(), vec![0xff; MESSAGE]);
+        assert_eq!(parent.take_log(), b"one, two");
+        assert!(!host.has_log() && parent.take_log().is_empty());
+        assert_eq!(host.setup(), b"{\"some\":1}", "nothing has run over");
+    }
+
+    /// An FMU can write over every byte.
+    #[test]
+    fn lengths_that_are_nonsense_are_cut() {
+        let (page, _file) = Page::new(1, 1, b"", 0).unwrap();
+        page.header().answered.message.store(u32::MAX, Relaxed);
+        page.header().answered.log.store(u32::MAX, Relaxed);
+        assert!(!page.add_log(b"x"));
+        assert_eq!((page.message().len(), page.take_log().len()), (MESSAGE, LOG));
+    }
+
+    #[test]
+    fn log_that_finds_no_room_leaves_what_is_there() {
+        let (page, _file) = Page::new(0, 0, b"", 0).unwrap();
+        assert!(page.add_log(&vec![b'a'; LOG - 1]) && !page.add_log(b"bc") && page.add_log(b"d"));
+        assert_eq!(page.take_log().last(), Some(&b'd'));
+    }
+
+    #[test]
+    fn the_file_cannot_shrink_under_the_parent() {
+        let (_page, file) = Page::new(1, 1, b"", 0).unwrap();
+        assert_eq!(ftruncate(&file, 0), Err(rustix::io::Errno::PERM));
+    }
+
+    #[test]
+    fn another_file_is_no_page() {
+        let null = std::fs::File::open("/dev/null").unwrap().into();
+        assert!(Page::adopt(&null).unwrap().is_none());
+        let other = memfd_create(c"other", MemfdFlags::ALLOW_SEALING).unwrap();
+        ftruncate(&other, 1 << 20).unwrap();
+        fcntl_add_seals(&other, SealFlags::SHRINK).unwrap();
+        assert!(Page::adopt(&other).unwrap().is_none());
+    }
+}

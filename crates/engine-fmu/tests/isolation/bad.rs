@@ -1,0 +1,288 @@
+#![expect(unsafe_code, reason = "real crashes need what Rust does not let happen")]
+//! Slaves that do what native code does by mistake.
+use serde::{Deserialize, Serialize};
+use servobench_fmi::{Capabilities, LogLine, Progress, Severity, Slave, SlaveError};
+use std::hint::black_box;
+use std::io::{Read, Write};
+use std::time::Duration;
+
+/// What is wrong with it: in its steps, if nothing else is said.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) enum Bad {
+    /// Nothing: an integrator of its input; the second output is the time.
+    Nothing,
+    /// Cannot be loaded.
+    Refused(String),
+    /// Writes to address zero while it is loaded.
+    CrashInLoading,
+    /// Never comes back from being loaded.
+    HangInLoading,
+    /// Writes to address zero.
+    NullWrite,
+    /// Calls itself without end.
+    StackOverflow,
+    /// Gives up after a word on standard error.
+    Abort,
+    /// Ends the process.
+    Exit(i32),
+    /// Panics.
+    Panic,
+    /// Sends itself a signal.
+    Signal(i32),
+    /// Ends the process from a thread of its own while the step goes on.
+    ExitInThread,
+    /// Computes without end.
+    Loop,
+    /// Stops itself: not even a signal other than SIGKILL reaches it.
+    Stop,
+    /// Does not come back from its end.
+    HangInEnd,
+    /// Asks for memory in blocks of this many bytes, writes to them, and dies like a C program that gets none.
+    Hoard { block: usize },
+    /// Asks for more memory at once than there may be, as Rust code does.
+    HugeVector,
+    /// Asks for memory until it gets none, then waits for better times.
+    HoardAndHang,
+    /// Prints this many bytes on each of standard output and error in a step.
+    Print(usize),
+    /// Logs this many lines in a step.
+    Log(usize),
+    /// Logs a line in its first step and crashes in the second.
+    LogThenCrash,
+    /// Reads standard input.
+    ReadInput,
+    /// Closes all files and goes on.
+    CloseFiles,
+    /// Handles all signals itself, then writes to address zero.
+    HandleSignals,
+    /// Forks a process that waits for better times, then crashes; says its id.
+    ForkThenCrash,
+    /// Forks a process that goes on as if it were the host.
+    ForkTwin,
+    /// Writes over all memory that is shared with another process.
+    Overwrite(u8),
+    /// An output is not a number.
+    NaN,
+    /// Fails like an FMU.
+    Fails,
+    /// Discards every second step.
+    Discards,
+    /// Returns early, then wants the end.
+    Early,
+}
+
+impl Bad {
+    pub(crate) fn load(self) -> Result<Box<dyn Slave>, String> {
+        match &self {
+            Self::Refused(why) => return Err(why.clone()),
+            Self::CrashInLoading => null_write(),
+            Self::HangInLoading => hang(),
+            _ => {}
+        }
+        Ok(Box::new(BadSlave { bad: self, steps: 0, x: 0.0, time: 0.0, saved: None, log: Vec::new() }))
+    }
+}
+
+struct BadSlave {
+    bad: Bad,
+    steps: u32,
+    x: f64,
+    time: f64,
+    saved: Option<(f64, f64)>,
+    log: Vec<LogLine>,
+}
+
+impl Slave for BadSlave {
+    fn capabilities(&self) -> Capabilities {
+        Capabilities { saves_state: true, interpolates_inputs: false, variable_step: true }
+    }
+
+    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+        self.steps += 1;
+        self.time = time + length;
+        self.x += length * inputs[0].iter().sum::<f64>();
+        self.misbehave(time, length)
+    }
+
+    fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
+        if self.bad == Bad::NaN {
+            return Err(SlaveError::NotFinite { variable: "x".into(), value: f64::NAN, time: self.time });
+        }
+        outputs[0] = self.x + inputs.map_or(0.0, |inputs| inputs[0]);
+        outputs[1] = self.time;
+        Ok(())
+    }
+
+    fn save(&mut self) -> Result<(), SlaveError> {
+        self.saved = Some((self.x, self.time));
+        Ok(())
+    }
+
+    fn restore(&mut self) -> Result<(), SlaveError> {
+        let unable = SlaveError::Unable { what: "go back to a state", capability: "canGetAndSetFMUState" };
+        (self.x, self.time) = self.saved.ok_or(unable)?;
+        Ok(())
+    }
+
+    fn take_log(&mut self) -> Vec<LogLine> {
+        std::mem::take(&mut self.log)
+    }
+}
+
+impl BadSlave {
+    fn misbehave(&mut self, time: f64, length: f64) -> Result<Progress, SlaveError> {
+        match self.bad {
+            Bad::StackOverflow => {
+                black_box(deeper(1));
+            }
+            Bad::Abort => {
+                eprintln!("solver: the Jacobian is singular");
+                std::process::abort();
+            }
+            Bad::Exit(code) => std::process::exit(code),
+            Bad::Panic => panic!("index out of bounds, as it were"),
+            // SAFETY: the default action of the signal.
+            Bad::Signal(number) => unsafe {
+                libc::signal(number, libc::SIG_DFL);
+                libc::raise(number);
+            },
+            Bad::ExitInThread => {
+                std::thread::spawn(|| std::process::exit(5));
+                hang();
+            }
+            Bad::Loop => loop {
+                black_box(self.steps);
+            },
+            // SAFETY: a system call.
+            Bad::Stop => unsafe {
+                libc::raise(libc::SIGSTOP);
+            },
+            Bad::Hoard { block } => {
+                while hoard(block, block) {}
+                null_write();
+            }
+            Bad::HugeVector => {
+                black_box(vec![1_u8; 1 << 40]);
+            }
+            Bad::HoardAndHang => {
+                while hoard(1 << 20, 0) {}
+                hang();
+            }
+            Bad::Print(bytes) => {
+                let line = [b'x'; 4096];
+                for _ in 0..bytes / line.len() {
+                    std::io::stdout().write_all(&line).unwrap();
+                    std::io::stderr().write_all(&line).unwrap();
+                }
+                println!("the end of the output");
+                eprintln!("the end of the errors");
+            }
+            Bad::Log(lines) => self.log.extend((0..lines).map(|k| line(&format!("line {k}")))),
+            Bad::LogThenCrash if self.steps == 1 => self.log.push(line("stiff")),
+            Bad::NullWrite | Bad::LogThenCrash => null_write(),
+            Bad::ReadInput => {
+                let mut all = Vec::new();
+                let count = std::io::stdin().read_to_end(&mut all).unwrap();
+                self.log.push(line(&format!("{count} bytes on standard input")));
+            }
+            Bad::CloseFiles => {
+                // SAFETY: what is closed is not used any more, or the process suffers for it.
+                (0..1000).for_each(|file| unsafe {
+                    libc::close(file);
+                });
+            }
+            Bad::HandleSignals => {
+                extern "C" fn nothing(_: i32) {
+                    // SAFETY: ends the process.
+                    unsafe { libc::_exit(77) }
+                }
+                let nothing: extern "C" fn(i32) = nothing;
+                for signal in 1..32 {
+                    // SAFETY: the handler does nothing but end the process.
+                    unsafe { libc::signal(signal, nothing as *const () as libc::sighandler_t) };
+                }
+                null_write();
+            }
+            Bad::ForkThenCrash => {
+                // SAFETY: the child makes a system call only.
+                let child = unsafe { libc::fork() };
+                if child == 0 {
+                    // SAFETY: a system call.
+                    unsafe { libc::pause() };
+                }
+                eprintln!("child {child}");
+                null_write();
+            }
+            // SAFETY: the child crashes as soon as it touches the memory that is shared, on the heap it allocates nothing.
+            Bad::ForkTwin => unsafe {
+                libc::fork();
+            },
+            Bad::Overwrite(byte) => overwrite(byte),
+            Bad::Fails => {
+                let message = "x".repeat(100_000);
+                return Err(SlaveError::Failed { call: "fmi3DoStep", time, status: "fmi3Error", message });
+            }
+            Bad::Discards if self.steps.is_multiple_of(2) => {
+                return Err(SlaveError::Discarded { call: "fmi3DoStep", time });
+            }
+            Bad::Early if self.steps == 1 => return Ok(Progress::Until(time + length / 4.0)),
+            Bad::Early => return Ok(Progress::Terminated(time + length / 2.0)),
+            _ => {}
+        }
+        Ok(Progress::Done)
+    }
+}
+
+impl Drop for BadSlave {
+    fn drop(&mut self) {
+        if self.bad == Bad::HangInEnd {
+            hang();
+        }
+    }
+}
+
+fn line(message: &str) -> LogLine {
+    LogLine { severity: Severity::Warning, category: "logStatusWarning".into(), message: message.into() }
+}
+
+fn hang() {
+    loop {
+        std::thread::sleep(Duration::from_hours(1));
+    }
+}
+
+fn null_write() {
+    // SAFETY: none; it is a crash.
+    unsafe { std::arch::asm!("mov byte ptr [{0}], 1", in(reg) 0_u64) };
+}
+
+fn deeper(depth: u64) -> u64 {
+    let frame = black_box([depth; 512]);
+    if black_box(true) { deeper(frame[7] + 1) + frame[511] } else { 0 }
+}
+
+/// Whether `block` more bytes could be had, of which the first `used` are then written to.
+fn hoard(block: usize, used: usize) -> bool {
+    // SAFETY: what is asked for and got is as long as it is said to be; nobody else has it.
+    unsafe {
+        let memory: *mut u8 = libc::malloc(block).cast();
+        if memory.is_null() {
+            return false;
+        }
+        memory.write_bytes(1, used);
+        black_box(memory);
+    }
+    true
+}
+
+/// Writes over all that is shared, which is found as one finds it with a wild pointer: somewhere.
+fn overwrite(byte: u8) {
+    let maps = std::fs::read_to_string("/proc/self/maps").unwrap();
+    let page = maps.lines().filter(|line| line.contains("servobench-fmu"));
+    for line in page {
+        let (from, to) = line.split_whitespace().next().unwrap().split_once('-').unwrap();
+        let at = |text| usize::from_str_radix(text, 16).unwrap();
+        // SAFETY: none for whoever uses it; it is mapped and may be written to.
+        unsafe { std::ptr::with_exposed_provenance_mut::<u8>(at(from)).write_bytes(byte, at(to) - at(from)) };
+    }
+}

@@ -1,0 +1,58 @@
+//! What an FMU does in a process of its own stays there, and is reported as what it is.
+//!
+//! The FMUs of these tests are slaves in Rust that do on purpose what native code does by mistake. Patience is real time: it is
+//! a minute where nothing is to take long, so that no slow machine fails, and a second where something hangs for good. No test measures time.
+mod allocation;
+mod bad;
+mod crashes;
+mod endings;
+mod floods;
+mod same;
+
+use bad::Bad;
+use servobench_engine_fmu::{Bounds, HostCommand, HostError, Isolated, IsolationError, Wires, serve};
+use servobench_fmi::{Slave, SlaveError};
+use std::time::Duration;
+
+/// Not a test: the process that the others start.
+#[test]
+#[ignore = "the process that the other tests start"]
+fn host() {
+    match serve(|bad: Bad| bad.load()) {
+        // Somebody runs all tests that are ignored.
+        Ok(()) | Err(HostError::NoPage) => {}
+        Err(error) => panic!("{error}"),
+    }
+}
+
+fn host_command() -> HostCommand {
+    let args = ["--exact", "host", "--ignored", "--nocapture"];
+    HostCommand { program: std::env::current_exe().unwrap(), args: args.map(Into::into).to_vec() }
+}
+
+const WIRES: Wires = Wires { inputs: 1, outputs: 2 };
+
+/// An FMU of one input and two outputs that is `bad`.
+fn start(bad: &Bad, bounds: Bounds) -> Result<Isolated, IsolationError> {
+    Isolated::start(&host_command(), bad, WIRES, bounds)
+}
+
+fn impatient() -> Bounds {
+    Bounds { patience: Duration::from_secs(1), ..Bounds::default() }
+}
+
+/// What comes of a step from 0.5 s.
+fn error_of_step(bad: &Bad, bounds: Bounds) -> SlaveError {
+    let mut slave = start(bad, bounds).unwrap_or_else(|error| panic!("{bad:?}: {error}"));
+    let error = slave.step(0.5, 0.1, &[[0.0; 3]]).unwrap_err();
+    assert_eq!(slave.step(0.6, 0.1, &[[0.0; 3]]), Err(error.clone()), "it stays so");
+    error
+}
+
+/// How it crashed in a step from 0.5 s.
+fn crash_of_step(bad: &Bad, bounds: Bounds) -> String {
+    match error_of_step(bad, bounds) {
+        SlaveError::Crashed { time: 0.5, how } => how,
+        other => panic!("{bad:?}: {other}"),
+    }
+}
