@@ -1,5 +1,68 @@
 //! A co-simulation master: blocks that are stepped each for itself and exchange signals at fixed times.
+//!
+//! [`Master::new`] couples the [`Block`]s of a [`Network`]; each [`Master::advance`] goes through one communication step H:
+//!
+//! ```text
+//! step       each block whose turn it is goes from t to t + n·H, with inputs that are polynomials over the step
+//! exchange   what has come to t + H is read; outputs that follow inputs without a step are read after these, algebraic loops solved
+//! judge      a number that is not finite, and a coupling that grows by itself, end the run
+//! ```
+//!
+//! # Orders of accuracy
+//!
+//! An input is the polynomial of order k through the last k + 1 values of its signal, beyond the newest of them an extrapolation. For a
+//! signal that is k + 1 times differentiable its error within the step is `u^(k+1)·H^(k+1)·σ(σ+1)…(σ+k)/(k+1)!`, O(H^(k+1)). A block's
+//! state integrates it once, O(H^(k+2)) in a step; T/H steps add up to
+//!
+//! | method | global error | why |
+//! |---|---|---|
+//! | [`Method::Jacobi`] | O(H^(k+1)) | all inputs extrapolated |
+//! | [`Method::GaussSeidel`] | O(H^(k+1)) | inputs from later blocks extrapolated; those from earlier ones have a smaller constant |
+//! | [`Method::Iterated`] | O(H^(max(k,1)+1)) | all inputs interpolated, with the end of the step among their points |
+//!
+//! provided that the coupled simulation is zero-stable. It is when no outputs follow each other in a cycle without a step, or when such
+//! cycles are solved at the exchange, which is done here (Kübler & Schiehlen, Math. Comput. Model. Dyn. Syst. 6 (2000) 93; Arnold & Günther, BIT
+//! 41 (2001) 1; orders as in Busch, *Zur effizienten Kopplung von Simulationsprogrammen*, Kassel 2012, ch. 4; survey: Gomes, Thule, Broman,
+//! Larsen & Vangheluwe, ACM Comput. Surv. 51 (2018) 49).
+//!
+//! What lowers the order:
+//!
+//! - **The start, and each event.** Where only one value is known the order is 0, with two it is 1. One step of order 0 leaves O(H²) in the
+//!   state for good: explicit methods of order 2 promise O(H³) only where signals begin with slope 0 (from rest), O(H²) else. The
+//!   iterated method begins with a straight line, O(H³), and loses nothing.
+//! - **Blocks that take no derivatives** hold the mean of the polynomial, which is exact in the integral over the step and off by O(H²)
+//!   within it: at most order 2.
+//!
+//! `docs/coupling.md` has the orders as measured, and which method is for what.
+//!
+//! # Time
+//!
+//! Exchanges are whole base ticks; seconds exist only at [`Block::step`], which gets the same length each time to the bit. A block that has
+//! a step of n·H goes through it at the beginning, and its end is known to faster blocks at once, except by [`Method::Jacobi`], where it
+//! counts when it is reached. [`Master::delays`] says what that means for each connection.
 
+mod acceleration;
 mod block;
+mod bond;
+mod cycles;
+mod delay;
+mod error;
+mod fixed_point;
+mod master;
+mod network;
+mod polynomial;
+mod rise;
+mod schedule;
+mod settings;
+mod settle;
+mod signals;
+mod stepping;
+mod watch;
 
 pub use block::{Block, Input, Step};
+pub use delay::Delay;
+pub use error::CouplingError;
+pub use master::{Advance, Effort, Master};
+pub use network::{Connection, Flow, InputPort, Member, Network, NetworkError, Port, PowerBond};
+pub use polynomial::{Order, later, mean, value};
+pub use settings::{Acceleration, Iteration, Method, Settings};

@@ -1,0 +1,98 @@
+//! A loop whose signals have to agree: what an evaluation starts from, and whether it came back to the same.
+//!
+//! The blocks of a loop are evaluated one after the other. Unknown are only the signals that an earlier block (or the block
+//! itself) takes from a later one; all others follow from these in the course of an evaluation.
+use crate::acceleration::Accelerator;
+use crate::network::Wiring;
+use crate::settings::Iteration;
+use crate::signals::Signals;
+
+/// A loop of blocks.
+pub(crate) struct FixedPoint {
+    /// The blocks in the order of their evaluation.
+    pub(crate) blocks: Vec<usize>,
+    /// Its blocks or outputs, for messages.
+    pub(crate) cycle: String,
+    pub(crate) iteration: Iteration,
+    unknowns: Vec<Unknown>,
+    accelerator: Accelerator,
+    x: Vec<f64>,
+    r: Vec<f64>,
+    weights: Vec<f64>,
+}
+
+#[derive(Clone, Copy)]
+struct Unknown {
+    block: usize,
+    output: usize,
+}
+
+/// Two values of an output that should be the same.
+pub(crate) struct Disagreement {
+    pub(crate) output: usize,
+    pub(crate) change: f64,
+    pub(crate) allowed: f64,
+}
+
+impl FixedPoint {
+    /// A loop of `blocks` in which the outputs `unknowns` are looked for.
+    pub(crate) fn new(
+        wiring: &Wiring,
+        blocks: Vec<usize>,
+        unknowns: &[usize],
+        iteration: Iteration,
+        cycle: String,
+    ) -> Self {
+        let unknowns: Vec<_> =
+            unknowns.iter().map(|output| Unknown { block: wiring.block_of(*output), output: *output }).collect();
+        let zeros = vec![0.0; unknowns.len()];
+        Self {
+            blocks,
+            cycle,
+            iteration,
+            accelerator: Accelerator::new(iteration.acceleration, unknowns.len()),
+            unknowns,
+            x: zeros.clone(),
+            r: zeros.clone(),
+            weights: zeros,
+        }
+    }
+
+    /// Another fixed point is looked for.
+    pub(crate) fn begin(&mut self) {
+        self.accelerator.begin();
+    }
+
+    /// What the next evaluation starts from.
+    pub(crate) fn note(&mut self, signals: &Signals) {
+        for (x, unknown) in self.x.iter_mut().zip(&self.unknowns) {
+            *x = signals.newest(unknown.output);
+        }
+    }
+
+    /// Where the evaluation came back farthest from its start, as parts of what is allowed; `None` if it agrees.
+    pub(crate) fn disagreement(&mut self, signals: &Signals) -> Option<Disagreement> {
+        let mut worst = None;
+        let mut most = 1.0;
+        for (signal, unknown) in self.unknowns.iter().enumerate() {
+            let magnitude = self.x[signal].abs().max(signals.magnitude(unknown.block, unknown.output));
+            let allowed = self.iteration.absolute + self.iteration.relative * magnitude;
+            let change = signals.newest(unknown.output) - self.x[signal];
+            self.r[signal] = change;
+            self.weights[signal] = 1.0 / allowed;
+            if change.abs() > most * allowed {
+                most = change.abs() / allowed;
+                worst = Some(Disagreement { output: unknown.output, change, allowed });
+            }
+        }
+        worst
+    }
+
+    /// Leads the signals to where the next evaluation should start.
+    pub(crate) fn correct(&mut self, signals: &mut Signals) {
+        self.accelerator.advance(&mut self.x, &self.r, &self.weights);
+        for (x, unknown) in self.x.iter().zip(&self.unknowns) {
+            signals.replace(unknown.output, *x);
+        }
+    }
+}

@@ -1,0 +1,325 @@
+//! The master: builds the run from a network, and leads it from exchange to exchange.
+use crate::bond::BondWatch;
+use crate::cycles::{components, is_cycle};
+use crate::delay::Delay;
+use crate::error::CouplingError;
+use crate::network::{Network, NetworkError, Port, Wiring};
+use crate::schedule::{Schedule, Turn, successors};
+use crate::settings::Settings;
+use crate::settle::{Plan, Reading};
+use crate::signals::Signals;
+use crate::watch::Watch;
+use crate::{Block, Input};
+use servobench_base::{Rate, Tick};
+
+/// How far a communication step has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Advance {
+    /// To its end.
+    Done,
+    /// A block wants the simulation to end; there is no exchange any more.
+    Terminated {
+        /// Which block.
+        block: usize,
+        /// When (s).
+        time: f64,
+    },
+}
+
+/// What a run has taken so far.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Effort {
+    /// Evaluations of iterated loops, one at least for each loop and step.
+    pub evaluations: u64,
+    /// The most that a step has taken.
+    pub most: u32,
+}
+
+/// A coupled simulation under way.
+pub struct Master<B> {
+    pub(crate) blocks: Vec<B>,
+    pub(crate) wiring: Wiring,
+    pub(crate) signals: Signals,
+    schedule: Schedule,
+    plan: Plan,
+    delays: Vec<Delay>,
+    pub(crate) clock: Clock,
+    /// By block: the communication step that it has come to.
+    pub(crate) reached: Vec<u64>,
+    /// By block: whether its outputs have been read since its step.
+    pub(crate) fresh: Vec<bool>,
+    /// By block: how often it came back early in its last step, and before that.
+    pub(crate) interruptions: Vec<u32>,
+    events: Vec<u64>,
+    watches: Vec<Watched>,
+    bonds: Vec<BondWatch>,
+    pub(crate) effort: Effort,
+    pub(crate) inputs: Vec<Input>,
+    pub(crate) present: Vec<f64>,
+    pub(crate) outputs: Vec<f64>,
+    ended: Option<Advance>,
+}
+
+/// An output of a loop.
+struct Watched {
+    block: usize,
+    output: usize,
+    connection: usize,
+    watch: Watch,
+}
+
+/// Counts communication steps; seconds are made of base ticks.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Clock {
+    rate: Rate,
+    ticks: u64,
+    pub(crate) now: u64,
+}
+
+impl Clock {
+    pub(crate) fn tick(self, step: u64) -> Tick {
+        Tick(step * self.ticks)
+    }
+
+    pub(crate) fn time(self, step: u64) -> f64 {
+        self.rate.time(self.tick(step))
+    }
+}
+
+impl<B: Block> Master<B> {
+    /// Couples the blocks of `network`, which are at time 0, and makes their first exchange.
+    ///
+    /// # Errors
+    /// [`CouplingError::Network`] for a network that cannot be run so; the others if the first exchange fails.
+    pub fn new(network: Network<B>, settings: &Settings) -> Result<Self, CouplingError<B::Error>> {
+        let wiring = Wiring::new(&network)?;
+        let blocks: Vec<B> = network.members.into_iter().map(|member| member.block).collect();
+        let schedule = Schedule::new(&wiring, &blocks, &settings.method)?;
+        let plan = Plan::new(&wiring, &blocks, settings.algebraic)?;
+        let clock = Clock { rate: settings.base_rate, ticks: u64::from(settings.step.ticks()), now: 0 };
+        let length = clock.time(1);
+        let bonds = network.bonds.iter().map(|bond| BondWatch::new(&wiring, &schedule, bond, length));
+        let bonds = bonds.collect::<Result<Vec<_>, _>>()?;
+        let most = |ports: fn(&crate::network::Shape) -> usize| wiring.shapes.iter().map(ports).max().unwrap_or(0);
+        let mut master = Self {
+            signals: Signals::new(&wiring, settings.order, length),
+            delays: schedule.delays(&wiring, settings),
+            reached: vec![0; blocks.len()],
+            fresh: vec![false; blocks.len()],
+            interruptions: vec![0; blocks.len()],
+            events: vec![0; blocks.len()],
+            watches: if settings.watch { watched(&wiring) } else { Vec::new() },
+            bonds: if settings.watch { bonds } else { Vec::new() },
+            effort: Effort::default(),
+            inputs: vec![[0.0; 3]; most(|shape| shape.inputs)],
+            present: vec![0.0; most(|shape| shape.inputs)],
+            outputs: vec![0.0; most(|shape| shape.outputs)],
+            ended: None,
+            blocks,
+            wiring,
+            schedule,
+            plan,
+            clock,
+        };
+        master.start()?;
+        Ok(master)
+    }
+
+    /// The first exchange: a loop is looked for from what its outputs are without inputs.
+    fn start(&mut self) -> Result<(), CouplingError<B::Error>> {
+        for block in 0..self.blocks.len() {
+            self.signals.open(block, 0);
+            self.read(block, None)?;
+        }
+        self.settle(0)
+    }
+
+    /// Goes through one communication step, to the next exchange. Does nothing once a block has ended the simulation.
+    ///
+    /// # Errors
+    /// [`CouplingError`]; the simulation cannot go on then.
+    pub fn advance(&mut self) -> Result<Advance, CouplingError<B::Error>> {
+        if let Some(ended) = self.ended {
+            return Ok(ended);
+        }
+        let mut turns = std::mem::take(&mut self.schedule.turns);
+        let outcome = self.take(&mut turns);
+        self.schedule.turns = turns;
+        if let Some(ended) = outcome? {
+            self.ended = Some(ended);
+            return Ok(ended);
+        }
+        let now = self.clock.now + 1;
+        self.settle(now)?;
+        self.judge(now)?;
+        self.clock.now = now;
+        Ok(Advance::Done)
+    }
+
+    /// All blocks whose turn it is.
+    fn take(&mut self, turns: &mut [Turn]) -> Result<Option<Advance>, CouplingError<B::Error>> {
+        for turn in turns {
+            let ended = match turn {
+                Turn::Single(block) => self.single(*block)?,
+                Turn::Loop(fixed_point) => self.repeat(fixed_point)?,
+            };
+            if ended.is_some() {
+                return Ok(ended);
+            }
+        }
+        Ok(None)
+    }
+
+    fn single(&mut self, block: usize) -> Result<Option<Advance>, CouplingError<B::Error>> {
+        if self.reached[block] > self.clock.now {
+            return Ok(None);
+        }
+        let ended = self.step(block)?;
+        if ended.is_none() && self.schedule.announced {
+            self.announce(block, self.plan.follows[block])?;
+        }
+        Ok(ended)
+    }
+
+    /// Whether outputs of `block` follow inputs without a step.
+    pub(crate) fn follows(&self, block: usize) -> bool {
+        self.plan.follows[block]
+    }
+
+    /// Reads what is due at the exchange `now`, in the order of the plan.
+    fn settle(&mut self, now: u64) -> Result<(), CouplingError<B::Error>> {
+        let mut readings = std::mem::take(&mut self.plan.readings);
+        let outcome = readings.iter_mut().try_for_each(|reading| match reading {
+            Reading::Plain(block) if self.reached[*block] == now && !self.fresh[*block] => {
+                self.signals.open(*block, now);
+                self.read(*block, None)
+            }
+            Reading::Following(block) if self.reached[*block] == now => self.follow(*block, now),
+            Reading::Loop(fixed_point) => self.solve(fixed_point, now),
+            Reading::Plain(_) | Reading::Following(_) => Ok(()),
+        });
+        self.plan.readings = readings;
+        outcome
+    }
+
+    /// Looks at what has been exchanged.
+    fn judge(&mut self, now: u64) -> Result<(), CouplingError<B::Error>> {
+        for bond in &mut self.bonds {
+            if self.reached[bond.block()] == now
+                && let Some(drive) = bond.exchange(&self.signals)
+            {
+                return Err(CouplingError::Driven {
+                    connection: self.wiring.connection_name(bond.effort),
+                    step: now,
+                    time: self.clock.time(now),
+                    growth: drive.growth,
+                    swing: drive.swing,
+                    injected: drive.injected,
+                    length: self.clock.time(1),
+                });
+            }
+        }
+        for Watched { block, output, connection, watch } in &mut self.watches {
+            if self.reached[*block] == now
+                && let Some(growth) = watch.push(self.signals.newest(*output), self.signals.defect(*output))
+            {
+                return Err(CouplingError::Unstable {
+                    connection: self.wiring.connection_name(*connection),
+                    step: now,
+                    time: self.clock.time(now),
+                    growth: growth.factor,
+                    exchanges: growth.exchanges,
+                    length: self.clock.time(1),
+                });
+            }
+        }
+        for block in 0..self.blocks.len() {
+            if self.reached[block] == now && self.interruptions[block] > 0 {
+                self.events[block] += u64::from(std::mem::take(&mut self.interruptions[block]));
+                self.signals.restart(block);
+            }
+        }
+        Ok(())
+    }
+
+    /// Time of the last exchange.
+    #[must_use]
+    pub fn tick(&self) -> Tick {
+        self.clock.tick(self.clock.now)
+    }
+
+    /// Time of the last exchange (s).
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.clock.time(self.clock.now)
+    }
+
+    /// An output at the last exchange; between two steps of its block what stands for it there.
+    ///
+    /// # Errors
+    /// [`NetworkError::NoPort`]
+    pub fn value(&self, output: Port) -> Result<f64, NetworkError> {
+        let number = self.wiring.output(output)?;
+        Ok(self.signals.value(output.block, number, self.clock.now))
+    }
+
+    /// Holds an input that nothing is connected to at `value`, from the next step of its block on.
+    ///
+    /// # Errors
+    /// [`NetworkError`] if there is no such input, if it is connected, or if the value is not finite.
+    pub fn hold(&mut self, input: Port, value: f64) -> Result<(), NetworkError> {
+        self.wiring.hold(input, value)
+    }
+
+    /// The delay of each connection, in their order.
+    #[must_use]
+    pub fn delays(&self) -> &[Delay] {
+        &self.delays
+    }
+
+    /// How often a block has come back before the end of a step that counted, up to the last exchange.
+    #[must_use]
+    pub fn events(&self, block: usize) -> u64 {
+        self.events[block]
+    }
+
+    /// What iterations have taken.
+    #[must_use]
+    pub fn effort(&self) -> Effort {
+        self.effort
+    }
+
+    /// A block.
+    #[must_use]
+    pub fn block(&self, block: usize) -> &B {
+        &self.blocks[block]
+    }
+
+    /// A block, to look into; it is stepped by the master alone.
+    #[must_use]
+    pub fn block_mut(&mut self, block: usize) -> &mut B {
+        &mut self.blocks[block]
+    }
+
+    /// The blocks, as they have been left.
+    #[must_use]
+    pub fn into_blocks(self) -> Vec<B> {
+        self.blocks
+    }
+}
+
+/// The outputs that lead from a loop of blocks back into it, each by one of its connections.
+fn watched(wiring: &Wiring) -> Vec<Watched> {
+    let successors = successors(wiring);
+    let mut found: Vec<Watched> = Vec::new();
+    for component in components(&successors).iter().filter(|component| is_cycle(component, &successors)) {
+        for (connection, wire) in wiring.connections.iter().enumerate() {
+            let output = wiring.shapes[wire.from.block].first_output + wire.from.port;
+            let inside = component.contains(&wire.from.block) && component.contains(&wire.to.block);
+            if inside && found.iter().all(|watched| watched.output != output) {
+                found.push(Watched { block: wire.from.block, output, connection, watch: Watch::default() });
+            }
+        }
+    }
+    found
+}

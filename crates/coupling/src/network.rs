@@ -1,0 +1,337 @@
+//! What is connected with what.
+use crate::Block;
+use std::collections::HashSet;
+use std::num::NonZeroU32;
+use thiserror::Error;
+
+/// An input of a member.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InputPort {
+    /// Its name, for messages.
+    pub name: String,
+    /// What it is held at while nothing is connected to it.
+    pub held: f64,
+}
+
+/// A block in its place.
+#[derive(Debug, Clone)]
+pub struct Member<B> {
+    /// Its name, for messages.
+    pub name: String,
+    /// Its inputs, in the block's order.
+    pub inputs: Vec<InputPort>,
+    /// Names of its outputs, in the block's order.
+    pub outputs: Vec<String>,
+    /// How many communication steps one step of it lasts.
+    pub every: NonZeroU32,
+    /// The block, initialised.
+    pub block: B,
+}
+
+/// An input or an output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Port {
+    /// Which member.
+    pub block: usize,
+    /// Which of its inputs or of its outputs.
+    pub port: usize,
+}
+
+/// A signal from an output to an input, which gets `gain·output + offset`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Connection {
+    /// The output.
+    pub from: Port,
+    /// The input. One connection can lead to it.
+    pub to: Port,
+    /// Factor, for units and signs; finite.
+    pub gain: f64,
+    /// Summand in the input's unit; finite.
+    pub offset: f64,
+}
+
+/// What the flow of a [`PowerBond`] is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Flow {
+    /// A velocity or a current: effort times flow is a power.
+    Velocity,
+    /// A displacement or a charge: effort times its change is an energy.
+    Displacement,
+}
+
+/// Two connections between two blocks that carry power together: an effort (force, torque, voltage) to a block, and back the
+/// flow of the point where it acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PowerBond {
+    /// Index of the connection that carries the effort.
+    pub effort: usize,
+    /// Index of the connection that carries the flow, the other way.
+    pub flow: usize,
+    /// What the flow is.
+    pub kind: Flow,
+    /// Whether a positive effort works against a positive flow at the block that takes the effort (a load torque).
+    pub opposes: bool,
+}
+
+/// Blocks, connections, and which of these carry power.
+#[derive(Debug, Clone)]
+pub struct Network<B> {
+    /// The blocks.
+    pub members: Vec<Member<B>>,
+    /// The connections.
+    pub connections: Vec<Connection>,
+    /// Pairs of connections whose energy is watched.
+    pub bonds: Vec<PowerBond>,
+}
+
+/// Why a network cannot be run as it was asked for.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum NetworkError {
+    /// A connection or a held input names a port that is not there.
+    #[error("{what} {port} of block {block} does not exist: there are {blocks} blocks, and it has {ports} of them")]
+    NoPort {
+        /// `input` or `output`.
+        what: &'static str,
+        /// Index of the block.
+        block: usize,
+        /// Index of the port.
+        port: usize,
+        /// How many blocks there are.
+        blocks: usize,
+        /// How many such ports it has.
+        ports: usize,
+    },
+    /// Two connections lead to one input.
+    #[error("`{input}` has two connections; one can lead to it: add the signals in a block")]
+    Occupied {
+        /// The input.
+        input: String,
+    },
+    /// A gain, an offset or a held value is not finite.
+    #[error("`{field}` of `{of}` must be finite, got {value}")]
+    NotFinite {
+        /// What is not finite.
+        field: &'static str,
+        /// Connection or input.
+        of: String,
+        /// What it is.
+        value: f64,
+    },
+    /// A setting of the iteration is out of its range.
+    #[error("`{field}` of the iteration must be {bound}, got {value}")]
+    Setting {
+        /// Field.
+        field: &'static str,
+        /// What it has to be.
+        bound: &'static str,
+        /// What it is.
+        value: f64,
+    },
+    /// The order of blocks does not name each of them once.
+    #[error("the order of blocks must name each of the {blocks} blocks once, got {order:?}")]
+    BadOrder {
+        /// How many blocks there are.
+        blocks: usize,
+        /// The order that was asked for.
+        order: Vec<usize>,
+    },
+    /// A block in an iterated loop cannot repeat a step.
+    #[error(
+        "`{block}` cannot save its state, so the loop {cycle} cannot be iterated: couple by Gauss-Seidel, or cut the loop at a block that can"
+    )]
+    CannotRepeat {
+        /// The block.
+        block: String,
+        /// The blocks of the loop.
+        cycle: String,
+    },
+    /// Blocks of different step in an iterated loop.
+    #[error(
+        "the blocks of the loop {cycle} have different steps, so it cannot be iterated: give them one, or couple by Gauss-Seidel"
+    )]
+    MixedSteps {
+        /// The blocks of the loop.
+        cycle: String,
+    },
+    /// Outputs that follow each other without a step.
+    #[error(
+        "algebraic loop {cycle}: each follows the one before without a step; let the loop be solved, or put a block with a state into it"
+    )]
+    AlgebraicLoop {
+        /// The outputs of the loop.
+        cycle: String,
+    },
+    /// Two connections that are not a power bond.
+    #[error("connections {effort} and {flow} of {connections} are no power bond: {why}")]
+    NoBond {
+        /// Index of the effort.
+        effort: usize,
+        /// Index of the flow.
+        flow: usize,
+        /// How many connections there are.
+        connections: usize,
+        /// What is wrong.
+        why: &'static str,
+    },
+}
+
+/// Where the ports of a block are among those of all blocks.
+#[derive(Debug, Clone)]
+pub(crate) struct Shape {
+    pub(crate) first_input: usize,
+    pub(crate) inputs: usize,
+    pub(crate) first_output: usize,
+    pub(crate) outputs: usize,
+    /// Communication steps per step.
+    pub(crate) every: u32,
+}
+
+/// Where an input gets its value from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Wire {
+    /// Block and number of the output among those of all blocks; a constant without.
+    pub(crate) source: Option<Source>,
+    pub(crate) gain: f64,
+    /// The constant, if there is no source.
+    pub(crate) offset: f64,
+}
+
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Source {
+    pub(crate) block: usize,
+    pub(crate) output: usize,
+}
+
+/// The network without its blocks.
+#[derive(Debug, Clone)]
+pub(crate) struct Wiring {
+    pub(crate) shapes: Vec<Shape>,
+    /// By input.
+    pub(crate) wires: Vec<Wire>,
+    pub(crate) connections: Vec<Connection>,
+    block_names: Vec<String>,
+    input_names: Vec<String>,
+    output_names: Vec<String>,
+}
+
+impl Wiring {
+    pub(crate) fn new<B: Block>(network: &Network<B>) -> Result<Self, NetworkError> {
+        let mut wiring = Self {
+            shapes: Vec::new(),
+            wires: Vec::new(),
+            connections: network.connections.clone(),
+            block_names: Vec::new(),
+            input_names: Vec::new(),
+            output_names: Vec::new(),
+        };
+        for member in &network.members {
+            wiring.shapes.push(Shape {
+                first_input: wiring.input_names.len(),
+                inputs: member.inputs.len(),
+                first_output: wiring.output_names.len(),
+                outputs: member.outputs.len(),
+                every: member.every.get(),
+            });
+            wiring.block_names.push(member.name.clone());
+            wiring.input_names.extend(member.inputs.iter().map(|input| format!("{}.{}", member.name, input.name)));
+            wiring.output_names.extend(member.outputs.iter().map(|output| format!("{}.{output}", member.name)));
+            wiring.wires.extend(member.inputs.iter().map(|i| Wire { source: None, gain: 0.0, offset: i.held }));
+        }
+        for (wire, name) in wiring.wires.iter().zip(&wiring.input_names) {
+            finite("held", wire.offset, || name.clone())?;
+        }
+        wiring.connect()?;
+        Ok(wiring)
+    }
+
+    fn connect(&mut self) -> Result<(), NetworkError> {
+        let mut occupied = HashSet::new();
+        for index in 0..self.connections.len() {
+            let Connection { from, to, gain, offset } = self.connections[index];
+            let (output, input) = (self.output(from)?, self.input(to)?);
+            finite("gain", gain, || self.connection_name(index))?;
+            finite("offset", offset, || self.connection_name(index))?;
+            if !occupied.insert(input) {
+                return Err(NetworkError::Occupied { input: self.input_names[input].clone() });
+            }
+            self.wires[input] = Wire { source: Some(Source { block: from.block, output }), gain, offset };
+        }
+        Ok(())
+    }
+
+    /// Number of an input among those of all blocks.
+    pub(crate) fn input(&self, at: Port) -> Result<usize, NetworkError> {
+        let inputs = self.shapes.get(at.block).map_or(0, |shape| shape.inputs);
+        let no_port = || self.no_port("input", at, inputs);
+        if at.port < inputs { Ok(self.shapes[at.block].first_input + at.port) } else { Err(no_port()) }
+    }
+
+    /// Number of an output among those of all blocks.
+    pub(crate) fn output(&self, at: Port) -> Result<usize, NetworkError> {
+        let outputs = self.shapes.get(at.block).map_or(0, |shape| shape.outputs);
+        let no_port = || self.no_port("output", at, outputs);
+        if at.port < outputs { Ok(self.shapes[at.block].first_output + at.port) } else { Err(no_port()) }
+    }
+
+    fn no_port(&self, what: &'static str, at: Port, ports: usize) -> NetworkError {
+        NetworkError::NoPort { what, block: at.block, port: at.port, blocks: self.shapes.len(), ports }
+    }
+
+    /// How many outputs there are in all.
+    pub(crate) fn outputs(&self) -> usize {
+        self.output_names.len()
+    }
+
+    pub(crate) fn block_name(&self, block: usize) -> String {
+        self.block_names[block].clone()
+    }
+
+    pub(crate) fn output_name(&self, output: usize) -> String {
+        self.output_names[output].clone()
+    }
+
+    /// `a.x -> b.u`
+    pub(crate) fn connection_name(&self, index: usize) -> String {
+        let Connection { from, to, .. } = self.connections[index];
+        let (output, input) = (self.shapes[from.block].first_output, self.shapes[to.block].first_input);
+        format!("{} -> {}", self.output_names[output + from.port], self.input_names[input + to.port])
+    }
+
+    /// Which block an output belongs to.
+    pub(crate) fn block_of(&self, output: usize) -> usize {
+        self.shapes.partition_point(|shape| shape.first_output + shape.outputs <= output)
+    }
+
+    /// The blocks as `a -> b -> a`.
+    pub(crate) fn cycle_of_blocks(&self, blocks: &[usize]) -> String {
+        cycle(blocks.iter().map(|block| self.block_names[*block].as_str()))
+    }
+
+    /// The outputs as `a.y -> b.y -> a.y`.
+    pub(crate) fn cycle_of_outputs(&self, outputs: &[usize]) -> String {
+        cycle(outputs.iter().map(|output| self.output_names[*output].as_str()))
+    }
+
+    /// An input is held at another value.
+    pub(crate) fn hold(&mut self, at: Port, value: f64) -> Result<(), NetworkError> {
+        let input = self.input(at)?;
+        if self.wires[input].source.is_some() {
+            return Err(NetworkError::Occupied { input: self.input_names[input].clone() });
+        }
+        finite("held", value, || self.input_names[input].clone())?;
+        self.wires[input].offset = value;
+        Ok(())
+    }
+}
+
+fn cycle<'a>(mut names: impl Iterator<Item = &'a str> + Clone) -> String {
+    let first = names.clone().next().unwrap_or_default();
+    let mut text = names.by_ref().collect::<Vec<_>>().join(" -> ");
+    text.push_str(" -> ");
+    text.push_str(first);
+    text
+}
+
+fn finite(field: &'static str, value: f64, of: impl Fn() -> String) -> Result<(), NetworkError> {
+    if value.is_finite() { Ok(()) } else { Err(NetworkError::NotFinite { field, of: of(), value }) }
+}

@@ -1,0 +1,129 @@
+//! In which order outputs are read at an exchange, when some of them follow inputs without a step.
+//!
+//! The outputs are nodes of a graph; an edge leads from an output to each output that follows it through a connection and the
+//! feedthrough of a block. Outputs that follow nothing are read first, the others after what they follow; a cycle is an algebraic
+//! loop and is solved as a whole, or refused. Breaking it by a delay instead would make the coupled simulation unstable wherever
+//! the loop's gain exceeds 1, whatever the step (Kübler & Schiehlen 2000, §4; Arnold & Günther, BIT 41 (2001) 1).
+use crate::Block;
+use crate::cycles::{components, is_cycle, shortest_way_round};
+use crate::fixed_point::FixedPoint;
+use crate::network::{NetworkError, Wiring};
+use crate::settings::Iteration;
+
+/// One reading.
+pub(crate) enum Reading {
+    /// Outputs that follow no input.
+    Plain(usize),
+    /// Outputs that follow inputs, which are known by then.
+    Following(usize),
+    /// Outputs that follow each other.
+    Loop(Box<FixedPoint>),
+}
+
+/// The readings of an exchange. Whether a block has outputs that follow inputs is in `follows`.
+pub(crate) struct Plan {
+    pub(crate) readings: Vec<Reading>,
+    pub(crate) follows: Vec<bool>,
+}
+
+/// How late in the plan an output comes, and whether it is one of a loop.
+#[derive(Clone, Copy, Default)]
+struct Level {
+    level: usize,
+    in_loop: bool,
+}
+
+impl Plan {
+    pub(crate) fn new<B: Block>(wiring: &Wiring, blocks: &[B], solve: Option<Iteration>) -> Result<Self, NetworkError> {
+        solve.map_or(Ok(()), |iteration| iteration.check())?;
+        let through = Feedthrough::new(wiring, blocks);
+        let mut levels = vec![Level::default(); wiring.outputs()];
+        let mut loops = Vec::new();
+        for component in components(&through.successors) {
+            let sources = component.iter().flat_map(|output| &through.predecessors[*output]);
+            let after = sources.filter(|source| !component.contains(source)).map(|source| levels[*source].level).max();
+            let follows = component.iter().any(|output| through.follows[*output]);
+            let level = after.map_or(usize::from(follows), |level| level + 1);
+            let in_loop = is_cycle(&component, &through.successors);
+            for output in &component {
+                levels[*output] = Level { level, in_loop };
+            }
+            if in_loop {
+                let cycle = wiring.cycle_of_outputs(&shortest_way_round(&component, &through.successors));
+                let Some(iteration) = solve else { return Err(NetworkError::AlgebraicLoop { cycle }) };
+                loops.push((level, through.fixed_point(wiring, &component, iteration, cycle)));
+            }
+        }
+        Ok(Self { readings: readings(wiring, &levels, loops), follows: through.by_block(wiring) })
+    }
+}
+
+/// Readings by level; several outputs of a block on a level are one.
+fn readings(wiring: &Wiring, levels: &[Level], loops: Vec<(usize, FixedPoint)>) -> Vec<Reading> {
+    let mut readings: Vec<(usize, Reading)> =
+        loops.into_iter().map(|(level, fixed_point)| (level, Reading::Loop(Box::new(fixed_point)))).collect();
+    for (block, shape) in wiring.shapes.iter().enumerate() {
+        let own = &levels[shape.first_output..shape.first_output + shape.outputs];
+        let mut needed: Vec<usize> = own.iter().filter(|level| !level.in_loop).map(|level| level.level).collect();
+        needed.sort_unstable();
+        needed.dedup();
+        readings.extend(
+            needed
+                .into_iter()
+                .map(|level| (level, if level == 0 { Reading::Plain(block) } else { Reading::Following(block) })),
+        );
+    }
+    readings.sort_by_key(|(level, _)| *level);
+    readings.into_iter().map(|(_, reading)| reading).collect()
+}
+
+/// Which outputs follow which without a step.
+struct Feedthrough {
+    successors: Vec<Vec<usize>>,
+    predecessors: Vec<Vec<usize>>,
+    /// By output: whether it follows any input of its block.
+    follows: Vec<bool>,
+}
+
+impl Feedthrough {
+    fn new<B: Block>(wiring: &Wiring, blocks: &[B]) -> Self {
+        let outputs = wiring.outputs();
+        let mut found = Self {
+            successors: vec![Vec::new(); outputs],
+            predecessors: vec![Vec::new(); outputs],
+            follows: vec![false; outputs],
+        };
+        for (block, shape) in blocks.iter().zip(&wiring.shapes) {
+            for output in 0..shape.outputs {
+                for input in (0..shape.inputs).filter(|input| block.feeds_through(output, *input)) {
+                    let to = shape.first_output + output;
+                    found.follows[to] = true;
+                    if let Some(source) = wiring.wires[shape.first_input + input].source {
+                        found.successors[source.output].push(to);
+                        found.predecessors[to].push(source.output);
+                    }
+                }
+            }
+        }
+        found
+    }
+
+    /// The loop of the outputs `component`: its blocks ascending, unknown what goes to the same block or an earlier one.
+    fn fixed_point(&self, wiring: &Wiring, component: &[usize], iteration: Iteration, cycle: String) -> FixedPoint {
+        let mut blocks: Vec<usize> = component.iter().map(|output| wiring.block_of(*output)).collect();
+        blocks.dedup();
+        let goes_back = |output: &usize| {
+            let next = self.successors[*output].iter().filter(|next| component.contains(next));
+            next.into_iter().any(|next| wiring.block_of(*output) >= wiring.block_of(*next))
+        };
+        let unknowns: Vec<usize> = component.iter().copied().filter(goes_back).collect();
+        FixedPoint::new(wiring, blocks, &unknowns, iteration, cycle)
+    }
+
+    fn by_block(&self, wiring: &Wiring) -> Vec<bool> {
+        let of = |shape: &crate::network::Shape| {
+            self.follows[shape.first_output..shape.first_output + shape.outputs].contains(&true)
+        };
+        wiring.shapes.iter().map(of).collect()
+    }
+}

@@ -1,0 +1,203 @@
+//! What the master does with blocks: step, read, repeat.
+use crate::error::CouplingError;
+use crate::fixed_point::{Disagreement, FixedPoint};
+use crate::master::{Advance, Master};
+use crate::polynomial::later;
+use crate::{Block, Step};
+
+/// Part of a step that is left out at its end: the rounding of a time in seconds.
+const ROUNDING: f64 = 1e-9;
+/// Most parts of a step; more are a block that does not get on.
+const MOST_PARTS: u32 = 1000;
+
+impl<B: Block> Master<B> {
+    /// Takes a block through its step, in as many parts as it comes back early.
+    pub(crate) fn step(&mut self, block: usize) -> Result<Option<Advance>, CouplingError<B::Error>> {
+        let shape = &self.wiring.shapes[block];
+        let (now, until) = (self.clock.now, self.clock.now + u64::from(shape.every));
+        let inputs = &mut self.inputs[..shape.inputs];
+        for (input, wire) in inputs.iter_mut().zip(&self.wiring.wires[shape.first_input..]) {
+            *input = self.signals.input(wire, now);
+        }
+        // The length is made of ticks and so the same in each step, which a difference of times is not.
+        let whole = self.clock.time(u64::from(shape.every));
+        let (start, end) = (self.clock.time(now), self.clock.time(until));
+        let (mut time, mut length, mut parts) = (start, whole, 0);
+        loop {
+            let step = self.blocks[block].step(time, length, inputs);
+            let at = match step.map_err(|source| failed(&self.wiring, block, time, source))? {
+                Step::Done => break,
+                Step::Terminated(time) => return Ok(Some(Advance::Terminated { block, time })),
+                Step::Until(at) => at,
+            };
+            parts += 1;
+            if !(at >= time && at <= end + ROUNDING * whole) || parts > MOST_PARTS {
+                let block = self.wiring.block_name(block);
+                return Err(CouplingError::Astray { block, from: start, to: end, at, parts });
+            }
+            length = end - at;
+            if length <= ROUNDING * whole {
+                break;
+            }
+            for input in inputs.iter_mut() {
+                *input = later(input, at - time);
+            }
+            time = at;
+        }
+        self.reached[block] = until;
+        self.fresh[block] = false;
+        self.interruptions[block] = parts;
+        Ok(None)
+    }
+
+    /// Reads a block and takes down what it says, for the time that room has been made for.
+    pub(crate) fn read(&mut self, block: usize, inputs: Option<usize>) -> Result<(), CouplingError<B::Error>> {
+        let shape = &self.wiring.shapes[block];
+        let outputs = &mut self.outputs[..shape.outputs];
+        let at = self.reached[block];
+        let present = inputs.map(|inputs| &self.present[..inputs]);
+        self.blocks[block]
+            .read(present, outputs)
+            .map_err(|source| failed(&self.wiring, block, self.clock.time(at), source))?;
+        self.fresh[block] = true;
+        self.signals.set(block, outputs).map_err(|output| {
+            let value = outputs[output - shape.first_output];
+            CouplingError::NotFinite {
+                output: self.wiring.output_name(output),
+                value,
+                time: self.clock.time(at),
+                step: at,
+            }
+        })
+    }
+
+    /// Reads a block with its inputs at the exchange `now`.
+    pub(crate) fn follow(&mut self, block: usize, now: u64) -> Result<(), CouplingError<B::Error>> {
+        self.signals.open(block, now);
+        let shape = &self.wiring.shapes[block];
+        for (value, wire) in self.present.iter_mut().zip(&self.wiring.wires[shape.first_input..][..shape.inputs]) {
+            *value = self.signals.input(wire, now)[0];
+        }
+        let inputs = shape.inputs;
+        self.read(block, Some(inputs))
+    }
+
+    /// Makes known what a block has come to before the exchange, outputs that follow inputs with these as they were stepped with.
+    pub(crate) fn announce(&mut self, block: usize, follows: bool) -> Result<(), CouplingError<B::Error>> {
+        let shape = &self.wiring.shapes[block];
+        let (inputs, until) = (shape.inputs, self.reached[block]);
+        if follows {
+            for (value, wire) in self.present.iter_mut().zip(&self.wiring.wires[shape.first_input..][..inputs]) {
+                *value = self.signals.at_end(wire, self.clock.now, until);
+            }
+        }
+        self.signals.open(block, until);
+        self.read(block, follows.then_some(inputs))
+    }
+
+    /// Takes the blocks of a loop through their step until what they exchange at its end agrees.
+    pub(crate) fn repeat(&mut self, fixed_point: &mut FixedPoint) -> Result<Option<Advance>, CouplingError<B::Error>> {
+        let now = self.clock.now;
+        if self.reached[fixed_point.blocks[0]] > now {
+            return Ok(None);
+        }
+        for block in &fixed_point.blocks {
+            self.blocks[*block].save().map_err(|source| self.failed(*block, now, source))?;
+            self.signals.open(*block, now + u64::from(self.wiring.shapes[*block].every));
+        }
+        fixed_point.begin();
+        for evaluation in 1..=fixed_point.iteration.most {
+            fixed_point.note(&self.signals);
+            for block in &fixed_point.blocks {
+                if evaluation > 1 {
+                    self.blocks[*block].restore().map_err(|source| self.failed(*block, now, source))?;
+                }
+                if let Some(ended) = self.step(*block)? {
+                    return Ok(Some(ended));
+                }
+                self.announce(*block, self.follows(*block))
+                    .map_err(|e| diverged(e, fixed_point, evaluation, &self.clock))?;
+            }
+            let Some(disagreement) = fixed_point.disagreement(&self.signals) else {
+                self.effort.evaluations += u64::from(evaluation);
+                self.effort.most = self.effort.most.max(evaluation);
+                return Ok(None);
+            };
+            if evaluation == fixed_point.iteration.most {
+                return Err(self.not_converged(fixed_point, &disagreement, now + 1));
+            }
+            fixed_point.correct(&mut self.signals);
+        }
+        Ok(None)
+    }
+
+    /// Solves outputs that follow each other at the exchange `now`.
+    pub(crate) fn solve(&mut self, fixed_point: &mut FixedPoint, now: u64) -> Result<(), CouplingError<B::Error>> {
+        if fixed_point.blocks.iter().all(|block| self.reached[*block] != now) {
+            return Ok(());
+        }
+        for block in &fixed_point.blocks {
+            if self.reached[*block] == now {
+                self.signals.open(*block, now);
+            }
+        }
+        fixed_point.begin();
+        for evaluation in 1..=fixed_point.iteration.most {
+            fixed_point.note(&self.signals);
+            for block in &fixed_point.blocks {
+                if self.reached[*block] == now {
+                    self.follow(*block, now).map_err(|e| diverged(e, fixed_point, evaluation, &self.clock))?;
+                }
+            }
+            let Some(disagreement) = fixed_point.disagreement(&self.signals) else { break };
+            if evaluation == fixed_point.iteration.most {
+                return Err(self.not_converged(fixed_point, &disagreement, now));
+            }
+            fixed_point.correct(&mut self.signals);
+        }
+        Ok(())
+    }
+
+    fn failed(&self, block: usize, step: u64, source: B::Error) -> CouplingError<B::Error> {
+        failed(&self.wiring, block, self.clock.time(step), source)
+    }
+
+    fn not_converged(&self, of: &FixedPoint, found: &Disagreement, step: u64) -> CouplingError<B::Error> {
+        CouplingError::NotConverged {
+            cycle: of.cycle.clone(),
+            output: self.wiring.output_name(found.output),
+            change: found.change,
+            allowed: found.allowed,
+            iterations: of.iteration.most,
+            step,
+            time: self.clock.time(step),
+            length: self.clock.time(1),
+        }
+    }
+}
+
+fn failed<E>(wiring: &crate::network::Wiring, block: usize, time: f64, source: E) -> CouplingError<E> {
+    CouplingError::Block { block: wiring.block_name(block), time, source }
+}
+
+/// A number that overflows after the first evaluation is the iteration's doing.
+fn diverged<E>(
+    error: CouplingError<E>,
+    of: &FixedPoint,
+    evaluation: u32,
+    clock: &crate::master::Clock,
+) -> CouplingError<E> {
+    match error {
+        CouplingError::NotFinite { output, value, time, step } if evaluation > 1 => CouplingError::NotConverged {
+            cycle: of.cycle.clone(),
+            output,
+            change: value,
+            allowed: of.iteration.absolute,
+            iterations: evaluation,
+            step,
+            time,
+            length: clock.time(1),
+        },
+        other => other,
+    }
+}
