@@ -215,7 +215,7 @@ pub(crate) const BLOCKS: &[Interface] = {
             "MC_PositionProfile",
             "moves through a table of positions",
             Execute,
-            &["table", "end_velocity", "buffer_mode"],
+            &["table", "time_scale", "value_scale", "position_offset", "end_velocity", "buffer_mode"],
             MOTION,
         ),
         block(
@@ -223,7 +223,7 @@ pub(crate) const BLOCKS: &[Interface] = {
             "MC_VelocityProfile",
             "moves by a table of velocities",
             Execute,
-            &["table", "buffer_mode"],
+            &["table", "time_scale", "value_scale", "velocity_offset", "buffer_mode"],
             &[ProfileCompleted, Busy, Active, CommandAborted, Error],
         ),
         block(
@@ -231,7 +231,7 @@ pub(crate) const BLOCKS: &[Interface] = {
             "MC_AccelerationProfile",
             "moves by a table of accelerations",
             Execute,
-            &["table", "buffer_mode"],
+            &["table", "time_scale", "value_scale", "acceleration_offset", "buffer_mode"],
             &[ProfileCompleted, Busy, Active, CommandAborted, Error],
         ),
         block(
@@ -255,18 +255,7 @@ pub(crate) const BLOCKS: &[Interface] = {
             "MC_TorqueControl",
             "goes over to a torque or force and keeps it",
             Execute,
-            &[
-                "torque",
-                "torque_ramp",
-                "velocity",
-                "acceleration",
-                "deceleration",
-                "jerk",
-                "snap",
-                "direction",
-                "buffer_mode",
-                "continuous_update",
-            ],
+            &["torque", "torque_ramp", "velocity", "direction", "buffer_mode", "continuous_update"],
             &[InTorque, Busy, Active, CommandAborted, Error],
         ),
         block(

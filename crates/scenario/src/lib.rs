@@ -49,7 +49,7 @@ pub use scenario::{
     Feedforward, Filter, Follow, Goal, Grid, HomeSwitch, IdealSource, Initial, Interpolation, InterpolationMode,
     LONGEST_RUN, Limit, Measure, Method, Mjcf, Motion, MotorEstimate, MoveStep, ObjectWrite, OnlineMove, Output, Pair,
     PlanEffort, Plc, Pmsm, PositionLoop, ProfileFollow, Record, RestMove, RockwellJerk, RockwellMove, RockwellShape,
-    Sampling, Scenario, Sequencing, Shaper, ShaperKind, SourceOutput, Step, Switches, TableMove, Target,
+    Sampling, Scales, Scenario, Sequencing, Shaper, ShaperKind, SourceOutput, Step, Switches, TableMove, Target,
     TrajectoryBuffer, Update, Velocities, VelocityLoop, Way,
 };
 pub use schema::json_schema;

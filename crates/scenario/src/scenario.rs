@@ -27,7 +27,8 @@ pub use drive::{
 pub use filter::{Filter, Interpolation, InterpolationMode, Shaper, ShaperKind};
 pub use motor::{Encoder, IdealSource, Pmsm, SourceOutput};
 pub use plc::{
-    Block, Braking, BufferMode, Call, Command, Condition, Direction, Dynamics, Output, Pair, Plc, ProfileFollow, Update,
+    Block, Braking, BufferMode, Call, Command, Condition, Direction, Dynamics, Output, Pair, Plc, ProfileFollow,
+    Scales, Update,
 };
 pub use program::{
     Execution, Follow, Goal, Grid, Method, MoveStep, OnlineMove, PlanEffort, RestMove, RockwellJerk, RockwellMove,

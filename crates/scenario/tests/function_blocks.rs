@@ -120,8 +120,8 @@ fn every_block_with_its_least_inputs() {
             Block::TorqueControl {
                 torque: -2.0,
                 torque_ramp: f64::INFINITY,
+                velocity: 0.5,
                 direction: Direction::Positive,
-                dynamics: DYNAMICS,
                 command,
             },
         ),
@@ -153,8 +153,10 @@ fn profiles_of_positions_velocities_and_accelerations() {
         let times = [0.0, 0.01, 0.01];
         times.into_iter().zip(values).map(|(delta_time, value)| Pair { delta_time, value }).collect()
     };
+    let scales = Scales { time: 1.0, value: 1.0, offset: 0.0 };
     let positions = |is_relative, follow, end_velocity| Block::PositionProfile {
         pairs: pairs([0.0, 0.005, 0.0]),
+        scales,
         is_relative,
         follow,
         end_velocity,
@@ -168,6 +170,18 @@ fn profiles_of_positions_velocities_and_accelerations() {
             "table = { file = \"x.csv\", relative = true, velocities = \"continuous\" }\nend_velocity = \"-0.1 m/s\"",
             positions(true, ProfileFollow::Spline, -0.1),
         ),
+        (
+            "MC_PositionProfile",
+            "table = { file = \"x.csv\" }\ntime_scale = \"50 %\"\nvalue_scale = 3\nposition_offset = \"-10 mm\"",
+            Block::PositionProfile {
+                pairs: pairs([0.0, 0.005, 0.0]),
+                scales: Scales { time: 0.5, value: 3.0, offset: -0.01 },
+                is_relative: false,
+                follow: ProfileFollow::Spline,
+                end_velocity: 0.0,
+                buffer_mode,
+            },
+        ),
         ("MC_PositionProfile", "table = { file = \"x.csv\", follow = \"plateaus\" }", plateaus(0.25)),
         (
             "MC_PositionProfile",
@@ -177,12 +191,30 @@ fn profiles_of_positions_velocities_and_accelerations() {
         (
             "MC_VelocityProfile",
             "table = { file = \"v.csv\" }",
-            Block::VelocityProfile { pairs: pairs([0.0, 0.005, 0.0]), buffer_mode },
+            Block::VelocityProfile { pairs: pairs([0.0, 0.005, 0.0]), scales, buffer_mode },
+        ),
+        (
+            "MC_VelocityProfile",
+            "table = { file = \"v.csv\" }\ntime_scale = 2\nvalue_scale = \"-50 %\"\nvelocity_offset = \"0.1 m/s\"",
+            Block::VelocityProfile {
+                pairs: pairs([0.0, 0.005, 0.0]),
+                scales: Scales { time: 2.0, value: -0.5, offset: 0.1 },
+                buffer_mode,
+            },
         ),
         (
             "MC_AccelerationProfile",
             "table = { file = \"a.csv\" }",
-            Block::AccelerationProfile { pairs: pairs([0.0, 5.0, 0.0]), buffer_mode },
+            Block::AccelerationProfile { pairs: pairs([0.0, 5.0, 0.0]), scales, buffer_mode },
+        ),
+        (
+            "MC_AccelerationProfile",
+            "table = { file = \"a.csv\" }\nacceleration_offset = \"-2 m/s2\"",
+            Block::AccelerationProfile {
+                pairs: pairs([0.0, 5.0, 0.0]),
+                scales: Scales { offset: -2.0, ..scales },
+                buffer_mode,
+            },
         ),
     ] {
         assert_eq!(call(name, keys), alone(name, block));
@@ -202,14 +234,18 @@ fn every_block_with_inputs_of_its_own() {
             "direction = \"current\"\n",
             Block::MoveVelocity { velocity: 0.1, direction: Direction::Current, dynamics, command },
         ),
-        (
-            "MC_TorqueControl",
-            "torque = \"1 Nm\"\ntorque_ramp = \"10 Nm/s\"\ndirection = \"negative\"\n",
-            Block::TorqueControl { torque: 1.0, torque_ramp: 10.0, direction: Direction::Negative, dynamics, command },
-        ),
     ] {
         assert_eq!(call(name, &format!("{keys}{own}")).block, block);
     }
+    assert_eq!(
+        call(
+            "MC_TorqueControl",
+            "torque = \"1 Nm\"\ntorque_ramp = \"10 Nm/s\"\nvelocity = \"0.1 m/s\"\ndirection = \"negative\"\n\
+             buffer_mode = \"blending-high\"\ncontinuous_update = true\n"
+        )
+        .block,
+        Block::TorqueControl { torque: 1.0, torque_ramp: 10.0, velocity: 0.1, direction: Direction::Negative, command }
+    );
     assert_eq!(
         call("MC_Halt", "deceleration = \"2 m/s2\"\njerk = \"3 m/s3\"\nsnap = \"4 m/s4\"\nbuffer_mode = \"buffered\"")
             .block,

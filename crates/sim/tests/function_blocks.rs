@@ -34,17 +34,17 @@ snap = "100000 m/s4"
 /// Something to say for an input of `block`.
 fn said(block: &str, input: &str) -> String {
     let value = match input {
-        "position" | "distance" => "\"10 mm\"",
-        "velocity" | "velocity_difference" => "\"0.1 m/s\"",
+        "position" | "distance" | "position_offset" => "\"10 mm\"",
+        "velocity" | "velocity_difference" | "velocity_offset" => "\"0.1 m/s\"",
         "end_velocity" => "\"0.05 m/s\"",
-        "acceleration" | "deceleration" => "\"2 m/s2\"",
+        "acceleration" | "deceleration" | "acceleration_offset" => "\"2 m/s2\"",
         "jerk" => "\"100 m/s3\"",
         "snap" => "\"10000 m/s4\"",
         "direction" => "\"positive\"",
         "buffer_mode" => "\"aborting\"",
         "torque" => "\"0.1 Nm\"",
         "torque_ramp" => "\"1 Nm/s\"",
-        "velocity_factor" | "acceleration_factor" | "jerk_factor" => "0.5",
+        "velocity_factor" | "acceleration_factor" | "jerk_factor" | "time_scale" | "value_scale" => "0.5",
         "continuous_update" | "relative" | "reversed" | "enable_positive" | "enable_negative" => "true",
         "settling_time" => "\"50 ms\"",
         "table" => return format!("table = {{ file = \"{block}.csv\" }}\n"),

@@ -105,6 +105,16 @@ table! {
         /// MC_PositionProfile has the columns `time` and `position`, that of MC_VelocityProfile `velocity`, that of
         /// MC_AccelerationProfile `acceleration`. Positions are followed along the cubic spline, or by `follow = "plateaus"`.
         table: TableOfPoints = (),
+        /// Factor of the times of a table; 1 unless given.
+        time_scale: f64 = positive(Plain(&RATIO), "2"),
+        /// Factor of the values of a table, not 0; 1 unless given.
+        value_scale: f64 = any(Plain(&RATIO), "-0.5"),
+        /// What is then added to the positions of a table; nothing unless given.
+        position_offset: f64 = any(InAxis(&POSITION), "10 mm"),
+        /// What is then added to the velocities of a table; nothing unless given.
+        velocity_offset: f64 = any(InAxis(&VELOCITY), "1 m/min"),
+        /// What is then added to the accelerations of a table; nothing unless given.
+        acceleration_offset: f64 = any(InAxis(&ACCELERATION), "1 m/s2"),
     }
 }
 

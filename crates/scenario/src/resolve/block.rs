@@ -6,7 +6,7 @@ use crate::file::TableOfPoints;
 use crate::resolve::inputs::{Defaults, Inputs, either};
 use crate::resolve::keys::{LIMITS, Said};
 use crate::resolve::profile;
-use crate::scenario::{Block, Braking, BufferMode, Command, Direction, Dynamics};
+use crate::scenario::{Block, Braking, BufferMode, Command, Direction, Dynamics, Scales};
 use crate::source::{At, Sources, Span};
 
 /// What blocks need to know of the rest of the file.
@@ -67,11 +67,13 @@ impl Context<'_> {
             BlockName::PositionProfile => read.position_profile(),
             BlockName::VelocityProfile => {
                 let pairs = read.table().and_then(|table| profile::velocities(table, self.sources, read.report));
-                Some(Block::VelocityProfile { pairs: pairs?, buffer_mode: read.buffer_mode()? })
+                let scales = read.scales(&inputs.call.velocity_offset);
+                Some(Block::VelocityProfile { pairs: pairs?, scales: scales?, buffer_mode: read.buffer_mode()? })
             }
             BlockName::AccelerationProfile => {
                 let pairs = read.table().and_then(|table| profile::accelerations(table, self.sources, read.report));
-                Some(Block::AccelerationProfile { pairs: pairs?, buffer_mode: read.buffer_mode()? })
+                let scales = read.scales(&inputs.call.acceleration_offset);
+                Some(Block::AccelerationProfile { pairs: pairs?, scales: scales?, buffer_mode: read.buffer_mode()? })
             }
             BlockName::SetPosition => {
                 let (position, relative) = (read.required("position"), flag(&inputs.call.relative));
@@ -148,15 +150,21 @@ impl<'a> Reading<'a, '_> {
         Some([jerk, snap])
     }
 
-    /// Velocity, which is the input `velocity`, and what leads to it; and how the motion begins.
-    fn motion(&mut self, velocity: &'static str) -> Option<(Dynamics, Command)> {
+    /// The input `velocity` or `velocity_difference`.
+    fn velocity(&mut self, name: &'static str) -> Option<f64> {
         let is_magnitude = self.name != BlockName::MoveVelocity;
-        let most = if velocity == LIMITS[0] { self.needed_limit(velocity) } else { self.required(velocity) };
-        if let (true, Some(..=0.0), Some(span)) = (is_magnitude, most, self.inputs.quantity(velocity).span()) {
-            let message = format!("`{velocity}` of {} must be above zero", self.name.name());
+        let most = if name == LIMITS[0] { self.needed_limit(name) } else { self.required(name) };
+        if let (true, Some(..=0.0), Some(span)) = (is_magnitude, most, self.inputs.quantity(name).span()) {
+            let message = format!("`{name}` of {} must be above zero", self.name.name());
             self.report.error(span, message, "the target says in which direction");
         }
         self.warn_beyond_the_axis();
+        most
+    }
+
+    /// Velocity, which is the input `velocity`, and what leads to it; and how the motion begins.
+    fn motion(&mut self, velocity: &'static str) -> Option<(Dynamics, Command)> {
+        let most = self.velocity(velocity);
         let acceleration = self.needed_limit("acceleration");
         let deceleration = self.inputs.quantity("deceleration").optional().ok();
         let (jerk_and_snap, command) = (self.jerk_and_snap(), self.command());
@@ -234,6 +242,16 @@ impl<'a> Reading<'a, '_> {
         call.table.at()
     }
 
+    /// What becomes of the pairs of the table, to which `offset` is added.
+    fn scales(&mut self, offset: &Slot<f64>) -> Option<Scales> {
+        let call = self.inputs.call;
+        if let Some(zero) = call.value_scale.at().filter(|scale| scale.value == 0.0) {
+            self.report.error(zero.span, "`value_scale` must not be 0", "leave it out, or give a factor");
+        }
+        let or = |slot: &Slot<f64>, otherwise| slot.optional().ok().map(|value| value.copied().unwrap_or(otherwise));
+        Some(Scales { time: or(&call.time_scale, 1.0)?, value: or(&call.value_scale, 1.0)?, offset: or(offset, 0.0)? })
+    }
+
     fn move_velocity(&mut self) -> Option<Block> {
         let (direction, motion) = (self.sign(), self.motion("velocity"));
         let (dynamics, command) = motion?;
@@ -258,18 +276,24 @@ impl<'a> Reading<'a, '_> {
 
     fn torque_control(&mut self) -> Option<Block> {
         let (torque, torque_ramp) = (self.required("torque"), self.or("torque_ramp", f64::INFINITY));
-        let (direction, motion) = (self.sign(), self.motion("velocity"));
-        let (dynamics, command) = motion?;
-        let (torque, torque_ramp, direction) = (torque?, torque_ramp?, direction?);
-        Some(Block::TorqueControl { torque, torque_ramp, direction, dynamics, command })
+        let (direction, velocity, command) = (self.sign(), self.velocity("velocity"), self.command());
+        Some(Block::TorqueControl {
+            torque: torque?,
+            torque_ramp: torque_ramp?,
+            velocity: velocity?,
+            direction: direction?,
+            command: command?,
+        })
     }
 
     fn position_profile(&mut self) -> Option<Block> {
         let table = self.table()?;
         let follow = profile::follow(table, self.report);
         let pairs = profile::positions(table, self.context.sources, self.report);
+        let scales = self.scales(&self.inputs.call.position_offset);
         Some(Block::PositionProfile {
             pairs: pairs?,
+            scales: scales?,
             is_relative: flag(&table.value.relative)?,
             follow: follow?,
             end_velocity: self.or("end_velocity", 0.0)?,

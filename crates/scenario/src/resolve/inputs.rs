@@ -99,6 +99,11 @@ impl<'a> Inputs<'a> {
             ("settling_time", call.settling_time.span()),
             ("reversed", call.reversed.span()),
             ("table", call.table.span()),
+            ("time_scale", call.time_scale.span()),
+            ("value_scale", call.value_scale.span()),
+            ("position_offset", call.position_offset.span()),
+            ("velocity_offset", call.velocity_offset.span()),
+            ("acceleration_offset", call.acceleration_offset.span()),
         ];
         let fixed = fixed.into_iter().filter(|_| !self.is_update);
         let [positive, negative] = self.permissions.map(Slot::span);

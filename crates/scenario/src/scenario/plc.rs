@@ -152,6 +152,8 @@ pub enum Block {
     PositionProfile {
         /// Positions.
         pairs: Vec<Pair>,
+        /// What the inputs make of them.
+        scales: Scales,
         /// Whether they count from where the profile begins.
         is_relative: bool,
         /// How the axis goes from one to the next.
@@ -165,6 +167,8 @@ pub enum Block {
     VelocityProfile {
         /// Velocities.
         pairs: Vec<Pair>,
+        /// What the inputs make of them.
+        scales: Scales,
         /// What becomes of the motion under way.
         buffer_mode: BufferMode,
     },
@@ -172,6 +176,8 @@ pub enum Block {
     AccelerationProfile {
         /// Accelerations.
         pairs: Vec<Pair>,
+        /// What the inputs make of them.
+        scales: Scales,
         /// What becomes of the motion under way.
         buffer_mode: BufferMode,
     },
@@ -193,10 +199,10 @@ pub enum Block {
         torque: f64,
         /// Largest change of it per second; infinite without one.
         torque_ramp: f64,
+        /// Velocity (magnitude) beyond which the axis is stopped.
+        velocity: f64,
         /// Its direction besides its sign.
         direction: Direction,
-        /// Largest velocity, and what leads to it.
-        dynamics: Dynamics,
         /// How the motion begins.
         command: Command,
     },
@@ -230,6 +236,17 @@ pub struct Pair {
     pub delta_time: f64,
     /// Position, velocity or acceleration at its end.
     pub value: f64,
+}
+
+/// What the inputs of a profile make of its pairs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scales {
+    /// Factor of the times.
+    pub time: f64,
+    /// Factor of the values.
+    pub value: f64,
+    /// What is added to the values after that.
+    pub offset: f64,
 }
 
 /// How the axis goes from position to position of a profile.

@@ -67,7 +67,10 @@ fn every_block_can_be_called() {
         ("MC_MoveVelocity", "velocity = \"-1 m/min\"\ndirection = \"current\""),
         ("MC_MoveContinuousAbsolute", "position = \"1 mm\"\nend_velocity = \"-1 m/min\""),
         ("MC_PositionProfile", "table = { file = \"x.csv\", relative = true }\nend_velocity = \"1 mm/s\""),
-        ("MC_VelocityProfile", "table = { file = \"v.csv\" }"),
+        (
+            "MC_VelocityProfile",
+            "table = { file = \"v.csv\" }\ntime_scale = 2\nvalue_scale = \"-50 %\"\nvelocity_offset = \"1 m/min\"",
+        ),
         ("MC_AccelerationProfile", "table = { file = \"a.csv\" }\nbuffer_mode = \"buffered\""),
         ("MC_SetPosition", "position = \"1 mm\"\nrelative = true"),
         ("MC_SetOverride", "velocity_factor = \"50 %\"\nacceleration_factor = 0.5\njerk_factor = 1"),
@@ -97,6 +100,16 @@ fn a_block_has_its_inputs_and_no_others() {
             &[
                 "3:12: MC_Halt has no input `position`; its inputs are deceleration, jerk, snap, buffer_mode",
                 "4:12: MC_Halt has no input `velocity`; its inputs are deceleration, jerk, snap, buffer_mode",
+            ],
+        ),
+        // Optional inputs of the standard, which a drive that is told efforts does not have.
+        (
+            &call("MC_TorqueControl", "torque = \"1 Nm\"\nacceleration = \"1 m/s2\"\njerk = \"1 m/s3\""),
+            &[
+                "4:16: MC_TorqueControl has no input `acceleration`; its inputs are torque, torque_ramp, velocity, direction, \
+                 buffer_mode, continuous_update",
+                "5:8: MC_TorqueControl has no input `jerk`; its inputs are torque, torque_ramp, velocity, direction, \
+                 buffer_mode, continuous_update",
             ],
         ),
         (&call("MC_Reset", "jerk = \"1 m/s3\""), &["3:8: MC_Reset has no input `jerk`; it has none"]),
@@ -363,6 +376,33 @@ fn tables_of_profiles() {
         (
             &call("MC_VelocityProfile", "table = { file = \"early.csv\" }"),
             &["3:18: the table begins at -0.01 s, before the profile; its times count from the start of the profile"],
+        ),
+    ]);
+}
+
+#[test]
+fn scales_of_tables() {
+    let scaled = |keys: &str| call("MC_VelocityProfile", &format!("table = {{ file = \"v.csv\" }}\n{keys}"));
+    check(&[
+        (&scaled("value_scale = 0"), &["4:15: `value_scale` must not be 0; leave it out, or give a factor"]),
+        (&scaled("time_scale = -1"), &["4:14: `time_scale` must be above zero, got -1"]),
+        (
+            &scaled("velocity_offset = \"1 mm\""),
+            &["4:19: `velocity_offset` must be a velocity, but \"1 mm\" is a length (mm)"],
+        ),
+        (
+            &scaled("position_offset = \"1 mm\""),
+            &[
+                "4:19: MC_VelocityProfile has no input `position_offset`; its inputs are table, time_scale, value_scale, \
+                 velocity_offset, buffer_mode",
+            ],
+        ),
+        (
+            &call("MC_MoveVelocity", "velocity = \"1 m/min\"\ntime_scale = 2"),
+            &[
+                "4:14: MC_MoveVelocity has no input `time_scale`; its inputs are velocity, acceleration, deceleration, jerk, snap, \
+ direction, buffer_mode, continuous_update",
+            ],
         ),
     ]);
 }

@@ -271,10 +271,14 @@ fn block(block: &Block) {
         | Block::MoveRelative { dynamics, .. }
         | Block::MoveAdditive { dynamics, .. }
         | Block::MoveSuperimposed { dynamics, .. }
-        | Block::MoveContinuousAbsolute { dynamics, .. }
-        | Block::TorqueControl { dynamics, .. } => {
+        | Block::MoveContinuousAbsolute { dynamics, .. } => {
             positive("velocity", dynamics.velocity);
             self::dynamics(dynamics);
+        }
+        Block::TorqueControl { torque, torque_ramp, velocity, .. } => {
+            finite("torque", *torque);
+            limit("torque_ramp", *torque_ramp);
+            positive("velocity", *velocity);
         }
         Block::MoveVelocity { velocity, dynamics, .. } => {
             assert_eq!(velocity.abs().to_bits(), dynamics.velocity.to_bits());
@@ -282,11 +286,15 @@ fn block(block: &Block) {
             self::dynamics(dynamics);
         }
         Block::Stop(braking) | Block::Halt { braking, .. } => positive("deceleration", braking.deceleration),
-        Block::PositionProfile { pairs, end_velocity, .. } => {
+        Block::PositionProfile { pairs, scales, end_velocity, .. } => {
             self::pairs(pairs);
+            self::scales(scales);
             finite("end_velocity", *end_velocity);
         }
-        Block::VelocityProfile { pairs, .. } | Block::AccelerationProfile { pairs, .. } => self::pairs(pairs),
+        Block::VelocityProfile { pairs, scales, .. } | Block::AccelerationProfile { pairs, scales, .. } => {
+            self::pairs(pairs);
+            self::scales(scales);
+        }
         Block::SetOverride { factors } => factors.iter().for_each(|factor| not_negative("factor", *factor)),
         Block::Profile4th { limits, settling_time, .. } => {
             for limit in limits {
@@ -308,6 +316,13 @@ fn block(block: &Block) {
 fn pairs(pairs: &[Pair]) {
     assert!(pairs.len() >= 2 && pairs[0].delta_time >= 0.0);
     assert!(pairs[1..].iter().all(|pair| pair.delta_time > 0.0 && pair.value.is_finite()));
+}
+
+fn scales(scales: &Scales) {
+    positive("time_scale", scales.time);
+    finite("value_scale", scales.value);
+    assert!(scales.value != 0.0, "{scales:?}");
+    finite("offset", scales.offset);
 }
 
 fn dynamics(dynamics: &Dynamics) {

@@ -235,8 +235,8 @@ pub(super) fn dynamics(said: &Said) -> Option<[f64; 4]> {
         | Said::MoveRelative { dynamics, .. }
         | Said::MoveAdditive { dynamics, .. }
         | Said::MoveSuperimposed { dynamics, .. }
-        | Said::MoveContinuousAbsolute { dynamics, .. }
-        | Said::TorqueControl { dynamics, .. } => of(dynamics),
+        | Said::MoveContinuousAbsolute { dynamics, .. } => of(dynamics),
+        Said::TorqueControl { velocity, .. } => Some([*velocity, 0.0, 0.0, 0.0]),
         Said::MoveVelocity { velocity, dynamics, .. } => {
             of(&scenario::Dynamics { velocity: velocity.abs().max(dynamics.velocity), ..*dynamics })
         }

@@ -163,13 +163,13 @@ pub(super) fn set_override(said: &Said) -> Option<plcopen::SetOverrideInputs> {
 }
 
 pub(super) fn torque_control(said: &Said) -> Option<plcopen::TorqueControlInputs> {
-    let Said::TorqueControl { torque, torque_ramp, direction: way, dynamics, command } = said else { return None };
+    let Said::TorqueControl { torque, torque_ramp, velocity, direction: way, command } = said else { return None };
     Some(plcopen::TorqueControlInputs {
         execute: false,
         continuous_update: command.continuous_update,
         torque: *torque,
         torque_ramp: *torque_ramp,
-        velocity: dynamics.velocity,
+        velocity: *velocity,
         direction: direction(*way),
         buffer_mode: buffer_mode(command.buffer_mode),
     })
