@@ -16,6 +16,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use tempfile::TempDir;
 use zip::{CompressionMethod, ZipArchive};
 
@@ -129,7 +130,7 @@ impl Archive {
         for index in 0..self.zip.len() {
             self.unpack_entry(index, folder.path())?;
         }
-        Ok(Unpacked { path: self.path, folder, description })
+        Ok(Unpacked { path: self.path, folder: Arc::new(Folder::Own(folder)), description: Arc::new(description) })
     }
 
     fn unpack_entry(&mut self, index: usize, folder: &Path) -> Result<(), FmuError> {
@@ -160,12 +161,20 @@ impl Archive {
     }
 }
 
-/// An FMU that is unpacked. Its folder is removed when this is dropped.
-#[derive(Debug)]
+/// An FMU that is unpacked. Its folder is removed with the last copy of this.
+#[derive(Debug, Clone)]
 pub struct Unpacked {
     path: PathBuf,
-    folder: TempDir,
-    description: ModelDescription,
+    folder: Arc<Folder>,
+    description: Arc<ModelDescription>,
+}
+
+#[derive(Debug)]
+enum Folder {
+    /// Removed when it is dropped.
+    Own(TempDir),
+    /// Somebody else's.
+    Foreign(PathBuf),
 }
 
 impl Unpacked {
@@ -177,6 +186,18 @@ impl Unpacked {
         Archive::open(path, &Limits::default())?.unpack()
     }
 
+    /// An FMU that was unpacked into `folder` before, for a process that uses what another one has unpacked. The folder stays.
+    ///
+    /// # Errors
+    /// [`FmuError`]
+    pub fn in_folder(path: impl Into<PathBuf>, folder: impl Into<PathBuf>) -> Result<Self, FmuError> {
+        let (path, folder) = (path.into(), folder.into());
+        let file = folder.join(DESCRIPTION);
+        let text = fs::read_to_string(&file).map_err(|source| FmuError::File { path: file, what: "read", source })?;
+        let description = ModelDescription::read(&text, &format!("{}/{DESCRIPTION}", path.display()))?;
+        Ok(Self { path, folder: Arc::new(Folder::Foreign(folder)), description: Arc::new(description) })
+    }
+
     /// The file that was unpacked.
     #[must_use]
     pub fn path(&self) -> &Path {
@@ -186,7 +207,10 @@ impl Unpacked {
     /// The folder with what was in it.
     #[must_use]
     pub fn folder(&self) -> &Path {
-        self.folder.path()
+        match &*self.folder {
+            Folder::Own(folder) => folder.path(),
+            Folder::Foreign(folder) => folder,
+        }
     }
 
     /// What it says that it is.

@@ -1,4 +1,5 @@
 //! Why a file cannot be used as an FMU.
+use crate::slave::SlaveError;
 use std::io;
 use std::path::PathBuf;
 use thiserror::Error;
@@ -37,6 +38,86 @@ pub enum FmuError {
         /// What is wrong there.
         problem: Box<DescriptionProblem>,
     },
+    /// Its library cannot be used.
+    #[error("the FMU `{}` cannot be loaded: {problem}", path.display())]
+    Library {
+        /// The FMU.
+        path: PathBuf,
+        /// What is wrong.
+        problem: LibraryProblem,
+    },
+    /// It has not what it is wired or started with.
+    #[error("{what} `{name}` of the FMU `{}`: {problem}", path.display())]
+    Setup {
+        /// The FMU.
+        path: PathBuf,
+        /// Input, output or start value.
+        what: &'static str,
+        /// Name of the variable.
+        name: String,
+        /// What is wrong.
+        problem: String,
+    },
+    /// It failed while it was initialised.
+    #[error("the FMU `{}` cannot be initialised: {source}", path.display())]
+    Initialise {
+        /// The FMU.
+        path: PathBuf,
+        /// What it did.
+        source: SlaveError,
+    },
+}
+
+/// What is wrong with a library.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum LibraryProblem {
+    /// There is none for this machine.
+    #[error("it has no `{wanted}`; it has {}{}", listed(platforms), if *has_sources { " and sources, which can be compiled into it with other tools" } else { "" })]
+    NoBinary {
+        /// Where it should be.
+        wanted: String,
+        /// Platforms that there is a folder for.
+        platforms: Vec<String>,
+        /// Whether there are sources.
+        has_sources: bool,
+    },
+    /// The operating system refuses it.
+    #[error("its library cannot be opened ({why}){hint}")]
+    Open {
+        /// Its reason.
+        why: String,
+        /// What to do, if that is known.
+        hint: &'static str,
+    },
+    /// It lacks a function that the description promises or the standard demands.
+    #[error("its library has no function `{symbol}`")]
+    NoFunction {
+        /// Its name.
+        symbol: &'static str,
+    },
+    /// It is for something else.
+    #[error("its library says `{said}` when asked with `{call}`, expected `{wanted}`")]
+    Says {
+        /// The question.
+        call: &'static str,
+        /// Its answer.
+        said: String,
+        /// The right one.
+        wanted: &'static str,
+    },
+    /// It gives no instance.
+    #[error("`{call}` gives no instance{}", if why.is_empty() { " and says nothing".to_owned() } else { format!(": {why}") })]
+    Instantiate {
+        /// The function.
+        call: &'static str,
+        /// The last that it logged.
+        why: String,
+    },
+}
+
+fn listed(platforms: &[String]) -> String {
+    if platforms.is_empty() { "no libraries at all".into() } else { format!("those for {}", platforms.join(", ")) }
 }
 
 /// What is wrong with an archive.

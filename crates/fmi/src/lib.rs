@@ -9,6 +9,10 @@ pub mod abi;
 mod archive;
 mod description;
 mod error;
+mod library;
+mod loaded;
+mod log;
+mod setup;
 mod slave;
 
 pub use archive::{Archive, Limits, Unpacked};
@@ -17,5 +21,7 @@ pub use description::{
     Enumeration, Exponents, Initial, Item, LogCategory, ModelDescription, ModelStructure, Named, Unit, Unknown, Values,
     Variability, Variable, Version,
 };
-pub use error::{ArchiveProblem, DescriptionProblem, FmuError};
+pub use error::{ArchiveProblem, DescriptionProblem, FmuError, LibraryProblem};
+pub use loaded::Loaded;
+pub use setup::{Setup, Value};
 pub use slave::{Capabilities, LogLine, Port, Progress, Severity, Slave, SlaveError};

@@ -1,0 +1,46 @@
+//! The library of an FMU: where it is, and its functions.
+//!
+//! All that is `unsafe` is in the modules below: they know the functions' types and lifetimes, and give what Rust can check.
+
+pub(crate) mod callbacks;
+pub(crate) mod open;
+pub(crate) mod status;
+pub(crate) mod three;
+pub(crate) mod two;
+
+use crate::archive::Unpacked;
+use crate::description::Version;
+use crate::error::{FmuError, LibraryProblem};
+use status::Outcome;
+use std::path::PathBuf;
+
+/// Values of a type that an instance gives and takes, all that are asked for in one call. An array takes as many values as it
+/// has elements; other than that there are as many values as references.
+pub(crate) trait Access<T> {
+    fn get(&self, references: &[u32], values: &mut [T]) -> Outcome;
+    fn set(&self, references: &[u32], values: &[T]) -> Outcome;
+}
+
+/// Folders of libraries for Linux on x86-64, as FMI 2.0 and FMI 3.0 name them. Tools mix them up.
+const FOLDERS: [&str; 2] = ["linux64", "x86_64-linux"];
+
+/// Where the library for this platform is.
+pub(crate) fn path(unpacked: &Unpacked) -> Result<PathBuf, FmuError> {
+    let description = unpacked.description();
+    let name = format!("{}.so", description.co_simulation.model_identifier);
+    let binaries = unpacked.folder().join("binaries");
+    let mut folders = FOLDERS;
+    if description.version == Version::Three {
+        folders.reverse();
+    }
+    let found = folders.iter().map(|folder| binaries.join(folder).join(&name)).find(|path| path.is_file());
+    found.ok_or_else(|| {
+        let platforms = std::fs::read_dir(&binaries).into_iter().flatten().flatten();
+        let mut platforms: Vec<_> = platforms.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+        platforms.sort();
+        let has_sources = unpacked.folder().join("sources").is_dir();
+        let problem =
+            LibraryProblem::NoBinary { wanted: format!("binaries/{}/{name}", folders[0]), platforms, has_sources };
+        FmuError::Library { path: unpacked.path().to_owned(), problem }
+    })
+}

@@ -1,0 +1,67 @@
+//! An FMU that is loaded into this process: the order of calls that the standard demands.
+mod batch;
+mod session;
+mod three;
+mod two;
+
+use crate::archive::Unpacked;
+use crate::description::Version;
+use crate::error::FmuError;
+use crate::setup::Setup;
+use crate::slave::{Capabilities, LogLine, Progress, Slave, SlaveError};
+use std::fmt;
+use three::LoadedThree;
+use two::LoadedTwo;
+
+/// An FMU that is loaded into this process and initialised. It is terminated, freed and unloaded when it is dropped.
+pub struct Loaded {
+    slave: Box<dyn Slave>,
+    /// The FMU reads its resources when it likes: they go after it.
+    _unpacked: Unpacked,
+}
+
+impl Loaded {
+    /// Loads the library, instantiates the FMU and initialises it.
+    ///
+    /// # Errors
+    /// [`FmuError::Setup`], [`FmuError::Library`], [`FmuError::Initialise`]
+    pub fn new(unpacked: &Unpacked, setup: &Setup) -> Result<Self, FmuError> {
+        let slave: Box<dyn Slave> = match unpacked.description().version {
+            Version::Two => Box::new(LoadedTwo::new(unpacked, setup)?),
+            Version::Three => Box::new(LoadedThree::new(unpacked, setup)?),
+        };
+        Ok(Self { slave, _unpacked: unpacked.clone() })
+    }
+}
+
+impl fmt::Debug for Loaded {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Loaded").field("capabilities", &self.slave.capabilities()).finish_non_exhaustive()
+    }
+}
+
+impl Slave for Loaded {
+    fn capabilities(&self) -> Capabilities {
+        self.slave.capabilities()
+    }
+
+    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+        self.slave.step(time, length, inputs)
+    }
+
+    fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
+        self.slave.read(inputs, outputs)
+    }
+
+    fn save(&mut self) -> Result<(), SlaveError> {
+        self.slave.save()
+    }
+
+    fn restore(&mut self) -> Result<(), SlaveError> {
+        self.slave.restore()
+    }
+
+    fn take_log(&mut self) -> Vec<LogLine> {
+        self.slave.take_log()
+    }
+}

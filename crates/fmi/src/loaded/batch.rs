@@ -1,0 +1,287 @@
+//! What is set or read in one call: the wired variables of one type, with room for their values that is made once.
+use crate::description::{DataType, ModelDescription, Variability, Version};
+use crate::library::Access;
+use crate::library::status::Outcome;
+use crate::library::{three, two};
+use crate::setup::Wire;
+
+/// A type that values are exchanged in.
+pub(super) trait Element: Copy + PartialEq + Send + 'static {
+    /// What it takes.
+    const BOUND: &'static str;
+    /// A value to begin with.
+    const ZERO: Self;
+    fn of(number: f64) -> Option<Self>;
+    fn number(self) -> f64;
+}
+
+impl Element for f64 {
+    const BOUND: &'static str = "finite numbers";
+    const ZERO: Self = 0.0;
+    fn of(number: f64) -> Option<Self> {
+        number.is_finite().then_some(number)
+    }
+    fn number(self) -> f64 {
+        self
+    }
+}
+
+impl Element for f32 {
+    const BOUND: &'static str = "finite numbers of single precision";
+    const ZERO: Self = 0.0;
+    fn of(number: f64) -> Option<Self> {
+        #[expect(clippy::cast_possible_truncation, reason = "rounded to what the variable holds")]
+        let single = number as f32;
+        single.is_finite().then_some(single)
+    }
+    fn number(self) -> f64 {
+        self.into()
+    }
+}
+
+macro_rules! integers {
+    ($($type:ty, $bound:literal;)*) => {$(
+        impl Element for $type {
+            const BOUND: &'static str = $bound;
+            const ZERO: Self = 0;
+            fn of(number: f64) -> Option<Self> {
+                #[expect(clippy::cast_possible_truncation, reason = "as far as i128 goes, beyond which nothing fits")]
+                let whole = number as i128;
+                (number.fract() == 0.0).then(|| whole.try_into().ok())?
+            }
+            #[expect(clippy::allow_attributes, reason = "of some of the types only")]
+            #[allow(clippy::cast_lossless, reason = "one macro for all lengths; those of 64 bits are rounded")]
+            fn number(self) -> f64 {
+                self as f64
+            }
+        }
+    )*};
+}
+
+integers! {
+    i8, "whole numbers of 8 bits";
+    u8, "whole numbers of 8 bits, none negative";
+    i16, "whole numbers of 16 bits";
+    u16, "whole numbers of 16 bits, none negative";
+    i32, "whole numbers of 32 bits";
+    u32, "whole numbers of 32 bits, none negative";
+    i64, "whole numbers of 64 bits";
+    u64, "whole numbers of 64 bits, none negative";
+}
+
+macro_rules! flags {
+    ($($type:path),*) => {$(
+        impl Element for $type {
+            const BOUND: &'static str = "0 and 1";
+            const ZERO: Self = Self(0);
+            fn of(number: f64) -> Option<Self> {
+                <u8 as Element>::of(number).filter(|number| *number < 2).map(|number| Self(number.into()))
+            }
+            fn number(self) -> f64 {
+                if self.0 == 0 { 0.0 } else { 1.0 }
+            }
+        }
+    )*};
+}
+
+flags!(two::Flag, three::Flag);
+
+/// Where a port is in the values of a batch.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    port: usize,
+    at: usize,
+}
+
+/// Variables of one type and where their ports are.
+#[derive(Debug, Default)]
+pub(super) struct Layout {
+    references: Vec<u32>,
+    /// Position of each variable in the description.
+    variables: Vec<usize>,
+    starts: Vec<usize>,
+    len: usize,
+    places: Vec<Place>,
+}
+
+impl Layout {
+    fn add(&mut self, port: usize, wire: Wire, reference: u32, count: usize) {
+        let known = self.variables.iter().position(|variable| *variable == wire.variable);
+        let start = known.map_or(self.len, |known| self.starts[known]);
+        if known.is_none() {
+            self.references.push(reference);
+            self.variables.push(wire.variable);
+            self.starts.push(start);
+            self.len += count;
+        }
+        self.places.push(Place { port, at: start + wire.element });
+    }
+}
+
+/// A value that its variable cannot take.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Misfit {
+    pub(super) port: usize,
+    pub(super) value: f64,
+    pub(super) bound: &'static str,
+}
+
+/// A batch of variables of one type of an instance `I`.
+pub(super) trait Batch<I>: Send {
+    /// Takes the values of its ports; returns whether one is new.
+    fn take(&mut self, number: &dyn Fn(usize) -> f64) -> Result<bool, Misfit>;
+    /// Sets what it took.
+    fn set(&self, instance: &I) -> Outcome;
+    /// Reads all of its variables.
+    fn get(&mut self, instance: &I) -> Outcome;
+    /// Gives the values of its ports.
+    fn give(&self, numbers: &mut [f64]);
+    /// Whether there are elements that no port stands for.
+    fn has_others(&self) -> bool;
+}
+
+struct Typed<T> {
+    layout: Layout,
+    values: Vec<T>,
+    /// Nothing has been taken so far.
+    is_fresh: bool,
+}
+
+impl<T: Element, I: Access<T>> Batch<I> for Typed<T> {
+    fn take(&mut self, number: &dyn Fn(usize) -> f64) -> Result<bool, Misfit> {
+        let mut is_new = std::mem::take(&mut self.is_fresh);
+        for place in &self.layout.places {
+            let value = number(place.port);
+            let misfit = Misfit { port: place.port, value, bound: T::BOUND };
+            let taken = T::of(value).ok_or(misfit)?;
+            is_new |= self.values[place.at] != taken;
+            self.values[place.at] = taken;
+        }
+        Ok(is_new)
+    }
+
+    fn set(&self, instance: &I) -> Outcome {
+        instance.set(&self.layout.references, &self.values)
+    }
+
+    fn get(&mut self, instance: &I) -> Outcome {
+        instance.get(&self.layout.references, &mut self.values)
+    }
+
+    fn give(&self, numbers: &mut [f64]) {
+        for place in &self.layout.places {
+            numbers[place.port] = self.values[place.at].number();
+        }
+    }
+
+    fn has_others(&self) -> bool {
+        self.layout.places.len() < self.values.len()
+    }
+}
+
+/// Boxed batches of an instance.
+pub(super) type Batches<I> = Vec<Box<dyn Batch<I>>>;
+
+fn boxed<T: Element, I: Access<T>>(layout: Layout) -> Box<dyn Batch<I>> {
+    Box::new(Typed::<T> { values: vec![T::ZERO; layout.len], layout, is_fresh: true })
+}
+
+/// An instance whose variables have batches.
+pub(super) trait Batched: Sized {
+    /// The batch of a type; none for a type that no number stands for.
+    fn batch(data_type: DataType, layout: Layout) -> Option<Box<dyn Batch<Self>>>;
+}
+
+impl Batched for two::Two {
+    fn batch(data_type: DataType, layout: Layout) -> Option<Box<dyn Batch<Self>>> {
+        match data_type {
+            DataType::Float64 => Some(boxed::<f64, Self>(layout)),
+            DataType::Int32 | DataType::Enumeration => Some(boxed::<i32, Self>(layout)),
+            DataType::Boolean => Some(boxed::<two::Flag, Self>(layout)),
+            _ => None,
+        }
+    }
+}
+
+impl Batched for three::Three {
+    fn batch(data_type: DataType, layout: Layout) -> Option<Box<dyn Batch<Self>>> {
+        Some(match data_type {
+            DataType::Float32 => boxed::<f32, Self>(layout),
+            DataType::Float64 => boxed::<f64, Self>(layout),
+            DataType::Int8 => boxed::<i8, Self>(layout),
+            DataType::UInt8 => boxed::<u8, Self>(layout),
+            DataType::Int16 => boxed::<i16, Self>(layout),
+            DataType::UInt16 => boxed::<u16, Self>(layout),
+            DataType::Int32 => boxed::<i32, Self>(layout),
+            DataType::UInt32 => boxed::<u32, Self>(layout),
+            DataType::Int64 | DataType::Enumeration => boxed::<i64, Self>(layout),
+            DataType::UInt64 => boxed::<u64, Self>(layout),
+            DataType::Boolean => boxed::<three::Flag, Self>(layout),
+            DataType::String | DataType::Binary | DataType::Clock => return None,
+        })
+    }
+}
+
+/// The type that variables are asked for together in: FMI 2.0 has its enumerations among the integers, FMI 3.0 among those of
+/// 64 bits.
+fn group(data_type: DataType, version: Version) -> DataType {
+    match (data_type, version) {
+        (DataType::Enumeration, Version::Two) => DataType::Int32,
+        (DataType::Enumeration, Version::Three) => DataType::Int64,
+        _ => data_type,
+    }
+}
+
+/// The batches of all wires that `is_in` takes.
+pub(super) fn batches<I: Batched>(
+    it: &ModelDescription,
+    wires: &[Wire],
+    counts: &[usize],
+    is_in: impl Fn(Variability) -> bool,
+) -> Batches<I> {
+    let mut layouts: Vec<(DataType, Layout)> = vec![];
+    for (port, wire) in wires.iter().enumerate() {
+        let variable = &it.variables[wire.variable];
+        if !is_in(variable.variability) {
+            continue;
+        }
+        let group = group(variable.data_type, it.version);
+        let at = layouts.iter().position(|(known, _)| *known == group).unwrap_or_else(|| {
+            layouts.push((group, Layout::default()));
+            layouts.len() - 1
+        });
+        layouts[at].1.add(port, *wire, variable.value_reference, counts[wire.variable]);
+    }
+    layouts.into_iter().filter_map(|(data_type, layout)| I::batch(data_type, layout)).collect()
+}
+
+/// Reads all batches; stops at the first that is not read.
+pub(super) fn read<I>(batches: &mut Batches<I>, instance: &I, numbers: &mut [f64]) -> Outcome {
+    for batch in batches {
+        match batch.get(instance) {
+            Outcome::Done => batch.give(numbers),
+            other => return other,
+        }
+    }
+    Outcome::Done
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_does_not_fit_is_not_taken() {
+        assert_eq!(i8::of(-128.0), Some(-128));
+        assert_eq!((i8::of(128.0), i8::of(0.5), i8::of(f64::NAN)), (None, None, None));
+        // 2^64 is one more than the greatest; the f64 before it fits.
+        assert_eq!(
+            (u64::of(18446744073709551616.0), u64::of(18446744073709549568.0)),
+            (None, Some(18446744073709549568))
+        );
+        assert_eq!((u32::of(-0.0), u32::of(-1.0)), (Some(0), None));
+        assert_eq!((f32::of(1e300), f32::of(0.1)), (None, Some(0.1)));
+        assert_eq!((two::Flag::of(1.0), two::Flag::of(2.0)), (Some(two::Flag(1)), None));
+        assert_eq!(f64::of(f64::INFINITY), None);
+    }
+}

@@ -1,0 +1,69 @@
+//! What both versions keep of an instance between calls.
+use super::batch::Misfit;
+use crate::description::ModelDescription;
+use crate::error::{FmuError, LibraryProblem};
+use crate::setup::Setup;
+use crate::slave::{Capabilities, Port, Progress, SlaveError};
+use std::ffi::CString;
+
+/// What is known of a running instance.
+pub(super) struct Session {
+    pub(super) capabilities: Capabilities,
+    /// Where it is (s).
+    pub(super) time: f64,
+    /// Where it was when it was saved (s).
+    saved: f64,
+    inputs: Vec<Port>,
+    outputs: Vec<Port>,
+}
+
+impl Session {
+    pub(super) fn new(capabilities: Capabilities, setup: &Setup) -> Self {
+        let (inputs, outputs) = (setup.inputs.clone(), setup.outputs.clone());
+        Self { capabilities, time: setup.start_time, saved: setup.start_time, inputs, outputs }
+    }
+
+    /// The mean of an input over a step of length `h`: u + u'·h/2 + u''·h²/6.
+    pub(super) fn mean([value, first, second]: [f64; 3], h: f64) -> f64 {
+        value + first * h / 2.0 + second * h * h / 6.0
+    }
+
+    /// An input that its variable cannot take.
+    pub(super) fn misfit(&self, misfit: Misfit) -> SlaveError {
+        let variable = self.inputs[misfit.port].variable.clone();
+        SlaveError::Value { variable, bound: misfit.bound, value: misfit.value, time: self.time }
+    }
+
+    /// Outputs are numbers.
+    pub(super) fn check_finite(&self, outputs: &[f64]) -> Result<(), SlaveError> {
+        let Some(port) = outputs.iter().position(|value| !value.is_finite()) else { return Ok(()) };
+        let variable = self.outputs[port].variable.clone();
+        Err(SlaveError::NotFinite { variable, value: outputs[port], time: self.time })
+    }
+
+    /// Notes how far a step has come.
+    pub(super) fn reach(&mut self, time: f64, length: f64, progress: Progress) -> Progress {
+        self.time = match progress {
+            Progress::Done => time + length,
+            Progress::Until(reached) | Progress::Terminated(reached) => reached,
+        };
+        progress
+    }
+
+    pub(super) fn save(&mut self) {
+        self.saved = self.time;
+    }
+
+    pub(super) fn restore(&mut self) {
+        self.time = self.saved;
+    }
+}
+
+/// The name of the instance, which must not be empty.
+pub(super) fn instance_name(setup: &Setup, it: &ModelDescription) -> Result<CString, FmuError> {
+    let name = if setup.instance_name.is_empty() { &it.co_simulation.model_identifier } else { &setup.instance_name };
+    CString::new(name.as_str()).map_err(|_| FmuError::Library {
+        path: name.into(),
+        problem: LibraryProblem::Instantiate { call: "the instance", why: "its name has a zero byte".into() },
+    })
+}

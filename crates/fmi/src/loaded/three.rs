@@ -1,0 +1,263 @@
+//! FMI 3.0 in the order of FMI 3.0.2, §4.2 (state machine of co-simulation), with the event mode where the FMU has it.
+use super::batch::{Batches, batches};
+use super::session::{Session, instance_name};
+use crate::archive::Unpacked;
+use crate::description::{Causality, DataType, Values, Variability, Variable};
+use crate::error::FmuError;
+use crate::library::Access;
+use crate::library::status::{Health, Outcome};
+use crate::library::three::{Flag, Three};
+use crate::setup::{Setup, Start};
+use crate::slave::{Capabilities, LogLine, Progress, Slave, SlaveError};
+use std::ffi::CString;
+
+/// Updates of discrete states at one event. An FMU that wants more goes in a circle.
+const MOST_UPDATES: usize = 1_000;
+
+/// An FMU of version 3.0.
+pub(super) struct LoadedThree {
+    instance: Three,
+    session: Session,
+    has_event_mode: bool,
+    /// Inputs that change at any time.
+    continuous: Batches<Three>,
+    /// All other inputs, which change at events.
+    discrete: Batches<Three>,
+    outputs: Batches<Three>,
+}
+
+impl LoadedThree {
+    pub(super) fn new(fmu: &Unpacked, setup: &Setup) -> Result<Self, FmuError> {
+        let it = fmu.description();
+        let plan = setup.plan(fmu)?;
+        let instance = Three::new(fmu, &instance_name(setup, it)?, setup.logging)?;
+        let can = &it.co_simulation;
+        let capabilities = Capabilities {
+            saves_state: can.can_get_and_set_state,
+            interpolates_inputs: false,
+            variable_step: can.can_handle_variable_communication_step_size,
+        };
+        let counts = &plan.counts;
+        let mut loaded = Self {
+            instance,
+            session: Session::new(capabilities, setup),
+            has_event_mode: can.has_event_mode,
+            continuous: batches(it, &plan.inputs, counts, |variability| variability == Variability::Continuous),
+            discrete: batches(it, &plan.inputs, counts, |variability| variability != Variability::Continuous),
+            outputs: batches(it, &plan.outputs, counts, |_| true),
+        };
+        let initialised = loaded.initialise(fmu, setup, &plan.starts);
+        initialised.map_err(|source| FmuError::Initialise { path: fmu.path().to_owned(), source })?;
+        Ok(loaded)
+    }
+
+    fn check(&mut self, call: &'static str, outcome: Outcome) -> Result<(), SlaveError> {
+        let Self { instance, session, .. } = self;
+        let mut health = instance.health;
+        let checked = outcome.check(call, session.time, &mut health, || instance.log().last());
+        instance.health = health;
+        checked
+    }
+
+    fn initialise(&mut self, fmu: &Unpacked, setup: &Setup, starts: &[Start]) -> Result<(), SlaveError> {
+        let variable = |start: &Start| &fmu.description().variables[start.variable];
+        let is_structural = |start: &&Start| variable(start).causality == Causality::StructuralParameter;
+        let structural = starts.iter().take_while(is_structural).count();
+        if structural > 0 {
+            if !self.instance.has_configuration_mode() {
+                let capability = "fmi3EnterConfigurationMode";
+                return Err(SlaveError::Unable { what: "change the extents of arrays", capability });
+            }
+            let outcome = self.instance.enter_configuration_mode();
+            self.check("fmi3EnterConfigurationMode", outcome)?;
+        }
+        for (at, start) in starts.iter().enumerate() {
+            if at == structural && structural > 0 {
+                let outcome = self.instance.exit_configuration_mode();
+                self.check("fmi3ExitConfigurationMode", outcome)?;
+            }
+            let (call, outcome) = set(&self.instance, variable(start), &start.values);
+            self.check(call, outcome)?;
+        }
+        if structural > 0 && structural == starts.len() {
+            let outcome = self.instance.exit_configuration_mode();
+            self.check("fmi3ExitConfigurationMode", outcome)?;
+        }
+        let outcome = self.instance.enter_initialization_mode(setup.tolerance, setup.start_time, setup.stop_time);
+        self.check("fmi3EnterInitializationMode", outcome)?;
+        self.read_unwired_elements()?;
+        let outcome = self.instance.exit_initialization_mode();
+        self.check("fmi3ExitInitializationMode", outcome)?;
+        if self.has_event_mode && self.settle()? {
+            let message = "it wants to end at its start".to_owned();
+            let (call, time) = ("fmi3UpdateDiscreteStates", self.session.time);
+            return Err(SlaveError::Failed { call, time, status: "fmi3OK", message });
+        }
+        Ok(())
+    }
+
+    /// An array is set as a whole: elements that nothing is wired to keep what they start with.
+    fn read_unwired_elements(&mut self) -> Result<(), SlaveError> {
+        let Self { instance, continuous, discrete, .. } = self;
+        let mut arrays = continuous.iter_mut().chain(discrete).filter(|batch| batch.has_others());
+        let outcomes = arrays.try_for_each(|batch| match batch.get(instance) {
+            Outcome::Done => Ok(()),
+            other => Err(other),
+        });
+        self.check("fmi3GetXXX", outcomes.err().unwrap_or(Outcome::Done))
+    }
+
+    /// From the event mode, in which the instance is: updates the discrete states until they stay, then goes to the step mode.
+    /// Returns whether the FMU wants the simulation to end.
+    fn settle(&mut self) -> Result<bool, SlaveError> {
+        let call = "fmi3UpdateDiscreteStates";
+        for _ in 0..MOST_UPDATES {
+            let (outcome, again, end) = self.instance.update_discrete_states();
+            self.check(call, outcome)?;
+            if end {
+                return Ok(true);
+            }
+            if !again {
+                let outcome = self.instance.enter_step_mode();
+                self.check("fmi3EnterStepMode", outcome)?;
+                return Ok(false);
+            }
+        }
+        self.instance.health = Health::Broken;
+        let message = format!("its discrete states did not settle in {MOST_UPDATES} updates");
+        Err(SlaveError::Failed { call, time: self.session.time, status: "fmi3OK", message })
+    }
+
+    /// Sets inputs: those that change at any time by `continuous`; all others by `discrete`, at an event if one is new.
+    /// Returns whether the FMU wants the simulation to end.
+    fn set_inputs(
+        &mut self,
+        continuous: &dyn Fn(usize) -> f64,
+        discrete: &dyn Fn(usize) -> f64,
+    ) -> Result<bool, SlaveError> {
+        let mut is_new = false;
+        for batch in &mut self.discrete {
+            is_new |= batch.take(discrete).map_err(|misfit| self.session.misfit(misfit))?;
+        }
+        let is_event = is_new && self.has_event_mode;
+        if is_event {
+            let outcome = self.instance.enter_event_mode();
+            self.check("fmi3EnterEventMode", outcome)?;
+        }
+        for batch in &mut self.continuous {
+            batch.take(continuous).map_err(|misfit| self.session.misfit(misfit))?;
+        }
+        let is_all = is_new || !self.has_event_mode;
+        let discrete = self.discrete.iter().filter(|_| is_all);
+        let outcomes = self.continuous.iter().chain(discrete).map(|batch| batch.set(&self.instance));
+        let outcome = outcomes.into_iter().find(|outcome| *outcome != Outcome::Done).unwrap_or(Outcome::Done);
+        self.check("fmi3SetXXX", outcome)?;
+        if is_event { self.settle() } else { Ok(false) }
+    }
+}
+
+impl Slave for LoadedThree {
+    fn capabilities(&self) -> Capabilities {
+        self.session.capabilities
+    }
+
+    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+        self.session.time = time;
+        let mean = |port: usize| Session::mean(inputs[port], length);
+        if self.set_inputs(&mean, &|port| inputs[port][0])? {
+            return Ok(self.session.reach(time, length, Progress::Terminated(time)));
+        }
+        let (outcome, stepped) = self.instance.do_step(time, length, !self.instance.has_saved());
+        self.check("fmi3DoStep", outcome)?;
+        let reached = stepped.last_successful_time;
+        let mut progress = if stepped.terminate_simulation {
+            Progress::Terminated(reached)
+        } else if stepped.early_return && reached < time + length {
+            Progress::Until(reached)
+        } else {
+            Progress::Done
+        };
+        self.session.reach(time, length, progress);
+        let is_event = stepped.event_handling_needed && self.has_event_mode && !stepped.terminate_simulation;
+        if is_event {
+            let outcome = self.instance.enter_event_mode();
+            self.check("fmi3EnterEventMode", outcome)?;
+            if self.settle()? {
+                progress = Progress::Terminated(self.session.time);
+            }
+        }
+        Ok(progress)
+    }
+
+    fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
+        if let Some(inputs) = inputs {
+            let now = |port: usize| inputs[port];
+            // An FMU that wants to end here says so again at the next step.
+            self.set_inputs(&now, &now)?;
+        }
+        let Self { instance, outputs: batches, .. } = self;
+        let outcome = super::batch::read(batches, instance, outputs);
+        self.check("fmi3GetXXX", outcome)?;
+        self.session.check_finite(outputs)
+    }
+
+    fn save(&mut self) -> Result<(), SlaveError> {
+        let saved = if self.session.capabilities.saves_state { self.instance.save() } else { None };
+        let outcome = saved.ok_or(SlaveError::Unable { what: "save its state", capability: "canGetAndSetFMUState" })?;
+        self.check("fmi3GetFMUState", outcome)?;
+        self.session.save();
+        Ok(())
+    }
+
+    fn restore(&mut self) -> Result<(), SlaveError> {
+        let restored = self.instance.restore();
+        let nothing =
+            SlaveError::Unable { what: "go back to a state that was not saved", capability: "canGetAndSetFMUState" };
+        self.check("fmi3SetFMUState", restored.ok_or(nothing)?)?;
+        self.session.restore();
+        Ok(())
+    }
+
+    fn take_log(&mut self) -> Vec<LogLine> {
+        self.instance.log().take()
+    }
+}
+
+/// Sets a start value; says by which function. Values are within their types, which was looked at.
+fn set(instance: &Three, variable: &Variable, values: &Values) -> (&'static str, Outcome) {
+    fn integers<T: TryFrom<i128>>(instance: &Three, reference: u32, values: &[i128]) -> Outcome
+    where
+        Three: Access<T>,
+    {
+        let values: Vec<T> = values.iter().filter_map(|value| T::try_from(*value).ok()).collect();
+        instance.set(&[reference], &values)
+    }
+    let reference = variable.value_reference;
+    match values {
+        Values::Float(values) if variable.data_type == DataType::Float32 => {
+            #[expect(clippy::cast_possible_truncation, reason = "rounded to what the variable holds")]
+            let values: Vec<f32> = values.iter().map(|value| *value as f32).collect();
+            ("fmi3SetFloat32", instance.set(&[reference], &values))
+        }
+        Values::Float(values) => ("fmi3SetFloat64", instance.set(&[reference], values)),
+        Values::Boolean(values) => {
+            let values: Vec<Flag> = values.iter().map(|is| Flag((*is).into())).collect();
+            ("fmi3SetBoolean", instance.set(&[reference], &values))
+        }
+        Values::String(values) => {
+            let texts: Vec<CString> = values.iter().filter_map(|text| CString::new(text.as_str()).ok()).collect();
+            ("fmi3SetString", instance.set_strings(reference, &texts))
+        }
+        Values::Binary(values) => ("fmi3SetBinary", instance.set_binaries(reference, values)),
+        Values::Integer(values) => match variable.data_type {
+            DataType::Int8 => ("fmi3SetInt8", integers::<i8>(instance, reference, values)),
+            DataType::UInt8 => ("fmi3SetUInt8", integers::<u8>(instance, reference, values)),
+            DataType::Int16 => ("fmi3SetInt16", integers::<i16>(instance, reference, values)),
+            DataType::UInt16 => ("fmi3SetUInt16", integers::<u16>(instance, reference, values)),
+            DataType::Int32 => ("fmi3SetInt32", integers::<i32>(instance, reference, values)),
+            DataType::UInt32 => ("fmi3SetUInt32", integers::<u32>(instance, reference, values)),
+            DataType::UInt64 => ("fmi3SetUInt64", integers::<u64>(instance, reference, values)),
+            _ => ("fmi3SetInt64", integers::<i64>(instance, reference, values)),
+        },
+    }
+}

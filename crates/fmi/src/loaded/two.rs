@@ -1,0 +1,236 @@
+//! FMI 2.0 in the order of FMI 2.0.5, §4.2.4 (state machine of co-simulation).
+use super::batch::{Batches, batches};
+use super::session::{Session, instance_name};
+use crate::archive::Unpacked;
+use crate::description::{DataType, Values, Variability};
+use crate::error::FmuError;
+use crate::library::Access;
+use crate::library::status::Outcome;
+use crate::library::two::{Flag, Two};
+use crate::setup::{Plan, Setup, Start};
+use crate::slave::{Capabilities, LogLine, Progress, Slave, SlaveError};
+use std::ffi::CString;
+
+/// An FMU of version 2.0.
+pub(super) struct LoadedTwo {
+    instance: Two,
+    session: Session,
+    /// Inputs of type `Real` that change at any time.
+    continuous: Batches<Two>,
+    /// All other inputs, which take their value at the time.
+    discrete: Batches<Two>,
+    outputs: Batches<Two>,
+    derivatives: Option<Derivatives>,
+}
+
+/// Derivatives of the inputs that change at any time, for an FMU that takes them.
+struct Derivatives {
+    references: Vec<u32>,
+    ports: Vec<usize>,
+    values: Vec<f64>,
+    /// The orders 1 and 2, as many as inputs.
+    orders: [Vec<i32>; 2],
+    /// Whether the second derivative has ever been something else than zero: before, nothing is said of it.
+    is_curved: bool,
+}
+
+impl LoadedTwo {
+    pub(super) fn new(fmu: &Unpacked, setup: &Setup) -> Result<Self, FmuError> {
+        let it = fmu.description();
+        let plan = setup.plan(fmu)?;
+        let instance = Two::new(fmu, &instance_name(setup, it)?, setup.logging)?;
+        let can = &it.co_simulation;
+        let capabilities = Capabilities {
+            saves_state: can.can_get_and_set_state,
+            interpolates_inputs: can.can_interpolate_inputs,
+            variable_step: can.can_handle_variable_communication_step_size,
+        };
+        let counts = &plan.counts;
+        let mut loaded = Self {
+            instance,
+            session: Session::new(capabilities, setup),
+            continuous: batches(it, &plan.inputs, counts, |variability| variability == Variability::Continuous),
+            discrete: batches(it, &plan.inputs, counts, |variability| variability != Variability::Continuous),
+            outputs: batches(it, &plan.outputs, counts, |_| true),
+            derivatives: can.can_interpolate_inputs.then(|| Derivatives::of(fmu, &plan)),
+        };
+        let initialised = loaded.initialise(fmu, setup, &plan.starts);
+        initialised.map_err(|source| FmuError::Initialise { path: fmu.path().to_owned(), source })?;
+        Ok(loaded)
+    }
+
+    fn check(&mut self, call: &'static str, outcome: Outcome) -> Result<(), SlaveError> {
+        let Self { instance, session, .. } = self;
+        let mut health = instance.health;
+        let checked = outcome.check(call, session.time, &mut health, || instance.log().last());
+        instance.health = health;
+        checked
+    }
+
+    fn initialise(&mut self, fmu: &Unpacked, setup: &Setup, starts: &[Start]) -> Result<(), SlaveError> {
+        let outcome = self.instance.setup_experiment(setup.tolerance, setup.start_time, setup.stop_time);
+        self.check("fmi2SetupExperiment", outcome)?;
+        for start in starts {
+            let variable = &fmu.description().variables[start.variable];
+            let (call, outcome) = set(&self.instance, variable.value_reference, &start.values);
+            self.check(call, outcome)?;
+        }
+        let outcome = self.instance.enter_initialization_mode();
+        self.check("fmi2EnterInitializationMode", outcome)?;
+        let outcome = self.instance.exit_initialization_mode();
+        self.check("fmi2ExitInitializationMode", outcome)
+    }
+
+    /// Sets all inputs that are given: those that change at any time by `continuous`, all others by `discrete`.
+    fn set_inputs(
+        &mut self,
+        continuous: &dyn Fn(usize) -> f64,
+        discrete: &dyn Fn(usize) -> f64,
+    ) -> Result<(), SlaveError> {
+        for (is_continuous, number) in [(true, continuous), (false, discrete)] {
+            let group = if is_continuous { &mut self.continuous } else { &mut self.discrete };
+            let Self { instance, session, .. } = self;
+            let mut outcome = Outcome::Done;
+            for batch in group {
+                batch.take(number).map_err(|misfit| session.misfit(misfit))?;
+                outcome = batch.set(instance);
+                if outcome != Outcome::Done {
+                    break;
+                }
+            }
+            self.check("fmi2SetXXX", outcome)?;
+        }
+        Ok(())
+    }
+
+    /// What a discarded step has come to.
+    fn discarded(&mut self, time: f64) -> Result<Progress, SlaveError> {
+        let reached = self.instance.last_successful_time();
+        if self.instance.wants_to_end() {
+            let end = reached.unwrap_or(time);
+            return Ok(Progress::Terminated(end));
+        }
+        match reached {
+            Some(reached) if reached > time => Ok(Progress::Until(reached)),
+            _ => Err(SlaveError::Discarded { call: "fmi2DoStep", time }),
+        }
+    }
+}
+
+impl Slave for LoadedTwo {
+    fn capabilities(&self) -> Capabilities {
+        self.session.capabilities
+    }
+
+    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+        self.session.time = time;
+        let now = |port: usize| inputs[port][0];
+        let mean = |port: usize| Session::mean(inputs[port], length);
+        if self.derivatives.is_some() {
+            self.set_inputs(&now, &now)?;
+            self.set_derivatives(inputs)?;
+        } else {
+            self.set_inputs(&mean, &now)?;
+        }
+        let outcome = self.instance.do_step(time, length, !self.instance.has_saved());
+        let progress = match outcome {
+            Outcome::Discarded => self.discarded(time)?,
+            outcome => {
+                self.check("fmi2DoStep", outcome)?;
+                Progress::Done
+            }
+        };
+        Ok(self.session.reach(time, length, progress))
+    }
+
+    fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
+        if let Some(inputs) = inputs {
+            let now = |port: usize| inputs[port];
+            self.set_inputs(&now, &now)?;
+        }
+        let Self { instance, outputs: batches, .. } = self;
+        let outcome = super::batch::read(batches, instance, outputs);
+        self.check("fmi2GetXXX", outcome)?;
+        self.session.check_finite(outputs)
+    }
+
+    fn save(&mut self) -> Result<(), SlaveError> {
+        let saved = if self.session.capabilities.saves_state { self.instance.save() } else { None };
+        let outcome = saved.ok_or(SlaveError::Unable { what: "save its state", capability: "canGetAndSetFMUstate" })?;
+        self.check("fmi2GetFMUstate", outcome)?;
+        self.session.save();
+        Ok(())
+    }
+
+    fn restore(&mut self) -> Result<(), SlaveError> {
+        let restored = self.instance.restore();
+        let nothing =
+            SlaveError::Unable { what: "go back to a state that was not saved", capability: "canGetAndSetFMUstate" };
+        self.check("fmi2SetFMUstate", restored.ok_or(nothing)?)?;
+        self.session.restore();
+        Ok(())
+    }
+
+    fn take_log(&mut self) -> Vec<LogLine> {
+        self.instance.log().take()
+    }
+}
+
+impl Derivatives {
+    fn of(fmu: &Unpacked, plan: &Plan) -> Self {
+        let it = fmu.description();
+        let all = plan.inputs.iter().enumerate().map(|(port, wire)| (port, &it.variables[wire.variable]));
+        let is_continuous =
+            |variability, data_type| variability == Variability::Continuous && data_type == DataType::Float64;
+        let (ports, references): (Vec<_>, Vec<_>) = all
+            .filter(|(_, variable)| is_continuous(variable.variability, variable.data_type))
+            .map(|(port, variable)| (port, variable.value_reference))
+            .unzip();
+        let count = references.len();
+        let orders = [vec![1; count], vec![2; count]];
+        Self { references, ports, values: vec![0.0; count], orders, is_curved: false }
+    }
+}
+
+impl LoadedTwo {
+    fn set_derivatives(&mut self, inputs: &[[f64; 3]]) -> Result<(), SlaveError> {
+        let Self { instance, derivatives: Some(known), .. } = self else { return Ok(()) };
+        known.is_curved |= known.ports.iter().any(|port| inputs[*port][2] != 0.0);
+        let most = if known.references.is_empty() { 0 } else { 1 + usize::from(known.is_curved) };
+        let mut outcome = Outcome::Done;
+        for order in 0..most {
+            for (value, port) in known.values.iter_mut().zip(&known.ports) {
+                *value = inputs[*port][order + 1];
+            }
+            outcome = instance.set_input_derivatives(&known.references, &known.orders[order], &known.values);
+            if outcome != Outcome::Done {
+                break;
+            }
+        }
+        self.check("fmi2SetRealInputDerivatives", outcome)
+    }
+}
+
+/// Sets a start value; says by which function.
+fn set(instance: &Two, reference: u32, values: &Values) -> (&'static str, Outcome) {
+    let one = &[reference];
+    match values {
+        Values::Float(values) => ("fmi2SetReal", instance.set(one, values)),
+        Values::Integer(values) => {
+            // They are of 32 bits, which was looked at.
+            let values: Vec<i32> = values.iter().filter_map(|value| i32::try_from(*value).ok()).collect();
+            ("fmi2SetInteger", instance.set(one, &values))
+        }
+        Values::Boolean(values) => {
+            let values: Vec<Flag> = values.iter().map(|is| Flag((*is).into())).collect();
+            ("fmi2SetBoolean", instance.set(one, &values))
+        }
+        Values::String(values) => {
+            // One, without zero bytes, which was looked at.
+            let text = values.first().and_then(|text| CString::new(text.as_str()).ok()).unwrap_or_default();
+            ("fmi2SetString", instance.set_string(reference, &text))
+        }
+        // FMI 2.0 has no such type.
+        Values::Binary(_) => ("fmi2SetString", Outcome::Done),
+    }
+}

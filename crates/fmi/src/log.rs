@@ -1,0 +1,88 @@
+//! What an FMU says: messages are kept until they are asked for, within limits.
+use crate::slave::{LogLine, Severity};
+use std::ffi::c_int;
+use std::mem;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Lines that are kept; a line that the FMU repeats at every step would fill the memory.
+const MOST_LINES: usize = 10_000;
+/// Bytes of all that are kept.
+const MOST_BYTES: usize = 1 << 20;
+
+/// The log of an instance. The FMU may write to it from threads of its own.
+#[derive(Debug, Default)]
+pub(crate) struct Log(Mutex<Kept>);
+
+#[derive(Debug, Default)]
+struct Kept {
+    lines: Vec<LogLine>,
+    bytes: usize,
+    /// Lines that were not kept.
+    dropped: usize,
+    /// The last message, whether it was kept or not.
+    last: String,
+}
+
+impl Log {
+    fn kept(&self) -> MutexGuard<'_, Kept> {
+        // Nothing is left half done by a thread that panicked.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Takes a message; `status` is that of the standard, which has the same numbers in both versions.
+    pub(crate) fn push(&self, status: c_int, category: &str, message: &str) {
+        let severity = match status {
+            0 | 5 => Severity::Info,
+            1 => Severity::Warning,
+            _ => Severity::Error,
+        };
+        let message = message.trim_end();
+        let mut kept = self.kept();
+        message.clone_into(&mut kept.last);
+        let bytes = kept.bytes + category.len() + message.len();
+        if kept.lines.len() < MOST_LINES && bytes <= MOST_BYTES {
+            kept.bytes = bytes;
+            kept.lines.push(LogLine { severity, category: category.to_owned(), message: message.to_owned() });
+        } else {
+            kept.dropped += 1;
+        }
+    }
+
+    /// The last message; empty if there was none.
+    pub(crate) fn last(&self) -> String {
+        self.kept().last.clone()
+    }
+
+    /// What was said since the last time.
+    pub(crate) fn take(&self) -> Vec<LogLine> {
+        let mut kept = self.kept();
+        kept.bytes = 0;
+        let dropped = mem::take(&mut kept.dropped);
+        let mut lines = mem::take(&mut kept.lines);
+        if dropped > 0 {
+            let message = format!("{dropped} more lines were not kept");
+            lines.push(LogLine { severity: Severity::Warning, category: String::new(), message });
+        }
+        lines
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_flood_is_cut_and_said() {
+        let log = Log::default();
+        for number in 0..MOST_LINES + 7 {
+            log.push(0, "", &format!("{number}\n"));
+        }
+        let lines = log.take();
+        assert_eq!(lines.len(), MOST_LINES + 1);
+        assert_eq!(lines[MOST_LINES].message, "7 more lines were not kept");
+        assert_eq!(log.last(), (MOST_LINES + 6).to_string());
+        assert!(log.take().is_empty());
+        log.push(3, "c", &"x".repeat(MOST_BYTES));
+        assert_eq!(log.take().len(), 1, "too long to be kept");
+    }
+}
