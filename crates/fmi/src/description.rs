@@ -19,6 +19,8 @@ mod unit;
 mod units;
 mod variable;
 mod variables;
+mod write;
+mod xml;
 
 pub(crate) use bounds::MOST_BYTES;
 pub use declared::{Enumeration, Item};
