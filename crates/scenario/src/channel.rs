@@ -12,6 +12,15 @@ macro_rules! channels {
         /// Names of all channels that a recording can have; which it has depends on the axis and its drive.
         pub const CHANNELS: &[&str] = &[$($name,)+];
 
+        /// What a channel of a recording means, in words; `None` for a name that is none.
+        #[must_use]
+        pub fn channel_meaning(name: &str) -> Option<&'static str> {
+            match name {
+                $($name => Some($meaning),)+
+                _ => None,
+            }
+        }
+
         impl Choice for Channel {
             const ALL: &'static [(&'static str, Self, &'static str)] =
                 &[$(($name, Self($name), concat!("[", $unit, "] ", $meaning)),)+];

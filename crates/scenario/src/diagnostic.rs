@@ -74,6 +74,15 @@ impl Diagnostic {
     }
 }
 
+/// A file that a scenario names by its path.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NamedFile {
+    /// The path as the scenario has it, relative to its folder.
+    pub named: String,
+    /// The text of the file.
+    pub text: String,
+}
+
 /// Collects what is found while a scenario is read, and knows what a unit's meaning depends on.
 #[derive(Debug, Default)]
 pub(crate) struct Report {
@@ -85,6 +94,8 @@ pub(crate) struct Report {
     pub(crate) without_model: Vec<&'static str>,
     /// Task rates that models give.
     pub(crate) rates_of_models: Vec<Rate>,
+    /// Tables of points that were read.
+    pub(crate) tables: Vec<NamedFile>,
     /// Coordinate of the axis, once known.
     pub(crate) axis: Option<Motion>,
     /// Coordinate of the motor, once known.

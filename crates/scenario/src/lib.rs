@@ -35,8 +35,8 @@ mod unit;
 mod when;
 
 pub use argument::{ArgumentError, Derivative, axis_quantity, frequency, ratio, time};
-pub use channel::CHANNELS;
-pub use diagnostic::{Diagnostic, Invalid, LoadError};
+pub use channel::{CHANNELS, channel_meaning};
+pub use diagnostic::{Diagnostic, Invalid, LoadError, NamedFile};
 pub use load::{Loaded, load, parse};
 pub use models::{embedded_demo, embedded_models};
 pub use points::{

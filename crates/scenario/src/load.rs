@@ -1,5 +1,5 @@
 //! From a file or a text to a scenario, or to everything that is wrong with it.
-use crate::diagnostic::{Diagnostic, Invalid, LoadError, Report};
+use crate::diagnostic::{Diagnostic, Invalid, LoadError, NamedFile, Report};
 use crate::field::Field;
 use crate::file::{File, MotorKind};
 use crate::models::lay_on_models;
@@ -20,6 +20,8 @@ pub struct Loaded {
     pub warnings: Vec<Diagnostic>,
     /// The files it came from.
     pub sources: Sources,
+    /// Tables of points that it names.
+    pub tables: Vec<NamedFile>,
     /// What the files say, the scenario laid on its models.
     pub(crate) root: Node,
     /// The MJCF file that it names.
@@ -73,7 +75,7 @@ pub fn parse(name: &str, text: &str, folder: Option<&Path>) -> Result<Loaded, Lo
                 }
                 AxisMechanics::Bodies(_) => None,
             };
-            Ok(Loaded { scenario, warnings, sources, root, mjcf })
+            Ok(Loaded { scenario, warnings, sources, tables: report.tables, root, mjcf })
         }
         _ => Err(LoadError::Invalid(Box::new(Invalid { diagnostics, warnings, sources }))),
     }

@@ -80,6 +80,16 @@ impl Sources {
         self.files.get(id.0).map_or("", |file| &file.text)
     }
 
+    /// Where a model file belongs below `models/`, such as `motors/x.toml`; `None` for what is no model.
+    #[must_use]
+    pub fn model(&self, id: SourceId) -> Option<String> {
+        let file = self.files.get(id.0).filter(|_| id != SourceId::SCENARIO)?;
+        let (Place::Folder(folder) | Place::Embedded(folder)) = &file.place;
+        let kind = folder.file_name()?.to_str()?;
+        let name = file.name.rsplit(['/', '\\']).next()?;
+        Some(format!("{kind}/{name}"))
+    }
+
     /// Line and column of a byte offset, both from 1; columns count characters.
     #[must_use]
     pub fn line_and_column(&self, id: SourceId, offset: usize) -> (usize, usize) {

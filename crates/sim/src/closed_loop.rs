@@ -66,7 +66,7 @@ impl ClosedLoop {
         if external.start && self.begun.is_none() {
             self.begun = Some(k);
         }
-        let (mut now, motor) = self.sample();
+        let (mut now, motor) = self.sample(external);
         let command = self.control(k, external, motor, &mut now, recorder);
         // The mean effort over the coming tick belongs into the row of this one; the current is the one at k.
         now.current = self.power.current();
@@ -80,8 +80,9 @@ impl ClosedLoop {
     }
 
     /// sample(k): the bodies in the axis coordinate, and the motor in its own.
-    pub(crate) fn sample(&self) -> (Instant, BodyState) {
-        let bodies = self.mechanics.bodies();
+    pub(crate) fn sample(&self, external: &External) -> (Instant, BodyState) {
+        let measured = external.measured.as_ref().map(<[BodyState; 2]>::as_slice);
+        let bodies = measured.unwrap_or_else(|| self.mechanics.bodies());
         let own = bodies[0];
         let motor =
             BodyState { position: self.transmission * own.position, velocity: self.transmission * own.velocity };
@@ -172,11 +173,7 @@ impl ClosedLoop {
     /// # Errors
     /// [`Reason`] why the loop cannot go on.
     pub(crate) fn integrate(&mut self, now: &Instant) -> Result<(), Reason> {
-        if let Source::Network(network, _) = &mut self.source
-            && let Some(reason) = network.failure()
-        {
-            return Err(Reason::Program(reason));
-        }
+        self.check()?;
         let actuation = if self.prescribed { Actuation::Motion(now.setpoint) } else { Actuation::Effort(now.effort) };
         self.mechanics.advance(&Input {
             actuation,
@@ -184,6 +181,17 @@ impl ClosedLoop {
             load_disturbance: now.load_disturbance,
         })?;
         Ok(())
+    }
+
+    /// Whether the motion task goes on.
+    ///
+    /// # Errors
+    /// [`Reason::Program`] why it gave up.
+    pub(crate) fn check(&mut self) -> Result<(), Reason> {
+        match &mut self.source {
+            Source::Network(network, _) => network.failure().map_or(Ok(()), |reason| Err(Reason::Program(reason))),
+            Source::Program(_) => Ok(()),
+        }
     }
 
     /// The same loop at the same tick; `None` where the engine cannot copy its mechanics.

@@ -6,6 +6,7 @@ use crate::run::{Failure, Reason};
 use servobench_base::{Rate, Setpoint, Tick};
 use servobench_cia402::PowerState;
 use servobench_fieldbus::Fault;
+use servobench_plant::BodyState;
 use servobench_plcopen::AxisState;
 use servobench_trace::{ChannelSpec, Recorder};
 
@@ -20,12 +21,14 @@ pub struct External {
     pub motor_effort: f64,
     /// Effort on the load (axis coordinate, N or N·m), beside the disturbances of the scenario.
     pub load_effort: f64,
+    /// Where motor (its own coordinate) and load (axis coordinate) are measured to be; the loop's own mechanics do not move then.
+    pub measured: Option<[BodyState; 2]>,
 }
 
 impl Default for External {
     /// A run of the scenario as it is.
     fn default() -> Self {
-        Self { start: true, setpoint: None, motor_effort: 0.0, load_effort: 0.0 }
+        Self { start: true, setpoint: None, motor_effort: 0.0, load_effort: 0.0, measured: None }
     }
 }
 
@@ -76,7 +79,7 @@ impl Bench {
     #[must_use]
     pub fn into_stepper(self) -> Stepper {
         let recorder = Recorder::silent(self.recorder.about().clone(), self.closed_loop.base_rate);
-        let (now, _) = self.closed_loop.sample();
+        let (now, _) = self.closed_loop.sample(&External::default());
         Stepper { closed_loop: self.closed_loop, tick: 0, now, selection: self.selection, recorder }
     }
 }
@@ -106,6 +109,18 @@ impl Stepper {
         self.selection.pick(&self.now)
     }
 
+    /// The motor in its own coordinate at the present tick, as its encoder and its effort have it.
+    #[must_use]
+    pub fn shaft(&self) -> BodyState {
+        self.closed_loop.mechanics.bodies()[0]
+    }
+
+    /// The set-point of the tick before.
+    #[must_use]
+    pub const fn setpoint(&self) -> Setpoint {
+        self.now.setpoint
+    }
+
     /// The states that the tick before has left.
     #[must_use]
     pub fn states(&self) -> States {
@@ -129,8 +144,9 @@ impl Stepper {
     pub fn step(&mut self, external: &External) -> Result<(), Failure> {
         let mut now = self.closed_loop.tick(self.tick, external, &mut self.recorder);
         let time = self.closed_loop.base_rate.time(Tick(self.tick));
-        self.closed_loop.integrate(&now).map_err(|reason: Reason| Failure { time, reason })?;
-        let (bodies, _) = self.closed_loop.sample();
+        let done = if external.measured.is_some() { self.closed_loop.check() } else { self.closed_loop.integrate(&now) };
+        done.map_err(|reason: Reason| Failure { time, reason })?;
+        let (bodies, _) = self.closed_loop.sample(external);
         (now.motor, now.table, now.load) = (bodies.motor, bodies.table, bodies.load);
         self.now = now;
         self.tick += 1;

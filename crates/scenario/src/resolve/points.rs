@@ -1,5 +1,5 @@
 //! A table of points, and how it is followed.
-use crate::diagnostic::Report;
+use crate::diagnostic::{NamedFile, Report};
 use crate::field::Slot;
 use crate::file::{FollowRule, TableOfPoints, VelocityRule};
 use crate::models::read_beside;
@@ -50,6 +50,10 @@ pub(super) fn read<T>(
             return None;
         }
     };
+    let found = NamedFile { named: file.value.clone(), text: text.clone() };
+    if !report.tables.contains(&found) {
+        report.tables.push(found);
+    }
     let (motion, table) = match read(&text) {
         Ok(read) => read,
         Err(error) => {
