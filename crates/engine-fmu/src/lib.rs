@@ -1,4 +1,4 @@
-//! FMUs in a process of their own.
+//! FMUs in a process of their own, and FMUs as the mechanics of an axis ([`FmuMechanics`]).
 //!
 //! An FMU is somebody else's native code: it may crash, hang, ask for memory without end or print a gigabyte. In a process of
 //! its own that costs its run only, and is reported as what it is.
@@ -27,12 +27,17 @@ mod error;
 mod host;
 mod isolated;
 mod keeper;
+mod mechanics;
 mod memory;
+mod motion;
 mod output;
 mod page;
+mod ports;
 mod protocol;
 
 pub use error::{HostError, IsolationError};
 pub use host::serve;
 pub use isolated::{Bounds, Isolated, Wires};
 pub use keeper::HostCommand;
+pub use mechanics::FmuMechanics;
+pub use ports::{MechanicsPorts, PortError, PortProblem, Quantity};

@@ -36,6 +36,7 @@ impl Engine for Mujoco {
         match &setup.model {
             Model::Chain(chain) => Ok(Box::new(chain::MujocoChain::new(chain.clone(), setup)?)),
             Model::Mjcf(model) => Ok(Box::new(mjcf::MujocoMjcf::new(model, setup)?)),
+            Model::Fmu(_) => Err(MechanicsError::not_an_fmu_engine(NAME)),
         }
     }
 }

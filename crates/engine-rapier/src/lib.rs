@@ -75,6 +75,7 @@ impl Engine for Rapier {
                 _ => Box::new(LumpChain::<{ Chain::MAX_BODIES }>::new(chain, setup)?),
             }),
             Model::Mjcf(model) => build_mjcf(model, setup),
+            Model::Fmu(_) => Err(MechanicsError::not_an_fmu_engine(NAME)),
         }
     }
 }

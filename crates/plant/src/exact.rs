@@ -51,6 +51,7 @@ impl Engine for Exact {
                 what: format!("MJCF files ({})", model.path.display()),
                 way_out: "choose the engine `mujoco` or `rapier`, or describe the axis by its bodies".into(),
             }),
+            Model::Fmu(_) => Err(MechanicsError::not_an_fmu_engine(NAME)),
         }
     }
 }

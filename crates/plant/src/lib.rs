@@ -6,6 +6,7 @@
 
 mod chain;
 mod exact;
+mod fmu;
 mod friction;
 pub mod inverter;
 mod load_coordinate;
@@ -18,6 +19,7 @@ mod switches;
 
 pub use chain::{Body, Chain, Coordinate, Link};
 pub use exact::Exact;
+pub use fmu::{Extrapolation, FmuBody, FmuModel, FmuPort, FmuStart, FmuValue, Isolation};
 pub use friction::{DryFriction, Grip};
 pub use load_coordinate::{LoadCoordinate, PosedJoint};
 pub use mechanics::{

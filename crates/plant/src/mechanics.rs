@@ -1,5 +1,6 @@
 //! Mechanics behind one trait: what the closed loop sees of a simulated axis, whichever engine computes it.
 use crate::chain::Chain;
+use crate::fmu::FmuModel;
 use crate::refusal::{Refusal, in_one_line};
 use servobench_base::{ParamError, Setpoint, finite, positive};
 use std::path::PathBuf;
@@ -74,6 +75,8 @@ pub enum Model {
     Chain(Chain),
     /// A user's own MJCF file.
     Mjcf(MjcfModel),
+    /// An FMU.
+    Fmu(FmuModel),
 }
 
 /// A user's own MJCF file and which of its parts are the axis.
@@ -104,7 +107,8 @@ pub struct MechanicsSetup {
     pub drive: Drive,
     /// Length of a base tick (s).
     pub step: f64,
-    /// State of each body at tick 0; empty for all at rest at zero. For MJCF models: motor, then load.
+    /// State of each body at tick 0; empty for all at rest at zero. For MJCF models: motor, then load. For an FMU always empty:
+    /// its start values say where it begins.
     pub initial: Vec<BodyState>,
 }
 
@@ -119,6 +123,7 @@ impl MechanicsSetup {
             Model::Chain(chain) => (chain.bodies().len(), "none, or one for each body"),
             Model::Mjcf(file) if file.motor_joint == file.load_joint => (1, "none, or one: one joint is both"),
             Model::Mjcf(_) => (2, "none, or those of motor and load"),
+            Model::Fmu(_) => (0, "none: the start values of the FMU say where it begins"),
         };
         let count = self.initial.len();
         if count != 0 && count != most {
@@ -199,6 +204,16 @@ pub enum MechanicsError {
 }
 
 impl MechanicsError {
+    /// The model is an FMU, and `engine` simulates by itself.
+    #[must_use]
+    pub fn not_an_fmu_engine(engine: &'static str) -> Self {
+        Self::Unsupported {
+            engine,
+            what: "an FMU as the mechanics".into(),
+            way_out: "choose the engine `fmu`, or describe the axis by its bodies".into(),
+        }
+    }
+
     /// The actuation is not the one that the mechanics of `engine` were built for.
     #[must_use]
     pub fn wrong_actuation(engine: &'static str) -> Self {

@@ -1,0 +1,166 @@
+//! An FMU as the mechanics. The FMUs of these tests are engines of our own behind the interface of one.
+mod exchange;
+mod ports;
+
+use servobench_engine_fmu::{FmuMechanics, MechanicsPorts};
+use servobench_fmi::{Capabilities, LogLine, ModelDescription, Progress, Slave, SlaveError};
+use servobench_plant::{
+    Actuation, Body, Chain, Coordinate, Drive, DryFriction, Engine, Exact, Extrapolation, FmuBody, FmuModel, FmuPort,
+    Input, Isolation, Link, Mechanics, MechanicsSetup, Model,
+};
+
+/// Base tick (s).
+const TICK: f64 = 1.0 / 8_000.0;
+
+fn two_mass() -> Chain {
+    let dry = DryFriction { coulomb: 0.0, breakaway: 0.0, stribeck_velocity: 0.0 };
+    let body = |name, coordinate, inertia, transmission| Body {
+        name,
+        coordinate,
+        inertia,
+        transmission,
+        viscous: 0.01,
+        dry,
+        bias: 0.0,
+    };
+    let bodies = vec![body("motor", Coordinate::Rotary, 1e-3, 5e-3), body("table", Coordinate::Linear, 30.0, 1.0)];
+    Chain::new(bodies, vec![Link { stiffness: 2e6, damping: 300.0 }]).unwrap()
+}
+
+fn exact(step: f64) -> Box<dyn Mechanics> {
+    Exact
+        .build(&MechanicsSetup { model: Model::Chain(two_mass()), drive: Drive::Effort, step, initial: Vec::new() })
+        .unwrap()
+}
+
+/// An FMU that can do what these tests need.
+trait Toy: Send {
+    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError>;
+    fn read(&mut self, outputs: &mut [f64]);
+}
+
+struct Fmu<T>(T);
+
+impl<T: Toy> Slave for Fmu<T> {
+    fn capabilities(&self) -> Capabilities {
+        Capabilities::default()
+    }
+
+    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+        self.0.step(time, length, inputs)
+    }
+
+    fn read(&mut self, _: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
+        self.0.read(outputs);
+        Ok(())
+    }
+
+    fn save(&mut self) -> Result<(), SlaveError> {
+        unreachable!("nobody goes back")
+    }
+
+    fn restore(&mut self) -> Result<(), SlaveError> {
+        unreachable!("nobody goes back")
+    }
+
+    fn take_log(&mut self) -> Vec<LogLine> {
+        Vec::new()
+    }
+}
+
+/// The engine `exact` as an FMU: torque of the motor and, if it is wired, force on the table in; positions and velocities out.
+struct ExactFmu(Box<dyn Mechanics>);
+
+impl ExactFmu {
+    fn new(step: f64) -> Self {
+        Self(exact(step))
+    }
+}
+
+impl Toy for ExactFmu {
+    fn step(&mut self, _: f64, _: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+        let force = inputs.get(1).map_or(0.0, |force| force[0]);
+        self.0.advance(&input(inputs[0][0], force)).unwrap();
+        Ok(Progress::Done)
+    }
+
+    fn read(&mut self, outputs: &mut [f64]) {
+        let states = self.0.bodies().iter().flat_map(|body| [body.position, body.velocity]);
+        outputs.iter_mut().zip(states).for_each(|(output, state)| *output = state);
+    }
+}
+
+fn input(torque: f64, load_disturbance: f64) -> Input {
+    Input { actuation: Actuation::Effort(torque), motor_disturbance: 0.0, load_disturbance }
+}
+
+/// A description of FMI 2.0 with these variables: name, causality, unit (none if empty).
+fn description(variables: &[(&str, &str, &str)]) -> ModelDescription {
+    let scalar = |(k, (name, causality, unit)): (usize, &(&str, &str, &str))| {
+        let start = if *causality == "input" { " start=\"0\"" } else { "" };
+        let unit = if unit.is_empty() { String::new() } else { format!(" unit=\"{unit}\"") };
+        format!(
+            "<ScalarVariable name=\"{name}\" valueReference=\"{k}\" causality=\"{causality}\"><Real{start}{unit}/></ScalarVariable>"
+        )
+    };
+    let outputs = variables.iter().enumerate().filter(|(_, (_, causality, _))| *causality == "output");
+    let outputs: Vec<_> = outputs.map(|(k, _)| format!("<Unknown index=\"{}\"/>", k + 1)).collect();
+    let variables: Vec<_> = variables.iter().enumerate().map(scalar).collect();
+    let (outputs, variables) = (outputs.concat(), variables.concat());
+    let text = format!(
+        r#"<fmiModelDescription fmiVersion="2.0" modelName="table" guid="{{1}}">
+<CoSimulation modelIdentifier="table"/>
+<UnitDefinitions>
+<Unit name="N.mm"><BaseUnit kg="1" m="2" s="-2" factor="0.001"/></Unit>
+<Unit name="kN"><BaseUnit kg="1" m="1" s="-2" factor="1000"/></Unit>
+<Unit name="rev"><BaseUnit rad="1" factor="6.283185307179586"/></Unit>
+<Unit name="rpm"><BaseUnit s="-1" factor="0.10471975511965977"/></Unit>
+<Unit name="mm"><BaseUnit m="1" factor="0.001"/></Unit>
+<Unit name="m/min"><BaseUnit m="1" s="-1" factor="0.016666666666666666"/></Unit>
+<Unit name="m"/><Unit name="inch"/>
+</UnitDefinitions>
+<ModelVariables>{variables}</ModelVariables>
+<ModelStructure><Outputs>{outputs}</Outputs></ModelStructure>
+</fmiModelDescription>"#
+    );
+    ModelDescription::read(&text, "table.fmu").unwrap_or_else(|error| panic!("{error}"))
+}
+
+const IN_SI: [(&str, &str, &str); 6] = [
+    ("torque", "input", ""),
+    ("force", "input", ""),
+    ("angle", "output", ""),
+    ("speed", "output", ""),
+    ("x", "output", ""),
+    ("v", "output", ""),
+];
+
+fn port(variable: &str) -> FmuPort {
+    FmuPort { variable: variable.into(), element: 0 }
+}
+
+fn model(ticks: u32, extrapolation: Extrapolation) -> FmuModel {
+    let body = |coordinate, position, velocity| FmuBody {
+        coordinate,
+        position: port(position),
+        velocity: Some(port(velocity)),
+    };
+    FmuModel {
+        path: "table.fmu".into(),
+        effort: port("torque"),
+        motor: body(Coordinate::Rotary, "angle", "speed"),
+        load: Some(body(Coordinate::Linear, "x", "v")),
+        motor_disturbance: None,
+        load_disturbance: Some(port("force")),
+        transmission: 5e-3,
+        start: Vec::new(),
+        ticks,
+        extrapolation,
+        isolation: Isolation::None,
+    }
+}
+
+fn mechanics(toy: impl Toy + 'static, model: &FmuModel, variables: &[(&str, &str, &str)]) -> FmuMechanics {
+    let ports = MechanicsPorts::new(model, &description(variables)).unwrap();
+    FmuMechanics::new(Box::new(Fmu(toy)), ports, model, TICK).unwrap()
+}
