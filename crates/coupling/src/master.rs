@@ -17,7 +17,7 @@ use servobench_base::{Rate, Tick};
 pub enum Advance {
     /// To its end.
     Done,
-    /// A block wants the simulation to end; there is no exchange any more.
+    /// A block wants the simulation to end, also one that is in an iteration; there is no exchange any more.
     Terminated {
         /// Which block.
         block: usize,

@@ -107,6 +107,12 @@ pub enum NetworkError {
         /// The input.
         input: String,
     },
+    /// An input that is to be held has a connection.
+    #[error("`{input}` follows a connection and cannot be held")]
+    Connected {
+        /// The input.
+        input: String,
+    },
     /// A gain, an offset or a held value is not finite.
     #[error("`{field}` of `{of}` must be finite, got {value}")]
     NotFinite {
@@ -316,7 +322,7 @@ impl Wiring {
     pub(crate) fn hold(&mut self, at: Port, value: f64) -> Result<(), NetworkError> {
         let input = self.input(at)?;
         if self.wires[input].source.is_some() {
-            return Err(NetworkError::Occupied { input: self.input_names[input].clone() });
+            return Err(NetworkError::Connected { input: self.input_names[input].clone() });
         }
         finite("held", value, || self.input_names[input].clone())?;
         self.wires[input].offset = value;

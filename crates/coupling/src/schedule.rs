@@ -4,6 +4,7 @@ use crate::cycles::{components, is_cycle, shortest_way_round};
 use crate::delay::{Delay, oldest};
 use crate::fixed_point::FixedPoint;
 use crate::network::{NetworkError, Wiring};
+use crate::polynomial::Order;
 use crate::settings::{Iteration, Method, Settings};
 use servobench_base::Divider;
 
@@ -70,7 +71,9 @@ impl Schedule {
             let ahead = self.is_known(from, to);
             let steps = oldest(wiring.shapes[from].every, wiring.shapes[to].every, ahead, !self.announced);
             let ticks = steps * u64::from(Divider::ticks(settings.step));
-            Delay { connection, ticks, steps, extrapolated: (steps > 0).then_some(settings.order) }
+            // What lies partly ahead is a line at least.
+            let order = if ahead { settings.order.max(Order::Linear) } else { settings.order };
+            Delay { connection, ticks, steps, extrapolated: (steps > 0).then_some(order) }
         };
         wiring.connections.iter().enumerate().map(delay).collect()
     }

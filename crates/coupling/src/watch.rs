@@ -8,12 +8,14 @@
 //! ```
 //!
 //! where less than half of what the signal does could be expected. A mode that grows so, |z| > 1, turns by more than 41° (50°, 53°) in
-//! each exchange, fewer than nine values to the turn, or grows more than 3.4-fold (6.3, 9.2): whatever the model says, it is not
+//! each exchange, fewer than nine values to the turn (or grows more than 3.4-fold, which overflows soon): whatever the model says, it is not
 //! resolved. A signal that grows and *is* resolved has z = e^(λH) near 1 and does not come near; a ramp or a jump has defects that do
 //! not grow; noise and chatter qualify and do not grow either.
 //!
 //! Windows of [`WINDOW`] exchanges are judged, with weights that take the growth from the window before out of them, and together with a
-//! part of the windows before, so that the phase at which a short window meets a mode averages out. The coupling counts as unstable when three or more
+//! part of the windows before, so that the phase at which a short window meets a mode averages out. The signal has to come
+//! back in each of them: a mode that turns by θ = 41° or more in each exchange comes forward by at most sin 3θ/sin ½θ of a way of 6·2/π,
+//! 0.63. A staircase, which a sampled controller or a slower block makes of a motion, is not expected either, but goes one way. The coupling counts as unstable when three or more
 //! of them in a row qualify and the mean square of their defects rises, [`GROWTH`]-fold (in amplitude) in all. For noise of one level
 //! the mean square of six values would have to be 10⁻⁴ of its expectation in one of them: (10⁻⁴·6)³/48, 10⁻¹². Defects below 10⁻⁹ of
 //! the greatest value so far are rounding.
@@ -27,6 +29,8 @@ const EXCHANGES: u32 = 6;
 const UNEXPECTED: f64 = 0.5;
 /// What a window counts of the windows before it.
 const FADING: f64 = 0.5;
+/// What a signal comes forward of its way in a window, if it goes one way.
+const ONE_WAY: f64 = 0.7;
 /// By how much the amplitude of the defects has to grow.
 const GROWTH: f64 = 100.0;
 /// Part of the greatest value that counts as rounding.
@@ -43,6 +47,8 @@ pub(crate) struct Watch {
     level: f64,
     /// Shares of the defects and of the signal in the last windows.
     recent: [f64; 2],
+    /// Value before the window.
+    before: f64,
     greatest: f64,
     rise: Rise,
 }
@@ -68,19 +74,34 @@ impl Watch {
         let level = self.defects.iter().map(|e| e * e).sum::<f64>() / WINDOW as f64;
         let growth = if self.level > 0.0 { (level / self.level).max(1.0) } else { 1.0 };
         self.level = level;
-        let (unexpected, variance) = self.sums(growth.powf(-1.0 / WINDOW as f64));
+        let ratio = growth.powf(-1.0 / WINDOW as f64);
+        let (unexpected, variance) = self.sums(ratio);
+        let turned = self.turns(ratio.sqrt());
+        self.before = value;
         let whole = unexpected + variance;
         if whole > 0.0 {
             let [e, y] = self.recent;
             self.recent = [FADING * e + unexpected / whole, FADING * y + variance / whole];
         }
-        let unresolved = self.recent[0] >= UNEXPECTED * self.recent[1];
+        let unresolved = self.recent[0] >= UNEXPECTED * self.recent[1] && turned;
         match self.rise.push(level, unresolved && level > (ROUNDING * self.greatest).powi(2)) {
             Risen::For { growth, windows } if growth >= GROWTH * GROWTH => {
                 Some(Growth { factor: growth.sqrt(), exchanges: windows * EXCHANGES })
             }
             _ => None,
         }
+    }
+
+    /// Whether the signal comes back in the window: |Σg·Δy| ≤ [`ONE_WAY`]·Σg·|Δy|, with a weight g that changes by `ratio`.
+    fn turns(&self, ratio: f64) -> bool {
+        let (mut before, mut weight, mut net, mut total) = (self.before, 1.0, 0.0, 0.0);
+        for value in &self.values {
+            let change: f64 = value - before;
+            net += weight * change;
+            total += weight * change.abs();
+            (before, weight) = (*value, weight * ratio);
+        }
+        net.abs() <= ONE_WAY * total
     }
 
     /// Σg·e² and Σg·(y − ȳ)² as the variance of a sample, with a weight g that changes by `ratio` from each exchange to the next.
@@ -150,6 +171,13 @@ mod tests {
             assert_eq!(found(|n| if n % 2.0 < 1.0 { 1.0 } else { -1.0 }, k, 1000), None);
             // The start of a move from rest.
             assert_eq!(found(|n| 1e-6 * n.max(0.0).powi(4), k, 1000), None);
+            // What a sampled controller or a slow block makes of a motion.
+            for hold in 2..=8 {
+                let hold = f64::from(hold);
+                for power in 1..=6 {
+                    assert_eq!(found(|n| 1e-6 * ((n / hold).floor() * hold).max(0.0).powi(power), k, 1000), None);
+                }
+            }
             // A mode that turns fast and dies out, and one that just keeps up.
             assert_eq!(found(mode(0.9, 120.0), k, 1000), None);
             assert_eq!(found(mode(1.0, 120.0), k, 1000), None);

@@ -117,6 +117,9 @@ fn networks_that_are_none_are_refused() {
         refused(&|network| network.bonds[0].flow = 0),
         "connections 0 and 0 of 3 are no power bond: the flow has to go back from the block that takes the effort to the one that gives it"
     );
+    let mut master = Master::new(RESOLVED.network(), &settings(Method::Jacobi, Order::Constant, 8)).unwrap();
+    let held = master.hold(Port { block: 0, port: 0 }, 1.0).unwrap_err();
+    assert_eq!(held.to_string(), "`first.u0` follows a connection and cannot be held");
     let order = settings(Method::GaussSeidel(vec![0, 0]), Order::Constant, 8);
     let error = Master::new(RESOLVED.network(), &order).err().unwrap();
     assert_eq!(error.to_string(), "the order of blocks must name each of the 2 blocks once, got [0, 0]");

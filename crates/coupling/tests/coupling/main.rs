@@ -3,6 +3,7 @@ mod delays;
 mod events;
 mod linear;
 mod loops;
+mod newmark;
 mod orders;
 mod oscillator;
 mod properties;

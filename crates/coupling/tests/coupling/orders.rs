@@ -1,8 +1,10 @@
 //! The error against the exact solution falls with the order that the documentation promises; its table is made here:
 //! `SERVOBENCH_WRITE_DOCS=1 cargo test -p servobench-coupling` writes it.
+use super::linear::Linear;
 use super::oscillator::{RATE, RESOLVED, TwoMasses, settings, state};
-use servobench_coupling::{Acceleration, Iteration, Master, Method, Order, Settings};
+use servobench_coupling::{Acceleration, Iteration, Master, Method, Network, Order, Settings};
 use std::fmt::Write as _;
+use std::num::NonZeroU32;
 use std::path::Path;
 
 const WRITE_DOCS: &str = "SERVOBENCH_WRITE_DOCS";
@@ -16,7 +18,14 @@ const SLOPE: f64 = 0.04;
 /// Greatest error of a state within 1 s, at eight times. Weighted with ω for displacements, so that they count like velocities.
 fn error(masses: &TwoMasses, settings: &Settings, holds_mean: bool) -> f64 {
     let mut network = masses.network();
-    network.members.iter_mut().for_each(|member| member.block.holds_mean = holds_mean);
+    for member in &mut network.members {
+        member.block.holds_mean = holds_mean;
+    }
+    worst(network, masses, settings)
+}
+
+/// The same of a network of `masses`.
+fn worst(network: Network<Linear>, masses: &TwoMasses, settings: &Settings) -> f64 {
     let mut master = Master::new(network, settings).unwrap();
     let mut worst = 0.0_f64;
     for eighth in 1..=8_u32 {
@@ -78,6 +87,28 @@ fn errors_fall_with_the_promised_order() {
         }
     }
     hold("orders", &table);
+}
+
+/// Blocks of one and of two communication steps: the constant is another, the order is not.
+#[test]
+fn different_steps_have_the_same_order() {
+    for slow in 0..2 {
+        for method in [Method::Jacobi, Method::GaussSeidel(vec![0, 1]), Method::GaussSeidel(vec![1, 0])] {
+            for (order, promised) in Order::ALL.into_iter().zip([1.0, 2.0, 3.0]) {
+                let errors = STEPS.map(|ticks| {
+                    let mut network = RESOLVED.network();
+                    network.members[slow].every = NonZeroU32::new(2).unwrap();
+                    network.bonds.clear();
+                    worst(network, &RESOLVED, &settings(method.clone(), order, ticks / 2))
+                });
+                let slope = (errors[2] / errors[3]).log2();
+                assert!(
+                    (slope - promised).abs() < SLOPE,
+                    "slow {slow}, {method:?}, {order:?}: {slope}, errors {errors:?}"
+                );
+            }
+        }
+    }
 }
 
 /// Holds a section of the page against what it is made of, or writes it.
