@@ -11,7 +11,7 @@ enum May {
 }
 
 /// The floor plan, lower floors first. Dev-dependencies are free: the oracle of a test may come from anywhere.
-const PLAN: [(&str, May); 23] = [
+const PLAN: [(&str, May); 26] = [
     ("base", May::On(&[])),
     ("cia402", May::On(&["base"])),
     ("motion", May::On(&["base"])),
@@ -22,6 +22,9 @@ const PLAN: [(&str, May); 23] = [
     ("plant", May::On(&["base"])),
     ("engine-mujoco", May::On(&["base", "plant"])),
     ("engine-rapier", May::On(&["base", "plant"])),
+    ("fmi", May::On(&[])),
+    ("engine-fmu", May::On(&["base", "plant", "fmi"])),
+    ("coupling", May::On(&["base"])),
     ("trace", May::On(&["base"])),
     ("metrics", May::On(&["base", "trace"])),
     ("scenario", May::On(&["base"])),
