@@ -1,0 +1,132 @@
+//! FMI 3.0. `three.c` refuses what comes in the wrong mode and arrays of the wrong length.
+use super::{Room, compiled, messages, port, setup, text};
+use servobench_fmi::{Loaded, Progress, Setup, Slave, SlaveError, Value};
+use std::fs;
+
+const DESCRIPTION: &str = include_str!("three.xml");
+
+fn room() -> Room {
+    Room::new("three", &compiled("three"), DESCRIPTION)
+}
+
+fn loaded(mode: i128, inputs: &[&str], outputs: &[&str]) -> Loaded {
+    room().load(&setup(&[("mode", Value::Integer(mode))], inputs, outputs)).unwrap()
+}
+
+#[test]
+fn calls_come_in_the_order_of_the_standard() {
+    let room = room();
+    let path = room.notes();
+    let start = [
+        ("path", text(path.to_str().unwrap())),
+        ("n", Value::Integer(2)),
+        ("array", Value::List(vec![Value::Number(4.0), Value::Integer(5)])),
+    ];
+    let setup = Setup { tolerance: Some(1e-4), stop_time: Some(2.0), ..setup(&start, &["d"], &["sum"]) };
+    let mut slave = room.load(&setup).unwrap();
+    let calls = [
+        "instantiate",
+        "enter configuration",
+        "exit configuration",
+        "enter initialization 1 0.0001 0 1 2",
+        "exit initialization",
+        "update",
+        "enter step",
+    ];
+    assert_eq!(messages(&mut slave), calls);
+    let mut read = [0.0];
+    slave.read(None, &mut read).unwrap();
+    assert_eq!(read, [9.0]);
+    slave.step(0.0, 0.1, &[[7.0, 0.0, 0.0]]).unwrap();
+    assert_eq!(messages(&mut slave), ["enter event", "update", "enter step"], "a new discrete input is an event");
+    slave.step(0.1, 0.1, &[[7.0, 0.0, 0.0]]).unwrap();
+    assert_eq!(messages(&mut slave), [""; 0], "one that stays is none");
+    slave.save().unwrap();
+    drop(slave);
+    assert_eq!(fs::read_to_string(&path).unwrap(), "free state\nterminate\nfree\n");
+}
+
+#[test]
+fn an_event_within_a_step_ends_it_early() {
+    let mut slave = loaded(0, &["u"], &["y", "events"]);
+    let mut read = [0.0; 2];
+    slave.take_log();
+    assert_eq!(slave.step(0.0, 1.0, &[[2.0, 0.0, 0.0]]), Ok(Progress::Until(0.25)));
+    assert_eq!(messages(&mut slave), ["enter event", "update", "update", "enter step"]);
+    slave.read(None, &mut read).unwrap();
+    assert_eq!(read, [0.5, 3.0], "of the two updates of the event and the one at the start");
+    assert_eq!(slave.step(0.25, 0.75, &[[2.0, 0.0, 0.0]]), Ok(Progress::Done));
+    slave.read(None, &mut read).unwrap();
+    assert_eq!(read, [2.0, 3.0]);
+    let mut on_the_event = loaded(0, &["u"], &["events"]);
+    assert_eq!(on_the_event.step(0.0, 0.25, &[[0.0; 3]]), Ok(Progress::Done), "at the end of a step nothing is early");
+    on_the_event.read(None, &mut read[..1]).unwrap();
+    assert_eq!(read[0], 3.0);
+}
+
+#[test]
+fn an_element_is_set_and_the_others_stay() {
+    let room = room();
+    let mut setup = setup(&[], &[], &["sum"]);
+    setup.inputs = vec![port("array", 1), port("small", 0), port("u", 0)];
+    setup.outputs.extend((0..3).map(|element| port("array", element)));
+    let mut slave = room.load(&setup).unwrap();
+    let mut read = [0.0; 4];
+    slave.read(Some(&[10.0, 0.0, 0.0]), &mut read).unwrap();
+    assert_eq!(read, [14.0, 1.0, 10.0, 3.0]);
+    slave.step(0.0, 0.1, &[[20.0, 0.0, 0.0], [0.0; 3], [0.0; 3]]).unwrap();
+    slave.read(None, &mut read).unwrap();
+    assert_eq!(read, [24.0, 1.0, 20.0, 3.0]);
+}
+
+#[test]
+fn other_types_go_both_ways() {
+    let mut slave = loaded(0, &["small", "flag", "d"], &["small", "flag", "d"]);
+    let mut read = [0.0; 3];
+    slave.read(Some(&[0.1, 1.0, -5.0]), &mut read).unwrap();
+    // 0.1 in single precision.
+    assert_eq!(read, [0.10000000149011612, 1.0, -5.0]);
+    for (inputs, said) in [
+        ([1e39, 0.0, 0.0], "`small` of the FMU takes finite numbers of single precision, got 1e39"),
+        ([0.0, 0.0, 2147483648.0], "`d` of the FMU takes whole numbers of 32 bits, got 2147483648"),
+        ([0.0, 0.0, 0.25], "`d` of the FMU takes whole numbers of 32 bits, got 0.25"),
+    ] {
+        let error = loaded(0, &["small", "flag", "d"], &[]).read(Some(&inputs), &mut []).unwrap_err();
+        assert!(
+            error.to_string().replace("1000000000000000000000000000000000000000", "1e39").starts_with(said),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn ends_and_failures() {
+    let step = |mode| loaded(mode, &[], &[]).step(0.3, 0.5, &[]);
+    assert_eq!(step(1), Ok(Progress::Terminated(0.5)));
+    let failed = |status, message: &str| {
+        Err(SlaveError::Failed { call: "fmi3DoStep", time: 0.3, status, message: message.into() })
+    };
+    assert_eq!(step(3), failed("fmi3Error", "no root"));
+    assert_eq!(step(4), failed("fmi3Fatal", "enter step"));
+    assert_eq!(step(5), Err(SlaveError::Discarded { call: "fmi3DoStep", time: 0.3 }));
+    let room = room();
+    for (mode, said) in [
+        (2, "failed in fmi3UpdateDiscreteStates at 0 s (fmi3OK): its discrete states did not settle in 1000 updates"),
+        (6, "failed in fmi3UpdateDiscreteStates at 0 s (fmi3OK): it wants to end at its start"),
+    ] {
+        let error = room.load(&setup(&[("mode", Value::Integer(mode))], &[], &[])).unwrap_err();
+        assert!(error.to_string().ends_with(said), "{error}");
+    }
+}
+
+#[test]
+fn a_saved_state_comes_back() {
+    let mut slave = loaded(0, &["u"], &["y"]);
+    let mut read = [0.0];
+    slave.step(0.0, 0.1, &[[1.0, 0.0, 0.0]]).unwrap();
+    slave.save().unwrap();
+    slave.step(0.1, 1.0, &[[1.0, 0.0, 0.0]]).unwrap();
+    slave.restore().unwrap();
+    slave.read(None, &mut read).unwrap();
+    assert_eq!(read, [0.1]);
+}

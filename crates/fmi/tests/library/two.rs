@@ -1,0 +1,180 @@
+//! FMI 2.0. The answer of `two.c` is y' = u with the derivatives that it is given.
+use super::{Room, compiled, messages, port, setup, text};
+use servobench_fmi::{Loaded, Progress, Setup, Severity, Slave, SlaveError};
+use std::fs;
+
+const DESCRIPTION: &str = include_str!("two.xml");
+
+fn room() -> Room {
+    Room::new("two", &compiled("two"), DESCRIPTION)
+}
+
+fn loaded(mode: &str, outputs: &[&str]) -> Loaded {
+    room().load(&setup(&[("mode", text(mode))], &["u"], outputs)).unwrap()
+}
+
+#[test]
+fn calls_come_in_the_order_of_the_standard() {
+    let room = room();
+    let path = room.notes();
+    let setup = Setup {
+        tolerance: Some(1e-4),
+        start_time: 0.5,
+        stop_time: Some(2.0),
+        logging: true,
+        ..setup(&[("path", text(path.to_str().unwrap()))], &["u"], &["y"])
+    };
+    let mut slave = room.load(&setup).unwrap();
+    let calls = [
+        "instantiate, logging of it at 0, 0",
+        "setup 1 0.0001 0.5 1 2",
+        "enter initialization of it at 0, 0",
+        "exit initialization of it at 0, 0",
+    ];
+    assert_eq!(messages(&mut slave), calls, "format and arguments of the variadic logger");
+    slave.save().unwrap();
+    drop(slave);
+    assert_eq!(fs::read_to_string(&path).unwrap(), "free state\nterminate\nfree\n");
+}
+
+#[test]
+fn without_tolerance_and_end_it_says_so() {
+    let mut slave = room().load(&setup(&[], &[], &[])).unwrap();
+    assert_eq!(messages(&mut slave)[1], "setup 0 0 0 0 0");
+}
+
+/// Oracle: an input u + u'·t + u''·t²/2 over a step of 0.1 s has the integral u·h + u'·h²/2 + u''·h³/6, whether the FMU gets its
+/// mean or its derivatives.
+#[test]
+fn inputs_over_a_step_have_the_right_integral() {
+    let (input, h) = ([2.0, 3.0, 5.0], 0.1_f64);
+    let exact = 2.0 * h + 3.0 * h * h / 2.0 + 5.0 * h * h * h / 6.0;
+    for takes_derivatives in [false, true] {
+        let description = DESCRIPTION
+            .replace("canInterpolateInputs=\"false\"", &format!("canInterpolateInputs=\"{takes_derivatives}\""));
+        let room = Room::new("two", &compiled("two"), &description);
+        let mut slave = room.load(&setup(&[], &["u"], &["y", "u", "du", "ddu"])).unwrap();
+        assert_eq!(slave.capabilities().interpolates_inputs, takes_derivatives);
+        assert_eq!(slave.step(0.0, h, &[input]).unwrap(), Progress::Done);
+        let mut read = [0.0; 4];
+        slave.read(None, &mut read).unwrap();
+        // Some roundings of numbers below 1.
+        assert!((read[0] - exact).abs() < 1e-15, "{read:?}");
+        assert_eq!(read[2..], if takes_derivatives { [3.0, 5.0] } else { [0.0, 0.0] });
+    }
+}
+
+#[test]
+fn a_saved_state_comes_back_as_often_as_wanted() {
+    let mut slave = loaded("normal", &["y", "steps"]);
+    let mut read = [0.0; 2];
+    slave.step(0.0, 0.1, &[[1.0, 0.0, 0.0]]).unwrap();
+    slave.save().unwrap();
+    for _ in 0..2 {
+        slave.step(0.1, 0.1, &[[5.0, 0.0, 0.0]]).unwrap();
+        slave.restore().unwrap();
+        slave.read(None, &mut read).unwrap();
+        assert_eq!(read, [0.1, 1.0]);
+    }
+    let error = loaded("normal", &[]).restore().unwrap_err();
+    assert!(matches!(error, SlaveError::Unable { .. }), "{error}");
+}
+
+#[test]
+fn what_is_discarded_says_how_far_it_came() {
+    let step = |mode| loaded(mode, &[]).step(1.0, 0.1, &[[0.0; 3]]);
+    assert_eq!(step("refuse"), Err(SlaveError::Discarded { call: "fmi2DoStep", time: 1.0 }));
+    assert_eq!(step("half"), Ok(Progress::Until(1.05)));
+    assert_eq!(step("end"), Ok(Progress::Terminated(1.025)));
+    let mut slave = loaded("refuse", &["steps"]);
+    slave.step(1.0, 0.1, &[[0.0; 3]]).unwrap_err();
+    slave.read(None, &mut [0.0]).expect("it goes on");
+}
+
+#[test]
+fn failures_have_the_status_and_what_was_logged_last() {
+    for (mode, status, message) in [
+        ("fail", "fmi2Error", "no root at 100%"),
+        ("die", "fmi2Fatal", "exit initialization of it at 0, 0"),
+        ("asynchronous", "fmi2Pending", "exit initialization of it at 0, 0"),
+        ("unknown", "no status of FMI 2.0", "exit initialization of it at 0, 0"),
+    ] {
+        let error = loaded(mode, &[]).step(1.0, 0.1, &[[0.0; 3]]).unwrap_err();
+        let message = message.to_owned();
+        assert_eq!(error, SlaveError::Failed { call: "fmi2DoStep", time: 1.0, status, message }, "{mode}");
+    }
+    let room = room();
+    let error = room.load(&setup(&[("mode", text("fail early"))], &[], &[])).unwrap_err();
+    let expected = "the FMU `/two.fmu` cannot be initialised: the FMU failed in fmi2ExitInitializationMode at 0 s (fmi2Error): exit";
+    assert!(room.said(&error).starts_with(expected), "{}", room.said(&error));
+}
+
+/// FMI 2.0.5, §2.1.3: after an error the instance may only be freed; after a fatal one, nothing may be called.
+#[test]
+fn what_has_failed_is_not_terminated_and_what_is_dead_not_freed() {
+    for (mode, notes) in [("fail", "free\n"), ("die", "")] {
+        let room = room();
+        let path = room.notes();
+        let start = [("mode", text(mode)), ("path", text(path.to_str().unwrap()))];
+        let mut slave = room.load(&setup(&start, &[], &[])).unwrap();
+        slave.step(0.0, 0.1, &[]).unwrap_err();
+        drop(slave);
+        assert_eq!(fs::read_to_string(&path).unwrap_or_default(), notes, "{mode}");
+    }
+}
+
+#[test]
+fn what_is_no_number_is_refused_in_both_directions() {
+    let mut slave = loaded("not a number", &["y"]);
+    slave.read(None, &mut [0.0]).unwrap();
+    slave.step(0.0, 0.1, &[[0.0; 3]]).unwrap();
+    let error = slave.read(None, &mut [0.0]).unwrap_err();
+    assert!(
+        matches!(&error, SlaveError::NotFinite { variable, time, .. } if variable == "y" && *time == 0.1),
+        "{error}"
+    );
+    let error = loaded("normal", &[]).step(0.0, 0.1, &[[f64::NAN, 0.0, 0.0]]).unwrap_err();
+    assert!(
+        matches!(&error, SlaveError::Value { variable, bound: "finite numbers", .. } if variable == "u"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_boolean_is_0_or_1() {
+    let mut slave = room().load(&setup(&[], &["flag"], &["flag"])).unwrap();
+    let mut read = [0.5];
+    slave.read(Some(&[1.0]), &mut read).unwrap();
+    assert_eq!(read, [1.0], "whatever is not FALSE is TRUE");
+    let error = slave.step(0.0, 0.1, &[[0.5, 0.0, 0.0]]).unwrap_err();
+    assert!(error.to_string().starts_with("`flag` of the FMU takes 0 and 1, got 0.5"), "{error}");
+}
+
+#[test]
+fn a_flood_of_messages_is_cut() {
+    let mut slave = loaded("flood", &[]);
+    slave.take_log();
+    slave.step(0.0, 0.1, &[[0.0; 3]]).expect("a warning is no failure");
+    let log = slave.take_log();
+    assert_eq!(log.len(), 10_001);
+    assert_eq!((log[0].severity, log[0].category.as_str()), (Severity::Info, "calls"));
+    assert_eq!(log[10_000].message, "10000 more lines were not kept");
+}
+
+/// Instances of one FMU do not know of each other.
+#[test]
+fn instances_are_apart() {
+    let room = room();
+    let setup = setup(&[], &["u"], &["y"]);
+    let mut slaves = [room.load(&setup).unwrap(), room.load(&setup).unwrap()];
+    for (at, slave) in slaves.iter_mut().enumerate() {
+        slave.step(0.0, 1.0, &[[at as f64 + 1.0, 0.0, 0.0]]).unwrap();
+    }
+    let [first, second] = &mut slaves;
+    let mut read = [0.0];
+    first.read(None, &mut read).unwrap();
+    assert_eq!(read, [1.0]);
+    second.read(None, &mut read).unwrap();
+    assert_eq!(read, [2.0]);
+    assert_eq!(setup.outputs, [port("y", 0)]);
+}
