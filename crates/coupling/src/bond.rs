@@ -188,3 +188,55 @@ impl Energy {
         None
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Exchanges of a spring: f and x are cos φ, both growing by `rate` in each, so that S = ½·e^(2·rate·n) swings through the bond. The
+    /// exchange puts in `share` of what S grows by.
+    fn oscillation(rate: f64, share: f64, exchanges: u32) -> Option<Drive> {
+        let mut energy = Energy::default();
+        let at = |n: f64| {
+            let (size, angle) = ((rate * n).exp(), 0.2 * n);
+            (size * angle.cos(), size * angle.cos())
+        };
+        (1..exchanges).find_map(|n| {
+            let ((f0, x0), (f1, x1)) = (at(f64::from(n) - 1.0), at(f64::from(n)));
+            let grown = rate * (2.0 * rate * f64::from(n)).exp();
+            energy.add(0.5 * (f0 + f1) * (x1 - x0), share * grown)
+        })
+    }
+
+    /// The bound is half of the growth; the means over four cycles of 31 exchanges lag behind it by less than half.
+    #[test]
+    fn a_growth_that_the_exchange_put_in_is_found() {
+        let found = oscillation(0.005, 1.0, 2000).unwrap();
+        assert!(found.growth >= GROWTH && found.injected >= 0.5 * found.swing, "{found:?}");
+        assert_eq!(oscillation(0.005, 0.2, 20_000), None);
+        assert_eq!(oscillation(0.0, 1.0, 20_000), None);
+        assert_eq!(oscillation(-0.005, 1.0, 20_000), None);
+    }
+
+    /// Noise of one level in both signals, the force against the displacement as a spring's, so that every exchange puts energy in
+    /// (which the blocks' dampers take out). A million values from a generator of Knuth (TAOCP vol. 2, §3.3.4, table 1, line 26).
+    #[test]
+    fn noise_is_not() {
+        let mut seed = 1_u64;
+        let mut noise = move || {
+            seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        };
+        for spring in [0.0, 0.5, 1.0] {
+            let mut energy = Energy::default();
+            let (mut f0, mut x0) = (0.0, 0.0);
+            for n in 0..1_000_000 {
+                let x1 = noise() + noise();
+                let f1 = noise() - spring * x1;
+                let found = energy.add(0.5 * (f0 + f1) * (x1 - x0), -(f1 - f0) * (x1 - x0));
+                assert_eq!(found, None, "spring {spring}, exchange {n}");
+                (f0, x0) = (f1, x1);
+            }
+        }
+    }
+}
