@@ -7,4 +7,5 @@ mod newmark;
 mod orders;
 mod oscillator;
 mod properties;
+mod servo;
 mod stability;
