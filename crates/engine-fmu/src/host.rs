@@ -11,12 +11,30 @@ use std::fs::File;
 use std::io;
 use std::os::fd::AsFd;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
 /// How often a host that has nothing to do looks for its parent. It ends with it anyway, unless the FMU has seen to that.
 const GLANCE: Duration = Duration::from_secs(1);
 /// Bytes of a text that are passed on.
 const LONGEST: usize = 8_000;
+
+/// The memory of this process, for what speaks without being asked.
+static PAGE: OnceLock<&'static Page> = OnceLock::new();
+/// One speaks at a time.
+static SPEAKING: Mutex<()> = Mutex::new(());
+
+/// Puts what the FMU says where the parent finds it, whatever happens next; `false` if this process is no host.
+pub(crate) fn say_at_once(line: &LogLine) -> bool {
+    let _speaking = SPEAKING.lock().unwrap_or_else(PoisonError::into_inner);
+    let Some(page) = PAGE.get() else { return false };
+    let severity = line.severity;
+    let line = LogLine { severity, category: clipped(line.category.clone()), message: clipped(line.message.clone()) };
+    if !log_to_line(line).is_some_and(|line| page.add_log(&line)) {
+        page.header().answered.log_dropped.fetch_add(1, Relaxed);
+    }
+    true
+}
 
 /// Makes this process the host of one FMU: `load` makes it from what [`Isolated::start`](crate::Isolated::start) was given.
 /// Returns when it is no longer needed; the process should end then.
@@ -38,7 +56,7 @@ pub fn serve<S: DeserializeOwned>(load: impl FnOnce(S) -> Result<Box<dyn Slave>,
     match setup.and_then(load) {
         Ok(mut slave) => {
             host.say(&Message::ready(slave.capabilities()));
-            host.pass_on(slave.take_log());
+            pass_on(&slave.take_log());
             host.answer(Status::Message);
             host.serve(slave);
         }
@@ -60,7 +78,7 @@ fn page() -> Result<&'static Page, HostError> {
     let page = Page::adopt(&file).map_err(cannot("map standard input"))?.ok_or(HostError::NoPage)?;
     let nothing = File::open("/dev/null").map_err(cannot("open /dev/null"))?;
     rustix::stdio::dup2_stdin(&nothing).map_err(io::Error::from).map_err(cannot("close standard input"))?;
-    Ok(Box::leak(Box::new(page)))
+    Ok(PAGE.get_or_init(|| Box::leak(Box::new(page))))
 }
 
 /// Binds this process to its parent and to its memory.
@@ -105,17 +123,6 @@ impl Host {
         self.page.set_message(&serde_json::to_vec(message).unwrap_or_default());
     }
 
-    /// Puts what the FMU has said where the parent finds it, whatever happens next.
-    fn pass_on(&self, log: Vec<LogLine>) {
-        for mut line in log {
-            line.message = clipped(line.message);
-            line.category = clipped(line.category);
-            if !log_to_line(line).is_some_and(|line| self.page.add_log(&line)) {
-                self.page.header().answered.log_dropped.fetch_add(1, Relaxed);
-            }
-        }
-    }
-
     /// Does what it is asked for to the end.
     fn serve(&mut self, mut slave: Box<dyn Slave>) {
         let mut work = Work {
@@ -135,7 +142,7 @@ impl Host {
                 self.say(&Message::Failed(without_flood(error).into()));
                 Status::Message
             });
-            self.pass_on(slave.take_log());
+            pass_on(&slave.take_log());
             self.answer(status);
         }
     }
@@ -208,6 +215,13 @@ impl Work {
 
 fn number(word: &AtomicU64) -> f64 {
     f64::from_bits(word.load(Relaxed))
+}
+
+/// What was kept until now.
+fn pass_on(log: &[LogLine]) {
+    for line in log {
+        say_at_once(line);
+    }
 }
 
 fn without_flood(error: SlaveError) -> SlaveError {

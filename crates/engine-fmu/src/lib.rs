@@ -1,5 +1,7 @@
 //! FMUs in a process of their own, and FMUs as the mechanics of an axis ([`FmuMechanics`]).
 //!
+//! [`load`] starts one at its place; [`Fmu`] is the engine for an axis. The program that hosts FMUs calls [`host`].
+//!
 //! An FMU is somebody else's native code: it may crash, hang, ask for memory without end or print a gigabyte. In a process of
 //! its own that costs its run only, and is reported as what it is.
 //!
@@ -23,21 +25,26 @@
 mod bell;
 mod crash;
 mod ending;
+mod engine;
 mod error;
 mod host;
 mod isolated;
 mod keeper;
+mod load;
 mod mechanics;
 mod memory;
 mod motion;
+mod order;
 mod output;
 mod page;
 mod ports;
 mod protocol;
 
+pub use engine::Fmu;
 pub use error::{HostError, IsolationError};
 pub use host::serve;
 pub use isolated::{Bounds, Isolated, Wires};
 pub use keeper::HostCommand;
+pub use load::{LoadError, Place, host, load};
 pub use mechanics::FmuMechanics;
 pub use ports::{MechanicsPorts, PortError, PortProblem, Quantity};

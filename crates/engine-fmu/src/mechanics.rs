@@ -9,13 +9,15 @@
 //! impulse of the efforts is kept, and the axis sees of the FMU what was so up to n ticks ago: a delay of n/2 ticks in the mean.
 use crate::motion::Motion;
 use crate::ports::MechanicsPorts;
-use servobench_fmi::{LogLine, Progress, Slave, SlaveError};
+use servobench_fmi::{LogLine, Progress, Severity, Slave, SlaveError};
 use servobench_plant::{Actuation, BodyState, FmuModel, Input, Mechanics, MechanicsError};
 
 /// Name of the engine.
 pub(crate) const NAME: &str = "fmu";
 /// Times that an FMU may return early in one step.
 const MOST_PARTS: u32 = 10_000;
+/// Lines of its log in the message of what went wrong: the last ones.
+const LINES: usize = 5;
 
 /// The mechanics that an FMU is.
 pub struct FmuMechanics {
@@ -76,6 +78,22 @@ impl FmuMechanics {
         self.slave.take_log()
     }
 
+    /// What went wrong, with what the FMU said of it.
+    fn wrong(&mut self, error: &SlaveError) -> MechanicsError {
+        let mut message = error.to_string();
+        let log = self.slave.take_log();
+        let warnings = log.iter().filter(|line| line.severity > Severity::Info).map(|line| &line.message);
+        // The last one is a part of some errors.
+        let said: Vec<_> = warnings.filter(|said| !message.contains(said.as_str())).map(String::as_str).collect();
+        if !said.is_empty() {
+            message = format!("{message}; it said: {}", said[said.len().saturating_sub(LINES)..].join(" / "));
+        }
+        match error {
+            SlaveError::NotFinite { .. } => MechanicsError::Diverged { engine: NAME, message },
+            _ => native(message),
+        }
+    }
+
     /// Adds what acts in this tick.
     fn add(&mut self, effort: f64, input: &Input) -> Result<(), MechanicsError> {
         let (mut effort, single) = (effort, self.bodies.len() == 1);
@@ -114,7 +132,7 @@ impl FmuMechanics {
         self.exchanges += 1;
         let mut length = count * self.tick;
         for _ in 0..MOST_PARTS {
-            match self.slave.step(time, length, &self.inputs).map_err(|error| in_words(&error))? {
+            match self.slave.step(time, length, &self.inputs).map_err(|error| self.wrong(&error))? {
                 Progress::Done => return self.read(),
                 Progress::Until(reached) if reached > time && reached < end => {
                     time = reached;
@@ -134,7 +152,7 @@ impl FmuMechanics {
 
     /// Takes the outputs of the FMU.
     fn read(&mut self) -> Result<(), MechanicsError> {
-        self.slave.read(None, &mut self.outputs).map_err(|error| in_words(&error))?;
+        self.slave.read(None, &mut self.outputs).map_err(|error| self.wrong(&error))?;
         let mut outputs = self.outputs.iter().copied();
         for (wires, motion) in self.ports.bodies.iter().zip(&mut self.motions) {
             let mut next = |wire: &crate::ports::Wire| wire.to_si(outputs.next().unwrap_or(f64::NAN));
@@ -182,12 +200,4 @@ impl Mechanics for FmuMechanics {
 
 fn native(message: String) -> MechanicsError {
     MechanicsError::Native { engine: NAME, message }
-}
-
-fn in_words(error: &SlaveError) -> MechanicsError {
-    let message = error.to_string();
-    match error {
-        SlaveError::NotFinite { .. } => MechanicsError::Diverged { engine: NAME, message },
-        _ => native(message),
-    }
 }

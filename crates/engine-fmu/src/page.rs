@@ -16,7 +16,10 @@ use rustix::fs::{MemfdFlags, SealFlags, fcntl_add_seals, fcntl_get_seals, fstat,
 use rustix::mm::{Advice, MapFlags, ProtFlags, madvise, mmap, munmap};
 use std::os::fd::OwnedFd;
 use std::ptr::NonNull;
-use std::sync::atomic::{AtomicU8, AtomicU32, AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::{
+    AtomicU8, AtomicU32, AtomicU64,
+    Ordering::{AcqRel, Acquire, Relaxed},
+};
 use std::{io, ptr, slice};
 
 /// Says that a page is one, of this layout.
@@ -223,16 +226,23 @@ impl Page {
         read(self.bytes(0, (self.header().answered.message.load(Relaxed) as usize).min(MESSAGE)))
     }
 
-    /// Adds to the log; `false` if there is no room.
+    /// Adds to the log; `false` if there is no room. One thread at a time; the other side may take the log meanwhile.
     pub(crate) fn add_log(&self, line: &[u8]) -> bool {
-        let answered = &self.header().answered;
-        let used = (answered.log.load(Relaxed) as usize).min(LOG);
-        let room = line.len() <= LOG - used;
-        if room {
-            write(self.bytes(MESSAGE + used, line.len()), line);
-            answered.log.store(u32::try_from(used + line.len()).unwrap_or(0), Relaxed);
+        let log = &self.header().answered.log;
+        let mut used = log.load(Acquire);
+        loop {
+            let first = (used as usize).min(LOG);
+            if line.len() > LOG - first {
+                return false;
+            }
+            write(self.bytes(MESSAGE + first, line.len()), line);
+            let after = u32::try_from(first + line.len()).unwrap_or(0);
+            match log.compare_exchange(used, after, AcqRel, Acquire) {
+                Ok(_) => return true,
+                // It was taken.
+                Err(now) => used = now,
+            }
         }
-        room
     }
 
     /// Whether there is any log.
@@ -240,9 +250,19 @@ impl Page {
         self.header().answered.log.load(Relaxed) != 0
     }
 
-    /// The log, which is empty afterwards.
+    /// The log, which is empty afterwards. What is added meanwhile comes behind what is read, and is read too.
     pub(crate) fn take_log(&self) -> Vec<u8> {
-        read(self.bytes(MESSAGE, (self.header().answered.log.swap(0, Relaxed) as usize).min(LOG)))
+        // One that never stops is read when its log is full.
+        const MOST: usize = 16;
+        let log = &self.header().answered.log;
+        for _ in 0..MOST {
+            let used = log.load(Acquire);
+            let all = read(self.bytes(MESSAGE, (used as usize).min(LOG)));
+            if log.compare_exchange(used, 0, AcqRel, Relaxed).is_ok() {
+                return all;
+            }
+        }
+        Vec::new()
     }
 }
 
@@ -302,6 +322,29 @@ mod tests {
         let (page, _file) = Page::new(0, 0, b"", 0).unwrap();
         assert!(page.add_log(&vec![b'a'; LOG - 1]) && !page.add_log(b"bc") && page.add_log(b"d"));
         assert_eq!(page.take_log().last(), Some(&b'd'));
+    }
+
+    /// A thread of the FMU speaks while the log is taken: every line arrives once and in order.
+    #[test]
+    fn log_can_be_taken_while_it_is_written() {
+        const LINES: u32 = 20_000;
+        let (page, file) = Page::new(0, 0, b"", 0).unwrap();
+        let host = Page::adopt(&file).unwrap().unwrap();
+        let mut taken = Vec::new();
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                for line in 0..LINES {
+                    while !host.add_log(&line.to_le_bytes()) {
+                        std::thread::yield_now();
+                    }
+                }
+            });
+            while taken.len() < 4 * LINES as usize {
+                taken.extend(page.take_log());
+            }
+        });
+        let lines = taken.chunks_exact(4).map(|line| u32::from_le_bytes([line[0], line[1], line[2], line[3]]));
+        assert!(lines.eq(0..LINES));
     }
 
     #[test]

@@ -23,5 +23,6 @@ pub use description::{
 };
 pub use error::{ArchiveProblem, DescriptionProblem, FmuError, LibraryProblem};
 pub use loaded::Loaded;
+pub use log::hear_at_once;
 pub use setup::{Setup, Value};
 pub use slave::{Capabilities, LogLine, Port, Progress, Severity, Slave, SlaveError};

@@ -2,12 +2,22 @@
 use crate::slave::{LogLine, Severity};
 use std::ffi::c_int;
 use std::mem;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// Lines that are kept; a line that the FMU repeats at every step would fill the memory.
 const MOST_LINES: usize = 10_000;
 /// Bytes of all that are kept.
 const MOST_BYTES: usize = 1 << 20;
+
+/// Who hears everything at once.
+static HEAR: OnceLock<fn(&LogLine) -> bool> = OnceLock::new();
+
+/// Has `hear` called with every line that an FMU in this process says, as soon as it says it, from any thread; what it takes
+/// (true) is not kept for [`Slave::take_log`](crate::Slave::take_log). For a process whose FMU may end it at any time. The first
+/// call counts.
+pub fn hear_at_once(hear: fn(&LogLine) -> bool) {
+    HEAR.get_or_init(|| hear);
+}
 
 /// The log of an instance. The FMU may write to it from threads of its own.
 #[derive(Debug, Default)]
@@ -37,12 +47,16 @@ impl Log {
             _ => Severity::Error,
         };
         let message = message.trim_end();
+        message.clone_into(&mut self.kept().last);
+        let line = LogLine { severity, category: category.to_owned(), message: message.to_owned() };
+        if HEAR.get().is_some_and(|hear| hear(&line)) {
+            return;
+        }
         let mut kept = self.kept();
-        message.clone_into(&mut kept.last);
         let bytes = kept.bytes + category.len() + message.len();
         if kept.lines.len() < MOST_LINES && bytes <= MOST_BYTES {
             kept.bytes = bytes;
-            kept.lines.push(LogLine { severity, category: category.to_owned(), message: message.to_owned() });
+            kept.lines.push(line);
         } else {
             kept.dropped += 1;
         }

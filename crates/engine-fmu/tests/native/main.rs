@@ -1,0 +1,248 @@
+//! The engine `fmu` with a real library: one in C, which is compiled and packed by the test as a tool would.
+use servobench_engine_fmu::{Fmu, FmuMechanics, HostCommand, HostError, host as serve};
+use servobench_plant::{
+    Actuation, Coordinate, Drive, Engine, Extrapolation, FmuBody, FmuModel, FmuPort, FmuStart, FmuValue, Input,
+    Isolation, Mechanics, MechanicsError, MechanicsSetup, Model,
+};
+use std::io::Write;
+use std::path::Path;
+use std::process::Command;
+use std::sync::OnceLock;
+use std::time::Duration;
+use tempfile::TempDir;
+
+/// Base tick (s).
+const TICK: f64 = 1e-3;
+/// Mass (kg) and force (N).
+const MASS: f64 = 20.0;
+const FORCE: f64 = 7.0;
+
+const DESCRIPTION: &str = r#"<?xml version="1.0"?>
+<fmiModelDescription fmiVersion="2.0" modelName="mass" guid="{m}" variableNamingConvention="flat">
+<CoSimulation modelIdentifier="mass" canHandleVariableCommunicationStepSize="true"/>
+<UnitDefinitions>
+<Unit name="N"><BaseUnit kg="1" m="1" s="-2"/></Unit>
+<Unit name="mm"><BaseUnit m="1" factor="0.001"/></Unit>
+<Unit name="m/s"><BaseUnit m="1" s="-1"/></Unit>
+<Unit name="kg"><BaseUnit kg="1"/></Unit>
+</UnitDefinitions>
+<ModelVariables>
+<ScalarVariable name="force" valueReference="0" causality="input"><Real start="0" unit="N"/></ScalarVariable>
+<ScalarVariable name="x" valueReference="1" causality="output" initial="exact"><Real start="0" unit="mm"/></ScalarVariable>
+<ScalarVariable name="v" valueReference="2" causality="output"><Real unit="m/s"/></ScalarVariable>
+<ScalarVariable name="mass" valueReference="3" causality="parameter" variability="fixed"><Real start="1" unit="kg"/></ScalarVariable>
+<ScalarVariable name="mischief" valueReference="0" causality="parameter" variability="fixed"><Integer start="0"/></ScalarVariable>
+</ModelVariables>
+<ModelStructure><Outputs><Unknown index="2"/><Unknown index="3"/></Outputs>
+<InitialUnknowns><Unknown index="3"/></InitialUnknowns></ModelStructure>
+</fmiModelDescription>"#;
+
+/// What the library can do that it should not.
+#[derive(Clone, Copy)]
+#[repr(u8)]
+enum Mischief {
+    Nothing,
+    Crash,
+    Hang,
+    Hoard,
+    Print,
+    Fail,
+    NanOutput,
+    CrashInStart,
+    SayThenCrash,
+}
+
+/// Not a test: the process that an FMU of these tests lives in.
+#[test]
+#[ignore = "the process that the other tests start"]
+fn host() {
+    match serve() {
+        // Somebody runs all tests that are ignored.
+        Ok(()) | Err(HostError::NoPage) => {}
+        Err(error) => panic!("{error}"),
+    }
+}
+
+const ENGINE: Fmu = Fmu {
+    host: || {
+        let args = ["--exact", "host", "--ignored", "--nocapture"];
+        Ok(HostCommand { program: std::env::current_exe()?, args: args.map(Into::into).to_vec() })
+    },
+};
+
+/// The FMU's file, which is there as long as the test program.
+fn fmu() -> &'static Path {
+    static FILE: OnceLock<(TempDir, std::path::PathBuf)> = OnceLock::new();
+    let (_, path) = FILE.get_or_init(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let library = folder.path().join("mass.so");
+        let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/native/mass.c");
+        let compiled =
+            Command::new("cc").args(["-O2", "-shared", "-fPIC", "-o"]).arg(&library).arg(source).status().unwrap();
+        assert!(compiled.success(), "the C compiler that the workspace is built with anyway");
+        let path = folder.path().join("mass.fmu");
+        let mut zip = zip::ZipWriter::new(std::fs::File::create(&path).unwrap());
+        let stored = zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
+        for (name, content) in [
+            ("modelDescription.xml", DESCRIPTION.as_bytes().to_vec()),
+            ("binaries/linux64/mass.so", std::fs::read(&library).unwrap()),
+        ] {
+            zip.start_file(name, stored).unwrap();
+            zip.write_all(&content).unwrap();
+        }
+        zip.finish().unwrap();
+        (folder, path)
+    });
+    path
+}
+
+fn isolated(patience: Duration) -> Isolation {
+    Isolation::Process { patience, memory: 300_000_000 }
+}
+
+fn setup(mischief: Mischief, isolation: Isolation) -> MechanicsSetup {
+    let port = |variable: &str| FmuPort { variable: variable.into(), element: 0 };
+    let start = |variable: &str, value| FmuStart { variable: variable.into(), values: vec![value] };
+    let model = FmuModel {
+        path: fmu().to_owned(),
+        effort: port("force"),
+        motor: FmuBody { coordinate: Coordinate::Linear, position: port("x"), velocity: Some(port("v")) },
+        load: None,
+        motor_disturbance: None,
+        load_disturbance: None,
+        transmission: 1.0,
+        start: vec![
+            start("mass", FmuValue::Number(MASS)),
+            start("x", FmuValue::Si(0.25)),
+            start("mischief", FmuValue::Number(f64::from(mischief as u8))),
+        ],
+        ticks: 1,
+        extrapolation: Extrapolation::Linear,
+        isolation,
+    };
+    MechanicsSetup { model: Model::Fmu(model), drive: Drive::Effort, step: TICK, initial: Vec::new() }
+}
+
+fn build(mischief: Mischief, isolation: Isolation) -> FmuMechanics {
+    ENGINE.mechanics(&setup(mischief, isolation)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn push() -> Input {
+    Input { actuation: Actuation::Effort(FORCE), motor_disturbance: 0.0, load_disturbance: 0.0 }
+}
+
+/// Where the mass is at each tick.
+fn way(mut mass: FmuMechanics) -> Vec<(f64, f64)> {
+    (0..1000)
+        .map(|_| {
+            let [body] = *mass.bodies() else { panic!("one body") };
+            mass.advance(&push()).unwrap();
+            (body.position, body.velocity)
+        })
+        .collect()
+}
+
+/// Oracle: x = x0 + F·t²/2m, v = F·t/m. Tolerance: a thousand additions, each rounded to 2^-53 of at most 0.5.
+#[test]
+fn a_mass_goes_as_newton_says_here_and_in_a_process_of_its_own() {
+    let here = way(build(Mischief::Nothing, Isolation::None));
+    let there = way(build(Mischief::Nothing, isolated(Duration::from_mins(1))));
+    assert_eq!(here, there, "to the bit");
+    for (k, (x, v)) in here.into_iter().enumerate() {
+        let t = k as f64 * TICK;
+        assert!((x - 0.25 - FORCE * t * t / (2.0 * MASS)).abs() < 1e-13, "{k}: {x}");
+        assert!((v - FORCE * t / MASS).abs() < 1e-13, "{k}: {v}");
+    }
+}
+
+/// What comes of its second step.
+fn second_step(mischief: Mischief, patience: Duration) -> MechanicsError {
+    let mut mass = build(mischief, isolated(patience));
+    mass.advance(&push()).unwrap();
+    mass.advance(&push()).unwrap_err()
+}
+
+#[test]
+fn what_a_library_does_wrong_is_reported_as_what_it_is() {
+    let patience = Duration::from_mins(1);
+    for (mischief, says) in [
+        (Mischief::Crash, "the FMU's process ended at 0.001 s: signal 11 (SIGSEGV"),
+        (Mischief::Fail, "the FMU failed in fmi2DoStep at 0.001 s (fmi2Error): the mass is 20 kg"),
+        (Mischief::Hoard, "it asked for more memory than the 300 MB that it may have, then signal 11"),
+    ] {
+        let error = second_step(mischief, patience);
+        assert!(matches!(error, MechanicsError::Native { engine: "fmu", .. }), "{error}");
+        assert!(error.to_string().contains(says), "{error}");
+    }
+    let error = second_step(Mischief::Hang, Duration::from_secs(1));
+    assert!(error.to_string().contains("did not come back from its step at 0.001 s within 1 s"), "{error}");
+    let mut mass = build(Mischief::NanOutput, isolated(patience));
+    let error = mass.advance(&push()).unwrap_err();
+    assert!(matches!(&error, MechanicsError::Diverged { .. }), "{error}");
+    let error = ENGINE.build(&setup(Mischief::CrashInStart, isolated(patience))).err().unwrap();
+    assert!(error.to_string().contains("the FMU's process ended at 0 s: signal 11"), "{error}");
+}
+
+#[test]
+fn one_that_prints_ten_megabytes_in_a_step_goes_on() {
+    let mut mass = build(Mischief::Print, isolated(Duration::from_mins(1)));
+    for _ in 0..3 {
+        mass.advance(&push()).unwrap();
+    }
+    let log = mass.take_log();
+    let printed = log.iter().find(|line| line.category == "standard output").unwrap();
+    assert!(printed.message.starts_with("(20 MB before this were dropped)"), "{}", &printed.message[..60]);
+}
+
+/// What it said in the call that it did not come back from.
+#[test]
+fn the_last_that_it_said_is_in_the_report() {
+    let error = second_step(Mischief::SayThenCrash, Duration::from_mins(1));
+    assert!(error.to_string().contains("the mass is 20 kg"), "{error}");
+}
+
+/// What it was unpacked to goes with it, even if it crashes.
+#[test]
+fn nothing_stays_in_the_folder_for_temporary_files() {
+    let this = std::env::current_exe().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let mut alone = Command::new(this);
+    alone.args(["--exact", "crashes_alone", "--ignored", "--nocapture"]).env("TMPDIR", folder.path());
+    let output = alone.output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+    let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    // The test's own folder with the FMU's file, which statics keep.
+    assert!(left.iter().all(|name| !name.to_string_lossy().contains("servobench")), "{left:?}");
+}
+
+/// Not a test: what the one above looks at.
+#[test]
+#[ignore = "the process that another test starts"]
+fn crashes_alone() {
+    for mischief in [Mischief::Nothing, Mischief::Crash] {
+        let mut mass = build(mischief, isolated(Duration::from_mins(1)));
+        mass.advance(&push()).unwrap();
+        // How it ends is tested elsewhere.
+        mass.advance(&push()).ok();
+    }
+}
+
+#[test]
+fn what_the_engine_cannot_do_is_refused() {
+    let says = |setup: &MechanicsSetup| ENGINE.build(setup).err().unwrap().to_string();
+    let good = setup(Mischief::Nothing, Isolation::None);
+    let prescribed = MechanicsSetup { drive: Drive::Prescribed, ..good.clone() };
+    assert!(says(&prescribed).contains("does not support a prescribed motion"));
+    let Model::Fmu(model) = &good.model else { panic!("an FMU") };
+    let with = |model: FmuModel| MechanicsSetup { model: Model::Fmu(model), ..good.clone() };
+    assert!(says(&with(FmuModel { ticks: 0, ..model.clone() })).contains("`ticks`"));
+    assert!(says(&with(FmuModel { path: "none.fmu".into(), ..model.clone() })).contains("none.fmu"));
+    let unknown = FmuStart { variable: "mas".into(), values: vec![FmuValue::Number(1.0)] };
+    let said = says(&with(FmuModel { start: vec![unknown], ..model.clone() }));
+    assert!(said.contains("is it `mass`?"), "{said}");
+    let text = FmuStart { variable: "mass".into(), values: vec![FmuValue::Text("heavy".into())] };
+    let said = says(&with(FmuModel { start: vec![text], ..model.clone() }));
+    assert!(said.contains("mass") && said.contains("heavy"), "{said}");
+    let began = MechanicsSetup { initial: vec![servobench_plant::BodyState::default()], ..good.clone() };
+    assert!(says(&began).contains("start values of the FMU"));
+}
