@@ -4,8 +4,9 @@ use crate::cycles::{components, is_cycle};
 use crate::delay::Delay;
 use crate::error::CouplingError;
 use crate::network::{Network, NetworkError, Port, Wiring};
+use crate::polynomial::Order;
 use crate::schedule::{Schedule, Turn, successors};
-use crate::settings::Settings;
+use crate::settings::{Method, Settings};
 use crate::settle::{Plan, Reading};
 use crate::signals::Signals;
 use crate::watch::Watch;
@@ -58,6 +59,8 @@ pub struct Master<B> {
     pub(crate) present: Vec<f64>,
     pub(crate) outputs: Vec<f64>,
     ended: Option<Advance>,
+    /// What may help an unstable coupling.
+    way_out: &'static str,
 }
 
 /// An output of a loop.
@@ -115,6 +118,7 @@ impl<B: Block> Master<B> {
             present: vec![0.0; most(|shape| shape.inputs)],
             outputs: vec![0.0; most(|shape| shape.outputs)],
             ended: None,
+            way_out: way_out(settings),
             blocks,
             wiring,
             schedule,
@@ -230,6 +234,7 @@ impl<B: Block> Master<B> {
                     growth: growth.factor,
                     exchanges: growth.exchanges,
                     length: self.clock.time(1),
+                    way_out: self.way_out,
                 });
             }
         }
@@ -305,6 +310,15 @@ impl<B: Block> Master<B> {
     #[must_use]
     pub fn into_blocks(self) -> Vec<B> {
         self.blocks
+    }
+}
+
+/// What may help an unstable coupling, beside a smaller step.
+fn way_out(settings: &Settings) -> &'static str {
+    match (&settings.method, settings.order) {
+        (Method::Iterated(_), Order::Quadratic) => "a lower order, or cut the loop elsewhere",
+        (Method::Iterated(_), _) => "or cut the loop elsewhere",
+        _ => "iterate the loop, or cut it elsewhere",
     }
 }
 
