@@ -2,7 +2,7 @@
 use super::linear::{Linear, Model, member};
 use super::oscillator::settings;
 use proptest::prelude::*;
-use servobench_coupling::{Connection, Iteration, Master, Method, Network, Order, Port};
+use servobench_coupling::{Connection, CouplingError, Iteration, Master, Method, Network, Order, Port, Settings};
 use std::num::NonZeroU32;
 
 /// A block of one state with two inputs: its pole, its input factors, its feedthrough, the sources of its inputs, its step.
@@ -66,6 +66,39 @@ proptest! {
     ) {
         let ordered = bits(&recipes, &[0, 1, 2, 3, 4], &Method::Jacobi, order);
         prop_assert_eq!(ordered, bits(&recipes, &places, &Method::Jacobi, order));
+    }
+
+    /// With gains and steps at which about half of the networks grow. Growth goes on: 100-fold in at most 300 exchanges
+    /// is at least 10-fold in 600, of a signal with an offset too, so that it comes to 10 times what it was before it was found.
+    #[test]
+    fn what_is_called_unstable_grows(
+        recipes in proptest::collection::vec(recipe(), 5), order in order(), gain in 0.5..8.0_f64, ticks in 400_u32..8000
+    ) {
+        let master = |watch| {
+            let mut network = network(&recipes, &[0, 1, 2, 3, 4]);
+            network.connections.iter_mut().for_each(|connection| connection.gain = gain);
+            Master::new(network, &Settings { watch, ..settings(Method::Jacobi, order, ticks) }).unwrap()
+        };
+        let greatest = |master: &Master<Linear>| {
+            (0..5).map(|block| master.value(Port { block, port: 0 }).unwrap().abs()).fold(0.0, f64::max)
+        };
+        let mut watched = master(true);
+        let found = (0..300).find_map(|_| match watched.advance() {
+            Err(CouplingError::Unstable { step, .. }) => Some(step),
+            _ => None,
+        });
+        if let Some(step) = found {
+            let mut free = master(false);
+            let (mut before, mut after) = (0.0_f64, 0.0_f64);
+            for exchange in 0..step + 600 {
+                match free.advance() {
+                    Ok(_) if exchange < step => before = before.max(greatest(&free)),
+                    Ok(_) => after = after.max(greatest(&free)),
+                    Err(_) => after = f64::INFINITY,
+                }
+            }
+            prop_assert!(after >= 10.0 * before, "found in step {}, {} after {}", step, after, before);
+        }
     }
 
     /// With steps of one, so that any loop can be iterated.
