@@ -144,7 +144,8 @@ impl Stepper {
     pub fn step(&mut self, external: &External) -> Result<(), Failure> {
         let mut now = self.closed_loop.tick(self.tick, external, &mut self.recorder);
         let time = self.closed_loop.base_rate.time(Tick(self.tick));
-        let done = if external.measured.is_some() { self.closed_loop.check() } else { self.closed_loop.integrate(&now) };
+        let done =
+            if external.measured.is_some() { self.closed_loop.check() } else { self.closed_loop.integrate(&now) };
         done.map_err(|reason: Reason| Failure { time, reason })?;
         let (bodies, _) = self.closed_loop.sample(external);
         (now.motor, now.table, now.load) = (bodies.motor, bodies.table, bodies.load);

@@ -11,7 +11,7 @@ enum May {
 }
 
 /// The floor plan, lower floors first. Dev-dependencies are free: the oracle of a test may come from anywhere.
-const PLAN: [(&str, May); 26] = [
+const PLAN: [(&str, May); 27] = [
     ("base", May::On(&[])),
     ("cia402", May::On(&["base"])),
     ("motion", May::On(&["base"])),
@@ -34,6 +34,10 @@ const PLAN: [(&str, May); 26] = [
             "base", "cia402", "motion", "planner", "drive", "fieldbus", "plcopen", "plant", "trace", "metrics",
             "scenario",
         ]),
+    ),
+    (
+        "fmu",
+        May::On(&["base", "cia402", "motion", "planner", "plcopen", "plant", "fmi", "scenario", "sim"]),
     ),
     ("suite", May::On(&["base", "plant", "sim", "scenario", "trace", "metrics"])),
     ("report", May::On(&["base", "cia402", "motion", "planner", "trace", "metrics"])),

@@ -1,0 +1,85 @@
+//! Why an FMU cannot be written, or a call of the standard is refused.
+use servobench_sim::BuildError;
+use thiserror::Error;
+
+/// Why an FMU cannot be made of a scenario.
+#[derive(Debug, Error)]
+pub enum FmuError {
+    /// The loop cannot be built; with the mechanics of the engine `exact`, which is the one inside.
+    #[error("`{scenario}` cannot be built on the engine `exact`, which is the one in an FMU: {error}")]
+    Build {
+        /// Name of the scenario.
+        scenario: String,
+        /// Why.
+        error: BuildError,
+    },
+    /// The scenario has no drive that could be a part.
+    #[error("`{scenario}` has no drive: `--part axis` or `--part mechanics` can be exported")]
+    NoDrive {
+        /// Name of the scenario.
+        scenario: String,
+    },
+    /// A table's path leads where an archive has no place for it.
+    #[error("`{path}` cannot be packed: name the table by a path relative to the scenario's folder")]
+    Path {
+        /// The path as the scenario has it.
+        path: String,
+    },
+    /// The library is none for the platform of the FMU.
+    #[error("the library is none for Linux on x86-64 (ELF): build it with `cargo build --release -p servobench-fmu`")]
+    Library,
+    /// The archive cannot be written.
+    #[error("the archive cannot be written: {0}")]
+    Archive(String),
+}
+
+/// Why a call is refused.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub(crate) enum Refusal {
+    #[error("it is not allowed in {phase}: {allowed}")]
+    Phase { phase: &'static str, allowed: &'static str },
+    #[error("it is not supported: {why}")]
+    Unsupported { why: &'static str },
+    #[error("there is no variable with the value reference {reference}; there are {count}, from 0")]
+    Reference { reference: u32, count: usize },
+    #[error("`{name}` (value reference {reference}) is of the type {is}, not {asked}")]
+    Type { name: String, reference: u32, is: &'static str, asked: &'static str },
+    #[error("`{name}` cannot be set: it is {what}")]
+    NotSettable { name: String, what: &'static str },
+    #[error("`{name}` cannot be read before initialization mode: its value is calculated")]
+    NotYet { name: String },
+    #[error("`{name}` takes values from {min} to {max}, got {value}")]
+    Range { name: String, min: f64, max: f64, value: f64 },
+    #[error("{given} values for {wanted} value references of scalars")]
+    Length { given: usize, wanted: usize },
+    #[error("`{argument}` is NULL")]
+    Null { argument: &'static str },
+    #[error("`{argument}` must be finite{and}, got {value}")]
+    Number { argument: &'static str, and: &'static str, value: f64 },
+    #[error("the communication point {given} s is not the time of the FMU, {now} s")]
+    Point { given: f64, now: f64 },
+    #[error(
+        "the step of {length} s from {from} s is no whole number of base ticks of 1/{rate} s: nothing was computed; take a \
+         multiple of {tick} s"
+    )]
+    Step { from: f64, length: f64, rate: u32, tick: f64 },
+    #[error("the step to {to} s goes beyond the stop time {stop} s")]
+    Stop { to: f64, stop: f64 },
+    #[error("the scenario cannot be built with these parameters: {0}")]
+    Build(String),
+    #[error("{0}")]
+    Failed(String),
+    #[error("the target cannot be moved to: {0}")]
+    Move(String),
+    #[error("the bytes are no state of this FMU: {why}")]
+    State { why: &'static str },
+    #[error("the state takes {wanted} bytes, the buffer has {given}")]
+    Size { given: usize, wanted: usize },
+}
+
+impl Refusal {
+    /// Whether the call was not carried out and everything is as before it, so that another one may follow (status discard).
+    pub(crate) const fn is_discard(&self) -> bool {
+        matches!(self, Self::Step { .. })
+    }
+}

@@ -1,0 +1,191 @@
+//! The loop inside an FMU: what its inputs do in a base tick and where its outputs come from.
+use crate::error::{FmuError, Refusal};
+use crate::interface::{INPUTS, Input, Kind, Output, Role, SETPOINT, Setting, TARGET, Variable, variables};
+use crate::mover::Mover;
+use crate::part::{Part, has_one_body};
+use servobench_base::{Rate, Setpoint};
+use servobench_cia402::PowerState;
+use servobench_plant::{BodyState, Exact};
+use servobench_plcopen::AxisState;
+use servobench_scenario::Scenario;
+use servobench_sim::{Bench, BuildError, External, Snapshot, Stepper};
+
+/// What an FMU is made of, before it has parameters of its own.
+pub(crate) struct Model {
+    pub(crate) part: Part,
+    pub(crate) scenario: Scenario,
+    pub(crate) variables: Vec<Variable>,
+}
+
+impl Model {
+    /// `part` of `scenario`.
+    ///
+    /// # Errors
+    /// [`FmuError`] when there is no such part or it cannot be built.
+    pub(crate) fn new(part: Part, scenario: &Scenario) -> Result<Self, FmuError> {
+        let name = || scenario.name.clone();
+        if part == Part::Drive && scenario.actuator.drive().is_none() {
+            return Err(FmuError::NoDrive { scenario: name() });
+        }
+        let own = part.of(scenario);
+        let stepper = stepper(&own).map_err(|error| FmuError::Build { scenario: name(), error })?;
+        let variables = variables(part, &own, &stepper);
+        Ok(Self { part, scenario: own, variables })
+    }
+
+    /// Start values of all variables.
+    pub(crate) fn start(&self) -> Vec<f64> {
+        self.variables.iter().map(|variable| variable.start).collect()
+    }
+
+    /// Those of `values` that are inputs.
+    pub(crate) fn inputs(&self, values: &[f64]) -> [f64; INPUTS] {
+        let mut inputs = [0.0; INPUTS];
+        for (variable, value) in self.variables.iter().zip(values) {
+            if let Role::Input(input) = variable.role {
+                inputs[input as usize] = *value;
+            }
+        }
+        inputs
+    }
+}
+
+fn stepper(scenario: &Scenario) -> Result<Stepper, BuildError> {
+    Ok(Bench::new(scenario, &Exact)?.into_stepper())
+}
+
+/// A loop that runs.
+pub(crate) struct Machine {
+    part: Part,
+    stepper: Stepper,
+    /// What the command is, an item of the enumeration.
+    command: f64,
+    mover: Mover,
+    /// Axis coordinate per motor coordinate where the motor is the load too.
+    one_body: Option<f64>,
+    failed: bool,
+}
+
+/// A loop at a tick, to go back to.
+pub(crate) struct MachineState {
+    snapshot: Snapshot,
+    mover: Mover,
+}
+
+impl Machine {
+    /// The loop of `model`, parameters as `values` say.
+    ///
+    /// # Errors
+    /// [`Refusal::Build`].
+    pub(crate) fn new(model: &Model, values: &[f64]) -> Result<Self, Refusal> {
+        let mut scenario = model.scenario.clone();
+        let (mut command, mut limits) = (0.0, [0.0; 3]);
+        for (variable, value) in model.variables.iter().zip(values) {
+            match variable.role {
+                Role::Setting(Setting::Command) => command = *value,
+                Role::Setting(Setting::Limit(at)) => limits[at] = *value,
+                // What nobody set stays as it is, to the last bit.
+                Role::Setting(Setting::Scenario(parameter)) if value.to_bits() != variable.start.to_bits() => {
+                    parameter.apply(&mut scenario, *value);
+                }
+                _ => {}
+            }
+        }
+        let stepper = stepper(&scenario).map_err(|error| Refusal::Build(error.to_string()))?;
+        let mover = Mover::new(scenario.initial.load_position, limits);
+        let one_body = has_one_body(&scenario).then_some(scenario.axis.transmission);
+        Ok(Self { part: model.part, stepper, command, mover, one_body, failed: false })
+    }
+
+    pub(crate) const fn rate(&self) -> Rate {
+        self.stepper.base_rate()
+    }
+
+    /// The tick that comes next.
+    pub(crate) const fn tick(&self) -> u64 {
+        self.stepper.tick().0
+    }
+
+    /// One base tick.
+    ///
+    /// # Errors
+    /// [`Refusal::Failed`] or [`Refusal::Move`]; it can only go back then.
+    pub(crate) fn step(&mut self, inputs: &[f64; INPUTS]) -> Result<(), Refusal> {
+        let input = |input: Input| inputs[input as usize];
+        let is_true = |one| input(one) != 0.0;
+        let (k, rate) = (self.tick(), self.rate());
+        let setpoint = if self.command == TARGET {
+            let target = self.mover.at(k, rate, is_true(Input::Execute), input(Input::Target));
+            Some(target.map_err(Refusal::Move).inspect_err(|_| self.failed = true)?)
+        } else if self.command == SETPOINT {
+            let (x, v, a) = (input(Input::Position), input(Input::Velocity), input(Input::Acceleration));
+            Some(Setpoint { x, v, a, ..Setpoint::default() })
+        } else {
+            None
+        };
+        let measured = (self.part == Part::Drive).then(|| {
+            let body = |position, velocity| BodyState { position: input(position), velocity: input(velocity) };
+            let shaft = body(Input::ShaftPosition, Input::ShaftVelocity);
+            let load = match self.one_body {
+                Some(ratio) => BodyState { position: ratio * shaft.position, velocity: ratio * shaft.velocity },
+                None => body(Input::LoadPosition, Input::LoadVelocity),
+            };
+            [shaft, load]
+        });
+        let external = External {
+            start: is_true(Input::Start),
+            setpoint,
+            motor_effort: input(Input::MotorEffort),
+            load_effort: input(Input::LoadEffort),
+            measured,
+        };
+        self.stepper.step(&external).map_err(|failure| {
+            self.failed = true;
+            Refusal::Failed(failure.to_string())
+        })
+    }
+
+    /// Sets every output among `values`.
+    pub(crate) fn read(&mut self, variables: &[Variable], values: &mut [f64]) {
+        let (shaft, binding, states) = (self.stepper.shaft(), self.stepper.binding(), self.stepper.states());
+        let channels = self.stepper.values();
+        let item = |at: Option<usize>| at.map_or(1.0, |at| at as f64 + 1.0);
+        for (variable, value) in variables.iter().zip(values) {
+            let Role::Output(output) = variable.role else { continue };
+            *value = match output {
+                Output::Channel(at) => channels[at],
+                Output::ShaftPosition => shaft.position,
+                Output::ShaftVelocity => shaft.velocity,
+                Output::VoltageBinds => f64::from(binding.voltage),
+                Output::CurrentBinds => f64::from(binding.current),
+                Output::EffortBinds => f64::from(binding.effort),
+                Output::DriveState => item(PowerState::ALL.iter().position(|state| Some(*state) == states.drive)),
+                Output::AxisState => item(AxisState::ALL.iter().position(|state| Some(*state) == states.axis)),
+                Output::DriveFault => f64::from(states.drive_fault),
+                Output::Faults => 0.0,
+            };
+            debug_assert!(variable.kind != Kind::Text || *value == 0.0, "a text is no number");
+        }
+    }
+
+    /// The faults of drive and link in words.
+    pub(crate) fn faults(&self) -> String {
+        let states = self.stepper.states();
+        let drive = (states.drive_fault != 0).then(|| format!("drive: {:04X}h", states.drive_fault));
+        let link = states.link_fault.map(|fault| format!("link: {fault}"));
+        [drive, link].into_iter().flatten().collect::<Vec<_>>().join("; ")
+    }
+
+    /// Where it is; `None` after a failure.
+    pub(crate) fn save(&self) -> Option<MachineState> {
+        let snapshot = if self.failed { None } else { self.stepper.snapshot() };
+        Some(MachineState { snapshot: snapshot?, mover: self.mover.clone() })
+    }
+
+    /// Goes back to `state`, of a machine with the same parameters.
+    pub(crate) fn restore(&mut self, state: &MachineState) {
+        self.stepper.restore(&state.snapshot);
+        self.mover = state.mover.clone();
+        self.failed = false;
+    }
+}

@@ -1,0 +1,200 @@
+//! Parameters: values of the scenario that may be set before the simulation begins.
+use servobench_scenario::{Actuator, AxisMechanics, Body, Drive, Motion, Scenario, Step, Way};
+
+/// A parameter.
+#[derive(Debug)]
+pub(crate) struct Parameter {
+    pub(crate) name: &'static str,
+    pub(crate) description: &'static str,
+    /// Symbol of its unit on the axis.
+    pub(crate) unit: fn(&Scenario) -> String,
+    /// Whether it must be above zero, or at least zero.
+    pub(crate) least: Least,
+    get: fn(&Scenario) -> Option<f64>,
+    set: fn(&mut Scenario, f64),
+}
+
+/// Least value of a parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Least {
+    Any,
+    Zero,
+    Positive,
+}
+
+impl Parameter {
+    /// Its value in `scenario`; `None` where there is nothing of that kind.
+    pub(crate) fn value(&self, scenario: &Scenario) -> Option<f64> {
+        (self.get)(scenario).filter(|value| value.is_finite())
+    }
+
+    /// Sets it.
+    pub(crate) fn apply(&self, scenario: &mut Scenario, value: f64) {
+        (self.set)(scenario, value);
+    }
+}
+
+const fn is_rotary(motion: Motion) -> bool {
+    matches!(motion, Motion::Rotary)
+}
+
+fn axis(scenario: &Scenario) -> &'static str {
+    if is_rotary(scenario.axis.motion) { "rad" } else { "m" }
+}
+
+fn motor(scenario: &Scenario) -> &'static str {
+    if is_rotary(scenario.axis.motor_motion) { "rad" } else { "m" }
+}
+
+/// Symbol of an effort in the coordinate with this unit.
+pub(crate) fn effort(unit: &str) -> &'static str {
+    if unit == "rad" { "N m" } else { "N" }
+}
+
+fn drive(scenario: &mut Scenario) -> Option<&mut Drive> {
+    match &mut scenario.actuator {
+        Actuator::Prescribed | Actuator::Off => None,
+        Actuator::Pmsm { drive, .. } | Actuator::IdealSource { drive, .. } => Some(drive),
+    }
+}
+
+/// The load, where it is a body of its own.
+fn load(scenario: &Scenario) -> Option<&Body> {
+    match &scenario.axis.mechanics {
+        AxisMechanics::Bodies(bodies) if bodies.len() > 1 => bodies.last(),
+        _ => None,
+    }
+}
+
+fn load_mut(scenario: &mut Scenario) -> Option<&mut Body> {
+    match &mut scenario.axis.mechanics {
+        AxisMechanics::Bodies(bodies) if bodies.len() > 1 => bodies.last_mut(),
+        _ => None,
+    }
+}
+
+/// Limits of velocity, acceleration and jerk of the first move that has all of them.
+pub(crate) fn limits_of_moves(scenario: &Scenario) -> Option<[f64; 3]> {
+    scenario.program.iter().find_map(|step| match step {
+        Step::Move(step) if !matches!(step.way, Way::Rockwell(_)) => {
+            let [velocity, acceleration, jerk, _] = step.limits;
+            [velocity, acceleration, jerk].iter().all(|limit| limit.is_finite()).then_some([
+                velocity,
+                acceleration,
+                jerk,
+            ])
+        }
+        _ => None,
+    })
+}
+
+/// All parameters that a part with a drive has.
+pub(crate) const OF_DRIVE: &[Parameter] = &[
+    Parameter {
+        name: "drive.position_gain",
+        description: "proportional gain of the position loop, K_v",
+        unit: |_| "1/s".into(),
+        least: Least::Zero,
+        get: |scenario| Some(scenario.actuator.drive()?.position.gain),
+        set: |scenario, value| drive(scenario).into_iter().for_each(|drive| drive.position.gain = value),
+    },
+    Parameter {
+        name: "drive.velocity_gain",
+        description: "proportional gain of the velocity loop, effort per velocity of the motor coordinate",
+        unit: |scenario| format!("{} s/{}", effort(motor(scenario)), motor(scenario)),
+        least: Least::Zero,
+        get: |scenario| Some(scenario.actuator.drive()?.velocity.gain),
+        set: |scenario, value| drive(scenario).into_iter().for_each(|drive| drive.velocity.gain = value),
+    },
+    Parameter {
+        name: "drive.velocity_integral_time",
+        description: "integral time of the velocity loop",
+        unit: |_| "s".into(),
+        least: Least::Positive,
+        get: |scenario| scenario.actuator.drive()?.velocity.integral_time,
+        set: |scenario, value| drive(scenario).into_iter().for_each(|drive| drive.velocity.integral_time = Some(value)),
+    },
+    Parameter {
+        name: "drive.velocity_feedforward",
+        description: "share of the reference velocity that is fed forward",
+        unit: |_| String::new(),
+        least: Least::Zero,
+        get: |scenario| Some(scenario.actuator.drive()?.feedforward.velocity),
+        set: |scenario, value| drive(scenario).into_iter().for_each(|drive| drive.feedforward.velocity = value),
+    },
+    Parameter {
+        name: "drive.max_effort",
+        description: "largest torque or force that the velocity loop asks for",
+        unit: |scenario| effort(motor(scenario)).into(),
+        least: Least::Positive,
+        get: |scenario| Some(scenario.actuator.drive()?.max_effort),
+        set: |scenario, value| drive(scenario).into_iter().for_each(|drive| drive.max_effort = value),
+    },
+    Parameter {
+        name: "drive.max_current",
+        description: "largest current reference, amplitude",
+        unit: |_| "A".into(),
+        least: Least::Positive,
+        get: |scenario| match &scenario.actuator {
+            Actuator::Pmsm { current, .. } => Some(current.max_current),
+            _ => None,
+        },
+        set: |scenario, value| {
+            if let Actuator::Pmsm { current, .. } = &mut scenario.actuator {
+                current.max_current = value;
+            }
+        },
+    },
+];
+
+/// All parameters that a part with the mechanics has.
+pub(crate) const OF_MECHANICS: &[Parameter] = &[
+    Parameter {
+        name: "load.inertia",
+        description: "mass or inertia of the load; what the drive believes of it stays",
+        unit: |scenario| if axis(scenario) == "rad" { "kg m²".into() } else { "kg".into() },
+        least: Least::Positive,
+        get: |scenario| Some(load(scenario)?.inertia),
+        set: |scenario, value| load_mut(scenario).into_iter().for_each(|load| load.inertia = value),
+    },
+    Parameter {
+        name: "load.stiffness",
+        description: "stiffness of the coupling before the load",
+        unit: |scenario| format!("{}/{}", effort(axis(scenario)), axis(scenario)),
+        least: Least::Positive,
+        get: |scenario| Some(load(scenario)?.coupling?.stiffness),
+        set: |scenario, value| {
+            if let Some(coupling) = load_mut(scenario).and_then(|load| load.coupling.as_mut()) {
+                coupling.stiffness = value;
+            }
+        },
+    },
+    Parameter {
+        name: "load.damping",
+        description: "damping of the coupling before the load",
+        unit: |scenario| format!("{} s/{}", effort(axis(scenario)), axis(scenario)),
+        least: Least::Zero,
+        get: |scenario| Some(load(scenario)?.coupling?.damping),
+        set: |scenario, value| {
+            if let Some(coupling) = load_mut(scenario).and_then(|load| load.coupling.as_mut()) {
+                coupling.damping = value;
+            }
+        },
+    },
+    Parameter {
+        name: "initial.load_position",
+        description: "position of the load when the simulation begins",
+        unit: |scenario| axis(scenario).into(),
+        least: Least::Any,
+        get: |scenario| Some(scenario.initial.load_position),
+        set: |scenario, value| scenario.initial.load_position = value,
+    },
+    Parameter {
+        name: "initial.load_velocity",
+        description: "velocity of the load when the simulation begins",
+        unit: |scenario| format!("{}/s", axis(scenario)),
+        least: Least::Any,
+        get: |scenario| Some(scenario.initial.load_velocity),
+        set: |scenario, value| scenario.initial.load_velocity = value,
+    },
+];
