@@ -98,7 +98,7 @@ fn here(bencher: divan::Bencher) {
 
 #[divan::bench(args = LOADS)]
 fn isolated(bencher: divan::Bencher, load: usize) {
-    let command = HostCommand { program: std::env::current_exe().unwrap(), args: vec!["host".into()] };
+    let command = HostCommand { program: std::env::current_exe().unwrap(), args: vec!["host".into()], env: Vec::new() };
     let mut slave = Isolated::start(&command, &(), WIRES, Bounds::default()).unwrap();
     let _load = Load::new(load);
     bencher.counter(TURNS).bench_local(|| steps_and_readings(&mut slave));

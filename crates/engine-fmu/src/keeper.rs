@@ -26,6 +26,9 @@ pub struct HostCommand {
     pub program: PathBuf,
     /// What tells it that it is a host.
     pub args: Vec<OsString>,
+    /// What its environment has besides that of this process: libraries of Python FMUs need `LD_PRELOAD`, the simulation does
+    /// not.
+    pub env: Vec<(OsString, OsString)>,
 }
 
 /// What the simulation and the thread that keeps the process see.
@@ -81,7 +84,7 @@ impl Keeper {
         let shared = Arc::new(Shared { page, output, ending: OnceLock::new(), memory, stop });
         let mut process = Command::new(&command.program);
         // A group of its own: what it starts ends with it, and Ctrl-C is for the simulation.
-        process.args(&command.args).process_group(0);
+        process.args(&command.args).envs(command.env.iter().map(|(name, value)| (name, value))).process_group(0);
         process.stdin(Stdio::from(file)).stdout(for_stdout).stderr(for_stderr);
         let (told, started) = channel();
         let for_thread = Arc::clone(&shared);

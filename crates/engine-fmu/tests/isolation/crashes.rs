@@ -106,10 +106,11 @@ fn a_forked_twin_does_not_answer() {
 
 #[test]
 fn a_program_that_is_no_host_is_reported() {
-    let command = HostCommand { program: "/no/such/program".into(), args: Vec::new() };
+    let command = HostCommand { program: "/no/such/program".into(), args: Vec::new(), env: Vec::new() };
     let error = Isolated::start(&command, &Bad::Nothing, WIRES, Bounds::default()).unwrap_err();
     assert!(error.to_string().starts_with("cannot start the process of the FMU, `/no/such/program`: "), "{error}");
-    let command = HostCommand { program: "/bin/sh".into(), args: vec!["-c".into(), "echo what? >&2; exit 2".into()] };
+    let args = vec!["-c".into(), "echo $SAYS >&2; exit 2".into()];
+    let command = HostCommand { program: "/bin/sh".into(), args, env: vec![("SAYS".into(), "what?".into())] };
     let error = Isolated::start(&command, &Bad::Nothing, WIRES, Bounds::default()).unwrap_err();
     let how = "exit code 2; its last words: what?".to_owned();
     assert!(matches!(&error, IsolationError::Slave(SlaveError::Crashed { how: is, .. }) if *is == how), "{error}");

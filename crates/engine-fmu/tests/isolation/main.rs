@@ -27,7 +27,7 @@ fn host() {
 
 fn host_command() -> HostCommand {
     let args = ["--exact", "host", "--ignored", "--nocapture"];
-    HostCommand { program: std::env::current_exe().unwrap(), args: args.map(Into::into).to_vec() }
+    HostCommand { program: std::env::current_exe().unwrap(), args: args.map(Into::into).to_vec(), env: Vec::new() }
 }
 
 const WIRES: Wires = Wires { inputs: 1, outputs: 2 };

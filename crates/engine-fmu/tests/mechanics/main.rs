@@ -1,4 +1,5 @@
 //! An FMU as the mechanics. The FMUs of these tests are engines of our own behind the interface of one.
+mod allocation;
 mod exchange;
 mod ports;
 

@@ -5,9 +5,8 @@ use servobench_plant::{
     Isolation, Mechanics, MechanicsError, MechanicsSetup, Model,
 };
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::OnceLock;
 use std::time::Duration;
 use tempfile::TempDir;
 
@@ -66,14 +65,18 @@ fn host() {
 const ENGINE: Fmu = Fmu {
     host: || {
         let args = ["--exact", "host", "--ignored", "--nocapture"];
-        Ok(HostCommand { program: std::env::current_exe()?, args: args.map(Into::into).to_vec() })
+        Ok(HostCommand { program: std::env::current_exe()?, args: args.map(Into::into).to_vec(), env: Vec::new() })
     },
 };
 
-/// The FMU's file, which is there as long as the test program.
-fn fmu() -> &'static Path {
-    static FILE: OnceLock<(TempDir, std::path::PathBuf)> = OnceLock::new();
-    let (_, path) = FILE.get_or_init(|| {
+/// The FMU's file, which is there as long as this is.
+struct File {
+    _folder: TempDir,
+    path: PathBuf,
+}
+
+impl File {
+    fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
         let library = folder.path().join("mass.so");
         let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/native/mass.c");
@@ -91,20 +94,19 @@ fn fmu() -> &'static Path {
             zip.write_all(&content).unwrap();
         }
         zip.finish().unwrap();
-        (folder, path)
-    });
-    path
+        Self { _folder: folder, path }
+    }
 }
 
 fn isolated(patience: Duration) -> Isolation {
     Isolation::Process { patience, memory: 300_000_000 }
 }
 
-fn setup(mischief: Mischief, isolation: Isolation) -> MechanicsSetup {
+fn setup(file: &File, mischief: Mischief, isolation: Isolation) -> MechanicsSetup {
     let port = |variable: &str| FmuPort { variable: variable.into(), element: 0 };
     let start = |variable: &str, value| FmuStart { variable: variable.into(), values: vec![value] };
     let model = FmuModel {
-        path: fmu().to_owned(),
+        path: file.path.clone(),
         effort: port("force"),
         motor: FmuBody { coordinate: Coordinate::Linear, position: port("x"), velocity: Some(port("v")) },
         load: None,
@@ -124,7 +126,8 @@ fn setup(mischief: Mischief, isolation: Isolation) -> MechanicsSetup {
 }
 
 fn build(mischief: Mischief, isolation: Isolation) -> FmuMechanics {
-    ENGINE.mechanics(&setup(mischief, isolation)).unwrap_or_else(|error| panic!("{error}"))
+    // What it was unpacked to is its own.
+    ENGINE.mechanics(&setup(&File::new(), mischief, isolation)).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn push() -> Input {
@@ -179,7 +182,7 @@ fn what_a_library_does_wrong_is_reported_as_what_it_is() {
     let mut mass = build(Mischief::NanOutput, isolated(patience));
     let error = mass.advance(&push()).unwrap_err();
     assert!(matches!(&error, MechanicsError::Diverged { .. }), "{error}");
-    let error = ENGINE.build(&setup(Mischief::CrashInStart, isolated(patience))).err().unwrap();
+    let error = ENGINE.build(&setup(&File::new(), Mischief::CrashInStart, isolated(patience))).err().unwrap();
     assert!(error.to_string().contains("the FMU's process ended at 0 s: signal 11"), "{error}");
 }
 
@@ -211,8 +214,7 @@ fn nothing_stays_in_the_folder_for_temporary_files() {
     let output = alone.output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
     let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-    // The test's own folder with the FMU's file, which statics keep.
-    assert!(left.iter().all(|name| !name.to_string_lossy().contains("servobench")), "{left:?}");
+    assert_eq!(left, [""; 0]);
 }
 
 /// Not a test: what the one above looks at.
@@ -230,7 +232,8 @@ fn crashes_alone() {
 #[test]
 fn what_the_engine_cannot_do_is_refused() {
     let says = |setup: &MechanicsSetup| ENGINE.build(setup).err().unwrap().to_string();
-    let good = setup(Mischief::Nothing, Isolation::None);
+    let file = File::new();
+    let good = setup(&file, Mischief::Nothing, Isolation::None);
     let prescribed = MechanicsSetup { drive: Drive::Prescribed, ..good.clone() };
     assert!(says(&prescribed).contains("does not support a prescribed motion"));
     let Model::Fmu(model) = &good.model else { panic!("an FMU") };
