@@ -6,6 +6,7 @@
 mod axis;
 mod bus;
 mod drive;
+mod fmu;
 mod motor;
 mod plc;
 mod program;
@@ -14,6 +15,7 @@ mod setpoint;
 pub(crate) use axis::{Axis, Body, Mjcf};
 pub(crate) use bus::{Bus, BusFault, FaultName};
 pub(crate) use drive::{Current, Drive, Estimate, FeedbackEncoder, Velocity, VelocityKind};
+pub(crate) use fmu::{Coupling, Fmu};
 pub(crate) use motor::{Encoder, Motor, MotorKind};
 pub(crate) use plc::{Call, Condition, Plc, Update};
 pub(crate) use program::{Disturbance, ProgramStep};
@@ -35,6 +37,7 @@ impl Choice for EngineName {
         ("exact", Self::Exact, "exact zero-order hold of the linear chain"),
         ("rapier", Self::Rapier, "Rapier, in f64"),
         ("mujoco", Self::Mujoco, "MuJoCo"),
+        ("fmu", Self::Fmu, "the FMU of `[axis.fmu]`"),
     ];
 }
 
@@ -66,6 +69,10 @@ table! {
         plc: Plc = (),
         /// Calls of PLCopen function blocks instead of a program; `[[call]]` for each.
         call: Many<Call> = (),
+        /// Parts that FMUs simulate beside the axis: a load, a controller, a source of signals; `[[fmu]]` for each.
+        fmu: Many<Fmu> = (),
+        /// How they and the axis exchange what they give.
+        coupling: Coupling = (),
         /// External forces and torques; `[[disturbance]]` for each.
         disturbance: Many<Disturbance> = (),
         /// Where the load is at time 0; the motor is at rest at zero.

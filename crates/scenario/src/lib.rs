@@ -17,6 +17,7 @@ mod limit_table;
 mod list;
 mod load;
 mod models;
+mod name_table;
 mod nearest;
 mod object_table;
 mod physical;
@@ -43,14 +44,15 @@ pub use points::{
     Column, MOST_POINTS, Points, PointsError, PointsMistake, Profile, read_accelerations, read_points, read_velocities,
 };
 pub use scenario::{
-    Actuator, Axis, AxisMechanics, Block, Body, Braking, BufferMode, Bus, BusFault, BusFaultKind, BusMode, Call,
-    Command, Condition, Counter, Coupling, CurrentGain, CurrentLoop, Direction, Disturbance, DisturbedBody, Drive,
-    DriveInterpolation, DriveUnits, Dynamics, EffortFeedforward, Encoder, EngineName, Estimate, Execution, Feedback,
-    Feedforward, Filter, Follow, Goal, Grid, HomeSwitch, IdealSource, Initial, Interpolation, InterpolationMode,
-    LONGEST_RUN, Limit, Measure, Method, Mjcf, Motion, MotorEstimate, MoveStep, ObjectWrite, OnlineMove, Output, Pair,
-    PlanEffort, Plc, Pmsm, PositionLoop, ProfileFollow, Record, RestMove, RockwellJerk, RockwellMove, RockwellShape,
-    Sampling, Scales, Scenario, Sequencing, Shaper, ShaperKind, SourceOutput, Step, Switches, TableMove, Target,
-    TrajectoryBuffer, Update, Velocities, VelocityLoop, Way,
+    Actuator, Axis, AxisMechanics, Block, Body, BodySignal, Braking, BufferMode, Bus, BusFault, BusFaultKind, BusMode,
+    Call, CoSimulation, Command, Condition, Counter, Coupling, CouplingMethod, CurrentGain, CurrentLoop, Direction,
+    Disturbance, DisturbedBody, Drive, DriveInterpolation, DriveUnits, Dynamics, EffortFeedforward, Encoder,
+    EngineName, Estimate, Execution, Feedback, Feedforward, Filter, Fmu, Follow, Goal, Grid, HomeSwitch, IdealSource,
+    Initial, Interpolation, InterpolationMode, Isolation, LONGEST_RUN, Limit, LoopSignal, Measure, Method, Mjcf,
+    Motion, MotorEstimate, MoveStep, ObjectWrite, OnlineMove, Output, Pair, PlanEffort, Plc, Pmsm, PositionLoop,
+    ProfileFollow, Record, RestMove, RockwellJerk, RockwellMove, RockwellShape, Sampling, Scales, Scenario, Sequencing,
+    Shaper, ShaperKind, Signal, SourceOutput, StartValue, Step, Switches, TableMove, Target, TrajectoryBuffer, Update,
+    Velocities, VelocityLoop, Way,
 };
 pub use schema::json_schema;
 pub use source::{SourceId, Sources};

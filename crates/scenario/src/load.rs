@@ -73,7 +73,7 @@ pub fn parse(name: &str, text: &str, folder: Option<&Path>) -> Result<Loaded, Lo
                 AxisMechanics::Mjcf(mjcf) => {
                     Some(sources.add(mjcf.path.display().to_string(), mjcf.xml.clone(), Place::Embedded("".into())))
                 }
-                AxisMechanics::Bodies(_) => None,
+                AxisMechanics::Bodies(_) | AxisMechanics::InTheFmu => None,
             };
             Ok(Loaded { scenario, warnings, sources, tables: report.tables, root, mjcf })
         }

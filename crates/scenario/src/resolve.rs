@@ -11,6 +11,7 @@ mod disturbance;
 mod drive;
 mod estimate;
 mod filter;
+mod fmu;
 mod inputs;
 mod keys;
 mod loops;
@@ -44,7 +45,12 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
     let motor = file.motor.given();
     let is_prescribed = motor.is_some_and(|motor| motor.kind.given() == Some(&MotorKind::Prescribed));
 
-    let moved = axis.zip(motor).and_then(|(axis, motor)| axis::resolve(axis, motor, sources, report));
+    let files = fmu::Known { base_rate, sources, actuator: None };
+    let mechanics = fmu::mechanics(file, files, report);
+    let moved = axis
+        .zip(motor)
+        .zip(mechanics)
+        .and_then(|((axis, motor), fmu)| axis::resolve(axis, motor, fmu, sources, report));
     let source = motor.and_then(|motor| motor::resolve(motor, report));
     let known = drive::Known { base_rate, axis: moved.as_ref(), motor: source.as_ref() };
     let actuator = drive::resolve(file, &known, report);
@@ -63,6 +69,8 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
     let plc = plc::resolve(file, &plc::Known { duration, is_modulo, sources }, report);
     let fixed = is_prescribed.then(|| disturbance::Fixed::of(moved.as_ref()));
     let timing = disturbance::Timing { base_rate, duration };
+    let coupling = fmu::coupling(file, base_rate, report);
+    let fmus = fmu::others(file, coupling, fmu::Known { actuator: actuator.as_ref(), ..files }, report);
     let disturbances = disturbance::disturbances(file, &timing, fixed, report);
     let initial = disturbance::initial(file, fixed, report);
     let record = record(file, base_rate, report);
@@ -90,6 +98,8 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
         interpolation: interpolation?,
         bus: bus?,
         plc: plc?,
+        fmus: fmus?,
+        coupling: coupling?,
         disturbances: disturbances?,
         initial,
         record: record?,

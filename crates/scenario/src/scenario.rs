@@ -9,6 +9,7 @@ mod bus;
 mod disturbance;
 mod drive;
 mod filter;
+mod fmu;
 mod motor;
 mod plc;
 mod program;
@@ -25,6 +26,7 @@ pub use drive::{
     VelocityLoop,
 };
 pub use filter::{Filter, Interpolation, InterpolationMode, Shaper, ShaperKind};
+pub use fmu::{BodySignal, CoSimulation, CouplingMethod, Fmu, Isolation, LoopSignal, Signal, StartValue};
 pub use motor::{Encoder, IdealSource, Pmsm, SourceOutput};
 pub use plc::{
     Block, Braking, BufferMode, Call, Command, Condition, Direction, Dynamics, Output, Pair, Plc, ProfileFollow,
@@ -68,6 +70,10 @@ pub struct Scenario {
     pub bus: Option<Bus>,
     /// The PLC program, which needs a fieldbus; `None` without one.
     pub plc: Option<Plc>,
+    /// Parts that FMUs simulate beside the axis.
+    pub fmus: Vec<Fmu<LoopSignal>>,
+    /// How they and the axis exchange what they give.
+    pub coupling: CoSimulation,
     /// External efforts.
     pub disturbances: Vec<Disturbance>,
     /// Deviation from rest at zero at time 0.
@@ -100,6 +106,8 @@ pub enum EngineName {
     Rapier,
     /// MuJoCo.
     Mujoco,
+    /// The FMU of the axis.
+    Fmu,
 }
 
 /// What to record.
@@ -124,7 +132,7 @@ pub struct Measure {
 
 impl EngineName {
     /// Every engine, in the order in which tables list them.
-    pub const ALL: [Self; 3] = [Self::Exact, Self::Rapier, Self::Mujoco];
+    pub const ALL: [Self; 4] = [Self::Exact, Self::Rapier, Self::Mujoco, Self::Fmu];
 
     /// The name as scenario files write it.
     #[must_use]
@@ -133,6 +141,7 @@ impl EngineName {
             Self::Exact => "exact",
             Self::Rapier => "rapier",
             Self::Mujoco => "mujoco",
+            Self::Fmu => "fmu",
         }
     }
 }

@@ -10,7 +10,7 @@ fn scenario(text: &str) -> Scenario {
 fn bodies(scenario: &Scenario) -> &[Body] {
     match &scenario.axis.mechanics {
         AxisMechanics::Bodies(bodies) => bodies,
-        AxisMechanics::Mjcf(_) => panic!("bodies"),
+        AxisMechanics::Mjcf(_) | AxisMechanics::InTheFmu => panic!("bodies"),
     }
 }
 

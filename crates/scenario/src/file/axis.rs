@@ -1,4 +1,5 @@
 //! `[axis]`: the mechanics.
+use super::fmu::Fmu;
 use crate::field::{any, not_negative, positive};
 use crate::physical::Kind::{Axis as InAxis, Motor as InMotor, Plain};
 use crate::physical::{EFFORT, INERTIA, LEAD, MASS, POSITION, RATIO, STIFFNESS, VELOCITY, VISCOUS};
@@ -34,6 +35,8 @@ table! {
         load: Body = (),
         /// A user's own MJCF file instead of bodies.
         mjcf: Mjcf = (),
+        /// The mechanics as an FMU, for the engine "fmu"; bodies beside it are for the other engines.
+        fmu: Fmu = (),
         /// Period of a modulo axis, one that turns on and on; it has ends unless given. Function blocks use it.
         modulo: f64 = positive(InAxis(&POSITION), "360 deg"),
         /// Switches along the axis, which a drive on a fieldbus sees.

@@ -6,14 +6,20 @@ use crate::file::MotorKind;
 use crate::models::read_beside;
 use crate::physical::EFFORT;
 use crate::resolve::need;
-use crate::scenario::{Axis, AxisMechanics, Body, Coupling, HomeSwitch, Mjcf, Motion, Switches};
+use crate::scenario::{Axis, AxisMechanics, Body, BodySignal, Coupling, Fmu, HomeSwitch, Mjcf, Motion, Switches};
 use crate::source::{Sources, Span};
 use std::f64::consts::TAU;
 
 /// Inertia of a motor body that follows a prescribed motion: it does not matter, but engines want one.
 const PRESCRIBED_INERTIA: f64 = 1.0;
 
-pub(super) fn resolve(axis: &file::Axis, motor: &file::Motor, sources: &Sources, report: &mut Report) -> Option<Axis> {
+pub(super) fn resolve(
+    axis: &file::Axis,
+    motor: &file::Motor,
+    fmu: Option<Fmu<BodySignal>>,
+    sources: &Sources,
+    report: &mut Report,
+) -> Option<Axis> {
     let motion = need(&axis.motion, "axis", "motion", axis.span, report);
     let motor_motion = report.motor?;
     let transmission = transmission(axis, motion?, motor, motor_motion, report);
@@ -30,6 +36,7 @@ pub(super) fn resolve(axis: &file::Axis, motor: &file::Motor, sources: &Sources,
             mjcf_file(mjcf, sources, report).map(AxisMechanics::Mjcf)
         }
         None if axis.mjcf.span().is_some() => None,
+        None if fmu.is_some() && !has_bodies(axis) => Some(AxisMechanics::InTheFmu),
         None => bodies(axis, motor, motor_motion, transmission, report).map(AxisMechanics::Bodies),
     };
     let switches = switches(axis, motor_motion, report);
@@ -39,6 +46,7 @@ pub(super) fn resolve(axis: &file::Axis, motor: &file::Motor, sources: &Sources,
         motor_motion,
         transmission: transmission?,
         mechanics: mechanics?,
+        fmu,
         switches: switches?,
         modulo: modulo?,
     })
@@ -128,6 +136,10 @@ fn switches(axis: &file::Axis, motor_motion: Motion, report: &mut Report) -> Opt
     let index = given.index.optional().ok()?.copied().unwrap_or(0.0).rem_euclid(TAU) % TAU;
     let [negative, positive] = ends;
     Some(Switches { negative: negative.ok()?, positive: positive.ok()?, home, index: turns.then_some(index) })
+}
+
+fn has_bodies(axis: &file::Axis) -> bool {
+    [axis.motor_side.span(), axis.table.span(), axis.load.span()].iter().any(Option::is_some)
 }
 
 fn no_bodies_besides(axis: &file::Axis, report: &mut Report) {

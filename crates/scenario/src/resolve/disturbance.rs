@@ -27,6 +27,7 @@ impl Fixed {
         let has_one_body = axis.is_some_and(|axis| match &axis.mechanics {
             AxisMechanics::Bodies(bodies) => bodies.len() == 1,
             AxisMechanics::Mjcf(mjcf) => mjcf.motor_joint == mjcf.load_joint,
+            AxisMechanics::InTheFmu => false,
         });
         if has_one_body { Self::Everything } else { Self::Motor }
     }

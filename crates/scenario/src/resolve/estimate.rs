@@ -27,7 +27,7 @@ pub(super) fn of_axis(
     };
     let mut estimate = match &axis.mechanics {
         AxisMechanics::Bodies(bodies) => two_masses(bodies, transmission),
-        AxisMechanics::Mjcf(_) => unknown(transmission),
+        AxisMechanics::Mjcf(_) | AxisMechanics::InTheFmu => unknown(transmission),
     };
     if let Some(given) = given {
         let values = [

@@ -1,4 +1,5 @@
 //! The mechanics: bodies and what couples them.
+use super::fmu::{BodySignal, Fmu};
 use std::path::PathBuf;
 
 /// Whether a coordinate is a length or an angle.
@@ -21,6 +22,8 @@ pub struct Axis {
     pub transmission: f64,
     /// The bodies.
     pub mechanics: AxisMechanics,
+    /// The mechanics as an FMU, for the engine `fmu`.
+    pub fmu: Option<Fmu<BodySignal>>,
     /// What the drive sees of its position besides encoders.
     pub switches: Switches,
     /// Period of a modulo axis; `None` for one with ends.
@@ -57,6 +60,8 @@ pub enum AxisMechanics {
     Bodies(Vec<Body>),
     /// A user's own MJCF file.
     Mjcf(Mjcf),
+    /// Nothing that is known here: only the FMU of [`Axis::fmu`] knows.
+    InTheFmu,
 }
 
 /// One lumped body; in the motor coordinate for the first, in the axis coordinate for the others.

@@ -1,0 +1,64 @@
+//! `[axis.fmu]`, `[[fmu]]` and `[coupling]`: parts that somebody else simulates.
+use crate::field::positive;
+use crate::name_table::{SignalTable, StartTable};
+use crate::physical::Kind::Plain;
+use crate::physical::{RATIO, TIME};
+use crate::scenario::{CouplingMethod, Isolation};
+use crate::simple::Choice;
+use crate::table::table;
+
+impl Choice for Isolation {
+    const ALL: &'static [(&'static str, Self, &'static str)] = &[
+        ("process", Self::Process, "it runs in a process of its own: what it does to itself costs this run only"),
+        ("none", Self::None, "it is trusted and runs in the bench's own process, which is faster"),
+    ];
+}
+
+impl Choice for CouplingMethod {
+    const ALL: &'static [(&'static str, Self, &'static str)] = &[
+        ("jacobi", Self::Jacobi, "all step at once, with what the others gave at the start of the step"),
+        ("gauss-seidel", Self::GaussSeidel, "one after the other, each with what those before it have just given"),
+        ("iterated", Self::Iterated, "steps are repeated until inputs and outputs agree"),
+    ];
+}
+
+table! {
+    /// A Functional Mock-up Unit (FMI 2.0 or 3.0, co-simulation).
+    pub(crate) struct Fmu requires ["file"] {
+        /// Name of the instance; the file's name without its ending unless given.
+        name: String = (),
+        /// The file, relative to the file that names it.
+        file: String = (),
+        /// From exchange to exchange, a whole number of base ticks; one tick, or the step of `[coupling]`, unless given.
+        step: f64 = positive(Plain(&TIME), "1 ms"),
+        /// Where it runs; "process" unless given.
+        isolation: Isolation = (),
+        /// How long one of its calls may take (real time); 10 s unless given.
+        patience: f64 = positive(Plain(&TIME), "10 s"),
+        /// Megabytes of memory that its process may take; 2048 unless given.
+        memory: u32 = 64..=1_048_576,
+        /// Start values of its parameters and variables, in units that it can convert.
+        parameters: StartTable = (),
+        /// Its inputs, each with the signal that it is given: a channel of the recording, "time", or an output of another FMU
+        /// as "name.variable".
+        inputs: SignalTable = (),
+        /// Its outputs, each with what it is in the loop.
+        outputs: SignalTable = (),
+    }
+}
+
+table! {
+    /// How FMUs and the axis exchange what they give.
+    pub(crate) struct Coupling {
+        /// From exchange to exchange, a whole number of base ticks; one tick unless given.
+        step: f64 = positive(Plain(&TIME), "0.5 ms"),
+        /// Who steps when; "gauss-seidel" in the order of the file, the axis last, unless given.
+        method: CouplingMethod = (),
+        /// Order with which inputs go on within a step; 0 unless given: they are held.
+        extrapolation: u32 = 0..=2,
+        /// With "iterated": how well inputs and outputs agree, relative to their size; 1e-9 unless given.
+        tolerance: f64 = positive(Plain(&RATIO), "1e-9"),
+        /// With "iterated": how often a step may be repeated; 50 unless given.
+        iterations: u32 = 1..=1000,
+    }
+}

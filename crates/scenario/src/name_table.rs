@@ -1,0 +1,129 @@
+//! Tables whose keys are names that somebody else chose: the variables of an FMU, with what is connected or set.
+use crate::diagnostic::Report;
+use crate::field::{Field, written};
+use crate::source::{At, Span};
+use crate::tree::{Entry, Node, Value};
+use serde_json::{Value as Json, json};
+
+/// A name and what stands behind it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Named<T> {
+    pub(crate) name: String,
+    pub(crate) name_span: Span,
+    pub(crate) value: At<T>,
+}
+
+/// Signals by the names of variables: `{ tau = "effort.motor" }`.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct SignalTable(pub(crate) Vec<Named<String>>);
+
+/// Values by the names of variables: `{ mass = "12 kg", stages = 3, label = "left", gains = [1.0, 2.0] }`.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct StartTable(pub(crate) Vec<Named<StartValue>>);
+
+/// A value as a file says it. Which type and unit its variable has, only the FMU knows.
+#[derive(Debug, Clone, PartialEq)]
+pub enum StartValue {
+    /// A bare number, in the unit of the variable.
+    Number(f64),
+    /// TRUE or FALSE.
+    Flag(bool),
+    /// A text: a quantity with a unit, the name of an enumeration's item, or a string.
+    Text(String),
+    /// The elements of an array, in row-major order.
+    List(Vec<Self>),
+}
+
+fn entries<'a>(path: &str, node: &'a Node, report: &mut Report) -> Option<&'a [Entry]> {
+    if let Value::Table(table) = &node.value {
+        return Some(&table.entries);
+    }
+    let message = format!("`{path}` must be a table, got {}", node.value.kind());
+    report.error(node.span, message, format!("write `[{path}]`"));
+    None
+}
+
+/// The entries with dotted keys joined again: `body.x = …` is TOML's table `body`, and the variable `body.x`.
+fn flat<'a>(entries: &'a [Entry], prefix: &str, all: &mut Vec<(String, &'a Entry)>) {
+    for entry in entries {
+        let name = if prefix.is_empty() { entry.key.clone() } else { format!("{prefix}.{}", entry.key) };
+        match &entry.node.value {
+            Value::Table(table) => flat(&table.entries, &name, all),
+            _ => all.push((name, entry)),
+        }
+    }
+}
+
+fn decode<T>(
+    path: &str,
+    node: &Node,
+    report: &mut Report,
+    read: impl Fn(&Node, &mut Report) -> Option<T>,
+) -> Option<Vec<Named<T>>> {
+    let mut all = Vec::new();
+    flat(entries(path, node, report)?, "", &mut all);
+    let values = all.into_iter().map(|(name, entry)| {
+        let value = At { value: read(&entry.node, report)?, span: entry.node.span };
+        Some(Named { name, name_span: entry.key_span, value })
+    });
+    // Every mistake is said, so all of them are read before one counts.
+    values.collect::<Vec<_>>().into_iter().collect()
+}
+
+impl Field for SignalTable {
+    type Spec = ();
+
+    fn decode(path: &str, node: &Node, (): &(), report: &mut Report) -> Option<Self> {
+        let signal = |node: &Node, report: &mut Report| {
+            let text = node.value.as_text().map(str::to_owned);
+            if text.is_none() {
+                let message = format!("a signal is a text, got {}", written(node));
+                report.error(node.span, message, "write variable = \"load.position\"");
+            }
+            text
+        };
+        decode(path, node, report, signal).map(Self)
+    }
+
+    fn schema((): &()) -> Json {
+        json!({
+            "type": "object",
+            "additionalProperties": { "anyOf": [{ "type": "string" }, { "type": "object" }] },
+            "examples": ["{ tau = \"effort.motor\" }"],
+        })
+    }
+}
+
+impl Field for StartTable {
+    type Spec = ();
+
+    fn decode(path: &str, node: &Node, (): &(), report: &mut Report) -> Option<Self> {
+        decode(path, node, report, value).map(Self)
+    }
+
+    fn schema((): &()) -> Json {
+        json!({
+            "type": "object",
+            "additionalProperties": true,
+            "examples": ["{ mass = \"12 kg\", stages = 3 }"],
+        })
+    }
+}
+
+fn value(node: &Node, report: &mut Report) -> Option<StartValue> {
+    match &node.value {
+        Value::Number(number) if number.value.is_finite() => Some(StartValue::Number(number.value)),
+        Value::Bool(flag) => Some(StartValue::Flag(*flag)),
+        Value::Text(text) => Some(StartValue::Text(text.clone())),
+        Value::Array(items) => {
+            let values: Vec<_> = items.iter().map(|item| value(item, report)).collect();
+            values.into_iter().collect::<Option<_>>().map(StartValue::List)
+        }
+        Value::Number(_) | Value::Table(_) | Value::Date => {
+            let message =
+                format!("a start value is a finite number, a quantity, a text or true or false, got {}", written(node));
+            report.error(node.span, message, "");
+            None
+        }
+    }
+}

@@ -1,0 +1,377 @@
+//! `[axis.fmu]`, `[[fmu]]` and `[coupling]`: which files, what they are connected to, and how often.
+use crate::channel::CHANNELS;
+use crate::diagnostic::Report;
+use crate::field::Slot;
+use crate::file::{self, File};
+use crate::name_table::Named;
+use crate::nearest::suggestion;
+use crate::resolve::{refuse, whole};
+use crate::scenario::{
+    Actuator, BodySignal, CoSimulation, CouplingMethod, EngineName, Fmu, Isolation, LoopSignal, Signal,
+};
+use crate::source::{At, Place, Sources, Span};
+use servobench_base::Rate;
+use std::path::{Path, PathBuf};
+
+/// How long a call of an FMU may take, unless given (s).
+const PATIENCE: f64 = 10.0;
+/// Memory of its process, unless given (MB).
+const MEMORY: u32 = 2048;
+/// Agreement of inputs and outputs that are iterated, unless given.
+const TOLERANCE: f64 = 1e-9;
+/// Repetitions of a step, unless given.
+const ITERATIONS: u32 = 50;
+
+/// What the outputs of an FMU can be.
+trait Port: Copy + PartialEq + 'static {
+    /// With the names that files write.
+    const ALL: &'static [(&'static str, Self)];
+}
+
+impl Port for BodySignal {
+    const ALL: &'static [(&'static str, Self)] = &[
+        ("motor.position", Self::MotorPosition),
+        ("motor.velocity", Self::MotorVelocity),
+        ("table.position", Self::TablePosition),
+        ("table.velocity", Self::TableVelocity),
+        ("load.position", Self::LoadPosition),
+        ("load.velocity", Self::LoadVelocity),
+    ];
+}
+
+impl Port for LoopSignal {
+    const ALL: &'static [(&'static str, Self)] = &[
+        ("disturbance.motor", Self::MotorEffort),
+        ("disturbance.load", Self::LoadEffort),
+        ("setpoint.position", Self::SetpointPosition),
+        ("setpoint.velocity", Self::SetpointVelocity),
+        ("setpoint.acceleration", Self::SetpointAcceleration),
+        ("effort.motor", Self::Effort),
+        ("voltage.d", Self::VoltageD),
+        ("voltage.q", Self::VoltageQ),
+    ];
+}
+
+/// What acts on mechanics.
+const ON_MECHANICS: [&str; 3] = ["effort.motor", "disturbance.motor", "disturbance.load"];
+/// What mechanics must give: motion of the motor and, unless they are one body, of the load.
+const MOTOR: [(&str, BodySignal); 2] =
+    [("motor.position", BodySignal::MotorPosition), ("motor.velocity", BodySignal::MotorVelocity)];
+const LOAD: [(&str, BodySignal); 2] =
+    [("load.position", BodySignal::LoadPosition), ("load.velocity", BodySignal::LoadVelocity)];
+
+/// Where files are, and how long a tick is.
+#[derive(Clone, Copy)]
+pub(super) struct Known<'a> {
+    pub(super) base_rate: Option<Rate>,
+    pub(super) sources: &'a Sources,
+    pub(super) actuator: Option<&'a Actuator>,
+}
+
+/// The mechanics as an FMU, where there are such.
+#[expect(clippy::option_option, reason = "a wrong table is not the same as none")]
+pub(super) fn mechanics(file: &File, known: Known<'_>, report: &mut Report) -> Option<Option<Fmu<BodySignal>>> {
+    let slot = file.axis.given().map_or(&Slot::Absent, |axis| &axis.fmu);
+    let engines = file.engine.given().map_or(&[][..], |engines| &engines.0);
+    let asked = engines.iter().find(|engine| engine.value == EngineName::Fmu);
+    if let (Some(engine), Slot::Absent) = (asked, slot) {
+        report.error(engine.span, "the engine \"fmu\" has no FMU", "give `[axis.fmu]`");
+    }
+    let Some(At { value: given, span }) = slot.at() else { return slot.optional().ok().map(|_| None) };
+    if asked.is_none() {
+        report.warning(*span, "`fmu` is not used", "add \"fmu\" to `engine`");
+    }
+    let signals = |text: &str| ON_MECHANICS.iter().find(|name| **name == text).map(|name| Signal::Channel(name));
+    let fmu = fmu(given, 1, known, report, &signals, &ON_MECHANICS);
+    if let Some(fmu) = &fmu {
+        let lacks = |ports: &[(&'static str, BodySignal)]| {
+            let lacking = ports.iter().find(|(_, port)| fmu.outputs.iter().all(|(_, to)| to != port));
+            lacking.map(|(name, _)| *name)
+        };
+        let has_load = fmu.outputs.iter().any(|(_, to)| LOAD.iter().any(|(_, port)| port == to));
+        if let Some(name) = lacks(&MOTOR).or_else(|| lacks(&LOAD).filter(|_| has_load)) {
+            let message = format!("no output is `{name}`");
+            report.error(
+                given.outputs.span().unwrap_or(*span),
+                message,
+                "mechanics give position and velocity of the motor, and of the load unless they are one body",
+            );
+            return None;
+        }
+    }
+    fmu.map(Some)
+}
+
+/// The FMUs beside the axis.
+pub(super) fn others(
+    file: &File,
+    coupling: Option<CoSimulation>,
+    known: Known<'_>,
+    report: &mut Report,
+) -> Option<Vec<Fmu<LoopSignal>>> {
+    let given = match &file.fmu {
+        Slot::Absent => return Some(Vec::new()),
+        Slot::Wrong(_) => return None,
+        Slot::Given(given) => &given.value.0,
+    };
+    let names: Vec<String> = given.iter().map(|one| name(&one.value)).collect();
+    let mut all = Vec::new();
+    for (index, one) in given.iter().enumerate() {
+        check_name(&names, index, &one.value, report);
+        let signals = |text: &str| signal(text, &names);
+        let every = coupling.map_or(1, |coupling| coupling.every);
+        all.push(fmu(&one.value, every, known, report, &signals, CHANNELS));
+    }
+    let all: Vec<_> = all.into_iter().collect::<Option<_>>()?;
+    check_ports(file, given, &all, known, report);
+    Some(all)
+}
+
+/// Exchange of all FMUs with the axis.
+pub(super) fn coupling(file: &File, base_rate: Option<Rate>, report: &mut Report) -> Option<CoSimulation> {
+    let held = CoSimulation {
+        every: 1,
+        method: CouplingMethod::default(),
+        extrapolation: 0,
+        tolerance: TOLERANCE,
+        iterations: ITERATIONS,
+    };
+    let given = match &file.coupling {
+        Slot::Absent => return Some(held),
+        Slot::Wrong(_) => return None,
+        Slot::Given(given) => given,
+    };
+    if matches!(file.fmu, Slot::Absent) {
+        report.error(given.span, "there is nothing to couple", "give `[[fmu]]`; `[axis.fmu]` has a `step` of its own");
+    }
+    let given = &given.value;
+    let every = match &given.step {
+        Slot::Absent => Some(1),
+        Slot::Wrong(_) => None,
+        Slot::Given(at) => whole::ticks("step", *at, base_rate, report),
+    };
+    let method = given.method.optional().ok()?.copied().unwrap_or_default();
+    if method != CouplingMethod::Iterated {
+        let keys = [("tolerance", given.tolerance.span()), ("iterations", given.iterations.span())];
+        refuse(&keys, "is for the method \"iterated\"", "leave it out, or iterate", report);
+    }
+    Some(CoSimulation {
+        every: every?,
+        method,
+        extrapolation: given.extrapolation.optional().ok()?.copied().unwrap_or(held.extrapolation),
+        tolerance: given.tolerance.optional().ok()?.copied().unwrap_or(held.tolerance),
+        iterations: given.iterations.optional().ok()?.copied().unwrap_or(held.iterations),
+    })
+}
+
+fn fmu<P: Port>(
+    given: &file::Fmu,
+    every: u32,
+    known: Known<'_>,
+    report: &mut Report,
+    signal: &dyn Fn(&str) -> Option<Signal>,
+    signals: &[&str],
+) -> Option<Fmu<P>> {
+    let path = path(&given.file, known.sources, report);
+    let every = match &given.step {
+        Slot::Absent => Some(every),
+        Slot::Wrong(_) => None,
+        Slot::Given(at) => whole::ticks("step", *at, known.base_rate, report).and_then(|ticks| {
+            if ticks.is_multiple_of(every) {
+                return Some(ticks);
+            }
+            let message = format!("`step` is {ticks} base ticks, no whole number of steps of `[coupling]`, {every}");
+            report.error(at.span, message, "");
+            None
+        }),
+    };
+    let isolation = given.isolation.optional().ok().map(|isolation| isolation.copied().unwrap_or_default());
+    if isolation == Some(Isolation::None) {
+        let keys = [("patience", given.patience.span()), ("memory", given.memory.span())];
+        refuse(&keys, "is for an FMU in a process of its own", "leave `isolation` out", report);
+    }
+    let read = |text: &str| {
+        let found = if text == "time" { Some(Signal::Time) } else { signal(text) };
+        found.ok_or_else(|| suggestion(text, signals.iter().copied().chain(["time"])))
+    };
+    let inputs = given
+        .inputs
+        .optional()
+        .ok()
+        .and_then(|table| connections(table.map_or(&[][..], |table| &table.0), "no signal", report, read));
+    let outputs = given.outputs.optional().ok().and_then(|table| {
+        let port = |text: &str| {
+            let found = P::ALL.iter().find(|(name, _)| *name == text).map(|(_, port)| *port);
+            found.ok_or_else(|| suggestion(text, P::ALL.iter().map(|(name, _)| *name)))
+        };
+        connections(table.map_or(&[][..], |table| &table.0), "nothing that an FMU can give here", report, port)
+    });
+    let start =
+        given.parameters.optional().ok()?.map_or_else(Vec::new, |table| {
+            table.0.iter().map(|one| (one.name.clone(), one.value.value.clone())).collect()
+        });
+    let outputs = outputs?;
+    for (index, (_, port)) in outputs.iter().enumerate() {
+        if outputs[..index].iter().any(|(_, before)| before == port) {
+            twice(given, index, port, report);
+            return None;
+        }
+    }
+    Some(Fmu {
+        name: name(given),
+        path: path?,
+        every: every?,
+        isolation: isolation?,
+        patience: given.patience.optional().ok()?.copied().unwrap_or(PATIENCE),
+        memory: given.memory.optional().ok()?.copied().unwrap_or(MEMORY),
+        start,
+        inputs: inputs?,
+        outputs,
+    })
+}
+
+fn connections<T>(
+    given: &[Named<String>],
+    what: &str,
+    report: &mut Report,
+    read: impl Fn(&str) -> Result<T, String>,
+) -> Option<Vec<(String, T)>> {
+    let all: Vec<_> = given
+        .iter()
+        .map(|Named { name, value, .. }| match read(&value.value) {
+            Ok(found) => Some((name.clone(), found)),
+            Err(help) => {
+                report.error(value.span, format!("`{}` is {what}", value.value), help);
+                None
+            }
+        })
+        .collect();
+    all.into_iter().collect()
+}
+
+fn twice<P: Port>(given: &file::Fmu, index: usize, port: &P, report: &mut Report) {
+    let name = P::ALL.iter().find(|(_, one)| one == port).map_or("", |(name, _)| name);
+    let span = given.outputs.given().and_then(|table| table.0.get(index)).map(|one| one.value.span);
+    report.error(span.unwrap_or(given.span), format!("`{name}` is given twice"), "one output is one signal");
+}
+
+/// A channel, or the output of an FMU.
+fn signal(text: &str, names: &[String]) -> Option<Signal> {
+    if let Some(channel) = CHANNELS.iter().find(|channel| **channel == text) {
+        return Some(Signal::Channel(channel));
+    }
+    let (name, variable) = text.split_once('.')?;
+    let fmu = names.iter().position(|one| one == name)?;
+    Some(Signal::Fmu { fmu, variable: variable.to_owned() })
+}
+
+fn name(given: &file::Fmu) -> String {
+    let of_file = || {
+        given.file.given().and_then(|file| Path::new(file).file_stem()).map(|stem| stem.to_string_lossy().into_owned())
+    };
+    given.name.given().cloned().or_else(of_file).unwrap_or_default()
+}
+
+fn check_name(names: &[String], index: usize, given: &file::Fmu, report: &mut Report) {
+    let name = names[index].as_str();
+    let span = given.name.span().unwrap_or(given.span);
+    let is_of_channels = CHANNELS.iter().any(|channel| channel.split_once('.').is_some_and(|(group, _)| group == name));
+    if names[..index].iter().any(|before| before == name) {
+        report.error(span, format!("a second FMU is called `{name}`"), "give each its own `name`");
+    } else if name.is_empty() || name.contains('.') || is_of_channels || name == "time" {
+        let message = format!("`{name}` cannot name an FMU");
+        report.error(
+            span,
+            message,
+            "signals are called `name.variable`: give a `name` without a point that begins no channel's",
+        );
+    }
+}
+
+fn path(file: &Slot<String>, sources: &Sources, report: &mut Report) -> Option<PathBuf> {
+    let file = file.at()?;
+    let Some(Place::Folder(folder)) = sources.place(file.span.source) else {
+        report.error(file.span, "a scenario without a folder cannot name files", "");
+        return None;
+    };
+    let path = folder.join(&file.value);
+    match std::fs::metadata(&path) {
+        Ok(found) if found.is_file() => Some(path),
+        Ok(_) => {
+            report.error(file.span, format!("`{}` is no file", path.display()), "an FMU is a zip archive");
+            None
+        }
+        Err(error) => {
+            let message = format!("cannot read `{}`: {error}", path.display());
+            report.error(file.span, message, "the path is relative to this file");
+            None
+        }
+    }
+}
+
+/// What all FMUs together give to the loop.
+fn check_ports(file: &File, given: &[At<file::Fmu>], all: &[Fmu<LoopSignal>], known: Known<'_>, report: &mut Report) {
+    let place = |fmu: usize, output: usize| -> Span {
+        let one = &given[fmu];
+        let entry = one.value.outputs.given().and_then(|table| table.0.get(output));
+        entry.map_or(one.span, |entry| entry.value.span)
+    };
+    let mut taken: Vec<(LoopSignal, Span)> = Vec::new();
+    for (f, fmu) in all.iter().enumerate() {
+        for (o, (_, port)) in fmu.outputs.iter().enumerate() {
+            if taken.iter().any(|(before, _)| before == port) {
+                let name = LoopSignal::ALL.iter().find(|(_, one)| one == port).map_or("", |(name, _)| name);
+                report.error(
+                    place(f, o),
+                    format!("`{name}` is given by another FMU too"),
+                    "efforts do not add up here: let one FMU sum them",
+                );
+            } else {
+                taken.push((*port, place(f, o)));
+            }
+        }
+    }
+    let of = |port: LoopSignal| taken.iter().find(|(taken, _)| *taken == port).map(|(_, span)| *span);
+    if let Some(span) = of(LoopSignal::SetpointPosition) {
+        let written = [("program", file.program.span()), ("call", file.call.span())];
+        refuse(&written, "and a set-point from an FMU cannot be together", "give one of them", report);
+        if file.run.given().is_some_and(|run| run.duration.span().is_none()) {
+            report.error(span, "nobody knows how long the set-point of an FMU lasts", "give `duration` in `[run]`");
+        }
+    } else if let Some(span) = of(LoopSignal::SetpointVelocity).or(of(LoopSignal::SetpointAcceleration)) {
+        report.error(span, "a set-point has a position", "connect `setpoint.position` too");
+    }
+    let (d, q, effort) = (of(LoopSignal::VoltageD), of(LoopSignal::VoltageQ), of(LoopSignal::Effort));
+    if let (Some(span), None) | (None, Some(span)) = (d, q) {
+        report.error(span, "a voltage has two parts", "connect `voltage.d` and `voltage.q`");
+    }
+    if let (Some(span), Some(_)) = (d.or(q), effort) {
+        report.error(
+            span,
+            "`effort.motor` stands for drive and motor, a voltage for the drive alone",
+            "connect one of them",
+        );
+    }
+    if let Some(span) = d.or(q).or(effort) {
+        controller(file, d.is_some(), span, known.actuator, report);
+    }
+}
+
+/// An FMU in place of the drive.
+fn controller(file: &File, by_voltage: bool, span: Span, actuator: Option<&Actuator>, report: &mut Report) {
+    let why = "and an FMU in place of the drive cannot be together";
+    refuse(&[("bus", file.bus.span()), ("call", file.call.span())], why, "the FMU is the drive", report);
+    match actuator {
+        Some(Actuator::Prescribed) => {
+            report.error(
+                span,
+                "the motor follows the set-point exactly: no drive is to be replaced",
+                "give another `motor`",
+            );
+        }
+        Some(Actuator::IdealSource { .. } | Actuator::Off) if by_voltage => {
+            report.error(span, "a voltage is for a motor with currents", "connect `effort.motor`");
+        }
+        _ => {}
+    }
+}

@@ -1,0 +1,117 @@
+//! Parts that somebody else simulates.
+pub use crate::name_table::StartValue;
+use std::path::PathBuf;
+
+/// A Functional Mock-up Unit and what it is connected to. `To` is what its outputs can be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fmu<To> {
+    /// Name of the instance.
+    pub name: String,
+    /// The archive.
+    pub path: PathBuf,
+    /// From exchange to exchange (base ticks).
+    pub every: u32,
+    /// Where it runs.
+    pub isolation: Isolation,
+    /// How long one of its calls may take (s, real time).
+    pub patience: f64,
+    /// Memory that its process may take (MB).
+    pub memory: u32,
+    /// Start values by variable, in the order of the file.
+    pub start: Vec<(String, StartValue)>,
+    /// Inputs by variable with the signal that each is given.
+    pub inputs: Vec<(String, Signal)>,
+    /// Outputs by variable with what each is.
+    pub outputs: Vec<(String, To)>,
+}
+
+/// Where an FMU runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Isolation {
+    /// In a process of its own.
+    #[default]
+    Process,
+    /// In the bench's own process.
+    None,
+}
+
+/// What an input of an FMU is given (SI).
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Signal {
+    /// The time (s).
+    Time,
+    /// A channel of the recording.
+    Channel(&'static str),
+    /// An output of another FMU, in that one's unit converted to SI.
+    Fmu {
+        /// Position among the scenario's FMUs.
+        fmu: usize,
+        /// Name of the output.
+        variable: String,
+    },
+}
+
+/// What an output of an FMU can be that simulates the mechanics (SI; motor and load in the axis coordinate).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum BodySignal {
+    /// `motor.position`.
+    MotorPosition,
+    /// `motor.velocity`.
+    MotorVelocity,
+    /// `table.position`.
+    TablePosition,
+    /// `table.velocity`.
+    TableVelocity,
+    /// `load.position`.
+    LoadPosition,
+    /// `load.velocity`.
+    LoadVelocity,
+}
+
+/// What an output of an FMU can be beside the axis (SI).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum LoopSignal {
+    /// `disturbance.motor`: an effort on the motor, in its own coordinate.
+    MotorEffort,
+    /// `disturbance.load`: an effort on the load, in the axis coordinate.
+    LoadEffort,
+    /// `setpoint.position`, instead of a program.
+    SetpointPosition,
+    /// `setpoint.velocity`.
+    SetpointVelocity,
+    /// `setpoint.acceleration`.
+    SetpointAcceleration,
+    /// `effort.motor`: the motor's effort, instead of drive and motor.
+    Effort,
+    /// `voltage.d`, instead of the drive's.
+    VoltageD,
+    /// `voltage.q`, instead of the drive's.
+    VoltageQ,
+}
+
+/// How FMUs and the axis exchange what they give.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CoSimulation {
+    /// From exchange to exchange (base ticks).
+    pub every: u32,
+    /// Who steps when.
+    pub method: CouplingMethod,
+    /// Order with which inputs go on within a step, 0 to 2.
+    pub extrapolation: u32,
+    /// How well inputs and outputs agree after an iteration, relative to their size.
+    pub tolerance: f64,
+    /// How often a step may be repeated.
+    pub iterations: u32,
+}
+
+/// Who steps when.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum CouplingMethod {
+    /// All at once.
+    Jacobi,
+    /// One after the other in the order of the file, the axis last.
+    #[default]
+    GaussSeidel,
+    /// Repeated until inputs and outputs agree.
+    Iterated,
+}

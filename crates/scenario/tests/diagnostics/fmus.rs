@@ -1,0 +1,145 @@
+//! What is said of FMUs.
+use crate::AXIS;
+use servobench_scenario::{LoadError, load};
+
+/// What is said of the axis with `addition`, in a folder with the files `a.fmu` and `b.fmu`; lines count from the addition's.
+fn said(addition: &str) -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
+    for file in ["a.fmu", "b.fmu"] {
+        std::fs::write(folder.path().join(file), "").unwrap();
+    }
+    let path = folder.path().join("axis.toml");
+    std::fs::write(&path, format!("{AXIS}{addition}")).unwrap();
+    let shift = AXIS.lines().count();
+    let (all, sources) = match load(&path) {
+        Ok(loaded) => (loaded.warnings, loaded.sources),
+        Err(LoadError::Invalid(invalid)) => (invalid.diagnostics, invalid.sources),
+        Err(other) => panic!("{other}"),
+    };
+    let relative = all.iter().map(|one| {
+        let line = one.line(&sources).replace(&format!("{}/", folder.path().display()), "");
+        let line = line.trim_start_matches("axis.toml:").to_owned();
+        let (number, rest) = line.split_once(':').unwrap();
+        match number.parse::<usize>().unwrap().checked_sub(shift) {
+            Some(number) if number > 0 => format!("{number}:{rest}"),
+            _ => line,
+        }
+    });
+    relative.collect()
+}
+
+fn check(cases: &[(&str, &[&str])]) {
+    for (addition, expected) in cases {
+        assert_eq!(said(addition), *expected, "{addition}");
+    }
+}
+
+const LOAD: &str =
+    "[[fmu]]\nfile = \"a.fmu\"\ninputs = { x = \"load.position\" }\noutputs = { F = \"disturbance.load\" }\n";
+
+#[test]
+fn fmus_beside_the_axis_are_right() {
+    check(&[
+        (LOAD, &[]),
+        (&format!("{LOAD}[coupling]\nstep = \"1 ms\"\nmethod = \"iterated\"\ntolerance = 1e-6\niterations = 9\n"), &[]),
+        (
+            &format!(
+                "{LOAD}[[fmu]]\nfile = \"b.fmu\"\ninputs = {{ u = \"a.F\", t = \"time\", \"v[1]\" = \"a.body.v\" }}\n"
+            ),
+            &[],
+        ),
+        (
+            "[[fmu]]\nfile = \"a.fmu\"\nisolation = \"none\"\nparameters = { m = \"12 kg\", n = 3, k = [1.0, true], s.t = \"x\" }\n",
+            &[],
+        ),
+    ]);
+}
+
+#[test]
+fn files_names_and_signals_are_there() {
+    check(&[
+        ("[[fmu]]\nname = \"x\"\n", &["1:1: missing `file` in `fmu`"]),
+        (
+            "[[fmu]]\nfile = \"c.fmu\"\n",
+            &["2:8: cannot read `c.fmu`: No such file or directory (os error 2); the path is relative to this file"],
+        ),
+        (
+            &format!("{LOAD}{LOAD}"),
+            &[
+                "5:1: a second FMU is called `a`; give each its own `name`",
+                "8:17: `disturbance.load` is given by another FMU too; efforts do not add up here: let one FMU sum them",
+            ],
+        ),
+        (
+            "[[fmu]]\nname = \"load\"\nfile = \"a.fmu\"\n",
+            &[
+                "2:8: `load` cannot name an FMU; signals are called `name.variable`: give a `name` without a point that begins no channel's",
+            ],
+        ),
+        (
+            "[[fmu]]\nfile = \"a.fmu\"\ninputs = { x = \"load.positon\" }\n",
+            &["3:16: `load.positon` is no signal; did you mean `load.position`?"],
+        ),
+        (
+            "[[fmu]]\nfile = \"a.fmu\"\noutputs = { x = \"load.position\" }\n",
+            &[
+                "3:17: `load.position` is nothing that an FMU can give here; known here: `disturbance.motor`, `disturbance.load`, `setpoint.position`, `setpoint.velocity`, `setpoint.acceleration`, `effort.motor`, `voltage.d`, `voltage.q`",
+            ],
+        ),
+        (
+            "[[fmu]]\nfile = \"a.fmu\"\ninputs = { x = 3 }\n",
+            &["3:16: a signal is a text, got 3; write variable = \"load.position\""],
+        ),
+        (
+            "[[fmu]]\nfile = \"a.fmu\"\noutputs = { x = \"disturbance.load\", y = \"disturbance.load\" }\n",
+            &["3:41: `disturbance.load` is given twice; one output is one signal"],
+        ),
+    ]);
+}
+
+#[test]
+fn steps_fit_and_keys_belong_to_their_methods() {
+    check(&[
+        (
+            "[coupling]\nstep = \"1 ms\"\n",
+            &["1:1: there is nothing to couple; give `[[fmu]]`; `[axis.fmu]` has a `step` of its own"],
+        ),
+        (&format!("{LOAD}step = \"0.1 ms\"\n"), &["5:8: `step` is 1.6000 base ticks, not a whole number; 125 us fits"]),
+        (
+            &format!("{LOAD}step = \"3 ms\"\n[coupling]\nstep = \"2 ms\"\n"),
+            &["5:8: `step` is 48 base ticks, no whole number of steps of `[coupling]`, 32"],
+        ),
+        (
+            &format!("{LOAD}[coupling]\niterations = 3\n"),
+            &["6:14: `iterations` is for the method \"iterated\"; leave it out, or iterate"],
+        ),
+        (
+            &format!("{LOAD}isolation = \"none\"\npatience = \"1 s\"\n"),
+            &["6:12: `patience` is for an FMU in a process of its own; leave `isolation` out"],
+        ),
+    ]);
+}
+
+#[test]
+fn what_an_fmu_stands_for_has_no_double() {
+    let of = |outputs: &str| format!("[[fmu]]\nfile = \"a.fmu\"\noutputs = {{ {outputs} }}\n");
+    check(&[
+        (&of("x = \"setpoint.velocity\""), &["3:17: a set-point has a position; connect `setpoint.position` too"]),
+        (&of("u = \"voltage.d\""), &["3:17: a voltage has two parts; connect `voltage.d` and `voltage.q`"]),
+        (&of("u = \"voltage.d\", v = \"voltage.q\""), &[]),
+    ]);
+}
+
+#[test]
+fn mechanics_need_their_engine_and_their_outputs() {
+    let fmu = |outputs: &str| format!("[axis.fmu]\nfile = \"a.fmu\"\noutputs = {{ {outputs} }}\n");
+    check(&[
+        (&fmu("x = \"motor.position\", v = \"motor.velocity\""), &["1:1: `fmu` is not used; add \"fmu\" to `engine`"]),
+        (
+            &fmu("x = \"motor.position\""),
+            &[
+                "3:11: no output is `motor.velocity`; mechanics give position and velocity of the motor, and of the load unless they are one body",
+            ],
+        ),
+    ]);
+}
