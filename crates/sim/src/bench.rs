@@ -6,11 +6,13 @@ mod plant;
 
 use crate::channels::{Amplifier, Equipment, Selection, WriterRates};
 use crate::closed_loop::{ClosedLoop, Control, Source};
+use crate::coupled::{self, ConnectionDelay, Coupled, NoPartners, Partners};
 use crate::disturbance::Disturbances;
 use crate::error::{BuildError, check_length};
 use crate::limit_watch::LimitWatch;
 use crate::network::Network;
 use crate::program::Program;
+use crate::recorded::Recorded;
 use servobench_base::{Rate, Setpoint};
 use servobench_drive as drive;
 use servobench_plant::Engine;
@@ -25,13 +27,13 @@ const RECORDING_LIMIT: f64 = 4.0;
 /// A closed loop at tick 0, and what is recorded of it.
 pub struct Bench {
     pub(crate) ticks: u64,
-    pub(crate) closed_loop: ClosedLoop,
-    pub(crate) selection: Selection,
-    pub(crate) recorder: Recorder,
-    /// Base ticks from row to row, and to the next one. One, unless the run is too long for that.
-    pub(crate) record_every: u32,
-    pub(crate) ticks_to_row: u32,
-    pub(crate) watch: LimitWatch,
+    pub(crate) axis: Axis,
+}
+
+/// The axis, and whether it has company.
+pub(crate) enum Axis {
+    Alone(Recorded),
+    Coupled(Coupled),
 }
 
 impl Bench {
@@ -40,6 +42,27 @@ impl Bench {
     /// # Errors
     /// [`BuildError`] says which part of the scenario cannot be built.
     pub fn new(scenario: &Scenario, engine: &dyn Engine) -> Result<Self, BuildError> {
+        Self::with_partners(scenario, engine, &NoPartners)
+    }
+
+    /// How late what axis and FMUs exchange is; nothing where there are none.
+    #[must_use]
+    pub fn delays(&self) -> &[ConnectionDelay] {
+        match &self.axis {
+            Axis::Alone(_) => &[],
+            Axis::Coupled(coupled) => coupled.delays(),
+        }
+    }
+
+    /// The same with somebody who opens the FMUs of `scenario`.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_partners(
+        scenario: &Scenario,
+        engine: &dyn Engine,
+        partners: &dyn Partners,
+    ) -> Result<Self, BuildError> {
         let base_rate = scenario.base_rate;
         let program = Program::new(scenario)?;
         let duration = scenario.duration.unwrap_or(program.end() + TAIL);
@@ -51,8 +74,10 @@ impl Bench {
         let (mechanics, bodies) = plant::mechanics(scenario, engine)?;
         let motor_before = mechanics.bodies()[0].position;
         let power = plant::power_stage(&scenario.actuator, mechanics.bodies()[0].velocity)?;
+        let is_replaced = coupled::replaces_the_drive(scenario);
         let control = match &scenario.actuator {
             Actuator::Prescribed | Actuator::Off => None,
+            _ if is_replaced => None,
             Actuator::Pmsm { motor, current, drive, .. } => {
                 let stage = firmware::current_stage(base_rate, current)?;
                 Some(Control::new(
@@ -104,6 +129,7 @@ impl Bench {
             base_rate,
             source,
             begun: None,
+            upcoming: None,
             control,
             power,
             mechanics,
@@ -114,7 +140,13 @@ impl Bench {
             motor_before,
         };
         let watch = LimitWatch::default();
-        Ok(Self { ticks, closed_loop, selection, recorder, record_every, ticks_to_row: 0, watch })
+        let recorded = Recorded { closed_loop, selection, recorder, record_every, ticks_to_row: 0, watch, tick: 0 };
+        let axis = if scenario.fmus.is_empty() {
+            Axis::Alone(recorded)
+        } else {
+            Axis::Coupled(Coupled::new(scenario, recorded, ticks, (&equipment, &rates), partners)?)
+        };
+        Ok(Self { ticks, axis })
     }
 }
 

@@ -6,8 +6,8 @@ use crate::network::{Asked, Network, Seen};
 use crate::power::PowerStage;
 use crate::program::Program;
 use crate::run::Reason;
-use crate::stepper::External;
-use servobench_base::{Rate, Tick};
+use crate::stepper::{Controller, External};
+use servobench_base::{Rate, Setpoint, Tick};
 use servobench_drive::velocity::Cut;
 use servobench_drive::{self as drive, Command, Demand, Feedback, Sensors};
 use servobench_plant::{Actuation, BodyState, Encoder, Input, Mechanics, Switches};
@@ -20,6 +20,8 @@ pub(crate) struct ClosedLoop {
     pub(crate) source: Source,
     /// The tick at which the program began.
     pub(crate) begun: Option<u64>,
+    /// The program's set-point of the tick that comes, if somebody has asked for it.
+    pub(crate) upcoming: Option<Setpoint>,
     pub(crate) control: Option<Control>,
     pub(crate) power: PowerStage,
     pub(crate) mechanics: Box<dyn Mechanics>,
@@ -67,11 +69,18 @@ impl ClosedLoop {
             self.begun = Some(k);
         }
         let (mut now, motor) = self.sample(external);
-        let command = self.control(k, external, motor, &mut now, recorder);
+        let mut command = self.control(k, external, motor, &mut now, recorder);
+        if let Some(Controller::Voltage(voltage)) = external.controller {
+            now.voltage = voltage;
+            command = Command::Voltage(self.power.in_the_stator(voltage, motor));
+        }
         // The mean effort over the coming tick belongs into the row of this one; the current is the one at k.
         now.current = self.power.current();
         now.output = self.power.output(command);
-        now.effort = self.power.advance(command, motor, self.base_rate.period());
+        now.effort = match external.controller {
+            Some(Controller::Effort(effort)) => effort,
+            Some(Controller::Voltage(_)) | None => self.power.advance(command, motor, self.base_rate.period()),
+        };
         now.binds.voltage |= self.power.shortens_voltage();
         now.motor_disturbance = self.disturbances.effort_at(DisturbedBody::Motor, k) + external.motor_effort;
         now.load_disturbance = self.disturbances.effort_at(DisturbedBody::Load, k) + external.load_effort;
@@ -103,9 +112,10 @@ impl ClosedLoop {
     ) -> Command {
         // Until the program begins it stays at its beginning.
         let since = self.base_rate.time(Tick(k - self.begun.unwrap_or(k)));
+        let upcoming = self.upcoming.take();
         let Some(control) = &mut self.control else {
             if let Source::Program(program) = &mut self.source {
-                now.setpoint = external.setpoint.unwrap_or_else(|| program.at(since));
+                now.setpoint = external.setpoint.or(upcoming).unwrap_or_else(|| program.at(since));
             }
             now.reference = now.setpoint.x;
             now.motor_reference = now.setpoint.x;
@@ -124,7 +134,7 @@ impl ClosedLoop {
         let Control { params, state, .. } = control;
         let command = match &mut self.source {
             Source::Program(program) => {
-                now.setpoint = external.setpoint.unwrap_or_else(|| program.at(since));
+                now.setpoint = external.setpoint.or(upcoming).unwrap_or_else(|| program.at(since));
                 let command = drive::step(params, state, &Demand::position(now.setpoint), &sensors);
                 let (reference, motor_reference) = state.references(params);
                 (now.reference, now.motor_reference) = (reference.x, motor_reference.position);
@@ -166,6 +176,14 @@ impl ClosedLoop {
             effort: held.effort.cut == Some(Cut::Effort),
         };
         command
+    }
+
+    /// The program's set-point of tick `k`, which comes next; `None` over a fieldbus.
+    pub(crate) fn look_ahead(&mut self, k: u64) -> Option<Setpoint> {
+        if let (None, Source::Program(program)) = (self.upcoming, &mut self.source) {
+            self.upcoming = Some(program.at(self.base_rate.time(Tick(k - self.begun.unwrap_or(k)))));
+        }
+        self.upcoming
     }
 
     /// Integrates the mechanics to the next tick.

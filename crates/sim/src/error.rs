@@ -64,6 +64,25 @@ pub enum BuildError {
     /// The link to the drive cannot be set up.
     #[error(transparent)]
     Link(#[from] FieldbusError),
+    /// An FMU cannot be had.
+    #[error("{why}")]
+    Fmu {
+        /// Which of the scenario's FMUs, from 0.
+        index: usize,
+        /// Why.
+        why: String,
+    },
+    /// What the FMUs are connected with cannot be run so.
+    #[error("{0}")]
+    Coupling(String),
+    /// There is nothing that this engine could simulate.
+    #[error(
+        "the engine `{engine}` needs bodies or an MJCF file, and the axis has an FMU alone: choose the engine `fmu`"
+    )]
+    OnlyAnFmu {
+        /// The engine.
+        engine: &'static str,
+    },
     /// The engine refuses the mechanics.
     #[error(transparent)]
     Mechanics(#[from] MechanicsError),

@@ -5,20 +5,23 @@
 mod bench;
 mod channels;
 mod closed_loop;
+mod coupled;
 mod disturbance;
 mod error;
 mod limit_watch;
 mod network;
 mod power;
 mod program;
+mod recorded;
 mod run;
 mod stepper;
 mod thinning;
 
 pub use bench::Bench;
+pub use coupled::{ConnectionDelay, NoPartners, PartnerOrder, Partners};
 pub use error::BuildError;
 pub use network::Unsendable;
 pub use program::Program;
 pub use run::{Failure, Outcome, Reason};
-pub use stepper::{Binding, External, Snapshot, States, Stepper};
+pub use stepper::{Binding, Controller, External, Snapshot, States, Stepper};
 pub use thinning::thinned;

@@ -37,6 +37,15 @@ impl PowerStage {
         }
     }
 
+    /// A voltage in the rotor's frame (V, peak) in the stator's, with the motor at `motor`.
+    pub(crate) fn in_the_stator(&mut self, voltage: Dq, motor: BodyState) -> AlphaBeta {
+        self.measured_current(motor);
+        match self {
+            Self::Pmsm { rotor, .. } => voltage.to_alpha_beta(*rotor),
+            Self::Ideal { .. } | Self::Off => AlphaBeta::default(),
+        }
+    }
+
     /// Stator current in the rotor frame (A, peak).
     pub(crate) fn current(&self) -> Dq {
         match self {

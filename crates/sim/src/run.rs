@@ -1,9 +1,6 @@
 //! A run from the first tick to the last, and what it leaves behind.
-use crate::bench::Bench;
-use crate::channels::Instant;
-use crate::closed_loop::Source;
+use crate::bench::{Axis, Bench};
 use crate::stepper::External;
-use servobench_base::Tick;
 use servobench_plant::MechanicsError;
 use servobench_trace::Recording;
 
@@ -33,13 +30,16 @@ pub enum Reason {
     /// What the engine says.
     #[error(transparent)]
     Mechanics(#[from] MechanicsError),
+    /// What the coupling with FMUs says.
+    #[error("{0}")]
+    Coupling(String),
     /// What the program waited for in vain.
     #[error("{0}")]
     Program(String),
 }
 
 /// How often a run reports its progress, in ticks.
-const PROGRESS_EVERY: u64 = 1 << 14;
+pub(crate) const PROGRESS_EVERY: u64 = 1 << 14;
 
 impl Bench {
     /// Runs to the end; `progress` hears the share that is done, from 0 to 1.
@@ -47,43 +47,28 @@ impl Bench {
     /// ```text
     /// tick k:  sample → set-point → control → power stage → record → integrate to k+1
     /// ```
-    ///
-    /// What is recorded together belongs to the same instant.
     #[must_use]
-    pub fn run(mut self, progress: &mut dyn FnMut(f64)) -> Outcome {
-        let (mut t, mut failure) = (0.0, None);
-        for k in 0..self.ticks {
-            t = self.closed_loop.base_rate.time(Tick(k));
-            let mut now = self.closed_loop.tick(k, &External::default(), &mut self.recorder);
-            self.watch.tick(t, now.binds, &mut self.recorder);
-            self.record(&mut now);
-            if k % PROGRESS_EVERY == 0 {
-                progress(k as f64 / self.ticks as f64);
+    pub fn run(self, progress: &mut dyn FnMut(f64)) -> Outcome {
+        let Self { axis, ticks } = self;
+        let mut recorded = match axis {
+            Axis::Coupled(coupled) => return coupled.run(ticks, progress),
+            Axis::Alone(recorded) => recorded,
+        };
+        let mut failure = None;
+        loop {
+            let now = recorded.observe(&External::default());
+            if recorded.tick.is_multiple_of(PROGRESS_EVERY) {
+                progress(recorded.tick as f64 / ticks as f64);
             }
-            if k + 1 == self.ticks {
+            if recorded.tick + 1 == ticks {
                 break;
             }
-            if let Err(reason) = self.closed_loop.integrate(&now) {
-                failure = Some(Failure { time: t, reason });
+            if let Err(why) = recorded.go_on(&now) {
+                failure = Some(why);
                 break;
             }
-        }
-        self.watch.finish(t, &mut self.recorder);
-        if let Source::Network(network, delay) = &mut self.closed_loop.source {
-            let unit = self.recorder.about().axis_unit.clone();
-            network.finish(t, &unit, *delay, &mut self.recorder);
         }
         progress(1.0);
-        Outcome { recording: self.recorder.finish(), failure }
-    }
-
-    /// record(k), when a row is due.
-    fn record(&mut self, now: &mut Instant) {
-        if self.ticks_to_row == 0 {
-            self.ticks_to_row = self.record_every;
-            now.saturation = self.watch.shares();
-            self.recorder.push(self.selection.pick(now));
-        }
-        self.ticks_to_row -= 1;
+        recorded.finish(failure)
     }
 }

@@ -1,9 +1,10 @@
 //! The closed loop tick by tick, for somebody else's simulation: what acts on the axis comes from outside, and it can go back.
-use crate::bench::Bench;
+use crate::bench::{Axis, Bench};
 use crate::channels::{Instant, Selection};
 use crate::closed_loop::{ClosedLoop, Source};
+use crate::recorded::Recorded;
 use crate::run::{Failure, Reason};
-use servobench_base::{Rate, Setpoint, Tick};
+use servobench_base::{Dq, Rate, Setpoint, Tick};
 use servobench_cia402::PowerState;
 use servobench_fieldbus::Fault;
 use servobench_plant::BodyState;
@@ -23,12 +24,23 @@ pub struct External {
     pub load_effort: f64,
     /// Where motor (its own coordinate) and load (axis coordinate) are measured to be; the loop's own mechanics do not move then.
     pub measured: Option<[BodyState; 2]>,
+    /// What stands for the drive, or for drive and motor.
+    pub controller: Option<Controller>,
+}
+
+/// What somebody else's controller gives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Controller {
+    /// Effort of the motor (its own coordinate, N·m or N), instead of drive and motor.
+    Effort(f64),
+    /// Stator voltage in the rotor's frame at the tick (V, peak), instead of the drive.
+    Voltage(Dq),
 }
 
 impl Default for External {
     /// A run of the scenario as it is.
     fn default() -> Self {
-        Self { start: true, setpoint: None, motor_effort: 0.0, load_effort: 0.0, measured: None }
+        Self { start: true, setpoint: None, motor_effort: 0.0, load_effort: 0.0, measured: None, controller: None }
     }
 }
 
@@ -75,12 +87,16 @@ pub struct Snapshot {
 }
 
 impl Bench {
-    /// The loop, to be stepped from outside. Its channels are those that the scenario records.
+    /// The loop without the FMUs beside it, to be stepped from outside. Its channels are those that the scenario records.
     #[must_use]
     pub fn into_stepper(self) -> Stepper {
-        let recorder = Recorder::silent(self.recorder.about().clone(), self.closed_loop.base_rate);
-        let (now, _) = self.closed_loop.sample(&External::default());
-        Stepper { closed_loop: self.closed_loop, tick: 0, now, selection: self.selection, recorder }
+        let Recorded { closed_loop, selection, recorder, .. } = match self.axis {
+            Axis::Alone(recorded) => recorded,
+            Axis::Coupled(coupled) => coupled.alone(),
+        };
+        let recorder = Recorder::silent(recorder.about().clone(), closed_loop.base_rate);
+        let (now, _) = closed_loop.sample(&External::default());
+        Stepper { closed_loop, tick: 0, now, selection, recorder }
     }
 }
 

@@ -17,7 +17,7 @@ mod write;
 pub use channel::{Channel, ChannelSpec};
 pub use envelope::envelope;
 pub use error::TraceError;
-pub use recorder::{Recorder, SignalId};
+pub use recorder::{Mark, Recorder, SignalId};
 pub use recording::{About, Event, Move, Recording, Signal};
 pub use whole_file::{stream_whole, write_whole};
 

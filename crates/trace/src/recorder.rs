@@ -10,6 +10,15 @@ const BLOCK: usize = 64;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SignalId(usize);
 
+/// How far a recording has come, to go back to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mark {
+    rows: usize,
+    moves: usize,
+    events: usize,
+    time: f64,
+}
+
 /// Takes one row per recorded instant.
 #[derive(Debug)]
 pub struct Recorder {
@@ -97,6 +106,30 @@ impl Recorder {
         }
     }
 
+    /// Where the recording is at `time` (s), of which and after which nothing is noted yet.
+    #[must_use]
+    pub fn mark(&self, time: f64) -> Mark {
+        let width = self.recording.channels.len().max(1);
+        let rows = self.recording.channels.first().map_or(0, |channel| channel.values.len()) + self.block.len() / width;
+        Mark { rows, moves: self.recording.moves.len(), events: self.recording.events.len(), time }
+    }
+
+    /// Forgets what has come since `mark`.
+    pub fn rewind(&mut self, mark: &Mark) {
+        self.flush();
+        let Recording { channels, moves, events, signals, .. } = &mut self.recording;
+        for channel in channels {
+            channel.values.truncate(mark.rows);
+        }
+        moves.truncate(mark.moves);
+        events.truncate(mark.events);
+        for signal in signals {
+            while signal.changes.last().is_some_and(|(time, _)| *time >= mark.time) {
+                signal.changes.pop();
+            }
+        }
+    }
+
     /// The recording, events in order of their start.
     #[must_use]
     pub fn finish(mut self) -> Recording {
@@ -131,6 +164,42 @@ mod tests {
             let up: Vec<f64> = (0..rows).map(f64::from).collect();
             let down: Vec<f64> = up.iter().map(|k| -k).collect();
             assert_eq!((recording.channel("up"), recording.channel("down")), (Some(&up[..]), Some(&down[..])));
+        }
+    }
+
+    /// Oracle: a recorder to which only what stays was said.
+    #[test]
+    fn what_comes_after_a_mark_can_be_taken_back() {
+        let rate = Rate::new(1_000).unwrap();
+        let spec = |name: &str| ChannelSpec { name: name.into(), unit: "m".into(), writer: "test".into(), rate };
+        let about = || About { scenario: "s".into(), engine: "none".into(), axis_unit: "m".into(), bodies: vec![] };
+        let recorder = || Recorder::new(about(), rate, vec![spec("up"), spec("down")], 10);
+        for kept in [0_u32, 1, 63, 64, 65, 150] {
+            let (mut with, mut without) = (recorder(), recorder());
+            let [one, other] = [&mut with, &mut without].map(|recorder| recorder.add_signal("axis", "state"));
+            let note = |recorder: &mut Recorder, signal, k: u32, sign: f64| {
+                let k = f64::from(k);
+                recorder.push(&[sign * k, -sign * k]);
+                recorder.note_value(signal, k, if (k / 5.0) % 2.0 < 1.0 { "A" } else { "B" });
+                let message = format!("{k}");
+                recorder.note_event(Event { start: k, end: k, source: "test".into(), message });
+            };
+            for k in 0..kept {
+                note(&mut with, one, k, 1.0);
+                note(&mut without, other, k, 1.0);
+            }
+            let mark = with.mark(f64::from(kept));
+            for _ in 0..3 {
+                for k in kept..kept + 70 {
+                    note(&mut with, one, k, 2.0);
+                }
+                with.rewind(&mark);
+            }
+            for k in kept..kept + 9 {
+                note(&mut with, one, k, 1.0);
+                note(&mut without, other, k, 1.0);
+            }
+            assert_eq!(with.finish(), without.finish(), "{kept} rows");
         }
     }
 

@@ -89,6 +89,23 @@ pub enum LoopSignal {
     VoltageQ,
 }
 
+impl LoopSignal {
+    /// The name that files write.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::MotorEffort => "disturbance.motor",
+            Self::LoadEffort => "disturbance.load",
+            Self::SetpointPosition => "setpoint.position",
+            Self::SetpointVelocity => "setpoint.velocity",
+            Self::SetpointAcceleration => "setpoint.acceleration",
+            Self::Effort => "effort.motor",
+            Self::VoltageD => "voltage.d",
+            Self::VoltageQ => "voltage.q",
+        }
+    }
+}
+
 /// How FMUs and the axis exchange what they give.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CoSimulation {

@@ -19,6 +19,7 @@ pub(super) fn mechanics(
             let names: Vec<String> = bodies.iter().map(|body| body.name.to_owned()).collect();
             (plant::Model::Chain(chain(&scenario.axis, bodies)?), names)
         }
+        scenario::AxisMechanics::InTheFmu => return Err(BuildError::OnlyAnFmu { engine: engine.name() }),
         scenario::AxisMechanics::Mjcf(mjcf) => {
             let model = plant::MjcfModel {
                 xml: mjcf.xml.clone(),

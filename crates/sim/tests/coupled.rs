@@ -1,0 +1,186 @@
+//! FMUs beside the axis, here written in Rust.
+use servobench_fmi::{Capabilities, LogLine, Progress, Slave, SlaveError};
+use servobench_plant::Exact;
+use servobench_scenario as scenario;
+use servobench_sim::{Bench, NoPartners, Outcome, PartnerOrder, Partners};
+use servobench_trace::Recording;
+use std::f64::consts::TAU;
+
+/// A prescribed or driven table of 40 kg and, beside it, parts by their file's name.
+const TABLE: &str = r#"
+[run]
+base_rate = "16 kHz"
+duration = "0.5 s"
+[axis]
+motion = "linear"
+motor_side.mass = "40 kg"
+[motor]
+kind = "pmsm"
+pole_pitch = "16 mm"
+resistance = "1.6 Ohm"
+inductance = "3.5 mH"
+flux_linkage = "0.06 V s"
+max_current = "13.3 Arms"
+[drive]
+enabled = false
+"#;
+
+/// A part: outputs by the time and the inputs, and whatever it remembers.
+struct Part<F> {
+    law: F,
+    state: [f64; 2],
+    saved: [f64; 2],
+    last: Vec<f64>,
+    saves: bool,
+}
+
+impl<F: FnMut(&mut [f64; 2], f64, f64, &[f64]) -> f64 + Send> Slave for Part<F> {
+    fn capabilities(&self) -> Capabilities {
+        Capabilities { saves_state: self.saves, ..Capabilities::default() }
+    }
+
+    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+        let mean: Vec<f64> =
+            inputs.iter().map(|[u, d, dd]| u + d * length / 2.0 + dd * length * length / 6.0).collect();
+        self.last = vec![(self.law)(&mut self.state, time, length, &mean)];
+        Ok(Progress::Done)
+    }
+
+    /// A part with an input follows it without a step.
+    fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
+        if let Some(inputs) = inputs.filter(|inputs| !inputs.is_empty()) {
+            self.last = vec![(self.law)(&mut self.state.clone(), 0.0, 0.0, inputs)];
+        }
+        outputs.copy_from_slice(&self.last);
+        Ok(())
+    }
+
+    fn save(&mut self) -> Result<(), SlaveError> {
+        self.saved = self.state;
+        Ok(())
+    }
+
+    fn restore(&mut self) -> Result<(), SlaveError> {
+        self.state = self.saved;
+        Ok(())
+    }
+
+    fn take_log(&mut self) -> Vec<LogLine> {
+        Vec::new()
+    }
+}
+
+/// Parts by the name of the FMU.
+struct Parts;
+
+/// Stiffness of the spring that stands for a load (N/m), with 40 kg a mode of 10 Hz.
+const STIFFNESS: f64 = 40.0 * (TAU * 10.0) * (TAU * 10.0);
+
+impl Partners for Parts {
+    fn open(&self, order: &PartnerOrder<'_>) -> Result<Box<dyn Slave>, String> {
+        let start = vec![0.0; order.outputs.len()];
+        let state = [0.0; 2];
+        Ok(match order.fmu.name.as_str() {
+            "spring" => {
+                let law = |_: &mut [f64; 2], _: f64, _: f64, u: &[f64]| -STIFFNESS * u[0];
+                Box::new(Part { law, state, saved: state, last: start, saves: true })
+            }
+            "push" => {
+                let law = |_: &mut [f64; 2], t: f64, h: f64, _: &[f64]| if t + h < 0.1 - 1e-9 { 20.0 } else { 0.0 };
+                Box::new(Part { law, state, saved: state, last: vec![20.0], saves: false })
+            }
+            "ramp" => {
+                let law = |_: &mut [f64; 2], t: f64, h: f64, _: &[f64]| 0.01 * (t + h);
+                Box::new(Part { law, state, saved: state, last: start, saves: false })
+            }
+            other => return Err(format!("no part `{other}`")),
+        })
+    }
+}
+
+fn run(text: &str) -> Recording {
+    let Outcome { recording, failure } = bench(text, &Parts).unwrap_or_else(|e| panic!("{e}")).run(&mut |_| {});
+    assert_eq!(failure, None);
+    recording
+}
+
+/// The bench of a scenario beside whose file lie FMUs, whose insides do not matter here.
+fn bench(text: &str, partners: &dyn Partners) -> Result<Bench, String> {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["spring", "push", "ramp"] {
+        std::fs::write(folder.path().join(format!("{name}.fmu")), "").unwrap();
+    }
+    let path = folder.path().join("coupled.toml");
+    std::fs::write(&path, text).unwrap();
+    let loaded = scenario::load(&path).map_err(|error| error.to_string())?;
+    Bench::with_partners(&loaded.scenario, &Exact, partners).map_err(|error| error.to_string())
+}
+
+fn fmu(name: &str, keys: &str) -> String {
+    format!("[[fmu]]\nfile = \"{name}.fmu\"\n{keys}")
+}
+
+fn values<'a>(recording: &'a Recording, name: &str) -> &'a [f64] {
+    recording.channel(name).unwrap_or_else(|| panic!("no channel {name}"))
+}
+
+/// Oracle: a force of 20 N as a disturbance of the scenario. What is exchanged is a line between two values, so that the force
+/// falls within its last tick: half of that tick's impulse on 40 kg is missing, which goes on for 0.4 s.
+#[test]
+fn a_source_of_force_is_a_disturbance() {
+    let push = "[[disturbance]]\non = \"load\"\nduration = \"0.1 s\"\nforce = \"20 N\"\n";
+    let expected = run(&format!("{TABLE}{push}"));
+    let found = run(&format!("{TABLE}{}", fmu("push", "outputs = { F = \"disturbance.load\" }\n")));
+    let missing = 20.0 * 0.5 / 16e3 / 40.0 * 0.4;
+    let (found, expected) = (values(&found, "load.position"), values(&expected, "load.position"));
+    let most = found.iter().zip(expected).map(|(found, expected)| (found - expected).abs()).fold(0.0, f64::max);
+    assert!((most / missing - 1.0).abs() < 1e-3, "{most} of {missing}");
+    assert_eq!(found.len(), expected.len());
+}
+
+/// Oracle: x = x0·cos(ω·t) of 40 kg on the spring that the FMU is.
+#[test]
+fn a_load_behind_the_axis_swings_as_it_must() {
+    let spring = fmu("spring", "inputs = { x = \"load.position\" }\noutputs = { F = \"disturbance.load\" }\n");
+    let start = "[initial]\nload_position = \"1 mm\"\n";
+    let error = |coupling: &str| {
+        let recording = run(&format!("{TABLE}{start}{spring}{coupling}"));
+        assert_eq!(recording.channels[0].values.len(), 8_001, "{coupling}: a row for each tick");
+        let x = values(&recording, "load.position");
+        let errors = x.iter().enumerate().map(|(k, x)| (x - 1e-3 * (TAU * 10.0 * k as f64 / 16e3).cos()).abs());
+        errors.fold(0.0, f64::max)
+    };
+    // A force that is a step late drives the mode: its amplitude grows by e^(ω²·H·t/2), 0.5 s at a tick by 6.4 %. The mean of the
+    // parabola through the last exchanges is right to second order and more.
+    let held = error("[coupling]\nmethod = \"jacobi\"\n");
+    let extrapolated = error("[coupling]\nmethod = \"jacobi\"\nextrapolation = 2\n");
+    let iterated = error("[coupling]\nmethod = \"iterated\"\nextrapolation = 1\n");
+    println!("held {held:.2e} m, extrapolated {extrapolated:.2e} m, iterated {iterated:.2e} m");
+    assert!(held > 1e-5 && held < 2e-4, "{held}");
+    assert!(extrapolated < held / 50.0, "{extrapolated}");
+    assert!(iterated < held / 50.0, "{iterated}");
+}
+
+#[test]
+fn what_nobody_can_open_or_connect_is_refused() {
+    let push = fmu("push", "outputs = { F = \"disturbance.load\" }\n");
+    let refused = bench(&format!("{TABLE}{push}"), &NoPartners).err().unwrap_or_default();
+    assert_eq!(refused, "this program opens no FMUs, and the scenario has `push`");
+    let spring = fmu("spring", "inputs = { x = \"table.position\" }\noutputs = { F = \"disturbance.load\" }\n");
+    let refused = bench(&format!("{TABLE}{spring}"), &Parts).err().unwrap_or_default();
+    assert!(refused.contains("table.position"), "{refused}");
+}
+
+#[test]
+fn connections_say_how_late_they_are() {
+    let spring = fmu("spring", "inputs = { x = \"load.position\" }\noutputs = { F = \"disturbance.load\" }\n");
+    let delays = |coupling: &str| {
+        let bench = bench(&format!("{TABLE}{spring}[coupling]\nstep = \"1 ms\"\n{coupling}"), &Parts).unwrap();
+        let all = bench.delays().iter();
+        all.map(|delay| format!("{} -> {}: {} ms", delay.from, delay.to, 1e3 * delay.delay)).collect::<Vec<_>>()
+    };
+    let (there, back) = ("load.position -> spring.x", "spring.F -> disturbance.load");
+    assert_eq!(delays("method = \"jacobi\"\n"), [format!("{there}: 1 ms"), format!("{back}: 1 ms")]);
+    assert_eq!(delays(""), [format!("{there}: 1 ms"), format!("{back}: 0 ms")]);
+    assert_eq!(delays("method = \"iterated\"\n"), [format!("{there}: 0 ms"), format!("{back}: 0 ms")]);
+}
