@@ -78,6 +78,7 @@ fn master(method: Method, order: Order, follows: bool) -> Master<Boxed> {
         to: Port { block: (from + 1 + port) % 3, port },
         gain: 0.5,
         offset: 0.1,
+        is_discrete: false,
     };
     let connections = (0..3).flat_map(|block| (0..2).map(move |port| connection(block, port))).collect();
     // From the first block to the second, and back.

@@ -48,6 +48,8 @@ pub struct Connection {
     pub gain: f64,
     /// Summand in the input's unit; finite.
     pub offset: f64,
+    /// Whether it changes at exchanges only, as what a controller samples or gives: the newest value holds through a step.
+    pub is_discrete: bool,
 }
 
 /// What the flow of a [`PowerBond`] is.
@@ -200,6 +202,8 @@ pub(crate) struct Wire {
     pub(crate) gain: f64,
     /// The constant, if there is no source.
     pub(crate) offset: f64,
+    /// Whether the newest value holds.
+    pub(crate) is_discrete: bool,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -241,7 +245,12 @@ impl Wiring {
             wiring.block_names.push(member.name.clone());
             wiring.input_names.extend(member.inputs.iter().map(|input| format!("{}.{}", member.name, input.name)));
             wiring.output_names.extend(member.outputs.iter().map(|output| format!("{}.{output}", member.name)));
-            wiring.wires.extend(member.inputs.iter().map(|i| Wire { source: None, gain: 0.0, offset: i.held }));
+            wiring.wires.extend(member.inputs.iter().map(|i| Wire {
+                source: None,
+                gain: 0.0,
+                offset: i.held,
+                is_discrete: false,
+            }));
         }
         for (wire, name) in wiring.wires.iter().zip(&wiring.input_names) {
             finite("held", wire.offset, || name.clone())?;
@@ -253,14 +262,14 @@ impl Wiring {
     fn connect(&mut self) -> Result<(), NetworkError> {
         let mut occupied = HashSet::new();
         for index in 0..self.connections.len() {
-            let Connection { from, to, gain, offset } = self.connections[index];
+            let Connection { from, to, gain, offset, is_discrete } = self.connections[index];
             let (output, input) = (self.output(from)?, self.input(to)?);
             finite("gain", gain, || self.connection_name(index))?;
             finite("offset", offset, || self.connection_name(index))?;
             if !occupied.insert(input) {
                 return Err(NetworkError::Occupied { input: self.input_names[input].clone() });
             }
-            self.wires[input] = Wire { source: Some(Source { block: from.block, output }), gain, offset };
+            self.wires[input] = Wire { source: Some(Source { block: from.block, output }), gain, offset, is_discrete };
         }
         Ok(())
     }

@@ -54,6 +54,9 @@ impl Signals {
     /// The input at `now` (communication steps).
     pub(crate) fn input(&self, wire: &Wire, now: u64) -> Input {
         let Some(source) = wire.source else { return [wire.offset, 0.0, 0.0] };
+        if wire.is_discrete {
+            return [wire.gain * self.newest(source.output) + wire.offset, 0.0, 0.0];
+        }
         let [value, slope, bend] = self.output(source.block, source.output, now);
         [wire.gain * value + wire.offset, wire.gain * slope, wire.gain * bend]
     }

@@ -92,6 +92,7 @@ fn master(method: Method, order: Order) -> Master<Lags> {
         to: Port { block: to, port },
         gain,
         offset: 0.0,
+        is_discrete: false,
     };
     let mut connections: Vec<_> =
         (0..3).flat_map(|b| (0..2).map(move |port| connection(b, (b + 1) % 3, port, 0.5))).collect();

@@ -185,5 +185,5 @@ pub(crate) fn member<B: Block>(name: &str, block: B, inputs: usize, outputs: usi
 /// A connection as it is.
 pub(crate) fn connect(from: (usize, usize), to: (usize, usize)) -> Connection {
     let port = |(block, port)| Port { block, port };
-    Connection { from: port(from), to: port(to), gain: 1.0, offset: 0.0 }
+    Connection { from: port(from), to: port(to), gain: 1.0, offset: 0.0, is_discrete: false }
 }

@@ -1,5 +1,6 @@
 //! The master with blocks of which all is known.
 mod delays;
+mod discrete;
 mod events;
 mod linear;
 mod loops;

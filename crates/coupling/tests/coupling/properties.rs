@@ -24,7 +24,13 @@ fn network(recipes: &[Recipe], places: &[usize]) -> Network<Linear> {
         for (port, source) in sources.iter().enumerate() {
             if let Some(source) = source {
                 let from = Port { block: place(*source), port: 0 };
-                connections.push(Connection { from, to: Port { block: here, port }, gain: 0.5, offset: 0.125 });
+                connections.push(Connection {
+                    from,
+                    to: Port { block: here, port },
+                    gain: 0.5,
+                    offset: 0.125,
+                    is_discrete: false,
+                });
             }
             if source.is_none_or(|source| source >= *number) {
                 d[port] = 0.0;
