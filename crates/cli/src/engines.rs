@@ -19,5 +19,5 @@ const MUJOCO: Option<Installed> = None;
 
 /// Every engine of this build.
 pub(crate) const fn installed() -> Engines {
-    Engines { exact: EXACT, rapier: RAPIER, mujoco: MUJOCO }
+    Engines { exact: EXACT, rapier: RAPIER, mujoco: MUJOCO, ..Engines::NONE }
 }

@@ -236,9 +236,12 @@ fn failed(error: CouplingError<PartError>, time: f64) -> Failure {
 
 /// Whether an FMU stands for the drive.
 pub(crate) fn replaces_the_drive(scenario: &Scenario) -> bool {
-    let stands =
-        |signal: &LoopSignal| matches!(signal, LoopSignal::Effort | LoopSignal::VoltageD | LoopSignal::VoltageQ);
-    scenario.fmus.iter().any(|fmu| fmu.outputs.iter().any(|(_, signal)| stands(signal)))
+    scenario.fmus.iter().any(|fmu| fmu.outputs.iter().any(|(_, signal)| is_of_a_controller(*signal)))
+}
+
+/// Whether a controller gives it, which samples at exchanges and holds what it gives.
+const fn is_of_a_controller(signal: LoopSignal) -> bool {
+    matches!(signal, LoopSignal::Effort | LoopSignal::VoltageD | LoopSignal::VoltageQ)
 }
 
 /// Steps of the coupling in a step of a member; the scenario has seen to it that this is a whole number.
@@ -284,8 +287,11 @@ impl<'a> Wiring<'a> {
         let axis = scenario.fmus.len();
         let mut wiring =
             Self { outputs: vec![Vec::new(); axis], channels: Vec::new(), takes: Vec::new(), connections: Vec::new() };
-        let mut connect = |from, to| wiring.connections.push(Connection { from, to, gain: 1.0, offset: 0.0 });
+        let mut connect = |from, to, is_discrete| {
+            wiring.connections.push(Connection { from, to, gain: 1.0, offset: 0.0, is_discrete });
+        };
         for (block, fmu) in scenario.fmus.iter().enumerate() {
+            let is_controller = fmu.outputs.iter().any(|(_, signal)| is_of_a_controller(*signal));
             for (port, (_, signal)) in fmu.inputs.iter().enumerate() {
                 let from = match signal {
                     Signal::Time => Port { block: axis, port: 0 },
@@ -296,11 +302,12 @@ impl<'a> Wiring<'a> {
                         Port { block: *fmu, port: place(&mut wiring.outputs[*fmu], variable.as_str()) }
                     }
                 };
-                connect(from, Port { block, port });
+                connect(from, Port { block, port }, is_controller);
             }
             for (variable, signal) in &fmu.outputs {
                 let from = Port { block, port: place(&mut wiring.outputs[block], variable.as_str()) };
-                connect(from, Port { block: axis, port: place(&mut wiring.takes, *signal) });
+                let to = Port { block: axis, port: place(&mut wiring.takes, *signal) };
+                connect(from, to, is_of_a_controller(*signal));
             }
         }
         wiring

@@ -25,6 +25,19 @@ max_current = "13.3 Arms"
 enabled = false
 "#;
 
+/// A drive, which an FMU stands for.
+const DRIVE: &str = r#"dc_link = "320 V"
+[drive.current]
+rate = "16 kHz"
+bandwidth = "1 kHz"
+[drive.velocity]
+rate = "8 kHz"
+bandwidth = "60 Hz"
+[drive.position]
+rate = "4 kHz"
+gain = "80 1/s"
+"#;
+
 /// A part: outputs by the time and the inputs, and whatever it remembers.
 struct Part<F> {
     law: F,
@@ -89,6 +102,10 @@ impl Partners for Parts {
                 let law = |_: &mut [f64; 2], t: f64, h: f64, _: &[f64]| if t + h < 0.1 - 1e-9 { 20.0 } else { 0.0 };
                 Box::new(Part { law, state, saved: state, last: vec![20.0], saves: false })
             }
+            "controller" => {
+                let law = |_: &mut [f64; 2], _: f64, _: f64, u: &[f64]| 4e4 * (u[0] - u[1]) - 2e3 * u[2];
+                Box::new(Part { law, state, saved: state, last: start, saves: false })
+            }
             "ramp" => {
                 let law = |_: &mut [f64; 2], t: f64, h: f64, _: &[f64]| 0.01 * (t + h);
                 Box::new(Part { law, state, saved: state, last: start, saves: false })
@@ -107,7 +124,7 @@ fn run(text: &str) -> Recording {
 /// The bench of a scenario beside whose file lie FMUs, whose insides do not matter here.
 fn bench(text: &str, partners: &dyn Partners) -> Result<Bench, String> {
     let folder = tempfile::tempdir().unwrap();
-    for name in ["spring", "push", "ramp"] {
+    for name in ["spring", "push", "ramp", "controller"] {
         std::fs::write(folder.path().join(format!("{name}.fmu")), "").unwrap();
     }
     let path = folder.path().join("coupled.toml");
@@ -159,6 +176,29 @@ fn a_load_behind_the_axis_swings_as_it_must() {
     assert!(held > 1e-5 && held < 2e-4, "{held}");
     assert!(extrapolated < held / 50.0, "{extrapolated}");
     assert!(iterated < held / 50.0, "{iterated}");
+}
+
+/// Oracle: by hand, 40 kg under the same law sampled at each tick and held over it.
+#[test]
+fn a_controller_samples_at_a_tick_and_holds_over_it() {
+    let keys = "inputs = { x = \"setpoint.position\", y = \"motor.position\", v = \"motor.velocity\" }\n\
+                outputs = { F = \"effort.motor\" }\n";
+    let program = "[setpoint]\norder = 3\nvelocity = \"0.5 m/s\"\nacceleration = \"5 m/s2\"\njerk = \"100 m/s3\"\n\
+                   [[program]]\nmove_to = \"50 mm\"\n";
+    for extrapolation in [0, 2] {
+        let coupling = format!("[coupling]\nextrapolation = {extrapolation}\n");
+        let table = TABLE.replace("enabled = false\n", DRIVE);
+        let recording = run(&format!("{table}{program}{}{coupling}", fmu("controller", keys)));
+        let (setpoint, found) = (values(&recording, "setpoint.position"), values(&recording, "load.position"));
+        let (mut x, mut v, mut most, h) = (0.0, 0.0, 0.0_f64, 1.0 / 16e3);
+        for (wanted, found) in setpoint.iter().zip(found) {
+            most = most.max((x - found).abs());
+            let a = (4e4 * (wanted - x) - 2e3 * v) / 40.0;
+            (x, v) = (x + h * (v + 0.5 * h * a), v + h * a);
+        }
+        println!("{most:.1e} m after {} mm", 1e3 * x);
+        assert!(x > 0.045 && most < 1e-14, "{most}");
+    }
 }
 
 #[test]

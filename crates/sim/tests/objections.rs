@@ -1,7 +1,7 @@
 //! What keeps a scenario from being built is told at once.
 use servobench_plant::{Exact, MechanicsError};
 use servobench_scenario::{AxisMechanics, Mjcf, Scenario};
-use servobench_sim::{Bench, BuildError};
+use servobench_sim::{Bench, BuildError, NoPartners};
 
 fn scenario(program: &str) -> Scenario {
     let text = format!(
@@ -46,7 +46,7 @@ fn program_and_mechanics_are_objected_to_together() {
         load_joint: name(),
         actuator: name(),
     });
-    let found = Bench::objections(&scenario, &Exact);
+    let found = Bench::objections(&scenario, &Exact, &NoPartners);
     let [BuildError::Plan { index: 0, .. }, BuildError::Mechanics(MechanicsError::Unsupported { .. })] = &found[..]
     else {
         panic!("{found:?}");
@@ -56,8 +56,8 @@ fn program_and_mechanics_are_objected_to_together() {
 #[test]
 fn what_stands_on_them_is_objected_to_without_them() {
     let mut scenario = scenario("");
-    let found = Bench::objections(&scenario, &Exact);
+    let found = Bench::objections(&scenario, &Exact, &NoPartners);
     assert!(matches!(&found[..], [BuildError::UnknownChannel { name, .. }] if name == "table.position"), "{found:?}");
     scenario.record.channels.clear();
-    assert_eq!(Bench::objections(&scenario, &Exact), []);
+    assert_eq!(Bench::objections(&scenario, &Exact, &NoPartners), []);
 }

@@ -7,7 +7,7 @@ use crate::worker::{self, WorkerCommand, WorkerError};
 use serde::{Deserialize, Serialize};
 use servobench_plant::{Engine, MechanicsError, Refusal, RefusedAt};
 use servobench_scenario::{AxisMechanics, Scenario};
-use servobench_sim::{Bench, BuildError};
+use servobench_sim::{Bench, BuildError, ConnectionDelay, Partners};
 
 /// Something that keeps a scenario from being built.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -31,7 +31,7 @@ pub struct Objection {
 pub fn check(job: &Job, engines: &Engines, worker: &WorkerCommand) -> Result<Vec<Objection>, RunError> {
     let installed = engines.get(job.engine)?;
     if !installed.isolated {
-        return caught(|| objections(&job.scenario, installed.engine))?;
+        return caught(|| objections(&job.scenario, installed.engine, engines.partners))?;
     }
     match worker::ask(worker, job) {
         // What a library cannot bear in a user's own file is the file's fault, as far as anybody can tell.
@@ -42,10 +42,27 @@ pub fn check(job: &Job, engines: &Engines, worker: &WorkerCommand) -> Result<Vec
     }
 }
 
+/// How late what axis and FMUs exchange is, of a job without objections; nothing where no FMU is beside the axis.
+///
+/// # Errors
+/// [`RunError`] when it cannot be built after all.
+pub fn delays(job: &Job, engines: &Engines) -> Result<Vec<ConnectionDelay>, RunError> {
+    let installed = engines.get(job.engine)?;
+    // What is exchanged when does not depend on the engine: one that needs a process of its own is not asked.
+    if job.scenario.fmus.is_empty() || installed.isolated {
+        return Ok(Vec::new());
+    }
+    caught(|| Ok(Bench::with_partners(&job.scenario, installed.engine, engines.partners)?.delays().to_vec()))?
+}
+
 /// The objections of `engine`, asked in this process.
-pub(crate) fn objections(scenario: &Scenario, engine: &dyn Engine) -> Result<Vec<Objection>, RunError> {
+pub(crate) fn objections(
+    scenario: &Scenario,
+    engine: &dyn Engine,
+    partners: &dyn Partners,
+) -> Result<Vec<Objection>, RunError> {
     let mut all = Vec::new();
-    for error in Bench::objections(scenario, engine) {
+    for error in Bench::objections(scenario, engine, partners) {
         // A library that does not load is not the scenario's fault.
         if matches!(error, BuildError::Mechanics(MechanicsError::Native { .. })) {
             return Err(error.into());
@@ -82,6 +99,9 @@ fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
         BuildError::Units(_) => "bus.units".to_owned(),
         BuildError::Link(_) | BuildError::NoDriveOnTheBus => "bus".to_owned(),
         BuildError::Points(_) => "program".to_owned(),
+        BuildError::Fmu { index, .. } => format!("fmu.{index}"),
+        BuildError::Coupling(_) => "fmu".to_owned(),
+        BuildError::OnlyAnFmu { .. } => "engine".to_owned(),
     };
     vec![Objection::new(&key, error.to_string())]
 }

@@ -95,6 +95,8 @@ fn differences(one: &Scenario, other: &Scenario) -> Vec<&'static str> {
         interpolation: _,
         bus,
         plc: _,
+        fmus,
+        coupling,
         disturbances,
         initial,
         record,
@@ -111,6 +113,8 @@ fn differences(one: &Scenario, other: &Scenario) -> Vec<&'static str> {
     compare("`axis`", *axis == other.axis);
     compare_actuators(actuator, &other.actuator, &mut compare);
     compare("`bus`", *bus == other.bus);
+    compare("`fmu`", *fmus == other.fmus);
+    compare("`coupling`", *coupling == other.coupling);
     compare("`disturbance`", *disturbances == other.disturbances);
     compare("`initial`", *initial == other.initial);
     // A peak between two rows is not seen.

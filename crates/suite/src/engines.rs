@@ -1,6 +1,7 @@
 //! Which engines this build has.
 use servobench_plant::Engine;
 use servobench_scenario::EngineName;
+use servobench_sim::{NoPartners, Partners};
 use thiserror::Error;
 
 /// An engine as this build has it.
@@ -13,7 +14,7 @@ pub struct Installed {
 }
 
 /// The engines of this build; the command line fills it, since it alone has engine features.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 pub struct Engines {
     /// `exact`.
     pub exact: Option<Installed>,
@@ -21,6 +22,10 @@ pub struct Engines {
     pub rapier: Option<Installed>,
     /// `mujoco`.
     pub mujoco: Option<Installed>,
+    /// `fmu`.
+    pub fmu: Option<Installed>,
+    /// Who opens the FMUs beside an axis.
+    pub partners: &'static dyn Partners,
 }
 
 /// The build lacks an engine.
@@ -36,6 +41,9 @@ pub struct EngineMissing {
 }
 
 impl Engines {
+    /// A build without engines.
+    pub const NONE: Self = Self { exact: None, rapier: None, mujoco: None, fmu: None, partners: &NoPartners };
+
     /// The engine `name`.
     ///
     /// # Errors
@@ -45,6 +53,7 @@ impl Engines {
             EngineName::Exact => self.exact,
             EngineName::Rapier => self.rapier,
             EngineName::Mujoco => self.mujoco,
+            EngineName::Fmu => self.fmu,
         };
         installed.ok_or(EngineMissing { name })
     }

@@ -6,7 +6,7 @@ use crate::worker::{self, WorkerCommand};
 use servobench_metrics::{Limit, Metrics, Name, Question, UnknownMetric, Verdict, measure};
 use servobench_plant::Engine;
 use servobench_scenario::{self as scenario, Scenario, Step};
-use servobench_sim::{Bench, thinned};
+use servobench_sim::{Bench, Partners, thinned};
 use servobench_trace::Recording;
 
 /// A run that came to its end.
@@ -73,17 +73,17 @@ fn recorded(
     if installed.isolated {
         Ok(worker::call(worker, job, progress)?)
     } else {
-        run_here(&job.scenario, installed.engine, progress)
+        run_here(&job.scenario, (installed.engine, engines.partners), progress)
     }
 }
 
 /// Runs in this process.
 pub(crate) fn run_here(
     scenario: &Scenario,
-    engine: &dyn Engine,
+    (engine, partners): (&dyn Engine, &dyn Partners),
     progress: &mut dyn FnMut(f64),
 ) -> Result<Recorded, RunError> {
-    let outcome = Bench::new(scenario, engine)?.run(progress);
+    let outcome = Bench::with_partners(scenario, engine, partners)?.run(progress);
     Ok((outcome.recording, outcome.failure.map(RunError::from)))
 }
 

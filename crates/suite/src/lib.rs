@@ -11,7 +11,7 @@ mod panicked;
 mod pool;
 pub mod worker;
 
-pub use check::{Objection, check};
+pub use check::{Objection, check, delays};
 pub use compare::{CompareError, limits_agree, only_setpoints_differ, to_equal_duration};
 pub use engines::{EngineMissing, Engines, Installed};
 pub use error::RunError;

@@ -55,7 +55,7 @@ impl Engine for Refuses {
 }
 
 fn engines(engine: &'static Refuses) -> Engines {
-    Engines { exact: None, rapier: Some(Installed { engine, isolated: false }), mujoco: None }
+    Engines { exact: None, rapier: Some(Installed { engine, isolated: false }), ..Engines::NONE }
 }
 
 /// With an MJCF file whose load joint is `elbow`.

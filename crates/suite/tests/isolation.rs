@@ -58,6 +58,7 @@ const ENGINES: Engines = Engines {
     exact: Some(Installed { engine: &servobench_plant::Exact, isolated: false }),
     rapier: Some(Installed { engine: &PanickingEngine, isolated: false }),
     mujoco: Some(Installed { engine: &PanickingEngine, isolated: true }),
+    ..Engines::NONE
 };
 
 fn slide(engines: &[EngineName]) -> Vec<Job> {

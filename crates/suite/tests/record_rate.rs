@@ -30,7 +30,7 @@ window = "1 mm"
 
 fn run(text: &str) -> Run {
     let exact = Some(Installed { engine: &servobench_plant::Exact, isolated: false });
-    let engines = Engines { exact, rapier: None, mujoco: None };
+    let engines = Engines { exact, ..Engines::NONE };
     let scenario = servobench_scenario::parse("rings", text, None).unwrap_or_else(|error| panic!("{error}")).scenario;
     let job = jobs(vec![Source { scenario, text: text.into() }], &[EngineName::Exact]).remove(0);
     let worker = WorkerCommand { program: "none".into(), folder: "none".into(), patience: Duration::from_secs(1) };

@@ -6,8 +6,7 @@ use servobench_suite::{Broken, Engines, Installed, Source, WorkerCommand, execut
 use servobench_trace::Recording;
 use std::path::Path;
 
-const ENGINES: Engines =
-    Engines { exact: Some(Installed { engine: &Exact, isolated: false }), rapier: None, mujoco: None };
+const ENGINES: Engines = Engines { exact: Some(Installed { engine: &Exact, isolated: false }), ..Engines::NONE };
 
 /// With a bandwidth of 2 MHz at a rate of 1 kHz the axis leaves the finite numbers. The limit on jerk is not used: a
 /// warning.

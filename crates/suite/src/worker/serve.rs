@@ -8,6 +8,7 @@ use crate::job::slow_to;
 use crate::panicked::caught;
 use servobench_plant::Engine;
 use servobench_scenario::{EngineName, LoadError, Scenario};
+use servobench_sim::Partners;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -47,8 +48,8 @@ fn obey(order: &Order, text: &str, engines: &Engines, say: &mut dyn FnMut(&Messa
         Err(error) => return End::Input(error.to_string()),
     };
     let done = engines.get(order.engine).map_err(RunError::from).and_then(|installed| match &order.recording {
-        Some(path) => run(&scenario, installed.engine, path, say),
-        None => objections(&scenario, installed.engine).map(|all| {
+        Some(path) => run(&scenario, (installed.engine, engines.partners), path, say),
+        None => objections(&scenario, installed.engine, engines.partners).map(|all| {
             say(&Message::Objections(all));
             End::Done
         }),
@@ -60,8 +61,13 @@ fn obey(order: &Order, text: &str, engines: &Engines, say: &mut dyn FnMut(&Messa
     )
 }
 
-fn run(scenario: &Scenario, engine: &dyn Engine, path: &Path, say: &mut dyn FnMut(&Message)) -> Result<End, RunError> {
-    let (recording, failure) = run_here(scenario, engine, &mut |share| say(&Message::Progress(share)))?;
+fn run(
+    scenario: &Scenario,
+    loop_of: (&dyn Engine, &dyn Partners),
+    path: &Path,
+    say: &mut dyn FnMut(&Message),
+) -> Result<End, RunError> {
+    let (recording, failure) = run_here(scenario, loop_of, &mut |share| say(&Message::Progress(share)))?;
     Ok(match (failure, recording.write_parquet(path)) {
         (Some(failure), _) => End::Failed(failure.to_string()),
         (None, Err(error)) => End::Failed(error.to_string()),
