@@ -32,7 +32,7 @@ pub struct Bench {
 
 /// The axis, and whether it has company.
 pub(crate) enum Axis {
-    Alone(Recorded),
+    Alone(Box<Recorded>),
     Coupled(Coupled),
 }
 
@@ -142,7 +142,7 @@ impl Bench {
         let watch = LimitWatch::default();
         let recorded = Recorded { closed_loop, selection, recorder, record_every, ticks_to_row: 0, watch, tick: 0 };
         let axis = if scenario.fmus.is_empty() {
-            Axis::Alone(recorded)
+            Axis::Alone(Box::new(recorded))
         } else {
             Axis::Coupled(Coupled::new(scenario, recorded, ticks, (&equipment, &rates), partners)?)
         };

@@ -52,7 +52,7 @@ impl Bench {
         let Self { axis, ticks } = self;
         let mut recorded = match axis {
             Axis::Coupled(coupled) => return coupled.run(ticks, progress),
-            Axis::Alone(recorded) => recorded,
+            Axis::Alone(recorded) => *recorded,
         };
         let mut failure = None;
         loop {

@@ -91,7 +91,7 @@ impl Bench {
     #[must_use]
     pub fn into_stepper(self) -> Stepper {
         let Recorded { closed_loop, selection, recorder, .. } = match self.axis {
-            Axis::Alone(recorded) => recorded,
+            Axis::Alone(recorded) => *recorded,
             Axis::Coupled(coupled) => coupled.alone(),
         };
         let recorder = Recorder::silent(recorder.about().clone(), closed_loop.base_rate);

@@ -97,7 +97,7 @@ fn each_objection_has_its_place() {
 
 #[test]
 fn who_cannot_be_asked_is_no_objection() {
-    let missing = check(&job(), &Engines::default(), &nowhere());
+    let missing = check(&job(), &Engines::NONE, &nowhere());
     assert!(matches!(missing, Err(RunError::EngineMissing(_))), "{missing:?}");
     let panicked = check(&job(), &engines(&Refuses { panics: true }), &nowhere());
     assert!(matches!(panicked, Err(RunError::Panicked(_))), "{panicked:?}");

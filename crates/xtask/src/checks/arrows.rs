@@ -31,8 +31,8 @@ const PLAN: [(&str, May); 27] = [
     (
         "sim",
         May::On(&[
-            "base", "cia402", "motion", "planner", "drive", "fieldbus", "plcopen", "plant", "trace", "metrics",
-            "scenario",
+            "base", "cia402", "motion", "planner", "drive", "fieldbus", "plcopen", "plant", "fmi", "coupling", "trace",
+            "metrics", "scenario",
         ]),
     ),
     (
