@@ -33,7 +33,7 @@ pub struct Bench {
 /// The axis, and whether it has company.
 pub(crate) enum Axis {
     Alone(Box<Recorded>),
-    Coupled(Coupled),
+    Coupled(Box<Coupled>),
 }
 
 impl Bench {
@@ -144,7 +144,7 @@ impl Bench {
         let axis = if scenario.fmus.is_empty() {
             Axis::Alone(Box::new(recorded))
         } else {
-            Axis::Coupled(Coupled::new(scenario, recorded, ticks, (&equipment, &rates), partners)?)
+            Axis::Coupled(Box::new(Coupled::new(scenario, recorded, ticks, (&equipment, &rates), partners)?))
         };
         Ok(Self { ticks, axis })
     }

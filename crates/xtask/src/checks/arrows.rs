@@ -35,10 +35,7 @@ const PLAN: [(&str, May); 27] = [
             "metrics", "scenario",
         ]),
     ),
-    (
-        "fmu",
-        May::On(&["base", "cia402", "motion", "planner", "plcopen", "plant", "fmi", "scenario", "sim"]),
-    ),
+    ("fmu", May::On(&["base", "cia402", "motion", "planner", "plcopen", "plant", "fmi", "scenario", "sim"])),
     ("suite", May::On(&["base", "plant", "sim", "scenario", "trace", "metrics"])),
     ("report", May::On(&["base", "cia402", "motion", "planner", "trace", "metrics"])),
     ("view", May::On(&["base", "trace", "metrics"])),
