@@ -10,9 +10,10 @@
 //! rows are those of an FMU that has never done so.
 use serde::Deserialize;
 use serde_json::json;
-use servobench_fmi::{Loaded, Port, Progress, Setup, Slave, Unpacked, Value};
+use servobench_fmi::{Loaded, ModelDescription, Named, Port, Progress, Setup, Slave, Unpacked, Value};
 use std::collections::BTreeMap;
 use std::error::Error;
+use std::io::Write;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -51,6 +52,20 @@ impl From<Name> for Port {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
+    println!("{}", answer()?);
+    std::io::stdout().flush()?;
+    leave();
+}
+
+/// Ends the process without what libraries have left to be done at its end: that of PythonFMU3 0.3.4 uses memory there that it
+/// has freed.
+#[expect(unsafe_code, reason = "the call is one of C")]
+fn leave() -> ! {
+    // SAFETY: everything is written, and nothing else is to be done.
+    unsafe { libc::_exit(0) }
+}
+
+fn answer() -> Result<serde_json::Value, Box<dyn Error>> {
     let request: Request = serde_json::from_reader(std::io::stdin())?;
     let unpacked = Unpacked::new(&request.fmu)?;
     let start = request.start.iter().map(|(name, value)| Ok((name.clone(), start_value(value)?)));
@@ -90,8 +105,27 @@ fn main() -> Result<(), Box<dyn Error>> {
         .into_iter()
         .map(|line| json!([format!("{:?}", line.severity), line.category, line.message]))
         .collect();
-    println!("{}", json!({ "rows": run.rows, "log": log }));
-    Ok(())
+    Ok(json!({ "rows": run.rows, "log": log, "variables": variables(unpacked.description()) }))
+}
+
+/// What the description says of each variable.
+fn variables(it: &ModelDescription) -> Vec<serde_json::Value> {
+    let variable = |variable: &servobench_fmi::Variable| {
+        json!({
+            "name": variable.name,
+            "reference": variable.value_reference,
+            "type": variable.data_type.name(),
+            "causality": variable.causality.name(),
+            "variability": variable.variability.name(),
+            "initial": variable.initial.map(Named::name),
+            "shape": it.shape(variable),
+            "unit": it.unit(variable).map(|unit| &unit.name),
+            "min": variable.min,
+            "max": variable.max,
+            "derivative_of": variable.derivative_of.map(|of| &it.variables[of].name),
+        })
+    };
+    it.variables.iter().map(variable).collect()
 }
 
 fn start_value(value: &serde_json::Value) -> Result<Value, Box<dyn Error>> {

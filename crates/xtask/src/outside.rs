@@ -1,7 +1,8 @@
 //! Outside clients: programs in `tests/outside/` that hold the project against what others wrote, published for Python.
 //!
-//! Their packages are pinned by version and hash in `tests/outside/requirements.txt` and installed once, into a virtual
-//! environment under the target folder. Where that cannot be had, the programs are left out, and it is said.
+//! Their packages are pinned by version and hash in `tests/outside/requirements.txt`, with all that these require, and in
+//! `files.txt`, of which only files are used. They are installed once, into a virtual environment under the target folder. Where
+//! that cannot be had, the programs are left out, and it is said.
 use crate::failure::Failure;
 use crate::python;
 use crate::wheel::sha256;
@@ -11,7 +12,8 @@ use std::path::PathBuf;
 use std::process::Command;
 
 /// The programs, in `tests/outside/`.
-const CLIENTS: [&str; 4] = [
+const CLIENTS: [&str; 5] = [
+    "fmus_by_fmpy.py",
     "object_dictionary_by_canopen.py",
     "online4_by_linear_program.py",
     "optimal_by_linear_program.py",
@@ -58,18 +60,18 @@ impl Outside {
 /// Where the programs are.
 const FOLDER: &str = "tests/outside";
 
-/// A virtual environment with exactly the packages of one requirements file.
+/// A virtual environment with exactly the packages of some requirements files.
 #[derive(Debug)]
 struct Environment {
     folder: PathBuf,
-    requirements: PathBuf,
+    requirements: Vec<PathBuf>,
 }
 
 impl Environment {
     fn of(workspace: &Workspace) -> Self {
         Self {
             folder: workspace.target.join("python"),
-            requirements: workspace.root.join(FOLDER).join("requirements.txt"),
+            requirements: ["requirements.txt", "files.txt"].map(|name| workspace.root.join(FOLDER).join(name)).into(),
         }
     }
 
@@ -87,7 +89,7 @@ impl Environment {
     /// # Errors
     /// [`Failure::Fetch`] says in one sentence what failed and what to do.
     fn ensure(&self) -> Result<(), Failure> {
-        let wanted = sha256(&self.requirements).map_err(Failure::file("read", &self.requirements))?;
+        let wanted = self.wanted()?;
         if fs::read_to_string(self.stamp()).is_ok_and(|found| found == wanted) && self.starts() {
             return Ok(());
         }
@@ -100,6 +102,12 @@ impl Environment {
         fs::write(self.stamp(), wanted).map_err(Failure::file("write", self.stamp()))
     }
 
+    /// What the stamp has to be.
+    fn wanted(&self) -> Result<String, Failure> {
+        let sum = |path: &PathBuf| sha256(path).map_err(Failure::file("read", path));
+        Ok(self.requirements.iter().map(sum).collect::<Result<Vec<_>, _>>()?.join("\n"))
+    }
+
     /// # Errors
     /// The cause in one line.
     fn install(&self) -> Result<(), String> {
@@ -110,7 +118,11 @@ impl Environment {
         let mut install = Command::new("python3");
         install.args(["-m", "pip", "--python"]).arg(self.python());
         install.args(["install", "--quiet", "--disable-pip-version-check", "--retries", "1"]);
-        install.args(["--only-binary=:all:", "--require-hashes", "--requirement"]).arg(&self.requirements);
+        // All that is required is listed.
+        install.args(["--only-binary=:all:", "--require-hashes", "--no-deps"]);
+        for requirements in &self.requirements {
+            install.arg("--requirement").arg(requirements);
+        }
         python::run("pip", &mut install)
     }
 
@@ -130,7 +142,7 @@ mod tests {
     fn environment(room: &Path) -> Environment {
         let requirements = room.join("requirements.txt");
         fs::write(&requirements, "nobody @ file:///nowhere.whl").unwrap();
-        Environment { folder: room.join("python"), requirements }
+        Environment { folder: room.join("python"), requirements: vec![requirements] }
     }
 
     #[test]
@@ -139,7 +151,7 @@ mod tests {
         let environment = environment(room.path());
         fs::create_dir_all(environment.folder.join("bin")).unwrap();
         symlink("/bin/true", environment.python()).unwrap();
-        fs::write(environment.stamp(), sha256(&environment.requirements).unwrap()).unwrap();
+        fs::write(environment.stamp(), environment.wanted().unwrap()).unwrap();
         environment.ensure().unwrap();
     }
 

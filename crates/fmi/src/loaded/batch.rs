@@ -40,7 +40,7 @@ impl Element for f32 {
 }
 
 macro_rules! integers {
-    ($($type:ty, $bound:literal;)*) => {$(
+    ($($type:ty, $bound:literal, $number:expr;)*) => {$(
         impl Element for $type {
             const BOUND: &'static str = $bound;
             const ZERO: Self = 0;
@@ -49,24 +49,23 @@ macro_rules! integers {
                 let whole = number as i128;
                 (number.fract() == 0.0).then(|| whole.try_into().ok())?
             }
-            #[expect(clippy::allow_attributes, reason = "of some of the types only")]
-            #[allow(clippy::cast_lossless, reason = "one macro for all lengths; those of 64 bits are rounded")]
             fn number(self) -> f64 {
-                self as f64
+                $number(self)
             }
         }
     )*};
 }
 
 integers! {
-    i8, "whole numbers of 8 bits";
-    u8, "whole numbers of 8 bits, none negative";
-    i16, "whole numbers of 16 bits";
-    u16, "whole numbers of 16 bits, none negative";
-    i32, "whole numbers of 32 bits";
-    u32, "whole numbers of 32 bits, none negative";
-    i64, "whole numbers of 64 bits";
-    u64, "whole numbers of 64 bits, none negative";
+    i8, "whole numbers of 8 bits", f64::from;
+    u8, "whole numbers of 8 bits, none negative", f64::from;
+    i16, "whole numbers of 16 bits", f64::from;
+    u16, "whole numbers of 16 bits, none negative", f64::from;
+    i32, "whole numbers of 32 bits", f64::from;
+    u32, "whole numbers of 32 bits, none negative", f64::from;
+    // Rounded.
+    i64, "whole numbers of 64 bits", |number| number as f64;
+    u64, "whole numbers of 64 bits, none negative", |number| number as f64;
 }
 
 macro_rules! flags {

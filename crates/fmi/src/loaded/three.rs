@@ -85,7 +85,6 @@ impl LoadedThree {
         }
         let outcome = self.instance.enter_initialization_mode(setup.tolerance, setup.start_time, setup.stop_time);
         self.check("fmi3EnterInitializationMode", outcome)?;
-        self.read_unwired_elements()?;
         let outcome = self.instance.exit_initialization_mode();
         self.check("fmi3ExitInitializationMode", outcome)?;
         if self.has_event_mode && self.settle()? {
@@ -93,7 +92,7 @@ impl LoadedThree {
             let (call, time) = ("fmi3UpdateDiscreteStates", self.session.time);
             return Err(SlaveError::Failed { call, time, status: "fmi3OK", message });
         }
-        Ok(())
+        self.read_unwired_elements()
     }
 
     /// An array is set as a whole: elements that nothing is wired to keep what they start with.
