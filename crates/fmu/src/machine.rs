@@ -138,6 +138,7 @@ impl Machine {
             motor_effort: input(Input::MotorEffort),
             load_effort: input(Input::LoadEffort),
             measured,
+            controller: None,
         };
         self.stepper.step(&external).map_err(|failure| {
             self.failed = true;

@@ -52,5 +52,6 @@ pub(crate) fn has_one_body(scenario: &Scenario) -> bool {
     match &scenario.axis.mechanics {
         AxisMechanics::Bodies(bodies) => bodies.len() == 1,
         AxisMechanics::Mjcf(mjcf) => mjcf.motor_joint == mjcf.load_joint,
+        AxisMechanics::InTheFmu => false,
     }
 }
