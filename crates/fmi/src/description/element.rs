@@ -79,8 +79,9 @@ impl<'a> Element<'a> {
     }
 
     pub(super) fn named<T: Named>(self, attribute: &'static str) -> Result<Option<T>, FmuError> {
-        let expected = one_of(T::ALL.iter().map(|(_, name)| *name));
-        self.read(attribute, &expected, T::from_name)
+        let Some(text) = self.text(attribute) else { return Ok(None) };
+        let expected = || one_of(T::ALL.iter().map(|(_, name)| *name));
+        T::from_name(text.trim()).map(Some).ok_or_else(|| self.wrong(attribute, expected()))
     }
 
     /// A list of whole numbers without a sign.

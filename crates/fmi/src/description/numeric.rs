@@ -25,10 +25,6 @@ impl Numeric {
         units: &mut Units,
         remarks: &mut Vec<String>,
     ) -> Result<Self, FmuError> {
-        let expected = match data_type.integers() {
-            Some((least, most)) => format!("a whole number from {least} to {most}"),
-            None => "a number".to_owned(),
-        };
         #[expect(clippy::cast_precision_loss, reason = "documented: bounds of 64-bit integers are rounded")]
         let number = |text: &str| match data_type.integers() {
             Some((least, most)) => {
@@ -36,8 +32,16 @@ impl Numeric {
             }
             None => float(text).filter(|value| !value.is_nan()),
         };
-        let min = element.read("min", &expected, number)?.or(defaults.min);
-        let max = element.read("max", &expected, number)?.or(defaults.max);
+        let bound = |attribute| {
+            let Some(text) = element.text(attribute) else { return Ok(None) };
+            let expected = || match data_type.integers() {
+                Some((least, most)) => format!("a whole number from {least} to {most}"),
+                None => "a number".to_owned(),
+            };
+            number(text.trim()).map(Some).ok_or_else(|| element.wrong(attribute, expected()))
+        };
+        let min = bound("min")?.or(defaults.min);
+        let max = bound("max")?.or(defaults.max);
         if let (Some(min), Some(max)) = (min, max)
             && min > max
         {

@@ -20,6 +20,14 @@ fn a_library_that_is_not_there_or_none() {
 }
 
 #[test]
+fn a_library_that_needs_python_says_how_to_start() {
+    let room = Room::new("two", &compiled("python"), TWO);
+    let message = said(&room, &Setup::default());
+    assert!(message.contains("undefined symbol: Py_IsInitialized"), "{message}");
+    assert!(message.contains("; it needs Python: start with LD_PRELOAD=<path of libpython3.so>"), "{message}");
+}
+
+#[test]
 fn a_library_of_another_version_or_model() {
     let room = Room::new("three", &compiled("two"), THREE);
     assert!(said(&room, &Setup::default()).ends_with("its library has no function `fmi3GetVersion`"));
