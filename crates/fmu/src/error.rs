@@ -19,6 +19,14 @@ pub enum FmuError {
         /// Name of the scenario.
         scenario: String,
     },
+    /// Other FMUs belong to the loop.
+    #[error(
+        "`{scenario}` has `[[fmu]]` beside the axis, which cannot be inside an FMU: leave them out, and connect them outside"
+    )]
+    Beside {
+        /// Name of the scenario.
+        scenario: String,
+    },
     /// A table's path leads where an archive has no place for it.
     #[error("`{path}` cannot be packed: name the table by a path relative to the scenario's folder")]
     Path {

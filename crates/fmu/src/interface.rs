@@ -81,9 +81,6 @@ pub(crate) enum Output {
     Channel(usize),
     ShaftPosition,
     ShaftVelocity,
-    VoltageBinds,
-    CurrentBinds,
-    EffortBinds,
     DriveState,
     DriveFault,
     AxisState,
@@ -255,8 +252,6 @@ impl Table {
         for (at, channel) in stepper.channels().iter().enumerate() {
             let name = channel.name.as_str();
             let is_there = match part {
-                // A share of the time between two rows of a recording means nothing here.
-                _ if name.starts_with("saturation.") => false,
                 Part::Axis => true,
                 Part::Drive => !is_body(name),
                 Part::Mechanics => is_body(name),
@@ -276,11 +271,6 @@ impl Table {
             output("shaft.position", Kind::Real, motor, Output::ShaftPosition, text);
             output("shaft.velocity", Kind::Real, &format!("{motor}/s"), Output::ShaftVelocity, "its velocity");
             return self.all;
-        }
-        if scenario.actuator.drive().is_some() {
-            output("binds.voltage", Kind::Boolean, "", Output::VoltageBinds, "whether the voltage limit bound");
-            output("binds.current", Kind::Boolean, "", Output::CurrentBinds, "whether the current limit bound");
-            output("binds.effort", Kind::Boolean, "", Output::EffortBinds, "whether the effort limit bound");
         }
         if scenario.bus.is_some() {
             let text = "power state of the drive (CiA 402)";

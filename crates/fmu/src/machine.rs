@@ -28,6 +28,9 @@ impl Model {
             return Err(FmuError::NoDrive { scenario: name() });
         }
         let own = part.of(scenario);
+        if !own.fmus.is_empty() {
+            return Err(FmuError::Beside { scenario: name() });
+        }
         let stepper = stepper(&own).map_err(|error| FmuError::Build { scenario: name(), error })?;
         let variables = variables(part, &own, &stepper);
         Ok(Self { part, scenario: own, variables })
@@ -138,7 +141,7 @@ impl Machine {
             motor_effort: input(Input::MotorEffort),
             load_effort: input(Input::LoadEffort),
             measured,
-            controller: None,
+            ..External::default()
         };
         self.stepper.step(&external).map_err(|failure| {
             self.failed = true;
@@ -148,7 +151,7 @@ impl Machine {
 
     /// Sets every output among `values`.
     pub(crate) fn read(&mut self, variables: &[Variable], values: &mut [f64]) {
-        let (shaft, binding, states) = (self.stepper.shaft(), self.stepper.binding(), self.stepper.states());
+        let (shaft, states) = (self.stepper.shaft(), self.stepper.states());
         let channels = self.stepper.values();
         let item = |at: Option<usize>| at.map_or(1.0, |at| at as f64 + 1.0);
         for (variable, value) in variables.iter().zip(values) {
@@ -157,9 +160,6 @@ impl Machine {
                 Output::Channel(at) => channels[at],
                 Output::ShaftPosition => shaft.position,
                 Output::ShaftVelocity => shaft.velocity,
-                Output::VoltageBinds => f64::from(binding.voltage),
-                Output::CurrentBinds => f64::from(binding.current),
-                Output::EffortBinds => f64::from(binding.effort),
                 Output::DriveState => item(PowerState::ALL.iter().position(|state| Some(*state) == states.drive)),
                 Output::AxisState => item(AxisState::ALL.iter().position(|state| Some(*state) == states.axis)),
                 Output::DriveFault => f64::from(states.drive_fault),

@@ -42,6 +42,7 @@ impl Part {
             (own.bus, own.plc, own.interpolation) = (None, None, None);
             own.program.clear();
             own.disturbances.clear();
+            own.fmus.clear();
         }
         own
     }

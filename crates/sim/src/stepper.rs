@@ -2,6 +2,7 @@
 use crate::bench::{Axis, Bench};
 use crate::channels::{Instant, Selection};
 use crate::closed_loop::{ClosedLoop, Source};
+use crate::limit_watch::PerLimit;
 use crate::recorded::Recorded;
 use crate::run::{Failure, Reason};
 use servobench_base::{Dq, Rate, Setpoint, Tick};
@@ -165,6 +166,9 @@ impl Stepper {
         done.map_err(|reason: Reason| Failure { time, reason })?;
         let (bodies, _) = self.closed_loop.sample(external);
         (now.motor, now.table, now.load) = (bodies.motor, bodies.table, bodies.load);
+        let share = |binds: bool| f64::from(u8::from(binds));
+        let PerLimit { voltage, current, effort } = now.binds;
+        now.saturation = PerLimit { voltage: share(voltage), current: share(current), effort: share(effort) };
         self.now = now;
         self.tick += 1;
         Ok(())

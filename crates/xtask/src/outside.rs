@@ -12,7 +12,8 @@ use std::path::PathBuf;
 use std::process::Command;
 
 /// The programs, in `tests/outside/`.
-const CLIENTS: [&str; 5] = [
+const CLIENTS: [&str; 6] = [
+    "exported_fmus_by_fmpy.py",
     "fmus_by_fmpy.py",
     "object_dictionary_by_canopen.py",
     "online4_by_linear_program.py",

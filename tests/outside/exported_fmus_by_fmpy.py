@@ -1,0 +1,175 @@
+"""Exported FMUs in the hands of FMPy and of the FMU Manipulation Toolbox, which importers are held against and made with.
+
+For every part of some scenarios and both versions of the standard:
+- `fmpy.validation` finds nothing in the model description: schema, names, model structure, start values, units;
+- the axis, simulated by FMPy at the base rate, gives what a run of the scenario records, to the bit;
+- the toolbox makes one FMU of drive and mechanics, which FMPy simulates: what it gives is the axis in one, to the bit;
+- a saved state, and its bytes in another instance, go on to the bit, as FMPy calls them.
+"""
+
+import csv
+import logging
+import subprocess
+import tempfile
+from pathlib import Path
+
+import fmpy
+import numpy
+from fmpy.fmi2 import FMU2Slave
+from fmpy.fmi3 import FMU3Slave
+from fmpy.validation import validate_fmu
+from fmu_manipulation_toolbox.container import FMUContainer
+
+ROOT = Path(__file__).resolve().parents[2]
+PARTS = ("axis", "drive", "mechanics")
+# A move, a table of points from a file, and function blocks over a fieldbus with the states of drive and axis.
+SCENARIOS = ("demo/jerk", "setpoints/pvt", "plc/figure-3a")
+BODIES = ("motor.", "table.", "load.")
+MEASURED = ("shaft.position", "shaft.velocity", "load.position", "load.velocity")
+
+
+def cargo(*arguments: str) -> str:
+    """What a command of cargo prints."""
+    command = ["cargo", *arguments]
+    return subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True).stdout
+
+
+def example(name: str, *arguments: str) -> str:
+    """What an example of the crate `fmu` prints."""
+    return cargo("run", "--quiet", "--release", "--package", "servobench-fmu", "--example", name, "--", *arguments)
+
+
+def library() -> str:
+    """The library inside the FMUs, built."""
+    cargo("build", "--quiet", "--release", "--package", "servobench-fmu", "--lib")
+    target = cargo("metadata", "--no-deps", "--format-version=1").split('"target_directory":"')[1].split('"')[0]
+    return str(Path(target) / "release" / "libservobench_fmu.so")
+
+
+def recorded(scenario: str) -> tuple[int, dict[str, numpy.ndarray]]:
+    """The base rate in Hz, and what a run records at every tick."""
+    rows = list(csv.reader(example("record", scenario).splitlines()))
+    values = numpy.array([row[1:] for row in rows[1:]], dtype=float)
+    return int(rows[0][0]), dict(zip(rows[0][1:], values.T))
+
+
+def simulated(fmu: str, rate: int, ticks: int) -> numpy.ndarray:
+    """What FMPy makes of it, a row for each tick from 0 on."""
+    step = 1.0 / rate
+    result = fmpy.simulate_fmu(fmu, stop_time=ticks * step, step_size=step, output_interval=step)
+    if len(result) != ticks + 1:
+        raise SystemExit(f"{fmu}: {len(result)} rows instead of {ticks + 1}")
+    return result
+
+
+def check_run(name: str, fmu: str, rate: int, channels: dict[str, numpy.ndarray]) -> int:
+    """Compares a simulation with the recording; how many values were equal."""
+    ticks = len(next(iter(channels.values()))) - 1
+    result = simulated(fmu, rate, ticks)
+    equal = 0
+    for channel, values in channels.items():
+        # Bodies are where they are at the end of a step, everything else is of the tick that has ended.
+        found, wanted = (result[channel], values) if channel.startswith(BODIES) else (result[channel][1:], values[:-1])
+        wrong = numpy.flatnonzero(found.view(numpy.uint64) != wanted.view(numpy.uint64))
+        if len(wrong):
+            at = wrong[0]
+            raise SystemExit(f"{name}: `{channel}` differs in row {at}: {found[at]!r}, recorded {wanted[at]!r}")
+        equal += len(wanted)
+    return equal
+
+
+def check_container(folder: Path, version: int, rate: int, axis: str) -> None:
+    """Makes one FMU of drive and mechanics and compares it with the axis."""
+    drive, mechanics = (f"{part}{version}.fmu" for part in ("drive", "mechanics"))
+    container = FMUContainer("both", folder, fmi_version=version)
+    for fmu in (drive, mechanics):
+        container.get_fmu(fmu)
+    container.add_link(drive, "effort.motor", mechanics, "effort.motor")
+    for name in MEASURED:
+        container.add_link(mechanics, name, drive, name)
+    container.add_output(mechanics, "load.position", "position")
+    container.add_implicit_rule(auto_input=False, auto_output=False, auto_link=False)
+    both = str(folder / f"both{version}.fmu")
+    container.make_fmu(both, step_size=1.0 / rate, sequential=True)
+    found, wanted = simulated(both, rate, 8_000)["position"], simulated(axis, rate, 8_000)["load.position"]
+    if not (found == wanted).all():
+        raise SystemExit(f"FMI {version}: drive and mechanics in a container differ by {abs(found - wanted).max()} m")
+
+
+def check_states(fmu: str, rate: int) -> None:
+    """Saves a state and its bytes, goes on, and goes on from them again."""
+    description = fmpy.read_model_description(fmu)
+    slave = {"2.0": FMU2Slave, "3.0": FMU3Slave}[description.fmiVersion]
+    is_two = slave is FMU2Slave
+    references = [one.valueReference for one in description.modelVariables if one.causality == "output"]
+    folder = fmpy.extract(fmu)
+
+    def begun():  # type: ignore[no-untyped-def]
+        instance = slave(
+            guid=description.guid,
+            unzipDirectory=folder,
+            modelIdentifier=description.coSimulation.modelIdentifier,
+            instanceName="axis",
+        )
+        instance.instantiate()
+        if is_two:
+            instance.setupExperiment(startTime=0.0)
+        instance.enterInitializationMode()
+        instance.exitInitializationMode()
+        return instance
+
+    def outputs(instance, first):  # type: ignore[no-untyped-def]
+        all_of_them = []
+        for tick in range(first, first + 500):
+            instance.doStep(currentCommunicationPoint=tick / rate, communicationStepSize=1.0 / rate)
+            all_of_them += (instance.getReal if is_two else instance.getFloat64)(references)
+        return all_of_them
+
+    one, other = begun(), begun()
+    outputs(one, 0)
+    if is_two:
+        state = one.getFMUstate()
+        copy = other.deSerializeFMUstate(one.serializeFMUstate(state))
+        restore = [(one, one.setFMUstate, state), (other, other.setFMUstate, copy)]
+    else:
+        state = one.getFMUState()
+        copy = other.deserializeFMUState(one.serializeFMUState(state))
+        restore = [(one, one.setFMUState, state), (other, other.setFMUState, copy)]
+    wanted = outputs(one, 500)
+    for instance, go_back, saved in restore:
+        go_back(saved)
+        if outputs(instance, 500) != wanted:
+            raise SystemExit(f"{fmu}: what follows a saved state is not what followed it")
+    for instance in (one, other):
+        instance.terminate()
+        instance.freeInstance()
+
+
+def main() -> None:
+    # It tells of every output that is not connected.
+    logging.getLogger("fmu_manipulation_toolbox").setLevel(logging.ERROR)
+    inside = library()
+    for scenario in SCENARIOS:
+        path = f"scenarios/{scenario}.toml"
+        rate, channels = recorded(path)
+        for version in (2, 3):
+            with tempfile.TemporaryDirectory() as room:
+                folder = Path(room)
+                for part in PARTS:
+                    fmu = str(folder / f"{part}{version}.fmu")
+                    example("export_fmu", path, str(version), part, inside, fmu)
+                    if problems := validate_fmu(fmu):
+                        raise SystemExit(f"{scenario}, FMI {version}, {part}: {problems}")
+                axis = str(folder / f"axis{version}.fmu")
+                equal = check_run(f"{scenario}, FMI {version}", axis, rate, channels)
+                size = Path(axis).stat().st_size
+                print(f"{scenario:<16} FMI {version}: valid, {size / 1e6:.1f} MB, {equal} values equal to the bit", end="")
+                if scenario == SCENARIOS[0]:
+                    check_container(folder, version, rate, axis)
+                    check_states(axis, rate)
+                    print("; drive and mechanics in a container are the axis; saved states go on", end="")
+                print()
+
+
+if __name__ == "__main__":
+    main()
