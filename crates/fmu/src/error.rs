@@ -1,5 +1,6 @@
 //! Why an FMU cannot be written, or a call of the standard is refused.
 use servobench_sim::BuildError;
+use std::path::PathBuf;
 use thiserror::Error;
 
 /// Why an FMU cannot be made of a scenario.
@@ -32,6 +33,22 @@ pub enum FmuError {
     Path {
         /// The path as the scenario has it.
         path: String,
+    },
+    /// There is no library to put into an FMU.
+    #[error(
+        "there is no library to put into an FMU, neither at {looked}: build it with `cargo build --release -p servobench-fmu`"
+    )]
+    NoLibrary {
+        /// Where it was looked for.
+        looked: String,
+    },
+    /// The library cannot be read.
+    #[error("cannot read `{}`: {error}", path.display())]
+    Read {
+        /// Where it is.
+        path: PathBuf,
+        /// What the system says.
+        error: std::io::Error,
     },
     /// The library is none for the platform of the FMU.
     #[error("the library is none for Linux on x86-64 (ELF): build it with `cargo build --release -p servobench-fmu`")]

@@ -55,3 +55,70 @@ fn archive(files: &[(String, &[u8])]) -> zip::result::ZipResult<Vec<u8>> {
     }
     Ok(zip.finish()?.into_inner())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use servobench_fmi::{Archive, Causality, Limits, ModelDescription};
+    use servobench_scenario::{embedded_demo, parse};
+
+    fn demo() -> Loaded {
+        let (name, text) = embedded_demo()[0];
+        parse(name, text, None).unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    /// The beginning of a library and nothing else.
+    fn library() -> Vec<u8> {
+        let mut bytes = vec![0; 64];
+        bytes[..6].copy_from_slice(ELF64);
+        bytes[18..20].copy_from_slice(&X86_64);
+        bytes
+    }
+
+    /// Oracle: the reader of model descriptions, which takes nothing that contradicts the standard, and has nothing to remark.
+    #[test]
+    fn what_is_written_is_read_without_a_remark() {
+        let loaded = demo();
+        for version in [Version::Two, Version::Three] {
+            for part in Part::ALL {
+                let model = Model::new(part, &loaded.scenario).unwrap();
+                let text = describe(&model, version, "{token}", IDENTIFIER).unwrap().write();
+                let read =
+                    ModelDescription::read(&text, "modelDescription.xml").unwrap_or_else(|e| panic!("{e}\n{text}"));
+                assert_eq!(read.remarks, Vec::<String>::new());
+                assert_eq!(read.variables.len(), model.variables.len());
+                assert!(read.co_simulation.can_serialize_state);
+                let kinds = |causality| read.variables.iter().filter(move |one| one.causality == causality).count();
+                assert_eq!(kinds(Causality::Output), read.structure.outputs.len());
+                assert!(kinds(Causality::Input) > 0 && kinds(Causality::Parameter) > 0);
+                // Nothing follows without a step.
+                assert!(read.structure.outputs.iter().all(|one| one.dependencies.as_ref().is_some_and(Vec::is_empty)));
+            }
+        }
+    }
+
+    #[test]
+    fn the_same_arguments_give_the_same_bytes() {
+        let write = || export(&demo(), Version::Three, Part::Axis, &library()).unwrap();
+        let bytes = write();
+        assert!(bytes == write());
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), &bytes).unwrap();
+        let archive = Archive::open(file.path(), &Limits::default());
+        assert!(archive.is_ok(), "{:?}", archive.err());
+    }
+
+    #[test]
+    fn what_cannot_be_in_an_fmu_is_refused_with_the_way_out() {
+        let refusal = |loaded: &Loaded, part, library: &[u8]| {
+            export(loaded, Version::Two, part, library).unwrap_err().to_string()
+        };
+        assert!(refusal(&demo(), Part::Axis, b"MZ").contains("cargo build --release -p servobench-fmu"));
+        let text = "[run]\nbase_rate = \"16 kHz\"\n[axis]\nmotion = \"linear\"\n[motor]\nkind = \"prescribed\"\n";
+        let bare = parse("bare", text, None).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(
+            refusal(&bare, Part::Drive, &library()),
+            "`bare` has no drive: `--part axis` or `--part mechanics` can be exported"
+        );
+    }
+}

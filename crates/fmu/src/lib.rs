@@ -1,4 +1,14 @@
 //! An axis of a scenario, its drive or its mechanics, as a co-simulation FMU of FMI 2.0 and 3.0.
+//!
+//! The crate is both what writes an FMU ([`export`]) and, built as a shared library, what is inside it: the functions of the
+//! standard around the closed loop of `servobench run`, on the engine `exact`. One table of variables (`interface`) makes the model
+//! description and serves the functions.
+//!
+//! ```text
+//! scenario → part of its loop → table of variables → modelDescription.xml ┐
+//! scenario, its models and tables ───────────────→ resources/             ├→ FMU
+//! this crate as a shared library ────────────────→ binaries/              ┘
+//! ```
 mod description;
 mod error;
 mod export;
@@ -6,6 +16,7 @@ mod ffi;
 mod history;
 mod instance;
 mod interface;
+mod library;
 mod machine;
 mod mover;
 mod parameter;
@@ -16,4 +27,5 @@ mod units;
 
 pub use error::FmuError;
 pub use export::export;
+pub use library::{LIBRARY, library};
 pub use part::Part;

@@ -3,6 +3,7 @@
 //! ```text
 //! servobench-<version>-<target>/bin/servobench              finds the library by $ORIGIN/../native/lib
 //!                              /native/lib/libmujoco.so.…
+//!                              /lib/libservobench_fmu.so    what goes into exported FMUs
 //!                              /models /scenarios /docs README.md LICENSE-… NOTICE
 //!                              /licenses                    of everything that is in the binary
 //! ```
@@ -25,7 +26,7 @@ const TRACKED: [&str; 6] = ["models", "scenarios", "docs", "README.md", "LICENSE
 pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     let library = wheel::MUJOCO.ensure(workspace)?;
     let mut build = workspace.cargo(["build", "--release", "--package", "servobench-cli"]);
-    run_command(build.args(["--features", "mujoco"]), 0)?;
+    run_command(build.args(["--package", "servobench-fmu", "--features", "servobench-cli/mujoco"]), 0)?;
 
     let metadata = Metadata::read(workspace)?;
     let cli = metadata.members().find(|package| package.name == "servobench-cli");
@@ -39,6 +40,7 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     let root = room.path().join(&name);
     copy(&workspace.binary(), &root.join("bin/servobench"))?;
     copy_into(&library, &root.join("native/lib"))?;
+    copy_into(&workspace.binary().with_file_name("libservobench_fmu.so"), &root.join("lib"))?;
     for licence in wheel::MUJOCO.licences(workspace) {
         copy_into(&licence, &root.join("licenses/mujoco"))?;
     }

@@ -1,0 +1,47 @@
+//! Where the library that goes into FMUs is.
+use crate::error::FmuError;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Its file name, as cargo makes it of this crate.
+pub const LIBRARY: &str = "libservobench_fmu.so";
+
+/// The library for [`export`](crate::export) that belongs to the program at `program`: in `../lib` of its folder, as it is
+/// distributed, or beside it, as it is built.
+///
+/// # Errors
+/// [`FmuError::NoLibrary`] says where it was looked for and how to make it, [`FmuError::Read`] that it cannot be read.
+pub fn library(program: &Path) -> Result<Vec<u8>, FmuError> {
+    let folder = program.parent().unwrap_or_else(|| Path::new(""));
+    let places = [folder.join("../lib").join(LIBRARY), folder.join(LIBRARY)];
+    match places.iter().find(|place| place.is_file()) {
+        Some(place) => fs::read(place).map_err(|error| FmuError::Read { path: place.clone(), error }),
+        None => Err(FmuError::NoLibrary { looked: listed(&places) }),
+    }
+}
+
+fn listed(places: &[PathBuf]) -> String {
+    places.iter().map(|place| format!("`{}`", place.display())).collect::<Vec<_>>().join(" nor at ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_distributed_library_comes_first_then_the_one_beside_the_program() {
+        let room = tempfile::tempdir().unwrap();
+        let [bin, lib] = ["bin", "lib"].map(|name| room.path().join(name));
+        for folder in [&bin, &lib] {
+            fs::create_dir(folder).unwrap();
+        }
+        let program = bin.join("servobench");
+        let message = library(&program).unwrap_err().to_string();
+        assert!(message.contains("bin/../lib/libservobench_fmu.so` nor at `"), "{message}");
+        assert!(message.contains("cargo build --release -p servobench-fmu"), "{message}");
+        fs::write(bin.join(LIBRARY), "built").unwrap();
+        assert_eq!(library(&program).unwrap(), b"built");
+        fs::write(lib.join(LIBRARY), "distributed").unwrap();
+        assert_eq!(library(&program).unwrap(), b"distributed");
+    }
+}
