@@ -213,9 +213,14 @@ impl BadSlave {
                 eprintln!("child {child}");
                 null_write();
             }
-            // SAFETY: the child crashes as soon as it touches the memory that is shared, on the heap it allocates nothing.
+            // SAFETY: the child goes on like its parent and allocates nothing; the parent waits for its end.
             Bad::ForkTwin => unsafe {
-                libc::fork();
+                let twin = libc::fork();
+                if twin == 0 {
+                    self.x += 1e6;
+                } else {
+                    libc::waitpid(twin, std::ptr::null_mut(), 0);
+                }
             },
             Bad::Overwrite(byte) => overwrite(byte),
             Bad::Fails => {

@@ -92,7 +92,8 @@ fn one_that_closes_all_files_or_reads_input_goes_on() {
     assert!(slave.take_log().iter().any(|line| line.message == "0 bytes on standard input"));
 }
 
-/// The twin has not the memory to answer through.
+/// The twin has not the memory to answer through, and ends as soon as it wants to; otherwise its sum would be heard, or it would
+/// be waited for without end.
 #[test]
 fn a_forked_twin_does_not_answer() {
     let mut slave = start(&Bad::ForkTwin, Bounds::default()).unwrap();
