@@ -146,8 +146,8 @@ def check_states(fmu: str, rate: int) -> None:
 
 
 def main() -> None:
-    # It tells of every output that is not connected.
-    logging.getLogger("fmu_manipulation_toolbox").setLevel(logging.ERROR)
+    # It tells of every input and output that is not connected; what fails raises an exception.
+    logging.getLogger("fmu_manipulation_toolbox").setLevel(logging.CRITICAL)
     inside = library()
     for scenario in SCENARIOS:
         path = f"scenarios/{scenario}.toml"

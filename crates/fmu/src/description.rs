@@ -2,7 +2,6 @@
 use crate::ffi::CATEGORIES;
 use crate::interface::{Choice, Kind, Role, Variable as Row};
 use crate::machine::Model;
-use crate::parameter::Least;
 use crate::units::{self, NoUnit};
 use servobench_fmi::{
     Causality, CoSimulation, DataType, DefaultExperiment, DependencyKind, Enumeration, Initial, Item, LogCategory,
@@ -63,6 +62,7 @@ fn variable(at: u32, row: &Row, units: &mut Vec<Unit>) -> Result<Variable, NoUni
         _ => Variability::Discrete,
     };
     let unit = if row.unit.is_empty() { None } else { Some(position(units, units::definition(&row.unit)?)) };
+    let (least, most) = row.range();
     let has_start = matches!(row.role, Role::Input(_) | Role::Setting(_));
     #[expect(clippy::cast_possible_truncation, reason = "an item of an enumeration or an integer of 32 bits")]
     let start = match row.kind {
@@ -92,8 +92,8 @@ fn variable(at: u32, row: &Row, units: &mut Vec<Unit>) -> Result<Variable, NoUni
         enumeration: None,
         dimensions: vec![],
         start: has_start.then_some(start),
-        min: matches!(row.least, Least::Zero | Least::Positive).then_some(0.0),
-        max: None,
+        min: (row.kind == Kind::Real && least >= 0.0).then_some(0.0),
+        max: (row.kind == Kind::Real && most < f64::MAX).then_some(most),
         nominal: None,
         quantity: String::new(),
         unit,

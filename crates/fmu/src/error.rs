@@ -73,7 +73,7 @@ pub(crate) enum Refusal {
     NotSettable { name: String, what: &'static str },
     #[error("`{name}` cannot be read before initialization mode: its value is calculated")]
     NotYet { name: String },
-    #[error("`{name}` takes values from {min} to {max}, got {value}")]
+    #[error("`{name}` takes {}, got {value}", values(*min, *max))]
     Range { name: String, min: f64, max: f64, value: f64 },
     #[error("{given} values for {wanted} value references of scalars")]
     Length { given: usize, wanted: usize },
@@ -106,5 +106,15 @@ impl Refusal {
     /// Whether the call was not carried out and everything is as before it, so that another one may follow (status discard).
     pub(crate) const fn is_discard(&self) -> bool {
         matches!(self, Self::Step { .. })
+    }
+}
+
+/// What a variable takes.
+fn values(min: f64, max: f64) -> String {
+    match (min > f64::MIN, max < f64::MAX) {
+        (true, true) => format!("values from {min} to {max}"),
+        (true, false) if min > 0.0 => "finite values above zero".into(),
+        (true, false) => "finite values from zero on".into(),
+        (false, _) => "finite values".into(),
     }
 }

@@ -60,6 +60,7 @@ pub(crate) enum Input {
     Start,
     Target,
     Execute,
+    Override,
     Position,
     Velocity,
     Acceleration,
@@ -71,8 +72,11 @@ pub(crate) enum Input {
     LoadVelocity,
 }
 
+/// Largest override.
+const MOST_OVERRIDE: f64 = 2.0;
+
 /// How many inputs there are.
-pub(crate) const INPUTS: usize = 12;
+pub(crate) const INPUTS: usize = 13;
 
 /// Outputs, which a step leaves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -126,6 +130,7 @@ impl Variable {
             Kind::Boolean => (0.0, 1.0),
             Kind::Enumeration(choice) => (1.0, choice.items().len() as f64),
             Kind::Integer => (f64::from(i32::MIN), f64::from(i32::MAX)),
+            Kind::Real if matches!(self.role, Role::Input(Input::Override)) => (0.0, MOST_OVERRIDE),
             Kind::Real | Kind::Text => match self.least {
                 Least::Any => (f64::MIN, f64::MAX),
                 Least::Zero => (0.0, f64::MAX),
@@ -214,6 +219,8 @@ impl Table {
             input("target", Kind::Real, axis, Input::Target, "where to move, for the command `target`");
             let text = "its rising edge begins a move to `target` by the limits `target.*`";
             input("execute", Kind::Boolean, "", Input::Execute, text);
+            let text = "factor of the velocity limit of moves to `target`; at 0 the axis stops";
+            input("override", Kind::Real, "", Input::Override, text);
             let text =
                 "position of the set-point, for the command `setpoint`; held over a step, so step at the base rate";
             input("demand.position", Kind::Real, axis, Input::Position, text);
@@ -240,8 +247,10 @@ impl Table {
             let text = "external force or torque on the load";
             input("force.load", Kind::Real, effort(axis), Input::LoadEffort, text);
         }
-        if let Some(start) = self.all.iter_mut().find(|one| matches!(one.role, Role::Input(Input::Start))) {
-            start.start = 1.0;
+        for one in &mut self.all {
+            if matches!(one.role, Role::Input(Input::Start | Input::Override)) {
+                one.start = 1.0;
+            }
         }
         self
     }

@@ -118,8 +118,9 @@ impl Machine {
         let is_true = |one| input(one) != 0.0;
         let (k, rate) = (self.tick(), self.rate());
         let setpoint = if self.command == TARGET {
-            let target = self.mover.at(k, rate, is_true(Input::Execute), input(Input::Target));
-            Some(target.map_err(Refusal::Move).inspect_err(|_| self.failed = true)?)
+            let factor = input(Input::Override);
+            let target = self.mover.at(k, rate, is_true(Input::Execute), input(Input::Target), factor);
+            Some(target.map_err(|error| Refusal::Move(error.to_string())).inspect_err(|_| self.failed = true)?)
         } else if self.command == SETPOINT {
             let (x, v, a) = (input(Input::Position), input(Input::Velocity), input(Input::Acceleration));
             Some(Setpoint { x, v, a, ..Setpoint::default() })

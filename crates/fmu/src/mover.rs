@@ -1,51 +1,74 @@
 //! Moves to a target, from whatever state of motion the set-point is in.
 use servobench_base::{Rate, Setpoint};
 use servobench_motion::online::{DirectionalLimits, Effort, Target};
-use servobench_motion::{Limits, Order};
+use servobench_motion::{Limits, Order, PlanError};
 use servobench_planner::{Plan, Replanning, Request, Way};
 
 /// Generator of set-points for the command `target`: a rising edge of `execute` makes a move to `target`, jerk-limited, also
-/// while another is under way.
+/// while another is under way. A new override plans the rest of the move again, with the limit of velocity times it; at 0 the axis
+/// stops until it rises.
 #[derive(Debug, Clone)]
 pub(crate) struct Mover {
-    limits: DirectionalLimits,
+    limits: [f64; 3],
     /// What is followed at present.
     now: Setpoint,
+    /// Where the last move goes.
+    goal: Option<f64>,
     /// The move under way: its plan, the tick at which it began and where.
     under_way: Option<(Plan, u64, f64)>,
     executed: bool,
+    factor: f64,
 }
 
 impl Mover {
     /// At rest at `start`, with limits of velocity, acceleration and jerk (axis coordinate).
-    pub(crate) fn new(start: f64, [velocity, acceleration, jerk]: [f64; 3]) -> Self {
-        let limits = DirectionalLimits::from(Limits { velocity, acceleration, jerk, snap: f64::INFINITY });
-        Self { limits, now: Setpoint::at_rest(start), under_way: None, executed: false }
+    pub(crate) fn new(start: f64, limits: [f64; 3]) -> Self {
+        Self { limits, now: Setpoint::at_rest(start), goal: None, under_way: None, executed: false, factor: 1.0 }
     }
 
-    /// The set-point at tick `k`.
+    /// The set-point at tick `k`, with the override `factor`.
     ///
     /// # Errors
     /// What the planner says of a move that it cannot plan.
-    pub(crate) fn at(&mut self, k: u64, rate: Rate, execute: bool, target: f64) -> Result<Setpoint, String> {
+    pub(crate) fn at(
+        &mut self,
+        k: u64,
+        rate: Rate,
+        execute: bool,
+        target: f64,
+        factor: f64,
+    ) -> Result<Setpoint, PlanError> {
         if let Some((plan, begun, from)) = &self.under_way {
             self.now = plan.at((k - begun) as f64 / f64::from(rate.hertz()));
             self.now.x += from;
         }
-        if execute && !self.executed {
-            let from = self.now.x;
-            let way = Way::Replanning(Replanning {
-                from: Setpoint { x: 0.0, s: 0.0, ..self.now },
-                target: Target::Position { x: target - from, v: 0.0 },
-                order: Order::Third,
-                limits: self.limits,
-                effort: Effort::Fast,
-            });
-            let plan = Request::new(way).plan().map_err(|error| error.to_string())?;
-            self.under_way = Some((plan, k, from));
+        let is_new = execute && !self.executed;
+        if is_new {
+            self.goal = Some(target);
         }
-        self.executed = execute;
+        if let Some(goal) = self.goal
+            && (is_new || factor.to_bits() != self.factor.to_bits())
+        {
+            self.under_way = Some((self.plan(goal, factor)?, k, self.now.x));
+        }
+        (self.executed, self.factor) = (execute, factor);
         Ok(self.now)
+    }
+
+    /// The way from here to `goal`, or to rest.
+    fn plan(&self, goal: f64, factor: f64) -> Result<Plan, PlanError> {
+        let [velocity, acceleration, jerk] = self.limits;
+        let is_stop = factor == 0.0;
+        let velocity = if is_stop { velocity } else { factor * velocity };
+        let x = goal - self.now.x;
+        let way = Way::Replanning(Replanning {
+            from: Setpoint { x: 0.0, s: 0.0, ..self.now },
+            target: if is_stop { Target::Velocity(0.0) } else { Target::Position { x, v: 0.0 } },
+            order: Order::Third,
+            limits: DirectionalLimits::from(Limits { velocity, acceleration, jerk, snap: f64::INFINITY }),
+            effort: Effort::Fast,
+        });
+        Request::new(way).plan()
     }
 }
 
@@ -57,9 +80,14 @@ mod tests {
 
     /// Set-points of ticks 0 to `ticks`, with the target that `target` says, executed while it says so.
     fn positions(ticks: u64, target: impl Fn(u64) -> Option<f64>) -> Vec<Setpoint> {
+        slowed(ticks, target, |_| 1.0)
+    }
+
+    /// The same with an override.
+    fn slowed(ticks: u64, target: impl Fn(u64) -> Option<f64>, factor: impl Fn(u64) -> f64) -> Vec<Setpoint> {
         let mut mover = Mover::new(0.1, [1.0, 10.0, 200.0]);
         let rate = Rate::new(RATE).unwrap();
-        let at = |k| mover.at(k, rate, target(k).is_some(), target(k).unwrap_or(f64::NAN)).unwrap();
+        let at = |k| mover.at(k, rate, target(k).is_some(), target(k).unwrap_or(f64::NAN), factor(k)).unwrap();
         (0..ticks).map(at).collect()
     }
 
@@ -88,5 +116,25 @@ mod tests {
             assert!(two.v.abs() <= 1.0 + 1e-9 && two.a.abs() <= 10.0 + 1e-9, "{two:?}");
         }
         assert!((all[1_999].x + 0.2).abs() < 1e-12 && all[1_999].v.abs() < 1e-9);
+    }
+    /// Oracle: the velocity limit times the override, at rest for 0; nothing jumps, and the target is reached all the same.
+    #[test]
+    fn an_override_changes_the_velocity_on_the_way() {
+        let factor = |k| match k {
+            300..600 => 0.5,
+            600..1_000 => 0.0,
+            1_000..1_200 => 1.5,
+            _ => 1.0,
+        };
+        let all = slowed(3_000, |_| Some(1.2), factor);
+        // 1 m/s less 0.5 m/s takes 0.1 s: 0.5/10 + 10/200 s.
+        for (tick, velocity) in [(299, 1.0), (401, 0.5), (599, 0.5), (800, 0.0), (999, 0.0)] {
+            assert!((all[tick].v - velocity).abs() < 1e-9, "tick {tick}: {:?}", all[tick]);
+        }
+        for pair in all.windows(2) {
+            let [one, two] = pair else { unreachable!() };
+            assert!((two.a - one.a).abs() <= 0.2 + 1e-9 && two.v.abs() <= 1.5 + 1e-9, "{pair:?}");
+        }
+        assert!((all[2_999].x - 1.2).abs() < 1e-12 && all[2_999].v.abs() < 1e-9, "{:?}", all[2_999]);
     }
 }

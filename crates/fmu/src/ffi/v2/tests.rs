@@ -289,7 +289,8 @@ fn references_types_and_values_are_checked() {
     refused(&|fmu| fmu.try_set(room.input("start"), 0.0), "is of the type Boolean, not Real");
     refused(&|fmu| fmu.try_set(room.output("load.position"), 0.0), "an output");
     refused(&|fmu| fmu.try_set(0, 0.0), "the independent variable");
-    refused(&|fmu| fmu.try_set(room.input("target"), f64::NAN), "got NaN");
+    refused(&|fmu| fmu.try_set(room.input("target"), f64::NAN), "`target` takes finite values, got NaN");
+    refused(&|fmu| fmu.try_set(room.input("override"), 2.1), "`override` takes values from 0 to 2, got 2.1");
     refused(&|fmu| fmu.try_set(room.input("load.inertia"), 1.0), "a fixed parameter, and initialization is over");
     let fmu = instantiate(&room);
     assert_eq!(fmu.set_integer("command", 4), Status::ERROR);
