@@ -155,4 +155,37 @@ mod tests {
         assert_eq!(steps_above("/etc/a.csv"), None);
         assert_eq!(steps_above("../../../../../a.csv"), None);
     }
+
+    /// Oracle: the scenario itself. It is found with its table above it and its models from a folder of its own, wherever that is
+    /// unpacked, and the token is that of the same files only.
+    #[test]
+    fn what_a_scenario_names_is_packed_where_it_is_looked_for() {
+        let room = tempfile::tempdir().unwrap();
+        let all = Path::new("../../scenarios/setpoints");
+        let text = fs::read_to_string(all.join("pvt.toml")).unwrap().replace("\"points.csv\"", "\"../points.csv\"");
+        let folder = room.path().join("a/b");
+        fs::create_dir_all(&folder).unwrap();
+        fs::write(folder.join("pvt.toml"), text).unwrap();
+        fs::copy(all.join("points.csv"), room.path().join("a/points.csv")).unwrap();
+        let loaded = load(&folder.join("pvt.toml")).unwrap_or_else(|error| panic!("{error}"));
+        let resources = Resources::of(Part::Axis, &loaded).unwrap();
+        let names: Vec<&str> = resources.files.iter().map(|(path, _)| path.as_str()).collect();
+        assert!(names.contains(&"above/scenario.toml") && names.contains(&"points.csv"), "{names:?}");
+        assert!(names.iter().any(|name| name.starts_with("above/models/axes/")), "{names:?}");
+
+        let elsewhere = tempfile::tempdir().unwrap();
+        for (path, text) in &resources.files {
+            let path = elsewhere.path().join(path);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, text).unwrap();
+        }
+        let read = Resources::read(elsewhere.path()).unwrap();
+        assert_eq!((&read, read.token()), (&resources, resources.token()));
+        let model = read.model(elsewhere.path()).unwrap();
+        assert_eq!(model.scenario.program, loaded.scenario.program);
+        assert_eq!(model.scenario.axis, loaded.scenario.axis);
+
+        fs::write(elsewhere.path().join("points.csv"), "t").unwrap();
+        assert_ne!(Resources::read(elsewhere.path()).unwrap().token(), resources.token());
+    }
 }
