@@ -1,5 +1,5 @@
 //! What a person or a machine reads of a run: tables, comparison in words, `results.json`, JUnit, the drawing of a plan,
-//! the timing diagram of a run, the object dictionary of a drive.
+//! the timing diagram of a run, the object dictionary of a drive, what is inside an FMU.
 //!
 //! What is said of runs is made from [`Results`], which hold nothing that differs between two runs of the same scenario:
 //! no wall-clock time, no host. So every text here is the same to the byte, too.
@@ -8,6 +8,7 @@ mod bound_limits;
 mod compare;
 mod drawing;
 mod error;
+mod fmu_table;
 mod junit;
 mod metric_table;
 mod object_table;
@@ -23,6 +24,7 @@ mod verdict_table;
 
 pub use compare::{Compared, Comparison};
 pub use error::ReportError;
+pub use fmu_table::fmu_table;
 pub use junit::junit;
 pub use object_table::object_table;
 pub use plan::PlannedMove;

@@ -37,7 +37,7 @@ const PLAN: [(&str, May); 27] = [
     ),
     ("fmu", May::On(&["base", "cia402", "motion", "planner", "plcopen", "plant", "fmi", "scenario", "sim"])),
     ("suite", May::On(&["base", "plant", "sim", "scenario", "trace", "metrics"])),
-    ("report", May::On(&["base", "cia402", "motion", "planner", "trace", "metrics"])),
+    ("report", May::On(&["base", "cia402", "motion", "planner", "fmi", "trace", "metrics"])),
     ("view", May::On(&["base", "trace", "metrics"])),
     ("cli", May::OnAll),
     ("tests", May::OnAll),
