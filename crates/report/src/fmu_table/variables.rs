@@ -35,20 +35,12 @@ pub(super) fn variables(description: &ModelDescription, style: Style) -> String 
         return "\nIt has no variables.\n".into();
     }
     let feedthrough = Feedthrough::of(description);
-    let groups: Vec<Group> = GROUPS
+    GROUPS
         .iter()
         .map(|(causality, title)| Group::of(description, *causality, title, &feedthrough))
         .filter(|group| group.count > 0)
-        .collect();
-    let width = |column: usize| {
-        let texts = groups.iter().flat_map(|group| &group.rows).map(|row| row.cells[column].as_str());
-        match widest(texts) {
-            0 => 0,
-            widest => widest.max(TITLES[column].len()).min(WIDEST[column]),
-        }
-    };
-    let columns = Columns::new(std::array::from_fn(width), style);
-    groups.iter().map(|group| group.text(&columns, style)).collect()
+        .map(|group| group.text(style))
+        .collect()
 }
 
 /// Variables of one causality.
@@ -68,7 +60,8 @@ impl<'a> Group<'a> {
         Self { title, count: all().count(), remark, rows: rows.collect() }
     }
 
-    fn text(&self, columns: &Columns, style: Style) -> String {
+    fn text(&self, style: Style) -> String {
+        let columns = Columns::of(&self.rows, style);
         let title = format!("{} ({})", self.title, self.count);
         let mut text = format!("\n{}\n", style.paint(Ink::Heading, &title));
         for line in fitted(self.remark, style.width) {
@@ -218,7 +211,13 @@ struct Columns {
 }
 
 impl Columns {
-    fn new(widths: [usize; COLUMNS], style: Style) -> Self {
+    /// As wide as these rows need them.
+    fn of(rows: &[Row], style: Style) -> Self {
+        let width = |column: usize| match widest(rows.iter().map(|row| row.cells[column].as_str())) {
+            0 => 0,
+            widest => widest.max(TITLES[column].len()).min(WIDEST[column]),
+        };
+        let widths: [usize; COLUMNS] = std::array::from_fn(width);
         let taken: usize = widths.iter().filter(|width| **width > 0).map(|width| width + 1).sum();
         let note = style.width.checked_sub(taken).filter(|rest| *rest >= NARROWEST_NOTE);
         Self { widths, note, total: style.width }
