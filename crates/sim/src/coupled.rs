@@ -18,6 +18,9 @@ use servobench_scenario::{CoSimulation, CouplingMethod, Fmu, LoopSignal, Scenari
 use servobench_trace::Event;
 use std::num::NonZeroU32;
 
+/// What the axis gives before channels of the recording.
+const OWN: [&str; 3] = ["time", "shaft.position", "shaft.velocity"];
+
 /// A step of one base tick.
 const TICK: Divider = Divider::new(1).unwrap();
 
@@ -142,7 +145,7 @@ impl Coupled {
         members.push(Member {
             name: "axis".into(),
             inputs: axis.takes.iter().map(|signal| InputPort { name: signal.name().into(), held: 0.0 }).collect(),
-            outputs: std::iter::once("time".to_owned()).chain(wiring.channels.iter().cloned()).collect(),
+            outputs: OWN.map(String::from).into_iter().chain(wiring.channels.iter().cloned()).collect(),
             every: NonZeroU32::MIN,
             block: Part::Axis(Box::new(axis)),
         });
@@ -271,7 +274,7 @@ fn settings(scenario: &Scenario) -> Settings {
     }
 }
 
-/// Which ports are connected. The axis comes behind the FMUs; its first output is the time.
+/// Which ports are connected. The axis comes behind the FMUs.
 struct Wiring<'a> {
     /// By FMU: outputs that somebody wants.
     outputs: Vec<Vec<&'a str>>,
@@ -295,8 +298,10 @@ impl<'a> Wiring<'a> {
             for (port, (_, signal)) in fmu.inputs.iter().enumerate() {
                 let from = match signal {
                     Signal::Time => Port { block: axis, port: 0 },
+                    Signal::ShaftPosition => Port { block: axis, port: 1 },
+                    Signal::ShaftVelocity => Port { block: axis, port: 2 },
                     Signal::Channel(name) => {
-                        Port { block: axis, port: 1 + place(&mut wiring.channels, (*name).into()) }
+                        Port { block: axis, port: OWN.len() + place(&mut wiring.channels, (*name).into()) }
                     }
                     Signal::Fmu { fmu, variable } => {
                         Port { block: *fmu, port: place(&mut wiring.outputs[*fmu], variable.as_str()) }
@@ -316,8 +321,7 @@ impl<'a> Wiring<'a> {
     fn output_name(&self, scenario: &Scenario, Port { block, port }: Port) -> String {
         match scenario.fmus.get(block) {
             Some(fmu) => format!("{}.{}", fmu.name, self.outputs[block][port]),
-            None if port == 0 => "time".into(),
-            None => self.channels[port - 1].clone(),
+            None => OWN.get(port).map_or_else(|| self.channels[port - OWN.len()].clone(), |name| (*name).into()),
         }
     }
 
@@ -422,8 +426,9 @@ impl Block for Part {
         match self {
             Self::Axis(axis) => {
                 axis.look();
-                let (time, channels) = outputs.split_at_mut(1);
-                time.fill(axis.recorded.time());
+                let (own, channels) = outputs.split_at_mut(OWN.len());
+                let shaft = axis.recorded.closed_loop.mechanics.bodies()[0];
+                own.copy_from_slice(&[axis.recorded.time(), shaft.position, shaft.velocity]);
                 if !channels.is_empty() {
                     channels.copy_from_slice(axis.gives.pick(&axis.now));
                 }

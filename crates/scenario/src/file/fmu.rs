@@ -39,10 +39,13 @@ table! {
         memory: u32 = 64..=1_048_576,
         /// Start values of its parameters and variables, in units that it can convert.
         parameters: StartTable = (),
-        /// Its inputs, each with the signal that it is given: a channel of the recording, "time", or an output of another FMU
-        /// as "name.variable".
+        /// Its inputs, each with the signal that it is given: a channel of the recording, "shaft.position" or "shaft.velocity" of
+        /// the motor in its own coordinate, "time", or an output of another FMU as "name.variable". The mechanics of an axis take
+        /// "effort.motor", "disturbance.motor" and "disturbance.load".
         inputs: SignalTable = (),
-        /// Its outputs, each with what it is in the loop.
+        /// Its outputs, each with what it is in the loop: "disturbance.motor" or "disturbance.load", "setpoint.position" with
+        /// its derivatives, in place of drive and motor "effort.motor", in place of the drive "voltage.d" and "voltage.q". The
+        /// mechanics of an axis give "shaft.position", "shaft.velocity", "load.position" and "load.velocity".
         outputs: SignalTable = (),
     }
 }

@@ -30,10 +30,8 @@ trait Port: Copy + PartialEq + 'static {
 
 impl Port for BodySignal {
     const ALL: &'static [(&'static str, Self)] = &[
-        ("motor.position", Self::MotorPosition),
-        ("motor.velocity", Self::MotorVelocity),
-        ("table.position", Self::TablePosition),
-        ("table.velocity", Self::TableVelocity),
+        ("shaft.position", Self::ShaftPosition),
+        ("shaft.velocity", Self::ShaftVelocity),
         ("load.position", Self::LoadPosition),
         ("load.velocity", Self::LoadVelocity),
     ];
@@ -54,11 +52,9 @@ impl Port for LoopSignal {
 
 /// What acts on mechanics.
 const ON_MECHANICS: [&str; 3] = ["effort.motor", "disturbance.motor", "disturbance.load"];
-/// What mechanics must give: motion of the motor and, unless they are one body, of the load.
-const MOTOR: [(&str, BodySignal); 2] =
-    [("motor.position", BodySignal::MotorPosition), ("motor.velocity", BodySignal::MotorVelocity)];
-const LOAD: [(&str, BodySignal); 2] =
-    [("load.position", BodySignal::LoadPosition), ("load.velocity", BodySignal::LoadVelocity)];
+/// Position and velocity of the two bodies that mechanics can have; a velocity needs its position.
+const BODIES: [[BodySignal; 2]; 2] =
+    [[BodySignal::ShaftPosition, BodySignal::ShaftVelocity], [BodySignal::LoadPosition, BodySignal::LoadVelocity]];
 
 /// Where files are, and how long a tick is.
 #[derive(Clone, Copy)]
@@ -84,18 +80,27 @@ pub(super) fn mechanics(file: &File, known: Known<'_>, report: &mut Report) -> O
     let signals = |text: &str| ON_MECHANICS.iter().find(|name| **name == text).map(|name| Signal::Channel(name));
     let fmu = fmu(given, 1, known, report, &signals, &ON_MECHANICS);
     if let Some(fmu) = &fmu {
-        let lacks = |ports: &[(&'static str, BodySignal)]| {
-            let lacking = ports.iter().find(|(_, port)| fmu.outputs.iter().all(|(_, to)| to != port));
-            lacking.map(|(name, _)| *name)
+        let gives = |port: BodySignal| fmu.outputs.iter().any(|(_, to)| *to == port);
+        let at = |port: BodySignal| fmu.outputs.iter().position(|(_, to)| *to == port);
+        let [[shaft, _], [load, load_velocity]] = BODIES;
+        let place = |port| {
+            given.outputs.given().zip(at(port)).and_then(|(table, at)| table.0.get(at)).map(|one| one.value.span)
         };
-        let has_load = fmu.outputs.iter().any(|(_, to)| LOAD.iter().any(|(_, port)| port == to));
-        if let Some(name) = lacks(&MOTOR).or_else(|| lacks(&LOAD).filter(|_| has_load)) {
-            let message = format!("no output is `{name}`");
-            report.error(
-                given.outputs.span().unwrap_or(*span),
-                message,
-                "mechanics give position and velocity of the motor, and of the load unless they are one body",
-            );
+        if !gives(shaft) {
+            let help =
+                "mechanics give the motor's position in its own coordinate, and the load's unless they are one body";
+            report.error(given.outputs.span().unwrap_or(*span), "no output is `shaft.position`", help);
+            return None;
+        }
+        if gives(load_velocity) && !gives(load) {
+            let span = place(load_velocity).unwrap_or(*span);
+            report.error(span, "a load with a velocity has a position", "connect `load.position` too");
+            return None;
+        }
+        let effort = fmu.inputs.iter().any(|(_, signal)| *signal == Signal::Channel("effort.motor"));
+        if !effort {
+            let help = "write inputs = { variable = \"effort.motor\" }";
+            report.error(given.inputs.span().unwrap_or(*span), "no input is given `effort.motor`", help);
             return None;
         }
     }
@@ -120,7 +125,8 @@ pub(super) fn others(
         check_name(&names, index, &one.value, report);
         let signals = |text: &str| signal(text, &names);
         let every = coupling.map_or(1, |coupling| coupling.every);
-        all.push(fmu(&one.value, every, known, report, &signals, CHANNELS));
+        let offered: Vec<&str> = CHANNELS.iter().copied().chain(["shaft.position", "shaft.velocity", "time"]).collect();
+        all.push(fmu(&one.value, every, known, report, &signals, &offered));
     }
     let all: Vec<_> = all.into_iter().collect::<Option<_>>()?;
     check_ports(file, given, &all, known, report);
@@ -190,10 +196,7 @@ fn fmu<P: Port>(
         let keys = [("patience", given.patience.span()), ("memory", given.memory.span())];
         refuse(&keys, "is for an FMU in a process of its own", "leave `isolation` out", report);
     }
-    let read = |text: &str| {
-        let found = if text == "time" { Some(Signal::Time) } else { signal(text) };
-        found.ok_or_else(|| suggestion(text, signals.iter().copied().chain(["time"])))
-    };
+    let read = |text: &str| signal(text).ok_or_else(|| suggestion(text, signals.iter().copied()));
     let inputs = given
         .inputs
         .optional()
@@ -257,6 +260,12 @@ fn twice<P: Port>(given: &file::Fmu, index: usize, port: &P, report: &mut Report
 
 /// A channel, or the output of an FMU.
 fn signal(text: &str, names: &[String]) -> Option<Signal> {
+    match text {
+        "time" => return Some(Signal::Time),
+        "shaft.position" => return Some(Signal::ShaftPosition),
+        "shaft.velocity" => return Some(Signal::ShaftVelocity),
+        _ => {}
+    }
     if let Some(channel) = CHANNELS.iter().find(|channel| **channel == text) {
         return Some(Signal::Channel(channel));
     }
@@ -278,7 +287,7 @@ fn check_name(names: &[String], index: usize, given: &file::Fmu, report: &mut Re
     let is_of_channels = CHANNELS.iter().any(|channel| channel.split_once('.').is_some_and(|(group, _)| group == name));
     if names[..index].iter().any(|before| before == name) {
         report.error(span, format!("a second FMU is called `{name}`"), "give each its own `name`");
-    } else if name.is_empty() || name.contains('.') || is_of_channels || name == "time" {
+    } else if name.is_empty() || name.contains('.') || is_of_channels || name == "time" || name == "shaft" {
         let message = format!("`{name}` cannot name an FMU");
         report.error(
             span,

@@ -40,6 +40,10 @@ pub enum Isolation {
 pub enum Signal {
     /// The time (s).
     Time,
+    /// `shaft.position`: the motor's position in its own coordinate.
+    ShaftPosition,
+    /// `shaft.velocity`.
+    ShaftVelocity,
     /// A channel of the recording.
     Channel(&'static str),
     /// An output of another FMU, in that one's unit converted to SI.
@@ -51,18 +55,14 @@ pub enum Signal {
     },
 }
 
-/// What an output of an FMU can be that simulates the mechanics (SI; motor and load in the axis coordinate).
+/// What an output of an FMU can be that simulates the mechanics.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum BodySignal {
-    /// `motor.position`.
-    MotorPosition,
-    /// `motor.velocity`.
-    MotorVelocity,
-    /// `table.position`.
-    TablePosition,
-    /// `table.velocity`.
-    TableVelocity,
-    /// `load.position`.
+    /// `shaft.position`: the motor's position in its own coordinate.
+    ShaftPosition,
+    /// `shaft.velocity`.
+    ShaftVelocity,
+    /// `load.position`: the load's position in the axis coordinate.
     LoadPosition,
     /// `load.velocity`.
     LoadVelocity,

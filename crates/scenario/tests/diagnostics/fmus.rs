@@ -132,14 +132,25 @@ fn what_an_fmu_stands_for_has_no_double() {
 
 #[test]
 fn mechanics_need_their_engine_and_their_outputs() {
-    let fmu = |outputs: &str| format!("[axis.fmu]\nfile = \"a.fmu\"\noutputs = {{ {outputs} }}\n");
+    let fmu = |outputs: &str| {
+        format!("[axis.fmu]\nfile = \"a.fmu\"\ninputs = {{ tau = \"effort.motor\" }}\noutputs = {{ {outputs} }}\n")
+    };
     check(&[
-        (&fmu("x = \"motor.position\", v = \"motor.velocity\""), &["1:1: `fmu` is not used; add \"fmu\" to `engine`"]),
+        (&fmu("x = \"shaft.position\", v = \"shaft.velocity\""), &["1:1: `fmu` is not used; add \"fmu\" to `engine`"]),
         (
-            &fmu("x = \"motor.position\""),
+            &fmu("x = \"load.position\""),
             &[
-                "3:11: no output is `motor.velocity`; mechanics give position and velocity of the motor, and of the load unless they are one body",
+                "4:11: no output is `shaft.position`; mechanics give the motor's position in its own coordinate, and the load's \
+               unless they are one body",
             ],
+        ),
+        (
+            &fmu("x = \"shaft.position\", v = \"load.velocity\""),
+            &["4:39: a load with a velocity has a position; connect `load.position` too"],
+        ),
+        (
+            "[axis.fmu]\nfile = \"a.fmu\"\noutputs = { x = \"shaft.position\" }\n",
+            &["1:1: no input is given `effort.motor`; write inputs = { variable = \"effort.motor\" }"],
         ),
     ]);
 }
