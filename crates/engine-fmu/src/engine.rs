@@ -5,7 +5,7 @@ use crate::load::{Place, load};
 use crate::mechanics::{FmuMechanics, NAME};
 use crate::ports::{MechanicsPorts, PortError};
 use servobench_base::{ParamError, finite, positive};
-use servobench_fmi::{ModelDescription, Port, Setup, Unpacked, Value};
+use servobench_fmi::{DataType, Exponents, ModelDescription, Port, Setup, Unpacked, Value, Variable};
 use servobench_plant::{
     Drive, Engine, FmuModel, FmuStart, FmuValue, Isolation, Mechanics, MechanicsError, MechanicsSetup, Model,
 };
@@ -44,13 +44,7 @@ impl Fmu {
         let fmu = Unpacked::new(&model.path).map_err(refused)?;
         let ports = MechanicsPorts::new(model, fmu.description()).map_err(|errors| in_one_line(model, &errors))?;
         let slave_setup = slave_setup(model, &ports, fmu.description())?;
-        let place = match model.isolation {
-            Isolation::None => Place::Here,
-            Isolation::Process { patience, memory } => {
-                Place::Process { command: (self.host)().map_err(refused)?, bounds: Bounds { patience, memory } }
-            }
-        };
-        let slave = load(&fmu, &slave_setup, &place).map_err(refused)?;
+        let slave = load(&fmu, &slave_setup, &fmu_place(model.isolation, self.host)?).map_err(refused)?;
         FmuMechanics::new(slave, ports, model, setup.step)
     }
 }
@@ -73,14 +67,28 @@ fn check(model: &FmuModel) -> Result<(), ParamError> {
 
 /// How the FMU is started and wired.
 fn slave_setup(model: &FmuModel, ports: &MechanicsPorts, it: &ModelDescription) -> Result<Setup, MechanicsError> {
-    let start = |start: &FmuStart| Ok((start.variable.clone(), value(start, it)?));
     Ok(Setup {
         instance_name: it.model_name.clone(),
-        start_values: model.start.iter().map(start).collect::<Result<_, MechanicsError>>()?,
+        start_values: start_values(&model.start, it)?,
         inputs: ports.inputs().cloned().collect::<Vec<Port>>(),
         outputs: ports.outputs().cloned().collect::<Vec<Port>>(),
         ..Setup::default()
     })
+}
+
+/// Where an FMU runs; `host` is the program that does so in a process of its own.
+pub(crate) fn fmu_place(isolation: Isolation, host: fn() -> io::Result<HostCommand>) -> Result<Place, MechanicsError> {
+    Ok(match isolation {
+        Isolation::None => Place::Here,
+        Isolation::Process { patience, memory } => {
+            Place::Process { command: host().map_err(refused)?, bounds: Bounds { patience, memory } }
+        }
+    })
+}
+
+/// Start values in the units of their variables.
+pub(crate) fn start_values(start: &[FmuStart], it: &ModelDescription) -> Result<Vec<(String, Value)>, MechanicsError> {
+    start.iter().map(|start| Ok((start.variable.clone(), value(start, it)?))).collect()
 }
 
 /// A start value in the unit of its variable.
@@ -100,6 +108,26 @@ fn value(start: &FmuStart, it: &ModelDescription) -> Result<Value, MechanicsErro
                 };
                 Value::Number(base.from_si(*number, is_relative))
             }
+            (FmuValue::Quantity { text, .. }, _) if variable.is_some_and(is_named) => Value::Text(text.clone()),
+            (FmuValue::Quantity { si, .. }, None) => Value::Number(*si),
+            (FmuValue::Quantity { text, si, exponents }, Some(unit)) => {
+                let is_relative = variable.is_some_and(|variable| variable.is_relative);
+                let name = &start.variable;
+                match unit.base {
+                    Some(base) if of(base.exponents) == *exponents => Value::Number(base.from_si(*si, is_relative)),
+                    Some(_) => {
+                        let message = format!("`{name}` is in `{}`, which \"{text}\" cannot be turned into", unit.name);
+                        return Err(refused(message));
+                    }
+                    None => {
+                        let message = format!(
+                            "the FMU does not say what the unit `{}` of `{name}` is; give a plain number of it, not \"{text}\"",
+                            unit.name
+                        );
+                        return Err(refused(message));
+                    }
+                }
+            }
             (FmuValue::Boolean(is), _) => Value::Boolean(*is),
             (FmuValue::Text(text), _) => Value::Text(text.clone()),
         })
@@ -110,7 +138,17 @@ fn value(start: &FmuStart, it: &ModelDescription) -> Result<Value, MechanicsErro
     }
 }
 
-fn refused(error: impl Display) -> MechanicsError {
+/// Whether a value of it is a text.
+fn is_named(variable: &Variable) -> bool {
+    matches!(variable.data_type, DataType::String | DataType::Enumeration)
+}
+
+/// Exponents of kilogram, metre, second and ampere. Radians are counted by some and not by others.
+fn of(exponents: Exponents) -> [i32; 4] {
+    [exponents.kg, exponents.m, exponents.s, exponents.a]
+}
+
+pub(crate) fn refused(error: impl Display) -> MechanicsError {
     MechanicsError::Model { engine: NAME, message: error.to_string() }
 }
 

@@ -37,6 +37,7 @@ mod motion;
 mod order;
 mod output;
 mod page;
+mod partner;
 mod ports;
 mod protocol;
 
@@ -47,4 +48,5 @@ pub use isolated::{Bounds, Isolated, Wires};
 pub use keeper::HostCommand;
 pub use load::{LoadError, Place, host, load};
 pub use mechanics::FmuMechanics;
+pub use partner::PartnerModel;
 pub use ports::{MechanicsPorts, PortError, PortProblem, Quantity};

@@ -70,6 +70,15 @@ pub enum FmuValue {
     Number(f64),
     /// A number in SI units.
     Si(f64),
+    /// A number with a unit, which may also be just a text.
+    Quantity {
+        /// As it was written.
+        text: String,
+        /// In SI units.
+        si: f64,
+        /// Exponents of kilogram, metre, second and ampere in its unit.
+        exponents: [i32; 4],
+    },
     /// TRUE or FALSE.
     Boolean(bool),
     /// Text.

@@ -1,5 +1,6 @@
 //! Quantities on a command line: read and checked as in a scenario file.
 use crate::physical::{ACCELERATION, Counterparts, FREQUENCY, JERK, POSITION, Physical, RATIO, SNAP, TIME, VELOCITY};
+use crate::quantity;
 use crate::reading::{self, ReadError, names, proposals};
 use crate::scenario::Motion;
 use thiserror::Error;
@@ -54,6 +55,14 @@ pub fn axis_quantity(
             Ok((value, if which == 0 { Motion::Linear } else { Motion::Rotary }))
         }
     }
+}
+
+/// Reads a number with any unit: its value in SI, and the exponents of kilogram, metre, second and ampere; `None` if it is no
+/// such thing.
+#[must_use]
+pub fn any_quantity(text: &str) -> Option<(f64, [i32; 4])> {
+    let quantity = quantity::parse(text).ok().filter(|quantity| quantity.has_unit)?;
+    Some((quantity.value, quantity.dimension.mechanical()))
 }
 
 /// Reads a time (s).

@@ -36,6 +36,12 @@ impl Dimension {
         Self(exponents)
     }
 
+    /// Exponents of kilogram, metre, second and ampere; angles and cycles are numbers.
+    pub(crate) const fn mechanical(self) -> [i32; 4] {
+        let [m, kg, s, a, ..] = self.0;
+        [kg, m, s, a]
+    }
+
     /// The dimension without any statement about amplitudes.
     pub(crate) const fn without_amplitude(self) -> Self {
         let mut exponents = self.0;

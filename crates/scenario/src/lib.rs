@@ -35,7 +35,7 @@ mod tree;
 mod unit;
 mod when;
 
-pub use argument::{ArgumentError, Derivative, axis_quantity, frequency, ratio, time};
+pub use argument::{ArgumentError, Derivative, any_quantity, axis_quantity, frequency, ratio, time};
 pub use channel::{CHANNELS, channel_meaning};
 pub use diagnostic::{Diagnostic, Invalid, LoadError, NamedFile};
 pub use load::{Loaded, load, parse};

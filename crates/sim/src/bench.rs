@@ -4,6 +4,8 @@ pub(crate) mod firmware;
 mod objections;
 mod plant;
 
+pub use plant::{fmu_isolation, fmu_start};
+
 use crate::channels::{Amplifier, Equipment, Selection, WriterRates};
 use crate::closed_loop::{ClosedLoop, Control, Source};
 use crate::coupled::{self, ConnectionDelay, Coupled, NoPartners, Partners};

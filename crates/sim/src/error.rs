@@ -75,6 +75,9 @@ pub enum BuildError {
     /// What the FMUs are connected with cannot be run so.
     #[error("{0}")]
     Coupling(String),
+    /// The engine `fmu` without an FMU.
+    #[error("the engine `fmu` has no mechanics: give `[axis.fmu]`")]
+    NoFmu,
     /// There is nothing that this engine could simulate.
     #[error(
         "the engine `{engine}` needs bodies or an MJCF file, and the axis has an FMU alone: choose the engine `fmu`"

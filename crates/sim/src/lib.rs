@@ -17,7 +17,7 @@ mod run;
 mod stepper;
 mod thinning;
 
-pub use bench::Bench;
+pub use bench::{Bench, fmu_isolation, fmu_start};
 pub use coupled::{ConnectionDelay, NoPartners, PartnerOrder, Partners};
 pub use error::BuildError;
 pub use network::Unsendable;

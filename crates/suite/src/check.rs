@@ -101,7 +101,7 @@ fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
         BuildError::Points(_) => "program".to_owned(),
         BuildError::Fmu { index, .. } => format!("fmu.{index}"),
         BuildError::Coupling(_) => "fmu".to_owned(),
-        BuildError::OnlyAnFmu { .. } => "engine".to_owned(),
+        BuildError::OnlyAnFmu { .. } | BuildError::NoFmu => "engine".to_owned(),
     };
     vec![Objection::new(&key, error.to_string())]
 }
