@@ -48,9 +48,86 @@ pub(crate) enum Command {
     Timing(TimingArgs),
     /// Show the object dictionary of the drive (CiA 402): as a table, an electronic data sheet or JSON.
     Objects(ObjectsArgs),
+    /// Show what is in an FMU, or write an axis as one (Functional Mock-up Interface 2.0 and 3.0).
+    #[cfg(feature = "fmu")]
+    #[command(subcommand)]
+    Fmu(FmuCommand),
+    /// Run an FMU in a process of its own (started by `run`, `check` and `compare`).
+    #[cfg(feature = "fmu")]
+    #[command(hide = true)]
+    FmuHost,
     /// Run one scenario in a process of its own (started by `run` and `compare`).
     #[command(hide = true)]
     Worker(WorkerArgs),
+}
+
+/// What to do with FMUs.
+#[cfg(feature = "fmu")]
+#[derive(Debug, Subcommand)]
+pub(crate) enum FmuCommand {
+    /// Show what is in an FMU: versions, capabilities, variables with units. Nothing of it is executed.
+    Info(FmuInfoArgs),
+    /// Write the axis of a scenario as a co-simulation FMU for Linux x86-64.
+    Export(FmuExportArgs),
+}
+
+#[cfg(feature = "fmu")]
+#[derive(Debug, Args)]
+pub(crate) struct FmuInfoArgs {
+    /// The FMU.
+    pub(crate) file: PathBuf,
+}
+
+#[cfg(feature = "fmu")]
+#[derive(Debug, Args)]
+pub(crate) struct FmuExportArgs {
+    /// The scenario.
+    pub(crate) scenario: PathBuf,
+    /// Version of the standard.
+    #[arg(long, value_enum, default_value = "3")]
+    pub(crate) fmi: FmuVersion,
+    /// What is inside.
+    #[arg(long, value_enum, default_value = "axis")]
+    pub(crate) part: FmuPart,
+    /// The file [default: the scenario's name with .fmu].
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+/// Version of the Functional Mock-up Interface.
+#[cfg(feature = "fmu")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FmuVersion {
+    /// FMI 2.0.
+    #[value(name = "2")]
+    Two,
+    /// FMI 3.0.
+    #[value(name = "3")]
+    Three,
+}
+
+/// Part of an axis.
+#[cfg(feature = "fmu")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FmuPart {
+    /// Program, drive, motor and mechanics: set-points or targets in, motion out.
+    Axis,
+    /// Program, drive and motor: measurements in, effort out.
+    Drive,
+    /// The mechanics: effort in, motion out.
+    Mechanics,
+}
+
+#[cfg(feature = "fmu")]
+impl FmuPart {
+    /// The name that it has in the FMU.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Axis => "axis",
+            Self::Drive => "drive",
+            Self::Mechanics => "mechanics",
+        }
+    }
 }
 
 #[derive(Debug, Args)]

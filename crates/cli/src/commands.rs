@@ -1,6 +1,8 @@
 //! The commands, one module each.
 mod check;
 mod compare;
+#[cfg(feature = "fmu")]
+mod fmu;
 mod objects;
 mod plan;
 mod run;
@@ -11,6 +13,8 @@ mod worker;
 
 pub(crate) use check::check;
 pub(crate) use compare::compare;
+#[cfg(feature = "fmu")]
+pub(crate) use fmu::{fmu, fmu_host};
 pub(crate) use objects::objects;
 pub(crate) use plan::plan;
 pub(crate) use run::run;

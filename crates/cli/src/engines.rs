@@ -1,4 +1,5 @@
 //! The engines that this build has: the only place that knows of engine features.
+use servobench_sim::Partners;
 use servobench_suite::{Engines, Installed};
 
 #[cfg(feature = "exact")]
@@ -17,7 +18,18 @@ const MUJOCO: Option<Installed> = Some(Installed { engine: &servobench_engine_mu
 #[cfg(not(feature = "mujoco"))]
 const MUJOCO: Option<Installed> = None;
 
+#[cfg(feature = "fmu")]
+const FMU: Option<Installed> = Some(Installed { engine: &crate::partners::ENGINE, isolated: false });
+#[cfg(not(feature = "fmu"))]
+const FMU: Option<Installed> = None;
+
+/// FMUs run in processes of their own, so the engine needs none.
+#[cfg(feature = "fmu")]
+const PARTNERS: &dyn Partners = &crate::partners::ByEngine;
+#[cfg(not(feature = "fmu"))]
+const PARTNERS: &dyn Partners = &servobench_sim::NoPartners;
+
 /// Every engine of this build.
 pub(crate) const fn installed() -> Engines {
-    Engines { exact: EXACT, rapier: RAPIER, mujoco: MUJOCO, ..Engines::NONE }
+    Engines { exact: EXACT, rapier: RAPIER, mujoco: MUJOCO, fmu: FMU, partners: PARTNERS }
 }

@@ -7,6 +7,8 @@ mod diagnostics;
 mod engines;
 mod exit;
 mod output;
+#[cfg(feature = "fmu")]
+mod partners;
 mod progress;
 mod sources;
 mod workers;
@@ -33,6 +35,10 @@ fn dispatch(command: &Command) -> Exit {
         Command::View(args) => commands::view(args),
         Command::Timing(args) => commands::timing(args),
         Command::Objects(args) => commands::objects(args),
+        #[cfg(feature = "fmu")]
+        Command::Fmu(command) => commands::fmu(command),
+        #[cfg(feature = "fmu")]
+        Command::FmuHost => commands::fmu_host(),
         Command::Worker(args) => commands::worker(args),
     };
     done.unwrap_or_else(|error| {

@@ -24,7 +24,7 @@ pub(crate) fn make_folder(folder: &Path) -> Result<(), CliError> {
 }
 
 /// Writes the whole file or nothing.
-pub(crate) fn write_file(path: &Path, text: &str) -> Result<(), CliError> {
+pub(crate) fn write_file(path: &Path, text: impl AsRef<[u8]>) -> Result<(), CliError> {
     servobench_trace::write_whole(path, text)
         .map_err(|error| CliError::Run(format!("cannot write `{}`: {error}", path.display())))
 }

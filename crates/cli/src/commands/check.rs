@@ -7,7 +7,8 @@ use crate::exit::{CliError, Exit};
 use crate::sources;
 use crate::workers;
 use servobench_scenario::{Diagnostic, EngineName, Loaded};
-use servobench_suite::{Engines, RunError, Source, WorkerCommand, check as objections, jobs};
+use servobench_sim::ConnectionDelay;
+use servobench_suite::{Engines, RunError, Source, WorkerCommand, check as objections, delays, jobs};
 use std::time::Duration;
 
 /// How long an isolated engine may take to read a model.
@@ -18,7 +19,7 @@ const PATIENCE: Duration = Duration::from_mins(1);
 pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     let (engines, worker) = (engines::installed(), workers::command(&std::env::temp_dir(), PATIENCE)?);
     let files = sources::files(&args.scenarios)?;
-    let (mut wrong, mut failed, mut missing) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut wrong, mut failed, mut missing, mut late) = (Vec::new(), Vec::new(), Vec::new(), String::new());
     for file in &files {
         match sources::read(file) {
             Ok(loaded) => {
@@ -26,6 +27,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
                 wrong.extend((!asked.mistakes.is_empty()).then(|| mistakes(&asked.mistakes, &loaded.sources)));
                 failed.extend(asked.failed.iter().map(|error| format!("{}: {error}", file.display())));
                 missing.extend(asked.missing);
+                late.push_str(&asked.late);
             }
             Err(error) => wrong.push(error.to_string()),
         }
@@ -38,7 +40,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
         return Err(CliError::Run(failed.join("\n")));
     }
     let plural = if files.len() == 1 { "scenario is" } else { "scenarios are" };
-    print(&format!("{} {plural} valid{}\n", files.len(), not_asked(&missing)))?;
+    print(&format!("{late}{} {plural} valid{}\n", files.len(), not_asked(&missing)))?;
     Ok(Exit::Passed)
 }
 
@@ -50,6 +52,8 @@ struct Asked {
     missing: Vec<EngineName>,
     /// Why others could not be asked.
     failed: Vec<RunError>,
+    /// How late what axis and FMUs exchange is.
+    late: String,
 }
 
 impl Asked {
@@ -68,6 +72,12 @@ impl Asked {
                     continue;
                 }
             };
+            if found.is_empty() && asked.late.is_empty() {
+                match delays(&job, engines) {
+                    Ok(delays) => asked.late = listed(&loaded.scenario.name, &delays),
+                    Err(error) => asked.failed.push(error),
+                }
+            }
             for objection in found {
                 let mistake = match objection.line {
                     Some(line) => loaded.mistake_in_mjcf(line, objection.message, &objection.way_out),
@@ -81,6 +91,28 @@ impl Asked {
         }
         asked.mistakes.sort_by_key(|mistake| (mistake.source, mistake.span.start));
         asked
+    }
+}
+
+/// The connections of a scenario and how late each is.
+fn listed(scenario: &str, delays: &[ConnectionDelay]) -> String {
+    let from = delays.iter().map(|delay| delay.from.chars().count()).max().unwrap_or(0);
+    let to = delays.iter().map(|delay| delay.to.chars().count()).max().unwrap_or(0);
+    let line = |delay: &ConnectionDelay| {
+        let age = match delay.steps {
+            0 => "no delay".to_owned(),
+            steps => {
+                let plural = if steps == 1 { "step" } else { "steps" };
+                let how = if delay.is_extrapolated { ", extrapolated" } else { "" };
+                format!("{steps} {plural}, {} ms{how}", 1e3 * delay.delay)
+            }
+        };
+        format!("  {:from$} -> {:to$}  {age}\n", delay.from, delay.to)
+    };
+    if delays.is_empty() {
+        String::new()
+    } else {
+        format!("{scenario}: connections and how late they are\n{}", delays.iter().map(line).collect::<String>())
     }
 }
 
