@@ -322,7 +322,8 @@ fn way_out(settings: &Settings) -> &'static str {
     }
 }
 
-/// The outputs that lead from a loop of blocks back into it, each by one of its connections.
+/// The outputs that lead from a loop of blocks back into it, each by one of its connections. A signal that changes at exchanges
+/// only is left out: what is sampled and held there is what a controller does, no approximation of it.
 fn watched(wiring: &Wiring) -> Vec<Watched> {
     let successors = successors(wiring);
     let mut found: Vec<Watched> = Vec::new();
@@ -330,6 +331,7 @@ fn watched(wiring: &Wiring) -> Vec<Watched> {
         for (connection, wire) in wiring.connections.iter().enumerate() {
             let output = wiring.shapes[wire.from.block].first_output + wire.from.port;
             let inside = component.contains(&wire.from.block) && component.contains(&wire.to.block);
+            let inside = inside && !wire.is_discrete;
             if inside && found.iter().all(|watched| watched.output != output) {
                 found.push(Watched { block: wire.from.block, output, connection, watch: Watch::default() });
             }
