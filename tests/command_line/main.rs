@@ -1,6 +1,7 @@
 //! The program as its users see it: output, files, exit codes. It belongs to the crate `cli`, whose binary it runs.
 mod check;
 mod compare;
+mod fmu;
 mod objects;
 mod output;
 mod plan;

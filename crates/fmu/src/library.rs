@@ -7,13 +7,13 @@ use std::path::{Path, PathBuf};
 pub const LIBRARY: &str = "libservobench_fmu.so";
 
 /// The library for [`export`](crate::export) that belongs to the program at `program`: in `../lib` of its folder, as it is
-/// distributed, or beside it, as it is built.
+/// distributed; in `deps`, where cargo leaves it with the program; or beside it, where it is built by itself.
 ///
 /// # Errors
 /// [`FmuError::NoLibrary`] says where it was looked for and how to make it, [`FmuError::Read`] that it cannot be read.
 pub fn library(program: &Path) -> Result<Vec<u8>, FmuError> {
     let folder = program.parent().unwrap_or_else(|| Path::new(""));
-    let places = [folder.join("../lib").join(LIBRARY), folder.join(LIBRARY)];
+    let places = ["../lib", "deps", ""].map(|within| folder.join(within).join(LIBRARY));
     match places.iter().find(|place| place.is_file()) {
         Some(place) => fs::read(place).map_err(|error| FmuError::Read { path: place.clone(), error }),
         None => Err(FmuError::NoLibrary { looked: listed(&places) }),
@@ -38,6 +38,7 @@ mod tests {
         let program = bin.join("servobench");
         let message = library(&program).unwrap_err().to_string();
         assert!(message.contains("bin/../lib/libservobench_fmu.so` nor at `"), "{message}");
+        assert!(message.contains("bin/deps/libservobench_fmu.so` nor at `"), "{message}");
         assert!(message.contains("cargo build --release -p servobench-fmu"), "{message}");
         fs::write(bin.join(LIBRARY), "built").unwrap();
         assert_eq!(library(&program).unwrap(), b"built");
