@@ -66,13 +66,15 @@ fn recorded(work: &TempDir, name: &str, engine: &str, text: &str) -> Recording {
     Recording::read_parquet(Path::new(&out).join(format!("{name}.{engine}.parquet"))).unwrap()
 }
 
-/// Largest differences of what both have recorded.
+/// Largest differences of what both have recorded. At the last instant nobody asks an FMU for the effort of a tick that does not
+/// come: the one before stays.
 fn difference(one: &Recording, other: &Recording) -> f64 {
     let mut most = 0.0_f64;
     for name in ["load.position", "motor.velocity", "effort.motor"] {
         let (one, other) = (one.channel(name).unwrap(), other.channel(name).unwrap());
         assert_eq!(one.len(), other.len(), "{name}");
-        most = one.iter().zip(other).fold(most, |most, (one, other)| most.max((one - other).abs()));
+        let asked = one.len() - usize::from(name == "effort.motor");
+        most = one.iter().zip(other).take(asked).fold(most, |most, (one, other)| most.max((one - other).abs()));
     }
     most
 }

@@ -2,7 +2,8 @@
 //!
 //! The axis comes last. What it gives at an exchange are the bodies and the set-point of that tick, and what the loops said at
 //! the tick before, whose efforts have brought the bodies there. What it takes within a step is an input's mean over each tick
-//! for efforts, which are held over it, and its value at the tick for everything else.
+//! for efforts, which are held over it, and its value at the tick for everything else. At the last tick of a run nothing is asked
+//! for any more: its row has what acted before.
 use crate::channels::{Equipment, Instant, Selection, WriterRates};
 use crate::error::BuildError;
 use crate::recorded::{Recorded, Saved};
