@@ -27,7 +27,7 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
             .map_err(|error| cannot_write(path, &error))?;
     }
     if let Some(path) = &args.svg {
-        write_file(path, &planned.svg())?;
+        write_file(path, planned.svg())?;
     }
     let json = || planned.json().map_err(|error| CliError::Run(error.to_string()));
     print(&if args.json { json()? } else { planned.table() })?;

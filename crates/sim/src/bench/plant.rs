@@ -88,6 +88,7 @@ fn fmu_model(fmu: &scenario::Fmu<BodySignal>, scenario: &Scenario) -> Result<pla
 }
 
 /// Start values of an FMU. What has a unit is converted to that of its variable.
+#[must_use]
 pub fn fmu_start(given: &[(String, StartValue)]) -> Vec<plant::FmuStart> {
     let mut all = Vec::new();
     for (variable, value) in given {
