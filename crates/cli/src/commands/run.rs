@@ -44,8 +44,11 @@ fn wanted_jobs(args: &RunArgs, engines: &Engines) -> Result<Vec<Job>, CliError> 
     if !args.scenarios.is_empty() {
         return Ok(jobs(sources::load(&args.scenarios)?, &args.engine));
     }
-    let all = engines.names();
-    Ok(jobs(sources::demo()?, if args.engine.is_empty() { &all } else { &args.engine }))
+    // The demo names engines that this build may lack; an FMU it has none of.
+    let demo = sources::demo()?;
+    let mut there = engines.names();
+    there.retain(|engine| demo.iter().any(|source| source.scenario.engines.contains(engine)));
+    Ok(jobs(demo, if args.engine.is_empty() { &there } else { &args.engine }))
 }
 
 /// Runs one job and writes its recording. One that cannot be written takes the verdict away.
