@@ -7,9 +7,7 @@ For every part of some scenarios and both versions of the standard:
 - a saved state, and its bytes in another instance, go on to the bit, as FMPy calls them.
 """
 
-import csv
 import logging
-import subprocess
 import tempfile
 from pathlib import Path
 
@@ -20,37 +18,12 @@ from fmpy.fmi3 import FMU3Slave
 from fmpy.validation import validate_fmu
 from fmu_manipulation_toolbox.container import FMUContainer
 
-ROOT = Path(__file__).resolve().parents[2]
+from exports import MEASURED, example, library, recorded
+
 PARTS = ("axis", "drive", "mechanics")
 # A move, a table of points from a file, and function blocks over a fieldbus with the states of drive and axis.
 SCENARIOS = ("demo/jerk", "setpoints/pvt", "plc/figure-3a")
 BODIES = ("motor.", "table.", "load.")
-MEASURED = ("shaft.position", "shaft.velocity", "load.position", "load.velocity")
-
-
-def cargo(*arguments: str) -> str:
-    """What a command of cargo prints."""
-    command = ["cargo", *arguments]
-    return subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True).stdout
-
-
-def example(name: str, *arguments: str) -> str:
-    """What an example of the crate `fmu` prints."""
-    return cargo("run", "--quiet", "--release", "--package", "servobench-fmu", "--example", name, "--", *arguments)
-
-
-def library() -> str:
-    """The library inside the FMUs, built."""
-    cargo("build", "--quiet", "--release", "--package", "servobench-fmu", "--lib")
-    target = cargo("metadata", "--no-deps", "--format-version=1").split('"target_directory":"')[1].split('"')[0]
-    return str(Path(target) / "release" / "libservobench_fmu.so")
-
-
-def recorded(scenario: str) -> tuple[int, dict[str, numpy.ndarray]]:
-    """The base rate in Hz, and what a run records at every tick."""
-    rows = list(csv.reader(example("record", scenario).splitlines()))
-    values = numpy.array([row[1:] for row in rows[1:]], dtype=float)
-    return int(rows[0][0]), dict(zip(rows[0][1:], values.T))
 
 
 def simulated(fmu: str, rate: int, ticks: int) -> numpy.ndarray:
@@ -102,7 +75,7 @@ def check_states(fmu: str, rate: int) -> None:
     slave = {"2.0": FMU2Slave, "3.0": FMU3Slave}[description.fmiVersion]
     is_two = slave is FMU2Slave
     references = [one.valueReference for one in description.modelVariables if one.causality == "output"]
-    folder = fmpy.extract(fmu)
+    folder = fmpy.extract(fmu, f"{fmu}.unpacked")
 
     def begun():  # type: ignore[no-untyped-def]
         instance = slave(

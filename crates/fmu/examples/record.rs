@@ -1,14 +1,39 @@
 //! What a run of a scenario records on the engine `exact` at every tick, as CSV with every number to the bit: `record SCENARIO`.
+//! FMUs beside the axis are loaded into this process, with the start values that they have; their numbers are SI numbers.
+use servobench_fmi::{Loaded, Port, Setup, Slave, Unpacked};
 use servobench_plant::Exact;
 use servobench_scenario::load;
-use servobench_sim::Bench;
+use servobench_sim::{Bench, PartnerOrder, Partners};
 use std::error::Error;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
+/// Opens FMUs of scenarios.
+struct Here;
+
+impl Partners for Here {
+    fn open(&self, order: &PartnerOrder<'_>) -> Result<Box<dyn Slave>, String> {
+        if !order.fmu.start.is_empty() {
+            return Err(format!("`{}`: this example sets no parameters", order.fmu.name));
+        }
+        let ports =
+            |names: &[&str]| names.iter().map(|name| Port { variable: (*name).into(), element: 0 }).collect::<Vec<_>>();
+        let setup = Setup {
+            instance_name: order.fmu.name.clone(),
+            inputs: ports(&order.inputs),
+            outputs: ports(&order.outputs),
+            stop_time: Some(order.end),
+            ..Setup::default()
+        };
+        let opened = Unpacked::new(&order.fmu.path).and_then(|fmu| Loaded::new(&fmu, &setup));
+        Ok(Box::new(opened.map_err(|error| error.to_string())?))
+    }
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("usage: record SCENARIO")?;
-    let outcome = Bench::new(&load(Path::new(&path))?.scenario, &Exact)?.run(&mut |_| ());
+    let scenario = load(Path::new(&path))?.scenario;
+    let outcome = Bench::with_partners(&scenario, &Exact, &Here)?.run(&mut |_| ());
     if let Some(failure) = outcome.failure {
         return Err(failure.into());
     }

@@ -1,8 +1,8 @@
 //! Outside clients: programs in `tests/outside/` that hold the project against what others wrote, published for Python.
 //!
-//! Their packages are pinned by version and hash in `tests/outside/requirements.txt`, with all that these require, and in
-//! `files.txt`, of which only files are used. They are installed once, into a virtual environment under the target folder. Where
-//! that cannot be had, the programs are left out, and it is said.
+//! Their packages are pinned by version and hash in requirements files beside them, with all that these require but what is
+//! never called. They are installed once, into virtual environments under the target folder. Where one cannot be had, its programs
+//! are left out, and it is said.
 use crate::failure::Failure;
 use crate::python;
 use crate::wheel::sha256;
@@ -11,50 +11,75 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
 
-/// The programs, in `tests/outside/`.
-const CLIENTS: [&str; 6] = [
-    "exported_fmus_by_fmpy.py",
-    "fmus_by_fmpy.py",
-    "object_dictionary_by_canopen.py",
-    "online4_by_linear_program.py",
-    "optimal_by_linear_program.py",
-    "order3_by_ruckig.py",
+/// Programs that share an environment.
+#[derive(Debug)]
+struct Group {
+    /// Folder of the environment, under the target folder.
+    environment: &'static str,
+    /// What is installed there.
+    requirements: &'static [&'static str],
+    /// The programs.
+    clients: &'static [&'static str],
+}
+
+/// All programs. CoFMPy asks for another FMPy than the one that the others hold the project against.
+const GROUPS: [Group; 2] = [
+    Group {
+        environment: "python",
+        requirements: &["requirements.txt", "files.txt"],
+        clients: &[
+            "exported_fmus_by_fmpy.py",
+            "fmus_by_fmpy.py",
+            "object_dictionary_by_canopen.py",
+            "online4_by_linear_program.py",
+            "optimal_by_linear_program.py",
+            "order3_by_ruckig.py",
+        ],
+    },
+    Group { environment: "python-cofmupy", requirements: &["cofmupy.txt"], clients: &["exported_fmus_by_cofmupy.py"] },
 ];
 
-/// The programs that can be run here, and why none can.
+/// The programs that can be run here, and why others cannot.
 #[derive(Debug)]
-pub(crate) enum Outside {
-    /// All, by this Python.
-    Installed(PathBuf),
-    /// None, for this reason.
-    Missing(Failure),
+pub(crate) struct Outside {
+    /// By group: the Python that runs it, or why there is none.
+    pythons: [Result<PathBuf, Failure>; GROUPS.len()],
 }
 
 impl Outside {
     /// Installs what the programs need, unless it is there.
     pub(crate) fn prepare(workspace: &Workspace) -> Self {
-        let environment = Environment::of(workspace);
-        match environment.ensure() {
-            Ok(()) => Self::Installed(environment.python()),
-            Err(why) => Self::Missing(why),
-        }
+        let python = |group| {
+            let environment = Environment::of(group, workspace);
+            environment.ensure().map(|()| environment.python())
+        };
+        Self { pythons: GROUPS.each_ref().map(python) }
     }
 
     /// One command for each program that can be run.
     pub(crate) fn commands(&self, workspace: &Workspace) -> Vec<Command> {
-        let Self::Installed(python) = self else { return Vec::new() };
-        let command = |client| {
+        let installed =
+            GROUPS.iter().zip(&self.pythons).filter_map(|(group, python)| Some((group, python.as_ref().ok()?)));
+        let commands = |(group, python): (&Group, &PathBuf)| {
             // No byte code between the sources; what a program prints is seen at once.
-            workspace.command(python, ["-B", "-u", &format!("{FOLDER}/{client}")])
+            let command = |client| workspace.command(python, ["-B", "-u", &format!("{FOLDER}/{client}")]);
+            group.clients.iter().map(command).collect::<Vec<_>>()
         };
-        CLIENTS.into_iter().map(command).collect()
+        installed.flat_map(commands).collect()
     }
 
     /// Says what is left out, if anything is.
     pub(crate) fn report(&self) {
-        if let Self::Missing(why) = self {
-            println!("LEFT OUT, outside clients: {}\n  {why}", CLIENTS.join(", "));
+        for (group, python) in GROUPS.iter().zip(&self.pythons) {
+            if let Err(why) = python {
+                println!("LEFT OUT, outside clients: {}\n  {why}", group.clients.join(", "));
+            }
         }
+    }
+
+    /// Why some are left out: of the first group that is.
+    pub(crate) fn failure(self) -> Option<Failure> {
+        self.pythons.into_iter().find_map(Result::err)
     }
 }
 
@@ -69,10 +94,11 @@ struct Environment {
 }
 
 impl Environment {
-    fn of(workspace: &Workspace) -> Self {
+    fn of(group: &Group, workspace: &Workspace) -> Self {
+        let file = |name| workspace.root.join(FOLDER).join(name);
         Self {
-            folder: workspace.target.join("python"),
-            requirements: ["requirements.txt", "files.txt"].map(|name| workspace.root.join(FOLDER).join(name)).into(),
+            folder: workspace.target.join(group.environment),
+            requirements: group.requirements.iter().map(file).collect(),
         }
     }
 
@@ -178,6 +204,8 @@ mod tests {
         let mut programs: Vec<_> = files.filter(is_program).collect();
         programs.sort();
         let names: Vec<_> = programs.iter().map(|path| path.file_name().unwrap().to_str().unwrap()).collect();
-        assert_eq!(names, CLIENTS);
+        let mut run: Vec<_> = GROUPS.iter().flat_map(|group| group.clients).copied().collect();
+        run.sort_unstable();
+        assert_eq!(names, run);
     }
 }

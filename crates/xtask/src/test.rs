@@ -68,8 +68,9 @@ pub(crate) fn run(workspace: &Workspace, engines: Engines) -> Result<(), Failure
 /// [`Failure::Fetch`] when what they need cannot be had, [`Failure::Steps`] when one fails.
 pub(crate) fn run_outside(workspace: &Workspace) -> Result<(), Failure> {
     let outside = Outside::prepare(workspace);
-    let steps = outside_clients(&outside, workspace).collect();
-    if let Outside::Missing(why) = outside { Err(why) } else { run_steps(steps) }
+    outside.report();
+    run_steps(outside_clients(&outside, workspace).collect())?;
+    outside.failure().map_or(Ok(()), Err)
 }
 
 fn outside_clients(outside: &Outside, workspace: &Workspace) -> impl Iterator<Item = Step> + use<> {
