@@ -2,6 +2,7 @@
 mod batch;
 mod session;
 mod three;
+mod time_event;
 mod two;
 
 use crate::archive::Unpacked;

@@ -118,6 +118,16 @@ pub(crate) struct Stepped {
     pub(crate) last_successful_time: f64,
 }
 
+/// What an update of the discrete states has come to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Updated {
+    /// Another one is needed.
+    pub(crate) again: bool,
+    pub(crate) terminate_simulation: bool,
+    /// (s)
+    pub(crate) next_event_time: Option<f64>,
+}
+
 /// An instance; it is terminated if it is well, and freed, when it is dropped.
 pub(crate) struct Three {
     functions: Functions,
@@ -224,15 +234,16 @@ impl Three {
         self.transition(self.functions.enter_step_mode)
     }
 
-    /// Whether another update is needed, and whether the FMU wants the simulation to end.
-    pub(crate) fn update_discrete_states(&self) -> (Outcome, bool, bool) {
-        let Some(update) = self.functions.update_discrete_states else { return (Outcome::Done, false, false) };
+    pub(crate) fn update_discrete_states(&self) -> (Outcome, Updated) {
         let (mut again, mut end, mut others, mut next) = (FALSE, FALSE, [FALSE; 3], 0.0);
         let [nominals, values, has_next] = &mut others;
-        // SAFETY: all that is written to lives during the call.
-        let status =
-            unsafe { update(self.instance, &raw mut again, &raw mut end, nominals, values, has_next, &raw mut next) };
-        (status.into(), again != FALSE, end != FALSE)
+        let status = self.functions.update_discrete_states.map_or(Outcome::Done, |update| {
+            // SAFETY: all that is written to lives during the call.
+            unsafe { update(self.instance, &raw mut again, &raw mut end, nominals, values, has_next, &raw mut next) }
+                .into()
+        });
+        let next_event_time = (*has_next != FALSE).then_some(next);
+        (status, Updated { again: again != FALSE, terminate_simulation: end != FALSE, next_event_time })
     }
 
     pub(crate) fn set_strings(&self, reference: u32, values: &[CString]) -> Outcome {

@@ -1,6 +1,7 @@
 //! FMI 3.0 in the order of FMI 3.0.2, §4.2 (state machine of co-simulation), with the event mode where the FMU has it.
 use super::batch::{Batches, batches};
 use super::session::{Session, instance_name};
+use super::time_event::TimeEvent;
 use crate::archive::Unpacked;
 use crate::description::{Causality, DataType, Values, Variability, Variable};
 use crate::error::FmuError;
@@ -19,6 +20,9 @@ pub(super) struct LoadedThree {
     instance: Three,
     session: Session,
     has_event_mode: bool,
+    event: TimeEvent,
+    /// The event when the state was saved.
+    saved_event: TimeEvent,
     /// Inputs that change at any time.
     continuous: Batches<Three>,
     /// All other inputs, which change at events.
@@ -38,10 +42,13 @@ impl LoadedThree {
             variable_step: can.can_handle_variable_communication_step_size,
         };
         let counts = &plan.counts;
+        let event = TimeEvent::new(capabilities.variable_step);
         let mut loaded = Self {
             instance,
             session: Session::new(capabilities, setup),
             has_event_mode: can.has_event_mode,
+            event,
+            saved_event: event,
             continuous: batches(it, &plan.inputs, counts, |variability| variability == Variability::Continuous),
             discrete: batches(it, &plan.inputs, counts, |variability| variability != Variability::Continuous),
             outputs: batches(it, &plan.outputs, counts, |_| true),
@@ -111,12 +118,13 @@ impl LoadedThree {
     fn settle(&mut self) -> Result<bool, SlaveError> {
         let call = "fmi3UpdateDiscreteStates";
         for _ in 0..MOST_UPDATES {
-            let (outcome, again, end) = self.instance.update_discrete_states();
+            let (outcome, updated) = self.instance.update_discrete_states();
             self.check(call, outcome)?;
-            if end {
+            self.event.announce(updated.next_event_time);
+            if updated.terminate_simulation {
                 return Ok(true);
             }
-            if !again {
+            if !updated.again {
                 let outcome = self.instance.enter_step_mode();
                 self.check("fmi3EnterStepMode", outcome)?;
                 return Ok(false);
@@ -127,7 +135,8 @@ impl LoadedThree {
         Err(SlaveError::Failed { call, time: self.session.time, status: "fmi3OK", message })
     }
 
-    /// Sets inputs: those that change at any time by `continuous`; all others by `discrete`, at an event if one is new.
+    /// Sets inputs: those that change at any time by `continuous`; all others by `discrete`, at an event if one is new. Another
+    /// event that is due is dealt with.
     /// Returns whether the FMU wants the simulation to end.
     fn set_inputs(
         &mut self,
@@ -138,20 +147,25 @@ impl LoadedThree {
         for batch in &mut self.discrete {
             is_new |= batch.take(discrete).map_err(|misfit| self.session.misfit(misfit))?;
         }
-        let is_event = is_new && self.has_event_mode;
+        let is_event = self.has_event_mode && (is_new || self.event.is_due(self.session.time));
         if is_event {
             let outcome = self.instance.enter_event_mode();
             self.check("fmi3EnterEventMode", outcome)?;
         }
+        self.set_continuous(continuous)?;
+        if is_new || !self.has_event_mode {
+            let outcome = set_all(&self.discrete, &self.instance);
+            self.check("fmi3SetXXX", outcome)?;
+        }
+        if is_event { self.settle() } else { Ok(false) }
+    }
+
+    fn set_continuous(&mut self, continuous: &dyn Fn(usize) -> f64) -> Result<(), SlaveError> {
         for batch in &mut self.continuous {
             batch.take(continuous).map_err(|misfit| self.session.misfit(misfit))?;
         }
-        let is_all = is_new || !self.has_event_mode;
-        let discrete = self.discrete.iter().filter(|_| is_all);
-        let outcomes = self.continuous.iter().chain(discrete).map(|batch| batch.set(&self.instance));
-        let outcome = outcomes.into_iter().find(|outcome| *outcome != Outcome::Done).unwrap_or(Outcome::Done);
-        self.check("fmi3SetXXX", outcome)?;
-        if is_event { self.settle() } else { Ok(false) }
+        let outcome = set_all(&self.continuous, &self.instance);
+        self.check("fmi3SetXXX", outcome)
     }
 }
 
@@ -162,23 +176,32 @@ impl Slave for LoadedThree {
 
     fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
         self.session.time = time;
-        let mean = |port: usize| Session::mean(inputs[port], length);
+        let leg = self.event.leg(time, length);
+        let mean = |port: usize| Session::mean(inputs[port], leg.length);
         if self.set_inputs(&mean, &|port| inputs[port][0])? {
             return Ok(self.session.reach(time, length, Progress::Terminated(time)));
         }
-        let (outcome, stepped) = self.instance.do_step(time, length, !self.instance.has_saved());
+        // An event at the start may have changed when the next one is.
+        let before = leg;
+        let leg = self.event.leg(time, length);
+        if leg != before {
+            self.set_continuous(&|port| Session::mean(inputs[port], leg.length))?;
+        }
+        let (outcome, stepped) = self.instance.do_step(time, leg.length, !self.instance.has_saved());
         self.check("fmi3DoStep", outcome)?;
-        let reached = stepped.last_successful_time;
+        let (reached, end) = (stepped.last_successful_time, time + leg.length);
         let mut progress = if stepped.terminate_simulation {
             Progress::Terminated(reached)
-        } else if stepped.early_return && reached < time + length {
+        } else if stepped.early_return && reached < end {
             Progress::Until(reached)
+        } else if leg.is_cut {
+            Progress::Until(end)
         } else {
             Progress::Done
         };
         self.session.reach(time, length, progress);
-        let is_event = stepped.event_handling_needed && self.has_event_mode && !stepped.terminate_simulation;
-        if is_event {
+        let is_event = stepped.event_handling_needed || self.event.is_due(self.session.time);
+        if is_event && self.has_event_mode && !stepped.terminate_simulation {
             let outcome = self.instance.enter_event_mode();
             self.check("fmi3EnterEventMode", outcome)?;
             if self.settle()? {
@@ -205,6 +228,7 @@ impl Slave for LoadedThree {
         let outcome = saved.ok_or(SlaveError::Unable { what: "save its state", capability: "canGetAndSetFMUState" })?;
         self.check("fmi3GetFMUState", outcome)?;
         self.session.save();
+        self.saved_event = self.event;
         Ok(())
     }
 
@@ -214,12 +238,19 @@ impl Slave for LoadedThree {
             SlaveError::Unable { what: "go back to a state that was not saved", capability: "canGetAndSetFMUState" };
         self.check("fmi3SetFMUState", restored.ok_or(nothing)?)?;
         self.session.restore();
+        self.event = self.saved_event;
         Ok(())
     }
 
     fn take_log(&mut self) -> Vec<LogLine> {
         self.instance.log().take()
     }
+}
+
+/// Sets batches; stops at the first that is not set.
+fn set_all(batches: &Batches<Three>, instance: &Three) -> Outcome {
+    let outcomes = batches.iter().map(|batch| batch.set(instance));
+    outcomes.into_iter().find(|outcome| *outcome != Outcome::Done).unwrap_or(Outcome::Done)
 }
 
 /// Sets a start value; says by which function. Values are within their types, which was looked at.

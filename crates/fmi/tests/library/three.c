@@ -1,4 +1,5 @@
-/* An FMU of version 3.0 with the event mode. It returns early at 0.25 s, where two updates are needed; `mode` says what else. */
+/* An FMU of version 3.0 with the event mode. It returns early at 0.25 s, where two updates are needed; `mode` says what else.
+   With a `period` it has events at `first`, `first` + `period` and so on instead, which it announces, and y' is their number. */
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -10,12 +11,12 @@ enum { OK, WARNING, DISCARD, ERROR, FATAL };
 enum { NORMAL, END, CIRCLE, FAIL, DIE, REFUSE, END_AT_START };
 
 typedef struct {
-    double u, y, array[8];
+    double u, y, array[8], time, first, period;
     float small;
     int32_t d, mode;
     uint64_t events, n;
     bool flag;
-    int pending;
+    int pending, ticks;
 } state;
 typedef struct {
     void *environment;
@@ -66,6 +67,10 @@ int fmi3UpdateDiscreteStates(instance *me, bool *again, bool *end, bool *nominal
     *again = me->s.mode == CIRCLE || me->s.pending > 1;
     if (me->s.pending) me->s.pending--;
     me->s.events++;
+    if (me->s.period > 0) {
+        while (me->s.time >= me->s.first + me->s.ticks * me->s.period) me->s.ticks++;
+        *has_next = true, *next = me->s.first + me->s.ticks * me->s.period;
+    }
     return said(me, OK, "update");
 }
 
@@ -73,6 +78,8 @@ int fmi3SetFloat64(instance *me, const uint32_t *vr, size_t n, const double *val
     const double *end = values + n_values;
     for (size_t i = 0; i < n; i++) {
         if (vr[i] == 1) me->s.u = *values++;
+        else if (vr[i] == 12) me->s.first = *values++;
+        else if (vr[i] == 13) me->s.period = *values++;
         else if (vr[i] == 5) for (uint64_t k = 0; k < me->s.n; k++) me->s.array[k] = *values++;
         else return ERROR;
     }
@@ -142,10 +149,11 @@ int fmi3DoStep(instance *me, double t, double h, bool no_set_prior, bool *event,
     if (me->s.mode == FAIL) return said(me, ERROR, "no root\n");
     if (me->s.mode == DIE) return FATAL;
     if (me->s.mode == REFUSE) return DISCARD;
-    if (t < 0.25 && to >= 0.25) to = 0.25, *event = true, *early = to < t + h, me->s.pending = 2;
+    if (me->s.period > 0) me->s.u = me->s.ticks;
+    else if (t < 0.25 && to >= 0.25) to = 0.25, *event = true, *early = to < t + h, me->s.pending = 2;
     if (me->s.mode == END && to > 0.5) to = 0.5, *end = true;
     me->s.y += me->s.u * (to - t);
-    *last = to;
+    *last = me->s.time = to;
     return OK;
 }
 int fmi3GetFMUState(instance *me, void **saved) {

@@ -64,6 +64,75 @@ fn an_event_within_a_step_ends_it_early() {
     assert_eq!(read[0], 3.0);
 }
 
+/// An FMU with events at `first`, `first` + `period` and so on.
+fn timed(description: &str, first: f64, period: f64) -> Loaded {
+    let start = [("first", Value::Number(first)), ("period", Value::Number(period))];
+    Room::new("three", &compiled("three"), description).load(&setup(&start, &["u", "d"], &["y"])).unwrap()
+}
+
+/// Steps as a master does, to `end` by steps of `length`; returns where it stopped and the output there.
+fn driven(slave: &mut Loaded, length: f64, end: u32) -> (Vec<f64>, f64) {
+    let mut stops = vec![];
+    for step in 0..end {
+        let (mut time, until) = (f64::from(step) * length, f64::from(step + 1) * length);
+        let mut rest = length;
+        while let Progress::Until(reached) = slave.step(time, rest, &[[0.0; 3]; 2]).unwrap() {
+            stops.push(reached);
+            (time, rest) = (reached, until - reached);
+        }
+    }
+    let mut read = [0.0];
+    slave.read(None, &mut read).unwrap();
+    (stops, read[0])
+}
+
+/// Oracle: y' is the number of events that have been, which is integrated by hand.
+#[test]
+fn an_event_that_is_announced_ends_the_step() {
+    let mut slave = timed(DESCRIPTION, 0.375, 0.375);
+    slave.take_log();
+    let (stops, y) = driven(&mut slave, 0.5, 2);
+    assert_eq!((stops, y), (vec![0.375, 0.75], 0.375 + 0.25 * 2.0));
+    let calls = ["enter event", "update", "enter step"].repeat(3);
+    assert_eq!(messages(&mut slave), calls, "the first discrete input and two events");
+
+    let mut at_the_end = timed(DESCRIPTION, 0.5, 0.5);
+    assert_eq!(driven(&mut at_the_end, 0.5, 4), (vec![], 0.5 * (1.0 + 2.0 + 3.0)), "nothing is cut there");
+    let mut at_the_start = timed(DESCRIPTION, 0.0, 0.75);
+    assert_eq!(driven(&mut at_the_start, 0.5, 2), (vec![0.75], 0.75 + 0.25 * 2.0));
+}
+
+/// Ten times 0.1 and so on are no multiples of 0.1 in binary numbers: no event is early, late or dealt with twice for that.
+#[test]
+fn events_and_steps_may_differ_by_roundings() {
+    let mut slave = timed(DESCRIPTION, 0.3, 0.1);
+    let (stops, y) = driven(&mut slave, 0.1, 50);
+    // The sum of 1 to 47 tenths; fifty additions of numbers below 150.
+    assert!(stops.is_empty() && (y - 0.1 * 47.0 * 48.0 / 2.0).abs() < 1e-12, "{stops:?} {y}");
+}
+
+#[test]
+fn where_steps_have_one_length_events_are_at_communication_points() {
+    let description = DESCRIPTION
+        .replace("canHandleVariableCommunicationStepSize=\"true\"", "canHandleVariableCommunicationStepSize=\"false\"");
+    let mut slave = timed(&description, 0.375, 0.375);
+    // 0.375 s is known from 0.5 s on.
+    assert_eq!(driven(&mut slave, 0.5, 2), (vec![], 0.5));
+}
+
+/// A new discrete input is an event of its own, after which the FMU says again when the next one is.
+#[test]
+fn an_event_stays_announced_over_others_and_comes_back_with_a_state() {
+    let mut slave = timed(DESCRIPTION, 0.375, 0.375);
+    assert_eq!(slave.step(0.0, 0.25, &[[0.0; 3], [1.0, 0.0, 0.0]]), Ok(Progress::Done));
+    slave.save().unwrap();
+    for _ in 0..2 {
+        assert_eq!(slave.step(0.25, 0.25, &[[0.0; 3], [1.0, 0.0, 0.0]]), Ok(Progress::Until(0.375)));
+        assert_eq!(slave.step(0.375, 0.125, &[[0.0; 3], [1.0, 0.0, 0.0]]), Ok(Progress::Done));
+        slave.restore().unwrap();
+    }
+}
+
 #[test]
 fn an_element_is_set_and_the_others_stay() {
     let room = room();
