@@ -5,7 +5,7 @@ use crate::isolated::{Bounds, Isolated, Wires};
 use crate::keeper::HostCommand;
 use crate::order::Order;
 use servobench_fmi::{
-    Capabilities, FmuError, Loaded, LogLine, Progress, Setup, Slave, SlaveError, Unpacked, hear_at_once,
+    Capabilities, Feedthrough, FmuError, Loaded, LogLine, Progress, Setup, Slave, SlaveError, Unpacked, hear_at_once,
 };
 use thiserror::Error;
 
@@ -46,12 +46,13 @@ pub fn load(fmu: &Unpacked, setup: &Setup, place: &Place) -> Result<Box<dyn Slav
             setup.check(fmu)?;
             let wires = Wires { inputs: setup.inputs.len(), outputs: setup.outputs.len() };
             let slave = Isolated::start(command, &Order::new(fmu, setup), wires, *bounds)?;
-            Ok(Box::new(Kept { slave, _fmu: fmu.clone() }))
+            let feedthrough = Feedthrough::new(fmu.description(), setup);
+            Ok(Box::new(Kept { slave, feedthrough, _fmu: fmu.clone() }))
         }
     }
 }
 
-/// Makes this process the host of one FMU: what the program of [`Place::Process`] does. Returns when it is no longer needed.
+/// Makes this process the host of one FMU: what the program of [`Place::Process`] does. See [`serve`].
 ///
 /// # Errors
 /// [`HostError`] if nobody has started this process as a host.
@@ -63,12 +64,17 @@ pub fn host() -> Result<(), HostError> {
 /// An FMU in a process of its own, and the folder that it was unpacked to, which goes after it.
 struct Kept {
     slave: Isolated,
+    feedthrough: Feedthrough,
     _fmu: Unpacked,
 }
 
 impl Slave for Kept {
     fn capabilities(&self) -> Capabilities {
         self.slave.capabilities()
+    }
+
+    fn feeds_through(&self, output: usize, input: usize) -> bool {
+        self.feedthrough.between(output, input)
     }
 
     fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {

@@ -115,6 +115,10 @@ impl Slave for InSi {
         self.slave.capabilities()
     }
 
+    fn feeds_through(&self, output: usize, input: usize) -> bool {
+        self.slave.feeds_through(output, input)
+    }
+
     fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
         for ((own, scale), [value, slope, bend]) in self.own.iter_mut().zip(&self.inputs).zip(inputs) {
             *own = [(value - scale.offset) / scale.factor, slope / scale.factor, bend / scale.factor];

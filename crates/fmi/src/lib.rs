@@ -9,6 +9,7 @@ pub mod abi;
 mod archive;
 mod description;
 mod error;
+mod feedthrough;
 mod library;
 mod loaded;
 mod log;
@@ -22,6 +23,7 @@ pub use description::{
     Variability, Variable, Version,
 };
 pub use error::{ArchiveProblem, DescriptionProblem, FmuError, LibraryProblem};
+pub use feedthrough::Feedthrough;
 pub use loaded::Loaded;
 pub use log::hear_at_once;
 pub use setup::{Setup, Value};

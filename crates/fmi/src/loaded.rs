@@ -8,6 +8,7 @@ mod two;
 use crate::archive::Unpacked;
 use crate::description::Version;
 use crate::error::FmuError;
+use crate::feedthrough::Feedthrough;
 use crate::setup::Setup;
 use crate::slave::{Capabilities, LogLine, Progress, Slave, SlaveError};
 use std::fmt;
@@ -17,6 +18,7 @@ use two::LoadedTwo;
 /// An FMU that is loaded into this process and initialised. It is terminated, freed and unloaded when it is dropped.
 pub struct Loaded {
     slave: Box<dyn Slave>,
+    feedthrough: Feedthrough,
     /// The FMU reads its resources when it likes: they go after it.
     _unpacked: Unpacked,
 }
@@ -31,7 +33,8 @@ impl Loaded {
             Version::Two => Box::new(LoadedTwo::new(unpacked, setup)?),
             Version::Three => Box::new(LoadedThree::new(unpacked, setup)?),
         };
-        Ok(Self { slave, _unpacked: unpacked.clone() })
+        let feedthrough = Feedthrough::new(unpacked.description(), setup);
+        Ok(Self { slave, feedthrough, _unpacked: unpacked.clone() })
     }
 }
 
@@ -44,6 +47,10 @@ impl fmt::Debug for Loaded {
 impl Slave for Loaded {
     fn capabilities(&self) -> Capabilities {
         self.slave.capabilities()
+    }
+
+    fn feeds_through(&self, output: usize, input: usize) -> bool {
+        self.feedthrough.between(output, input)
     }
 
     fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {

@@ -64,6 +64,12 @@ pub trait Slave: Send {
     /// What it can do.
     fn capabilities(&self) -> Capabilities;
 
+    /// Whether an output may follow an input at once, without a step (direct feedthrough), each by its position among those
+    /// that were wired; true where that is not known.
+    fn feeds_through(&self, _output: usize, _input: usize) -> bool {
+        true
+    }
+
     /// Goes from `time` to `time + length` (s). Each input is its value at `time` with its first and second derivative to the
     /// time; an FMU that takes none gets the mean over the step, u + u'·H/2 + u''·H²/6.
     ///

@@ -395,8 +395,11 @@ impl Block for Part {
         }
     }
 
-    fn feeds_through(&self, _output: usize, _input: usize) -> bool {
-        matches!(self, Self::Fmu(_))
+    fn feeds_through(&self, output: usize, input: usize) -> bool {
+        match self {
+            Self::Axis(_) => false,
+            Self::Fmu(slave) => slave.feeds_through(output, input),
+        }
     }
 
     fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<Step, PartError> {

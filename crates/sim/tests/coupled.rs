@@ -5,6 +5,8 @@ use servobench_scenario as scenario;
 use servobench_sim::{Bench, NoPartners, Outcome, PartnerOrder, Partners};
 use servobench_trace::Recording;
 use std::f64::consts::TAU;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A prescribed or driven table of 40 kg and, beside it, parts by their file's name.
 const TABLE: &str = r#"
@@ -80,6 +82,58 @@ impl<F: FnMut(&mut [f64; 2], f64, f64, &[f64]) -> f64 + Send> Slave for Part<F> 
 
     fn take_log(&mut self) -> Vec<LogLine> {
         Vec::new()
+    }
+}
+
+/// Gives what it was given in its last step, and half of it more if it is read with inputs.
+struct Relay {
+    feeds_through: bool,
+    last: f64,
+    readings: Arc<AtomicUsize>,
+}
+
+impl Slave for Relay {
+    fn capabilities(&self) -> Capabilities {
+        Capabilities::default()
+    }
+
+    fn feeds_through(&self, _output: usize, _input: usize) -> bool {
+        self.feeds_through
+    }
+
+    fn step(&mut self, _: f64, _: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+        self.last = inputs[0][0];
+        Ok(Progress::Done)
+    }
+
+    fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
+        self.readings.fetch_add(usize::from(inputs.is_some()), Ordering::Relaxed);
+        outputs[0] = self.last + inputs.map_or(0.0, |inputs| 0.5 * inputs[0]);
+        Ok(())
+    }
+
+    fn save(&mut self) -> Result<(), SlaveError> {
+        Ok(())
+    }
+
+    fn restore(&mut self) -> Result<(), SlaveError> {
+        Ok(())
+    }
+
+    fn take_log(&mut self) -> Vec<LogLine> {
+        Vec::new()
+    }
+}
+
+/// Relays, and how often they were read with inputs.
+struct Relays {
+    feeds_through: bool,
+    readings: Arc<AtomicUsize>,
+}
+
+impl Partners for Relays {
+    fn open(&self, _: &PartnerOrder<'_>) -> Result<Box<dyn Slave>, String> {
+        Ok(Box::new(Relay { feeds_through: self.feeds_through, last: 0.0, readings: Arc::clone(&self.readings) }))
     }
 }
 
@@ -199,6 +253,24 @@ fn a_controller_samples_at_a_tick_and_holds_over_it() {
         println!("{most:.1e} m after {} mm", 1e3 * x);
         assert!(x > 0.045 && most < 1e-14, "{most}");
     }
+}
+
+/// A ring of FMUs that follow their inputs is solved at each exchange: each of its two is read with inputs more than once. One of
+/// FMUs that say that they do not is no loop, and nothing is read again.
+#[test]
+fn a_ring_without_feedthrough_is_no_algebraic_loop() {
+    let readings = |feeds_through| {
+        let relays = Relays { feeds_through, readings: Arc::default() };
+        let ring = fmu("push", "name = \"a\"\ninputs = { u = \"b.y\" }\noutputs = { y = \"disturbance.load\" }\n")
+            + &fmu("push", "name = \"b\"\ninputs = { u = \"a.y\" }\n");
+        let text = format!("{TABLE}{ring}").replace("duration = \"0.5 s\"", "duration = \"10 ms\"");
+        let outcome = bench(&text, &relays).unwrap().run(&mut |_| {});
+        assert_eq!(outcome.failure, None);
+        (relays.readings.load(Ordering::Relaxed), outcome.recording.channels[0].values.len())
+    };
+    let (looped, ticks) = readings(true);
+    assert!(looped >= 2 * 2 * (ticks - 1), "{looped} in {ticks} ticks");
+    assert_eq!(readings(false), (0, ticks));
 }
 
 #[test]

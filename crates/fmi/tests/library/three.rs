@@ -149,6 +149,17 @@ fn an_element_is_set_and_the_others_stay() {
 }
 
 #[test]
+fn feedthrough_is_asked_for_by_the_position_of_ports() {
+    let room = room();
+    let mut setup = setup(&[], &["u", "d"], &["y", "sum", "mode"]);
+    setup.inputs.push(port("array", 2));
+    let slave = room.load(&setup).unwrap();
+    let by_output: Vec<_> = (0..3).map(|output| [0, 1, 2].map(|input| slave.feeds_through(output, input))).collect();
+    // Of `y` and of what is no output, nothing is said; `sum` follows the array alone.
+    assert_eq!(by_output, [[true; 3], [false, false, true], [true; 3]]);
+}
+
+#[test]
 fn other_types_go_both_ways() {
     let mut slave = loaded(0, &["small", "flag", "d"], &["small", "flag", "d"]);
     let mut read = [0.0; 3];

@@ -140,6 +140,23 @@ fn what_is_no_number_is_refused_in_both_directions() {
     );
 }
 
+/// `y` depends on `u` alone; `double` is another name of it. Of parameters dependencies say nothing.
+#[test]
+fn variables_of_one_value_reference_feed_through_alike() {
+    let description = DESCRIPTION
+        .replace("<Unknown index=\"2\"/>", "<Unknown index=\"2\" dependencies=\"1\"/>")
+        .replace(
+            "</ModelVariables>",
+            "<ScalarVariable name=\"double\" valueReference=\"2\"><Real/></ScalarVariable>
+             <ScalarVariable name=\"gain\" valueReference=\"9\" causality=\"parameter\" variability=\"tunable\"><Real start=\"1\"/></ScalarVariable>
+             </ModelVariables>",
+        );
+    let room = Room::new("two", &compiled("two"), &description);
+    let slave = room.load(&setup(&[], &["u", "flag", "gain"], &["y", "double", "steps"])).unwrap();
+    let by_output: Vec<_> = (0..3).map(|output| [0, 1, 2].map(|input| slave.feeds_through(output, input))).collect();
+    assert_eq!(by_output, [[true, false, true], [true, false, true], [true; 3]]);
+}
+
 #[test]
 fn a_boolean_is_0_or_1() {
     let mut slave = room().load(&setup(&[], &["flag"], &["flag"])).unwrap();
