@@ -85,7 +85,7 @@ impl Message {
 /// A [`SlaveError`] on its way; numbers go as their bits, since JSON has no NaN.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Failure {
-    Discarded { call: String, time: u64 },
+    Discarded { call: String, time: u64, shortest: Option<u64> },
     Failed { call: String, time: u64, status: String, message: String },
     NotFinite { variable: String, value: u64, time: u64 },
     Value { variable: String, bound: String, value: u64, time: u64 },
@@ -97,7 +97,9 @@ pub(crate) enum Failure {
 impl From<SlaveError> for Failure {
     fn from(error: SlaveError) -> Self {
         match error {
-            SlaveError::Discarded { call, time } => Self::Discarded { call: call.into(), time: time.to_bits() },
+            SlaveError::Discarded { call, time, shortest } => {
+                Self::Discarded { call: call.into(), time: time.to_bits(), shortest: shortest.map(f64::to_bits) }
+            }
             SlaveError::Failed { call, time, status, message } => {
                 Self::Failed { call: call.into(), time: time.to_bits(), status: status.into(), message }
             }
@@ -122,7 +124,9 @@ impl From<Failure> for SlaveError {
     fn from(failure: Failure) -> Self {
         let number = f64::from_bits;
         match failure {
-            Failure::Discarded { call, time } => Self::Discarded { call: kept(call), time: number(time) },
+            Failure::Discarded { call, time, shortest } => {
+                Self::Discarded { call: kept(call), time: number(time), shortest: shortest.map(number) }
+            }
             Failure::Failed { call, time, status, message } => {
                 Self::Failed { call: kept(call), time: number(time), status: kept(status), message }
             }
@@ -209,7 +213,8 @@ mod tests {
     fn every_error_arrives_as_it_was_sent() {
         let (call, time) = ("fmi3DoStep", 0.1 + 0.2);
         for error in [
-            SlaveError::Discarded { call, time },
+            SlaveError::Discarded { call, time, shortest: Some(1e-6 / 3.0) },
+            SlaveError::Discarded { call, time, shortest: None },
             SlaveError::Failed { call, time, status: "fmi3Error", message: "\"half\"\n a µm".into() },
             SlaveError::NotFinite { variable: "x[1]".into(), value: f64::NEG_INFINITY, time },
             SlaveError::Value { variable: "n".into(), bound: "integers", value: 0.5, time },

@@ -1,5 +1,7 @@
 //! An FMU that is loaded into this process: the order of calls that the standard demands.
 mod batch;
+mod instance;
+mod redo;
 mod session;
 mod three;
 mod time_event;
@@ -11,13 +13,18 @@ use crate::error::FmuError;
 use crate::feedthrough::Feedthrough;
 use crate::setup::Setup;
 use crate::slave::{Capabilities, LogLine, Progress, Slave, SlaveError};
+pub(crate) use instance::Slot;
+
+use instance::Instance;
+use redo::Redo;
 use std::fmt;
 use three::LoadedThree;
 use two::LoadedTwo;
 
 /// An FMU that is loaded into this process and initialised. It is terminated, freed and unloaded when it is dropped.
 pub struct Loaded {
-    slave: Box<dyn Slave>,
+    instance: Box<dyn Instance>,
+    redo: Redo,
     feedthrough: Feedthrough,
     /// The FMU reads its resources when it likes: they go after it.
     _unpacked: Unpacked,
@@ -29,24 +36,25 @@ impl Loaded {
     /// # Errors
     /// [`FmuError::Setup`], [`FmuError::Library`], [`FmuError::Initialise`]
     pub fn new(unpacked: &Unpacked, setup: &Setup) -> Result<Self, FmuError> {
-        let slave: Box<dyn Slave> = match unpacked.description().version {
+        let instance: Box<dyn Instance> = match unpacked.description().version {
             Version::Two => Box::new(LoadedTwo::new(unpacked, setup)?),
             Version::Three => Box::new(LoadedThree::new(unpacked, setup)?),
         };
         let feedthrough = Feedthrough::new(unpacked.description(), setup);
-        Ok(Self { slave, feedthrough, _unpacked: unpacked.clone() })
+        let redo = Redo::new(instance.as_ref(), setup.inputs.len(), setup.outputs.len());
+        Ok(Self { instance, redo, feedthrough, _unpacked: unpacked.clone() })
     }
 }
 
 impl fmt::Debug for Loaded {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Loaded").field("capabilities", &self.slave.capabilities()).finish_non_exhaustive()
+        f.debug_struct("Loaded").field("capabilities", &self.instance.capabilities()).finish_non_exhaustive()
     }
 }
 
 impl Slave for Loaded {
     fn capabilities(&self) -> Capabilities {
-        self.slave.capabilities()
+        self.instance.capabilities()
     }
 
     fn feeds_through(&self, output: usize, input: usize) -> bool {
@@ -54,22 +62,29 @@ impl Slave for Loaded {
     }
 
     fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
-        self.slave.step(time, length, inputs)
+        self.redo.step(self.instance.as_mut(), time, length, inputs)
     }
 
     fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
-        self.slave.read(inputs, outputs)
+        if let Some(inputs) = inputs {
+            self.redo.reads(inputs);
+        }
+        self.instance.read(inputs, outputs)
     }
 
     fn save(&mut self) -> Result<(), SlaveError> {
-        self.slave.save()
+        self.instance.save(Slot::Caller)?;
+        self.redo.is_kept(Slot::Caller);
+        Ok(())
     }
 
     fn restore(&mut self) -> Result<(), SlaveError> {
-        self.slave.restore()
+        self.instance.restore(Slot::Caller)?;
+        self.redo.is_kept(Slot::Caller);
+        Ok(())
     }
 
     fn take_log(&mut self) -> Vec<LogLine> {
-        self.slave.take_log()
+        self.instance.take_log()
     }
 }

@@ -103,13 +103,15 @@ pub trait Slave: Send {
 /// Why an FMU did not do what it was asked for.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SlaveError {
-    /// It returned the status discard: the step was not taken, its state is that before it.
-    #[error("the FMU discarded {call} at {time} s")]
+    /// It returned the status discard. A step that it can be taken back from was tried in parts as well: it is where these came to.
+    #[error("the FMU discarded {call} at {time} s{}", tried(*shortest))]
     Discarded {
         /// Function of the standard.
         call: &'static str,
-        /// When (s).
+        /// Where it is (s).
         time: f64,
+        /// The shortest step that was tried from there (s), if it can be taken back.
+        shortest: Option<f64>,
     },
     /// It returned the status error or fatal.
     #[error("the FMU failed in {call} at {time} s ({status}){}", said(.message))]
@@ -171,6 +173,10 @@ pub enum SlaveError {
         /// How long it was waited for (s).
         patience: f64,
     },
+}
+
+fn tried(shortest: Option<f64>) -> String {
+    shortest.map_or_else(String::new, |shortest| format!(", over {shortest} s as over all longer steps"))
 }
 
 fn said(message: &str) -> String {

@@ -228,7 +228,7 @@ impl BadSlave {
                 return Err(SlaveError::Failed { call: "fmi3DoStep", time, status: "fmi3Error", message });
             }
             Bad::Discards if self.steps.is_multiple_of(2) => {
-                return Err(SlaveError::Discarded { call: "fmi3DoStep", time });
+                return Err(SlaveError::Discarded { call: "fmi3DoStep", time, shortest: None });
             }
             Bad::Early if self.steps == 1 => return Ok(Progress::Until(time + length / 4.0)),
             Bad::Early => return Ok(Progress::Terminated(time + length / 2.0)),

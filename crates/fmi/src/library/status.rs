@@ -62,7 +62,7 @@ impl Outcome {
     ) -> Result<(), SlaveError> {
         let status = match self {
             Self::Done => return Ok(()),
-            Self::Discarded => return Err(SlaveError::Discarded { call, time }),
+            Self::Discarded => return Err(SlaveError::Discarded { call, time, shortest: None }),
             Self::Failed(status) => {
                 *health = Health::Broken;
                 status

@@ -10,6 +10,7 @@ use crate::abi::v3::{
 };
 use crate::archive::Unpacked;
 use crate::error::{FmuError, LibraryProblem};
+use crate::loaded::Slot;
 use crate::log::Log;
 use std::ffi::{CStr, CString};
 use std::mem::ManuallyDrop;
@@ -133,7 +134,8 @@ pub(crate) struct Three {
     functions: Functions,
     instance: Instance,
     environment: Arc<Environment>,
-    state: FmuState,
+    /// By slot.
+    states: [FmuState; Slot::COUNT],
     is_initialised: bool,
     pub(crate) health: Health,
     library: ManuallyDrop<Open>,
@@ -184,7 +186,7 @@ impl Three {
             functions,
             instance,
             environment,
-            state: ptr::null_mut(),
+            states: [ptr::null_mut(); Slot::COUNT],
             is_initialised: false,
             health: Health::Well,
             library: ManuallyDrop::new(library),
@@ -278,19 +280,21 @@ impl Three {
         (status.into(), stepped)
     }
 
-    pub(crate) fn save(&mut self) -> Option<Outcome> {
+    pub(crate) fn save(&mut self, slot: Slot) -> Option<Outcome> {
         // SAFETY: the state is NULL or one of this instance's.
-        Some(unsafe { self.functions.get_state?(self.instance, &raw mut self.state) }.into())
+        Some(unsafe { self.functions.get_state?(self.instance, &raw mut self.states[slot as usize]) }.into())
     }
 
+    /// Whether there is a state to go back to.
     pub(crate) fn has_saved(&self) -> bool {
-        !self.state.is_null()
+        self.states.iter().any(|state| !state.is_null())
     }
 
-    pub(crate) fn restore(&self) -> Option<Outcome> {
-        let set = self.functions.set_state.filter(|_| self.has_saved())?;
+    pub(crate) fn restore(&self, slot: Slot) -> Option<Outcome> {
+        let state = self.states[slot as usize];
+        let set = self.functions.set_state.filter(|_| !state.is_null())?;
         // SAFETY: the state is one of this instance's.
-        Some(unsafe { set(self.instance, self.state) }.into())
+        Some(unsafe { set(self.instance, state) }.into())
     }
 }
 
@@ -302,8 +306,10 @@ impl Drop for Three {
         }
         // SAFETY: what is freed is this instance's, and not used again; then nothing of the library is used.
         unsafe {
-            if let Some(free) = self.functions.free_state.filter(|_| self.has_saved()) {
-                free(self.instance, &raw mut self.state);
+            for state in self.states.iter_mut().filter(|state| !state.is_null()) {
+                if let Some(free) = self.functions.free_state {
+                    free(self.instance, state);
+                }
             }
             if self.is_initialised && self.health == Health::Well {
                 (self.functions.terminate)(self.instance);

@@ -10,6 +10,7 @@ use crate::abi::v2::{
 };
 use crate::archive::Unpacked;
 use crate::error::{FmuError, LibraryProblem};
+use crate::loaded::Slot;
 use crate::log::Log;
 use std::ffi::{CStr, CString, c_int};
 use std::mem::ManuallyDrop;
@@ -93,7 +94,8 @@ pub(crate) struct Two {
     environment: Arc<Environment>,
     /// The instance has a pointer to it; nobody else counts it.
     _callbacks: Rc<CallbackFunctions>,
-    state: FmuState,
+    /// By slot.
+    states: [FmuState; Slot::COUNT],
     is_initialised: bool,
     pub(crate) health: Health,
     library: ManuallyDrop<Open>,
@@ -138,7 +140,7 @@ impl Two {
             component,
             environment,
             _callbacks: callbacks,
-            state: ptr::null_mut(),
+            states: [ptr::null_mut(); Slot::COUNT],
             is_initialised: false,
             health: Health::Well,
             library: ManuallyDrop::new(library),
@@ -205,19 +207,21 @@ impl Two {
         Outcome::from(status) == Outcome::Done && wants != FALSE
     }
 
-    pub(crate) fn save(&mut self) -> Option<Outcome> {
+    pub(crate) fn save(&mut self, slot: Slot) -> Option<Outcome> {
         // SAFETY: the state is NULL or one of this instance's.
-        Some(unsafe { self.functions.get_state?(self.component, &raw mut self.state) }.into())
+        Some(unsafe { self.functions.get_state?(self.component, &raw mut self.states[slot as usize]) }.into())
     }
 
+    /// Whether there is a state to go back to.
     pub(crate) fn has_saved(&self) -> bool {
-        !self.state.is_null()
+        self.states.iter().any(|state| !state.is_null())
     }
 
-    pub(crate) fn restore(&self) -> Option<Outcome> {
-        let set = self.functions.set_state.filter(|_| self.has_saved())?;
+    pub(crate) fn restore(&self, slot: Slot) -> Option<Outcome> {
+        let state = self.states[slot as usize];
+        let set = self.functions.set_state.filter(|_| !state.is_null())?;
         // SAFETY: the state is one of this instance's.
-        Some(unsafe { set(self.component, self.state) }.into())
+        Some(unsafe { set(self.component, state) }.into())
     }
 }
 
@@ -229,8 +233,10 @@ impl Drop for Two {
         }
         // SAFETY: what is freed is this instance's, and not used again; then nothing of the library is used.
         unsafe {
-            if let Some(free) = self.functions.free_state.filter(|_| self.has_saved()) {
-                free(self.component, &raw mut self.state);
+            for state in self.states.iter_mut().filter(|state| !state.is_null()) {
+                if let Some(free) = self.functions.free_state {
+                    free(self.component, state);
+                }
             }
             if self.is_initialised && self.health == Health::Well {
                 (self.functions.terminate)(self.component);

@@ -1,4 +1,5 @@
 //! What is set or read in one call: the wired variables of one type, with room for their values that is made once.
+use super::instance::Slot;
 use crate::description::{DataType, ModelDescription, Variability, Version};
 use crate::library::Access;
 use crate::library::status::Outcome;
@@ -137,6 +138,10 @@ pub(super) trait Batch<I>: Send {
     fn give(&self, numbers: &mut [f64]);
     /// Whether there are elements that no port stands for.
     fn has_others(&self) -> bool;
+    /// Keeps its values with a state of the instance.
+    fn keep(&mut self, slot: Slot);
+    /// Takes back the values that were kept.
+    fn recall(&mut self, slot: Slot);
 }
 
 struct Typed<T> {
@@ -144,6 +149,7 @@ struct Typed<T> {
     values: Vec<T>,
     /// Nothing has been taken so far.
     is_fresh: bool,
+    kept: [(Vec<T>, bool); Slot::COUNT],
 }
 
 impl<T: Element, I: Access<T>> Batch<I> for Typed<T> {
@@ -176,13 +182,27 @@ impl<T: Element, I: Access<T>> Batch<I> for Typed<T> {
     fn has_others(&self) -> bool {
         self.layout.places.len() < self.values.len()
     }
+
+    fn keep(&mut self, slot: Slot) {
+        let (values, is_fresh) = &mut self.kept[slot as usize];
+        values.clone_from(&self.values);
+        *is_fresh = self.is_fresh;
+    }
+
+    fn recall(&mut self, slot: Slot) {
+        let (values, is_fresh) = &self.kept[slot as usize];
+        self.values.clone_from(values);
+        self.is_fresh = *is_fresh;
+    }
 }
 
 /// Boxed batches of an instance.
 pub(super) type Batches<I> = Vec<Box<dyn Batch<I>>>;
 
 fn boxed<T: Element, I: Access<T>>(layout: Layout) -> Box<dyn Batch<I>> {
-    Box::new(Typed::<T> { values: vec![T::ZERO; layout.len], layout, is_fresh: true })
+    let values = vec![T::ZERO; layout.len];
+    let kept = [(values.clone(), true), (values.clone(), true)];
+    Box::new(Typed::<T> { layout, values, is_fresh: true, kept })
 }
 
 /// An instance whose variables have batches.

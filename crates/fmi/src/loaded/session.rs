@@ -1,5 +1,6 @@
 //! What both versions keep of an instance between calls.
 use super::batch::Misfit;
+use super::instance::{Attempt, Slot};
 use crate::description::ModelDescription;
 use crate::error::{FmuError, LibraryProblem};
 use crate::setup::Setup;
@@ -12,7 +13,7 @@ pub(super) struct Session {
     /// Where it is (s).
     pub(super) time: f64,
     /// Where it was when it was saved (s).
-    saved: f64,
+    saved: [f64; Slot::COUNT],
     inputs: Vec<Port>,
     outputs: Vec<Port>,
 }
@@ -20,7 +21,8 @@ pub(super) struct Session {
 impl Session {
     pub(super) fn new(capabilities: Capabilities, setup: &Setup) -> Self {
         let (inputs, outputs) = (setup.inputs.clone(), setup.outputs.clone());
-        Self { capabilities, time: setup.start_time, saved: setup.start_time, inputs, outputs }
+        let time = setup.start_time;
+        Self { capabilities, time, saved: [time; Slot::COUNT], inputs, outputs }
     }
 
     /// The mean of an input over a step of length `h`: u + u'·h/2 + u''·h²/6.
@@ -42,20 +44,20 @@ impl Session {
     }
 
     /// Notes how far a step has come.
-    pub(super) fn reach(&mut self, time: f64, length: f64, progress: Progress) -> Progress {
-        self.time = match progress {
-            Progress::Done => time + length,
-            Progress::Until(reached) | Progress::Terminated(reached) => reached,
+    pub(super) fn reach(&mut self, time: f64, length: f64, attempt: Attempt) {
+        self.time = match attempt {
+            Attempt::Came(Progress::Done) => time + length,
+            Attempt::Came(Progress::Until(reached) | Progress::Terminated(reached)) => reached,
+            Attempt::Discarded { within, .. } => within.unwrap_or(time),
         };
-        progress
     }
 
-    pub(super) fn save(&mut self) {
-        self.saved = self.time;
+    pub(super) fn save(&mut self, slot: Slot) {
+        self.saved[slot as usize] = self.time;
     }
 
-    pub(super) fn restore(&mut self) {
-        self.time = self.saved;
+    pub(super) fn restore(&mut self, slot: Slot) {
+        self.time = self.saved[slot as usize];
     }
 }
 

@@ -1,5 +1,6 @@
 //! FMI 3.0 in the order of FMI 3.0.2, §4.2 (state machine of co-simulation), with the event mode where the FMU has it.
 use super::batch::{Batches, batches};
+use super::instance::{Attempt, Instance, Slot, within};
 use super::session::{Session, instance_name};
 use super::time_event::TimeEvent;
 use crate::archive::Unpacked;
@@ -9,7 +10,7 @@ use crate::library::Access;
 use crate::library::status::{Health, Outcome};
 use crate::library::three::{Flag, Three};
 use crate::setup::{Setup, Start};
-use crate::slave::{Capabilities, LogLine, Progress, Slave, SlaveError};
+use crate::slave::{Capabilities, LogLine, Progress, SlaveError};
 use std::ffi::CString;
 
 /// Updates of discrete states at one event. An FMU that wants more goes in a circle.
@@ -22,7 +23,7 @@ pub(super) struct LoadedThree {
     has_event_mode: bool,
     event: TimeEvent,
     /// The event when the state was saved.
-    saved_event: TimeEvent,
+    saved_event: [TimeEvent; Slot::COUNT],
     /// Inputs that change at any time.
     continuous: Batches<Three>,
     /// All other inputs, which change at events.
@@ -48,7 +49,7 @@ impl LoadedThree {
             session: Session::new(capabilities, setup),
             has_event_mode: can.has_event_mode,
             event,
-            saved_event: event,
+            saved_event: [event; Slot::COUNT],
             continuous: batches(it, &plan.inputs, counts, |variability| variability == Variability::Continuous),
             discrete: batches(it, &plan.inputs, counts, |variability| variability != Variability::Continuous),
             outputs: batches(it, &plan.outputs, counts, |_| true),
@@ -169,17 +170,17 @@ impl LoadedThree {
     }
 }
 
-impl Slave for LoadedThree {
+impl Instance for LoadedThree {
     fn capabilities(&self) -> Capabilities {
         self.session.capabilities
     }
 
-    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+    fn attempt(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Attempt, SlaveError> {
         self.session.time = time;
         let leg = self.event.leg(time, length);
         let mean = |port: usize| Session::mean(inputs[port], leg.length);
         if self.set_inputs(&mean, &|port| inputs[port][0])? {
-            return Ok(self.session.reach(time, length, Progress::Terminated(time)));
+            return Ok(Attempt::Came(Progress::Terminated(time)));
         }
         // An event at the start may have changed when the next one is.
         let before = leg;
@@ -188,6 +189,12 @@ impl Slave for LoadedThree {
             self.set_continuous(&|port| Session::mean(inputs[port], leg.length))?;
         }
         let (outcome, stepped) = self.instance.do_step(time, leg.length, !self.instance.has_saved());
+        if outcome == Outcome::Discarded {
+            let within = within(Some(stepped.last_successful_time), time, leg.length);
+            let discarded = Attempt::Discarded { call: "fmi3DoStep", within };
+            self.session.reach(time, length, discarded);
+            return Ok(discarded);
+        }
         self.check("fmi3DoStep", outcome)?;
         let (reached, end) = (stepped.last_successful_time, time + leg.length);
         let mut progress = if stepped.terminate_simulation {
@@ -199,7 +206,7 @@ impl Slave for LoadedThree {
         } else {
             Progress::Done
         };
-        self.session.reach(time, length, progress);
+        self.session.reach(time, length, Attempt::Came(progress));
         let is_event = stepped.event_handling_needed || self.event.is_due(self.session.time);
         if is_event && self.has_event_mode && !stepped.terminate_simulation {
             let outcome = self.instance.enter_event_mode();
@@ -208,7 +215,7 @@ impl Slave for LoadedThree {
                 progress = Progress::Terminated(self.session.time);
             }
         }
-        Ok(progress)
+        Ok(Attempt::Came(progress))
     }
 
     fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
@@ -223,22 +230,24 @@ impl Slave for LoadedThree {
         self.session.check_finite(outputs)
     }
 
-    fn save(&mut self) -> Result<(), SlaveError> {
-        let saved = if self.session.capabilities.saves_state { self.instance.save() } else { None };
+    fn save(&mut self, slot: Slot) -> Result<(), SlaveError> {
+        let saved = if self.session.capabilities.saves_state { self.instance.save(slot) } else { None };
         let outcome = saved.ok_or(SlaveError::Unable { what: "save its state", capability: "canGetAndSetFMUState" })?;
         self.check("fmi3GetFMUState", outcome)?;
-        self.session.save();
-        self.saved_event = self.event;
+        self.session.save(slot);
+        self.saved_event[slot as usize] = self.event;
+        self.discrete.iter_mut().for_each(|batch| batch.keep(slot));
         Ok(())
     }
 
-    fn restore(&mut self) -> Result<(), SlaveError> {
-        let restored = self.instance.restore();
+    fn restore(&mut self, slot: Slot) -> Result<(), SlaveError> {
+        let restored = self.instance.restore(slot);
         let nothing =
             SlaveError::Unable { what: "go back to a state that was not saved", capability: "canGetAndSetFMUState" };
         self.check("fmi3SetFMUState", restored.ok_or(nothing)?)?;
-        self.session.restore();
-        self.event = self.saved_event;
+        self.session.restore(slot);
+        self.event = self.saved_event[slot as usize];
+        self.discrete.iter_mut().for_each(|batch| batch.recall(slot));
         Ok(())
     }
 

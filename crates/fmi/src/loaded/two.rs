@@ -1,5 +1,6 @@
 //! FMI 2.0 in the order of FMI 2.0.5, §4.2.4 (state machine of co-simulation).
 use super::batch::{Batches, batches};
+use super::instance::{Attempt, Instance, Slot, within};
 use super::session::{Session, instance_name};
 use crate::archive::Unpacked;
 use crate::description::{DataType, Values, Variability};
@@ -8,7 +9,7 @@ use crate::library::Access;
 use crate::library::status::Outcome;
 use crate::library::two::{Flag, Two};
 use crate::setup::{Plan, Setup, Start};
-use crate::slave::{Capabilities, LogLine, Progress, Slave, SlaveError};
+use crate::slave::{Capabilities, LogLine, Progress, SlaveError};
 use std::ffi::CString;
 
 /// An FMU of version 2.0.
@@ -104,25 +105,21 @@ impl LoadedTwo {
     }
 
     /// What a discarded step has come to.
-    fn discarded(&mut self, time: f64) -> Result<Progress, SlaveError> {
+    fn discarded(&self, time: f64, length: f64) -> Attempt {
         let reached = self.instance.last_successful_time();
         if self.instance.wants_to_end() {
-            let end = reached.unwrap_or(time);
-            return Ok(Progress::Terminated(end));
+            return Attempt::Came(Progress::Terminated(reached.unwrap_or(time)));
         }
-        match reached {
-            Some(reached) if reached > time => Ok(Progress::Until(reached)),
-            _ => Err(SlaveError::Discarded { call: "fmi2DoStep", time }),
-        }
+        Attempt::Discarded { call: "fmi2DoStep", within: within(reached, time, length) }
     }
 }
 
-impl Slave for LoadedTwo {
+impl Instance for LoadedTwo {
     fn capabilities(&self) -> Capabilities {
         self.session.capabilities
     }
 
-    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+    fn attempt(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Attempt, SlaveError> {
         self.session.time = time;
         let now = |port: usize| inputs[port][0];
         let mean = |port: usize| Session::mean(inputs[port], length);
@@ -133,14 +130,15 @@ impl Slave for LoadedTwo {
             self.set_inputs(&mean, &now)?;
         }
         let outcome = self.instance.do_step(time, length, !self.instance.has_saved());
-        let progress = match outcome {
-            Outcome::Discarded => self.discarded(time)?,
+        let attempt = match outcome {
+            Outcome::Discarded => self.discarded(time, length),
             outcome => {
                 self.check("fmi2DoStep", outcome)?;
-                Progress::Done
+                Attempt::Came(Progress::Done)
             }
         };
-        Ok(self.session.reach(time, length, progress))
+        self.session.reach(time, length, attempt);
+        Ok(attempt)
     }
 
     fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
@@ -154,20 +152,20 @@ impl Slave for LoadedTwo {
         self.session.check_finite(outputs)
     }
 
-    fn save(&mut self) -> Result<(), SlaveError> {
-        let saved = if self.session.capabilities.saves_state { self.instance.save() } else { None };
+    fn save(&mut self, slot: Slot) -> Result<(), SlaveError> {
+        let saved = if self.session.capabilities.saves_state { self.instance.save(slot) } else { None };
         let outcome = saved.ok_or(SlaveError::Unable { what: "save its state", capability: "canGetAndSetFMUstate" })?;
         self.check("fmi2GetFMUstate", outcome)?;
-        self.session.save();
+        self.session.save(slot);
         Ok(())
     }
 
-    fn restore(&mut self) -> Result<(), SlaveError> {
-        let restored = self.instance.restore();
+    fn restore(&mut self, slot: Slot) -> Result<(), SlaveError> {
+        let restored = self.instance.restore(slot);
         let nothing =
             SlaveError::Unable { what: "go back to a state that was not saved", capability: "canGetAndSetFMUstate" };
         self.check("fmi2SetFMUstate", restored.ok_or(nothing)?)?;
-        self.session.restore();
+        self.session.restore(slot);
         Ok(())
     }
 

@@ -8,7 +8,7 @@
 
 typedef void (*logger)(void *, int, const char *, const char *);
 enum { OK, WARNING, DISCARD, ERROR, FATAL };
-enum { NORMAL, END, CIRCLE, FAIL, DIE, REFUSE, END_AT_START };
+enum { NORMAL, END, CIRCLE, FAIL, DIE, REFUSE, END_AT_START, COARSE };
 
 typedef struct {
     double u, y, array[8], time, first, period;
@@ -149,8 +149,13 @@ int fmi3DoStep(instance *me, double t, double h, bool no_set_prior, bool *event,
     if (me->s.mode == FAIL) return said(me, ERROR, "no root\n");
     if (me->s.mode == DIE) return FATAL;
     if (me->s.mode == REFUSE) return DISCARD;
+    if (me->s.mode == COARSE) {
+        *last = t;
+        if (h > 0.3) return DISCARD;
+        me->s.y += me->s.d * h;
+    }
     if (me->s.period > 0) me->s.u = me->s.ticks;
-    else if (t < 0.25 && to >= 0.25) to = 0.25, *event = true, *early = to < t + h, me->s.pending = 2;
+    else if (me->s.mode != COARSE && t < 0.25 && to >= 0.25) to = 0.25, *event = true, *early = to < t + h, me->s.pending = 2;
     if (me->s.mode == END && to > 0.5) to = 0.5, *end = true;
     me->s.y += me->s.u * (to - t);
     *last = me->s.time = to;

@@ -43,7 +43,8 @@ fn calls_come_in_the_order_of_the_standard() {
     assert_eq!(messages(&mut slave), [""; 0], "one that stays is none");
     slave.save().unwrap();
     drop(slave);
-    assert_eq!(fs::read_to_string(&path).unwrap(), "free state\nterminate\nfree\n");
+    let freed = "free state\nfree state\nterminate\nfree\n";
+    assert_eq!(fs::read_to_string(&path).unwrap(), freed, "one that was saved, and that before a step");
 }
 
 #[test]
@@ -188,7 +189,7 @@ fn ends_and_failures() {
     };
     assert_eq!(step(3), failed("fmi3Error", "no root"));
     assert_eq!(step(4), failed("fmi3Fatal", "enter step"));
-    assert_eq!(step(5), Err(SlaveError::Discarded { call: "fmi3DoStep", time: 0.3 }));
+    assert_eq!(step(5), Err(SlaveError::Discarded { call: "fmi3DoStep", time: 0.3, shortest: Some(0.5 / 1024.0) }));
     let room = room();
     for (mode, said) in [
         (2, "failed in fmi3UpdateDiscreteStates at 0 s (fmi3OK): its discrete states did not settle in 1000 updates"),
@@ -196,6 +197,26 @@ fn ends_and_failures() {
     ] {
         let error = room.load(&setup(&[("mode", Value::Integer(mode))], &[], &[])).unwrap_err();
         assert!(error.to_string().ends_with(said), "{error}");
+    }
+}
+
+/// y' = d, which is a discrete input: after going back it is another than the FMU has, and its event comes again.
+#[test]
+fn a_step_in_parts_has_its_discrete_inputs() {
+    let mut slave = loaded(7, &["d"], &["y", "d"]);
+    let mut read = [0.0; 2];
+    slave.step(0.0, 0.25, &[[1.0, 0.0, 0.0]]).unwrap();
+    slave.save().unwrap();
+    for _ in 0..2 {
+        slave.read(Some(&[5.0]), &mut read).unwrap();
+        assert_eq!(read, [0.25, 5.0]);
+        assert_eq!(slave.step(0.25, 1.0, &[[7.0, 0.0, 0.0]]), Ok(Progress::Done));
+        assert_eq!(slave.step(1.25, 1.0, &[[7.0, 0.0, 0.0]]), Ok(Progress::Done));
+        slave.read(None, &mut read).unwrap();
+        assert_eq!(read, [14.25, 7.0]);
+        slave.restore().unwrap();
+        slave.read(None, &mut read).unwrap();
+        assert_eq!(read, [0.25, 1.0]);
     }
 }
 

@@ -13,15 +13,16 @@ typedef struct {
     void *environment;
 } callbacks;
 enum { OK, WARNING, DISCARD, ERROR, FATAL, PENDING };
-enum { NORMAL, REFUSE, HALF, END, FAIL, DIE, NOT_A_NUMBER, ASYNCHRONOUS, UNKNOWN, FLOOD };
+enum { NORMAL, REFUSE, HALF, END, FAIL, DIE, NOT_A_NUMBER, ASYNCHRONOUS, UNKNOWN, FLOOD, COARSE, TELLING, WALL };
 
 typedef struct {
-    double u, y, du, ddu, reached;
+    double u, y, du, ddu, reached, longest;
     int mode, flag, steps;
 } state;
 typedef struct {
     const callbacks *functions;
     char name[100], path[300];
+    int has_failed;
     state s;
 } instance;
 
@@ -71,8 +72,8 @@ int fmi2Terminate(instance *me) { farewell(me, "terminate"); return OK; }
 int fmi2SetReal(instance *me, const unsigned *vr, size_t n, const double *value) {
     size_t i;
     for (i = 0; i < n; i++) {
-        if (vr[i] != 1) return ERROR;
-        me->s.u = value[i];
+        if (vr[i] != 1 && vr[i] != 9) return ERROR;
+        *(vr[i] == 1 ? &me->s.u : &me->s.longest) = value[i];
     }
     return OK;
 }
@@ -114,13 +115,24 @@ int fmi2GetBoolean(instance *me, const unsigned *vr, size_t n, int *value) {
 }
 int fmi2GetString(void) { return ERROR; }
 
+/* A step that is discarded leaves nonsense. The standard lets nothing but going back follow. */
+static int discard(instance *me, double reached) {
+    me->has_failed = 1;
+    me->s.y = 1e9;
+    me->s.reached = reached;
+    return DISCARD;
+}
 /* y' = u, with the derivatives that were set. */
 int fmi2DoStep(instance *me, double t, double h, int no_set_prior) {
     (void)no_set_prior;
+    if (me->has_failed) return ERROR;
     me->s.steps++;
     switch (me->s.mode) {
     case REFUSE: me->s.reached = t; return DISCARD;
-    case HALF: if (h > 0.06) { me->s.reached = t + h / 2; me->s.y += me->s.u * h / 2; return DISCARD; } break;
+    case HALF: if (h > 0.07) { me->s.reached = t + h / 2; me->s.y += me->s.u * h / 2; return DISCARD; } break;
+    case COARSE: if (h > me->s.longest) return discard(me, t); break;
+    case TELLING: if (h > me->s.longest) return discard(me, t + me->s.longest); break;
+    case WALL: if (t + h > me->s.longest) return discard(me, t); break;
     case END: me->s.reached = t + h / 4; return DISCARD;
     case FAIL: me->functions->log(me->functions->environment, me->name, ERROR, "logStatusError", "no root at %g%%", 100 * t); return ERROR;
     case DIE: return FATAL;
@@ -140,5 +152,5 @@ int fmi2GetFMUstate(instance *me, void **saved) {
     memcpy(*saved, &me->s, sizeof(state));
     return OK;
 }
-int fmi2SetFMUstate(instance *me, void *saved) { memcpy(&me->s, saved, sizeof(state)); return OK; }
+int fmi2SetFMUstate(instance *me, void *saved) { me->has_failed = 0; memcpy(&me->s, saved, sizeof(state)); return OK; }
 int fmi2FreeFMUstate(instance *me, void **saved) { farewell(me, "free state"); free(*saved); *saved = NULL; return OK; }

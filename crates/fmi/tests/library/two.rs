@@ -1,6 +1,6 @@
 //! FMI 2.0. The answer of `two.c` is y' = u with the derivatives that it is given.
 use super::{Room, compiled, messages, port, setup, text};
-use servobench_fmi::{Loaded, Progress, Setup, Severity, Slave, SlaveError};
+use servobench_fmi::{Loaded, Progress, Setup, Severity, Slave, SlaveError, Value};
 use std::fs;
 
 const DESCRIPTION: &str = include_str!("two.xml");
@@ -82,13 +82,105 @@ fn a_saved_state_comes_back_as_often_as_wanted() {
 
 #[test]
 fn what_is_discarded_says_how_far_it_came() {
-    let step = |mode| loaded(mode, &[]).step(1.0, 0.1, &[[0.0; 3]]);
-    assert_eq!(step("refuse"), Err(SlaveError::Discarded { call: "fmi2DoStep", time: 1.0 }));
-    assert_eq!(step("half"), Ok(Progress::Until(1.05)));
-    assert_eq!(step("end"), Ok(Progress::Terminated(1.025)));
+    let without = |capability: &str| DESCRIPTION.replace(&format!("{capability}=\"true\""), "");
+    let descriptions =
+        [DESCRIPTION, &without("canGetAndSetFMUstate"), &without("canHandleVariableCommunicationStepSize")];
+    for (description, shortest) in descriptions.into_iter().zip([Some(0.125 / 1024.0), None, None]) {
+        let room = Room::new("two", &compiled("two"), description);
+        let load = |mode| room.load(&setup(&[("mode", text(mode))], &["u"], &[])).unwrap();
+        let step = |mode| load(mode).step(1.0, 0.125, &[[0.0; 3]]);
+        assert_eq!(step("refuse"), Err(SlaveError::Discarded { call: "fmi2DoStep", time: 1.0, shortest }));
+        assert_eq!(step("half"), Ok(Progress::Until(1.0625)));
+        assert_eq!(step("end"), Ok(Progress::Terminated(1.03125)));
+    }
     let mut slave = loaded("refuse", &["steps"]);
     slave.step(1.0, 0.1, &[[0.0; 3]]).unwrap_err();
     slave.read(None, &mut [0.0]).expect("it goes on");
+}
+
+/// One that discards steps that are longer than 0.3 s, or that go beyond it.
+fn discarding(mode: &str, outputs: &[&str]) -> Loaded {
+    room().load(&setup(&[("mode", text(mode)), ("longest", Value::Number(0.3))], &["u"], outputs)).unwrap()
+}
+
+/// The input over a step of 1 s and the integral of 2 + 3·t + 4·t² up to `t`.
+const INPUT: [f64; 3] = [2.0, 3.0, 8.0];
+fn integral(t: f64) -> f64 {
+    2.0 * t + 3.0 * t * t / 2.0 + 4.0 * t * t * t / 3.0
+}
+
+/// `two.c` leaves nonsense after a step that it discards and fails if it is not taken back then.
+#[test]
+fn a_step_that_is_discarded_is_taken_in_halves() {
+    let mut slave = discarding("coarse", &["y", "steps"]);
+    let mut read = [0.0; 2];
+    assert_eq!(slave.step(0.0, 1.0, &[INPUT]), Ok(Progress::Done));
+    slave.read(None, &mut read).unwrap();
+    assert_eq!(read[1], 4.0, "quarters");
+    // The mean over each part is that of the parabola; four additions of numbers below 8.
+    assert!((read[0] - integral(1.0)).abs() < 1e-14, "{read:?}");
+}
+
+#[test]
+fn a_step_goes_to_where_the_fmu_says_that_it_comes() {
+    let mut slave = discarding("telling", &["y", "steps"]);
+    let mut read = [0.0; 2];
+    assert_eq!(slave.step(0.0, 1.0, &[INPUT]), Ok(Progress::Until(0.3)));
+    slave.read(None, &mut read).unwrap();
+    assert_eq!(read[1], 1.0);
+    assert!((read[0] - integral(0.3)).abs() < 1e-15, "{read:?}");
+}
+
+/// 614/1024 is the last part before 0.6.
+#[test]
+fn where_no_part_is_short_enough_it_says_how_far_it_came() {
+    let start = [("mode", text("wall")), ("longest", Value::Number(0.6))];
+    let mut slave = room().load(&setup(&start, &["u"], &["y"])).unwrap();
+    let (time, shortest) = (614.0 / 1024.0, Some(1.0 / 1024.0));
+    let error = slave.step(0.0, 1.0, &[INPUT]).unwrap_err();
+    assert_eq!(error, SlaveError::Discarded { call: "fmi2DoStep", time, shortest });
+    let said = "the FMU discarded fmi2DoStep at 0.599609375 s, over 0.0009765625 s as over all longer steps";
+    assert_eq!(error.to_string(), said);
+    let mut read = [0.0];
+    slave.read(None, &mut read).unwrap();
+    assert!((read[0] - integral(time)).abs() < 1e-14, "{read:?}");
+}
+
+/// The states of an FMU are saved once in 64 steps; `two.c` has its input and its sum in them.
+#[test]
+fn what_came_before_a_step_that_is_discarded_comes_again() {
+    let mut slave = discarding("coarse", &["y", "u", "steps"]);
+    let mut read = [0.0; 3];
+    for step in 0..100 {
+        let (time, input) = (f64::from(step) * 0.25, f64::from(step));
+        slave.step(time, 0.25, &[[input, 0.0, 0.0]]).unwrap();
+        slave.read(Some(&[-input]), &mut read).unwrap();
+        assert_eq!(read[1], -input);
+    }
+    assert_eq!(slave.step(25.0, 1.0, &[[100.0, 0.0, 0.0]]), Ok(Progress::Done));
+    slave.read(None, &mut read).unwrap();
+    assert_eq!(read, [0.25 * 99.0 * 50.0 + 100.0, 100.0, 104.0]);
+    for reading in 0..200 {
+        slave.read(Some(&[f64::from(reading)]), &mut read).unwrap();
+    }
+    assert_eq!(slave.step(26.0, 1.0, &[[1.0, 0.0, 0.0]]), Ok(Progress::Done), "more calls than are kept");
+}
+
+#[test]
+fn a_state_that_was_saved_stays_over_steps_in_parts() {
+    let mut slave = discarding("coarse", &["y", "steps"]);
+    let mut read = [0.0; 2];
+    slave.step(0.0, 0.25, &[INPUT]).unwrap();
+    slave.save().unwrap();
+    for _ in 0..2 {
+        slave.step(0.25, 1.0, &[INPUT]).unwrap();
+        slave.step(1.25, 1.0, &[INPUT]).unwrap();
+        slave.read(None, &mut read).unwrap();
+        assert_eq!(read[1], 9.0);
+        slave.restore().unwrap();
+        slave.read(None, &mut read).unwrap();
+        assert_eq!(read, [integral(0.25), 1.0]);
+    }
 }
 
 #[test]
@@ -112,7 +204,7 @@ fn failures_have_the_status_and_what_was_logged_last() {
 /// FMI 2.0.5, §2.1.3: after an error the instance may only be freed; after a fatal one, nothing may be called.
 #[test]
 fn what_has_failed_is_not_terminated_and_what_is_dead_not_freed() {
-    for (mode, notes) in [("fail", "free\n"), ("die", "")] {
+    for (mode, notes) in [("fail", "free state\nfree\n"), ("die", "")] {
         let room = room();
         let path = room.notes();
         let start = [("mode", text(mode)), ("path", text(path.to_str().unwrap()))];
@@ -148,7 +240,7 @@ fn variables_of_one_value_reference_feed_through_alike() {
         .replace(
             "</ModelVariables>",
             "<ScalarVariable name=\"double\" valueReference=\"2\"><Real/></ScalarVariable>
-             <ScalarVariable name=\"gain\" valueReference=\"9\" causality=\"parameter\" variability=\"tunable\"><Real start=\"1\"/></ScalarVariable>
+             <ScalarVariable name=\"gain\" valueReference=\"10\" causality=\"parameter\" variability=\"tunable\"><Real start=\"1\"/></ScalarVariable>
              </ModelVariables>",
         );
     let room = Room::new("two", &compiled("two"), &description);

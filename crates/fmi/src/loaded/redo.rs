@@ -1,0 +1,179 @@
+//! Steps that are discarded are taken back and taken in parts.
+//!
+//! An FMU that discards a step has not computed it to its end. By the standard nothing but going back can follow (FMI 2.0.5,
+//! §4.2.2; FMI 3.0.2, §4.2, state *Step Discarded*), for which its state has to have been kept. To keep it costs as much as some
+//! steps do, so that is done once in many steps, and what was asked for since then is asked for again after going back. Where an
+//! FMU cannot be taken back, the step goes on from where it says that it has come; if it says nothing, the step cannot be taken.
+use super::instance::{Attempt, Instance, Slot};
+use crate::slave::{Progress, SlaveError};
+
+/// Into how many parts a step is divided at most, by ten halvings.
+const MOST_PARTS: u32 = 1 << 10;
+/// Calls after which the state is kept again.
+const MOST_CALLS: usize = 64;
+
+/// Room for going back.
+pub(super) struct Redo {
+    /// Whether the FMU can be taken back, and steps from there by another length.
+    is_able: bool,
+    /// Where the state is kept that `calls` have followed.
+    kept: Option<Slot>,
+    calls: Vec<Call>,
+    /// Inputs of all calls, as many of each.
+    past: Vec<[f64; 3]>,
+    /// Inputs and outputs of a call.
+    inputs: Vec<[f64; 3]>,
+    values: Vec<f64>,
+    outputs: Vec<f64>,
+}
+
+/// What has changed the instance.
+#[derive(Debug, Clone, Copy)]
+enum Call {
+    /// A step from `time` by `length` (s).
+    Step { time: f64, length: f64 },
+    /// Reading with inputs.
+    Read,
+}
+
+impl Redo {
+    /// For an instance that is wired with so many inputs and outputs.
+    pub(super) fn new(instance: &dyn Instance, inputs: usize, outputs: usize) -> Self {
+        let can = instance.capabilities();
+        let is_able = can.saves_state && can.variable_step;
+        Self {
+            is_able,
+            kept: None,
+            calls: Vec::with_capacity(MOST_CALLS),
+            past: Vec::with_capacity(MOST_CALLS * inputs),
+            inputs: vec![[0.0; 3]; inputs],
+            values: vec![0.0; inputs],
+            outputs: vec![0.0; outputs],
+        }
+    }
+
+    /// Notes that the present state is kept.
+    pub(super) fn is_kept(&mut self, slot: Slot) {
+        self.kept = Some(slot);
+        self.calls.clear();
+        self.past.clear();
+    }
+
+    /// Notes that the instance is read with inputs.
+    pub(super) fn reads(&mut self, inputs: &[f64]) {
+        if self.calls.len() < MOST_CALLS {
+            self.calls.push(Call::Read);
+            self.past.extend(inputs.iter().map(|value| [*value, 0.0, 0.0]));
+        } else {
+            self.kept = None;
+        }
+    }
+
+    /// Goes from `time` to `time + length` (s).
+    pub(super) fn step(
+        &mut self,
+        instance: &mut dyn Instance,
+        time: f64,
+        length: f64,
+        inputs: &[[f64; 3]],
+    ) -> Result<Progress, SlaveError> {
+        if self.is_able {
+            return self.step_in_parts(instance, time, length, inputs);
+        }
+        match instance.attempt(time, length, inputs)? {
+            Attempt::Came(progress) => Ok(progress),
+            Attempt::Discarded { within: Some(reached), .. } => Ok(Progress::Until(reached)),
+            Attempt::Discarded { call, within: None } => Err(SlaveError::Discarded { call, time, shortest: None }),
+        }
+    }
+
+    /// The same, a step that is discarded by its halves, and so on.
+    fn step_in_parts(
+        &mut self,
+        instance: &mut dyn Instance,
+        time: f64,
+        length: f64,
+        inputs: &[[f64; 3]],
+    ) -> Result<Progress, SlaveError> {
+        // Both in parts of the step.
+        let (mut done, mut next) = (0, MOST_PARTS);
+        while done < MOST_PARTS {
+            let since = length * f64::from(done) / f64::from(MOST_PARTS);
+            let (from, part) = (time + since, length * f64::from(next) / f64::from(MOST_PARTS));
+            self.inputs.iter_mut().zip(inputs).for_each(|(later, input)| *later = after(*input, since));
+            match self.step_or_back(instance, from, part)? {
+                Attempt::Came(Progress::Done) => {
+                    done += next;
+                    // The other half of what was halved.
+                    next = 1 << done.trailing_zeros();
+                }
+                Attempt::Came(early) => return Ok(early),
+                Attempt::Discarded { within: Some(reached), .. } if next > 1 => {
+                    match self.step_or_back(instance, from, reached - from)? {
+                        Attempt::Came(Progress::Done) => return Ok(Progress::Until(reached)),
+                        Attempt::Came(early) => return Ok(early),
+                        // It is not as it said.
+                        Attempt::Discarded { .. } => next /= 2,
+                    }
+                }
+                Attempt::Discarded { .. } if next > 1 => next /= 2,
+                Attempt::Discarded { call, .. } => {
+                    return Err(SlaveError::Discarded { call, time: from, shortest: Some(part) });
+                }
+            }
+        }
+        Ok(Progress::Done)
+    }
+
+    /// Tries a step with the inputs that are there; back from one that is discarded.
+    fn step_or_back(&mut self, instance: &mut dyn Instance, time: f64, length: f64) -> Result<Attempt, SlaveError> {
+        if self.kept.is_none() || self.calls.len() == MOST_CALLS {
+            self.keep(instance)?;
+        }
+        let attempt = instance.attempt(time, length, &self.inputs)?;
+        if matches!(attempt, Attempt::Discarded { .. }) {
+            self.go_back(instance)?;
+        } else {
+            self.calls.push(Call::Step { time, length });
+            self.past.extend_from_slice(&self.inputs);
+        }
+        Ok(attempt)
+    }
+
+    fn keep(&mut self, instance: &mut dyn Instance) -> Result<(), SlaveError> {
+        instance.save(Slot::Step)?;
+        self.is_kept(Slot::Step);
+        Ok(())
+    }
+
+    /// Goes back to what was kept and does again what has followed.
+    fn go_back(&mut self, instance: &mut dyn Instance) -> Result<(), SlaveError> {
+        let Some(slot) = self.kept else { return Ok(()) };
+        instance.restore(slot)?;
+        if self.calls.is_empty() {
+            return Ok(());
+        }
+        let count = self.inputs.len();
+        for (at, call) in self.calls.iter().enumerate() {
+            let inputs = &self.past[at * count..][..count];
+            match *call {
+                Call::Step { time, length } => {
+                    if let Attempt::Discarded { call, .. } = instance.attempt(time, length, inputs)? {
+                        return Err(SlaveError::Discarded { call, time, shortest: None });
+                    }
+                }
+                Call::Read => {
+                    self.values.iter_mut().zip(inputs).for_each(|(value, input)| *value = input[0]);
+                    instance.read(Some(&self.values), &mut self.outputs)?;
+                }
+            }
+        }
+        // The next part may be discarded too.
+        self.keep(instance)
+    }
+}
+
+/// An input with its derivatives `since` (s) later.
+fn after([value, first, second]: [f64; 3], since: f64) -> [f64; 3] {
+    [value + since * (first + since * second / 2.0), first + since * second, second]
+}
