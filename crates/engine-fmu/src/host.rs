@@ -2,6 +2,7 @@
 use crate::bell::Listener;
 use crate::crash;
 use crate::error::HostError;
+use crate::leave::leave;
 use crate::page::Page;
 use crate::protocol::{Command, Message, Status, log_to_line};
 use rustix::process::{Pid, Resource, Rlimit, Signal, getppid, getrlimit, set_parent_process_death_signal, setrlimit};
@@ -37,7 +38,8 @@ pub(crate) fn say_at_once(line: &LogLine) -> bool {
 }
 
 /// Makes this process the host of one FMU: `load` makes it from what [`Isolated::start`](crate::Isolated::start) was given.
-/// Returns when it is no longer needed; the process should end then.
+/// It ends here, with exit code 0, when it is no longer needed: then destructors of the FMU's library, which somebody else has
+/// written, do not run.
 ///
 /// Standard input is the memory that both share, and is empty for the FMU. The process ends with its parent, leaves no core
 /// dump and gets no more memory than it may have.
@@ -68,7 +70,7 @@ pub fn serve<S: DeserializeOwned>(load: impl FnOnce(S) -> Result<Box<dyn Slave>,
             host.answer(Status::Done);
         }
     }
-    Ok(())
+    leave()
 }
 
 /// The memory that is shared, in place of which standard input gets nothing.

@@ -30,6 +30,7 @@ mod error;
 mod host;
 mod isolated;
 mod keeper;
+mod leave;
 mod load;
 mod mechanics;
 mod memory;

@@ -1,4 +1,6 @@
 //! The engine `fmu` with a real library: one in C, which is compiled and packed by the test as a tool would.
+mod leaving;
+
 use servobench_engine_fmu::{Fmu, FmuMechanics, HostCommand, HostError, host as serve};
 use servobench_plant::{
     Actuation, Coordinate, Drive, Engine, Extrapolation, FmuBody, FmuModel, FmuPort, FmuStart, FmuValue, Input,
@@ -77,11 +79,21 @@ struct File {
 
 impl File {
     fn new() -> Self {
+        Self::compiled_with(&[])
+    }
+
+    fn compiled_with(options: &[&str]) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let library = folder.path().join("mass.so");
         let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/native/mass.c");
-        let compiled =
-            Command::new("cc").args(["-O2", "-shared", "-fPIC", "-o"]).arg(&library).arg(source).status().unwrap();
+        let compiled = Command::new("cc")
+            .args(["-O2", "-shared", "-fPIC"])
+            .args(options)
+            .arg("-o")
+            .arg(&library)
+            .arg(source)
+            .status()
+            .unwrap();
         assert!(compiled.success(), "the C compiler that the workspace is built with anyway");
         let path = folder.path().join("mass.fmu");
         let mut zip = zip::ZipWriter::new(std::fs::File::create(&path).unwrap());
