@@ -7,6 +7,7 @@
 //! Source: FMI 2.0.5, §2.2 and §4.3.1; FMI 3.0.2, §2.4 and §4.4.
 
 mod bounds;
+mod clock;
 mod combination;
 mod declared;
 mod element;
@@ -23,6 +24,7 @@ mod write;
 mod xml;
 
 pub(crate) use bounds::MOST_BYTES;
+pub use clock::{IntervalVariability, Ticks};
 pub use declared::{Enumeration, Item};
 pub use interface::{CoSimulation, DefaultExperiment, LogCategory};
 pub use named::Named;

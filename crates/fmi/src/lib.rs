@@ -19,8 +19,8 @@ mod slave;
 pub use archive::{Archive, Limits, Unpacked};
 pub use description::{
     Alias, BaseUnit, Causality, CoSimulation, DataType, DefaultExperiment, DependencyKind, Dimension, DisplayUnit,
-    Enumeration, Exponents, Initial, Item, LogCategory, ModelDescription, ModelStructure, Named, Unit, Unknown, Values,
-    Variability, Variable, Version,
+    Enumeration, Exponents, Initial, IntervalVariability, Item, LogCategory, ModelDescription, ModelStructure, Named,
+    Ticks, Unit, Unknown, Values, Variability, Variable, Version,
 };
 pub use error::{ArchiveProblem, DescriptionProblem, FmuError, LibraryProblem};
 pub use feedthrough::Feedthrough;

@@ -1,4 +1,5 @@
 //! How an FMU is started and wired.
+mod clocked;
 mod start;
 
 pub(crate) use start::Start;
@@ -76,6 +77,7 @@ impl Setup {
 
     pub(crate) fn plan(&self, fmu: &Unpacked) -> Result<Plan, FmuError> {
         let it = fmu.description();
+        clocked::check(it).map_err(|(clock, problem)| setup(fmu, "clock", clock, problem))?;
         let (starts, counts) = start::all(fmu, &self.start_values)?;
         let mut wired = HashSet::new();
         let mut inputs = vec![];
@@ -120,6 +122,7 @@ fn find(it: &ModelDescription, port: &Port, counts: &[usize]) -> Result<Wire, St
     if matches!(data_type, DataType::String | DataType::Binary | DataType::Clock) {
         return Err(format!("it is a `{}`; numbers, booleans and enumerations can be wired", data_type.name()));
     }
+    clocked::check_wired(it, variable)?;
     let count = counts[variable];
     if port.element >= count {
         return Err(format!("it has no element {}; it has {count}, counted from 0", port.element));

@@ -100,6 +100,7 @@ fn variable(at: u32, row: &Row, units: &mut Vec<Unit>) -> Result<Variable, NoUni
         display_unit: unit.and_then(|at| units[at].display.first()).map(|one| one.name.clone()).unwrap_or_default(),
         is_relative: false,
         derivative_of: None,
+        ticks: None,
         clocks: vec![],
         aliases: vec![],
     })

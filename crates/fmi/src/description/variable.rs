@@ -1,4 +1,5 @@
 //! Variables.
+use super::clock::Ticks;
 use super::named::Named;
 
 /// Who gives a variable its value.
@@ -248,6 +249,8 @@ pub struct Variable {
     pub is_relative: bool,
     /// The variable whose derivative to the time it is, by its position.
     pub derivative_of: Option<usize>,
+    /// When it ticks, if it is a clock (FMI 3.0).
+    pub ticks: Option<Ticks>,
     /// Value references of the clocks that it ticks with (FMI 3.0).
     pub clocks: Vec<u32>,
     /// Other names (FMI 3.0).

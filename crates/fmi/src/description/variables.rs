@@ -1,5 +1,6 @@
 //! `<ModelVariables>`.
 use super::Version;
+use super::clock::Ticks;
 use super::combination::{initials, variabilities};
 use super::declared::{Declared, DeclaredType, type_of_two};
 use super::element::Element;
@@ -73,6 +74,10 @@ impl Variables {
             self.all[at].derivative_of = self.derivative(*attributes, version, &references)?;
             self.all[at].dimensions = self.dimensions(*element, &references)?;
             self.check_count(at, *element)?;
+            let clock = |reference: &u32| references.get(reference).map(|at| self.all[*at].data_type);
+            if self.all[at].clocks.iter().any(|reference| clock(reference) != Some(DataType::Clock)) {
+                return Err(element.wrong("clocks", "value references of variables of the type `Clock`"));
+            }
         }
         Ok(())
     }
@@ -201,6 +206,7 @@ impl<'a> Reading<'a> {
             display_unit: numeric.display_unit,
             is_relative: numeric.is_relative,
             derivative_of: None,
+            ticks: (data_type == DataType::Clock).then(|| Ticks::read(element, causality)).transpose()?,
             clocks: element.references("clocks")?.unwrap_or_default(),
             aliases: aliases(element).map(alias).collect::<Result<_, _>>()?,
         })

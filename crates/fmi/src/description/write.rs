@@ -177,6 +177,11 @@ impl ModelDescription {
         self.numeric(&mut element, variable);
         let reference = |at: usize| self.variables.get(at).map(|one| one.value_reference);
         element.set_some("derivative", variable.derivative_of.and_then(reference));
+        if let Some(ticks) = variable.ticks {
+            element.set("intervalVariability", ticks.variability.name());
+            element.set_some("intervalDecimal", ticks.interval.map(Number));
+            element.set_some("shiftDecimal", (ticks.shift > 0.0).then_some(Number(ticks.shift)));
+        }
         element.set_some("clocks", (!variable.clocks.is_empty()).then(|| list(&variable.clocks)));
         let texts: Vec<String> = match &variable.start {
             Some(Values::String(all)) => all.clone(),

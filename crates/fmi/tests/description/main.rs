@@ -2,7 +2,8 @@
 mod mistakes;
 
 use servobench_fmi::{
-    Causality, DataType, DependencyKind, Dimension, Exponents, Initial, ModelDescription, Values, Variability, Version,
+    Causality, DataType, DependencyKind, Dimension, Exponents, Initial, IntervalVariability, ModelDescription, Ticks,
+    Values, Variability, Version,
 };
 
 pub(crate) const TWO: &str = include_str!("drive2.xml");
@@ -100,6 +101,14 @@ fn fmi_3_variables() {
     assert_eq!(it.enumeration(state).unwrap().items[1].value, i64::MAX);
     assert_eq!((state.variability, state.initial), (Variability::Discrete, Some(Initial::Calculated)));
     assert_eq!(it.variable("sampled").unwrap().clocks, [10]);
+    let triggered = Ticks { variability: IntervalVariability::Triggered, interval: None, shift: 0.0 };
+    assert_eq!(it.variable("tick").unwrap().ticks, Some(triggered));
+    let text = THREE.replace(
+        "causality=\"output\" intervalVariability=\"triggered\"",
+        "causality=\"input\" intervalVariability=\"fixed\" intervalDecimal=\"2.5e-3\" shiftDecimal=\"1\"",
+    );
+    let fixed = Ticks { variability: IntervalVariability::Fixed, interval: Some(2.5e-3), shift: 1.0 };
+    assert_eq!(read(&text).variable("tick").unwrap().ticks, Some(fixed));
     assert_eq!(it.variable("sampled").unwrap().start, Some(Values::Float(vec![f64::INFINITY])));
     assert_eq!(it.variable("der(x)").unwrap().derivative_of, it.position("x"));
     assert_eq!(it.remarks, [""; 0]);

@@ -166,6 +166,37 @@ fn attributes_of_fmi_3_have_their_place() {
             "valueReference=\"10\"/>",
             "the value reference of a variable",
         ),
+        (
+            "causality=\"output\" intervalVariability=\"triggered\"",
+            "causality=\"output\"",
+            "<Clock",
+            "`<Clock>` has no attribute `intervalVariability`",
+        ),
+        (
+            "causality=\"output\" intervalVariability=\"triggered\"",
+            "causality=\"output\" intervalVariability=\"constant\" intervalDecimal=\"1\"",
+            "intervalVariability",
+            "`triggered` for a clock that is no input",
+        ),
+        (
+            "causality=\"output\" intervalVariability=\"triggered\"",
+            "causality=\"input\" intervalVariability=\"constant\"",
+            "<Clock",
+            "`<Clock>` has no attribute `intervalDecimal`",
+        ),
+        (
+            "causality=\"output\" intervalVariability=\"triggered\"",
+            "causality=\"output\" intervalVariability=\"periodic\"",
+            "intervalVariability",
+            "`constant`, `fixed`",
+        ),
+        (
+            "causality=\"output\" intervalVariability=\"triggered\"",
+            "causality=\"input\"  intervalDecimal=\"0\" intervalVariability=\"fixed\"",
+            "intervalVariability",
+            "more than 0 s",
+        ),
+        ("clocks=\"10\"", "clocks=\"10 9\"", "clocks=", "value references of variables of the type `Clock`"),
         ("value=\"9223372036854775807\"", "value=\"9223372036854775808\"", "value=\"922", "a whole number of 64 bits"),
     ] {
         let message = said(THREE, from, to);

@@ -2,6 +2,7 @@
 //! FMU may answer.
 #![expect(clippy::float_cmp, reason = "the numbers of these FMUs are exact")]
 
+mod clocks;
 mod refused;
 mod three;
 mod two;

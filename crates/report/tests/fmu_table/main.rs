@@ -87,6 +87,7 @@ fn variable(name: &str, value_reference: u32, causality: Causality) -> Variable 
         display_unit: String::new(),
         is_relative: false,
         derivative_of: None,
+        ticks: None,
         clocks: vec![],
         aliases: vec![],
     }

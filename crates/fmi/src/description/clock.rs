@@ -1,0 +1,86 @@
+//! When clocks tick (FMI 3.0.2, §2.2.8 and §2.4.7.5).
+use super::element::Element;
+use super::named::Named;
+use super::variable::Causality;
+use crate::error::FmuError;
+
+/// What is known of the time from one tick of a clock to the next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum IntervalVariability {
+    /// It is always the same and in the description.
+    Constant,
+    /// It is always the same from the initialisation on.
+    Fixed,
+    /// It changes with tunable parameters.
+    Tunable,
+    /// The FMU says it at each tick.
+    Changing,
+    /// The FMU says it at any event.
+    Countdown,
+    /// There is none: the clock ticks when something happens.
+    Triggered,
+}
+
+impl Named for IntervalVariability {
+    const ALL: &'static [(Self, &'static str)] = &[
+        (Self::Constant, "constant"),
+        (Self::Fixed, "fixed"),
+        (Self::Tunable, "tunable"),
+        (Self::Changing, "changing"),
+        (Self::Countdown, "countdown"),
+        (Self::Triggered, "triggered"),
+    ];
+}
+
+/// When a clock ticks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ticks {
+    /// What is known of its interval.
+    pub variability: IntervalVariability,
+    /// From tick to tick (s), where the description says it.
+    pub interval: Option<f64>,
+    /// From the start to the first tick (s).
+    pub shift: f64,
+}
+
+impl Ticks {
+    /// Whether its time is to be kept from outside. A triggered clock ticks when another one does.
+    #[must_use]
+    pub fn are_by_time(&self) -> bool {
+        self.variability != IntervalVariability::Triggered
+    }
+
+    /// Of `<Clock>`. The decimal numbers are the same as the counters with their resolution, which round less.
+    pub(super) fn read(element: Element, causality: Causality) -> Result<Self, FmuError> {
+        element.required("intervalVariability")?;
+        let variability = element.named("intervalVariability")?.unwrap_or(IntervalVariability::Triggered);
+        if causality != Causality::Input && variability != IntervalVariability::Triggered {
+            return Err(element.wrong("intervalVariability", "`triggered` for a clock that is no input"));
+        }
+        let count = |attribute| {
+            element.read(attribute, "a whole number of 64 bits without a sign", |text| text.parse::<u64>().ok())
+        };
+        let resolution = count("resolution")?;
+        if resolution == Some(0) {
+            return Err(element.wrong("resolution", "at least 1 in a second"));
+        }
+        let counted = |attribute| -> Result<Option<f64>, FmuError> {
+            #[expect(clippy::cast_precision_loss, reason = "a time in seconds is rounded")]
+            Ok(count(attribute)?.zip(resolution).map(|(count, resolution)| count as f64 / resolution as f64))
+        };
+        let interval = counted("intervalCounter")?.or(element.number("intervalDecimal")?);
+        if interval.is_some_and(|interval| interval <= 0.0) {
+            let attribute =
+                if element.text("intervalDecimal").is_some() { "intervalDecimal" } else { "intervalCounter" };
+            return Err(element.wrong(attribute, "more than 0 s"));
+        }
+        if variability == IntervalVariability::Constant && interval.is_none() {
+            element.required("intervalDecimal")?;
+        }
+        let shift = counted("shiftCounter")?.or(element.number("shiftDecimal")?).unwrap_or(0.0);
+        if shift < 0.0 {
+            return Err(element.wrong("shiftDecimal", "0 s or more"));
+        }
+        Ok(Self { variability, interval, shift })
+    }
+}
