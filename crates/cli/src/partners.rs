@@ -1,8 +1,8 @@
 //! FMUs of scenarios: who opens them, and the program that they run in.
-use servobench_engine_fmu::{Fmu, HostCommand, PartnerModel};
+use servobench_engine_fmu::{Fmu, HostCommand};
 use servobench_fmi::Slave;
-use servobench_plant::MechanicsError;
-use servobench_sim::{PartnerOrder, Partners, fmu_isolation, fmu_start};
+use servobench_plant::{FmuMistake, FmuPartner};
+use servobench_sim::Partners;
 use std::io;
 
 /// The command with which this program hosts an FMU.
@@ -20,20 +20,7 @@ fn host() -> io::Result<HostCommand> {
 pub(crate) struct ByEngine;
 
 impl Partners for ByEngine {
-    fn open(&self, order: &PartnerOrder<'_>) -> Result<Box<dyn Slave>, String> {
-        let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
-        let model = PartnerModel {
-            path: order.fmu.path.clone(),
-            name: order.fmu.name.clone(),
-            start: fmu_start(&order.fmu.start),
-            inputs: owned(&order.inputs),
-            outputs: owned(&order.outputs),
-            end: order.end,
-            isolation: fmu_isolation(order.fmu),
-        };
-        ENGINE.partner(&model).map_err(|error| match error {
-            MechanicsError::Model { message, .. } => message,
-            other => other.to_string(),
-        })
+    fn open(&self, partner: &FmuPartner) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
+        ENGINE.partner(partner)
     }
 }

@@ -6,7 +6,7 @@ use crate::memory::in_words;
 use crate::page::{Answered, Asked, Page};
 use crate::protocol::{Command, Message, Status, log_of_lines};
 use serde::Serialize;
-use servobench_fmi::{Capabilities, LogLine, Progress, Severity, Slave, SlaveError};
+use servobench_fmi::{Capabilities, Feedthrough, LogLine, Progress, Severity, Slave, SlaveError, Unpacked};
 use std::sync::atomic::Ordering::Relaxed;
 use std::time::{Duration, Instant};
 
@@ -59,6 +59,15 @@ pub struct Isolated {
     fresh: bool,
     /// Why it cannot go on.
     failed: Option<SlaveError>,
+    known: Option<Known>,
+}
+
+/// What the simulation knows of it without asking.
+#[derive(Debug)]
+pub(crate) struct Known {
+    pub(crate) feedthrough: Feedthrough,
+    /// What it was unpacked to, which goes after it.
+    pub(crate) _unpacked: Unpacked,
 }
 
 impl Isolated {
@@ -71,6 +80,17 @@ impl Isolated {
         setup: &S,
         wires: Wires,
         bounds: Bounds,
+    ) -> Result<Self, IsolationError> {
+        Self::start_known(command, setup, wires, bounds, None)
+    }
+
+    /// The same for an FMU of which something is known.
+    pub(crate) fn start_known<S: Serialize>(
+        command: &HostCommand,
+        setup: &S,
+        wires: Wires,
+        bounds: Bounds,
+        known: Option<Known>,
     ) -> Result<Self, IsolationError> {
         let system = |action| move |source| IsolationError::System { action, source };
         let setup = serde_json::to_vec(setup).map_err(IsolationError::Setup)?;
@@ -87,6 +107,7 @@ impl Isolated {
             time: 0.0,
             fresh: false,
             failed: None,
+            known,
         };
         match isolated.ask(Command::Load)? {
             Status::Message => {}
@@ -198,6 +219,10 @@ impl Isolated {
 impl Slave for Isolated {
     fn capabilities(&self) -> Capabilities {
         self.capabilities
+    }
+
+    fn feeds_through(&self, output: usize, input: usize) -> bool {
+        self.known.as_ref().is_none_or(|known| known.feedthrough.between(output, input))
     }
 
     fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {

@@ -1,6 +1,6 @@
 //! FMUs in a process of their own, and FMUs as the mechanics of an axis ([`FmuMechanics`]).
 //!
-//! [`load`] starts one at its place; [`Fmu`] is the engine for an axis. The program that hosts FMUs calls [`host`].
+//! [`load`] starts one at its place; [`Fmu`] is the engine for an axis, and opens FMUs beside one. The program that hosts FMUs calls [`host`].
 //!
 //! An FMU is somebody else's native code: it may crash, hang, ask for memory without end or print a gigabyte. In a process of
 //! its own that costs its run only, and is reported as what it is.
@@ -28,26 +28,28 @@ mod ending;
 mod engine;
 mod error;
 mod host;
+mod in_si;
 mod isolated;
 mod keeper;
 mod leave;
+mod like;
 mod load;
 mod mechanics;
 mod memory;
 mod motion;
+mod open;
 mod order;
 mod output;
 mod page;
-mod partner;
 mod ports;
 mod protocol;
 
 pub use engine::Fmu;
 pub use error::{HostError, IsolationError};
 pub use host::serve;
+pub use in_si::InSi;
 pub use isolated::{Bounds, Isolated, Wires};
 pub use keeper::HostCommand;
 pub use load::{LoadError, Place, host, load};
 pub use mechanics::FmuMechanics;
-pub use partner::PartnerModel;
-pub use ports::{MechanicsPorts, PortError, PortProblem, Quantity};
+pub use ports::Ports;

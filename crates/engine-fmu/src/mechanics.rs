@@ -8,7 +8,6 @@
 //! With n = 1 nothing is extrapolated, and the effort of a tick is held over it: what an engine of our own gets. With n > 1 the
 //! impulse of the efforts is kept, and the axis sees of the FMU what was so up to n ticks ago: a delay of n/2 ticks in the mean.
 use crate::motion::Motion;
-use crate::ports::MechanicsPorts;
 use servobench_fmi::{LogLine, Progress, Severity, Slave, SlaveError};
 use servobench_plant::{Actuation, BodyState, FmuModel, Input, Mechanics, MechanicsError};
 
@@ -21,52 +20,54 @@ const LINES: usize = 5;
 
 /// The mechanics that an FMU is.
 pub struct FmuMechanics {
+    /// Counts in SI units.
     slave: Box<dyn Slave>,
-    ports: MechanicsPorts,
-    /// Axis coordinate per motor coordinate.
-    transmission: f64,
+    model: FmuModel,
     /// Length of a base tick (s).
     tick: f64,
-    /// Ticks between two exchanges.
-    ticks: u32,
+    state: State,
+    marked: Option<State>,
+    inputs: Vec<[f64; 3]>,
+    outputs: Vec<f64>,
+}
+
+/// Where it is, the FMU itself apart.
+#[derive(Debug, Clone, Default)]
+struct State {
     /// Ticks since the last exchange.
     since: u32,
     /// Exchanges up to now.
     exchanges: u64,
-    /// Sums of the SI inputs since the last exchange, then their means in the FMU's units.
+    /// Sums of the inputs since the last exchange.
     sums: Vec<f64>,
-    inputs: Vec<[f64; 3]>,
-    outputs: Vec<f64>,
     motions: Vec<Motion>,
     bodies: Vec<BodyState>,
 }
 
 impl FmuMechanics {
-    /// The mechanics of a slave that was wired with `ports`, at tick 0; `tick` (s) is the length of a base tick.
+    /// The mechanics at tick 0 of a slave with the inputs and outputs of `model`, in SI units; `tick` (s) is the length of a
+    /// base tick.
     ///
     /// # Errors
     /// [`MechanicsError`] if its outputs cannot be read.
-    pub fn new(
-        slave: Box<dyn Slave>,
-        ports: MechanicsPorts,
-        model: &FmuModel,
-        tick: f64,
-    ) -> Result<Self, MechanicsError> {
+    pub fn new(slave: Box<dyn Slave>, model: &FmuModel, tick: f64) -> Result<Self, MechanicsError> {
         let period = f64::from(model.ticks) * tick;
         let motion = Motion::new(model.extrapolation, period);
+        let (inputs, bodies) = (model.inputs().count(), model.bodies().count());
         let mut mechanics = Self {
             slave,
-            transmission: model.transmission,
+            model: model.clone(),
             tick,
-            ticks: model.ticks,
-            since: 0,
-            exchanges: 0,
-            sums: vec![0.0; ports.inputs().count()],
-            inputs: vec![[0.0; 3]; ports.inputs().count()],
-            outputs: vec![0.0; ports.outputs().count()],
-            motions: vec![motion; ports.bodies.len()],
-            bodies: vec![BodyState::default(); ports.bodies.len()],
-            ports,
+            state: State {
+                since: 0,
+                exchanges: 0,
+                sums: vec![0.0; inputs],
+                motions: vec![motion; bodies],
+                bodies: vec![BodyState::default(); bodies],
+            },
+            marked: None,
+            inputs: vec![[0.0; 3]; inputs],
+            outputs: vec![0.0; model.outputs().count()],
         };
         mechanics.read()?;
         mechanics.go_on();
@@ -96,13 +97,13 @@ impl FmuMechanics {
 
     /// Adds what acts in this tick.
     fn add(&mut self, effort: f64, input: &Input) -> Result<(), MechanicsError> {
-        let (mut effort, single) = (effort, self.bodies.len() == 1);
-        if self.ports.motor_disturbance.is_none() {
+        let (mut effort, single) = (effort, self.state.bodies.len() == 1);
+        if self.model.motor_disturbance.is_none() {
             effort += input.motor_disturbance;
         }
-        if self.ports.load_disturbance.is_none() {
+        if self.model.load_disturbance.is_none() {
             if single {
-                effort += self.transmission * input.load_disturbance;
+                effort += self.model.transmission * input.load_disturbance;
             } else if input.load_disturbance != 0.0 {
                 return Err(MechanicsError::Unsupported {
                     engine: NAME,
@@ -112,24 +113,24 @@ impl FmuMechanics {
             }
         }
         let disturbances = [
-            self.ports.motor_disturbance.as_ref().map(|_| input.motor_disturbance),
-            self.ports.load_disturbance.as_ref().map(|_| input.load_disturbance),
+            self.model.motor_disturbance.as_ref().map(|_| input.motor_disturbance),
+            self.model.load_disturbance.as_ref().map(|_| input.load_disturbance),
         ];
         let all = std::iter::once(effort).chain(disturbances.into_iter().flatten());
-        self.sums.iter_mut().zip(all).for_each(|(sum, value)| *sum += value);
+        self.state.sums.iter_mut().zip(all).for_each(|(sum, value)| *sum += value);
         Ok(())
     }
 
     /// A step of the FMU over all ticks since the last exchange.
     fn step(&mut self) -> Result<(), MechanicsError> {
-        let count = f64::from(self.ticks);
-        for ((input, sum), wire) in self.inputs.iter_mut().zip(&mut self.sums).zip(self.ports.input_wires()) {
-            *input = [wire.of_si(*sum / count), 0.0, 0.0];
+        let count = f64::from(self.model.ticks);
+        for (input, sum) in self.inputs.iter_mut().zip(&mut self.state.sums) {
+            *input = [*sum / count, 0.0, 0.0];
             *sum = 0.0;
         }
         let at = |exchanges: u64| exchanges as f64 * count * self.tick;
-        let (mut time, end) = (at(self.exchanges), at(self.exchanges + 1));
-        self.exchanges += 1;
+        let (mut time, end) = (at(self.state.exchanges), at(self.state.exchanges + 1));
+        self.state.exchanges += 1;
         let mut length = count * self.tick;
         for _ in 0..MOST_PARTS {
             match self.slave.step(time, length, &self.inputs).map_err(|error| self.wrong(&error))? {
@@ -153,34 +154,31 @@ impl FmuMechanics {
     /// Takes the outputs of the FMU.
     fn read(&mut self) -> Result<(), MechanicsError> {
         self.slave.read(None, &mut self.outputs).map_err(|error| self.wrong(&error))?;
-        let mut outputs = self.outputs.iter().copied();
-        for (wires, motion) in self.ports.bodies.iter().zip(&mut self.motions) {
-            let mut next = |wire: &crate::ports::Wire| wire.to_si(outputs.next().unwrap_or(f64::NAN));
-            let position = next(&wires.position);
-            let velocity = wires.velocity.as_ref().map(next);
-            for (value, wire) in
-                std::iter::once((position, &wires.position)).chain(velocity.zip(wires.velocity.as_ref()))
-            {
-                if !value.is_finite() {
-                    let message = format!("the FMU's output `{}` is {value}", wire.port.variable);
-                    return Err(MechanicsError::Diverged { engine: NAME, message });
-                }
+        for (port, value) in self.model.outputs().zip(&self.outputs) {
+            if !value.is_finite() {
+                let message = format!("the FMU's output `{}` is {value}", port.variable);
+                return Err(MechanicsError::Diverged { engine: NAME, message });
             }
-            motion.exchange(position, velocity);
+        }
+        let mut outputs = self.outputs.iter().copied();
+        let mut next = || outputs.next().unwrap_or(f64::NAN);
+        for (body, motion) in self.model.bodies().zip(&mut self.state.motions) {
+            let position = next();
+            motion.exchange(position, body.velocity.as_ref().map(|_| next()));
         }
         Ok(())
     }
 
     /// The bodies at the present tick.
     fn go_on(&mut self) {
-        let t = f64::from(self.since) * self.tick;
-        self.bodies.iter_mut().zip(&self.motions).for_each(|(body, motion)| *body = motion.after(t));
+        let t = f64::from(self.state.since) * self.tick;
+        self.state.bodies.iter_mut().zip(&self.state.motions).for_each(|(body, motion)| *body = motion.after(t));
     }
 }
 
 impl Mechanics for FmuMechanics {
     fn bodies(&self) -> &[BodyState] {
-        &self.bodies
+        &self.state.bodies
     }
 
     fn advance(&mut self, input: &Input) -> Result<(), MechanicsError> {
@@ -188,13 +186,29 @@ impl Mechanics for FmuMechanics {
             return Err(MechanicsError::wrong_actuation(NAME));
         };
         self.add(effort, input)?;
-        self.since += 1;
-        if self.since == self.ticks {
-            self.since = 0;
+        self.state.since += 1;
+        if self.state.since == self.model.ticks {
+            self.state.since = 0;
             self.step()?;
         }
         self.go_on();
         Ok(())
+    }
+
+    fn marks(&self) -> bool {
+        self.slave.capabilities().saves_state
+    }
+
+    fn mark(&mut self) -> Result<(), MechanicsError> {
+        self.slave.save().map_err(|error| self.wrong(&error))?;
+        self.marked.get_or_insert_default().clone_from(&self.state);
+        Ok(())
+    }
+
+    fn rewind(&mut self) -> Result<(), MechanicsError> {
+        let Some(marked) = &self.marked else { return Err(MechanicsError::no_way_back()) };
+        self.state.clone_from(marked);
+        self.slave.restore().map_err(|error| self.wrong(&error))
     }
 }
 

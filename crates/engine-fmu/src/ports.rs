@@ -1,150 +1,33 @@
-//! Which variables of an FMU are the axis, and how their numbers become SI numbers.
-use servobench_fmi::{BaseUnit, Causality, Exponents, ModelDescription, Port};
-use servobench_plant::{Coordinate, FmuBody, FmuModel, FmuPort};
-use thiserror::Error;
+//! What is exchanged with an FMU: its variables, and how their numbers become SI numbers.
+use crate::like::like;
+use servobench_fmi::{BaseUnit, Causality, DataType, Exponents, ModelDescription, Named, Port, Variability, Variable};
+use servobench_plant::{FmuEntry, FmuMistake, FmuPort, SiUnit};
 
-/// What a variable is to be.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quantity {
-    /// N.
-    Force,
-    /// N·m.
-    Torque,
-    /// m.
-    Length,
-    /// rad.
-    Angle,
-    /// m/s.
-    Velocity,
-    /// rad/s.
-    AngularVelocity,
-}
+/// Names of SI units that tools write without defining them, with the exponents of kilogram, metre, second and ampere.
+const UNDEFINED: [(&[&str], [i32; 4]); 16] = [
+    (&["", "1", "-", "rad"], [0, 0, 0, 0]),
+    (&["m"], [0, 1, 0, 0]),
+    (&["m/s", "m.s-1"], [0, 1, -1, 0]),
+    (&["m/s2", "m/s^2", "m.s-2"], [0, 1, -2, 0]),
+    (&["rad/s", "rad.s-1", "1/s", "s-1", "Hz"], [0, 0, -1, 0]),
+    (&["rad/s2", "rad/s^2", "rad.s-2"], [0, 0, -2, 0]),
+    (&["N"], [1, 1, -2, 0]),
+    (&["N.m", "N*m", "N·m", "N m", "Nm", "J"], [1, 2, -2, 0]),
+    (&["s"], [0, 0, 1, 0]),
+    (&["kg"], [1, 0, 0, 0]),
+    (&["A"], [0, 0, 0, 1]),
+    (&["V"], [1, 2, -3, -1]),
+    (&["W"], [1, 2, -3, 0]),
+    (&["Ohm", "Ω"], [1, 2, -3, -2]),
+    (&["N/m"], [1, 0, -2, 0]),
+    (&["Pa", "N/m2"], [1, -1, -2, 0]),
+];
 
-impl Quantity {
-    fn effort(coordinate: Coordinate) -> Self {
-        match coordinate {
-            Coordinate::Linear => Self::Force,
-            Coordinate::Rotary => Self::Torque,
-        }
-    }
-
-    fn position(coordinate: Coordinate) -> Self {
-        match coordinate {
-            Coordinate::Linear => Self::Length,
-            Coordinate::Rotary => Self::Angle,
-        }
-    }
-
-    fn velocity(coordinate: Coordinate) -> Self {
-        match coordinate {
-            Coordinate::Linear => Self::Velocity,
-            Coordinate::Rotary => Self::AngularVelocity,
-        }
-    }
-
-    /// As people say it.
-    fn words(self) -> &'static str {
-        match self {
-            Self::Force => "a force",
-            Self::Torque => "a torque",
-            Self::Length => "a length",
-            Self::Angle => "an angle",
-            Self::Velocity => "a velocity",
-            Self::AngularVelocity => "an angular velocity",
-        }
-    }
-
-    /// Whether `exponents` are its own. The radian, which some count and some do not, is one.
-    fn has(self, exponents: Exponents) -> bool {
-        let (kg, m, s) = match self {
-            Self::Force => (1, 1, -2),
-            Self::Torque => (1, 2, -2),
-            Self::Length => (0, 1, 0),
-            Self::Angle => (0, 0, 0),
-            Self::Velocity => (0, 1, -1),
-            Self::AngularVelocity => (0, 0, -1),
-        };
-        exponents == Exponents { kg, m, s, rad: exponents.rad, ..Exponents::default() }
-    }
-
-    /// Names of its SI unit that need no definition: those that tools write.
-    fn si_names(self) -> &'static [&'static str] {
-        match self {
-            Self::Force => &["N"],
-            Self::Torque => &["N.m", "N*m", "N·m", "Nm"],
-            Self::Length => &["m"],
-            Self::Angle => &["rad", "1"],
-            Self::Velocity => &["m/s", "m.s-1"],
-            Self::AngularVelocity => &["rad/s", "1/s", "rad.s-1"],
-        }
-    }
-}
-
-/// Why a variable cannot be what it is to be.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("`{role}`: variable `{variable}` {problem}")]
-pub struct PortError {
-    /// What it is to be, as scenario files have it.
-    pub role: &'static str,
-    /// Its name.
-    pub variable: String,
-    /// What is wrong.
-    pub problem: PortProblem,
-}
-
-/// What is wrong with a variable.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum PortProblem {
-    /// There is none of this name.
-    #[error("is not in the FMU{}", similar(.like))]
-    Unknown {
-        /// Names that are like it.
-        like: Vec<String>,
-    },
-    /// It has another causality.
-    #[error("is not {needed} of the FMU")]
-    Causality {
-        /// What it has to be.
-        needed: &'static str,
-    },
-    /// It is no floating-point number.
-    #[error("is no floating-point number")]
-    Type,
-    /// It has not so many elements.
-    #[error("has no element {element}: it has {count}, counted from 0")]
-    Element {
-        /// What was asked for.
-        element: usize,
-        /// How many it has.
-        count: u64,
-    },
-    /// Its unit is not that of the quantity.
-    #[error("counts in `{unit}`, which is not {}", needed.words())]
-    Unit {
-        /// Name of the unit.
-        unit: String,
-        /// What it has to be.
-        needed: Quantity,
-    },
-    /// The FMU does not say what its unit is.
-    #[error("counts in `{unit}`, of which the FMU does not say what it is (no `BaseUnit`)")]
-    Undefined {
-        /// Name of the unit.
-        unit: String,
-    },
-}
-
-fn similar(like: &[String]) -> String {
-    match like {
-        [] => String::new(),
-        like => format!("; it has `{}`", like.join("`, `")),
-    }
-}
-
-/// A scalar and its unit.
+/// A number that is exchanged, and its unit.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Wire {
     pub(crate) port: Port,
+    /// `None` for what counts in SI units.
     unit: Option<BaseUnit>,
     is_relative: bool,
 }
@@ -157,151 +40,177 @@ impl Wire {
     pub(crate) fn of_si(&self, si: f64) -> f64 {
         self.unit.map_or(si, |unit| unit.from_si(si, self.is_relative))
     }
+
+    /// A value and its derivatives to the time.
+    pub(crate) fn of_si_in_motion(&self, [value, first, second]: [f64; 3]) -> [f64; 3] {
+        let rate = |si| self.unit.map_or(si, |unit| unit.from_si(si, true));
+        [self.of_si(value), rate(first), rate(second)]
+    }
 }
 
-/// A body's outputs.
+/// All that is exchanged with an FMU.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct BodyWires {
-    pub(crate) position: Wire,
-    pub(crate) velocity: Option<Wire>,
+pub struct Ports {
+    pub(crate) inputs: Vec<Wire>,
+    pub(crate) outputs: Vec<Wire>,
 }
 
-/// All that is exchanged with an FMU that is the mechanics.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MechanicsPorts {
-    pub(crate) effort: Wire,
-    pub(crate) motor_disturbance: Option<Wire>,
-    pub(crate) load_disturbance: Option<Wire>,
-    pub(crate) bodies: Vec<BodyWires>,
-}
-
-impl MechanicsPorts {
+impl Ports {
     /// Looks the variables up.
     ///
     /// # Errors
-    /// [`PortError`] for each variable that cannot be what it is to be.
-    pub fn new(model: &FmuModel, description: &ModelDescription) -> Result<Self, Vec<PortError>> {
-        let mut look = Look { description, errors: Vec::new() };
-        let (motor, load) = (model.motor.coordinate, model.load.as_ref().unwrap_or(&model.motor).coordinate);
-        let ports = Self {
-            effort: look.input("effort", &model.effort, Quantity::effort(motor)),
-            motor_disturbance: model
-                .motor_disturbance
-                .as_ref()
-                .map(|port| look.input("motor_disturbance", port, Quantity::effort(motor))),
-            load_disturbance: model
-                .load_disturbance
-                .as_ref()
-                .map(|port| look.input("load_disturbance", port, Quantity::effort(load))),
-            bodies: [
-                (["motor_position", "motor_velocity"], Some(&model.motor)),
-                (["load_position", "load_velocity"], model.load.as_ref()),
-            ]
-            .into_iter()
-            .filter_map(|(roles, body)| Some(look.body(roles, body?)))
-            .collect(),
+    /// [`FmuMistake`] for each variable that cannot be what it is to be.
+    pub fn new<'a>(
+        inputs: impl IntoIterator<Item = &'a FmuPort>,
+        outputs: impl IntoIterator<Item = &'a FmuPort>,
+        it: &ModelDescription,
+    ) -> Result<Self, Vec<FmuMistake>> {
+        let mut mistakes = Vec::new();
+        let mut all = |ports: Vec<&FmuPort>, side: &Side| -> Vec<Wire> {
+            let wire = |port: &FmuPort| match find(it, port, side) {
+                Ok(wire) => Some(wire),
+                Err(what) => {
+                    mistakes.push(what.of((side.entry)(port.variable.clone())));
+                    None
+                }
+            };
+            ports.into_iter().filter_map(wire).collect()
         };
-        if look.errors.is_empty() { Ok(ports) } else { Err(look.errors) }
-    }
-
-    /// Inputs in the order in which they are exchanged.
-    pub fn inputs(&self) -> impl Iterator<Item = &Port> {
-        self.input_wires().map(|wire| &wire.port)
-    }
-
-    pub(crate) fn input_wires(&self) -> impl Iterator<Item = &Wire> {
-        std::iter::once(&self.effort).chain(&self.motor_disturbance).chain(&self.load_disturbance)
-    }
-
-    /// Outputs in the order in which they are exchanged.
-    pub fn outputs(&self) -> impl Iterator<Item = &Port> {
-        self.bodies.iter().flat_map(|body| std::iter::once(&body.position).chain(&body.velocity)).map(|wire| &wire.port)
+        let (inputs, outputs) =
+            (all(inputs.into_iter().collect(), &INPUT), all(outputs.into_iter().collect(), &OUTPUT));
+        if mistakes.is_empty() { Ok(Self { inputs, outputs }) } else { Err(mistakes) }
     }
 }
 
-struct Look<'a> {
-    description: &'a ModelDescription,
-    errors: Vec<PortError>,
+/// What a variable needs to be set or to be read.
+struct Side {
+    entry: fn(String) -> FmuEntry,
+    needed: &'static str,
+    fits: fn(&Variable) -> bool,
 }
 
-impl Look<'_> {
-    fn input(&mut self, role: &'static str, port: &FmuPort, quantity: Quantity) -> Wire {
-        let is_input = |causality| causality == Causality::Input;
-        self.wire(role, port, quantity, "an input", is_input)
+const INPUT: Side = Side {
+    entry: FmuEntry::Input,
+    needed: "an input or a tunable parameter",
+    fits: |variable| match variable.causality {
+        Causality::Input => true,
+        Causality::Parameter => variable.variability == Variability::Tunable,
+        _ => false,
+    },
+};
+
+const OUTPUT: Side = Side {
+    entry: FmuEntry::Output,
+    needed: "an output or a local variable",
+    fits: |variable| matches!(variable.causality, Causality::Output | Causality::Local),
+};
+
+/// What is wrong, and the way out.
+struct What(String, String);
+
+impl What {
+    fn new(message: String, way_out: &str) -> Self {
+        Self(message, way_out.to_owned())
     }
 
-    fn output(&mut self, role: &'static str, port: &FmuPort, quantity: Quantity) -> Wire {
-        let is_output = |causality| matches!(causality, Causality::Output | Causality::Local);
-        self.wire(role, port, quantity, "an output", is_output)
+    fn of(self, at: FmuEntry) -> FmuMistake {
+        FmuMistake { at, message: self.0, way_out: self.1 }
     }
+}
 
-    fn body(&mut self, [position, velocity]: [&'static str; 2], body: &FmuBody) -> BodyWires {
-        BodyWires {
-            position: self.output(position, &body.position, Quantity::position(body.coordinate)),
-            velocity: (body.velocity.as_ref())
-                .map(|port| self.output(velocity, port, Quantity::velocity(body.coordinate))),
+fn find(it: &ModelDescription, wanted: &FmuPort, side: &Side) -> Result<Wire, What> {
+    let name = &wanted.variable;
+    let (variable, element) = element(it, name, side)?;
+    if !(side.fits)(variable) {
+        let what = format!("`{}` of the FMU is {}, not {}", variable.name, is(variable), side.needed);
+        return Err(What::new(what, &names(it, name, side)));
+    }
+    if matches!(variable.data_type, DataType::String | DataType::Binary | DataType::Clock) {
+        return Err(What::new(
+            format!("`{name}` of the FMU is no number"),
+            "connect a number, or set it as a parameter",
+        ));
+    }
+    let unit = unit(it, variable, wanted.unit.as_ref())?;
+    let port = Port { variable: variable.name.clone(), element };
+    Ok(Wire { port, unit, is_relative: variable.is_relative })
+}
+
+/// As the standard calls it.
+fn is(variable: &Variable) -> String {
+    let article = |word: &str| if word.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+    match variable.causality {
+        Causality::Input | Causality::Output => {
+            let word = variable.causality.name();
+            format!("{} {word}", article(word))
+        }
+        Causality::Local => "a local variable".into(),
+        Causality::Independent => "the time".into(),
+        Causality::Parameter | Causality::CalculatedParameter | Causality::StructuralParameter => {
+            format!("a {} parameter", variable.variability.name())
         }
     }
+}
 
-    /// The variable; what is wrong with it is noted.
-    fn wire(
-        &mut self,
-        role: &'static str,
-        port: &FmuPort,
-        quantity: Quantity,
-        needed: &'static str,
-        fits: impl Fn(Causality) -> bool,
-    ) -> Wire {
-        self.find(port, quantity, needed, fits).unwrap_or_else(|problem| {
-            self.errors.push(PortError { role, variable: port.variable.clone(), problem });
-            let port = Port { variable: port.variable.clone(), element: port.element };
-            Wire { port, unit: None, is_relative: false }
-        })
+/// The variable, and which element of it.
+fn element<'a>(it: &'a ModelDescription, name: &str, side: &Side) -> Result<(&'a Variable, usize), What> {
+    let unknown = || What(format!("the FMU has no variable `{name}`"), names(it, name, side));
+    let whole = it.variable(name);
+    let (variable, indices) = match whole {
+        Some(variable) => (variable, Vec::new()),
+        None => {
+            let (variable, indices) =
+                name.strip_suffix(']').and_then(|name| name.rsplit_once('[')).ok_or_else(unknown)?;
+            let indices = indices.split(',').map(|index| index.trim().parse().unwrap_or(0)).collect();
+            (it.variable(variable).ok_or_else(unknown)?, indices)
+        }
+    };
+    let shape = it.shape(variable);
+    let fits = indices.len() == shape.len()
+        && indices.iter().zip(&shape).all(|(index, length): (&u64, _)| (1..=*length).contains(index));
+    if !fits {
+        let what = format!("`{name}`: `{}` has the dimensions {shape:?}", variable.name);
+        return Err(What::new(what, "name an element like `x[2]` or `x[2,1]`; indices count from 1"));
     }
+    let element = indices.iter().zip(&shape).fold(0, |element, (index, length)| element * length + index - 1);
+    Ok((variable, usize::try_from(element).unwrap_or(usize::MAX)))
+}
 
-    fn find(
-        &self,
-        port: &FmuPort,
-        quantity: Quantity,
-        needed: &'static str,
-        fits: impl Fn(Causality) -> bool,
-    ) -> Result<Wire, PortProblem> {
-        let Some(variable) = self.description.variable(&port.variable) else {
-            let like = self.like(&port.variable, fits);
-            return Err(PortProblem::Unknown { like });
-        };
-        if !fits(variable.causality) {
-            return Err(PortProblem::Causality { needed });
+/// The unit of a variable that is to be `wanted`.
+fn unit(it: &ModelDescription, variable: &Variable, wanted: Option<&SiUnit>) -> Result<Option<BaseUnit>, What> {
+    let Some(unit) = it.unit(variable) else { return Ok(None) };
+    let name = &variable.name;
+    let undefined = UNDEFINED.iter().find(|(names, _)| names.contains(&unit.name.as_str()));
+    let (exponents, base) = match (unit.base, undefined) {
+        (Some(base), _) => (mechanical(base.exponents), Some(base)),
+        // Tools that define no units write their names; one that is no SI unit would be taken for one.
+        (None, Some((_, exponents))) => (Some(*exponents), None),
+        (None, None) => {
+            let what = format!("`{name}` of the FMU counts in `{}`, of which it does not say what that is", unit.name);
+            return Err(What::new(what, "the model description lacks its `BaseUnit`: export it with one"));
         }
-        if !variable.data_type.is_float() {
-            return Err(PortProblem::Type);
+    };
+    match wanted {
+        Some(wanted) if exponents != Some(wanted.exponents) => {
+            let what =
+                format!("`{name}` of the FMU counts in `{}`, which cannot be turned into {}", unit.name, wanted.name);
+            Err(What::new(what, "connect what it is a measure of"))
         }
-        let count = self.description.shape(variable).iter().product();
-        if port.element as u64 >= count {
-            return Err(PortProblem::Element { element: port.element, count });
-        }
-        let unit = match self.description.unit(variable) {
-            None => None,
-            Some(unit) => match unit.base {
-                Some(base) if quantity.has(base.exponents) => Some(base),
-                None if quantity.si_names().contains(&unit.name.as_str()) => None,
-                Some(_) => return Err(PortProblem::Unit { unit: unit.name.clone(), needed: quantity }),
-                None => return Err(PortProblem::Undefined { unit: unit.name.clone() }),
-            },
-        };
-        let port = Port { variable: variable.name.clone(), element: port.element };
-        Ok(Wire { port, unit, is_relative: variable.is_relative })
+        _ => Ok(base),
     }
+}
 
-    /// Names of the variables that it could have been.
-    fn like(&self, name: &str, fits: impl Fn(Causality) -> bool) -> Vec<String> {
-        const MOST: usize = 5;
-        let name = name.to_lowercase();
-        let is_like = |other: &str| other.contains(&name) || name.contains(other);
-        let fitting: Vec<&str> =
-            self.description.variables.iter().filter(|one| fits(one.causality)).map(|one| one.name.as_str()).collect();
-        let close: Vec<&str> = fitting.iter().copied().filter(|one| is_like(&one.to_lowercase())).collect();
-        let shown = if close.is_empty() { fitting } else { close };
-        shown.into_iter().take(MOST).map(String::from).collect()
+/// Exponents of kilogram, metre, second and ampere, if it has no others but the radian's.
+pub(crate) fn mechanical(exponents: Exponents) -> Option<[i32; 4]> {
+    let Exponents { kg, m, s, a, k, mol, cd, rad: _ } = exponents;
+    ([k, mol, cd] == [0; 3]).then_some([kg, m, s, a])
+}
+
+/// What it has instead.
+fn names(it: &ModelDescription, name: &str, side: &Side) -> String {
+    let fitting = it.variables.iter().filter(|variable| (side.fits)(variable)).map(|variable| variable.name.as_str());
+    match &like(name, fitting)[..] {
+        [] => format!("it has no {}", side.needed.split_once(' ').map_or("", |(_, needed)| needed)),
+        shown => format!("it has `{}`", shown.join("`, `")),
     }
 }

@@ -1,9 +1,9 @@
 //! What a run of a scenario records on the engine `exact` at every tick, as CSV with every number to the bit: `record SCENARIO`.
 //! FMUs beside the axis are loaded into this process, with the start values that they have; their numbers are SI numbers.
 use servobench_fmi::{Loaded, Port, Setup, Slave, Unpacked};
-use servobench_plant::Exact;
+use servobench_plant::{Exact, FmuMistake, FmuPartner, FmuPort};
 use servobench_scenario::load;
-use servobench_sim::{Bench, PartnerOrder, Partners};
+use servobench_sim::{Bench, Partners};
 use std::error::Error;
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -12,21 +12,22 @@ use std::path::Path;
 struct Here;
 
 impl Partners for Here {
-    fn open(&self, order: &PartnerOrder<'_>) -> Result<Box<dyn Slave>, String> {
-        if !order.fmu.start.is_empty() {
-            return Err(format!("`{}`: this example sets no parameters", order.fmu.name));
+    fn open(&self, partner: &FmuPartner) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
+        if !partner.file.start.is_empty() {
+            return Err(vec![FmuMistake::of_file(&"this example sets no parameters")]);
         }
-        let ports =
-            |names: &[&str]| names.iter().map(|name| Port { variable: (*name).into(), element: 0 }).collect::<Vec<_>>();
+        let ports = |ports: &[FmuPort]| {
+            ports.iter().map(|port| Port { variable: port.variable.clone(), element: 0 }).collect::<Vec<_>>()
+        };
         let setup = Setup {
-            instance_name: order.fmu.name.clone(),
-            inputs: ports(&order.inputs),
-            outputs: ports(&order.outputs),
-            stop_time: Some(order.end),
+            instance_name: partner.name.clone(),
+            inputs: ports(&partner.inputs),
+            outputs: ports(&partner.outputs),
+            stop_time: Some(partner.end),
             ..Setup::default()
         };
-        let opened = Unpacked::new(&order.fmu.path).and_then(|fmu| Loaded::new(&fmu, &setup));
-        Ok(Box::new(opened.map_err(|error| error.to_string())?))
+        let opened = Unpacked::new(&partner.file.path).and_then(|fmu| Loaded::new(&fmu, &setup));
+        Ok(Box::new(opened.map_err(|error| vec![FmuMistake::of_file(&error)])?))
     }
 }
 

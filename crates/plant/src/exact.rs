@@ -75,6 +75,8 @@ struct ExactChain<const W: usize> {
     per_axis: [f64; MAX_BODIES],
     per_travel: [f64; MAX_BODIES],
     any_dry: bool,
+    /// `y` and `bodies` at the mark.
+    marked: Option<([f64; W], Vec<BodyState>)>,
 }
 
 impl<const W: usize> ExactChain<W> {
@@ -102,7 +104,18 @@ impl<const W: usize> ExactChain<W> {
             y[n - 1 + i] = setup.step * chain.bodies()[i].transmission * bodies[i].velocity;
         }
         let chain = Arc::new(chain);
-        Self { chain, prescribed, step: setup.step, holds, y, bodies, per_axis, per_travel, any_dry: can_stick != 0 }
+        Self {
+            chain,
+            prescribed,
+            step: setup.step,
+            holds,
+            y,
+            bodies,
+            per_axis,
+            per_travel,
+            any_dry: can_stick != 0,
+            marked: None,
+        }
     }
 
     /// Efforts that are constant over the tick, dry friction still missing.
@@ -205,6 +218,24 @@ impl<const W: usize> Mechanics for ExactChain<W> {
 
     fn copy(&self) -> Option<Box<dyn Mechanics>> {
         Some(Box::new(self.clone()))
+    }
+
+    fn marks(&self) -> bool {
+        true
+    }
+
+    fn mark(&mut self) -> Result<(), MechanicsError> {
+        let (y, bodies) = self.marked.get_or_insert_with(|| (self.y, Vec::new()));
+        *y = self.y;
+        bodies.clone_from(&self.bodies);
+        Ok(())
+    }
+
+    fn rewind(&mut self) -> Result<(), MechanicsError> {
+        let Some((y, bodies)) = &self.marked else { return Err(MechanicsError::no_way_back()) };
+        self.y = *y;
+        self.bodies.clone_from(bodies);
+        Ok(())
     }
 }
 

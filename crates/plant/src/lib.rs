@@ -19,7 +19,10 @@ mod switches;
 
 pub use chain::{Body, Chain, Coordinate, Link};
 pub use exact::Exact;
-pub use fmu::{Extrapolation, FmuBody, FmuModel, FmuPort, FmuStart, FmuValue, Isolation};
+pub use fmu::{
+    Extrapolation, FmuBody, FmuEntry, FmuFile, FmuMistake, FmuModel, FmuPartner, FmuPort, FmuStart, FmuValue,
+    Isolation, SiUnit,
+};
 pub use friction::{DryFriction, Grip};
 pub use load_coordinate::{LoadCoordinate, PosedJoint};
 pub use mechanics::{

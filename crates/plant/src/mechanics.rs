@@ -1,6 +1,6 @@
 //! Mechanics behind one trait: what the closed loop sees of a simulated axis, whichever engine computes it.
 use crate::chain::Chain;
-use crate::fmu::FmuModel;
+use crate::fmu::{FmuMistake, FmuModel};
 use crate::refusal::{Refusal, in_one_line};
 use servobench_base::{ParamError, Setpoint, finite, positive};
 use std::path::PathBuf;
@@ -65,6 +65,27 @@ pub trait Mechanics: Send {
     /// The same mechanics at the same tick; `None` where the engine cannot copy it.
     fn copy(&self) -> Option<Box<dyn Mechanics>> {
         None
+    }
+
+    /// Whether it can [`mark`](Self::mark) where it is.
+    fn marks(&self) -> bool {
+        false
+    }
+
+    /// Remembers where it is, in place of what it remembered before.
+    ///
+    /// # Errors
+    /// [`MechanicsError`], also where it cannot.
+    fn mark(&mut self) -> Result<(), MechanicsError> {
+        Err(MechanicsError::no_way_back())
+    }
+
+    /// Goes back to the mark; it can do so again.
+    ///
+    /// # Errors
+    /// [`MechanicsError`], also where there is no mark.
+    fn rewind(&mut self) -> Result<(), MechanicsError> {
+        Err(MechanicsError::no_way_back())
     }
 }
 
@@ -177,6 +198,16 @@ pub enum MechanicsError {
         /// What to do instead.
         way_out: &'static str,
     },
+    /// An FMU is not what it is to be: everything that is wrong with it.
+    #[error("engine `{engine}` refuses {}: {}", path.display(), in_one_line(mistakes))]
+    Fmu {
+        /// Engine name.
+        engine: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, at least one thing.
+        mistakes: Vec<FmuMistake>,
+    },
     /// The model text is wrong.
     #[error("engine `{engine}` cannot read the model: {message}")]
     Model {
@@ -212,6 +243,12 @@ impl MechanicsError {
             what: "an FMU as the mechanics".into(),
             way_out: "choose the engine `fmu`, or describe the axis by its bodies".into(),
         }
+    }
+
+    /// The mechanics cannot go back to where they were.
+    #[must_use]
+    pub fn no_way_back() -> Self {
+        Self::Native { engine: "mechanics", message: "it cannot go back to where it was".into() }
     }
 
     /// The actuation is not the one that the mechanics of `engine` were built for.

@@ -1,4 +1,5 @@
 //! What an engine refuses in a user's own MJCF file, and where to look.
+use std::fmt::{self, Display, Formatter};
 
 /// One thing in a user's own MJCF file, or in what is said of it, that an engine does not simulate.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -20,7 +21,13 @@ pub enum RefusedAt {
     File,
 }
 
-/// The refusals in one line.
-pub(crate) fn in_one_line(refusals: &[Refusal]) -> String {
-    refusals.iter().map(|refusal| refusal.message.as_str()).collect::<Vec<_>>().join("; ")
+impl Display for Refusal {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+/// All of them in one line.
+pub(crate) fn in_one_line(all: &[impl Display]) -> String {
+    all.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
 }

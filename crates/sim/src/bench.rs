@@ -1,13 +1,12 @@
 //! From a scenario and an engine to everything that the loop needs.
 
 pub(crate) mod firmware;
+pub(crate) mod fmu;
 mod objections;
 mod plant;
 
-pub use plant::{fmu_isolation, fmu_start};
-
 use crate::channels::{Amplifier, Equipment, Selection, WriterRates};
-use crate::closed_loop::{ClosedLoop, Control, Source};
+use crate::closed_loop::{ClosedLoop, Control, Source, State};
 use crate::coupled::{self, ConnectionDelay, Coupled, NoPartners, Partners};
 use crate::disturbance::Disturbances;
 use crate::error::{BuildError, check_length};
@@ -18,7 +17,7 @@ use crate::recorded::Recorded;
 use servobench_base::{Rate, Setpoint};
 use servobench_drive as drive;
 use servobench_plant::Engine;
-use servobench_scenario::{self as scenario, Actuator, Feedback, Scenario};
+use servobench_scenario::{self as scenario, Actuator, Feedback, LoopSignal, Scenario};
 use servobench_trace::{About, Event, Recorder};
 
 /// How long a run goes on after its program, when the scenario does not say (s).
@@ -129,17 +128,12 @@ impl Bench {
         };
         let closed_loop = ClosedLoop {
             base_rate,
-            source,
-            begun: None,
-            upcoming: None,
-            control,
-            power,
+            state: State { source, begun: None, upcoming: None, control, power, motor_before },
             mechanics,
             prescribed: matches!(scenario.actuator, Actuator::Prescribed),
             transmission: scenario.axis.transmission,
             disturbances,
             switches: plant::switches(&scenario.axis.switches)?,
-            motor_before,
         };
         let watch = LimitWatch::default();
         let recorded = Recorded { closed_loop, selection, recorder, record_every, ticks_to_row: 0, watch, tick: 0 };
@@ -173,7 +167,7 @@ fn equipment(scenario: &Scenario, table: bool) -> Equipment {
         effort_unit,
         load_effort_unit: if rotary(scenario.axis.motion) { "N m" } else { "N" },
         disturbed: [scenario::DisturbedBody::Motor, scenario::DisturbedBody::Load]
-            .map(|body| scenario.disturbances.iter().any(|disturbance| disturbance.on == body)),
+            .map(|body| is_disturbed(scenario, body)),
         table,
         bus: scenario.bus.is_some(),
         amplifier: match &scenario.actuator {
@@ -187,6 +181,16 @@ fn equipment(scenario: &Scenario, table: bool) -> Equipment {
             }),
         },
     }
+}
+
+/// Whether the scenario or an FMU disturbs a body.
+fn is_disturbed(scenario: &Scenario, body: scenario::DisturbedBody) -> bool {
+    let by_fmus = match body {
+        scenario::DisturbedBody::Motor => LoopSignal::MotorEffort,
+        scenario::DisturbedBody::Load => LoopSignal::LoadEffort,
+    };
+    scenario.disturbances.iter().any(|disturbance| disturbance.on == body)
+        || scenario.fmus.iter().flat_map(|fmu| &fmu.outputs).any(|(_, signal)| *signal == by_fmus)
 }
 
 /// How often each writer renews its channels.

@@ -193,17 +193,45 @@ pub(crate) struct Selection {
 impl Selection {
     /// Keeps the channels `wanted`, or all that the axis has when the list is empty.
     pub(crate) fn new(wanted: &[String], equipment: &Equipment, rates: &WriterRates) -> Result<Self, BuildError> {
-        let there = || all(equipment, rates).into_iter().enumerate().filter(|(_, (there, _))| *there);
-        if let Some(unknown) = wanted.iter().find(|name| there().all(|(_, (_, spec))| spec.name != **name)) {
-            let available = there().map(|(_, (_, spec))| spec.name).collect();
-            return Err(BuildError::UnknownChannel { name: unknown.clone(), available });
+        let all = Self::all(equipment, rates);
+        if wanted.is_empty() {
+            return Ok(all);
         }
-        let (columns, specs): (Vec<_>, Vec<_>) = there()
-            .filter(|(_, (_, spec))| wanted.is_empty() || wanted.contains(&spec.name))
-            .map(|(column, (_, spec))| (column, spec))
-            .unzip();
+        let places: Result<Vec<usize>, &String> = wanted.iter().map(|name| all.place(name).ok_or(name)).collect();
+        let mut places = places.map_err(|unknown| BuildError::UnknownChannel {
+            name: unknown.clone(),
+            available: all.names().map(String::from).collect(),
+        })?;
+        places.sort_unstable();
+        places.dedup();
+        Ok(all.only(&places))
+    }
+
+    /// Names of the channels.
+    pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
+        self.specs.iter().map(|spec| spec.name.as_str())
+    }
+
+    /// Where the channel `name` is among them.
+    pub(crate) fn place(&self, name: &str) -> Option<usize> {
+        self.names().position(|one| one == name)
+    }
+
+    /// Those at `places`, in that order.
+    pub(crate) fn only(&self, places: &[usize]) -> Self {
+        Self {
+            specs: places.iter().map(|at| self.specs[*at].clone()).collect(),
+            columns: places.iter().map(|at| self.columns[*at]).collect(),
+            kept: vec![0.0; places.len()],
+        }
+    }
+
+    /// Keeps every channel that the axis has.
+    pub(crate) fn all(equipment: &Equipment, rates: &WriterRates) -> Self {
+        let there = all(equipment, rates).into_iter().enumerate().filter(|(_, (there, _))| *there);
+        let (columns, specs): (Vec<_>, Vec<_>) = there.map(|(column, (_, spec))| (column, spec)).unzip();
         let kept = vec![0.0; columns.len()];
-        Ok(Self { specs, columns, kept })
+        Self { specs, columns, kept }
     }
 
     /// The kept values of `now`.

@@ -10,13 +10,27 @@ use crate::stepper::{Controller, External};
 use servobench_base::{Rate, Setpoint, Tick};
 use servobench_drive::velocity::Cut;
 use servobench_drive::{self as drive, Command, Demand, Feedback, Sensors};
-use servobench_plant::{Actuation, BodyState, Encoder, Input, Mechanics, Switches};
+use servobench_plant::{Actuation, BodyState, Encoder, Input, Mechanics, MechanicsError, Switches};
 use servobench_scenario::DisturbedBody;
 use servobench_trace::Recorder;
 
 /// All that a tick needs and leaves changed.
 pub(crate) struct ClosedLoop {
     pub(crate) base_rate: Rate,
+    /// Whether the motor follows the set-point exactly.
+    pub(crate) prescribed: bool,
+    /// Axis coordinate per motor coordinate.
+    pub(crate) transmission: f64,
+    pub(crate) disturbances: Disturbances,
+    /// Limit and home switches, index pulse.
+    pub(crate) switches: Switches,
+    pub(crate) state: State,
+    pub(crate) mechanics: Box<dyn Mechanics>,
+}
+
+/// What changes from tick to tick, the mechanics apart.
+#[derive(Clone)]
+pub(crate) struct State {
     pub(crate) source: Source,
     /// The tick at which the program began.
     pub(crate) begun: Option<u64>,
@@ -24,14 +38,7 @@ pub(crate) struct ClosedLoop {
     pub(crate) upcoming: Option<Setpoint>,
     pub(crate) control: Option<Control>,
     pub(crate) power: PowerStage,
-    pub(crate) mechanics: Box<dyn Mechanics>,
-    /// Whether the motor follows the set-point exactly.
-    pub(crate) prescribed: bool,
-    /// Axis coordinate per motor coordinate.
-    pub(crate) transmission: f64,
-    pub(crate) disturbances: Disturbances,
-    /// Limit and home switches, index pulse; and where the motor was at the last tick.
-    pub(crate) switches: Switches,
+    /// Where the motor was at the last tick.
     pub(crate) motor_before: f64,
 }
 
@@ -65,23 +72,23 @@ impl ClosedLoop {
     /// out one period of that loop later. The power stage takes the motor's position and velocity at k, and its mean torque
     /// over the tick drives the mechanics; a disturbance is held over the tick.
     pub(crate) fn tick(&mut self, k: u64, external: &External, recorder: &mut Recorder) -> Instant {
-        if external.start && self.begun.is_none() {
-            self.begun = Some(k);
+        if external.start && self.state.begun.is_none() {
+            self.state.begun = Some(k);
         }
         let (mut now, motor) = self.sample(external);
         let mut command = self.control(k, external, motor, &mut now, recorder);
         if let Some(Controller::Voltage(voltage)) = external.controller {
             now.voltage = voltage;
-            command = Command::Voltage(self.power.in_the_stator(voltage, motor));
+            command = Command::Voltage(self.state.power.in_the_stator(voltage, motor));
         }
         // The mean effort over the coming tick belongs into the row of this one; the current is the one at k.
-        now.current = self.power.current();
-        now.output = self.power.output(command);
+        now.current = self.state.power.current();
+        now.output = self.state.power.output(command);
         now.effort = match external.controller {
             Some(Controller::Effort(effort)) => effort,
-            Some(Controller::Voltage(_)) | None => self.power.advance(command, motor, self.base_rate.period()),
+            Some(Controller::Voltage(_)) | None => self.state.power.advance(command, motor, self.base_rate.period()),
         };
-        now.binds.voltage |= self.power.shortens_voltage();
+        now.binds.voltage |= self.state.power.shortens_voltage();
         now.motor_disturbance = self.disturbances.effort_at(DisturbedBody::Motor, k) + external.motor_effort;
         now.load_disturbance = self.disturbances.effort_at(DisturbedBody::Load, k) + external.load_effort;
         now.following_error = [now.motor_reference - now.motor.position, now.reference - now.load.position];
@@ -100,6 +107,12 @@ impl ClosedLoop {
         (Instant { motor, table, load, ..Instant::default() }, own)
     }
 
+    /// Brings `now` to where the bodies are.
+    pub(crate) fn look(&self, external: &External, now: &mut Instant) {
+        let (bodies, _) = self.sample(external);
+        (now.motor, now.table, now.load) = (bodies.motor, bodies.table, bodies.load);
+    }
+
     /// set-point(k) and control(k): the firmware sees its sensors and what it is to do. `motor` is in the motor's own
     /// coordinate.
     fn control(
@@ -111,10 +124,10 @@ impl ClosedLoop {
         recorder: &mut Recorder,
     ) -> Command {
         // Until the program begins it stays at its beginning.
-        let since = self.base_rate.time(Tick(k - self.begun.unwrap_or(k)));
-        let upcoming = self.upcoming.take();
-        let Some(control) = &mut self.control else {
-            if let Source::Program(program) = &mut self.source {
+        let since = self.base_rate.time(Tick(k - self.state.begun.unwrap_or(k)));
+        let upcoming = self.state.upcoming.take();
+        let Some(control) = &mut self.state.control else {
+            if let Source::Program(program) = &mut self.state.source {
                 now.setpoint = external.setpoint.or(upcoming).unwrap_or_else(|| program.at(since));
             }
             now.reference = now.setpoint.x;
@@ -129,10 +142,10 @@ impl ClosedLoop {
                 None => Feedback::Motor,
                 Some(encoder) => Feedback::Load(encoder.read(now.load.position, now.load.velocity).position),
             },
-            current: self.power.measured_current(motor),
+            current: self.state.power.measured_current(motor),
         };
         let Control { params, state, .. } = control;
-        let command = match &mut self.source {
+        let command = match &mut self.state.source {
             Source::Program(program) => {
                 now.setpoint = external.setpoint.or(upcoming).unwrap_or_else(|| program.at(since));
                 let command = drive::step(params, state, &Demand::position(now.setpoint), &sensors);
@@ -141,8 +154,8 @@ impl ClosedLoop {
                 command
             }
             Source::Network(network, _) => {
-                let switches = self.switches.read(now.load.position, self.motor_before, motor.position);
-                self.motor_before = motor.position;
+                let switches = self.switches.read(now.load.position, self.state.motor_before, motor.position);
+                self.state.motor_before = motor.position;
                 let see = || Seen {
                     position: sensors.closing_position(),
                     velocity: state.velocity(params),
@@ -152,7 +165,7 @@ impl ClosedLoop {
                     switches,
                 };
                 let t = self.base_rate.time(Tick(k));
-                let program = self.begun.map(|_| since);
+                let program = self.state.begun.map(|_| since);
                 let asked = Asked { t, program, setpoint: external.setpoint };
                 let demand = network.step(k, &asked, switches.index, see, recorder);
                 let command = drive::step(params, state, demand, &sensors);
@@ -180,10 +193,10 @@ impl ClosedLoop {
 
     /// The program's set-point of tick `k`, which comes next; `None` over a fieldbus.
     pub(crate) fn look_ahead(&mut self, k: u64) -> Option<Setpoint> {
-        if let (None, Source::Program(program)) = (self.upcoming, &mut self.source) {
-            self.upcoming = Some(program.at(self.base_rate.time(Tick(k - self.begun.unwrap_or(k)))));
+        if let (None, Source::Program(program)) = (self.state.upcoming, &mut self.state.source) {
+            self.state.upcoming = Some(program.at(self.base_rate.time(Tick(k - self.state.begun.unwrap_or(k)))));
         }
-        self.upcoming
+        self.state.upcoming
     }
 
     /// Integrates the mechanics to the next tick.
@@ -206,7 +219,7 @@ impl ClosedLoop {
     /// # Errors
     /// [`Reason::Program`] why it gave up.
     pub(crate) fn check(&mut self) -> Result<(), Reason> {
-        match &mut self.source {
+        match &mut self.state.source {
             Source::Network(network, _) => network.failure().map_or(Ok(()), |reason| Err(Reason::Program(reason))),
             Source::Program(_) => Ok(()),
         }
@@ -215,13 +228,29 @@ impl ClosedLoop {
     /// The same loop at the same tick; `None` where the engine cannot copy its mechanics.
     pub(crate) fn copy(&self) -> Option<Self> {
         Some(Self {
-            source: self.source.clone(),
-            control: self.control.clone(),
-            power: self.power.clone(),
             mechanics: self.mechanics.copy()?,
+            state: self.state.clone(),
             disturbances: self.disturbances.clone(),
             switches: self.switches.clone(),
             ..*self
         })
+    }
+
+    /// Marks where the mechanics are, and gives the rest.
+    ///
+    /// # Errors
+    /// [`MechanicsError`] where the engine cannot.
+    pub(crate) fn mark(&mut self) -> Result<State, MechanicsError> {
+        self.mechanics.mark()?;
+        Ok(self.state.clone())
+    }
+
+    /// Goes back to the last mark, where the rest was `state`.
+    ///
+    /// # Errors
+    /// [`MechanicsError`] where the engine cannot.
+    pub(crate) fn rewind(&mut self, state: &State) -> Result<(), MechanicsError> {
+        self.state.clone_from(state);
+        self.mechanics.rewind()
     }
 }

@@ -6,8 +6,9 @@ use servobench_cia402::units::UnitError;
 use servobench_drive::device::ObjectsError;
 use servobench_fieldbus::FieldbusError;
 use servobench_motion::PlanError;
-use servobench_plant::MechanicsError;
+use servobench_plant::{FmuMistake, MechanicsError};
 use servobench_scenario::LONGEST_RUN;
+use std::fmt::Display;
 use thiserror::Error;
 
 /// Why a scenario could not be turned into a closed loop.
@@ -64,13 +65,20 @@ pub enum BuildError {
     /// The link to the drive cannot be set up.
     #[error(transparent)]
     Link(#[from] FieldbusError),
-    /// An FMU cannot be had.
-    #[error("{why}")]
-    Fmu {
+    /// FMUs beside the axis cannot be had, each for its reasons; at least one.
+    #[error("{}", in_one_line(.0))]
+    Fmus(Vec<UnusableFmu>),
+    /// An input of an FMU is given a channel that the axis does not have.
+    #[error("this axis has no channel `{name}` for the input `{variable}` of an FMU; it has {}", available.join(", "))]
+    NoSuchSignal {
         /// Which of the scenario's FMUs, from 0.
         index: usize,
-        /// Why.
-        why: String,
+        /// The input.
+        variable: String,
+        /// What it was to be given.
+        name: String,
+        /// Channels that there are.
+        available: Vec<String>,
     },
     /// What the FMUs are connected with cannot be run so.
     #[error("{0}")]
@@ -153,6 +161,23 @@ pub enum BuildError {
 pub(crate) fn check_length(step: Option<usize>, end: f64) -> Result<(), BuildError> {
     if end <= LONGEST_RUN { Ok(()) } else { Err(BuildError::TooLong { step, end, limit: LONGEST_RUN }) }
 }
+
+/// An FMU that cannot be had.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("FMU `{name}`: {}", in_one_line(mistakes))]
+pub struct UnusableFmu {
+    /// Which of the scenario's FMUs, from 0.
+    pub index: usize,
+    /// Its name.
+    pub name: String,
+    /// What is wrong, at least one thing.
+    pub mistakes: Vec<FmuMistake>,
+}
+
+fn in_one_line(all: &[impl Display]) -> String {
+    all.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+}
+
 impl From<ObjectsError> for BuildError {
     fn from(error: ObjectsError) -> Self {
         Self::Objects(Box::new(error))

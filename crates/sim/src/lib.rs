@@ -17,9 +17,9 @@ mod run;
 mod stepper;
 mod thinning;
 
-pub use bench::{Bench, fmu_isolation, fmu_start};
-pub use coupled::{ConnectionDelay, NoPartners, PartnerOrder, Partners};
-pub use error::BuildError;
+pub use bench::Bench;
+pub use coupled::{ConnectionDelay, NoPartners, Partners};
+pub use error::{BuildError, UnusableFmu};
 pub use network::Unsendable;
 pub use program::Program;
 pub use run::{Failure, Outcome, Reason};

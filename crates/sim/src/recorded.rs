@@ -1,10 +1,11 @@
 //! The closed loop with what is recorded of it.
 use crate::channels::{Instant, Selection};
-use crate::closed_loop::{ClosedLoop, Source};
+use crate::closed_loop::{ClosedLoop, Source, State};
 use crate::limit_watch::LimitWatch;
 use crate::run::{Failure, Outcome};
 use crate::stepper::External;
 use servobench_base::Tick;
+use servobench_plant::MechanicsError;
 use servobench_trace::{Mark, Recorder};
 
 /// A closed loop that is recorded tick by tick.
@@ -20,9 +21,9 @@ pub(crate) struct Recorded {
     pub(crate) tick: u64,
 }
 
-/// Where a recorded loop was, to go back to.
+/// Where a recorded loop was at the last mark, the mechanics apart.
 pub(crate) struct Saved {
-    closed_loop: ClosedLoop,
+    state: State,
     ticks_to_row: u32,
     watch: LimitWatch,
     tick: u64,
@@ -59,10 +60,13 @@ impl Recorded {
         self.closed_loop.base_rate.time(Tick(self.tick))
     }
 
-    /// Where the loop is; `None` where the engine cannot copy its mechanics.
-    pub(crate) fn save(&self) -> Option<Saved> {
-        Some(Saved {
-            closed_loop: self.closed_loop.copy()?,
+    /// Marks where the loop is.
+    ///
+    /// # Errors
+    /// [`MechanicsError`] where the engine cannot.
+    pub(crate) fn save(&mut self) -> Result<Saved, MechanicsError> {
+        Ok(Saved {
+            state: self.closed_loop.mark()?,
             ticks_to_row: self.ticks_to_row,
             watch: self.watch.clone(),
             tick: self.tick,
@@ -70,20 +74,23 @@ impl Recorded {
         })
     }
 
-    /// Goes back; what was recorded since is forgotten.
-    pub(crate) fn restore(&mut self, saved: &Saved) {
-        if let Some(closed_loop) = saved.closed_loop.copy() {
-            self.closed_loop = closed_loop;
-            (self.ticks_to_row, self.watch, self.tick) = (saved.ticks_to_row, saved.watch.clone(), saved.tick);
-            self.recorder.rewind(&saved.mark);
-        }
+    /// Goes back to the last mark; what was recorded since is forgotten.
+    ///
+    /// # Errors
+    /// [`MechanicsError`] where the engine cannot.
+    pub(crate) fn restore(&mut self, saved: &Saved) -> Result<(), MechanicsError> {
+        self.closed_loop.rewind(&saved.state)?;
+        self.watch.clone_from(&saved.watch);
+        (self.ticks_to_row, self.tick) = (saved.ticks_to_row, saved.tick);
+        self.recorder.rewind(&saved.mark);
+        Ok(())
     }
 
     /// What the run leaves behind.
     pub(crate) fn finish(mut self, failure: Option<Failure>) -> Outcome {
         let t = failure.as_ref().map_or_else(|| self.time(), |failure| failure.time);
         self.watch.finish(t, &mut self.recorder);
-        if let Source::Network(network, delay) = &mut self.closed_loop.source {
+        if let Source::Network(network, delay) = &mut self.closed_loop.state.source {
             let unit = self.recorder.about().axis_unit.clone();
             network.finish(t, &unit, *delay, &mut self.recorder);
         }

@@ -96,7 +96,8 @@ impl Bench {
             Axis::Coupled(coupled) => coupled.alone(),
         };
         let recorder = Recorder::silent(recorder.about().clone(), closed_loop.base_rate);
-        let (now, _) = closed_loop.sample(&External::default());
+        let mut now = Instant::default();
+        closed_loop.look(&External::default(), &mut now);
         Stepper { closed_loop, tick: 0, now, selection, recorder }
     }
 }
@@ -141,7 +142,7 @@ impl Stepper {
     /// The states that the tick before has left.
     #[must_use]
     pub fn states(&self) -> States {
-        match &self.closed_loop.source {
+        match &self.closed_loop.state.source {
             Source::Program(_) => States::default(),
             Source::Network(network, _) => network.states(),
         }
@@ -164,8 +165,7 @@ impl Stepper {
         let done =
             if external.measured.is_some() { self.closed_loop.check() } else { self.closed_loop.integrate(&now) };
         done.map_err(|reason: Reason| Failure { time, reason })?;
-        let (bodies, _) = self.closed_loop.sample(external);
-        (now.motor, now.table, now.load) = (bodies.motor, bodies.table, bodies.load);
+        self.closed_loop.look(external, &mut now);
         let share = |binds: bool| f64::from(u8::from(binds));
         let PerLimit { voltage, current, effort } = now.binds;
         now.saturation = PerLimit { voltage: share(voltage), current: share(current), effort: share(effort) };

@@ -1,8 +1,8 @@
 //! FMUs beside the axis, here written in Rust.
 use servobench_fmi::{Capabilities, LogLine, Progress, Slave, SlaveError};
-use servobench_plant::Exact;
+use servobench_plant::{Exact, FmuMistake, FmuPartner};
 use servobench_scenario as scenario;
-use servobench_sim::{Bench, NoPartners, Outcome, PartnerOrder, Partners};
+use servobench_sim::{Bench, NoPartners, Outcome, Partners};
 use servobench_trace::Recording;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -132,7 +132,7 @@ struct Relays {
 }
 
 impl Partners for Relays {
-    fn open(&self, _: &PartnerOrder<'_>) -> Result<Box<dyn Slave>, String> {
+    fn open(&self, _: &FmuPartner) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
         Ok(Box::new(Relay { feeds_through: self.feeds_through, last: 0.0, readings: Arc::clone(&self.readings) }))
     }
 }
@@ -144,10 +144,10 @@ struct Parts;
 const STIFFNESS: f64 = 40.0 * (TAU * 10.0) * (TAU * 10.0);
 
 impl Partners for Parts {
-    fn open(&self, order: &PartnerOrder<'_>) -> Result<Box<dyn Slave>, String> {
-        let start = vec![0.0; order.outputs.len()];
+    fn open(&self, partner: &FmuPartner) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
+        let start = vec![0.0; partner.outputs.len()];
         let state = [0.0; 2];
-        Ok(match order.fmu.name.as_str() {
+        Ok(match partner.name.as_str() {
             "spring" => {
                 let law = |_: &mut [f64; 2], _: f64, _: f64, u: &[f64]| -STIFFNESS * u[0];
                 Box::new(Part { law, state, saved: state, last: start, saves: true })
@@ -160,11 +160,20 @@ impl Partners for Parts {
                 let law = |_: &mut [f64; 2], _: f64, _: f64, u: &[f64]| 4e4 * (u[0] - u[1]) - 2e3 * u[2];
                 Box::new(Part { law, state, saved: state, last: start, saves: false })
             }
+            // -3·(motor velocity) + 2·(set-point), which come in this order or the other.
+            "first" => {
+                let law = |_: &mut [f64; 2], _: f64, _: f64, u: &[f64]| 2.0 * u[1] - 3.0 * u[0];
+                Box::new(Part { law, state, saved: state, last: start, saves: false })
+            }
+            "second" => {
+                let law = |_: &mut [f64; 2], _: f64, _: f64, u: &[f64]| 2.0 * u[0] - 3.0 * u[1];
+                Box::new(Part { law, state, saved: state, last: start, saves: false })
+            }
             "ramp" => {
                 let law = |_: &mut [f64; 2], t: f64, h: f64, _: &[f64]| 0.01 * (t + h);
                 Box::new(Part { law, state, saved: state, last: start, saves: false })
             }
-            other => return Err(format!("no part `{other}`")),
+            other => return Err(vec![FmuMistake::of_file(&format!("no part `{other}`"))]),
         })
     }
 }
@@ -178,7 +187,7 @@ fn run(text: &str) -> Recording {
 /// The bench of a scenario beside whose file lie FMUs, whose insides do not matter here.
 fn bench(text: &str, partners: &dyn Partners) -> Result<Bench, String> {
     let folder = tempfile::tempdir().unwrap();
-    for name in ["spring", "push", "ramp", "controller"] {
+    for name in ["spring", "push", "ramp", "controller", "first", "second"] {
         std::fs::write(folder.path().join(format!("{name}.fmu")), "").unwrap();
     }
     let path = folder.path().join("coupled.toml");
@@ -232,6 +241,25 @@ fn a_load_behind_the_axis_swings_as_it_must() {
     assert!(iterated < held / 50.0, "{iterated}");
 }
 
+/// Oracle: the same with the inputs in another order, which means the same.
+#[test]
+fn inputs_may_be_named_in_any_order() {
+    let keys = |inputs: &str| format!("inputs = {{ {inputs} }}\noutputs = {{ F = \"disturbance.load\" }}\n");
+    let program = "[setpoint]\norder = 3\nvelocity = \"0.5 m/s\"\nacceleration = \"5 m/s2\"\njerk = \"100 m/s3\"\n\
+                   [[program]]\nmove_to = \"50 mm\"\n";
+    let table = TABLE.replace("enabled = false\n", DRIVE);
+    let (x, v) = ("x = \"motor.velocity\"", "v = \"setpoint.position\"");
+    let [one, other] = [("first", format!("{x}, {v}")), ("second", format!("{v}, {x}"))]
+        .map(|(name, inputs)| run(&format!("{table}{program}{}", fmu(name, &keys(&inputs)))));
+    assert!(
+        one.channels.iter().any(|channel| channel.spec.name == "disturbance.load"),
+        "what an FMU gives is recorded"
+    );
+    for (one, other) in one.channels.iter().zip(&other.channels) {
+        assert!(one.values == other.values, "{}", one.spec.name);
+    }
+}
+
 /// Oracle: by hand, 40 kg under the same law sampled at each tick and held over it.
 #[test]
 fn a_controller_samples_at_a_tick_and_holds_over_it() {
@@ -277,10 +305,13 @@ fn a_ring_without_feedthrough_is_no_algebraic_loop() {
 fn what_nobody_can_open_or_connect_is_refused() {
     let push = fmu("push", "outputs = { F = \"disturbance.load\" }\n");
     let refused = bench(&format!("{TABLE}{push}"), &NoPartners).err().unwrap_or_default();
-    assert_eq!(refused, "this program opens no FMUs, and the scenario has `push`");
+    assert_eq!(refused, "FMU `push`: this program opens no FMUs");
     let spring = fmu("spring", "inputs = { x = \"table.position\" }\noutputs = { F = \"disturbance.load\" }\n");
     let refused = bench(&format!("{TABLE}{spring}"), &Parts).err().unwrap_or_default();
-    assert!(refused.contains("table.position"), "{refused}");
+    assert!(
+        refused.starts_with("this axis has no channel `table.position` for the input `x` of an FMU; it has"),
+        "{refused}"
+    );
 }
 
 #[test]

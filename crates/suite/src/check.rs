@@ -5,9 +5,9 @@ use crate::job::Job;
 use crate::panicked::caught;
 use crate::worker::{self, WorkerCommand, WorkerError};
 use serde::{Deserialize, Serialize};
-use servobench_plant::{Engine, MechanicsError, Refusal, RefusedAt};
+use servobench_plant::{Engine, FmuEntry, FmuMistake, MechanicsError, Refusal, RefusedAt};
 use servobench_scenario::{AxisMechanics, Scenario};
-use servobench_sim::{Bench, BuildError, ConnectionDelay, Partners};
+use servobench_sim::{Bench, BuildError, ConnectionDelay, Partners, UnusableFmu};
 
 /// Something that keeps a scenario from being built.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -78,6 +78,17 @@ fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
         BuildError::Mechanics(MechanicsError::Refused { engine, refusals, way_out, .. }) => {
             return refusals.iter().map(|refusal| Objection::to(refusal, engine, way_out, scenario)).collect();
         }
+        BuildError::Mechanics(MechanicsError::Fmu { mistakes, .. }) => {
+            return mistakes.iter().map(|mistake| Objection::to_fmu(mistake, "axis.fmu")).collect();
+        }
+        BuildError::Fmus(fmus) => {
+            let of = |fmu: &UnusableFmu| {
+                let table = format!("fmu.{}", fmu.index);
+                fmu.mistakes.iter().map(|mistake| Objection::to_fmu(mistake, &table)).collect::<Vec<_>>()
+            };
+            return fmus.iter().flat_map(of).collect();
+        }
+        BuildError::NoSuchSignal { index, variable, .. } => format!("fmu.{index}.inputs.{variable}"),
         BuildError::Mechanics(MechanicsError::Unsupported { engine, what, way_out }) => {
             let message = format!("engine `{engine}` does not support {what}");
             return vec![Objection { way_out: way_out.clone(), ..Objection::new(model_key(scenario), message) }];
@@ -99,7 +110,6 @@ fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
         BuildError::Units(_) => "bus.units".to_owned(),
         BuildError::Link(_) | BuildError::NoDriveOnTheBus => "bus".to_owned(),
         BuildError::Points(_) => "program".to_owned(),
-        BuildError::Fmu { index, .. } => format!("fmu.{index}"),
         BuildError::Coupling(_) => "fmu".to_owned(),
         BuildError::OnlyAnFmu { .. } | BuildError::NoFmu => "engine".to_owned(),
     };
@@ -120,6 +130,17 @@ impl Objection {
         };
         let message = format!("engine `{engine}`: {}", refusal.message);
         Self { key: key.to_owned(), line, message, way_out: way_out.to_owned() }
+    }
+
+    /// What does not fit the file of the FMU that `table` describes.
+    fn to_fmu(mistake: &FmuMistake, table: &str) -> Self {
+        let key = match &mistake.at {
+            FmuEntry::File => format!("{table}.file"),
+            FmuEntry::Start(variable) => format!("{table}.parameters.{variable}"),
+            FmuEntry::Input(variable) => format!("{table}.inputs.{variable}"),
+            FmuEntry::Output(variable) => format!("{table}.outputs.{variable}"),
+        };
+        Self { key, line: None, message: mistake.message.clone(), way_out: mistake.way_out.clone() }
     }
 }
 

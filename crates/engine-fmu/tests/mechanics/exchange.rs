@@ -111,7 +111,7 @@ impl Toy for Scripted {
 }
 
 fn single_body(ticks: u32) -> FmuModel {
-    let motor = FmuBody { coordinate: Coordinate::Rotary, position: port("angle"), velocity: None };
+    let motor = FmuBody { position: port("angle", RADIAN), velocity: None };
     FmuModel { motor, load: None, load_disturbance: None, ..model(ticks, Extrapolation::Linear) }
 }
 
@@ -181,8 +181,7 @@ fn what_goes_wrong_in_a_step_ends_the_run_with_the_reason() {
 #[test]
 fn a_position_that_is_not_finite_is_not_passed_on() {
     let toy = Scripted { position: f64::INFINITY, ..Scripted::new(|_, _| Ok(Progress::Done)) };
-    let ports = MechanicsPorts::new(&single_body(1), &description(&IN_SI)).unwrap();
-    let built = FmuMechanics::new(Box::new(Fmu(toy)), ports, &single_body(1), TICK);
+    let built = FmuMechanics::new(Box::new(Fmu(toy)), &single_body(1), TICK);
     let error = built.err().unwrap();
     assert_eq!(error.to_string(), "engine `fmu` diverged: the FMU's output `angle` is inf");
 }

@@ -3,11 +3,11 @@ mod allocation;
 mod exchange;
 mod ports;
 
-use servobench_engine_fmu::{FmuMechanics, MechanicsPorts};
+use servobench_engine_fmu::{FmuMechanics, InSi, Ports};
 use servobench_fmi::{Capabilities, LogLine, ModelDescription, Progress, Slave, SlaveError};
 use servobench_plant::{
-    Actuation, Body, Chain, Coordinate, Drive, DryFriction, Engine, Exact, Extrapolation, FmuBody, FmuModel, FmuPort,
-    Input, Isolation, Link, Mechanics, MechanicsSetup, Model,
+    Actuation, Body, Chain, Coordinate, Drive, DryFriction, Engine, Exact, Extrapolation, FmuBody, FmuFile, FmuMistake,
+    FmuModel, FmuPort, Input, Isolation, Link, Mechanics, MechanicsSetup, Model, SiUnit,
 };
 
 /// Base tick (s).
@@ -136,32 +136,36 @@ const IN_SI: [(&str, &str, &str); 6] = [
     ("v", "output", ""),
 ];
 
-fn port(variable: &str) -> FmuPort {
-    FmuPort { variable: variable.into(), element: 0 }
+const NEWTON: (&str, [i32; 4]) = ("N", [1, 1, -2, 0]);
+const NEWTON_METRE: (&str, [i32; 4]) = ("N m", [1, 2, -2, 0]);
+const RADIAN: (&str, [i32; 4]) = ("rad", [0; 4]);
+const METRE: (&str, [i32; 4]) = ("m", [0, 1, 0, 0]);
+const RADIAN_PER_SECOND: (&str, [i32; 4]) = ("rad/s", [0, 0, -1, 0]);
+const METRE_PER_SECOND: (&str, [i32; 4]) = ("m/s", [0, 1, -1, 0]);
+
+fn port(variable: &str, (name, exponents): (&str, [i32; 4])) -> FmuPort {
+    FmuPort { variable: variable.into(), unit: Some(SiUnit { name: name.into(), exponents }) }
 }
 
 fn model(ticks: u32, extrapolation: Extrapolation) -> FmuModel {
-    let body = |coordinate, position, velocity| FmuBody {
-        coordinate,
-        position: port(position),
-        velocity: Some(port(velocity)),
-    };
     FmuModel {
-        path: "table.fmu".into(),
-        effort: port("torque"),
-        motor: body(Coordinate::Rotary, "angle", "speed"),
-        load: Some(body(Coordinate::Linear, "x", "v")),
+        file: FmuFile { path: "table.fmu".into(), start: Vec::new(), isolation: Isolation::None },
+        effort: port("torque", NEWTON_METRE),
+        motor: FmuBody { position: port("angle", RADIAN), velocity: Some(port("speed", RADIAN_PER_SECOND)) },
+        load: Some(FmuBody { position: port("x", METRE), velocity: Some(port("v", METRE_PER_SECOND)) }),
         motor_disturbance: None,
-        load_disturbance: Some(port("force")),
+        load_disturbance: Some(port("force", NEWTON)),
         transmission: 5e-3,
-        start: Vec::new(),
         ticks,
         extrapolation,
-        isolation: Isolation::None,
     }
 }
 
+fn ports(model: &FmuModel, variables: &[(&str, &str, &str)]) -> Result<Ports, Vec<FmuMistake>> {
+    Ports::new(model.inputs(), model.outputs(), &description(variables))
+}
+
 fn mechanics(toy: impl Toy + 'static, model: &FmuModel, variables: &[(&str, &str, &str)]) -> FmuMechanics {
-    let ports = MechanicsPorts::new(model, &description(variables)).unwrap();
-    FmuMechanics::new(Box::new(Fmu(toy)), ports, model, TICK).unwrap()
+    let slave = InSi::new(Box::new(Fmu(toy)), ports(model, variables).unwrap());
+    FmuMechanics::new(Box::new(slave), model, TICK).unwrap()
 }

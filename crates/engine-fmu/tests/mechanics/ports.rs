@@ -1,7 +1,6 @@
 //! Names and units of the variables that are exchanged.
 use super::*;
-use servobench_engine_fmu::{PortError, PortProblem, Quantity};
-use servobench_fmi::Port;
+use servobench_plant::FmuEntry;
 
 /// Passes on to an FMU in SI units what comes in others, the other way round for what comes out: what a tool does that counts
 /// in them.
@@ -36,7 +35,7 @@ fn units_are_those_of_the_description() {
     let mut fmu = mechanics(InOtherUnits(ExactFmu::new(TICK)), &model(1, Extrapolation::Linear), &others);
     let mut here = exact(TICK);
     for tick in 0..500 {
-        let all = input((f64::from(tick) * 0.1).sin(), 50.0);
+        let all = super::input((f64::from(tick) * 0.1).sin(), 50.0);
         fmu.advance(&all).unwrap();
         here.advance(&all).unwrap();
         for (body, at) in fmu.bodies().iter().zip(here.bodies()) {
@@ -46,16 +45,25 @@ fn units_are_those_of_the_description() {
     }
 }
 
-fn problems(model: &FmuModel, variables: &[(&str, &str, &str)]) -> Vec<PortError> {
-    MechanicsPorts::new(model, &description(variables)).err().unwrap_or_default()
+fn mistakes(model: &FmuModel, variables: &[(&str, &str, &str)]) -> Vec<(FmuEntry, String)> {
+    let mistakes = ports(model, variables).err().unwrap_or_default();
+    mistakes.into_iter().map(|mistake| (mistake.at.clone(), mistake.to_string())).collect()
+}
+
+fn input(name: &str, what: &str) -> (FmuEntry, String) {
+    (FmuEntry::Input(name.into()), what.into())
+}
+
+fn output(name: &str, what: &str) -> (FmuEntry, String) {
+    (FmuEntry::Output(name.into()), what.into())
 }
 
 #[test]
 fn ports_are_in_the_order_in_which_they_are_exchanged() {
-    let ports = MechanicsPorts::new(&model(1, Extrapolation::Linear), &description(&IN_SI)).unwrap();
-    let names = |ports: Vec<&Port>| ports.iter().map(|port| port.variable.clone()).collect::<Vec<_>>();
-    assert_eq!(names(ports.inputs().collect()), ["torque", "force"]);
-    assert_eq!(names(ports.outputs().collect()), ["angle", "speed", "x", "v"]);
+    let model = model(1, Extrapolation::Linear);
+    let names = |ports: Vec<&FmuPort>| ports.iter().map(|port| port.variable.clone()).collect::<Vec<_>>();
+    assert_eq!(names(model.inputs().collect()), ["torque", "force"]);
+    assert_eq!(names(model.outputs().collect()), ["angle", "speed", "x", "v"]);
 }
 
 /// All of it at once, so that a file is mended in one go.
@@ -69,15 +77,21 @@ fn everything_that_is_wrong_is_said() {
         ("x_1", "output", "m"),
         ("v", "output", ""),
     ];
-    let said = problems(&model(1, Extrapolation::Linear), &wrong);
-    let said: Vec<String> = said.iter().map(ToString::to_string).collect();
+    let said = mistakes(&model(1, Extrapolation::Linear), &wrong);
     assert_eq!(
         said,
         [
-            "`load_disturbance`: variable `force` is not an input of the FMU",
-            "`motor_position`: variable `angle` counts in `mm`, which is not an angle",
-            "`motor_velocity`: variable `speed` counts in `inch`, of which the FMU does not say what it is (no `BaseUnit`)",
-            "`load_position`: variable `x` is not in the FMU; it has `x_1`",
+            input("force", "`force` of the FMU is an output, not an input or a tunable parameter; it has `torque`"),
+            output(
+                "angle",
+                "`angle` of the FMU counts in `mm`, which cannot be turned into rad; connect what it is a measure of"
+            ),
+            output(
+                "speed",
+                "`speed` of the FMU counts in `inch`, of which it does not say what that is; the model description lacks its \
+                 `BaseUnit`: export it with one"
+            ),
+            output("x", "the FMU has no variable `x`; it has `x_1`"),
         ]
     );
 }
@@ -87,26 +101,27 @@ fn everything_that_is_wrong_is_said() {
 fn si_units_need_no_definition() {
     let mut variables = IN_SI;
     variables[4].2 = "m";
-    assert_eq!(problems(&model(1, Extrapolation::Linear), &variables), []);
+    assert_eq!(mistakes(&model(1, Extrapolation::Linear), &variables), []);
     variables[2].2 = "m";
-    let undefined = PortProblem::Undefined { unit: "m".into() };
-    assert_eq!(problems(&model(1, Extrapolation::Linear), &variables)[0].problem, undefined);
+    let what = "`angle` of the FMU counts in `m`, which cannot be turned into rad; connect what it is a measure of";
+    assert_eq!(mistakes(&model(1, Extrapolation::Linear), &variables), [output("angle", what)]);
 }
 
 #[test]
 fn elements_are_counted() {
     let mut model = model(1, Extrapolation::Linear);
-    model.effort.element = 1;
-    let problem = PortProblem::Element { element: 1, count: 1 };
-    assert_eq!(problems(&model, &IN_SI), [PortError { role: "effort", variable: "torque".into(), problem }]);
+    model.effort.variable = "torque[2]".into();
+    let what =
+        "`torque[2]`: `torque` has the dimensions []; name an element like `x[2]` or `x[2,1]`; indices count from 1";
+    assert_eq!(mistakes(&model, &IN_SI), [input("torque[2]", what)]);
 }
 
 /// A rotary axis needs a torque where a linear one needs a force.
 #[test]
 fn quantities_are_those_of_the_coordinates() {
     let mut model = model(1, Extrapolation::Linear);
-    model.motor.coordinate = Coordinate::Linear;
+    model.effort = port("torque", NEWTON);
     let variables = [("torque", "input", "N.mm"), IN_SI[1], IN_SI[2], IN_SI[3], IN_SI[4], IN_SI[5]];
-    let problem = PortProblem::Unit { unit: "N.mm".into(), needed: Quantity::Force };
-    assert_eq!(problems(&model, &variables), [PortError { role: "effort", variable: "torque".into(), problem }]);
+    let what = "`torque` of the FMU counts in `N.mm`, which cannot be turned into N; connect what it is a measure of";
+    assert_eq!(mistakes(&model, &variables), [input("torque", what)]);
 }

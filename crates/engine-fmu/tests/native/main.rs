@@ -3,8 +3,8 @@ mod leaving;
 
 use servobench_engine_fmu::{Fmu, FmuMechanics, HostCommand, HostError, host as serve};
 use servobench_plant::{
-    Actuation, Coordinate, Drive, Engine, Extrapolation, FmuBody, FmuModel, FmuPort, FmuStart, FmuValue, Input,
-    Isolation, Mechanics, MechanicsError, MechanicsSetup, Model,
+    Actuation, Drive, Engine, Extrapolation, FmuBody, FmuFile, FmuModel, FmuPort, FmuStart, FmuValue, Input, Isolation,
+    Mechanics, MechanicsError, MechanicsSetup, Model,
 };
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -115,24 +115,26 @@ fn isolated(patience: Duration) -> Isolation {
 }
 
 fn setup(file: &File, mischief: Mischief, isolation: Isolation) -> MechanicsSetup {
-    let port = |variable: &str| FmuPort { variable: variable.into(), element: 0 };
+    let port = |variable: &str| FmuPort { variable: variable.into(), unit: None };
     let start = |variable: &str, value| FmuStart { variable: variable.into(), values: vec![value] };
     let model = FmuModel {
-        path: file.path.clone(),
+        file: FmuFile {
+            path: file.path.clone(),
+            start: vec![
+                start("mass", FmuValue::Number(MASS)),
+                start("x", FmuValue::Quantity { text: "0.25 m".into(), si: 0.25, exponents: [0, 1, 0, 0] }),
+                start("mischief", FmuValue::Number(f64::from(mischief as u8))),
+            ],
+            isolation,
+        },
         effort: port("force"),
-        motor: FmuBody { coordinate: Coordinate::Linear, position: port("x"), velocity: Some(port("v")) },
+        motor: FmuBody { position: port("x"), velocity: Some(port("v")) },
         load: None,
         motor_disturbance: None,
         load_disturbance: None,
         transmission: 1.0,
-        start: vec![
-            start("mass", FmuValue::Number(MASS)),
-            start("x", FmuValue::Si(0.25)),
-            start("mischief", FmuValue::Number(f64::from(mischief as u8))),
-        ],
         ticks: 1,
         extrapolation: Extrapolation::Linear,
-        isolation,
     };
     MechanicsSetup { model: Model::Fmu(model), drive: Drive::Effort, step: TICK, initial: Vec::new() }
 }
@@ -251,13 +253,12 @@ fn what_the_engine_cannot_do_is_refused() {
     let Model::Fmu(model) = &good.model else { panic!("an FMU") };
     let with = |model: FmuModel| MechanicsSetup { model: Model::Fmu(model), ..good.clone() };
     assert!(says(&with(FmuModel { ticks: 0, ..model.clone() })).contains("`ticks`"));
-    assert!(says(&with(FmuModel { path: "none.fmu".into(), ..model.clone() })).contains("none.fmu"));
-    let unknown = FmuStart { variable: "mas".into(), values: vec![FmuValue::Number(1.0)] };
-    let said = says(&with(FmuModel { start: vec![unknown], ..model.clone() }));
-    assert!(said.contains("is it `mass`?"), "{said}");
-    let text = FmuStart { variable: "mass".into(), values: vec![FmuValue::Text("heavy".into())] };
-    let said = says(&with(FmuModel { start: vec![text], ..model.clone() }));
-    assert!(said.contains("mass") && said.contains("heavy"), "{said}");
+    let of = |file: FmuFile| with(FmuModel { file, ..model.clone() });
+    assert!(says(&of(FmuFile { path: "none.fmu".into(), ..model.file.clone() })).contains("none.fmu"));
+    let start = |variable: &str, value| FmuStart { variable: variable.into(), values: vec![value] };
+    let starts = vec![start("mas", FmuValue::Number(1.0)), start("mass", FmuValue::Text("heavy".into()))];
+    let said = says(&of(FmuFile { start: starts, ..model.file.clone() }));
+    assert!(said.contains("is it `mass`?") && said.contains("heavy"), "{said}");
     let began = MechanicsSetup { initial: vec![servobench_plant::BodyState::default()], ..good.clone() };
     assert!(says(&began).contains("start values of the FMU"));
 }

@@ -24,30 +24,35 @@ const ITERATIONS: u32 = 50;
 
 /// What the outputs of an FMU can be.
 trait Port: Copy + PartialEq + 'static {
-    /// With the names that files write.
-    const ALL: &'static [(&'static str, Self)];
+    const ALL: &'static [Self];
+
+    /// The name that files write.
+    fn name(self) -> &'static str;
 }
 
 impl Port for BodySignal {
-    const ALL: &'static [(&'static str, Self)] = &[
-        ("shaft.position", Self::ShaftPosition),
-        ("shaft.velocity", Self::ShaftVelocity),
-        ("load.position", Self::LoadPosition),
-        ("load.velocity", Self::LoadVelocity),
-    ];
+    const ALL: &'static [Self] = &[Self::ShaftPosition, Self::ShaftVelocity, Self::LoadPosition, Self::LoadVelocity];
+
+    fn name(self) -> &'static str {
+        self.name()
+    }
 }
 
 impl Port for LoopSignal {
-    const ALL: &'static [(&'static str, Self)] = &[
-        ("disturbance.motor", Self::MotorEffort),
-        ("disturbance.load", Self::LoadEffort),
-        ("setpoint.position", Self::SetpointPosition),
-        ("setpoint.velocity", Self::SetpointVelocity),
-        ("setpoint.acceleration", Self::SetpointAcceleration),
-        ("effort.motor", Self::Effort),
-        ("voltage.d", Self::VoltageD),
-        ("voltage.q", Self::VoltageQ),
+    const ALL: &'static [Self] = &[
+        Self::MotorEffort,
+        Self::LoadEffort,
+        Self::SetpointPosition,
+        Self::SetpointVelocity,
+        Self::SetpointAcceleration,
+        Self::Effort,
+        Self::VoltageD,
+        Self::VoltageQ,
     ];
+
+    fn name(self) -> &'static str {
+        self.name()
+    }
 }
 
 /// What acts on mechanics.
@@ -204,8 +209,8 @@ fn fmu<P: Port>(
         .and_then(|table| connections(table.map_or(&[][..], |table| &table.0), "no signal", report, read));
     let outputs = given.outputs.optional().ok().and_then(|table| {
         let port = |text: &str| {
-            let found = P::ALL.iter().find(|(name, _)| *name == text).map(|(_, port)| *port);
-            found.ok_or_else(|| suggestion(text, P::ALL.iter().map(|(name, _)| *name)))
+            let found = P::ALL.iter().find(|port| port.name() == text).copied();
+            found.ok_or_else(|| suggestion(text, P::ALL.iter().map(|port| port.name())))
         };
         connections(table.map_or(&[][..], |table| &table.0), "nothing that an FMU can give here", report, port)
     });
@@ -216,7 +221,7 @@ fn fmu<P: Port>(
     let outputs = outputs?;
     for (index, (_, port)) in outputs.iter().enumerate() {
         if outputs[..index].iter().any(|(_, before)| before == port) {
-            twice(given, index, port, report);
+            twice(given, index, *port, report);
             return None;
         }
     }
@@ -252,10 +257,9 @@ fn connections<T>(
     all.into_iter().collect()
 }
 
-fn twice<P: Port>(given: &file::Fmu, index: usize, port: &P, report: &mut Report) {
-    let name = P::ALL.iter().find(|(_, one)| one == port).map_or("", |(name, _)| name);
+fn twice(given: &file::Fmu, index: usize, port: impl Port, report: &mut Report) {
     let span = given.outputs.given().and_then(|table| table.0.get(index)).map(|one| one.value.span);
-    report.error(span.unwrap_or(given.span), format!("`{name}` is given twice"), "one output is one signal");
+    report.error(span.unwrap_or(given.span), format!("`{}` is given twice", port.name()), "one output is one signal");
 }
 
 /// A channel, or the output of an FMU.
@@ -329,10 +333,9 @@ fn check_ports(file: &File, given: &[At<file::Fmu>], all: &[Fmu<LoopSignal>], kn
     for (f, fmu) in all.iter().enumerate() {
         for (o, (_, port)) in fmu.outputs.iter().enumerate() {
             if taken.iter().any(|(before, _)| before == port) {
-                let name = LoopSignal::ALL.iter().find(|(_, one)| one == port).map_or("", |(name, _)| name);
                 report.error(
                     place(f, o),
-                    format!("`{name}` is given by another FMU too"),
+                    format!("`{}` is given by another FMU too", port.name()),
                     "efforts do not add up here: let one FMU sum them",
                 );
             } else {

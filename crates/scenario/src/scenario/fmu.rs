@@ -68,6 +68,19 @@ pub enum BodySignal {
     LoadVelocity,
 }
 
+impl BodySignal {
+    /// The name that files write.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::ShaftPosition => "shaft.position",
+            Self::ShaftVelocity => "shaft.velocity",
+            Self::LoadPosition => "load.position",
+            Self::LoadVelocity => "load.velocity",
+        }
+    }
+}
+
 /// What an output of an FMU can be beside the axis (SI).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum LoopSignal {

@@ -3,8 +3,7 @@ use crate::error::BuildError;
 use crate::power::PowerStage;
 use servobench_base::{Dq, Rotation};
 use servobench_plant::{self as plant, BodyState, Chain, Encoder, Engine, Mechanics, MechanicsSetup, Switches, pmsm};
-use servobench_scenario::{self as scenario, Actuator, BodySignal, EngineName, Scenario, Signal, StartValue};
-use std::time::Duration;
+use servobench_scenario::{self as scenario, Actuator, EngineName, Scenario};
 
 /// The mechanics at tick 0 and the names of its bodies.
 pub(super) fn mechanics(
@@ -17,7 +16,7 @@ pub(super) fn mechanics(
     };
     if engine.name() == EngineName::Fmu.as_str() {
         let fmu = scenario.axis.fmu.as_ref().ok_or(BuildError::NoFmu)?;
-        let model = fmu_model(fmu, scenario)?;
+        let model = super::fmu::mechanics(fmu, scenario)?;
         let names = if model.load.is_some() { &["motor", "load"][..] } else { &["motor"] };
         let names = names.iter().map(|name| (*name).to_owned()).collect();
         let model = plant::Model::Fmu(model);
@@ -53,78 +52,6 @@ pub(super) fn mechanics(
     }
     let setup = MechanicsSetup { model, drive, step: scenario.base_rate.period(), initial };
     Ok((engine.build(&setup)?, names))
-}
-
-/// Which variables of an FMU are the mechanics.
-fn fmu_model(fmu: &scenario::Fmu<BodySignal>, scenario: &Scenario) -> Result<plant::FmuModel, BuildError> {
-    let axis = &scenario.axis;
-    let input = |channel: &'static str| {
-        let given = fmu.inputs.iter().find(|(_, signal)| *signal == Signal::Channel(channel));
-        given.map(|(variable, _)| fmu_port(variable))
-    };
-    let output = |signal| fmu.outputs.iter().find(|(_, to)| *to == signal).map(|(variable, _)| fmu_port(variable));
-    let body = |motion, position, velocity| {
-        let coordinate = coordinate(motion);
-        output(position).map(|position| plant::FmuBody { coordinate, position, velocity: output(velocity) })
-    };
-    Ok(plant::FmuModel {
-        path: fmu.path.clone(),
-        effort: input("effort.motor").ok_or(BuildError::NoFmu)?,
-        motor: body(axis.motor_motion, BodySignal::ShaftPosition, BodySignal::ShaftVelocity)
-            .ok_or(BuildError::NoFmu)?,
-        load: body(axis.motion, BodySignal::LoadPosition, BodySignal::LoadVelocity),
-        motor_disturbance: input("disturbance.motor"),
-        load_disturbance: input("disturbance.load"),
-        transmission: axis.transmission,
-        start: fmu_start(&fmu.start),
-        ticks: fmu.every,
-        extrapolation: match scenario.coupling.extrapolation {
-            0 => plant::Extrapolation::Hold,
-            1 => plant::Extrapolation::Linear,
-            _ => plant::Extrapolation::Quadratic,
-        },
-        isolation: fmu_isolation(fmu),
-    })
-}
-
-/// Start values of an FMU. What has a unit is converted to that of its variable.
-#[must_use]
-pub fn fmu_start(given: &[(String, StartValue)]) -> Vec<plant::FmuStart> {
-    let mut all = Vec::new();
-    for (variable, value) in given {
-        let mut values = Vec::new();
-        flatten(value, &mut values);
-        all.push(plant::FmuStart { variable: variable.clone(), values });
-    }
-    all
-}
-
-fn flatten(value: &StartValue, values: &mut Vec<plant::FmuValue>) {
-    values.push(match value {
-        StartValue::Number(number) => plant::FmuValue::Number(*number),
-        StartValue::Flag(flag) => plant::FmuValue::Boolean(*flag),
-        StartValue::Text(text) => match scenario::any_quantity(text) {
-            Some((si, exponents)) => plant::FmuValue::Quantity { text: text.clone(), si, exponents },
-            None => plant::FmuValue::Text(text.clone()),
-        },
-        StartValue::List(list) => return list.iter().for_each(|value| flatten(value, values)),
-    });
-}
-
-/// Where an FMU runs.
-#[must_use]
-pub fn fmu_isolation<To>(fmu: &scenario::Fmu<To>) -> plant::Isolation {
-    match fmu.isolation {
-        scenario::Isolation::None => plant::Isolation::None,
-        scenario::Isolation::Process => plant::Isolation::Process {
-            patience: Duration::from_secs_f64(fmu.patience),
-            memory: u64::from(fmu.memory) << 20,
-        },
-    }
-}
-
-fn fmu_port(variable: &str) -> plant::FmuPort {
-    plant::FmuPort { variable: variable.to_owned(), element: 0 }
 }
 
 fn coordinate(motion: scenario::Motion) -> plant::Coordinate {

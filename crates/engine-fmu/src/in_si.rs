@@ -1,0 +1,64 @@
+//! A slave whose numbers are SI numbers.
+use crate::ports::Ports;
+use servobench_fmi::{Capabilities, LogLine, Progress, Slave, SlaveError};
+
+/// A slave that was wired with ports, whose numbers are in SI units here and in its own there.
+pub struct InSi {
+    slave: Box<dyn Slave>,
+    ports: Ports,
+    /// Inputs of a step, and of a reading, in its units.
+    moving: Vec<[f64; 3]>,
+    present: Vec<f64>,
+}
+
+impl InSi {
+    /// `slave`, whose inputs and outputs are those of `ports` in their order.
+    #[must_use]
+    pub fn new(slave: Box<dyn Slave>, ports: Ports) -> Self {
+        let inputs = ports.inputs.len();
+        Self { slave, ports, moving: vec![[0.0; 3]; inputs], present: vec![0.0; inputs] }
+    }
+}
+
+impl Slave for InSi {
+    fn capabilities(&self) -> Capabilities {
+        self.slave.capabilities()
+    }
+
+    fn feeds_through(&self, output: usize, input: usize) -> bool {
+        self.slave.feeds_through(output, input)
+    }
+
+    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+        for ((own, wire), si) in self.moving.iter_mut().zip(&self.ports.inputs).zip(inputs) {
+            *own = wire.of_si_in_motion(*si);
+        }
+        self.slave.step(time, length, &self.moving)
+    }
+
+    fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
+        let present = inputs.map(|inputs| {
+            for ((own, wire), si) in self.present.iter_mut().zip(&self.ports.inputs).zip(inputs) {
+                *own = wire.of_si(*si);
+            }
+            self.present.as_slice()
+        });
+        self.slave.read(present, outputs)?;
+        for (output, wire) in outputs.iter_mut().zip(&self.ports.outputs) {
+            *output = wire.to_si(*output);
+        }
+        Ok(())
+    }
+
+    fn save(&mut self) -> Result<(), SlaveError> {
+        self.slave.save()
+    }
+
+    fn restore(&mut self) -> Result<(), SlaveError> {
+        self.slave.restore()
+    }
+
+    fn take_log(&mut self) -> Vec<LogLine> {
+        self.slave.take_log()
+    }
+}

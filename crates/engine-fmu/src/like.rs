@@ -1,0 +1,14 @@
+//! Names that one could have meant.
+
+/// Names that are shown.
+const MOST: usize = 5;
+
+/// Of `all` those that contain `name` or are contained in it, whatever the case; the first ones if there are none.
+pub(crate) fn like<'a>(name: &str, all: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let name = name.to_lowercase();
+    let is_like = |other: &str| other.contains(&name) || name.contains(other);
+    let all: Vec<&str> = all.collect();
+    let close: Vec<&str> = all.iter().copied().filter(|one| is_like(&one.to_lowercase())).collect();
+    let shown = if close.is_empty() { all } else { close };
+    shown.into_iter().take(MOST).collect()
+}

@@ -1,0 +1,123 @@
+//! Who is connected with whom. The axis comes behind the FMUs.
+use super::ConnectionDelay;
+use super::block::OWN;
+use crate::bench::fmu::partner;
+use crate::channels::{Equipment, Selection, WriterRates};
+use crate::error::BuildError;
+use servobench_coupling::{Connection, Delay, Order, Port};
+use servobench_plant::FmuPartner;
+use servobench_scenario::{LoopSignal, Scenario, Signal};
+
+/// Which ports there are, and how they are connected.
+pub(super) struct Wiring<'a> {
+    scenario: &'a Scenario,
+    /// By FMU: outputs that somebody wants, and what each is on the axis if it goes there.
+    outputs: Vec<Vec<(&'a str, Option<LoopSignal>)>>,
+    /// Channels that FMUs are given.
+    pub(super) gives: Selection,
+    /// What the axis takes.
+    pub(super) takes: Vec<LoopSignal>,
+    pub(super) connections: Vec<Connection>,
+}
+
+impl<'a> Wiring<'a> {
+    /// # Errors
+    /// [`BuildError::NoSuchSignal`]
+    pub(super) fn new(scenario: &'a Scenario, equipment: &Equipment, rates: &WriterRates) -> Result<Self, BuildError> {
+        let axis = scenario.fmus.len();
+        let all = Selection::all(equipment, rates);
+        let (mut outputs, mut columns, mut takes) = (vec![Vec::new(); axis], Vec::new(), Vec::new());
+        let mut connections = Vec::new();
+        let mut connect = |from, to, is_discrete| {
+            connections.push(Connection { from, to, gain: 1.0, offset: 0.0, is_discrete });
+        };
+        for (block, fmu) in scenario.fmus.iter().enumerate() {
+            let is_controller = fmu.outputs.iter().any(|(_, signal)| is_of_a_controller(*signal));
+            for (port, (variable, signal)) in fmu.inputs.iter().enumerate() {
+                let from = match signal {
+                    Signal::Time => Port { block: axis, port: 0 },
+                    Signal::ShaftPosition => Port { block: axis, port: 1 },
+                    Signal::ShaftVelocity => Port { block: axis, port: 2 },
+                    Signal::Channel(name) => {
+                        let column = all.place(name).ok_or_else(|| BuildError::NoSuchSignal {
+                            index: block,
+                            variable: variable.clone(),
+                            name: (*name).to_owned(),
+                            available: all.names().map(String::from).collect(),
+                        })?;
+                        Port { block: axis, port: OWN.len() + place(&mut columns, column) }
+                    }
+                    Signal::Fmu { fmu, variable } => {
+                        Port { block: *fmu, port: output(&mut outputs[*fmu], variable, None) }
+                    }
+                };
+                connect(from, Port { block, port }, is_controller);
+            }
+            for (variable, signal) in &fmu.outputs {
+                let from = Port { block, port: output(&mut outputs[block], variable, Some(*signal)) };
+                let to = Port { block: axis, port: place(&mut takes, *signal) };
+                connect(from, to, is_of_a_controller(*signal));
+            }
+        }
+        Ok(Self { scenario, outputs, gives: all.only(&columns), takes, connections })
+    }
+
+    /// The FMU number `index` as it is to be opened.
+    pub(super) fn partner(&self, index: usize, equipment: &Equipment, end: f64) -> FmuPartner {
+        let (fmu, motion) = (&self.scenario.fmus[index], self.scenario.axis.motor_motion);
+        partner(fmu, &self.outputs[index], (equipment, motion), &self.gives.specs, end)
+    }
+
+    /// Names of what the axis gives.
+    pub(super) fn axis_outputs(&self) -> impl Iterator<Item = &str> {
+        OWN.into_iter().chain(self.gives.names())
+    }
+
+    /// A connection and how late it is.
+    pub(super) fn described(&self, delay: &Delay) -> ConnectionDelay {
+        let Connection { from, to, .. } = self.connections[delay.connection];
+        let of_fmu = |block: usize, variable: &str| format!("{}.{variable}", self.scenario.fmus[block].name);
+        ConnectionDelay {
+            from: match self.outputs.get(from.block) {
+                Some(outputs) => of_fmu(from.block, outputs[from.port].0),
+                None => self.axis_outputs().nth(from.port).unwrap_or_default().to_owned(),
+            },
+            to: match self.scenario.fmus.get(to.block) {
+                Some(fmu) => of_fmu(to.block, &fmu.inputs[to.port].0),
+                None => self.takes[to.port].name().to_owned(),
+            },
+            delay: delay.ticks as f64 * self.scenario.base_rate.period(),
+            steps: delay.steps,
+            is_extrapolated: delay.extrapolated.is_some_and(|order| order != Order::Constant),
+        }
+    }
+}
+
+/// Whether an FMU stands for the drive.
+pub(crate) fn replaces_the_drive(scenario: &Scenario) -> bool {
+    scenario.fmus.iter().any(|fmu| fmu.outputs.iter().any(|(_, signal)| is_of_a_controller(*signal)))
+}
+
+/// Whether a controller gives it, which samples at exchanges and holds what it gives.
+const fn is_of_a_controller(signal: LoopSignal) -> bool {
+    matches!(signal, LoopSignal::Effort | LoopSignal::VoltageD | LoopSignal::VoltageQ)
+}
+
+/// Where the output `variable` is among those that are wanted, to which it is added if need be.
+fn output<'a>(wanted: &mut Vec<(&'a str, Option<LoopSignal>)>, variable: &'a str, signal: Option<LoopSignal>) -> usize {
+    let known = wanted.iter().position(|(name, _)| *name == variable);
+    let at = known.unwrap_or_else(|| {
+        wanted.push((variable, None));
+        wanted.len() - 1
+    });
+    wanted[at].1 = wanted[at].1.or(signal);
+    at
+}
+
+/// Where `one` is among `all`, to which it is added if need be.
+fn place<T: PartialEq>(all: &mut Vec<T>, one: T) -> usize {
+    all.iter().position(|known| *known == one).unwrap_or_else(|| {
+        all.push(one);
+        all.len() - 1
+    })
+}
