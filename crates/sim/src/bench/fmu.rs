@@ -33,11 +33,7 @@ pub(super) fn mechanics(fmu: &Fmu<BodySignal>, scenario: &Scenario) -> Result<Fm
         load_disturbance: input("disturbance.load", load_effort),
         transmission: axis.transmission,
         ticks: fmu.every,
-        extrapolation: match scenario.coupling.extrapolation {
-            0 => Extrapolation::Hold,
-            1 => Extrapolation::Linear,
-            _ => Extrapolation::Quadratic,
-        },
+        extrapolation: Extrapolation::Linear,
     })
 }
 
