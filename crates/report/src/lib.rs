@@ -30,5 +30,6 @@ pub use object_table::object_table;
 pub use plan::PlannedMove;
 pub use results::{Outcome, Results, RunIdentity, RunResult};
 pub use style::Style;
+pub use text::elided;
 pub use timing::{TimingOptions, timing_diagram};
 pub use verdict_table::verdict_table;

@@ -1,7 +1,8 @@
 //! Text in columns.
 
 /// `text` in at most `width` characters, the middle left out when it is longer: both ends of a name tell runs apart.
-pub(crate) fn elided(text: &str, width: usize) -> String {
+#[must_use]
+pub fn elided(text: &str, width: usize) -> String {
     let count = text.chars().count();
     if count <= width {
         return text.to_owned();

@@ -6,6 +6,7 @@ use crate::engines;
 use crate::exit::{CliError, Exit};
 use crate::sources;
 use crate::workers;
+use servobench_report::{Style, elided};
 use servobench_scenario::{Diagnostic, EngineName, Loaded};
 use servobench_sim::ConnectionDelay;
 use servobench_suite::{Engines, RunError, Source, WorkerCommand, check as objections, delays, jobs};
@@ -94,26 +95,43 @@ impl Asked {
     }
 }
 
-/// The connections of a scenario and how late each is.
+/// The connections of a scenario and how late each is: in columns, or below each other where names are too long for that.
 fn listed(scenario: &str, delays: &[ConnectionDelay]) -> String {
-    let from = delays.iter().map(|delay| delay.from.chars().count()).max().unwrap_or(0);
-    let to = delays.iter().map(|delay| delay.to.chars().count()).max().unwrap_or(0);
-    let line = |delay: &ConnectionDelay| {
-        let age = match delay.steps {
-            0 => "no delay".to_owned(),
-            steps => {
-                let plural = if steps == 1 { "step" } else { "steps" };
-                let how = if delay.is_extrapolated { ", extrapolated" } else { "" };
-                format!("{steps} {plural}, {} ms{how}", 1e3 * delay.delay)
-            }
-        };
-        format!("  {:from$} -> {:to$}  {age}\n", delay.from, delay.to)
-    };
     if delays.is_empty() {
-        String::new()
-    } else {
-        format!("{scenario}: connections and how late they are\n{}", delays.iter().map(line).collect::<String>())
+        return String::new();
     }
+    let Style { width, .. } = Style::default();
+    let widest = |name: fn(&ConnectionDelay) -> &str| {
+        delays.iter().map(|delay| name(delay).chars().count()).max().unwrap_or_default()
+    };
+    let (from, to) = (widest(|delay| &delay.from), widest(|delay| &delay.to));
+    let longest_age = delays.iter().map(|delay| age(delay).chars().count()).max().unwrap_or_default();
+    let fits = 2 + from + 4 + to + 2 + longest_age <= width;
+    let line = |delay: &ConnectionDelay| {
+        let age = age(delay);
+        if fits {
+            format!("  {:from$} -> {:to$}  {age}\n", delay.from, delay.to)
+        } else {
+            let column = to.min(width - 9 - longest_age);
+            let (from, to) = (elided(&delay.from, width - 2), elided(&delay.to, column));
+            format!("  {from}\n    -> {to:column$}  {age}\n")
+        }
+    };
+    let heading = ": connections and how late they are";
+    let name = elided(scenario, width - heading.len());
+    format!("{name}{heading}\n{}", delays.iter().map(line).collect::<String>())
+}
+
+/// How late a connection is, in words: `1 step, 0.0625 ms`.
+fn age(delay: &ConnectionDelay) -> String {
+    let steps = match delay.steps {
+        0 => return "no delay".to_owned(),
+        1 => "1 step".to_owned(),
+        steps => format!("{steps} steps"),
+    };
+    let how = if delay.is_extrapolated { ", extrapolated" } else { "" };
+    // To the nanosecond: a number of ticks is no round number of seconds.
+    format!("{steps}, {} ms{how}", (delay.delay * 1e9).round() / 1e6)
 }
 
 /// Which engines had no say.
@@ -127,5 +145,47 @@ fn not_asked(missing: &[EngineName]) -> String {
         String::new()
     } else {
         format!(" as far as this build can tell, which lacks {}", names.join(" and "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn connection(from: &str, to: &str, steps: u64) -> ConnectionDelay {
+        let is_extrapolated = steps > 0;
+        ConnectionDelay { from: from.into(), to: to.into(), delay: steps as f64 * 1e-4, steps, is_extrapolated }
+    }
+
+    #[test]
+    fn connections_are_in_columns_where_they_fit() {
+        let all = [connection("load.position", "press.x", 3), connection("press.force", "disturbance.load", 0)];
+        insta::assert_snapshot!(listed("punch", &all), @r"
+        punch: connections and how late they are
+          load.position -> press.x           3 steps, 0.3 ms, extrapolated
+          press.force   -> disturbance.load  no delay
+        ");
+        assert_eq!(listed("alone", &[]), "");
+    }
+
+    #[test]
+    fn long_names_stay_within_80_columns() {
+        let long = "gearbox.housing.bearing_2.flange.torque";
+        let all = [
+            connection(&format!("press.{long}"), "disturbance.load", 1),
+            connection("load.position", &"x".repeat(300), 1_000_000),
+            connection(&format!("{long}.{long}.{long}"), &format!("press.{long}.{long}"), 0),
+        ];
+        let text = listed(&"scenario-".repeat(20), &all);
+        insta::assert_snapshot!(text, @r"
+        scenario-scenario-scen…rio-scenario-scenario-: connections and how late they are
+          press.gearbox.housing.bearing_2.flange.torque
+            -> disturbance.load                   1 step, 0.1 ms, extrapolated
+          load.position
+            -> xxxxxxxxxxxxxxxx…xxxxxxxxxxxxxxxx  1000000 steps, 100000 ms, extrapolated
+          gearbox.housing.bearing_2.flange.torque…earbox.housing.bearing_2.flange.torque
+            -> press.gearbox.ho…_2.flange.torque  no delay
+        ");
+        assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
     }
 }
