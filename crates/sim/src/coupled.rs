@@ -184,6 +184,10 @@ impl Coupled {
 fn failed(error: CouplingError<PartError>, time: f64) -> Failure {
     match error {
         CouplingError::Block { source: PartError::Axis(failure), .. } => failure,
+        // It says itself when.
+        CouplingError::Block { block, source: PartError::Fmu(error), .. } => {
+            Failure { time, reason: Reason::Coupling(format!("`{block}`: {error}")) }
+        }
         other => Failure { time, reason: Reason::Coupling(other.to_string()) },
     }
 }

@@ -85,7 +85,7 @@ fn file<To>(fmu: &Fmu<To>) -> FmuFile {
             scenario::Isolation::None => Isolation::None,
             scenario::Isolation::Process => Isolation::Process {
                 patience: Duration::from_secs_f64(fmu.patience),
-                memory: u64::from(fmu.memory) << 20,
+                memory: u64::from(fmu.memory) * 1_000_000,
             },
         },
     }
