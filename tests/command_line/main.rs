@@ -2,6 +2,7 @@
 mod check;
 mod compare;
 mod fmu;
+mod fmu_suite;
 mod objects;
 mod output;
 mod plan;
