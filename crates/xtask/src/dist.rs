@@ -4,7 +4,7 @@
 //! servobench-<version>-<target>/bin/servobench              finds the library by $ORIGIN/../native/lib
 //!                              /native/lib/libmujoco.so.…
 //!                              /lib/libservobench_fmu.so    what goes into exported FMUs
-//!                              /models /scenarios /docs README.md LICENSE-… NOTICE
+//!                              /models /scenarios /scenarios-fmu /docs README.md LICENSE-… NOTICE
 //!                              /licenses                    of everything that is in the binary
 //! ```
 use crate::checks::{Metadata, Package};
@@ -17,7 +17,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What is packed beside binary and library, as far as git tracks it.
-const TRACKED: [&str; 6] = ["models", "scenarios", "docs", "README.md", "LICENSE*", "NOTICE"];
+const TRACKED: [&str; 7] = ["models", "scenarios", "scenarios-fmu", "docs", "README.md", "LICENSE*", "NOTICE"];
 
 /// Builds, packs, unpacks elsewhere and runs the demo there.
 ///

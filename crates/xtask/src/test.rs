@@ -4,6 +4,9 @@ use crate::failure::Failure;
 use crate::outside::Outside;
 use crate::wheel;
 use crate::workspace::{Workspace, run as run_command, shown};
+use std::collections::BTreeSet;
+use std::ffi::OsStr;
+use std::fs;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
@@ -18,12 +21,20 @@ pub(crate) enum Engines {
 
 /// Scenarios and suites that the finished binary runs: arguments and expected exit code. Each writes into a folder of
 /// its own, see [`scenarios`].
-const SCENARIOS: [(&[&str], i32); 2] =
-    [(&["run", "scenarios/", "--quiet"], 0), (&["run", "tests/scenarios/", "--quiet"], 4)];
+const SCENARIOS: [(&[&str], i32); 3] = [
+    (&["run", "scenarios/", "--quiet"], 0),
+    (&["run", WITH_FMUS, "--quiet"], 0),
+    (&["run", "tests/scenarios/", "--quiet"], 4),
+];
 
 /// The same for a build without MuJoCo, which some scenarios name: the demo runs on the engines that are there.
-const EMBEDDED_SCENARIOS: [(&[&str], i32); 2] =
-    [(&["run", "--quiet"], 0), (&["run", "tests/scenarios/", "--quiet"], 4)];
+const EMBEDDED_SCENARIOS: [(&[&str], i32); 3] =
+    [(&["run", "--quiet"], 0), (&["run", WITH_FMUS, "--quiet"], 0), (&["run", "tests/scenarios/", "--quiet"], 4)];
+
+/// Scenarios whose FMUs are made before: each says at its head by which commands of the program.
+const WITH_FMUS: &str = "scenarios-fmu";
+/// What such a command begins with in a scenario.
+const COMMAND: &str = "#     servobench ";
 
 /// One step.
 struct Step {
@@ -108,8 +119,25 @@ fn steps(workspace: &Workspace, engines: Engines) -> Result<Vec<Step>, Failure> 
         Step::new("documentation tests", cargo(&["test", "--doc"])),
         Step::new("documentation", documentation),
     ];
+    steps.extend(exports(workspace)?);
     steps.extend(scenarios(workspace, engines));
     Ok(steps)
+}
+
+/// The commands at the heads of the scenarios with FMUs, as a user would type them.
+fn exports(workspace: &Workspace) -> Result<Vec<Step>, Failure> {
+    let folder = workspace.root.join(WITH_FMUS);
+    let unreadable = || Failure::file("read", &folder);
+    let mut commands = BTreeSet::new();
+    for entry in fs::read_dir(&folder).map_err(unreadable())? {
+        let path = entry.map_err(unreadable())?.path();
+        if path.extension() == Some(OsStr::new("toml")) {
+            let text = fs::read_to_string(&path).map_err(Failure::file("read", &path))?;
+            commands.extend(text.lines().filter_map(|line| line.strip_prefix(COMMAND)).map(str::to_owned));
+        }
+    }
+    let step = |command: &String| Step::new("FMUs of scenarios", workspace.servobench(command.split_whitespace()));
+    Ok(commands.iter().map(step).collect())
 }
 
 /// The scenarios and suites, each writing into `<target>/scenarios/<number>`.
@@ -157,6 +185,7 @@ fn run_steps(steps: Vec<Step>) -> Result<(), Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::Path;
 
     fn step(name: &'static str, program: &str) -> Step {
         Step::new(name, Command::new(program))
@@ -180,12 +209,30 @@ mod tests {
         assert!(run_steps(ends_with(0)).is_err());
     }
 
+    /// What is typed for each step.
+    fn commands(engines: Engines) -> Vec<String> {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        let here = Workspace { root, target: "target".into() };
+        steps(&here, engines).unwrap().iter().map(|step| shown(&step.command)).collect()
+    }
+
+    /// A file that two scenarios share is made once, and before any of them runs.
+    #[test]
+    fn the_fmus_of_scenarios_are_made_before_they_run() {
+        for engines in [Engines::All, Engines::Embedded] {
+            let commands = commands(engines);
+            let run = commands.iter().position(|command| command.starts_with("servobench run scenarios-fmu")).unwrap();
+            let is_export = |command: &&String| command.starts_with("servobench fmu export scenarios/");
+            let made: Vec<&String> = commands[..run].iter().filter(is_export).collect();
+            assert_eq!(made.len(), commands.iter().filter(is_export).count(), "{commands:?}");
+            assert!(made.len() >= 4 && made.is_sorted() && made.windows(2).all(|pair| pair[0] != pair[1]), "{made:?}");
+        }
+    }
+
     #[test]
     fn without_mujoco_no_step_names_its_feature() {
-        let nowhere = Workspace { root: ".".into(), target: "target".into() };
         for (engines, named) in [(Engines::All, true), (Engines::Embedded, false)] {
-            let commands: Vec<String> =
-                steps(&nowhere, engines).unwrap().iter().map(|step| shown(&step.command)).collect();
+            let commands = commands(engines);
             assert_eq!(commands.iter().any(|c| c.contains("servobench-cli/mujoco,servobench-tests/mujoco")), named);
             assert_eq!(commands.iter().any(|c| c.contains("--exclude")), !named);
         }
