@@ -184,8 +184,8 @@ fn each_fmu_that_misbehaves_costs_its_own_run_and_is_reported_as_what_it_is() {
     }
     for (name, says) in [("print", "standard output: (1.1 GB before this were dropped)"), ("log", "were dropped")] {
         let run = of(name);
-        let events = run["events"].as_array().unwrap().iter().filter(|event| event["source"] == "FMU attached");
-        let said: Vec<&str> = events.map(|event| event["message"].as_str().unwrap()).collect();
+        let events = run["log"].as_array().unwrap().iter().filter(|event| event["source"] == "FMU attached");
+        let said: Vec<&str> = events.map(|event| event["text"].as_str().unwrap()).collect();
         assert!(said.iter().any(|message| message.contains(says)), "{name}: {said:?}");
         let bytes: usize = said.iter().map(|message| message.len()).sum();
         assert!(bytes < 1 << 21, "{name}: {bytes} of {}", said.len());

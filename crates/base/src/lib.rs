@@ -6,9 +6,11 @@
 mod frames;
 mod parameter;
 mod setpoint;
+mod severity;
 mod time;
 
 pub use frames::{AlphaBeta, Dq, ElectricalAngle, Rotation};
 pub use parameter::{ParamError, finite, limit, non_negative, positive};
 pub use setpoint::Setpoint;
+pub use severity::Severity;
 pub use time::{Countdown, Divider, Rate, RateError, Tick};

@@ -29,8 +29,8 @@ static SPEAKING: Mutex<()> = Mutex::new(());
 pub(crate) fn say_at_once(line: &LogLine) -> bool {
     let _speaking = SPEAKING.lock().unwrap_or_else(PoisonError::into_inner);
     let Some(page) = PAGE.get() else { return false };
-    let severity = line.severity;
-    let line = LogLine { severity, category: clipped(line.category.clone()), message: clipped(line.message.clone()) };
+    let &LogLine { time, severity, ref category, ref message } = line;
+    let line = LogLine { time, severity, category: clipped(category.clone()), message: clipped(message.clone()) };
     if !log_to_line(line).is_some_and(|line| page.add_log(&line)) {
         page.header().answered.log_dropped.fetch_add(1, Relaxed);
     }

@@ -44,7 +44,8 @@ pub struct Wires {
 
 /// An FMU in a process of its own: whatever it does costs its own run only. It is ended when this is dropped.
 ///
-/// What it has written on standard output and standard error is part of its log.
+/// What it has written on standard output and standard error is part of its log, line by line, with the time of the last step
+/// before it was looked for: it says neither when it was written nor how much it matters.
 #[derive(Debug)]
 pub struct Isolated {
     keeper: Keeper,
@@ -272,16 +273,18 @@ impl Slave for Isolated {
         let dropped = self.answered().log_dropped.swap(0, Relaxed);
         if dropped > 0 {
             let message = format!("{dropped} more lines of its log were dropped: it says more than is read");
-            log.push(LogLine { severity: Severity::Warning, category: "isolation".into(), message });
+            let time = self.time;
+            log.push(LogLine { time, severity: Severity::Warning, category: "isolation".into(), message });
         }
         let mut output = self.keeper.shared.output();
         let written = [("standard output", output.stdout.take()), ("standard error", output.stderr.take())];
         for (category, (text, dropped)) in written.into_iter().filter_map(|(name, some)| Some((name, some?))) {
-            let (severity, message) = match dropped {
-                0 => (Severity::Info, text),
-                _ => (Severity::Warning, format!("({} before this were dropped) {text}", in_words(dropped))),
-            };
-            log.push(LogLine { severity, category: category.into(), message });
+            let line = |severity, message| LogLine { time: self.time, severity, category: category.into(), message };
+            if dropped > 0 {
+                log.push(line(Severity::Warning, format!("({} before this were dropped)", in_words(dropped))));
+            }
+            let lines = text.lines().filter(|text| !text.trim().is_empty());
+            log.extend(lines.map(|text| line(Severity::Info, text.trim_end().to_owned())));
         }
         log
     }

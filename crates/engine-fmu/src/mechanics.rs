@@ -9,7 +9,7 @@
 //! impulse of the efforts is kept, and the axis sees of the FMU what was so up to n ticks ago: a delay of n/2 ticks in the mean.
 use crate::motion::Motion;
 use servobench_fmi::{LogLine, Progress, Severity, Slave, SlaveError};
-use servobench_plant::{Actuation, BodyState, FmuModel, Input, Mechanics, MechanicsError};
+use servobench_plant::{Actuation, BodyState, FmuModel, Input, Mechanics, MechanicsError, Said};
 
 /// Name of the engine.
 pub(crate) const NAME: &str = "fmu";
@@ -22,6 +22,8 @@ const LINES: usize = 5;
 pub struct FmuMechanics {
     /// Counts in SI units.
     slave: Box<dyn Slave>,
+    /// What it said and nobody has taken yet.
+    said: Vec<LogLine>,
     model: FmuModel,
     /// Length of a base tick (s).
     tick: f64,
@@ -56,6 +58,7 @@ impl FmuMechanics {
         let (inputs, bodies) = (model.inputs().count(), model.bodies().count());
         let mut mechanics = Self {
             slave,
+            said: Vec::new(),
             model: model.clone(),
             tick,
             state: State {
@@ -74,16 +77,11 @@ impl FmuMechanics {
         Ok(mechanics)
     }
 
-    /// What the FMU has said since the last time.
-    pub fn take_log(&mut self) -> Vec<LogLine> {
-        self.slave.take_log()
-    }
-
     /// What went wrong, with what the FMU said of it.
     fn wrong(&mut self, error: &SlaveError) -> MechanicsError {
         let mut message = error.to_string();
-        let log = self.slave.take_log();
-        let warnings = log.iter().filter(|line| line.severity > Severity::Info).map(|line| &line.message);
+        self.said.extend(self.slave.take_log());
+        let warnings = self.said.iter().filter(|line| line.severity > Severity::Info).map(|line| &line.message);
         // The last one is a part of some errors.
         let said: Vec<_> = warnings.filter(|said| !message.contains(said.as_str())).map(String::as_str).collect();
         if !said.is_empty() {
@@ -209,6 +207,16 @@ impl Mechanics for FmuMechanics {
         let Some(marked) = &self.marked else { return Err(MechanicsError::no_way_back()) };
         self.state.clone_from(marked);
         self.slave.restore().map_err(|error| self.wrong(&error))
+    }
+
+    /// It speaks when it is asked for something: in the ticks between two exchanges nobody looks.
+    fn take_log(&mut self) -> Vec<Said> {
+        let mut lines = std::mem::take(&mut self.said);
+        if self.state.since == 0 {
+            lines.extend(self.slave.take_log());
+        }
+        let said = |line: LogLine| Said { time: line.time, severity: line.severity, text: line.words() };
+        lines.into_iter().map(said).collect()
     }
 }
 

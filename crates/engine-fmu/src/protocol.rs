@@ -174,6 +174,8 @@ impl Words {
 /// A [`LogLine`] on its way: one line of JSON.
 #[derive(Debug, Serialize, Deserialize)]
 struct Said {
+    /// Bits of the time (s).
+    time: u64,
     severity: u8,
     category: String,
     message: String,
@@ -181,13 +183,14 @@ struct Said {
 
 /// `line` as one line.
 pub(crate) fn log_to_line(line: LogLine) -> Option<Vec<u8>> {
-    let LogLine { severity, category, message } = line;
+    let LogLine { time, severity, category, message } = line;
+    let time = time.to_bits();
     let severity = match severity {
         Severity::Info => 0,
         Severity::Warning => 1,
         Severity::Error => 2,
     };
-    let mut bytes = serde_json::to_vec(&Said { severity, category, message }).ok()?;
+    let mut bytes = serde_json::to_vec(&Said { time, severity, category, message }).ok()?;
     bytes.push(b'\n');
     Some(bytes)
 }
@@ -195,13 +198,13 @@ pub(crate) fn log_to_line(line: LogLine) -> Option<Vec<u8>> {
 /// The lines in `bytes`. What is not one, because the FMU wrote over it, is left out.
 pub(crate) fn log_of_lines(bytes: &[u8]) -> impl Iterator<Item = LogLine> {
     bytes.split(|byte| *byte == b'\n').filter_map(|line| {
-        let Said { severity, category, message } = serde_json::from_slice(line).ok()?;
+        let Said { time, severity, category, message } = serde_json::from_slice(line).ok()?;
         let severity = match severity {
             0 => Severity::Info,
             1 => Severity::Warning,
             _ => Severity::Error,
         };
-        Some(LogLine { severity, category, message })
+        Some(LogLine { time: f64::from_bits(time), severity, category, message })
     })
 }
 
@@ -253,6 +256,7 @@ mod tests {
     #[test]
     fn log_arrives_without_what_was_written_over() {
         let line = |message: &str| LogLine {
+            time: 0.1 + 0.2,
             severity: Severity::Warning,
             category: "logEvents".into(),
             message: message.into(),

@@ -26,5 +26,6 @@ pub use error::{ArchiveProblem, DescriptionProblem, FmuError, LibraryProblem};
 pub use feedthrough::Feedthrough;
 pub use loaded::Loaded;
 pub use log::hear_at_once;
+pub use servobench_base::Severity;
 pub use setup::{Setup, Value};
-pub use slave::{Capabilities, LogLine, Port, Progress, Severity, Slave, SlaveError};
+pub use slave::{Capabilities, LogLine, Port, Progress, Slave, SlaveError};

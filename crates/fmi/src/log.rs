@@ -1,8 +1,10 @@
 //! What an FMU says: messages are kept until they are asked for, within limits.
-use crate::slave::{LogLine, Severity};
+use crate::slave::LogLine;
+use servobench_base::Severity;
 use std::ffi::c_int;
 use std::mem;
-use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// Lines that are kept; a line that the FMU repeats at every step would fill the memory.
 const MOST_LINES: usize = 10_000;
@@ -19,9 +21,30 @@ pub fn hear_at_once(hear: fn(&LogLine) -> bool) {
     HEAR.get_or_init(|| hear);
 }
 
+/// Where an instance is (s). It is stamped on what the FMU says, from whichever thread.
+#[derive(Debug, Clone)]
+pub(crate) struct Clock(Arc<AtomicU64>);
+
+impl Clock {
+    pub(crate) fn at(time: f64) -> Self {
+        Self(Arc::new(AtomicU64::new(time.to_bits())))
+    }
+
+    pub(crate) fn time(&self) -> f64 {
+        f64::from_bits(self.0.load(Ordering::Relaxed))
+    }
+
+    pub(crate) fn set(&self, time: f64) {
+        self.0.store(time.to_bits(), Ordering::Relaxed);
+    }
+}
+
 /// The log of an instance. The FMU may write to it from threads of its own.
-#[derive(Debug, Default)]
-pub(crate) struct Log(Mutex<Kept>);
+#[derive(Debug)]
+pub(crate) struct Log {
+    clock: Clock,
+    kept: Mutex<Kept>,
+}
 
 #[derive(Debug, Default)]
 struct Kept {
@@ -29,14 +52,21 @@ struct Kept {
     bytes: usize,
     /// Lines that were not kept.
     dropped: usize,
+    /// When the last of them was said (s).
+    dropped_at: f64,
     /// The last message, whether it was kept or not.
     last: String,
 }
 
 impl Log {
+    /// The log of an instance that is where `clock` says.
+    pub(crate) fn new(clock: Clock) -> Self {
+        Self { clock, kept: Mutex::default() }
+    }
+
     fn kept(&self) -> MutexGuard<'_, Kept> {
         // Nothing is left half done by a thread that panicked.
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Takes a message; `status` is that of the standard, which has the same numbers in both versions.
@@ -48,7 +78,8 @@ impl Log {
         };
         let message = message.trim_end();
         message.clone_into(&mut self.kept().last);
-        let line = LogLine { severity, category: category.to_owned(), message: message.to_owned() };
+        let line =
+            LogLine { time: self.clock.time(), severity, category: category.to_owned(), message: message.to_owned() };
         if HEAR.get().is_some_and(|hear| hear(&line)) {
             return;
         }
@@ -59,6 +90,7 @@ impl Log {
             kept.lines.push(line);
         } else {
             kept.dropped += 1;
+            kept.dropped_at = line.time;
         }
     }
 
@@ -75,7 +107,8 @@ impl Log {
         let mut lines = mem::take(&mut kept.lines);
         if dropped > 0 {
             let message = format!("{dropped} more lines were not kept");
-            lines.push(LogLine { severity: Severity::Warning, category: String::new(), message });
+            let time = kept.dropped_at;
+            lines.push(LogLine { time, severity: Severity::Warning, category: String::new(), message });
         }
         lines
     }
@@ -87,7 +120,7 @@ mod tests {
 
     #[test]
     fn a_flood_is_cut_and_said() {
-        let log = Log::default();
+        let log = Log::new(Clock::at(0.0));
         for number in 0..MOST_LINES + 7 {
             log.push(0, "", &format!("{number}\n"));
         }
@@ -98,5 +131,17 @@ mod tests {
         assert!(log.take().is_empty());
         log.push(3, "c", &"x".repeat(MOST_BYTES));
         assert_eq!(log.take().len(), 1, "too long to be kept");
+    }
+
+    #[test]
+    fn a_line_has_the_time_at_which_it_was_said() {
+        let clock = Clock::at(-1.0);
+        let log = Log::new(clock.clone());
+        for time in [-1.0, 0.0, 0.25] {
+            clock.set(time);
+            log.push(0, "", "here");
+        }
+        let times: Vec<f64> = log.take().iter().map(|line| line.time).collect();
+        assert_eq!(times, [-1.0, 0.0, 0.25]);
     }
 }

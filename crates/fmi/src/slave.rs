@@ -1,4 +1,5 @@
 //! A co-simulation FMU that is initialised, whichever version it is of, and whether it runs here or in a process of its own.
+use servobench_base::Severity;
 use thiserror::Error;
 
 /// A scalar that is exchanged: a variable, or an element of an array.
@@ -35,26 +36,34 @@ pub struct Capabilities {
     pub variable_step: bool,
 }
 
-/// How much a line of an FMU's log matters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Severity {
-    /// The status OK: it informs.
-    Info,
-    /// The status warning.
-    Warning,
-    /// The statuses discard, error and fatal.
-    Error,
-}
-
 /// What an FMU said.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct LogLine {
-    /// How much it matters.
+    /// Simulation time (s): the start of the step in which it was said; between two steps where it was; before the first one
+    /// its start.
+    pub time: f64,
+    /// How much it matters: the status OK informs, warning warns, discard, error and fatal are errors.
     pub severity: Severity,
     /// Category as the FMU names it.
     pub category: String,
     /// The text.
     pub message: String,
+}
+
+/// Categories of the standard that say no more than the severity, or nothing.
+const PLAIN: [&str; 3] = ["logStatusWarning", "logStatusError", "logAll"];
+
+impl LogLine {
+    /// Category and text, as a person reads it; without a category of the standard that says no more than the severity.
+    #[must_use]
+    pub fn words(&self) -> String {
+        let Self { category, message, .. } = self;
+        if category.is_empty() || PLAIN.contains(&category.as_str()) {
+            message.clone()
+        } else {
+            format!("{category}: {message}")
+        }
+    }
 }
 
 /// An initialised FMU that is stepped. Its inputs and outputs are those that it was wired with.
@@ -96,7 +105,7 @@ pub trait Slave: Send {
     /// [`SlaveError`], also if there is none.
     fn restore(&mut self) -> Result<(), SlaveError>;
 
-    /// What it has said since the last time.
+    /// What it has said since the last time. What it says in a step that is repeated it says again.
     fn take_log(&mut self) -> Vec<LogLine>;
 }
 
@@ -181,4 +190,18 @@ fn tried(shortest: Option<f64>) -> String {
 
 fn said(message: &str) -> String {
     if message.is_empty() { String::new() } else { format!(": {message}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_category_is_said_where_it_says_something() {
+        let words = |category: &str| {
+            let (category, message) = (category.to_owned(), "stiff".to_owned());
+            LogLine { time: 0.0, severity: Severity::Warning, category, message }.words()
+        };
+        assert_eq!(["", "logStatusWarning", "logEvents"].map(words), ["stiff", "stiff", "logEvents: stiff"]);
+    }
 }

@@ -18,7 +18,8 @@ impl Build {
             bodies: vec!["motor".into(), "load".into()],
         };
         let rate = Rate::new(hertz).unwrap();
-        let recording = Recording { about, rate, channels: vec![], moves: vec![], events: vec![], signals: vec![] };
+        let recording =
+            Recording { about, rate, channels: vec![], moves: vec![], events: vec![], signals: vec![], log: vec![] };
         Self { recording, rows }
     }
 

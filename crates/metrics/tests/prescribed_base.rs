@@ -125,6 +125,7 @@ fn recording(profile: &Profile, omega: f64) -> Recording {
         }],
         events: vec![],
         signals: vec![],
+        log: vec![],
     }
 }
 

@@ -26,7 +26,7 @@ pub use fmu::{
 pub use friction::{DryFriction, Grip};
 pub use load_coordinate::{LoadCoordinate, PosedJoint};
 pub use mechanics::{
-    Actuation, BodyState, Drive, Engine, Input, Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Model,
+    Actuation, BodyState, Drive, Engine, Input, Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Model, Said,
 };
 pub use mjcf::chain_to_mjcf;
 pub use refusal::{Refusal, RefusedAt};

@@ -2,7 +2,7 @@
 use crate::chain::Chain;
 use crate::fmu::{FmuMistake, FmuModel};
 use crate::refusal::{Refusal, in_one_line};
-use servobench_base::{ParamError, Setpoint, finite, positive};
+use servobench_base::{ParamError, Setpoint, Severity, finite, positive};
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -48,6 +48,17 @@ pub struct Input {
     pub load_disturbance: f64,
 }
 
+/// What a foreign model says of itself, in its own words.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Said {
+    /// Simulation time at which it said it (s).
+    pub time: f64,
+    /// How much it matters.
+    pub severity: Severity,
+    /// A line of text.
+    pub text: String,
+}
+
 /// A simulated axis.
 ///
 /// `advance` goes from tick k to k+1; before the first call the state is that of tick 0. Neither method allocates memory;
@@ -86,6 +97,11 @@ pub trait Mechanics: Send {
     /// [`MechanicsError`], also where there is no mark.
     fn rewind(&mut self) -> Result<(), MechanicsError> {
         Err(MechanicsError::no_way_back())
+    }
+
+    /// What it has said since the last time, also after an error.
+    fn take_log(&mut self) -> Vec<Said> {
+        Vec::new()
     }
 }
 

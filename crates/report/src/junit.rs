@@ -2,11 +2,12 @@
 use crate::error::ReportError;
 use crate::metric_table::metric_table;
 use crate::results::{Outcome, Results, RunResult};
+use crate::said::last_words;
 use crate::style::Style;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 /// One test case for each scenario and engine. A missed limit is a failure, a run that could not be carried out is an
-/// error; the metrics are the case's output. Times of test cases are wall-clock times by custom, and results hold
+/// error; the metrics are the case's output, what FMUs said at last is its error output. Times of test cases are wall-clock times by custom, and results hold
 /// none: they are left out.
 ///
 /// # Errors
@@ -24,6 +25,10 @@ fn case(run: &RunResult) -> TestCase {
     case.set_classname(run.file.as_deref().unwrap_or("servobench"));
     if run.verdict.is_whole() && !run.metrics.is_empty() {
         case.set_system_out(metric_table(run, Style::default()));
+    }
+    let said = last_words(run, Style::default().width);
+    if !said.is_empty() {
+        case.set_system_err(said.join("\n"));
     }
     case
 }
@@ -76,6 +81,8 @@ mod tests {
             "the mechanics diverged at 0.123 s: the position of `load` is not finite; take a smaller step than 1.00 ms";
         assert_eq!(message.as_ref().unwrap().as_str(), whole);
         assert_eq!(description.as_ref().unwrap().as_str(), whole, "a message of two parts is one line");
+        let said = cases[4].system_err.as_ref().unwrap().as_str();
+        assert!(said.ends_with("  0.1230 s  error: the pressure in `tank.p` is negative"), "{said}");
     }
 
     #[test]

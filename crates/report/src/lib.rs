@@ -15,6 +15,7 @@ mod object_table;
 mod ordered;
 mod plan;
 mod results;
+mod said;
 #[cfg(test)]
 mod samples;
 mod style;

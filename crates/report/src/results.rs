@@ -2,8 +2,9 @@
 use crate::error::ReportError;
 use crate::ordered::Ordered;
 use serde::{Deserialize, Serialize};
+use servobench_base::Severity;
 use servobench_metrics::{Limit, Metric, MetricSet, Metrics, MoveMetrics, Name, Quantity, Verdict};
-use servobench_trace::{Event, Recording};
+use servobench_trace::{Event, LogEntry, Recording};
 
 /// Name and version of the schema.
 const SCHEMA_NAME: &str = "servobench-results/1";
@@ -71,6 +72,9 @@ pub struct RunResult {
     pub(crate) moves: Vec<MoveResult>,
     /// What happened: limits that bound, warnings.
     pub(crate) events: Vec<EventResult>,
+    /// What FMUs said; left out where they said nothing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) log: Vec<LogResult>,
     /// File of the recording, beside the results; `null` when none was written.
     pub recording: Option<String>,
 }
@@ -115,6 +119,32 @@ pub(crate) struct EventResult {
     pub(crate) source: String,
     /// What it was, in words.
     pub(crate) message: String,
+}
+
+/// What an FMU said, or how often it said it again.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct LogResult {
+    /// Who said it.
+    pub(crate) source: String,
+    /// How much it matters.
+    pub(crate) severity: SeverityResult,
+    /// When it was said (s), for the first time if it was more than once.
+    pub(crate) start: f64,
+    /// When it was said for the last time (s).
+    pub(crate) end: f64,
+    /// How often it was said between these.
+    pub(crate) times: u64,
+    /// The line.
+    pub(crate) text: String,
+}
+
+/// How much a line matters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum SeverityResult {
+    Info,
+    Warning,
+    Error,
 }
 
 /// Which run it is.
@@ -209,6 +239,7 @@ impl RunResult {
 
     fn of(run: RunIdentity, recording: Option<&Recording>, metrics: &Metrics) -> Self {
         let events = recording.map(|recording| recording.events.as_slice()).unwrap_or_default();
+        let log = recording.map(|recording| recording.log.as_slice()).unwrap_or_default();
         Self {
             name: run.name,
             file: run.file,
@@ -221,6 +252,7 @@ impl RunResult {
             absent: metrics.run.absences().map(|(name, why)| (name.to_string(), why.to_string())).collect(),
             moves: metrics.moves.iter().map(MoveResult::from).collect(),
             events: events.iter().map(EventResult::from).collect(),
+            log: log.iter().map(LogResult::from).collect(),
             recording: run.recording,
         }
     }
@@ -265,6 +297,33 @@ impl From<&MoveMetrics> for MoveResult {
 impl From<&Event> for EventResult {
     fn from(event: &Event) -> Self {
         Self { start: event.start, end: event.end, source: event.source.clone(), message: event.message.clone() }
+    }
+}
+
+impl From<&LogEntry> for LogResult {
+    fn from(entry: &LogEntry) -> Self {
+        let LogEntry { source, severity, start, end, times, text } = entry.clone();
+        Self { source, severity: severity.into(), start, end, times, text }
+    }
+}
+
+impl From<Severity> for SeverityResult {
+    fn from(severity: Severity) -> Self {
+        match severity {
+            Severity::Info => Self::Info,
+            Severity::Warning => Self::Warning,
+            Severity::Error => Self::Error,
+        }
+    }
+}
+
+impl From<SeverityResult> for Severity {
+    fn from(severity: SeverityResult) -> Self {
+        match severity {
+            SeverityResult::Info => Self::Info,
+            SeverityResult::Warning => Self::Warning,
+            SeverityResult::Error => Self::Error,
+        }
     }
 }
 
@@ -318,6 +377,14 @@ mod tests {
             }],
             events: vec![Event { start: 0.1, end: 0.1, source: "test".into(), message: "an event".into() }],
             signals: vec![],
+            log: vec![LogEntry {
+                source: "FMU load".into(),
+                severity: Severity::Warning,
+                start: 0.1,
+                end: 0.1,
+                times: 1,
+                text: "stiff".into(),
+            }],
         };
         let mut metrics = measure(&recording, &Question::default());
         let limits = [Limit::at_most(Name::FollowingErrorPeakLoad, 0.1e-3), Limit::at_most(Name::SettlingTime, 0.1)];
@@ -369,7 +436,7 @@ mod tests {
         let why = "settling_time could not be measured: `load.position` is not recorded";
         assert_eq!(run.reasons, [why]);
         assert_eq!(run.moves[0].metrics.get("setpoint_velocity_ratio").unwrap().value, Some(0.8));
-        assert_eq!(run.events.len(), 1);
+        assert_eq!((run.events.len(), run.log.len()), (1, 1));
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Results for the tests: the move of Lambrechts under two limits, a run that missed limits, one that broke off.
-use crate::results::{EventResult, MetricResult, Outcome, Results, RunResult};
+use crate::results::{EventResult, LogResult, MetricResult, Outcome, Results, RunResult};
+use servobench_base::Severity;
 use servobench_metrics::Name;
 use servobench_trace::Move;
 
@@ -30,6 +31,7 @@ pub(crate) fn run(name: &str, engine: &str, metrics: impl IntoIterator<Item = (S
             .collect(),
         moves: vec![],
         events: vec![],
+        log: vec![],
         recording: Some(format!("{name}.{engine}.parquet")),
     }
 }
@@ -121,6 +123,14 @@ pub(crate) fn kept() -> RunResult {
         source: "current loop".into(),
         message: "voltage limit binds".into(),
     }];
+    run.log = vec![LogResult {
+        source: "FMU load".into(),
+        severity: Severity::Warning.into(),
+        start: 0.2,
+        end: 0.2,
+        times: 1,
+        text: "the valve is closed against a pressure of more than 2 bar".into(),
+    }];
     run
 }
 
@@ -128,6 +138,7 @@ pub(crate) fn kept() -> RunResult {
 pub(crate) fn wrong() -> RunResult {
     let mut run = broken();
     run.verdict = Outcome::Input;
+    run.log.clear();
     run.reasons = vec!["`axis.mjcf.file`: there is no `arm.xml`".into()];
     run
 }
@@ -141,6 +152,24 @@ pub(crate) fn broken() -> RunResult {
             .into(),
     ];
     run.absent = [].into_iter().collect();
+    let said = |severity: Severity, time: f64, times: u64, text: &str| LogResult {
+        source: "FMU load".into(),
+        severity: severity.into(),
+        start: 0.001,
+        end: time,
+        times,
+        text: text.into(),
+    };
+    run.log = vec![
+        said(Severity::Info, 0.001, 1, "solver: Gear, order 5"),
+        said(
+            Severity::Warning,
+            0.122,
+            121,
+            "Newton's method did not converge within 10 iterations; a smaller step is taken",
+        ),
+        said(Severity::Error, 0.123, 1, "the pressure in `tank.p` is negative"),
+    ];
     run
 }
 

@@ -3,6 +3,7 @@ use crate::bound_limits::bound_limits;
 use crate::metric_table::metric_table;
 use crate::ordered::Ordered;
 use crate::results::{MetricResult, Outcome, Results, RunResult};
+use crate::said::{last_words, warnings};
 use crate::style::{Ink, Style};
 use crate::text::{elided, widest, wrapped};
 use servobench_metrics::{Name, Quantity};
@@ -31,7 +32,8 @@ const OUTCOMES: [(Outcome, &str, &str, Ink); 5] = [
 ];
 
 /// Runs with their verdicts and main numbers: wrong input, errors and failures first, with the reasons and the limits
-/// missed; then what passed; then the count. A single run, and with `all_metrics` every run, shows all its metrics.
+/// missed; then what passed; then the count. What FMUs said is below their run: the last of it if the run broke off, else how
+/// much of it warns. A single run, and with `all_metrics` every run, shows all its metrics.
 ///
 /// MOVE is the set-point's duration, SETTLING the time after it until the load stays in its window, PEAK ERR the peak
 /// following error of the load, VIBR P-P its residual vibration, peak-to-peak.
@@ -105,17 +107,24 @@ fn row(table: &mut String, start: &str, run: &RunResult, style: Style) {
         }
     } else {
         for reason in &run.reasons {
-            indented(table, reason, style);
+            indented(table, reason, None, style);
         }
     }
     for bound in bound_limits(&run.events) {
         line(table, &format!("{:INDENT$}{}", "", style.paint(Ink::Warning, &bound)));
     }
+    if run.verdict.is_whole() {
+        warnings(run).iter().for_each(|warning| indented(table, warning, Some(Ink::Warning), style));
+    } else {
+        let said = last_words(run, style.width.saturating_sub(INDENT));
+        said.iter().for_each(|said| line(table, &format!("{:INDENT$}{said}", "")));
+    }
 }
 
 /// `text` below a row; what does not fit in one line is indented further.
-fn indented(table: &mut String, text: &str, style: Style) {
+fn indented(table: &mut String, text: &str, ink: Option<Ink>, style: Style) {
     for (k, part) in wrapped(text, style.width.saturating_sub(INDENT + 2)).iter().enumerate() {
+        let part = ink.map_or_else(|| part.clone(), |ink| style.paint(ink, part));
         line(table, &format!("{:INDENT$}{}{part}", "", if k == 0 { "" } else { "  " }));
     }
 }
@@ -126,7 +135,7 @@ fn missed_limits(table: &mut String, metrics: &Ordered<MetricResult>, absent: &O
     for (metric_name, metric) in missed {
         let Some(value) = metric.value else {
             let why = absent.get(metric_name).map_or("it is not measured here", String::as_str);
-            indented(table, &format!("{metric_name} could not be measured: {why}"), style);
+            indented(table, &format!("{metric_name} could not be measured: {why}"), None, style);
             continue;
         };
         let digits = metric.digits(value);
@@ -194,6 +203,12 @@ mod tests {
         ERROR      two-mass              rapier          –         –         –         –
                    the mechanics diverged at 0.123 s: the position of `load` is not
                      finite; take a smaller step than 1.00 ms
+                   FMU load said:
+                     0.0010 s  solver: Gear, order 5
+                     0.1220 s  warning: Newton's method did not converge within
+                               10 iterations; a smaller step is taken (121 times since
+                               0.0010 s)
+                     0.1230 s  error: the pressure in `tank.p` is negative
         FAILED     feed-axis-…tick-slip  mujoco     500 ms   35.2 ms   45.1 µm   8.30 µm
                    settling_time            35.2 ms  limit 20.0 ms, 76 % over
                    residual_vibration_pp    8.30 µm  limit 2.00 µm, 4.2 times as much
@@ -204,6 +219,8 @@ mod tests {
         no limits  lambrechts-snap       exact      1.35 s       0 s    730 nm    210 nm
         passed     kept                  exact      1.00 s         –         –         –
                    voltage limit bound for 500 ms
+                   FMU load logged 1 warning, the last at 0.2000 s: the valve is
+                     closed against a pressure of more than 2 bar
 
         6 runs: 1 wrong input, 1 not carried out, 1 failed, 2 without limits, 1 passed
         "#);

@@ -10,7 +10,8 @@ const FILES: [&str; 2] = [
     {"settling_time":{"value":0.06,"unit":"s","limit":0.05,"pass":false},"following_error_cruise_load":{"value":null,
     "unit":"m","limit":1e-6,"limit_min":-1e-6,"pass":false}},"absent":{"following_error_cruise_load":"no cruise"},"moves":
     [{"label":"move","start":0.1,"end":1.4,"metrics":{"move_time":{"value":1.3,"unit":"s","limit":null,"pass":null}}}],
-    "events":[{"start":0.2,"end":0.3,"source":"drive","message":"voltage limit"}],"recording":null},
+    "events":[{"start":0.2,"end":0.3,"source":"drive","message":"voltage limit"}],
+    "log":[{"source":"FMU load","severity":"warning","start":0.2,"end":0.3,"times":3,"text":"stiff"}],"recording":null},
     {"name":"broken","file":null,"engine":"mujoco","verdict":"error","duration":0.0,"reasons":["diverged"],"metrics":{},
     "absent":{},"moves":[],"events":[],"recording":"broken.parquet"}]}"#,
 ];

@@ -18,10 +18,9 @@ use servobench_base::{Divider, Tick};
 use servobench_coupling::{
     Advance, CouplingError, InputPort, Iteration, Master, Member, Method, Network, Order, Settings,
 };
-use servobench_fmi::{LogLine, Slave};
+use servobench_fmi::Slave;
 use servobench_plant::{FmuMistake, FmuPartner};
 use servobench_scenario::{CoSimulation, CouplingMethod, Scenario};
-use servobench_trace::Event;
 use std::num::NonZeroU32;
 use wiring::Wiring;
 
@@ -124,6 +123,7 @@ impl Coupled {
 
     /// Runs to the end.
     pub(crate) fn run(mut self, ticks: u64, progress: &mut dyn FnMut(f64)) -> Outcome {
+        self.listen();
         let (last, mut told, mut failure) = (ticks - 1, 0, None);
         while failure.is_none() && self.master.tick().0 < last {
             match self.master.advance() {
@@ -135,6 +135,7 @@ impl Coupled {
                 }
                 Err(error) => failure = Some(failed(error, self.master.time())),
             }
+            self.listen();
             if self.master.tick().0 >= told {
                 told = self.master.tick().0 + PROGRESS_EVERY;
                 progress(self.master.tick().0 as f64 / ticks as f64);
@@ -144,35 +145,38 @@ impl Coupled {
         self.finish(failure)
     }
 
-    fn finish(self, failure: Option<Failure>) -> Outcome {
-        let names = self.names.clone();
-        let (axis, slaves) = self.parted();
-        let mut recorded = axis.recorded_to_the_end(failure.is_none());
-        let t = recorded.time();
-        for (name, mut slave) in names.iter().zip(slaves) {
-            for LogLine { category, message, .. } in slave.take_log() {
-                let message = if category.is_empty() { message } else { format!("{category}: {message}") };
-                recorded.recorder.note_event(Event { start: t, end: t, source: format!("FMU {name}"), message });
+    /// Notes what the FMUs have said since the last time. What they say in a step that is repeated they say again.
+    fn listen(&mut self) {
+        for (index, name) in self.names.iter().enumerate() {
+            let Part::Fmu(slave) = self.master.block_mut(index) else { continue };
+            let said = slave.take_log();
+            if said.is_empty() {
+                continue;
+            }
+            let Part::Axis(axis) = self.master.block_mut(self.names.len()) else { continue };
+            let source = format!("FMU {name}");
+            for line in said {
+                axis.recorded.note_said(&source, line.severity, line.time, &line.words());
             }
         }
-        recorded.finish(failure)
+    }
+
+    fn finish(self, failure: Option<Failure>) -> Outcome {
+        self.into_axis().recorded_to_the_end(failure.is_none()).finish(failure)
     }
 
     /// The axis without its company.
     pub(crate) fn alone(self) -> Recorded {
-        self.parted().0.recorded
+        self.into_axis().recorded
     }
 
-    fn parted(self) -> (Axis, Vec<Box<dyn Slave>>) {
-        let (mut axis, mut slaves) = (None, Vec::new());
-        for part in self.master.into_blocks() {
-            match part {
-                Part::Axis(block) => axis = Some(*block),
-                Part::Fmu(slave) => slaves.push(slave),
-            }
-        }
+    fn into_axis(self) -> Axis {
+        let axis = self.master.into_blocks().into_iter().find_map(|part| match part {
+            Part::Axis(axis) => Some(*axis),
+            Part::Fmu(_) => None,
+        });
         let Some(axis) = axis else { unreachable!("the axis is a block of every coupling") };
-        (axis, slaves)
+        axis
     }
 
     /// Every connection with how late it is.

@@ -4,9 +4,12 @@ use crate::closed_loop::{ClosedLoop, Source, State};
 use crate::limit_watch::LimitWatch;
 use crate::run::{Failure, Outcome};
 use crate::stepper::External;
-use servobench_base::Tick;
+use servobench_base::{Severity, Tick};
 use servobench_plant::MechanicsError;
 use servobench_trace::{Mark, Recorder};
+
+/// Who speaks where mechanics do: no engine but `fmu` has anything to say.
+const MECHANICS: &str = "FMU of the axis";
 
 /// A closed loop that is recorded tick by tick.
 pub(crate) struct Recorded {
@@ -52,7 +55,22 @@ impl Recorded {
         let time = self.time();
         self.closed_loop.integrate(now).map_err(|reason| Failure { time, reason })?;
         self.tick += 1;
+        self.hear_mechanics();
         Ok(())
+    }
+
+    /// Notes what the mechanics have said.
+    fn hear_mechanics(&mut self) {
+        for said in self.closed_loop.mechanics.take_log() {
+            self.note_said(MECHANICS, said.severity, said.time, &said.text);
+        }
+    }
+
+    /// Notes what `source` said at `time` (s), which is its own word: nothing is said after the present.
+    pub(crate) fn note_said(&mut self, source: &str, severity: Severity, time: f64, text: &str) {
+        let now = self.time();
+        let time = if time.is_finite() { time.clamp(0.0, now) } else { now };
+        self.recorder.note_said(source, severity, time, text);
     }
 
     /// The time of the tick that comes next (s).
@@ -88,6 +106,7 @@ impl Recorded {
 
     /// What the run leaves behind.
     pub(crate) fn finish(mut self, failure: Option<Failure>) -> Outcome {
+        self.hear_mechanics();
         let t = failure.as_ref().map_or_else(|| self.time(), |failure| failure.time);
         self.watch.finish(t, &mut self.recorder);
         if let Source::Network(network, delay) = &mut self.closed_loop.state.source {

@@ -54,6 +54,7 @@ mod tests {
             moves: vec![],
             events: vec![],
             signals: vec![],
+            log: vec![],
         }
     }
 

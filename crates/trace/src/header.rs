@@ -6,9 +6,10 @@
 //! | `servobench.recording` | JSON: all of a [`Recording`] but the values |
 //! | `servobench.seal` | digest of the whole file, see [`seal`](crate::seal) |
 use crate::channel::{Channel, ChannelSpec};
+use crate::log::LogEntry;
 use crate::recording::{About, Event, Move, Recording, Signal};
 use serde::{Deserialize, Serialize};
-use servobench_base::Rate;
+use servobench_base::{Rate, Severity};
 
 /// Version of the layout.
 pub(crate) const FORMAT: &str = "2";
@@ -33,6 +34,9 @@ pub(crate) struct Header {
     moves: Vec<MoveHeader>,
     events: Vec<EventHeader>,
     signals: Vec<SignalHeader>,
+    /// Left out where nothing was said.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    log: Vec<LogHeader>,
 }
 
 /// A channel without its values.
@@ -74,6 +78,25 @@ struct SignalHeader {
     source: String,
     name: String,
     changes: Vec<(Number, String)>,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LogHeader {
+    source: String,
+    severity: SeverityWord,
+    start: Number,
+    end: Number,
+    times: u64,
+    text: String,
+}
+
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum SeverityWord {
+    Info,
+    Warning,
+    Error,
 }
 
 /// A number in JSON, which has no word for infinity: `"inf"`, `"-inf"` and `"NaN"` are written as text.
@@ -176,6 +199,40 @@ impl From<SignalHeader> for Signal {
     }
 }
 
+impl From<Severity> for SeverityWord {
+    fn from(severity: Severity) -> Self {
+        match severity {
+            Severity::Info => Self::Info,
+            Severity::Warning => Self::Warning,
+            Severity::Error => Self::Error,
+        }
+    }
+}
+
+impl From<SeverityWord> for Severity {
+    fn from(word: SeverityWord) -> Self {
+        match word {
+            SeverityWord::Info => Self::Info,
+            SeverityWord::Warning => Self::Warning,
+            SeverityWord::Error => Self::Error,
+        }
+    }
+}
+
+impl From<&LogEntry> for LogHeader {
+    fn from(entry: &LogEntry) -> Self {
+        let LogEntry { source, severity, start, end, times, text } = entry.clone();
+        Self { source, severity: severity.into(), start: start.into(), end: end.into(), times, text }
+    }
+}
+
+impl From<LogHeader> for LogEntry {
+    fn from(header: LogHeader) -> Self {
+        let LogHeader { source, severity, start, end, times, text } = header;
+        Self { source, severity: severity.into(), start: start.into(), end: end.into(), times, text }
+    }
+}
+
 impl Header {
     /// Header of `recording`.
     pub(crate) fn of(recording: &Recording) -> Self {
@@ -197,6 +254,7 @@ impl Header {
             moves: recording.moves.iter().map(MoveHeader::from).collect(),
             events: recording.events.iter().map(EventHeader::from).collect(),
             signals: recording.signals.iter().map(SignalHeader::from).collect(),
+            log: recording.log.iter().map(LogHeader::from).collect(),
         }
     }
 
@@ -217,6 +275,7 @@ impl Header {
             moves: self.moves.into_iter().map(Move::from).collect(),
             events: self.events.into_iter().map(Event::from).collect(),
             signals: self.signals.into_iter().map(Signal::from).collect(),
+            log: self.log.into_iter().map(LogEntry::from).collect(),
             about: About {
                 scenario: self.scenario,
                 engine: self.engine,

@@ -1,5 +1,6 @@
 //! `Recording`: what a run leaves behind. Channels with unit, rate and writer, all sampled at one rate; the moves that
-//! were made; the events that happened; the signals that have one value out of a few. As a file it is Parquet, which every data tool opens.
+//! were made; the events that happened; the signals that have one value out of a few; what the parts said of themselves. As a file it
+//! is Parquet, which every data tool opens.
 //!
 //! A row is written at tick k **before** the integration to k+1, so all its values belong to the same instant.
 
@@ -7,6 +8,7 @@ mod channel;
 mod envelope;
 mod error;
 mod header;
+mod log;
 mod read;
 mod recorder;
 mod recording;
@@ -17,6 +19,7 @@ mod write;
 pub use channel::{Channel, ChannelSpec};
 pub use envelope::envelope;
 pub use error::TraceError;
+pub use log::LogEntry;
 pub use recorder::{Mark, Recorder, SignalId};
 pub use recording::{About, Event, Move, Recording, Signal};
 pub use whole_file::{stream_whole, write_whole};

@@ -1,7 +1,8 @@
 //! Fills a recording row by row, without allocating per row.
 use crate::channel::{Channel, ChannelSpec};
+use crate::log::Log;
 use crate::recording::{About, Event, Move, Recording, Signal};
-use servobench_base::Rate;
+use servobench_base::{Rate, Severity};
 
 /// Rows that are collected before they go to the columns: a block stays in the first cache.
 const BLOCK: usize = 64;
@@ -25,6 +26,7 @@ pub struct Recorder {
     recording: Recording,
     /// Up to [`BLOCK`] rows, one after the other.
     block: Vec<f64>,
+    log: Log,
     is_silent: bool,
 }
 
@@ -34,8 +36,9 @@ impl Recorder {
     pub fn new(about: About, rate: Rate, channels: Vec<ChannelSpec>, rows: usize) -> Self {
         let block = Vec::with_capacity(BLOCK * channels.len());
         let channels = channels.into_iter().map(|spec| Channel { spec, values: Vec::with_capacity(rows) }).collect();
-        let recording = Recording { about, rate, channels, moves: vec![], events: vec![], signals: vec![] };
-        Self { recording, block, is_silent: false }
+        let recording =
+            Recording { about, rate, channels, moves: vec![], events: vec![], signals: vec![], log: vec![] };
+        Self { recording, block, log: Log::default(), is_silent: false }
     }
 
     /// A recorder that keeps nothing, for a loop that nobody records and that may go on for ever.
@@ -86,6 +89,13 @@ impl Recorder {
         }
     }
 
+    /// Notes what `source` said of itself at `time` (s). Of what it says again and again most is only counted.
+    pub fn note_said(&mut self, source: &str, severity: Severity, time: f64, text: &str) {
+        if !self.is_silent {
+            self.log.note(source, severity, time, text);
+        }
+    }
+
     /// A signal that has no value yet.
     pub fn add_signal(&mut self, source: &str, name: &str) -> SignalId {
         self.recording.signals.push(Signal { source: source.into(), name: name.into(), changes: Vec::new() });
@@ -114,7 +124,7 @@ impl Recorder {
         Mark { rows, moves: self.recording.moves.len(), events: self.recording.events.len(), time }
     }
 
-    /// Forgets what has come since `mark`.
+    /// Forgets what has come since `mark`. What was said stays said.
     pub fn rewind(&mut self, mark: &Mark) {
         self.flush();
         let Recording { channels, moves, events, signals, .. } = &mut self.recording;
@@ -137,6 +147,7 @@ impl Recorder {
             self.flush();
         }
         self.recording.events.sort_by(|one, two| one.start.total_cmp(&two.start));
+        self.recording.log = self.log.finish();
         self.recording
     }
 }

@@ -1,5 +1,6 @@
 //! A finished recording.
 use crate::channel::Channel;
+use crate::log::LogEntry;
 use servobench_base::{Rate, Tick};
 
 /// What a recording is of.
@@ -70,7 +71,7 @@ impl Signal {
     }
 }
 
-/// Channels of equal length, sampled together; moves; events; signals.
+/// Channels of equal length, sampled together; moves; events; signals; log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
     /// What it is of.
@@ -85,6 +86,8 @@ pub struct Recording {
     pub events: Vec<Event>,
     /// The signals, those of one source together.
     pub signals: Vec<Signal>,
+    /// What the parts of the run said of themselves, in order of time.
+    pub log: Vec<LogEntry>,
 }
 
 impl Recording {

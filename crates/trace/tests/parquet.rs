@@ -1,7 +1,7 @@
 //! A recording comes back from its file to the bit, or is refused with the reason.
 use proptest::prelude::*;
-use servobench_base::Rate;
-use servobench_trace::{About, Channel, ChannelSpec, Event, Move, Recording, Signal, TraceError};
+use servobench_base::{Rate, Severity};
+use servobench_trace::{About, Channel, ChannelSpec, Event, LogEntry, Move, Recording, Signal, TraceError};
 use std::fs;
 use std::io::{Seek, SeekFrom, Write};
 use std::path::Path;
@@ -46,6 +46,12 @@ fn signal() -> impl Strategy<Value = Signal> {
     (any::<String>(), any::<String>(), changes).prop_map(|(source, name, changes)| Signal { source, name, changes })
 }
 
+fn log_entry() -> impl Strategy<Value = LogEntry> {
+    let severity = prop::sample::select(vec![Severity::Info, Severity::Warning, Severity::Error]);
+    (any::<String>(), severity, number(), number(), any::<u64>(), any::<String>())
+        .prop_map(|(source, severity, start, end, times, text)| LogEntry { source, severity, start, end, times, text })
+}
+
 fn spec() -> impl Strategy<Value = ChannelSpec> {
     ("c\\.[a-zµ_]{1,9}(\\.[a-z_]{1,9})?", any::<String>(), any::<String>(), rate())
         .prop_map(|(name, unit, writer, rate)| ChannelSpec { name, unit, writer, rate })
@@ -68,14 +74,16 @@ fn any_recording() -> impl Strategy<Value = Recording> {
     let moves = prop::collection::vec(one_move(), 0..3);
     let events = prop::collection::vec(event(), 0..3);
     let signals = prop::collection::vec(signal(), 0..3);
-    (about, rate(), channels(), moves, events, signals).prop_map(|(about, rate, channels, moves, events, signals)| {
+    let log = prop::collection::vec(log_entry(), 0..3);
+    let all = (about, rate(), channels(), moves, events, signals, log);
+    all.prop_map(|(about, rate, channels, moves, events, signals, log)| {
         let (scenario, engine, axis_unit, bodies) = about;
-        Recording { about: About { scenario, engine, axis_unit, bodies }, rate, channels, moves, events, signals }
+        Recording { about: About { scenario, engine, axis_unit, bodies }, rate, channels, moves, events, signals, log }
     })
 }
 
 fn said(recording: &Recording) -> String {
-    format!("{:?}{:?}{:?}", recording.moves, recording.events, recording.signals)
+    format!("{:?}{:?}{:?}{:?}", recording.moves, recording.events, recording.signals, recording.log)
 }
 
 /// Equality to the bit: `==` alone takes -0 for 0.
@@ -116,6 +124,7 @@ fn small(instants: u32) -> Recording {
         }],
         events: vec![Event { start: 0.25, end: 0.5, source: "drive".into(), message: "current limit".into() }],
         signals: vec![Signal { source: "axis".into(), name: "state".into(), changes: vec![(0.0, "Disabled".into())] }],
+        log: vec![],
     }
 }
 

@@ -177,13 +177,13 @@ impl BadSlave {
                 println!("the end of the output");
                 eprintln!("the end of the errors");
             }
-            Bad::Log(lines) => self.log.extend((0..lines).map(|k| line(&format!("line {k}")))),
-            Bad::LogThenCrash if self.steps == 1 => self.log.push(line("stiff")),
+            Bad::Log(lines) => self.log.extend((0..lines).map(|k| line(time, &format!("line {k}")))),
+            Bad::LogThenCrash if self.steps == 1 => self.log.push(line(time, "stiff")),
             Bad::NullWrite | Bad::LogThenCrash => null_write(),
             Bad::ReadInput => {
                 let mut all = Vec::new();
                 let count = std::io::stdin().read_to_end(&mut all).unwrap();
-                self.log.push(line(&format!("{count} bytes on standard input")));
+                self.log.push(line(time, &format!("{count} bytes on standard input")));
             }
             Bad::CloseFiles => {
                 // SAFETY: what is closed is not used any more, or the process suffers for it.
@@ -246,8 +246,8 @@ impl Drop for BadSlave {
     }
 }
 
-fn line(message: &str) -> LogLine {
-    LogLine { severity: Severity::Warning, category: "logStatusWarning".into(), message: message.into() }
+fn line(time: f64, message: &str) -> LogLine {
+    LogLine { time, severity: Severity::Warning, category: "logStatusWarning".into(), message: message.into() }
 }
 
 fn hang() {

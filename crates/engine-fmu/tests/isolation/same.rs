@@ -83,9 +83,13 @@ fn a_state_that_was_not_saved_is_not_restored() {
 fn what_it_logs_arrives_in_order_and_once() {
     let mut slave = start(&Bad::Log(3), Bounds::default()).unwrap();
     slave.take_log();
-    slave.step(0.0, 0.1, &[[0.0; 3]]).unwrap();
-    let line =
-        |k| LogLine { severity: Severity::Warning, category: "logStatusWarning".into(), message: format!("line {k}") };
+    slave.step(0.7, 0.1, &[[0.0; 3]]).unwrap();
+    let line = |k| LogLine {
+        time: 0.7,
+        severity: Severity::Warning,
+        category: "logStatusWarning".into(),
+        message: format!("line {k}"),
+    };
     assert_eq!(slave.take_log(), [line(0), line(1), line(2)]);
     assert_eq!(slave.take_log(), []);
 }

@@ -1,10 +1,11 @@
 //! The engine `fmu` with a real library: one in C, which is compiled and packed by the test as a tool would.
 mod leaving;
 
+use servobench_base::Severity;
 use servobench_engine_fmu::{Fmu, FmuMechanics, HostCommand, HostError, host as serve};
 use servobench_plant::{
     Actuation, Drive, Engine, Extrapolation, FmuBody, FmuFile, FmuModel, FmuPort, FmuStart, FmuValue, Input, Isolation,
-    Mechanics, MechanicsError, MechanicsSetup, Model,
+    Mechanics, MechanicsError, MechanicsSetup, Model, Said,
 };
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -51,6 +52,7 @@ enum Mischief {
     NanOutput,
     CrashInStart,
     SayThenCrash,
+    Say,
 }
 
 /// Not a test: the process that an FMU of these tests lives in.
@@ -207,8 +209,8 @@ fn one_that_prints_ten_megabytes_in_a_step_goes_on() {
         mass.advance(&push()).unwrap();
     }
     let log = mass.take_log();
-    let printed = log.iter().find(|line| line.category == "standard output").unwrap();
-    assert!(printed.message.starts_with("(20 MB before this were dropped)"), "{}", &printed.message[..60]);
+    let printed = log.iter().find(|line| line.text.starts_with("standard output: (")).unwrap();
+    assert_eq!(printed.text, "standard output: (20 MB before this were dropped)");
 }
 
 /// What it said in the call that it did not come back from.
@@ -216,6 +218,35 @@ fn one_that_prints_ten_megabytes_in_a_step_goes_on() {
 fn the_last_that_it_said_is_in_the_report() {
     let error = second_step(Mischief::SayThenCrash, Duration::from_mins(1));
     assert!(error.to_string().contains("the mass is 20 kg"), "{error}");
+}
+
+/// Where it runs does not matter: what it said has its time and is there after its end.
+#[test]
+fn what_it_says_is_the_same_here_and_in_a_process_of_its_own() {
+    let said = |isolation, mischief| {
+        let mut mass = build(mischief, isolation);
+        let mut said = mass.take_log();
+        for _ in 0..4 {
+            // How it ends is tested elsewhere.
+            let went = mass.advance(&push());
+            said.extend(mass.take_log());
+            if went.is_err() {
+                break;
+            }
+        }
+        // The harness of these tests writes there.
+        said.retain(|line| !line.text.starts_with("standard output: "));
+        said
+    };
+    let line = |time: f64, severity, text: String| Said { time, severity, text };
+    let steps = [1e-3, 2e-3, 3e-3].map(|time| line(time, Severity::Info, format!("logEvents: at {time} s")));
+    let failure = [line(1e-3, Severity::Error, "the mass is 20 kg".into())];
+    for isolation in [Isolation::None, isolated(Duration::from_mins(1))] {
+        assert_eq!(said(isolation, Mischief::Say), steps);
+        assert_eq!(said(isolation, Mischief::Fail), failure);
+    }
+    let cry = [line(1e-3, Severity::Warning, "the mass is 20 kg".into())];
+    assert_eq!(said(isolated(Duration::from_mins(1)), Mischief::SayThenCrash), cry);
 }
 
 /// What it was unpacked to goes with it, even if it crashes.

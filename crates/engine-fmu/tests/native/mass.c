@@ -20,7 +20,7 @@ typedef struct {
     const Callbacks *callbacks;
 } Mass;
 enum { OK, WARNING, DISCARD, ERROR };
-enum { NOTHING, CRASH, HANG, HOARD, PRINT, FAIL, NAN_OUTPUT, CRASH_IN_START, SAY_THEN_CRASH };
+enum { NOTHING, CRASH, HANG, HOARD, PRINT, FAIL, NAN_OUTPUT, CRASH_IN_START, SAY_THEN_CRASH, SAY };
 
 #ifdef LINGERS
 /* Writes to a file that it leaves open, once more when the process ends. */
@@ -109,6 +109,9 @@ int fmi2DoStep(void *c, double time, double h, int keeps) {
             for (;;) memset(malloc(1 << 20), 1, 1 << 20);
         case PRINT:
             for (int k = 0; k < 100000; k++) printf("%0100d\n", k);
+            break;
+        case SAY:
+            m->callbacks->logger(m->callbacks->environment, "mass", OK, "logEvents", "at %g s", time);
             break;
         case FAIL:
             m->callbacks->logger(m->callbacks->environment, "mass", ERROR, "logStatusError", "the mass is %g kg", m->mass);

@@ -1,7 +1,7 @@
 //! What an FMU may call: its log, and memory of C's.
 #![expect(unsafe_code, reason = "the FMU calls these with pointers of its own")]
 use crate::abi::{v2, v3};
-use crate::log::Log;
+use crate::log::{Clock, Log};
 use std::ffi::{CStr, c_char, c_int};
 use std::ptr;
 
@@ -13,8 +13,8 @@ pub(super) struct Environment {
 }
 
 impl Environment {
-    pub(super) fn new() -> Self {
-        Self { hand_over: take, log: Log::default() }
+    pub(super) fn new(clock: Clock) -> Self {
+        Self { hand_over: take, log: Log::new(clock) }
     }
 
     pub(super) fn log(&self) -> &Log {

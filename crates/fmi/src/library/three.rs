@@ -11,7 +11,7 @@ use crate::abi::v3::{
 use crate::archive::Unpacked;
 use crate::error::{FmuError, LibraryProblem};
 use crate::loaded::Slot;
-use crate::log::Log;
+use crate::log::{Clock, Log};
 use std::ffi::{CStr, CString};
 use std::mem::ManuallyDrop;
 use std::ptr;
@@ -146,11 +146,11 @@ pub(crate) struct Three {
 unsafe impl Send for Three {}
 
 impl Three {
-    pub(crate) fn new(fmu: &Unpacked, instance_name: &CStr, logging: bool) -> Result<Self, FmuError> {
+    pub(crate) fn new(fmu: &Unpacked, instance_name: &CStr, logging: bool, clock: Clock) -> Result<Self, FmuError> {
         let library = Open::new(fmu)?;
         check_version(&library, fmu)?;
         let functions = Functions::of(&library, fmu)?;
-        let environment = Arc::new(Environment::new());
+        let environment = Arc::new(Environment::new(clock));
         let refused = |why: String| FmuError::Library {
             path: fmu.path().to_owned(),
             problem: LibraryProblem::Instantiate { call: "fmi3InstantiateCoSimulation", why },

@@ -11,7 +11,7 @@ use crate::abi::v2::{
 use crate::archive::Unpacked;
 use crate::error::{FmuError, LibraryProblem};
 use crate::loaded::Slot;
-use crate::log::Log;
+use crate::log::{Clock, Log};
 use std::ffi::{CStr, CString, c_int};
 use std::mem::ManuallyDrop;
 use std::ptr;
@@ -106,11 +106,11 @@ pub(crate) struct Two {
 unsafe impl Send for Two {}
 
 impl Two {
-    pub(crate) fn new(fmu: &Unpacked, instance_name: &CStr, logging: bool) -> Result<Self, FmuError> {
+    pub(crate) fn new(fmu: &Unpacked, instance_name: &CStr, logging: bool, clock: Clock) -> Result<Self, FmuError> {
         let library = Open::new(fmu)?;
         check_platform(&library, fmu)?;
         let functions = Functions::of(&library, fmu)?;
-        let environment = Arc::new(Environment::new());
+        let environment = Arc::new(Environment::new(clock));
         let callbacks = Rc::new(of_two(Arc::as_ptr(&environment)));
         let refused = |why: String| FmuError::Library {
             path: fmu.path().to_owned(),

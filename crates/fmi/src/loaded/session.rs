@@ -3,6 +3,7 @@ use super::batch::Misfit;
 use super::instance::{Attempt, Slot};
 use crate::description::ModelDescription;
 use crate::error::{FmuError, LibraryProblem};
+use crate::log::Clock;
 use crate::setup::Setup;
 use crate::slave::{Capabilities, Port, Progress, SlaveError};
 use std::ffi::CString;
@@ -12,6 +13,8 @@ pub(super) struct Session {
     pub(super) capabilities: Capabilities,
     /// Where it is (s).
     pub(super) time: f64,
+    /// For whoever listens to the FMU.
+    clock: Clock,
     /// Where it was when it was saved (s).
     saved: [f64; Slot::COUNT],
     inputs: Vec<Port>,
@@ -19,10 +22,10 @@ pub(super) struct Session {
 }
 
 impl Session {
-    pub(super) fn new(capabilities: Capabilities, setup: &Setup) -> Self {
+    pub(super) fn new(capabilities: Capabilities, setup: &Setup, clock: Clock) -> Self {
         let (inputs, outputs) = (setup.inputs.clone(), setup.outputs.clone());
         let time = setup.start_time;
-        Self { capabilities, time, saved: [time; Slot::COUNT], inputs, outputs }
+        Self { capabilities, time, clock, saved: [time; Slot::COUNT], inputs, outputs }
     }
 
     /// The mean of an input over a step of length `h`: u + u'·h/2 + u''·h²/6.
@@ -43,13 +46,19 @@ impl Session {
         Err(SlaveError::NotFinite { variable, value: outputs[port], time: self.time })
     }
 
+    /// Notes where it is.
+    pub(super) fn go_to(&mut self, time: f64) {
+        self.time = time;
+        self.clock.set(time);
+    }
+
     /// Notes how far a step has come.
     pub(super) fn reach(&mut self, time: f64, length: f64, attempt: Attempt) {
-        self.time = match attempt {
+        self.go_to(match attempt {
             Attempt::Came(Progress::Done) => time + length,
             Attempt::Came(Progress::Until(reached) | Progress::Terminated(reached)) => reached,
             Attempt::Discarded { within, .. } => within.unwrap_or(time),
-        };
+        });
     }
 
     pub(super) fn save(&mut self, slot: Slot) {
@@ -57,7 +66,7 @@ impl Session {
     }
 
     pub(super) fn restore(&mut self, slot: Slot) {
-        self.time = self.saved[slot as usize];
+        self.go_to(self.saved[slot as usize]);
     }
 }
 

@@ -9,6 +9,7 @@ use crate::error::FmuError;
 use crate::library::Access;
 use crate::library::status::{Health, Outcome};
 use crate::library::three::{Flag, Three};
+use crate::log::Clock;
 use crate::setup::{Setup, Start};
 use crate::slave::{Capabilities, LogLine, Progress, SlaveError};
 use std::ffi::CString;
@@ -35,7 +36,8 @@ impl LoadedThree {
     pub(super) fn new(fmu: &Unpacked, setup: &Setup) -> Result<Self, FmuError> {
         let it = fmu.description();
         let plan = setup.plan(fmu)?;
-        let instance = Three::new(fmu, &instance_name(setup, it)?, setup.logging)?;
+        let clock = Clock::at(setup.start_time);
+        let instance = Three::new(fmu, &instance_name(setup, it)?, setup.logging, clock.clone())?;
         let can = &it.co_simulation;
         let capabilities = Capabilities {
             saves_state: can.can_get_and_set_state,
@@ -46,7 +48,7 @@ impl LoadedThree {
         let event = TimeEvent::new(capabilities.variable_step);
         let mut loaded = Self {
             instance,
-            session: Session::new(capabilities, setup),
+            session: Session::new(capabilities, setup, clock),
             has_event_mode: can.has_event_mode,
             event,
             saved_event: [event; Slot::COUNT],
@@ -176,7 +178,7 @@ impl Instance for LoadedThree {
     }
 
     fn attempt(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Attempt, SlaveError> {
-        self.session.time = time;
+        self.session.go_to(time);
         let leg = self.event.leg(time, length);
         let mean = |port: usize| Session::mean(inputs[port], leg.length);
         if self.set_inputs(&mean, &|port| inputs[port][0])? {

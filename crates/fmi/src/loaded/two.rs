@@ -8,6 +8,7 @@ use crate::error::FmuError;
 use crate::library::Access;
 use crate::library::status::Outcome;
 use crate::library::two::{Flag, Two};
+use crate::log::Clock;
 use crate::setup::{Plan, Setup, Start};
 use crate::slave::{Capabilities, LogLine, Progress, SlaveError};
 use std::ffi::CString;
@@ -39,7 +40,8 @@ impl LoadedTwo {
     pub(super) fn new(fmu: &Unpacked, setup: &Setup) -> Result<Self, FmuError> {
         let it = fmu.description();
         let plan = setup.plan(fmu)?;
-        let instance = Two::new(fmu, &instance_name(setup, it)?, setup.logging)?;
+        let clock = Clock::at(setup.start_time);
+        let instance = Two::new(fmu, &instance_name(setup, it)?, setup.logging, clock.clone())?;
         let can = &it.co_simulation;
         let capabilities = Capabilities {
             saves_state: can.can_get_and_set_state,
@@ -49,7 +51,7 @@ impl LoadedTwo {
         let counts = &plan.counts;
         let mut loaded = Self {
             instance,
-            session: Session::new(capabilities, setup),
+            session: Session::new(capabilities, setup, clock),
             continuous: batches(it, &plan.inputs, counts, |variability| variability == Variability::Continuous),
             discrete: batches(it, &plan.inputs, counts, |variability| variability != Variability::Continuous),
             outputs: batches(it, &plan.outputs, counts, |_| true),
@@ -120,7 +122,7 @@ impl Instance for LoadedTwo {
     }
 
     fn attempt(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Attempt, SlaveError> {
-        self.session.time = time;
+        self.session.go_to(time);
         let now = |port: usize| inputs[port][0];
         let mean = |port: usize| Session::mean(inputs[port], length);
         if self.derivatives.is_some() {

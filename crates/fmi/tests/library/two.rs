@@ -270,6 +270,19 @@ fn a_flood_of_messages_is_cut() {
     assert_eq!(log[10_000].message, "10000 more lines were not kept");
 }
 
+/// Before the first step that is its start, within a step the start of the step.
+#[test]
+fn what_it_says_has_the_time_at_which_it_says_it() {
+    let setup = Setup { start_time: 0.5, ..setup(&[("mode", text("flood"))], &["u"], &[]) };
+    let mut slave = room().load(&setup).unwrap();
+    let said = slave.take_log();
+    assert!(said.len() == 4 && said.iter().all(|line| line.time == 0.5), "{said:?}");
+    for time in [0.5, 0.75] {
+        slave.step(time, 0.25, &[[0.0; 3]]).unwrap();
+        assert!(slave.take_log().iter().all(|line| line.time == time));
+    }
+}
+
 /// Instances of one FMU do not know of each other.
 #[test]
 fn instances_are_apart() {

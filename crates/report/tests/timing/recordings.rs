@@ -16,6 +16,7 @@ pub(crate) fn empty() -> Recording {
         moves: vec![],
         events: vec![],
         signals: vec![],
+        log: vec![],
     }
 }
 

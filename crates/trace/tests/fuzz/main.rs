@@ -9,9 +9,9 @@ use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
-use servobench_base::Rate;
+use servobench_base::{Rate, Severity};
 use servobench_fuzz::{Splice, check, fuzz};
-use servobench_trace::{About, Channel, ChannelSpec, Event, Move, Recording, Signal, TraceError};
+use servobench_trace::{About, Channel, ChannelSpec, Event, LogEntry, Move, Recording, Signal, TraceError};
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
@@ -44,6 +44,14 @@ fn recording(instants: u32, channels: u32, path: &Path) -> (Recording, Vec<u8>) 
         }],
         events: vec![Event { start: 0.25, end: 0.5, source: "drive".into(), message: "current limit".into() }],
         signals: vec![Signal { source: "axis".into(), name: "state".into(), changes: vec![(0.0, "Disabled".into())] }],
+        log: vec![LogEntry {
+            source: "FMU load".into(),
+            severity: Severity::Warning,
+            start: 0.5,
+            end: 0.75,
+            times: 12,
+            text: "stiff".into(),
+        }],
     };
     recording.write_parquet(path).unwrap();
     let bytes = fs::read(path).unwrap();

@@ -1,0 +1,158 @@
+//! What FMUs say is in the recording at its time, whether they are beside the axis or its mechanics and however the run ends.
+use servobench_base::Severity;
+use servobench_fmi::{Capabilities, LogLine, Progress, Slave, SlaveError};
+use servobench_plant::{
+    BodyState, Engine, Exact, FmuMistake, FmuPartner, Input, Mechanics, MechanicsError, MechanicsSetup, Said,
+};
+use servobench_scenario as scenario;
+use servobench_sim::{Bench, NoPartners, Outcome, Partners};
+
+const TABLE: &str = r#"
+[run]
+base_rate = "1 kHz"
+duration = "0.5 s"
+[axis]
+motion = "linear"
+motor_side.mass = "40 kg"
+[motor]
+kind = "pmsm"
+pole_pitch = "16 mm"
+resistance = "1.6 Ohm"
+inductance = "3.5 mH"
+flux_linkage = "0.06 V s"
+max_current = "13.3 Arms"
+[drive]
+enabled = false
+"#;
+
+/// When the FMUs here fail (s).
+const END: f64 = 0.1;
+
+/// It says something at its start, at each step, and what is wrong with it.
+#[derive(Default)]
+struct Chatty {
+    said: Vec<LogLine>,
+}
+
+impl Chatty {
+    fn say(&mut self, time: f64, severity: Severity, message: &str) {
+        self.said.push(LogLine { time, severity, category: "logAll".into(), message: message.into() });
+    }
+}
+
+impl Slave for Chatty {
+    fn capabilities(&self) -> Capabilities {
+        Capabilities { saves_state: true, ..Capabilities::default() }
+    }
+
+    fn step(&mut self, time: f64, _: f64, _: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+        self.say(time, Severity::Info, "step");
+        if time > END - 1e-9 {
+            self.say(time, Severity::Error, "leak");
+            return Err(SlaveError::Failed { call: "fmi3DoStep", time, status: "fmi3Error", message: "leak".into() });
+        }
+        Ok(Progress::Done)
+    }
+
+    fn read(&mut self, _: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
+        outputs.fill(0.0);
+        Ok(())
+    }
+
+    fn save(&mut self) -> Result<(), SlaveError> {
+        Ok(())
+    }
+
+    fn restore(&mut self) -> Result<(), SlaveError> {
+        Ok(())
+    }
+
+    fn take_log(&mut self) -> Vec<LogLine> {
+        std::mem::take(&mut self.said)
+    }
+}
+
+struct Opens;
+
+impl Partners for Opens {
+    fn open(&self, _: &FmuPartner) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
+        let mut chatty = Chatty::default();
+        chatty.say(0.0, Severity::Info, "hello");
+        Ok(Box::new(chatty))
+    }
+}
+
+fn run(text: &str, engine: &dyn Engine, partners: &dyn Partners) -> Outcome {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("tank.fmu"), "").unwrap();
+    let path = folder.path().join("said.toml");
+    std::fs::write(&path, text).unwrap();
+    let loaded = scenario::load(&path).unwrap_or_else(|error| panic!("{error}"));
+    Bench::with_partners(&loaded.scenario, engine, partners).unwrap_or_else(|error| panic!("{error}")).run(&mut |_| {})
+}
+
+fn beside(coupling: &str) -> Outcome {
+    let fmu =
+        "[[fmu]]\nfile = \"tank.fmu\"\ninputs = { x = \"load.position\" }\noutputs = { F = \"disturbance.load\" }\n";
+    run(&format!("{TABLE}{fmu}{coupling}"), &Exact, &Opens)
+}
+
+/// Ten as they are, the others as one entry: of the steps at 0 ms, 1 ms, … 100 ms.
+#[test]
+fn an_fmu_beside_the_axis_is_heard_to_its_failure() {
+    let Outcome { recording, failure } = beside("[coupling]\nmethod = \"jacobi\"\n");
+    assert!(failure.is_some_and(|failure| failure.to_string().contains("leak")));
+    let said: Vec<(&str, u64)> = recording.log.iter().map(|entry| (entry.text.as_str(), entry.times)).collect();
+    assert_eq!(said[..2], [("hello", 1), ("step", 1)]);
+    assert_eq!(said[11..], [("step", 91), ("leak", 1)]);
+    assert!(recording.log.iter().all(|entry| entry.source == "FMU tank"));
+    let [first, .., counted, last] = &recording.log[..] else { panic!("{said:?}") };
+    assert_eq!((first.start, first.severity), (0.0, Severity::Info));
+    assert!((counted.start - 0.01).abs() < 1e-12 && (counted.end - END).abs() < 1e-12, "{counted:?}");
+    assert!((last.start - END).abs() < 1e-12 && last.severity == Severity::Error, "{last:?}");
+    assert!(recording.events.is_empty(), "what an FMU says is no event of ours");
+}
+
+/// The engine `exact`, whose mechanics say something at each tick and whose clock is wrong at some.
+struct Talking;
+
+struct Talks(Box<dyn Mechanics>, u32);
+
+impl Engine for Talking {
+    fn name(&self) -> &'static str {
+        "exact"
+    }
+
+    fn build(&self, setup: &MechanicsSetup) -> Result<Box<dyn Mechanics>, MechanicsError> {
+        Ok(Box::new(Talks(Exact.build(setup)?, 0)))
+    }
+}
+
+impl Mechanics for Talks {
+    fn bodies(&self) -> &[BodyState] {
+        self.0.bodies()
+    }
+
+    fn advance(&mut self, input: &Input) -> Result<(), MechanicsError> {
+        self.1 += 1;
+        if self.1 > 3 {
+            return Err(MechanicsError::Native { engine: "exact", message: "enough".into() });
+        }
+        self.0.advance(input)
+    }
+
+    fn take_log(&mut self) -> Vec<Said> {
+        let time = [0.0, 1e-3, f64::NAN, 1e300].get(self.1 as usize).copied().unwrap_or(-1.0);
+        vec![Said { time, severity: Severity::Warning, text: format!("after {}", self.1) }]
+    }
+}
+
+/// The fourth tick fails. Nothing is said before the start or after the present.
+#[test]
+fn mechanics_are_heard_to_their_failure() {
+    let Outcome { recording, failure } = run(TABLE, &Talking, &NoPartners);
+    assert!(failure.is_some());
+    let said: Vec<(f64, &str)> = recording.log.iter().map(|entry| (entry.start, entry.text.as_str())).collect();
+    assert_eq!(said, [(0.0, "after 4"), (1e-3, "after 1"), (2e-3, "after 2"), (3e-3, "after 3")]);
+    assert!(recording.log.iter().all(|entry| entry.source == "FMU of the axis"));
+}
