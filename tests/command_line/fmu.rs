@@ -97,6 +97,21 @@ fn our_own_parts_come_back_as_what_they_were() {
     }
 }
 
+/// Oracle: the built-in mechanics under the same coupling. Steps are repeated, which takes the FMU back to where it was.
+#[test]
+fn steps_are_repeated_with_mechanics_that_are_an_fmu() {
+    let work = exported("mechanics", "2");
+    let export = ["fmu", "export", &path(&work, "axis.toml"), "--part", "mechanics", "-o", &path(&work, "load.fmu")];
+    assert_eq!(code(&servobench(&export)), 0);
+    // The load's motion turns a second axis of the same kind, whose motion is the way of a spring: 1 N for each metre.
+    let load = "[[fmu]]\nfile = \"load.fmu\"\ninputs = { \"effort.motor\" = \"effort.motor\" }\n\
+                outputs = { \"load.position\" = \"setpoint.position\" }\n[coupling]\nmethod = \"iterated\"\nstep = \"0.25 ms\"\n";
+    let axis = AXIS.split("[[program]]").next().unwrap();
+    let exact = recorded(&work, "exact", "exact", &format!("{axis}{load}"));
+    let fmu = recorded(&work, "fmu", "fmu", &format!("engine = \"fmu\"\n{axis}{MECHANICS}{load}"));
+    assert!(difference(&exact, &fmu) < 1e-12);
+}
+
 #[test]
 fn info_says_what_is_inside() {
     let work = exported("drive", "3");
@@ -109,6 +124,24 @@ fn info_says_what_is_inside() {
     assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
     let output = servobench(&["fmu", "info", &path(&work, "axis.toml")]);
     assert_eq!(code(&output), 2, "{}", said(&output));
+}
+
+/// Each at the key that is to blame, whichever FMU it belongs to.
+#[test]
+fn check_places_all_that_does_not_fit() {
+    let work = exported("mechanics", "3");
+    let wrong = MECHANICS.replace("\"shaft.velocity\" = \"shaft.velocity\"", "\"shaft.speed\" = \"shaft.velocity\"")
+        + "parameters = { mass = \"3 kg\" }\n";
+    let text = format!("engine = \"fmu\"\n{AXIS}{wrong}");
+    std::fs::write(work.path().join("wrong.toml"), &text).unwrap();
+    let output = servobench(&["check", &path(&work, "wrong.toml")]);
+    assert_eq!(code(&output), 2, "{}", said(&output));
+    let line = |part: &str| 1 + text.lines().position(|line| line.contains(part)).unwrap();
+    for (what, part) in [("no variable `shaft.speed`", "shaft.speed"), ("no such variable", "3 kg")] {
+        assert!(said(&output).contains(what), "{}", said(&output));
+        assert!(said(&output).contains(&format!("wrong.toml:{}:", line(part))), "{}", said(&output));
+    }
+    assert!(said(&output).contains("2 mistakes"), "{}", said(&output));
 }
 
 /// Users of other tools stumble over the delay of a step.
@@ -131,6 +164,11 @@ fn what_an_fmu_does_not_have_is_said_at_the_door() {
     let output = servobench(&["check", &path(&work, "wrong.toml")]);
     assert_eq!(code(&output), 2, "{}", said(&output));
     assert!(said(&output).contains("no variable `shaft.angle`"), "{}", said(&output));
+    let text = format!("{AXIS}{}", DRIVE.replace("= \"load.position\"", "= \"load.velocity\""));
+    std::fs::write(work.path().join("units.toml"), text).unwrap();
+    let output = servobench(&["check", &path(&work, "units.toml")]);
+    assert_eq!(code(&output), 2, "{}", said(&output));
+    assert!(said(&output).contains("counts in `m`, which cannot be turned into m/s"), "{}", said(&output));
     std::fs::write(work.path().join("drive.fmu"), "no archive").unwrap();
     std::fs::write(work.path().join("broken.toml"), format!("{AXIS}{DRIVE}")).unwrap();
     let output = servobench(&["run", &path(&work, "broken.toml"), "--out", &path(&work, "out")]);

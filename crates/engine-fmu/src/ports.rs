@@ -155,15 +155,12 @@ fn is(variable: &Variable) -> String {
 /// The variable, and which element of it.
 fn element<'a>(it: &'a ModelDescription, name: &str, side: &Side) -> Result<(&'a Variable, usize), What> {
     let unknown = || What(format!("the FMU has no variable `{name}`"), names(it, name, side));
-    let whole = it.variable(name);
-    let (variable, indices) = match whole {
-        Some(variable) => (variable, Vec::new()),
-        None => {
-            let (variable, indices) =
-                name.strip_suffix(']').and_then(|name| name.rsplit_once('[')).ok_or_else(unknown)?;
-            let indices = indices.split(',').map(|index| index.trim().parse().unwrap_or(0)).collect();
-            (it.variable(variable).ok_or_else(unknown)?, indices)
-        }
+    let (variable, indices) = if let Some(variable) = it.variable(name) {
+        (variable, Vec::new())
+    } else {
+        let (variable, indices) = name.strip_suffix(']').and_then(|name| name.rsplit_once('[')).ok_or_else(unknown)?;
+        let indices = indices.split(',').map(|index| index.trim().parse().unwrap_or(0)).collect();
+        (it.variable(variable).ok_or_else(unknown)?, indices)
     };
     let shape = it.shape(variable);
     let fits = indices.len() == shape.len()

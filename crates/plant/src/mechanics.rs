@@ -113,7 +113,7 @@ pub enum Model {
     /// A user's own MJCF file.
     Mjcf(MjcfModel),
     /// An FMU.
-    Fmu(FmuModel),
+    Fmu(Box<FmuModel>),
 }
 
 /// A user's own MJCF file and which of its parts are the axis.

@@ -138,7 +138,7 @@ fn setup(file: &File, mischief: Mischief, isolation: Isolation) -> MechanicsSetu
         ticks: 1,
         extrapolation: Extrapolation::Linear,
     };
-    MechanicsSetup { model: Model::Fmu(model), drive: Drive::Effort, step: TICK, initial: Vec::new() }
+    MechanicsSetup { model: Model::Fmu(Box::new(model)), drive: Drive::Effort, step: TICK, initial: Vec::new() }
 }
 
 fn build(mischief: Mischief, isolation: Isolation) -> FmuMechanics {
@@ -282,9 +282,9 @@ fn what_the_engine_cannot_do_is_refused() {
     let prescribed = MechanicsSetup { drive: Drive::Prescribed, ..good.clone() };
     assert!(says(&prescribed).contains("does not support a prescribed motion"));
     let Model::Fmu(model) = &good.model else { panic!("an FMU") };
-    let with = |model: FmuModel| MechanicsSetup { model: Model::Fmu(model), ..good.clone() };
-    assert!(says(&with(FmuModel { ticks: 0, ..model.clone() })).contains("`ticks`"));
-    let of = |file: FmuFile| with(FmuModel { file, ..model.clone() });
+    let with = |model: FmuModel| MechanicsSetup { model: Model::Fmu(Box::new(model)), ..good.clone() };
+    assert!(says(&with(FmuModel { ticks: 0, ..FmuModel::clone(model) })).contains("`ticks`"));
+    let of = |file: FmuFile| with(FmuModel { file, ..FmuModel::clone(model) });
     assert!(says(&of(FmuFile { path: "none.fmu".into(), ..model.file.clone() })).contains("none.fmu"));
     let start = |variable: &str, value| FmuStart { variable: variable.into(), values: vec![value] };
     let starts = vec![start("mas", FmuValue::Number(1.0)), start("mass", FmuValue::Text("heavy".into()))];

@@ -19,7 +19,7 @@ pub(super) fn mechanics(
         let model = super::fmu::mechanics(fmu, scenario)?;
         let names = if model.load.is_some() { &["motor", "load"][..] } else { &["motor"] };
         let names = names.iter().map(|name| (*name).to_owned()).collect();
-        let model = plant::Model::Fmu(model);
+        let model = plant::Model::Fmu(Box::new(model));
         let setup = MechanicsSetup { model, drive, step: scenario.base_rate.period(), initial: Vec::new() };
         return Ok((engine.build(&setup)?, names));
     }
