@@ -101,10 +101,10 @@ fn our_own_parts_come_back_as_what_they_were() {
 #[test]
 fn steps_are_repeated_with_mechanics_that_are_an_fmu() {
     let work = exported("mechanics", "2");
-    let export = ["fmu", "export", &path(&work, "axis.toml"), "--part", "mechanics", "-o", &path(&work, "load.fmu")];
+    let export = ["fmu", "export", &path(&work, "axis.toml"), "--part", "mechanics", "-o", &path(&work, "second.fmu")];
     assert_eq!(code(&servobench(&export)), 0);
-    // The load's motion turns a second axis of the same kind, whose motion is the way of a spring: 1 N for each metre.
-    let load = "[[fmu]]\nfile = \"load.fmu\"\ninputs = { \"effort.motor\" = \"effort.motor\" }\n\
+    // A second axis, driven by the same effort, leads.
+    let load = "[[fmu]]\nfile = \"second.fmu\"\ninputs = { \"effort.motor\" = \"effort.motor\" }\n\
                 outputs = { \"load.position\" = \"setpoint.position\" }\n[coupling]\nmethod = \"iterated\"\nstep = \"0.25 ms\"\n";
     let axis = AXIS.split("[[program]]").next().unwrap();
     let exact = recorded(&work, "exact", "exact", &format!("{axis}{load}"));
