@@ -162,6 +162,18 @@ impl Control {
 fn equipment(scenario: &Scenario, table: bool) -> Equipment {
     let rotary = |motion| motion == scenario::Motion::Rotary;
     let effort_unit = if rotary(scenario.axis.motor_motion) { "N m" } else { "N" };
+    let is_replaced = coupled::replaces_the_drive(scenario);
+    let gives = |signal| scenario.fmus.iter().flat_map(|fmu| &fmu.outputs).any(|(_, given)| *given == signal);
+    let amplifier = match &scenario.actuator {
+        Actuator::Prescribed | Actuator::Off => None,
+        Actuator::Pmsm { .. } => Some(Amplifier::Current),
+        Actuator::IdealSource { source, .. } => Some(Amplifier::Ideal {
+            output_unit: match source.output {
+                scenario::SourceOutput::Voltage => "V",
+                scenario::SourceOutput::Effort => effort_unit,
+            },
+        }),
+    };
     Equipment {
         axis_unit: if rotary(scenario.axis.motion) { "rad" } else { "m" },
         effort_unit,
@@ -170,15 +182,11 @@ fn equipment(scenario: &Scenario, table: bool) -> Equipment {
             .map(|body| is_disturbed(scenario, body)),
         table,
         bus: scenario.bus.is_some(),
-        amplifier: match &scenario.actuator {
-            Actuator::Prescribed | Actuator::Off => None,
-            Actuator::Pmsm { .. } => Some(Amplifier::Current),
-            Actuator::IdealSource { source, .. } => Some(Amplifier::Ideal {
-                output_unit: match source.output {
-                    scenario::SourceOutput::Voltage => "V",
-                    scenario::SourceOutput::Effort => effort_unit,
-                },
-            }),
+        amplifier: if is_replaced { None } else { amplifier },
+        effort: amplifier.is_some() || gives(LoopSignal::Effort),
+        currents: match amplifier {
+            Some(Amplifier::Current) => !gives(LoopSignal::Effort),
+            _ => gives(LoopSignal::VoltageQ),
         },
     }
 }

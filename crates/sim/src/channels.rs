@@ -53,6 +53,9 @@ pub(crate) struct Equipment {
     pub(crate) bus: bool,
     /// What the firmware commands; `None` without firmware.
     pub(crate) amplifier: Option<Amplifier>,
+    /// Whether the motor has an effort, and whether it has currents and voltages: by the firmware, or by an FMU in its place.
+    pub(crate) effort: bool,
+    pub(crate) currents: bool,
 }
 
 /// What the firmware commands.
@@ -82,7 +85,7 @@ const COUNT: usize = 33;
 fn all(equipment: &Equipment, rates: &WriterRates) -> [(bool, ChannelSpec); COUNT] {
     let u = equipment.axis_unit;
     let (e, drive) = (equipment.effort_unit, equipment.amplifier.is_some());
-    let current = equipment.amplifier == Some(Amplifier::Current);
+    let (currents, current) = (equipment.currents, equipment.amplifier == Some(Amplifier::Current));
     let output_unit = match equipment.amplifier {
         Some(Amplifier::Ideal { output_unit }) => Some(output_unit),
         _ => None,
@@ -96,6 +99,8 @@ fn all(equipment: &Equipment, rates: &WriterRates) -> [(bool, ChannelSpec); COUN
     let position_loop = |name: &str, unit: String| channel(drive, name, unit, "position loop", rates.position);
     let velocity_loop = |name: &str, unit: String| channel(drive, name, unit, "velocity loop", rates.velocity);
     let current_loop = |name: &str, unit: &str| channel(current, name, unit.into(), "current loop", rates.current);
+    let commanding = if current { "current loop" } else { "controller" };
+    let voltage = |name: &str| channel(currents, name, "V".into(), commanding, rates.current);
     let [on_motor, on_load] = equipment.disturbed;
     let disturbance =
         |there: bool, name: &str, unit: &str| channel(there, name, unit.into(), "disturbance", rates.base);
@@ -120,13 +125,13 @@ fn all(equipment: &Equipment, rates: &WriterRates) -> [(bool, ChannelSpec); COUN
         channel(true, "following_error.motor", u.into(), "measurement", rates.base),
         channel(true, "following_error.load", u.into(), "measurement", rates.base),
         velocity_loop("effort.reference", e.into()),
-        channel(drive, "effort.motor", e.into(), "power stage", rates.base),
-        channel(current, "current.d", "A".into(), "motor", rates.base),
-        channel(current, "current.q", "A".into(), "motor", rates.base),
+        channel(equipment.effort, "effort.motor", e.into(), "power stage", rates.base),
+        channel(currents, "current.d", "A".into(), "motor", rates.base),
+        channel(currents, "current.q", "A".into(), "motor", rates.base),
         current_loop("current.q_reference", "A"),
-        current_loop("voltage.d", "V"),
-        current_loop("voltage.q", "V"),
-        current_loop("voltage.magnitude", "V"),
+        voltage("voltage.d"),
+        voltage("voltage.q"),
+        voltage("voltage.magnitude"),
         channel(
             output_unit.is_some(),
             "command.output",

@@ -1,9 +1,10 @@
-//! Moves, disturbances and events: a log to read and lanes to see when.
+//! Moves, disturbances, events and what FMUs say: a log to read, and lanes to see when.
 use crate::curves::TIMELINE;
 use crate::run::{Run, range};
 use crate::scale::{Scale, shown_unit};
 use crate::style::{self, Rgb};
 use rerun::{EntityPath, RecordingStream, RecordingStreamResult, StateChange, StateConfiguration, TextLog, TimeColumn};
+use servobench_base::Severity;
 use std::borrow::Cow;
 
 /// Entities that were logged.
@@ -44,7 +45,7 @@ impl Happenings {
         for run in runs {
             let recording = run.recording;
             let lanes = lanes(run, 0);
-            if !lanes.is_empty() || !recording.events.is_empty() {
+            if !lanes.is_empty() || !recording.events.is_empty() || !recording.log.is_empty() {
                 happenings.logs.push(run.path(&["log"]));
             }
             happenings.lanes.extend(lanes.into_iter().map(|lane| lane.path));
@@ -53,7 +54,7 @@ impl Happenings {
     }
 }
 
-/// Logs moves and events of `run`.
+/// Logs moves, events and what was said in `run`.
 pub(crate) fn log(stream: &RecordingStream, run: &Run<'_>, index: usize) -> RecordingStreamResult<()> {
     log_text(stream, run)?;
     lanes(run, index).iter().try_for_each(|lane| log_lane(stream, lane))
@@ -75,6 +76,9 @@ fn log_text(stream: &RecordingStream, run: &Run<'_>) -> RecordingStreamResult<()
         let until = if event.end > event.start { format!(" (until {:.4} s)", event.end) } else { String::new() };
         lines.push((event.start, "WARN", format!("{}: {}{until}", event.source, event.message)));
     }
+    for entry in &run.recording.log {
+        lines.push((entry.start, level(entry.severity), format!("{}: {}", entry.source, entry.words())));
+    }
     if lines.is_empty() {
         return Ok(());
     }
@@ -94,6 +98,15 @@ fn log_text(stream: &RecordingStream, run: &Run<'_>) -> RecordingStreamResult<()
         .with_many_level(lines.iter().map(|(_, level, _)| *level))
         .columns_of_unit_batches()?;
     stream.send_columns(run.path(&["log"]), [times], columns)
+}
+
+/// What Rerun calls it.
+const fn level(severity: Severity) -> &'static str {
+    match severity {
+        Severity::Info => "INFO",
+        Severity::Warning => "WARN",
+        Severity::Error => "ERROR",
+    }
 }
 
 /// Lanes of a run: its moves, its disturbances, then one for each source of events that last.

@@ -1,10 +1,10 @@
 //! Reads a file back.
 use rerun::blueprint::components::QueryExpression;
-use rerun::components::{Name, Range1D};
+use rerun::components::{Name, Range1D, Text, TextLogLevel};
 use rerun::external::re_log_encoding::DecoderApp;
 use rerun::external::re_sdk_types::blueprint::archetypes::{ScalarAxis, ViewBlueprint, ViewContents};
 use rerun::log::{Chunk, LogMsg};
-use rerun::{Scalars, StoreKind};
+use rerun::{Scalars, StoreKind, TextLog};
 use servobench_trace::Recording;
 use servobench_view::{ViewOptions, write_rrd};
 use std::collections::{BTreeMap, BTreeSet};
@@ -28,6 +28,8 @@ pub(crate) struct Content {
     pub(crate) entities: BTreeSet<String>,
     /// Time (ns) and value of each curve.
     pub(crate) curves: BTreeMap<String, Vec<(i64, f64)>>,
+    /// Level and text of each line of the logs.
+    pub(crate) log: Vec<(String, String)>,
     /// Entities in the order of the file.
     pub(crate) order: Vec<String>,
     /// Timelines of the data.
@@ -87,6 +89,11 @@ pub(crate) fn read(path: &Path) -> Content {
             let curve = content.curves.entry(entity.clone()).or_default();
             curve.extend(times.times_raw().iter().copied().zip(values));
         }
+        let levels = chunk.iter_component::<TextLogLevel>(TextLog::descriptor_level().component);
+        let levels = levels.flat_map(|levels| levels.as_slice().to_vec());
+        let texts = chunk.iter_component::<Text>(TextLog::descriptor_text().component);
+        let texts = texts.flat_map(|texts| texts.as_slice().to_vec());
+        content.log.extend(levels.zip(texts).map(|(level, text)| (level.to_string(), text.to_string())));
         content.entities.insert(entity);
     }
     content.curves.retain(|_, curve| !curve.is_empty());

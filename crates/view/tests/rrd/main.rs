@@ -6,8 +6,8 @@ mod readable;
 
 use axis::{Case, run};
 use content::{assert_views_are_fed, read, written};
-use servobench_base::{Rate, Tick};
-use servobench_trace::Recording;
+use servobench_base::{Rate, Severity, Tick};
+use servobench_trace::{LogEntry, Recording};
 use servobench_view::{ViewError, ViewOptions, write_comparison_rrd, write_rrd};
 use std::collections::BTreeSet;
 
@@ -164,6 +164,34 @@ fn any_channel_may_be_missing() {
         recording.channels = vec![recording.channels.swap_remove(kept)];
         assert_views_are_fed(&written(&recording, &options()));
     }
+}
+
+#[test]
+fn what_an_fmu_said_is_in_the_log_at_its_time() {
+    let mut recording = example(3);
+    let said = |severity, start, end, times, text: &str| LogEntry {
+        source: "FMU load".into(),
+        severity,
+        start,
+        end,
+        times,
+        text: text.into(),
+    };
+    recording.log = vec![
+        said(Severity::Info, 0.0, 0.0, 1, "Gear, order 5"),
+        said(Severity::Warning, 0.25, 0.75, 3, "stiff"),
+        said(Severity::Error, 0.5, 0.5, 1, "leak"),
+    ];
+    let content = written(&recording, &options());
+    let said: Vec<_> = content.log.iter().filter(|(_, text)| text.contains("FMU")).collect();
+    let line = |level: &str, text: &str| (level.to_owned(), text.to_owned());
+    let lines = [
+        line("INFO", "0.0000 s  FMU load: Gear, order 5"),
+        line("WARN", "0.2500 s  FMU load: stiff (3 times until 0.7500 s)"),
+        line("ERROR", "0.5000 s  FMU load: leak"),
+    ];
+    assert_eq!(said, lines.iter().collect::<Vec<_>>());
+    assert_views_are_fed(&content);
 }
 
 #[test]
