@@ -22,7 +22,7 @@ const PLAN: [(&str, May); 27] = [
     ("plant", May::On(&["base"])),
     ("engine-mujoco", May::On(&["base", "plant"])),
     ("engine-rapier", May::On(&["base", "plant"])),
-    ("fmi", May::On(&[])),
+    ("fmi", May::On(&["base"])),
     ("engine-fmu", May::On(&["base", "plant", "fmi"])),
     ("coupling", May::On(&["base"])),
     ("trace", May::On(&["base"])),
