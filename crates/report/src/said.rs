@@ -66,16 +66,13 @@ fn voices(log: &[LogResult]) -> Vec<Voice<'_>> {
         });
         let lines = &mut voices[index].lines;
         let severity = entry.severity.into();
-        match lines.iter_mut().find(|line| line.severity == severity && line.text == entry.text) {
-            Some(line) => {
-                line.start = line.start.min(entry.start);
-                line.end = line.end.max(entry.end);
-                line.times = line.times.saturating_add(entry.times);
-            }
-            None => {
-                let LogResult { start, end, times, ref text, .. } = *entry;
-                lines.push(Line { severity, text, start, end, times });
-            }
+        if let Some(line) = lines.iter_mut().find(|line| line.severity == severity && line.text == entry.text) {
+            line.start = line.start.min(entry.start);
+            line.end = line.end.max(entry.end);
+            line.times = line.times.saturating_add(entry.times);
+        } else {
+            let LogResult { start, end, times, ref text, .. } = *entry;
+            lines.push(Line { severity, text, start, end, times });
         }
     }
     voices

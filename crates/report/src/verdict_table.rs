@@ -114,10 +114,14 @@ fn row(table: &mut String, start: &str, run: &RunResult, style: Style) {
         line(table, &format!("{:INDENT$}{}", "", style.paint(Ink::Warning, &bound)));
     }
     if run.verdict.is_whole() {
-        warnings(run).iter().for_each(|warning| indented(table, warning, Some(Ink::Warning), style));
+        for warning in &warnings(run) {
+            indented(table, warning, Some(Ink::Warning), style);
+        }
     } else {
         let said = last_words(run, style.width.saturating_sub(INDENT));
-        said.iter().for_each(|said| line(table, &format!("{:INDENT$}{said}", "")));
+        for said in &said {
+            line(table, &format!("{:INDENT$}{said}", ""));
+        }
     }
 }
 

@@ -5,7 +5,7 @@ pub(crate) mod fmu;
 mod objections;
 mod plant;
 
-use crate::channels::{Amplifier, Equipment, Selection, WriterRates};
+use crate::channels::{Amplifier, Equipment, Motor, Selection, WriterRates};
 use crate::closed_loop::{ClosedLoop, Control, Source, State};
 use crate::coupled::{self, ConnectionDelay, Coupled, NoPartners, Partners};
 use crate::disturbance::Disturbances;
@@ -183,10 +183,12 @@ fn equipment(scenario: &Scenario, table: bool) -> Equipment {
         table,
         bus: scenario.bus.is_some(),
         amplifier: if is_replaced { None } else { amplifier },
-        effort: amplifier.is_some() || gives(LoopSignal::Effort),
-        currents: match amplifier {
-            Some(Amplifier::Current) => !gives(LoopSignal::Effort),
-            _ => gives(LoopSignal::VoltageQ),
+        motor: match amplifier {
+            _ if gives(LoopSignal::Effort) => Motor::Effort,
+            _ if gives(LoopSignal::VoltageQ) => Motor::Currents,
+            Some(Amplifier::Current) => Motor::Currents,
+            Some(Amplifier::Ideal { .. }) => Motor::Effort,
+            None => Motor::Motion,
         },
     }
 }

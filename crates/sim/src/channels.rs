@@ -53,9 +53,19 @@ pub(crate) struct Equipment {
     pub(crate) bus: bool,
     /// What the firmware commands; `None` without firmware.
     pub(crate) amplifier: Option<Amplifier>,
-    /// Whether the motor has an effort, and whether it has currents and voltages: by the firmware, or by an FMU in its place.
-    pub(crate) effort: bool,
-    pub(crate) currents: bool,
+    /// What the motor has: by the firmware, or by an FMU in its place.
+    pub(crate) motor: Motor,
+}
+
+/// What there is of a motor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Motor {
+    /// Nothing: it is off, or follows the set-point exactly.
+    Motion,
+    /// An effort.
+    Effort,
+    /// Currents and voltages too.
+    Currents,
 }
 
 /// What the firmware commands.
@@ -85,7 +95,7 @@ const COUNT: usize = 33;
 fn all(equipment: &Equipment, rates: &WriterRates) -> [(bool, ChannelSpec); COUNT] {
     let u = equipment.axis_unit;
     let (e, drive) = (equipment.effort_unit, equipment.amplifier.is_some());
-    let (currents, current) = (equipment.currents, equipment.amplifier == Some(Amplifier::Current));
+    let (currents, current) = (equipment.motor == Motor::Currents, equipment.amplifier == Some(Amplifier::Current));
     let output_unit = match equipment.amplifier {
         Some(Amplifier::Ideal { output_unit }) => Some(output_unit),
         _ => None,
@@ -125,7 +135,7 @@ fn all(equipment: &Equipment, rates: &WriterRates) -> [(bool, ChannelSpec); COUN
         channel(true, "following_error.motor", u.into(), "measurement", rates.base),
         channel(true, "following_error.load", u.into(), "measurement", rates.base),
         velocity_loop("effort.reference", e.into()),
-        channel(equipment.effort, "effort.motor", e.into(), "power stage", rates.base),
+        channel(equipment.motor != Motor::Motion, "effort.motor", e.into(), "power stage", rates.base),
         channel(currents, "current.d", "A".into(), "motor", rates.base),
         channel(currents, "current.q", "A".into(), "motor", rates.base),
         current_loop("current.q_reference", "A"),
