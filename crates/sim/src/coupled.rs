@@ -11,7 +11,7 @@ pub(crate) use wiring::replaces_the_drive;
 
 use crate::channels::{Equipment, WriterRates};
 use crate::error::{BuildError, UnusableFmu};
-use crate::recorded::Recorded;
+use crate::recorded::{LISTEN_EVERY, Recorded};
 use crate::run::{Failure, Outcome, PROGRESS_EVERY, Reason};
 use block::{Axis, Part, PartError};
 use servobench_base::{Divider, Tick};
@@ -125,6 +125,7 @@ impl Coupled {
     pub(crate) fn run(mut self, ticks: u64, progress: &mut dyn FnMut(f64)) -> Outcome {
         self.listen();
         let (last, mut told, mut failure) = (ticks - 1, 0, None);
+        let mut exchanges = 0_u64;
         while failure.is_none() && self.master.tick().0 < last {
             match self.master.advance() {
                 Ok(Advance::Done) => {}
@@ -135,7 +136,10 @@ impl Coupled {
                 }
                 Err(error) => failure = Some(failed(error, self.master.time())),
             }
-            self.listen();
+            exchanges += 1;
+            if exchanges.is_multiple_of(LISTEN_EVERY) {
+                self.listen();
+            }
             if self.master.tick().0 >= told {
                 told = self.master.tick().0 + PROGRESS_EVERY;
                 progress(self.master.tick().0 as f64 / ticks as f64);
@@ -161,7 +165,8 @@ impl Coupled {
         }
     }
 
-    fn finish(self, failure: Option<Failure>) -> Outcome {
+    fn finish(mut self, failure: Option<Failure>) -> Outcome {
+        self.listen();
         self.into_axis().recorded_to_the_end(failure.is_none()).finish(failure)
     }
 

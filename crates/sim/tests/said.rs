@@ -116,7 +116,11 @@ fn an_fmu_beside_the_axis_is_heard_to_its_failure() {
 /// The engine `exact`, whose mechanics say something at each tick and whose clock is wrong at some.
 struct Talking;
 
-struct Talks(Box<dyn Mechanics>, u32);
+struct Talks {
+    exact: Box<dyn Mechanics>,
+    ticks: usize,
+    said: Vec<Said>,
+}
 
 impl Engine for Talking {
     fn name(&self) -> &'static str {
@@ -124,35 +128,36 @@ impl Engine for Talking {
     }
 
     fn build(&self, setup: &MechanicsSetup) -> Result<Box<dyn Mechanics>, MechanicsError> {
-        Ok(Box::new(Talks(Exact.build(setup)?, 0)))
+        Ok(Box::new(Talks { exact: Exact.build(setup)?, ticks: 0, said: Vec::new() }))
     }
 }
 
 impl Mechanics for Talks {
     fn bodies(&self) -> &[BodyState] {
-        self.0.bodies()
+        self.exact.bodies()
     }
 
     fn advance(&mut self, input: &Input) -> Result<(), MechanicsError> {
-        self.1 += 1;
-        if self.1 > 3 {
+        let time = [1e-3, f64::NAN, 1e300].get(self.ticks).copied().unwrap_or(-1.0);
+        self.ticks += 1;
+        self.said.push(Said { time, severity: Severity::Warning, text: format!("in {}", self.ticks) });
+        if self.ticks > 3 {
             return Err(MechanicsError::Native { engine: "exact", message: "enough".into() });
         }
-        self.0.advance(input)
+        self.exact.advance(input)
     }
 
     fn take_log(&mut self) -> Vec<Said> {
-        let time = [0.0, 1e-3, f64::NAN, 1e300].get(self.1 as usize).copied().unwrap_or(-1.0);
-        vec![Said { time, severity: Severity::Warning, text: format!("after {}", self.1) }]
+        std::mem::take(&mut self.said)
     }
 }
 
-/// The fourth tick fails. Nothing is said before the start or after the present.
+/// The fourth tick, which begins at 3 ms, fails. Nothing is said before the start or after the present.
 #[test]
 fn mechanics_are_heard_to_their_failure() {
     let Outcome { recording, failure } = run(TABLE, &Talking, &NoPartners);
     assert!(failure.is_some());
     let said: Vec<(f64, &str)> = recording.log.iter().map(|entry| (entry.start, entry.text.as_str())).collect();
-    assert_eq!(said, [(0.0, "after 4"), (1e-3, "after 1"), (2e-3, "after 2"), (3e-3, "after 3")]);
+    assert_eq!(said, [(0.0, "in 4"), (1e-3, "in 1"), (3e-3, "in 2"), (3e-3, "in 3")]);
     assert!(recording.log.iter().all(|entry| entry.source == "FMU of the axis"));
 }
