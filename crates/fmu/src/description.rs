@@ -2,6 +2,7 @@
 use crate::ffi::CATEGORIES;
 use crate::interface::{Choice, Kind, Role, Variable as Row};
 use crate::machine::Model;
+use crate::part::Part;
 use crate::units::{self, NoUnit};
 use servobench_fmi::{
     Causality, CoSimulation, DataType, DefaultExperiment, DependencyKind, Enumeration, Initial, Item, LogCategory,
@@ -23,7 +24,13 @@ pub(crate) fn describe(
         (0..).zip(&model.variables).map(|(at, row)| variable(at, row, &mut units)).collect();
     let scenario = &model.scenario;
     let mut description = ModelDescription::new(version, &scenario.name, token, variables?);
-    description.description = format!("{} of the servo axis: {}", model.part.name(), scenario.description);
+    let what = match model.part {
+        Part::Axis => "a servo axis",
+        Part::Drive => "the drive of a servo axis",
+        Part::Mechanics => "the mechanics of a servo axis",
+    };
+    description.description =
+        if scenario.description.is_empty() { what.into() } else { format!("{what}: {}", scenario.description) };
     description.generation_tool = format!("servobench {}", env!("CARGO_PKG_VERSION"));
     let step = scenario.base_rate.period();
     description.co_simulation = CoSimulation {
