@@ -17,9 +17,12 @@ use std::path::PathBuf;
 /// Values of a type that an instance gives and takes, all that are asked for in one call. An array takes as many values as it
 /// has elements; other than that there are as many values as references.
 pub(crate) trait Access<T> {
-    fn get(&self, references: &[u32], values: &mut [T]) -> Outcome;
-    fn set(&self, references: &[u32], values: &[T]) -> Outcome;
+    fn get(&self, references: &[u32], values: &mut [T]) -> Called;
+    fn set(&self, references: &[u32], values: &[T]) -> Called;
 }
+
+/// A function of the standard and what came of it.
+pub(crate) type Called = (&'static str, Outcome);
 
 /// Folders of libraries for Linux on x86-64, as FMI 2.0 and FMI 3.0 name them. Tools mix them up.
 const FOLDERS: [&str; 2] = ["linux64", "x86_64-linux"];

@@ -322,37 +322,39 @@ impl Drop for Three {
 
 /// A type that the FMU gives and takes.
 macro_rules! access {
-    ($($type:ty as $raw:ty, $get:ident, $set:ident;)*) => {$(
+    ($($type:ty as $raw:ty, $get:ident, $set:ident, $name:literal;)*) => {$(
         impl super::Access<$type> for Three {
-            fn get(&self, references: &[u32], values: &mut [$type]) -> Outcome {
+            fn get(&self, references: &[u32], values: &mut [$type]) -> super::Called {
                 let (all, count) = (values.as_mut_ptr().cast::<$raw>(), values.len());
                 let get = self.functions.$get;
                 // SAFETY: both live during the call with the lengths that are said; the types have the same representation.
-                unsafe { get(self.instance, references.as_ptr(), references.len(), all, count) }.into()
+                let status = unsafe { get(self.instance, references.as_ptr(), references.len(), all, count) };
+                (concat!("fmi3Get", $name), status.into())
             }
 
-            fn set(&self, references: &[u32], values: &[$type]) -> Outcome {
+            fn set(&self, references: &[u32], values: &[$type]) -> super::Called {
                 let (all, count) = (values.as_ptr().cast::<$raw>(), values.len());
                 let set = self.functions.$set;
                 // SAFETY: both live during the call with the lengths that are said; the types have the same representation.
-                unsafe { set(self.instance, references.as_ptr(), references.len(), all, count) }.into()
+                let status = unsafe { set(self.instance, references.as_ptr(), references.len(), all, count) };
+                (concat!("fmi3Set", $name), status.into())
             }
         }
     )*};
 }
 
 access! {
-    f32 as f32, get_f32, set_f32;
-    f64 as f64, get_f64, set_f64;
-    i8 as i8, get_i8, set_i8;
-    u8 as u8, get_u8, set_u8;
-    i16 as i16, get_i16, set_i16;
-    u16 as u16, get_u16, set_u16;
-    i32 as i32, get_i32, set_i32;
-    u32 as u32, get_u32, set_u32;
-    i64 as i64, get_i64, set_i64;
-    u64 as u64, get_u64, set_u64;
-    Flag as Boolean, get_boolean, set_boolean;
+    f32 as f32, get_f32, set_f32, "Float32";
+    f64 as f64, get_f64, set_f64, "Float64";
+    i8 as i8, get_i8, set_i8, "Int8";
+    u8 as u8, get_u8, set_u8, "UInt8";
+    i16 as i16, get_i16, set_i16, "Int16";
+    u16 as u16, get_u16, set_u16, "UInt16";
+    i32 as i32, get_i32, set_i32, "Int32";
+    u32 as u32, get_u32, set_u32, "UInt32";
+    i64 as i64, get_i64, set_i64, "Int64";
+    u64 as u64, get_u64, set_u64, "UInt64";
+    Flag as Boolean, get_boolean, set_boolean, "Boolean";
 }
 
 fn flag(is: bool) -> Boolean {

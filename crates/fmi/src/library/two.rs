@@ -249,28 +249,32 @@ impl Drop for Two {
 
 /// A type that the FMU gives and takes.
 macro_rules! access {
-    ($type:ty as $raw:ty, $get:ident, $set:ident) => {
+    ($type:ty as $raw:ty, $get:ident, $set:ident, $name:literal) => {
         impl super::Access<$type> for Two {
-            fn get(&self, references: &[u32], values: &mut [$type]) -> Outcome {
+            fn get(&self, references: &[u32], values: &mut [$type]) -> super::Called {
                 debug_assert_eq!(references.len(), values.len());
                 let values = values.as_mut_ptr().cast::<$raw>();
                 // SAFETY: as many values as references; the types have the same representation.
-                unsafe { (self.functions.$get)(self.component, references.as_ptr(), references.len(), values) }.into()
+                let status =
+                    unsafe { (self.functions.$get)(self.component, references.as_ptr(), references.len(), values) };
+                (concat!("fmi2Get", $name), status.into())
             }
 
-            fn set(&self, references: &[u32], values: &[$type]) -> Outcome {
+            fn set(&self, references: &[u32], values: &[$type]) -> super::Called {
                 debug_assert_eq!(references.len(), values.len());
                 let values = values.as_ptr().cast::<$raw>();
                 // SAFETY: as many values as references; the types have the same representation.
-                unsafe { (self.functions.$set)(self.component, references.as_ptr(), references.len(), values) }.into()
+                let status =
+                    unsafe { (self.functions.$set)(self.component, references.as_ptr(), references.len(), values) };
+                (concat!("fmi2Set", $name), status.into())
             }
         }
     };
 }
 
-access!(f64 as Real, get_real, set_real);
-access!(i32 as Integer, get_integer, set_integer);
-access!(Flag as Boolean, get_boolean, set_boolean);
+access!(f64 as Real, get_real, set_real, "Real");
+access!(i32 as Integer, get_integer, set_integer, "Integer");
+access!(Flag as Boolean, get_boolean, set_boolean, "Boolean");
 
 fn flag(is: bool) -> Boolean {
     if is { TRUE } else { FALSE }

@@ -1,8 +1,8 @@
 //! What is set or read in one call: the wired variables of one type, with room for their values that is made once.
 use super::instance::Slot;
 use crate::description::{DataType, ModelDescription, Variability, Version};
-use crate::library::Access;
 use crate::library::status::Outcome;
+use crate::library::{Access, Called};
 use crate::library::{three, two};
 use crate::setup::Wire;
 
@@ -131,9 +131,9 @@ pub(super) trait Batch<I>: Send {
     /// Takes the values of its ports; returns whether one is new.
     fn take(&mut self, number: &dyn Fn(usize) -> f64) -> Result<bool, Misfit>;
     /// Sets what it took.
-    fn set(&self, instance: &I) -> Outcome;
+    fn set(&self, instance: &I) -> Called;
     /// Reads all of its variables.
-    fn get(&mut self, instance: &I) -> Outcome;
+    fn get(&mut self, instance: &I) -> Called;
     /// Gives the values of its ports.
     fn give(&self, numbers: &mut [f64]);
     /// Whether there are elements that no port stands for.
@@ -165,11 +165,11 @@ impl<T: Element, I: Access<T>> Batch<I> for Typed<T> {
         Ok(is_new)
     }
 
-    fn set(&self, instance: &I) -> Outcome {
+    fn set(&self, instance: &I) -> Called {
         instance.set(&self.layout.references, &self.values)
     }
 
-    fn get(&mut self, instance: &I) -> Outcome {
+    fn get(&mut self, instance: &I) -> Called {
         instance.get(&self.layout.references, &mut self.values)
     }
 
@@ -275,14 +275,24 @@ pub(super) fn batches<I: Batched>(
 }
 
 /// Reads all batches; stops at the first that is not read.
-pub(super) fn read<I>(batches: &mut Batches<I>, instance: &I, numbers: &mut [f64]) -> Outcome {
-    for batch in batches {
-        match batch.get(instance) {
-            Outcome::Done => batch.give(numbers),
-            other => return other,
+pub(super) fn read<I>(batches: &mut Batches<I>, instance: &I, numbers: &mut [f64]) -> Called {
+    all(batches.iter_mut().map(|batch| {
+        let called = batch.get(instance);
+        batch.give(numbers);
+        called
+    }))
+}
+
+/// Makes calls up to the first that is not done; what came of the last one.
+pub(super) fn all(calls: impl Iterator<Item = Called>) -> Called {
+    let mut last = ("", Outcome::Done);
+    for called in calls {
+        last = called;
+        if called.1 != Outcome::Done {
+            break;
         }
     }
-    Outcome::Done
+    last
 }
 
 #[cfg(test)]

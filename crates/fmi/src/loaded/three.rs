@@ -1,14 +1,14 @@
 //! FMI 3.0 in the order of FMI 3.0.2, §4.2 (state machine of co-simulation), with the event mode where the FMU has it.
-use super::batch::{Batches, batches};
+use super::batch::{self, Batches, batches};
 use super::instance::{Attempt, Instance, Slot, within};
 use super::session::{Session, instance_name};
 use super::time_event::TimeEvent;
 use crate::archive::Unpacked;
 use crate::description::{Causality, DataType, Values, Variability, Variable};
 use crate::error::FmuError;
-use crate::library::Access;
 use crate::library::status::{Health, Outcome};
 use crate::library::three::{Flag, Three};
+use crate::library::{Access, Called};
 use crate::log::Clock;
 use crate::setup::{Setup, Start};
 use crate::slave::{Capabilities, LogLine, Progress, SlaveError};
@@ -108,12 +108,9 @@ impl LoadedThree {
     /// An array is set as a whole: elements that nothing is wired to keep what they start with.
     fn read_unwired_elements(&mut self) -> Result<(), SlaveError> {
         let Self { instance, continuous, discrete, .. } = self;
-        let mut arrays = continuous.iter_mut().chain(discrete).filter(|batch| batch.has_others());
-        let outcomes = arrays.try_for_each(|batch| match batch.get(instance) {
-            Outcome::Done => Ok(()),
-            other => Err(other),
-        });
-        self.check("fmi3GetXXX", outcomes.err().unwrap_or(Outcome::Done))
+        let arrays = continuous.iter_mut().chain(discrete).filter(|batch| batch.has_others());
+        let (call, outcome) = batch::all(arrays.map(|batch| batch.get(instance)));
+        self.check(call, outcome)
     }
 
     /// From the event mode, in which the instance is: updates the discrete states until they stay, then goes to the step mode.
@@ -157,8 +154,8 @@ impl LoadedThree {
         }
         self.set_continuous(continuous)?;
         if is_new || !self.has_event_mode {
-            let outcome = set_all(&self.discrete, &self.instance);
-            self.check("fmi3SetXXX", outcome)?;
+            let (call, outcome) = batch::all(self.discrete.iter().map(|batch| batch.set(&self.instance)));
+            self.check(call, outcome)?;
         }
         if is_event { self.settle() } else { Ok(false) }
     }
@@ -167,8 +164,8 @@ impl LoadedThree {
         for batch in &mut self.continuous {
             batch.take(continuous).map_err(|misfit| self.session.misfit(misfit))?;
         }
-        let outcome = set_all(&self.continuous, &self.instance);
-        self.check("fmi3SetXXX", outcome)
+        let (call, outcome) = batch::all(self.continuous.iter().map(|batch| batch.set(&self.instance)));
+        self.check(call, outcome)
     }
 }
 
@@ -227,8 +224,8 @@ impl Instance for LoadedThree {
             self.set_inputs(&now, &now)?;
         }
         let Self { instance, outputs: batches, .. } = self;
-        let outcome = super::batch::read(batches, instance, outputs);
-        self.check("fmi3GetXXX", outcome)?;
+        let (call, outcome) = batch::read(batches, instance, outputs);
+        self.check(call, outcome)?;
         self.session.check_finite(outputs)
     }
 
@@ -258,15 +255,9 @@ impl Instance for LoadedThree {
     }
 }
 
-/// Sets batches; stops at the first that is not set.
-fn set_all(batches: &Batches<Three>, instance: &Three) -> Outcome {
-    let outcomes = batches.iter().map(|batch| batch.set(instance));
-    outcomes.into_iter().find(|outcome| *outcome != Outcome::Done).unwrap_or(Outcome::Done)
-}
-
 /// Sets a start value; says by which function. Values are within their types, which was looked at.
-fn set(instance: &Three, variable: &Variable, values: &Values) -> (&'static str, Outcome) {
-    fn integers<T: TryFrom<i128>>(instance: &Three, reference: u32, values: &[i128]) -> Outcome
+fn set(instance: &Three, variable: &Variable, values: &Values) -> Called {
+    fn integers<T: TryFrom<i128>>(instance: &Three, reference: u32, values: &[i128]) -> Called
     where
         Three: Access<T>,
     {
@@ -278,12 +269,12 @@ fn set(instance: &Three, variable: &Variable, values: &Values) -> (&'static str,
         Values::Float(values) if variable.data_type == DataType::Float32 => {
             #[expect(clippy::cast_possible_truncation, reason = "rounded to what the variable holds")]
             let values: Vec<f32> = values.iter().map(|value| *value as f32).collect();
-            ("fmi3SetFloat32", instance.set(&[reference], &values))
+            instance.set(&[reference], &values)
         }
-        Values::Float(values) => ("fmi3SetFloat64", instance.set(&[reference], values)),
+        Values::Float(values) => instance.set(&[reference], values),
         Values::Boolean(values) => {
             let values: Vec<Flag> = values.iter().map(|is| Flag((*is).into())).collect();
-            ("fmi3SetBoolean", instance.set(&[reference], &values))
+            instance.set(&[reference], &values)
         }
         Values::String(values) => {
             let texts: Vec<CString> = values.iter().filter_map(|text| CString::new(text.as_str()).ok()).collect();
@@ -291,14 +282,14 @@ fn set(instance: &Three, variable: &Variable, values: &Values) -> (&'static str,
         }
         Values::Binary(values) => ("fmi3SetBinary", instance.set_binaries(reference, values)),
         Values::Integer(values) => match variable.data_type {
-            DataType::Int8 => ("fmi3SetInt8", integers::<i8>(instance, reference, values)),
-            DataType::UInt8 => ("fmi3SetUInt8", integers::<u8>(instance, reference, values)),
-            DataType::Int16 => ("fmi3SetInt16", integers::<i16>(instance, reference, values)),
-            DataType::UInt16 => ("fmi3SetUInt16", integers::<u16>(instance, reference, values)),
-            DataType::Int32 => ("fmi3SetInt32", integers::<i32>(instance, reference, values)),
-            DataType::UInt32 => ("fmi3SetUInt32", integers::<u32>(instance, reference, values)),
-            DataType::UInt64 => ("fmi3SetUInt64", integers::<u64>(instance, reference, values)),
-            _ => ("fmi3SetInt64", integers::<i64>(instance, reference, values)),
+            DataType::Int8 => integers::<i8>(instance, reference, values),
+            DataType::UInt8 => integers::<u8>(instance, reference, values),
+            DataType::Int16 => integers::<i16>(instance, reference, values),
+            DataType::UInt16 => integers::<u16>(instance, reference, values),
+            DataType::Int32 => integers::<i32>(instance, reference, values),
+            DataType::UInt32 => integers::<u32>(instance, reference, values),
+            DataType::UInt64 => integers::<u64>(instance, reference, values),
+            _ => integers::<i64>(instance, reference, values),
         },
     }
 }

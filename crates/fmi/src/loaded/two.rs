@@ -1,13 +1,13 @@
 //! FMI 2.0 in the order of FMI 2.0.5, §4.2.4 (state machine of co-simulation).
-use super::batch::{Batches, batches};
+use super::batch::{self, Batches, batches};
 use super::instance::{Attempt, Instance, Slot, within};
 use super::session::{Session, instance_name};
 use crate::archive::Unpacked;
 use crate::description::{DataType, Values, Variability};
 use crate::error::FmuError;
-use crate::library::Access;
 use crate::library::status::Outcome;
 use crate::library::two::{Flag, Two};
+use crate::library::{Access, Called};
 use crate::log::Clock;
 use crate::setup::{Plan, Setup, Start};
 use crate::slave::{Capabilities, LogLine, Progress, SlaveError};
@@ -93,15 +93,11 @@ impl LoadedTwo {
         for (is_continuous, number) in [(true, continuous), (false, discrete)] {
             let group = if is_continuous { &mut self.continuous } else { &mut self.discrete };
             let Self { instance, session, .. } = self;
-            let mut outcome = Outcome::Done;
-            for batch in group {
+            for batch in group.iter_mut() {
                 batch.take(number).map_err(|misfit| session.misfit(misfit))?;
-                outcome = batch.set(instance);
-                if outcome != Outcome::Done {
-                    break;
-                }
             }
-            self.check("fmi2SetXXX", outcome)?;
+            let (call, outcome) = batch::all(group.iter().map(|batch| batch.set(instance)));
+            self.check(call, outcome)?;
         }
         Ok(())
     }
@@ -149,8 +145,8 @@ impl Instance for LoadedTwo {
             self.set_inputs(&now, &now)?;
         }
         let Self { instance, outputs: batches, .. } = self;
-        let outcome = super::batch::read(batches, instance, outputs);
-        self.check("fmi2GetXXX", outcome)?;
+        let (call, outcome) = batch::read(batches, instance, outputs);
+        self.check(call, outcome)?;
         self.session.check_finite(outputs)
     }
 
@@ -212,18 +208,18 @@ impl LoadedTwo {
 }
 
 /// Sets a start value; says by which function.
-fn set(instance: &Two, reference: u32, values: &Values) -> (&'static str, Outcome) {
+fn set(instance: &Two, reference: u32, values: &Values) -> Called {
     let one = &[reference];
     match values {
-        Values::Float(values) => ("fmi2SetReal", instance.set(one, values)),
+        Values::Float(values) => instance.set(one, values),
         Values::Integer(values) => {
             // They are of 32 bits, which was looked at.
             let values: Vec<i32> = values.iter().filter_map(|value| i32::try_from(*value).ok()).collect();
-            ("fmi2SetInteger", instance.set(one, &values))
+            instance.set(one, &values)
         }
         Values::Boolean(values) => {
             let values: Vec<Flag> = values.iter().map(|is| Flag((*is).into())).collect();
-            ("fmi2SetBoolean", instance.set(one, &values))
+            instance.set(one, &values)
         }
         Values::String(values) => {
             // One, without zero bytes, which was looked at.
