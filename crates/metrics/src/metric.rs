@@ -133,7 +133,7 @@ impl Metrics {
     /// Judges the metrics of the run by `limits`, and notes limit and result at each of them. A limit on a metric
     /// that is absent is missed.
     pub fn judge(&mut self, limits: &[Limit]) -> Verdict {
-        Verdict { misses: self.run.judge(limits, None) }
+        Verdict { misses: self.run.judge(limits, None), ..Verdict::default() }
     }
 
     /// Judges the metrics of each move by its own limits, as [`Metrics::judge`] does it for the run. Limits of moves that
@@ -146,6 +146,6 @@ impl Metrics {
                 None => misses.extend(MetricSet::default().judge(limits, Some(index))),
             }
         }
-        Verdict { misses }
+        Verdict { misses, ..Verdict::default() }
     }
 }

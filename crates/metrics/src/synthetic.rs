@@ -1,6 +1,6 @@
 //! Recordings with known answers, for the tests.
 use servobench_base::Rate;
-use servobench_trace::{About, Channel, ChannelSpec, Move, Recording};
+use servobench_trace::{About, Channel, ChannelSpec, Ending, Move, Recording};
 
 /// Builds a recording channel by channel.
 pub(crate) struct Build {
@@ -18,8 +18,7 @@ impl Build {
             bodies: vec!["motor".into(), "load".into()],
         };
         let rate = Rate::new(hertz).unwrap();
-        let recording =
-            Recording { about, rate, channels: vec![], moves: vec![], events: vec![], signals: vec![], log: vec![] };
+        let recording = Recording::new(about, rate);
         Self { recording, rows }
     }
 
@@ -58,6 +57,7 @@ pub(crate) fn planned(start: f64, end: f64, from: f64, to: f64) -> Planned {
         peaks: [1.0, 5.0, 50.0, f64::INFINITY],
         limits: [Some(1.0), Some(5.0), Some(50.0), None],
         cruise: (start, 0.0),
+        ending: Ending::AtRest,
     })
 }
 

@@ -2,6 +2,7 @@
 use crate::absence::Absence;
 use crate::name::Name;
 use crate::quantity::Quantity;
+use crate::requirement::{Expected, Requirement, Standing};
 use std::fmt;
 
 /// Bounds of a metric (SI, inclusive).
@@ -30,11 +31,17 @@ pub struct Miss {
     pub absence: Option<Absence>,
 }
 
-/// Whether every limit is kept.
+/// Whether every limit is kept, every requirement met, and every expected fault has come.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Verdict {
     /// The limits that were missed, in the order in which they were given.
     pub misses: Vec<Miss>,
+    /// How the run stands to each requirement, in the order of [`Requirement::ALL`]; empty where only limits were judged.
+    pub requirements: Vec<(Requirement, Standing)>,
+    /// The faults that were expected, in the order of the file.
+    pub expected: Vec<Expected>,
+    /// What breaks no requirement and should be known: in words.
+    pub warnings: Vec<String>,
 }
 
 impl Limit {
@@ -68,13 +75,31 @@ impl Verdict {
     #[must_use]
     pub fn and(mut self, other: Self) -> Self {
         self.misses.extend(other.misses);
+        self.requirements.extend(other.requirements);
+        self.expected.extend(other.expected);
+        self.warnings.extend(other.warnings);
         self
     }
 
-    /// Whether every limit is kept.
+    /// Whether every limit is kept, every requirement met, and every expected fault has come.
     #[must_use]
     pub fn passed(&self) -> bool {
         self.misses.is_empty()
+            && self.expected.iter().all(|expected| expected.met.is_some())
+            && !self.requirements.iter().any(|(_, standing)| matches!(standing, Standing::Broken(_)))
+    }
+
+    /// What fails, in words: missed limits, broken requirements, expected faults that did not come.
+    pub fn reasons(&self) -> impl Iterator<Item = String> {
+        let misses = self.misses.iter().map(ToString::to_string);
+        let broken = self.requirements.iter().filter_map(|(requirement, standing)| match standing {
+            Standing::Broken(reasons) => Some((requirement, reasons)),
+            Standing::Met | Standing::Lifted(_) | Standing::NotAsked => None,
+        });
+        let broken = broken.flat_map(|(name, reasons)| reasons.iter().map(move |why| format!("{name}: {why}")));
+        let missing = self.expected.iter().filter(|expected| expected.met.is_none());
+        let missing = missing.map(|expected| format!("expected, but did not come: {}", expected.expectation));
+        misses.chain(broken).chain(missing)
     }
 }
 

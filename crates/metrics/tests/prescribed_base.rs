@@ -5,7 +5,7 @@
 use core::f64::consts::PI;
 use servobench_base::{Rate, Setpoint};
 use servobench_metrics::{Limit, Name, Question, measure, undamped_residual};
-use servobench_trace::{About, Channel, ChannelSpec, Move, Recording};
+use servobench_trace::{About, Channel, ChannelSpec, Ending, Move, Recording};
 
 const RATE: u32 = 16_000;
 
@@ -122,9 +122,12 @@ fn recording(profile: &Profile, omega: f64) -> Recording {
             peaks: [peak(0), peak(1), peak(2), peak(3)],
             limits: [Some(1.0), Some(5.0), Some(50.0), (peaks.len() == 4).then_some(1000.0)],
             cruise: (0.3, 0.7),
+            ending: Ending::AtRest,
         }],
         events: vec![],
         signals: vec![],
+        calls: vec![],
+        limit_reversals: vec![],
         log: vec![],
     }
 }

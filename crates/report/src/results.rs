@@ -338,7 +338,7 @@ mod tests {
     use serde_json::{Value, json};
     use servobench_base::Rate;
     use servobench_metrics::{Question, measure};
-    use servobench_trace::{About, Channel, ChannelSpec, Move};
+    use servobench_trace::{About, Channel, ChannelSpec, Ending, Move};
 
     /// What is wrong, and how to make it so.
     type Spoiled = (&'static str, fn(&mut Value));
@@ -374,9 +374,12 @@ mod tests {
                 peaks: [2.0, 8.0, f64::INFINITY, f64::INFINITY],
                 limits: [Some(2.5), Some(8.0), None, None],
                 cruise: (0.2, 0.0),
+                ending: Ending::AtRest,
             }],
             events: vec![Event { start: 0.1, end: 0.1, source: "test".into(), message: "an event".into() }],
             signals: vec![],
+            calls: vec![],
+            limit_reversals: vec![],
             log: vec![LogEntry {
                 source: "FMU load".into(),
                 severity: Severity::Warning,

@@ -2,7 +2,7 @@
 use crate::results::{EventResult, LogResult, MetricResult, Outcome, Results, RunResult};
 use servobench_base::Severity;
 use servobench_metrics::Name;
-use servobench_trace::Move;
+use servobench_trace::{Ending, Move};
 
 /// A metric without a limit.
 fn free(name: Name, value: f64, unit: &str) -> (String, MetricResult) {
@@ -69,6 +69,7 @@ pub(crate) fn lambrechts_move(order: usize) -> Move {
         peaks: limits,
         limits: limits.map(Some),
         cruise: (0.35, 0.65),
+        ending: Ending::AtRest,
     };
     made.peaks[order..].fill(f64::INFINITY);
     made.limits[order..].fill(None);

@@ -7,7 +7,7 @@ use fine::Fine;
 use servobench_base::Setpoint;
 use servobench_planner::{Plan, Reader};
 use servobench_scenario::{Goal, OnlineMove, Scenario, Step, Way};
-use servobench_trace::Move;
+use servobench_trace::{Ending, Move};
 
 /// A planned move, and when it starts and ends: later than its plan where a velocity is held, earlier where it is aborted.
 #[derive(Debug, Clone)]
@@ -200,6 +200,11 @@ impl Planned {
             peaks,
             limits,
             cruise: (self.start + cruise.0 + delay, cruise.1),
+            ending: match (is_aborted, plan.end().v) {
+                (true, _) => Ending::Aborted,
+                (false, v) if v != 0.0 => Ending::InMotion,
+                (false, _) => Ending::AtRest,
+            },
         }
     }
 }

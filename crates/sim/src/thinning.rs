@@ -54,6 +54,8 @@ mod tests {
             moves: vec![],
             events: vec![],
             signals: vec![],
+            calls: vec![],
+            limit_reversals: vec![],
             log: vec![],
         }
     }

@@ -7,12 +7,14 @@
 //! | `servobench.seal` | digest of the whole file, see [`seal`](crate::seal) |
 use crate::channel::{Channel, ChannelSpec};
 use crate::log::LogEntry;
-use crate::recording::{About, Event, Move, Recording, Signal};
+use crate::recording::{About, Call, CallFate, Ending, Event, LimitReversals, Move, Recording, Signal};
 use serde::{Deserialize, Serialize};
 use servobench_base::{Rate, Severity};
 
 /// Version of the layout.
-pub(crate) const FORMAT: &str = "2";
+pub(crate) const FORMAT: &str = "3";
+/// The version before, which is read too: it has neither calls, nor how moves end.
+pub(crate) const FORMER_FORMAT: &str = "2";
 /// Key of the version.
 pub(crate) const FORMAT_KEY: &str = "servobench.format";
 /// Key of the JSON.
@@ -34,6 +36,12 @@ pub(crate) struct Header {
     moves: Vec<MoveHeader>,
     events: Vec<EventHeader>,
     signals: Vec<SignalHeader>,
+    /// Left out where no function block is called.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    calls: Vec<CallHeader>,
+    /// Left out where no quantity went from limit to limit.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    limit_reversals: Vec<LimitReversalsHeader>,
     /// Left out where nothing was said.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     log: Vec<LogHeader>,
@@ -61,6 +69,50 @@ struct MoveHeader {
     peaks: [Number; 4],
     limits: [Option<Number>; 4],
     cruise: (Number, Number),
+    /// Left out where the axis is to arrive.
+    #[serde(default, skip_serializing_if = "EndingWord::is_at_rest")]
+    ending: EndingWord,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum EndingWord {
+    #[default]
+    AtRest,
+    Aborted,
+    InMotion,
+}
+
+impl EndingWord {
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks by reference")]
+    fn is_at_rest(&self) -> bool {
+        *self == Self::AtRest
+    }
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CallHeader {
+    name: String,
+    block: String,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    optional: bool,
+    fate: CallFateHeader,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+enum CallFateHeader {
+    NeverExecuted(String),
+    Executed,
+    Failed { time: Number, id: u32, message: String },
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LimitReversalsHeader {
+    limit: String,
+    times: Vec<Number>,
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -149,6 +201,7 @@ impl From<&Move> for MoveHeader {
             peaks: made.peaks.map(Number::from),
             limits: made.limits.map(|limit| limit.map(Number::from)),
             cruise: (made.cruise.0.into(), made.cruise.1.into()),
+            ending: made.ending.into(),
         }
     }
 }
@@ -164,7 +217,62 @@ impl From<MoveHeader> for Move {
             peaks: made.peaks.map(f64::from),
             limits: made.limits.map(|limit| limit.map(f64::from)),
             cruise: (made.cruise.0.into(), made.cruise.1.into()),
+            ending: made.ending.into(),
         }
+    }
+}
+
+impl From<Ending> for EndingWord {
+    fn from(ending: Ending) -> Self {
+        match ending {
+            Ending::AtRest => Self::AtRest,
+            Ending::Aborted => Self::Aborted,
+            Ending::InMotion => Self::InMotion,
+        }
+    }
+}
+
+impl From<EndingWord> for Ending {
+    fn from(word: EndingWord) -> Self {
+        match word {
+            EndingWord::AtRest => Self::AtRest,
+            EndingWord::Aborted => Self::Aborted,
+            EndingWord::InMotion => Self::InMotion,
+        }
+    }
+}
+
+impl From<&Call> for CallHeader {
+    fn from(call: &Call) -> Self {
+        let fate = match call.fate.clone() {
+            CallFate::NeverExecuted(why) => CallFateHeader::NeverExecuted(why),
+            CallFate::Executed => CallFateHeader::Executed,
+            CallFate::Failed { time, id, message } => CallFateHeader::Failed { time: time.into(), id, message },
+        };
+        Self { name: call.name.clone(), block: call.block.clone(), optional: call.is_optional, fate }
+    }
+}
+
+impl From<CallHeader> for Call {
+    fn from(CallHeader { name, block, optional, fate }: CallHeader) -> Self {
+        let fate = match fate {
+            CallFateHeader::NeverExecuted(why) => CallFate::NeverExecuted(why),
+            CallFateHeader::Executed => CallFate::Executed,
+            CallFateHeader::Failed { time, id, message } => CallFate::Failed { time: time.into(), id, message },
+        };
+        Self { name, block, is_optional: optional, fate }
+    }
+}
+
+impl From<&LimitReversals> for LimitReversalsHeader {
+    fn from(reversals: &LimitReversals) -> Self {
+        Self { limit: reversals.limit.clone(), times: reversals.times.iter().copied().map(Number::from).collect() }
+    }
+}
+
+impl From<LimitReversalsHeader> for LimitReversals {
+    fn from(header: LimitReversalsHeader) -> Self {
+        Self { limit: header.limit, times: header.times.into_iter().map(f64::from).collect() }
     }
 }
 
@@ -254,6 +362,8 @@ impl Header {
             moves: recording.moves.iter().map(MoveHeader::from).collect(),
             events: recording.events.iter().map(EventHeader::from).collect(),
             signals: recording.signals.iter().map(SignalHeader::from).collect(),
+            calls: recording.calls.iter().map(CallHeader::from).collect(),
+            limit_reversals: recording.limit_reversals.iter().map(LimitReversalsHeader::from).collect(),
             log: recording.log.iter().map(LogHeader::from).collect(),
         }
     }
@@ -275,6 +385,8 @@ impl Header {
             moves: self.moves.into_iter().map(Move::from).collect(),
             events: self.events.into_iter().map(Event::from).collect(),
             signals: self.signals.into_iter().map(Signal::from).collect(),
+            calls: self.calls.into_iter().map(Call::from).collect(),
+            limit_reversals: self.limit_reversals.into_iter().map(LimitReversals::from).collect(),
             log: self.log.into_iter().map(LogEntry::from).collect(),
             about: About {
                 scenario: self.scenario,

@@ -21,7 +21,7 @@ pub use envelope::envelope;
 pub use error::TraceError;
 pub use log::LogEntry;
 pub use recorder::{Mark, Recorder, SignalId};
-pub use recording::{About, Event, Move, Recording, Signal};
+pub use recording::{About, Call, CallFate, Ending, Event, LimitReversals, Move, Recording, Signal};
 pub use whole_file::{stream_whole, write_whole};
 
 /// Column of a recording file that holds the instants (s).

@@ -1,6 +1,6 @@
 //! Parquet → recording.
 use crate::error::TraceError;
-use crate::header::{FORMAT, FORMAT_KEY, Header, RECORDING_KEY};
+use crate::header::{FORMAT, FORMAT_KEY, FORMER_FORMAT, Header, RECORDING_KEY};
 use crate::recording::Recording;
 use crate::write::ROW_GROUP;
 use crate::{TIME, seal};
@@ -77,7 +77,7 @@ fn header(metadata: &FileMetaData, path: &Path) -> Result<Header, TraceError> {
         value.ok_or_else(|| missing_key(key, path))
     };
     let found = text(FORMAT_KEY)?;
-    if found != FORMAT {
+    if found != FORMAT && found != FORMER_FORMAT {
         return Err(TraceError::Format { path: path.into(), found: found.into(), known: FORMAT });
     }
     serde_json::from_str(text(RECORDING_KEY)?)

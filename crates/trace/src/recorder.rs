@@ -1,7 +1,7 @@
 //! Fills a recording row by row, without allocating per row.
 use crate::channel::{Channel, ChannelSpec};
 use crate::log::Log;
-use crate::recording::{About, Event, Move, Recording, Signal};
+use crate::recording::{About, Call, Event, LimitReversals, Move, Recording, Signal};
 use servobench_base::{Rate, Severity};
 
 /// Rows that are collected before they go to the columns: a block stays in the first cache.
@@ -36,8 +36,7 @@ impl Recorder {
     pub fn new(about: About, rate: Rate, channels: Vec<ChannelSpec>, rows: usize) -> Self {
         let block = Vec::with_capacity(BLOCK * channels.len());
         let channels = channels.into_iter().map(|spec| Channel { spec, values: Vec::with_capacity(rows) }).collect();
-        let recording =
-            Recording { about, rate, channels, moves: vec![], events: vec![], signals: vec![], log: vec![] };
+        let recording = Recording { channels, ..Recording::new(about, rate) };
         Self { recording, block, log: Log::default(), is_silent: false }
     }
 
@@ -79,6 +78,20 @@ impl Recorder {
     pub fn note_move(&mut self, made: Move) {
         if !self.is_silent {
             self.recording.moves.push(made);
+        }
+    }
+
+    /// Notes what became of a call.
+    pub fn note_call(&mut self, call: Call) {
+        if !self.is_silent {
+            self.recording.calls.push(call);
+        }
+    }
+
+    /// Notes the limits between which a quantity went back and forth.
+    pub fn note_limit_reversals(&mut self, reversals: LimitReversals) {
+        if !self.is_silent {
+            self.recording.limit_reversals.push(reversals);
         }
     }
 

@@ -36,6 +36,66 @@ pub struct Move {
     pub limits: [Option<f64>; 4],
     /// Start and length (s) of the part at constant velocity; length 0 without one.
     pub cruise: (f64, f64),
+    /// How it ends.
+    pub ending: Ending,
+}
+
+/// How a move ends, which says whether the axis is to arrive at its target.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Ending {
+    /// At rest at its target.
+    #[default]
+    AtRest,
+    /// Another move takes over before its end.
+    Aborted,
+    /// In motion: its target is passed, or the axis goes on at a velocity.
+    InMotion,
+}
+
+/// A call of a function block, and what became of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Call {
+    /// Name of the instance.
+    pub name: String,
+    /// Name of the block in the standard: `MC_MoveAbsolute`.
+    pub block: String,
+    /// Whether the run may do without it: it is marked so, or waits on an error or abortion of another call.
+    pub is_optional: bool,
+    /// What became of it by the end of the run.
+    pub fate: CallFate,
+}
+
+/// What became of a call by the end of the run.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CallFate {
+    /// It was never executed: what it waited for, in words.
+    NeverExecuted(String),
+    /// It was executed, and is under way or has ended without an error.
+    Executed,
+    /// It ended in `Error`.
+    Failed {
+        /// When (s).
+        time: f64,
+        /// `ErrorID`.
+        id: u32,
+        /// The error, in words.
+        message: String,
+    },
+}
+
+/// How a limited quantity went from one of its limits to the other one and back: the mark of a loop that oscillates.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LimitReversals {
+    /// The limit: `effort limit`.
+    pub limit: String,
+    /// The times (s) at which the quantity was cut at the limit opposite to the one that cut it last; the first
+    /// [`MOST`](Self::MOST) of them.
+    pub times: Vec<f64>,
+}
+
+impl LimitReversals {
+    /// Times that are kept.
+    pub const MOST: usize = 10_000;
 }
 
 /// Something that happened, for the user to know.
@@ -71,7 +131,7 @@ impl Signal {
     }
 }
 
-/// Channels of equal length, sampled together; moves; events; signals; log.
+/// Channels of equal length, sampled together; moves; events; signals; calls; log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
     /// What it is of.
@@ -86,11 +146,31 @@ pub struct Recording {
     pub events: Vec<Event>,
     /// The signals, those of one source together.
     pub signals: Vec<Signal>,
+    /// The calls of function blocks, in the order of the program.
+    pub calls: Vec<Call>,
+    /// Limits between which a quantity went back and forth.
+    pub limit_reversals: Vec<LimitReversals>,
     /// What the parts of the run said of themselves, in order of time.
     pub log: Vec<LogEntry>,
 }
 
 impl Recording {
+    /// Nothing yet.
+    #[must_use]
+    pub const fn new(about: About, rate: Rate) -> Self {
+        Self {
+            about,
+            rate,
+            channels: Vec::new(),
+            moves: Vec::new(),
+            events: Vec::new(),
+            signals: Vec::new(),
+            calls: Vec::new(),
+            limit_reversals: Vec::new(),
+            log: Vec::new(),
+        }
+    }
+
     /// Values of the channel `name`.
     #[must_use]
     pub fn channel(&self, name: &str) -> Option<&[f64]> {

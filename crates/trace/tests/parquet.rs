@@ -1,7 +1,10 @@
 //! A recording comes back from its file to the bit, or is refused with the reason.
 use proptest::prelude::*;
 use servobench_base::{Rate, Severity};
-use servobench_trace::{About, Channel, ChannelSpec, Event, LogEntry, Move, Recording, Signal, TraceError};
+use servobench_trace::{
+    About, Call, CallFate, Channel, ChannelSpec, Ending, Event, LimitReversals, LogEntry, Move, Recording, Signal,
+    TraceError,
+};
 use std::fs;
 use std::io::{Seek, SeekFrom, Write};
 use std::path::Path;
@@ -18,8 +21,9 @@ fn rate() -> impl Strategy<Value = Rate> {
 fn one_move() -> impl Strategy<Value = Move> {
     let peaks = prop::array::uniform4(number());
     let limits = prop::array::uniform4(prop::option::of(number()));
-    (any::<String>(), prop::array::uniform4(number()), peaks, limits, number(), number()).prop_map(
-        |(label, [start, end, from, to], peaks, limits, at, length)| Move {
+    let ending = prop::sample::select(vec![Ending::AtRest, Ending::Aborted, Ending::InMotion]);
+    (any::<String>(), prop::array::uniform4(number()), peaks, limits, number(), number(), ending).prop_map(
+        |(label, [start, end, from, to], peaks, limits, at, length, ending)| Move {
             label,
             start,
             end,
@@ -28,6 +32,7 @@ fn one_move() -> impl Strategy<Value = Move> {
             peaks,
             limits,
             cruise: (at, length),
+            ending,
         },
     )
 }
@@ -44,6 +49,28 @@ fn event() -> impl Strategy<Value = Event> {
 fn signal() -> impl Strategy<Value = Signal> {
     let changes = prop::collection::vec((number(), any::<String>()), 0..4);
     (any::<String>(), any::<String>(), changes).prop_map(|(source, name, changes)| Signal { source, name, changes })
+}
+
+fn call() -> impl Strategy<Value = Call> {
+    let fate = prop_oneof![
+        any::<String>().prop_map(CallFate::NeverExecuted),
+        Just(CallFate::Executed),
+        (number(), any::<u32>(), any::<String>()).prop_map(|(time, id, message)| CallFate::Failed {
+            time,
+            id,
+            message
+        }),
+    ];
+    (any::<String>(), any::<String>(), any::<bool>(), fate).prop_map(|(name, block, is_optional, fate)| Call {
+        name,
+        block,
+        is_optional,
+        fate,
+    })
+}
+
+fn limit_reversals() -> impl Strategy<Value = LimitReversals> {
+    (any::<String>(), prop::collection::vec(number(), 0..4)).prop_map(|(limit, times)| LimitReversals { limit, times })
 }
 
 fn log_entry() -> impl Strategy<Value = LogEntry> {
@@ -75,15 +102,19 @@ fn any_recording() -> impl Strategy<Value = Recording> {
     let events = prop::collection::vec(event(), 0..3);
     let signals = prop::collection::vec(signal(), 0..3);
     let log = prop::collection::vec(log_entry(), 0..3);
-    let all = (about, rate(), channels(), moves, events, signals, log);
-    all.prop_map(|(about, rate, channels, moves, events, signals, log)| {
+    let calls = prop::collection::vec(call(), 0..3);
+    let limit_reversals = prop::collection::vec(limit_reversals(), 0..3);
+    let all = (about, rate(), channels(), moves, events, signals, (calls, limit_reversals), log);
+    all.prop_map(|(about, rate, channels, moves, events, signals, (calls, limit_reversals), log)| {
         let (scenario, engine, axis_unit, bodies) = about;
-        Recording { about: About { scenario, engine, axis_unit, bodies }, rate, channels, moves, events, signals, log }
+        let about = About { scenario, engine, axis_unit, bodies };
+        Recording { about, rate, channels, moves, events, signals, calls, limit_reversals, log }
     })
 }
 
 fn said(recording: &Recording) -> String {
-    format!("{:?}{:?}{:?}{:?}", recording.moves, recording.events, recording.signals, recording.log)
+    let Recording { moves, events, signals, calls, limit_reversals, log, .. } = recording;
+    format!("{moves:?}{events:?}{signals:?}{calls:?}{limit_reversals:?}{log:?}")
 }
 
 /// Equality to the bit: `==` alone takes -0 for 0.
@@ -121,9 +152,12 @@ fn small(instants: u32) -> Recording {
             peaks: [1.0, 5.0, 50.0, f64::INFINITY],
             limits: [Some(1.0), Some(5.0), Some(50.0), None],
             cruise: (0.3, 0.7),
+            ending: Ending::AtRest,
         }],
         events: vec![Event { start: 0.25, end: 0.5, source: "drive".into(), message: "current limit".into() }],
         signals: vec![Signal { source: "axis".into(), name: "state".into(), changes: vec![(0.0, "Disabled".into())] }],
+        calls: vec![],
+        limit_reversals: vec![],
         log: vec![],
     }
 }

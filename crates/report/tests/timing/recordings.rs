@@ -16,6 +16,8 @@ pub(crate) fn empty() -> Recording {
         moves: vec![],
         events: vec![],
         signals: vec![],
+        calls: vec![],
+        limit_reversals: vec![],
         log: vec![],
     }
 }

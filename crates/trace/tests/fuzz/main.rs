@@ -11,7 +11,10 @@ use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 use servobench_base::{Rate, Severity};
 use servobench_fuzz::{Splice, check, fuzz};
-use servobench_trace::{About, Channel, ChannelSpec, Event, LogEntry, Move, Recording, Signal, TraceError};
+use servobench_trace::{
+    About, Call, CallFate, Channel, ChannelSpec, Ending, Event, LimitReversals, LogEntry, Move, Recording, Signal,
+    TraceError,
+};
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
@@ -41,9 +44,17 @@ fn recording(instants: u32, channels: u32, path: &Path) -> (Recording, Vec<u8>) 
             peaks: [1.0, 5.0, 50.0, f64::INFINITY],
             limits: [Some(1.0), Some(5.0), Some(50.0), None],
             cruise: (0.3, 0.7),
+            ending: Ending::AtRest,
         }],
         events: vec![Event { start: 0.25, end: 0.5, source: "drive".into(), message: "current limit".into() }],
         signals: vec![Signal { source: "axis".into(), name: "state".into(), changes: vec![(0.0, "Disabled".into())] }],
+        calls: vec![Call {
+            name: "pick".into(),
+            block: "MC_MoveAbsolute".into(),
+            is_optional: true,
+            fate: CallFate::Failed { time: 0.5, id: 7, message: "not homed".into() },
+        }],
+        limit_reversals: vec![LimitReversals { limit: "effort limit".into(), times: vec![0.25, 0.5] }],
         log: vec![LogEntry {
             source: "FMU load".into(),
             severity: Severity::Warning,

@@ -1,6 +1,6 @@
 //! A motion that a block has the axis make, as a recording keeps moves.
 use servobench_base::Setpoint;
-use servobench_trace::Move;
+use servobench_trace::{Ending, Move};
 
 /// A motion under way.
 #[derive(Debug, Clone, Copy)]
@@ -39,6 +39,7 @@ impl Made {
             peaks,
             limits: [None; 4],
             cruise: (t, 0.0),
+            ending: Ending::AtRest,
         })
     }
 }
