@@ -32,7 +32,10 @@ pub use metric::{Metric, MetricSet, Metrics, MoveMetrics};
 pub use modal::{Mode, Signal, fit_mode};
 pub use name::{Name, UnknownMetric};
 pub use quantity::Quantity;
-pub use requirement::{Expectation, Expected, Requirement, Standing};
+pub use requirement::{
+    Driven, EarlyEnd, Expectation, Expected, LinearLoop, Requirement, Rules, Standing, arrival_window,
+    judge_requirements,
+};
 pub use round::{round_above, round_below};
 pub use undamped::undamped_residual;
 pub use verdict::{Limit, Miss, Verdict};

@@ -1,4 +1,19 @@
 //! What every run is held to beside its limits, unless its scenario lifts it by name.
+//!
+//! A requirement is a line of [`Requirement`] and a module that gives the reasons for which a recording breaks it. What each of
+//! them means exactly, with its numbers, is in `docs/requirements.md`.
+mod arrival;
+mod bounds;
+mod execution;
+mod fault;
+mod judge;
+mod oscillation;
+mod rules;
+
+pub use arrival::arrival_window;
+pub use judge::judge_requirements;
+pub use rules::{Driven, EarlyEnd, LinearLoop, Rules};
+
 use std::fmt;
 use std::str::FromStr;
 
@@ -87,6 +102,21 @@ pub struct Expected {
     pub met: Option<f64>,
 }
 
+impl Expectation {
+    /// Whether a fault that comes at `time` (s) comes when it is expected.
+    #[must_use]
+    pub fn is_open_at(&self, time: f64) -> bool {
+        (self.from..=self.to).contains(&time)
+    }
+
+    /// The code that `fault` is, where it is one: four hexadecimal digits and an `h`.
+    #[must_use]
+    pub fn code_of(fault: &str) -> Option<u32> {
+        let digits = fault.strip_suffix('h').filter(|digits| digits.len() == 4)?;
+        digits.bytes().all(|digit| digit.is_ascii_hexdigit()).then(|| u32::from_str_radix(digits, 16).ok())?
+    }
+}
+
 /// `8611h of the drive`, with the window of time where there is one
 impl fmt::Display for Expectation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -97,6 +127,100 @@ impl fmt::Display for Expectation {
             (true, false) => write!(f, " from {from} s on"),
             (false, true) => write!(f, " until {to} s"),
             (true, true) => write!(f, " from {from} s to {to} s"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::Build;
+
+    /// A closed loop without anything special.
+    pub(super) const fn rules() -> Rules<'static> {
+        Rules {
+            lifted: &[],
+            expected: &[],
+            window: None,
+            increment: 0.0,
+            modulo: None,
+            driven: Driven::ByLoops,
+            linear_loop: LinearLoop::Stable,
+            ended: None,
+        }
+    }
+
+    pub(super) fn expecting(who: &str, fault: &str, from: f64, to: f64) -> Expectation {
+        Expectation { fault: fault.into(), who: who.into(), from, to }
+    }
+
+    #[test]
+    fn names_read_back_and_codes_are_four_digits() {
+        for requirement in Requirement::ALL {
+            assert_eq!(requirement.as_str().parse(), Ok(*requirement));
+        }
+        assert_eq!("arrive".parse::<Requirement>(), Err(()));
+        for (text, code) in
+            [("8611h", Some(0x8611)), ("ff0Ah", Some(0xFF0A)), ("8611", None), ("0x86h", None), ("+611h", None)]
+        {
+            assert_eq!(Expectation::code_of(text), code, "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_lifted_keeps_its_reasons_and_fails_nothing() {
+        let recording = Build::new(1000, 11).channel("load.position", "m", |_| 0.0).finish();
+        let linear_loop = LinearLoop::Unstable("the loop is unstable".into());
+        let strict = judge_requirements(&recording, &Rules { linear_loop: linear_loop.clone(), ..rules() });
+        let broken = Standing::Broken(vec!["the loop is unstable".into()]);
+        assert!(!strict.passed() && strict.requirements.contains(&(Requirement::Stable, broken)), "{strict:?}");
+        assert_eq!(strict.reasons().collect::<Vec<_>>(), ["stable: the loop is unstable"]);
+        let lifted = judge_requirements(&recording, &Rules { linear_loop, lifted: &[Requirement::Stable], ..rules() });
+        let standing = Standing::Lifted(vec!["the loop is unstable".into()]);
+        assert!(lifted.passed() && lifted.requirements.contains(&(Requirement::Stable, standing)), "{lifted:?}");
+    }
+
+    /// Of a run that diverged there is nothing to judge: no lift makes it pass.
+    #[test]
+    fn a_run_that_diverged_cannot_pass() {
+        let recording = Build::new(1000, 11).finish();
+        let ended = Some(EarlyEnd::Diverged { time: 0.01, reason: "not finite".into() });
+        let verdict = judge_requirements(&recording, &Rules { ended, lifted: Requirement::ALL, ..rules() });
+        assert!(!verdict.passed(), "{verdict:?}");
+    }
+
+    #[test]
+    fn an_expected_fault_that_does_not_come_is_a_failure() {
+        let recording = Build::new(1000, 11).finish();
+        let expected = [expecting("drive", "8611h", 0.2, 0.6)];
+        let verdict = judge_requirements(&recording, &Rules { expected: &expected, ..rules() });
+        assert_eq!(
+            verdict.reasons().collect::<Vec<_>>(),
+            ["expected, but did not come: 8611h of `drive` from 0.2 s to 0.6 s"]
+        );
+    }
+
+    #[test]
+    fn of_many_reasons_a_handful_is_given() {
+        let mut recording = Build::new(1000, 11).finish();
+        recording.calls = (0..9)
+            .map(|k| servobench_trace::Call {
+                name: format!("call_{k}"),
+                block: "MC_Stop".into(),
+                is_optional: false,
+                fate: servobench_trace::CallFate::Unfinished("Done".into()),
+            })
+            .collect();
+        let verdict = judge_requirements(&recording, &rules());
+        let reasons: Vec<_> = verdict.reasons().collect();
+        assert_eq!((reasons.len(), reasons[5].as_str()), (6, "executed: and 4 more"));
+    }
+
+    #[test]
+    fn the_documentation_defines_every_requirement() {
+        let page = include_str!("../../../docs/requirements.md");
+        for name in Requirement::ALL {
+            assert!(page.contains(&format!("`{name}`")), "docs/requirements.md lacks `{name}`");
         }
     }
 }

@@ -200,7 +200,7 @@ impl RunResult {
     #[must_use]
     pub fn judged(run: RunIdentity, recording: &Recording, metrics: &Metrics, verdict: &Verdict) -> Self {
         let mut result = Self::of(run, Some(recording), metrics);
-        result.reasons = verdict.misses.iter().map(ToString::to_string).collect();
+        result.reasons = verdict.reasons().collect();
         for miss in verdict.misses.iter().filter(|miss| miss.value.is_none()) {
             let missing = [(miss.limit.metric.to_string(), MetricResult::missing(&miss.limit))];
             let metrics = match miss.in_move {

@@ -10,6 +10,7 @@ mod fmu;
 mod motor;
 mod plc;
 mod program;
+mod requirements;
 mod setpoint;
 
 pub(crate) use axis::{Axis, Body, Mjcf};
@@ -19,6 +20,7 @@ pub(crate) use fmu::{Coupling, Fmu};
 pub(crate) use motor::{Encoder, Motor, MotorKind};
 pub(crate) use plc::{Call, Condition, Plc, Update};
 pub(crate) use program::{Disturbance, ProgramStep};
+pub(crate) use requirements::{Expect, RequirementTable};
 pub(crate) use setpoint::{FollowRule, Rockwell, Setpoint, Shaper, ShaperName, TableOfPoints, VelocityRule};
 
 use crate::channel::Channel;
@@ -81,6 +83,10 @@ table! {
         record: Record = (),
         /// What the measures need to know.
         measure: Measures = (),
+        /// What the run is held to beside its limits, each unless it is `false`.
+        requirements: RequirementTable = (),
+        /// Faults that belong to the run; `[[expect]]` for each.
+        expect: Many<Expect> = (),
         /// Limits by metric: the largest allowed magnitude, or a range `{ min = …, max = … }`.
         limits: LimitTable = (),
     }

@@ -50,9 +50,9 @@ pub use scenario::{
     EngineName, Estimate, Execution, Feedback, Feedforward, Filter, Fmu, Follow, Goal, Grid, HomeSwitch, IdealSource,
     Initial, Interpolation, InterpolationMode, Isolation, LONGEST_RUN, Limit, LoopSignal, Measure, Method, Mjcf,
     Motion, MotorEstimate, MoveStep, ObjectWrite, OnlineMove, Output, Pair, PlanEffort, Plc, Pmsm, PositionLoop,
-    ProfileFollow, Record, RestMove, RockwellJerk, RockwellMove, RockwellShape, Sampling, Scales, Scenario, Sequencing,
-    Shaper, ShaperKind, Signal, SourceOutput, StartValue, Step, Switches, TableMove, Target, TrajectoryBuffer, Update,
-    Velocities, VelocityLoop, Way,
+    ProfileFollow, Record, Requirements, RestMove, RockwellJerk, RockwellMove, RockwellShape, Sampling, Scales,
+    Scenario, Sequencing, Shaper, ShaperKind, Signal, SourceOutput, StartValue, Step, Switches, TableMove, Target,
+    TrajectoryBuffer, Update, Velocities, VelocityLoop, Way,
 };
 pub use schema::json_schema;
 pub use source::{SourceId, Sources};

@@ -21,6 +21,7 @@ mod plc;
 mod points;
 mod profile;
 mod program;
+mod requirements;
 mod rockwell;
 mod time;
 mod whole;
@@ -67,6 +68,12 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
     }
     let is_modulo = axis.is_some_and(|axis| axis.modulo.span().is_some());
     let plc = plc::resolve(file, &plc::Known { duration, is_modulo, sources }, report);
+    let of_run = requirements::Known {
+        duration,
+        has_bus: file.bus.span().is_some(),
+        plc: plc.as_ref().and_then(Option::as_ref),
+    };
+    let requirements = requirements::resolve(file, &of_run, report);
     let fixed = is_prescribed.then(|| disturbance::Fixed::of(moved.as_ref()));
     let timing = disturbance::Timing { base_rate, duration };
     let coupling = fmu::coupling(file, base_rate, report);
@@ -108,6 +115,7 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
             from: measure.from.given().copied(),
             mode: measure.mode.given().copied(),
         }),
+        requirements: requirements?,
         limits,
     })
 }

@@ -13,6 +13,7 @@ mod fmu;
 mod motor;
 mod plc;
 mod program;
+mod requirements;
 
 pub use actuator::Actuator;
 pub use axis::{Axis, AxisMechanics, Body, Coupling, HomeSwitch, Mjcf, Motion, Switches};
@@ -36,6 +37,7 @@ pub use program::{
     Execution, Follow, Goal, Grid, Method, MoveStep, OnlineMove, PlanEffort, RestMove, RockwellJerk, RockwellMove,
     RockwellShape, Sampling, Step, TableMove, Target, Velocities, Way,
 };
+pub use requirements::Requirements;
 
 use servobench_base::Rate;
 use std::path::PathBuf;
@@ -82,6 +84,8 @@ pub struct Scenario {
     pub record: Record,
     /// What the measures need to know.
     pub measure: Measure,
+    /// What it is held to beside its limits.
+    pub requirements: Requirements,
     /// What makes it pass or fail, in the order of the file.
     pub limits: Vec<Limit>,
 }

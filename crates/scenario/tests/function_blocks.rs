@@ -54,6 +54,7 @@ fn alone(name: &str, block: Block) -> Call {
         start: Condition::AtOnce,
         stop: None,
         timeout: f64::INFINITY,
+        is_optional: false,
         updates: vec![],
     }
 }

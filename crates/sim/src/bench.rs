@@ -16,6 +16,7 @@ use crate::program::Program;
 use crate::recorded::Recorded;
 use servobench_base::{Rate, Setpoint};
 use servobench_drive as drive;
+use servobench_fieldbus::LinkFault;
 use servobench_plant::Engine;
 use servobench_scenario::{self as scenario, Actuator, Feedback, LoopSignal, Scenario};
 use servobench_trace::{About, Event, Recorder};
@@ -68,6 +69,7 @@ impl Bench {
         let program = Program::new(scenario)?;
         let duration = scenario.duration.unwrap_or(program.end() + TAIL);
         let bus = scenario.bus.as_ref();
+        check_expectations(scenario)?;
         check_length(None, duration)?;
         let ticks = base_rate.tick_at(duration).0 + 1;
         let disturbances = Disturbances::new(&scenario.disturbances, base_rate, ticks)?;
@@ -99,7 +101,8 @@ impl Bench {
 
         let equipment = equipment(scenario, bodies.len() == 3);
         let rates = writer_rates(scenario);
-        let selection = Selection::new(&scenario.record.channels, &equipment, &rates)?;
+        let wanted = Selection::new(&scenario.record.channels, &equipment, &rates)?;
+        let selection = measured(&scenario.record.channels, &equipment, &rates)?;
         let (rate, record_every) = recorded_rate(scenario, selection.specs.len(), ticks, duration)?;
         let rows = ticks.div_ceil(u64::from(record_every));
         let about = About {
@@ -136,7 +139,8 @@ impl Bench {
             switches: plant::switches(&scenario.axis.switches)?,
         };
         let watch = LimitWatch::default();
-        let recorded = Recorded { closed_loop, selection, recorder, record_every, ticks_to_row: 0, watch, tick: 0 };
+        let recorded =
+            Recorded { closed_loop, wanted, selection, recorder, record_every, ticks_to_row: 0, watch, tick: 0 };
         let axis = if scenario.fmus.is_empty() {
             Axis::Alone(Box::new(recorded))
         } else {
@@ -156,6 +160,40 @@ impl Control {
         };
         Ok(Self { params, state, motor_encoder: plant::encoder(motor)?, load_encoder })
     }
+}
+
+/// Whether the link can have the faults that are expected of it.
+fn check_expectations(scenario: &Scenario) -> Result<(), BuildError> {
+    let available = || LinkFault::ALL.map(LinkFault::name);
+    let of_link = scenario.requirements.expected.iter().enumerate().filter(|(_, expected)| expected.who == "link");
+    for (index, expected) in of_link {
+        if !available().iter().any(|name| name.eq_ignore_ascii_case(&expected.fault)) {
+            let (fault, available) = (expected.fault.clone(), available().to_vec());
+            return Err(BuildError::NoSuchFault { index, fault, available });
+        }
+    }
+    Ok(())
+}
+
+/// Channels that a run is judged by, whatever is kept of it.
+const JUDGED_BY: [&str; 7] = [
+    "setpoint.position",
+    "setpoint.acceleration",
+    "motor.position",
+    "load.position",
+    "following_error.motor",
+    "disturbance.motor",
+    "disturbance.load",
+];
+
+/// The channels `wanted`, and those of the axis that its run is judged by; all when the list is empty.
+fn measured(wanted: &[String], equipment: &Equipment, rates: &WriterRates) -> Result<Selection, BuildError> {
+    if wanted.is_empty() {
+        return Ok(Selection::all(equipment, rates));
+    }
+    let all = Selection::all(equipment, rates);
+    let judged_by = JUDGED_BY.into_iter().filter(|name| all.place(name).is_some()).map(String::from);
+    Selection::new(&wanted.iter().cloned().chain(judged_by).collect::<Vec<_>>(), equipment, rates)
 }
 
 /// Which channels the axis of `scenario` has; `table` is a body between motor and load.

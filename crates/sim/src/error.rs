@@ -56,6 +56,16 @@ pub enum BuildError {
     /// A table that cannot be sent to the buffer of the drive.
     #[error(transparent)]
     Points(#[from] Unsendable),
+    /// A fault of the link is expected that it does not have.
+    #[error("the link has no fault \"{fault}\"; it has {}", available.join(", "))]
+    NoSuchFault {
+        /// Number of the expectation, from 0.
+        index: usize,
+        /// What was expected.
+        fault: String,
+        /// The faults that there are.
+        available: Vec<&'static str>,
+    },
     /// A fieldbus without a drive at its end.
     #[error("a fieldbus leads to a drive, and this motor has none: give the motor a drive, or leave `bus` out")]
     NoDriveOnTheBus,

@@ -24,4 +24,4 @@ pub use network::Unsendable;
 pub use program::Program;
 pub use run::{Failure, Outcome, Reason};
 pub use stepper::{Binding, Controller, External, Snapshot, States, Stepper};
-pub use thinning::thinned;
+pub use thinning::{selected, thinned};

@@ -1,5 +1,5 @@
-//! Watches the limits that bind: nothing is cut in silence.
-use servobench_trace::{Event, Recorder};
+//! Watches the limits that bind: nothing is cut in silence, and what goes from limit to limit is noted.
+use servobench_trace::{Event, LimitReversals, Recorder};
 
 /// Events noted for one limit at most; one more says that there were others.
 const MOST_EVENTS: usize = 100;
@@ -21,6 +21,10 @@ struct Watch {
     since: Option<f64>,
     bound_ticks: u32,
     events: usize,
+    /// Whether the positive limit was the one that bound last.
+    bound_above: Option<bool>,
+    /// When it was the other one before (s).
+    reversals: Vec<f64>,
 }
 
 /// All limits.
@@ -37,14 +41,14 @@ const CURRENT: (&str, &str) = ("velocity loop", "current limit binds");
 const EFFORT: (&str, &str) = ("velocity loop", "effort limit binds");
 
 impl LimitWatch {
-    /// Takes which limits bind at tick `t` (s).
+    /// Takes which limits bind at tick `t` (s), and what each of them cuts, of which the sign counts.
     #[inline]
-    pub(crate) fn tick(&mut self, t: f64, binds: PerLimit<bool>, recorder: &mut Recorder) {
+    pub(crate) fn tick(&mut self, t: f64, binds: PerLimit<bool>, cut: PerLimit<f64>, recorder: &mut Recorder) {
         self.ticks += 1;
         let bound = binds.voltage || binds.current || binds.effort;
         if bound || self.bound {
             self.bound = bound;
-            self.note(t, binds, recorder);
+            self.note(t, binds, cut, recorder);
         }
     }
 
@@ -57,23 +61,40 @@ impl LimitWatch {
         PerLimit { voltage: share(voltage), current: share(current), effort: share(effort) }
     }
 
-    /// Ends what still binds at `t` (s).
+    /// Ends what still binds at `t` (s), and notes what went from limit to limit.
     pub(crate) fn finish(&mut self, t: f64, recorder: &mut Recorder) {
-        self.note(t, PerLimit::default(), recorder);
+        self.note(t, PerLimit::default(), PerLimit::default(), recorder);
+        let PerLimit { voltage, current, effort } = &mut self.watches;
+        for (watch, limit) in [(voltage, "voltage limit"), (current, "current limit"), (effort, "effort limit")] {
+            let times = std::mem::take(&mut watch.reversals);
+            if !times.is_empty() {
+                recorder.note_limit_reversals(LimitReversals { limit: limit.into(), times });
+            }
+        }
     }
 
     #[cold]
-    fn note(&mut self, t: f64, binds: PerLimit<bool>, recorder: &mut Recorder) {
+    fn note(&mut self, t: f64, binds: PerLimit<bool>, cut: PerLimit<f64>, recorder: &mut Recorder) {
         let PerLimit { voltage, current, effort } = &mut self.watches;
-        voltage.tick(t, binds.voltage, VOLTAGE, recorder);
-        current.tick(t, binds.current, CURRENT, recorder);
-        effort.tick(t, binds.effort, EFFORT, recorder);
+        voltage.tick(t, binds.voltage.then_some(cut.voltage), VOLTAGE, recorder);
+        current.tick(t, binds.current.then_some(cut.current), CURRENT, recorder);
+        effort.tick(t, binds.effort.then_some(cut.effort), EFFORT, recorder);
     }
 }
 
 impl Watch {
-    fn tick(&mut self, t: f64, binds: bool, (source, message): (&str, &str), recorder: &mut Recorder) {
+    /// Takes what the limit cuts at `t` (s), if it binds.
+    fn tick(&mut self, t: f64, cut: Option<f64>, (source, message): (&str, &str), recorder: &mut Recorder) {
+        let binds = cut.is_some();
         self.bound_ticks += u32::from(binds);
+        if let Some(cut) = cut {
+            let is_above = cut > 0.0;
+            if self.bound_above.replace(is_above).is_some_and(|before| before != is_above)
+                && self.reversals.len() < LimitReversals::MOST
+            {
+                self.reversals.push(t);
+            }
+        }
         match (self.since, binds) {
             (None, true) => self.since = Some(t),
             (Some(start), false) => {
@@ -110,11 +131,26 @@ mod tests {
     fn events(binds: impl IntoIterator<Item = PerLimit<bool>>) -> Vec<Event> {
         let (mut recorder, mut watch, mut t) = (recorder(), LimitWatch::default(), 0.0);
         for binds in binds {
-            watch.tick(t, binds, &mut recorder);
+            watch.tick(t, binds, POSITIVE, &mut recorder);
             t += 1.0;
         }
         watch.finish(t - 1.0, &mut recorder);
         recorder.finish().events
+    }
+
+    const POSITIVE: PerLimit<f64> = PerLimit { voltage: 1.0, current: 1.0, effort: 1.0 };
+
+    /// What is cut between is not a reversal, and neither is a limit that binds on the same side again.
+    #[test]
+    fn a_reversal_is_a_cut_at_the_limit_opposite_to_the_last_one() {
+        let (mut recorder, mut watch) = (recorder(), LimitWatch::default());
+        for (t, effort) in [(0.0, 1.0), (1.0, 2.0), (2.0, 0.0), (3.0, -1.0), (4.0, 0.0), (5.0, -3.0), (6.0, 0.5)] {
+            let cut = PerLimit { effort, ..PerLimit::default() };
+            watch.tick(t, binding(false, false, effort != 0.0), cut, &mut recorder);
+        }
+        watch.finish(7.0, &mut recorder);
+        let found = recorder.finish().limit_reversals;
+        assert_eq!(found, [LimitReversals { limit: "effort limit".into(), times: vec![3.0, 6.0] }]);
     }
 
     fn binding(voltage: bool, current: bool, effort: bool) -> PerLimit<bool> {
@@ -139,10 +175,10 @@ mod tests {
         for (voltage, current, effort) in
             [(true, false, false), (true, true, false), (false, true, false), (true, false, true)]
         {
-            watch.tick(0.0, binding(voltage, current, effort), &mut recorder);
+            watch.tick(0.0, binding(voltage, current, effort), POSITIVE, &mut recorder);
         }
         assert_eq!(watch.shares(), PerLimit { voltage: 0.75, current: 0.5, effort: 0.25 });
-        watch.tick(0.0, binding(true, false, false), &mut recorder);
+        watch.tick(0.0, binding(true, false, false), POSITIVE, &mut recorder);
         assert_eq!(watch.shares(), PerLimit { voltage: 1.0, current: 0.0, effort: 0.0 });
     }
 

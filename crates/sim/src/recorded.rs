@@ -1,7 +1,7 @@
 //! The closed loop with what is recorded of it.
 use crate::channels::{Instant, Selection};
 use crate::closed_loop::{ClosedLoop, Source, State};
-use crate::limit_watch::LimitWatch;
+use crate::limit_watch::{LimitWatch, PerLimit};
 use crate::run::{Failure, Outcome};
 use crate::stepper::External;
 use servobench_base::{Severity, Tick};
@@ -18,6 +18,9 @@ pub(crate) const LISTEN_EVERY: u64 = 64;
 /// A closed loop that is recorded tick by tick.
 pub(crate) struct Recorded {
     pub(crate) closed_loop: ClosedLoop,
+    /// The channels that the scenario asks for.
+    pub(crate) wanted: Selection,
+    /// Those that are recorded: these, and what the run is judged by.
     pub(crate) selection: Selection,
     pub(crate) recorder: Recorder,
     /// Base ticks from row to row, and to the next one. One, unless the run is too long for that.
@@ -41,7 +44,8 @@ impl Recorded {
     /// Tick k, recorded, but for the mechanics' way to k+1. What is recorded together belongs to the same instant.
     pub(crate) fn observe(&mut self, external: &External) -> Instant {
         let mut now = self.closed_loop.tick(self.tick, external, &mut self.recorder);
-        self.watch.tick(self.time(), now.binds, &mut self.recorder);
+        let cut = PerLimit { voltage: now.voltage.q, current: now.effort_reference, effort: now.effort_reference };
+        self.watch.tick(self.time(), now.binds, cut, &mut self.recorder);
         if self.ticks_to_row == 0 {
             self.ticks_to_row = self.record_every;
             now.saturation = self.watch.shares();

@@ -91,7 +91,7 @@ impl Bench {
     /// The loop without the FMUs beside it, to be stepped from outside. Its channels are those that the scenario records.
     #[must_use]
     pub fn into_stepper(self) -> Stepper {
-        let Recorded { closed_loop, selection, recorder, .. } = match self.axis {
+        let Recorded { closed_loop, wanted: selection, recorder, .. } = match self.axis {
             Axis::Alone(recorded) => *recorded,
             Axis::Coupled(coupled) => coupled.alone(),
         };

@@ -28,6 +28,16 @@ fn means(values: &[f64], every: usize) -> Vec<f64> {
     first.iter().copied().chain(later.chunks_exact(every).map(mean)).collect()
 }
 
+/// `recording` with the channels `wanted` only; all when the list is empty. What a run is judged by is recorded whatever is
+/// wanted of it.
+#[must_use]
+pub fn selected(mut recording: Recording, wanted: &[String]) -> Recording {
+    if !wanted.is_empty() {
+        recording.channels.retain(|channel| wanted.contains(&channel.spec.name));
+    }
+    recording
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -88,6 +88,7 @@ fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
             };
             return fmus.iter().flat_map(of).collect();
         }
+        BuildError::NoSuchFault { index, .. } => format!("expect.{index}.fault"),
         BuildError::NoSuchSignal { index, variable, .. } => format!("fmu.{index}.inputs.{variable}"),
         BuildError::Mechanics(MechanicsError::Unsupported { engine, what, way_out }) => {
             let message = format!("engine `{engine}` does not support {what}");

@@ -101,6 +101,7 @@ fn differences(one: &Scenario, other: &Scenario) -> Vec<&'static str> {
         initial,
         record,
         measure,
+        requirements: _,
         limits: _,
     } = one;
     let mut parts = Vec::new();

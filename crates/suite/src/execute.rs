@@ -2,11 +2,14 @@
 use crate::engines::Engines;
 use crate::error::RunError;
 use crate::job::Job;
+use crate::requirements::rules;
 use crate::worker::{self, WorkerCommand};
-use servobench_metrics::{Limit, Metrics, Name, Question, UnknownMetric, Verdict, measure};
-use servobench_plant::Engine;
+use servobench_metrics::{
+    EarlyEnd, Limit, LinearLoop, Metrics, Name, Question, UnknownMetric, Verdict, judge_requirements, measure,
+};
+use servobench_plant::{Engine, MechanicsError};
 use servobench_scenario::{self as scenario, Scenario, Step};
-use servobench_sim::{Bench, Partners, thinned};
+use servobench_sim::{Bench, Failure, Partners, Reason, selected, thinned};
 use servobench_trace::Recording;
 
 /// A run that came to its end.
@@ -30,7 +33,28 @@ pub struct Broken {
 }
 
 /// A recording, and why it ended early if it did.
-pub(crate) type Recorded = (Recording, Option<RunError>);
+pub(crate) type Recorded = (Recording, Option<Interruption>);
+
+/// Why a run ended early.
+#[derive(Debug)]
+pub(crate) enum Interruption {
+    /// By itself: it is judged as far as it came, and has failed.
+    Early(EarlyEnd),
+    /// By something that keeps it from being judged.
+    Broken(RunError),
+}
+
+impl From<Failure> for Interruption {
+    fn from(failure: Failure) -> Self {
+        match failure.reason {
+            Reason::Mechanics(MechanicsError::Diverged { message, .. }) => {
+                Self::Early(EarlyEnd::Diverged { time: failure.time, reason: message })
+            }
+            Reason::Program(reason) => Self::Early(EarlyEnd::GaveUp(reason)),
+            Reason::Mechanics(_) | Reason::Coupling(_) => Self::Broken(failure.into()),
+        }
+    }
+}
 
 /// Runs `job` and judges it; `progress` hears the share that is done, from 0 to 1.
 ///
@@ -52,14 +76,24 @@ pub fn execute(
         Step::Wait(_) => None,
     });
     let of_moves: Vec<_> = of_moves.collect::<Result<_, _>>().map_err(|error| broken(error.into(), None))?;
-    let (recording, failure) = recorded(job, engines, worker, progress).map_err(|error| broken(error, None))?;
-    let asked = &job.scenario.measure;
+    let (recording, interruption) = recorded(job, engines, worker, progress).map_err(|error| broken(error, None))?;
+    let (ended, failure) = match interruption {
+        None => (None, None),
+        Some(Interruption::Early(ended)) => (Some(ended), None),
+        Some(Interruption::Broken(error)) => (None, Some(error)),
+    };
+    let requirements = judge_requirements(&recording, &rules(&job.scenario, LinearLoop::NotAnalysed, ended));
+    let (asked, record) = (&job.scenario.measure, &job.scenario.record);
+    let recording = selected(recording, &record.channels);
     let mut metrics = measure(&recording, &Question { window: asked.window, from: asked.from, mode: asked.mode });
     // What is measured does not depend on how much of it is kept.
-    let recording = thinned(recording, job.scenario.record.rate);
+    let recording = thinned(recording, record.rate);
     match failure {
         Some(failure) => Err(broken(failure, Some((recording, metrics)))),
-        None => Ok(Run { verdict: metrics.judge(&limits).and(metrics.judge_moves(&of_moves)), recording, metrics }),
+        None => {
+            let limits = metrics.judge(&limits).and(metrics.judge_moves(&of_moves));
+            Ok(Run { verdict: limits.and(requirements), recording, metrics })
+        }
     }
 }
 
@@ -84,7 +118,7 @@ pub(crate) fn run_here(
     progress: &mut dyn FnMut(f64),
 ) -> Result<Recorded, RunError> {
     let outcome = Bench::with_partners(scenario, engine, partners)?.run(progress);
-    Ok((outcome.recording, outcome.failure.map(RunError::from)))
+    Ok((outcome.recording, outcome.failure.map(Interruption::from)))
 }
 
 fn limits(limits: &[scenario::Limit]) -> Result<Vec<Limit>, UnknownMetric> {

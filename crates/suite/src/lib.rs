@@ -9,6 +9,7 @@ mod job;
 mod limits;
 mod panicked;
 mod pool;
+mod requirements;
 pub mod worker;
 
 pub use check::{Objection, check, delays};

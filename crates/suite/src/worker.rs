@@ -3,7 +3,8 @@
 //! ```text
 //! servobench worker --engine <name> [--recording <file>] --name <scenario> [--path <file>] [--durations <s>,<s>…]
 //! stdin:  text of the scenario
-//! stdout: JSON lines, {"progress": 0.25} …, and at last {"end": "done" or {"input": "<why>"} or {"failed": "<why>"}}
+//! stdout: JSON lines, {"progress": 0.25} …, and at last {"end": "done" or {"input": "<why>"} or {"diverged": …} or
+//!         {"gaveup": "<why>"} or {"failed": "<why>"}}
 //! exit code: 0 done, 2 the input is wrong, 3 ended early (the recording is there as far as it came)
 //! ```
 //! Without `--recording` nothing runs: the worker tells what keeps the scenario from being built,

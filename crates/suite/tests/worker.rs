@@ -54,6 +54,10 @@ fn served(order: &Order, text: &str) -> End {
     let expected = match &end {
         End::Done => serde_json::json!({ "end": "done" }),
         End::Input(why) => serde_json::json!({ "end": { "input": why } }),
+        End::Diverged { time, reason } => {
+            serde_json::json!({ "end": { "diverged": { "time": time, "reason": reason } } })
+        }
+        End::GaveUp(why) => serde_json::json!({ "end": { "gaveup": why } }),
         End::Failed(why) => serde_json::json!({ "end": { "failed": why } }),
     };
     assert_eq!(last, expected);

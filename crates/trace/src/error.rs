@@ -60,13 +60,19 @@ pub enum TraceError {
         missing: String,
     },
     /// Written by another version.
-    #[error("`{}` has the recording format `{found}`, this build reads format `{known}`; use the servobench that wrote it", .path.display())]
+    #[error(
+        "`{}` has the recording format `{found}`, {} than the formats {former} and {known} that this build reads; run its \
+         scenario again, or use the servobench that wrote it",
+        .path.display(), age(found, former)
+    )]
     Format {
         /// The file.
         path: PathBuf,
         /// Format found in the file.
         found: String,
-        /// Format this build reads and writes.
+        /// Former format, which this build reads.
+        former: &'static str,
+        /// Format that this build reads and writes.
         known: &'static str,
     },
     /// The file's content is not what was written.
@@ -77,4 +83,13 @@ pub enum TraceError {
         /// What is wrong with it.
         reason: String,
     },
+}
+
+/// How a format that is not read stands to those that are.
+fn age(found: &str, former: &str) -> &'static str {
+    match (found.parse::<u32>(), former.parse::<u32>()) {
+        (Ok(found), Ok(former)) if found < former => "older",
+        (Ok(_), Ok(_)) => "newer",
+        _ => "of another kind",
+    }
 }

@@ -105,6 +105,7 @@ struct CallHeader {
 enum CallFateHeader {
     NeverExecuted(String),
     Executed,
+    Unfinished(String),
     Failed { time: Number, id: u32, message: String },
 }
 
@@ -247,6 +248,7 @@ impl From<&Call> for CallHeader {
         let fate = match call.fate.clone() {
             CallFate::NeverExecuted(why) => CallFateHeader::NeverExecuted(why),
             CallFate::Executed => CallFateHeader::Executed,
+            CallFate::Unfinished(output) => CallFateHeader::Unfinished(output),
             CallFate::Failed { time, id, message } => CallFateHeader::Failed { time: time.into(), id, message },
         };
         Self { name: call.name.clone(), block: call.block.clone(), optional: call.is_optional, fate }
@@ -258,6 +260,7 @@ impl From<CallHeader> for Call {
         let fate = match fate {
             CallFateHeader::NeverExecuted(why) => CallFate::NeverExecuted(why),
             CallFateHeader::Executed => CallFate::Executed,
+            CallFateHeader::Unfinished(output) => CallFate::Unfinished(output),
             CallFateHeader::Failed { time, id, message } => CallFate::Failed { time: time.into(), id, message },
         };
         Self { name, block, is_optional: optional, fate }

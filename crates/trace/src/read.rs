@@ -78,7 +78,12 @@ fn header(metadata: &FileMetaData, path: &Path) -> Result<Header, TraceError> {
     };
     let found = text(FORMAT_KEY)?;
     if found != FORMAT && found != FORMER_FORMAT {
-        return Err(TraceError::Format { path: path.into(), found: found.into(), known: FORMAT });
+        return Err(TraceError::Format {
+            path: path.into(),
+            found: found.into(),
+            former: FORMER_FORMAT,
+            known: FORMAT,
+        });
     }
     serde_json::from_str(text(RECORDING_KEY)?)
         .map_err(|error| damaged(path, format!("its `{RECORDING_KEY}` cannot be read: {error}")))

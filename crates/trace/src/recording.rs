@@ -70,8 +70,10 @@ pub struct Call {
 pub enum CallFate {
     /// It was never executed: what it waited for, in words.
     NeverExecuted(String),
-    /// It was executed, and is under way or has ended without an error.
+    /// It was executed and came to what it is for, or another command took over from it.
     Executed,
+    /// It was executed, and this output did not become TRUE by the end of the run.
+    Unfinished(String),
     /// It ended in `Error`.
     Failed {
         /// When (s).

@@ -55,6 +55,7 @@ fn call() -> impl Strategy<Value = Call> {
     let fate = prop_oneof![
         any::<String>().prop_map(CallFate::NeverExecuted),
         Just(CallFate::Executed),
+        any::<String>().prop_map(CallFate::Unfinished),
         (number(), any::<u32>(), any::<String>()).prop_map(|(time, id, message)| CallFate::Failed {
             time,
             id,
@@ -283,7 +284,12 @@ fn a_foreign_parquet_file_is_told_what_it_lacks() {
     assert_eq!(refusal(&keys).to_string(), lacks("the column `y` of type DOUBLE, without nulls"));
     let damage = refusal(&[format, ("servobench.recording", "{}")]).to_string();
     assert!(damage.contains("`servobench.recording` cannot be read: missing field `scenario`"), "{damage}");
-    assert!(
-        matches!(refusal(&[("servobench.format", "1")]), TraceError::Format { found, known: "2", .. } if found == "1")
-    );
+    let format = ("servobench.format", "3");
+    assert_eq!(refusal(&[format]).to_string(), lacks("the key `servobench.recording` in its file metadata"));
+    for (other, what) in [("1", "older"), ("4", "newer"), ("", "of another kind")] {
+        let error = refusal(&[("servobench.format", other)]);
+        assert!(matches!(&error, TraceError::Format { found, .. } if found == other), "{error}");
+        let message = error.to_string();
+        assert!(message.contains(&format!("format `{other}`, {what}")) && message.contains("2 and 3"), "{message}");
+    }
 }

@@ -19,6 +19,6 @@ pub(crate) fn worker(args: &WorkerArgs) -> Result<Exit, CliError> {
     Ok(match serve(&order, &text, &engines::installed(), std::io::stdout().lock()) {
         End::Done => Exit::Passed,
         End::Input(_) => Exit::Input,
-        End::Failed(_) => Exit::Run,
+        End::Diverged { .. } | End::GaveUp(_) | End::Failed(_) => Exit::Run,
     })
 }

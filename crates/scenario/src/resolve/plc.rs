@@ -178,7 +178,8 @@ fn call(
     let updates = block.and_then(|block| updates(given, block, &inputs, reading, conditions, said, report));
     let call = || {
         let (start, stop, timeout) = (start?, stop?, timeout?);
-        Some(Call { name: name.to_owned(), block: resolved?, start, stop, timeout, updates: updates? })
+        let is_optional = given.optional.optional().ok()?.copied().unwrap_or(false);
+        Some(Call { name: name.to_owned(), block: resolved?, start, stop, timeout, is_optional, updates: updates? })
     };
     (start, call())
 }

@@ -23,6 +23,8 @@ pub struct Call {
     pub stop: Option<Condition>,
     /// How long `start` is waited for, from the beginning of the run (s); infinite where the end of the run is soon enough.
     pub timeout: f64,
+    /// Whether the run may do without it.
+    pub is_optional: bool,
     /// Inputs that change while `Execute` is TRUE, in the order of the file.
     pub updates: Vec<Update>,
 }

@@ -6,9 +6,18 @@ const BUS: &str = "[bus]\ncycle = \"1 ms\"\nunits = { drive = 1, axis = \"1 um\"
 const POWER: &str = "[[call]]\nblock = \"MC_Power\"\nname = \"power\"\n";
 
 /// Mistakes and warnings in the axis on a bus with `calls` for its program; lines count from that of the calls.
-fn said(calls: &str) -> [Vec<String>; 2] {
-    let axis = AXIS.replace("base_rate = \"16 kHz\"\n", "base_rate = \"16 kHz\"\nduration = \"2 s\"\n");
-    said_of(&axis, &format!("{BUS}{POWER}"), calls)
+pub(crate) fn said(calls: &str) -> [Vec<String>; 2] {
+    said_of(&lasting(), &format!("{BUS}{POWER}"), calls)
+}
+
+/// The axis, with a run of two seconds.
+fn lasting() -> String {
+    AXIS.replace("base_rate = \"16 kHz\"\n", "base_rate = \"16 kHz\"\nduration = \"2 s\"\n")
+}
+
+/// The file that [`said`] reads.
+pub(crate) fn text(calls: &str) -> String {
+    lasting().replace("[[program]]\nmove_to = \"250 mm\"\n", &format!("{BUS}{POWER}{calls}"))
 }
 
 /// The same of `axis`, with `before` the calls.

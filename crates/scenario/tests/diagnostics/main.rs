@@ -4,6 +4,7 @@ mod calls;
 mod fmus;
 mod names;
 mod quantities;
+mod requirements;
 mod rules;
 mod setpoints;
 mod time;

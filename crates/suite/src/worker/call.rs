@@ -3,8 +3,9 @@ use super::listener::{Listener, Silence, end};
 use super::message::{End, Message};
 use super::{WorkerCommand, WorkerError};
 use crate::check::Objection;
-use crate::execute::Recorded;
+use crate::execute::{Interruption, Recorded};
 use crate::job::Job;
+use servobench_metrics::EarlyEnd;
 use servobench_trace::Recording;
 use std::io::{self, Write};
 use std::path::Path;
@@ -23,11 +24,11 @@ pub(crate) fn call(command: &WorkerCommand, job: &Job, progress: &mut dyn FnMut(
     // Nothing depends on the file any more; if it cannot be removed it is only in the way.
     std::fs::remove_file(&path).ok();
     match ended {
-        Ok(()) => Ok((recording?, None)),
+        Ok(early) => Ok((recording?, early.map(Interruption::Early))),
         Err(error @ WorkerError::Input(_)) => Err(error),
         // As far as it came.
         Err(error) => match recording {
-            Ok(recording) => Ok((recording, Some(error.into()))),
+            Ok(recording) => Ok((recording, Some(Interruption::Broken(error.into())))),
             Err(_) => Err(error),
         },
     }
@@ -44,13 +45,14 @@ pub(crate) fn ask(command: &WorkerCommand, job: &Job) -> Result<Vec<Objection>, 
     Ok(all)
 }
 
-/// Starts the worker, feeds it and listens to it to its end; `hear` gets all but its last word.
+/// Starts the worker, feeds it and listens to it to its end; `hear` gets all but its last word, which says whether the run ended
+/// early.
 fn converse(
     command: &WorkerCommand,
     job: &Job,
     recording: Option<&Path>,
     hear: &mut dyn FnMut(Message),
-) -> Result<(), WorkerError> {
+) -> Result<Option<EarlyEnd>, WorkerError> {
     let cannot = |action| {
         let program = command.program.clone();
         move |source| WorkerError::Process { action, program, source }
@@ -88,7 +90,7 @@ fn listen(
     command: &WorkerCommand,
     job: &Job,
     hear: &mut dyn FnMut(Message),
-) -> Result<(), WorkerError> {
+) -> Result<Option<EarlyEnd>, WorkerError> {
     let cannot = |action, source| WorkerError::Process { action, program: command.program.clone(), source };
     let stalled = |Silence| WorkerError::Stalled { patience: command.patience };
     let (Some(mut stdin), Some(stdout), Some(stderr)) = (child.stdin.take(), child.stdout.take(), child.stderr.take())
@@ -108,7 +110,9 @@ fn listen(
     }
     let status = end(child, command.patience).map_err(|error| cannot("wait for", error))?.map_err(stalled)?;
     match last {
-        Some(End::Done) => Ok(()),
+        Some(End::Done) => Ok(None),
+        Some(End::Diverged { time, reason }) => Ok(Some(EarlyEnd::Diverged { time, reason })),
+        Some(End::GaveUp(why)) => Ok(Some(EarlyEnd::GaveUp(why))),
         Some(End::Input(why)) => Err(WorkerError::Input(why)),
         Some(End::Failed(why)) => Err(WorkerError::Failed(why)),
         None => Err(WorkerError::Ended { status, last_words: listener.last_words(command.patience) }),

@@ -15,14 +15,23 @@ pub(super) enum Message {
 }
 
 /// How a worker ends.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum End {
     /// The recording, or the answer, is complete.
     Done,
     /// The input is wrong: why.
     Input(String),
-    /// The run ended early: why. The recording is there as far as it came.
+    /// The run diverged; the recording is there as far as it came.
+    Diverged {
+        /// When (s).
+        time: f64,
+        /// Why, in the engine's words.
+        reason: String,
+    },
+    /// The program gave up: why. The recording is there as far as it came.
+    GaveUp(String),
+    /// The run broke off: why. The recording is there as far as it came.
     Failed(String),
 }
 
@@ -54,6 +63,11 @@ mod tests {
             ),
             (Message::End(End::Done), "{\"end\":\"done\"}\n"),
             (Message::End(End::Input("no".into())), "{\"end\":{\"input\":\"no\"}}\n"),
+            (
+                Message::End(End::Diverged { time: 0.25, reason: "not finite".into() }),
+                "{\"end\":{\"diverged\":{\"time\":0.25,\"reason\":\"not finite\"}}}\n",
+            ),
+            (Message::End(End::GaveUp("no".into())), "{\"end\":{\"gaveup\":\"no\"}}\n"),
             (
                 Message::End(End::Failed(why)),
                 "{\"end\":{\"failed\":\"engine `mujoco`: \\\"half\\n a µm\\\" too far\"}}\n",

@@ -3,9 +3,10 @@ use super::message::{End, Message};
 use crate::check::objections;
 use crate::engines::Engines;
 use crate::error::RunError;
-use crate::execute::run_here;
+use crate::execute::{Interruption, run_here};
 use crate::job::slow_to;
 use crate::panicked::caught;
+use servobench_metrics::EarlyEnd;
 use servobench_plant::Engine;
 use servobench_scenario::{EngineName, LoadError, Scenario};
 use servobench_sim::Partners;
@@ -67,10 +68,12 @@ fn run(
     path: &Path,
     say: &mut dyn FnMut(&Message),
 ) -> Result<End, RunError> {
-    let (recording, failure) = run_here(scenario, loop_of, &mut |share| say(&Message::Progress(share)))?;
-    Ok(match (failure, recording.write_parquet(path)) {
-        (Some(failure), _) => End::Failed(failure.to_string()),
-        (None, Err(error)) => End::Failed(error.to_string()),
+    let (recording, interruption) = run_here(scenario, loop_of, &mut |share| say(&Message::Progress(share)))?;
+    Ok(match (interruption, recording.write_parquet(path)) {
+        (Some(Interruption::Broken(error)), _) => End::Failed(error.to_string()),
+        (_, Err(error)) => End::Failed(error.to_string()),
+        (Some(Interruption::Early(EarlyEnd::Diverged { time, reason })), Ok(())) => End::Diverged { time, reason },
+        (Some(Interruption::Early(EarlyEnd::GaveUp(why))), Ok(())) => End::GaveUp(why),
         (None, Ok(())) => End::Done,
     })
 }

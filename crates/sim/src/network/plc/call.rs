@@ -6,7 +6,27 @@ use servobench_base::Setpoint;
 use servobench_plcopen::Axis;
 use servobench_scenario as scenario;
 use servobench_scenario::{Condition, Output};
-use servobench_trace::{Event, Move, Recorder, SignalId};
+use servobench_trace::{self as trace, CallFate, Ending, Event, Move, Recorder, SignalId};
+
+/// The outputs that say that a block came to what it is for; of a block that has several, the first of these.
+const AIMS: [&str; 8] =
+    ["Done", "InVelocity", "InEndVelocity", "InTorque", "ProfileCompleted", "Status", "Enabled", "Valid"];
+
+/// What became of `calls` by the end of the run.
+pub(super) fn fates(calls: &[Call], known: &Known) -> Vec<trace::Call> {
+    let mut idle: Vec<bool> = vec![false; calls.len()];
+    // A call that waits on an idle one is idle too, and may stand before it: there are at most as many links as calls.
+    for _ in 0..calls.len() {
+        idle = calls.iter().map(|call| call.started.is_none() && call.may_be_left_out(&idle)).collect();
+    }
+    let of = |(own, call): (usize, &Call)| trace::Call {
+        name: call.name.clone(),
+        block: call.block.name().to_owned(),
+        is_optional: call.may_be_left_out(&idle),
+        fate: call.fate(own, known),
+    };
+    calls.iter().enumerate().map(of).collect()
+}
 
 /// How far after its time a cycle may be by rounding (s).
 const ROUNDING: f64 = 1e-9;
@@ -22,6 +42,9 @@ pub(super) struct Call {
     updates: Vec<scenario::Update>,
     /// When Execute or Enable became TRUE.
     started: Option<f64>,
+    is_optional: bool,
+    /// When it ended in Error (s), ErrorID, and the error in words.
+    error: Option<(f64, u32, String)>,
     /// Whether it became FALSE again.
     is_over: bool,
     execute: bool,
@@ -46,6 +69,8 @@ impl Call {
             timeout: call.timeout,
             updates: call.updates.clone(),
             started: None,
+            is_optional: call.is_optional,
+            error: None,
             is_over: false,
             execute: false,
             has_ended: false,
@@ -128,6 +153,15 @@ impl Call {
                 let message = self.block.error();
                 recorder.note_value(*signal, t, &format!("{value}"));
                 if let Some(message) = message {
+                    if name == "ErrorID" && self.error.is_none() {
+                        #[expect(
+                            clippy::cast_possible_truncation,
+                            clippy::cast_sign_loss,
+                            reason = "a number of 16 bits"
+                        )]
+                        let id = value as u32;
+                        self.error = Some((t, id, message.clone()));
+                    }
                     let source = self.name.clone();
                     recorder.note_event(Event { start: t, end: t, source, message });
                 }
@@ -151,13 +185,49 @@ impl Call {
 
     pub(super) fn end_motion(&mut self, t: f64, commanded: Setpoint, made: &mut Vec<Move>) {
         if let Some(making) = self.made.take() {
-            made.extend(making.end(t, commanded, format!("{}: {}", self.name, self.block.name())));
+            // A motion that ends as commanded ends in Done, and at rest: any other one is broken off, or goes on.
+            let is = |output| {
+                self.block.outputs().iter().zip(&self.values).any(|(name, value)| *name == output && *value > 0.0)
+            };
+            let ending = match (is("CommandAborted") || is("Error"), commanded.v == 0.0) {
+                (true, _) => Ending::Aborted,
+                (false, true) => Ending::AtRest,
+                (false, false) => Ending::InMotion,
+            };
+            made.extend(making.end(t, commanded, format!("{}: {}", self.name, self.block.name()), ending));
         }
     }
 
     /// What to say of a call that was never executed.
     pub(super) fn never_executed(&self, known: &Known) -> Option<String> {
         self.started.is_none().then(|| self.waiting(known))
+    }
+
+    /// Whether the run may do without it, beside what its file says: it waits on the failure of another call, or on one of
+    /// `idle` ones, which are optional and were never executed.
+    fn may_be_left_out(&self, idle: &[bool]) -> bool {
+        let waits_in_vain = match self.start {
+            Condition::After { output: Output::Error | Output::CommandAborted, .. } => true,
+            Condition::After { call, .. } => idle.get(call).is_some_and(|is_idle| *is_idle),
+            Condition::AtOnce | Condition::At(_) | Condition::Above(_) | Condition::Below(_) => false,
+        };
+        self.is_optional || waits_in_vain
+    }
+
+    /// What became of it by the end of the run.
+    fn fate(&self, own: usize, known: &Known) -> CallFate {
+        if let Some((time, id, message)) = self.error.clone() {
+            return CallFate::Failed { time, id, message };
+        }
+        if let Some(why) = self.never_executed(known) {
+            return CallFate::NeverExecuted(why);
+        }
+        let risen = |name: &str| known.rises[own].1.iter().any(|(output, when)| *output == name && when.is_some());
+        let aim = self.block.outputs().iter().find(|name| AIMS.contains(name));
+        match aim {
+            Some(aim) if !risen(aim) && !risen("CommandAborted") => CallFate::Unfinished((*aim).to_owned()),
+            _ => CallFate::Executed,
+        }
     }
 
     /// Its name, and when its outputs have become TRUE: never yet.

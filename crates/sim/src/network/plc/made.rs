@@ -27,7 +27,7 @@ impl Made {
     }
 
     /// Ends at `t` (s); `None` where nothing moved.
-    pub(super) fn end(self, t: f64, commanded: Setpoint, label: String) -> Option<Move> {
+    pub(super) fn end(self, t: f64, commanded: Setpoint, label: String, ending: Ending) -> Option<Move> {
         let Self { start, from, peaks } = self;
         let is_move = peaks[0] > 0.0 && t > start;
         is_move.then_some(Move {
@@ -39,7 +39,7 @@ impl Made {
             peaks,
             limits: [None; 4],
             cruise: (t, 0.0),
-            ending: Ending::AtRest,
+            ending,
         })
     }
 }

@@ -1,0 +1,108 @@
+//! `bounded`: positions stay finite, and within a multiple of the range of the program.
+use super::Rules;
+use super::rules::{Driven, EarlyEnd};
+use crate::quantity::Quantity;
+use servobench_trace::Recording;
+
+/// How many times the range of the program an axis may leave it by.
+const TIMES_THE_RANGE: f64 = 10.0;
+
+/// Why the axis is not where it can be.
+pub(super) fn broken(recording: &Recording, rules: &Rules<'_>) -> Option<Vec<String>> {
+    if let Some(EarlyEnd::Diverged { time, reason }) = &rules.ended {
+        return Some(vec![format!("the run diverged at {}: {reason}", Quantity::new(*time, "s"))]);
+    }
+    let unit = recording.about.axis_unit.as_str();
+    let range = range(recording, rules);
+    let outside = ["motor.position", "load.position"].into_iter().find_map(|channel| {
+        let positions = recording.channel(channel)?;
+        let is_outside = |x: f64| !x.is_finite() || range.is_some_and(|range| range.is_left_by(x));
+        let row = positions.iter().position(|x| is_outside(*x))?;
+        let (x, time) = (Quantity::new(positions[row], unit), Quantity::new(recording.time_of(row), "s"));
+        let body = channel.trim_end_matches(".position");
+        Some(match range {
+            Some(range) if positions[row].is_finite() => format!(
+                "the {body} is at {x} at {time}: more than {TIMES_THE_RANGE} times the range of the program, {}, outside of it",
+                Quantity::new(range.high - range.low, unit)
+            ),
+            _ => format!("the position of the {body} is not finite at {time}"),
+        })
+    });
+    Some(outside.into_iter().collect())
+}
+
+/// Where the program goes.
+#[derive(Debug, Clone, Copy)]
+struct Range {
+    low: f64,
+    high: f64,
+}
+
+impl Range {
+    fn is_left_by(self, x: f64) -> bool {
+        let beyond = TIMES_THE_RANGE * (self.high - self.low);
+        x < self.low - beyond || x > self.high + beyond
+    }
+}
+
+/// From the lowest to the highest set-point, with where the axis starts; `None` where nothing is to move, and where nothing
+/// moves it.
+fn range(recording: &Recording, rules: &Rules<'_>) -> Option<Range> {
+    if rules.driven == Driven::Not {
+        return None;
+    }
+    let start =
+        ["load.position", "motor.position"].into_iter().filter_map(|name| recording.channel(name)?.first().copied());
+    let all = recording.channel("setpoint.position")?.iter().copied().chain(start);
+    let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    let moves = recording.moves.iter().any(|made| made.peaks[0] > 0.0);
+    (moves && high > low).then_some(Range { low, high })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::requirement::tests::rules;
+    use crate::synthetic::{Build, planned};
+
+    /// A move over 0.2 m, of which the load is at `load(t)`.
+    fn recording(load: impl Fn(f64) -> f64) -> Recording {
+        Build::new(1000, 1001)
+            .channel("setpoint.position", "m", |t| 0.2 * t.min(0.5) / 0.5)
+            .channel("load.position", "m", load)
+            .moves([planned(0.0, 0.5, 0.0, 0.2).made()])
+            .finish()
+    }
+
+    #[test]
+    fn ten_times_the_range_beyond_either_end_is_too_far() {
+        for (x, is_kept) in [(2.19, true), (2.21, false), (-1.99, true), (-2.01, false)] {
+            let found = broken(&recording(|t| if t > 0.75 { x } else { 0.0 }), &rules()).unwrap();
+            assert_eq!(found.is_empty(), is_kept, "{x}: {found:?}");
+        }
+        let found = broken(&recording(|t| if t >= 0.75 { 2.7 } else { 0.0 }), &rules()).unwrap();
+        assert_eq!(
+            found,
+            ["the load is at 2.70 m at 750 ms: more than 10 times the range of the program, 200 mm, outside of it"]
+        );
+    }
+
+    #[test]
+    fn what_is_not_finite_is_not_bounded_whatever_the_program() {
+        let spoiled = |t: f64| if t > 0.5 { f64::NAN } else { 0.0 };
+        assert_eq!(
+            broken(&recording(spoiled), &rules()).unwrap(),
+            ["the position of the load is not finite at 501 ms"]
+        );
+        let free = Rules { driven: Driven::Not, ..rules() };
+        assert_eq!(broken(&recording(spoiled), &free).unwrap().len(), 1);
+        assert_eq!(broken(&recording(|t| 1e9 * t), &free).unwrap(), [""; 0], "nothing holds it");
+    }
+
+    #[test]
+    fn a_run_that_diverged_says_when() {
+        let ended = Some(EarlyEnd::Diverged { time: 0.031, reason: "a position or velocity is not finite".into() });
+        let found = broken(&recording(|_| 0.0), &Rules { ended, ..rules() }).unwrap();
+        assert_eq!(found, ["the run diverged at 31.0 ms: a position or velocity is not finite"]);
+    }
+}

@@ -1,0 +1,51 @@
+//! A recording against every requirement.
+use super::{Expected, Requirement, Rules, Standing, arrival, bounds, execution, fault, oscillation};
+use crate::verdict::Verdict;
+use servobench_trace::Recording;
+
+/// Reasons that are given for one requirement at most; one more says how many there are besides.
+const MOST_REASONS: usize = 5;
+
+/// Judges `recording`, of which every tick is to be there, by every requirement.
+#[must_use]
+pub fn judge_requirements(recording: &Recording, rules: &Rules<'_>) -> Verdict {
+    let faults = fault::occurrences(recording);
+    let expected: Vec<Expected> = rules
+        .expected
+        .iter()
+        .map(|expectation| Expected {
+            expectation: expectation.clone(),
+            met: fault::met(expectation, &faults, recording),
+        })
+        .collect();
+    let standing = |requirement| {
+        let (broken, may_be_lifted) = match requirement {
+            Requirement::Arrives => (arrival::broken(recording, rules), true),
+            Requirement::Executed => (execution::broken(recording, rules), true),
+            Requirement::NoFault => (fault::broken(recording, rules, &faults), true),
+            Requirement::Stable => (oscillation::broken(recording, rules), true),
+            // A run that diverged has no end that could be judged.
+            Requirement::Bounded => (bounds::broken(recording, rules), !rules.has_diverged()),
+        };
+        let is_lifted = may_be_lifted && rules.lifted.contains(&requirement);
+        match broken.map(listed) {
+            None => Standing::NotAsked,
+            Some(reasons) if is_lifted => Standing::Lifted(reasons),
+            Some(reasons) if reasons.is_empty() => Standing::Met,
+            Some(reasons) => Standing::Broken(reasons),
+        }
+    };
+    let requirements: Vec<(Requirement, Standing)> =
+        Requirement::ALL.iter().map(|requirement| (*requirement, standing(*requirement))).collect();
+    Verdict { requirements, expected, ..Verdict::default() }
+}
+
+/// The first reasons, and how many others there are.
+fn listed(mut reasons: Vec<String>) -> Vec<String> {
+    if reasons.len() > MOST_REASONS {
+        let others = reasons.len() - MOST_REASONS;
+        reasons.truncate(MOST_REASONS);
+        reasons.push(format!("and {others} more"));
+    }
+    reasons
+}

@@ -1,0 +1,66 @@
+//! What a judgement needs to know besides the recording.
+use super::{Expectation, Requirement};
+
+/// What a judgement of requirements needs to know besides the recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rules<'a> {
+    /// Requirements that the scenario lifts.
+    pub lifted: &'a [Requirement],
+    /// Faults that belong to the run.
+    pub expected: &'a [Expectation],
+    /// Half width of the window around a target in which the axis has arrived (axis unit); `None`: as
+    /// [`arrival_window`](super::arrival_window) says.
+    pub window: Option<f64>,
+    /// One increment of the encoder that closes the position loop (axis unit); 0 for an ideal one.
+    pub increment: f64,
+    /// Period of a modulo axis (axis unit).
+    pub modulo: Option<f64>,
+    /// What moves the axis.
+    pub driven: Driven,
+    /// What the analysis of the linear loop found.
+    pub linear_loop: LinearLoop,
+    /// Why the run ended before its end, if it did.
+    pub ended: Option<EarlyEnd>,
+}
+
+/// What moves the axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Driven {
+    /// A drive with closed loops.
+    ByLoops,
+    /// The motor follows the set-point exactly: there is no loop, and it is the motor that arrives.
+    Exactly,
+    /// Nothing: the drive is off.
+    Not,
+}
+
+/// What the analysis of the linear loop found.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum LinearLoop {
+    /// No pole outside the unit circle.
+    Stable,
+    /// There is one: which, in words.
+    Unstable(String),
+    /// It could not be analysed, or there is no loop.
+    NotAnalysed,
+}
+
+/// Why a run ended before its end.
+#[derive(Debug, Clone, PartialEq)]
+pub enum EarlyEnd {
+    /// A state left the finite numbers: when (s), and what the engine says.
+    Diverged {
+        /// When (s).
+        time: f64,
+        /// In the engine's words.
+        reason: String,
+    },
+    /// The program gave up: why.
+    GaveUp(String),
+}
+
+impl Rules<'_> {
+    pub(crate) const fn has_diverged(&self) -> bool {
+        matches!(self.ended, Some(EarlyEnd::Diverged { .. }))
+    }
+}

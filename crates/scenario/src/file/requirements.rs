@@ -1,0 +1,65 @@
+//! `[requirements]` and `[[expect]]`: what a run is held to beside its limits, and the faults that belong to it.
+use crate::diagnostic::Report;
+use crate::field::{Field, not_negative, positive};
+use crate::nearest::suggestion;
+use crate::physical::Kind::Plain;
+use crate::physical::TIME;
+use crate::source::At;
+use crate::table::{object_schema, table};
+use crate::tree::{Node, Value};
+use serde_json::{Value as Json, json};
+use servobench_metrics::Requirement;
+
+/// The requirements that the file names, each with whether it holds.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct RequirementTable(pub(crate) Vec<At<(Requirement, bool)>>);
+
+impl Field for RequirementTable {
+    type Spec = ();
+
+    fn decode(path: &str, node: &Node, (): &(), report: &mut Report) -> Option<Self> {
+        let Value::Table(table) = &node.value else {
+            let message = format!("`{path}` must be a table, got {}", node.value.kind());
+            report.error(node.span, message, format!("write `[{path}]`"));
+            return None;
+        };
+        let mut named = Vec::new();
+        for entry in &table.entries {
+            let Ok(requirement) = entry.key.parse::<Requirement>() else {
+                let names = Requirement::ALL.iter().map(|requirement| requirement.as_str());
+                let message = format!("there is no requirement `{}`", entry.key);
+                report.error(entry.key_span, message, suggestion(&entry.key, names));
+                continue;
+            };
+            let holds = bool::decode(&format!("{path}.{requirement}"), &entry.node, &(), report);
+            named.extend(holds.map(|holds| At { value: (requirement, holds), span: entry.key_span }));
+        }
+        Some(Self(named))
+    }
+
+    fn schema((): &()) -> Json {
+        let keys = Requirement::ALL
+            .iter()
+            .map(|requirement| (requirement.as_str(), vec![requirement.meaning()], json!({ "type": "boolean" })));
+        let keys: Vec<_> = keys.collect();
+        let keys = keys.iter().map(|(name, doc, schema)| (*name, doc.as_slice(), schema.clone())).collect();
+        object_schema(&["Whether the run is held to each requirement."], &[], keys)
+    }
+}
+
+table! {
+    /// A fault that belongs to the run: when it comes it breaks no requirement, and a run in which it does not come fails.
+    /// What follows from it for the other parts of the axis is expected with it: a fault of the drive or the link brings the
+    /// axis to `ErrorStop`. Blocks that end in `Error` are expected each by itself.
+    pub(crate) struct Expect requires ["fault", "who"] {
+        /// State or error code: "ErrorStop" of the axis, the code of the drive (603Fh) as in "8611h", the name of the
+        /// link's fault as in "positive limit switch", the `ErrorID` of a call as in "2002h".
+        fault: String = (),
+        /// Whose fault: "axis", "drive", "link", or the name of a call.
+        who: String = (),
+        /// From when on it may come; from the beginning unless given.
+        from: f64 = not_negative(Plain(&TIME), "0.2 s"),
+        /// Until when it must have come; by the end of the run unless given.
+        to: f64 = positive(Plain(&TIME), "0.6 s"),
+    }
+}

@@ -1,0 +1,67 @@
+//! Scenarios whose runs break a requirement, or come close to one, break what their first line says and nothing else.
+use servobench_metrics::Standing;
+use servobench_plant::Exact;
+use servobench_scenario::{EngineName, load};
+use servobench_suite::{Engines, Installed, Source, WorkerCommand, execute, jobs};
+use std::path::{Path, PathBuf};
+
+const ENGINES: Engines = Engines { exact: Some(Installed { engine: &Exact, isolated: false }), ..Engines::NONE };
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/scenarios/requirements")
+}
+
+/// The requirements that the run breaks, and why.
+fn broken(path: &Path) -> (Vec<&'static str>, Vec<String>) {
+    let loaded = load(path).unwrap_or_else(|error| panic!("{error}"));
+    let text = std::fs::read_to_string(path).unwrap();
+    let source = Source { scenario: loaded.scenario, text };
+    let job = jobs(vec![source], &[EngineName::Exact]).remove(0);
+    let nowhere = WorkerCommand { program: "none".into(), folder: "none".into(), patience: std::time::Duration::ZERO };
+    let run = execute(&job, &ENGINES, &nowhere, &mut |_| {}).unwrap_or_else(|broken| panic!("{}", broken.error));
+    let is_broken = |standing: &Standing| matches!(standing, Standing::Broken(_));
+    let names =
+        run.verdict.requirements.iter().filter(|(_, standing)| is_broken(standing)).map(|(name, _)| name.as_str());
+    (names.collect(), run.verdict.reasons().collect())
+}
+
+/// Of those with FMUs the files are made by commands; they run as a suite of the program.
+#[test]
+fn every_shipped_scenario_meets_its_requirements() {
+    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
+    let folders = ["", "demo", "plc", "setpoints"].map(|folder| repository.join(folder));
+    let files = folders.iter().flat_map(|folder| std::fs::read_dir(folder).unwrap()).map(|entry| entry.unwrap().path());
+    let mut files: Vec<PathBuf> = files.filter(|path| path.extension().is_some_and(|kind| kind == "toml")).collect();
+    files.sort();
+    assert!(files.len() >= 30, "{files:?}");
+    let mut wrong = Vec::new();
+    // A user's own MJCF file is not for `exact`.
+    for path in files.iter().filter(|path| !path.ends_with("own-mjcf.toml")) {
+        let (_, reasons) = broken(path);
+        if !reasons.is_empty() {
+            wrong.push(format!("{}:\n  {}", path.display(), reasons.join("\n  ")));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn each_run_breaks_what_its_first_line_says() {
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder()).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    assert!(files.len() >= 17, "{files:?}");
+    let mut wrong = Vec::new();
+    for path in files {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let said = text.lines().next().unwrap().strip_prefix("# breaks: ").unwrap_or_else(|| panic!("{path:?}"));
+        let mut said: Vec<&str> = said.split(' ').filter(|word| *word != "nothing").collect();
+        said.sort_unstable();
+        let (mut names, reasons) = broken(&path);
+        names.sort_unstable();
+        println!("{}: {names:?}\n  {}", path.file_stem().unwrap().display(), reasons.join("\n  "));
+        if names != said {
+            wrong.push(format!("{}: says {said:?}, breaks {names:?}: {reasons:?}", path.display()));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
