@@ -3,6 +3,7 @@ mod check;
 mod compare;
 mod fmu;
 mod fmu_suite;
+mod getting_started;
 mod objects;
 mod output;
 mod plan;
