@@ -3,7 +3,7 @@
 //! The verdict is of the whole loop. The name is found by closing the loops from the inside: the current loop with the shaft held,
 //! the velocity loop with the position loop open, the position loop; the first that is unstable.
 use crate::boundary;
-use crate::eigen::{self, Block};
+use crate::eigen::{self, Block, Eigenvalue};
 use crate::error::StabilityError;
 use crate::model::{Loop, Source};
 use crate::period::Period;
@@ -48,34 +48,62 @@ pub fn analyse(model: &Loop, depth: Depth) -> Result<Report, StabilityError> {
     Ok(Report { instability, loops, warnings: model.warnings() })
 }
 
-/// The largest pole outside of the unit circle, by more than rounding.
-pub(crate) fn unstable_pole(tick: &Tick) -> Result<Option<Pole>, StabilityError> {
-    let period = Period::new(tick)?;
-    let blocks = eigen::blocks(&period)?;
-    let mut outside: Vec<(&Block, Complex<f64>)> =
-        candidates(tick, &blocks).into_iter().filter(|(_, value)| value.norm() > 1.0).collect();
-    outside.sort_by(|(_, a), (_, b)| b.norm().total_cmp(&a.norm()));
-    for (block, value) in outside {
-        let eigenvalue = block.refine(&period, value);
-        if eigenvalue.value.norm() - 1.0 > eigenvalue.bound {
-            return Ok(Some(Pole::new(&period, tick.model(), &eigenvalue)));
-        }
+/// The poles of the loops that a tick closes.
+pub(crate) struct Poles {
+    period: Period,
+    blocks: Vec<Block>,
+    /// Each with the index of its block.
+    pub(crate) values: Vec<(usize, Complex<f64>)>,
+}
+
+impl Poles {
+    pub(crate) fn new(tick: &Tick) -> Result<Self, StabilityError> {
+        let period = Period::new(tick)?;
+        let blocks = eigen::blocks(&period)?;
+        let values = candidates(tick, &blocks);
+        Ok(Self { period, blocks, values })
     }
-    Ok(None)
+
+    fn refined(&self, (block, value): (usize, Complex<f64>)) -> Eigenvalue {
+        self.blocks[block].refine(&self.period, value)
+    }
+
+    /// The largest outside of the unit circle, by more than rounding.
+    pub(crate) fn outside(&self) -> Option<Eigenvalue> {
+        let mut outside: Vec<_> = self.values.iter().copied().filter(|(_, value)| value.norm() > 1.0).collect();
+        outside.sort_by(|(_, a), (_, b)| b.norm().total_cmp(&a.norm()));
+        outside
+            .into_iter()
+            .map(|pole| self.refined(pole))
+            .find(|eigenvalue| eigenvalue.value.norm() - 1.0 > eigenvalue.bound)
+    }
+
+    fn in_seconds(&self, model: &Loop, eigenvalue: &Eigenvalue) -> Pole {
+        Pole::new(&self.period, model, eigenvalue)
+    }
+
+    /// Largest magnitude in a block that holds the state `index`.
+    fn largest_with(&self, index: usize) -> f64 {
+        let of_state = self.values.iter().filter(|(block, _)| self.blocks[*block].states.contains(&index));
+        of_state.map(|(_, value)| value.norm()).fold(0.0, f64::max)
+    }
 }
 
 /// The poles of all loops but the one that is known to be at 1.
-fn candidates<'a>(tick: &Tick, blocks: &'a [Block]) -> Vec<(&'a Block, Complex<f64>)> {
-    let mut all: Vec<_> =
-        blocks.iter().flat_map(|block| block.eigenvalues.iter().map(move |value| (block, *value))).collect();
+fn candidates(tick: &Tick, blocks: &[Block]) -> Vec<(usize, Complex<f64>)> {
+    let of_block =
+        |(index, block): (usize, &Block)| block.eigenvalues.iter().map(|value| (index, *value)).collect::<Vec<_>>();
+    let mut all: Vec<_> = blocks.iter().enumerate().flat_map(of_block).collect();
     if tick.turns_freely() {
-        let to_one = |(block, value): &(&Block, Complex<f64>)| {
-            if block.states.contains(&tick.motor_velocity()) { (value - 1.0).norm() } else { f64::INFINITY }
-        };
-        let nearest = all.iter().enumerate().min_by(|(_, a), (_, b)| to_one(a).total_cmp(&to_one(b)));
-        if let Some((index, _)) =
-            nearest.map(|(index, pole)| (index, to_one(pole))).filter(|(_, to_one)| to_one.is_finite())
-        {
+        let turns = |block: usize| blocks[block].states.contains(&tick.motor_velocity());
+        let to_one = |&(_, (_, value)): &(usize, (usize, Complex<f64>))| (value - 1.0).norm();
+        let nearest = all
+            .iter()
+            .copied()
+            .enumerate()
+            .filter(|(_, (block, _))| turns(*block))
+            .min_by(|a, b| to_one(a).total_cmp(&to_one(b)));
+        if let Some((index, _)) = nearest {
             all.swap_remove(index);
         }
     }
@@ -104,9 +132,14 @@ impl Analysis<'_> {
         }
     }
 
-    fn unstable(&mut self, closed: Closed) -> Result<Option<Pole>, StabilityError> {
+    fn poles(&mut self, closed: Closed) -> Result<Poles, StabilityError> {
         self.tick.with(closed, Factors::ONE);
-        unstable_pole(&self.tick)
+        Poles::new(&self.tick)
+    }
+
+    fn unstable(&mut self, closed: Closed) -> Result<Option<Pole>, StabilityError> {
+        let poles = self.poles(closed)?;
+        Ok(poles.outside().map(|eigenvalue| poles.in_seconds(self.model, &eigenvalue)))
     }
 
     /// Why the whole loop, whose largest pole is `pole`, is unstable.
@@ -153,14 +186,9 @@ impl Analysis<'_> {
         if self.model.has_bandwidth() {
             return Ok(GainName::CurrentBandwidth);
         }
-        self.tick.with(self.alone(LoopName::Current), Factors::ONE);
-        let blocks = eigen::blocks(&Period::new(&self.tick)?)?;
-        let largest = |axis: usize| {
-            let of_axis =
-                blocks.iter().filter(|block| block.states.contains(&axis)).flat_map(|block| &block.eigenvalues);
-            of_axis.map(|value| value.norm()).fold(0.0, f64::max)
-        };
-        Ok(if largest(CURRENT) > largest(CURRENT + 1) { GainName::CurrentD } else { GainName::CurrentQ })
+        let poles = self.poles(self.alone(LoopName::Current))?;
+        let [d, q] = [CURRENT, CURRENT + 1].map(|axis| poles.largest_with(axis));
+        Ok(if d > q { GainName::CurrentD } else { GainName::CurrentQ })
     }
 
     const fn current_gain_name(&self) -> GainName {
@@ -213,14 +241,13 @@ impl Analysis<'_> {
     }
 
     fn least_damped(&mut self, closed: Closed) -> Result<Option<Pole>, StabilityError> {
-        self.tick.with(closed, Factors::ONE);
-        let period = Period::new(&self.tick)?;
-        let blocks = eigen::blocks(&period)?;
-        let poles = candidates(&self.tick, &blocks)
-            .into_iter()
+        let all = self.poles(closed)?;
+        let poles = all
+            .values
+            .iter()
             // A pole at the origin is a delay.
             .filter(|(_, value)| value.im >= 0.0 && value.norm() > f64::EPSILON.sqrt())
-            .map(|(block, value)| Pole::new(&period, self.model, &block.refine(&period, value)));
+            .map(|pole| all.in_seconds(self.model, &all.refined(*pole)));
         Ok(poles.min_by(|a, b| a.damping().total_cmp(&b.damping())))
     }
 }

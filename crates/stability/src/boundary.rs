@@ -2,21 +2,21 @@
 //!
 //! The gain goes by a factor from 1 away, on a logarithmic grid, and the first change of the verdict is bisected. So that an island
 //! is not stepped over, the grid follows the poles: a step is half of what the pole that is soonest at the unit circle needs to
-//! get there at its present speed |dλ/d ln k|, but at least 0.5 % and at most 5 % of the gain. A range of gains that is missed
-//! is narrower than that: 0.5 %, or a pole turns back twice in one step.
-use crate::error::StabilityError;
-use crate::period::Period;
+//! get there at its present speed d|λ|/d ln k (or a twentieth of |dλ/d ln k|, where it goes along the circle), but at least
+//! 0.5 % and at most 10 % of the gain. A range of gains that is missed is narrower than 0.5 %, or a pole comes to the circle and
+//! back within a step, in which it would have gone half of the way.
+use crate::analyse::Poles;
 use crate::report::GainName;
 use crate::tick::{Closed, Tick};
-use crate::{analyse, eigen};
-use nalgebra::Complex;
 
 /// Gains are scanned to this factor and its reciprocal.
 pub(crate) const REACH: f64 = 1_000.0;
 const SHORTEST_STEP: f64 = 0.005;
-const LONGEST_STEP: f64 = 0.05;
+const LONGEST_STEP: f64 = 0.1;
 /// Share of the way to the circle that a step takes at most.
 const SHARE: f64 = 0.5;
+/// Share of the way along the circle that counts as one towards it: poles that go along it may turn.
+const ALONG: f64 = 0.05;
 /// Relative difference of gains that tells the speed of the poles.
 const DIFFERENCE: f64 = 1e-4;
 /// Relative accuracy of the boundary.
@@ -43,9 +43,11 @@ impl Scan<'_, '_> {
     /// Logarithm of the nearest factor in the direction `sign`.
     fn nearest(&mut self, sign: f64) -> Option<f64> {
         let mut here = 0.0_f64;
+        let mut poles = self.poles(here);
         while here.abs() < REACH.ln() {
-            let next = here + sign * self.step(here, sign);
-            if self.changes_at(next) {
+            let next = here + sign * self.step(poles.as_ref(), here + sign * DIFFERENCE);
+            poles = self.poles(next);
+            if self.is_other(poles.as_ref()) {
                 return Some(self.bisect(here, next));
             }
             here = next;
@@ -53,40 +55,42 @@ impl Scan<'_, '_> {
         None
     }
 
-    /// Whether the verdict is another one. What grows beyond all numbers within a period is unstable.
-    fn changes_at(&mut self, exponent: f64) -> bool {
+    /// The poles with the gain by e to the power of `exponent`; `None` where the loop grows beyond all numbers within a period.
+    fn poles(&mut self, exponent: f64) -> Option<Poles> {
         self.tick.with(self.closed, self.name.factors(exponent.exp()));
-        let is_unstable = analyse::unstable_pole(self.tick).map_or(true, |pole| pole.is_some());
+        Poles::new(self.tick).ok()
+    }
+
+    /// Whether the verdict is another one.
+    fn is_other(&self, poles: Option<&Poles>) -> bool {
+        let is_unstable = poles.is_none_or(|poles| poles.outside().is_some());
         is_unstable != self.is_unstable
     }
 
     fn bisect(&mut self, mut same: f64, mut other: f64) -> f64 {
         while (other - same).abs() > ACCURACY {
             let middle = f64::midpoint(same, other);
-            *(if self.changes_at(middle) { &mut other } else { &mut same }) = middle;
+            let poles = self.poles(middle);
+            *(if self.is_other(poles.as_ref()) { &mut other } else { &mut same }) = middle;
         }
         f64::midpoint(same, other)
     }
 
-    /// How far the gain can go until the first pole is half-way at the circle.
-    fn step(&mut self, here: f64, sign: f64) -> f64 {
-        let (Ok(poles), Ok(moved)) = (self.poles(here), self.poles(here + sign * DIFFERENCE)) else {
-            return SHORTEST_STEP;
-        };
+    /// How far the gain can go until the first of `poles` is half-way at the circle, from where they are at `beside`.
+    fn step(&mut self, poles: Option<&Poles>, beside: f64) -> f64 {
+        let (Some(poles), Some(moved)) = (poles, self.poles(beside)) else { return SHORTEST_STEP };
         let mut step = LONGEST_STEP;
-        for pole in poles.iter().filter(|pole| pole.norm() > DELAY) {
-            let way = moved.iter().map(|moved| (moved - pole).norm()).fold(f64::INFINITY, f64::min);
+        for (block, pole) in poles.values.iter().filter(|(_, pole)| pole.norm() > DELAY) {
+            let of_block = moved.values.iter().filter(|(other, _)| other == block).map(|(_, moved)| moved);
+            let Some(moved) = of_block.min_by(|a, b| (*a - pole).norm().total_cmp(&(*b - pole).norm())) else {
+                continue;
+            };
+            let way = (moved.norm() - pole.norm()).abs().max(ALONG * (moved - pole).norm());
             let distance = (pole.norm() - 1.0).abs();
             if way > 0.0 {
                 step = step.min(SHARE * DIFFERENCE * distance / way);
             }
         }
         step.max(SHORTEST_STEP)
-    }
-
-    fn poles(&mut self, exponent: f64) -> Result<Vec<Complex<f64>>, StabilityError> {
-        self.tick.with(self.closed, self.name.factors(exponent.exp()));
-        let blocks = eigen::blocks(&Period::new(self.tick)?)?;
-        Ok(blocks.into_iter().flat_map(|block| block.eigenvalues).collect())
     }
 }

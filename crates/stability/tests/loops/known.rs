@@ -1,7 +1,8 @@
 //! Axes that were run: which of them are unstable is known from runs with an initial deviation.
 use crate::axes::{TAU, Tuning, body, chain, ideal, report, servo};
 use servobench_plant::Chain;
-use servobench_stability::{Loop, LoopName, PositionFeedback, VelocitySignal};
+use servobench_stability::{Depth, Loop, LoopName, PositionFeedback, VelocitySignal, analyse};
+use std::time::Instant;
 
 const STIFF: f64 = 7e5;
 const SOFT: f64 = 700.0;
@@ -105,4 +106,24 @@ fn differences_of_positions_lower_the_boundary() {
     };
     let (encoder, differences) = (boundary(VelocitySignal::Encoder), boundary(VelocitySignal::Differences));
     assert!(differences < 0.9 * encoder, "{encoder} {differences}");
+}
+
+/// What an analysis costs is printed; a verdict is asked for by every run.
+#[test]
+fn a_verdict_takes_milliseconds() {
+    let stable = servo(bandwidths(1200.0, 60.0, 12.0), two_bodies(SOFT));
+    let unstable = servo(bandwidths(1200.0, 60.0, 80.0), two_bodies(STIFF));
+    for (what, model) in [("stable", stable), ("unstable", unstable)] {
+        for depth in [Depth::Verdict, Depth::Boundaries] {
+            let best = (0..20).map(|_| {
+                let start = Instant::now();
+                analyse(&model, depth).unwrap();
+                start.elapsed().as_secs_f64()
+            });
+            let best = best.fold(f64::INFINITY, f64::min);
+            println!("{what}, {depth:?}: {:.2} ms", 1e3 * best);
+            // On any machine: a search that does not end would take longer.
+            assert!(best < 5.0);
+        }
+    }
 }
