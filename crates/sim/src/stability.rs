@@ -17,7 +17,7 @@ pub enum Analysis {
     /// The poles of the loop.
     Done {
         /// What they say.
-        report: Report,
+        report: Box<Report>,
         /// A loop of the scenario that is not in it.
         without: Option<NotAnalysed>,
     },
@@ -72,7 +72,7 @@ pub fn analyse_stability(scenario: &Scenario, depth: Depth) -> Result<Analysis, 
         Err(why) => return Ok(Analysis::NotPossible(why)),
     };
     Ok(match stability::analyse(&model, depth) {
-        Ok(report) => Analysis::Done { report, without },
+        Ok(report) => Analysis::Done { report: Box::new(report), without },
         Err(error) => Analysis::NotPossible(NotAnalysed::Failed(error)),
     })
 }

@@ -33,8 +33,10 @@ pub enum Depth {
 pub fn analyse(model: &Loop, depth: Depth) -> Result<Report, StabilityError> {
     model.check()?;
     let mut analysis = Analysis { model, tick: Tick::new(model) };
-    let unstable = analysis.unstable(analysis.whole())?;
+    let poles = analysis.poles(analysis.whole())?;
+    let unstable = poles.outside().map(|eigenvalue| poles.in_seconds(model, &eigenvalue));
     let is_unstable = unstable.is_some();
+    let largest = unstable.or_else(|| poles.largest(model));
     let instability = match unstable {
         Some(pole) => Some(analysis.instability(pole)?),
         None => None,
@@ -45,7 +47,7 @@ pub fn analyse(model: &Loop, depth: Depth) -> Result<Report, StabilityError> {
             loops.push(report);
         }
     }
-    Ok(Report { instability, loops, warnings: model.warnings() })
+    Ok(Report { instability, largest, loops, warnings: model.warnings() })
 }
 
 /// The poles of the loops that a tick closes.
@@ -76,6 +78,11 @@ impl Poles {
             .into_iter()
             .map(|pole| self.refined(pole))
             .find(|eigenvalue| eigenvalue.value.norm() - 1.0 > eigenvalue.bound)
+    }
+
+    fn largest(&self, model: &Loop) -> Option<Pole> {
+        let largest = self.values.iter().max_by(|(_, a), (_, b)| a.norm().total_cmp(&b.norm()))?;
+        Some(self.in_seconds(model, &self.refined(*largest)))
     }
 
     fn in_seconds(&self, model: &Loop, eigenvalue: &Eigenvalue) -> Pole {

@@ -1,8 +1,8 @@
 //! Where a loop changes from stable to unstable or back as one gain grows or falls.
 //!
 //! The gain goes by a factor from 1 away, on a logarithmic grid, and the first change of the verdict is bisected. So that an island
-//! is not stepped over, the grid follows the poles: a step is half of what the pole that is soonest at the unit circle needs to
-//! get there at its present speed d|λ|/d ln k (or a twentieth of |dλ/d ln k|, where it goes along the circle), but at least
+//! is not stepped over, the grid follows the poles: a step is half of what a pole needs to get to the unit circle (of a stable loop
+//! the one that is soonest there, of an unstable loop the one outside that is last) at its present speed d|λ|/d ln k (or a twentieth of |dλ/d ln k|, where it goes along the circle), but at least
 //! 0.5 % and at most 10 % of the gain. A range of gains that is missed is narrower than 0.5 %, or a pole comes to the circle and
 //! back within a step, in which it would have gone half of the way.
 use crate::analyse::Poles;
@@ -76,10 +76,11 @@ impl Scan<'_, '_> {
         f64::midpoint(same, other)
     }
 
-    /// How far the gain can go until the first of `poles` is half-way at the circle, from where they are at `beside`.
+    /// How far the gain can go until the verdict could be half-way at its change, from where `poles` are at `beside`: a stable loop
+    /// changes with the first pole that leaves the circle, an unstable one with the last that comes in.
     fn step(&mut self, poles: Option<&Poles>, beside: f64) -> f64 {
-        let (Some(poles), Some(moved)) = (poles, self.poles(beside)) else { return SHORTEST_STEP };
-        let mut step = LONGEST_STEP;
+        let (Some(poles), Some(moved)) = (poles, self.poles(beside)) else { return LONGEST_STEP };
+        let mut steps = (LONGEST_STEP, SHORTEST_STEP);
         for (block, pole) in poles.values.iter().filter(|(_, pole)| pole.norm() > DELAY) {
             let of_block = moved.values.iter().filter(|(other, _)| other == block).map(|(_, moved)| moved);
             let Some(moved) = of_block.min_by(|a, b| (*a - pole).norm().total_cmp(&(*b - pole).norm())) else {
@@ -87,10 +88,12 @@ impl Scan<'_, '_> {
             };
             let way = (moved.norm() - pole.norm()).abs().max(ALONG * (moved - pole).norm());
             let distance = (pole.norm() - 1.0).abs();
-            if way > 0.0 {
-                step = step.min(SHARE * DIFFERENCE * distance / way);
+            let step = if way > 0.0 { SHARE * DIFFERENCE * distance / way } else { LONGEST_STEP };
+            steps.0 = steps.0.min(step);
+            if pole.norm() > 1.0 {
+                steps.1 = steps.1.max(step);
             }
         }
-        step.max(SHORTEST_STEP)
+        (if self.is_unstable { steps.1 } else { steps.0 }).clamp(SHORTEST_STEP, LONGEST_STEP)
     }
 }

@@ -87,7 +87,7 @@ mod tests {
             motor.step(Dq { d: 1.0, q: 0.0 }, Dq::default(), 0.0),
             motor.step(Dq { d: 0.0, q: 1.0 }, Dq::default(), 0.0),
         );
-        let mean = |after: f64| (1.0 + after) / 2.0;
+        let mean = |after: f64| f64::midpoint(1.0, after);
         assert!((lag_d.1 - 4.5 * -15e-3 * 4.5 * mean(lag_d.0.d)).abs() < 1e-12, "{lag_d:?}");
         assert!((lag_q.1 - 4.5 * (0.545 + -15e-3 * -2.5) * mean(lag_q.0.q)).abs() < 1e-12, "{lag_q:?}");
         assert!((motor.voltage.d + 9.0).abs() < 1e-14 && (motor.voltage.q - 16.2).abs() < 1e-14);

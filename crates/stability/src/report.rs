@@ -106,6 +106,8 @@ pub struct Warning {
 pub struct Report {
     /// Why the loop is unstable; `None`: no pole is outside of the unit circle.
     pub instability: Option<Instability>,
+    /// The largest pole: the one that grows fastest or, in a stable loop, fades last. `None` where nothing is closed.
+    pub largest: Option<Pole>,
     /// Current, velocity and position loop, those that there are.
     pub loops: Vec<LoopReport>,
     /// What is set in an order in which cascades do not work.

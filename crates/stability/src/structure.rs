@@ -3,7 +3,8 @@
 //! State j acts on state i when entry (i, j) of the matrix of a tick is not zero. Over the common period that is a graph,
 //! whose strongly connected components are the blocks on the diagonal of the block-triangular matrix M: the eigenvalues
 //! of M are theirs. A component without a controller's state is not closed by any loop: the position of an axis that nobody
-//! holds, bodies and springs that the drive does not act on. Their poles are on the circle or inside, by physics.
+//! holds, bodies and springs that the drive does not act on; their poles are on the circle or inside, by physics. Neither is one
+//! of controllers' states alone: an integrator without input, a filter.
 //! Source: Tarjan, *SIAM J. Comput.* 1(2), 1972 (components); Murota, *Matrices and Matroids for Systems Analysis*, §2.
 use crate::state::{CONTROLLER, STATES};
 use nalgebra::DMatrix;
@@ -29,7 +30,7 @@ impl Pattern {
         Self(self.0.map(through))
     }
 
-    /// The strongly connected components that hold a controller's state.
+    /// The strongly connected components that hold states of a controller and of what it controls.
     pub(crate) fn loops(&self) -> Vec<Vec<usize>> {
         let mut reached = self.0;
         for via in 0..STATES {
@@ -50,7 +51,7 @@ impl Pattern {
             for &j in &component {
                 is_seen[j] = true;
             }
-            if component.iter().any(|&j| j >= CONTROLLER) {
+            if component.iter().any(|&j| j >= CONTROLLER) && component.iter().any(|&j| j < CONTROLLER) {
                 loops.push(component);
             }
         }
@@ -70,13 +71,13 @@ mod tests {
         Pattern::of(&matrix)
     }
 
-    /// A ring through a controller, a ring without one, and a chain behind them.
+    /// A ring through a controller, a ring without one, a chain behind them, a ring of controllers.
     #[test]
     fn only_rings_through_a_controller_are_loops() {
         let c = CONTROLLER;
         let ring = pattern(&[(0, c), (c, 2), (2, 0), (3, 4), (4, 3), (2, 5), (5, c + 1)]);
         assert_eq!(ring.loops(), [vec![0, 2, c]]);
-        assert_eq!(pattern(&[(c, c), (0, 0), (1, c)]).loops(), [vec![c]]);
+        assert_eq!(pattern(&[(c, c), (0, 0), (1, c), (c + 1, c + 2), (c + 2, c + 1)]).loops(), [[0; 0]; 0]);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use servobench_sim::{Bench, External, Stepper};
 /// Ticks over which the largest deviation is taken.
 const WINDOW: usize = 2_000;
 /// Windows of the longest run.
-const LONGEST: usize = 300;
+const LONGEST: usize = 2_400;
 
 /// The largest change of velocity within a tick, of each window, as a logarithm: slow modes count less in it, and the motor is
 /// pushed in the first tick, so that fast ones are there from the beginning.
@@ -49,14 +49,7 @@ impl Deviation {
 
     /// Growth from window to window by least squares over the last half.
     pub(crate) fn slope(&self) -> f64 {
-        let last = &self.logarithms[self.logarithms.len() / 2..];
-        let middle = (last.len() - 1) as f64 / 2.0;
-        let (mut above, mut below) = (0.0, 0.0);
-        for (i, logarithm) in last.iter().enumerate() {
-            above += (i as f64 - middle) * logarithm;
-            below += (i as f64 - middle).powi(2);
-        }
-        above / below
+        slope(&self.logarithms[self.logarithms.len() / 2..])
     }
 
     /// Seconds of a window.
@@ -65,23 +58,41 @@ impl Deviation {
     }
 }
 
-/// Whether a deviation of `scenario` grows in the long run; `None` where even the longest run hardly tells.
-pub(crate) fn grows(scenario: &Scenario) -> Option<bool> {
+fn slope(logarithms: &[f64]) -> f64 {
+    let middle = (logarithms.len() - 1) as f64 / 2.0;
+    let (mut above, mut below) = (0.0, 0.0);
+    for (i, logarithm) in logarithms.iter().enumerate() {
+        above += (i as f64 - middle) * logarithm;
+        below += (i as f64 - middle).powi(2);
+    }
+    above / below
+}
+
+/// Growth of a deviation of `scenario` in the long run, from window to window; `None` where even the longest run hardly tells,
+/// since other modes fade as slowly.
+pub(crate) fn growth(scenario: &Scenario) -> Option<f64> {
     let mut deviation = Deviation::new(scenario);
+    let mut largest = f64::NEG_INFINITY;
     for count in 1..=LONGEST {
         deviation.window();
         let logarithms = &deviation.logarithms;
         let now = logarithms[count - 1];
-        let largest = logarithms[..count - 1].iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        // Of a deviation of 1e-9: became large, or is 43 orders of magnitude below what it was.
+        // Of a deviation of 1e-9: has become large, or is 43 orders of magnitude below what it was.
         if now > (1e-2_f64).ln() {
-            return Some(true);
+            return Some(if now.is_finite() && count > 8 { deviation.slope() } else { f64::INFINITY });
         }
         if count > 8 && now < largest - 100.0 {
-            return Some(false);
+            return Some(deviation.slope());
+        }
+        largest = largest.max(now);
+        if count >= 100 && count.is_multiple_of(100) {
+            let quarter = count / 4;
+            let [third, last] = [2, 3].map(|i| slope(&logarithms[i * quarter..(i + 1) * quarter]));
+            // One mode is left, and it has changed by more than what is beside it can have.
+            if (third - last).abs() < 0.1 * last.abs() && last.abs() * quarter as f64 > 0.5 {
+                return Some(last);
+            }
         }
     }
-    let slope = deviation.slope();
-    // Half of the run changed it by less than a factor of e: other modes may hide the one that decides.
-    (slope.abs() * LONGEST as f64 / 2.0 > 1.0).then_some(slope > 0.0)
+    None
 }

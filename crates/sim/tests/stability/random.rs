@@ -102,8 +102,9 @@ pub(crate) fn random_loop(random: &mut Random) -> Scenario {
     scenario.base_rate = rate(1);
     scenario.record.rate = rate(1);
 
-    let transmission = if random.chance(0.3) { random.between(1e-3, 5e-3) } else { 1.0 };
-    if transmission != 1.0 {
+    let is_screw = random.chance(0.3);
+    let transmission = if is_screw { random.between(1e-3, 5e-3) } else { 1.0 };
+    if is_screw {
         scenario.axis.motion = Motion::Linear;
     }
     scenario.axis.transmission = transmission;

@@ -93,7 +93,7 @@ fn an_outer_loop_above_an_inner_one_is_a_warning() {
     assert!(
         current[0].starts_with("the bandwidth of the velocity loop (200 Hz) is above that of the current loop (40 Hz)")
     );
-    assert_eq!(said(bandwidths(1200.0, 60.0, 60.0)), [String::new(); 0], "equal is not above");
+    assert!(said(bandwidths(1200.0, 60.0, 60.0)).is_empty(), "equal is not above");
 }
 
 /// An encoder that only gives positions costs half a period of the velocity loop.

@@ -18,6 +18,7 @@ fn an_axis_that_no_loop_holds_is_not_unstable() {
         let model = Loop { velocity_signal: signal, ..ideal(12_000, 3, 0.0, three_bodies()) };
         let report = report(&model);
         assert!(report.is_stable(), "{signal:?}: {report:?}");
+        assert_eq!(report.largest, None, "there is no loop");
         assert_eq!(
             (report.loops[0].boundaries, report.loops[0].least_damped, report.loops[0].bandwidth),
             (None, None, None)
