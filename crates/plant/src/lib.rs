@@ -18,7 +18,7 @@ mod sensor;
 mod switches;
 
 pub use chain::{Body, Chain, Coordinate, Link};
-pub use exact::Exact;
+pub use exact::{Exact, transition};
 pub use fmu::{
     Extrapolation, FmuBody, FmuEntry, FmuFile, FmuMistake, FmuModel, FmuPartner, FmuPort, FmuStart, FmuValue,
     Isolation, SiUnit,

@@ -3,7 +3,7 @@
 pub(crate) mod firmware;
 pub(crate) mod fmu;
 mod objections;
-mod plant;
+pub(crate) mod plant;
 
 use crate::channels::{Amplifier, Equipment, Motor, Selection, WriterRates};
 use crate::closed_loop::{ClosedLoop, Control, Source, State};

@@ -14,6 +14,7 @@ mod power;
 mod program;
 mod recorded;
 mod run;
+mod stability;
 mod stepper;
 mod thinning;
 
@@ -23,5 +24,6 @@ pub use error::{BuildError, UnusableFmu};
 pub use network::Unsendable;
 pub use program::Program;
 pub use run::{Failure, Outcome, Reason};
+pub use stability::{Analysis, NotAnalysed, analyse_stability};
 pub use stepper::{Binding, Controller, External, Snapshot, States, Stepper};
 pub use thinning::{selected, thinned};

@@ -5,7 +5,7 @@ use servobench_drive::{self as drive, current, delay, feedforward, velocity};
 use servobench_scenario as scenario;
 
 /// Parameters of the firmware that is set as `drive` says, hears its set-points over `bus` and commands `stage`.
-pub(super) fn params(
+pub(crate) fn params(
     base_rate: Rate,
     drive: &scenario::Drive,
     bus: Option<&scenario::Bus>,
@@ -62,7 +62,7 @@ pub(crate) fn model(estimate: &scenario::Estimate, effort: scenario::EffortFeedf
 }
 
 /// The current loop of a synchronous motor.
-pub(super) fn current_stage(base_rate: Rate, current: &scenario::CurrentLoop) -> Result<drive::Stage, BuildError> {
+pub(crate) fn current_stage(base_rate: Rate, current: &scenario::CurrentLoop) -> Result<drive::Stage, BuildError> {
     let scenario::MotorEstimate { electrical_ratio, resistance, inductance_d, inductance_q, flux_linkage } =
         current.motor;
     let motor = current::MotorEstimate {

@@ -61,7 +61,7 @@ fn coordinate(motion: scenario::Motion) -> plant::Coordinate {
     }
 }
 
-fn chain(axis: &scenario::Axis, bodies: &[scenario::Body]) -> Result<Chain, BuildError> {
+pub(crate) fn chain(axis: &scenario::Axis, bodies: &[scenario::Body]) -> Result<Chain, BuildError> {
     let links = bodies
         .iter()
         .filter_map(|body| body.coupling)
@@ -106,12 +106,7 @@ pub(super) fn power_stage(actuator: &Actuator, speed: f64) -> Result<PowerStage,
         Actuator::Prescribed | Actuator::Off => Ok(PowerStage::Off),
         Actuator::IdealSource { source, .. } => Ok(PowerStage::Ideal { gain: source.gain, limit: source.limit }),
         Actuator::Pmsm { motor, dc_link, .. } => {
-            let params = pmsm::Params {
-                pole_pairs: motor.electrical_ratio,
-                resistance: motor.resistance,
-                inductance: Dq { d: motor.inductance_d, q: motor.inductance_q },
-                flux_linkage: motor.flux_linkage,
-            };
+            let params = synchronous_motor(motor);
             params.check()?;
             Ok(PowerStage::Pmsm {
                 params,
@@ -122,5 +117,14 @@ pub(super) fn power_stage(actuator: &Actuator, speed: f64) -> Result<PowerStage,
                 shortens: false,
             })
         }
+    }
+}
+
+pub(crate) fn synchronous_motor(motor: &scenario::Pmsm) -> pmsm::Params {
+    pmsm::Params {
+        pole_pairs: motor.electrical_ratio,
+        resistance: motor.resistance,
+        inductance: Dq { d: motor.inductance_d, q: motor.inductance_q },
+        flux_linkage: motor.flux_linkage,
     }
 }

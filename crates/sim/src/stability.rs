@@ -1,0 +1,141 @@
+//! The linear loop of a scenario, for the analysis of its stability.
+use crate::bench::{firmware, plant};
+use crate::coupled;
+use crate::error::BuildError;
+use servobench_drive as drive;
+use servobench_scenario::{
+    self as scenario, Actuator, AxisMechanics, BusMode, CurrentGain, Feedback, LoopSignal, Scenario,
+};
+use servobench_stability::{
+    self as stability, Depth, Loop, OperatingPoint, PositionFeedback, Report, Source, VelocitySignal,
+};
+use std::fmt::{self, Display, Formatter};
+
+/// What the analysis of a scenario came to.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Analysis {
+    /// The poles of the loop.
+    Done {
+        /// What they say.
+        report: Box<Report>,
+        /// A loop of the scenario that is not in it.
+        without: Option<NotAnalysed>,
+    },
+    /// There is no linear loop that is known here, and why.
+    NotPossible(NotAnalysed),
+}
+
+/// What is not analysed, and why.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NotAnalysed {
+    /// Nothing commands the motor by a loop.
+    NoDrive,
+    /// The drive is an FMU, or an FMU gives what the drive would.
+    ForeignDrive,
+    /// The mechanics is an MJCF file or an FMU alone.
+    ForeignMechanics(&'static str),
+    /// The master closes the position loop over the bus: what is analysed is the drive.
+    MastersPositionLoop,
+    /// FMUs beside the axis act on it: what is analysed is the axis without them.
+    Fmus,
+    /// The poles could not be computed.
+    Failed(stability::StabilityError),
+}
+
+impl Display for NotAnalysed {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        match self {
+            Self::NoDrive => f.write_str("this motor has no drive, so that no loop is closed"),
+            Self::ForeignDrive => f.write_str("an FMU stands for the drive, and its equations are not known here"),
+            Self::ForeignMechanics(what) => {
+                write!(
+                    f,
+                    "the mechanics is {what}, whose equations are not known here: describe the axis by its bodies"
+                )
+            }
+            Self::MastersPositionLoop => f.write_str(
+                "the position loop of the master, closed over the bus (csv), is not analysed; the drive's loops are",
+            ),
+            Self::Fmus => f.write_str("the FMUs beside the axis are not analysed; the axis without them is"),
+            Self::Failed(error) => error.fmt(f),
+        }
+    }
+}
+
+/// Analyses the sampled linear loop of `scenario` at standstill.
+///
+/// # Errors
+/// [`BuildError`] says which part of the scenario cannot be built.
+pub fn analyse_stability(scenario: &Scenario, depth: Depth) -> Result<Analysis, BuildError> {
+    let (model, without) = match linear_loop(scenario)? {
+        Ok(found) => found,
+        Err(why) => return Ok(Analysis::NotPossible(why)),
+    };
+    Ok(match stability::analyse(&model, depth) {
+        Ok(report) => Analysis::Done { report: Box::new(report), without },
+        Err(error) => Analysis::NotPossible(NotAnalysed::Failed(error)),
+    })
+}
+
+type Found = Result<(Loop, Option<NotAnalysed>), NotAnalysed>;
+
+/// The linear loop of `scenario`, and which of its loops is not in it; or why there is none.
+fn linear_loop(scenario: &Scenario) -> Result<Found, BuildError> {
+    if coupled::replaces_the_drive(scenario) {
+        return Ok(Err(NotAnalysed::ForeignDrive));
+    }
+    let bodies = match &scenario.axis.mechanics {
+        AxisMechanics::Bodies(bodies) => bodies,
+        AxisMechanics::Mjcf(_) => return Ok(Err(NotAnalysed::ForeignMechanics("an MJCF file"))),
+        AxisMechanics::InTheFmu => return Ok(Err(NotAnalysed::ForeignMechanics("an FMU"))),
+    };
+    let base_rate = scenario.base_rate;
+    let (drive, stage, source, encoder, current_gain) = match &scenario.actuator {
+        Actuator::Prescribed | Actuator::Off => return Ok(Err(NotAnalysed::NoDrive)),
+        Actuator::Pmsm { motor, current, drive, .. } => {
+            let current_gain = match current.gain {
+                CurrentGain::Bandwidth(_) => stability::CurrentGain::Bandwidth,
+                CurrentGain::PerAxis { .. } => stability::CurrentGain::PerAxis,
+            };
+            let source = Source::Pmsm(plant::synchronous_motor(motor));
+            (drive, firmware::current_stage(base_rate, current)?, source, motor.encoder, current_gain)
+        }
+        Actuator::IdealSource { source, estimated_gain, drive } => {
+            let stage = drive::Stage::Direct { gain: *estimated_gain };
+            (drive, stage, Source::Ideal { gain: source.gain }, source.encoder, stability::CurrentGain::Bandwidth)
+        }
+    };
+    let bus = scenario.bus.as_ref();
+    let closes_position = bus.is_none_or(|bus| !matches!(bus.mode, BusMode::CyclicVelocity | BusMode::ProfileVelocity));
+    let model = Loop {
+        drive: firmware::params(base_rate, drive, bus, stage)?,
+        closes_position,
+        velocity_signal: velocity_signal(encoder),
+        position_feedback: match drive.position_feedback {
+            Feedback::Motor => PositionFeedback::Motor,
+            Feedback::Load(_) => PositionFeedback::Load,
+        },
+        current_gain,
+        source,
+        mechanics: plant::chain(&scenario.axis, bodies)?,
+        point: OperatingPoint::default(),
+    };
+    let without = if bus.is_some_and(|bus| bus.mode == BusMode::CyclicVelocity) {
+        Some(NotAnalysed::MastersPositionLoop)
+    } else {
+        scenario.fmus.iter().flat_map(|fmu| &fmu.outputs).any(|(_, signal)| acts(*signal)).then_some(NotAnalysed::Fmus)
+    };
+    Ok(Ok((model, without)))
+}
+
+const fn velocity_signal(encoder: scenario::Encoder) -> VelocitySignal {
+    match encoder.resolution {
+        None => VelocitySignal::Encoder,
+        Some(_) => VelocitySignal::Differences,
+    }
+}
+
+/// Whether what an FMU gives acts on the axis.
+const fn acts(signal: LoopSignal) -> bool {
+    matches!(signal, LoopSignal::MotorEffort | LoopSignal::LoadEffort)
+}

@@ -1,0 +1,186 @@
+//! Random loops: all combinations of motors, bodies, rates, filters and wrong estimates.
+use crate::files::scenario;
+use servobench_base::Rate;
+use servobench_scenario::{
+    Actuator, AxisMechanics, Body, Coupling, CurrentGain, EffortFeedforward, Encoder, Feedback, Motion, Scenario,
+};
+
+/// SplitMix64 (Steele, Lea, Flood 2014).
+pub(crate) struct Random(pub(crate) u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ z >> 31
+    }
+
+    /// From 0 to below 1.
+    fn share(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// From `low` to `high`, evenly in the logarithm.
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low * (high / low).powf(self.share())
+    }
+
+    pub(crate) fn pick<T: Copy>(&mut self, from: &[T]) -> T {
+        #[expect(clippy::cast_possible_truncation, reason = "a small count")]
+        let index = (self.next() % from.len() as u64) as usize;
+        from[index]
+    }
+
+    fn chance(&mut self, share: f64) -> bool {
+        self.share() < share
+    }
+}
+
+const PMSM: &str = r#"
+[run]
+base_rate = "16 kHz"
+duration = "1 ms"
+[axis]
+motion = "rotary"
+[motor]
+kind = "pmsm"
+pole_pairs = 3
+resistance = "3.6 Ohm"
+inductance_d = "36 mH"
+inductance_q = "51 mH"
+flux_linkage = "0.545 V s"
+inertia = "0.005 kg m2"
+max_current = "1e9 Apk"
+[drive]
+dc_link = "1e9 V"
+[drive.current]
+rate = "16 kHz"
+bandwidth = "1 kHz"
+[drive.velocity]
+rate = "16 kHz"
+gain = "1 Nm s/rad"
+kind = "p"
+[drive.position]
+rate = "16 kHz"
+gain = "1 1/s"
+[initial]
+load_velocity = "1e-9 rad/s"
+"#;
+const IDEAL: &str = r#"
+[run]
+base_rate = "16 kHz"
+duration = "1 ms"
+[axis]
+motion = "rotary"
+motor_side.inertia = "0.005 kg m2"
+[motor]
+kind = "ideal-source"
+[drive.velocity]
+rate = "16 kHz"
+gain = "1 Nm s/rad"
+kind = "p"
+[drive.position]
+rate = "16 kHz"
+gain = "1 1/s"
+[initial]
+load_velocity = "1e-9 rad/s"
+"#;
+
+/// A loop without friction, limits and quantisation.
+pub(crate) fn random_loop(random: &mut Random) -> Scenario {
+    let is_pmsm = random.chance(0.6);
+    let mut scenario = scenario(if is_pmsm { PMSM } else { IDEAL });
+    let base = random.pick(&[12_000, 16_000, 20_000, 24_000]);
+    let current_every = if is_pmsm { random.pick(&[1, 1, 2]) } else { 1 };
+    let velocity_every = current_every * random.pick(&[1, 2, 4]);
+    let position_every = velocity_every * random.pick(&[1, 2, 3, 4]);
+    let rate = |every: u32| Rate::new(base / every).unwrap();
+    // A rate must divide the base rate; 24 and its like do all of these.
+    let position_every = if base.is_multiple_of(position_every) { position_every } else { velocity_every };
+    scenario.base_rate = rate(1);
+    scenario.record.rate = rate(1);
+
+    let is_screw = random.chance(0.3);
+    let transmission = if is_screw { random.between(1e-3, 5e-3) } else { 1.0 };
+    if is_screw {
+        scenario.axis.motion = Motion::Linear;
+    }
+    scenario.axis.transmission = transmission;
+    let bodies = bodies(random, base, transmission);
+    let inertia: f64 =
+        bodies[0].inertia + transmission * transmission * bodies[1..].iter().map(|body| body.inertia).sum::<f64>();
+    scenario.axis.mechanics = AxisMechanics::Bodies(bodies);
+
+    let velocity_period = f64::from(velocity_every) / f64::from(base);
+    let omega = random.between(0.01, 0.3) / velocity_period;
+    let (gain, off) = (inertia * omega, random.between(0.9, 1.1));
+    let drive = match &mut scenario.actuator {
+        Actuator::Pmsm { current, drive, .. } => {
+            current.rate = rate(current_every);
+            current.gain = CurrentGain::Bandwidth(random.between(0.1, 0.7) * f64::from(base / current_every));
+            current.max_current = f64::INFINITY;
+            let motor = &mut current.motor;
+            motor.resistance *= random.between(0.6, 1.6);
+            let inductance = random.between(0.7, 1.3);
+            // A deviation of the bodies does not reach the d axis, which must not be the first at the circle.
+            motor.inductance_d *= 0.7 * inductance;
+            motor.inductance_q *= inductance;
+            motor.flux_linkage *= random.between(0.8, 1.25);
+            drive
+        }
+        Actuator::IdealSource { source, estimated_gain, drive } => {
+            source.gain = random.between(0.5, 40.0);
+            source.limit = f64::INFINITY;
+            *estimated_gain = source.gain * random.between(0.7, 1.4);
+            drive
+        }
+        Actuator::Prescribed | Actuator::Off => panic!("neither is asked for"),
+    };
+    drive.max_effort = f64::INFINITY;
+    drive.velocity.rate = rate(velocity_every);
+    drive.velocity.gain = gain;
+    drive.velocity.integral_time = random.chance(0.6).then(|| random.between(2.0, 12.0) / omega);
+    drive.velocity.filter_time = if random.chance(0.5) { random.between(0.2, 3.0) * velocity_period } else { 0.0 };
+    drive.position.rate = rate(position_every);
+    drive.position.gain = if random.chance(0.1) { 0.0 } else { random.between(0.03, 0.3) * omega };
+    if random.chance(0.3) {
+        drive.position_feedback = Feedback::Load(Encoder { resolution: None });
+    }
+    drive.feedforward.effort = EffortFeedforward::Off;
+    drive.feedforward.delay = Some(0.0);
+    drive.estimate.transmission = transmission * off;
+    scenario
+}
+
+/// One to four bodies in a row.
+fn bodies(random: &mut Random, base: u32, transmission: f64) -> Vec<Body> {
+    let count = random.pick(&[1, 2, 2, 3, 4]);
+    let damped = random.chance(0.7);
+    let viscous = random.chance(0.4);
+    let mut bodies: Vec<Body> = Vec::new();
+    for name in &["motor", "table", "load", "tool"][..count] {
+        let own = if bodies.is_empty() { 1.0 } else { transmission };
+        let inertia = random.between(1e-3, 1e-2) / (own * own);
+        let coupling = bodies.last().map(|last| {
+            let before = if bodies.len() == 1 { last.inertia / (transmission * transmission) } else { last.inertia };
+            let reduced = before * inertia / (before + inertia);
+            let omega = std::f64::consts::TAU * random.between(15.0, 0.3 * f64::from(base));
+            let damping = if damped { 2.0 * random.between(1e-3, 3e-2) * reduced * omega } else { 0.0 };
+            Coupling { stiffness: reduced * omega * omega, damping }
+        });
+        let viscous = if viscous { random.between(0.1, 3.0) * inertia } else { 0.0 };
+        bodies.push(Body {
+            name,
+            inertia,
+            coupling,
+            viscous,
+            coulomb: 0.0,
+            breakaway: 0.0,
+            stribeck_velocity: 0.0,
+            bias: 0.0,
+        });
+    }
+    bodies
+}

@@ -1,0 +1,260 @@
+//! From a loop to a report.
+//!
+//! The verdict is of the whole loop. The name is found by closing the loops from the inside: the current loop with the shaft held,
+//! the velocity loop with the position loop open, the position loop; the first that is unstable.
+use crate::boundary;
+use crate::eigen::{self, Block, Eigenvalue};
+use crate::error::StabilityError;
+use crate::model::{Loop, Source};
+use crate::period::Period;
+use crate::pole::Pole;
+use crate::report::{Boundaries, Boundary, GainName, Instability, LoopName, LoopReport, Report};
+use crate::state::CURRENT;
+use crate::tick::{Closed, Factors, Tick};
+use nalgebra::Complex;
+use servobench_base::Dq;
+use servobench_drive::Stage;
+use servobench_plant::Coordinate;
+use std::f64::consts::TAU;
+
+/// How much is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Depth {
+    /// Whether the loop is stable, and if not, why.
+    Verdict,
+    /// The boundaries of all gains and the least damped poles too, which takes longer.
+    Boundaries,
+}
+
+/// Analyses a loop.
+///
+/// # Errors
+/// [`StabilityError`] names a parameter out of its bound, or why the poles could not be computed.
+pub fn analyse(model: &Loop, depth: Depth) -> Result<Report, StabilityError> {
+    model.check()?;
+    let mut analysis = Analysis { model, tick: Tick::new(model) };
+    let poles = analysis.poles(analysis.whole())?;
+    let unstable = poles.outside().map(|eigenvalue| poles.in_seconds(model, &eigenvalue));
+    let is_unstable = unstable.is_some();
+    let largest = unstable.or_else(|| poles.largest(model));
+    let instability = match unstable {
+        Some(pole) => Some(analysis.instability(pole)?),
+        None => None,
+    };
+    let mut loops = Vec::new();
+    for name in [LoopName::Current, LoopName::Velocity, LoopName::Position] {
+        if let Some(report) = analysis.report(name, is_unstable, depth)? {
+            loops.push(report);
+        }
+    }
+    Ok(Report { instability, largest, loops, warnings: model.warnings() })
+}
+
+/// The poles of the loops that a tick closes.
+pub(crate) struct Poles {
+    period: Period,
+    blocks: Vec<Block>,
+    /// Each with the index of its block.
+    pub(crate) values: Vec<(usize, Complex<f64>)>,
+}
+
+impl Poles {
+    pub(crate) fn new(tick: &Tick) -> Result<Self, StabilityError> {
+        let period = Period::new(tick)?;
+        let blocks = eigen::blocks(&period)?;
+        let values = candidates(tick, &blocks);
+        Ok(Self { period, blocks, values })
+    }
+
+    fn refined(&self, (block, value): (usize, Complex<f64>)) -> Eigenvalue {
+        self.blocks[block].refine(&self.period, value)
+    }
+
+    /// The largest outside of the unit circle, by more than rounding.
+    pub(crate) fn outside(&self) -> Option<Eigenvalue> {
+        let mut outside: Vec<_> = self.values.iter().copied().filter(|(_, value)| value.norm() > 1.0).collect();
+        outside.sort_by(|(_, a), (_, b)| b.norm().total_cmp(&a.norm()));
+        outside
+            .into_iter()
+            .map(|pole| self.refined(pole))
+            .find(|eigenvalue| eigenvalue.value.norm() - 1.0 > eigenvalue.bound)
+    }
+
+    fn largest(&self, model: &Loop) -> Option<Pole> {
+        let largest = self.values.iter().max_by(|(_, a), (_, b)| a.norm().total_cmp(&b.norm()))?;
+        Some(self.in_seconds(model, &self.refined(*largest)))
+    }
+
+    fn in_seconds(&self, model: &Loop, eigenvalue: &Eigenvalue) -> Pole {
+        Pole::new(&self.period, model, eigenvalue)
+    }
+
+    /// Largest magnitude in a block that holds the state `index`.
+    fn largest_with(&self, index: usize) -> f64 {
+        let of_state = self.values.iter().filter(|(block, _)| self.blocks[*block].states.contains(&index));
+        of_state.map(|(_, value)| value.norm()).fold(0.0, f64::max)
+    }
+}
+
+/// The poles of all loops but the one that is known to be at 1.
+fn candidates(tick: &Tick, blocks: &[Block]) -> Vec<(usize, Complex<f64>)> {
+    let of_block =
+        |(index, block): (usize, &Block)| block.eigenvalues.iter().map(|value| (index, *value)).collect::<Vec<_>>();
+    let mut all: Vec<_> = blocks.iter().enumerate().flat_map(of_block).collect();
+    if tick.turns_freely() {
+        let turns = |block: usize| blocks[block].states.contains(&tick.motor_velocity());
+        let to_one = |&(_, (_, value)): &(usize, (usize, Complex<f64>))| (value - 1.0).norm();
+        let nearest = all
+            .iter()
+            .copied()
+            .enumerate()
+            .filter(|(_, (block, _))| turns(*block))
+            .min_by(|a, b| to_one(a).total_cmp(&to_one(b)));
+        if let Some((index, _)) = nearest {
+            all.swap_remove(index);
+        }
+    }
+    all
+}
+
+struct Analysis<'a> {
+    model: &'a Loop,
+    tick: Tick<'a>,
+}
+
+impl Analysis<'_> {
+    /// All loops that have a gain.
+    fn whole(&self) -> Closed {
+        let closes_velocity = self.model.drive.velocity.k_p > 0.0;
+        let closes_position = self.model.closes_position && self.model.drive.position_gain > 0.0;
+        Closed { position: closes_position && closes_velocity, velocity: closes_velocity, shaft: true }
+    }
+
+    /// The loop `name` with the loops around it open.
+    fn alone(&self, name: LoopName) -> Closed {
+        match name {
+            LoopName::Current => Closed { position: false, velocity: false, shaft: false },
+            LoopName::Velocity => Closed { position: false, ..self.whole() },
+            LoopName::Position => self.whole(),
+        }
+    }
+
+    fn poles(&mut self, closed: Closed) -> Result<Poles, StabilityError> {
+        self.tick.with(closed, Factors::ONE);
+        Poles::new(&self.tick)
+    }
+
+    fn unstable(&mut self, closed: Closed) -> Result<Option<Pole>, StabilityError> {
+        let poles = self.poles(closed)?;
+        Ok(poles.outside().map(|eigenvalue| poles.in_seconds(self.model, &eigenvalue)))
+    }
+
+    /// Why the whole loop, whose largest pole is `pole`, is unstable.
+    fn instability(&mut self, pole: Pole) -> Result<Instability, StabilityError> {
+        let whole = self.whole();
+        if self.unstable(self.alone(LoopName::Current))?.is_some() {
+            let gain_name = self.unstable_axis()?;
+            return self.named(LoopName::Current, gain_name, pole);
+        }
+        if whole.position && self.unstable(self.alone(LoopName::Velocity))?.is_none() {
+            return self.named(LoopName::Position, GainName::Position, pole);
+        }
+        if whole.velocity {
+            let velocity = self.named(LoopName::Velocity, GainName::Velocity, pole)?;
+            let open = Closed { position: false, velocity: false, shaft: true };
+            if !velocity.boundaries.is_none() || self.unstable(open)?.is_none() {
+                return Ok(velocity);
+            }
+        }
+        // The decoupling of the back-EMF closes a loop over the shaft which has no gain but this one.
+        let gain_name = self.current_gain_name();
+        self.named(LoopName::Current, gain_name, pole)
+    }
+
+    fn named(&mut self, name: LoopName, gain_name: GainName, pole: Pole) -> Result<Instability, StabilityError> {
+        let (gain, unit) = self.gain(gain_name);
+        let mut boundaries = self.boundaries(self.whole(), gain_name, true);
+        let alone = self.alone(name);
+        if boundaries.is_none() && alone != self.whole() && self.unstable(alone)?.is_some() {
+            boundaries = Boundaries { alone: true, ..self.boundaries(alone, gain_name, true) };
+        }
+        Ok(Instability { name, gain_name, gain, unit, pole, boundaries })
+    }
+
+    fn boundaries(&mut self, closed: Closed, gain_name: GainName, is_unstable: bool) -> Boundaries {
+        let (gain, _) = self.gain(gain_name);
+        let [below, above] = boundary::nearest(&mut self.tick, closed, gain_name, is_unstable)
+            .map(|factor| factor.map(|factor| Boundary { factor, gain: factor * gain }));
+        Boundaries { below, above, alone: false }
+    }
+
+    /// The gain of the current loop that is too large, where the loop by itself is unstable.
+    fn unstable_axis(&mut self) -> Result<GainName, StabilityError> {
+        if self.model.has_bandwidth() {
+            return Ok(GainName::CurrentBandwidth);
+        }
+        let poles = self.poles(self.alone(LoopName::Current))?;
+        let [d, q] = [CURRENT, CURRENT + 1].map(|axis| poles.largest_with(axis));
+        Ok(if d > q { GainName::CurrentD } else { GainName::CurrentQ })
+    }
+
+    const fn current_gain_name(&self) -> GainName {
+        if self.model.has_bandwidth() { GainName::CurrentBandwidth } else { GainName::CurrentQ }
+    }
+
+    /// Value and unit of a gain.
+    fn gain(&self, name: GainName) -> (f64, &'static str) {
+        let p = &self.model.drive;
+        let Stage::Current { params, .. } = &p.stage else {
+            return self.outer_gain(name);
+        };
+        let (Dq { d, q }, inductance) = (params.gains.k_p, params.motor.inductance);
+        match name {
+            GainName::CurrentBandwidth => (q / inductance.q / TAU, "Hz"),
+            GainName::CurrentD => (d, "V/A"),
+            GainName::CurrentQ => (q, "V/A"),
+            GainName::Position | GainName::Velocity => self.outer_gain(name),
+        }
+    }
+
+    fn outer_gain(&self, name: GainName) -> (f64, &'static str) {
+        let p = &self.model.drive;
+        match (name, self.model.mechanics.bodies()[0].coordinate) {
+            (GainName::Position, _) => (p.position_gain, "1/s"),
+            (_, Coordinate::Rotary) => (p.velocity.k_p, "N·m·s/rad"),
+            (_, Coordinate::Linear) => (p.velocity.k_p, "N·s/m"),
+        }
+    }
+
+    fn report(
+        &mut self,
+        name: LoopName,
+        is_unstable: bool,
+        depth: Depth,
+    ) -> Result<Option<LoopReport>, StabilityError> {
+        let (gain_name, is_closed) = match name {
+            LoopName::Position if !self.model.closes_position => return Ok(None),
+            LoopName::Current if matches!(self.model.source, Source::Ideal { .. }) => return Ok(None),
+            LoopName::Position => (GainName::Position, self.whole().position),
+            LoopName::Velocity => (GainName::Velocity, self.whole().velocity),
+            LoopName::Current => (self.current_gain_name(), true),
+        };
+        let (gain, unit) = self.gain(gain_name);
+        let is_asked = is_closed && depth == Depth::Boundaries;
+        let boundaries = is_asked.then(|| self.boundaries(self.whole(), gain_name, is_unstable));
+        let least_damped = if is_asked { self.least_damped(self.alone(name))? } else { None };
+        let bandwidth = self.model.bandwidth(name);
+        Ok(Some(LoopReport { name, gain_name, gain, unit, bandwidth, boundaries, least_damped }))
+    }
+
+    fn least_damped(&mut self, closed: Closed) -> Result<Option<Pole>, StabilityError> {
+        let all = self.poles(closed)?;
+        let poles = all
+            .values
+            .iter()
+            // A pole at the origin is a delay.
+            .filter(|(_, value)| value.im >= 0.0 && value.norm() > f64::EPSILON.sqrt())
+            .map(|pole| all.in_seconds(self.model, &all.refined(*pole)));
+        Ok(poles.min_by(|a, b| a.damping().total_cmp(&b.damping())))
+    }
+}

@@ -1,0 +1,99 @@
+//! Where a loop changes from stable to unstable or back as one gain grows or falls.
+//!
+//! The gain goes by a factor from 1 away, on a logarithmic grid, and the first change of the verdict is bisected. So that an island
+//! is not stepped over, the grid follows the poles: a step is half of what a pole needs to get to the unit circle (of a stable loop
+//! the one that is soonest there, of an unstable loop the one outside that is last) at its present speed d|λ|/d ln k (or a twentieth of |dλ/d ln k|, where it goes along the circle), but at least
+//! 0.5 % and at most 10 % of the gain. A range of gains that is missed is narrower than 0.5 %, or a pole comes to the circle and
+//! back within a step, in which it would have gone half of the way.
+use crate::analyse::Poles;
+use crate::report::GainName;
+use crate::tick::{Closed, Tick};
+
+/// Gains are scanned to this factor and its reciprocal.
+pub(crate) const REACH: f64 = 1_000.0;
+const SHORTEST_STEP: f64 = 0.005;
+const LONGEST_STEP: f64 = 0.1;
+/// Share of the way to the circle that a step takes at most.
+const SHARE: f64 = 0.5;
+/// Share of the way along the circle that counts as one towards it: poles that go along it may turn.
+const ALONG: f64 = 0.05;
+/// Relative difference of gains that tells the speed of the poles.
+const DIFFERENCE: f64 = 1e-4;
+/// Relative accuracy of the boundary.
+const ACCURACY: f64 = 1e-6;
+/// A pole closer to the origin is a delay: it needs more than a step to the circle, and its speed is that of a multiple
+/// root, infinite.
+const DELAY: f64 = 0.3;
+
+/// The nearest factors on the gain `name` at which the verdict on the loops `closed` changes from `is_unstable`: downwards and
+/// upwards.
+pub(crate) fn nearest(tick: &mut Tick, closed: Closed, name: GainName, is_unstable: bool) -> [Option<f64>; 2] {
+    let mut scan = Scan { tick, closed, name, is_unstable };
+    [-1.0, 1.0].map(|sign| scan.nearest(sign).map(f64::exp))
+}
+
+struct Scan<'a, 'b> {
+    tick: &'a mut Tick<'b>,
+    closed: Closed,
+    name: GainName,
+    is_unstable: bool,
+}
+
+impl Scan<'_, '_> {
+    /// Logarithm of the nearest factor in the direction `sign`.
+    fn nearest(&mut self, sign: f64) -> Option<f64> {
+        let mut here = 0.0_f64;
+        let mut poles = self.poles(here);
+        while here.abs() < REACH.ln() {
+            let next = here + sign * self.step(poles.as_ref(), here + sign * DIFFERENCE);
+            poles = self.poles(next);
+            if self.is_other(poles.as_ref()) {
+                return Some(self.bisect(here, next));
+            }
+            here = next;
+        }
+        None
+    }
+
+    /// The poles with the gain by e to the power of `exponent`; `None` where the loop grows beyond all numbers within a period.
+    fn poles(&mut self, exponent: f64) -> Option<Poles> {
+        self.tick.with(self.closed, self.name.factors(exponent.exp()));
+        Poles::new(self.tick).ok()
+    }
+
+    /// Whether the verdict is another one.
+    fn is_other(&self, poles: Option<&Poles>) -> bool {
+        let is_unstable = poles.is_none_or(|poles| poles.outside().is_some());
+        is_unstable != self.is_unstable
+    }
+
+    fn bisect(&mut self, mut same: f64, mut other: f64) -> f64 {
+        while (other - same).abs() > ACCURACY {
+            let middle = f64::midpoint(same, other);
+            let poles = self.poles(middle);
+            *(if self.is_other(poles.as_ref()) { &mut other } else { &mut same }) = middle;
+        }
+        f64::midpoint(same, other)
+    }
+
+    /// How far the gain can go until the verdict could be half-way at its change, from where `poles` are at `beside`: a stable loop
+    /// changes with the first pole that leaves the circle, an unstable one with the last that comes in.
+    fn step(&mut self, poles: Option<&Poles>, beside: f64) -> f64 {
+        let (Some(poles), Some(moved)) = (poles, self.poles(beside)) else { return LONGEST_STEP };
+        let mut steps = (LONGEST_STEP, SHORTEST_STEP);
+        for (block, pole) in poles.values.iter().filter(|(_, pole)| pole.norm() > DELAY) {
+            let of_block = moved.values.iter().filter(|(other, _)| other == block).map(|(_, moved)| moved);
+            let Some(moved) = of_block.min_by(|a, b| (*a - pole).norm().total_cmp(&(*b - pole).norm())) else {
+                continue;
+            };
+            let way = (moved.norm() - pole.norm()).abs().max(ALONG * (moved - pole).norm());
+            let distance = (pole.norm() - 1.0).abs();
+            let step = if way > 0.0 { SHARE * DIFFERENCE * distance / way } else { LONGEST_STEP };
+            steps.0 = steps.0.min(step);
+            if pole.norm() > 1.0 {
+                steps.1 = steps.1.max(step);
+            }
+        }
+        (if self.is_unstable { steps.1 } else { steps.0 }).clamp(SHORTEST_STEP, LONGEST_STEP)
+    }
+}

@@ -1,0 +1,27 @@
+//! Why a loop could not be analysed.
+use servobench_base::ParamError;
+use thiserror::Error;
+
+/// Why a loop could not be analysed.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum StabilityError {
+    /// A parameter is out of its bound.
+    #[error(transparent)]
+    Parameter(#[from] ParamError),
+    /// The numbers of one period of the loop exceed what can be computed with.
+    #[error(
+        "the poles of the loop cannot be computed: over the common period of its loops ({ticks} base ticks) it grows beyond 1e150"
+    )]
+    Overflow {
+        /// Length of the period (base ticks).
+        ticks: u32,
+    },
+    /// The QR iteration gave up.
+    #[error(
+        "the poles of the loop cannot be computed: the QR iteration did not converge after {iterations} iterations"
+    )]
+    NotConverged {
+        /// How many were granted.
+        iterations: usize,
+    },
+}

@@ -1,0 +1,32 @@
+//! The sampled linear loop of a servo axis: its poles, the name of the loop that is unstable, and the gains at the boundary.
+//!
+//! [`Loop`] says what the axis and its drive are. [`analyse`] writes one base tick of both as linear equations ([`tick`]), in
+//! the order of events of a run: all rates, delays, filters and the current loop in both axes are in them. The product over the
+//! common period of all loops is taken around once; its eigenvalues are the poles.
+//!
+//! ```text
+//! x(t+1) = C_t·P·x(t)                C_t the loops that are due at tick t, P power stage and mechanics
+//! M = (C_0·P)·(C_{N−1}·P)⋯(C_1·P)    the loop is unstable: |λ(M)| > 1
+//! ```
+//! Friction, saturation and quantisation are not in it: [`LEFT_OUT`].
+//! Source: Bittanti & Colaneri, *Periodic Systems*, 2009, ch. 3 (monodromy matrix of a multirate loop).
+
+mod analyse;
+mod boundary;
+mod eigen;
+mod electrical;
+mod error;
+mod model;
+mod ordering;
+mod period;
+mod pole;
+mod report;
+mod state;
+mod structure;
+mod tick;
+
+pub use analyse::{Depth, analyse};
+pub use error::StabilityError;
+pub use model::{CurrentGain, LEFT_OUT, Loop, OperatingPoint, PositionFeedback, Source, VelocitySignal};
+pub use pole::Pole;
+pub use report::{Boundaries, Boundary, GainName, Instability, LoopName, LoopReport, Report, Warning};

@@ -1,0 +1,118 @@
+//! What is analysed: an axis, the drive that closes its loops, and where it is operated.
+use servobench_base::{Dq, ParamError, finite, positive};
+use servobench_drive as drive;
+use servobench_plant::{Chain, pmsm};
+
+/// What the analysis leaves out, in a sentence.
+pub const LEFT_OUT: &str = "the analysis is of the linear loop at standstill: dry friction, saturation (current, voltage, \
+                            effort) and quantisation are not in it";
+
+/// An axis with its drive.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Loop {
+    /// The drive: gains, rates and what it believes of the axis. Its limits and its feedforward are outside of the loop.
+    pub drive: drive::Params,
+    /// Whether the drive closes a position loop.
+    pub closes_position: bool,
+    /// Where the drive has the motor's velocity from.
+    pub velocity_signal: VelocitySignal,
+    /// Which position closes the position loop.
+    pub position_feedback: PositionFeedback,
+    /// How the gains of the current loop are set.
+    pub current_gain: CurrentGain,
+    /// What turns the drive's command into effort.
+    pub source: Source,
+    /// The bodies.
+    pub mechanics: Chain,
+    /// Where the loop is linearised.
+    pub point: OperatingPoint,
+}
+
+/// Where the drive has the motor's velocity from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum VelocitySignal {
+    /// An ideal encoder gives it.
+    Encoder,
+    /// Differences of positions over the period of the velocity loop.
+    Differences,
+}
+
+/// Which position closes the position loop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PositionFeedback {
+    /// The motor's.
+    Motor,
+    /// The load's: the last body.
+    Load,
+}
+
+/// How the gains of the current loop are set, which is how reports call them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CurrentGain {
+    /// One bandwidth for both axes.
+    Bandwidth,
+    /// A gain for each axis.
+    PerAxis,
+}
+
+/// What turns the drive's command into effort. It must be the kind of the drive's [`Stage`](drive::Stage).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Source {
+    /// A synchronous motor on an inverter, under the drive's current loop.
+    Pmsm(pmsm::Params),
+    /// An ideal source: so much effort (N or N·m) per unit of output.
+    Ideal {
+        /// Effort per unit of output.
+        gain: f64,
+    },
+}
+
+/// Where the loop is linearised: at standstill, with a constant current.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct OperatingPoint {
+    /// Current in the rotor's frame (A, peak). The drive is taken to know the pole pairs where it is not zero.
+    pub current: Dq,
+}
+
+impl Loop {
+    /// # Errors
+    /// [`ParamError`] names the first parameter out of its bound.
+    pub fn check(&self) -> Result<(), ParamError> {
+        self.drive.check()?;
+        finite("operating point, current d", self.point.current.d)?;
+        finite("operating point, current q", self.point.current.q)?;
+        match (&self.source, &self.drive.stage) {
+            (Source::Pmsm(motor), drive::Stage::Current { .. }) => motor.check(),
+            (Source::Ideal { gain }, drive::Stage::Direct { .. }) => positive("motor.gain", *gain).map(|_| ()),
+            (Source::Pmsm(_), drive::Stage::Direct { gain })
+            | (Source::Ideal { gain }, drive::Stage::Current { .. }) => {
+                let bound = "with a current loop for a synchronous motor, and direct for an ideal source";
+                Err(ParamError { name: "stage of the drive", value: *gain, bound })
+            }
+        }
+    }
+
+    /// Whether all current gains, those of both axes by the same factor, are one number in the scenario.
+    pub(crate) const fn has_bandwidth(&self) -> bool {
+        matches!(self.current_gain, CurrentGain::Bandwidth)
+    }
+
+    /// The inertia of all bodies in the motor's coordinate.
+    pub(crate) fn inertia(&self) -> f64 {
+        let bodies = self.mechanics.bodies();
+        let motor = bodies[0].transmission;
+        bodies.iter().map(|body| body.inertia * (motor / body.transmission).powi(2)).sum()
+    }
+
+    /// Effort that the source gives per effort that the drive asks for, at rest.
+    pub(crate) fn effort_ratio(&self) -> f64 {
+        match (&self.source, &self.drive.stage) {
+            (Source::Pmsm(motor), drive::Stage::Current { params, .. }) => {
+                let ampere = Dq { d: self.point.current.d, q: 1.0 };
+                motor.torque(ampere) / params.motor.effort_constant()
+            }
+            (Source::Ideal { gain }, drive::Stage::Direct { gain: estimated }) => gain / estimated,
+            _ => 1.0,
+        }
+    }
+}

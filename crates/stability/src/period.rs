@@ -1,0 +1,163 @@
+//! The common period of all loops: the matrices of its ticks, their product, and vectors on their way through it.
+//!
+//! The product is taken around once from the tick at which all loops turn, after they have: there every signal of a
+//! controller is fresh, so that a loop is in it as a ring through a controller's state ([`structure`](crate::structure)).
+use crate::error::StabilityError;
+use crate::state::{STATES, State};
+use crate::structure::Pattern;
+use crate::tick::{Due, Tick};
+use nalgebra::{Complex, DMatrix, DVector};
+use servobench_drive::Stage;
+
+/// Largest entry of a product whose columns can still be squared and summed.
+pub(crate) const LARGEST: f64 = 1e150;
+
+pub(crate) type ComplexVector = DVector<Complex<f64>>;
+
+/// The ticks of a common period.
+pub(crate) struct Period {
+    /// What is due, and the matrix of such a tick: `C·P`.
+    kinds: Vec<(Due, DMatrix<f64>)>,
+    /// Index into `kinds` of each tick of the period, the one at which all loops turn last.
+    ticks: Vec<usize>,
+    /// The product of all.
+    pub(crate) monodromy: DMatrix<f64>,
+    pub(crate) pattern: Pattern,
+    /// Length of a tick (s).
+    pub(crate) h: f64,
+}
+
+/// A matrix and its pattern.
+#[derive(Clone)]
+struct Product(DMatrix<f64>, Pattern);
+
+impl Product {
+    fn identity() -> Self {
+        Self(DMatrix::identity(STATES, STATES), Pattern::identity())
+    }
+
+    fn after(&self, first: &Self) -> Self {
+        Self(&self.0 * &first.0, self.1.after(&first.1))
+    }
+
+    fn power(&self, mut exponent: u32) -> Self {
+        let (mut power, mut square) = (Self::identity(), self.clone());
+        while exponent > 0 {
+            if exponent & 1 == 1 {
+                power = square.after(&power);
+            }
+            exponent >>= 1;
+            if exponent > 0 {
+                square = square.after(&square);
+            }
+        }
+        power
+    }
+}
+
+impl Period {
+    /// Of the loops that `tick` closes.
+    ///
+    /// # Errors
+    /// [`StabilityError::Overflow`] when the product is beyond what can be computed with.
+    pub(crate) fn new(tick: &Tick) -> Result<Self, StabilityError> {
+        let drive = &tick.model().drive;
+        let current = match &drive.stage {
+            Stage::Current { every, .. } => every.ticks(),
+            Stage::Direct { .. } => drive.velocity_every.ticks(),
+        };
+        let closed = tick.closed();
+        // A loop that is open does not lengthen the period: what is below it repeats faster.
+        let velocity = drive.velocity_every.ticks();
+        let velocity = if closed.shaft { velocity } else { current };
+        let position = if closed.position { drive.position_every.ticks() } else { velocity };
+
+        let idle = Due { position: false, velocity: false, current: false };
+        let all = Due { position: closed.position, velocity: closed.shaft, current: true };
+        let mut kinds: Vec<(Due, DMatrix<f64>)> = Vec::new();
+        let mut ticks = Vec::new();
+        for k in 1..=position {
+            let due = Due {
+                position: all.position && k == position,
+                velocity: all.velocity && k.is_multiple_of(velocity),
+                current: k.is_multiple_of(current),
+            };
+            let index = kinds.iter().position(|(kind, _)| *kind == due);
+            ticks.push(index.unwrap_or(kinds.len()));
+            if index.is_none() {
+                kinds.push((due, matrix(tick, due)));
+            }
+        }
+        let product = |due: Due| {
+            let kind = kinds.iter().find(|(kind, _)| *kind == due);
+            kind.map_or_else(Product::identity, |(_, matrix)| Product(matrix.clone(), Pattern::of(matrix)))
+        };
+        // Each loop's period is a whole number of the periods of the loop below it.
+        let idle = product(idle).power(current - 1);
+        let current_period = |due: Due| product(due).after(&idle);
+        let velocity_period = |due: Due| {
+            let inner = Due { position: false, velocity: false, current: true };
+            current_period(due).after(&current_period(inner).power(velocity / current - 1))
+        };
+        let inner = Due { position: false, ..all };
+        let whole = velocity_period(all).after(&velocity_period(inner).power(position / velocity - 1));
+        // NaN, too.
+        if !whole.0.iter().all(|entry| entry.abs() < LARGEST) {
+            return Err(StabilityError::Overflow { ticks: position });
+        }
+        Ok(Self { kinds, ticks, monodromy: whole.0, pattern: whole.1, h: tick.h() })
+    }
+
+    /// Length (s).
+    pub(crate) fn seconds(&self) -> f64 {
+        self.ticks.len() as f64 * self.h
+    }
+
+    /// Matrices of the ticks in order.
+    pub(crate) fn matrices(&self) -> impl DoubleEndedIterator<Item = &DMatrix<f64>> {
+        self.ticks.iter().map(|&kind| &self.kinds[kind].1)
+    }
+
+    /// A state before the period and after each of its ticks.
+    pub(crate) fn forward(&self, state: ComplexVector) -> Vec<ComplexVector> {
+        let mut states = vec![state];
+        for matrix in self.matrices() {
+            let next = times(matrix, &states[states.len() - 1]);
+            states.push(next);
+        }
+        states
+    }
+
+    /// What a row vector (here as a column) is before each tick and after the last: `y_j = A_jᵀ·y_{j+1}`.
+    pub(crate) fn backward(&self, row: ComplexVector) -> Vec<ComplexVector> {
+        let mut rows = vec![row];
+        for matrix in self.matrices().rev() {
+            let before = times(&matrix.transpose(), &rows[rows.len() - 1]);
+            rows.push(before);
+        }
+        rows.reverse();
+        rows
+    }
+}
+
+/// The matrix of a tick at the end of which the loops `due` turn.
+fn matrix(tick: &Tick, due: Due) -> DMatrix<f64> {
+    let mut matrix = DMatrix::zeros(STATES, STATES);
+    for column in 0..STATES {
+        let mut x = State::unit(column);
+        tick.plant(&mut x);
+        tick.control(&mut x, due);
+        matrix.column_mut(column).copy_from_slice(&x.to_array());
+    }
+    matrix
+}
+
+fn times(matrix: &DMatrix<f64>, vector: &ComplexVector) -> ComplexVector {
+    let mut product = ComplexVector::zeros(matrix.nrows());
+    for (column, factor) in matrix.column_iter().zip(vector.iter()) {
+        for (sum, entry) in product.iter_mut().zip(column.iter()) {
+            *sum += factor * *entry;
+        }
+    }
+    product
+}

@@ -1,0 +1,234 @@
+//! One base tick of the linear loop, in the order of events of a run: power stage and mechanics go from tick k to k+1, then
+//! the loops that are due at k+1 turn.
+//!
+//! The equations are those of `drive::firmware`, `drive::{velocity, current}` and of the power stage of `sim`, around the
+//! operating point at standstill: no set-point, no limit, no rounding of encoders. A loop that is opened puts out nothing.
+use crate::electrical::Electrical;
+use crate::model::{Loop, PositionFeedback, Source, VelocitySignal};
+use crate::state::{MECHANICS, State};
+use nalgebra::DMatrix;
+use servobench_base::Dq;
+use servobench_drive::Stage;
+use servobench_plant::transition;
+
+/// Which loops have their turn at a tick.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Due {
+    pub(crate) position: bool,
+    pub(crate) velocity: bool,
+    pub(crate) current: bool,
+}
+
+/// Which loops are closed; the current loop always is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Closed {
+    pub(crate) position: bool,
+    pub(crate) velocity: bool,
+    /// Whether the shaft turns; a current loop by itself is looked at with the shaft held.
+    pub(crate) shaft: bool,
+}
+
+/// Factors on the gains, 1 as they are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Factors {
+    pub(crate) position: f64,
+    pub(crate) velocity: f64,
+    pub(crate) current: Dq,
+}
+
+impl Factors {
+    pub(crate) const ONE: Self = Self { position: 1.0, velocity: 1.0, current: Dq { d: 1.0, q: 1.0 } };
+}
+
+/// All that a tick needs.
+pub(crate) struct Tick<'a> {
+    model: &'a Loop,
+    closed: Closed,
+    factors: Factors,
+    electrical: Option<Electrical>,
+    /// `[Φ Γ]` of the mechanics with the travel.
+    transition: DMatrix<f64>,
+    bodies: usize,
+    /// Axis coordinate per motor coordinate of the mechanics.
+    transmission: f64,
+    /// Base tick (s).
+    h: f64,
+}
+
+impl<'a> Tick<'a> {
+    pub(crate) fn new(model: &'a Loop) -> Self {
+        let h = model.drive.base_rate.period();
+        let bodies = model.mechanics.bodies();
+        Self {
+            model,
+            closed: Closed { position: model.closes_position, velocity: true, shaft: true },
+            factors: Factors::ONE,
+            electrical: match &model.source {
+                Source::Pmsm(motor) => Some(Electrical::new(motor, model.point.current, h)),
+                Source::Ideal { .. } => None,
+            },
+            transition: transition(&model.mechanics, h),
+            bodies: bodies.len(),
+            transmission: bodies[0].transmission,
+            h,
+        }
+    }
+
+    /// The same loop with these loops closed and gains so much larger.
+    pub(crate) fn with(&mut self, closed: Closed, factors: Factors) {
+        (self.closed, self.factors) = (closed, factors);
+    }
+
+    pub(crate) const fn closed(&self) -> Closed {
+        self.closed
+    }
+
+    pub(crate) const fn model(&self) -> &Loop {
+        self.model
+    }
+
+    /// Base tick (s).
+    pub(crate) const fn h(&self) -> f64 {
+        self.h
+    }
+
+    /// Index of the motor's velocity.
+    pub(crate) const fn motor_velocity(&self) -> usize {
+        self.bodies - 1
+    }
+
+    /// Whether there is one pole at 1 within the current loop, because physics wants it: without viscous friction and without a
+    /// velocity loop the axis keeps any constant speed, since the integrators hold the current at its reference whatever the
+    /// back-EMF. A current that is held over several ticks while the rotor turns is not quite at its reference.
+    pub(crate) fn turns_freely(&self) -> bool {
+        let is_open = !self.closed.velocity || self.model.drive.velocity.k_p == 0.0;
+        let holds_current = match &self.model.drive.stage {
+            Stage::Current { every, .. } => self.model.point.current == Dq::default() || every.ticks() == 1,
+            Stage::Direct { .. } => false,
+        };
+        let bodies = self.model.mechanics.bodies();
+        self.closed.shaft && is_open && holds_current && bodies.iter().all(|body| body.viscous == 0.0)
+    }
+
+    /// Speed of the motor (its own coordinate).
+    fn motor_speed(&self, x: &State) -> f64 {
+        x.mechanics[self.bodies - 1] / (self.h * self.transmission)
+    }
+
+    /// Position of the last body (axis coordinate): each stretch is by how much a body lags behind the one before it.
+    fn load_position(&self, x: &State) -> f64 {
+        x.mechanics[..self.bodies - 1].iter().fold(x.position, |position, stretch| position - stretch)
+    }
+
+    /// The loops that are due, the slower ones first: what they say reaches the faster ones in the same tick.
+    pub(crate) fn control(&self, x: &mut State, due: Due) {
+        if due.position {
+            self.position_loop(x);
+        }
+        if due.velocity {
+            self.velocity_loop(x);
+        }
+        if due.current {
+            self.current_loop(x);
+        }
+    }
+
+    fn position_loop(&self, x: &mut State) {
+        let p = &self.model.drive;
+        let position = match self.model.position_feedback {
+            PositionFeedback::Motor => p.transmission / self.transmission * x.position,
+            PositionFeedback::Load => self.load_position(x),
+        };
+        let gain = if self.closed.position { self.factors.position * p.position_gain } else { 0.0 };
+        x.velocity_reference = -gain * position;
+    }
+
+    fn velocity_loop(&self, x: &mut State) {
+        let p = &self.model.drive;
+        let h = p.period(p.velocity_every);
+        let measured = match self.model.velocity_signal {
+            VelocitySignal::Encoder => self.motor_speed(x),
+            VelocitySignal::Differences => std::mem::take(&mut x.travelled) / h,
+        };
+        x.filtered_velocity += h / (h + p.velocity_filter_time) * (measured - x.filtered_velocity);
+        let gain = if self.closed.velocity { self.factors.velocity * p.velocity.k_p } else { 0.0 };
+        let proportional = gain * (x.velocity_reference / p.transmission - x.filtered_velocity);
+        x.effort = proportional + x.velocity_integral;
+        if let Some(integral_time) = p.velocity.integral_time {
+            x.velocity_integral += h / integral_time * proportional;
+        }
+    }
+
+    fn current_loop(&self, x: &mut State) {
+        let (Stage::Current { params: p, every }, Some(electrical)) = (&self.model.drive.stage, &self.electrical)
+        else {
+            return;
+        };
+        let h = self.model.drive.period(*every);
+        let factors = self.factors.current;
+        let error = Dq { d: -x.current.d, q: x.effort / p.motor.effort_constant() - x.current.q };
+        let omega_e = p.motor.electrical_ratio * x.filtered_velocity;
+        let Dq { d: i_d, q: i_q } = self.model.point.current;
+        let decoupling = Dq {
+            d: -omega_e * (p.motor.inductance.q * i_q),
+            q: omega_e * (p.motor.inductance.d * i_d + p.motor.flux_linkage),
+        };
+        let computed = Dq {
+            d: factors.d * p.gains.k_p.d * error.d + x.current_integral.d + decoupling.d,
+            q: factors.q * p.gains.k_p.q * error.q + x.current_integral.q + decoupling.q,
+        };
+        x.current_integral.d += h * factors.d * p.gains.k_i.d * error.d;
+        x.current_integral.q += h * factors.q * p.gains.k_i.q * error.q;
+        // What was computed a cycle ago goes out; the voltage of the operating point is turned ahead by 1.5·h·ω.
+        (x.applied, x.applied_travel) = (x.pending, x.pending_travel);
+        let ahead = turned(electrical.voltage, 1.5 * h * omega_e);
+        x.pending = Dq { d: computed.d + ahead.d, q: computed.q + ahead.q };
+        x.pending_travel = 0.0;
+    }
+
+    /// Power stage and mechanics from this tick to the next.
+    pub(crate) fn plant(&self, x: &mut State) {
+        let effort = self.power_stage(x);
+        if !self.closed.shaft {
+            (x.mechanics, x.position, x.last_speed) = ([0.0; MECHANICS], 0.0, 0.0);
+            return;
+        }
+        let states = 2 * self.bodies - 1;
+        let row = |row: usize| {
+            let passive: f64 = (0..states).map(|column| self.transition[(row, column)] * x.mechanics[column]).sum();
+            passive + self.transition[(row, states)] * effort
+        };
+        let next = std::array::from_fn(|i| if i < states { row(i) } else { 0.0 });
+        let travel = row(states);
+        x.mechanics = next;
+        x.position += travel;
+        for travelled in [&mut x.travelled, &mut x.pending_travel, &mut x.applied_travel] {
+            *travelled += travel / self.transmission;
+        }
+    }
+
+    /// Mean effort over the tick (motor coordinate).
+    fn power_stage(&self, x: &mut State) -> f64 {
+        match (&self.model.source, &self.electrical, &self.model.drive.stage) {
+            (Source::Pmsm(motor), Some(electrical), _) => {
+                let speed = self.motor_speed(x);
+                // Straight on from the last two ticks.
+                let mean_speed = speed + (speed - x.last_speed) / 2.0;
+                x.last_speed = speed;
+                // Held in the stator frame: in the rotor's it turns back.
+                let back = turned(electrical.voltage, -motor.pole_pairs * x.applied_travel);
+                let voltage = Dq { d: x.applied.d + back.d, q: x.applied.q + back.q };
+                let (current, torque) = electrical.step(x.current, voltage, motor.pole_pairs * mean_speed);
+                x.current = current;
+                torque
+            }
+            (Source::Ideal { gain }, _, Stage::Direct { gain: estimated }) => gain * (x.effort / estimated),
+            _ => 0.0,
+        }
+    }
+}
+
+/// By how much a small turn `angle` (rad) changes `vector`.
+fn turned(vector: Dq, angle: f64) -> Dq {
+    Dq { d: -vector.q * angle, q: vector.d * angle }
+}

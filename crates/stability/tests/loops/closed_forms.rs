@@ -1,0 +1,180 @@
+//! Loops whose poles are known in closed form.
+use crate::axes::{MOTOR, TAU, Tuning, body, chain, ideal, report, servo};
+use servobench_drive::{self as drive, velocity};
+use servobench_stability::{CurrentGain, GainName, Loop, LoopName, LoopReport, PositionFeedback, VelocitySignal};
+
+/// Boundaries are bisected to 1e-6 of the gain.
+const BISECTED: f64 = 2e-6;
+
+fn above(model: &Loop, name: LoopName) -> f64 {
+    let report = report(model);
+    let found = report.loops.iter().find(|found| found.name == name).unwrap();
+    found.boundaries.unwrap().above.unwrap().gain
+}
+
+/// Oracle: v(k+1) = (1 − K·h/m)·v(k), so that K = 2m/h is the boundary; the pole at −1 is at half the loop's rate.
+#[test]
+fn a_p_velocity_loop_on_one_mass() {
+    for (base, every, mass) in [(12_000, 1, 7.3), (20_000, 5, 0.31)] {
+        let boundary = 2.0 * mass * f64::from(base) / f64::from(every);
+        let model = ideal(base, every, 0.6 * boundary, chain(vec![body(mass, 0.0)], &[]));
+        assert!((above(&model, LoopName::Velocity) / boundary - 1.0).abs() < BISECTED, "{base} Hz / {every}");
+
+        let model = ideal(base, every, 1.1 * boundary, chain(vec![body(mass, 0.0)], &[]));
+        let report = report(&model);
+        let found = report.instability.unwrap();
+        assert_eq!((found.name, found.gain_name), (LoopName::Velocity, GainName::Velocity));
+        assert!((found.pole.magnitude - 1.2).abs() < 1e-12, "|1 − 2.2|: {found:?}");
+        let rate = f64::from(base) / f64::from(every);
+        assert!((found.pole.frequency / (rate / 2.0) - 1.0).abs() < 1e-12, "{found:?}");
+        assert!((found.pole.growth / (1.2_f64.ln() * rate) - 1.0).abs() < 1e-12, "{found:?}");
+        assert!((found.boundaries.below.unwrap().factor * 1.1 - 1.0).abs() < BISECTED, "{found:?}");
+        assert_eq!(found.boundaries.above, None);
+    }
+}
+
+/// Oracle: the same mass under differences of positions: m·v' = m·v − K·h·(v + v_before)/2: z² + (a/2 − 1)·z + a/2 with
+/// a = K·h/m; the circle is left at a = 2, at z² = −1: a quarter of the rate.
+#[test]
+fn differences_of_positions_cost_half_a_period() {
+    let (mass, h) = (2.6, 4.0 / 12e3);
+    let model = Loop {
+        velocity_signal: VelocitySignal::Differences,
+        ..ideal(12_000, 4, 1.3 * mass / h, chain(vec![body(mass, 0.0)], &[]))
+    };
+    let boundary = above(&model, LoopName::Velocity);
+    assert!((boundary / (2.0 * mass / h) - 1.0).abs() < BISECTED, "{boundary}");
+    let mut fast = model.clone();
+    fast.drive.velocity.k_p = 1.0001 * 2.0 * mass / h;
+    let pole = report(&fast).instability.unwrap().pole;
+    assert!((pole.frequency / 750.0 - 1.0).abs() < 1e-3, "{pole:?}");
+}
+
+/// Oracle: a double integrator under position and velocity, sampled (Åström & Wittenmark, *Computer-Controlled Systems*,
+/// 3rd ed., example 3.2): x' = x + h·v + h²/2m·u, v' = v + h/m·u, u = −K·(K_v·x + v). With a = K·h/m and b = K_v·h:
+/// z² + (a + a·b/2 − 2)·z + 1 − a + a·b/2, by Jury stable for 0 < b < 2 and a < 2.
+#[test]
+fn a_double_integrator_under_position_and_velocity() {
+    let (mass, h) = (4.1, 1.0 / 12e3);
+    let cascade = |a: f64, b: f64| {
+        let rest = ideal(12_000, 1, a * mass / h, chain(vec![body(mass, 0.0)], &[]));
+        Loop { closes_position: true, drive: drive::Params { position_gain: b / h, ..rest.drive }, ..rest }
+    };
+    let stable = report(&cascade(0.7, 0.4));
+    assert!(stable.is_stable());
+    let boundary =
+        |name| stable.loops.iter().find(|found| found.name == name).unwrap().boundaries.unwrap().above.unwrap();
+    assert!((boundary(LoopName::Velocity).factor * 0.7 / 2.0 - 1.0).abs() < BISECTED, "a = 2");
+    assert!((boundary(LoopName::Position).factor * 0.4 / 2.0 - 1.0).abs() < BISECTED, "b = 2");
+    let position = report(&cascade(0.7, 2.2)).instability.unwrap();
+    assert_eq!(position.name, LoopName::Position);
+    assert!((position.boundaries.below.unwrap().factor * 2.2 / 2.0 - 1.0).abs() < BISECTED, "{position:?}");
+    assert_eq!(report(&cascade(2.3, 0.4)).instability.unwrap().name, LoopName::Velocity);
+}
+
+/// Oracle: a velocity loop with a filter of time constant T on a mass: z² + (a·f + f − 2)·z + 1 − f with f = h/(h + T),
+/// a = K·h/m, the filter's output being that of the newest sample: −1 is reached at a·f = 4 − 2f.
+#[test]
+fn a_filter_moves_the_boundary() {
+    let (mass, h, filter) = (4.1, 2.0 / 20e3, 0.7e-4);
+    let f = h / (h + filter);
+    let rest = ideal(20_000, 2, mass / h, chain(vec![body(mass, 0.0)], &[]));
+    let model = Loop { drive: drive::Params { velocity_filter_time: filter, ..rest.drive }, ..rest };
+    let boundary = above(&model, LoopName::Velocity);
+    assert!((boundary * h / mass / ((4.0 - 2.0 * f) / f) - 1.0).abs() < BISECTED, "{boundary}");
+}
+
+/// Oracle: a PI loop on a mass, a = K·h/m, the integrator by forward Euler: (z − 1)² + a·(z − 1) + a·h/T: −1 is reached at
+/// a = 4/(2 − h/T), +1 turned at a·(1 − h/T) = 0.
+#[test]
+fn an_integrator_moves_the_boundary() {
+    let (mass, h, integral_time) = (4.1, 1.0 / 20e3, 1.5e-4);
+    let rest = ideal(20_000, 1, mass / h, chain(vec![body(mass, 0.0)], &[]));
+    let velocity = velocity::Params { integral_time: Some(integral_time), ..rest.drive.velocity };
+    let model = Loop { drive: drive::Params { velocity, ..rest.drive }, ..rest };
+    let boundary = above(&model, LoopName::Velocity) * h / mass;
+    assert!((boundary / (4.0 / (2.0 - h / integral_time)) - 1.0).abs() < BISECTED, "{boundary}");
+}
+
+/// Oracle: with the zero on the pole an axis of the current loop is, but for h·R/L, z² − z + α·h: |λ|² = α·h = 1, at ±60°,
+/// a sixth of the rate. The d axis has the same gain times d/q of what the drive believes.
+#[test]
+fn the_current_loop_alone_is_stable_up_to_alpha_h_of_one() {
+    let tuning = Tuning { current: 2_000.0, velocity: 0.0, integral_time: 0.05, filter_time: 0.0, position: 0.0 };
+    let mut model = servo(tuning, chain(vec![body(1e3, 0.0)], &[]));
+    // h·R/2L = 1.4 % of the gain is what forward Euler and the hold differ by.
+    let boundary = above(&model, LoopName::Current);
+    assert!((boundary * TAU / 16e3 - 1.0).abs() < 0.02, "{boundary} Hz");
+
+    let drive::Stage::Current { params, .. } = &mut model.drive.stage else { panic!("a current loop") };
+    params.gains.k_p.d *= 1.1 * boundary / 2_000.0;
+    params.gains.k_i.d *= 1.1 * boundary / 2_000.0;
+    model.current_gain = CurrentGain::PerAxis;
+    let found = report(&model).instability.unwrap();
+    assert_eq!((found.name, found.gain_name), (LoopName::Current, GainName::CurrentD));
+    assert!((found.boundaries.below.unwrap().factor * 1.1 - 1.0).abs() < BISECTED, "{found:?}");
+    assert!((found.pole.frequency / (16e3 / 6.0) - 1.0).abs() < 0.05, "{found:?}");
+}
+
+/// Oracle: two masses and a spring in closed form. A velocity loop of little gain moves the poles by −K/2m of the motor's
+/// share, to first order; the mode at 2.65 kHz is above half of the loop's rate.
+#[test]
+fn a_mode_above_half_the_loops_rate_keeps_its_frequency() {
+    let stiffness = (TAU * 2_650.0_f64).powi(2) / 2.0;
+    let model = |base: u32, every, gain| {
+        ideal(base, every, gain, chain(vec![body(1.0, 0.0), body(1.0, 0.0)], &[(stiffness, 0.0)]))
+    };
+    for (base, every) in [(16_000, 4), (12_000, 3), (16_000, 16), (20_000, 4)] {
+        for gain in [1.0, 1e-3] {
+            let report = report(&model(base, every, gain));
+            let found = match report.instability {
+                Some(found) => found.pole,
+                None => report.loops[0].least_damped.unwrap(),
+            };
+            assert!((found.frequency / 2_650.0 - 1.0).abs() < 1e-3, "{base}/{every}, {gain}: {found:?}");
+            assert!(found.growth.abs() < 0.51 * gain, "{found:?}");
+        }
+    }
+}
+
+/// Oracle: mirror images: a motor behind a gear of 1:5 is one with 25 times less of gain and inertia.
+#[test]
+fn a_gear_scales_gain_and_inertia() {
+    let h = 1.0 / 12e3;
+    for (feedback, position_gain) in [(PositionFeedback::Motor, 400.0), (PositionFeedback::Load, 1.0)] {
+        let straight = ideal(12_000, 1, 0.9 / h, chain(vec![body(1.0, 0.3), body(2.0, 0.1)], &[(1e5, 3.0)]));
+        let straight = Loop {
+            closes_position: true,
+            position_feedback: feedback,
+            drive: drive::Params { position_gain, ..straight.drive },
+            ..straight
+        };
+        let mut geared = straight.clone();
+        let mut motor = body(1.0 / 25.0, 0.3 / 25.0);
+        motor.transmission = 0.2;
+        geared.mechanics = chain(vec![motor, body(2.0, 0.1)], &[(1e5, 3.0)]);
+        geared.drive.transmission = 0.2;
+        geared.drive.velocity.k_p /= 25.0;
+        let (straight, geared) = (report(&straight), report(&geared));
+        for (one, other) in straight.loops.iter().zip(&geared.loops) {
+            let factor = |found: &LoopReport| found.boundaries.unwrap().above.unwrap().factor;
+            let (one, other) = (factor(one), factor(other));
+            assert!((one / other - 1.0).abs() < BISECTED, "{feedback:?}: {one} {other}");
+        }
+    }
+}
+
+#[test]
+fn bandwidths_are_by_what_the_axis_has() {
+    let tuning = Tuning { current: 800.0, velocity: 0.5, integral_time: 0.05, filter_time: 0.0, position: 200.0 };
+    let mut model = servo(tuning, chain(vec![body(1e-3, 0.0), body(3e-3, 0.0)], &[(1e4, 0.1)]));
+    let drive::Stage::Current { params, .. } = &mut model.drive.stage else { panic!("a current loop") };
+    params.motor.flux_linkage = MOTOR.flux_linkage / 2.0;
+    let report = report(&model);
+    let found: Vec<f64> = report.loops.iter().map(|found| found.bandwidth.unwrap()).collect();
+    // The drive believes in half the torque per ampere and asks for twice the current.
+    for (found, expected) in found.iter().zip([800.0, 2.0 * 0.5 / 4e-3 / TAU, 200.0 / TAU]) {
+        assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+    }
+    assert_eq!(report.warnings, []);
+}

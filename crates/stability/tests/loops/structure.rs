@@ -1,0 +1,98 @@
+//! What no loop reaches is out of the verdict by structure.
+use crate::axes::{Tuning, body, chain, ideal, report, servo};
+use servobench_base::Dq;
+use servobench_drive as drive;
+use servobench_stability::{Depth, Loop, LoopName, OperatingPoint, StabilityError, VelocitySignal, analyse};
+
+const TUNING: Tuning =
+    Tuning { current: 1200.0, velocity: 0.01 * 377.0, integral_time: 0.01, filter_time: 0.0, position: 40.0 };
+
+fn three_bodies() -> servobench_plant::Chain {
+    chain(vec![body(0.003, 0.0), body(0.004, 0.0), body(0.003, 0.0)], &[(4e4, 0.0), (9e4, 0.0)])
+}
+
+/// Without a gain the axis is a free double integrator: two poles at 1 that would grow under a tolerance, and undamped modes.
+#[test]
+fn an_axis_that_no_loop_holds_is_not_unstable() {
+    for signal in [VelocitySignal::Encoder, VelocitySignal::Differences] {
+        let model = Loop { velocity_signal: signal, ..ideal(12_000, 3, 0.0, three_bodies()) };
+        let report = report(&model);
+        assert!(report.is_stable(), "{signal:?}: {report:?}");
+        assert_eq!(report.largest, None, "there is no loop");
+        assert_eq!(
+            (report.loops[0].boundaries, report.loops[0].least_damped, report.loops[0].bandwidth),
+            (None, None, None)
+        );
+        let integrating = drive::velocity::Params { integral_time: Some(1e-3), ..model.drive.velocity };
+        let model = Loop { drive: drive::Params { velocity: integrating, ..model.drive }, ..model };
+        assert!(analyse(&model, Depth::Verdict).unwrap().is_stable());
+    }
+}
+
+/// With the position loop open the position is in no loop, also where velocities are differences of positions.
+#[test]
+fn a_position_that_nobody_holds_is_in_no_loop() {
+    for signal in [VelocitySignal::Encoder, VelocitySignal::Differences] {
+        for closes_position in [true, false] {
+            let mut model = servo(Tuning { position: 0.0, ..TUNING }, chain(vec![body(0.01, 0.0)], &[]));
+            (model.velocity_signal, model.closes_position) = (signal, closes_position);
+            let report = report(&model);
+            assert!(report.is_stable());
+            let velocity = report.loops.iter().find(|found| found.name == LoopName::Velocity).unwrap();
+            assert!(velocity.least_damped.unwrap().magnitude < 0.999, "no pole at 1: {velocity:?}");
+            assert_eq!(report.loops.len(), 2 + usize::from(closes_position));
+        }
+    }
+}
+
+/// The velocity loop open, the rotor turns at any constant speed: the pole at 1 is counted, not tolerated. With
+/// friction it is none.
+#[test]
+fn a_rotor_under_a_current_loop_alone_turns_on() {
+    for viscous in [0.0, 1e-4] {
+        for every in [1, 2] {
+            let mut model = servo(Tuning { velocity: 0.0, ..TUNING }, chain(vec![body(0.01, viscous)], &[]));
+            let drive::Stage::Current { every: current, .. } = &mut model.drive.stage else { panic!("a current loop") };
+            *current = crate::axes::ticks(every);
+            let report = report(&model);
+            assert!(report.is_stable(), "{viscous} {every}: {:?}", report.instability);
+        }
+    }
+}
+
+/// A drive that believes in ten times the flux linkage decouples ten times the back-EMF: with the shaft free that is a loop of its
+/// own, which no gain of the velocity loop cures.
+#[test]
+fn decoupling_ten_times_the_back_emf_is_the_current_loops_fault() {
+    let mut model = servo(Tuning { velocity: 1e-4, position: 0.0, ..TUNING }, chain(vec![body(1e-6, 0.0)], &[]));
+    let drive::Stage::Current { params, .. } = &mut model.drive.stage else { panic!("a current loop") };
+    params.motor.flux_linkage *= 10.0;
+    let found = report(&model).instability.unwrap();
+    assert_eq!((found.name, found.boundaries.is_none()), (LoopName::Current, true), "{found:?}");
+    assert!(found.to_string().ends_with("no bandwidth from a thousandth to a thousand times this one makes it stable"));
+}
+
+/// Oracle: the sum of the torque constant's derivative: with L_d = L_q a current at standstill changes nothing but the ripple of a
+/// rotor that turns under a held voltage.
+#[test]
+fn a_holding_current_of_a_round_rotor_hardly_moves_the_boundary() {
+    let model = servo(TUNING, chain(vec![body(0.01, 0.0)], &[]));
+    let held = Loop { point: OperatingPoint { current: Dq { d: 0.0, q: 5.0 } }, ..model.clone() };
+    let factor = |model: &Loop| report(model).loops[1].boundaries.unwrap().above.unwrap().factor;
+    let (free, held) = (factor(&model), factor(&held));
+    assert!((free / held - 1.0).abs() < 0.02 && free.to_bits() != held.to_bits(), "{free} {held}");
+}
+
+#[test]
+fn what_cannot_be_analysed_is_said() {
+    let mut model = ideal(12_000, 1, 3.0, three_bodies());
+    model.drive.position_gain = f64::NAN;
+    let error = analyse(&model, Depth::Verdict).unwrap_err();
+    assert!(matches!(error, StabilityError::Parameter(error) if error.name == "drive.position.gain"));
+    let mixed = Loop { source: servo(TUNING, three_bodies()).source, ..ideal(12_000, 1, 3.0, three_bodies()) };
+    assert!(matches!(analyse(&mixed, Depth::Verdict), Err(StabilityError::Parameter(_))));
+    // 1e300 N·s/m on 10 g is a pole of −1e298 a tick.
+    let model = ideal(12_000, 1, 1e300, chain(vec![body(0.01, 0.0)], &[]));
+    let error = analyse(&model, Depth::Verdict).unwrap_err();
+    assert_eq!(error, StabilityError::Overflow { ticks: 1 });
+}
