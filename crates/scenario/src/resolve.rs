@@ -109,6 +109,7 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
             mode: measure.mode.given().copied(),
         }),
         limits,
+        parameters: Vec::new(),
     })
 }
 

@@ -37,6 +37,7 @@ pub use program::{
     RockwellShape, Sampling, Step, TableMove, Target, Velocities, Way,
 };
 
+use crate::parameters::Parameter;
 use servobench_base::Rate;
 use std::path::PathBuf;
 
@@ -84,6 +85,8 @@ pub struct Scenario {
     pub measure: Measure,
     /// What makes it pass or fail, in the order of the file.
     pub limits: Vec<Limit>,
+    /// What the file says, models merged in, key by key.
+    pub parameters: Vec<Parameter>,
 }
 
 /// Bounds of one metric (SI).
