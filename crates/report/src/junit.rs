@@ -5,6 +5,7 @@ use crate::metric_table::metric_table;
 use crate::results::{Outcome, Results, RunResult};
 use crate::said::last_words;
 use crate::style::Style;
+use crate::text::printable;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use std::time::Duration;
 
@@ -34,7 +35,7 @@ pub fn junit(results: &Results, times: &[Duration]) -> Result<String, ReportErro
 
 fn case(run: &RunResult, time: Option<Duration>) -> TestCase {
     let engine = if run.engine.is_empty() { String::new() } else { format!(" [{}]", run.engine) };
-    let mut case = TestCase::new(format!("{}{engine}", run.name), status(run));
+    let mut case = TestCase::new(format!("{}{engine}", printable(&run.name).trim()), status(run));
     case.set_classname(run.file.as_deref().unwrap_or("servobench"));
     case.add_property(("verdict", run.verdict.word()));
     if let Some(time) = time {

@@ -95,10 +95,11 @@ fn has_metrics(run: &RunResult) -> bool {
 /// Name of a run: of two files with the same name, the file.
 fn told_apart(run: &RunResult, runs: &[RunResult]) -> String {
     let is_like = |other: &RunResult| other.name == run.name && other.file != run.file;
-    printable(match &run.file {
+    let name = match &run.file {
         Some(file) if runs.iter().any(is_like) => file.strip_suffix(".toml").unwrap_or(file),
         _ => &run.name,
-    })
+    };
+    printable(name).trim().to_owned()
 }
 
 /// How wide names and engines are.

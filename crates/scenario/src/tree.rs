@@ -169,7 +169,7 @@ fn is_hardly_toml(text: &str, errors: &[SyntaxError]) -> bool {
 fn nothing_of(source: SourceId, text: &str, place: Range<usize>, why: &str, report: &mut Report) -> Parsed {
     let message = format!("this is not TOML: {why}");
     report.error(Span::new(source, &place), message, "a scenario is a TOML file: see docs/scenario.md");
-    Parsed { table: Table::default(), broken: vec![0..text.len()] }
+    Parsed { table: Table::default(), broken: std::iter::once(0..text.len()).collect() }
 }
 
 /// What the parser says of a key that is there already.
@@ -482,7 +482,8 @@ mod tests {
             let (parsed, report) = parsed(&text);
             let said: Vec<_> = report.errors.iter().map(|error| error.message.clone()).collect();
             assert_eq!(said, [format!("this is not TOML: {why}")]);
-            assert_eq!((parsed.table, parsed.broken), (Table::default(), vec![0..text.len()]));
+            let [all] = parsed.broken.as_slice() else { panic!("{:?}", parsed.broken) };
+            assert_eq!((parsed.table, all), (Table::default(), &(0..text.len())));
         }
         // As many lines that can be read make it a scenario with nine mistakes.
         let keys: String = (0..9).map(|k| format!("k{k} = 1\n")).collect();
