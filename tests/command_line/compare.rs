@@ -25,14 +25,43 @@ fn compare_says_in_words_which_wins_and_writes_one_recording() {
     }
 }
 
-/// Two drives with other gains are no two set-points.
+/// The everyday question: two bandwidths on one axis.
 #[test]
-fn compare_refuses_scenarios_that_differ_in_more_than_the_set_point() {
-    let work = folder(&[("one.toml", SLIDE), ("two.toml", &SLIDE.replace("60 1/s", "30 1/s"))]);
+fn compare_says_by_key_and_value_what_differs() {
+    let work =
+        folder(&[("one.toml", SLIDE), ("two.toml", &SLIDE.replace("80 Hz", "50 Hz").replace("60 1/s", "30 1/s"))]);
+    let (one, two, out) = (work.path().join("one.toml"), work.path().join("two.toml"), work.path().join("out"));
+    let output = servobench(&["compare", one.to_str().unwrap(), two.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let head: Vec<_> = text.lines().take(5).collect();
+    assert_eq!(
+        head,
+        [
+            "one and two on exact, each at its own limits",
+            "what differs:",
+            "  drive.velocity.bandwidth  80 Hz against 50 Hz",
+            "  drive.position.gain       60 1/s against 30 1/s",
+            ""
+        ]
+    );
+    assert!(text.contains("peak following error") && !text.contains("set-points alone"), "{text}");
+    assert!(text.lines().all(|line| line.chars().count() <= 80 || line.contains(" view ")), "{text}");
+}
+
+#[test]
+fn compare_refuses_a_length_beside_an_angle() {
+    let rotary = SLIDE
+        .replace("\"linear\"", "\"rotary\"")
+        .replace("mass = \"20 kg\"", "inertia = \"20 kg m2\"")
+        .replace("m/s", "rad/s")
+        .replace("50 mm", "50 mrad")
+        .replace("10 um", "10 urad");
+    let work = folder(&[("one.toml", SLIDE), ("two.toml", &rotary)]);
     let (one, two, out) = (work.path().join("one.toml"), work.path().join("two.toml"), work.path().join("out"));
     let output = servobench(&["compare", one.to_str().unwrap(), two.to_str().unwrap(), "--out", out.to_str().unwrap()]);
     assert_eq!(code(&output), 2, "{}", said(&output));
-    assert!(said(&output).contains("`one` and `two` differ in `drive.position`"), "{}", said(&output));
+    assert!(said(&output).contains("`one` is linear and `two` rotary"), "{}", said(&output));
     assert!(!out.exists());
 }
 
@@ -58,7 +87,7 @@ fn a_limit_that_is_missed_in_a_comparison_ends_with_4_and_is_named() {
     let (one, two, out) = (work.path().join("one.toml"), work.path().join("two.toml"), work.path().join("out"));
     let output = servobench(&["compare", one.to_str().unwrap(), two.to_str().unwrap(), "--out", out.to_str().unwrap()]);
     assert_eq!(code(&output), 4, "{}", said(&output));
-    assert!(said(&output).contains("one missed a limit: move_time"), "{}", said(&output));
+    assert!(said(&output).contains("one failed: move_time"), "{}", said(&output));
     let results = json(&fs::read(out.join("comparison.json")).unwrap());
     let runs = results["scenarios"].as_array().unwrap();
     assert_eq!((&runs[0]["verdict"], &runs[1]["verdict"]), (&"failed".into(), &"unjudged".into()));

@@ -1,6 +1,8 @@
 //! `servobench run`: verdicts, results, recordings.
-use crate::{SLIDE, code, folder, json, repository, said, servobench};
+use crate::{SLIDE, code, command, folder, json, repository, said, servobench};
 use std::fs;
+#[cfg(unix)]
+use std::process::{Command, Stdio};
 
 #[test]
 fn a_run_that_keeps_its_limits_ends_with_0_and_writes_results_and_recording() {
@@ -67,25 +69,68 @@ fn what_was_not_judged_did_not_pass_and_a_limit_that_bound_is_said() {
     let output = servobench(&["run", file.to_str().unwrap(), "--out", out.to_str().unwrap()]);
     assert_eq!(code(&output), 0, "{}", said(&output));
     let said = said(&output);
-    assert!(said.contains("no limits  weak") && said.contains("1 run: 1 without limits"), "{said}");
+    assert!(said.contains("no limits  weak") && said.contains("1 run: 1 unjudged (no limits)"), "{said}");
     // 20 kg at 5 m/s² need 100 N.
     assert!(said.contains(" limit bound ") && !said.contains("passed"), "{said}");
 }
 
+/// Names are stable, and a run removes exactly what the list of the one before names.
 #[test]
-fn recordings_of_earlier_runs_are_announced() {
+fn a_run_removes_what_the_run_before_left_and_nothing_else() {
     let work = folder(&[("slide.toml", SLIDE), ("other.toml", SLIDE)]);
     let out = work.path().join("out");
     let run = |file: &str| {
         let output =
             servobench(&["run", work.path().join(file).to_str().unwrap(), "--out", out.to_str().unwrap(), "--rrd"]);
+        assert_eq!(code(&output), 0, "{}", said(&output));
         said(&output)
     };
-    assert!(!run("slide.toml").contains("earlier"));
-    assert!(!run("slide.toml").contains("earlier"), "the same again");
-    let said = run("other.toml");
-    assert!(said.contains(", with a recording of an earlier run\n"), "{said}");
-    assert!(said.contains(&format!("{} view ", env!("CARGO_BIN_EXE_servobench"))), "to be pasted: {said}");
+    let files = || {
+        let names = fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        let mut names: Vec<_> = names.collect();
+        names.sort();
+        names
+    };
+    assert!(!run("slide.toml").contains("removed"));
+    for name in ["mine.parquet", "notes.txt"] {
+        fs::write(out.join(name), "mine").unwrap();
+    }
+    let again = run("slide.toml");
+    assert!(again.contains(", with a recording that they do not name; removed 2 files of the run before\n"), "{again}");
+    assert_eq!(files(), ["mine.parquet", "notes.txt", "results.json", "slide.exact.parquet", "slide.exact.rrd"]);
+    let other = run("other.toml");
+    assert_eq!(files(), ["mine.parquet", "notes.txt", "other.exact.parquet", "other.exact.rrd", "results.json"]);
+    assert!(other.contains(&format!("{} view ", env!("CARGO_BIN_EXE_servobench"))), "to be pasted: {other}");
+    let results = json(&fs::read(out.join("results.json")).unwrap());
+    assert_eq!(results["scenarios"][0]["files"], serde_json::json!(["other.exact.parquet", "other.exact.rrd"]));
+}
+
+/// A list may come from anywhere: what is not beside it is not removed. One of a later version is refused by its name.
+#[test]
+fn a_list_of_others_removes_nothing() {
+    let work = folder(&[("slide.toml", SLIDE), ("victim.parquet", "mine")]);
+    let (file, out) = (work.path().join("slide.toml"), work.path().join("out"));
+    let run = || {
+        let output = servobench(&["run", file.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+        assert_eq!(code(&output), 0, "{}", said(&output));
+        said(&output)
+    };
+    run();
+    let list = out.join("results.json");
+    let text = fs::read_to_string(&list).unwrap();
+    let victim = work.path().join("victim.parquet");
+    assert!(text.contains("\"slide.exact.parquet\"\n"));
+    for path in ["../victim.parquet".to_owned(), victim.display().to_string()] {
+        fs::write(&list, text.replace("\"slide.exact.parquet\"\n", &format!("{path:?}\n"))).unwrap();
+        run();
+        assert!(victim.is_file(), "{path}");
+    }
+    fs::write(&list, text.replace("servobench-results/2", "servobench-results/3")).unwrap();
+    let said = run();
+    assert!(
+        said.contains("what the run before left stays") && said.contains("`servobench-results/3`, newer"),
+        "{said}"
+    );
 }
 
 #[test]
@@ -98,23 +143,140 @@ fn two_files_of_one_name_are_told_apart() {
     let out = work.path().join("out");
     let output = servobench(&["run", work.path().to_str().unwrap(), "--out", out.to_str().unwrap()]);
     assert_eq!(code(&output), 0, "{}", said(&output));
-    for expected in ["a/slide  exact", "b/slide  exact"] {
+    // Whole, in lines of their own.
+    for expected in ["a/slide\n", "b/slide\n"] {
         assert!(said(&output).contains(expected), "{}", said(&output));
     }
 }
 
+/// One bad file does not stop the others, and is in every report.
 #[test]
-fn wrong_input_ends_with_2_before_anything_runs() {
-    let work = folder(&[("good.toml", SLIDE), ("bad.toml", &SLIDE.replace("\"20 kg\"", "20"))]);
-    let out = work.path().join("out");
-    let output = servobench(&["run", work.path().to_str().unwrap(), "--out", out.to_str().unwrap()]);
+fn a_file_that_is_invalid_ends_with_2_and_the_others_run() {
+    let work = folder(&[("bad.toml", &SLIDE.replace("\"20 kg\"", "20")), ("good.toml", SLIDE)]);
+    let (out, junit) = (work.path().join("out"), work.path().join("new").join("folder").join("junit.xml"));
+    let arguments = ["run", work.path().to_str().unwrap(), "--out", out.to_str().unwrap()];
+    let output = servobench(&[&arguments[..], &["--junit", junit.to_str().unwrap()]].concat());
     assert_eq!(code(&output), 2, "{}", said(&output));
-    assert!(!out.exists(), "nothing is written when the input is wrong");
+    let results = json(&fs::read(out.join("results.json")).unwrap());
+    let verdicts: Vec<_> = results["scenarios"].as_array().unwrap().iter().map(|run| &run["verdict"]).collect();
+    assert_eq!(verdicts, ["invalid", "unjudged"], "{results}");
+    assert!(results["scenarios"][0]["reasons"][0].as_str().unwrap().contains("bad.toml:8:8: "), "{results}");
+    assert!(out.join("good.exact.parquet").is_file());
+    let report = fs::read_to_string(&junit).unwrap();
+    assert!(report.contains("errors=\"1\"") && report.contains("type=\"invalid\""), "{report}");
+    // The count is the last but one line, and what is invalid stands directly above it.
+    let table = String::from_utf8(output.stdout).unwrap();
+    assert!(table.contains("INVALID    bad") && table.contains("2 runs: 1 unjudged (no limits), 1 invalid"), "{table}");
+    assert!(table.find("no limits  good").unwrap() < table.find("INVALID").unwrap(), "{table}");
+}
+
+#[test]
+fn where_every_file_is_invalid_nothing_is_touched() {
+    let work = folder(&[("bad.toml", &SLIDE.replace("\"20 kg\"", "20"))]);
+    let (out, junit) = (work.path().join("out"), work.path().join("junit.xml"));
+    let arguments = ["run", work.path().to_str().unwrap(), "--out", out.to_str().unwrap()];
+    let output = servobench(&[&arguments[..], &["--junit", junit.to_str().unwrap()]].concat());
+    assert_eq!(code(&output), 2, "{}", said(&output));
+    assert!(!out.exists() && junit.is_file());
     for wrong in
         [&["run", "no-such-file.toml"][..], &["run", "--no-such-flag"], &["fly"], &[], &["compare", "one.toml"]]
     {
         assert_eq!(code(&servobench(wrong)), 2, "{wrong:?}");
     }
+}
+
+#[test]
+fn what_is_no_toml_is_one_mistake_and_of_many_twenty_are_shown() {
+    let many: String = (0..300).map(|k| format!("key{k} = {k}\n")).collect();
+    let json = format!("{{\n{}}}\n", "  \"key\": 1,\n".repeat(10_000));
+    let work = folder(&[("results.json", &json), ("many.toml", &many)]);
+    let said_of = |name: &str| {
+        let output = servobench(&["run", work.path().join(name).to_str().unwrap()]);
+        assert_eq!(code(&output), 2, "{}", said(&output));
+        said(&output)
+    };
+    let said = said_of("results.json");
+    assert!(said.contains("results.json: 1 mistake\n") && said.contains("it looks like JSON"), "{said}");
+    let said = said_of("many.toml");
+    assert!(said.contains("many.toml: 303 mistakes\n") && said.contains("and 283 more in "), "{said}");
+    assert_eq!(said.matches("unknown key").count(), 20 - 3, "{said}");
+}
+
+#[test]
+fn a_report_that_cannot_be_written_does_not_swallow_the_table() {
+    let work = folder(&[("slide.toml", SLIDE), ("taken", "a file where a folder should be")]);
+    let (file, out) = (work.path().join("slide.toml"), work.path().join("out"));
+    let junit = work.path().join("taken").join("junit.xml");
+    let arguments = ["run", file.to_str().unwrap(), "--out", out.to_str().unwrap()];
+    let output = servobench(&[&arguments[..], &["--junit", junit.to_str().unwrap()]].concat());
+    assert_eq!(code(&output), 3, "{}", said(&output));
+    assert!(said(&output).contains("1 run: 1 unjudged") && said(&output).contains("cannot make the folder"));
+    assert!(out.join("results.json").is_file());
+}
+
+#[test]
+fn a_missed_limit_is_in_junit_with_its_line_and_the_time_that_the_run_took() {
+    let work = folder(&[("slide.toml", &format!("{SLIDE}\n[limits]\nmove_time = \"1 ms\"\n"))]);
+    let (file, out, junit) = (work.path().join("slide.toml"), work.path().join("out"), work.path().join("junit.xml"));
+    let (path, report) = (file.to_str().unwrap(), junit.to_str().unwrap());
+    let output = servobench(&["run", path, "--out", out.to_str().unwrap(), "--junit", report, "--quiet"]);
+    assert_eq!(code(&output), 4, "{}", said(&output));
+    let text = fs::read_to_string(&junit).unwrap();
+    let line = fs::read_to_string(&file).unwrap().lines().position(|line| line.starts_with("move_time")).unwrap() + 1;
+    assert!(text.contains(&format!("file=\"{path}\" line=\"{line}\"")), "{text}");
+    assert!(text.contains(&format!("limit 1.00 ms, 230 times as much ({path}:{line})")), "{text}");
+    assert!(!text.contains("time=\"0.000\""), "{text}");
+    // One line for what did not pass, and the count.
+    let lines: Vec<_> = said(&output).lines().map(str::to_owned).collect();
+    assert_eq!(lines, ["FAILED   slide on exact: move_time 227 ms, limit 1.00 ms", "1 run: 1 failed"]);
+    let results = json(&fs::read(out.join("results.json")).unwrap());
+    assert_eq!(results["scenarios"][0]["metrics"]["move_time"]["line"], line);
+    assert_eq!(results["scenarios"][0]["parameters"]["drive.velocity.bandwidth"], "80 Hz");
+}
+
+/// What is interrupted leaves nothing behind, and a shell sees why it ended.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_leaves_nothing_behind() {
+    use std::os::unix::process::ExitStatusExt;
+    let kept = "[record]\nchannels = [\"load.position\"]\n[measure]";
+    let long = SLIDE.replace("0.4 s", "2000 s").replace("[measure]", kept);
+    let work = folder(&[("a.toml", SLIDE), ("long.toml", &long)]);
+    for (name, number) in [("INT", 2), ("TERM", 15)] {
+        let out = work.path().join(name);
+        let mut child = command(&["run", work.path().to_str().unwrap(), "--jobs", "1", "--out", out.to_str().unwrap()])
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let first = out.join("a.exact.parquet");
+        for _ in 0..3000 {
+            if first.is_file() {
+                break;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(10));
+        }
+        assert!(first.is_file(), "the first run is over");
+        let sent = Command::new("kill").args(["-s", name, &child.id().to_string()]).status().unwrap();
+        assert!(sent.success());
+        let status = child.wait().unwrap();
+        assert_eq!(status.signal(), Some(number), "{status}");
+        let left: Vec<_> = fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        assert!(left.is_empty(), "{left:?}");
+    }
+}
+
+/// A name is no option and no command, wherever it goes.
+#[test]
+fn a_name_may_be_anything() {
+    let name = "name = \"-fast\\n::error::all is fine\\u001b[2J\"";
+    let work = folder(&[("slide.toml", &format!("{name}\n{SLIDE}"))]);
+    let (file, out) = (work.path().join("slide.toml"), work.path().join("out"));
+    let output = servobench(&["run", file.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    let said = said(&output);
+    assert!(!said.contains('\u{1b}') && said.lines().all(|line| !line.trim_start().starts_with("::")), "{said}");
+    assert!(out.join("-fast---error--all-is-fine--2J.exact.parquet").is_file());
 }
 
 #[test]
@@ -186,12 +348,18 @@ fn a_reason_does_not_depend_on_where_the_run_happened() {
     assert_eq!(said(&output).matches("is not used by a move of order 2").count(), 1, "{}", said(&output));
 }
 
+/// Without a file the demo runs, says so, and leaves other results alone.
 #[test]
 fn the_bare_demo_runs_on_the_embedded_engines() {
     let work = tempfile::tempdir().unwrap();
-    let output = servobench(&["run", "--out", work.path().to_str().unwrap(), "--jobs", "2"]);
+    let others = work.path().join("servobench-out");
+    fs::create_dir(&others).unwrap();
+    fs::write(others.join("results.json"), "mine").unwrap();
+    let output = command(&["run", "--jobs", "2"]).current_dir(work.path()).output().unwrap();
     assert_eq!(code(&output), 0, "{}", said(&output));
-    let results = json(&fs::read(work.path().join("results.json")).unwrap());
+    assert!(said(&output).contains("no file is named: running the demo that is built in (jerk."), "{}", said(&output));
+    assert_eq!(fs::read_to_string(others.join("results.json")).unwrap(), "mine");
+    let results = json(&fs::read(others.join("demo").join("results.json")).unwrap());
     let engines: Vec<_> = results["scenarios"].as_array().unwrap().iter().map(|one| one["engine"].clone()).collect();
     for engine in ["exact", "rapier"] {
         assert_eq!(engines.iter().filter(|name| *name == engine).count(), 2, "{engines:?}");

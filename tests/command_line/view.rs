@@ -37,8 +37,10 @@ fn view_opens_what_the_last_results_name_and_nothing_older() {
     assert_eq!(viewed(&out).1, ["slide.exact.rrd"]);
     assert!(fs::read(&rrd).unwrap() == with_limits, "the one that `run` made is kept");
 
-    // The Parquet file of a later run is newer than the `.rrd` of the first.
+    // The `.rrd` of the first run is gone with it; one is made of the recording, and again when that is newer.
     run(&["run", one]);
+    assert!(!rrd.exists());
+    assert_eq!(viewed(&out).1, ["slide.exact.rrd"]);
     let long_ago = SystemTime::now() - Duration::from_hours(1);
     File::options().write(true).open(&rrd).unwrap().set_modified(long_ago).unwrap();
     assert_eq!(viewed(&out).1, ["slide.exact.rrd"]);

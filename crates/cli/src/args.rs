@@ -19,8 +19,9 @@ pub(crate) struct Cli {
     pub(crate) command: Command,
 }
 
-const AFTER_HELP: &str = "Exit codes: 0 every limit is kept, 2 the input is wrong, 3 a run could not be carried out \
-                          or its results not be written, 4 a limit was missed.";
+const AFTER_HELP: &str = "Exit codes: 0 passed, or unjudged for want of limits; 2 invalid input; 3 error: a run could not \
+                          be carried out or its results not be written; 4 failed: a limit is missed, a requirement broken, \
+                          an expected fault missing; 130 and 143 interrupted. Of several, 2 comes before 3 before 4.";
 
 const AFTER_RUN: &str = "Columns: MOVE is the set-point's duration, SETTLING the time after it until the load stays in \
                          its window, PEAK ERR the peak following error of the load, VIBR P-P its residual vibration, \
@@ -40,7 +41,7 @@ pub(crate) enum Command {
     /// Plan a move of any family: duration, segments, peaks against limits.
     #[command(after_help = plan::EXAMPLES)]
     Plan(Box<PlanArgs>),
-    /// Run the same axis under different set-points and say which wins by how much.
+    /// Run two or more scenarios and say what differs in them and in what they give.
     Compare(CompareArgs),
     /// Open a recording in the Rerun viewer.
     View(ViewArgs),
@@ -134,9 +135,9 @@ impl FmuPart {
 pub(crate) struct RunArgs {
     /// Scenario files, or folders of them.
     pub(crate) scenarios: Vec<PathBuf>,
-    /// Folder for results.json and the recordings.
-    #[arg(long, value_name = "DIR", default_value = "servobench-out")]
-    pub(crate) out: PathBuf,
+    /// Folder for results.json and the recordings [default: servobench-out; of the demo servobench-out/demo].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
     /// Engine to use instead of the scenarios' own; may be given several times.
     #[arg(long, value_name = "NAME", value_parser = engine())]
     pub(crate) engine: Vec<EngineName>,
@@ -152,7 +153,7 @@ pub(crate) struct RunArgs {
     /// End the process of an isolated engine that makes no progress for this long.
     #[arg(long, value_name = "TIME", value_parser = time, default_value = "5 min")]
     pub(crate) worker_timeout: Duration,
-    /// Say only what failed.
+    /// Say only what did not pass, a line each, and the count.
     #[arg(long, short)]
     pub(crate) quiet: bool,
     /// Show all metrics of every run, as of a single one.
@@ -169,7 +170,7 @@ pub(crate) struct CheckArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct CompareArgs {
-    /// Scenario files: the same axis under different set-points.
+    /// Scenario files: axes of one kind, linear or rotary.
     #[arg(required = true, num_args = 2..)]
     pub(crate) scenarios: Vec<PathBuf>,
     /// What must be equal in all runs; without it each keeps its own limits.
@@ -253,11 +254,11 @@ pub(crate) struct WorkerArgs {
     #[arg(long, value_parser = engine())]
     pub(crate) engine: EngineName,
     /// Without it the scenario is only checked.
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     pub(crate) recording: Option<PathBuf>,
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     pub(crate) name: String,
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     pub(crate) path: Option<PathBuf>,
     #[arg(long, value_delimiter = ',')]
     pub(crate) durations: Vec<f64>,

@@ -1,6 +1,6 @@
 //! Mistakes of a scenario file, shown at their place.
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic, NamedSource, Report, Severity};
-use servobench_scenario::{Diagnostic, Sources};
+use servobench_scenario::{Diagnostic, Shown, Sources, shown};
 use std::io::IsTerminal;
 
 /// Columns that a diagnostic is laid out for.
@@ -13,7 +13,7 @@ pub(crate) fn mistakes(mistakes: &[Diagnostic], sources: &Sources) -> String {
     format!("{name}: {} {plural}\n{}", mistakes.len(), render(mistakes, sources, Severity::Error))
 }
 
-/// The diagnostics as a person reads them, one after the other.
+/// The diagnostics as a person reads them, one after the other; of many in one file the first, and how many more there are.
 pub(crate) fn render(diagnostics: &[Diagnostic], sources: &Sources, severity: Severity) -> String {
     let theme = if std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none() {
         GraphicalTheme::unicode()
@@ -21,8 +21,10 @@ pub(crate) fn render(diagnostics: &[Diagnostic], sources: &Sources, severity: Se
         GraphicalTheme::unicode_nocolor()
     };
     let handler = GraphicalReportHandler::new_themed(theme).with_width(WIDTH).with_context_lines(1).with_links(false);
+    let Shown { diagnostics, more } = shown(diagnostics, sources);
+    let more = more.iter().map(|(name, count)| format!("  and {count} more in {name}\n"));
     diagnostics
-        .iter()
+        .into_iter()
         .map(|diagnostic| {
             let mut text = String::new();
             let report = report(diagnostic, sources, severity);
@@ -32,16 +34,17 @@ pub(crate) fn render(diagnostics: &[Diagnostic], sources: &Sources, severity: Se
                 Err(_) => diagnostic.line(sources),
             }
         })
+        .chain(more)
         .collect()
 }
 
 fn report(diagnostic: &Diagnostic, sources: &Sources, severity: Severity) -> Report {
     let (name, text) = (sources.name(diagnostic.source), sources.text(diagnostic.source));
-    let mut shown = MietteDiagnostic::new(diagnostic.message.clone())
+    let mut told = MietteDiagnostic::new(diagnostic.message.clone())
         .with_severity(severity)
         .with_label(LabeledSpan::new_with_span(None, diagnostic.span.clone()));
     if let Some(help) = &diagnostic.help {
-        shown = shown.with_help(help.clone());
+        told = told.with_help(help.clone());
     }
-    Report::new(shown).with_source_code(NamedSource::new(name, text.to_owned()))
+    Report::new(told).with_source_code(NamedSource::new(name, text.to_owned()))
 }

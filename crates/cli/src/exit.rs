@@ -2,10 +2,13 @@
 //!
 //! | code | meaning |
 //! |---|---|
-//! | 0 | every limit is kept |
-//! | 2 | the input is wrong: usage, scenario, model |
-//! | 3 | a run could not be carried out: engine missing, diverged, native failure; or what it gave could not be written |
-//! | 4 | a limit was missed |
+//! | 0 | every run passed, or is unjudged for want of limits |
+//! | 2 | invalid input: usage, scenario, model |
+//! | 3 | error: a run could not be carried out (engine missing, native failure), or what it gave could not be written |
+//! | 4 | failed: a limit is missed, a requirement broken, an expected fault missing |
+//! | 130, 143 | interrupted (SIGINT, SIGTERM), as a shell says it |
+//!
+//! Of several: 2 before 3 before 4.
 //!
 //! 1 is never ours: it is what a native library ends a process with. A reader that goes away (`| head`) changes nothing:
 //! the verdict keeps its code.
@@ -17,14 +20,14 @@ use thiserror::Error;
 /// The exit codes. A run of several scenarios ends with the worst: 2 before 3 before 4 before 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Exit {
-    /// All passed.
+    /// All passed or are unjudged.
     Passed,
     /// The input is wrong.
     Input,
     /// A run could not be carried out.
     Run,
-    /// A limit was missed.
-    Limit,
+    /// A run failed.
+    Failed,
 }
 
 /// Why a command could not do what it was asked to.
@@ -45,7 +48,7 @@ impl Exit {
             Self::Passed => 0,
             Self::Input => 2,
             Self::Run => 3,
-            Self::Limit => 4,
+            Self::Failed => 4,
         }
     }
 
@@ -53,7 +56,7 @@ impl Exit {
     pub(crate) fn worse(self, other: Self) -> Self {
         let rank = |exit| match exit {
             Self::Passed => 0,
-            Self::Limit => 1,
+            Self::Failed => 1,
             Self::Run => 2,
             Self::Input => 3,
         };
@@ -81,8 +84,8 @@ impl CliError {
 pub(crate) const fn of_outcome(outcome: Outcome) -> Exit {
     match outcome {
         Outcome::Passed | Outcome::Unjudged => Exit::Passed,
-        Outcome::Failed => Exit::Limit,
-        Outcome::Input => Exit::Input,
+        Outcome::Failed => Exit::Failed,
+        Outcome::Invalid => Exit::Input,
         Outcome::Error => Exit::Run,
     }
 }
@@ -90,4 +93,18 @@ pub(crate) const fn of_outcome(outcome: Outcome) -> Exit {
 /// What a run without a verdict ends the program with.
 pub(crate) const fn of_run_error(error: &RunError) -> Exit {
     if error.is_input() { Exit::Input } else { Exit::Run }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_several_two_comes_before_three_before_four() {
+        let worst = |all: &[Exit]| all.iter().fold(Exit::Passed, |worst, exit| worst.worse(*exit)).code();
+        assert_eq!(worst(&[Exit::Failed, Exit::Input, Exit::Run]), 2);
+        assert_eq!(worst(&[Exit::Failed, Exit::Run, Exit::Passed]), 3);
+        assert_eq!(worst(&[Exit::Passed, Exit::Failed]), 4);
+        assert_eq!(worst(&[Exit::Passed]), 0);
+    }
 }

@@ -6,6 +6,7 @@ mod console;
 mod diagnostics;
 mod engines;
 mod exit;
+mod interrupt;
 mod output;
 #[cfg(feature = "fmu")]
 mod partners;

@@ -1,9 +1,10 @@
 //! What a command leaves on the disk: recordings, results, diagrams, reports. Each file is there whole or not at all.
 use crate::console::print;
 use crate::exit::CliError;
+use crate::interrupt;
 use jiff::Timestamp;
-use servobench_report::{Results, RunIdentity, TimingOptions, timing_diagram};
-use servobench_scenario::Scenario;
+use servobench_report::{LimitPlace, Results, RunIdentity, TimingOptions, timing_diagram};
+use servobench_scenario::{Parameter, Scenario, Step};
 use servobench_suite::{Job, channel_limits};
 use servobench_trace::Recording;
 use servobench_view::ViewOptions;
@@ -21,6 +22,14 @@ pub(crate) const COMPARISON: &str = "comparison.json";
 pub(crate) fn make_folder(folder: &Path) -> Result<(), CliError> {
     std::fs::create_dir_all(folder)
         .map_err(|error| CliError::Run(format!("cannot make the folder `{}`: {error}", folder.display())))
+}
+
+/// Writes the whole file or nothing, in a folder that is made when there is none.
+pub(crate) fn write_file_anywhere(path: &Path, text: impl AsRef<[u8]>) -> Result<(), CliError> {
+    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        make_folder(folder)?;
+    }
+    write_file(path, text)
 }
 
 /// Writes the whole file or nothing.
@@ -59,21 +68,89 @@ pub(crate) fn write_time() -> Result<Timestamp, CliError> {
     })
 }
 
-/// Writes the recording of `job` into `folder`, and returns its name. Beside it goes its timing diagram where it has
-/// signals, and when `rrd` says so the recording for the Rerun viewer.
-pub(crate) fn write_recording(job: &Job, recording: &Recording, folder: &Path, rrd: bool) -> Result<String, CliError> {
-    let name = format!("{}.parquet", job.id);
+/// What a run left in its folder.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(crate) struct Written {
+    /// Name of the recording.
+    pub(crate) recording: Option<String>,
+    /// Names of all files, that of the recording among them.
+    pub(crate) files: Vec<String>,
+}
+
+/// Writes the recording of `job` into `folder`. Beside it goes its timing diagram where it has signals, and when `rrd` says so
+/// the recording for the Rerun viewer.
+///
+/// # Errors
+/// With what was written until then.
+pub(crate) fn write_recording(
+    job: &Job,
+    recording: &Recording,
+    folder: &Path,
+    rrd: bool,
+) -> Result<Written, (CliError, Written)> {
+    let mut written = Written::default();
+    let done = write_each(job, recording, folder, rrd, &mut written);
+    done.map_err(|error| (error, written.clone())).map(|()| written)
+}
+
+fn write_each(
+    job: &Job,
+    recording: &Recording,
+    folder: &Path,
+    rrd: bool,
+    written: &mut Written,
+) -> Result<(), CliError> {
     let failed = |error: &dyn Display| CliError::Run(error.to_string());
+    let name = format!("{}.parquet", job.id);
     recording.write_parquet(folder.join(&name)).map_err(|error| failed(&error))?;
+    written.recording = Some(name.clone());
+    written.note(folder, name);
     if !recording.signals.is_empty() {
+        let name = format!("{}.timing.svg", job.id);
         let diagram = timing_diagram(recording, &TimingOptions::default()).map_err(|error| failed(&error))?;
-        write_file(&folder.join(format!("{}.timing.svg", job.id)), &diagram)?;
+        write_file(&folder.join(&name), &diagram)?;
+        written.note(folder, name);
     }
     if rrd {
-        let path = folder.join(format!("{}.rrd", job.id));
-        servobench_view::write_rrd(recording, path, &view_options(&job.scenario)).map_err(|error| failed(&error))?;
+        let name = format!("{}.rrd", job.id);
+        let options = view_options(&job.scenario);
+        servobench_view::write_rrd(recording, folder.join(&name), &options).map_err(|error| failed(&error))?;
+        written.note(folder, name);
     }
-    Ok(name)
+    Ok(())
+}
+
+impl Written {
+    fn note(&mut self, folder: &Path, name: String) {
+        interrupt::written(&folder.join(&name));
+        self.files.push(name);
+    }
+}
+
+/// Removes what the run before left in `folder`: exactly the files that its `list` names, and the list; returns how many
+/// recordings, diagrams and drawings that were. What the list of another command beside it names stays.
+///
+/// # Errors
+/// When nobody can tell, in words: the list is none of ours. Everything stays.
+pub(crate) fn remove_former(folder: &Path, list: &str) -> Result<usize, String> {
+    let read = |list: &str| std::fs::read_to_string(folder.join(list));
+    let Ok(text) = read(list) else { return Ok(0) };
+    let former = Results::from_json(&text).map_err(|error| format!("`{}`: {error}", folder.join(list).display()))?;
+    let other = if list == RESULTS { COMPARISON } else { RESULTS };
+    let other = read(other).ok().and_then(|text| Results::from_json(&text).ok());
+    let kept: HashSet<&str> = other.iter().flat_map(Results::files).collect();
+    let names: HashSet<&str> = former.files().filter(|name| is_left_by_a_run(name) && !kept.contains(name)).collect();
+    let removed = names.into_iter().filter(|name| std::fs::remove_file(folder.join(name)).is_ok()).count();
+    // It names nothing any more; what takes its place is written at the end.
+    std::fs::remove_file(folder.join(list)).ok();
+    Ok(removed)
+}
+
+/// Whether `name` is that of a file beside the list, of a kind that a run leaves: a list may come from anywhere.
+fn is_left_by_a_run(name: &str) -> bool {
+    let path = Path::new(name);
+    let is_beside = path.file_name() == Some(OsStr::new(name)) && !name.contains(['/', '\\']);
+    is_beside && path.extension().is_some_and(|kind| kind == "parquet" || kind == "rrd" || kind == "svg")
 }
 
 /// How many recordings in `folder` neither `results` nor the comparison beside them name. A folder that cannot be read
@@ -90,14 +167,41 @@ pub(crate) fn older_recordings(folder: &Path, results: &Results) -> usize {
     found.difference(&named).count()
 }
 
-/// Which run it is, for results; `recording` is the file beside them that holds it.
-pub(crate) fn identity(job: &Job, recording: Option<String>) -> RunIdentity {
+/// Which run it is, for results, and what it left.
+pub(crate) fn identity(job: &Job, written: Written) -> RunIdentity {
+    let scenario = &job.scenario;
     RunIdentity {
-        name: job.scenario.name.clone(),
-        file: job.scenario.path.as_ref().map(|path| path.display().to_string()),
+        name: scenario.name.clone(),
+        file: scenario.path.as_ref().map(|path| path.display().to_string()),
         engine: job.engine.as_str().to_owned(),
-        recording,
+        recording: written.recording,
+        files: written.files,
+        parameters: scenario.parameters.iter().map(|one| (one.key.clone(), one.value.clone())).collect(),
+        limits: limit_places(scenario),
     }
+}
+
+/// Where the scenario file has which limit: `limits.settling_time`, `program.1.limits.overshoot.max`.
+fn limit_places(scenario: &Scenario) -> Vec<LimitPlace> {
+    let moves: Vec<usize> = (0..).zip(&scenario.program).filter_map(|(k, step)| of_move(step).then_some(k)).collect();
+    let place = |parameter: &Parameter| {
+        let mut parts = parameter.key.split('.');
+        let in_move = match parts.next()? {
+            "limits" => None,
+            "program" => {
+                let index: usize = parts.next()?.parse().ok()?;
+                (parts.next()? == "limits").then_some(())?;
+                Some(moves.iter().position(|step| *step == index)?)
+            }
+            _ => return None,
+        };
+        Some(LimitPlace { in_move, metric: parts.next()?.to_owned(), line: parameter.line? })
+    };
+    scenario.parameters.iter().filter_map(place).collect()
+}
+
+const fn of_move(step: &Step) -> bool {
+    matches!(step, Step::Move(_))
 }
 
 /// What a viewer is told beside the recording: limits and the settling window.
@@ -107,5 +211,31 @@ pub(crate) fn view_options(scenario: &Scenario) -> ViewOptions {
         window: scenario.measure.window,
         residual_from: scenario.measure.from,
         ..ViewOptions::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_files_beside_the_list_are_ever_removed() {
+        for name in ["a.exact.parquet", "a.exact.rrd", "a.exact.timing.svg", "-a.parquet", "a b.parquet"] {
+            assert!(is_left_by_a_run(name), "{name}");
+        }
+        for name in ["../a.parquet", "/a.parquet", "b/a.parquet", "..", "", ".", "a.toml", "results.json", "a\\b.rrd"] {
+            assert!(!is_left_by_a_run(name), "{name}");
+        }
+    }
+
+    #[test]
+    fn limits_are_placed_by_the_move_that_has_them() {
+        let text = "run.base_rate = \"12 kHz\"\naxis = { motion = \"linear\", motor_side.mass = \"21 kg\" }\n\
+                    motor.kind = \"prescribed\"\nsetpoint = { order = 2, velocity = \"1 m/s\", acceleration = \"1 m/s2\" }\n\
+                    [[program]]\nwait = \"1 s\"\n[[program]]\nmove_to = \"1 m\"\nlimits.overshoot = { max = \"1 um\" }\n\
+                    [limits]\nmove_time = \"2 s\"\n";
+        let loaded = servobench_scenario::parse("a.toml", text, None).unwrap_or_else(|error| panic!("{error}"));
+        let place = |in_move, metric: &str, line| LimitPlace { in_move, metric: metric.into(), line };
+        assert_eq!(limit_places(&loaded.scenario), [place(Some(0), "overshoot", 9), place(None, "move_time", 11)]);
     }
 }

@@ -1,8 +1,9 @@
-//! Progress of the runs: a bar on a terminal, plain lines otherwise.
+//! Progress of the runs: a bar on a terminal, plain lines otherwise; how many are done, which, since when and how long still.
 use crate::console::say;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
 
 /// Steps of the bar for one run.
 const STEPS: f64 = 1000.0;
@@ -13,6 +14,7 @@ pub(crate) struct Progress {
     lines: bool,
     done: AtomicU64,
     runs: usize,
+    start: Instant,
 }
 
 impl Progress {
@@ -24,14 +26,17 @@ impl Progress {
         } else {
             ProgressBar::new(runs as u64 * 1000)
         };
-        if let Ok(style) = ProgressStyle::with_template("{msg:30!} {wide_bar} {percent:>3} %") {
+        let template = "{prefix} {bar:16} {percent:>3} %  {elapsed}, {eta} left  {wide_msg}";
+        if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style);
         }
-        Self { bar, lines: !quiet && !terminal, done: AtomicU64::new(0), runs }
+        bar.set_prefix(format!("0/{runs}"));
+        Self { bar, lines: !quiet && !terminal, done: AtomicU64::new(0), runs, start: Instant::now() }
     }
 
-    /// A listener for one run: hears the share that is done, from 0 to 1.
-    pub(crate) fn of_run(&self) -> impl FnMut(f64) {
+    /// A listener for the run `id`: hears the share that is done, from 0 to 1.
+    pub(crate) fn of_run(&self, id: &str) -> impl FnMut(f64) {
+        self.bar.set_message(id.to_owned());
         let mut shown = 0.0;
         move |share: f64| {
             let step = (share * STEPS).floor();
@@ -41,17 +46,50 @@ impl Progress {
         }
     }
 
-    /// A run ended.
+    /// The run `id` ended.
     pub(crate) fn ended(&self, id: &str, words: &str) {
         let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
-        self.bar.set_message(format!("{done}/{} {id}", self.runs));
+        self.bar.set_prefix(format!("{done}/{}", self.runs));
         if self.lines {
-            say(&format!("[{done}/{}] {id}: {words}\n", self.runs));
+            let elapsed = self.start.elapsed();
+            let left = left(elapsed, done, self.runs as u64);
+            say(&format!("[{done}/{}] {id}: {words} ({}{left})\n", self.runs, seconds(elapsed)));
         }
     }
 
     /// Everything ended: the bar goes away.
     pub(crate) fn finish(&self) {
         self.bar.finish_and_clear();
+    }
+}
+
+/// How long the runs that are left take if they take as long as those before: `, about 12 s left`; empty at the end.
+fn left(elapsed: Duration, done: u64, runs: u64) -> String {
+    match runs.saturating_sub(done) {
+        0 => String::new(),
+        rest => format!(", about {} left", seconds(elapsed.mul_f64(rest as f64 / done.max(1) as f64))),
+    }
+}
+
+/// `0.4 s`, `75 s`, `12 min`
+fn seconds(time: Duration) -> String {
+    match time.as_secs_f64() {
+        short if short < 10.0 => format!("{short:.1} s"),
+        short if short < 120.0 => format!("{short:.0} s"),
+        long => format!("{:.0} min", long / 60.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_left_is_that_of_as_many_runs_as_are_left() {
+        let elapsed = Duration::from_secs(6);
+        assert_eq!(left(elapsed, 3, 31), ", about 56 s left");
+        assert_eq!(left(elapsed, 31, 31), "");
+        assert_eq!(left(elapsed, 3, 400), ", about 13 min left");
+        assert_eq!(seconds(Duration::from_millis(420)), "0.4 s");
     }
 }

@@ -45,43 +45,73 @@ fn search(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), CliError> {
 
 /// Loads every file; the mistakes of all of them are reported together, and warnings go to standard error.
 pub(crate) fn load(paths: &[PathBuf]) -> Result<Vec<Source>, CliError> {
-    collect(files(paths)?.iter().map(|path| read(path)))
-}
-
-/// Loads one file.
-pub(crate) fn read(path: &Path) -> Result<Loaded, CliError> {
-    shown(servobench_scenario::load(path))
-}
-
-/// The embedded demo.
-pub(crate) fn demo() -> Result<Vec<Source>, CliError> {
-    let demo = servobench_scenario::embedded_demo();
-    collect(demo.into_iter().map(|(name, text)| shown(servobench_scenario::parse(name, text, None))))
-}
-
-fn collect(loaded: impl Iterator<Item = Result<Loaded, CliError>>) -> Result<Vec<Source>, CliError> {
-    let (mut sources, mut mistakes) = (Vec::new(), Vec::new());
-    for loaded in loaded {
-        match loaded {
-            Ok(loaded) => {
-                let text = loaded.sources.text(loaded.sources.scenario()).to_owned();
-                sources.push(Source { scenario: loaded.scenario, text });
-            }
-            Err(error) => mistakes.push(error.to_string()),
+    let mut mistakes = Vec::new();
+    let mut sources = Vec::new();
+    for found in each(paths)? {
+        match found {
+            Ok(source) => sources.push(source),
+            Err(unusable) => mistakes.push(unusable.shown),
         }
     }
     if mistakes.is_empty() { Ok(sources) } else { Err(CliError::Input(mistakes.join("\n"))) }
 }
 
-/// Prints the warnings and renders the mistakes.
+/// A file that cannot be used, and why.
+#[derive(Debug)]
+pub(crate) struct Unusable {
+    /// The file.
+    pub(crate) path: PathBuf,
+    /// Everything that is wrong with it, as a person reads it.
+    pub(crate) shown: String,
+    /// The same a line each.
+    pub(crate) reasons: Vec<String>,
+}
+
+/// Every file by itself: one that cannot be used does not keep the others from being used.
+pub(crate) fn each(paths: &[PathBuf]) -> Result<Vec<Result<Source, Unusable>>, CliError> {
+    let files = files(paths)?;
+    let each = files.into_iter().map(|path| match servobench_scenario::load(&path) {
+        Ok(loaded) => Ok(source(loaded)),
+        Err(LoadError::Invalid(invalid)) => {
+            let reasons = invalid.lines();
+            Err(Unusable { path, shown: mistakes(&invalid.diagnostics, &invalid.sources), reasons })
+        }
+        Err(error @ LoadError::Read { .. }) => {
+            let reasons = vec![error.to_string()];
+            Err(Unusable { path, shown: error.to_string() + "\n", reasons })
+        }
+    });
+    Ok(each.collect())
+}
+
+/// What is run of a file; what is doubtful in it is said.
+fn source(loaded: Loaded) -> Source {
+    warn(&loaded);
+    let text = loaded.sources.text(loaded.sources.scenario()).to_owned();
+    Source { scenario: loaded.scenario, text }
+}
+
+/// Loads one file.
+pub(crate) fn read(path: &Path) -> Result<Loaded, CliError> {
+    shown(servobench_scenario::load(path)).inspect(warn)
+}
+
+/// The embedded demo.
+pub(crate) fn demo() -> Result<Vec<Source>, CliError> {
+    let demo = servobench_scenario::embedded_demo().into_iter();
+    demo.map(|(name, text)| shown(servobench_scenario::parse(name, text, None)).map(source)).collect()
+}
+
+fn warn(loaded: &Loaded) {
+    if !loaded.warnings.is_empty() {
+        say(&render(&loaded.warnings, &loaded.sources, Severity::Warning));
+    }
+}
+
+/// Renders the mistakes.
 fn shown(loaded: Result<Loaded, LoadError>) -> Result<Loaded, CliError> {
     match loaded {
-        Ok(loaded) => {
-            if !loaded.warnings.is_empty() {
-                say(&render(&loaded.warnings, &loaded.sources, Severity::Warning));
-            }
-            Ok(loaded)
-        }
+        Ok(loaded) => Ok(loaded),
         Err(LoadError::Invalid(invalid)) => Err(CliError::Input(mistakes(&invalid.diagnostics, &invalid.sources))),
         Err(error @ LoadError::Read { .. }) => Err(CliError::Input(error.to_string())),
     }

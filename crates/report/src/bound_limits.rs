@@ -5,6 +5,11 @@ use servobench_metrics::Quantity;
 /// How an event says that a limit bound.
 const BINDS: &str = " binds";
 
+/// Whether `event` says that a limit bound.
+pub(crate) fn is_bound(event: &EventResult) -> bool {
+    event.message.contains(BINDS)
+}
+
 /// One line for each limit that bound: `voltage limit bound for 636 ms`.
 pub(crate) fn bound_limits(events: &[EventResult]) -> Vec<String> {
     let mut limits: Vec<Bound<'_>> = Vec::new();

@@ -8,8 +8,9 @@ mod table;
 mod words;
 
 use crate::bound_limits::bound_limits;
+use crate::failures::lifted;
 use crate::results::{Outcome, RunResult};
-use crate::text::wrapped;
+use crate::text::{printable, wrapped};
 use relation::Relation;
 use servobench_metrics::Name;
 use servobench_trace::Move;
@@ -25,10 +26,12 @@ pub struct Compared<'a> {
     pub moves: &'a [Move],
 }
 
-/// Two or more runs of the same axis.
+/// Two or more runs.
 #[derive(Debug, Clone)]
 pub struct Comparison<'a> {
     runs: Vec<Compared<'a>>,
+    /// Whether only their set-points differ.
+    is_of_set_points: bool,
 }
 
 /// Sizes below this (SI) are rounding: positions of the order of 1 m are known to 1e-16 m, and a picometre is nothing that
@@ -39,26 +42,43 @@ const ROUNDING: f64 = 1e-12;
 type Value<'a> = (f64, &'a str);
 
 impl<'a> Comparison<'a> {
-    /// Compares `runs`; the first is the one that the others are held against.
+    /// Compares `runs`, of which only the set-points differ; the first is the one that the others are held against.
     #[must_use]
     pub const fn new(runs: Vec<Compared<'a>>) -> Self {
-        Self { runs }
+        Self { runs, is_of_set_points: true }
     }
 
-    /// Which run missed which of its own limits, and which limit of the drive bound in which run, in lines that fit
-    /// `width`; empty without either.
+    /// The same of runs that differ in more than their set-points: nothing is said of what those would make alone.
     #[must_use]
-    pub fn missed(&self, width: usize) -> String {
+    pub fn of_more_than_set_points(self) -> Self {
+        Self { is_of_set_points: false, ..self }
+    }
+
+    /// Whether two of the runs have a quantity in common that is compared.
+    #[must_use]
+    pub fn has_something_to_compare(&self) -> bool {
+        let in_two = |name: Name| self.runs.iter().filter(|run| run.metric(name).is_some()).count() > 1;
+        table::compared().any(in_two)
+    }
+
+    /// What failed in which run, what is lifted there, and which limit of the drive bound in which run, in lines that fit
+    /// `width`; empty without any.
+    #[must_use]
+    pub fn failed(&self, width: usize) -> String {
         let failed = self.runs.iter().filter(|run| run.result.verdict == Outcome::Failed);
         let lines = failed.flat_map(|run| {
             let reasons = run.result.reasons.iter();
-            reasons.flat_map(|reason| wrapped(&format!("{} missed a limit: {reason}", run.label), width))
+            reasons.flat_map(|reason| wrapped(&printable(&format!("{} failed: {reason}", run.label)), width))
         });
         let bound = self.runs.iter().flat_map(|run| {
             let limits = bound_limits(&run.result.events);
             limits.into_iter().flat_map(|limit| wrapped(&format!("{}: {limit}", run.label), width))
         });
-        lines.chain(bound).map(|line| line + "\n").collect()
+        let lifted = self.runs.iter().flat_map(|run| {
+            let lifted = lifted(run.result);
+            lifted.into_iter().flat_map(|words| wrapped(&printable(&format!("{}: {words}", run.label)), width))
+        });
+        lines.chain(lifted).chain(bound).map(|line| line + "\n").collect()
     }
 }
 
@@ -103,24 +123,35 @@ fn force_or_torque(unit: &str) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::{jerk, missed};
+    use crate::samples::{broken, jerk, short};
 
     #[test]
-    fn missed_limits_are_said_of_the_run_that_missed_them() {
-        let (jerk, slow) = (jerk(), missed());
+    fn what_failed_is_said_of_the_run_that_failed() {
+        let (jerk, slow) = (jerk(), short());
         let runs = vec![
             Compared { label: "jerk", result: &jerk, moves: &[] },
             Compared { label: "slow", result: &slow, moves: &[] },
         ];
-        insta::assert_snapshot!(Comparison::new(runs).missed(76), @r#"
-        slow missed a limit: settling_time 35.2 ms, limit 20.0 ms
-        slow missed a limit: residual_vibration_pp 8.30 µm, limit 2.00 µm
-        slow missed a limit: current_peak could not be measured: `current.d` is not
-        recorded; only a PMSM has a current
-        slow: effort limit bound for 100 ms
+        insta::assert_snapshot!(Comparison::new(runs).failed(76), @r#"
+        slow failed: arrives: the load ended 200 mm short of 200 mm (window ±5 µm);
+        effort limit bound for 1.99 s
+        slow failed: executed: `jog` was never executed: `home.Done` did not come
+        slow failed: expected, but did not come: 8611h of `drive` from 0.5 s on
+        slow: lifted: stable: the velocity loop has a pole outside the unit circle
         "#);
         let kept = vec![Compared { label: "jerk", result: &jerk, moves: &[] }; 2];
-        assert_eq!(Comparison::new(kept).missed(76), "");
+        assert_eq!(Comparison::new(kept).failed(76), "");
+    }
+
+    #[test]
+    fn runs_without_a_quantity_in_common_have_nothing_to_compare() {
+        let (jerk, nothing) = (jerk(), broken());
+        let of = |other| {
+            let one = Compared { label: "one", result: &jerk, moves: &[] };
+            Comparison::new(vec![one, Compared { label: "other", result: other, moves: &[] }])
+                .has_something_to_compare()
+        };
+        assert!(of(&jerk) && !of(&nothing));
     }
 
     #[test]

@@ -7,13 +7,22 @@ pub enum ReportError {
     /// The results are no JSON of this schema.
     #[error("the results are not as docs/results.schema.json says: {0}")]
     Json(#[from] serde_json::Error),
-    /// The results have another schema.
-    #[error("the results have schema `{found}`; this version reads `{expected}`")]
+    /// Results of a later version.
+    #[error(
+        "the results have schema `{found}`, newer than this build, which reads versions 1 to {known}; use the servobench that wrote \
+         them, or run the scenarios again"
+    )]
+    Newer {
+        /// Schema of the file.
+        found: String,
+        /// Newest version that this build reads.
+        known: u32,
+    },
+    /// Something else than results.
+    #[error("the file has schema `{found}`, which is none of servobench's results")]
     Schema {
         /// Schema of the file.
         found: String,
-        /// Schema that this version reads.
-        expected: &'static str,
     },
     /// A table of samples that nobody can read.
     #[error(

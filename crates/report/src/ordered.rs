@@ -21,6 +21,11 @@ impl<V> Ordered<V> {
         self.0.iter().find(|(other, _)| other == name).map(|(_, value)| value)
     }
 
+    /// The value of `name`, to be changed.
+    pub(crate) fn get_mut(&mut self, name: &str) -> Option<&mut V> {
+        self.0.iter_mut().find(|(other, _)| other == name).map(|(_, value)| value)
+    }
+
     /// Names and values in order.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (&str, &V)> {
         self.0.iter().map(|(name, value)| (name.as_str(), value))

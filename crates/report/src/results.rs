@@ -1,13 +1,19 @@
 //! `results.json`: what a run gave, for machines. The schema is in `docs/results.schema.json`.
-use crate::error::ReportError;
-use crate::ordered::Ordered;
-use serde::{Deserialize, Serialize};
-use servobench_base::Severity;
-use servobench_metrics::{Limit, Metric, MetricSet, Metrics, MoveMetrics, Name, Quantity, Verdict};
-use servobench_trace::{Event, LogEntry, Recording};
+mod entry;
+mod run;
 
-/// Name and version of the schema.
-const SCHEMA_NAME: &str = "servobench-results/1";
+pub(crate) use entry::{EventResult, LogResult, MetricResult, StandingResult};
+#[cfg(test)]
+pub(crate) use entry::{ExpectedResult, MoveResult, RequirementResult};
+pub use run::{LimitPlace, RunIdentity, RunResult};
+
+use crate::error::ReportError;
+use serde::{Deserialize, Serialize};
+
+/// Name of the schema, before its version.
+const SCHEMA: &str = "servobench-results/";
+/// Version of the schema.
+const VERSION: u32 = 2;
 
 /// The results of several runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -24,140 +30,42 @@ pub struct Results {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Outcome {
-    /// Every limit is kept.
+    /// Every limit is kept, every requirement met, every expected fault has come.
     Passed,
-    /// The run came to its end, and there was no limit to keep.
+    /// Every requirement is met, and there was no limit to keep.
     Unjudged,
-    /// A limit is missed.
+    /// A limit is missed, a requirement broken, or an expected fault did not come.
     Failed,
-    /// The scenario asks for what cannot be built.
-    Input,
+    /// The scenario cannot be read, or asks for what cannot be built.
+    #[serde(alias = "input")]
+    Invalid,
     /// The run could not be carried out.
     Error,
 }
 
 impl Outcome {
-    /// Whether the run came to its end without missing a limit.
+    /// Whether the run came to its end, and nothing in it failed.
     #[must_use]
     pub const fn is_good(self) -> bool {
         matches!(self, Self::Passed | Self::Unjudged)
     }
 
+    /// The word for it, everywhere.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Passed => "passed",
+            Self::Unjudged => "unjudged (no limits)",
+            Self::Failed => "failed",
+            Self::Invalid => "invalid",
+            Self::Error => "error",
+        }
+    }
+
     /// Whether the run came to its end, so that its metrics mean what they say.
     pub(crate) const fn is_whole(self) -> bool {
-        !matches!(self, Self::Input | Self::Error)
+        !matches!(self, Self::Invalid | Self::Error)
     }
-}
-
-/// One scenario on one engine.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct RunResult {
-    /// Name of the scenario.
-    pub name: String,
-    /// File of the scenario, as it was given; `null` for an embedded one.
-    pub file: Option<String>,
-    /// Engine that computed the mechanics.
-    pub engine: String,
-    /// What came of it.
-    pub verdict: Outcome,
-    /// Simulated time, from tick 0 to the last recorded instant (s).
-    pub duration: f64,
-    /// Missed limits or the error, in words; empty without either.
-    pub reasons: Vec<String>,
-    /// Metrics by name; with those that have a limit but could not be measured.
-    pub(crate) metrics: Ordered<MetricResult>,
-    /// Metrics that could not be measured, and why.
-    pub(crate) absent: Ordered<String>,
-    /// The moves.
-    pub(crate) moves: Vec<MoveResult>,
-    /// What happened: limits that bound, warnings.
-    pub(crate) events: Vec<EventResult>,
-    /// What FMUs said; left out where they said nothing.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(crate) log: Vec<LogResult>,
-    /// File of the recording, beside the results; `null` when none was written.
-    pub recording: Option<String>,
-}
-
-/// A metric.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct MetricResult {
-    /// Value (SI); `null` when it could not be measured.
-    pub(crate) value: Option<f64>,
-    /// Unit symbol; empty for a pure number.
-    pub(crate) unit: String,
-    /// Largest allowed value; `null` without one.
-    pub(crate) limit: Option<f64>,
-    /// Smallest allowed value; left out without one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) limit_min: Option<f64>,
-    /// Whether the limit is kept; `null` without a limit.
-    pub(crate) pass: Option<bool>,
-}
-
-/// A move.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct MoveResult {
-    /// What it is, in words.
-    pub(crate) label: String,
-    /// Start of the profile (s).
-    pub(crate) start: f64,
-    /// End of the profile (s).
-    pub(crate) end: f64,
-    /// Its metrics by name.
-    pub(crate) metrics: Ordered<MetricResult>,
-}
-
-/// Something that happened.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct EventResult {
-    /// When it began (s).
-    pub(crate) start: f64,
-    /// When it ended (s).
-    pub(crate) end: f64,
-    /// Stage of the loop that saw it.
-    pub(crate) source: String,
-    /// What it was, in words.
-    pub(crate) message: String,
-}
-
-/// What an FMU said, or how often it said it again.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct LogResult {
-    /// Who said it.
-    pub(crate) source: String,
-    /// How much it matters.
-    pub(crate) severity: SeverityResult,
-    /// When it was said (s), for the first time if it was more than once.
-    pub(crate) start: f64,
-    /// When it was said for the last time (s).
-    pub(crate) end: f64,
-    /// How often it was said between these.
-    pub(crate) times: u64,
-    /// The line.
-    pub(crate) text: String,
-}
-
-/// How much a line matters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum SeverityResult {
-    Info,
-    Warning,
-    Error,
-}
-
-/// Which run it is.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct RunIdentity {
-    /// Name of the scenario.
-    pub name: String,
-    /// File of the scenario.
-    pub file: Option<String>,
-    /// Engine.
-    pub engine: String,
-    /// File of the recording.
-    pub recording: Option<String>,
 }
 
 impl Results {
@@ -165,7 +73,7 @@ impl Results {
     #[must_use]
     pub fn new(scenarios: Vec<RunResult>) -> Self {
         let generator = concat!("servobench ", env!("CARGO_PKG_VERSION")).to_owned();
-        Self { schema: SCHEMA_NAME.to_owned(), generator, scenarios }
+        Self { schema: format!("{SCHEMA}{VERSION}"), generator, scenarios }
     }
 
     /// As JSON, numbers in the shortest form that reads back to the same bits.
@@ -176,159 +84,42 @@ impl Results {
         Ok(serde_json::to_string_pretty(self)? + "\n")
     }
 
-    /// Reads what [`Results::to_json`] wrote.
+    /// Reads what [`Results::to_json`] wrote, and results of version 1: those say nothing of requirements and parameters,
+    /// and list no file but the recording.
     ///
     /// # Errors
-    /// [`ReportError::Json`], [`ReportError::Schema`].
+    /// [`ReportError::Json`], [`ReportError::Newer`], [`ReportError::Schema`].
     pub fn from_json(text: &str) -> Result<Self, ReportError> {
-        let results: Self = serde_json::from_str(text)?;
-        if results.schema == SCHEMA_NAME {
-            Ok(results)
-        } else {
-            Err(ReportError::Schema { found: results.schema, expected: SCHEMA_NAME })
+        #[derive(Deserialize)]
+        struct Head {
+            schema: String,
         }
+        let Head { schema } = serde_json::from_str(text)?;
+        let version = schema.strip_prefix(SCHEMA).and_then(|version| version.parse::<u32>().ok());
+        match version {
+            Some(1..=VERSION) => {}
+            Some(version) if version > VERSION => return Err(ReportError::Newer { found: schema, known: VERSION }),
+            _ => return Err(ReportError::Schema { found: schema }),
+        }
+        let mut results: Self = serde_json::from_str(text)?;
+        results.schema = format!("{SCHEMA}{VERSION}");
+        if version == Some(1) {
+            for run in &mut results.scenarios {
+                run.files = run.recording.iter().cloned().collect();
+            }
+        }
+        Ok(results)
+    }
+
+    /// Every file that the runs left beside the results, by name.
+    pub fn files(&self) -> impl Iterator<Item = &str> {
+        self.scenarios.iter().flat_map(|run| run.files.iter().map(String::as_str))
     }
 
     /// Number of runs with this outcome.
-    pub(crate) fn count(&self, outcome: Outcome) -> usize {
+    pub(crate) fn count_of(&self, outcome: Outcome) -> usize {
         self.scenarios.iter().filter(|run| run.verdict == outcome).count()
     }
-}
-
-impl RunResult {
-    /// A run that was judged.
-    #[must_use]
-    pub fn judged(run: RunIdentity, recording: &Recording, metrics: &Metrics, verdict: &Verdict) -> Self {
-        let mut result = Self::of(run, Some(recording), metrics);
-        result.reasons = verdict.reasons().collect();
-        for miss in verdict.misses.iter().filter(|miss| miss.value.is_none()) {
-            let missing = [(miss.limit.metric.to_string(), MetricResult::missing(&miss.limit))];
-            let metrics = match miss.in_move {
-                None => &mut result.metrics,
-                Some(index) => match result.moves.get_mut(index) {
-                    Some(made) => &mut made.metrics,
-                    None => continue,
-                },
-            };
-            *metrics = std::mem::take(metrics).into_iter().chain(missing).collect();
-        }
-        let of_moves = result.moves.iter().flat_map(|made| made.metrics.iter());
-        let is_judged = result.metrics.iter().chain(of_moves).any(|(_, metric)| metric.pass.is_some());
-        result.verdict = match (verdict.passed(), is_judged) {
-            (false, _) => Outcome::Failed,
-            (true, true) => Outcome::Passed,
-            (true, false) => Outcome::Unjudged,
-        };
-        result
-    }
-
-    /// A run that could not be built, because the scenario asks for what there is not, and why.
-    #[must_use]
-    pub fn input(run: RunIdentity, reasons: Vec<String>) -> Self {
-        Self { verdict: Outcome::Input, reasons, ..Self::of(run, None, &Metrics::default()) }
-    }
-
-    /// A run that could not be carried out and why, with what was recorded and measured until then.
-    #[must_use]
-    pub fn error(run: RunIdentity, until_then: Option<(&Recording, &Metrics)>, reasons: Vec<String>) -> Self {
-        let nothing = Metrics::default();
-        let (recording, metrics) =
-            until_then.map_or((None, &nothing), |(recording, metrics)| (Some(recording), metrics));
-        Self { reasons, ..Self::of(run, recording, metrics) }
-    }
-
-    fn of(run: RunIdentity, recording: Option<&Recording>, metrics: &Metrics) -> Self {
-        let events = recording.map(|recording| recording.events.as_slice()).unwrap_or_default();
-        let log = recording.map(|recording| recording.log.as_slice()).unwrap_or_default();
-        Self {
-            name: run.name,
-            file: run.file,
-            engine: run.engine,
-            verdict: Outcome::Error,
-            // N + 1 instants from tick 0 to tick N.
-            duration: recording.map_or(0.0, |recording| recording.time_of(recording.len().saturating_sub(1))),
-            reasons: Vec::new(),
-            metrics: of_set(&metrics.run),
-            absent: metrics.run.absences().map(|(name, why)| (name.to_string(), why.to_string())).collect(),
-            moves: metrics.moves.iter().map(MoveResult::from).collect(),
-            events: events.iter().map(EventResult::from).collect(),
-            log: log.iter().map(LogResult::from).collect(),
-            recording: run.recording,
-        }
-    }
-
-    /// Value (SI) and unit of a metric, when it was measured.
-    pub(crate) fn metric(&self, name: Name) -> Option<(f64, &str)> {
-        let metric = self.metrics.get(name.as_str())?;
-        Some((metric.value?, metric.unit.as_str()))
-    }
-}
-
-impl MetricResult {
-    /// Significant digits that show how `value` stands to the limits.
-    pub(crate) fn digits(&self, value: f64) -> usize {
-        let bounds = [self.limit_min, self.limit].into_iter().flatten();
-        bounds.map(|bound| Quantity::digits_apart(value.abs(), bound.abs())).max().unwrap_or(3)
-    }
-
-    fn missing(limit: &Limit) -> Self {
-        Self { value: None, unit: String::new(), limit: limit.max, limit_min: limit.min, pass: Some(false) }
-    }
-}
-
-impl From<&Metric> for MetricResult {
-    fn from(metric: &Metric) -> Self {
-        Self {
-            value: Some(metric.value),
-            unit: metric.unit.clone(),
-            limit: metric.limit.and_then(|limit| limit.max),
-            limit_min: metric.limit.and_then(|limit| limit.min),
-            pass: metric.pass,
-        }
-    }
-}
-
-impl From<&MoveMetrics> for MoveResult {
-    fn from(made: &MoveMetrics) -> Self {
-        Self { label: made.label.clone(), start: made.start, end: made.end, metrics: of_set(&made.metrics) }
-    }
-}
-
-impl From<&Event> for EventResult {
-    fn from(event: &Event) -> Self {
-        Self { start: event.start, end: event.end, source: event.source.clone(), message: event.message.clone() }
-    }
-}
-
-impl From<&LogEntry> for LogResult {
-    fn from(entry: &LogEntry) -> Self {
-        let LogEntry { source, severity, start, end, times, text } = entry.clone();
-        Self { source, severity: severity.into(), start, end, times, text }
-    }
-}
-
-impl From<Severity> for SeverityResult {
-    fn from(severity: Severity) -> Self {
-        match severity {
-            Severity::Info => Self::Info,
-            Severity::Warning => Self::Warning,
-            Severity::Error => Self::Error,
-        }
-    }
-}
-
-impl From<SeverityResult> for Severity {
-    fn from(severity: SeverityResult) -> Self {
-        match severity {
-            SeverityResult::Info => Self::Info,
-            SeverityResult::Warning => Self::Warning,
-            SeverityResult::Error => Self::Error,
-        }
-    }
-}
-
-fn of_set(set: &MetricSet) -> Ordered<MetricResult> {
-    set.iter().map(|(name, metric)| (name.to_string(), metric.into())).collect()
 }
 
 #[cfg(test)]
@@ -336,9 +127,9 @@ mod tests {
     use super::*;
     use crate::samples;
     use serde_json::{Value, json};
-    use servobench_base::Rate;
-    use servobench_metrics::{Question, measure};
-    use servobench_trace::{About, Channel, ChannelSpec, Ending, Move};
+    use servobench_base::{Rate, Severity};
+    use servobench_metrics::{Expectation, Expected, Limit, Name, Question, Requirement, Standing, measure};
+    use servobench_trace::{About, Channel, ChannelSpec, Ending, Event, LogEntry, Move, Recording};
 
     /// What is wrong, and how to make it so.
     type Spoiled = (&'static str, fn(&mut Value));
@@ -352,11 +143,11 @@ mod tests {
         serde_json::from_str(&results.to_json().unwrap()).unwrap()
     }
 
-    /// A recording of one move with a ramp as following error, judged by two limits of which one cannot be measured.
-    fn judged() -> RunResult {
+    /// A recording of one move with a ramp as following error.
+    fn recording() -> Recording {
         let rate = Rate::new(1000).unwrap();
         let spec = ChannelSpec { name: "following_error.load".into(), unit: "m".into(), writer: "test".into(), rate };
-        let recording = Recording {
+        Recording {
             about: About {
                 scenario: "ramp".into(),
                 engine: "exact".into(),
@@ -388,11 +179,22 @@ mod tests {
                 times: 1,
                 text: "stiff".into(),
             }],
-        };
+        }
+    }
+
+    /// It judged by two limits of which one cannot be measured.
+    fn judged() -> RunResult {
+        let recording = recording();
         let mut metrics = measure(&recording, &Question::default());
         let limits = [Limit::at_most(Name::FollowingErrorPeakLoad, 0.1e-3), Limit::at_most(Name::SettlingTime, 0.1)];
         let verdict = metrics.judge(&limits);
-        let run = RunIdentity { name: "ramp".into(), engine: "exact".into(), ..RunIdentity::default() };
+        let place = |metric: &str, line| LimitPlace { in_move: None, metric: metric.into(), line };
+        let limits = vec![
+            place("following_error_peak_load", 31),
+            place("settling_time", 32),
+            place("setpoint_velocity_ratio", 33),
+        ];
+        let run = RunIdentity { name: "ramp".into(), engine: "exact".into(), limits, ..RunIdentity::default() };
         RunResult::judged(run, &recording, &metrics, &verdict)
     }
 
@@ -407,14 +209,20 @@ mod tests {
     #[test]
     fn the_schema_refuses_what_is_wrong() {
         let right = value(&samples::results());
-        let wrong: [Spoiled; 7] = [
-            ("another version", |v| v["schema"] = json!("servobench-results/2")),
+        let wrong: [Spoiled; 9] = [
+            ("another version", |v| v["schema"] = json!("servobench-results/1")),
             ("no verdict", |v| drop(v["scenarios"][0].as_object_mut().unwrap().remove("verdict"))),
             ("a verdict of its own", |v| v["scenarios"][0]["verdict"] = json!("maybe")),
             ("passed with a reason", |v| v["scenarios"][0]["reasons"] = json!(["why"])),
             ("failed without a reason", |v| v["scenarios"][1]["reasons"] = json!([])),
             ("a metric without unit", |v| {
                 drop(v["scenarios"][0]["metrics"]["move_time"].as_object_mut().unwrap().remove("unit"));
+            }),
+            ("a standing of its own", |v| {
+                v["scenarios"][1]["requirements"] = json!({ "stable": { "standing": "maybe", "reasons": [] } });
+            }),
+            ("a broken requirement without a reason", |v| {
+                v["scenarios"][1]["requirements"] = json!({ "stable": { "standing": "broken", "reasons": [] } });
             }),
             ("a field nobody knows", |v| v["scenarios"][0]["host"] = json!("here")),
         ];
@@ -454,11 +262,88 @@ mod tests {
         assert_eq!(names, order);
     }
 
+    /// Verdicts of a run with these standings, and with or without limits.
+    fn verdict_of(standing: Standing, limits: &[Limit], expected: Vec<Expected>) -> RunResult {
+        let recording = recording();
+        let mut metrics = measure(&recording, &Question::default());
+        let mut verdict = metrics.judge(limits);
+        verdict.requirements = vec![(Requirement::Arrives, standing), (Requirement::Executed, Standing::NotAsked)];
+        verdict.expected = expected;
+        verdict.warnings = vec!["`jog` was refused".into()];
+        RunResult::judged(RunIdentity::default(), &recording, &metrics, &verdict)
+    }
+
     #[test]
-    fn another_schema_is_refused() {
-        let text = samples::results().to_json().unwrap().replace(SCHEMA_NAME, "servobench-results/2");
-        let e = Results::from_json(&text).unwrap_err().to_string();
-        assert_eq!(e, "the results have schema `servobench-results/2`; this version reads `servobench-results/1`");
+    fn a_broken_requirement_fails_without_any_limit() {
+        let why = "the load ended 200 mm short of 200 mm".to_owned();
+        let broken = verdict_of(Standing::Broken(vec![why.clone()]), &[], vec![]);
+        assert_eq!((broken.verdict, broken.reasons.as_slice()), (Outcome::Failed, &[format!("arrives: {why}")][..]));
+        let lifted = verdict_of(Standing::Lifted(vec![why]), &[], vec![]);
+        assert_eq!((lifted.verdict, lifted.reasons.len()), (Outcome::Unjudged, 0));
+        let limit = [Limit::at_most(Name::FollowingErrorPeakLoad, 1.0)];
+        assert_eq!(verdict_of(Standing::Met, &limit, vec![]).verdict, Outcome::Passed);
+        let json = value(&Results::new(vec![broken, lifted]));
+        assert_eq!(json["scenarios"][0]["requirements"]["arrives"]["standing"], "broken");
+        assert_eq!(json["scenarios"][0]["requirements"]["executed"]["standing"], "not_asked");
+        assert_eq!(json["scenarios"][1]["requirements"]["arrives"]["standing"], "lifted");
+        assert_eq!(json["scenarios"][1]["warnings"], json!(["`jog` was refused"]));
+    }
+
+    #[test]
+    fn an_expected_fault_judges_a_run() {
+        let expectation = Expectation { fault: "8611h".into(), who: "drive".into(), from: 0.5, to: f64::INFINITY };
+        let of = |met| verdict_of(Standing::Met, &[], vec![Expected { expectation: expectation.clone(), met }]);
+        let (missing, came) = (of(None), of(Some(0.75)));
+        assert_eq!((missing.verdict, came.verdict), (Outcome::Failed, Outcome::Passed));
+        assert_eq!(missing.reasons, ["expected, but did not come: 8611h of `drive` from 0.5 s on"]);
+        assert_eq!(missing.expected[0].words(), "8611h of `drive` from 0.5 s on");
+        let json = value(&Results::new(vec![came]));
+        let expected = json!({ "fault": "8611h", "who": "drive", "from": 0.5, "to": null, "met_at": 0.75 });
+        assert_eq!(json["scenarios"][0]["expected"], json!([expected]));
+    }
+
+    #[test]
+    fn limits_know_their_line() {
+        let run = judged();
+        let line = |name: &str| run.metrics.get(name).unwrap().line;
+        assert_eq!((line("following_error_peak_load"), line("settling_time")), (Some(31), Some(32)));
+        assert_eq!(line("setpoint_velocity_ratio"), None, "it has no limit");
+    }
+
+    /// What version 1 lacks is empty, and its word for invalid input is understood.
+    #[test]
+    fn the_version_before_is_read() {
+        let mut old = value(&samples::results());
+        old["schema"] = json!("servobench-results/1");
+        for run in old["scenarios"].as_array_mut().unwrap() {
+            let run = run.as_object_mut().unwrap();
+            for key in ["requirements", "expected", "warnings", "parameters", "files"] {
+                run.remove(key);
+            }
+            if run["verdict"] == "invalid" {
+                run.insert("verdict".into(), json!("input"));
+            }
+        }
+        let read = Results::from_json(&old.to_string()).unwrap();
+        assert_eq!(read.scenarios[0].files, ["lambrechts-jerk.exact.parquet"]);
+        assert_eq!(read.count_of(Outcome::Invalid), 1);
+        assert_eq!(read.schema, "servobench-results/2");
+    }
+
+    #[test]
+    fn another_schema_is_refused_by_name() {
+        let refusal = |schema: &str| {
+            let text = samples::results().to_json().unwrap().replace("servobench-results/2", schema);
+            Results::from_json(&text).unwrap_err().to_string()
+        };
+        assert_eq!(
+            refusal("servobench-results/3"),
+            "the results have schema `servobench-results/3`, newer than this build, which reads versions 1 to 2; use the \
+             servobench that wrote them, or run the scenarios again"
+        );
+        for other in ["servobench-results/0", "servobench-results/x", "sarif"] {
+            assert_eq!(refusal(other), format!("the file has schema `{other}`, which is none of servobench's results"));
+        }
         assert!(matches!(Results::from_json("{}"), Err(ReportError::Json(_))));
     }
 }

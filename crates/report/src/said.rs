@@ -113,10 +113,9 @@ impl Line<'_> {
     }
 }
 
-/// What a terminal may get of somebody else's text.
+/// What a terminal may get of somebody else's line.
 fn printable(text: &str) -> String {
-    let text: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    elided(&text, LONGEST)
+    elided(&crate::text::printable(text), LONGEST)
 }
 
 #[cfg(test)]

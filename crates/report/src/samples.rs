@@ -1,19 +1,24 @@
 //! Results for the tests: the move of Lambrechts under two limits, a run that missed limits, one that broke off.
-use crate::results::{EventResult, LogResult, MetricResult, Outcome, Results, RunResult};
+use crate::ordered::Ordered;
+use crate::results::{
+    EventResult, ExpectedResult, LogResult, MetricResult, Outcome, RequirementResult, Results, RunResult,
+    StandingResult,
+};
 use servobench_base::Severity;
 use servobench_metrics::Name;
 use servobench_trace::{Ending, Move};
 
 /// A metric without a limit.
 fn free(name: Name, value: f64, unit: &str) -> (String, MetricResult) {
-    let metric = MetricResult { value: Some(value), unit: unit.into(), limit: None, limit_min: None, pass: None };
+    let metric =
+        MetricResult { value: Some(value), unit: unit.into(), limit: None, limit_min: None, pass: None, line: None };
     (name.to_string(), metric)
 }
 
 /// A metric with a largest value.
 fn limited(name: Name, value: Option<f64>, unit: &str, limit: f64) -> (String, MetricResult) {
     let pass = Some(value.is_some_and(|value| value <= limit));
-    (name.to_string(), MetricResult { value, unit: unit.into(), limit: Some(limit), limit_min: None, pass })
+    (name.to_string(), MetricResult { value, unit: unit.into(), limit: Some(limit), limit_min: None, pass, line: None })
 }
 
 /// A run that passed, with these metrics.
@@ -25,6 +30,10 @@ pub(crate) fn run(name: &str, engine: &str, metrics: impl IntoIterator<Item = (S
         verdict: Outcome::Unjudged,
         duration: 2.0,
         reasons: vec![],
+        requirements: requirements([("arrives", StandingResult::Met, vec![])]),
+        expected: vec![],
+        warnings: vec![],
+        parameters: [("drive.velocity.bandwidth".to_owned(), "30 Hz".to_owned())].into_iter().collect(),
         metrics: metrics.into_iter().collect(),
         absent: [("current_peak".to_owned(), "`current.d` is not recorded; only a PMSM has a current".to_owned())]
             .into_iter()
@@ -33,7 +42,16 @@ pub(crate) fn run(name: &str, engine: &str, metrics: impl IntoIterator<Item = (S
         events: vec![],
         log: vec![],
         recording: Some(format!("{name}.{engine}.parquet")),
+        files: vec![format!("{name}.{engine}.parquet")],
     }
+}
+
+/// Requirements with their standings and reasons.
+pub(crate) fn requirements<const N: usize>(
+    all: [(&str, StandingResult, Vec<String>); N],
+) -> Ordered<RequirementResult> {
+    let all = all.into_iter();
+    all.map(|(name, standing, reasons)| (name.to_owned(), RequirementResult { standing, reasons })).collect()
 }
 
 /// A run with these numbers: move, settling (s), error, peak-to-peak (m), frequency (Hz), damping, force (N).
@@ -100,6 +118,9 @@ pub(crate) fn missed() -> RunResult {
         ],
     );
     run.verdict = Outcome::Failed;
+    if let Some(settling) = run.metrics.get_mut("settling_time") {
+        settling.line = Some(31);
+    }
     run.reasons = vec![
         "settling_time 35.2 ms, limit 20.0 ms".into(),
         "residual_vibration_pp 8.30 µm, limit 2.00 µm".into(),
@@ -118,6 +139,11 @@ pub(crate) fn missed() -> RunResult {
 pub(crate) fn kept() -> RunResult {
     let mut run = run("kept", "exact", [limited(Name::MoveTime, Some(1.0), "s", 2.0)]);
     run.verdict = Outcome::Passed;
+    run.requirements = requirements([
+        ("arrives", StandingResult::Met, vec![]),
+        ("executed", StandingResult::NotAsked, vec![]),
+        ("bounded", StandingResult::Lifted, vec![]),
+    ]);
     run.events = vec![EventResult {
         start: 0.1,
         end: 0.6,
@@ -135,11 +161,35 @@ pub(crate) fn kept() -> RunResult {
     run
 }
 
+/// A run that keeps its limit, breaks two requirements, and misses a fault that it expects.
+pub(crate) fn short() -> RunResult {
+    let mut run = run("pick", "exact", [limited(Name::MoveTime, Some(0.65), "s", 2.0)]);
+    run.verdict = Outcome::Failed;
+    let short = "the load ended 200 mm short of 200 mm (window ±5 µm); effort limit bound for 1.99 s";
+    let jog = "`jog` was never executed: `home.Done` did not come";
+    run.requirements = requirements([
+        ("arrives", StandingResult::Broken, vec![short.into()]),
+        ("executed", StandingResult::Broken, vec![jog.into()]),
+        ("stable", StandingResult::Lifted, vec!["the velocity loop has a pole outside the unit circle".into()]),
+    ]);
+    run.expected =
+        vec![ExpectedResult { fault: "8611h".into(), who: "drive".into(), from: 0.5, to: None, met_at: None }];
+    run.reasons = vec![
+        format!("arrives: {short}"),
+        format!("executed: {jog}"),
+        "expected, but did not come: 8611h of `drive` from 0.5 s on".into(),
+    ];
+    run.warnings = vec!["two frames were lost".into()];
+    run.events = vec![EventResult { start: 2.0, end: 2.0, source: "PLC".into(), message: jog.into() }];
+    run
+}
+
 /// A scenario that cannot be built.
 pub(crate) fn wrong() -> RunResult {
     let mut run = broken();
-    run.verdict = Outcome::Input;
+    run.verdict = Outcome::Invalid;
     run.log.clear();
+    run.requirements = Ordered::default();
     run.reasons = vec!["`axis.mjcf.file`: there is no `arm.xml`".into()];
     run
 }
@@ -176,5 +226,5 @@ pub(crate) fn broken() -> RunResult {
 
 /// All of them.
 pub(crate) fn results() -> Results {
-    Results::new(vec![jerk(), missed(), kept(), snap(), broken(), wrong()])
+    Results::new(vec![jerk(), missed(), kept(), snap(), broken(), wrong(), short()])
 }

@@ -47,14 +47,48 @@ pub struct Invalid {
     pub sources: Sources,
 }
 
-/// `axis.toml:12:9: message; help`, a line for each mistake.
+/// Mistakes that are shown of one file; nobody reads the hundredth.
+pub const MOST_MISTAKES: usize = 20;
+
+impl Invalid {
+    /// The mistakes in lines as [`Diagnostic::line`] has them, of each file [`MOST_MISTAKES`] at most, then how many more
+    /// there are.
+    #[must_use]
+    pub fn lines(&self) -> Vec<String> {
+        let shown = shown(&self.diagnostics, &self.sources);
+        let more = shown.more.iter().map(|(name, count)| format!("{name}: and {count} more"));
+        shown.diagnostics.iter().map(|one| one.line(&self.sources)).chain(more).collect()
+    }
+}
+
+/// What is shown of many diagnostics.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Shown<'a> {
+    /// Of each file [`MOST_MISTAKES`] at most.
+    pub diagnostics: Vec<&'a Diagnostic>,
+    /// Names of the files with more, and how many more.
+    pub more: Vec<(String, usize)>,
+}
+
+/// Of each file of `sources` the first [`MOST_MISTAKES`] of `all`.
+#[must_use]
+pub fn shown<'a>(all: &'a [Diagnostic], sources: &Sources) -> Shown<'a> {
+    let mut shown = Shown { diagnostics: Vec::new(), more: Vec::new() };
+    for source in sources.ids() {
+        let of_file = || all.iter().filter(|one| one.source == source);
+        shown.diagnostics.extend(of_file().take(MOST_MISTAKES));
+        let more = of_file().count().saturating_sub(MOST_MISTAKES);
+        if more > 0 {
+            shown.more.push((sources.name(source).to_owned(), more));
+        }
+    }
+    shown
+}
+
+/// `axis.toml:12:9: message; help`, a line for each mistake, as [`Invalid::lines`] has them.
 impl fmt::Display for Invalid {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, diagnostic) in self.diagnostics.iter().enumerate() {
-            let newline = if i == 0 { "" } else { "\n" };
-            write!(f, "{newline}{}", diagnostic.line(&self.sources))?;
-        }
-        Ok(())
+        f.write_str(&self.lines().join("\n"))
     }
 }
 
@@ -117,5 +151,24 @@ impl Report {
         if !self.without_model.contains(&table) {
             self.missing.push(Diagnostic::new(span, message.into(), help.into()));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parse;
+
+    #[test]
+    fn of_many_mistakes_twenty_are_shown_and_the_others_counted() {
+        let keys = |count: usize| (0..count).map(|k| format!("x{k} = 1\n")).collect::<String>();
+        let lines = |count| match parse("a.toml", &keys(count), None) {
+            Err(LoadError::Invalid(invalid)) => invalid.lines(),
+            other => panic!("{other:?}"),
+        };
+        // Three tables are missing besides.
+        assert_eq!(lines(17).len(), 20);
+        let more = lines(40);
+        assert_eq!((more.len(), more.last().map(String::as_str)), (21, Some("a.toml: and 23 more")));
     }
 }

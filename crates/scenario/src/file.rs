@@ -25,6 +25,7 @@ pub(crate) use setpoint::{FollowRule, Rockwell, Setpoint, Shaper, ShaperName, Ta
 
 use crate::channel::Channel;
 use crate::field::{any, not_negative, positive};
+use crate::format::FORMAT;
 use crate::limit_table::LimitTable;
 use crate::list::{Many, OneOrMany};
 use crate::physical::Kind::{Axis as InAxis, Plain};
@@ -47,6 +48,8 @@ table! {
     /// A scenario of servobench: an axis, a program of moves, what to measure and the limits that make it pass or fail.
     /// Physical quantities are texts with a unit: "250 mm", "30 m/min", "8 kHz", "4.2 Arms".
     pub(crate) struct File requires ["run", "axis", "motor"] {
+        /// Number of the format that the file is written in; the newest unless given. What each changed: CHANGELOG.md.
+        format: u32 = 1..=FORMAT,
         /// Name in tables and results; the file's name unless given.
         name: String = (),
         /// What the scenario shows, in a sentence.

@@ -13,6 +13,7 @@ mod diagnostic;
 mod dimension;
 mod field;
 mod file;
+mod format;
 mod limit_table;
 mod list;
 mod load;
@@ -20,6 +21,7 @@ mod models;
 mod name_table;
 mod nearest;
 mod object_table;
+mod parameters;
 mod physical;
 mod place;
 mod points;
@@ -37,9 +39,10 @@ mod when;
 
 pub use argument::{ArgumentError, Derivative, any_quantity, axis_quantity, frequency, ratio, time};
 pub use channel::{CHANNELS, channel_meaning};
-pub use diagnostic::{Diagnostic, Invalid, LoadError, NamedFile};
+pub use diagnostic::{Diagnostic, Invalid, LoadError, MOST_MISTAKES, NamedFile, Shown, shown};
 pub use load::{Loaded, load, parse};
 pub use models::{embedded_demo, embedded_models};
+pub use parameters::{Difference, Parameter, differences};
 pub use points::{
     Column, MOST_POINTS, Points, PointsError, PointsMistake, Profile, read_accelerations, read_points, read_velocities,
 };

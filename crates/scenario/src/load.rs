@@ -2,7 +2,9 @@
 use crate::diagnostic::{Diagnostic, Invalid, LoadError, NamedFile, Report};
 use crate::field::Field;
 use crate::file::{File, MotorKind};
+use crate::format;
 use crate::models::lay_on_models;
+use crate::parameters::parameters;
 use crate::resolve;
 use crate::scenario::{AxisMechanics, Motion, Scenario};
 use crate::simple::Choice;
@@ -55,6 +57,12 @@ pub fn parse(name: &str, text: &str, folder: Option<&Path>) -> Result<Loaded, Lo
     let mut parsed = tree::parse(id, text, &mut syntax);
     let mut broken: Vec<(SourceId, Range<usize>)> = parsed.broken.drain(..).map(|line| (id, line)).collect();
     let mut report = Report::default();
+    if let Some(diagnostic) = format::newer(&parsed.table) {
+        // Whatever else is said of a file that this build does not know would mislead.
+        let (diagnostics, warnings) = (vec![diagnostic], Vec::new());
+        return Err(LoadError::Invalid(Box::new(Invalid { diagnostics, warnings, sources })));
+    }
+    format::warn_of_older(&parsed.table, &mut report);
     broken.extend(lay_on_models(&mut parsed.table, &mut sources, &mut report, &mut syntax));
 
     (report.axis, report.motor) = motions(&parsed.table);
@@ -68,6 +76,9 @@ pub fn parse(name: &str, text: &str, folder: Option<&Path>) -> Result<Loaded, Lo
         Some(mut scenario) if diagnostics.is_empty() => {
             if scenario.name.is_empty() {
                 scenario.name = Path::new(name).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            }
+            if let Value::Table(table) = &root.value {
+                scenario.parameters = parameters(table, &sources);
             }
             let mjcf = match &scenario.axis.mechanics {
                 AxisMechanics::Mjcf(mjcf) => {

@@ -117,6 +117,7 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
         }),
         requirements: requirements?,
         limits,
+        parameters: Vec::new(),
     })
 }
 

@@ -39,6 +39,7 @@ pub use program::{
 };
 pub use requirements::Requirements;
 
+use crate::parameters::Parameter;
 use servobench_base::Rate;
 use std::path::PathBuf;
 
@@ -88,6 +89,8 @@ pub struct Scenario {
     pub requirements: Requirements,
     /// What makes it pass or fail, in the order of the file.
     pub limits: Vec<Limit>,
+    /// What the file says, models merged in, key by key.
+    pub parameters: Vec<Parameter>,
 }
 
 /// Bounds of one metric (SI).

@@ -104,9 +104,16 @@ pub(crate) struct Parsed {
     pub(crate) broken: Vec<Range<usize>>,
 }
 
-/// Parses as much as there is; every syntax error goes to `report`.
+/// Parses as much as there is; every syntax error goes to `report`, of a text that is no TOML at all one.
 pub(crate) fn parse(source: SourceId, text: &str, report: &mut Report) -> Parsed {
+    if let Some(looks_like) = another_format(text) {
+        return nothing_of(source, text, 0..0, looks_like, report);
+    }
     let (table, errors) = parse_to_the_end(source, text);
+    if is_hardly_toml(text, &errors) {
+        let first = errors.first().map_or(0..0, |error| error.span.clone());
+        return nothing_of(source, text, first, "most of its lines are neither `key = value` nor `[table]`", report);
+    }
     let mut broken: Vec<Range<usize>> = Vec::new();
     let mut places = None;
     for error in errors {
@@ -135,6 +142,34 @@ pub(crate) fn parse(source: SourceId, text: &str, report: &mut Report) -> Parsed
         report.error(Span::new(source, &error.span), message, help);
     }
     Parsed { table, broken }
+}
+
+/// What a text is that begins as no TOML does.
+fn another_format(text: &str) -> Option<&'static str> {
+    match text.trim_start_matches('\u{feff}').trim_start().chars().next()? {
+        '{' => Some("it looks like JSON"),
+        '<' => Some("it looks like XML or HTML"),
+        '\0' => Some("it is no text"),
+        _ => None,
+    }
+}
+
+/// Fewer lines that cannot be read are mistakes in a scenario, each at its place.
+const HARDLY_TOML: usize = 8;
+
+/// Whether more than half of the lines that say something cannot be read.
+fn is_hardly_toml(text: &str, errors: &[SyntaxError]) -> bool {
+    let wrong = errors.iter().filter(|error| error.message != DUPLICATE);
+    let starts: BTreeSet<usize> = wrong.map(|error| lines_around(text, &error.span).start).collect();
+    let is_said = |line: &&str| !line.trim().is_empty() && !line.trim_start().starts_with('#');
+    starts.len() >= HARDLY_TOML && 2 * starts.len() > text.lines().filter(is_said).count()
+}
+
+/// One mistake for all of a text that is something else.
+fn nothing_of(source: SourceId, text: &str, place: Range<usize>, why: &str, report: &mut Report) -> Parsed {
+    let message = format!("this is not TOML: {why}");
+    report.error(Span::new(source, &place), message, "a scenario is a TOML file: see docs/scenario.md");
+    Parsed { table: Table::default(), broken: std::iter::once(0..text.len()).collect() }
 }
 
 /// What the parser says of a key that is there already.
@@ -431,6 +466,28 @@ mod tests {
         for text in [format!("a{deep} = 1\n"), format!("[a{deep}]\n"), format!("a = {wide}")] {
             assert!(!parsed(&text).1.errors.is_empty());
         }
+    }
+
+    #[test]
+    fn what_is_no_toml_is_one_mistake() {
+        let json: String = (0..50).map(|k| format!("  \"key{k}\": {k},\n")).collect();
+        let prose = "a line of prose\n".repeat(9);
+        for (text, why) in [
+            (format!("{{\n{json}}}\n"), "it looks like JSON"),
+            ("{}".to_owned(), "it looks like JSON"),
+            ("\u{feff} <mujoco>\n</mujoco>\n".to_owned(), "it looks like XML or HTML"),
+            (prose.clone(), "most of its lines are neither `key = value` nor `[table]`"),
+            (format!("a = 1\n# remark\n{prose}"), "most of its lines are neither `key = value` nor `[table]`"),
+        ] {
+            let (parsed, report) = parsed(&text);
+            let said: Vec<_> = report.errors.iter().map(|error| error.message.clone()).collect();
+            assert_eq!(said, [format!("this is not TOML: {why}")]);
+            let [all] = parsed.broken.as_slice() else { panic!("{:?}", parsed.broken) };
+            assert_eq!((parsed.table, all), (Table::default(), &(0..text.len())));
+        }
+        // As many lines that can be read make it a scenario with nine mistakes.
+        let keys: String = (0..9).map(|k| format!("k{k} = 1\n")).collect();
+        assert_eq!(parsed(&(prose + &keys)).1.errors.len(), 9);
     }
 
     #[test]

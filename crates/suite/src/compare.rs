@@ -1,24 +1,25 @@
-//! The same axis under different set-points: each at its own limits, at equal ones, or slowed to equal duration.
+//! Runs side by side: each at its own limits, at equal ones, or slowed to equal duration.
 use crate::job::Job;
-use servobench_scenario::{Actuator, Drive, MoveStep, Scenario, Step};
+use servobench_scenario::{Motion, MoveStep, Scenario, Step};
 use servobench_sim::{BuildError, Program};
 use thiserror::Error;
 
 /// Why scenarios cannot be compared.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum CompareError {
-    /// More than the set-point differs, so that the difference in the results says nothing of the set-points.
+    /// Nothing that is measured of one has a meaning for the other.
     #[error(
-        "`{one}` and `{other}` differ in {}; a comparison is of one axis and one drive under different set-points",
-        parts.join(", ")
+        "`{one}` is {motion} and `{other}` {other_motion}: a length and an angle cannot be compared; compare axes of one kind"
     )]
-    Differ {
+    Axes {
         /// Name of the first scenario.
         one: String,
-        /// Name of the scenario that differs from it.
+        /// `linear`, `rotary`.
+        motion: &'static str,
+        /// Name of the other.
         other: String,
-        /// The parts of the scenarios that differ, as the file calls them.
-        parts: Vec<&'static str>,
+        /// Its kind.
+        other_motion: &'static str,
     },
     /// Moves without a counterpart cannot have its limits or its duration.
     #[error(
@@ -63,25 +64,33 @@ pub enum CompareError {
     },
 }
 
-/// Whether the jobs differ in nothing but their set-points. Free are the names, the program with its limits and how
-/// long it is recorded, which channels are kept, and the limits by which each run is judged on its own.
+/// Whether what is measured of the jobs can stand side by side: their axes are all linear or all rotary.
 ///
 /// # Errors
-/// [`CompareError::Differ`] names the parts of the first job that differs from the first of all.
-pub fn only_setpoints_differ(jobs: &[Job]) -> Result<(), CompareError> {
+/// [`CompareError::Axes`] of the first job that is of another kind than the first of all.
+pub fn comparable(jobs: &[Job]) -> Result<(), CompareError> {
     let Some((one, others)) = jobs.split_first() else { return Ok(()) };
-    for other in others {
-        let parts = differences(&one.scenario, &other.scenario);
-        if !parts.is_empty() {
-            let (one, other) = (one.scenario.name.clone(), other.scenario.name.clone());
-            return Err(CompareError::Differ { one, other, parts });
-        }
-    }
-    Ok(())
+    let kind = |job: &Job| match job.scenario.axis.motion {
+        Motion::Linear => "linear",
+        Motion::Rotary => "rotary",
+    };
+    let Some(other) = others.iter().find(|other| kind(other) != kind(one)) else { return Ok(()) };
+    let (motion, other_motion) = (kind(one), kind(other));
+    let (one, other) = (one.scenario.name.clone(), other.scenario.name.clone());
+    Err(CompareError::Axes { one, motion, other, other_motion })
 }
 
-/// What must be equal and is not. Every field is named: a new one must be thought of here.
-fn differences(one: &Scenario, other: &Scenario) -> Vec<&'static str> {
+/// Whether the jobs differ in nothing but their set-points, so that what differs in the results is of those. Free are
+/// names and words, the program with its limits and how long it is recorded, which channels are kept, and the limits by
+/// which each run is judged on its own.
+#[must_use]
+pub fn only_setpoints_differ(jobs: &[Job]) -> bool {
+    let Some((one, others)) = jobs.split_first() else { return true };
+    others.iter().all(|other| has_same_axis_and_drive(&one.scenario, &other.scenario))
+}
+
+/// Every field is named: a new one must be thought of here.
+fn has_same_axis_and_drive(one: &Scenario, other: &Scenario) -> bool {
     let Scenario {
         name: _,
         description: _,
@@ -103,61 +112,19 @@ fn differences(one: &Scenario, other: &Scenario) -> Vec<&'static str> {
         measure,
         requirements: _,
         limits: _,
+        parameters: _,
     } = one;
-    let mut parts = Vec::new();
-    let mut compare = |part, is_equal: bool| {
-        if !is_equal {
-            parts.push(part);
-        }
-    };
-    compare("`run.base_rate`", *base_rate == other.base_rate);
-    compare("`axis`", *axis == other.axis);
-    compare_actuators(actuator, &other.actuator, &mut compare);
-    compare("`bus`", *bus == other.bus);
-    compare("`fmu`", *fmus == other.fmus);
-    compare("`coupling`", *coupling == other.coupling);
-    compare("`disturbance`", *disturbances == other.disturbances);
-    compare("`initial`", *initial == other.initial);
-    // A peak between two rows is not seen.
-    compare("`record.rate`", record.rate == other.record.rate);
-    compare("`measure`", *measure == other.measure);
-    parts
-}
-
-/// Compares what moves the axis, part by part where both are of one kind.
-fn compare_actuators(one: &Actuator, other: &Actuator, compare: &mut impl FnMut(&'static str, bool)) {
-    match (one, other) {
-        (Actuator::Prescribed, Actuator::Prescribed) | (Actuator::Off, Actuator::Off) => {}
-        (
-            Actuator::Pmsm { motor, dc_link, current, drive },
-            Actuator::Pmsm { motor: other_motor, dc_link: other_link, current: other_current, drive: other_drive },
-        ) => {
-            compare("`motor`", motor == other_motor);
-            compare("`drive.dc_link`", dc_link.to_bits() == other_link.to_bits());
-            compare("`drive.current`", current == other_current);
-            compare_drives(drive, other_drive, compare);
-        }
-        (
-            Actuator::IdealSource { source, estimated_gain, drive },
-            Actuator::IdealSource { source: other_source, estimated_gain: other_gain, drive: other_drive },
-        ) => {
-            compare("`motor`", source == other_source);
-            compare("`drive.estimate.gain`", estimated_gain.to_bits() == other_gain.to_bits());
-            compare_drives(drive, other_drive, compare);
-        }
-        (Actuator::Off, _) | (_, Actuator::Off) => compare("`drive.enabled`", false),
-        _ => compare("the kind of `motor`", false),
-    }
-}
-
-fn compare_drives(one: &Drive, other: &Drive, compare: &mut impl FnMut(&'static str, bool)) {
-    let Drive { max_effort, velocity, position, position_feedback, feedforward, estimate } = one;
-    compare("the effort limit of `drive`", max_effort.to_bits() == other.max_effort.to_bits());
-    compare("`drive.velocity`", *velocity == other.velocity);
-    compare("`drive.position`", *position == other.position);
-    compare("`drive.position_feedback`", *position_feedback == other.position_feedback);
-    compare("`drive.feedforward`", *feedforward == other.feedforward);
-    compare("`drive.estimate`", *estimate == other.estimate);
+    *base_rate == other.base_rate
+        && *axis == other.axis
+        && *actuator == other.actuator
+        && *bus == other.bus
+        && *fmus == other.fmus
+        && *coupling == other.coupling
+        && *disturbances == other.disturbances
+        && *initial == other.initial
+        // A peak between two rows is not seen.
+        && record.rate == other.record.rate
+        && *measure == other.measure
 }
 
 /// Whether each move has the limits of its counterparts, as far as its order has them.
@@ -281,34 +248,42 @@ mod tests {
             "rate = \"2 kHz\"",
             "rate = \"2 kHz\"\nchannels = [\"load.position\"]\n[limits]\nmove_time = \"1 s\"",
         );
-        assert_eq!(only_setpoints_differ(&of([ONE, &other])), Ok(()));
+        assert!(only_setpoints_differ(&of([ONE, &other])));
     }
 
     #[test]
-    fn whatever_else_differs_is_named() {
-        for (from, to, part) in [
-            ("4 kHz\"\n        [axis]", "8 kHz\"\n        [axis]", "`run.base_rate`"),
-            ("80 Hz", "81 Hz", "`drive.velocity`"),
-            ("60 1/s", "30 1/s", "`drive.position`"),
-            ("[drive.velocity]", "[drive.feedforward]\nvelocity = true\n[drive.velocity]", "`drive.feedforward`"),
-            ("kind = \"ideal-source\"", "kind = \"ideal-source\"\nencoder = { step = \"1 um\" }", "`motor`"),
-            ("10 um", "11 um", "`measure`"),
-            ("rate = \"2 kHz\"", "rate = \"1 kHz\"", "`record.rate`"),
-            ("[measure]", "[initial]\nload_position = \"1 um\"\n[measure]", "`initial`"),
-            (
-                "[measure]",
-                "[[disturbance]]\non = \"load\"\nforce = \"1 N\"\nstart = \"0 s\"\n[measure]",
-                "`disturbance`",
-            ),
+    fn whatever_else_differs_is_no_difference_of_set_points() {
+        for (from, to) in [
+            ("4 kHz\"\n        [axis]", "8 kHz\"\n        [axis]"),
+            ("20 kg", "21 kg"),
+            ("80 Hz", "81 Hz"),
+            ("60 1/s", "30 1/s"),
+            ("[drive.velocity]", "[drive.feedforward]\nvelocity = true\n[drive.velocity]"),
+            ("kind = \"ideal-source\"", "kind = \"ideal-source\"\nencoder = { step = \"1 um\" }"),
+            ("10 um", "11 um"),
+            ("rate = \"2 kHz\"", "rate = \"1 kHz\""),
+            ("[measure]", "[initial]\nload_position = \"1 um\"\n[measure]"),
+            ("[measure]", "[[disturbance]]\non = \"load\"\nforce = \"1 N\"\nstart = \"0 s\"\n[measure]"),
         ] {
             assert!(ONE.contains(from), "{from}");
-            let error = only_setpoints_differ(&of([ONE, &ONE.replace(from, to)])).unwrap_err();
-            let CompareError::Differ { one, other, parts } = &error else { panic!("{error}") };
-            assert_eq!((one.as_str(), other.as_str(), parts.as_slice()), ("one", "two", [part].as_slice()));
+            let jobs = of([ONE, &ONE.replace(from, to)]);
+            assert!(!only_setpoints_differ(&jobs), "{to}");
+            assert_eq!(comparable(&jobs), Ok(()), "{to}: it is an axis of the same kind");
         }
-        // The mass is in the axis, and the gains that follow from it are not those of the other.
-        let error = only_setpoints_differ(&of([ONE, &ONE.replace("20 kg", "21 kg")])).unwrap_err().to_string();
-        assert!(error.starts_with("`one` and `two` differ in `axis`, `drive.velocity`, `drive.estimate`;"), "{error}");
+    }
+
+    #[test]
+    fn a_length_is_not_compared_with_an_angle() {
+        let rotary = ONE
+            .replace("\"linear\"", "\"rotary\"")
+            .replace("mass = \"20 kg\"", "inertia = \"20 kg m2\"")
+            .replace("0.5 m/s", "0.5 rad/s")
+            .replace("5 m/s2", "5 rad/s2")
+            .replace("50 mm", "50 mrad")
+            .replace("10 um", "10 urad");
+        let error = comparable(&of([ONE, &rotary])).unwrap_err().to_string();
+        assert!(error.starts_with("`one` is linear and `two` rotary: a length and an angle"), "{error}");
+        assert_eq!(comparable(&of([&rotary, &rotary])), Ok(()));
     }
 
     #[test]

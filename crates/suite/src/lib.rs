@@ -13,7 +13,7 @@ mod requirements;
 pub mod worker;
 
 pub use check::{Objection, check, delays};
-pub use compare::{CompareError, limits_agree, only_setpoints_differ, to_equal_duration};
+pub use compare::{CompareError, comparable, limits_agree, only_setpoints_differ, to_equal_duration};
 pub use engines::{EngineMissing, Engines, Installed};
 pub use error::RunError;
 pub use execute::{Broken, Run, execute};

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `servobench.format` | version of this layout, [`FORMAT`] |
 //! | `servobench.recording` | JSON: all of a [`Recording`] but the values |
+//! | `ARROW:schema` | unit, writer and rate of each column for readers of Apache Arrow, see [`arrow`](crate::arrow) |
 //! | `servobench.seal` | digest of the whole file, see [`seal`](crate::seal) |
 use crate::channel::{Channel, ChannelSpec};
 use crate::log::LogEntry;

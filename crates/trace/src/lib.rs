@@ -4,6 +4,7 @@
 //!
 //! A row is written at tick k **before** the integration to k+1, so all its values belong to the same instant.
 
+mod arrow;
 mod channel;
 mod envelope;
 mod error;

@@ -3,7 +3,7 @@ use crate::error::TraceError;
 use crate::header::{FORMAT, FORMAT_KEY, Header, RECORDING_KEY};
 use crate::recording::Recording;
 use crate::whole_file::Unfinished;
-use crate::{TIME, seal};
+use crate::{TIME, arrow, seal};
 use parquet::basic::{Compression, Encoding, Repetition, Type as PhysicalType, ZstdLevel};
 use parquet::data_type::DoubleType;
 use parquet::errors::{ParquetError, Result as ParquetResult};
@@ -21,7 +21,8 @@ pub(crate) const ROW_GROUP: usize = 1 << 17;
 
 impl Recording {
     /// Writes the recording as a Parquet file: the column `time` (s), one column per channel (SI, f64), and in the
-    /// file's key-value metadata all the rest. Nothing is lost: [`Recording::read_parquet`] gives back every bit.
+    /// file's key-value metadata all the rest; readers of Apache Arrow find unit, writer and rate of a column in the
+    /// metadata of its field. Nothing is lost: [`Recording::read_parquet`] gives back every bit.
     ///
     /// The same recording gives the same bytes. The file appears when it is whole, as [`write_whole`](crate::write_whole)
     /// does it.
@@ -73,9 +74,12 @@ impl Recording {
     fn encode(&self, sink: impl Write + Send) -> ParquetResult<()> {
         let text =
             serde_json::to_string(&Header::of(self)).map_err(|error| ParquetError::General(error.to_string()))?;
+        let arrow = arrow::schema(self);
+        let arrow = arrow.ok_or_else(|| ParquetError::General("too many channels for an Arrow schema".into()))?;
         let metadata = vec![
             KeyValue::new(FORMAT_KEY.into(), FORMAT.to_owned()),
             KeyValue::new(seal::KEY.into(), seal::BLANK.to_owned()),
+            KeyValue::new(arrow::KEY.into(), arrow),
             KeyValue::new(RECORDING_KEY.into(), text),
         ];
         let properties = WriterProperties::builder()

@@ -1,25 +1,33 @@
-//! `servobench compare`: the same axis under different set-points.
+//! `servobench compare`: runs side by side, what differs in them and in what they give.
 use crate::args::{CompareArgs, Equal};
-use crate::console::{print, program, style};
+use crate::console::{print, program, say, style};
 use crate::engines;
-use crate::exit::{CliError, Exit, of_run_error};
-use crate::output;
+use crate::exit::{CliError, Exit, of_outcome, of_run_error};
+use crate::interrupt;
+use crate::output::{self, COMPARISON, Written};
 use crate::progress::Progress;
 use crate::sources;
 use crate::workers;
-use servobench_report::{Compared, Comparison, Results, RunResult};
-use servobench_scenario::EngineName;
+use servobench_report::{Compared, Comparison, Outcome, Results, RunResult, elided, printable};
+use servobench_scenario::{Difference, EngineName, differences};
 use servobench_suite::{
-    CompareError, Job, Run, RunError, execute, jobs, limits_agree, map_in_parallel, only_setpoints_differ,
+    CompareError, Job, Run, RunError, comparable, execute, jobs, limits_agree, map_in_parallel, only_setpoints_differ,
     to_equal_duration,
 };
 use servobench_trace::Recording;
 
-/// Runs the scenarios on one engine, says which wins by how much, and writes one recording of them all.
+/// Differences that are listed; the others are counted.
+const MOST: usize = 12;
+/// Characters of a value that are shown.
+const LONGEST: usize = 30;
+
+/// Runs the scenarios on one engine, says what differs, which wins by how much where that can be said, and writes one
+/// recording of them all.
 pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
     let mut jobs = wanted_jobs(args)?;
     let wrong = |error: CompareError| CliError::Input(error.to_string());
-    only_setpoints_differ(&jobs).map_err(wrong)?;
+    comparable(&jobs).map_err(wrong)?;
+    let is_of_set_points = only_setpoints_differ(&jobs);
     match args.equal {
         None => {}
         Some(Equal::Limits) => limits_agree(&jobs).map_err(wrong)?,
@@ -27,25 +35,37 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
     }
     let labels = labels(&jobs.iter().map(|job| job.scenario.name.as_str()).collect::<Vec<_>>());
     output::make_folder(&args.out)?;
+    interrupt::watch(&args.out)?;
     let runs = carried_out(args, &jobs)?;
 
+    if let Err(why) = output::remove_former(&args.out, COMPARISON) {
+        say(&format!("what the comparison before left stays: {why}\n"));
+    }
     let recording = write_recording(args, &jobs, &labels, &runs)?;
+    let written = Written { recording: Some(recording.clone()), files: vec![recording.clone()] };
     let results: Vec<RunResult> = jobs
         .iter()
         .zip(&runs)
         .map(|(job, run)| {
-            let identity = output::identity(job, Some(recording.clone()));
+            let identity = output::identity(job, written.clone());
             RunResult::judged(identity, &run.recording, &run.metrics, &run.verdict)
         })
         .collect();
+    let exit = results.iter().fold(Exit::Passed, |worst, run| worst.worse(of_outcome(run.verdict)));
     let compared = labels.iter().zip(&results).zip(&runs);
     let compared = compared.map(|((label, result), run)| Compared { label, result, moves: &run.recording.moves });
-    let compared = compared.collect();
-    let text = text_of(args, &jobs, &Comparison::new(compared), &recording);
+    let comparison = Comparison::new(compared.collect());
+    let comparison = if is_of_set_points { comparison } else { comparison.of_more_than_set_points() };
+    let has_something = comparison.has_something_to_compare();
+    let text = text_of(args, &jobs, &comparison, &recording);
     let json = Results::new(results).to_json().map_err(|error| CliError::Run(error.to_string()))?;
-    output::write_file(&args.out.join(output::COMPARISON), &json)?;
+    output::write_file(&args.out.join(COMPARISON), &json)?;
+    interrupt::told();
+    if !has_something {
+        return Err(CliError::Input("nothing was measured of two of these runs: there is nothing to compare".into()));
+    }
     print(&text)?;
-    Ok(if runs.iter().all(|run| run.verdict.passed()) { Exit::Passed } else { Exit::Limit })
+    Ok(exit)
 }
 
 /// Every scenario once, all on the same engine.
@@ -63,8 +83,8 @@ fn carried_out(args: &CompareArgs, jobs: &[Job]) -> Result<Vec<Run>, CliError> {
     let (engines, worker) = (engines::installed(), workers::command(&args.out, args.worker_timeout)?);
     let progress = Progress::new(jobs.len(), false);
     let ended = map_in_parallel(jobs, workers::at_a_time(None), Job::memory, |job| {
-        let ended = execute(job, &engines, &worker, &mut progress.of_run()).map_err(|broken| broken.error);
-        progress.ended(&job.id, if ended.is_ok() { "done" } else { "could not be carried out" });
+        let ended = execute(job, &engines, &worker, &mut progress.of_run(&job.id)).map_err(|broken| broken.error);
+        progress.ended(&job.id, if ended.is_ok() { "done" } else { Outcome::Error.word() });
         ended
     });
     progress.finish();
@@ -81,7 +101,7 @@ fn carried_out(args: &CompareArgs, jobs: &[Job]) -> Result<Vec<Run>, CliError> {
     match exit {
         Exit::Passed => Ok(runs),
         Exit::Input => Err(CliError::Input(failures.join("\n"))),
-        Exit::Run | Exit::Limit => Err(CliError::Run(failures.join("\n"))),
+        Exit::Run | Exit::Failed => Err(CliError::Run(failures.join("\n"))),
     }
 }
 
@@ -91,7 +111,7 @@ fn text_of(args: &CompareArgs, jobs: &[Job], comparison: &Comparison<'_>, record
         heading(args, jobs) + "\n\n",
         comparison.table(style) + "\n",
         comparison.words(style.width) + "\n",
-        comparison.missed(style.width),
+        comparison.failed(style.width),
         format!("look at it: {} view {}\n", program(), args.out.join(recording).display()),
     ]
     .concat()
@@ -103,9 +123,43 @@ fn heading(args: &CompareArgs, jobs: &[Job]) -> String {
         Some(Equal::Limits) => "at equal limits",
         Some(Equal::Duration) => "slowed to equal duration",
     };
-    let names: Vec<_> = jobs.iter().map(|job| job.scenario.name.as_str()).collect();
+    let names: Vec<_> = jobs.iter().map(|job| printable(&job.scenario.name)).collect();
     let engine = jobs.first().map_or("", |job| job.engine.as_str());
-    format!("{} on {engine}, {equal}", names.join(" and "))
+    let mut text = format!("{} on {engine}, {equal}", names.join(" and "));
+    let Some((one, others)) = jobs.split_first() else { return text };
+    for (other, name) in others.iter().zip(&names[1..]) {
+        let all = differences(&one.scenario.parameters, &other.scenario.parameters);
+        let all: Vec<_> = all.into_iter().filter(|difference| is_of_the_run(&difference.key)).collect();
+        let of = if others.len() > 1 { format!(" ({} against {name})", names[0]) } else { String::new() };
+        text += &listed(&of, &all);
+    }
+    text
+}
+
+/// Whether a key says what is run, and not on what or what is kept of it.
+fn is_of_the_run(key: &str) -> bool {
+    key != "engine" && !key.starts_with("record.channels")
+}
+
+/// What differs, a line for each key: `drive.velocity.bandwidth  60 Hz against 90 Hz`.
+fn listed(of: &str, all: &[Difference]) -> String {
+    if all.is_empty() {
+        return format!("\nthe files say the same{of}");
+    }
+    let value = |value: &Option<String>| {
+        value.as_ref().map_or_else(|| "nothing".to_owned(), |value| elided(&printable(value), LONGEST))
+    };
+    let shown = &all[..all.len().min(MOST)];
+    let key = shown.iter().map(|difference| difference.key.chars().count()).max().unwrap_or(0);
+    let lines = shown.iter().map(|difference| {
+        let values = format!("{} against {}", value(&difference.one), value(&difference.other));
+        let line = format!("\n  {:key$}  {values}", difference.key);
+        // Its values stand below a key that leaves them no room.
+        if line.chars().count() > style().width + 1 { format!("\n  {}\n      {values}", difference.key) } else { line }
+    });
+    let more = all.len() - shown.len();
+    let more = if more > 0 { format!("\n  and {more} more: see `parameters` in {COMPARISON}") } else { String::new() };
+    format!("\nwhat differs{of}:{}{more}", lines.collect::<String>())
 }
 
 /// Writes the one recording in which the runs lie over each other, and returns its name.
@@ -113,9 +167,12 @@ fn write_recording(args: &CompareArgs, jobs: &[Job], labels: &[String], runs: &[
     let labelled: Vec<(&str, &Recording)> =
         labels.iter().map(String::as_str).zip(runs.iter().map(|run| &run.recording)).collect();
     let options = jobs.first().map(|job| output::view_options(&job.scenario)).unwrap_or_default();
-    let name = format!("{}.rrd", labels.join("-against-"));
+    let name = labels.join("-against-");
+    let name: String = name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect();
+    let name = format!("{name}.rrd");
     servobench_view::write_comparison_rrd(&labelled, args.out.join(&name), &options)
         .map_err(|error| CliError::Run(error.to_string()))?;
+    interrupt::written(&args.out.join(&name));
     Ok(name)
 }
 
@@ -137,6 +194,25 @@ fn labels(names: &[&str]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn differences_are_listed_by_key_and_value() {
+        let difference = |key: &str, one: &str, other: Option<&str>| Difference {
+            key: key.into(),
+            one: Some(one.into()),
+            other: other.map(str::to_owned),
+        };
+        let all = [
+            difference("drive.velocity.bandwidth", "60 Hz", Some("90 Hz")),
+            difference("drive.filter.1.frequency.of.the.notch.that.has.a.very.long.name", "1 kHz", None),
+        ];
+        assert_eq!(listed("", &all[..1]), "\nwhat differs:\n  drive.velocity.bandwidth  60 Hz against 90 Hz");
+        let text = listed(" (a against b)", &all);
+        assert!(text.starts_with("\nwhat differs (a against b):\n  drive.velocity.bandwidth   "), "{text}");
+        assert!(text.ends_with("long.name\n      1 kHz against nothing"), "{text}");
+        let many: Vec<_> = (0..20).map(|k| difference(&format!("key{k}"), "1", Some("2"))).collect();
+        assert!(listed("", &many).ends_with("\n  and 8 more: see `parameters` in comparison.json"));
+    }
 
     #[test]
     fn labels_are_what_tells_the_names_apart() {

@@ -1,54 +1,106 @@
 //! `servobench run`: scenarios in, verdicts out.
+mod wanted;
+
 use crate::args::RunArgs;
-use crate::console::{print, program, style};
+use crate::console::{print, program, say, style};
 use crate::engines;
 use crate::exit::{CliError, Exit, of_outcome, of_run_error};
-use crate::output;
+use crate::interrupt;
+use crate::output::{self, RESULTS, Written};
 use crate::progress::Progress;
-use crate::sources;
 use crate::workers;
-use servobench_report::{Outcome, Results, RunResult, junit, verdict_table};
-use servobench_suite::{Broken, Engines, Job, Run, WorkerCommand, execute, jobs, map_in_parallel};
-use std::path::Path;
+use servobench_report::{Outcome, Results, RunResult, brief, junit, verdict_table};
+use servobench_suite::{Broken, Engines, Job, Run, WorkerCommand, execute, map_in_parallel};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+use wanted::Wanted;
+
+/// Where results go unless somebody says so; those of the demo go below it, so that they take nobody else's place.
+const OUT: &str = "servobench-out";
+const OUT_OF_THE_DEMO: &str = "servobench-out/demo";
+
+/// What a run came to, and how long that took by the clock.
+type Timed = (RunResult, Duration);
 
 /// Runs the scenarios, judges them and writes what came of them.
 pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
     let engines = engines::installed();
-    let jobs = wanted_jobs(args, &engines)?;
-    output::make_folder(&args.out)?;
-    let worker = workers::command(&args.out, args.worker_timeout)?;
-
-    let progress = Progress::new(jobs.len(), args.quiet);
-    let ended = map_in_parallel(&jobs, workers::at_a_time(args.jobs), Job::memory, |job| {
-        one(job, &engines, &worker, args.rrd, &args.out, &progress)
-    });
-    let ended = jobs.iter().zip(ended).map(|(job, ended)| {
-        ended.unwrap_or_else(|panic| {
-            progress.ended(&job.id, words(Outcome::Error));
-            RunResult::error(output::identity(job, None), None, vec![panic.to_string()])
-        })
-    });
-    let results = Results::new(ended.collect());
-    progress.finish();
-    let exit = results.scenarios.iter().fold(Exit::Passed, |worst, run| worst.worse(of_outcome(run.verdict)));
-    let text = results.to_json().map_err(|error| CliError::Run(error.to_string()))?;
-    output::write_file(&args.out.join(output::RESULTS), &text)?;
-    if let Some(path) = &args.junit {
-        output::write_file(path, &junit(&results).map_err(|error| CliError::Run(error.to_string()))?)?;
+    let wanted = Wanted::of(args, &engines)?;
+    if wanted.jobs.is_empty() {
+        return nothing_to_run(args, wanted);
     }
-    print(&text_of(&results, args))?;
+    let out = args.out.clone().unwrap_or_else(|| {
+        let default = if args.scenarios.is_empty() { OUT_OF_THE_DEMO } else { OUT };
+        PathBuf::from(default)
+    });
+    if !args.quiet {
+        say(&wanted.shown());
+        if args.scenarios.is_empty() {
+            say(&wanted.demo(&out));
+        }
+    }
+    output::make_folder(&out)?;
+    interrupt::watch(&out)?;
+    let removed = output::remove_former(&out, RESULTS);
+    let ended = carried_out(args, &wanted.jobs, &engines, &out)?;
+    let (runs, times): (Vec<_>, Vec<_>) = wanted.in_order(ended).into_iter().unzip();
+    let results = Results::new(runs);
+
+    let mut exit = results.scenarios.iter().fold(Exit::Passed, |worst, run| worst.worse(of_outcome(run.verdict)));
+    let mut troubles = Vec::new();
+    let mut keep = |done: Result<(), CliError>| {
+        if let Err(error) = done {
+            exit = exit.worse(error.exit());
+            troubles.push(error);
+        }
+    };
+    keep(write_results(&results, &out));
+    if let Some(path) = &args.junit {
+        keep(write_junit(&results, &times, path));
+    }
+    // What could not be written does not keep the verdicts from being said.
+    print(&text_of(&results, args, &out, removed))?;
+    troubles.iter().for_each(|trouble| say(&format!("servobench: {trouble}\n")));
     Ok(exit)
 }
 
-fn wanted_jobs(args: &RunArgs, engines: &Engines) -> Result<Vec<Job>, CliError> {
-    if !args.scenarios.is_empty() {
-        return Ok(jobs(sources::load(&args.scenarios)?, &args.engine));
+/// Every file is wrong: the mistakes are what is said, and nothing of earlier runs is touched.
+fn nothing_to_run(args: &RunArgs, wanted: Wanted) -> Result<Exit, CliError> {
+    let shown = wanted.mistakes();
+    let ended: Vec<Timed> = wanted.in_order(Vec::new());
+    let (runs, times): (Vec<_>, Vec<_>) = ended.into_iter().unzip();
+    let results = Results::new(runs);
+    if let Some(path) = &args.junit
+        && let Err(error) = write_junit(&results, &times, path)
+    {
+        say(&format!("servobench: {error}\n"));
     }
-    // The demo names engines that this build may lack; an FMU it has none of.
-    let demo = sources::demo()?;
-    let mut there = engines.names();
-    there.retain(|engine| demo.iter().any(|source| source.scenario.engines.contains(engine)));
-    Ok(jobs(demo, if args.engine.is_empty() { &there } else { &args.engine }))
+    if !args.quiet {
+        return Err(CliError::Input(shown));
+    }
+    print(&brief(&results))?;
+    Ok(Exit::Input)
+}
+
+/// Runs all jobs.
+fn carried_out(args: &RunArgs, jobs: &[Job], engines: &Engines, out: &Path) -> Result<Vec<Timed>, CliError> {
+    let worker = workers::command(out, args.worker_timeout)?;
+    let progress = Progress::new(jobs.len(), args.quiet);
+    let ended = map_in_parallel(jobs, workers::at_a_time(args.jobs), Job::memory, |job| {
+        let start = Instant::now();
+        let result = one(job, engines, &worker, args.rrd, out, &progress);
+        (result, start.elapsed())
+    });
+    let ended = jobs.iter().zip(ended).map(|(job, ended)| {
+        ended.unwrap_or_else(|panic| {
+            progress.ended(&job.id, Outcome::Error.word());
+            let run = output::identity(job, Written::default());
+            (RunResult::error(run, None, vec![panic.to_string()]), Duration::ZERO)
+        })
+    });
+    let ended = ended.collect();
+    progress.finish();
+    Ok(ended)
 }
 
 /// Runs one job and writes its recording. One that cannot be written takes the verdict away.
@@ -61,56 +113,64 @@ fn one(
     progress: &Progress,
 ) -> RunResult {
     let write = |recording| output::write_recording(job, recording, folder, rrd);
-    let result = match execute(job, engines, worker, &mut progress.of_run()) {
+    let result = match execute(job, engines, worker, &mut progress.of_run(&job.id)) {
         Ok(Run { recording, metrics, verdict }) => match write(&recording) {
-            Ok(name) => RunResult::judged(output::identity(job, Some(name)), &recording, &metrics, &verdict),
-            Err(error) => {
-                let (run, until_then) = (output::identity(job, None), Some((&recording, &metrics)));
+            Ok(written) => RunResult::judged(output::identity(job, written), &recording, &metrics, &verdict),
+            Err((error, written)) => {
+                let (run, until_then) = (output::identity(job, written), Some((&recording, &metrics)));
                 RunResult::error(run, until_then, vec![error.to_string()])
             }
         },
         Err(broken) if of_run_error(&broken.error) == Exit::Input => {
-            RunResult::input(output::identity(job, None), vec![broken.error.to_string()])
+            RunResult::invalid(output::identity(job, Written::default()), vec![broken.error.to_string()])
         }
         Err(broken) => {
             let Broken { error, until_then } = *broken;
             let mut reasons = vec![error.to_string()];
-            let name = until_then.as_ref().and_then(|(recording, _)| {
-                write(recording).map_err(|unwritten| reasons.push(unwritten.to_string())).ok()
+            let written = until_then.as_ref().map(|(recording, _)| {
+                write(recording).unwrap_or_else(|(unwritten, written)| {
+                    reasons.push(unwritten.to_string());
+                    written
+                })
             });
             let until_then = until_then.as_ref().map(|(recording, metrics)| (recording, metrics));
-            RunResult::error(output::identity(job, name), until_then, reasons)
+            RunResult::error(output::identity(job, written.unwrap_or_default()), until_then, reasons)
         }
     };
-    progress.ended(&job.id, words(result.verdict));
+    progress.ended(&job.id, result.verdict.word());
     result
 }
 
-/// What a progress line says of a run.
-const fn words(outcome: Outcome) -> &'static str {
-    match outcome {
-        Outcome::Passed => "passed",
-        Outcome::Unjudged => "done, without limits",
-        Outcome::Failed => "missed a limit",
-        Outcome::Input => "wrong input",
-        Outcome::Error => "could not be carried out",
-    }
+fn write_results(results: &Results, out: &Path) -> Result<(), CliError> {
+    let text = results.to_json().map_err(|error| CliError::Run(error.to_string()))?;
+    output::write_file(&out.join(RESULTS), &text)?;
+    interrupt::told();
+    Ok(())
 }
 
-fn text_of(results: &Results, args: &RunArgs) -> String {
+fn write_junit(results: &Results, times: &[Duration], path: &Path) -> Result<(), CliError> {
+    let text = junit(results, times).map_err(|error| CliError::Run(error.to_string()))?;
+    output::write_file_anywhere(path, &text)
+}
+
+fn text_of(results: &Results, args: &RunArgs, out: &Path, removed: Result<usize, String>) -> String {
     if args.quiet {
-        let bad = results.scenarios.iter().filter(|run| !run.verdict.is_good());
-        let lines = bad.map(|run| format!("{} on {}: {}\n", run.name, run.engine, run.reasons.join("; ")));
-        return lines.collect::<Vec<_>>().concat();
+        return brief(results);
     }
-    let out = args.out.display();
-    let older = match output::older_recordings(&args.out, results) {
+    let older = match output::older_recordings(out, results) {
         0 => String::new(),
-        1 => ", with a recording of an earlier run".into(),
-        count => format!(", with {count} recordings of earlier runs"),
+        1 => ", with a recording that they do not name".into(),
+        count => format!(", with {count} recordings that they do not name"),
     };
+    let removed = match removed {
+        Ok(0) => String::new(),
+        Ok(1) => "; removed 1 file of the run before".into(),
+        Ok(count) => format!("; removed {count} files of the run before"),
+        Err(why) => format!("; what the run before left stays: {why}"),
+    };
+    let out = out.display();
     let mut parts =
-        vec![verdict_table(results, style(), args.verbose), format!("results and recordings: {out}{older}\n")];
+        vec![verdict_table(results, style(), args.verbose), format!("results and recordings: {out}{older}{removed}\n")];
     parts.extend(args.rrd.then(|| format!("look at them: {} view {out}\n", program())));
     parts.concat()
 }

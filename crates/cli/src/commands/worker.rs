@@ -2,11 +2,13 @@
 use crate::args::WorkerArgs;
 use crate::engines;
 use crate::exit::{CliError, Exit};
+use crate::interrupt;
 use servobench_suite::worker::{End, Order, serve};
 use std::io::Read;
 
 /// Runs the scenario that comes in on standard input; everything that is to be said of it is said by [`serve`].
 pub(crate) fn worker(args: &WorkerArgs) -> Result<Exit, CliError> {
+    interrupt::end_with_parent()?;
     let mut text = String::new();
     std::io::stdin().read_to_string(&mut text).map_err(|error| CliError::Run(format!("standard input: {error}")))?;
     let order = Order {

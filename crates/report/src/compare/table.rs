@@ -36,6 +36,11 @@ const ROWS: [(&str, Name, Kind); 11] = [
     ("RMS current", Name::CurrentRms, Kind::Size),
 ];
 
+/// Every quantity that is compared.
+pub(super) fn compared() -> impl Iterator<Item = Name> {
+    ROWS.into_iter().map(|(_, name, _)| name)
+}
+
 const CELL: usize = 11;
 /// `  +50.0 ms, +3.8 %` fits.
 const CHANGE: usize = 18;

@@ -1,0 +1,168 @@
+//! What made a run fail, part by part: which limit is missed by how much, what requirement is broken, which fault is missing.
+use crate::ordered::Ordered;
+use crate::results::{MetricResult, RunResult, StandingResult};
+use servobench_metrics::{Name, Quantity};
+
+/// A limit that is missed.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct MissedLimit<'a> {
+    /// Index and label of the move that missed it; `None` for the run as a whole.
+    pub(crate) of_move: Option<(usize, &'a str)>,
+    /// Name of the metric.
+    pub(crate) name: &'a str,
+    /// Its value, when it was measured.
+    pub(crate) value: Option<String>,
+    /// The limit and by how much it is missed, or why there is no value.
+    pub(crate) words: String,
+    /// Line of the scenario file.
+    pub(crate) line: Option<usize>,
+}
+
+/// Reasons that are told of one requirement: the others are counted.
+const MOST: usize = 5;
+
+/// Every limit that is missed, those of the run before those of its moves.
+pub(crate) fn missed_limits(run: &RunResult) -> Vec<MissedLimit<'_>> {
+    let all = run.moves.iter().enumerate().map(|(k, made)| (Some((k, made.label.as_str())), &made.metrics));
+    let all = std::iter::once((None, &run.metrics)).chain(all);
+    all.flat_map(|(of_move, metrics)| {
+        let missed = metrics.iter().filter(|(_, metric)| metric.is_missed());
+        missed.map(move |(name, metric)| missed_limit(of_move, name, metric, &run.absent))
+    })
+    .collect()
+}
+
+fn missed_limit<'a>(
+    of_move: Option<(usize, &'a str)>,
+    name: &'a str,
+    metric: &MetricResult,
+    absent: &Ordered<String>,
+) -> MissedLimit<'a> {
+    let (value, words) = match metric.value {
+        Some(value) => {
+            let digits = metric.digits(value);
+            let text = format!("{:.digits$}", Quantity::new(value, &metric.unit));
+            (Some(text), bound(name, metric, value))
+        }
+        None => {
+            let why = absent.get(name).map_or("it is not measured here", String::as_str);
+            (None, format!("could not be measured: {why}"))
+        }
+    };
+    MissedLimit { of_move, name, value, words, line: metric.line }
+}
+
+/// What failed beside limits: broken requirements and expected faults that did not come.
+pub(crate) fn other_failures(run: &RunResult) -> Vec<String> {
+    let broken = run.requirements_that_are(StandingResult::Broken).flat_map(|(name, reasons)| {
+        let more = reasons.len().saturating_sub(MOST);
+        let more = (more > 0).then(|| format!("{name}: and {more} more"));
+        reasons.iter().take(MOST).map(move |why| format!("{name}: {why}")).chain(more)
+    });
+    let missing = run.expected.iter().filter(|expected| expected.met_at.is_none());
+    broken.chain(missing.map(|expected| format!("expected, but did not come: {}", expected.words()))).collect()
+}
+
+/// Requirements that the scenario lifts: in one sentence those that would hold, and each that would not with the reason.
+pub(crate) fn lifted(run: &RunResult) -> Vec<String> {
+    let all = || run.requirements_that_are(StandingResult::Lifted);
+    let kept: Vec<&str> = all().filter(|(_, reasons)| reasons.is_empty()).map(|(name, _)| name).collect();
+    let kept = (!kept.is_empty()).then(|| format!("lifted: {}", kept.join(", ")));
+    let broken = all().filter_map(|(name, reasons)| {
+        let first = reasons.first()?;
+        let more = if reasons.len() > 1 { format!(" (and {} more)", reasons.len() - 1) } else { String::new() };
+        Some(format!("lifted: {name}: {first}{more}"))
+    });
+    broken.chain(kept).collect()
+}
+
+impl MissedLimit<'_> {
+    /// In one line: `settling_time 35.2 ms, limit 20.0 ms, 76 % over`.
+    pub(crate) fn sentence(&self) -> String {
+        let Self { of_move, name, value, words, .. } = self;
+        let of_move = of_move.map(|(index, _)| format!("move {}: ", index + 1)).unwrap_or_default();
+        match value {
+            Some(value) => format!("{of_move}{name} {value}, {words}"),
+            None => format!("{of_move}{name} {words}"),
+        }
+    }
+}
+
+/// `limit 20.0 ms, 76 % over`
+fn bound(name: &str, metric: &MetricResult, value: f64) -> String {
+    let digits = metric.digits(value);
+    let bound = |bound: f64| format!("{:.digits$}", Quantity::new(bound, &metric.unit));
+    let size = if name.parse::<Name>().is_ok_and(Name::is_signed) { value.abs() } else { value };
+    let below = metric.limit_min.filter(|min| size < *min);
+    let (words, limit) = match (below, metric.limit) {
+        (Some(min), _) => (format!("limit at least {}", bound(min)), min),
+        (None, Some(max)) => (format!("limit {}", bound(max)), max),
+        (None, None) => return String::new(),
+    };
+    let share = 100.0 * (size / limit - 1.0);
+    match share {
+        _ if limit <= 0.0 || !share.is_finite() => words,
+        share if below.is_some() => format!("{words}, {} under", percent(-share)),
+        // Several times over is easier to grasp than a thousand per cent.
+        share if share >= 200.0 => format!("{words}, {:.2} times as much", Quantity::new(size / limit, "")),
+        share => format!("{words}, {} over", percent(share)),
+    }
+}
+
+/// Two digits, and no miss looks like none.
+fn percent(share: f64) -> String {
+    if share < 0.1 { "less than 0.1 %".into() } else { format!("{:.2} %", Quantity::new(share, "")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples;
+
+    #[test]
+    fn how_far_beyond_a_limit() {
+        let metric = |limit_min, limit| MetricResult {
+            value: None,
+            unit: "s".into(),
+            limit,
+            limit_min,
+            pass: Some(false),
+            line: None,
+        };
+        for (limit_min, limit, value, words) in [
+            (None, Some(0.02), 0.0352, "limit 20.0 ms, 76 % over"),
+            (None, Some(0.02), -0.0352, "limit 20.0 ms, 76 % over"),
+            (None, Some(0.02), 0.1, "limit 20.0 ms, 5.0 times as much"),
+            (None, Some(0.02), 0.020_000_1, "limit 20.00000 ms, less than 0.1 % over"),
+            (Some(1.0), Some(2.0), 0.9, "limit at least 1.00 s, 10 % under"),
+            (Some(1.0), Some(2.0), -0.9, "limit at least 1.00 s, 10 % under"),
+            (None, Some(0.0), 0.9, "limit 0 s"),
+        ] {
+            assert_eq!(bound("steady_state_error", &metric(limit_min, limit), value), words);
+        }
+    }
+
+    #[test]
+    fn of_many_reasons_five_are_told() {
+        let reasons = (0..8).map(|k| format!("reason {k}")).collect();
+        let mut run = samples::short();
+        run.requirements = samples::requirements([("executed", StandingResult::Broken, reasons)]);
+        let told = other_failures(&run);
+        assert_eq!(told.len(), 6 + 1, "five, how many more, and the fault that is missing: {told:#?}");
+        assert_eq!((told[4].as_str(), told[5].as_str()), ("executed: reason 4", "executed: and 3 more"));
+    }
+
+    #[test]
+    fn lifted_requirements_are_told_with_what_would_have_broken_them() {
+        let mut run = samples::kept();
+        run.requirements = samples::requirements([
+            ("arrives", StandingResult::Lifted, vec![]),
+            ("stable", StandingResult::Lifted, vec!["the loop has a pole outside".into(), "it rings".into()]),
+            ("bounded", StandingResult::Lifted, vec![]),
+        ]);
+        assert_eq!(
+            lifted(&run),
+            ["lifted: stable: the loop has a pole outside (and 1 more)", "lifted: arrives, bounded"]
+        );
+    }
+}

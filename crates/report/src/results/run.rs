@@ -1,0 +1,182 @@
+//! What came of one run.
+use super::Outcome;
+use super::entry::{
+    EventResult, ExpectedResult, LogResult, MetricResult, MoveResult, RequirementResult, StandingResult, of_set,
+};
+use crate::ordered::Ordered;
+use serde::{Deserialize, Serialize};
+use servobench_metrics::{Metrics, Name, Verdict};
+use servobench_trace::Recording;
+
+/// Which run it is.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct RunIdentity {
+    /// Name of the scenario.
+    pub name: String,
+    /// File of the scenario.
+    pub file: Option<String>,
+    /// Engine.
+    pub engine: String,
+    /// File of the recording.
+    pub recording: Option<String>,
+    /// Every file that it left beside the results, that of the recording among them.
+    pub files: Vec<String>,
+    /// What the scenario file says, by key.
+    pub parameters: Vec<(String, String)>,
+    /// Where the scenario file has which limit.
+    pub limits: Vec<LimitPlace>,
+}
+
+/// Where a limit stands in its file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LimitPlace {
+    /// Index of the move that it is of; `None` for the run as a whole.
+    pub in_move: Option<usize>,
+    /// Name of the metric.
+    pub metric: String,
+    /// Line of the file, from 1.
+    pub line: usize,
+}
+
+/// One scenario on one engine.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunResult {
+    /// Name of the scenario.
+    pub name: String,
+    /// File of the scenario, as it was given; `null` for an embedded one.
+    pub file: Option<String>,
+    /// Engine that computed the mechanics; empty for a file that could not be read.
+    pub engine: String,
+    /// What came of it.
+    pub verdict: Outcome,
+    /// Simulated time, from tick 0 to the last recorded instant (s).
+    pub duration: f64,
+    /// What failed or what is wrong, in words; empty where nothing is.
+    pub reasons: Vec<String>,
+    /// How the run stands to each requirement.
+    #[serde(default)]
+    pub(crate) requirements: Ordered<RequirementResult>,
+    /// The faults that were expected.
+    #[serde(default)]
+    pub(crate) expected: Vec<ExpectedResult>,
+    /// What breaks no requirement and should be known.
+    #[serde(default)]
+    pub(crate) warnings: Vec<String>,
+    /// What the scenario file says, models merged in, by key.
+    #[serde(default)]
+    pub(crate) parameters: Ordered<String>,
+    /// Metrics by name; with those that have a limit but could not be measured.
+    pub(crate) metrics: Ordered<MetricResult>,
+    /// Metrics that could not be measured, and why.
+    pub(crate) absent: Ordered<String>,
+    /// The moves.
+    pub(crate) moves: Vec<MoveResult>,
+    /// What happened: limits that bound, warnings.
+    pub(crate) events: Vec<EventResult>,
+    /// What FMUs said; left out where they said nothing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) log: Vec<LogResult>,
+    /// File of the recording, beside the results; `null` when none was written.
+    pub recording: Option<String>,
+    /// Every file that the run left beside the results, by name.
+    #[serde(default)]
+    pub files: Vec<String>,
+}
+
+impl RunResult {
+    /// A run that was judged.
+    #[must_use]
+    pub fn judged(run: RunIdentity, recording: &Recording, metrics: &Metrics, verdict: &Verdict) -> Self {
+        let limits = run.limits.clone();
+        let mut result = Self::of(run, Some(recording), metrics);
+        result.reasons = verdict.reasons().collect();
+        for miss in verdict.misses.iter().filter(|miss| miss.value.is_none()) {
+            let missing = [(miss.limit.metric.to_string(), MetricResult::missing(&miss.limit))];
+            if let Some(metrics) = result.metrics_of(miss.in_move) {
+                *metrics = std::mem::take(metrics).into_iter().chain(missing).collect();
+            }
+        }
+        for LimitPlace { in_move, metric, line } in limits {
+            let metric = result.metrics_of(in_move).and_then(|metrics| metrics.get_mut(&metric));
+            if let Some(metric) = metric.filter(|metric| metric.pass.is_some()) {
+                metric.line = Some(line);
+            }
+        }
+        let standings = verdict.requirements.iter();
+        result.requirements = standings.map(|(name, standing)| (name.to_string(), standing.into())).collect();
+        result.expected = verdict.expected.iter().map(ExpectedResult::from).collect();
+        result.warnings.clone_from(&verdict.warnings);
+        let is_judged = result.all_metrics().any(|(_, metric)| metric.pass.is_some()) || !result.expected.is_empty();
+        result.verdict = match (verdict.passed(), is_judged) {
+            (false, _) => Outcome::Failed,
+            (true, true) => Outcome::Passed,
+            (true, false) => Outcome::Unjudged,
+        };
+        result
+    }
+
+    /// A scenario that cannot be read or built, and why.
+    #[must_use]
+    pub fn invalid(run: RunIdentity, reasons: Vec<String>) -> Self {
+        Self { verdict: Outcome::Invalid, reasons, ..Self::of(run, None, &Metrics::default()) }
+    }
+
+    /// A run that could not be carried out and why, with what was recorded and measured until then.
+    #[must_use]
+    pub fn error(run: RunIdentity, until_then: Option<(&Recording, &Metrics)>, reasons: Vec<String>) -> Self {
+        let nothing = Metrics::default();
+        let (recording, metrics) =
+            until_then.map_or((None, &nothing), |(recording, metrics)| (Some(recording), metrics));
+        Self { reasons, ..Self::of(run, recording, metrics) }
+    }
+
+    /// Metrics of the run, or of a move.
+    fn metrics_of(&mut self, in_move: Option<usize>) -> Option<&mut Ordered<MetricResult>> {
+        match in_move {
+            None => Some(&mut self.metrics),
+            Some(index) => self.moves.get_mut(index).map(|made| &mut made.metrics),
+        }
+    }
+
+    /// Every metric by name, those of the run before those of its moves.
+    pub(crate) fn all_metrics(&self) -> impl Iterator<Item = (&str, &MetricResult)> {
+        self.metrics.iter().chain(self.moves.iter().flat_map(|made| made.metrics.iter()))
+    }
+
+    /// Requirements with this standing, and the reasons.
+    pub(crate) fn requirements_that_are(&self, standing: StandingResult) -> impl Iterator<Item = (&str, &[String])> {
+        let all = self.requirements.iter().filter(move |(_, requirement)| requirement.standing == standing);
+        all.map(|(name, requirement)| (name, requirement.reasons.as_slice()))
+    }
+
+    fn of(run: RunIdentity, recording: Option<&Recording>, metrics: &Metrics) -> Self {
+        let events = recording.map(|recording| recording.events.as_slice()).unwrap_or_default();
+        let log = recording.map(|recording| recording.log.as_slice()).unwrap_or_default();
+        Self {
+            name: run.name,
+            file: run.file,
+            engine: run.engine,
+            verdict: Outcome::Error,
+            // N + 1 instants from tick 0 to tick N.
+            duration: recording.map_or(0.0, |recording| recording.time_of(recording.len().saturating_sub(1))),
+            reasons: Vec::new(),
+            requirements: Ordered::default(),
+            expected: Vec::new(),
+            warnings: Vec::new(),
+            parameters: run.parameters.into_iter().collect(),
+            metrics: of_set(&metrics.run),
+            absent: metrics.run.absences().map(|(name, why)| (name.to_string(), why.to_string())).collect(),
+            moves: metrics.moves.iter().map(MoveResult::from).collect(),
+            events: events.iter().map(EventResult::from).collect(),
+            log: log.iter().map(LogResult::from).collect(),
+            recording: run.recording,
+            files: run.files,
+        }
+    }
+
+    /// Value (SI) and unit of a metric, when it was measured.
+    pub(crate) fn metric(&self, name: Name) -> Option<(f64, &str)> {
+        let metric = self.metrics.get(name.as_str())?;
+        Some((metric.value?, metric.unit.as_str()))
+    }
+}

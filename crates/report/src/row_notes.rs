@@ -1,0 +1,135 @@
+//! What stands below the row of a run: what failed, what is lifted, and a handful of warnings and events.
+use crate::bound_limits::{bound_limits, is_bound};
+use crate::failures::{lifted, missed_limits, other_failures};
+use crate::results::{EventResult, Outcome, RunResult};
+use crate::said::{last_words, warnings};
+use crate::style::{Ink, Style};
+use crate::text::{printable, widest, wrapped};
+
+/// Warnings and events that are shown of a run, and reasons of one that was not carried out; the others are counted.
+const MOST: usize = 5;
+/// `-814 µrad` fits.
+const NUMBER: usize = 9;
+
+/// The lines below a row, each `indent` to the right.
+pub(crate) fn row_notes(run: &RunResult, indent: usize, style: Style) -> String {
+    let mut notes = Notes { text: String::new(), indent, style };
+    if run.verdict == Outcome::Failed {
+        notes.missed_limits(run);
+        other_failures(run).iter().for_each(|failure| notes.wrapped(failure, None));
+    } else {
+        notes.a_handful(run.reasons.clone(), None);
+    }
+    lifted(run).iter().for_each(|words| notes.wrapped(words, Some(Ink::Warning)));
+    notes.a_handful(remarkable(run), Some(Ink::Warning));
+    if !run.verdict.is_whole() {
+        last_words(run, style.width.saturating_sub(indent)).iter().for_each(|said| notes.line(said));
+    }
+    notes.text
+}
+
+/// Warnings, then what happened, then which limits bound.
+fn remarkable(run: &RunResult) -> Vec<String> {
+    let mut all = run.warnings.clone();
+    if run.verdict.is_whole() {
+        all.extend(warnings(run));
+    }
+    // A reason or a warning may be of what an event tells.
+    let is_told = |event: &EventResult| run.reasons.iter().chain(&run.warnings).any(|one| one.contains(&event.message));
+    all.extend(run.events.iter().filter(|event| !is_bound(event) && !is_told(event)).map(happened));
+    all.extend(bound_limits(&run.events));
+    all
+}
+
+/// `at 0.5000 s axis: the command is refused`
+fn happened(event: &EventResult) -> String {
+    let EventResult { start, source, message, .. } = event;
+    format!("at {start:.4} s {source}: {message}")
+}
+
+struct Notes {
+    text: String,
+    indent: usize,
+    style: Style,
+}
+
+impl Notes {
+    /// As many of `all` as one reads, and how many more there are.
+    fn a_handful(&mut self, mut all: Vec<String>, ink: Option<Ink>) {
+        let more = all.len().saturating_sub(MOST);
+        if more > 0 {
+            all.truncate(MOST);
+            all.push(format!("and {more} more: see `results.json`"));
+        }
+        all.iter().for_each(|text| self.wrapped(text, ink));
+    }
+
+    /// Limits in columns, those of a move below its name.
+    fn missed_limits(&mut self, run: &RunResult) {
+        let missed = missed_limits(run);
+        let mut of_move = None;
+        for limit in &missed {
+            if limit.of_move != of_move {
+                of_move = limit.of_move;
+                if let Some((index, label)) = of_move {
+                    self.wrapped(&format!("move {} ({label}):", index + 1), None);
+                }
+            }
+            let together = missed.iter().filter(|other| other.of_move == of_move && other.value.is_some());
+            let name = widest(together.map(|other| other.name));
+            match &limit.value {
+                Some(value) => {
+                    let plain = format!("{:name$}  {value:>NUMBER$}  {}", limit.name, limit.words);
+                    if self.indent + plain.chars().count() <= self.style.width {
+                        let value = self.style.paint(Ink::Bad, &format!("{value:>NUMBER$}"));
+                        self.line(&format!("{:name$}  {value}  {}", limit.name, limit.words));
+                    } else {
+                        self.wrapped(&format!("{} {value}, {}", limit.name, limit.words), None);
+                    }
+                }
+                None => self.wrapped(&format!("{} {}", limit.name, limit.words), None),
+            }
+        }
+    }
+
+    /// What does not fit in one line is indented further.
+    fn wrapped(&mut self, text: &str, ink: Option<Ink>) {
+        let room = self.style.width.saturating_sub(self.indent + 2);
+        for (k, part) in wrapped(&printable(text), room).iter().enumerate() {
+            let part = ink.map_or_else(|| part.clone(), |ink| self.style.paint(ink, part));
+            self.line(&format!("{}{part}", if k == 0 { "" } else { "  " }));
+        }
+    }
+
+    fn line(&mut self, text: &str) {
+        let line = format!("{:indent$}{text}", "", indent = self.indent);
+        self.text += line.trim_end();
+        self.text.push('\n');
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples;
+
+    #[test]
+    fn of_many_events_a_handful_is_shown() {
+        let mut run = samples::kept();
+        run.warnings = vec!["`jog` was refused: the axis is not homed".into()];
+        run.events = (0..9)
+            .map(|k| EventResult {
+                start: f64::from(k),
+                end: f64::from(k),
+                source: "jog".into(),
+                message: if k == 0 { "the axis is not homed".into() } else { format!("refused {k}") },
+            })
+            .collect();
+        let notes = row_notes(&run, 3, Style::default());
+        let lines: Vec<_> = notes.lines().map(str::trim).collect();
+        // One is told by the warning already.
+        assert_eq!(lines[..2], ["lifted: bounded", "`jog` was refused: the axis is not homed"]);
+        assert!(lines.contains(&"at 1.0000 s jog: refused 1"), "{notes}");
+        assert_eq!(lines.last(), Some(&"and 5 more: see `results.json`"), "{notes}");
+    }
+}
