@@ -33,8 +33,9 @@ pub(crate) fn plots<'a>(runs: &[Run<'a>], options: &ViewOptions) -> Vec<PlannedP
     planned
 }
 
-/// The first derivative of the position (0: velocity) that moves of some order do not limit.
-const JERK: usize = 2;
+/// The first derivative of the position (0: velocity) that may be missing although the axis moves: a bus need not carry the
+/// acceleration, and the order of a move need not limit what follows.
+const ACCELERATION: usize = 1;
 
 /// A curve that is to be plotted.
 struct Wanted<'c> {
@@ -64,19 +65,21 @@ fn plan<'a>(plot: &Plot, others: &[Unlisted<'a>], runs: &[Run<'a>], options: &Vi
         return None;
     }
     let mut remarks = Vec::new();
-    if let Some(derivative) = plot.derivative.filter(|derivative| *derivative >= JERK) {
-        // Impulses would be drawn as a line at zero.
+    if let Some(derivative) = plot.derivative.filter(|derivative| *derivative >= ACCELERATION) {
         series.retain(|one| {
             let Values::Channel { run, values, .. } = one.values else { return true };
-            let what = impulses(&run, values, derivative);
-            match what {
-                Impulses::None => return true,
-                Impulses::Some => remarks.push(
-                    run.label.map_or_else(|| "and impulses".to_owned(), |label| format!("and impulses ({label})")),
-                ),
-                Impulses::Only => remarks.extend(run.label.map(|label| format!("impulses ({label})"))),
-            }
-            what == Impulses::Some
+            let (is_curve, what) = match content(&run, values, derivative) {
+                Content::Curve => return true,
+                Content::CurveAndImpulses => (true, "and impulses"),
+                // They would be drawn as a line at zero.
+                Content::Impulses => (false, "impulses"),
+                Content::Nothing => (false, "none"),
+            };
+            remarks.extend(match run.label {
+                Some(label) => Some(format!("{what} ({label})")),
+                None => is_curve.then(|| what.to_owned()),
+            });
+            is_curve
         });
     }
     if !series.iter().any(|one| one.shown && one.range().is_some()) {
@@ -220,28 +223,30 @@ fn planned_limit(runs: &[Run<'_>], derivative: usize) -> Option<f64> {
     limits.all(|limit| limit.is_some_and(|limit| limit.to_bits() == first.to_bits())).then_some(first)
 }
 
-/// Whether a derivative of the position is more than impulses.
+/// What a channel says of a derivative of the position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Impulses {
-    /// It is nothing else than what was recorded.
-    None,
-    /// Some moves bound it, others do not.
-    Some,
-    /// No move bounds it.
-    Only,
+enum Content {
+    /// It is the derivative.
+    Curve,
+    /// It is the derivative in some moves; others do not bound it.
+    CurveAndImpulses,
+    /// No move bounds it: a row of impulses, which no channel shows.
+    Impulses,
+    /// Nothing but zero.
+    Nothing,
 }
 
-/// What the derivative of the position in `values` is in `run`: an order that does not limit it makes it a row of
-/// impulses, which no channel shows.
-fn impulses(run: &Run<'_>, values: &[f64], derivative: usize) -> Impulses {
+/// What `values` say of a derivative of the position of `run`.
+fn content(run: &Run<'_>, values: &[f64], derivative: usize) -> Content {
     let moves = &run.recording.moves;
     let unbounded = moves.iter().filter(|made| !made.peaks[derivative].is_finite()).count();
-    if range(values).is_none_or(|(low, high)| low == 0.0 && high == 0.0) || (unbounded > 0 && unbounded == moves.len())
-    {
-        Impulses::Only
+    if unbounded > 0 && unbounded == moves.len() {
+        Content::Impulses
+    } else if range(values).is_none_or(|(low, high)| low == 0.0 && high == 0.0) {
+        Content::Nothing
     } else if unbounded > 0 {
-        Impulses::Some
+        Content::CurveAndImpulses
     } else {
-        Impulses::None
+        Content::Curve
     }
 }

@@ -192,6 +192,10 @@ fn a_jerk_limited_move_has_impulses_of_snap_and_no_peak_of_zero() {
     let content = read(&path);
     assert_eq!(content.title("Set-point snap"), "Set-point snap (m/s⁴), peak 1000 m/s⁴, impulses (jerk)");
     assert!(!content.entities.contains("/jerk/setpoint_snap/snap"), "a line at zero would be wrong");
+    // A bus need not carry the acceleration: nothing but zero is no curve.
+    let mut bus = example(4);
+    add(&mut bus, "setpoint.acceleration", "m/s²", |_| 0.0);
+    assert!(written(&bus, &options()).views.values().all(|view| !view.title.contains("acceleration")));
     // Some rounding in the channel is no snap either.
     let mut noisy = example(3);
     add(&mut noisy, "setpoint.snap", "m/s⁴", |k| 1e-9 * (k % 3) as f64);
