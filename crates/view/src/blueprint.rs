@@ -49,7 +49,7 @@ pub(crate) fn layout(parts: Parts<'_, '_>) -> Layout {
     let Parts { plots, scene, happenings, signals, reached, head, duration } = parts;
     let on = |page: Page| plots.iter().filter(move |plot| plot.page == page).map(|plot| (share(plot), plot_view(plot)));
     let mut left: Vec<(f32, Node)> = Vec::new();
-    left.extend(scene.map(|scene| (1.5, scene_view(scene))));
+    left.extend(scene.map(|scene| (if scene.roots.len() > 1 { 2.0 } else { 1.5 }, scene_view(scene))));
     left.extend(on(Page::Motion));
     left.extend(lanes_view(&happenings));
     let right = on(Page::Errors).collect();
@@ -59,7 +59,8 @@ pub(crate) fn layout(parts: Parts<'_, '_>) -> Layout {
     let mut blocks: Vec<(f32, Node)> = Vec::new();
     if !signals.paths.is_empty() || !signals.fates.is_empty() {
         blocks.extend(on(Page::Motion).map(|(_, plot)| (0.85, plot)));
-        let height = 0.25 + 0.2 * signals.fates.len().min(5) as f32;
+        // A lane takes 40 points, its view the height of title and time axis.
+        let height = 0.45 + 0.3 * signals.fates.len().min(5) as f32;
         let fates = (height, "Calls that were never executed, or failed", signals.fates);
         for (height, title, paths) in [fates, (2.0, "Blocks, axis and drive", signals.paths)] {
             blocks.extend((!paths.is_empty()).then(|| (height, Node::View(View::new("StateTimeline", title, paths)))));
@@ -73,7 +74,9 @@ pub(crate) fn layout(parts: Parts<'_, '_>) -> Layout {
         first.reverse();
     }
     let [one, two] = first;
-    let drive = [(1.0, in_columns(on(Page::Electrical).collect())), (0.28, reached.map(reached_view))];
+    let lanes = reached.as_ref().map_or(0, |reached| reached.paths.len().min(6));
+    let height = 0.14 + 0.07 * lanes as f32;
+    let drive = [(1.0, in_columns(on(Page::Electrical).collect())), (height, reached.map(reached_view))];
     let drive = drive.into_iter().filter_map(|(share, part)| Some((share, part?))).collect();
     let pages = [
         one,

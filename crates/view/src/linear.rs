@@ -56,7 +56,8 @@ pub(crate) fn camera(runs: usize, bodies: usize) -> ([f32; 3], [f32; 3]) {
     let away = (HALF_BED + NAMES / 2.0) / VIEW + 0.2 + 0.5 * depth;
     // Steeper for several rails, or the bodies in front would hide those behind.
     let (back, up) = if runs > 1 { (0.72, 0.7) } else { (0.9, 0.45) };
-    ([middle, 0.5 * depth - back * away, height + up * away], [middle, 0.5 * depth, height])
+    let target = 0.42 * depth;
+    ([middle, target - back * away, height + up * away], [middle, target, height])
 }
 
 /// Logs one run.
@@ -80,7 +81,7 @@ pub(crate) fn log(
         let path = run.path(&["axis", body.name]);
         let x = body.positions.iter().map(|position| [scene.place(*position), y, 0.0]);
         poses.send(stream, path.clone(), Transform3D::update_fields().with_many_translation(x))?;
-        log_body(stream, path, body, [index, number])?;
+        log_body(stream, path, body, [index, number], run.label.is_some())?;
         below = Some(body);
     }
     log_force(stream, run, poses)?;
@@ -133,6 +134,7 @@ fn log_body(
     path: rerun::EntityPath,
     body: &Body,
     [index, number]: [usize; 2],
+    is_one_of_several: bool,
 ) -> RecordingStreamResult<()> {
     let (bottom, half) = storey(number);
     let middle = bottom + half;
@@ -143,7 +145,9 @@ fn log_body(
     let Some(word) = &body.label else { return Ok(()) };
     // Names of a run are not in the way of those of the run behind it.
     let side = if index.is_multiple_of(2) { -1.0 } else { 1.0 };
-    stream.log_static(path, &label([side * (HALF_BODY + NAMES / 2.0), 0.0, middle], word, body.colour))
+    // With the name of a run in front they are longer, and of rails further away.
+    let (away, height) = if is_one_of_several { (1.6 * NAMES, 0.19 * number as f32) } else { (NAMES, middle) };
+    stream.log_static(path, &label([side * (HALF_BODY + away / 2.0), 0.0, height], word, body.ink))
 }
 
 /// A word at `place`.

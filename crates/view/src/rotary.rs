@@ -59,7 +59,7 @@ pub(crate) fn log(stream: &RecordingStream, run: &Run<'_>, index: usize, poses: 
             // An entity of its own, as it must not turn with the disc.
             let label = Points3D::new([[place[0], 0.0, 1.55]])
                 .with_radii([0.001])
-                .with_colors([body.colour])
+                .with_colors([body.ink])
                 .with_labels([word.as_str()])
                 .with_show_labels(true);
             stream.log_static(run.path(&["axis", "label", body.name]), &label)?;

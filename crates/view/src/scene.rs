@@ -57,6 +57,8 @@ pub(crate) struct Body {
     pub(crate) label: Option<String>,
     /// Its colour.
     pub(crate) colour: Rgb,
+    /// Colour of its label: that of its run in a comparison, without a shade.
+    pub(crate) ink: Rgb,
     /// Positions (axis unit), the deflection enlarged.
     pub(crate) positions: Vec<f64>,
     /// Positions (axis unit) as they were.
@@ -177,7 +179,9 @@ fn poses(run: &Run<'_>, index: usize, exaggeration: f64) -> Poses {
             }
         }
         let label = if name == "body" { run.label.map(str::to_owned) } else { Some(run.labelled(name)) };
-        bodies.push(Body { name, label, colour: colour(run, index, name), positions, actual });
+        let colour = colour(run, index, name);
+        let ink = run.label.map_or(colour, |_| style::of_run(index));
+        bodies.push(Body { name, label, colour, ink, positions, actual });
     }
     let reference = reference(run).map(pick);
     let force = recording.channel("disturbance.load").filter(|values| values.len() == recording.len()).map(pick);
