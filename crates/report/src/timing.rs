@@ -52,7 +52,7 @@ pub fn timing_diagram(recording: &Recording, options: &TimingOptions) -> Result<
     if !(LEAST..=MOST).contains(&options.width) {
         return Err(ReportError::Width { width: options.width, least: LEAST, most: MOST });
     }
-    let is_known = |name: &&String| recording.signals.iter().any(|signal| signal.source == **name);
+    let is_known = |name: &&String| sources(recording).contains(&name.as_str());
     if let Some(name) = options.sources.iter().find(|name| !is_known(name)) {
         return Err(ReportError::UnknownSource { name: name.clone(), known: sources_in_words(recording) });
     }
@@ -67,13 +67,20 @@ pub fn timing_diagram(recording: &Recording, options: &TimingOptions) -> Result<
     Ok(Sheet { about: &recording.about, window, width: f64::from(options.width), curves, groups, idle }.to_svg())
 }
 
-/// Whose signals there are.
-fn sources_in_words(recording: &Recording) -> String {
+/// Whose signals there are, and the calls.
+fn sources(recording: &Recording) -> Vec<&str> {
     let mut names: Vec<&str> = Vec::new();
-    for signal in &recording.signals {
-        if !names.contains(&signal.source.as_str()) {
-            names.push(&signal.source);
+    let all = recording.signals.iter().map(|signal| &signal.source);
+    for name in all.chain(recording.calls.iter().map(|call| &call.name)) {
+        if !names.contains(&name.as_str()) {
+            names.push(name);
         }
     }
+    names
+}
+
+/// The same in words.
+fn sources_in_words(recording: &Recording) -> String {
+    let names = sources(recording);
     if names.is_empty() { "none at all".to_owned() } else { format!("those of `{}`", names.join("`, `")) }
 }

@@ -10,8 +10,10 @@ pub(crate) enum Page {
     Errors,
     /// What was asked for.
     SetPoint,
-    /// Currents and voltages of the drive.
+    /// Currents, voltages and powers of the drive.
     Electrical,
+    /// Channels that the catalogue does not name.
+    Other,
 }
 
 /// One curve of a plot.
@@ -32,7 +34,7 @@ impl Page {
     pub(crate) const fn plot_height(self) -> f64 {
         match self {
             Self::Motion => 155.0,
-            Self::Errors | Self::Electrical => 210.0,
+            Self::Errors | Self::Electrical | Self::Other => 210.0,
             Self::SetPoint => 340.0,
         }
     }
@@ -66,7 +68,7 @@ pub(crate) struct Plot {
     pub(crate) title: &'static str,
     /// Name when the values are forces, where it is another.
     pub(crate) linear_title: Option<&'static str>,
-    /// First part of the entity path.
+    /// First part of the entity path. A channel that no plot names, but whose name begins with it, is shown here too.
     pub(crate) path: &'static str,
     /// Where it stands.
     pub(crate) page: Page,
@@ -78,6 +80,8 @@ pub(crate) struct Plot {
     pub(crate) includes: &'static [f64],
     /// Whether a value holds until the next one: a staircase.
     pub(crate) held: bool,
+    /// Whether it is left out where nothing but zero was recorded.
+    pub(crate) needs_a_value: bool,
     /// Derivative of the position whose limit in the plan bounds it, 0 for velocity.
     pub(crate) derivative: Option<usize>,
     /// Its curves, the one that a comparison shows first: the first of them that was recorded.
@@ -101,6 +105,7 @@ const PLAIN: Plot = Plot {
     amplitude: false,
     includes: &[0.0],
     held: false,
+    needs_a_value: false,
     derivative: None,
     curves: &[],
 };
@@ -133,6 +138,7 @@ pub(crate) const PLOTS: &[Plot] = &[
         curves: &[
             curve(&["load.velocity"], "load", style::LOAD, WIDE),
             curve(&["motor.velocity"], "motor", style::MOTOR, MIDDLE),
+            curve(&["table.velocity"], "table", style::TABLE, MIDDLE),
             curve(&["velocity.reference", "setpoint.velocity"], "reference", style::REFERENCE, THIN),
         ],
         ..PLAIN
@@ -150,6 +156,7 @@ pub(crate) const PLOTS: &[Plot] = &[
         title: "Disturbance on the load",
         path: "load_disturbance",
         held: true,
+        needs_a_value: true,
         curves: &[curve(&["disturbance.load"], "load", style::DISTURBANCE, MIDDLE)],
         ..PLAIN
     },
@@ -157,6 +164,7 @@ pub(crate) const PLOTS: &[Plot] = &[
         title: "Disturbance on the motor",
         path: "motor_disturbance",
         held: true,
+        needs_a_value: true,
         curves: &[curve(&["disturbance.motor"], "motor", style::DISTURBANCE, MIDDLE)],
         ..PLAIN
     },
@@ -229,23 +237,36 @@ pub(crate) const PLOTS: &[Plot] = &[
         amplitude: true,
         page: Page::Electrical,
         curves: &[
-            curve(&["voltage.magnitude"], "magnitude", style::TABLE, MIDDLE),
             curve(&["voltage.q"], "q", style::MOTOR, MIDDLE),
             curve(&["voltage.d"], "d", style::AUXILIARY, MIDDLE),
+            curve(&["voltage.command_q"], "q commanded", style::REFERENCE, THIN),
+            curve(&["voltage.command_d"], "d commanded", style::DISTURBANCE, THIN),
+        ],
+        ..PLAIN
+    },
+    // A magnitude is never negative: its axis begins at 0.
+    Plot {
+        title: "Voltage magnitude",
+        path: "voltage_magnitude",
+        amplitude: true,
+        page: Page::Electrical,
+        curves: &[
+            curve(&["voltage.magnitude"], "applied", style::TABLE, MIDDLE),
+            curve(&["voltage.command_magnitude"], "commanded", style::REFERENCE, THIN),
             curve(&["voltage.limit"], BOUND, style::LIMIT, THIN),
         ],
         ..PLAIN
     },
     Plot {
-        title: "Saturated share of control ticks",
-        path: "saturation",
-        headline: Headline::None,
-        includes: &[0.0, 1.0],
+        title: "Power",
+        path: "power",
         page: Page::Electrical,
         curves: &[
-            curve(&["saturation.current"], "current", style::LOAD, MIDDLE),
-            curve(&["saturation.voltage"], "voltage", style::MOTOR, MIDDLE),
-            curve(&["saturation.effort"], "effort", style::TABLE, MIDDLE),
+            curve(&["power.electrical"], "electrical", style::MOTOR, WIDE),
+            curve(&["power.air_gap"], "air gap", style::TABLE, MIDDLE),
+            curve(&["power.shaft"], "shaft", style::LOAD, THIN),
+            curve(&["power.copper"], "copper", style::DISTURBANCE, MIDDLE),
+            curve(&["power.stored"], "stored", style::AUXILIARY, MIDDLE),
         ],
         ..PLAIN
     },

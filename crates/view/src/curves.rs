@@ -6,6 +6,8 @@ use rerun::components::InterpolationMode;
 use rerun::{RecordingStream, RecordingStreamResult, Scalars, SeriesLines, TimeColumn};
 use servobench_trace::envelope;
 
+/// How much later the upper end of an upright line is than the lower (s).
+const UPRIGHT: f64 = 1e-9;
 /// The one timeline: seconds since the start of the run.
 pub(crate) const TIMELINE: &str = "time";
 
@@ -44,5 +46,9 @@ fn points(series: &Series<'_>, scale: &Scale, max_instants: usize) -> (Vec<f64>,
             finite.map(|index| (run.recording.time_of(first + index), (values[index] - origin) * scale.factor)).unzip()
         }
         Values::Level { value, span: (from, to) } => (vec![from, to], vec![value * scale.factor; 2]),
+        // Rerun shows the last of two values at one instant.
+        Values::Instant { time, range: (low, high) } => {
+            (vec![time, time + UPRIGHT], vec![low * scale.factor, high * scale.factor])
+        }
     }
 }

@@ -1,11 +1,12 @@
 //! Moves, disturbances, events and what FMUs say: a log to read, and lanes to see when.
 use crate::curves::TIMELINE;
+use crate::lanes::{Lane, Span};
 use crate::run::{Run, range};
 use crate::scale::{Scale, shown_unit};
-use crate::style::{self, Rgb};
-use rerun::{EntityPath, RecordingStream, RecordingStreamResult, StateChange, StateConfiguration, TextLog, TimeColumn};
+use crate::style;
+use rerun::{EntityPath, RecordingStream, RecordingStreamResult, TextLog, TimeColumn};
 use servobench_base::Severity;
-use std::borrow::Cow;
+use servobench_trace::CallFate;
 
 /// Entities that were logged.
 #[derive(Debug, Default)]
@@ -14,22 +15,6 @@ pub(crate) struct Happenings {
     pub(crate) logs: Vec<EntityPath>,
     /// Lanes.
     pub(crate) lanes: Vec<EntityPath>,
-}
-
-/// Something with a start, an end and a text.
-struct Span<'a> {
-    start: f64,
-    end: f64,
-    text: Cow<'a, str>,
-}
-
-/// A row of the view.
-struct Lane<'a> {
-    path: EntityPath,
-    spans: Vec<Span<'a>>,
-    colour: Rgb,
-    /// What is when no span is.
-    otherwise: &'static str,
 }
 
 /// Channel, its lane, and what it is.
@@ -45,7 +30,8 @@ impl Happenings {
         for run in runs {
             let recording = run.recording;
             let lanes = lanes(run, 0);
-            if !lanes.is_empty() || !recording.events.is_empty() || !recording.log.is_empty() {
+            let says = [recording.events.is_empty(), recording.log.is_empty(), calls(run).is_empty()].contains(&false);
+            if !lanes.is_empty() || says {
                 happenings.logs.push(run.path(&["log"]));
             }
             happenings.lanes.extend(lanes.into_iter().map(|lane| lane.path));
@@ -57,7 +43,7 @@ impl Happenings {
 /// Logs moves, events and what was said in `run`.
 pub(crate) fn log(stream: &RecordingStream, run: &Run<'_>, index: usize) -> RecordingStreamResult<()> {
     log_text(stream, run)?;
-    lanes(run, index).iter().try_for_each(|lane| log_lane(stream, lane))
+    lanes(run, index).iter().try_for_each(|lane| lane.log(stream))
 }
 
 fn log_text(stream: &RecordingStream, run: &Run<'_>) -> RecordingStreamResult<()> {
@@ -76,6 +62,7 @@ fn log_text(stream: &RecordingStream, run: &Run<'_>) -> RecordingStreamResult<()
         let until = if event.end > event.start { format!(" (until {:.4} s)", event.end) } else { String::new() };
         lines.push((event.start, "WARN", format!("{}: {}{until}", event.source, event.message)));
     }
+    lines.extend(calls(run));
     for entry in &run.recording.log {
         lines.push((entry.start, level(entry.severity), format!("{}: {}", entry.source, entry.words())));
     }
@@ -100,6 +87,20 @@ fn log_text(stream: &RecordingStream, run: &Run<'_>) -> RecordingStreamResult<()
     stream.send_columns(run.path(&["log"]), [times], columns)
 }
 
+/// What is to be said of calls that were never executed, which is known at the end of the run, and of those that failed.
+fn calls(run: &Run<'_>) -> Vec<(f64, &'static str, String)> {
+    let line = |call: &servobench_trace::Call| {
+        let who = format!("`{}` ({})", call.name, call.block);
+        let level = if call.is_optional { "INFO" } else { "ERROR" };
+        match &call.fate {
+            CallFate::NeverExecuted(why) => Some((run.end(), level, format!("{who} was never executed: {why}"))),
+            CallFate::Failed { time, id, message } => Some((*time, level, format!("{who} failed: {message} ({id})"))),
+            CallFate::Executed => None,
+        }
+    };
+    run.recording.calls.iter().filter_map(line).collect()
+}
+
 /// What Rerun calls it.
 const fn level(severity: Severity) -> &'static str {
     match severity {
@@ -113,18 +114,20 @@ const fn level(severity: Severity) -> &'static str {
 fn lanes<'a>(run: &Run<'a>, index: usize) -> Vec<Lane<'a>> {
     let colour = run.label.map_or(style::MOTOR, |_| style::of_run(index));
     let moves = run.recording.moves.iter();
-    let moves = moves.map(|made| Span { start: made.start, end: made.end, text: (&made.label).into() }).collect();
-    let mut lanes = vec![Lane { path: run.path(&["moves"]), spans: moves, colour, otherwise: "at rest" }];
+    let moves =
+        moves.map(|made| Span { start: made.start, end: made.end, text: (&made.label).into(), colour }).collect();
+    let mut lanes = vec![Lane { path: run.path(&["moves"]), spans: moves, otherwise: "at rest" }];
     for (channel, name, _) in DISTURBANCES {
         let spans = disturbed(run, channel);
-        lanes.push(Lane { path: run.path(&[name]), spans, colour: style::DISTURBANCE, otherwise: "none" });
+        lanes.push(Lane { path: run.path(&[name]), spans, otherwise: "none" });
     }
     for event in run.recording.events.iter().filter(|event| event.end > event.start) {
         let path = run.path(&["events", &event.source.replace(' ', "_")]);
-        let span = Span { start: event.start, end: event.end, text: (&event.message).into() };
+        let (start, end, text) = (event.start, event.end, (&event.message).into());
+        let span = Span { start, end, text, colour: style::LIMIT };
         match lanes.iter_mut().find(|lane| lane.path == path) {
             Some(lane) => lane.spans.push(span),
-            None => lanes.push(Lane { path, spans: vec![span], colour: style::LIMIT, otherwise: "none" }),
+            None => lanes.push(Lane { path, spans: vec![span], otherwise: "none" }),
         }
     }
     lanes.retain(|lane| !lane.spans.is_empty());
@@ -144,29 +147,8 @@ fn disturbed(run: &Run<'_>, channel: &str) -> Vec<Span<'static>> {
         let value = if low < 0.0 && high <= 0.0 { -peak } else { peak };
         let signs = if low < 0.0 && high > 0.0 { "±" } else { "" };
         let text = format!("{signs}{}", Scale::for_peak(&unit, peak).show(value, 3));
-        Some(Span { start: run.recording.time_of(first), end: run.recording.time_of(last + 1), text: text.into() })
+        let [start, end] = [first, last + 1].map(|row| run.recording.time_of(row));
+        Some(Span { start, end, text: text.into(), colour: style::DISTURBANCE })
     };
     spans.filter_map(span).collect()
-}
-
-fn log_lane(stream: &RecordingStream, lane: &Lane<'_>) -> RecordingStreamResult<()> {
-    let Lane { path, spans, colour, otherwise } = lane;
-    // From the start of the run on, or the view would begin with the first span.
-    let mut changes =
-        if spans.first().is_some_and(|span| span.start > 0.0) { vec![(0.0, *otherwise)] } else { Vec::new() };
-    for (index, span) in spans.iter().enumerate() {
-        changes.push((span.start, &*span.text));
-        if spans.get(index + 1).is_none_or(|next| next.start > span.end) {
-            changes.push((span.end, *otherwise));
-        }
-    }
-    let times = TimeColumn::new_duration_secs(TIMELINE, changes.iter().map(|(time, _)| *time));
-    let columns =
-        StateChange::update_fields().with_state(changes.iter().map(|(_, text)| *text)).columns_of_unit_batches()?;
-    let states = spans.iter().map(|span| (&*span.text, *colour)).chain([(*otherwise, style::IDLE)]);
-    let (texts, colours): (Vec<&str>, Vec<rerun::Color>) =
-        states.map(|(text, [r, g, b])| (text, rerun::Color::from_rgb(r, g, b))).unzip();
-    let configuration = StateConfiguration::new().with_values(texts).with_colors(colours);
-    stream.send_columns(path.clone(), [times], columns)?;
-    stream.log_static(path.clone(), &configuration)
 }

@@ -79,6 +79,11 @@ impl Node {
             _ => Some(Self::Container(Container { kind, name, parts })),
         }
     }
+
+    /// A tab: its parts below each other.
+    pub(crate) const fn tab(name: &'static str, parts: Vec<(f32, Self)>) -> Self {
+        Self::Container(Container { kind: ContainerKind::Vertical, name: Some(name), parts })
+    }
 }
 
 impl Layout {

@@ -1,27 +1,32 @@
-//! A linear axis in 3D: bodies on a rail, springs between them, a ruler in front.
+//! A linear axis in 3D: the motor's body on a rail, the others above it on leaf springs, a ruler in front.
+//!
+//! All bodies stand on one scale, that of the ruler: a body at 105 mm stands above the mark of 105 mm. Only the deflection
+//! against the motor is enlarged, as the title says; a pointer at the ruler shows where the load is without that.
 use crate::curves::TIMELINE;
 use crate::run::{Run, range};
 use crate::scale::Scale;
 use crate::scene::{Body, Poses, Scene};
 use crate::style::{self, Rgb};
+use rerun::datatypes::Mat3x3;
 use rerun::{
     Arrows3D, Boxes3D, FillMode, LineStrips3D, Points3D, RecordingStream, RecordingStreamResult, TimeColumn,
     Transform3D,
 };
 use servobench_metrics::round_above;
 
-/// Half the length of a body along the rail (travels).
+/// Half the length of a body along the rail, and across it (travels).
 const HALF_BODY: f32 = 0.055;
-/// Gap between two bodies at rest (travels).
-const GAP: f32 = 0.15;
-/// Largest displayed deflection (travels): less than the gap, so that bodies never touch.
+const HALF_WIDTH: f32 = 0.08;
+/// Height of the motor's body, and of the others (travels).
+const HEIGHTS: (f32, f32) = (0.05, 0.08);
+/// Height of the leaf springs between two bodies (travels).
+const LEAF: f32 = 0.065;
+/// Largest displayed deflection (travels): about half a body.
 pub(crate) const ROOM: f64 = 0.08;
 /// Distance between the rails of two runs (travels).
-const LANE: f32 = 0.36;
-/// Windings of a spring.
-const WINDINGS: u8 = 7;
-/// Height of the springs above the rail (travels).
-const SPRING_HEIGHT: f32 = 0.06;
+const LANE: f32 = 0.7;
+/// Room of the names beside the bodies (travels).
+const NAMES: f32 = 0.2;
 /// Most steps of the ruler, as more labels would not stand beside each other; a travel that overshoots by little has no more.
 const STEPS: f64 = 5.2;
 /// Part of a step by which the travel may miss a tick of the ruler.
@@ -31,21 +36,28 @@ const ARROW: f32 = 0.22;
 /// Half the width of what the camera sees, in distances from it: a view half as high as wide.
 const VIEW: f32 = 1.05;
 
-/// Half the length of the bed under `bodies` bodies, and its middle (travels).
-fn bed(bodies: usize) -> (f32, f32) {
-    let coupled = bodies.saturating_sub(1) as f32 * (2.0 * HALF_BODY + GAP);
-    let half = (1.0 + coupled + 5.0 * HALF_BODY) / 2.0;
-    (half, half - 2.5 * HALF_BODY)
+/// Half the length of the bed.
+const HALF_BED: f32 = 0.5 + 2.5 * HALF_BODY;
+
+/// Height of the bottom of body `number`, and half its own height (travels).
+fn storey(number: usize) -> (f32, f32) {
+    let (motor, other) = HEIGHTS;
+    let below = |number: usize| motor + LEAF + (other + LEAF) * (number - 1) as f32;
+    if number == 0 { (0.0, motor / 2.0) } else { (below(number), other / 2.0) }
 }
 
 /// Camera for `runs` rails of `bodies` bodies: place and target.
 pub(crate) fn camera(runs: usize, bodies: usize) -> ([f32; 3], [f32; 3]) {
-    let (half, middle) = bed(bodies);
     let depth = LANE * runs.saturating_sub(1) as f32;
-    // In a comparison the names of the runs stand at the left.
-    let (half, middle) = if runs > 1 { (half + 0.12, middle - 0.12) } else { (half, middle) };
-    let away = half / VIEW + 0.15 + 0.5 * depth;
-    ([middle, 0.5 * depth - 0.85 * away, 0.55 * away + 0.15 * depth], [middle, 0.5 * depth, 0.04])
+    let (bottom, half) = storey(bodies.saturating_sub(1));
+    // Of two runs, the names of one stand at the left and of the other at the right.
+    let middle = if runs > 1 { 0.5 } else { 0.5 - NAMES / 2.0 };
+    let height = 0.4 * (bottom + 2.0 * half);
+    let away = (HALF_BED + NAMES / 2.0) / VIEW + 0.2 + 0.5 * depth;
+    // Steeper for several rails, or the bodies in front would hide those behind.
+    let (back, up) = if runs > 1 { (0.72, 0.7) } else { (0.9, 0.45) };
+    let target = 0.42 * depth;
+    ([middle, target - back * away, height + up * away], [middle, target, height])
 }
 
 /// Logs one run.
@@ -57,68 +69,85 @@ pub(crate) fn log(
     poses: &Poses,
 ) -> RecordingStreamResult<()> {
     let y = LANE * index as f32;
-    log_bed(stream, run, poses.bodies.len(), y)?;
-    if let Some(name) = run.label {
-        // Further out for a rail further back, which the bodies before it would cover.
-        let place = [-4.0 * HALF_BODY - 0.35 * y, y, 0.0];
-        stream.log_static(run.path(&["axis", "name"]), &label(place, name, style::of_run(index)))?;
-    }
+    log_bed(stream, run, y)?;
     if index == 0 {
         log_ruler(stream, run, scene)?;
     }
-    let mut before: Option<&Body> = None;
-    let mut offset = 0.0;
+    let mut below: Option<&Body> = None;
     for (number, body) in poses.bodies.iter().enumerate() {
-        if let Some(before) = before {
-            let path = run.path(&["axis", "spring", body.name]);
-            let start =
-                before.positions.iter().map(|position| [scene.place(*position) + offset + HALF_BODY, y, SPRING_HEIGHT]);
-            let stretch = body
-                .positions
-                .iter()
-                .zip(&before.positions)
-                .map(|(position, before)| [GAP + scene.length(position - before), 1.0, 1.0]);
-            let transform = Transform3D::update_fields().with_many_translation(start).with_many_scale(stretch);
-            poses.send(stream, path.clone(), transform)?;
-            let shape = LineStrips3D::new([spring()]).with_colors([[200, 200, 200]]).with_radii([0.004]);
-            stream.log_static(path, &shape)?;
-            offset += 2.0 * HALF_BODY + GAP;
+        if let Some(below) = below {
+            log_leaves(stream, run, scene, poses, (below, body), [y, storey(number).0 - LEAF])?;
         }
         let path = run.path(&["axis", body.name]);
-        let x = body.positions.iter().map(|position| [scene.place(*position) + offset, y, 0.0]);
+        let x = body.positions.iter().map(|position| [scene.place(*position), y, 0.0]);
         poses.send(stream, path.clone(), Transform3D::update_fields().with_many_translation(x))?;
-        log_body(stream, path, body, number)?;
-        before = Some(body);
+        log_body(stream, path, body, [index, number], run.label.is_some())?;
+        below = Some(body);
     }
     log_force(stream, run, poses)?;
-    if let Some(reference) = &poses.reference {
-        let path = run.path(&["axis", "reference"]);
-        let x = reference.iter().map(|position| [scene.place(*position), y, 0.0]);
+    let load = poses.bodies.last().filter(|load| load.actual != load.positions);
+    let pointers = [
+        ("reference", poses.reference.as_ref(), style::REFERENCE),
+        ("load_position", load.map(|load| &load.actual), load.map_or(style::LOAD, |load| load.colour)),
+    ];
+    for (name, positions, colour) in pointers {
+        let Some(positions) = positions else { continue };
+        let path = run.path(&["axis", name]);
+        let x = positions.iter().map(|position| [scene.place(*position), y, 0.0]);
         poses.send(stream, path.clone(), Transform3D::update_fields().with_many_translation(x))?;
-        let pointer = LineStrips3D::new([[[0.0, -0.15, 0.0], [0.0, -0.085, 0.0]]])
-            .with_colors([style::REFERENCE])
-            .with_radii([0.006]);
+        let pointer =
+            LineStrips3D::new([[[0.0, -0.15, 0.0], [0.0, -0.085, 0.0]]]).with_colors([colour]).with_radii([0.006]);
         stream.log_static(path, &pointer)?;
     }
     Ok(())
+}
+
+/// Four leaf springs between a body and the one above it, with their feet at `y` and `z`.
+fn log_leaves(
+    stream: &RecordingStream,
+    run: &Run<'_>,
+    scene: &Scene,
+    poses: &Poses,
+    (below, above): (&Body, &Body),
+    [y, z]: [f32; 2],
+) -> RecordingStreamResult<()> {
+    let path = run.path(&["axis", "spring", above.name]);
+    let feet = below.positions.iter().map(|position| [scene.place(*position), y, z]);
+    // What is upright leans towards the upper body.
+    let lean = above.positions.iter().zip(&below.positions).map(|(above, below)| scene.length(above - below));
+    let matrices = lean.map(|lean| Mat3x3::from([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [lean, 0.0, LEAF]]));
+    poses.send(
+        stream,
+        path.clone(),
+        Transform3D::update_fields().with_many_translation(feet).with_many_mat3x3(matrices),
+    )?;
+    let (x, y) = (0.8 * HALF_BODY, 0.8 * HALF_WIDTH);
+    let leaf = |x: f32, y: f32| [[x, y, 0.0], [x, y, 1.0]];
+    let leaves = LineStrips3D::new([leaf(-x, -y), leaf(-x, y), leaf(x, -y), leaf(x, y)])
+        .with_colors([[165, 170, 178]])
+        .with_radii([0.006]);
+    stream.log_static(path, &leaves)
 }
 
 fn log_body(
     stream: &RecordingStream,
     path: rerun::EntityPath,
     body: &Body,
-    number: usize,
+    [index, number]: [usize; 2],
+    is_one_of_several: bool,
 ) -> RecordingStreamResult<()> {
-    let half_height = if number == 0 { 0.06 } else { 0.08 };
-    let shape = Boxes3D::from_centers_and_half_sizes([[0.0, 0.0, half_height]], [[HALF_BODY, 0.08, half_height]])
+    let (bottom, half) = storey(number);
+    let middle = bottom + half;
+    let shape = Boxes3D::from_centers_and_half_sizes([[0.0, 0.0, middle]], [[HALF_BODY, HALF_WIDTH, half]])
         .with_colors([body.colour])
         .with_fill_mode(FillMode::Solid);
     stream.log_static(path.clone(), &shape)?;
-    if !body.labelled {
-        return Ok(());
-    }
-    // Labels stand at different heights, or they would cover each other.
-    stream.log_static(path, &label([0.0, 0.0, 0.23 + 0.06 * number as f32], body.name, body.colour))
+    let Some(word) = &body.label else { return Ok(()) };
+    // Names of a run are not in the way of those of the run behind it.
+    let side = if index.is_multiple_of(2) { -1.0 } else { 1.0 };
+    // With the name of a run in front they are longer, and of rails further away.
+    let (away, height) = if is_one_of_several { (1.6 * NAMES, 0.19 * number as f32) } else { (NAMES, middle) };
+    stream.log_static(path, &label([side * (HALF_BODY + away / 2.0), 0.0, height], word, body.ink))
 }
 
 /// A word at `place`.
@@ -144,8 +173,10 @@ fn log_force(stream: &RecordingStream, run: &Run<'_>, poses: &Poses) -> Recordin
         arrows.extend((shown != 0.0).then_some(ARROW * (shown / peak) as f32));
     }
     let path = run.path(&["axis", load.name, "disturbance"]);
+    let (bottom, half) = storey(poses.bodies.len() - 1);
+    let top = bottom + 2.0 * half + 0.03;
     let archetype = Arrows3D::from_vectors(arrows.iter().map(|length| [*length, 0.0, 0.0]))
-        .with_origins(arrows.iter().map(|length| [-0.5 * length, 0.0, 0.19]));
+        .with_origins(arrows.iter().map(|length| [-0.5 * length, 0.0, top]));
     let times = TimeColumn::new_duration_secs(TIMELINE, times);
     stream.send_columns(path.clone(), [times], archetype.columns(counts)?)?;
     let style = Arrows3D::update_fields().with_colors([style::DISTURBANCE]).with_radii([0.012]);
@@ -153,8 +184,8 @@ fn log_force(stream: &RecordingStream, run: &Run<'_>, poses: &Poses) -> Recordin
 }
 
 /// The bed and its two rails.
-fn log_bed(stream: &RecordingStream, run: &Run<'_>, bodies: usize, y: f32) -> RecordingStreamResult<()> {
-    let (half, middle) = bed(bodies);
+fn log_bed(stream: &RecordingStream, run: &Run<'_>, y: f32) -> RecordingStreamResult<()> {
+    let (half, middle) = (HALF_BED, 0.5);
     let bed = Boxes3D::from_centers_and_half_sizes(
         [[middle, y, -0.035], [middle, y - 0.05, -0.006], [middle, y + 0.05, -0.006]],
         [[half, 0.10, 0.025], [half, 0.008, 0.006], [half, 0.008, 0.006]],
@@ -164,7 +195,7 @@ fn log_bed(stream: &RecordingStream, run: &Run<'_>, bodies: usize, y: f32) -> Re
     stream.log_static(run.path(&["axis", "bed"]), &bed)
 }
 
-/// Where the motor is, in the unit of the axis.
+/// Where the bodies are, in the unit of the axis.
 fn log_ruler(stream: &RecordingStream, run: &Run<'_>, scene: &Scene) -> RecordingStreamResult<()> {
     let (low, high) = (scene.low, scene.low + scene.travel);
     let step = round_above(scene.travel / STEPS);
@@ -182,21 +213,9 @@ fn log_ruler(stream: &RecordingStream, run: &Run<'_>, scene: &Scene) -> Recordin
         *last = format!("{last} {}", scale.unit);
     }
     let ruler = LineStrips3D::new(ticks)
-        .with_colors([style::REFERENCE])
+        .with_colors([style::MARK])
         .with_radii([0.002])
         .with_labels(labels)
         .with_show_labels(true);
     stream.log_static(run.path(&["axis", "ruler"]), &ruler)
-}
-
-/// A spring from x = 0 to x = 1.
-fn spring() -> Vec<[f32; 3]> {
-    let steps = 2 * WINDINGS;
-    let mut points = vec![[0.0, 0.0, 0.0]];
-    for step in 0..steps {
-        let x = (f32::from(step) + 0.5) / f32::from(steps);
-        points.push([x, 0.0, if step % 2 == 0 { 0.03 } else { -0.03 }]);
-    }
-    points.push([1.0, 0.0, 0.0]);
-    points
 }

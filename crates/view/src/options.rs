@@ -1,12 +1,19 @@
 //! What the caller knows and a recording does not.
+use servobench_metrics::Name;
 
 /// What to show beside the recorded channels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ViewOptions {
-    /// Channel name and largest allowed magnitude (SI): drawn as lines at ± the value, or at + the value only where the
-    /// channel is never negative.
+    /// What came of each run, in their order; runs beyond the last have none.
+    pub verdicts: Vec<Verdict>,
+    /// Channel name and largest magnitude (SI) that motor and drive allow it: drawn as lines at ± the value, or at + the
+    /// value only where the channel is never negative.
     pub limits: Vec<(String, f64)>,
-    /// Settling window, ± (axis unit): drawn around the residual vibration.
+    /// Metric and the largest value of it (SI) that passes. Drawn where it bounds a curve: the following errors, torque,
+    /// current and voltage as [`ViewOptions::limits`]; vibration, overshoot and settling time in the plot of the residual
+    /// vibration. Others are left out.
+    pub allowed: Vec<(Name, f64)>,
+    /// Settling window, ± (axis unit): drawn around the residual vibration, with the instant from which on the load is in it.
     pub window: Option<f64>,
     /// From when on residual vibration is shown when there is no move (s).
     pub residual_from: Option<f64>,
@@ -18,8 +25,39 @@ pub struct ViewOptions {
     pub exaggeration: Option<f64>,
 }
 
+/// What came of a run, in words: the head of every page.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Verdict {
+    /// Whether it passed.
+    pub outcome: Outcome,
+    /// What fails, a sentence each.
+    pub reasons: Vec<String>,
+    /// What fails nothing and should be known, a sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// Whether a run passed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Outcome {
+    /// It kept all its limits.
+    Passed,
+    /// It did not.
+    Failed,
+    /// There was nothing to judge it by.
+    #[default]
+    Unjudged,
+}
+
 impl Default for ViewOptions {
     fn default() -> Self {
-        Self { limits: Vec::new(), window: None, residual_from: None, max_instants: 20_000, exaggeration: None }
+        Self {
+            verdicts: Vec::new(),
+            limits: Vec::new(),
+            allowed: Vec::new(),
+            window: None,
+            residual_from: None,
+            max_instants: 20_000,
+            exaggeration: None,
+        }
     }
 }

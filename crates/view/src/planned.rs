@@ -2,7 +2,7 @@
 use crate::catalogue::{BOUND, Headline, Page};
 use crate::scale::{Scale, shown_unit};
 use crate::series::{Role, Series, Values};
-use crate::style;
+use crate::style::{self, Rgb};
 use crate::ticks::range_with_labels;
 use rerun::{EntityPath, EntityPathPart};
 
@@ -20,12 +20,12 @@ pub(crate) struct PlannedPlot<'a> {
     /// What it shows, the unit, the peak, and limits that are out of sight.
     pub(crate) title: String,
     /// First part of the entity paths of its curves, the second in a comparison.
-    pub(crate) path: &'static str,
+    pub(crate) path: String,
     /// Where it stands.
     pub(crate) page: Page,
     /// Unit in which they are shown.
     pub(crate) scale: Scale,
-    /// Curves and limit lines.
+    /// Curves, limit lines and marks.
     pub(crate) series: Vec<Series<'a>>,
     /// Whether a value holds until the next one.
     pub(crate) held: bool,
@@ -39,8 +39,10 @@ pub(crate) struct PlannedPlot<'a> {
 pub(crate) struct Frame<'t> {
     /// What it shows.
     pub(crate) title: &'t str,
+    /// Of which curve the title speaks, where there are several.
+    pub(crate) lead: Option<&'t str>,
     /// Part of the entity paths.
-    pub(crate) path: &'static str,
+    pub(crate) path: &'t str,
     /// Where it stands.
     pub(crate) page: Page,
     /// SI unit of all its curves.
@@ -53,23 +55,57 @@ pub(crate) struct Frame<'t> {
     pub(crate) includes: &'t [f64],
     /// Whether a value holds until the next one.
     pub(crate) held: bool,
-    /// A bound, if there is one.
-    pub(crate) bound: Option<Bound>,
+    /// Bounds, if there are any.
+    pub(crate) bounds: Vec<Bound>,
+    /// Instants that are marked.
+    pub(crate) marks: Vec<Mark>,
+    /// What the title says beside the numbers of the curves.
+    pub(crate) remarks: Vec<String>,
 }
 
 /// What curves should not exceed.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Bound {
-    /// `limit` or `window`.
-    pub(crate) word: &'static str,
+    /// First part of its entity path: `limit`, `allowed` or `window`.
+    pub(crate) root: &'static str,
+    /// Its name: the root, or with what it is about.
+    pub(crate) name: String,
     /// Largest magnitude (SI).
     pub(crate) value: f64,
-    /// Whether it counts below zero where the curves are never negative.
-    pub(crate) both_sides: bool,
+    /// On which sides of zero it counts.
+    pub(crate) sides: Sides,
+    /// Colour of its lines.
+    pub(crate) colour: Rgb,
+}
+
+/// On which sides of zero a bound counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Sides {
+    /// On those on which the curves are.
+    Curves,
+    /// On both.
+    Both,
+    /// Above.
+    Above,
+    /// Below.
+    Below,
+}
+
+/// An instant that is marked.
+#[derive(Debug, Clone)]
+pub(crate) struct Mark {
+    /// Its entity.
+    pub(crate) path: EntityPath,
+    /// Its name in the legend.
+    pub(crate) name: String,
+    /// When (s).
+    pub(crate) time: f64,
+    /// Colour of its line.
+    pub(crate) colour: Rgb,
 }
 
 impl<'a> PlannedPlot<'a> {
-    /// The plot of `series`, with the lines of its bound.
+    /// The plot of `series`, with the lines of its bounds and marks.
     pub(crate) fn new(frame: &Frame<'_>, series: Vec<Series<'a>>) -> Self {
         let curves = || series.iter().filter(|series| series.role != Role::Bound);
         let ranges = curves().filter_map(Series::range);
@@ -82,27 +118,27 @@ impl<'a> PlannedPlot<'a> {
         let range = anchors.fold((low, high), |(low, high), value| (low.min(*value), high.max(*value)));
         let span = curves().map(Series::time).reduce(|one, two| (one.0.min(two.0), one.1.max(two.1)));
         let title = scale.title(frame.title);
-        let Frame { path, page, held, .. } = *frame;
         let span = span.unwrap_or_default();
+        let (path, page, held) = (frame.path.to_owned(), frame.page, frame.held);
         let mut plot = Self { title, path, page, scale, series, held, range, own_time: None };
-        plot.add_headline(frame.headline);
+        plot.add_headline(frame.headline, frame.lead);
+        for remark in &frame.remarks {
+            plot.title = format!("{}, {remark}", plot.title);
+        }
         plot.place_recorded_bounds(peak, &unit);
-        if let Some(bound) = frame.bound.filter(|bound| bound.value.is_finite() && bound.value > 0.0) {
-            let signs = if bound.both_sides || low < -ROUNDING * peak { "±" } else { "" };
-            let name = format!("{} {signs}{}", bound.word, Scale::for_peak(&unit, bound.value).show(bound.value, 4));
-            if bound.value > IN_SIGHT * peak {
-                plot.title = format!("{}, {name}", plot.title);
-            } else {
-                let lines = [("upper", bound.value), ("lower", -bound.value)];
-                for (part, value) in lines.into_iter().take(if signs.is_empty() { 1 } else { 2 }) {
-                    let entity = EntityPath::new([bound.word, path, part].map(EntityPathPart::new).to_vec());
-                    plot.series.push(bound_line(entity, name.clone(), value, span));
-                }
-            }
+        let is_negative = low < -ROUNDING * peak;
+        for bound in frame.bounds.iter().filter(|bound| bound.value.is_finite() && bound.value > 0.0) {
+            plot.add_bound(bound, &unit, peak, is_negative, span);
         }
         let shown = plot.shown().filter_map(Series::range).chain([plot.range]);
         let (low, high) = shown.reduce(|one, two| (one.0.min(two.0), one.1.max(two.1))).unwrap_or_default();
         plot.range = range_with_labels(low, high, page.plot_height());
+        for Mark { path, name, time, colour } in frame.marks.iter().filter(|mark| mark.time <= span.1) {
+            let values = Values::Instant { time: *time, range: plot.range };
+            let (path, name) = (path.clone(), name.clone());
+            let mark = Series { path, name, colour: *colour, width: 2.0, shown: true, role: Role::Bound, values };
+            plot.series.push(mark);
+        }
         plot
     }
 
@@ -118,13 +154,13 @@ impl<'a> PlannedPlot<'a> {
     }
 
     /// Appends to the title what a reader would otherwise have to read off.
-    fn add_headline(&mut self, headline: Headline) {
+    fn add_headline(&mut self, headline: Headline, lead: Option<&str>) {
         let word = match headline {
             Headline::None => return,
             Headline::Peak => "peak",
             Headline::PeakToPeak => "p-p",
         };
-        let leads = self.series.iter().filter(|series| series.role == Role::Lead);
+        let leads = self.series.iter().filter(|series| series.role == Role::Lead && series.shown);
         let ranges = leads.filter_map(|lead| Some((lead.name.as_str(), lead.range()?)));
         let values: Vec<(&str, f64)> = ranges.map(|(name, range)| (name, headline.of(range))).collect();
         let show = |value: f64| self.scale.show(value, 3);
@@ -136,7 +172,8 @@ impl<'a> PlannedPlot<'a> {
             }
             many => format!("up to {}", show(many.iter().map(|(_, value)| *value).fold(0.0, f64::max))),
         };
-        self.title = format!("{}, {word} {said}", self.title);
+        let lead = lead.map_or(String::new(), |lead| format!("{lead} "));
+        self.title = format!("{}, {lead}{word} {said}", self.title);
     }
 
     /// Takes recorded bounds out of the plot into the title when they are out of sight.
@@ -147,9 +184,52 @@ impl<'a> PlannedPlot<'a> {
         self.title = format!("{}, {BOUND} {}", self.title, Scale::for_peak(unit, nearest).show(nearest, 4));
         self.series.iter_mut().filter(|series| series.role == Role::Bound).for_each(|series| series.shown = false);
     }
+
+    /// Draws `bound`, or names it in the title when it is out of sight.
+    fn add_bound(&mut self, bound: &Bound, unit: &str, peak: f64, is_negative: bool, span: (f64, f64)) {
+        let (above, below) = match bound.sides {
+            Sides::Curves => (true, is_negative),
+            Sides::Both => (true, true),
+            Sides::Above => (true, false),
+            Sides::Below => (false, true),
+        };
+        let signs = match (above, below) {
+            (true, true) => "±",
+            (false, true) => "−",
+            _ => "",
+        };
+        let name = format!("{} {signs}{}", bound.name, Scale::for_peak(unit, bound.value).show(bound.value, 4));
+        if bound.value > IN_SIGHT * peak {
+            self.title = format!("{}, {name}", self.title);
+            return;
+        }
+        let lines = [("upper", bound.value, above), ("lower", -bound.value, below)];
+        for (part, value, _) in lines.into_iter().filter(|(.., is_there)| *is_there) {
+            // Two bounds of one kind in a plot are told apart by what they are about.
+            let about = bound.name.strip_prefix(bound.root).unwrap_or(&bound.name).trim().replace(' ', "_");
+            let parts = [bound.root, &self.path, &about, part].into_iter().filter(|part| !part.is_empty());
+            let path = EntityPath::new(parts.map(EntityPathPart::new).collect());
+            let values = Values::Level { value, span };
+            let name = name.clone();
+            let (colour, width) = (bound.colour, 1.0);
+            self.series.push(Series { path, name, colour, width, shown: true, role: Role::Bound, values });
+        }
+    }
 }
 
-fn bound_line<'a>(path: EntityPath, name: String, value: f64, span: (f64, f64)) -> Series<'a> {
-    let values = Values::Level { value, span };
-    Series { path, name, colour: style::LIMIT, width: 1.0, shown: true, role: Role::Bound, values }
+impl Bound {
+    /// What motor, drive or plan keep a curve within.
+    pub(crate) fn limit(value: f64) -> Self {
+        Self { root: BOUND, name: BOUND.into(), value, sides: Sides::Curves, colour: style::LIMIT }
+    }
+
+    /// What a run is judged by: the `name` begins with `allowed`.
+    pub(crate) fn allowed(name: String, value: f64, sides: Sides) -> Self {
+        Self { root: ALLOWED, name, value, sides, colour: style::ALLOWED }
+    }
 }
+
+/// First word of a bound by which a run is judged.
+pub(crate) const ALLOWED: &str = "allowed";
+/// First word of a settling window.
+pub(crate) const WINDOW: &str = "window";

@@ -1,21 +1,27 @@
 //! Everything together: what is logged and how it is arranged.
-use crate::blueprint;
+use crate::blueprint::{self, Parts};
+use crate::catalogue::BOUND;
 use crate::curves;
 use crate::error::ViewError;
 use crate::happenings::{self, Happenings};
 use crate::layout::Layout;
 use crate::options::ViewOptions;
 use crate::plan;
-use crate::planned::PlannedPlot;
+use crate::planned::{ALLOWED, PlannedPlot, WINDOW};
+use crate::reached::{self, Reached};
 use crate::run::Run;
 use crate::scene::Scene;
 use crate::signals;
+use crate::verdict::Head;
 use rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 use servobench_trace::Recording;
 use std::path::Path;
 
 /// Application id of all our recordings: the viewer keeps one blueprint for them.
 const APPLICATION: &str = "servobench";
+
+/// Labels that the first parts of other entity paths have.
+const RESERVED: [&str; 3] = [BOUND, ALLOWED, WINDOW];
 
 /// One run, or several over each other, ready for any Rerun stream: a file, or a viewer that is open.
 #[derive(Debug)]
@@ -24,6 +30,7 @@ pub struct Presentation<'a> {
     runs: Vec<Run<'a>>,
     plots: Vec<PlannedPlot<'a>>,
     scene: Option<Scene>,
+    head: Head,
     max_instants: usize,
 }
 
@@ -47,7 +54,7 @@ impl<'a> Presentation<'a> {
         for (index, (label, _)) in runs.iter().enumerate() {
             let reason = if label.is_empty() {
                 "is empty"
-            } else if label.starts_with("__") || ["limit", "window"].contains(label) {
+            } else if label.starts_with("__") || RESERVED.contains(label) {
                 "is reserved"
             } else if runs[..index].iter().any(|(other, _)| other == label) {
                 "an earlier run has already"
@@ -56,31 +63,37 @@ impl<'a> Presentation<'a> {
             };
             return Err(ViewError::Label { number: index + 1, label: (*label).to_owned(), reason });
         }
-        let name = runs.iter().map(|(label, _)| *label).collect::<Vec<_>>().join(" against ");
+        let labels = runs.iter().map(|(label, _)| *label).collect::<Vec<_>>().join(" against ");
+        let mut engines: Vec<&str> = runs.iter().map(|(_, recording)| recording.about.engine.as_str()).collect();
+        engines.dedup();
+        let name = format!("{labels} on {}", engines.join(" and "));
         let runs = runs.iter().map(|(label, recording)| Run { label: Some(label), recording });
         Ok(Self::plan(name, runs.collect(), options))
     }
 
     fn plan(name: String, runs: Vec<Run<'a>>, options: &ViewOptions) -> Self {
         let plots = plan::plots(&runs, options);
-        let scene = Scene::of(&runs, options);
-        Self { name, runs, plots, scene, max_instants: options.max_instants }
+        let scene = Scene::of(&name, &runs, options);
+        let head = Head::of(name.clone(), &runs, options);
+        Self { name, runs, plots, scene, head, max_instants: options.max_instants }
     }
 
     /// How the viewer arranges it.
     #[must_use]
     pub fn blueprint(&self) -> Layout {
         let duration = self.runs.iter().map(Run::end).fold(0.0, f64::max);
-        blueprint::layout(
-            &self.plots,
-            self.scene.as_ref(),
-            &Happenings::of(&self.runs),
-            signals::lanes(&self.runs),
+        blueprint::layout(Parts {
+            plots: &self.plots,
+            scene: self.scene.as_ref(),
+            happenings: Happenings::of(&self.runs),
+            signals: signals::lanes(&self.runs),
+            reached: Reached::of(&self.runs),
+            head: &self.head,
             duration,
-        )
+        })
     }
 
-    /// Logs curves, 3D view, moves, events and signals.
+    /// Logs verdict, curves, 3D view, moves, events, signals and limits that were reached.
     ///
     /// # Errors
     /// [`ViewError::Rerun`].
@@ -97,9 +110,11 @@ impl<'a> Presentation<'a> {
     }
 
     fn log_all_but_curves(&self, stream: &RecordingStream) -> RecordingStreamResult<()> {
+        self.head.log(stream)?;
         self.plots.iter().try_for_each(|plot| curves::log_styles(stream, plot))?;
         self.runs.iter().enumerate().try_for_each(|(index, run)| happenings::log(stream, run, index))?;
         self.runs.iter().try_for_each(|run| signals::log(stream, run))?;
+        self.runs.iter().try_for_each(|run| reached::log(stream, run))?;
         self.scene.as_ref().map_or(Ok(()), |scene| scene.log(stream, &self.runs))
     }
 

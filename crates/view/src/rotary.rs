@@ -55,14 +55,12 @@ pub(crate) fn log(stream: &RecordingStream, run: &Run<'_>, index: usize, poses: 
             .with_colors([[245, 245, 245]])
             .with_fill_mode(FillMode::Solid);
         stream.log_static(path, &mark)?;
-        // In a comparison one word per run, above its last disc.
-        let word = run.label.filter(|_| number + 1 == poses.bodies.len()).or(body.labelled.then_some(body.name));
-        if let Some(word) = word {
+        if let Some(word) = &body.label {
             // An entity of its own, as it must not turn with the disc.
             let label = Points3D::new([[place[0], 0.0, 1.55]])
                 .with_radii([0.001])
-                .with_colors([body.colour])
-                .with_labels([word])
+                .with_colors([body.ink])
+                .with_labels([word.as_str()])
                 .with_show_labels(true);
             stream.log_static(run.path(&["axis", "label", body.name]), &label)?;
         }

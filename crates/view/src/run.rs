@@ -24,6 +24,11 @@ impl<'a> Run<'a> {
         names.iter().find_map(named)
     }
 
+    /// `text`, and in a comparison the run that it is about.
+    pub(crate) fn labelled(&self, text: &str) -> String {
+        self.label.map_or_else(|| text.to_owned(), |label| format!("{label} {text}"))
+    }
+
     /// Whether motor and load are one body.
     pub(crate) fn is_rigid(&self) -> bool {
         self.recording.about.bodies.len() == 1

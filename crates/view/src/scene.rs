@@ -15,7 +15,7 @@ const POSES: usize = 4_000;
 /// rotary axis.
 #[derive(Debug, Clone)]
 pub(crate) struct Scene {
-    /// Title with the enlargement.
+    /// What runs, and the enlargement.
     pub(crate) title: String,
     /// Entity above everything, one per run.
     pub(crate) roots: Vec<EntityPath>,
@@ -25,7 +25,7 @@ pub(crate) struct Scene {
     pub(crate) target: [f32; 3],
     /// Whether the bodies turn.
     rotary: bool,
-    /// Smallest position of all runs (axis unit).
+    /// Smallest position of all runs, asked for or actual (axis unit).
     pub(crate) low: f64,
     /// Travel of all runs (axis unit).
     pub(crate) travel: f64,
@@ -53,36 +53,44 @@ pub(crate) struct Poses {
 pub(crate) struct Body {
     /// `motor`, `table` or `load`, or `body` when it is all of them.
     pub(crate) name: &'static str,
-    /// Whether its name stands above it.
-    pub(crate) labelled: bool,
+    /// What stands beside it; in a comparison with the run that it is of.
+    pub(crate) label: Option<String>,
     /// Its colour.
     pub(crate) colour: Rgb,
+    /// Colour of its label: that of its run in a comparison, without a shade.
+    pub(crate) ink: Rgb,
     /// Positions (axis unit), the deflection enlarged.
     pub(crate) positions: Vec<f64>,
+    /// Positions (axis unit) as they were.
+    pub(crate) actual: Vec<f64>,
 }
 
+/// Largest enlargement that is chosen: a deflection that needs more is none to be looked at.
+const ENLARGED: f64 = 10_000.0;
 const REFERENCES: [&str; 2] = ["reference.position", "setpoint.position"];
 /// Channels of the bodies, the motor's first.
 const BODIES: [&str; 3] = ["motor.position", "table.position", "load.position"];
 
 impl Scene {
-    /// The scene of `runs`; `None` when no position was recorded.
-    pub(crate) fn of(runs: &[Run<'_>], options: &ViewOptions) -> Option<Self> {
-        let ranges = runs.iter().flat_map(bodies).filter_map(|(_, positions)| range(positions));
+    /// The scene of `runs`, of which `subject` says what they are; `None` when no position was recorded.
+    pub(crate) fn of(subject: &str, runs: &[Run<'_>], options: &ViewOptions) -> Option<Self> {
+        let ranges = runs.iter().filter_map(shown_range);
         let (low, high) = ranges.reduce(|one, two| (one.0.min(two.0), one.1.max(two.1)))?;
         let unit = runs.first()?.recording.about.axis_unit.clone();
         let rotary = unit == "rad";
         let span = if high > low { high - low } else { 1.0 };
         let deflection = runs.iter().map(largest_deflection).fold(0.0, f64::max);
         let bodies = runs.iter().map(|run| bodies(run).len()).max().unwrap_or(0);
-        // As far as the gap between two boxes allows, or about 20° of a disc.
+        // As far as one body may hang over the one below it, or about 20° of a disc.
         let room = if rotary { rotary::ROOM } else { linear::ROOM * span };
-        let fitting = if deflection > 0.0 { round_below(room / deflection).max(1.0) } else { 1.0 };
+        let fitting = if deflection > 0.0 { round_below(room / deflection).clamp(1.0, ENLARGED) } else { 1.0 };
         let exaggeration = options.exaggeration.unwrap_or(fitting);
-        // Where the deflection is most of the motion (a ring-down), the rail is as long as it takes for bodies to stay apart.
+        // Where the deflection is most of the motion (a ring-down), the rail is as long as it takes for bodies to stay above
+        // each other.
         let travel = span.max(exaggeration * deflection / linear::ROOM);
         let enlarged = deflection > 0.0 && (exaggeration - 1.0).abs() > 0.0;
-        let title = if enlarged { format!("Axis, deflection × {exaggeration}") } else { "Axis".into() };
+        let enlargement = if enlarged { format!(", deflection × {exaggeration}") } else { String::new() };
+        let title = format!("Axis{enlargement}: {subject}");
         let (eye, target) =
             if rotary { rotary::camera(runs.len(), bodies) } else { linear::camera(runs.len(), bodies) };
         let roots = runs.iter().map(|run| run.path(&["axis"])).collect();
@@ -125,6 +133,20 @@ fn bodies<'a>(run: &Run<'a>) -> Vec<(&'static str, &'a [f64])> {
     bodies.collect()
 }
 
+/// From where to where the bodies of `run` move, with what was asked for: beside that one sees that an axis does not move.
+fn shown_range(run: &Run<'_>) -> Option<(f64, f64)> {
+    let ranges = bodies(run).into_iter().filter_map(|(_, positions)| range(positions));
+    let of_bodies = ranges.reduce(|one, two| (one.0.min(two.0), one.1.max(two.1)))?;
+    let asked = reference(run).and_then(range).unwrap_or(of_bodies);
+    Some((of_bodies.0.min(asked.0), of_bodies.1.max(asked.1)))
+}
+
+/// What was asked for.
+fn reference<'a>(run: &Run<'a>) -> Option<&'a [f64]> {
+    let recorded = REFERENCES.into_iter().find_map(|name| run.recording.channel(name));
+    recorded.filter(|values| values.len() == run.recording.len())
+}
+
 /// Largest deflection of a body against the motor (axis unit).
 fn largest_deflection(run: &Run<'_>) -> f64 {
     let bodies = bodies(run);
@@ -149,17 +171,19 @@ fn poses(run: &Run<'_>, index: usize, exaggeration: f64) -> Poses {
     let pick = |values: &[f64]| kept.iter().map(|index| values[*index]).collect::<Vec<f64>>();
     let mut bodies: Vec<Body> = Vec::new();
     for (name, values) in recorded {
-        let mut positions = pick(values);
+        let actual = pick(values);
+        let mut positions = actual.clone();
         if let Some(motor) = bodies.first() {
             for (position, motor) in positions.iter_mut().zip(&motor.positions) {
                 *position = motor + exaggeration * (*position - motor);
             }
         }
-        let labelled = run.label.is_none() && name != "body";
-        bodies.push(Body { name, labelled, colour: colour(run, index, name), positions });
+        let label = if name == "body" { run.label.map(str::to_owned) } else { Some(run.labelled(name)) };
+        let colour = colour(run, index, name);
+        let ink = run.label.map_or(colour, |_| style::of_run(index));
+        bodies.push(Body { name, label, colour, ink, positions, actual });
     }
-    let reference = REFERENCES.into_iter().find_map(|name| recording.channel(name));
-    let reference = reference.filter(|values| values.len() == recording.len()).map(pick);
+    let reference = reference(run).map(pick);
     let force = recording.channel("disturbance.load").filter(|values| values.len() == recording.len()).map(pick);
     Poses { times: kept.iter().map(|index| recording.time_of(*index)).collect(), reference, force, bodies }
 }

@@ -54,6 +54,13 @@ pub(crate) enum Values<'a> {
         /// From when to when (s).
         span: (f64, f64),
     },
+    /// An instant, upright.
+    Instant {
+        /// When (s).
+        time: f64,
+        /// From which value to which.
+        range: (f64, f64),
+    },
 }
 
 impl Series<'_> {
@@ -64,6 +71,7 @@ impl Series<'_> {
                 range(&values[first..]).map(|(low, high)| (low - origin, high - origin))
             }
             Values::Level { value, .. } => Some((value, value)),
+            Values::Instant { range, .. } => Some(range),
         }
     }
 
@@ -72,6 +80,7 @@ impl Series<'_> {
         match self.values {
             Values::Channel { run, first, .. } => (run.recording.time_of(first), run.end()),
             Values::Level { span, .. } => span,
+            Values::Instant { time, .. } => (time, time),
         }
     }
 
@@ -86,6 +95,8 @@ impl Series<'_> {
                 values[start..end].iter().step_by(stride).filter(|value| inside(**value - origin)).count()
             }
             Values::Level { value, .. } => usize::from(inside(value)) * looks,
+            // One line upright hides nothing behind a legend.
+            Values::Instant { .. } => 0,
         }
     }
 }

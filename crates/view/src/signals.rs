@@ -1,9 +1,10 @@
-//! Signals: a lane for each, those of one source together.
+//! Signals: a lane for each, those of one source together; a lane for what kept a call from its end.
 use crate::curves::TIMELINE;
+use crate::lanes::{Lane, Span};
 use crate::run::Run;
 use crate::style::{self, Rgb};
 use rerun::{Color, EntityPath, RecordingStream, RecordingStreamResult, StateChange, StateConfiguration, TimeColumn};
-use servobench_trace::Signal;
+use servobench_trace::{Call, CallFate, Signal};
 
 /// Colours of the values of a signal, in the order in which they first appear.
 const COLOURS: [Rgb; 6] =
@@ -19,6 +20,8 @@ const WRONG: [&str; 5] = ["Error", "Fault", "fault", "Underflow", "Overflow"];
 pub(crate) struct Lanes {
     /// Their entities.
     pub(crate) paths: Vec<EntityPath>,
+    /// Those of calls that were never executed or failed, which stand above the others.
+    pub(crate) fates: Vec<EntityPath>,
     /// Whether there is a program of function blocks.
     pub(crate) has_program: bool,
 }
@@ -26,8 +29,15 @@ pub(crate) struct Lanes {
 /// The lanes of `runs`.
 pub(crate) fn lanes(runs: &[Run<'_>]) -> Lanes {
     let lanes = |run: &Run<'_>| eventful(run).map(|signal| path(run, signal)).collect::<Vec<_>>();
-    let has_program = |run: &Run<'_>| run.recording.signals.iter().any(|signal| signal.source == "axis");
-    Lanes { paths: runs.iter().flat_map(lanes).collect(), has_program: runs.iter().any(has_program) }
+    let calls = |run: &Run<'_>| fates(run).map(|lane| lane.path).collect::<Vec<_>>();
+    let has_program = |run: &Run<'_>| {
+        !run.recording.calls.is_empty() || run.recording.signals.iter().any(|signal| signal.source == "axis")
+    };
+    Lanes {
+        paths: runs.iter().flat_map(lanes).collect(),
+        fates: runs.iter().flat_map(calls).collect(),
+        has_program: runs.iter().any(has_program),
+    }
 }
 
 /// Logs the signals of `run`.
@@ -42,7 +52,28 @@ pub(crate) fn log(stream: &RecordingStream, run: &Run<'_>) -> RecordingStreamRes
         let configuration = StateConfiguration::new().with_values(texts).with_colors(colours);
         stream.send_columns(path.clone(), [times], columns)?;
         stream.log_static(path, &configuration)
-    })
+    })?;
+    fates(run).try_for_each(|lane| lane.log(stream))
+}
+
+/// A lane for each call that was never executed, and for each that failed: from when on, and why.
+fn fates<'a>(run: &Run<'a>) -> impl Iterator<Item = Lane<'a>> {
+    run.recording.calls.iter().filter_map(move |call| fate(run, call))
+}
+
+fn fate<'a>(run: &Run<'a>, call: &'a Call) -> Option<Lane<'a>> {
+    let (name, since, why) = match &call.fate {
+        CallFate::Executed => return None,
+        CallFate::NeverExecuted(why) => ("never_executed", 0.0, why),
+        CallFate::Failed { time, message, .. } => ("failed", *time, message),
+    };
+    let span = Span {
+        start: since,
+        end: f64::INFINITY,
+        text: why.as_str().into(),
+        colour: if call.is_optional { style::REFERENCE } else { style::LIMIT },
+    };
+    Some(Lane { path: run.path(&["blocks", &call.name, name]), spans: vec![span], otherwise: "no error" })
 }
 
 /// The signals in which something happens: those of a block that is never in error would hide the others.

@@ -17,8 +17,12 @@ pub(crate) const AUXILIARY: Rgb = [160, 110, 230];
 pub(crate) const DISTURBANCE: Rgb = [230, 90, 160];
 /// Nothing happens.
 pub(crate) const IDLE: Rgb = [52, 56, 64];
-/// A bound.
+/// A bound that motor, drive or plan keep, or that went wrong.
 pub(crate) const LIMIT: Rgb = [225, 70, 80];
+/// A bound by which a run is judged.
+pub(crate) const ALLOWED: Rgb = [200, 60, 190];
+/// An instant that is marked.
+pub(crate) const MARK: Rgb = [128, 134, 145];
 
 /// One colour per run of a comparison; starts again after the last.
 const RUNS: [Rgb; 6] = [LOAD, [40, 180, 220], [160, 110, 230], [110, 190, 70], [230, 90, 160], [190, 160, 60]];

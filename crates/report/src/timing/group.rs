@@ -1,7 +1,7 @@
 //! The signals of one source, a row each.
 use super::stretch::{Stretch, stretches};
 use super::window::Window;
-use servobench_trace::{Recording, Signal};
+use servobench_trace::{Call, CallFate, Recording, Signal};
 
 /// Values of a signal in which nothing happens.
 const IDLE: [&str; 4] = ["FALSE", "0", "16#0000", "none"];
@@ -18,23 +18,50 @@ pub(super) struct Group<'a> {
 pub(super) struct Row<'a> {
     pub(super) name: &'a str,
     pub(super) stretches: Vec<Stretch<'a>>,
-    /// Whether its values are TRUE and FALSE.
-    pub(super) is_logic: bool,
+    pub(super) kind: Kind,
+}
+
+/// What a row is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// A signal whose values are TRUE and FALSE.
+    Logic,
+    /// A signal with other values.
+    States,
+    /// Why a call did not come to its end, where the run may do without it.
+    Excused,
+    /// Why a call did not come to its end, where it should have.
+    Missed,
 }
 
 impl<'a> Group<'a> {
-    /// Those of `recording` by `sources`, or all, in the order in which they first come.
+    /// Those of `recording` by `sources`, or all, in the order in which they first come. A call that was never executed, or
+    /// that failed, has a row that says so before its signals; one without signals comes after the call before it.
     pub(super) fn all(recording: &'a Recording, sources: &[String], window: Window) -> Vec<Self> {
         let mut groups: Vec<Self> = Vec::new();
+        let is_asked_for = |source: &str| sources.is_empty() || sources.iter().any(|name| name == source);
         for signal in &recording.signals {
             let source = signal.source.as_str();
-            if !sources.is_empty() && !sources.iter().any(|name| name == source) {
+            if !is_asked_for(source) {
                 continue;
             }
             let row = Row::of(signal, window);
             match groups.iter_mut().find(|group| group.source == source) {
                 Some(group) => group.rows.push(row),
                 None => groups.push(Self { source, rows: vec![row] }),
+            }
+        }
+        let mut next = 0;
+        for call in recording.calls.iter().filter(|call| is_asked_for(&call.name)) {
+            let at = groups.iter().position(|group| group.source == call.name);
+            if let Some(row) = Row::of_fate(call, window) {
+                if at.is_none() {
+                    groups.insert(next, Self { source: &call.name, rows: vec![] });
+                }
+                groups[at.unwrap_or(next)].rows.insert(0, row);
+                next = at.unwrap_or(next) + 1;
+            } else if let Some(at) = at {
+                next = at + 1;
             }
         }
         groups
@@ -49,11 +76,30 @@ impl<'a> Group<'a> {
 impl<'a> Row<'a> {
     fn of(signal: &'a Signal, window: Window) -> Self {
         let is_logic = signal.changes.iter().all(|(_, value)| value == "TRUE" || value == "FALSE");
-        Self { name: &signal.name, stretches: stretches(signal, window), is_logic }
+        let kind = if is_logic { Kind::Logic } else { Kind::States };
+        Self { name: &signal.name, stretches: stretches(signal, window), kind }
+    }
+
+    /// Why `call` was never executed, all the time, or failed, from then on; `None` for any other.
+    fn of_fate(call: &'a Call, window: Window) -> Option<Self> {
+        let (name, since, why) = match &call.fate {
+            CallFate::Executed => return None,
+            CallFate::NeverExecuted(why) => ("never executed", window.from, why),
+            CallFate::Failed { time, message, .. } => ("failed", *time, message),
+        };
+        let kind = if call.is_optional { Kind::Excused } else { Kind::Missed };
+        // Not a number, or after what is shown.
+        let is_seen = since <= window.to;
+        let from = since.max(window.from);
+        let stretch = Stretch { from, to: window.to, value: why, is_change: since >= window.from };
+        is_seen.then_some(Self { name, stretches: vec![stretch], kind })
     }
 
     /// Whether nothing happens in it: it has no value, or stays FALSE, 0 or none.
     fn is_idle(&self) -> bool {
+        if matches!(self.kind, Kind::Excused | Kind::Missed) {
+            return false;
+        }
         let first = self.stretches.first().map_or(IDLE[0], |stretch| stretch.value);
         IDLE.contains(&first) && self.stretches.iter().all(|stretch| stretch.value == first)
     }

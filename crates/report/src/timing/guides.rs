@@ -1,5 +1,5 @@
 //! Guide lines: when a command begins and when it ends.
-use super::group::Group;
+use super::group::{self, Group};
 use crate::drawing::{Axis, escaped, text_width};
 
 /// What begins a command.
@@ -79,7 +79,7 @@ impl Guides {
         let mut ends = Vec::new();
         for (group, row) in groups.iter().flat_map(|group| group.rows.iter().map(move |row| (group, row))) {
             let end = ENDS.into_iter().find(|end| *end == row.name);
-            if !row.is_logic || !has_guide(row.name) {
+            if row.kind != group::Kind::Logic || !has_guide(row.name) {
                 continue;
             }
             let known = rises.len();

@@ -1,6 +1,6 @@
 //! The whole diagram: what stands above, below and beside the curves and the rows.
 use super::curves::{self, Panel};
-use super::group::Group;
+use super::group::{self, Group};
 use super::guides::{Guides, Kind, has_guide};
 use super::key::Key;
 use super::trace;
@@ -199,7 +199,7 @@ fn draw_group(svg: &mut Vec<String>, group: &Group<'_>, time: &Axis, top: f64, h
             escaped(&name)
         ));
         trace::draw(svg, row, time, top);
-        if has_guides && row.is_logic && has_guide(row.name) {
+        if has_guides && row.kind == group::Kind::Logic && has_guide(row.name) {
             svg.extend(row.rises().map(|t| {
                 format!(
                     "<circle class=\"o\" cx=\"{:.2}\" cy=\"{:.1}\" r=\"2.4\"/>",

@@ -1,5 +1,5 @@
 //! One row: a logic trace, or states as bars.
-use super::group::Row;
+use super::group::{Kind, Row};
 use super::stretch::{Seen, seen};
 use crate::drawing::{Axis, escaped, fitted};
 use std::fmt::Write;
@@ -27,7 +27,12 @@ fn is_wrong(text: &str) -> bool {
 /// Draws `row` with its top at `top`.
 pub(super) fn draw(svg: &mut Vec<String>, row: &Row<'_>, time: &Axis, top: f64) {
     let seen = seen(&row.stretches, time);
-    if row.is_logic { logic(svg, row.name, &seen, top) } else { bars(svg, row.name, &seen, top) }
+    match row.kind {
+        Kind::Logic => logic(svg, row.name, &seen, top),
+        Kind::States => bars(svg, &seen, |value| class(row.name, value), top),
+        Kind::Excused => bars(svg, &seen, |_| "bo", top),
+        Kind::Missed => bars(svg, &seen, |_| "bx", top),
+    }
 }
 
 /// A line that is low or high, and filled below where it is high.
@@ -65,18 +70,22 @@ fn logic(svg: &mut Vec<String>, name: &str, seen: &[Seen<'_>], top: f64) {
     svg.extend(seen.map(|(class, path)| format!("<path class=\"{class}\" d=\"{path}\"/>")));
 }
 
-/// A bar for each state with its name, as far as it fits. Those that say that something went wrong are in front: a short
-/// one is not hidden by the edges of its neighbours.
-fn bars(svg: &mut Vec<String>, name: &str, seen: &[Seen<'_>], top: f64) {
-    let class = |value: &str| match value {
+/// Class of the bar of `value` of the signal `name`.
+fn class(name: &str, value: &str) -> &'static str {
+    match value {
         _ if OFF.contains(&value) => "bo",
         _ if is_wrong(value) || is_wrong(name) => "bx",
         _ => "bs",
-    };
+    }
+}
+
+/// A bar for each state with its name, as far as it fits. Those that say that something went wrong are in front: a short
+/// one is not hidden by the edges of its neighbours.
+fn bars(svg: &mut Vec<String>, seen: &[Seen<'_>], class: impl Fn(&str) -> &'static str, top: f64) {
     let is_in_front = |stretch: &&Seen<'_>| matches!(stretch, Seen::One { value, .. } if class(value) == "bx");
     let (front, back): (Vec<_>, Vec<_>) = seen.iter().partition(is_in_front);
     for stretch in back.into_iter().chain(front) {
-        bar(svg, stretch, class, top);
+        bar(svg, stretch, &class, top);
     }
 }
 

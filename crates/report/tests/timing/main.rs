@@ -1,4 +1,5 @@
 //! Timing diagrams: every change and every curve at its place, XML that can be read, nothing that grows without bound.
+mod calls;
 mod drawn;
 mod places;
 mod random;

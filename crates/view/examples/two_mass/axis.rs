@@ -1,7 +1,7 @@
 //! A two-mass axis in a few lines, to have something to look at: the plant of Lambrechts' motor-load system behind a
 //! P/PI cascade with rigid-body feedforward. The tool's own closed loop is in other crates; nothing here is a reference.
 use servobench_base::Rate;
-use servobench_trace::{About, ChannelSpec, Event, Move, Recorder, Recording};
+use servobench_trace::{About, ChannelSpec, Ending, Event, Move, Recorder, Recording};
 
 /// Rate of control and recording (Hz).
 const HERTZ: u32 = 16_000;
@@ -147,6 +147,7 @@ pub(crate) fn run(case: Case) -> Recording {
         peaks: [1.0, 5.0, 50.0, if case.order == 4 { 1000.0 } else { f64::INFINITY }],
         limits: [Some(1.0), Some(5.0), Some(50.0), (case.order == 4).then_some(1000.0)],
         cruise: (end - 1.0, 0.65),
+        ending: Ending::AtRest,
     });
     recorder.note_event(Event {
         start: 0.1,

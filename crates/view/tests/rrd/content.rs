@@ -1,10 +1,10 @@
 //! Reads a file back.
 use rerun::blueprint::components::QueryExpression;
-use rerun::components::{Name, Range1D, Text, TextLogLevel};
+use rerun::components::{LineStrip3D, Name, Range1D, Text, TextLogLevel, Translation3D};
 use rerun::external::re_log_encoding::DecoderApp;
 use rerun::external::re_sdk_types::blueprint::archetypes::{ScalarAxis, ViewBlueprint, ViewContents};
 use rerun::log::{Chunk, LogMsg};
-use rerun::{Scalars, StoreKind, TextLog};
+use rerun::{LineStrips3D, Points3D, Scalars, StateChange, StoreKind, TextDocument, TextLog, Transform3D};
 use servobench_trace::Recording;
 use servobench_view::{ViewOptions, write_rrd};
 use std::collections::{BTreeMap, BTreeSet};
@@ -28,6 +28,16 @@ pub(crate) struct Content {
     pub(crate) entities: BTreeSet<String>,
     /// Time (ns) and value of each curve.
     pub(crate) curves: BTreeMap<String, Vec<(i64, f64)>>,
+    /// Time (ns) and state of each lane.
+    pub(crate) lanes: BTreeMap<String, Vec<(i64, String)>>,
+    /// Time (ns) and place of each body that moves.
+    pub(crate) places: BTreeMap<String, Vec<(i64, [f32; 3])>>,
+    /// First point and label of each tick of the rulers.
+    pub(crate) ticks: Vec<(f32, String)>,
+    /// What stands beside points.
+    pub(crate) labels: BTreeMap<String, String>,
+    /// The texts of documents.
+    pub(crate) documents: Vec<String>,
     /// Level and text of each line of the logs.
     pub(crate) log: Vec<(String, String)>,
     /// Entities in the order of the file.
@@ -52,6 +62,33 @@ impl Content {
         let view = self.views.entry(id.to_owned()).or_default();
         view.title = name.map_or(std::mem::take(&mut view.title), |name| name.to_string());
         view.range = range.map(|range| [range.start(), range.end()]).or(view.range);
+    }
+
+    /// Takes places, states and words.
+    fn read_scene(&mut self, chunk: &Chunk, entity: &str) {
+        let texts = |component| chunk.iter_component::<Text>(component).flat_map(|texts| texts.as_slice().to_vec());
+        self.documents.extend(texts(TextDocument::descriptor_text().component).map(|text| text.to_string()));
+        let labels: Vec<_> = texts(Points3D::descriptor_labels().component).map(|text| text.to_string()).collect();
+        if let [label] = &labels[..] {
+            self.labels.insert(entity.to_owned(), label.clone());
+        }
+        let strips = chunk.iter_component::<LineStrip3D>(LineStrips3D::descriptor_strips().component);
+        let strips: Vec<LineStrip3D> = strips.flat_map(|strips| strips.as_slice().to_vec()).collect();
+        let names = texts(LineStrips3D::descriptor_labels().component).map(|text| text.to_string());
+        self.ticks.extend(strips.iter().map(|strip| strip.0[0].x()).zip(names));
+        let Some(times) = chunk.timelines().get(&"time".into()) else { return };
+        let times = || times.times_raw().iter().copied();
+        let states = texts(StateChange::descriptor_state().component).map(|text| text.to_string());
+        let lane: Vec<_> = times().zip(states).collect();
+        if !lane.is_empty() {
+            self.lanes.entry(entity.to_owned()).or_default().extend(lane);
+        }
+        let places = chunk.iter_component::<Translation3D>(Transform3D::descriptor_translation().component);
+        let places = places.flat_map(|places| places.as_slice().to_vec()).map(|place| place.0.0);
+        let places: Vec<_> = times().zip(places).collect();
+        if !places.is_empty() {
+            self.places.entry(entity.to_owned()).or_default().extend(places);
+        }
     }
 
     /// The view whose title begins with `name`.
@@ -89,6 +126,7 @@ pub(crate) fn read(path: &Path) -> Content {
             let curve = content.curves.entry(entity.clone()).or_default();
             curve.extend(times.times_raw().iter().copied().zip(values));
         }
+        content.read_scene(&chunk, &entity);
         let levels = chunk.iter_component::<TextLogLevel>(TextLog::descriptor_level().component);
         let levels = levels.flat_map(|levels| levels.as_slice().to_vec());
         let texts = chunk.iter_component::<Text>(TextLog::descriptor_text().component);

@@ -2,7 +2,9 @@
 #[path = "../../examples/two_mass/axis.rs"]
 mod axis;
 mod content;
+mod judged;
 mod readable;
+mod scene;
 
 use axis::{Case, run};
 use content::{assert_views_are_fed, read, written};
@@ -37,8 +39,7 @@ fn a_run_is_all_there_on_one_timeline() {
         "/effort/motor",
         "/current/q",
         "/current/q_reference",
-        "/voltage/magnitude",
-        "/saturation/voltage",
+        "/voltage_magnitude/applied",
         "/setpoint_snap/snap",
     ] {
         assert!(content.curves.contains_key(entity), "{entity} is missing in {:?}", content.curves.keys());
@@ -127,7 +128,7 @@ fn limits_are_lines_where_they_can_be_seen_and_words_where_not() {
     assert!(!content.entities.contains("/limit/effort/upper"));
     assert_eq!(content.title("Motor force").split(", ").last(), Some("limit ±9 kN"));
     // The voltage limit is a recorded channel, here far above the voltage.
-    assert_eq!(content.title("Voltage").split(", ").last(), Some("limit 311.8 Vpk"));
+    assert_eq!(content.title("Voltage magnitude").split(", ").last(), Some("limit 311.8 Vpk"));
     assert_views_are_fed(&content);
 }
 

@@ -30,10 +30,10 @@ fn titles_say_the_unit_and_the_peak() {
     let recording = example(3);
     let content = written(&recording, &options());
     for (title, channel, unit, factor) in [
-        ("Following error (µm), peak ", "following_error.load", "µm", 1e6),
+        ("Following error (µm), load peak ", "following_error.load", "µm", 1e6),
         ("Motor force (N), peak ", "effort.motor", "N", 1.0),
-        ("Current (Apk), peak ", "current.q", "Apk", 1.0),
-        ("Velocity (m/s), peak ", "load.velocity", "m/s", 1.0),
+        ("Current (Apk), q peak ", "current.q", "Apk", 1.0),
+        ("Velocity (m/s), load peak ", "load.velocity", "m/s", 1.0),
         ("Set-point acceleration (m/s²), peak ", "setpoint.acceleration", "m/s²", 1.0),
     ] {
         let (said, is) =
@@ -56,7 +56,7 @@ fn residual_vibration_is_the_load_minus_its_target() {
     // The unit is µm: one rounding of a position of a metre is 1e-10 of it.
     assert!(curve.iter().zip(&expected).all(|((_, shown), x)| (shown - 1e6 * x).abs() < 1e-9 + 1e-12 * shown.abs()));
     let (low, high) = expected.iter().fold((0.0, 0.0), |(low, high): (f64, f64), x| (low.min(*x), high.max(*x)));
-    let said = number(content.title("Residual vibration after the last move (µm), p-p "), "p-p", "µm");
+    let said = number(content.title("Residual vibration after the last move (µm), load p-p "), "p-p", "µm");
     assert!((said - 1e6 * (high - low)).abs() <= 0.005 * said, "{said}");
     let from = number(content.title("Residual"), "from", "s");
     assert!((from - end).abs() <= 0.005 * end, "{from} instead of {end}");
@@ -90,7 +90,7 @@ fn every_value_axis_has_two_labels_at_least() {
             assert!(labelled, "{title}: {low} to {high}");
             count += 1;
         }
-        assert!(count > 10, "{count} plots");
+        assert!(count >= 10, "{count} plots");
     }
 }
 
@@ -106,7 +106,7 @@ fn a_comparison_says_the_peak_of_each_run() {
     let (said_of_jerk, said_of_snap) = (number(title, "peak", "µm (jerk)"), number(title, "µm (jerk), ", "µm (snap)"));
     assert!((said_of_jerk - of(&jerk)).abs() <= 0.005 * of(&jerk), "{title}: {}", of(&jerk));
     assert!((said_of_snap - of(&snap)).abs() <= 0.005 * of(&snap), "{title}: {}", of(&snap));
-    assert!(content.title("Voltage").ends_with("(snap), limit 311.8 Vpk"), "a bound of all runs");
+    assert!(content.title("Voltage magnitude").ends_with("(snap), limit 311.8 Vpk"), "a bound of all runs");
     // All runs were planned with one acceleration, but only one of them with a limit of the snap.
     assert!(content.entities.contains("/limit/setpoint_acceleration/upper"));
     assert!(!content.entities.contains("/limit/setpoint_snap/upper"));
@@ -125,7 +125,7 @@ fn one_body_is_drawn_as_one() {
     let content = written(&recording, &options());
     let bodies: Vec<_> = content.entities.iter().filter(|entity| entity.starts_with("/axis/")).collect();
     assert_eq!(bodies, ["/axis/bed", "/axis/body", "/axis/reference", "/axis/ruler"]);
-    assert_eq!(content.title("Axis"), "Axis");
+    assert_eq!(content.title("Axis"), "Axis: example on example");
     assert!(!content.queries.contains("/following_error/motor"), "the same curve twice");
     assert!(content.queries.contains("/following_error/load"));
     assert_views_are_fed(&content);
@@ -152,7 +152,7 @@ fn without_a_disturbance_there_is_none_of_it() {
     let none = vec![0.0; recording.len()];
     add(&mut recording, "disturbance.load", "N", none);
     let content = written(&recording, &options());
-    assert!(!content.queries.contains("/load_disturbance"));
+    assert!(!content.queries.iter().any(|query| query.starts_with("/load_disturbance")), "{:?}", content.queries);
     assert_views_are_fed(&content);
 }
 
@@ -163,6 +163,6 @@ fn names_colours_and_bodies_come_before_the_curves() {
     let first_curve = content.order.iter().position(|entity| entity == "/position/load").unwrap();
     let is_early = |entity: &str| content.order.iter().position(|other| other == entity).unwrap() <= first_curve;
     // The first chunk of a curve's entity is its style; its values, of which there are as many as are kept, come later.
-    assert!(is_early("/axis/load") && is_early("/saturation/voltage") && is_early("/moves"));
+    assert!(is_early("/axis/load") && is_early("/voltage_magnitude/applied") && is_early("/moves"));
     assert!(content.curves["/position/load"].len() <= MAX_INSTANTS);
 }

@@ -1,0 +1,73 @@
+//! The 3D view by numbers: where bodies stand, and what stands beside them.
+use crate::axis::{Case, run};
+use crate::content::{Content, read, written};
+use crate::{example, options};
+use servobench_view::{ViewOptions, write_comparison_rrd};
+
+/// What the ruler says of a place along the rail: the line through its first and its last tick.
+fn reading(content: &Content, place: f32) -> f64 {
+    let value = |label: &str| label.split(' ').next().unwrap().parse::<f64>().unwrap();
+    let (first, last) = (&content.ticks[0], content.ticks.last().unwrap());
+    let part = f64::from(place - first.0) / f64::from(last.0 - first.0);
+    value(&first.1) + part * (value(&last.1) - value(&first.1))
+}
+
+/// Oracle: the recording. Places are `f32` of travels: 1e-7 of the travel, and the ruler's two ends the same again.
+#[test]
+fn a_body_stands_above_the_mark_of_its_position() {
+    let recording = example(3);
+    let content = written(&recording, &ViewOptions { exaggeration: Some(1.0), ..options() });
+    let (motor, load) = (recording.channel("motor.position").unwrap(), recording.channel("load.position").unwrap());
+    let mut early = 0;
+    for (body, positions) in [("/axis/motor", motor), ("/axis/load", load)] {
+        for (time, place) in &content.places[body] {
+            #[expect(clippy::cast_precision_loss, reason = "nanoseconds of a short run")]
+            let position = positions[recording.index_at(*time as f64 * 1e-9 - 1e-9)];
+            // The ruler of a metre is in metres.
+            let read = reading(&content, place[0]);
+            assert!((read - position).abs() < 1e-6, "{body} at {time} ns stands at {read} m instead of {position} m");
+            early += usize::from(body == "/axis/load" && (0.000_5..0.002).contains(&position));
+        }
+    }
+    assert!(early > 10, "the load at about 1.1 mm is among them: {early}");
+}
+
+/// What is enlarged is the deflection against the motor and nothing else; the pointer at the ruler is not.
+#[test]
+fn only_the_deflection_is_enlarged() {
+    let recording = example(4);
+    let content = written(&recording, &ViewOptions { exaggeration: Some(7.0), ..options() });
+    let at = |body: &str, index: usize| reading(&content, content.places[body][index].1[0]);
+    for index in (0..content.places["/axis/load"].len()).step_by(97) {
+        let deflection = at("/axis/load_position", index) - at("/axis/motor", index);
+        let drawn = at("/axis/load", index) - at("/axis/motor", index);
+        assert!((drawn - 7.0 * deflection).abs() < 2e-6, "{drawn} instead of 7 × {deflection}");
+    }
+    assert!(content.title("Axis").starts_with("Axis, deflection × 7: "));
+}
+
+/// An axis that stands still while 250 mm are asked for stands at the mark of 0, on a ruler of 250 mm.
+#[test]
+fn the_ruler_is_as_long_as_what_was_asked_for() {
+    let mut recording = example(3);
+    for channel in &mut recording.channels {
+        if ["motor.position", "load.position"].contains(&channel.spec.name.as_str()) {
+            channel.values.iter_mut().for_each(|x| *x *= 1e-9);
+        }
+    }
+    let content = written(&recording, &ViewOptions { exaggeration: Some(1.0), ..options() });
+    assert_eq!(content.ticks.last().unwrap().1, "1 m");
+    assert!(content.places["/axis/load"].iter().all(|(_, place)| reading(&content, place[0]).abs() < 1e-6));
+}
+
+#[test]
+fn every_body_of_a_comparison_says_of_which_run_it_is() {
+    for rotary in [false, true] {
+        let runs = [3, 4].map(|order| run(Case { name: "example", order, rotary, duration: 1.5 }));
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("compare.rrd");
+        write_comparison_rrd(&[("jerk", &runs[0]), ("snap", &runs[1])], &path, &options()).unwrap();
+        let labels: Vec<String> = read(&path).labels.into_values().collect();
+        assert_eq!(labels, ["jerk load", "jerk motor", "snap load", "snap motor"], "rotary: {rotary}");
+    }
+}
