@@ -17,7 +17,7 @@ pub(crate) struct PerLimit<T> {
 
 /// One limit: whether it binds, since when, and how often it did since the last row.
 #[derive(Debug, Clone, Default)]
-struct Watch {
+pub(crate) struct Watch {
     since: Option<f64>,
     bound_ticks: u32,
     events: usize,
@@ -72,7 +72,8 @@ impl LimitWatch {
 }
 
 impl Watch {
-    fn tick(&mut self, t: f64, binds: bool, (source, message): (&str, &str), recorder: &mut Recorder) {
+    /// Takes whether it binds at `t` (s); who says so, and in which words.
+    pub(crate) fn tick(&mut self, t: f64, binds: bool, (source, message): (&str, &str), recorder: &mut Recorder) {
         self.bound_ticks += u32::from(binds);
         match (self.since, binds) {
             (None, true) => self.since = Some(t),

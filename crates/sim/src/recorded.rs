@@ -1,6 +1,7 @@
 //! The closed loop with what is recorded of it.
 use crate::channels::{Instant, Selection};
 use crate::closed_loop::{ClosedLoop, Source, State};
+use crate::joint_watch::JointWatch;
 use crate::limit_watch::LimitWatch;
 use crate::run::{Failure, Outcome};
 use crate::stepper::External;
@@ -24,6 +25,7 @@ pub(crate) struct Recorded {
     pub(crate) record_every: u32,
     pub(crate) ticks_to_row: u32,
     pub(crate) watch: LimitWatch,
+    pub(crate) joints: JointWatch,
     /// The tick that comes next.
     pub(crate) tick: u64,
 }
@@ -33,6 +35,7 @@ pub(crate) struct Saved {
     state: State,
     ticks_to_row: u32,
     watch: LimitWatch,
+    joints: JointWatch,
     tick: u64,
     mark: Mark,
 }
@@ -41,7 +44,9 @@ impl Recorded {
     /// Tick k, recorded, but for the mechanics' way to k+1. What is recorded together belongs to the same instant.
     pub(crate) fn observe(&mut self, external: &External) -> Instant {
         let mut now = self.closed_loop.tick(self.tick, external, &mut self.recorder);
-        self.watch.tick(self.time(), now.binds, &mut self.recorder);
+        let t = self.time();
+        self.watch.tick(t, now.binds, &mut self.recorder);
+        self.joints.tick(t, self.closed_loop.mechanics.joint_limits(), &mut self.recorder);
         if self.ticks_to_row == 0 {
             self.ticks_to_row = self.record_every;
             now.saturation = self.watch.shares();
@@ -93,6 +98,7 @@ impl Recorded {
             state: self.closed_loop.mark()?,
             ticks_to_row: self.ticks_to_row,
             watch: self.watch.clone(),
+            joints: self.joints.clone(),
             tick: self.tick,
             mark: self.recorder.mark(self.time()),
         })
@@ -105,6 +111,7 @@ impl Recorded {
     pub(crate) fn restore(&mut self, saved: &Saved) -> Result<(), MechanicsError> {
         self.closed_loop.rewind(&saved.state)?;
         self.watch.clone_from(&saved.watch);
+        self.joints.clone_from(&saved.joints);
         (self.ticks_to_row, self.tick) = (saved.ticks_to_row, saved.tick);
         self.recorder.rewind(&saved.mark);
         Ok(())
@@ -115,6 +122,7 @@ impl Recorded {
         self.hear_mechanics();
         let t = failure.as_ref().map_or_else(|| self.time(), |failure| failure.time);
         self.watch.finish(t, &mut self.recorder);
+        self.joints.finish(t, self.closed_loop.mechanics.joint_limits(), &mut self.recorder);
         if let Source::Network(network, delay) = &mut self.closed_loop.state.source {
             let unit = self.recorder.about().axis_unit.clone();
             network.finish(t, &unit, *delay, &mut self.recorder);
