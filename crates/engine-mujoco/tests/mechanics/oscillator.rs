@@ -68,6 +68,19 @@ fn numerical_damping_is_that_of_rk4() {
     assert!((measured / theory - 1.0).abs() < 0.02, "{measured:e}, next term y²/8 is 1 %: {theory:e}");
 }
 
+/// What is said of RK4 before a run is what MuJoCo does: a step scales the energy by |R(i·ω·h)|², whatever ω·h is.
+#[test]
+fn the_damping_that_is_foretold_is_that_of_mujoco() {
+    for rate in [2000.0, 1000.0, 600.0] {
+        let step = 1.0 / rate;
+        let Distortion { damping, shift } = Integrator::Rk4.distortion(free_omega(), step).unwrap();
+        let foretold = damping * (1.0 + shift) / (1.0 - damping * damping).sqrt();
+        let measured = numerical_damping(step);
+        // Rounding of the energies, 1e-14 of them, beside a loss of 0.9 % at 2 kHz.
+        assert!((measured / foretold - 1.0).abs() < 1e-9, "{rate} Hz: {measured:e} {foretold:e}");
+    }
+}
+
 /// Oracle: stretch = 2 mm·cos(ω·t).
 #[test]
 fn free_motion_converges_with_order_four() {
