@@ -13,7 +13,7 @@ pub(super) fn doubts(scenario: &Scenario, engines: &[EngineName]) -> Vec<Doubt> 
     }
     let creeps = |line| {
         let message = "on `mujoco` a joint with `frictionloss` creeps: the friction is a soft constraint that slides slowly under \
-                       an effort below it (2.1 mm/s at 4 N of 5 N)";
+                       an effort below it (2.1 mm/s at 4 N of 5 N, 2 kg)";
         let help = "the engine `rapier` holds such a joint; bodies in `[axis]` with `coulomb` are held on every engine";
         Doubt { line: Some(line), ..Doubt::new("axis.mjcf.file", message, help) }
     };

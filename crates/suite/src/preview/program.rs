@@ -173,7 +173,7 @@ mod tests {
         }
         for (missed, key, words) in [
             ("move_time = \"0.79 s\"", "limits.move_time", "at most 790 ms: the move is planned to take 800 ms"),
-            ("move_and_settling_time = \"0.7999 s\"", "limits.move_and_settling_time", "at most 799.9 ms"),
+            ("move_and_settling_time = \"0.7999 s\"", "limits.move_and_settling_time", "at most 799.90 ms"),
             ("move_time = { min = \"0.9 s\", max = \"1 s\" }", "limits.move_time", "at least 900 ms"),
         ] {
             let found = doubts(&format!("{MOVE}{missed}"));

@@ -19,7 +19,7 @@ impl Preview {
         self.program_lines(&mut screen);
         self.demand_lines(&mut screen);
         if let Some(inertias) = &self.inertias {
-            screen.line("inertia", &[inertia(inertias)]);
+            screen.line("inertia", &inertia(inertias));
         }
         match &self.modes {
             Some(modes) => mode_lines(modes, &mut screen),
@@ -167,16 +167,18 @@ fn share(peak: f64, available: f64) -> String {
     format!("{:.0} %", 100.0 * peak / available)
 }
 
-fn inertia(inertias: &Inertias) -> String {
+fn inertia(inertias: &Inertias) -> Vec<String> {
     let Inertias { motor, load, turns } = *inertias;
     let unit = if turns { "kg·m²" } else { "kg" };
-    let motor_side = Quantity::new(motor, unit);
+    let motor_side = format!("motor side {}", Quantity::new(motor, unit));
     if load == 0.0 {
-        format!("{motor_side} on the motor, rigid")
-    } else {
-        let load_side = Quantity::new(load, unit);
-        format!("motor side {motor_side}, load behind it {load_side}: {} to 1", Quantity::new(load / motor, ""))
+        return vec![motor_side, "rigid".into()];
     }
+    vec![
+        motor_side,
+        format!("load {}", Quantity::new(load, unit)),
+        format!("load to motor {}", Quantity::new(load / motor, "")),
+    ]
 }
 
 fn mode_lines(modes: &Modes, screen: &mut Screen) {
