@@ -56,6 +56,7 @@ fn build(engine: &dyn Engine, xml: &str, initial: &[BodyState]) -> Box<dyn Mecha
         load_joint: "load".into(),
         actuator: "drive".into(),
         transmission: 1.0,
+        axis: None,
     });
     let setup = MechanicsSetup { model, drive: Drive::Effort, step: H, initial: initial.to_vec() };
     engine.build(&setup).unwrap_or_else(|error| panic!("{error}"))
@@ -140,5 +141,25 @@ fn runs_start_where_the_scenario_says() {
             let found = [first("motor.position"), first("load.position"), first("load.velocity")];
             assert_eq!(found.map(f64::to_bits), [motor, 0.25_f64, 0.5].map(f64::to_bits), "{}: {load}", engine.name());
         }
+    }
+}
+
+/// Oracle: the recorded position. From the first tick beyond the end of the range to the first that is not, the joint is said to
+/// be there, as an event of the mechanics.
+#[test]
+fn a_joint_at_the_end_of_its_range_is_an_event() {
+    let mut scenario = scenario_file("own-mjcf.toml");
+    scenario.duration = Some(1.1);
+    let AxisMechanics::Mjcf(mjcf) = &mut scenario.axis.mechanics else { panic!("an MJCF file") };
+    let free = r#"name="carriage" type="slide""#;
+    assert!(mjcf.xml.contains(free));
+    mjcf.xml = mjcf.xml.replace(free, &format!(r#"{free} limited="true" range="-1 0.37""#));
+    for engine in mjcf_engines().filter(|engine| engine.name() == "mujoco") {
+        let recording = run(&scenario, engine);
+        let position = recording.channel("motor.position").unwrap();
+        let first = position.iter().position(|position| *position > 0.37).expect("the end is reached");
+        let event = recording.events.iter().find(|event| event.source == "mechanics").expect("an event");
+        assert_eq!(event.message, "joint `carriage` is at the upper end of its range, 0.37 m");
+        assert!((event.start - first as f64 * H).abs() < H / 2.0, "{} {first}", event.start);
     }
 }

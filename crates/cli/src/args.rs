@@ -166,6 +166,9 @@ pub(crate) struct CheckArgs {
     /// Scenario files, or folders of them.
     #[arg(required = true)]
     pub(crate) scenarios: Vec<PathBuf>,
+    /// Show the whole preview of every scenario, as of a single one.
+    #[arg(long, short)]
+    pub(crate) verbose: bool,
 }
 
 #[derive(Debug, Args)]

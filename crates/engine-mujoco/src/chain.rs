@@ -4,6 +4,7 @@
 //! the tick. Behind a prescribed base its coordinates are relative to the base, else the base rests at zero.
 use crate::base::BaseTick;
 use crate::simulation::{self, Data};
+use crate::stability;
 use mujoco_rs::prelude::MjtDisableBit;
 use servobench_base::Setpoint;
 use servobench_plant::{
@@ -34,6 +35,7 @@ pub(crate) struct MujocoChain {
 impl MujocoChain {
     pub(crate) fn new(chain: Chain, setup: &MechanicsSetup) -> Result<Self, MechanicsError> {
         let first = usize::from(setup.drive == Drive::Prescribed);
+        stability::check(&chain, setup)?;
         let xml = chain_to_mjcf(&chain, setup.drive, setup.step);
         let model = simulation::compile(&xml, Path::new("chain.xml"))?;
         let mut data = simulation::start(model, setup.step, &UNUSED)?;

@@ -7,7 +7,8 @@
 //! | dry friction | see [`servobench_plant::DryFriction`]; stuck bodies keep their position to the bit | second between the stops, first at each stop |
 //! | a user's MJCF | the integrator of the file | as `MuJoCo` documents it |
 //!
-//! RK4 damps a mode of ω by ζ = (ω·h)⁵/144: below 1e-4 up to ω·h = 0.43, which is 1.1 kHz at 16 kHz.
+//! RK4 damps a mode of ω by ζ = (ω·h)⁵/144: below 1e-4 up to ω·h = 0.43, which is 1.1 kHz at 16 kHz. A chain that it
+//! would blow up, undamped from ω·h = 2.83 on, is refused (`stability.rs`).
 //!
 //! A fatal error of `MuJoCo` **ends the process with exit code 1** after a line on standard error. Whoever must survive
 //! that runs the engine in a process of its own.
@@ -17,6 +18,7 @@ mod chain;
 mod messages;
 mod mjcf;
 mod simulation;
+mod stability;
 
 use servobench_plant::{Engine, Mechanics, MechanicsError, MechanicsSetup, Model};
 

@@ -1,11 +1,14 @@
 //! A user's own MJCF file: some joints and one motor of it are the axis, the rest is simulated along with them.
+mod limits;
 mod parts;
 
 use crate::NAME;
 use crate::simulation::{self, Data};
+use limits::Limits;
 use parts::{Joint, Motor, Parts, joints, load_coordinate};
 use servobench_plant::{
-    Actuation, BodyState, Drive, Input, LoadCoordinate, Mechanics, MechanicsError, MechanicsSetup, MjcfModel,
+    Actuation, BodyState, Drive, Input, JointLimit, LoadCoordinate, Mechanics, MechanicsError, MechanicsSetup,
+    MjcfModel,
 };
 
 /// A model with a motor joint and a load joint.
@@ -19,6 +22,7 @@ pub(crate) struct MujocoMjcf {
     load: LoadCoordinate,
     /// Load coordinate per coordinate of the load joint: the transmission when one joint is both motor and load.
     load_per_joint: f64,
+    limits: Limits,
     /// Motor, then load; one body when one joint is both.
     bodies: Vec<BodyState>,
 }
@@ -34,13 +38,13 @@ impl MujocoMjcf {
         }
         let model = simulation::compile(&file.xml, &file.path)?;
         let Parts { motor, load, actuator } = Parts::find(&model, file)?;
-        let joints = joints(&model);
+        let (joints, limits) = (joints(&model), Limits::of(&model));
         let mut data = simulation::start(model, setup.step, &[])?;
         let load = load_coordinate(&mut data, motor, load);
         let mut bodies = vec![BodyState::default(); if load.joint() == motor { 1 } else { 2 }];
         bodies.iter_mut().zip(&setup.initial).for_each(|(body, initial)| *body = *initial);
         let load_per_joint = if bodies.len() == 1 { file.transmission } else { 1.0 };
-        let mut mechanics = Self { data, actuator, joints, motor, load, load_per_joint, bodies };
+        let mut mechanics = Self { data, actuator, joints, motor, load, load_per_joint, limits, bodies };
         mechanics.start();
         mechanics.read();
         Ok(mechanics)
@@ -68,6 +72,7 @@ impl MujocoMjcf {
         if let Some(body) = self.bodies.get_mut(1) {
             *body = BodyState { position: self.load.of(position), velocity: self.load.of(velocity) };
         }
+        self.limits.watch(positions);
     }
 }
 
@@ -89,5 +94,9 @@ impl Mechanics for MujocoMjcf {
         simulation::step(&mut self.data)?;
         self.read();
         simulation::check_states(&self.bodies)
+    }
+
+    fn joint_limits(&self) -> &[JointLimit] {
+        self.limits.all()
     }
 }

@@ -67,6 +67,7 @@ fn axis_of(xml: &str) -> Option<MjcfModel> {
         load_joint: load.attribute("name")?.into(),
         actuator: motor.attribute("name")?.into(),
         transmission: 1.0,
+        axis: None,
     })
 }
 

@@ -8,10 +8,13 @@ mod chain;
 mod exact;
 mod fmu;
 mod friction;
+mod integration;
 pub mod inverter;
 mod load_coordinate;
 mod mechanics;
 mod mjcf;
+mod mjcf_axis;
+mod modes;
 pub mod pmsm;
 mod refusal;
 mod sensor;
@@ -24,11 +27,15 @@ pub use fmu::{
     Isolation, SiUnit,
 };
 pub use friction::{DryFriction, Grip};
+pub use integration::{Distortion, Integrator};
 pub use load_coordinate::{LoadCoordinate, PosedJoint};
 pub use mechanics::{
-    Actuation, BodyState, Drive, Engine, Input, Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Model, Said,
+    Actuation, BodyState, Drive, Engine, Input, JointLimit, Mechanics, MechanicsError, MechanicsSetup, MjcfModel,
+    Model, Said,
 };
 pub use mjcf::chain_to_mjcf;
+pub use mjcf_axis::MjcfAxis;
+pub use modes::Mode;
 pub use refusal::{Refusal, RefusedAt};
 pub use sensor::{Encoder, Reading};
 pub use switches::{SwitchReading, Switches};

@@ -1,6 +1,7 @@
 //! Mechanics behind one trait: what the closed loop sees of a simulated axis, whichever engine computes it.
 use crate::chain::Chain;
 use crate::fmu::{FmuMistake, FmuModel};
+use crate::mjcf_axis::MjcfAxis;
 use crate::refusal::{Refusal, in_one_line};
 use servobench_base::{ParamError, Setpoint, Severity, finite, positive};
 use std::path::PathBuf;
@@ -103,6 +104,21 @@ pub trait Mechanics: Send {
     fn take_log(&mut self) -> Vec<Said> {
         Vec::new()
     }
+
+    /// The limits that the model gives its joints, in an order that never changes, and which of them bind at the present
+    /// tick.
+    fn joint_limits(&self) -> &[JointLimit] {
+        &[]
+    }
+}
+
+/// An end of a joint's range, as a user's own model gives it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointLimit {
+    /// What is so while it binds: "joint `x` is at the upper end of its range, 0.3 m".
+    pub text: String,
+    /// Whether it binds.
+    pub binds: bool,
 }
 
 /// What an engine simulates.
@@ -133,6 +149,8 @@ pub struct MjcfModel {
     /// Axis coordinate per motor coordinate: where one joint is both motor and load, an effort on the load acts through
     /// it.
     pub transmission: f64,
+    /// What the file has to fit; `None` where nobody says.
+    pub axis: Option<MjcfAxis>,
 }
 
 /// What it takes to build mechanics.

@@ -17,6 +17,13 @@ pub enum RefusedAt {
     Line(u32),
     /// At this name of a joint or an actuator, given beside the file.
     Name(String),
+    /// At the name of the motor joint or the load joint, whatever engine reads the file.
+    Joint {
+        /// The name.
+        name: String,
+        /// Whether it is that of the motor.
+        is_motor: bool,
+    },
     /// In the file as a whole.
     File,
 }

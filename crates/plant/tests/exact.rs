@@ -162,6 +162,7 @@ fn an_mjcf_file_is_refused_with_a_way_out() {
         load_joint: "load".into(),
         actuator: "motor".into(),
         transmission: 1.0,
+        axis: None,
     };
     let setup = MechanicsSetup { model: Model::Mjcf(model), drive: Drive::Effort, step: H, initial: vec![] };
     let error = Exact.build(&setup).err().unwrap();

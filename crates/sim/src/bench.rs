@@ -10,6 +10,7 @@ use crate::closed_loop::{ClosedLoop, Control, Source, State};
 use crate::coupled::{self, ConnectionDelay, Coupled, NoPartners, Partners};
 use crate::disturbance::Disturbances;
 use crate::error::{BuildError, check_length};
+use crate::joint_watch::JointWatch;
 use crate::limit_watch::LimitWatch;
 use crate::network::Network;
 use crate::program::Program;
@@ -17,8 +18,8 @@ use crate::recorded::Recorded;
 use servobench_base::{Rate, Setpoint};
 use servobench_drive as drive;
 use servobench_fieldbus::LinkFault;
-use servobench_plant::Engine;
-use servobench_scenario::{self as scenario, Actuator, Feedback, LoopSignal, Scenario};
+use servobench_plant::{Chain, Engine};
+use servobench_scenario::{self as scenario, Actuator, AxisMechanics, Feedback, LoopSignal, Scenario};
 use servobench_trace::{About, Event, Recorder};
 
 /// How long a run goes on after its program, when the scenario does not say (s).
@@ -45,6 +46,17 @@ impl Bench {
     /// [`BuildError`] says which part of the scenario cannot be built.
     pub fn new(scenario: &Scenario, engine: &dyn Engine) -> Result<Self, BuildError> {
         Self::with_partners(scenario, engine, &NoPartners)
+    }
+
+    /// The lumped bodies of `scenario` as engines have them; `None` where a file of the user's describes the mechanics.
+    ///
+    /// # Errors
+    /// [`BuildError::Parameter`] names what is out of its bound.
+    pub fn chain(scenario: &Scenario) -> Result<Option<Chain>, BuildError> {
+        match &scenario.axis.mechanics {
+            AxisMechanics::Bodies(bodies) => plant::chain(&scenario.axis, bodies).map(Some),
+            AxisMechanics::Mjcf(_) | AxisMechanics::InTheFmu => Ok(None),
+        }
     }
 
     /// How late what axis and FMUs exchange is; nothing where there are none.
@@ -138,9 +150,9 @@ impl Bench {
             disturbances,
             switches: plant::switches(&scenario.axis.switches)?,
         };
-        let watch = LimitWatch::default();
+        let (watch, joints) = (LimitWatch::default(), JointWatch::default());
         let recorded =
-            Recorded { closed_loop, wanted, selection, recorder, record_every, ticks_to_row: 0, watch, tick: 0 };
+            Recorded { closed_loop, wanted, selection, recorder, record_every, ticks_to_row: 0, watch, joints, tick: 0 };
         let axis = if scenario.fmus.is_empty() {
             Axis::Alone(Box::new(recorded))
         } else {

@@ -8,6 +8,7 @@ mod closed_loop;
 mod coupled;
 mod disturbance;
 mod error;
+mod joint_watch;
 mod limit_watch;
 mod network;
 mod power;

@@ -17,7 +17,7 @@ pub(crate) struct PerLimit<T> {
 
 /// One limit: whether it binds, since when, and how often it did since the last row.
 #[derive(Debug, Clone, Default)]
-struct Watch {
+pub(crate) struct Watch {
     since: Option<f64>,
     bound_ticks: u32,
     events: usize,
@@ -83,8 +83,8 @@ impl LimitWatch {
 }
 
 impl Watch {
-    /// Takes what the limit cuts at `t` (s), if it binds.
-    fn tick(&mut self, t: f64, cut: Option<f64>, (source, message): (&str, &str), recorder: &mut Recorder) {
+    /// Takes what the limit cuts at `t` (s), if it binds; who says so, and in which words.
+    pub(crate) fn tick(&mut self, t: f64, cut: Option<f64>, (source, message): (&str, &str), recorder: &mut Recorder) {
         let binds = cut.is_some();
         self.bound_ticks += u32::from(binds);
         if let Some(cut) = cut {

@@ -1,6 +1,7 @@
 //! The closed loop with what is recorded of it.
 use crate::channels::{Instant, Selection};
 use crate::closed_loop::{ClosedLoop, Source, State};
+use crate::joint_watch::JointWatch;
 use crate::limit_watch::{LimitWatch, PerLimit};
 use crate::run::{Failure, Outcome};
 use crate::stepper::External;
@@ -27,6 +28,7 @@ pub(crate) struct Recorded {
     pub(crate) record_every: u32,
     pub(crate) ticks_to_row: u32,
     pub(crate) watch: LimitWatch,
+    pub(crate) joints: JointWatch,
     /// The tick that comes next.
     pub(crate) tick: u64,
 }
@@ -36,6 +38,7 @@ pub(crate) struct Saved {
     state: State,
     ticks_to_row: u32,
     watch: LimitWatch,
+    joints: JointWatch,
     tick: u64,
     mark: Mark,
 }
@@ -45,7 +48,9 @@ impl Recorded {
     pub(crate) fn observe(&mut self, external: &External) -> Instant {
         let mut now = self.closed_loop.tick(self.tick, external, &mut self.recorder);
         let cut = PerLimit { voltage: now.voltage.q, current: now.effort_reference, effort: now.effort_reference };
-        self.watch.tick(self.time(), now.binds, cut, &mut self.recorder);
+        let t = self.time();
+        self.watch.tick(t, now.binds, cut, &mut self.recorder);
+        self.joints.tick(t, self.closed_loop.mechanics.joint_limits(), &mut self.recorder);
         if self.ticks_to_row == 0 {
             self.ticks_to_row = self.record_every;
             now.saturation = self.watch.shares();
@@ -97,6 +102,7 @@ impl Recorded {
             state: self.closed_loop.mark()?,
             ticks_to_row: self.ticks_to_row,
             watch: self.watch.clone(),
+            joints: self.joints.clone(),
             tick: self.tick,
             mark: self.recorder.mark(self.time()),
         })
@@ -109,6 +115,7 @@ impl Recorded {
     pub(crate) fn restore(&mut self, saved: &Saved) -> Result<(), MechanicsError> {
         self.closed_loop.rewind(&saved.state)?;
         self.watch.clone_from(&saved.watch);
+        self.joints.clone_from(&saved.joints);
         (self.ticks_to_row, self.tick) = (saved.ticks_to_row, saved.tick);
         self.recorder.rewind(&saved.mark);
         Ok(())
@@ -119,6 +126,7 @@ impl Recorded {
         self.hear_mechanics();
         let t = failure.as_ref().map_or_else(|| self.time(), |failure| failure.time);
         self.watch.finish(t, &mut self.recorder);
+        self.joints.finish(t, self.closed_loop.mechanics.joint_limits(), &mut self.recorder);
         if let Source::Network(network, delay) = &mut self.closed_loop.state.source {
             let unit = self.recorder.about().axis_unit.clone();
             network.finish(t, &unit, *delay, &mut self.recorder);

@@ -128,6 +128,11 @@ impl Objection {
             RefusedAt::Line(line) => (model_key(scenario), Some(*line)),
             RefusedAt::Name(name) => (name_key(name, scenario).unwrap_or(model_key(scenario)), None),
             RefusedAt::File => (model_key(scenario), None),
+            // Every engine says the same.
+            RefusedAt::Joint { is_motor, .. } => {
+                let key = if *is_motor { "axis.mjcf.motor_joint" } else { "axis.mjcf.load_joint" };
+                return Self::new(key, refusal.message.clone());
+            }
         };
         let message = format!("engine `{engine}`: {}", refusal.message);
         Self { key: key.to_owned(), line, message, way_out: way_out.to_owned() }

@@ -38,7 +38,8 @@ impl Job {
     pub fn memory(&self) -> u64 {
         const VALUE: f64 = size_of::<f64>() as f64;
         let Scenario { duration, record, base_rate, .. } = &self.scenario;
-        let Some(duration) = duration.or_else(|| Some(Program::new(&self.scenario).ok()?.end() + TAIL)) else {
+        let planned = || Some(run_length(&self.scenario, &Program::new(&self.scenario).ok()?));
+        let Some(duration) = duration.or_else(planned) else {
             return 0;
         };
         let channels = if record.channels.is_empty() { CHANNELS.len() } else { record.channels.len() };
@@ -50,6 +51,11 @@ impl Job {
         let bytes = bytes.ceil() as u64;
         bytes
     }
+}
+
+/// How long `scenario` runs with `program` planned (s).
+pub(crate) fn run_length(scenario: &Scenario, program: &Program) -> f64 {
+    scenario.duration.unwrap_or(program.end() + TAIL)
 }
 
 /// Slows the moves of `scenario` to `durations` (s); a duration of zero leaves its move alone.

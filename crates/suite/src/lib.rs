@@ -9,6 +9,7 @@ mod job;
 mod limits;
 mod panicked;
 mod pool;
+mod preview;
 mod requirements;
 pub mod worker;
 
@@ -21,4 +22,8 @@ pub use job::{Job, Source, jobs};
 pub use limits::channel_limits;
 pub use panicked::Panicked;
 pub use pool::{AtATime, map_in_parallel};
+pub use preview::{
+    Cost, Delay, Demand, Doubt, EffortDemand, EngineSteps, Inertias, LoopBandwidth, Modes, PlannedProgram, Preview,
+    VoltageDemand, preview,
+};
 pub use worker::{WorkerCommand, WorkerError};

@@ -1,15 +1,18 @@
 //! `servobench check`: validates without running.
 use crate::args::CheckArgs;
-use crate::console::print;
-use crate::diagnostics::mistakes;
+use crate::console::{print, say};
+use crate::diagnostics::{mistakes, render};
 use crate::engines;
 use crate::exit::{CliError, Exit};
 use crate::sources;
 use crate::workers;
+use miette::Severity;
 use servobench_report::{Style, elided};
 use servobench_scenario::{Diagnostic, EngineName, Loaded};
 use servobench_sim::ConnectionDelay;
-use servobench_suite::{Engines, RunError, Source, WorkerCommand, check as objections, delays, jobs};
+use servobench_suite::{
+    Doubt, Engines, Job, Preview, RunError, Source, WorkerCommand, check as objections, delays, jobs, preview,
+};
 use std::time::Duration;
 
 /// How long an isolated engine may take to read a model.
@@ -20,7 +23,8 @@ const PATIENCE: Duration = Duration::from_mins(1);
 pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     let (engines, worker) = (engines::installed(), workers::command(&std::env::temp_dir(), PATIENCE)?);
     let files = sources::files(&args.scenarios)?;
-    let (mut wrong, mut failed, mut missing, mut late) = (Vec::new(), Vec::new(), Vec::new(), String::new());
+    let (mut wrong, mut failed, mut missing, mut shown) = (Vec::new(), Vec::new(), Vec::new(), String::new());
+    let in_full = args.verbose || files.len() == 1;
     for file in &files {
         match sources::read(file) {
             Ok(loaded) => {
@@ -28,7 +32,13 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
                 wrong.extend((!asked.mistakes.is_empty()).then(|| mistakes(&asked.mistakes, &loaded.sources)));
                 failed.extend(asked.failed.iter().map(|error| format!("{}: {error}", file.display())));
                 missing.extend(asked.missing);
-                late.push_str(&asked.late);
+                if let Some(preview) = &asked.preview {
+                    if !asked.doubts.is_empty() {
+                        say(&render(&asked.doubts, &loaded.sources, Severity::Warning));
+                    }
+                    shown.push_str(&previewed(preview, in_full));
+                }
+                shown.push_str(&asked.late);
             }
             Err(error) => wrong.push(error.to_string()),
         }
@@ -41,7 +51,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
         return Err(CliError::Run(failed.join("\n")));
     }
     let plural = if files.len() == 1 { "scenario is" } else { "scenarios are" };
-    print(&format!("{late}{} {plural} valid{}\n", files.len(), not_asked(&missing)))?;
+    print(&format!("{shown}{} {plural} valid{}\n", files.len(), not_asked(&missing)))?;
     Ok(Exit::Passed)
 }
 
@@ -55,14 +65,19 @@ struct Asked {
     failed: Vec<RunError>,
     /// How late what axis and FMUs exchange is.
     late: String,
+    /// What can be said of it without running it, when there is no mistake.
+    preview: Option<Preview>,
+    /// What is doubtful in it.
+    doubts: Vec<Diagnostic>,
 }
 
 impl Asked {
     fn about(loaded: &Loaded, engines: &Engines, worker: &WorkerCommand) -> Self {
         let mut asked = Self::default();
         let text = loaded.sources.text(loaded.sources.scenario()).to_owned();
-        for job in jobs(vec![Source { scenario: loaded.scenario.clone(), text }], &[]) {
-            let found = match objections(&job, engines, worker) {
+        let jobs = jobs(vec![Source { scenario: loaded.scenario.clone(), text }], &[]);
+        for job in &jobs {
+            let found = match objections(job, engines, worker) {
                 Ok(found) => found,
                 Err(RunError::EngineMissing(missing)) => {
                     asked.missing.push(missing.name);
@@ -74,7 +89,7 @@ impl Asked {
                 }
             };
             if found.is_empty() && asked.late.is_empty() {
-                match delays(&job, engines) {
+                match delays(job, engines) {
                     Ok(delays) => asked.late = listed(&loaded.scenario.name, &delays),
                     Err(error) => asked.failed.push(error),
                 }
@@ -91,7 +106,37 @@ impl Asked {
             }
         }
         asked.mistakes.sort_by_key(|mistake| (mistake.source, mistake.span.start));
+        if asked.mistakes.is_empty() {
+            asked.look_ahead(loaded, &jobs);
+        }
         asked
+    }
+
+    /// What can be said of `loaded`, whose `jobs` nothing keeps from being built.
+    fn look_ahead(&mut self, loaded: &Loaded, jobs: &[Job]) {
+        match preview(jobs) {
+            Ok(preview) => self.preview = preview,
+            Err(error) => self.failed.push(error.into()),
+        }
+        let doubts = self.preview.iter().flat_map(|preview| &preview.doubts).cloned();
+        self.doubts = doubts
+            .map(|Doubt { key, line, message, help }| match line {
+                Some(line) => loaded.mistake_in_mjcf(line, message, &help),
+                None => loaded.mistake(&key, message, help),
+            })
+            .collect();
+        self.doubts.sort_by_key(|doubt| (doubt.source, doubt.span.start));
+    }
+}
+
+/// A preview: a screen, or a line of it.
+fn previewed(preview: &Preview, in_full: bool) -> String {
+    let Style { width, .. } = Style::default();
+    let name = &preview.name;
+    if in_full {
+        format!("{}\n{}", elided(name, width), preview.screen())
+    } else {
+        format!("{}\n", elided(&format!("{name}: {}", preview.line()), width))
     }
 }
 

@@ -51,18 +51,28 @@ impl Parts {
         let load = joint(model, &file.load_joint);
         let actuator = actuator(model, file, motor.as_ref().ok().map(|(id, _)| *id));
         match (motor, load, actuator) {
-            (Ok((motor, _)), Ok((id, kind)), Ok(actuator)) => {
-                Ok(Self { motor, load: LoadJoint { id, kind }, actuator })
+            (Ok((motor, own_kind)), Ok((id, kind)), Ok(actuator)) => {
+                let mut refusals = file.misfits(own_kind, kind);
+                refusals.extend(file.too_strong(actuator.range));
+                if refusals.is_empty() {
+                    Ok(Self { motor, load: LoadJoint { id, kind }, actuator })
+                } else {
+                    Err(refused(file, refusals))
+                }
             }
             (motor, load, actuator) => {
                 let mut refusals: Vec<Refusal> =
                     [motor.err(), load.err(), actuator.err()].into_iter().flatten().collect();
                 refusals.dedup();
-                let way_out = "change the file or the names of its parts";
-                Err(MechanicsError::Refused { engine: NAME, path: file.path.clone(), refusals, way_out })
+                Err(refused(file, refusals))
             }
         }
     }
+}
+
+fn refused(file: &MjcfModel, refusals: Vec<Refusal>) -> MechanicsError {
+    let way_out = "change the file or the names of its parts";
+    MechanicsError::Refused { engine: NAME, path: file.path.clone(), refusals, way_out }
 }
 
 impl Motor {

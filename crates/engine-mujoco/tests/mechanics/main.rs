@@ -9,7 +9,7 @@ mod oscillator;
 use servobench_engine_mujoco::Mujoco;
 use servobench_plant::{
     Actuation, Body, BodyState, Chain, Coordinate, Drive, DryFriction, Engine as _, Input, Link, Mechanics,
-    MechanicsSetup, Model,
+    MechanicsSetup, MjcfModel, Model, chain_to_mjcf,
 };
 use std::f64::consts::TAU;
 
@@ -47,6 +47,20 @@ fn setup(chain: Chain, drive: Drive, step: f64, initial: &[(f64, f64)]) -> Mecha
 
 fn mujoco(chain: Chain, drive: Drive, step: f64, initial: &[(f64, f64)]) -> Box<dyn Mechanics> {
     Mujoco.build(&setup(chain, drive, step, initial)).unwrap()
+}
+
+/// The chain as a user's own MJCF file, of which nobody checks whether RK4 can carry it.
+fn unchecked(chain: &Chain, step: f64, initial: &[(f64, f64)]) -> Box<dyn Mechanics> {
+    let model = Model::Mjcf(MjcfModel {
+        xml: chain_to_mjcf(chain, Drive::Effort, step),
+        path: "chain.xml".into(),
+        motor_joint: "motor".into(),
+        load_joint: "load".into(),
+        actuator: "motor_effort".into(),
+        transmission: 1.0,
+        axis: None,
+    });
+    Mujoco.build(&MechanicsSetup { model, ..setup(two_mass(), Drive::Effort, step, initial) }).unwrap()
 }
 
 /// Drive effort and load disturbance.

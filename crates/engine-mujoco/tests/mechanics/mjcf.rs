@@ -3,7 +3,8 @@ use super::{STEP, efforts, free_omega, motion, ticks};
 use servobench_base::Setpoint;
 use servobench_engine_mujoco::Mujoco;
 use servobench_plant::{
-    BodyState, Drive, Engine as _, Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Model, Refusal, RefusedAt,
+    BodyState, Coordinate, Drive, Engine as _, Mechanics, MechanicsError, MechanicsSetup, MjcfAxis, MjcfModel, Model,
+    Refusal, RefusedAt,
 };
 use std::fs;
 use std::path::Path;
@@ -45,6 +46,7 @@ fn model(xml: String) -> MjcfModel {
         load_joint: "output".into(),
         actuator: "servo".into(),
         transmission: 1.0,
+        axis: None,
     }
 }
 
@@ -171,4 +173,57 @@ fn a_mistake_in_the_file_is_reported_in_the_words_of_mujoco() {
     assert!(matches!(error, MechanicsError::Model { .. }), "{error}");
     let text = error.to_string();
     assert!(text.contains("tpye") && text.contains("line 13"), "{text}");
+}
+
+/// A slide of 2 kg between 0 and 0.3 m.
+const WALLS: &str = r#"<mujoco><option gravity="0 0 0" integrator="RK4"/>
+<worldbody><body><joint name="shaft" type="slide" axis="1 0 0" range="-0.01 0.3" limited="true" margin="0.004"/>
+<inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/></body></worldbody>
+<actuator><motor name="servo" joint="shaft" ctrllimited="true" ctrlrange="-9 7"/></actuator></mujoco>"#;
+
+#[test]
+fn an_end_of_a_range_binds_while_the_joint_is_there() {
+    let one = MjcfModel { load_joint: "shaft".into(), ..model(WALLS.into()) };
+    let mut mechanics = build(one, vec![BodyState { position: 0.1, velocity: 0.0 }]).unwrap();
+    let texts: Vec<_> = mechanics.joint_limits().iter().map(|limit| limit.text.clone()).collect();
+    let end = |which, at| format!("joint `shaft` is at the {which} end of its range, {at} m");
+    assert_eq!(texts, [end("lower", "-0.01"), end("upper", "0.3")]);
+    for (effort, bound) in [(5.0, 1), (-5.0, 0)] {
+        for _ in 0..ticks(1.0, STEP) {
+            mechanics.advance(&efforts(effort, 0.0)).unwrap();
+            // 4 mm before the end the limit begins to push.
+            let position = mechanics.bodies()[0].position;
+            let binds = [position < -0.01 + 0.004, position > 0.3 - 0.004];
+            let found: Vec<bool> = mechanics.joint_limits().iter().map(|limit| limit.binds).collect();
+            assert_eq!(found, binds, "{position}");
+        }
+        assert!(mechanics.joint_limits()[bound].binds, "{}", mechanics.bodies()[0].position);
+    }
+    let free = WALLS.replace("RK4\"/>", "RK4\"><flag limit=\"disable\"/></option>");
+    let mechanics = build(MjcfModel { load_joint: "shaft".into(), ..model(free) }, vec![]).unwrap();
+    assert_eq!(mechanics.joint_limits(), []);
+}
+
+#[test]
+fn what_does_not_fit_the_axis_is_refused_before_the_run() {
+    let axis = |motor, load, max_effort| Some(MjcfAxis { motor, load, max_effort });
+    let refusals = |axis| {
+        let one = MjcfModel { load_joint: "shaft".into(), axis, ..model(WALLS.into()) };
+        match build(one, vec![]).err() {
+            Some(MechanicsError::Refused { refusals, .. }) => refusals,
+            None => Vec::new(),
+            Some(error) => panic!("{error}"),
+        }
+    };
+    assert_eq!(refusals(axis(Coordinate::Linear, Coordinate::Linear, 7.0)), []);
+    let [Refusal { place: RefusedAt::Name(name), message }] =
+        &refusals(axis(Coordinate::Linear, Coordinate::Linear, 8.5))[..]
+    else {
+        panic!("the drive is stronger than the actuator")
+    };
+    assert!(name == "servo" && message.contains("up to 8.5 N, and the model limits it to -9 … 7 N"), "{message}");
+    let [one] = &refusals(axis(Coordinate::Rotary, Coordinate::Linear, 7.0))[..] else {
+        panic!("one joint, one refusal")
+    };
+    assert!(one.message.starts_with("joint `shaft` slides and the motor turns"), "{one}");
 }

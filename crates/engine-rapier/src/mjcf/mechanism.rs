@@ -10,7 +10,7 @@ use mjcf_rs::glam::{DQuat, DVec3};
 use rapier3d_f64::math::Pose;
 use rapier3d_f64::prelude::{MassProperties, Vector};
 use roxmltree::{Document, Node};
-use servobench_plant::{Coordinate, LoadCoordinate, MjcfModel, PosedJoint};
+use servobench_plant::{Coordinate, LoadCoordinate, MjcfModel, PosedJoint, Refusal, RefusedAt};
 use std::path::Path;
 
 /// A mechanism.
@@ -181,6 +181,9 @@ impl Mechanism {
             let (actuator, joint) = (file.actuator.clone(), file.motor_joint.clone());
             refusals.push(MjcfRefusal::Actuator { actuator, what, joint });
         }
+        if let (Some(motor), Some(load)) = (motor, load) {
+            refusals.extend(self.misfits(file, motor, load));
+        }
         match (motor, load) {
             (Some(motor), Some(load)) if refusals.is_empty() => {
                 let load_per_joint = if motor == load { file.transmission } else { 1.0 };
@@ -188,6 +191,17 @@ impl Mechanism {
             }
             _ => Err(refusals),
         }
+    }
+
+    /// What of motor joint and load joint is not what the axis has there.
+    fn misfits(&self, file: &MjcfModel, motor: usize, load: usize) -> Vec<MjcfRefusal> {
+        let kinds: Vec<Coordinate> = self.joints().map(|(_, joint)| joint.freedom.coordinate()).collect();
+        let all = file.misfits(kinds[motor], kinds[load]);
+        let named = all.into_iter().filter_map(|Refusal { place, message }| match place {
+            RefusedAt::Joint { name: joint, is_motor } => Some(MjcfRefusal::Misfit { joint, is_motor, message }),
+            RefusedAt::Line(_) | RefusedAt::Name(_) | RefusedAt::File => None,
+        });
+        named.collect()
     }
 
     /// The load's coordinate, from the numbers of the motor joint and the load joint.
@@ -200,10 +214,7 @@ impl Mechanism {
             let turn = turn * link.pose.rotation;
             if let Some(joint) = &link.joint {
                 let axis = turn * joint.frame.rotation * DVec3::X;
-                let kind = match joint.freedom {
-                    Freedom::Slide => Coordinate::Linear,
-                    Freedom::Hinge => Coordinate::Rotary,
-                };
+                let kind = joint.freedom.coordinate();
                 let posed = PosedJoint { number: joints.len(), kind, axis: axis.to_array() };
                 joints.push((posed, way.clone()));
                 way.push(posed);
@@ -217,6 +228,15 @@ impl Mechanism {
     pub(crate) fn joint_name(&self, i: usize) -> String {
         let named = self.joints().nth(i).and_then(|(_, joint)| joint.name.clone());
         named.unwrap_or_else(|| "(without a name)".into())
+    }
+}
+
+impl Freedom {
+    const fn coordinate(self) -> Coordinate {
+        match self {
+            Self::Slide => Coordinate::Linear,
+            Self::Hinge => Coordinate::Rotary,
+        }
     }
 }
 

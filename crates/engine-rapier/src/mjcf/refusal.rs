@@ -118,6 +118,16 @@ pub enum MjcfRefusal {
         /// The motor joint.
         joint: String,
     },
+    /// A joint that slides where the axis turns, or the other way round.
+    #[error("{message}")]
+    Misfit {
+        /// Name of the joint.
+        joint: String,
+        /// Whether it is that of the motor.
+        is_motor: bool,
+        /// What does not fit, and what to write.
+        message: String,
+    },
 }
 
 impl From<&MjcfRefusal> for Refusal {
@@ -129,6 +139,9 @@ impl From<&MjcfRefusal> for Refusal {
             | MjcfRefusal::Missing { line, .. } => RefusedAt::Line(*line),
             MjcfRefusal::Unknown { name, .. } | MjcfRefusal::Actuator { actuator: name, .. } => {
                 RefusedAt::Name(name.clone())
+            }
+            MjcfRefusal::Misfit { joint, is_motor, .. } => {
+                RefusedAt::Joint { name: joint.clone(), is_motor: *is_motor }
             }
             MjcfRefusal::Unreadable { .. }
             | MjcfRefusal::SeveralJoints { .. }

@@ -24,6 +24,7 @@ fn file(xml: &str, load: &str) -> MjcfModel {
         load_joint: load.into(),
         actuator: "u".into(),
         transmission: 1.0,
+        axis: None,
     }
 }
 

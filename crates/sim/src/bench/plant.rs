@@ -1,4 +1,5 @@
 //! The plant of a scenario: mechanics, power stage and sensors. Nothing here knows of the firmware.
+use crate::coupled::replaces_the_drive;
 use crate::error::BuildError;
 use crate::power::PowerStage;
 use servobench_base::{Dq, Rotation};
@@ -37,6 +38,11 @@ pub(super) fn mechanics(
                 load_joint: mjcf.load_joint.clone(),
                 actuator: mjcf.actuator.clone(),
                 transmission: scenario.axis.transmission,
+                axis: Some(plant::MjcfAxis {
+                    motor: coordinate(scenario.axis.motor_motion),
+                    load: coordinate(scenario.axis.motion),
+                    max_effort: max_effort(scenario),
+                }),
             };
             let names = if model.motor_joint == model.load_joint { &["motor"][..] } else { &["motor", "load"] };
             (plant::Model::Mjcf(model), names.iter().map(|name| (*name).to_owned()).collect())
@@ -52,6 +58,15 @@ pub(super) fn mechanics(
     }
     let setup = MechanicsSetup { model, drive, step: scenario.base_rate.period(), initial };
     Ok((engine.build(&setup)?, names))
+}
+
+/// Largest effort that the drive asks for; 0 where there is none, or where FMUs are the drive and nobody can tell.
+fn max_effort(scenario: &Scenario) -> f64 {
+    match scenario.actuator {
+        Actuator::Prescribed | Actuator::Off => 0.0,
+        _ if replaces_the_drive(scenario) => 0.0,
+        Actuator::Pmsm { .. } | Actuator::IdealSource { .. } => scenario.actuator.max_effort(),
+    }
 }
 
 fn coordinate(motion: scenario::Motion) -> plant::Coordinate {

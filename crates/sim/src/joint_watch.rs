@@ -1,0 +1,71 @@
+//! Watches the ends of the joints' ranges in a user's own model: what binds there is an event.
+use crate::limit_watch::Watch;
+use servobench_plant::JointLimit;
+use servobench_trace::Recorder;
+
+/// Who says that a joint is at its end.
+const MECHANICS: &str = "mechanics";
+
+/// All of them, in the order of the mechanics.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct JointWatch {
+    watches: Vec<Watch>,
+    /// Whether one of them bound at the last tick.
+    bound: bool,
+}
+
+impl JointWatch {
+    /// Takes which ends bind at tick `t` (s).
+    #[inline]
+    pub(crate) fn tick(&mut self, t: f64, limits: &[JointLimit], recorder: &mut Recorder) {
+        let bound = limits.iter().any(|limit| limit.binds);
+        if bound || self.bound {
+            self.bound = bound;
+            self.note(t, limits, true, recorder);
+        }
+    }
+
+    /// Ends what still binds at `t` (s).
+    pub(crate) fn finish(&mut self, t: f64, limits: &[JointLimit], recorder: &mut Recorder) {
+        self.note(t, limits, false, recorder);
+    }
+
+    #[cold]
+    fn note(&mut self, t: f64, limits: &[JointLimit], goes_on: bool, recorder: &mut Recorder) {
+        self.watches.resize_with(limits.len(), Watch::default);
+        for (watch, limit) in self.watches.iter_mut().zip(limits) {
+            watch.tick(t, (goes_on && limit.binds).then_some(0.0), (MECHANICS, &limit.text), recorder);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use servobench_base::Rate;
+    use servobench_trace::About;
+
+    #[test]
+    fn an_end_that_binds_is_an_event_of_the_mechanics() {
+        let about = About {
+            scenario: "wall".into(),
+            engine: "none".into(),
+            axis_unit: "m".into(),
+            bodies: vec!["motor".into()],
+        };
+        let mut recorder = Recorder::new(about, Rate::new(1).unwrap(), Vec::new(), 0);
+        let mut watch = JointWatch::default();
+        let limits = |binds: [bool; 2]| {
+            ["lower", "upper"].map(str::to_owned).into_iter().zip(binds).map(|(text, binds)| JointLimit { text, binds })
+        };
+        let binding = [[false, false], [false, true], [false, true], [false, false], [true, false]];
+        for (t, binds) in [0.0, 1.0, 2.0, 3.0, 4.0].into_iter().zip(binding) {
+            watch.tick(t, &limits(binds).collect::<Vec<_>>(), &mut recorder);
+        }
+        watch.finish(5.0, &limits([true, false]).collect::<Vec<_>>(), &mut recorder);
+        let events = recorder.finish().events;
+        let found: Vec<_> =
+            events.iter().map(|event| (event.start, event.end, &event.source[..], &event.message[..])).collect();
+        assert_eq!(found, [(1.0, 3.0, "mechanics", "upper"), (4.0, 5.0, "mechanics", "lower")]);
+    }
+}

@@ -1,0 +1,104 @@
+//! What can be said of a scenario without running it: durations, effort and voltage against what there is, modes and what each
+//! engine makes of them, bandwidths, delays, memory and time; and what is doubtful, at its key.
+//!
+//! ```text
+//! Scenario → program of moves → set-point → effort → current, voltage     the axis follows exactly and is rigid
+//! Scenario → chain → modes → steps per period on each engine
+//! ```
+//! An axis that follows exactly is what the set-point asks for. What vibration, an integrator or an encoder add on top only a run
+//! can tell.
+
+mod cost;
+mod demand;
+mod doubt;
+mod integration;
+mod mjcf;
+mod pace;
+mod program;
+mod resistance;
+mod screen;
+mod servo;
+
+pub use cost::Cost;
+pub use demand::{Demand, EffortDemand, VoltageDemand};
+pub use doubt::Doubt;
+pub use integration::EngineSteps;
+pub use pace::{Delay, LoopBandwidth};
+pub use program::PlannedProgram;
+pub use servo::{Inertias, Modes};
+
+use crate::job::Job;
+use servobench_scenario::Scenario;
+use servobench_sim::{BuildError, Program};
+
+/// What can be said of a scenario without running it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Preview {
+    /// Name of the scenario.
+    pub name: String,
+    /// The moves.
+    pub program: PlannedProgram,
+    /// What they ask of motor and inverter.
+    pub demand: Demand,
+    /// Inertia on both sides of the first spring; `None` where a file of the user's or an FMU knows it.
+    pub inertias: Option<Inertias>,
+    /// How the axis rings; `None` where a file of the user's or an FMU knows it.
+    pub modes: Option<Modes>,
+    /// What each engine makes of the fastest mode.
+    pub engines: Vec<EngineSteps>,
+    /// The loops of the drive, the fastest first.
+    pub loops: Vec<LoopBandwidth>,
+    /// What comes late, and how late.
+    pub delays: Vec<Delay>,
+    /// What a run takes.
+    pub cost: Cost,
+    /// What is doubtful.
+    pub doubts: Vec<Doubt>,
+}
+
+/// Previews the scenario of `jobs`: one scenario on each of its engines. Nothing without a job.
+///
+/// # Errors
+/// [`BuildError`] of moves that cannot be planned or of bodies that cannot be; [`check`](crate::check) says where.
+pub fn preview(jobs: &[Job]) -> Result<Option<Preview>, BuildError> {
+    let Some(Job { scenario, .. }) = jobs.first() else { return Ok(None) };
+    let (planned, chain) = (Program::new(scenario)?, servobench_sim::Bench::chain(scenario)?);
+    let program = PlannedProgram::new(scenario, &planned);
+    let demand = Demand::of(scenario, chain.as_ref(), program.run)?;
+    let modes = chain.as_ref().map(|chain| Modes::of(scenario, chain));
+    let names: Vec<_> = jobs.iter().map(|job| job.engine).collect();
+    let engines = EngineSteps::of(scenario, modes.as_ref(), &names);
+    let mut doubts = program.doubts(scenario);
+    doubts.extend(demand.doubts(scenario));
+    doubts.extend(engines.iter().filter_map(|engine| engine.doubt(program.run)));
+    doubts.extend(mjcf::doubts(scenario, &names));
+    Ok(Some(Preview {
+        name: scenario.name.clone(),
+        demand,
+        inertias: chain.as_ref().and_then(Inertias::of),
+        modes,
+        engines,
+        loops: pace::loops(scenario),
+        delays: pace::delays(scenario),
+        cost: Cost::of(scenario, program.run, jobs),
+        program,
+        doubts,
+    }))
+}
+
+/// Units of axis and motor (SI).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Units {
+    axis: &'static str,
+    motor: &'static str,
+    effort: &'static str,
+}
+
+impl Units {
+    fn of(scenario: &Scenario) -> Self {
+        use servobench_scenario::Motion::{Linear, Rotary};
+        let unit = |motion| if motion == Linear { "m" } else { "rad" };
+        let effort = if scenario.axis.motor_motion == Rotary { "N m" } else { "N" };
+        Self { axis: unit(scenario.axis.motion), motor: unit(scenario.axis.motor_motion), effort }
+    }
+}

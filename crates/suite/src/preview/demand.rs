@@ -1,0 +1,310 @@
+//! What the set-point asks of motor and inverter, and what there is.
+//!
+//! ```text
+//! i_q = τ/(1.5·p·ψ)                      i_d = 0
+//! u_d = −ω_e·L_q·i_q                     u_q = R·i_q + ω_e·ψ          at constant current: L·di/dt is left out
+//! |u| ≤ U_dc/√3
+//! ```
+//! Source: Pillay, Krishnan, *IEEE Trans. Industry Applications* 25(2), 1989. The set-point is sampled at the base rate, of a long
+//! program in [`MOST_SAMPLES`] places.
+use super::resistance::Resistance;
+use super::{Doubt, Units};
+use servobench_metrics::Quantity;
+use servobench_plant::{Chain, inverter};
+use servobench_scenario::{Actuator, Pmsm, Scenario, Step};
+use servobench_sim::{BuildError, Program};
+
+/// Places in which a program is sampled at most.
+const MOST_SAMPLES: f64 = 1e6;
+/// Electrical angle per period of the current loop (rad) above which its dead time and its decoupling no longer hold: what it
+/// computes for one angle goes out a period and a half later, three quarters of a radian at this one.
+const MOST_ANGLE: f64 = std::f64::consts::PI / 6.0;
+/// A demand that is what there is may exceed it by rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// What the set-point asks for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Demand {
+    /// Torque or force of the motor; `None` without a drive, or where nobody here knows what the axis sets against it.
+    pub effort: Option<EffortDemand>,
+    /// Voltage of the inverter; `None` without one.
+    pub voltage: Option<VoltageDemand>,
+    /// Largest speed of the motor (rad/s or m/s).
+    pub speed: f64,
+    /// Units of speed and effort.
+    pub speed_unit: &'static str,
+    /// Unit of the effort.
+    pub effort_unit: &'static str,
+}
+
+/// Torque or force of the motor (N·m or N).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EffortDemand {
+    /// Largest.
+    pub peak: f64,
+    /// When (s).
+    pub at: f64,
+    /// Root mean square over the run.
+    pub rms: f64,
+    /// What drive and motor give at most.
+    pub available: f64,
+    /// Whether it is reckoned with what the drive believes of the axis, since nobody here knows the axis itself.
+    pub is_believed: bool,
+}
+
+/// Voltage of the inverter (V, peak) and what goes with speed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VoltageDemand {
+    /// Largest |u|.
+    pub peak: f64,
+    /// When (s).
+    pub at: f64,
+    /// Back-EMF at the largest speed.
+    pub back_emf: f64,
+    /// Largest that the DC link gives.
+    pub available: f64,
+    /// Largest electrical angle per period of the current loop (rad).
+    pub angle_per_period: f64,
+}
+
+/// The largest of what comes by, and when.
+#[derive(Debug, Clone, Copy, Default)]
+struct Largest {
+    value: f64,
+    at: f64,
+}
+
+impl Largest {
+    fn note(&mut self, value: f64, at: f64) {
+        if value > self.value {
+            *self = Self { value, at };
+        }
+    }
+}
+
+impl Demand {
+    /// Of a run of `length` (s).
+    ///
+    /// # Errors
+    /// [`BuildError`] of a program that cannot be planned.
+    pub(super) fn of(scenario: &Scenario, chain: Option<&Chain>, length: f64) -> Result<Self, BuildError> {
+        let units = Units::of(scenario);
+        let resistance = resistance(scenario, chain);
+        let motor = match &scenario.actuator {
+            Actuator::Pmsm { motor, .. } => Some(motor),
+            _ => None,
+        };
+        let (mut effort, mut voltage, mut speed, mut squares) = (Largest::default(), Largest::default(), 0.0_f64, 0.0);
+        // What is interpolated comes later and is less smooth; what was planned is what was asked for.
+        let planned = Scenario { interpolation: None, ..scenario.clone() };
+        let mut program = Program::new(&planned)?;
+        let base_rate = f64::from(scenario.base_rate.hertz());
+        let ticks = (length * base_rate).floor();
+        let stride = (ticks / MOST_SAMPLES).ceil().max(1.0);
+        let mut tick = 0.0;
+        let mut samples = 0.0;
+        while tick <= ticks {
+            let t = tick / base_rate;
+            let now = program.at(t);
+            let motor_speed = now.v / scenario.axis.transmission;
+            speed = speed.max(motor_speed.abs());
+            let torque = resistance.as_ref().map(|resistance| resistance.effort(t, now));
+            if let Some(torque) = torque {
+                effort.note(torque.abs(), t);
+                squares += torque * torque;
+            }
+            if let Some(motor) = motor {
+                voltage.note(voltage_for(motor, torque.unwrap_or(0.0), motor_speed), t);
+            }
+            samples += 1.0;
+            tick += stride;
+        }
+        let is_believed = chain.is_none();
+        let effort = resistance.map(|_| EffortDemand {
+            peak: effort.value,
+            at: effort.at,
+            rms: (squares / samples).sqrt(),
+            available: available(&scenario.actuator),
+            is_believed,
+        });
+        let voltage = match &scenario.actuator {
+            Actuator::Pmsm { motor, dc_link, current, .. } => Some(VoltageDemand {
+                peak: voltage.value,
+                at: voltage.at,
+                back_emf: motor.electrical_ratio * speed * motor.flux_linkage,
+                available: inverter::voltage_limit(*dc_link),
+                angle_per_period: motor.electrical_ratio * speed / f64::from(current.rate.hertz()),
+            }),
+            _ => None,
+        };
+        Ok(Self { effort, voltage, speed, speed_unit: speed_unit(units), effort_unit: units.effort })
+    }
+
+    pub(super) fn doubts(&self, scenario: &Scenario) -> Vec<Doubt> {
+        let mut doubts = Vec::new();
+        let show = |value, unit| format!("{:.4}", Quantity::new(value, unit));
+        if let Some(EffortDemand { peak, at, available, is_believed, .. }) = self.effort
+            && peak > available * (1.0 + ROUNDING)
+        {
+            let [needed, given] = [peak, available].map(|effort| show(effort, self.effort_unit));
+            let by = if is_believed { ", as the drive believes," } else { "" };
+            let message = format!(
+                "to follow its set-point the axis needs {needed}{by} at {}; the drive gives {given} at most",
+                show(at, "s")
+            );
+            let help = "lower acceleration or velocity of the set-point, or choose a stronger motor";
+            doubts.push(Doubt::new(key_at(scenario, at), message, help));
+        }
+        let Some(VoltageDemand { peak, at, available, angle_per_period, back_emf }) = self.voltage else {
+            return doubts;
+        };
+        if peak > available * (1.0 + ROUNDING) {
+            let [needed, given, own] = [peak, available, back_emf].map(|volts| show(volts, "V"));
+            let message = format!(
+                "to follow its set-point the motor needs {needed} at {}, {own} of that its back-EMF at full speed; the DC link \
+                 gives U_dc/√3 = {given} at most",
+                show(at, "s")
+            );
+            let help = "lower the velocity of the set-point, or raise `drive.dc_link`";
+            doubts.push(Doubt::new(key_at(scenario, at), message, help));
+        }
+        if angle_per_period > MOST_ANGLE {
+            let (degrees, most) = (angle_per_period.to_degrees(), MOST_ANGLE.to_degrees());
+            let message = format!(
+                "the rotor turns by {degrees:.0}° electrical in a period of the current loop: above {most:.0}° its compensation of \
+                 the dead time and its decoupling no longer hold"
+            );
+            let help = "raise `drive.current.rate`, or lower the velocity of the set-point";
+            doubts.push(Doubt::new("drive.current.rate", message, help));
+        }
+        doubts
+    }
+}
+
+/// What the axis sets against its motion; `None` where nobody here knows.
+fn resistance(scenario: &Scenario, chain: Option<&Chain>) -> Option<Resistance> {
+    let drive = scenario.actuator.drive()?;
+    // An FMU pushes as it likes.
+    if !scenario.fmus.is_empty() {
+        return None;
+    }
+    match chain {
+        Some(chain) => Some(Resistance::of_chain(scenario, chain)),
+        None => Resistance::believed(scenario, &drive.estimate),
+    }
+}
+
+/// What drive and motor give at most.
+fn available(actuator: &Actuator) -> f64 {
+    let motor = match actuator {
+        Actuator::Prescribed | Actuator::Off => f64::INFINITY,
+        Actuator::Pmsm { motor, current, .. } => motor.effort_constant() * current.max_current,
+        Actuator::IdealSource { source, .. } => source.gain * source.limit,
+    };
+    motor.min(actuator.max_effort())
+}
+
+/// |u| for `torque` at `speed`, both in the motor's coordinate.
+fn voltage_for(motor: &Pmsm, torque: f64, speed: f64) -> f64 {
+    let (omega_e, i_q) = (motor.electrical_ratio * speed, torque / motor.effort_constant());
+    let u_d = -omega_e * motor.inductance_q * i_q;
+    let u_q = motor.resistance * i_q + omega_e * motor.flux_linkage;
+    u_d.hypot(u_q)
+}
+
+/// Key of the step that runs at `t` (s), or of what sets limits for all of them.
+fn key_at(scenario: &Scenario, t: f64) -> String {
+    let Ok(program) = Program::new(scenario) else { return "setpoint".into() };
+    let moves = scenario.program.iter().enumerate().filter(|(_, step)| matches!(step, Step::Move(_)));
+    let running = moves.zip(program.moves("")).filter(|(_, made)| (made.start..=made.end).contains(&t)).last();
+    running.map_or_else(|| "disturbance".into(), |((index, _), _)| format!("program.{index}"))
+}
+
+const fn speed_unit(units: Units) -> &'static str {
+    match units.motor.as_bytes() {
+        b"m" => "m/s",
+        _ => "rad/s",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Source, jobs, preview};
+
+    /// 20 pole pairs at 6000 rpm and 4 kHz: π per period. The rotor alone, 1e-3 kg·m² at 3000 rad/s².
+    const FAST: &str = r#"
+        [run]
+        base_rate = "4 kHz"
+        [axis]
+        motion = "rotary"
+        [motor]
+        kind = "pmsm"
+        pole_pairs = 20
+        resistance = "0.05 Ohm"
+        inductance = "0.05 mH"
+        flux_linkage = "2 mV s"
+        inertia = "1e-3 kg m2"
+        max_current = "100 Apk"
+        [drive]
+        dc_link = "100 V"
+        current = { rate = "4 kHz", bandwidth = "200 Hz" }
+        velocity = { rate = "4 kHz", bandwidth = "20 Hz" }
+        position = { rate = "4 kHz", bandwidth = "4 Hz" }
+        [setpoint]
+        order = 3
+        velocity = "6000 rpm"
+        acceleration = "3000 rad/s2"
+        jerk = "1e6 rad/s3"
+        [[program]]
+        move_to = "40 rev"
+    "#;
+
+    fn of(text: &str) -> (Demand, Vec<Doubt>) {
+        let scenario =
+            servobench_scenario::parse("test", text, None).unwrap_or_else(|error| panic!("{error}")).scenario;
+        let jobs = jobs(vec![Source { scenario, text: text.to_owned() }], &[]);
+        let preview = preview(&jobs).unwrap().unwrap();
+        (preview.demand, preview.doubts)
+    }
+
+    /// Oracle: T = J·a, K_t = 1.5·20·2 mV·s; back-EMF ψ·p·ω; u at the end of the acceleration, where speed is highest.
+    #[test]
+    fn effort_and_voltage_are_those_of_the_motor_equations() {
+        let (demand, doubts) = of(FAST);
+        let effort = demand.effort.unwrap();
+        assert!((effort.peak - 3.0).abs() < 1e-9 && (effort.available - 6.0).abs() < 1e-9, "{effort:?}");
+        let voltage = demand.voltage.unwrap();
+        let omega = 6000.0 * std::f64::consts::TAU / 60.0;
+        assert!((voltage.back_emf / (20.0 * omega * 2e-3) - 1.0).abs() < 1e-9, "{voltage:?}");
+        assert!((voltage.available - 100.0 / 3.0_f64.sqrt()).abs() < 1e-9, "{voltage:?}");
+        assert!((voltage.angle_per_period / (20.0 * omega / 4e3) - 1.0).abs() < 1e-9, "{voltage:?}");
+        // With the torque of the constant acceleration, 50 A, short of full speed by what the jerk takes, 4.5 rad/s and a tick.
+        let (w, i_q) = (20.0 * (omega - 4.5), 50.0);
+        let u = (w * 0.05e-3 * i_q).hypot(0.05 * i_q + w * 2e-3);
+        assert!((voltage.peak / u - 1.0).abs() < 0.01, "{voltage:?} {u}");
+        let said: Vec<_> = doubts.iter().map(|doubt| (doubt.key.as_str(), doubt.message.as_str())).collect();
+        let [(key, angle)] = said[..] else { panic!("{said:?}") };
+        assert!(key == "drive.current.rate" && angle.contains("turns by 180° electrical"), "{angle}");
+    }
+
+    #[test]
+    fn what_there_is_not_is_doubted_at_the_move_that_needs_it() {
+        let (_, exact) = of(&FAST.replace("max_current = \"100 Apk\"", "max_current = \"50 Apk\""));
+        assert_eq!(exact.len(), 1, "3 N·m of 3 N·m: {exact:?}");
+        let weak = FAST.replace("max_current = \"100 Apk\"", "max_current = \"49 Apk\"");
+        let (_, doubts) = of(&weak.replace("[[program]]", "[[program]]\nwait = \"0.1 s\"\n[[program]]"));
+        assert_eq!(doubts[0].key, "program.1", "{doubts:?}");
+        assert!(doubts[0].message.contains("needs 3.000 N·m") && doubts[0].message.contains("2.940 N·m"), "{doubts:?}");
+        let (_, doubts) = of(&FAST.replace("dc_link = \"100 V\"", "dc_link = \"40 V\""));
+        assert!(doubts[0].message.contains("U_dc/√3 = 23.09 V"), "{doubts:?}");
+    }
+
+    #[test]
+    fn without_a_drive_nothing_is_asked_for() {
+        let text = "[run]\nbase_rate = \"5 kHz\"\nduration = \"1 s\"\n[axis]\nmotion = \"linear\"\nload = { mass = \"3 kg\", \
+                    stiffness = \"1e4 N/m\" }\n[motor]\nkind = \"prescribed\"\n";
+        let (demand, doubts) = of(text);
+        assert_eq!((demand.effort, demand.voltage, doubts.len()), (None, None, 0));
+    }
+}

@@ -1,0 +1,202 @@
+//! The moves as they are planned, and limits that no run of them can keep.
+use super::{Doubt, Units};
+use crate::job::run_length;
+use servobench_metrics::Quantity;
+use servobench_scenario::{Limit, Scenario, Step};
+use servobench_sim::Program;
+use servobench_trace::Move;
+
+/// Metrics of moves alone: without one they have no value, and a limit on them is missed.
+const OF_MOVES: [&str; 11] = [
+    "move_time",
+    "settling_time",
+    "move_and_settling_time",
+    "overshoot",
+    "steady_state_error",
+    "following_error_cruise_motor",
+    "following_error_cruise_load",
+    "setpoint_velocity_ratio",
+    "setpoint_acceleration_ratio",
+    "setpoint_jerk_ratio",
+    "setpoint_snap_ratio",
+];
+/// Metrics of what follows a move, or of what follows `measure.from`.
+const AFTERWARDS: &str = "residual_vibration_";
+/// Durations that are no shorter than the planned one.
+const NO_SHORTER: [&str; 2] = ["move_time", "move_and_settling_time"];
+/// A limit that is the planned duration may differ from it by rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// The moves as they are planned.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlannedProgram {
+    /// Moves, each with its peaks.
+    pub moves: Vec<Move>,
+    /// End of the last step (s).
+    pub end: f64,
+    /// Length of the run (s).
+    pub run: f64,
+    /// Whether function blocks command the axis: what they make of it only a run can tell.
+    pub by_blocks: bool,
+    /// Unit of the axis.
+    pub axis_unit: &'static str,
+}
+
+impl PlannedProgram {
+    pub(super) fn new(scenario: &Scenario, planned: &Program) -> Self {
+        let axis_unit = Units::of(scenario).axis;
+        Self {
+            moves: planned.moves(axis_unit).collect(),
+            end: planned.end(),
+            run: run_length(scenario, planned),
+            by_blocks: scenario.plc.is_some(),
+            axis_unit,
+        }
+    }
+
+    /// Duration of the longest move (s); `None` without one.
+    #[must_use]
+    pub fn longest(&self) -> Option<f64> {
+        self.moves.iter().map(length).reduce(f64::max)
+    }
+
+    /// Largest |velocity|, |acceleration|, |jerk|, |snap| of all moves (axis unit and s).
+    #[must_use]
+    pub fn peaks(&self) -> [f64; 4] {
+        let largest = |k: usize| self.moves.iter().map(|made| made.peaks[k]).fold(0.0, f64::max);
+        std::array::from_fn(largest)
+    }
+
+    pub(super) fn doubts(&self, scenario: &Scenario) -> Vec<Doubt> {
+        let mut doubts = Vec::new();
+        let steps = scenario.program.iter().enumerate().filter_map(|(index, step)| match step {
+            Step::Move(step) => Some((index, step)),
+            Step::Wait(_) => None,
+        });
+        for ((index, step), made) in steps.zip(&self.moves) {
+            if made.from.to_bits() == made.to.to_bits() && length(made) <= 0.0 {
+                let message = format!("the move has no length: the axis is at {} {} already", made.to, self.axis_unit);
+                doubts.push(Doubt::new(format!("program.{index}"), message, "leave it out, or move somewhere else"));
+            }
+            let key = |metric: &str| format!("program.{index}.limits.{metric}");
+            doubts.extend(step.metric_limits.iter().filter_map(|limit| missed(limit, length(made), "the move", key)));
+        }
+        let key = |metric: &str| format!("limits.{metric}");
+        match self.longest() {
+            Some(longest) => {
+                let it = if self.moves.len() == 1 { "the move" } else { "the longest move" };
+                doubts.extend(scenario.limits.iter().filter_map(|limit| missed(limit, longest, it, key)));
+            }
+            None if !self.by_blocks => {
+                let lacks_a_move = |limit: &&Limit| {
+                    OF_MOVES.contains(&limit.metric.as_str())
+                        || (limit.metric.starts_with(AFTERWARDS) && scenario.measure.from.is_none())
+                };
+                doubts.extend(scenario.limits.iter().filter(lacks_a_move).map(|limit| {
+                    let metric = &limit.metric;
+                    let help = if metric.starts_with(AFTERWARDS) {
+                        "give a `[[program]]`, or `from` in `[measure]`"
+                    } else {
+                        "give a `[[program]]`, or leave the limit out"
+                    };
+                    Doubt::new(
+                        key(metric),
+                        format!("`{metric}` is about a move, and there is none: the limit is missed"),
+                        help,
+                    )
+                }));
+            }
+            None => {}
+        }
+        doubts
+    }
+}
+
+/// Duration of a move (s).
+fn length(made: &Move) -> f64 {
+    made.end - made.start
+}
+
+/// What of `limit` a move that lasts `planned` (s) cannot keep.
+fn missed(limit: &Limit, planned: f64, it: &str, key: impl Fn(&str) -> String) -> Option<Doubt> {
+    let name = limit.metric.as_str();
+    let show = |seconds: f64, beside: f64| {
+        format!("{:.1$}", Quantity::new(seconds, "s"), Quantity::digits_apart(seconds, beside))
+    };
+    let too_short = limit.max.filter(|max| NO_SHORTER.contains(&name) && *max < planned * (1.0 - ROUNDING));
+    let too_long = limit.min.filter(|min| name == "move_time" && *min > planned * (1.0 + ROUNDING));
+    let bound = too_short.or(too_long)?;
+    let side = if too_short.is_some() { "at most" } else { "at least" };
+    let (planned_text, bound_text) = (show(planned, bound), show(bound, planned));
+    let message = format!("no run keeps `{name}` {side} {bound_text}: {it} is planned to take {planned_text}");
+    let help = if too_short.is_some() { "raise this limit, or those of the set-point" } else { "lower it" };
+    Some(Doubt::new(key(name), message, help))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Doubt, Source, jobs, preview};
+
+    /// Order 2, 0.3 m at 0.6 m/s and 2 m/s²: x/v + v/a = 0.8 s.
+    const MOVE: &str = r#"
+        [run]
+        base_rate = "20 kHz"
+        duration = "3 s"
+        [axis]
+        motion = "linear"
+        [motor]
+        kind = "prescribed"
+        [setpoint]
+        order = 2
+        velocity = "0.6 m/s"
+        acceleration = "2 m/s2"
+        [[program]]
+        wait = "0.1 s"
+        [[program]]
+        move_to = "0.3 m"
+        [measure]
+        window = "1 mm"
+        [limits]
+    "#;
+
+    fn doubts(text: &str) -> Vec<(String, String)> {
+        let scenario =
+            servobench_scenario::parse("test", text, None).unwrap_or_else(|error| panic!("{error}")).scenario;
+        let found = preview(&jobs(vec![Source { scenario, text: text.to_owned() }], &[])).unwrap().unwrap().doubts;
+        found.into_iter().map(|Doubt { key, message, .. }| (key, message)).collect()
+    }
+
+    #[test]
+    fn a_limit_below_the_plan_is_missed_by_every_run() {
+        for kept in ["move_time = \"0.8 s\"", "move_and_settling_time = \"0.9 s\"", "settling_time = \"1 us\""] {
+            assert_eq!(doubts(&format!("{MOVE}{kept}")), [], "{kept}");
+        }
+        for (missed, key, words) in [
+            ("move_time = \"0.79 s\"", "limits.move_time", "at most 790 ms: the move is planned to take 800 ms"),
+            ("move_and_settling_time = \"0.7999 s\"", "limits.move_and_settling_time", "at most 799.90 ms"),
+            ("move_time = { min = \"0.9 s\", max = \"1 s\" }", "limits.move_time", "at least 900 ms"),
+        ] {
+            let found = doubts(&format!("{MOVE}{missed}"));
+            assert!(found.len() == 1 && found[0].0 == key && found[0].1.contains(words), "{found:?}");
+        }
+        let own = MOVE.replace("move_to = \"0.3 m\"", "move_to = \"0.3 m\"\nlimits = { move_time = \"0.5 s\" }");
+        assert_eq!(doubts(&own)[0].0, "program.1.limits.move_time");
+    }
+
+    #[test]
+    fn a_move_to_where_the_axis_is_and_limits_without_a_move_are_doubted() {
+        let there = MOVE.replace("[measure]", "[[program]]\nmove_to = \"0.3 m\"\n[measure]");
+        let found = doubts(&there);
+        assert!(
+            found.len() == 1 && found[0].0 == "program.2" && found[0].1.contains("is at 0.3 m already"),
+            "{found:?}"
+        );
+        let none = MOVE.replace("move_to = \"0.3 m\"", "wait = \"1 s\"");
+        let limits = "overshoot = \"1 um\"\nresidual_vibration_pp = \"1 um\"\nfollowing_error_peak_load = \"1 um\"";
+        let keys: Vec<_> = doubts(&format!("{none}{limits}")).into_iter().map(|(key, _)| key).collect();
+        assert_eq!(keys, ["limits.overshoot", "limits.residual_vibration_pp"]);
+        let from = none.replace("window = \"1 mm\"", "from = \"0.5 s\"");
+        let keys: Vec<_> = doubts(&format!("{from}{limits}")).into_iter().map(|(key, _)| key).collect();
+        assert_eq!(keys, ["limits.overshoot"]);
+    }
+}
