@@ -18,6 +18,7 @@ mod program;
 mod resistance;
 mod screen;
 mod servo;
+mod stability;
 
 pub use cost::Cost;
 pub use demand::{Demand, EffortDemand, VoltageDemand};
@@ -26,6 +27,7 @@ pub use integration::EngineSteps;
 pub use pace::{Delay, LoopBandwidth};
 pub use program::PlannedProgram;
 pub use servo::{Inertias, Modes};
+pub use stability::LoopStability;
 
 use crate::job::Job;
 use servobench_scenario::Scenario;
@@ -48,6 +50,8 @@ pub struct Preview {
     pub engines: Vec<EngineSteps>,
     /// The loops of the drive, the fastest first.
     pub loops: Vec<LoopBandwidth>,
+    /// Whether these are stable, and how far from their boundaries.
+    pub stability: LoopStability,
     /// What comes late, and how late.
     pub delays: Vec<Delay>,
     /// What a run takes.
@@ -68,7 +72,9 @@ pub fn preview(jobs: &[Job]) -> Result<Option<Preview>, BuildError> {
     let modes = chain.as_ref().map(|chain| Modes::of(scenario, chain));
     let names: Vec<_> = jobs.iter().map(|job| job.engine).collect();
     let engines = EngineSteps::of(scenario, modes.as_ref(), &names);
+    let stability = LoopStability::of(scenario)?;
     let mut doubts = program.doubts(scenario);
+    doubts.extend(stability.doubts());
     doubts.extend(demand.doubts(scenario));
     doubts.extend(engines.iter().filter_map(|engine| engine.doubt(program.run)));
     doubts.extend(mjcf::doubts(scenario, &names));
@@ -79,6 +85,7 @@ pub fn preview(jobs: &[Job]) -> Result<Option<Preview>, BuildError> {
         modes,
         engines,
         loops: pace::loops(scenario),
+        stability,
         delays: pace::delays(scenario),
         cost: Cost::of(scenario, program.run, jobs),
         program,

@@ -1,6 +1,8 @@
 //! From a scenario to what its run is held to beside its limits.
 use servobench_metrics::{Driven, EarlyEnd, LinearLoop, Rules};
 use servobench_scenario::{Actuator, Feedback, Scenario};
+use servobench_sim::{Analysis, analyse_stability};
+use servobench_stability::Depth;
 
 /// What the run of `scenario`, which ended early if it says so, is held to.
 pub(crate) fn rules(scenario: &Scenario, linear_loop: LinearLoop, ended: Option<EarlyEnd>) -> Rules<'_> {
@@ -17,6 +19,17 @@ pub(crate) fn rules(scenario: &Scenario, linear_loop: LinearLoop, ended: Option<
         },
         linear_loop,
         ended,
+    }
+}
+
+/// What the analysis of the linear loop of `scenario` says. Where it is stable, its boundaries are nobody's concern.
+pub(crate) fn linear_loop(scenario: &Scenario) -> LinearLoop {
+    match analyse_stability(scenario, Depth::Verdict) {
+        Ok(Analysis::Done { report, .. }) => match report.instability {
+            Some(instability) => LinearLoop::Unstable(instability.to_string()),
+            None => LinearLoop::Stable,
+        },
+        Ok(Analysis::NotPossible(_)) | Err(_) => LinearLoop::NotAnalysed,
     }
 }
 

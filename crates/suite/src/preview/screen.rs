@@ -12,7 +12,7 @@ const WIDTH: usize = 80;
 const NAMES: usize = 12;
 
 impl Preview {
-    /// Everything, as lines of 80 columns: 22 at most.
+    /// Everything, as lines of 80 columns: 24 at most.
     #[must_use]
     pub fn screen(&self) -> String {
         let mut screen = Screen::default();
@@ -30,6 +30,7 @@ impl Preview {
         }
         let loops: Vec<_> = self.loops.iter().map(bandwidth).collect();
         screen.line("loops", &loops);
+        screen.line("stable", &self.stability.words());
         let delays: Vec<_> =
             self.delays.iter().map(|delay| format!("{} {}", delay.name, Quantity::new(delay.length, "s"))).collect();
         screen.line("delays", &delays);
@@ -244,7 +245,7 @@ mod tests {
     fn every_scenario_fits_a_screen() {
         for file in ["feed-axis-move.toml", "own-mjcf.toml", "vibration-jerk.toml", "plc/buffered.toml", "emps.toml"] {
             let screen = shown(file);
-            assert!(screen.lines().count() <= 22 && screen.lines().count() > 3, "{file}:\n{screen}");
+            assert!(screen.lines().count() <= 24 && screen.lines().count() > 3, "{file}:\n{screen}");
             assert!(screen.lines().all(|line| line.chars().count() <= WIDTH), "{file}:\n{screen}");
         }
     }
