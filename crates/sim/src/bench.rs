@@ -74,7 +74,7 @@ impl Bench {
 
         let (mechanics, bodies) = plant::mechanics(scenario, engine)?;
         let motor_before = mechanics.bodies()[0].position;
-        let power = plant::power_stage(&scenario.actuator, mechanics.bodies()[0].velocity)?;
+        let power = plant::power_stage(&scenario.actuator, mechanics.bodies()[0].velocity, base_rate.period())?;
         let is_replaced = coupled::replaces_the_drive(scenario);
         let control = match &scenario.actuator {
             Actuator::Prescribed | Actuator::Off => None,
