@@ -75,6 +75,12 @@ impl Params {
         self.torque_factor() * (self.flux_linkage + reluctance) * current.q
     }
 
+    /// Energy in the field of the inductances at `current` (J).
+    #[must_use]
+    pub fn stored_energy(&self, current: Dq) -> f64 {
+        0.75 * (self.inductance.d * current.d * current.d + self.inductance.q * current.q * current.q)
+    }
+
     /// Voltage at which `current` stays what it is at the electrical speed `omega_e` (V).
     #[must_use]
     pub fn steady_voltage(&self, current: Dq, omega_e: f64) -> Dq {

@@ -19,6 +19,10 @@ pub(crate) enum PowerStage {
         rotor: Rotation,
         /// Whether the inverter gives less voltage than it is asked for.
         shortens: bool,
+        /// What the inverter gives over the coming tick, as the rotor meets it in the middle of the tick (V, peak).
+        voltage: Dq,
+        /// Mean powers of the motor over the tick, where they are wanted.
+        power: Option<pmsm::Power>,
     },
     /// Ideal source: effort = gain · output, |output| ≤ limit.
     Ideal { gain: f64, limit: f64 },
@@ -69,24 +73,61 @@ impl PowerStage {
         matches!(self, Self::Pmsm { shortens: true, .. })
     }
 
+    /// What the inverter gives over the last tick that was advanced, as the rotor meets it in the middle of that tick (V).
+    pub(crate) fn voltage(&self) -> Dq {
+        match self {
+            Self::Pmsm { voltage, .. } => *voltage,
+            Self::Ideal { .. } | Self::Off => Dq::default(),
+        }
+    }
+
+    /// Mean powers of the motor over that tick (W); zero where nobody wants them.
+    pub(crate) fn power(&self) -> pmsm::Power {
+        match self {
+            Self::Pmsm { power, .. } => power.unwrap_or_default(),
+            Self::Ideal { .. } | Self::Off => pmsm::Power::default(),
+        }
+    }
+
+    /// Leaves the powers of the motor out from now on.
+    pub(crate) fn leave_power_out(&mut self) {
+        if let Self::Pmsm { power, .. } = self {
+            *power = None;
+        }
+    }
+
     /// Goes from tick k to k+1 (`h` s) and returns the mean effort over it (N·m or N).
     pub(crate) fn advance(&mut self, command: Command, motor: BodyState, h: f64) -> f64 {
         let output = self.output(command);
         match (self, command) {
-            (Self::Pmsm { motor: ticks, state, u_dc, last_speed, rotor, shortens }, Command::Voltage(wanted)) => {
+            (
+                Self::Pmsm { motor: ticks, state, u_dc, last_speed, rotor, shortens, voltage, power },
+                Command::Voltage(wanted),
+            ) => {
                 // Straight on from the last two ticks: second order.
                 let mean_speed = motor.velocity + (motor.velocity - *last_speed) / 2.0;
                 *last_speed = motor.velocity;
-                let voltage = inverter::output(wanted, *u_dc);
-                *shortens = is_shorter(voltage, wanted);
-                let input = pmsm::Input { voltage, rotor: *rotor, omega_e: ticks.params().pole_pairs * mean_speed };
-                ticks.step(state, &input)
+                let given = inverter::output(wanted, *u_dc);
+                *shortens = is_shorter(given, wanted);
+                let input =
+                    pmsm::Input { voltage: given, rotor: *rotor, omega_e: ticks.params().pole_pairs * mean_speed };
+                *voltage = input.voltage_at_middle(h);
+                match power {
+                    None => ticks.step(state, &input),
+                    Some(power) => {
+                        let output = ticks.step_with_power(state, &input);
+                        *power = output.power;
+                        output.torque
+                    }
+                }
             }
-            // The current is gone within the tick, which takes a real inverter some milliseconds; no current flows back as
-            // long as the back-EMF is below the DC link.
-            (Self::Pmsm { state, last_speed, shortens, .. }, Command::Off) => {
+            // The current is gone within the tick, which takes a real inverter some milliseconds, and its energy back in
+            // the DC link; no current flows back as long as the back-EMF is below the DC link.
+            (Self::Pmsm { motor: ticks, state, last_speed, shortens, voltage, power, .. }, Command::Off) => {
+                let returned = -ticks.params().stored_energy(state.current) / h;
+                *power = power.map(|_| pmsm::Power { electrical: returned, stored: returned, ..Default::default() });
                 *state = pmsm::State::default();
-                (*last_speed, *shortens) = (motor.velocity, false);
+                (*last_speed, *shortens, *voltage) = (motor.velocity, false, Dq::default());
                 0.0
             }
             (Self::Ideal { gain, .. }, Command::Output(_)) => *gain * output,
@@ -120,6 +161,8 @@ mod tests {
             last_speed,
             rotor,
             shortens: false,
+            voltage: Dq::default(),
+            power: Some(pmsm::Power::default()),
         }
     }
 

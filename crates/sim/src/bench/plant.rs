@@ -122,6 +122,8 @@ pub(super) fn power_stage(actuator: &Actuator, speed: f64, h: f64) -> Result<Pow
                 last_speed: speed,
                 rotor: Rotation::default(),
                 shortens: false,
+                voltage: Dq::default(),
+                power: Some(pmsm::Power::default()),
             })
         }
     }
