@@ -279,10 +279,10 @@ fn velocity_loop(p: &Params, x: &mut State, sensors: &Sensors) {
 
 fn current_loop(p: &current::Params, x: &mut State, sensors: &Sensors, h: f64) {
     // The velocity loop keeps to what the current limit leaves; what is cut here is the rounding of the quotient.
-    let wanted = x.held.effort.effort / p.motor.effort_constant();
-    x.held.current_reference = wanted.clamp(-p.max_current, p.max_current);
+    let (wanted, most) = (x.held.effort.effort / p.effort_constant(), p.max_q_current());
+    x.held.current_reference = wanted.clamp(-most, most);
     let input = current::Input {
-        reference: Dq { d: 0.0, q: x.held.current_reference },
+        reference: Dq { d: p.d_reference, q: x.held.current_reference },
         current: sensors.current,
         rotor: ElectricalAngle::from_mechanical(sensors.motor_position, p.motor.electrical_ratio).rotation(),
         omega_e: p.motor.electrical_ratio * x.filtered_velocity,

@@ -37,7 +37,7 @@ mod tests {
     /// Oracle: by hand. 80 W for 0.25 s, then 30 W back for 0.75 s.
     #[test]
     fn energy_is_what_is_taken_less_what_is_given_back_and_a_peak_has_no_sign() {
-        let power = |t: f64| if t < 0.25 - 1e-9 { 20.0 } else { -30.0 };
+        let power = |t: f64| if t < 0.25 - 1e-9 { 20.0_f64 } else { -30.0 };
         let recording = Build::new(12_000, 12_000)
             .channel("power.electrical", "W", move |t| 4.0 * power(t).max(-7.5))
             .channel("power.copper", "W", |_| 3.0)

@@ -120,7 +120,7 @@ impl ClosedLoop {
     }
 
     /// Brings the powers of the tick that has ended, with the motor at `position` now, to `now`. At tick 0 they are zero.
-    pub(crate) fn account(&self, position: f64, now: &mut Instant) {
+    fn account(&self, position: f64, now: &mut Instant) {
         let Shaft { effort, position: before } = self.state.shaft;
         now.power = self.state.power.power();
         now.shaft_power = effort * (position - before) * f64::from(self.base_rate.hertz());

@@ -166,9 +166,6 @@ impl Stepper {
             if external.measured.is_some() { self.closed_loop.check() } else { self.closed_loop.integrate(&now) };
         done.map_err(|reason: Reason| Failure { time, reason })?;
         self.closed_loop.look(external, &mut now);
-        if external.measured.is_none() {
-            self.closed_loop.account(self.shaft().position, &mut now);
-        }
         let share = |binds: bool| f64::from(u8::from(binds));
         let PerLimit { voltage, current, effort } = now.binds;
         now.saturation = PerLimit { voltage: share(voltage), current: share(current), effort: share(effort) };

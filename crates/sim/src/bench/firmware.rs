@@ -80,7 +80,8 @@ pub(super) fn current_stage(base_rate: Rate, current: &scenario::CurrentLoop) ->
         None => derived,
     };
     let max_voltage = current::voltage_limit(current.dc_link);
-    let params = current::Params { motor, gains, max_current: current.max_current, max_voltage };
+    let scenario::CurrentLoop { d_reference, max_current, .. } = *current;
+    let params = current::Params { motor, gains, d_reference, max_current, max_voltage };
     Ok(drive::Stage::Current { params, every: base_rate.divider(current.rate)? })
 }
 
