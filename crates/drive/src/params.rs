@@ -126,7 +126,13 @@ pub(crate) mod tests {
             velocity: velocity::Params { k_p: 35.1507 * 243.45, integral_time: None, max_effort: 351.507 },
             velocity_every: every(1_000),
             velocity_filter_time: 0.0,
-            feedforward: feedforward::Params { velocity: 0.0, model: feedforward::Model::Off, coulomb: 0.0, bias: 0.0 },
+            feedforward: feedforward::Params {
+                velocity: 0.0,
+                interpolate: true,
+                model: feedforward::Model::Off,
+                coulomb: 0.0,
+                bias: 0.0,
+            },
             reference_delay: delay::Params::default(),
             stage: Stage::Direct { gain: 35.1507 },
         }

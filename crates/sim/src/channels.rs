@@ -138,7 +138,7 @@ fn all(equipment: &Equipment, rates: &WriterRates) -> [(bool, ChannelSpec); COUN
         mechanics(true, "load.velocity", per(u, "")),
         position_loop("reference.position", u.into()),
         position_loop("reference.motor_position", u.into()),
-        position_loop("velocity.reference", per(u, "")),
+        velocity_loop("velocity.reference", per(u, "")),
         channel(true, "following_error.motor", u.into(), "measurement", rates.base),
         channel(true, "following_error.load", u.into(), "measurement", rates.base),
         velocity_loop("effort.reference", e.into()),

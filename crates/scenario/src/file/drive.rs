@@ -142,6 +142,9 @@ table! {
     pub(crate) struct Feedforward {
         /// Share of the reference velocity that is added to the velocity command; `true` is all of it. None unless given.
         velocity: Share = (),
+        /// Whether that velocity goes on along the set-point between two cycles of a slower position loop, one value for each
+        /// cycle of the velocity loop; it does unless given. `false`: a staircase, which costs torque ripple.
+        interpolate: bool = (),
         /// Model of the force or torque that is added; "off" unless given.
         effort: EffortFeedforward = (),
         /// Whether estimated Coulomb friction and bias are added too; they are not unless given.

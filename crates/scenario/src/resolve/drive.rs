@@ -18,7 +18,7 @@ pub(super) struct Known<'a> {
 }
 
 const NO_FEEDFORWARD: Feedforward =
-    Feedforward { velocity: 0.0, effort: EffortFeedforward::Off, friction: false, delay: None };
+    Feedforward { velocity: 0.0, interpolate: true, effort: EffortFeedforward::Off, friction: false, delay: None };
 
 pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Option<Actuator> {
     let given = match &file.drive {
@@ -188,6 +188,7 @@ fn feedforward(drive: &file::Drive) -> Option<Feedforward> {
     let Some(given) = drive.feedforward.optional().ok()? else { return Some(NO_FEEDFORWARD) };
     Some(Feedforward {
         velocity: given.velocity.optional().ok()?.map_or(0.0, |Share(share)| *share),
+        interpolate: given.interpolate.optional().ok()?.copied().unwrap_or(true),
         effort: given.effort.optional().ok()?.copied().unwrap_or(EffortFeedforward::Off),
         friction: given.friction.optional().ok()?.copied().unwrap_or(false),
         delay: match given.delay.optional().ok()? {

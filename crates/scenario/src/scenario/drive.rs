@@ -103,6 +103,8 @@ pub struct PositionLoop {
 pub struct Feedforward {
     /// Share of the reference velocity that is fed forward, 0 to 1.
     pub velocity: f64,
+    /// Whether it goes on between two cycles of the position loop.
+    pub interpolate: bool,
     /// Model behind the effort feedforward.
     pub effort: EffortFeedforward,
     /// Whether estimated Coulomb friction and bias are fed forward too.

@@ -28,6 +28,7 @@ pub(super) fn params(
         velocity_filter_time: drive.velocity.filter_time,
         feedforward: feedforward::Params {
             velocity: drive.feedforward.velocity,
+            interpolate: drive.feedforward.interpolate,
             model,
             coulomb: friction(estimate.coulomb),
             bias: friction(estimate.bias),
