@@ -40,7 +40,9 @@ pub struct Params {
     pub motor: MotorEstimate,
     /// Gains.
     pub gains: Gains,
-    /// Largest current reference (A, peak); may be infinite.
+    /// Reference of the d axis (A, peak); below 0 it weakens the field.
+    pub d_reference: f64,
+    /// Largest length of the current reference (A, peak); may be infinite.
     pub max_current: f64,
     /// Largest voltage amplitude (V); may be infinite.
     pub max_voltage: f64,
@@ -82,10 +84,10 @@ pub struct Output {
 }
 
 impl MotorEstimate {
-    /// Effort per q-axis current at i_d = 0 (N·m/A or N/A, peak).
+    /// Effort per q-axis current at the d-axis current `i_d` (N·m/A or N/A, peak): 1.5·p·(ψ + (L_d − L_q)·i_d).
     #[must_use]
-    pub fn effort_constant(&self) -> f64 {
-        1.5 * self.electrical_ratio * self.flux_linkage
+    pub fn effort_constant(&self, i_d: f64) -> f64 {
+        1.5 * self.electrical_ratio * (self.flux_linkage + (self.inductance.d - self.inductance.q) * i_d)
     }
 }
 
@@ -130,13 +132,33 @@ impl Params {
             positive(name, value)?;
         }
         limit("motor.max_current", self.max_current)?;
+        let is_within = self.d_reference.is_finite() && self.d_reference.abs() < self.max_current;
+        if !is_within || self.effort_constant() <= 0.0 {
+            let bound = "below `motor.max_current` and leave the motor some torque";
+            return Err(ParamError { name: "drive.current.d_reference", value: self.d_reference, bound });
+        }
         limit("drive.dc_link", self.max_voltage).map(|_| ())
+    }
+
+    /// Effort per q-axis current (N·m/A or N/A, peak), as the drive believes.
+    #[must_use]
+    pub fn effort_constant(&self) -> f64 {
+        self.motor.effort_constant(self.d_reference)
+    }
+
+    /// Largest q-axis current that the d axis leaves (A, peak): the limit is on the vector.
+    #[must_use]
+    pub fn max_q_current(&self) -> f64 {
+        if self.d_reference == 0.0 {
+            return self.max_current;
+        }
+        libm::sqrt((self.max_current - self.d_reference) * (self.max_current + self.d_reference))
     }
 
     /// Largest effort that the current limit leaves (N·m or N).
     #[must_use]
     pub fn max_effort(&self) -> f64 {
-        self.motor.effort_constant() * self.max_current
+        self.effort_constant() * self.max_q_current()
     }
 }
 
@@ -193,7 +215,7 @@ mod tests {
 
     fn tuned(alpha: f64, max_voltage: f64) -> Params {
         let gains = Gains::from_bandwidth(&MOTOR, alpha);
-        Params { motor: MOTOR, gains, max_current: f64::INFINITY, max_voltage }
+        Params { motor: MOTOR, gains, d_reference: 0.0, max_current: f64::INFINITY, max_voltage }
     }
 
     /// Drives an R–L load at standstill, where each axis is exactly i(k+1) = a·i + (1 − a)/R·u.
@@ -258,6 +280,22 @@ mod tests {
         assert_eq!(given, Gains { k_p, k_i: Dq { d: 20.0, q: 80.0 } });
         let k_p = Gains::from_bandwidth(&MOTOR, 1_000.0).k_p;
         assert!((k_p.d / 36.0 - 1.0).abs() < 1e-15 && (k_p.q / 51.0 - 1.0).abs() < 1e-15, "{k_p:?}");
+    }
+
+    /// Oracle: by hand. 3-4-5: −3 A in d leave 4 of 5 A, and (36 − 51) mH · −3 A add 45 mVs to the flux linkage.
+    #[test]
+    fn the_current_limit_is_one_of_the_vector() {
+        let p = Params { d_reference: -3.0, max_current: 5.0, ..tuned(2_000.0, 300.0) };
+        assert!((p.max_q_current() - 4.0).abs() < 1e-15);
+        assert!((p.max_effort() - 1.5 * 3.0 * (0.545 + 0.045) * 4.0).abs() < 1e-14, "{}", p.max_effort());
+        assert_eq!(p.check(), Ok(()));
+        let said = |d_reference| Params { d_reference, ..p }.check().unwrap_err().to_string();
+        let bound = "below `motor.max_current` and leave the motor some torque";
+        assert_eq!(said(-5.0), format!("`drive.current.d_reference` must be {bound}, got -5"), "all of it");
+        assert!(said(f64::NAN).ends_with("got NaN"));
+        let far = Params { d_reference: 37.0, max_current: 100.0, ..p };
+        assert!(far.check().is_err(), "0.545 V·s less 37 A · 15 mH turns the motor round");
+        assert_eq!(Params { d_reference: 36.0, ..far }.check(), Ok(()));
     }
 
     #[test]

@@ -42,6 +42,9 @@ pub enum Model {
 pub struct Params {
     /// Share of the reference velocity added to the velocity command, 0 to 1.
     pub velocity: f64,
+    /// Whether that share follows the reference's own polynomial from one velocity-loop cycle to the next, instead of waiting
+    /// for the next cycle of the position loop.
+    pub interpolate: bool,
     /// Model of the effort.
     pub model: Model,
     /// Coulomb friction to compensate (N or N·m).
@@ -124,6 +127,7 @@ mod tests {
     /// Lambrechts' motor–load system.
     const LAMBRECHTS: Params = Params {
         velocity: 1.0,
+        interpolate: true,
         model: Model::TwoMass {
             motor_inertia: 20.0,
             load_inertia: 10.0,

@@ -1,7 +1,8 @@
 //! The firmware: position, velocity and current loops in a cascade, each at its own rate.
 //!
 //! Order of events at a tick: position loop → velocity loop → current loop. A slower loop's output reaches the faster
-//! one **in the same tick**; in between it is held. Only the current loop's voltage waits one period of that loop (the
+//! one **in the same tick**; in between it is held, but for the velocity that is fed forward: at each cycle of the velocity
+//! loop it is that of the reference's own polynomial there. Only the current loop's voltage waits one period of that loop (the
 //! time its computation takes). It knows the axis by its sensors and its own estimates, nothing else.
 //!
 //! Position and its reference are in the axis coordinate, velocity and effort in the motor's; `transmission` converts.
@@ -74,7 +75,7 @@ pub struct Held {
     pub reference: Setpoint,
     /// Motor's own reference (axis coordinate).
     pub motor_reference: MotorReference,
-    /// Velocity reference of the velocity loop (axis coordinate).
+    /// Velocity reference that the velocity loop used at its last cycle (axis coordinate).
     pub velocity_reference: f64,
     /// Effort fed forward (motor coordinate).
     pub feedforward: f64,
@@ -101,6 +102,8 @@ pub struct State {
     position_turn: Countdown,
     velocity_turn: Countdown,
     current_turn: Countdown,
+    /// What the position loop asked for at its last cycle (axis coordinate).
+    velocity_command: f64,
     held: Held,
 }
 
@@ -122,6 +125,7 @@ impl State {
             position_turn: Countdown::default(),
             velocity_turn: Countdown::default(),
             current_turn: Countdown::default(),
+            velocity_command: 0.0,
             held: Held::default(),
         })
     }
@@ -168,6 +172,7 @@ impl State {
 pub fn step(p: &Params, x: &mut State, demand: &Demand, sensors: &Sensors) -> Command {
     if x.position_turn.is_due(p.position_every) {
         take(p, x, demand, sensors);
+        x.velocity_command = x.held.velocity_reference;
     }
     if x.velocity_turn.is_due(p.velocity_every) {
         velocity_loop(p, x, sensors);
@@ -257,6 +262,10 @@ fn position_loop(p: &Params, x: &mut State, setpoint: Setpoint, sensors: &Sensor
 
 fn velocity_loop(p: &Params, x: &mut State, sensors: &Sensors) {
     let h = p.period(p.velocity_every);
+    if x.closed == Closed::Position && p.feedforward.interpolate {
+        let since = x.references(p).1.velocity - x.held.motor_reference.velocity;
+        x.held.velocity_reference = x.velocity_command + p.feedforward.velocity * since;
+    }
     let last = x.last_position.replace(sensors.motor_position).unwrap_or(sensors.motor_position);
     let measured = sensors.motor_velocity.unwrap_or((sensors.motor_position - last) / h);
     // Backward Euler of the low-pass: stable for every time constant, and no filter at zero.
@@ -279,10 +288,10 @@ fn velocity_loop(p: &Params, x: &mut State, sensors: &Sensors) {
 
 fn current_loop(p: &current::Params, x: &mut State, sensors: &Sensors, h: f64) {
     // The velocity loop keeps to what the current limit leaves; what is cut here is the rounding of the quotient.
-    let wanted = x.held.effort.effort / p.motor.effort_constant();
-    x.held.current_reference = wanted.clamp(-p.max_current, p.max_current);
+    let (wanted, most) = (x.held.effort.effort / p.effort_constant(), p.max_q_current());
+    x.held.current_reference = wanted.clamp(-most, most);
     let input = current::Input {
-        reference: Dq { d: 0.0, q: x.held.current_reference },
+        reference: Dq { d: p.d_reference, q: x.held.current_reference },
         current: sensors.current,
         rotor: ElectricalAngle::from_mechanical(sensors.motor_position, p.motor.electrical_ratio).rotation(),
         omega_e: p.motor.electrical_ratio * x.filtered_velocity,
@@ -339,6 +348,30 @@ mod tests {
             let setpoint = Setpoint { x: 0.1 * f64::from(k) / 16_000.0, v: 0.1, ..Setpoint::default() };
             step(&p, &mut x, &Demand::position(setpoint), &Sensors::default());
             assert!((x.references(&p).0.x - setpoint.x).abs() < 1e-18, "tick {k}");
+        }
+    }
+
+    /// Oracle: the set-point itself, under a position loop of 1 kHz and a velocity loop of 8 kHz: the velocity of
+    /// constant jerk is a parabola. Switched off it is the staircase of the position loop.
+    #[test]
+    fn the_velocity_that_is_fed_forward_goes_on_between_cycles_of_the_position_loop() {
+        let start = Setpoint { x: 0.0, v: 0.1, a: 3.0, j: -400.0, s: 0.0 };
+        let share = 0.75;
+        for interpolate in [true, false] {
+            let feedforward = crate::feedforward::Params { velocity: share, interpolate, ..emps().feedforward };
+            let p = Params { position_gain: 0.0, velocity_every: every(8_000), feedforward, ..emps() };
+            let mut x = at_rest(&p);
+            for k in 0..64_u32 {
+                let setpoint = |k: u32| start.after(f64::from(k) / 16_000.0);
+                step(&p, &mut x, &Demand::position(setpoint(k)), &Sensors::default());
+                let cycle = if interpolate { k / 2 * 2 } else { k / 16 * 16 };
+                let expected = share * setpoint(cycle).v;
+                assert!(
+                    (x.held().velocity_reference - expected).abs() < 1e-15,
+                    "{interpolate} tick {k}: {:?}",
+                    x.held()
+                );
+            }
         }
     }
 

@@ -126,7 +126,13 @@ pub(crate) mod tests {
             velocity: velocity::Params { k_p: 35.1507 * 243.45, integral_time: None, max_effort: 351.507 },
             velocity_every: every(1_000),
             velocity_filter_time: 0.0,
-            feedforward: feedforward::Params { velocity: 0.0, model: feedforward::Model::Off, coulomb: 0.0, bias: 0.0 },
+            feedforward: feedforward::Params {
+                velocity: 0.0,
+                interpolate: true,
+                model: feedforward::Model::Off,
+                coulomb: 0.0,
+                bias: 0.0,
+            },
             reference_delay: delay::Params::default(),
             stage: Stage::Direct { gain: 35.1507 },
         }
@@ -137,7 +143,7 @@ pub(crate) mod tests {
         let inductance = Dq { d: 36e-3, q: 51e-3 };
         let motor = MotorEstimate { electrical_ratio: 3.0, resistance: 3.6, inductance, flux_linkage: 0.545 };
         let gains = Gains::from_bandwidth(&motor, 6_000.0);
-        let params = current::Params { motor, gains, max_current: 9.0, max_voltage: 300.0 };
+        let params = current::Params { motor, gains, d_reference: 0.0, max_current: 9.0, max_voltage: 300.0 };
         Params {
             position_every: every(4_000),
             velocity: velocity::Params { k_p: 3.0, integral_time: Some(0.01), max_effort: f64::INFINITY },

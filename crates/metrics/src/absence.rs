@@ -113,6 +113,9 @@ pub enum Absence {
 fn only_of_a_pmsm(channel: &str) -> &'static str {
     match channel.split_once('.') {
         Some(("current", _) | ("saturation", "current")) => "; only a PMSM has a current",
+        Some(("power", "electrical" | "copper" | "stored" | "air_gap" | "residual")) => {
+            "; only a PMSM has electrical power"
+        }
         Some(("voltage", _) | ("saturation", "voltage")) => "; only a PMSM has a voltage",
         _ => "",
     }

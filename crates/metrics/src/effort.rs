@@ -1,7 +1,8 @@
-//! What the program asks of motor and inverter: current, voltage, torque.
+//! What the program asks of motor and inverter: current, voltage, torque, power.
 use crate::absence::Absence;
 use crate::metric::MetricSet;
 use crate::name::Name;
+use crate::power;
 use crate::span::{channel, largest, root_mean, unit};
 use servobench_trace::Recording;
 use std::ops::Range;
@@ -34,6 +35,7 @@ pub(crate) fn note(set: &mut MetricSet, recording: &Recording, rows: &Range<usiz
     let rms = |all: &[f64]| root_mean(all.iter().map(|effort| effort * effort), PART);
     set.note(Name::TorquePeak, unit(recording, EFFORT), effort.clone().and_then(peak));
     set.note(Name::TorqueRms, unit(recording, EFFORT), effort.and_then(rms));
+    power::note(set, recording, rows);
 }
 
 const PART: &str = "of motor and inverter";

@@ -13,6 +13,7 @@ mod measure;
 mod metric;
 mod modal;
 mod name;
+mod power;
 mod quantity;
 mod requirement;
 mod round;

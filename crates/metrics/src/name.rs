@@ -57,11 +57,15 @@ names! {
     CurrentPeak "current_peak" "largest current vector",
     CurrentRms "current_rms" "effective phase current over the recording",
     CurrentSaturationTime "current_saturation_time" "time at the current limit",
-    VoltagePeak "voltage_peak" "largest voltage vector",
+    VoltagePeak "voltage_peak" "largest voltage vector of the inverter",
     VoltageSaturationTime "voltage_saturation_time" "time at the voltage limit",
     EffortSaturationTime "effort_saturation_time" "time at the effort limit",
     TorquePeak "torque_peak" "largest torque or force of the motor",
     TorqueRms "torque_rms" "RMS torque or force of the motor over the recording",
+    ElectricalPowerPeak "electrical_power_peak" "largest electrical power of the motor, taken or given back",
+    ShaftPowerPeak "shaft_power_peak" "largest power of the motor on its shaft, driving or braking",
+    ElectricalEnergy "electrical_energy" "electrical energy that the motor takes, less what it gives back",
+    CopperLoss "copper_loss" "energy lost in the winding",
 }
 
 impl Name {

@@ -3,7 +3,9 @@ use crate::diagnostic::Report;
 use crate::field::{Field, Measure, any, not_negative};
 use crate::nearest::suggestion;
 use crate::physical::Kind::{self, Axis as InAxis, Motor as InMotor, Plain};
-use crate::physical::{CURRENT, CURRENT_RMS, EFFORT, FREQUENCY, POSITION, RATIO, TIME, VELOCITY, VOLTAGE_AMPLITUDE};
+use crate::physical::{
+    CURRENT, CURRENT_RMS, EFFORT, ENERGY, FREQUENCY, POSITION, POWER, RATIO, TIME, VELOCITY, VOLTAGE_AMPLITUDE,
+};
 use crate::scenario::Limit;
 use crate::source::At;
 use crate::table::object_schema;
@@ -30,7 +32,7 @@ const PURE: Kind = Plain(&RATIO);
 const DAMPING: &str = "residual_vibration_damping";
 
 /// Names and order are those of the crate `metrics`; a test holds them together.
-const METRICS: [Metric; 30] = [
+const METRICS: [Metric; 34] = [
     metric("move_time", SECONDS, "1.35 s", "duration of the longest set-point profile"),
     metric("settling_time", SECONDS, "50 ms", "last exit of the load from the window after the end of the profile"),
     metric("move_and_settling_time", SECONDS, "1.4 s", "longest profile with its settling time"),
@@ -66,11 +68,25 @@ const METRICS: [Metric; 30] = [
     metric("current_peak", Plain(&CURRENT), "12 Apk", "largest current vector"),
     metric("current_rms", Plain(&CURRENT_RMS), "4 Arms", "effective phase current over the recording"),
     metric("current_saturation_time", SECONDS, "0 s", "time at the current limit"),
-    metric("voltage_peak", Plain(&VOLTAGE_AMPLITUDE), "300 V", "largest voltage vector"),
+    metric("voltage_peak", Plain(&VOLTAGE_AMPLITUDE), "300 V", "largest voltage vector of the inverter"),
     metric("voltage_saturation_time", SECONDS, "0 s", "time at the voltage limit"),
     metric("effort_saturation_time", SECONDS, "0 s", "time at the effort limit"),
     metric("torque_peak", InMotor(&EFFORT), "8 Nm", "largest torque or force of the motor"),
     metric("torque_rms", InMotor(&EFFORT), "2 Nm", "RMS torque or force of the motor over the recording"),
+    metric(
+        "electrical_power_peak",
+        Plain(&POWER),
+        "800 W",
+        "largest electrical power of the motor, taken or given back",
+    ),
+    metric("shaft_power_peak", Plain(&POWER), "750 W", "largest power of the motor on its shaft, driving or braking"),
+    metric(
+        "electrical_energy",
+        Plain(&ENERGY),
+        "120 J",
+        "electrical energy that the motor takes, less what it gives back",
+    ),
+    metric("copper_loss", Plain(&ENERGY), "15 J", "energy lost in the winding"),
 ];
 
 impl Metric {

@@ -75,6 +75,8 @@ pub(crate) static MASS: Physical = physical("a mass", "kg", &[(D::KILOGRAM, 1.0)
 pub(crate) static INERTIA: Physical = physical("a moment of inertia", "kg m2", &[(KG_M2, 1.0)]);
 pub(crate) static FORCE: Physical = physical("a force", "N", &[(D::NEWTON, 1.0)]);
 pub(crate) static TORQUE: Physical = physical("a torque", "Nm", &[(D::NEWTON_METRE, 1.0)]);
+pub(crate) static ENERGY: Physical = physical("an energy", "J", &[(D::NEWTON_METRE, 1.0)]);
+pub(crate) static POWER: Physical = physical("a power", "W", &[(D::NEWTON_METRE.times(SECOND, -1), 1.0)]);
 /// In metres per revolution.
 pub(crate) static LEAD: Physical =
     physical("a lead (length per revolution)", "mm", &[(D::METRE, 1.0), (D::METRE.times(D::RADIAN, -1), TAU)]);

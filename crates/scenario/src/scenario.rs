@@ -22,6 +22,7 @@ pub use bus::{
     TrajectoryBuffer,
 };
 pub use disturbance::{Disturbance, DisturbedBody, Initial};
+pub(crate) use drive::q_current;
 pub use drive::{
     CurrentGain, CurrentLoop, Drive, EffortFeedforward, Estimate, Feedback, Feedforward, MotorEstimate, PositionLoop,
     VelocityLoop,

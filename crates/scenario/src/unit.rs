@@ -29,7 +29,7 @@ const VOLT_AMPLITUDE: D = D::VOLT.times(D::AMPLITUDE, 1);
 const AMPERE_AMPLITUDE: D = D::AMPERE.times(D::AMPLITUDE, 1);
 const OHM: Unit = si(D::VOLT.times(D::AMPERE, -1));
 
-const UNITS: [Row; 30] = [
+const UNITS: [Row; 31] = [
     ("m", si(D::METRE), true),
     ("g", scaled(D::KILOGRAM, 1.0, 1.0, -3), true),
     ("s", si(D::SECOND), true),
@@ -38,6 +38,7 @@ const UNITS: [Row; 30] = [
     ("N", si(D::NEWTON), true),
     ("Nm", si(D::NEWTON_METRE), true),
     ("J", si(D::NEWTON_METRE), true),
+    ("W", si(D::NEWTON_METRE.times(D::SECOND, -1)), true),
     ("A", si(D::AMPERE), true),
     ("Apk", si(AMPERE_AMPLITUDE), true),
     ("Arms", scaled(AMPERE_AMPLITUDE, SQRT_2, 1.0, 0), true),

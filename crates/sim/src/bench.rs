@@ -6,7 +6,7 @@ mod objections;
 pub(crate) mod plant;
 
 use crate::channels::{Amplifier, Equipment, Motor, Selection, WriterRates};
-use crate::closed_loop::{ClosedLoop, Control, Source, State};
+use crate::closed_loop::{ClosedLoop, Control, Shaft, Source, State};
 use crate::coupled::{self, ConnectionDelay, Coupled, NoPartners, Partners};
 use crate::disturbance::Disturbances;
 use crate::error::{BuildError, check_length};
@@ -88,7 +88,7 @@ impl Bench {
 
         let (mechanics, bodies) = plant::mechanics(scenario, engine)?;
         let motor_before = mechanics.bodies()[0].position;
-        let power = plant::power_stage(&scenario.actuator, mechanics.bodies()[0].velocity)?;
+        let mut power = plant::power_stage(&scenario.actuator, mechanics.bodies()[0].velocity, base_rate.period())?;
         let is_replaced = coupled::replaces_the_drive(scenario);
         let control = match &scenario.actuator {
             Actuator::Prescribed | Actuator::Off => None,
@@ -115,6 +115,9 @@ impl Bench {
         let rates = writer_rates(scenario);
         let wanted = Selection::new(&scenario.record.channels, &equipment, &rates)?;
         let selection = measured(&scenario.record.channels, &equipment, &rates)?;
+        if scenario.fmus.is_empty() && !selection.names().any(|name| name.starts_with("power.")) {
+            power.leave_power_out();
+        }
         let (rate, record_every) = recorded_rate(scenario, selection.specs.len(), ticks, duration)?;
         let rows = ticks.div_ceil(u64::from(record_every));
         let about = About {
@@ -143,7 +146,15 @@ impl Bench {
         };
         let closed_loop = ClosedLoop {
             base_rate,
-            state: State { source, begun: None, upcoming: None, control, power, motor_before },
+            state: State {
+                source,
+                begun: None,
+                upcoming: None,
+                control,
+                power,
+                motor_before,
+                shaft: Shaft { effort: 0.0, position: motor_before },
+            },
             mechanics,
             prescribed: matches!(scenario.actuator, Actuator::Prescribed),
             transmission: scenario.axis.transmission,

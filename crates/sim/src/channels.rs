@@ -22,7 +22,12 @@ pub(crate) struct Instant {
     pub(crate) effort: f64,
     pub(crate) current: servobench_base::Dq,
     pub(crate) current_reference: f64,
+    /// What the current loop computes at this tick, and what the inverter gives over the coming one.
+    pub(crate) voltage_reference: servobench_base::Dq,
     pub(crate) voltage: servobench_base::Dq,
+    /// Mean powers over the tick that ends here.
+    pub(crate) power: servobench_plant::pmsm::Power,
+    pub(crate) shaft_power: f64,
     pub(crate) output: f64,
     /// Set-point of the motion task, before it goes over the bus.
     pub(crate) task: Setpoint,
@@ -89,7 +94,7 @@ pub(crate) struct WriterRates {
     pub(crate) bus: Rate,
 }
 
-const COUNT: usize = 33;
+const COUNT: usize = 41;
 
 /// Every channel there is, in the order of [`row`].
 fn all(equipment: &Equipment, rates: &WriterRates) -> [(bool, ChannelSpec); COUNT] {
@@ -110,7 +115,9 @@ fn all(equipment: &Equipment, rates: &WriterRates) -> [(bool, ChannelSpec); COUN
     let velocity_loop = |name: &str, unit: String| channel(drive, name, unit, "velocity loop", rates.velocity);
     let current_loop = |name: &str, unit: &str| channel(current, name, unit.into(), "current loop", rates.current);
     let commanding = if current { "current loop" } else { "controller" };
-    let voltage = |name: &str| channel(currents, name, "V".into(), commanding, rates.current);
+    let reference = |name: &str| channel(currents, name, "V".into(), commanding, rates.current);
+    let voltage = |name: &str| channel(currents, name, "V".into(), "power stage", rates.base);
+    let power = |there: bool, name: &str| channel(there, name, "W".into(), "power stage", rates.base);
     let [on_motor, on_load] = equipment.disturbed;
     let disturbance =
         |there: bool, name: &str, unit: &str| channel(there, name, unit.into(), "disturbance", rates.base);
@@ -131,7 +138,7 @@ fn all(equipment: &Equipment, rates: &WriterRates) -> [(bool, ChannelSpec); COUN
         mechanics(true, "load.velocity", per(u, "")),
         position_loop("reference.position", u.into()),
         position_loop("reference.motor_position", u.into()),
-        position_loop("velocity.reference", per(u, "")),
+        velocity_loop("velocity.reference", per(u, "")),
         channel(true, "following_error.motor", u.into(), "measurement", rates.base),
         channel(true, "following_error.load", u.into(), "measurement", rates.base),
         velocity_loop("effort.reference", e.into()),
@@ -139,9 +146,17 @@ fn all(equipment: &Equipment, rates: &WriterRates) -> [(bool, ChannelSpec); COUN
         channel(currents, "current.d", "A".into(), "motor", rates.base),
         channel(currents, "current.q", "A".into(), "motor", rates.base),
         current_loop("current.q_reference", "A"),
+        reference("voltage.d_reference"),
+        reference("voltage.q_reference"),
         voltage("voltage.d"),
         voltage("voltage.q"),
         voltage("voltage.magnitude"),
+        power(currents, "power.electrical"),
+        power(currents, "power.copper"),
+        power(currents, "power.stored"),
+        power(currents, "power.air_gap"),
+        power(equipment.motor != Motor::Motion, "power.shaft"),
+        power(currents, "power.residual"),
         channel(
             output_unit.is_some(),
             "command.output",
@@ -185,9 +200,17 @@ fn row(now: &Instant) -> [f64; COUNT] {
         now.current.d,
         now.current.q,
         now.current_reference,
+        now.voltage_reference.d,
+        now.voltage_reference.q,
         now.voltage.d,
         now.voltage.q,
         now.voltage.magnitude(),
+        now.power.electrical,
+        now.power.copper,
+        now.power.stored,
+        now.power.air_gap,
+        now.shaft_power,
+        now.power.air_gap - now.shaft_power,
         now.output,
         now.saturation.voltage,
         now.saturation.current,

@@ -40,6 +40,15 @@ pub(crate) struct State {
     pub(crate) power: PowerStage,
     /// Where the motor was at the last tick.
     pub(crate) motor_before: f64,
+    /// What the motor does to the mechanics in the tick under way.
+    pub(crate) shaft: Shaft,
+}
+
+/// The effort on the motor over a tick, and where the motor was when the tick began (its own coordinate).
+#[derive(Clone, Copy)]
+pub(crate) struct Shaft {
+    pub(crate) effort: f64,
+    pub(crate) position: f64,
 }
 
 /// Where the loops have their demand from.
@@ -76,9 +85,10 @@ impl ClosedLoop {
             self.state.begun = Some(k);
         }
         let (mut now, motor) = self.sample(external);
+        self.account(motor.position, &mut now);
         let mut command = self.control(k, external, motor, &mut now, recorder);
         if let Some(Controller::Voltage(voltage)) = external.controller {
-            now.voltage = voltage;
+            now.voltage_reference = voltage;
             command = Command::Voltage(self.state.power.in_the_stator(voltage, motor));
         }
         // The mean effort over the coming tick belongs into the row of this one; the current is the one at k.
@@ -88,6 +98,8 @@ impl ClosedLoop {
             Some(Controller::Effort(effort)) => effort,
             Some(Controller::Voltage(_)) | None => self.state.power.advance(command, motor, self.base_rate.period()),
         };
+        self.state.shaft = Shaft { effort: now.effort, position: motor.position };
+        now.voltage = self.state.power.voltage();
         now.binds.voltage |= self.state.power.shortens_voltage();
         now.motor_disturbance = self.disturbances.effort_at(DisturbedBody::Motor, k) + external.motor_effort;
         now.load_disturbance = self.disturbances.effort_at(DisturbedBody::Load, k) + external.load_effort;
@@ -105,6 +117,13 @@ impl ClosedLoop {
         let load = if bodies.len() == 1 { motor } else { bodies[bodies.len() - 1] };
         let table = if bodies.len() == 3 { bodies[1] } else { BodyState::default() };
         (Instant { motor, table, load, ..Instant::default() }, own)
+    }
+
+    /// Brings the powers of the tick that has ended, with the motor at `position` now, to `now`. At tick 0 they are zero.
+    fn account(&self, position: f64, now: &mut Instant) {
+        let Shaft { effort, position: before } = self.state.shaft;
+        now.power = self.state.power.power();
+        now.shaft_power = effort * (position - before) * f64::from(self.base_rate.hertz());
     }
 
     /// Brings `now` to where the bodies are.
@@ -182,7 +201,7 @@ impl ClosedLoop {
         now.velocity_reference = held.velocity_reference;
         now.effort_reference = held.effort.effort;
         now.current_reference = held.current_reference;
-        now.voltage = held.current.computed;
+        now.voltage_reference = held.current.computed;
         now.binds = PerLimit {
             voltage: held.current.saturated,
             current: held.effort.cut == Some(Cut::Available),

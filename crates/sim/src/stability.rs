@@ -2,6 +2,7 @@
 use crate::bench::{firmware, plant};
 use crate::coupled;
 use crate::error::BuildError;
+use servobench_base::Dq;
 use servobench_drive as drive;
 use servobench_scenario::{
     self as scenario, Actuator, AxisMechanics, BusMode, CurrentGain, Feedback, LoopSignal, Scenario,
@@ -118,7 +119,10 @@ fn linear_loop(scenario: &Scenario) -> Result<Found, BuildError> {
         current_gain,
         source,
         mechanics: plant::chain(&scenario.axis, bodies)?,
-        point: OperatingPoint::default(),
+        point: match &scenario.actuator {
+            Actuator::Pmsm { current, .. } => OperatingPoint { current: Dq { d: current.d_reference, q: 0.0 } },
+            Actuator::Prescribed | Actuator::Off | Actuator::IdealSource { .. } => OperatingPoint::default(),
+        },
     };
     let without = if bus.is_some_and(|bus| bus.mode == BusMode::CyclicVelocity) {
         Some(NotAnalysed::MastersPositionLoop)

@@ -109,7 +109,7 @@ impl Loop {
         match (&self.source, &self.drive.stage) {
             (Source::Pmsm(motor), drive::Stage::Current { params, .. }) => {
                 let ampere = Dq { d: self.point.current.d, q: 1.0 };
-                motor.torque(ampere) / params.motor.effort_constant()
+                motor.torque(ampere) / params.motor.effort_constant(params.d_reference)
             }
             (Source::Ideal { gain }, drive::Stage::Direct { gain: estimated }) => gain / estimated,
             _ => 1.0,

@@ -166,7 +166,7 @@ impl<'a> Tick<'a> {
         };
         let h = self.model.drive.period(*every);
         let factors = self.factors.current;
-        let error = Dq { d: -x.current.d, q: x.effort / p.motor.effort_constant() - x.current.q };
+        let error = Dq { d: -x.current.d, q: x.effort / p.motor.effort_constant(p.d_reference) - x.current.q };
         let omega_e = p.motor.electrical_ratio * x.filtered_velocity;
         let Dq { d: i_d, q: i_q } = self.model.point.current;
         let decoupling = Dq {

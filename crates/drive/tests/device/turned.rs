@@ -23,7 +23,13 @@ fn loops() -> drive::Params {
         velocity: velocity::Params { k_p: 160.0 * MASS, integral_time: None, max_effort: f64::INFINITY },
         velocity_every: every(8_000),
         velocity_filter_time: 0.0,
-        feedforward: feedforward::Params { velocity: 0.0, model: feedforward::Model::Off, coulomb: 0.0, bias: 0.0 },
+        feedforward: feedforward::Params {
+            velocity: 0.0,
+            interpolate: true,
+            model: feedforward::Model::Off,
+            coulomb: 0.0,
+            bias: 0.0,
+        },
         reference_delay: delay::Params::default(),
         stage: Stage::Direct { gain: 1.0 },
     }

@@ -4,8 +4,8 @@ use crate::list::{AutoTime, Share};
 use crate::object_table::ObjectTable;
 use crate::physical::Kind::{Axis as InAxis, Motor as InMotor, Plain};
 use crate::physical::{
-    BANDWIDTH, CURRENT_GAIN, EFFORT, FLUX_LINKAGE, FORCE, INDUCTANCE, INERTIAL, LEAD, POSITION, POSITION_GAIN, RATIO,
-    RESISTANCE, SOURCE_GAIN, STIFFNESS, TIME, TORQUE, VISCOUS, VOLT_GAIN, VOLTAGE,
+    BANDWIDTH, CURRENT, CURRENT_GAIN, EFFORT, FLUX_LINKAGE, FORCE, INDUCTANCE, INERTIAL, LEAD, POSITION, POSITION_GAIN,
+    RATIO, RESISTANCE, SOURCE_GAIN, STIFFNESS, TIME, TORQUE, VISCOUS, VOLT_GAIN, VOLTAGE,
 };
 use crate::scenario::EffortFeedforward;
 use crate::simple::Choice;
@@ -100,6 +100,9 @@ table! {
         integral_time_d: f64 = positive(Plain(&TIME), "5 ms"),
         /// Integral time of the q axis; L/R of the estimated motor unless given.
         integral_time_q: f64 = positive(Plain(&TIME), "5 ms"),
+        /// Reference of the d-axis current; 0 unless given. The torque or force per q-axis current is then that of
+        /// 1.5·p·(ψ + (L_d − L_q)·i_d) of the estimated motor, and `max_current` bounds the vector of both.
+        d_reference: f64 = any(Plain(&CURRENT), "-20 Arms"),
     }
 }
 
@@ -139,6 +142,9 @@ table! {
     pub(crate) struct Feedforward {
         /// Share of the reference velocity that is added to the velocity command; `true` is all of it. None unless given.
         velocity: Share = (),
+        /// Whether that velocity goes on along the set-point between two cycles of a slower position loop, one value for each
+        /// cycle of the velocity loop; it does unless given. `false`: a staircase, which costs torque ripple.
+        interpolate: bool = (),
         /// Model of the force or torque that is added; "off" unless given.
         effort: EffortFeedforward = (),
         /// Whether estimated Coulomb friction and bias are added too; they are not unless given.

@@ -15,6 +15,8 @@ pub(super) struct Tuning {
     pub(super) rate: Rate,
     pub(super) gain: CurrentGain,
     pub(super) integral_time: Option<(f64, f64)>,
+    /// Reference of the d axis (A, peak).
+    pub(super) d_reference: f64,
 }
 
 /// `None` where there is no current loop and none is needed.
@@ -47,7 +49,30 @@ pub(super) fn resolve(
     } else {
         None
     };
-    Ok(Some(Tuning { rate: rate.ok_or(Reported)?, gain: gain?, integral_time }))
+    let d_reference = d_reference(&given.d_reference, known, report)?;
+    Ok(Some(Tuning { rate: rate.ok_or(Reported)?, gain: gain?, integral_time, d_reference }))
+}
+
+/// It must leave the q axis some current, and the motor some torque.
+fn d_reference(slot: &Slot<f64>, known: &Known<'_>, report: &mut Report) -> Result<f64, Reported> {
+    let at = match slot {
+        Slot::Absent => return Ok(0.0),
+        Slot::Wrong(_) => return Err(Reported),
+        Slot::Given(at) => at,
+    };
+    let Some(Motor::Pmsm { motor, max_current }) = known.motor else { return Ok(at.value) };
+    if at.value.abs() >= *max_current {
+        let message =
+            format!("`d_reference` of {} A (peak) leaves nothing of the current limit, {max_current:.5} A", at.value);
+        report.error(at.span, message, "`motor.max_current` bounds the vector of both axes; give less");
+        return Err(Reported);
+    }
+    if motor.effort_constant_at(at.value) <= 0.0 {
+        let message = format!("at a d-axis current of {} A (peak) the motor has no torque in its direction", at.value);
+        report.error(at.span, message, "ψ + (L_d − L_q)·i_d must be above 0; give less");
+        return Err(Reported);
+    }
+    Ok(at.value)
 }
 
 fn gain(given: &file::Current, path: &str, report: &mut Report) -> Result<CurrentGain, Reported> {

@@ -7,7 +7,7 @@ use crate::list::{AutoTime, Share};
 use crate::resolve::estimate::{self, Belief};
 use crate::resolve::motor::{Motor, resolution};
 use crate::resolve::{current, loops, need};
-use crate::scenario::{Actuator, Axis, CurrentLoop, Drive, EffortFeedforward, Feedback, Feedforward};
+use crate::scenario::{Actuator, Axis, CurrentLoop, Drive, EffortFeedforward, Feedback, Feedforward, q_current};
 use servobench_base::Rate;
 
 /// The parts that are known by now.
@@ -18,7 +18,7 @@ pub(super) struct Known<'a> {
 }
 
 const NO_FEEDFORWARD: Feedforward =
-    Feedforward { velocity: 0.0, effort: EffortFeedforward::Off, friction: false, delay: None };
+    Feedforward { velocity: 0.0, interpolate: true, effort: EffortFeedforward::Off, friction: false, delay: None };
 
 pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Option<Actuator> {
     let given = match &file.drive {
@@ -44,7 +44,8 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
         Some(Motor::IdealSource(source)) => estimate::or_true(estimates, |given| &given.gain, source.gain),
         _ => 1.0,
     };
-    let max_effort = max_effort(given, known.motor, gain, report);
+    let d_reference = tuning.as_ref().ok().copied().flatten().map_or(0.0, |tuning| tuning.d_reference);
+    let max_effort = max_effort(given, known.motor, &Source { gain, d_reference }, report);
     let knowledge = loops::Knowledge { base_rate: known.base_rate, motor: known.motor, belief: belief.as_ref(), gain };
     let velocity = loops::velocity(given, &knowledge, current_rate, is_used, report);
     let velocity_rate = velocity.as_ref().map(|velocity| velocity.rate);
@@ -69,11 +70,13 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
         Motor::Prescribed => Some(Actuator::Prescribed),
         _ if !enabled => Some(Actuator::Off),
         Motor::Pmsm { motor, max_current } => {
-            let (current::Tuning { rate, gain, integral_time }, dc_link) = (tuning.ok().flatten()?, dc_link?);
+            let (current::Tuning { rate, gain, integral_time, d_reference }, dc_link) =
+                (tuning.ok().flatten()?, dc_link?);
             let current = CurrentLoop {
                 rate,
                 gain,
                 integral_time,
+                d_reference,
                 max_current: *max_current,
                 motor: estimate::of_motor(estimates, motor),
                 dc_link: estimate::or_true(estimates, |given| &given.dc_link, dc_link),
@@ -104,17 +107,23 @@ fn dc_link(drive: &file::Drive, motor: Option<&Motor>, is_used: bool, report: &m
     drive.dc_link.given().copied()
 }
 
-/// Largest effort the motor can give (motor coordinate).
-fn strength(motor: &Motor) -> f64 {
+/// What the drive does with the motor: effort per output of an ideal source as it believes, and d-axis current (A).
+struct Source {
+    gain: f64,
+    d_reference: f64,
+}
+
+/// Largest effort the motor can give (motor coordinate) at the d-axis current `i_d` (A).
+fn strength(motor: &Motor, i_d: f64) -> f64 {
     match motor {
-        Motor::Pmsm { motor, max_current } => motor.effort_constant() * max_current,
+        Motor::Pmsm { motor, max_current } => motor.effort_constant_at(i_d) * q_current(*max_current, i_d),
         Motor::IdealSource(source) => source.gain * source.limit,
         Motor::Prescribed => f64::INFINITY,
     }
 }
 
-/// The effort limit of the velocity loop: as given, and what an ideal source of the estimated `gain` can give.
-fn max_effort(drive: &file::Drive, motor: Option<&Motor>, gain: f64, report: &mut Report) -> Option<f64> {
+/// The effort limit of the velocity loop: as given, and what an ideal source of the estimated gain can give.
+fn max_effort(drive: &file::Drive, motor: Option<&Motor>, used: &Source, report: &mut Report) -> Option<f64> {
     use crate::scenario::Motion::{Linear, Rotary};
     let turns = report.motor == Some(Rotary);
     let (slot, other) =
@@ -127,10 +136,10 @@ fn max_effort(drive: &file::Drive, motor: Option<&Motor>, gain: f64, report: &mu
     }
     let motor = motor?;
     let available = match motor {
-        Motor::IdealSource(source) => gain * source.limit,
+        Motor::IdealSource(source) => used.gain * source.limit,
         Motor::Pmsm { .. } | Motor::Prescribed => f64::INFINITY,
     };
-    let strength = strength(motor);
+    let strength = strength(motor, used.d_reference);
     match slot {
         Slot::Absent => Some(available),
         Slot::Wrong(_) => None,
@@ -139,6 +148,9 @@ fn max_effort(drive: &file::Drive, motor: Option<&Motor>, gain: f64, report: &mu
             let (name, unit) = if turns { ("max_torque", "N m") } else { ("max_force", "N") };
             let message = format!("`{name}` is more than the motor gives, {strength:.5} {unit}");
             let help = match motor {
+                Motor::Pmsm { .. } if used.d_reference != 0.0 => {
+                    "that is 1.5·p·(ψ + (L_d − L_q)·i_d) times what `d_reference` leaves of `max_current`"
+                }
                 Motor::Pmsm { .. } if turns => "that is 1.5·p·ψ·`max_current`",
                 Motor::Pmsm { .. } => "that is 1.5·(π/τ_p)·ψ·`max_current`",
                 _ => "that is `gain` times `limit`",
@@ -176,6 +188,7 @@ fn feedforward(drive: &file::Drive) -> Option<Feedforward> {
     let Some(given) = drive.feedforward.optional().ok()? else { return Some(NO_FEEDFORWARD) };
     Some(Feedforward {
         velocity: given.velocity.optional().ok()?.map_or(0.0, |Share(share)| *share),
+        interpolate: given.interpolate.optional().ok()?.copied().unwrap_or(true),
         effort: given.effort.optional().ok()?.copied().unwrap_or(EffortFeedforward::Off),
         friction: given.friction.optional().ok()?.copied().unwrap_or(false),
         delay: match given.delay.optional().ok()? {

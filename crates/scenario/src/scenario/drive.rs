@@ -37,7 +37,9 @@ pub struct CurrentLoop {
     pub gain: CurrentGain,
     /// Integral times (s) d and q; `None`: L/R of the estimated motor.
     pub integral_time: Option<(f64, f64)>,
-    /// Largest current reference, peak (A).
+    /// Reference of the d-axis current, peak (A).
+    pub d_reference: f64,
+    /// Largest length of the current reference, peak (A).
     pub max_current: f64,
     /// What the firmware believes of the motor.
     pub motor: MotorEstimate,
@@ -101,6 +103,8 @@ pub struct PositionLoop {
 pub struct Feedforward {
     /// Share of the reference velocity that is fed forward, 0 to 1.
     pub velocity: f64,
+    /// Whether it goes on between two cycles of the position loop.
+    pub interpolate: bool,
     /// Model behind the effort feedforward.
     pub effort: EffortFeedforward,
     /// Whether estimated Coulomb friction and bias are fed forward too.
@@ -143,9 +147,17 @@ pub struct Estimate {
 }
 
 impl CurrentLoop {
-    /// Largest effort that the current limit leaves, as the firmware believes (N·m or N): 1.5·p·ψ times the limit.
+    /// Largest effort that the current limit leaves, as the firmware believes (N·m or N): 1.5·p·(ψ + (L_d − L_q)·i_d) times
+    /// √(I² − i_d²).
     #[must_use]
     pub fn max_effort(&self) -> f64 {
-        1.5 * self.motor.electrical_ratio * self.motor.flux_linkage * self.max_current
+        let MotorEstimate { electrical_ratio, flux_linkage, inductance_d, inductance_q, .. } = self.motor;
+        let constant = 1.5 * electrical_ratio * (flux_linkage + (inductance_d - inductance_q) * self.d_reference);
+        constant * q_current(self.max_current, self.d_reference)
     }
+}
+
+/// What a current of at most `max` leaves for the q axis beside `d` (A).
+pub(crate) fn q_current(max: f64, d: f64) -> f64 {
+    if d == 0.0 { max } else { ((max - d) * (max + d)).max(0.0).sqrt() }
 }

@@ -51,6 +51,13 @@ impl Pmsm {
     /// Torque or force per ampere of amplitude at i_d = 0: 1.5·p·ψ (N·m/A), of a linear motor 1.5·(π/τ_p)·ψ (N/A).
     #[must_use]
     pub fn effort_constant(&self) -> f64 {
-        1.5 * self.electrical_ratio * self.flux_linkage
+        self.effort_constant_at(0.0)
+    }
+
+    /// The same at the d-axis current `i_d` (A, peak): 1.5·p·(ψ + (L_d − L_q)·i_d).
+    #[must_use]
+    pub fn effort_constant_at(&self, i_d: f64) -> f64 {
+        let reluctance = if i_d == 0.0 { 0.0 } else { (self.inductance_d - self.inductance_q) * i_d };
+        1.5 * self.electrical_ratio * (self.flux_linkage + reluctance)
     }
 }

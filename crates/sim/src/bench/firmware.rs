@@ -28,6 +28,7 @@ pub(crate) fn params(
         velocity_filter_time: drive.velocity.filter_time,
         feedforward: feedforward::Params {
             velocity: drive.feedforward.velocity,
+            interpolate: drive.feedforward.interpolate,
             model,
             coulomb: friction(estimate.coulomb),
             bias: friction(estimate.bias),
@@ -80,7 +81,8 @@ pub(crate) fn current_stage(base_rate: Rate, current: &scenario::CurrentLoop) ->
         None => derived,
     };
     let max_voltage = current::voltage_limit(current.dc_link);
-    let params = current::Params { motor, gains, max_current: current.max_current, max_voltage };
+    let scenario::CurrentLoop { d_reference, max_current, .. } = *current;
+    let params = current::Params { motor, gains, d_reference, max_current, max_voltage };
     Ok(drive::Stage::Current { params, every: base_rate.divider(current.rate)? })
 }
 

@@ -5,6 +5,7 @@ use crate::power::PowerStage;
 use servobench_base::{Dq, Rotation};
 use servobench_plant::{self as plant, BodyState, Chain, Encoder, Engine, Mechanics, MechanicsSetup, Switches, pmsm};
 use servobench_scenario::{self as scenario, Actuator, EngineName, Scenario};
+use std::sync::Arc;
 
 /// The mechanics at tick 0 and the names of its bodies.
 pub(super) fn mechanics(
@@ -115,8 +116,9 @@ pub(super) fn switches(switches: &scenario::Switches) -> Result<Switches, BuildE
     Ok(switches)
 }
 
-/// What turns the drive's command into effort, with the motor at `speed` (its own coordinate, per second).
-pub(super) fn power_stage(actuator: &Actuator, speed: f64) -> Result<PowerStage, BuildError> {
+/// What turns the drive's command into effort, with the motor at `speed` (its own coordinate, per second), in
+/// ticks of `h` (s).
+pub(super) fn power_stage(actuator: &Actuator, speed: f64, h: f64) -> Result<PowerStage, BuildError> {
     match actuator {
         Actuator::Prescribed | Actuator::Off => Ok(PowerStage::Off),
         Actuator::IdealSource { source, .. } => Ok(PowerStage::Ideal { gain: source.gain, limit: source.limit }),
@@ -124,12 +126,14 @@ pub(super) fn power_stage(actuator: &Actuator, speed: f64) -> Result<PowerStage,
             let params = synchronous_motor(motor);
             params.check()?;
             Ok(PowerStage::Pmsm {
-                params,
+                motor: Arc::new(pmsm::Ticks::new(params, h)),
                 state: pmsm::State::default(),
                 u_dc: *dc_link,
                 last_speed: speed,
                 rotor: Rotation::default(),
                 shortens: false,
+                voltage: Dq::default(),
+                power: Some(pmsm::Power::default()),
             })
         }
     }

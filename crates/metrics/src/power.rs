@@ -1,0 +1,70 @@
+//! Power and energy of the motor.
+//!
+//! A row holds mean powers over the tick that ends at it, so the sum over rows times their period is the energy.
+use crate::absence::Absence;
+use crate::metric::MetricSet;
+use crate::name::Name;
+use crate::span::{channel, largest};
+use servobench_trace::Recording;
+use std::ops::Range;
+
+const PART: &str = "of the motor's power";
+
+/// Notes power and energy over `rows`.
+pub(crate) fn note(set: &mut MetricSet, recording: &Recording, rows: &Range<usize>) {
+    for (name, power) in [(Name::ElectricalPowerPeak, "power.electrical"), (Name::ShaftPowerPeak, "power.shaft")] {
+        let peak = |all: &[f64]| largest(all.iter().map(|power| power.abs()), PART);
+        set.note(name, "W", channel(recording, power).and_then(|all| peak(&all[rows.clone()])));
+    }
+    for (name, power) in [(Name::ElectricalEnergy, "power.electrical"), (Name::CopperLoss, "power.copper")] {
+        set.note(name, "J", energy(recording, power, rows));
+    }
+}
+
+fn energy(recording: &Recording, power: &'static str, rows: &Range<usize>) -> Result<f64, Absence> {
+    let powers = &channel(recording, power)?[rows.clone()];
+    if powers.is_empty() {
+        return Err(Absence::NothingRecorded { part: PART });
+    }
+    Ok(powers.iter().sum::<f64>() * recording.rate.period())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::Build;
+
+    /// Oracle: by hand. 80 W for 0.25 s, then 30 W back for 0.75 s.
+    #[test]
+    fn energy_is_what_is_taken_less_what_is_given_back_and_a_peak_has_no_sign() {
+        let power = |t: f64| if t < 0.25 - 1e-9 { 20.0_f64 } else { -30.0 };
+        let recording = Build::new(12_000, 12_000)
+            .channel("power.electrical", "W", move |t| 4.0 * power(t).max(-7.5))
+            .channel("power.copper", "W", |_| 3.0)
+            .channel("power.shaft", "W", power)
+            .finish();
+        let mut set = MetricSet::default();
+        note(&mut set, &recording, &(0..12_000));
+        for (name, value, unit) in [
+            (Name::ElectricalEnergy, 80.0 * 0.25 - 30.0 * 0.75, "J"),
+            (Name::CopperLoss, 3.0, "J"),
+            (Name::ElectricalPowerPeak, 80.0, "W"),
+            (Name::ShaftPowerPeak, 30.0, "W"),
+        ] {
+            let metric = set.get(name).unwrap();
+            // The sum of 12 000 numbers.
+            assert!((metric.value - value).abs() < 1e-10 && metric.unit == unit, "{name}: {metric:?}");
+        }
+        note(&mut set, &recording, &(0..3_000));
+        assert!((set.value(Name::ElectricalEnergy).unwrap() - 20.0).abs() < 1e-10);
+    }
+
+    #[test]
+    fn an_axis_without_currents_has_no_electrical_power() {
+        let recording = Build::new(1_000, 10).channel("power.shaft", "W", |_| 1.0).finish();
+        let mut set = MetricSet::default();
+        note(&mut set, &recording, &(0..10));
+        let why = set.absence(Name::ElectricalEnergy).unwrap().to_string();
+        assert_eq!(why, "`power.electrical` is not recorded; only a PMSM has electrical power");
+    }
+}
