@@ -124,7 +124,7 @@ fn share(plot: &PlannedPlot<'_>) -> f32 {
 /// Moves and events, as high as it has lanes.
 fn lanes_view(happenings: &Happenings) -> Option<(f32, Node)> {
     let lanes = happenings.lanes.clone();
-    let height = 0.35 + 0.2 * lanes.len().min(4) as f32;
+    let height = 0.4 + 0.25 * lanes.len().min(4) as f32;
     (!lanes.is_empty()).then(|| (height, Node::View(View::new("StateTimeline", "Moves and events", lanes))))
 }
 
