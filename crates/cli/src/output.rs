@@ -3,7 +3,8 @@ use crate::console::print;
 use crate::exit::CliError;
 use crate::interrupt;
 use jiff::Timestamp;
-use servobench_report::{LimitPlace, Results, RunIdentity, TimingOptions, timing_diagram};
+use servobench_metrics::{Metrics, Verdict};
+use servobench_report::{LimitPlace, Outcome, Results, RunIdentity, RunResult, TimingOptions, timing_diagram};
 use servobench_scenario::{Parameter, Scenario, Step};
 use servobench_suite::{Job, channel_limits};
 use servobench_trace::Recording;
@@ -86,10 +87,10 @@ pub(crate) fn write_recording(
     job: &Job,
     recording: &Recording,
     folder: &Path,
-    rrd: bool,
+    shown: Option<servobench_view::Verdict>,
 ) -> Result<Written, (CliError, Written)> {
     let mut written = Written::default();
-    let done = write_each(job, recording, folder, rrd, &mut written);
+    let done = write_each(job, recording, folder, shown, &mut written);
     done.map_err(|error| (error, written.clone())).map(|()| written)
 }
 
@@ -97,7 +98,7 @@ fn write_each(
     job: &Job,
     recording: &Recording,
     folder: &Path,
-    rrd: bool,
+    shown: Option<servobench_view::Verdict>,
     written: &mut Written,
 ) -> Result<(), CliError> {
     let failed = |error: &dyn Display| CliError::Run(error.to_string());
@@ -111,9 +112,9 @@ fn write_each(
         write_file(&folder.join(&name), &diagram)?;
         written.note(folder, name);
     }
-    if rrd {
+    if let Some(verdict) = shown {
         let name = format!("{}.rrd", job.id);
-        let options = view_options(&job.scenario);
+        let options = ViewOptions { verdicts: vec![verdict], ..view_options(&job.scenario) };
         servobench_view::write_rrd(recording, folder.join(&name), &options).map_err(|error| failed(&error))?;
         written.note(folder, name);
     }
@@ -204,10 +205,25 @@ const fn of_move(step: &Step) -> bool {
     matches!(step, Step::Move(_))
 }
 
+/// What a viewer says of a run that was judged.
+pub(crate) fn shown(recording: &Recording, metrics: &Metrics, verdict: &Verdict) -> servobench_view::Verdict {
+    let judged = RunResult::judged(RunIdentity::default(), recording, metrics, verdict);
+    servobench_view::Verdict {
+        outcome: match judged.verdict {
+            Outcome::Passed => servobench_view::Outcome::Passed,
+            Outcome::Unjudged => servobench_view::Outcome::Unjudged,
+            Outcome::Failed | Outcome::Invalid | Outcome::Error => servobench_view::Outcome::Failed,
+        },
+        reasons: judged.reasons,
+        warnings: verdict.warnings.clone(),
+    }
+}
+
 /// What a viewer is told beside the recording: limits and the settling window.
 pub(crate) fn view_options(scenario: &Scenario) -> ViewOptions {
     ViewOptions {
         limits: channel_limits(scenario).into_iter().map(|(channel, limit)| (channel.to_owned(), limit)).collect(),
+        allowed: scenario.limits.iter().filter_map(|limit| Some((limit.metric.parse().ok()?, limit.max?))).collect(),
         window: scenario.measure.window,
         residual_from: scenario.measure.from,
         ..ViewOptions::default()

@@ -72,7 +72,7 @@ pub enum CallFate {
     NeverExecuted(String),
     /// It was executed and came to what it is for, or another command took over from it.
     Executed,
-    /// It was executed, and this output did not become TRUE by the end of the run.
+    /// It was executed and did not come to its end by that of the run: why, in words.
     Unfinished(String),
     /// It ended in `Error`.
     Failed {

@@ -95,6 +95,7 @@ fn calls(run: &Run<'_>) -> Vec<(f64, &'static str, String)> {
         match &call.fate {
             CallFate::NeverExecuted(why) => Some((run.end(), level, format!("{who} was never executed: {why}"))),
             CallFate::Failed { time, id, message } => Some((*time, level, format!("{who} failed: {message} ({id})"))),
+            CallFate::Unfinished(why) => Some((run.end(), level, format!("{who} did not come to its end: {why}"))),
             CallFate::Executed => None,
         }
     };

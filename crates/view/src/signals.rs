@@ -65,6 +65,7 @@ fn fate<'a>(run: &Run<'a>, call: &'a Call) -> Option<Lane<'a>> {
     let (name, since, why) = match &call.fate {
         CallFate::Executed => return None,
         CallFate::NeverExecuted(why) => ("never_executed", 0.0, why),
+        CallFate::Unfinished(why) => ("unfinished", 0.0, why),
         CallFate::Failed { time, message, .. } => ("failed", *time, message),
     };
     let span = Span {

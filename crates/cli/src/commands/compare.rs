@@ -15,6 +15,7 @@ use servobench_suite::{
     to_equal_duration,
 };
 use servobench_trace::Recording;
+use servobench_view::ViewOptions;
 
 /// Differences that are listed; the others are counted.
 const MOST: usize = 12;
@@ -167,6 +168,8 @@ fn write_recording(args: &CompareArgs, jobs: &[Job], labels: &[String], runs: &[
     let labelled: Vec<(&str, &Recording)> =
         labels.iter().map(String::as_str).zip(runs.iter().map(|run| &run.recording)).collect();
     let options = jobs.first().map(|job| output::view_options(&job.scenario)).unwrap_or_default();
+    let verdicts = runs.iter().map(|run| output::shown(&run.recording, &run.metrics, &run.verdict)).collect();
+    let options = ViewOptions { verdicts, ..options };
     let name = labels.join("-against-");
     let name: String = name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect();
     let name = format!("{name}.rrd");

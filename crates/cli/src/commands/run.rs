@@ -112,9 +112,11 @@ fn one(
     folder: &Path,
     progress: &Progress,
 ) -> RunResult {
-    let write = |recording| output::write_recording(job, recording, folder, rrd);
+    let write = |recording, shown: servobench_view::Verdict| {
+        output::write_recording(job, recording, folder, rrd.then_some(shown))
+    };
     let result = match execute(job, engines, worker, &mut progress.of_run(&job.id)) {
-        Ok(Run { recording, metrics, verdict }) => match write(&recording) {
+        Ok(Run { recording, metrics, verdict }) => match write(&recording, output::shown(&recording, &metrics, &verdict)) {
             Ok(written) => RunResult::judged(output::identity(job, written), &recording, &metrics, &verdict),
             Err((error, written)) => {
                 let (run, until_then) = (output::identity(job, written), Some((&recording, &metrics)));
@@ -128,7 +130,9 @@ fn one(
             let Broken { error, until_then } = *broken;
             let mut reasons = vec![error.to_string()];
             let written = until_then.as_ref().map(|(recording, _)| {
-                write(recording).unwrap_or_else(|(unwritten, written)| {
+                let outcome = servobench_view::Outcome::Failed;
+                let shown = servobench_view::Verdict { outcome, reasons: reasons.clone(), warnings: Vec::new() };
+                write(recording, shown).unwrap_or_else(|(unwritten, written)| {
                     reasons.push(unwritten.to_string());
                     written
                 })

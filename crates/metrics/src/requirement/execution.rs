@@ -22,7 +22,7 @@ fn wrong(call: &Call, expected: &[Expectation]) -> Option<String> {
     match &call.fate {
         CallFate::Executed => None,
         CallFate::NeverExecuted(why) => Some(why.clone()),
-        CallFate::Unfinished(output) => Some(format!("`{name}` ({block}) did not come to its end: no `{output}`")),
+        CallFate::Unfinished(why) => Some(format!("`{name}` ({block}) did not come to its end: {why}")),
         CallFate::Failed { .. } if expected.iter().any(|expectation| fits(expectation, call).is_some()) => None,
         CallFate::Failed { time, id, message } => {
             Some(format!("`{name}` ended in Error {id:04X}h at {}: {message}", Quantity::new(*time, "s")))
@@ -69,14 +69,14 @@ mod tests {
             (false, CallFate::Executed),
             (false, never),
             (false, failed()),
-            (false, CallFate::Unfinished("Done".into())),
+            (false, CallFate::Unfinished("its `Done` did not become TRUE".into())),
         ]);
         assert_eq!(
             broken(&recording, &rules()).unwrap(),
             [
                 "`call_1` was not executed: `home.Done` did not become TRUE",
                 "`call_2` ended in Error 2002h at 250 ms: the axis has no reference",
-                "`call_3` (MC_MoveAbsolute) did not come to its end: no `Done`",
+                "`call_3` (MC_MoveAbsolute) did not come to its end: its `Done` did not become TRUE",
             ]
         );
     }

@@ -80,11 +80,12 @@ impl<'a> Row<'a> {
         Self { name: &signal.name, stretches: stretches(signal, window), kind }
     }
 
-    /// Why `call` was never executed, all the time, or failed, from then on; `None` for any other.
+    /// Why `call` was never executed or did not come to its end, all the time, or failed, from then on; `None` for any other.
     fn of_fate(call: &'a Call, window: Window) -> Option<Self> {
         let (name, since, why) = match &call.fate {
             CallFate::Executed => return None,
             CallFate::NeverExecuted(why) => ("never executed", window.from, why),
+            CallFate::Unfinished(why) => ("unfinished", window.from, why),
             CallFate::Failed { time, message, .. } => ("failed", *time, message),
         };
         let kind = if call.is_optional { Kind::Excused } else { Kind::Missed };
