@@ -1,6 +1,6 @@
 //! The sampled linear loop of a servo axis: its poles, the name of the loop that is unstable, and the gains at the boundary.
 //!
-//! [`Loop`] says what the axis and its drive are. [`analyse`] writes one base tick of both as linear equations ([`tick`]), in
+//! [`Loop`] says what the axis and its drive are. [`analyse`] writes one base tick of both as linear equations (`tick`), in
 //! the order of events of a run: all rates, delays, filters and the current loop in both axes are in them. The product over the
 //! common period of all loops is taken around once; its eigenvalues are the poles.
 //!

@@ -1,7 +1,7 @@
 //! The common period of all loops: the matrices of its ticks, their product, and vectors on their way through it.
 //!
 //! The product is taken around once from the tick at which all loops turn, after they have: there every signal of a
-//! controller is fresh, so that a loop is in it as a ring through a controller's state ([`structure`](crate::structure)).
+//! controller is fresh, so that a loop is in it as a ring through a controller's state (`structure`).
 use crate::error::StabilityError;
 use crate::state::{STATES, State};
 use crate::structure::Pattern;

@@ -65,6 +65,9 @@ fn turn_per_tick(model: &Loop, eigenvalue: &Eigenvalue) -> f64 {
         }
         scale = next;
     }
+    if energy == 0.0 {
+        return 0.0;
+    }
     if eigenvalue.value.im == 0.0 { (turned.re / energy).clamp(-1.0, 1.0).acos() } else { turned.arg() }
 }
 

@@ -56,6 +56,9 @@ fn a_rotor_under_a_current_loop_alone_turns_on() {
             *current = crate::axes::ticks(every);
             let report = report(&model);
             assert!(report.is_stable(), "{viscous} {every}: {:?}", report.instability);
+            // Friction stops it with b/J = 0.01 1/s; without, what is left are the current loop's own poles.
+            let largest = report.largest.unwrap();
+            assert_eq!(largest.growth > -0.02, viscous > 0.0, "{viscous} {every}: {largest:?}");
         }
     }
 }

@@ -11,7 +11,7 @@ enum May {
 }
 
 /// The floor plan, lower floors first. Dev-dependencies are free: the oracle of a test may come from anywhere.
-const PLAN: [(&str, May); 27] = [
+const PLAN: [(&str, May); 28] = [
     ("base", May::On(&[])),
     ("cia402", May::On(&["base"])),
     ("motion", May::On(&["base"])),
@@ -20,6 +20,7 @@ const PLAN: [(&str, May); 27] = [
     ("fieldbus", May::On(&["base", "cia402", "motion"])),
     ("plcopen", May::On(&["base", "fieldbus", "motion"])),
     ("plant", May::On(&["base"])),
+    ("stability", May::On(&["base", "drive", "plant"])),
     ("engine-mujoco", May::On(&["base", "plant"])),
     ("engine-rapier", May::On(&["base", "plant"])),
     ("fmi", May::On(&["base"])),
@@ -31,8 +32,20 @@ const PLAN: [(&str, May); 27] = [
     (
         "sim",
         May::On(&[
-            "base", "cia402", "motion", "planner", "drive", "fieldbus", "plcopen", "plant", "fmi", "coupling", "trace",
-            "metrics", "scenario",
+            "base",
+            "cia402",
+            "motion",
+            "planner",
+            "drive",
+            "fieldbus",
+            "plcopen",
+            "plant",
+            "stability",
+            "fmi",
+            "coupling",
+            "trace",
+            "metrics",
+            "scenario",
         ]),
     ),
     ("fmu", May::On(&["base", "cia402", "motion", "planner", "plcopen", "plant", "fmi", "scenario", "sim"])),
