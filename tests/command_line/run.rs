@@ -187,7 +187,7 @@ fn where_every_file_is_invalid_nothing_is_touched() {
 
 #[test]
 fn what_is_no_toml_is_one_mistake_and_of_many_twenty_are_shown() {
-    let many: String = (0..300).map(|k| format!("key{k} = {k}\n")).collect();
+    let many = (0..300).map(|k| format!("key{k} = {k}\n")).collect::<Vec<_>>().concat();
     let json = format!("{{\n{}}}\n", "  \"key\": 1,\n".repeat(10_000));
     let work = folder(&[("results.json", &json), ("many.toml", &many)]);
     let said_of = |name: &str| {

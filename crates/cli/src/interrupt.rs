@@ -67,10 +67,10 @@ mod unix {
         // No thread can note another file until the end.
         let files = untold();
         for _ in 0..2 {
-            children().into_iter().for_each(|child| {
+            for child in children() {
                 // One that has ended already is as good.
                 kill_process(child, Signal::KILL).ok();
-            });
+            }
             std::thread::sleep(BREATH);
             remove_unfinished(folder);
         }

@@ -38,16 +38,12 @@ fn missed_limit<'a>(
     metric: &MetricResult,
     absent: &Ordered<String>,
 ) -> MissedLimit<'a> {
-    let (value, words) = match metric.value {
-        Some(value) => {
-            let digits = metric.digits(value);
-            let text = format!("{:.digits$}", Quantity::new(value, &metric.unit));
-            (Some(text), bound(name, metric, value))
-        }
-        None => {
-            let why = absent.get(name).map_or("it is not measured here", String::as_str);
-            (None, format!("could not be measured: {why}"))
-        }
+    let (value, words) = if let Some(value) = metric.value {
+        let digits = metric.digits(value);
+        (Some(format!("{:.digits$}", Quantity::new(value, &metric.unit))), bound(name, metric, value))
+    } else {
+        let why = absent.get(name).map_or("it is not measured here", String::as_str);
+        (None, format!("could not be measured: {why}"))
     };
     MissedLimit { of_move, name, value, words, line: metric.line }
 }

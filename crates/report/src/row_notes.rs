@@ -16,14 +16,20 @@ pub(crate) fn row_notes(run: &RunResult, indent: usize, style: Style) -> String 
     let mut notes = Notes { text: String::new(), indent, style };
     if run.verdict == Outcome::Failed {
         notes.missed_limits(run);
-        other_failures(run).iter().for_each(|failure| notes.wrapped(failure, None));
+        for failure in other_failures(run) {
+            notes.wrapped(&failure, None);
+        }
     } else {
         notes.a_handful(run.reasons.clone(), None);
     }
-    lifted(run).iter().for_each(|words| notes.wrapped(words, Some(Ink::Warning)));
+    for words in lifted(run) {
+        notes.wrapped(&words, Some(Ink::Warning));
+    }
     notes.a_handful(remarkable(run), Some(Ink::Warning));
     if !run.verdict.is_whole() {
-        last_words(run, style.width.saturating_sub(indent)).iter().for_each(|said| notes.line(said));
+        for said in last_words(run, style.width.saturating_sub(indent)) {
+            notes.line(&said);
+        }
     }
     notes.text
 }
@@ -61,7 +67,9 @@ impl Notes {
             all.truncate(MOST);
             all.push(format!("and {more} more: see `results.json`"));
         }
-        all.iter().for_each(|text| self.wrapped(text, ink));
+        for text in &all {
+            self.wrapped(text, ink);
+        }
     }
 
     /// Limits in columns, those of a move below its name.

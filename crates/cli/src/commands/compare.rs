@@ -151,7 +151,8 @@ fn listed(of: &str, all: &[Difference]) -> String {
         value.as_ref().map_or_else(|| "nothing".to_owned(), |value| elided(&printable(value), LONGEST))
     };
     let shown = &all[..all.len().min(MOST)];
-    let key = shown.iter().map(|difference| difference.key.chars().count()).max().unwrap_or(0);
+    let keys = shown.iter().map(|difference| difference.key.chars().count());
+    let key = keys.filter(|length| *length <= LONGEST).max().unwrap_or(0);
     let lines = shown.iter().map(|difference| {
         let values = format!("{} against {}", value(&difference.one), value(&difference.other));
         let line = format!("\n  {:key$}  {values}", difference.key);

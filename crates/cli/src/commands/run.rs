@@ -60,7 +60,9 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
     }
     // What could not be written does not keep the verdicts from being said.
     print(&text_of(&results, args, &out, removed))?;
-    troubles.iter().for_each(|trouble| say(&format!("servobench: {trouble}\n")));
+    for trouble in troubles {
+        say(&format!("servobench: {trouble}\n"));
+    }
     Ok(exit)
 }
 
