@@ -187,7 +187,9 @@ fn the_screen_of_a_motor_has_its_voltage_and_its_loops() {
     assert_eq!(code(&output), 0);
     let out = String::from_utf8(output.stdout).unwrap();
     assert!(out.lines().count() <= 24 && out.lines().all(|line| line.chars().count() <= 80), "{out}");
-    insta::assert_snapshot!("check_feed_axis", out);
+    // What the last line says depends on the engines of the build.
+    let (screen, _) = out.split_once("1 scenario is valid").unwrap();
+    insta::assert_snapshot!("check_feed_axis", screen);
 }
 
 #[test]

@@ -3,7 +3,9 @@ use super::{STEP, efforts, free_omega, held_omega, motion, mujoco, order, setup,
 use nalgebra::DMatrix;
 use servobench_base::Setpoint;
 use servobench_engine_mujoco::Mujoco;
-use servobench_plant::{Body, BodyState, Chain, Coordinate, Drive, DryFriction, Engine as _, Input, Link, Mechanics};
+use servobench_plant::{
+    Body, BodyState, Chain, Coordinate, Distortion, Drive, DryFriction, Engine as _, Input, Integrator, Link, Mechanics,
+};
 use std::f64::consts::TAU;
 
 /// Frequency (Hz) of `signal` from its upward zero crossings over `count` ticks.

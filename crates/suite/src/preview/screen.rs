@@ -26,7 +26,9 @@ impl Preview {
             None => screen.line("modes", &["known to the file of the mechanics only; a run shows them".to_owned()]),
         }
         for engine in &self.engines {
-            screen.line(engine.engine.as_str(), &[steps(engine)]);
+            if let Some(mode) = engine.mode {
+                screen.line(engine.engine.as_str(), &[steps(engine, mode)]);
+            }
         }
         let loops: Vec<_> = self.loops.iter().map(bandwidth).collect();
         screen.line("loops", &loops);
@@ -204,8 +206,7 @@ fn damping(ratio: f64) -> String {
     if ratio < 1e-9 { "0".into() } else { Quantity::new(ratio, "").to_string() }
 }
 
-fn steps(engine: &EngineSteps) -> String {
-    let Some(mode) = engine.mode else { return "no mode to integrate".into() };
+fn steps(engine: &EngineSteps, mode: Mode) -> String {
     let steps = format!("{} ticks to a period of {}", rounded(engine.steps), Quantity::new(mode.omega / TAU, "Hz"));
     match (engine.engine, engine.distortion) {
         (EngineName::Exact | EngineName::Fmu, _) => format!("{steps}, no error of its own"),
