@@ -12,6 +12,7 @@ const PEAK_CURRENT: &str = "Apk";
 /// Effective value of a phase current.
 const RMS_CURRENT: &str = "Arms";
 const EFFORT: &str = "effort.motor";
+const EFFORT_REFERENCE: &str = "effort.reference";
 
 /// Notes current, voltage and torque over `rows`.
 pub(crate) fn note(set: &mut MetricSet, recording: &Recording, rows: &Range<usize>) {
@@ -34,6 +35,8 @@ pub(crate) fn note(set: &mut MetricSet, recording: &Recording, rows: &Range<usiz
     let peak = |all: &[f64]| largest(all.iter().map(|effort| effort.abs()), PART);
     let rms = |all: &[f64]| root_mean(all.iter().map(|effort| effort * effort), PART);
     set.note(Name::TorquePeak, unit(recording, EFFORT), effort.clone().and_then(peak));
+    let asked = channel(recording, EFFORT_REFERENCE).map(|all| &all[rows.clone()]);
+    set.note(Name::TorqueReferencePeak, unit(recording, EFFORT_REFERENCE), asked.and_then(peak));
     set.note(Name::TorqueRms, unit(recording, EFFORT), effort.and_then(rms));
     power::note(set, recording, rows);
 }
@@ -72,6 +75,7 @@ mod tests {
             .channel("voltage.d", "V", |_| 3.0)
             .channel("voltage.q", "V", |t| if t < 0.5 { 4.0 } else { 0.0 })
             .channel("saturation.voltage", "", |t| if t < 0.1 { 0.25 } else { 0.0 })
+            .channel("effort.reference", "N m", |t| if t < 0.3 { -1.75 } else { 1.5 })
             .channel("effort.motor", "N m", |t| -2.0 * (2.0 * PI * 3.0 * t).sin())
             .finish();
         let mut set = MetricSet::default();
@@ -88,6 +92,7 @@ mod tests {
             (Name::CurrentRms, 3.0 / 2_f64.sqrt(), "Arms"),
             (Name::VoltagePeak, 5.0, "V"),
             (Name::TorqueRms, 2_f64.sqrt(), "N m"),
+            (Name::TorqueReferencePeak, 1.75, "N m"),
         ] {
             let metric = set.get(name).unwrap();
             assert!((metric.value - value).abs() < 1e-12 && metric.unit == unit, "{name}: {metric:?}");

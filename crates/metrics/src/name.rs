@@ -61,6 +61,7 @@ names! {
     VoltageSaturationTime "voltage_saturation_time" "time at the voltage limit",
     EffortSaturationTime "effort_saturation_time" "time at the effort limit",
     TorquePeak "torque_peak" "largest torque or force of the motor",
+    TorqueReferencePeak "torque_reference_peak" "largest torque or force that the drive asks for",
     TorqueRms "torque_rms" "RMS torque or force of the motor over the recording",
     ElectricalPowerPeak "electrical_power_peak" "largest electrical power of the motor, taken or given back",
     ShaftPowerPeak "shaft_power_peak" "largest power of the motor on its shaft, driving or braking",

@@ -32,7 +32,7 @@ const PURE: Kind = Plain(&RATIO);
 const DAMPING: &str = "residual_vibration_damping";
 
 /// Names and order are those of the crate `metrics`; a test holds them together.
-const METRICS: [Metric; 34] = [
+const METRICS: [Metric; 35] = [
     metric("move_time", SECONDS, "1.35 s", "duration of the longest set-point profile"),
     metric("settling_time", SECONDS, "50 ms", "last exit of the load from the window after the end of the profile"),
     metric("move_and_settling_time", SECONDS, "1.4 s", "longest profile with its settling time"),
@@ -72,6 +72,7 @@ const METRICS: [Metric; 34] = [
     metric("voltage_saturation_time", SECONDS, "0 s", "time at the voltage limit"),
     metric("effort_saturation_time", SECONDS, "0 s", "time at the effort limit"),
     metric("torque_peak", InMotor(&EFFORT), "8 Nm", "largest torque or force of the motor"),
+    metric("torque_reference_peak", InMotor(&EFFORT), "8 Nm", "largest torque or force that the drive asks for"),
     metric("torque_rms", InMotor(&EFFORT), "2 Nm", "RMS torque or force of the motor over the recording"),
     metric(
         "electrical_power_peak",

@@ -24,6 +24,7 @@ mod program;
 mod requirements;
 mod rockwell;
 mod time;
+mod torque_limit;
 mod whole;
 
 use crate::diagnostic::Report;
@@ -59,6 +60,7 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
     let interpolation = filter::interpolation(file, base_rate, report);
     if let Some(actuator) = &actuator {
         bandwidth::check(file, actuator, report);
+        torque_limit::check(file, actuator, report);
     }
     let duration = run.and_then(|run| duration(run, report));
     time::check(file, program.as_deref(), report);

@@ -1,0 +1,37 @@
+//! Limits of `torque_peak` that the drive's own limit cannot keep.
+//!
+//! `max_torque` bounds what the velocity loop asks for. What the motor gives follows through the current loop, whose step
+//! response overshoots by some per cent (its voltage goes out a period late), so a torque that saturates exceeds `max_torque`.
+use crate::diagnostic::Report;
+use crate::field::Slot;
+use crate::file::File;
+use crate::limit_table::LimitTable;
+use crate::scenario::{Actuator, Motion};
+
+/// How far above the drive's limit a limit of the motor's torque is still in doubt.
+const OVERSHOOT: f64 = 1.05;
+/// Equal values may differ by a rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Doubts limits of `torque_peak` from the drive's own limit to the overshoot of a current loop above it.
+pub(super) fn check(file: &File, actuator: &Actuator, report: &mut Report) {
+    let (Actuator::Pmsm { drive, .. }, Some(given), Slot::Absent) = (actuator, file.drive.given(), &file.fmu) else {
+        return;
+    };
+    let key = if report.motor == Some(Motion::Linear) { "max_force" } else { "max_torque" };
+    let slot = if key == "max_force" { &given.max_force } else { &given.max_torque };
+    if slot.given().is_none() {
+        return;
+    }
+    let doubtful = drive.max_effort * (1.0 - ROUNDING)..=drive.max_effort * OVERSHOOT;
+    let steps = file.program.given().map_or(&[][..], |program| &program.0);
+    let tables = steps.iter().map(|step| &step.value.limits).chain([&file.limits]);
+    for limit in tables.filter_map(Slot::given).flat_map(|LimitTable(limits)| limits) {
+        if limit.value.metric == "torque_peak" && limit.value.max.is_some_and(|max| doubtful.contains(&max)) {
+            let message = format!("a torque at `drive.{key}` exceeds this limit: the current loop overshoots");
+            let help = "`torque_peak` is what the motor gives; limit `torque_reference_peak`, what the drive asks for, or leave \
+                        5 % and more above";
+            report.warning(limit.span, message, help);
+        }
+    }
+}
