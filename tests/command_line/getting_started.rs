@@ -82,8 +82,13 @@ fn typed(command: &str, folder: &std::path::Path) -> String {
     let mut words = command.split_whitespace();
     assert_eq!(words.next(), Some("servobench"), "{command}");
     let program = env!("CARGO_BIN_EXE_servobench");
-    let output: Output =
-        Command::new(program).args(words).current_dir(folder).env("COLUMNS", "80").env_remove("NO_COLOR").output().unwrap();
+    let output: Output = Command::new(program)
+        .args(words)
+        .current_dir(folder)
+        .env("COLUMNS", "80")
+        .env_remove("NO_COLOR")
+        .output()
+        .unwrap();
     let mut text = said(&output).replace(program, "servobench");
     match output.status.code() {
         Some(0) => {}
@@ -117,5 +122,8 @@ fn each_command_prints_what_the_page_says() {
     if std::env::var_os("SERVOBENCH_WRITE_DOCS").is_some() {
         fs::write(&path, &found).unwrap();
     }
-    assert!(found == page, "{PAGE} is not what its commands print; write it anew as the head of this test says:\n{found}");
+    assert!(
+        found == page,
+        "{PAGE} is not what its commands print; write it anew as the head of this test says:\n{found}"
+    );
 }

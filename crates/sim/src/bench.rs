@@ -162,8 +162,17 @@ impl Bench {
             switches: plant::switches(&scenario.axis.switches)?,
         };
         let (watch, joints) = (LimitWatch::default(), JointWatch::default());
-        let recorded =
-            Recorded { closed_loop, wanted, selection, recorder, record_every, ticks_to_row: 0, watch, joints, tick: 0 };
+        let recorded = Recorded {
+            closed_loop,
+            wanted,
+            selection,
+            recorder,
+            record_every,
+            ticks_to_row: 0,
+            watch,
+            joints,
+            tick: 0,
+        };
         let axis = if scenario.fmus.is_empty() {
             Axis::Alone(Box::new(recorded))
         } else {

@@ -22,8 +22,8 @@ pub use job::{Job, Source, jobs};
 pub use limits::channel_limits;
 pub use panicked::Panicked;
 pub use pool::{AtATime, map_in_parallel};
-pub use preview::{LoopStability, 
-    Cost, Delay, Demand, Doubt, EffortDemand, EngineSteps, Inertias, LoopBandwidth, Modes, PlannedProgram, Preview,
-    VoltageDemand, preview,
+pub use preview::{
+    Cost, Delay, Demand, Doubt, EffortDemand, EngineSteps, Inertias, LoopBandwidth, LoopStability, Modes,
+    PlannedProgram, Preview, VoltageDemand, preview,
 };
 pub use worker::{WorkerCommand, WorkerError};

@@ -118,13 +118,15 @@ fn one(
         output::write_recording(job, recording, folder, rrd.then_some(shown))
     };
     let result = match execute(job, engines, worker, &mut progress.of_run(&job.id)) {
-        Ok(Run { recording, metrics, verdict }) => match write(&recording, output::shown(&recording, &metrics, &verdict)) {
-            Ok(written) => RunResult::judged(output::identity(job, written), &recording, &metrics, &verdict),
-            Err((error, written)) => {
-                let (run, until_then) = (output::identity(job, written), Some((&recording, &metrics)));
-                RunResult::error(run, until_then, vec![error.to_string()])
+        Ok(Run { recording, metrics, verdict }) => {
+            match write(&recording, output::shown(&recording, &metrics, &verdict)) {
+                Ok(written) => RunResult::judged(output::identity(job, written), &recording, &metrics, &verdict),
+                Err((error, written)) => {
+                    let (run, until_then) = (output::identity(job, written), Some((&recording, &metrics)));
+                    RunResult::error(run, until_then, vec![error.to_string()])
+                }
             }
-        },
+        }
         Err(broken) if of_run_error(&broken.error) == Exit::Input => {
             RunResult::invalid(output::identity(job, Written::default()), vec![broken.error.to_string()])
         }

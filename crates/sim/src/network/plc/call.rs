@@ -225,7 +225,9 @@ impl Call {
         let risen = |name: &str| known.rises[own].1.iter().any(|(output, when)| *output == name && when.is_some());
         let aim = self.block.outputs().iter().find(|name| AIMS.contains(name));
         match aim {
-            Some(aim) if !risen(aim) && !risen("CommandAborted") => CallFate::Unfinished(format!("its `{aim}` did not become TRUE")),
+            Some(aim) if !risen(aim) && !risen("CommandAborted") => {
+                CallFate::Unfinished(format!("its `{aim}` did not become TRUE"))
+            }
             _ => CallFate::Executed,
         }
     }
