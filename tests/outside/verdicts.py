@@ -109,7 +109,10 @@ def run(servobench: Path, folder: Path, cases: dict[str, Case]) -> dict[str, dic
     out = folder / "out"
     jobs = ["--jobs", os.environ["SERVOBENCH_JOBS"]] if "SERVOBENCH_JOBS" in os.environ else []
     command = [servobench, "run", folder, "--quiet", "--out", out, *jobs]
-    subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
+    said = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
+    if not (out / "results.json").exists():
+        mistakes = [line for line in said.stderr.splitlines() if "×" in line or "mistake" in line]
+        sys.exit("\n".join([f"no results of {folder}, exit code {said.returncode}:", *(mistakes or [said.stderr])]))
     results = json.loads((out / "results.json").read_text())["scenarios"]
     shutil.rmtree(out)
     return {Path(one["file"]).stem: one for one in results}
@@ -123,7 +126,7 @@ def main() -> int:
     print(f"seed {SEED}, {size} scenarios of each class")
     head = ("class", "good", "bad", "left out", "bad passes", "good fails", "wrong reason", "not run", "drawn in", "run in")
     print("  ".join(head))
-    total, lines = 0, []
+    total, lines, kinds = 0, [], {}
     for name in wanted:
         begun = time.monotonic()
         cases, left_out = draw(name, size)
@@ -147,10 +150,13 @@ def main() -> int:
             if not list(folder.iterdir()):
                 folder.rmdir()
         bad = sum(case.is_bad for case in cases)
+        kinds[name] = Counter(what for case in cases for what in case.breaks)
         numbers = (size - bad, bad, left_out, *(counts[what] for what in head[4:7]), counts["not run"] + counts["no result"])
         times = (f"{drawn - begun:.1f} s", f"{time.monotonic() - drawn:.1f} s")
         print("  ".join(f"{value:>{len(title)}}" for title, value in zip(head, (name, *numbers, *times))), flush=True)
         total += sum(counts.values())
+    for name, counts in kinds.items():
+        print(f"{name}: bad by {', '.join(f'{what} ({times})' for what, times in counts.most_common())}")
     for line in lines:
         print(line)
     if total:

@@ -25,6 +25,10 @@ RATES = [
 ]
 
 
+FINE = 1e-13
+"""An increment (m or rad) that is not seen beside what the loops do."""
+
+
 @dataclass(frozen=True)
 class Units:
     """Units of a kind of axis."""
@@ -94,11 +98,10 @@ class Axis:
 
     def motor(self) -> Tree:
         loop, u = self.loop, self.units
+        unit = "m" if u.effort == "N" else "rad"
+        encoder: Tree = {} if loop.increment is None else {"encoder": {"step": quantity(loop.increment, unit)}}
         if loop.pmsm is None:
-            motor: Tree = {"kind": "ideal-source"}
-            if loop.increment is not None:
-                motor["encoder"] = {"step": quantity(loop.increment, "m" if u.effort == "N" and u.motion == "linear" else "rad")}
-            return motor
+            return {"kind": "ideal-source"} | encoder
         p = loop.pmsm
         return {
             "kind": "pmsm",
@@ -108,7 +111,7 @@ class Axis:
             "flux_linkage": quantity(p.flux, "V s"),
             "inertia": quantity(loop.inertia, "kg m2"),
             "max_current": "100 Apk",
-        }
+        } | encoder
 
     def drive(self) -> Tree:
         loop, u = self.loop, self.units
@@ -130,6 +133,8 @@ class Axis:
             drive["dc_link"] = "560 V"
         if loop.limit < inf:
             drive[u.limit] = quantity(loop.limit, u.effort)
+        if loop.from_load:
+            drive |= {"position_feedback": "load", "load_encoder": {"step": quantity(FINE, u.length)}}
         if loop.velocity_share:
             drive["feedforward"] = {"velocity": loop.velocity_share, "delay": "0 s"}
         return drive

@@ -6,7 +6,7 @@ one has one call that is not executed, does not come to what it is for, or ends 
 
 from collections.abc import Callable
 
-from .case import Case
+from .case import NOTHING, Case, quantity
 from .machine import RANGE, Program, draw_machine
 from draws import Random
 
@@ -34,13 +34,16 @@ def relative(p: Program) -> None:
 
 def taken_over(p: Program) -> str:
     """A move that another one takes over on its way; returns the name of the first."""
+    is_first = p.at == 0.0 and p.time < 0.1
     if p.at is None:
         p.move()
-    origin = p.at
-    target = p.target(0.15) if 0.1 < abs(origin - 0.2) else origin + 0.3
-    name = p.call("MC_MoveAbsolute", p.then(), position=f"{target} m")
-    way = "above" if target > origin else "below"
-    other = p.call("MC_MoveAbsolute", {way: f"{origin + 0.5 * (target - origin)} m"}, position=f"{p.target()} m")
+    way = p.far() - p.at
+    name = p.call("MC_MoveAbsolute", p.then(), position=f"{p.at + way} m")
+    share = p.random.uniform(0.2, 0.8)
+    # A position that was passed before would start it at once.
+    where = {"above" if way > 0 else "below": f"{share * way} m"}
+    when = {"after": f"{name}.Active", "delay": quantity(round(share * p.machine.bounds.duration(way), 3), "s")}
+    other = p.call("MC_MoveAbsolute", where if is_first else when, position=f"{p.target()} m")
     p.at = None
     p.went(None, other)
     p.time += 0.5
@@ -89,7 +92,7 @@ def in_a_row(p: Program) -> None:
 def passing(p: Program) -> None:
     if p.at is None:
         p.move()
-    target = p.target(0.15) if 0.1 < abs(p.at - 0.2) else p.at + 0.3
+    target = p.far()
     speed = p.random.uniform(0.1, 0.9) * p.machine.bounds.v * 0.5
     name = p.call("MC_MoveContinuousAbsolute", p.then(), position=f"{target} m", end_velocity=f"{speed} m/s")
     p.went(None, p.call("MC_Halt", f"{name}.InEndVelocity"))
@@ -148,8 +151,19 @@ def refused_as_expected(p: Program) -> None:
     p.expect(*refused(p))
 
 
+def at_rest(p: Program) -> None:
+    p.after = f"{p.call('MC_Halt', p.then())}.Done"
+
+
+def shifted(p: Program) -> None:
+    """Another number for the place where the axis is; nothing moves."""
+    by = round(p.random.uniform(-0.2, 0.2), 3)
+    p.after = f"{p.call('MC_SetPosition', p.then(), position=f'{by} m', relative=True)}.Done"
+    p.at = None if p.at is None else p.at + by
+
+
 GOOD = (absolute, absolute, slower, relative, aborted, aborted_and_awaited, halted, stopped, in_a_row, passing)
-GOOD += (on_error_of_none, on_abort_of_none, read, override, superimposed, refused_as_expected)
+GOOD += (on_error_of_none, on_abort_of_none, read, override, superimposed, refused_as_expected, at_rest, shifted)
 
 Bad = tuple[frozenset[str], frozenset[str]]
 """What a bad piece breaks, and what it may break besides."""
@@ -157,7 +171,7 @@ Bad = tuple[frozenset[str], frozenset[str]]
 
 def refused_unexpected(p: Program) -> Bad:
     refused(p)
-    return EXECUTED, frozenset()
+    return EXECUTED, NOTHING
 
 
 def refused_otherwise(p: Program) -> Bad:
@@ -170,32 +184,53 @@ def refused_otherwise(p: Program) -> Bad:
             p.expect("c0", code)
         case 2:
             p.expect(name, code, end=0.001)
-    return EXECUTED | EXPECTED, frozenset()
+    return EXECUTED | EXPECTED, NOTHING
+
+
+def while_stopping(p: Program) -> Bad:
+    """The axis takes no command while MC_Stop holds it."""
+    name = p.call("MC_MoveRelative", p.then(), distance=f"{p.random.sign() * 0.3} m")
+    stop = p.call("MC_Stop", {"after": f"{name}.Active", "delay": "60 ms"})
+    refused = p.call("MC_MoveRelative", {"after": f"{stop}.Busy", "delay": "4 ms"}, distance="0.1 m")
+    p.went(None, p.call("MC_ReadStatus", {"after": f"{stop}.Done", "delay": "30 ms"}), "Valid")
+    if p.random.random() < 0.3:
+        p.expect(refused, "2002h")
+        return EXECUTED | EXPECTED, NOTHING
+    return EXECUTED, NOTHING
+
+
+def too_fast_together(p: Program) -> Bad:
+    """A superimposed motion on one that uses all of the velocity."""
+    name = p.call("MC_MoveRelative", p.then(), distance=f"{p.random.sign() * 0.5} m")
+    on_top = {"velocity_difference": f"{p.random.uniform(0.3, 1) * p.machine.bounds.v} m/s", "distance": "0.05 m"}
+    p.call("MC_MoveSuperimposed", {"after": f"{name}.Active", "delay": "20 ms"}, **on_top)
+    p.went(None, name)
+    return EXECUTED, NOTHING
 
 
 def done_of_aborted(p: Program) -> Bad:
     p.call("MC_MoveRelative", f"{taken_over(p)}.Done", distance="0.1 m")
-    return EXECUTED, frozenset()
+    return EXECUTED, NOTHING
 
 
 def never_there(p: Program) -> Bad:
     """A position that is never reached, and in the end a time-out."""
     where = p.random.choice(({"above": "50 m"}, {"below": "-50 m"}))
-    limited = {"timeout": f"{round(0.3 + p.time + 0.2, 3)} s"} if p.random.random() < 0.5 else {}
+    limited = {"timeout": f"{round(p.random.uniform(0.1, 0.3), 3)} s"} if p.random.random() < 0.5 else {}
     p.call("MC_Halt", where, **limited)
-    return EXECUTED, ARRIVES if limited else frozenset()
+    return EXECUTED, ARRIVES | EXPECTED if limited else NOTHING
 
 
 def before_power(p: Program) -> Bad:
     p.call("MC_MoveAbsolute", position=f"{p.target()} m")
-    return EXECUTED, frozenset()
+    return EXECUTED, NOTHING
 
 
 def not_homed(p: Program) -> Bad:
     """No absolute move without a reference; nothing comes after it."""
     p.machine.tree["plc"] = {"homing_required": True}
     p.move()
-    return EXECUTED, frozenset()
+    return EXECUTED, NOTHING
 
 
 def too_short(p: Program) -> Bad:
@@ -206,6 +241,8 @@ def too_short(p: Program) -> Bad:
 BAD: tuple[Callable[[Program], Bad], ...] = (
     refused_unexpected,
     refused_otherwise,
+    while_stopping,
+    too_fast_together,
     done_of_aborted,
     never_there,
     before_power,
@@ -235,14 +272,14 @@ def draw(random: Random) -> Case:
         if homing < 0.3:
             return draw(random)
         pieces = [piece for piece in pieces if piece in (read, relative, halted, not_homed)]
-    breaks, may_break = frozenset(), frozenset()
+    breaks, may_break = NOTHING, NOTHING
     for piece in pieces:
         if piece is bad:
             breaks, may_break = piece(p)
         else:
             piece(p)
     if bad is not_homed:
-        may_break = frozenset()
+        may_break = NOTHING
     return Case(p.tree(), breaks, may_break, note=", ".join(piece.__name__ for piece in pieces))
 
 

@@ -2,9 +2,12 @@
 
 from dataclasses import dataclass
 
+import numpy
+
 from draws import Random
 
-from .case import Case, quantity
+from .case import NOTHING, Case, quantity
+from .course import course
 from .machine import Program, draw_machine
 
 LATE = 0.1
@@ -22,22 +25,17 @@ class Fault:
     """The call that ends in its error, if one is under way."""
 
 
-NONE = frozenset()
+NONE = NOTHING
 NO_FAULT = frozenset({"no_fault"})
 EXECUTED = frozenset({"executed"})
 EXPECTED = frozenset({"expected"})
 
 
-def passes(p: Program, origin: float, target: float, position: float) -> float:
-    """When the set-point of a move passes a position (s from its start)."""
-    from .course import course
-    import numpy
-
-    way = course([(0.0, target - origin)], p.machine.bounds)
+def passes(p: Program, target: float, position: float) -> float:
+    """When the set-point of a move from zero passes a position (s from its start)."""
+    way = course([(0.0, target)], p.machine.bounds)
     t = numpy.linspace(0, way.moves[0].end, 2000)
-    x = origin + way.at(t)[0]
-    beyond = (x - position) * (1 if target > origin else -1) >= 0
-    return float(t[beyond][0])
+    return float(t[numpy.abs(way.at(t)[0]) >= abs(position)][0])
 
 
 def switch(p: Program) -> Fault | None:
@@ -52,9 +50,12 @@ def switch(p: Program) -> Fault | None:
     name = p.call("MC_MoveAbsolute", p.after, position=f"{target} m")
     p.went(target, name)
     if not is_hit:
-        back(p)
+        if p.random.random() < 0.5:
+            # Another one, on this side of the switch.
+            following = p.random.uniform(0, 0.8) * target
+            p.went(following, p.call("MC_MoveAbsolute", p.then(), position=f"{following} m"))
         return None
-    return Fault("link", f"{end} limit switch", begun + passes(p, 0.0, target, position), name)
+    return Fault("link", f"{end} limit switch", begun + passes(p, target, position), name)
 
 
 def back(p: Program) -> None:
@@ -121,7 +122,22 @@ def outside(p: Program) -> Fault | None:
     return Fault("link", "external fault", start, name)
 
 
-KINDS = (switch, switch, window, window, lost, outside)
+def silent(p: Program) -> Fault | None:
+    """A drive that is silent during a move, for half as long as the master waits or for longer."""
+    p.power()
+    begun = p.time + 0.02
+    target = p.random.sign() * p.random.uniform(0.3, 0.5)
+    name = p.call("MC_MoveAbsolute", p.after, position=f"{target} m")
+    whole = p.machine.bounds.duration(target)
+    p.went(target, name)
+    start, patience = round(begun + p.random.uniform(0.1, 0.3) * whole, 3), round(0.2 * whole, 3)
+    lasts = p.random.choice((0.5, p.random.uniform(1.3, 2))) * patience
+    p.machine.tree["bus"] |= {"drive_timeout": f"{patience} s"}
+    p.machine.tree["bus"]["fault"] = [{"kind": "drive-silent", "start": f"{start} s", "duration": quantity(lasts, "s")}]
+    return Fault("link", "drive time-out", start + patience, name) if lasts > patience else None
+
+
+KINDS = (switch, switch, window, window, lost, outside, silent)
 
 
 def draw(random: Random) -> Case | None:

@@ -9,7 +9,7 @@ from math import exp, log
 from draws import Random
 
 from .arrival import arrives, program, window_of
-from .axes import Axis, draw_axis
+from .axes import FINE, Axis, draw_axis
 from .case import Case, quantity
 from .loop import Loop, run
 
@@ -42,6 +42,9 @@ def boundary(loop: Loop, knob: str) -> float | None:
 def draw(random: Random) -> Case | None:
     """A loop around its boundary; nothing where it has none."""
     axis = draw_axis(random, pmsm=random.random() < 0.5, sane=False)
+    by_load = axis.loop.load is not None and random.random() < 0.3
+    differences = FINE if random.random() < 0.3 else None
+    axis = Axis(replace(axis.loop, from_load=by_load, increment=differences), axis.units)
     knob = random.choice(("gain", "gain", "position_gain"))
     factor = boundary(axis.loop, knob)
     if factor is None:

@@ -76,7 +76,10 @@ class Loop:
     limit: float = inf
     """Of the effort."""
     increment: float | None = None
-    """Of the motor's encoder, in its coordinate; without one it is ideal and gives the velocity too."""
+    """Of the motor's encoder, in its coordinate; without one it is ideal and gives the velocity too. The linear loop has its
+    differences, but not its steps."""
+    from_load: bool = False
+    """Whether the position of the load closes the position loop."""
 
     def mechanics(self) -> tuple[numpy.ndarray, numpy.ndarray]:
         """From tick to tick: positions and velocities, and the effect of a force on the motor's side (axis coordinate)."""
@@ -86,17 +89,19 @@ class Loop:
         """The linear loop over its common period, that of the position loop, from one turn of it to the next."""
         phi, gamma = self.mechanics()
         n = len(gamma)
-        # Mechanics; filtered velocity, integrator, velocity command, effort; then by axis q and d: current, integrator,
-        # computed voltage, voltage that goes out; last speed.
-        z = numpy.eye(n + 4 + (9 if self.pmsm else 0))
-        filtered, integral, command, effort = n, n + 1, n + 2, n + 3
+        # Mechanics; filtered velocity, integrator, velocity command, effort, last position; then by axis q and d: current,
+        # integrator, computed voltage, voltage that goes out; last speed.
+        z = numpy.eye(n + 5 + (9 if self.pmsm else 0))
+        filtered, integral, command, effort, last = range(n, n + 5)
         motor = n // 2
         h, hv = 1 / self.base, self.velocity_every / self.base
         for k in range(self.position_every):
             if k == 0:
-                z[command] = -self.position_gain * z[0]
+                z[command] = -self.position_gain * z[1 if self.from_load else 0]
             if k % self.velocity_every == 0:
-                z[filtered] += hv / (hv + self.filter_time) * (z[motor] / self.r - z[filtered])
+                measured = z[motor] / self.r if self.increment is None else (z[0] / self.r - z[last]) / hv
+                z[filtered] += hv / (hv + self.filter_time) * (measured - z[filtered])
+                z[last] = z[0] / self.r
                 error = z[command] / self.r - z[filtered]
                 z[effort] = self.gain * error + z[integral]
                 if self.integral_time is not None:
@@ -109,12 +114,12 @@ class Loop:
 
     def currents(self, p: Pmsm, z: numpy.ndarray, k: int, h: float, n: int, motor: int) -> numpy.ndarray:
         """The current loop and the motor over a tick, about standstill; returns the mean torque."""
-        last = n + 12
+        last = n + 13
         speed = z[motor] / self.r
         hc = p.every * h
         gain = p.bandwidth * p.inductance
         for axis in range(2):
-            current, integral, pending, out = (n + 4 + 4 * axis + i for i in range(4))
+            current, integral, pending, out = (n + 5 + 4 * axis + i for i in range(4))
             if k % p.every == 0:
                 z[out] = z[pending]
                 wanted = z[n + 3] / p.constant if axis == 0 else 0.0
@@ -123,13 +128,13 @@ class Loop:
                 z[integral] = z[integral] + hc * p.bandwidth * p.resistance * error
         mean_speed = 1.5 * speed - 0.5 * z[last]
         z[last] = speed
-        before = z[n + 4].copy()
+        before = z[n + 5].copy()
         for axis in range(2):
-            current, out = n + 4 + 4 * axis, n + 7 + 4 * axis
+            current, out = n + 5 + 4 * axis, n + 8 + 4 * axis
             emf = p.ratio * p.flux * mean_speed if axis == 0 else 0.0
             slope = h / p.inductance * (z[out] - p.resistance * z[current] - emf)
             z[current] = z[current] + slope / (1 + h * p.resistance / (2 * p.inductance))
-        return p.constant * (before + z[n + 4]) / 2
+        return p.constant * (before + z[n + 5]) / 2
 
     def radius(self) -> float:
         """Largest magnitude of an eigenvalue over the common period."""
@@ -181,9 +186,10 @@ def run(loop: Loop, course: Course, duration: float, push: tuple[float, float] |
     for k in range(ticks):
         read = x0 / r if step is None else floor(x0 / r / step + 0.5) * step
         if k % loop.position_every == 0:
-            command = loop.position_gain * (xr[k] - r * read) + loop.velocity_share * vr[k]
+            command = loop.position_gain * (xr[k] - (x1 if loop.from_load else r * read)) + loop.velocity_share * vr[k]
         if k % loop.velocity_every == 0:
-            filtered += share * ((v0 / r if step is None else (read - last) / hv) - filtered)
+            measured = v0 / r if step is None else (read - last) / hv
+            filtered += share * (measured - filtered)
             last = read
             error = command / r - filtered
             wanted = kp * error + integral

@@ -97,6 +97,10 @@ class Program:
             if self.at is None or abs(target - self.at) >= least:
                 return target
 
+    def far(self) -> float:
+        """A position that is far from a known one, so that a move has time to be broken off."""
+        return self.at + self.random.sign() * self.random.uniform(0.15, 0.4)
+
     def move(self, **inputs: Any) -> str:
         """A move to a position."""
         target = self.target()

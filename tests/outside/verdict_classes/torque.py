@@ -6,14 +6,16 @@ import numpy
 
 from draws import Random
 
-from .arrival import arrives, program, swings, window_of
+from .arrival import SHARE, arrives, program, swings, window_of
 from .axes import Axis, draw_axis
 from .case import NOTHING, Case, Tree, quantity
 from .course import Course
-from .loop import Loop, run
+from .loop import Loop, Run, run
 
 LONGEST = 2.5
 """No run is longer (s)."""
+WIDTHS = 10
+"""So many widths of the set-point's range positions may be outside of it."""
 
 
 def draw_loop(random: Random) -> Axis | None:
@@ -64,6 +66,15 @@ def draw_moves(random: Random, axis: Axis) -> tuple[Loop, Asked, float] | None:
     return loop, Asked(course, tables, duration, push), share
 
 
+def outside(found: Run) -> float:
+    """How far motor or load go outside the range of the set-point, in widths of it; 0 where nothing is to move."""
+    low, high = float(numpy.min(found.reference)), float(numpy.max(found.reference))
+    if low == high:
+        return 0.0
+    both = numpy.concatenate((found.motor, found.load))
+    return float(max(numpy.max(both) - high, low - numpy.min(both))) / (high - low)
+
+
 def draw(random: Random) -> Case | None:
     """Moves under an effort limit."""
     axis = draw_loop(random)
@@ -80,13 +91,12 @@ def draw(random: Random) -> Case | None:
     missed, near = arrives(found, course, duration, window_of(tree, length), increment)
     swinging, close, often = swings(found, course, 1 if asked.push is None else 2)
     breaks = {name for name, is_broken in (("arrives", missed), ("stable", swinging)) if is_broken}
-    farthest = float(numpy.max(numpy.abs(found.load))) / max(abs(move.target) for move in course.moves)
-    if farthest > 8:
+    farthest = outside(found)
+    if farthest > WIDTHS:
         breaks.add("bounded")
-    # The range of a program is between its largest target and twice that.
-    near |= close or 8 < farthest < 24
+    near |= close or abs(farthest / WIDTHS - 1) < SHARE
     note = f"{share:.3g} of the effort that is needed, {often} swings from limit to limit beyond what is asked for"
-    return lifted(random, tree, frozenset(breaks), near, f"{note}, as far as {farthest:.3g} of the largest target")
+    return lifted(random, tree, frozenset(breaks), near, f"{note}, {farthest:.3g} widths of the set-point's range outside of it")
 
 
 def lifted(random: Random, tree: Tree, breaks: frozenset[str], near: bool, note: str) -> Case:
