@@ -3,7 +3,8 @@
 Five classes: gains around the boundary of stability, torque that is scarce or not, limits on metrics, programs of function
 blocks, and faults. What is bad, and which requirement of docs/requirements.md or which limit it breaks, is known from the
 eigenvalues of a loop and from runs that are computed here (verdict_classes/loop.py), or from how the scenario was put together.
-Nothing is judged within 2 % of a threshold: that is left out, and counted. At least a quarter of each class is good, and a quarter bad.
+Nothing is judged within 2 % of a threshold: that is left out, and counted. At least a quarter of each class is good, and a
+quarter bad.
 
 The program is `SERVOBENCH`, or the one in the folder of cargo's builds (`cargo build --release`).
 Size: 40 scenarios of each class, scaled by `SERVOBENCH_SWEEP`; `SERVOBENCH_SEED` draws others.

@@ -10,6 +10,8 @@ from .case import NOTHING, Case, quantity
 from .course import course
 from .machine import Program, draw_machine
 
+OTHERWISE = ("code", "who", "time")
+"""In what an expectation may be wrong."""
 LATE = 0.1
 """Power-up, bus and braking: so much later than its cause a fault may come (s)."""
 
@@ -21,11 +23,10 @@ class Fault:
     who: str
     name: str
     time: float
-    mover: str | None
-    """The call that ends in its error, if one is under way."""
+    mover: str
+    """The call that is under way and ends in its error."""
 
 
-NONE = NOTHING
 NO_FAULT = frozenset({"no_fault"})
 EXECUTED = frozenset({"executed"})
 EXPECTED = frozenset({"expected"})
@@ -152,8 +153,10 @@ def draw(random: Random) -> Case | None:
         fault = kind(p)
     except Undecided:
         return None
-    breaks = nothing_comes(p) if fault is None else it_comes(p, fault)
-    # What a call waits for does not come behind a fault.
+    if fault is None:
+        breaks = nothing_comes(p)
+    else:
+        breaks = it_comes(p, fault) | (afterwards(p, fault) if kind is not window else NOTHING)
     note = f"{kind.__name__}: {'nothing' if fault is None else f'{fault.name} of {fault.who} at {fault.time:.3f} s'} comes"
     return Case(p.tree(), breaks, note=note)
 
@@ -166,15 +169,18 @@ def nothing_comes(p: Program) -> frozenset[str]:
         codes = [("drive", "8611h"), ("link", "positive limit switch"), ("axis", "ErrorStop"), (p.calls[1]["name"], "4001h")]
         p.expect(*p.random.choice(codes))
         return EXPECTED
-    return NONE
+    return NOTHING
 
 
 def it_comes(p: Program, fault: Fault) -> frozenset[str]:
     """Nobody expects it, or someone does: rightly, or another fault, of another, at another time, or not all of it."""
     around = {"start": max(0.0, fault.time - LATE), "end": fault.time + 2 * LATE}
     anyhow = p.random.choice(({}, around))
-    wanted = p.random.choice(("nothing", "all", "all", "lifted", "lifted", "lifted by half", "half", "axis", "code", "who", "time"))
-    mover = lambda: fault.mover is not None and p.expect(fault.mover, "4001h", **anyhow)
+    wanted = p.random.choice(("nothing", "all", "all", "lifted", "lifted", "lifted by half", "half", "axis", *OTHERWISE))
+
+    def mover() -> None:
+        p.expect(fault.mover, "4001h", **anyhow)
+
     match wanted:
         case "nothing":
             return NO_FAULT | EXECUTED
@@ -183,10 +189,10 @@ def it_comes(p: Program, fault: Fault) -> frozenset[str]:
             if p.random.random() < 0.3:
                 p.expect("axis", "ErrorStop", **anyhow)
             mover()
-            return NONE
+            return NOTHING
         case "lifted":
             p.machine.tree["requirements"] = {"no_fault": False, "executed": False}
-            return NONE
+            return NOTHING
         case "lifted by half":
             name, other = p.random.choice((("no_fault", "executed"), ("executed", "no_fault")))
             p.machine.tree["requirements"] = {name: False}
@@ -214,6 +220,25 @@ def it_comes(p: Program, fault: Fault) -> frozenset[str]:
     return NO_FAULT | EXPECTED
 
 
+def afterwards(p: Program, fault: Fault) -> frozenset[str]:
+    """The axis is reset and moves back, or is asked to move before that, which is refused; or nothing more."""
+    what = p.random.choice(("nothing", "nothing", "back", "back", "too early", "too early as expected"))
+    if what == "nothing":
+        return NOTHING
+    p.time += 1.2 + p.machine.bounds.duration(0.5)
+    error = {"after": f"{fault.mover}.Error"}
+    breaks = NOTHING
+    if what != "back":
+        early = p.call("MC_MoveAbsolute", error | {"delay": "50 ms"}, position="0 m")
+        if what == "too early as expected":
+            p.expect(early, "2001h")
+        elif p.machine.tree.get("requirements", {}).get("executed", True):
+            breaks = EXECUTED
+    reset = p.call("MC_Reset", error | {"delay": "0.5 s"})
+    p.call("MC_MoveAbsolute", {"after": f"{reset}.Done", "delay": "0.2 s"}, position="0 m")
+    return breaks
+
+
 def reversed_switches(random: Random) -> Case:
     """Switches that the link takes for closers, which they are not: both seem to be met from the start."""
     p = Program(draw_machine(random), random)
@@ -225,4 +250,4 @@ def reversed_switches(random: Random) -> Case:
         return Case(p.tree(), NO_FAULT | EXECUTED, note="reversed switches")
     p.expect("link", "positive limit switch")
     p.expect(name, "4001h")
-    return Case(p.tree(), NONE, note="reversed switches, expected")
+    return Case(p.tree(), NOTHING, note="reversed switches, expected")
