@@ -1,14 +1,14 @@
 """The sampled loop, written anew from the documentation: its monodromy matrix, and a run of it with its limits.
 
 At a tick: sample, position loop, velocity loop, current loop, each when it is due and with what the slower one has just said;
-the voltage of the current loop goes out one of its periods later. The currents take a step of the trapezoidal rule, their mean
-torque drives the mechanics, which are integrated exactly. Everything is in the coordinate of the axis but the motor's own
+the voltage of the current loop goes out one of its periods later. The currents are integrated exactly at the mean speed that the
+last two ticks foretell, and their mean torque drives the mechanics, which are integrated exactly too. Everything is in the coordinate of the axis but the motor's own
 velocity, effort and gains; r is axis per motor coordinate.
 """
 
 from dataclasses import dataclass, replace
 from functools import cache
-from math import ceil, floor, inf
+from math import ceil, expm1, floor, inf
 
 import numpy
 from scipy.linalg import expm
@@ -128,13 +128,17 @@ class Loop:
                 z[integral] = z[integral] + hc * p.bandwidth * p.resistance * error
         mean_speed = 1.5 * speed - 0.5 * z[last]
         z[last] = speed
-        before = z[n + 5].copy()
+        # What the current is away from its steady value falls by the time constant L/R.
+        ticks = h * p.resistance / p.inductance
+        fall = -expm1(-ticks)
+        means = []
         for axis in range(2):
             current, out = n + 5 + 4 * axis, n + 8 + 4 * axis
             emf = p.ratio * p.flux * mean_speed if axis == 0 else 0.0
-            slope = h / p.inductance * (z[out] - p.resistance * z[current] - emf)
-            z[current] = z[current] + slope / (1 + h * p.resistance / (2 * p.inductance))
-        return p.constant * (before + z[n + 5]) / 2
+            away = z[current] - (z[out] - emf) / p.resistance
+            means.append(z[current] - away * (1 - fall / ticks))
+            z[current] = z[current] - away * fall
+        return p.constant * means[0]
 
     def radius(self) -> float:
         """Largest magnitude of an eigenvalue over the common period."""
