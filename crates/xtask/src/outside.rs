@@ -34,6 +34,7 @@ const GROUPS: [Group; 2] = [
             "online4_by_linear_program.py",
             "optimal_by_linear_program.py",
             "order3_by_ruckig.py",
+            "verdicts.py",
         ],
     },
     Group { environment: "python-cofmupy", requirements: &["cofmupy.txt"], clients: &["exported_fmus_by_cofmupy.py"] },

@@ -1,0 +1,1 @@
+"""Random scenarios with a verdict of their own, one module for each class."""
