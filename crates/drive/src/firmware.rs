@@ -302,7 +302,7 @@ fn current_loop(p: &current::Params, x: &mut State, sensors: &Sensors, h: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::params::tests::{emps, synchronous};
+    use crate::params::tests::{emps, every, synchronous};
     use crate::velocity::Cut;
 
     const REST: Demand = Demand::position(Setpoint::at_rest(0.0));

@@ -16,6 +16,8 @@ const TERMS: usize = 8;
 const FURTHEST: f64 = 0.405;
 /// The tick itself, a quarter and a sixteenth of it: what a fast rotor takes several of.
 const LEVELS: usize = 3;
+/// From the tick to the finest of them.
+const HALVINGS: i32 = 4;
 
 /// For which 4 and 6 are enough: ½·(1e-16·(2n + 1)!)^(1/2n).
 const NEAR: f64 = 0.0247;
@@ -186,12 +188,11 @@ impl Tables {
         let mut turn = InTurn::from(0.0);
         turn.0[1] = 1.0;
         // The finest level takes the fastest rotor, so its parts are made for that.
-        let halvings = 2 * (LEVELS as i32 - 1);
-        let all = doublings(p, FURTHEST * libm::scalbn(1.0, halvings), h).max(halvings);
-        let finest = (halvings..all).fold(Maps::part(p, turn, h, all), |maps, _| maps.doubled());
+        let all = doublings(p, FURTHEST * libm::scalbn(1.0, HALVINGS), h).max(HALVINGS);
+        let finest = (HALVINGS..all).fold(Maps::part(p, turn, h, all), |maps, _| maps.doubled());
         let quarter = finest.doubled().doubled();
         let whole = quarter.doubled().doubled();
-        Self([whole, quarter, finest].map(|maps| Table::of(&maps)))
+        Self([Table::of(&whole), Table::of(&quarter), Table::of(&finest)])
     }
 
     /// A tick from the current `i` on, if the rotor is slow enough.

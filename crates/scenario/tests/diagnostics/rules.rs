@@ -376,6 +376,39 @@ fn what_is_doubtful_is_a_warning() {
     assert_eq!(warnings(&narrow), ["13:21: `stribeck_velocity` does nothing without `static`"]);
 }
 
+/// `max_torque` bounds what the drive asks for, not what the motor gives: a limit from there to 5 % above is missed whenever
+/// the torque saturates.
+#[test]
+fn a_limit_of_the_torque_at_the_drives_own_is_doubtful() {
+    let said = |limit: &str| {
+        warnings(
+            &AXIS
+                .replace("dc_link = \"320 V\"", "dc_link = \"320 V\"\nmax_torque = \"6 Nm\"")
+                .replace("settling_time = \"50 ms\"", limit),
+        )
+    };
+    let doubt = "a torque at `drive.max_torque` exceeds this limit: the current loop overshoots; `torque_peak` is what the motor \
+                 gives; limit `torque_reference_peak`, what the drive asks for, or leave 5 % and more above";
+    for limit in ["6 Nm", "6.29 Nm"] {
+        let found = said(&format!("torque_peak = \"{limit}\""));
+        assert!(found.len() == 1 && found[0].ends_with(doubt), "{limit}: {found:?}");
+    }
+    for limit in ["torque_peak = \"5.9 Nm\"", "torque_peak = \"6.31 Nm\"", "torque_reference_peak = \"6 Nm\""] {
+        assert_eq!(said(limit), [""; 0], "{limit}");
+    }
+}
+
+/// 13.3 Arms are 18.8 A of amplitude, which is all there is for both axes.
+#[test]
+fn a_current_of_the_d_axis_leaves_some_for_the_other() {
+    let said = |current: &str| {
+        mistakes(&AXIS.replace("bandwidth = \"1 kHz\"", &format!("bandwidth = \"1 kHz\"\nd_reference = \"{current}\"")))
+    };
+    assert_eq!(said("-13.2 Arms"), [""; 0]);
+    let found = said("-13.3 Arms");
+    assert!(found.len() == 1 && found[0].contains("leaves nothing of the current limit, 18.809 A"), "{found:?}");
+}
+
 #[test]
 fn a_file_that_is_not_there_is_an_error_of_its_own() {
     let error = servobench_scenario::load(Path::new("no/such/file.toml")).unwrap_err();
