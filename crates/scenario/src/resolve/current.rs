@@ -62,13 +62,16 @@ fn d_reference(slot: &Slot<f64>, known: &Known<'_>, report: &mut Report) -> Resu
     };
     let Some(Motor::Pmsm { motor, max_current }) = known.motor else { return Ok(at.value) };
     if at.value.abs() >= *max_current {
-        let message =
-            format!("`d_reference` of {} A (peak) leaves nothing of the current limit, {max_current:.5} A", at.value);
+        let message = format!(
+            "`d_reference` of {:.5} A (peak) leaves nothing of the current limit, {max_current:.5} A",
+            at.value
+        );
         report.error(at.span, message, "`motor.max_current` bounds the vector of both axes; give less");
         return Err(Reported);
     }
     if motor.effort_constant_at(at.value) <= 0.0 {
-        let message = format!("at a d-axis current of {} A (peak) the motor has no torque in its direction", at.value);
+        let message =
+            format!("at a d-axis current of {:.5} A (peak) the motor has no torque in its direction", at.value);
         report.error(at.span, message, "ψ + (L_d − L_q)·i_d must be above 0; give less");
         return Err(Reported);
     }

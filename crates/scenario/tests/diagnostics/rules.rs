@@ -406,7 +406,7 @@ fn a_current_of_the_d_axis_leaves_some_for_the_other() {
     };
     assert_eq!(said("-13.2 Arms"), [""; 0]);
     let found = said("-13.3 Arms");
-    assert!(found.len() == 1 && found[0].contains("leaves nothing of the current limit, 18.809 A"), "{found:?}");
+    assert!(found.len() == 1 && found[0].contains("leaves nothing of the current limit, 18.80904 A"), "{found:?}");
 }
 
 #[test]
