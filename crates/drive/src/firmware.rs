@@ -2,7 +2,7 @@
 //!
 //! Order of events at a tick: position loop → velocity loop → current loop. A slower loop's output reaches the faster
 //! one **in the same tick**; in between it is held, but for the velocity that is fed forward: at each cycle of the velocity
-//! loop it is that of the reference's own polynomial there. Only the current loop's voltage waits one period of that loop (the
+//! loop it is that of the reference's own polynomial, at the instant of which the measured velocity is. Only the current loop's voltage waits one period of that loop (the
 //! time its computation takes). It knows the axis by its sensors and its own estimates, nothing else.
 //!
 //! Position and its reference are in the axis coordinate, velocity and effort in the motor's; `transmission` converts.
@@ -263,8 +263,12 @@ fn position_loop(p: &Params, x: &mut State, setpoint: Setpoint, sensors: &Sensor
 fn velocity_loop(p: &Params, x: &mut State, sensors: &Sensors) {
     let h = p.period(p.velocity_every);
     if x.closed == Closed::Position && p.feedforward.interpolate {
-        let since = x.references(p).1.velocity - x.held.motor_reference.velocity;
-        x.held.velocity_reference = x.velocity_command + p.feedforward.velocity * since;
+        // What is measured is as old as a difference and the filter make it: what is fed forward is as old.
+        let age = p.velocity_filter_time + if sensors.motor_velocity.is_some() { 0.0 } else { h / 2.0 };
+        let since = f64::from(x.position_turn.since(p.position_every)) * p.base_rate.period() - age;
+        let now = p.feedforward.motor_reference(x.held.reference.after(since)).velocity;
+        x.held.velocity_reference =
+            x.velocity_command + p.feedforward.velocity * (now - x.held.motor_reference.velocity);
     }
     let last = x.last_position.replace(sensors.motor_position).unwrap_or(sensors.motor_position);
     let measured = sensors.motor_velocity.unwrap_or((sensors.motor_position - last) / h);
@@ -352,20 +356,30 @@ mod tests {
     }
 
     /// Oracle: the set-point itself, under a position loop of 1 kHz and a velocity loop of 8 kHz: the velocity of
-    /// constant jerk is a parabola. Switched off it is the staircase of the position loop.
+    /// constant jerk is a parabola. It is as old as what is measured: half a period of the velocity loop of a difference, and
+    /// the time of the filter. Switched off it is the staircase of the position loop.
     #[test]
     fn the_velocity_that_is_fed_forward_goes_on_between_cycles_of_the_position_loop() {
         let start = Setpoint { x: 0.0, v: 0.1, a: 3.0, j: -400.0, s: 0.0 };
         let share = 0.75;
-        for interpolate in [true, false] {
+        for (interpolate, motor_velocity, filter) in [
+            (true, None, 0.0),
+            (true, Some(0.0), 0.0),
+            (true, Some(0.0), 2e-4),
+            (true, None, 3e-4),
+            (false, None, 3e-4),
+        ] {
             let feedforward = crate::feedforward::Params { velocity: share, interpolate, ..emps().feedforward };
-            let p = Params { position_gain: 0.0, velocity_every: every(8_000), feedforward, ..emps() };
+            let velocity_every = every(8_000);
+            let p = Params { position_gain: 0.0, velocity_every, velocity_filter_time: filter, feedforward, ..emps() };
+            let age =
+                if interpolate { filter + if motor_velocity.is_none() { 1.0 / 16_000.0 } else { 0.0 } } else { 0.0 };
             let mut x = at_rest(&p);
             for k in 0..64_u32 {
                 let setpoint = |k: u32| start.after(f64::from(k) / 16_000.0);
-                step(&p, &mut x, &Demand::position(setpoint(k)), &Sensors::default());
+                step(&p, &mut x, &Demand::position(setpoint(k)), &Sensors { motor_velocity, ..Sensors::default() });
                 let cycle = if interpolate { k / 2 * 2 } else { k / 16 * 16 };
-                let expected = share * setpoint(cycle).v;
+                let expected = share * start.after(f64::from(cycle) / 16_000.0 - age).v;
                 assert!(
                     (x.held().velocity_reference - expected).abs() < 1e-15,
                     "{interpolate} tick {k}: {:?}",

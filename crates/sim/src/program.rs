@@ -16,6 +16,8 @@ struct Planned {
     end: f64,
     from: f64,
     plan: Plan,
+    /// Whether the next move takes over from it.
+    is_aborted: bool,
     /// What it is, in a word or two.
     kind: &'static str,
 }
@@ -83,7 +85,7 @@ impl Program {
                     end += length;
                     state = plan.at(length);
                     state.x += from;
-                    moves.push(Planned { start, end, from, plan, kind: request::kind(step) });
+                    moves.push(Planned { start, end, from, plan, is_aborted: false, kind: request::kind(step) });
                 }
             }
             check_length(Some(index), end)?;
@@ -159,7 +161,7 @@ impl Planned {
         if after >= lasts {
             return Err(BuildError::NothingToAbort { index, after, lasts });
         }
-        self.end = self.start + after;
+        (self.end, self.is_aborted) = (self.start + after, true);
         let mut state = self.plan.at(after);
         state.x += self.from;
         Ok((self.end, state))
@@ -169,7 +171,8 @@ impl Planned {
     fn describe(&self, unit: &str, delay: f64) -> Move {
         let (plan, order) = (&self.plan, self.plan.order());
         let length = self.end - self.start;
-        let is_aborted = length < plan.duration();
+        // The difference of start and end is rounded: it alone says nothing.
+        let is_aborted = self.is_aborted && length < plan.duration();
         let (from, to) = (self.from, self.from + plan.at(length.max(plan.duration())).x);
         let (cruise_start, cruise) = match plan.end().v {
             // A velocity that is held.

@@ -54,9 +54,12 @@ fn each_run_breaks_what_its_first_line_says() {
     for path in files {
         let text = std::fs::read_to_string(&path).unwrap();
         let said = text.lines().next().unwrap().strip_prefix("# breaks: ").unwrap_or_else(|| panic!("{path:?}"));
-        let mut said: Vec<&str> = said.split(' ').filter(|word| *word != "nothing").collect();
+        // Where a loop swings between its limits, where it ends is a matter of roundings.
+        let (perhaps, said): (Vec<&str>, Vec<&str>) = said.split(' ').partition(|word| word.ends_with('?'));
+        let mut said: Vec<&str> = said.into_iter().filter(|word| *word != "nothing").collect();
         said.sort_unstable();
         let (mut names, reasons) = broken(&path);
+        names.retain(|name| !perhaps.iter().any(|perhaps| perhaps.trim_end_matches('?') == *name));
         names.sort_unstable();
         println!("{}: {names:?}\n  {}", path.file_stem().unwrap().display(), reasons.join("\n  "));
         if names != said {
@@ -64,4 +67,34 @@ fn each_run_breaks_what_its_first_line_says() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// The way through the grid of ticks that a pause shifts by a rounding: the move after it is no aborted one.
+#[test]
+fn a_pause_before_a_move_does_not_let_it_off() {
+    let text = std::fs::read_to_string(folder().join("torque-too-small.toml")).unwrap();
+    let work = tempfile::tempdir().unwrap();
+    let models = folder().join("../models");
+    for pause in ["0.05 s", "0.1 s", "0.35 s", "0.37 s", "1/3 s"].map(|pause| pause.replace("1/3 s", "0.3333333 s")) {
+        let step = format!("[[program]]\nwait = \"{pause}\"\n[[program]]\n");
+        let path = work.path().join("paused.toml");
+        std::fs::write(&path, text.replace("[[program]]\n", &step)).unwrap();
+        let link = work.path().join("models");
+        if !link.exists() {
+            copy(&models, &link);
+        }
+        assert_eq!(broken(&path).0, ["arrives"], "{pause}");
+    }
+}
+
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap().map(Result::unwrap) {
+        let target = to.join(entry.file_name());
+        if entry.path().is_dir() {
+            copy(&entry.path(), &target);
+        } else {
+            std::fs::copy(entry.path(), target).unwrap();
+        }
+    }
 }

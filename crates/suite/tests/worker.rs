@@ -1,8 +1,9 @@
 //! The worker's side, called as a process would call it: what it says is what the same run here says of itself.
+use servobench_metrics::Quantity;
 use servobench_plant::Exact;
 use servobench_scenario::EngineName;
 use servobench_suite::worker::{End, Order, serve};
-use servobench_suite::{Broken, Engines, Installed, Source, WorkerCommand, execute, jobs};
+use servobench_suite::{Engines, Installed, Source, WorkerCommand, execute, jobs};
 use servobench_trace::Recording;
 use std::path::Path;
 
@@ -71,14 +72,15 @@ fn a_reason_and_a_recording_do_not_depend_on_where_the_run_happened() {
         servobench_scenario::parse("wild.toml", WILD, None).unwrap_or_else(|error| panic!("{error}")).scenario;
     let job = &jobs(vec![Source { scenario, text: WILD.into() }], &[])[0];
     let nowhere = WorkerCommand { program: "none".into(), folder: "none".into(), patience: std::time::Duration::ZERO };
-    let Broken { error, until_then } = *execute(job, &ENGINES, &nowhere, &mut |_| {}).unwrap_err();
-    let reason = error.to_string();
-    assert!(reason.contains("diverged"), "{reason}");
+    let run = execute(job, &ENGINES, &nowhere, &mut |_| {}).unwrap_or_else(|broken| panic!("{}", broken.error));
+    let reasons: Vec<String> = run.verdict.reasons().collect();
 
     let order = order(folder.path());
-    assert_eq!(served(&order, WILD), End::Failed(reason));
+    let End::Diverged { time, reason } = served(&order, WILD) else { panic!("it diverges") };
+    let told = format!("bounded: the run diverged at {}: {reason}", Quantity::new(time, "s"));
+    assert!(reasons.contains(&told), "{told}: {reasons:?}");
     let own = folder.path().join("here.parquet");
-    until_then.unwrap().0.write_parquet(&own).unwrap();
+    run.recording.write_parquet(&own).unwrap();
     assert!(std::fs::read(own).unwrap() == std::fs::read(order.recording.unwrap()).unwrap(), "up to where it came");
 }
 

@@ -59,7 +59,7 @@ pub struct Call {
     pub name: String,
     /// Name of the block in the standard: `MC_MoveAbsolute`.
     pub block: String,
-    /// Whether the run may do without it: it is marked so, or waits on an error or abortion of another call.
+    /// Whether the run may do without it: it is marked so, or waits in vain for an error or abortion of another call.
     pub is_optional: bool,
     /// What became of it by the end of the run.
     pub fate: CallFate,

@@ -26,8 +26,8 @@ const GROWTH: f64 = 2.0;
 const STEP: f64 = 1.1;
 /// What the growth from part to part may lose to the next.
 const FADING: f64 = 0.8;
-/// Crossings of the mean in each part, at least: two periods.
-const CROSSINGS: usize = 4;
+/// Turns in each part, at least: two periods.
+const TURNS: usize = 4;
 /// An oscillation is larger than so many increments of the encoder.
 const INCREMENTS: f64 = 4.0;
 /// What differences of positions say nothing about, as a part of the largest position.
@@ -69,13 +69,13 @@ fn asked_for(recording: &Recording, rows: &Range<usize>) -> usize {
     channels
         .into_iter()
         .filter_map(|name| recording.channel(name))
-        .map(|values| sign_changes(&values[rows.clone()], 0.0))
+        .map(|values| sign_changes(&values[rows.clone()]))
         .sum()
 }
 
-/// How often `values` go to the other side of `middle`.
-fn sign_changes(values: &[f64], middle: f64) -> usize {
-    let mut signs = values.iter().map(|value| value - middle).filter(|value| *value != 0.0).map(f64::is_sign_positive);
+/// How often the sign of `values` changes.
+fn sign_changes(values: &[f64]) -> usize {
+    let mut signs = values.iter().filter(|value| **value != 0.0).map(|value| value.is_sign_positive());
     let Some(mut sign) = signs.next() else { return 0 };
     signs.filter(|next| std::mem::replace(&mut sign, *next) != *next).count()
 }
@@ -111,24 +111,26 @@ fn growth(recording: &Recording, rules: &Rules<'_>) -> Option<String> {
 
 fn grows(values: &[f64], floor: f64) -> bool {
     let length = values.len() / PARTS;
-    if length < 2 * CROSSINGS {
+    if length < 2 * TURNS {
         return false;
     }
     let swings: Vec<Option<f64>> = values.chunks_exact(length).take(PARTS).map(swing).collect();
     let Some(swings) = swings.into_iter().collect::<Option<Vec<f64>>>() else { return false };
     let ratios: Vec<f64> = swings.windows(2).map(|pair| pair[1] / pair[0]).collect();
-    let is_steady = ratios.windows(2).all(|pair| pair[1] >= FADING * pair[0]);
+    // Of what grows a thousandfold from part to part, where a part begins in a swing is a factor of its own.
+    let goes_on = |pair: &[f64]| pair[1] >= FADING * pair[0] || pair[1].ln() >= FADING * pair[0].ln();
+    let is_steady = ratios.windows(2).all(goes_on);
     let (first, last) = (swings[0], swings[PARTS - 1]);
     last > floor && last >= GROWTH * first && ratios.iter().all(|ratio| *ratio >= STEP) && is_steady
 }
 
-/// From the lowest to the highest value, if they swing.
+/// From the lowest to the highest value, if they swing. Turns and not crossings of the mean are counted: the last swing of what
+/// grows fast moves the mean out of the reach of all others.
 fn swing(values: &[f64]) -> Option<f64> {
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let (low, high) =
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
-    let swings = sign_changes(values, mean) >= CROSSINGS && high > low;
-    swings.then_some(high - low)
+    (sign_changes(&steps) >= TURNS && high > low).then_some(high - low)
 }
 
 #[cfg(test)]
@@ -149,7 +151,9 @@ mod tests {
 
     #[test]
     fn an_oscillation_that_grows_is_found_and_one_that_does_not_is_not() {
-        for (growth, is_found) in [(1.5, true), (5.0, true), (0.3, false), (0.0, false), (-2.0, false)] {
+        for (growth, is_found) in
+            [(1.5, true), (5.0, true), (200.0, true), (650.0, true), (0.3, false), (0.0, false), (-2.0, false)]
+        {
             let found = broken(&recording(|t| 1e-4 * (growth * t).exp() * (TAU * 33.0 * t).sin()), &rules()).unwrap();
             assert_eq!(!found.is_empty(), is_found, "{growth}: {found:?}");
         }

@@ -53,8 +53,8 @@ table! {
         stop: When = (),
         /// Fails the run when `start` has not come by then, with the reason; the end of the run unless given.
         timeout: f64 = positive(Plain(&TIME), "2 s"),
-        /// Whether the requirement `executed` does without it. A call that waits on `Error` or `CommandAborted` of another
-        /// one is optional anyway.
+        /// Whether the requirement `executed` does without it. A call that waits in vain on `Error` or `CommandAborted` of
+        /// another one is optional anyway.
         optional: bool = (),
         /// New inputs while `Execute` is TRUE, of a block with `continuous_update`, or while `Enable` is, of MC_Power and
         /// MC_SetOverride.

@@ -137,9 +137,21 @@ struct Screen {
 impl Screen {
     /// Parts with commas between them, broken where the line is full; nothing without a part.
     fn line(&mut self, name: &str, parts: &[String]) {
+        // A part that is wider than a line is broken between its words.
+        let narrow = |part: &str| part.chars().count() < WIDTH - NAMES - 2;
+        let pieces: Vec<(String, &str)> = parts
+            .iter()
+            .enumerate()
+            .flat_map(|(i, part)| {
+                let comma = if i + 1 < parts.len() { "," } else { "" };
+                let words: Vec<&str> = if narrow(part) { vec![part] } else { part.split(' ').collect() };
+                let last = words.len() - 1;
+                let pieces = words.into_iter().enumerate();
+                pieces.map(move |(k, word)| (word.to_owned(), if k == last { comma } else { "" })).collect::<Vec<_>>()
+            })
+            .collect();
         let mut column = 0;
-        for (i, part) in parts.iter().enumerate() {
-            let comma = if i + 1 < parts.len() { "," } else { "" };
+        for (i, (part, comma)) in pieces.iter().enumerate() {
             let width = part.chars().count() + comma.len();
             let fits = i > 0 && column + 1 + width <= WIDTH;
             if fits {

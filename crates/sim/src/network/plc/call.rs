@@ -22,7 +22,8 @@ pub(super) fn fates(calls: &[Call], known: &Known) -> Vec<trace::Call> {
     let of = |(own, call): (usize, &Call)| trace::Call {
         name: call.name.clone(),
         block: call.block.name().to_owned(),
-        is_optional: call.may_be_left_out(&idle),
+        // What waits in vain may; what is executed has to end well unless it is marked.
+        is_optional: call.is_optional || (call.started.is_none() && call.may_be_left_out(&idle)),
         fate: call.fate(own, known),
     };
     calls.iter().enumerate().map(of).collect()
