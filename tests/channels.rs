@@ -1,6 +1,7 @@
 //! What a scenario can ask to record is what the loop records.
 use servobench_plant::Exact;
 use servobench_scenario::{CHANNELS, Disturbance, DisturbedBody, Motion, Scenario};
+use servobench_sim::selected;
 use servobench_tests::{run, scenario_file};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -19,9 +20,13 @@ fn axes() -> [Scenario; 4] {
     })
 }
 
-/// Names of the channels that a run of `scenario` records, in their order.
+/// Names of the channels that are kept of a run of `scenario`, in their order.
 fn recorded(scenario: &Scenario) -> Vec<String> {
-    run(scenario, &Exact).channels.into_iter().map(|channel| channel.spec.name).collect()
+    selected(run(scenario, &Exact), &scenario.record.channels)
+        .channels
+        .into_iter()
+        .map(|channel| channel.spec.name)
+        .collect()
 }
 
 #[test]

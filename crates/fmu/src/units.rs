@@ -67,6 +67,7 @@ fn derived(symbol: &str) -> Option<Exponents> {
         "A" => Exponents { a: 1, ..none },
         "rad" => Exponents { rad: 1, ..none },
         "N" => Exponents { kg: 1, m: 1, s: -2, ..none },
+        "W" => Exponents { kg: 1, m: 2, s: -3, ..none },
         "V" => Exponents { kg: 1, m: 2, s: -3, a: -1, ..none },
         _ => return None,
     })
@@ -93,6 +94,7 @@ mod tests {
             ("m/s⁴", "m/s4", [0, 1, -4, 0, 0]),
             ("rad/s²", "rad/s2", [0, 0, -2, 0, 1]),
             ("N m", "N.m", [1, 2, -2, 0, 0]),
+            ("W", "W", [1, 2, -3, 0, 0]),
             ("N m s/rad", "N.m.s/rad", [1, 2, -1, 0, -1]),
             ("N/m", "N/m", [1, 0, -2, 0, 0]),
             ("V", "V", [1, 2, -3, -1, 0]),

@@ -161,7 +161,7 @@ mod tests {
 
     #[test]
     fn of_many_mistakes_twenty_are_shown_and_the_others_counted() {
-        let keys = |count: usize| (0..count).map(|k| format!("x{k} = 1\n")).collect::<String>();
+        let keys = |count: usize| (0..count).map(|k| format!("x{k} = 1\n")).collect::<Vec<_>>().concat();
         let lines = |count| match parse("a.toml", &keys(count), None) {
             Err(LoadError::Invalid(invalid)) => invalid.lines(),
             other => panic!("{other:?}"),

@@ -470,7 +470,7 @@ mod tests {
 
     #[test]
     fn what_is_no_toml_is_one_mistake() {
-        let json: String = (0..50).map(|k| format!("  \"key{k}\": {k},\n")).collect();
+        let json = (0..50).map(|k| format!("  \"key{k}\": {k},\n")).collect::<Vec<_>>().concat();
         let prose = "a line of prose\n".repeat(9);
         for (text, why) in [
             (format!("{{\n{json}}}\n"), "it looks like JSON"),
@@ -486,7 +486,7 @@ mod tests {
             assert_eq!((parsed.table, all), (Table::default(), &(0..text.len())));
         }
         // As many lines that can be read make it a scenario with nine mistakes.
-        let keys: String = (0..9).map(|k| format!("k{k} = 1\n")).collect();
+        let keys = (0..9).map(|k| format!("k{k} = 1\n")).collect::<Vec<_>>().concat();
         assert_eq!(parsed(&(prose + &keys)).1.errors.len(), 9);
     }
 

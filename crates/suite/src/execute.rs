@@ -8,7 +8,7 @@ use servobench_metrics::{
     EarlyEnd, Limit, Metrics, Name, Question, UnknownMetric, Verdict, judge_requirements, measure,
 };
 use servobench_plant::{Engine, MechanicsError};
-use servobench_scenario::{self as scenario, Scenario, Step};
+use servobench_scenario::{self as scenario, EngineName, Scenario, Step};
 use servobench_sim::{Bench, Failure, Partners, Reason, selected, thinned};
 use servobench_trace::Recording;
 
@@ -47,7 +47,8 @@ pub(crate) enum Interruption {
 impl From<Failure> for Interruption {
     fn from(failure: Failure) -> Self {
         match failure.reason {
-            Reason::Mechanics(MechanicsError::Diverged { message, .. }) => {
+            // What is not a number in an FMU is the FMU's.
+            Reason::Mechanics(MechanicsError::Diverged { engine, message }) if engine != EngineName::Fmu.as_str() => {
                 Self::Early(EarlyEnd::Diverged { time: failure.time, reason: message })
             }
             Reason::Program(reason) => Self::Early(EarlyEnd::GaveUp(reason)),
@@ -88,13 +89,11 @@ pub fn execute(
     let mut metrics = measure(&recording, &Question { window: asked.window, from: asked.from, mode: asked.mode });
     // What is measured does not depend on how much of it is kept.
     let recording = thinned(recording, record.rate);
-    match failure {
-        Some(failure) => Err(broken(failure, Some((recording, metrics)))),
-        None => {
-            let limits = metrics.judge(&limits).and(metrics.judge_moves(&of_moves));
-            Ok(Run { verdict: limits.and(requirements), recording, metrics })
-        }
+    if let Some(failure) = failure {
+        return Err(broken(failure, Some((recording, metrics))));
     }
+    let limits = metrics.judge(&limits).and(metrics.judge_moves(&of_moves));
+    Ok(Run { verdict: limits.and(requirements), recording, metrics })
 }
 
 fn recorded(

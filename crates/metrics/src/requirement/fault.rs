@@ -114,7 +114,10 @@ mod tests {
     use crate::synthetic::Build;
     use servobench_trace::Event;
 
-    fn recording(signals: &[(&str, &str, &[(f64, &str)])]) -> Recording {
+    /// Source, name and changes of a signal.
+    type Noted<'a> = (&'a str, &'a str, &'a [(f64, &'a str)]);
+
+    fn recording(signals: &[Noted<'_>]) -> Recording {
         let mut recording = Build::new(1000, 1001).finish();
         recording.signals = signals
             .iter()

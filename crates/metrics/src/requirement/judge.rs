@@ -25,7 +25,7 @@ pub fn judge_requirements(recording: &Recording, rules: &Rules<'_>) -> Verdict {
             Requirement::NoFault => (fault::broken(recording, rules, &faults), true),
             Requirement::Stable => (oscillation::broken(recording, rules), true),
             // A run that diverged has no end that could be judged.
-            Requirement::Bounded => (bounds::broken(recording, rules), !rules.has_diverged()),
+            Requirement::Bounded => (Some(bounds::broken(recording, rules)), !rules.has_diverged()),
         };
         let is_lifted = may_be_lifted && rules.lifted.contains(&requirement);
         match broken.map(listed) {

@@ -84,7 +84,7 @@ fn sign_changes(values: &[f64]) -> usize {
 fn stretches(recording: &Recording) -> Vec<Range<usize>> {
     let of_moves: Vec<_> = phases(recording).iter().map(Phase::rows).collect();
     match of_moves.first() {
-        None => vec![0..recording.len()],
+        None => std::iter::once(0..recording.len()).collect(),
         Some(first) if first.start > 0 => std::iter::once(0..first.start).chain(of_moves).collect(),
         Some(_) => of_moves,
     }

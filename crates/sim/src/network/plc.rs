@@ -115,7 +115,9 @@ impl Plc {
         for made in self.made.drain(..) {
             recorder.note_move(Move { start: made.start + delay, end: made.end + delay, ..made });
         }
-        call::fates(&self.calls, &self.known).into_iter().for_each(|call| recorder.note_call(call));
+        for call in call::fates(&self.calls, &self.known) {
+            recorder.note_call(call);
+        }
         for call in &self.calls {
             if let Some(message) = call.never_executed(&self.known) {
                 recorder.note_event(Event { start: t, end: t, source: "PLC".into(), message });

@@ -33,7 +33,13 @@ pub(crate) fn ideal(base: u32, every: u32, k_p: f64, mechanics: Chain) -> Loop {
             velocity: velocity::Params { k_p, integral_time: None, max_effort: f64::INFINITY },
             velocity_every: ticks(every),
             velocity_filter_time: 0.0,
-            feedforward: feedforward::Params { velocity: 0.0, model: feedforward::Model::Off, coulomb: 0.0, bias: 0.0 },
+            feedforward: feedforward::Params {
+                velocity: 0.0,
+                interpolate: true,
+                model: feedforward::Model::Off,
+                coulomb: 0.0,
+                bias: 0.0,
+            },
             reference_delay: drive::delay::Params::default(),
             stage: drive::Stage::Direct { gain: 1.0 },
         },
@@ -78,7 +84,8 @@ pub(crate) fn servo(tuning: Tuning, mechanics: Chain) -> Loop {
         flux_linkage: MOTOR.flux_linkage,
     };
     let gains = current::Gains::from_bandwidth(&motor, TAU * tuning.current);
-    let params = current::Params { motor, gains, max_current: f64::INFINITY, max_voltage: f64::INFINITY };
+    let (max_current, max_voltage) = (f64::INFINITY, f64::INFINITY);
+    let params = current::Params { motor, gains, d_reference: 0.0, max_current, max_voltage };
     let rest = ideal(16_000, 2, tuning.velocity, mechanics);
     Loop {
         drive: drive::Params {

@@ -91,7 +91,7 @@ impl Preview {
             let mut words = vec![format!("peak {}", show(effort.peak, demand.effort_unit))];
             if effort.available.is_finite() {
                 let of = show(effort.available, demand.effort_unit);
-                words[0] += &format!(" of {of}, {}", left(effort.peak, effort.available));
+                let _ = write!(words[0], " of {of}, {}", left(effort.peak, effort.available));
             }
             words.push(format!("RMS {}", show(effort.rms, demand.effort_unit)));
             if effort.is_believed {
@@ -102,7 +102,7 @@ impl Preview {
         if demand.speed > 0.0 {
             let mut words = vec![show(demand.speed, demand.speed_unit)];
             if demand.speed_unit == "rad/s" {
-                words[0] += &format!(" ({:.0} rpm)", demand.speed * 60.0 / TAU);
+                let _ = write!(words[0], " ({:.0} rpm)", demand.speed * 60.0 / TAU);
             }
             if let Some(voltage) = demand.voltage {
                 words.push(format!("back-EMF {}", show(voltage.back_emf, "V")));

@@ -28,7 +28,7 @@ const PLAN: [(&str, May); 28] = [
     ("coupling", May::On(&["base"])),
     ("trace", May::On(&["base"])),
     ("metrics", May::On(&["base", "trace"])),
-    ("scenario", May::On(&["base"])),
+    ("scenario", May::On(&["base", "metrics"])),
     (
         "sim",
         May::On(&[
@@ -49,7 +49,7 @@ const PLAN: [(&str, May); 28] = [
         ]),
     ),
     ("fmu", May::On(&["base", "cia402", "motion", "planner", "plcopen", "plant", "fmi", "scenario", "sim"])),
-    ("suite", May::On(&["base", "plant", "sim", "scenario", "trace", "metrics"])),
+    ("suite", May::On(&["base", "plant", "stability", "sim", "scenario", "trace", "metrics"])),
     ("report", May::On(&["base", "cia402", "motion", "planner", "fmi", "trace", "metrics"])),
     ("view", May::On(&["base", "trace", "metrics"])),
     ("cli", May::OnAll),

@@ -33,6 +33,7 @@ pub(super) fn fates(calls: &[Call], known: &Known) -> Vec<trace::Call> {
 const ROUNDING: f64 = 1e-9;
 
 /// A call under way.
+#[expect(clippy::struct_excessive_bools, reason = "each is a state that a cycle asks for, and they are independent")]
 #[derive(Debug, Clone)]
 pub(super) struct Call {
     name: String,
