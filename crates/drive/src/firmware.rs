@@ -75,7 +75,7 @@ pub struct Held {
     pub reference: Setpoint,
     /// Motor's own reference (axis coordinate).
     pub motor_reference: MotorReference,
-    /// Velocity reference that the velocity loop used at its last cycle (axis coordinate).
+    /// Velocity reference of the velocity loop at its last cycle (axis coordinate).
     pub velocity_reference: f64,
     /// Effort fed forward (motor coordinate).
     pub feedforward: f64,
@@ -262,20 +262,24 @@ fn position_loop(p: &Params, x: &mut State, setpoint: Setpoint, sensors: &Sensor
 
 fn velocity_loop(p: &Params, x: &mut State, sensors: &Sensors) {
     let h = p.period(p.velocity_every);
+    let mut followed = x.held.velocity_reference;
     if x.closed == Closed::Position && p.feedforward.interpolate {
-        // What is measured is as old as a difference and the filter make it: what is fed forward is as old.
+        let fed_forward = |since: f64| {
+            let velocity = p.feedforward.motor_reference(x.held.reference.after(since)).velocity;
+            x.velocity_command + p.feedforward.velocity * (velocity - x.held.motor_reference.velocity)
+        };
+        let since = f64::from(x.position_turn.since(p.position_every)) * p.base_rate.period();
+        // What is measured is as old as a difference and the filter make it: it is compared with what is as old.
         let age = p.velocity_filter_time + if sensors.motor_velocity.is_some() { 0.0 } else { h / 2.0 };
-        let since = f64::from(x.position_turn.since(p.position_every)) * p.base_rate.period() - age;
-        let now = p.feedforward.motor_reference(x.held.reference.after(since)).velocity;
-        x.held.velocity_reference =
-            x.velocity_command + p.feedforward.velocity * (now - x.held.motor_reference.velocity);
+        followed = fed_forward(since - age);
+        x.held.velocity_reference = fed_forward(since);
     }
     let last = x.last_position.replace(sensors.motor_position).unwrap_or(sensors.motor_position);
     let measured = sensors.motor_velocity.unwrap_or((sensors.motor_position - last) / h);
     // Backward Euler of the low-pass: stable for every time constant, and no filter at zero.
     x.filtered_velocity += h / (h + p.velocity_filter_time) * (measured - x.filtered_velocity);
     let input = velocity::Input {
-        reference: x.held.velocity_reference / p.transmission,
+        reference: followed / p.transmission,
         velocity: x.filtered_velocity,
         feedforward: x.held.feedforward,
         available: match &p.stage {
@@ -372,6 +376,8 @@ mod tests {
             let feedforward = crate::feedforward::Params { velocity: share, interpolate, ..emps().feedforward };
             let velocity_every = every(8_000);
             let p = Params { position_gain: 0.0, velocity_every, velocity_filter_time: filter, feedforward, ..emps() };
+            let velocity = velocity::Params { max_effort: f64::INFINITY, ..p.velocity };
+            let p = Params { velocity, ..p };
             let age =
                 if interpolate { filter + if motor_velocity.is_none() { 1.0 / 16_000.0 } else { 0.0 } } else { 0.0 };
             let mut x = at_rest(&p);
@@ -379,7 +385,12 @@ mod tests {
                 let setpoint = |k: u32| start.after(f64::from(k) / 16_000.0);
                 step(&p, &mut x, &Demand::position(setpoint(k)), &Sensors { motor_velocity, ..Sensors::default() });
                 let cycle = if interpolate { k / 2 * 2 } else { k / 16 * 16 };
-                let expected = share * start.after(f64::from(cycle) / 16_000.0 - age).v;
+                let at = |age: f64| share * start.after(f64::from(cycle) / 16_000.0 - age).v;
+                let held = x.held();
+                let followed = (held.effort.effort - held.feedforward) / p.velocity.k_p * p.transmission;
+                // The effort is some thousand times as large.
+                assert!((followed - at(age)).abs() < 1e-12, "{interpolate} tick {k}: {held:?}");
+                let expected = at(0.0);
                 assert!(
                     (x.held().velocity_reference - expected).abs() < 1e-15,
                     "{interpolate} tick {k}: {:?}",
