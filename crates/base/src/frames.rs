@@ -25,6 +25,7 @@ impl ElectricalAngle {
     }
 
     /// The rotation of the rotor frame at this angle.
+    #[inline]
     #[must_use]
     pub fn rotation(self) -> Rotation {
         let (sin, cos) = libm::sincos(self.0);
@@ -85,6 +86,7 @@ impl Dq {
     }
 
     /// Magnitude of the vector (peak value of the phase quantity).
+    #[inline]
     #[must_use]
     pub fn magnitude(self) -> f64 {
         libm::sqrt(self.d * self.d + self.q * self.q)

@@ -170,6 +170,7 @@ pub fn voltage_limit(dc_link: f64) -> f64 {
 }
 
 /// Returns the voltage for tick k, then advances `x` by `h` (s) to tick k+1.
+#[inline]
 pub fn step(p: &Params, x: &mut State, u: Input, h: f64) -> Output {
     let i = u.current.to_dq(u.rotor);
     let e = Dq { d: u.reference.d - i.d, q: u.reference.q - i.q };

@@ -95,6 +95,7 @@ impl Params {
 impl Input {
     /// The voltage as the rotor meets it in the middle of a tick of `h` (s). Its mean over the tick is shorter by
     /// sin(ωh/2)/(ωh/2).
+    #[inline]
     #[must_use]
     pub fn voltage_at_middle(&self, h: f64) -> Dq {
         self.voltage.to_dq(self.rotor.ahead(self.omega_e * h / 2.0))
@@ -124,7 +125,7 @@ pub struct Output {
 }
 
 /// A motor whose tick is always as long: what does not depend on the speed is worked out once.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Ticks {
     params: Params,
     tables: Tables,

@@ -20,7 +20,7 @@ use servobench_drive as drive;
 use servobench_fieldbus::LinkFault;
 use servobench_plant::{Chain, Engine};
 use servobench_scenario::{self as scenario, Actuator, AxisMechanics, Feedback, LoopSignal, Scenario};
-use servobench_trace::{About, Event, Recorder};
+use servobench_trace::{About, Event};
 
 /// How long a run goes on after its program, when the scenario does not say (s).
 const TAIL: f64 = 0.5;
@@ -113,8 +113,9 @@ impl Bench {
 
         let equipment = equipment(scenario, bodies.len() == 3);
         let rates = writer_rates(scenario);
-        let wanted = Selection::new(&scenario.record.channels, &equipment, &rates)?;
-        let selection = measured(&scenario.record.channels, &equipment, &rates)?;
+        let all = Selection::all(&equipment, &rates);
+        let wanted = all.named(&scenario.record.channels)?;
+        let selection = measured(&all, &scenario.record.channels)?;
         if scenario.fmus.is_empty() && !selection.names().any(|name| name.starts_with("power.")) {
             power.leave_power_out();
         }
@@ -127,7 +128,7 @@ impl Bench {
             bodies,
         };
         let rows = usize::try_from(rows).unwrap_or(usize::MAX);
-        let mut recorder = Recorder::new(about, rate, selection.specs.clone(), rows);
+        let mut recorder = selection.recorder(about, rate, rows);
         if record_every > 1 {
             recorder.note_event(thinned_event(rate, duration));
         }
@@ -162,17 +163,8 @@ impl Bench {
             switches: plant::switches(&scenario.axis.switches)?,
         };
         let (watch, joints) = (LimitWatch::default(), JointWatch::default());
-        let recorded = Recorded {
-            closed_loop,
-            wanted,
-            selection,
-            recorder,
-            record_every,
-            ticks_to_row: 0,
-            watch,
-            joints,
-            tick: 0,
-        };
+        let recorded =
+            Recorded { closed_loop, wanted, recorder, record_every, ticks_to_row: 0, watch, joints, tick: 0 };
         let axis = if scenario.fmus.is_empty() {
             Axis::Alone(Box::new(recorded))
         } else {
@@ -218,14 +210,10 @@ const JUDGED_BY: [&str; 7] = [
     "disturbance.load",
 ];
 
-/// The channels `wanted`, and those of the axis that its run is judged by; all when the list is empty.
-fn measured(wanted: &[String], equipment: &Equipment, rates: &WriterRates) -> Result<Selection, BuildError> {
-    if wanted.is_empty() {
-        return Ok(Selection::all(equipment, rates));
-    }
-    let all = Selection::all(equipment, rates);
-    let judged_by = JUDGED_BY.into_iter().filter(|name| all.place(name).is_some()).map(String::from);
-    Selection::new(&wanted.iter().cloned().chain(judged_by).collect::<Vec<_>>(), equipment, rates)
+/// Of `all` channels of the axis those `wanted`, and those that its run is judged by; all when the list is empty.
+fn measured(all: &Selection, wanted: &[String]) -> Result<Selection, BuildError> {
+    let judged_by = JUDGED_BY.into_iter().filter(|name| !wanted.is_empty() && all.place(name).is_some());
+    all.named(&wanted.iter().map(String::as_str).chain(judged_by).collect::<Vec<_>>())
 }
 
 /// Which channels the axis of `scenario` has; `table` is a body between motor and load.

@@ -3,7 +3,7 @@ use crate::error::BuildError;
 use crate::limit_watch::PerLimit;
 use servobench_base::{Rate, Setpoint};
 use servobench_plant::BodyState;
-use servobench_trace::ChannelSpec;
+use servobench_trace::{About, ChannelSpec, Recorder};
 
 /// All that is known at tick k, before the integration to k+1.
 #[derive(Debug, Clone, Copy, Default)]
@@ -94,6 +94,7 @@ pub(crate) struct WriterRates {
     pub(crate) bus: Rate,
 }
 
+/// How many channels there are.
 const COUNT: usize = 41;
 
 /// Every channel there is, in the order of [`row`].
@@ -173,6 +174,7 @@ fn all(equipment: &Equipment, rates: &WriterRates) -> [(bool, ChannelSpec); COUN
 }
 
 /// The values of `now` in the order of [`all`].
+#[inline]
 fn row(now: &Instant) -> [f64; COUNT] {
     let Setpoint { x, v, a, j, s } = now.setpoint;
     [
@@ -220,6 +222,14 @@ fn row(now: &Instant) -> [f64; COUNT] {
     ]
 }
 
+/// Writes the values of `now` to a row of [`Selection::recorder`].
+#[inline]
+pub(crate) fn write(now: &Instant, to: &mut [f64]) {
+    if let Ok(to) = <&mut [f64; COUNT]>::try_from(to) {
+        *to = row(now);
+    }
+}
+
 /// The channels to keep and where they stand in a row.
 #[derive(Debug, Clone)]
 pub(crate) struct Selection {
@@ -229,20 +239,20 @@ pub(crate) struct Selection {
 }
 
 impl Selection {
-    /// Keeps the channels `wanted`, or all that the axis has when the list is empty.
-    pub(crate) fn new(wanted: &[String], equipment: &Equipment, rates: &WriterRates) -> Result<Self, BuildError> {
-        let all = Self::all(equipment, rates);
+    /// Of these channels those `wanted`, or all when the list is empty.
+    pub(crate) fn named(&self, wanted: &[impl AsRef<str>]) -> Result<Self, BuildError> {
         if wanted.is_empty() {
-            return Ok(all);
+            return Ok(self.clone());
         }
-        let places: Result<Vec<usize>, &String> = wanted.iter().map(|name| all.place(name).ok_or(name)).collect();
+        let places: Result<Vec<usize>, &str> =
+            wanted.iter().map(AsRef::as_ref).map(|name| self.place(name).ok_or(name)).collect();
         let mut places = places.map_err(|unknown| BuildError::UnknownChannel {
-            name: unknown.clone(),
-            available: all.names().map(String::from).collect(),
+            name: unknown.into(),
+            available: self.names().map(String::from).collect(),
         })?;
         places.sort_unstable();
         places.dedup();
-        Ok(all.only(&places))
+        Ok(self.only(&places))
     }
 
     /// Names of the channels.
@@ -270,6 +280,11 @@ impl Selection {
         let (columns, specs): (Vec<_>, Vec<_>) = there.map(|(column, (_, spec))| (column, spec)).unzip();
         let kept = vec![0.0; columns.len()];
         Self { specs, columns, kept }
+    }
+
+    /// A recorder of them, for [`write`], with room for `rows` rows.
+    pub(crate) fn recorder(&self, about: About, rate: Rate, rows: usize) -> Recorder {
+        Recorder::new(about, rate, self.specs.clone(), rows).with_rows(COUNT, self.columns.clone())
     }
 
     /// The kept values of `now`.

@@ -80,13 +80,14 @@ impl ClosedLoop {
     /// Within control a slower loop's output reaches the faster loop in the same tick; the voltage of the current loop goes
     /// out one period of that loop later. The power stage takes the motor's position and velocity at k, and its mean torque
     /// over the tick drives the mechanics; a disturbance is held over the tick.
-    pub(crate) fn tick(&mut self, k: u64, external: &External, recorder: &mut Recorder) -> Instant {
+    pub(crate) fn tick(&mut self, k: u64, external: &External, recorder: &mut Recorder, now: &mut Instant) {
         if external.start && self.state.begun.is_none() {
             self.state.begun = Some(k);
         }
-        let (mut now, motor) = self.sample(external);
-        self.account(motor.position, &mut now);
-        let mut command = self.control(k, external, motor, &mut now, recorder);
+        *now = Instant::default();
+        let motor = self.sample(external, now);
+        self.account(motor.position, now);
+        let mut command = self.control(k, external, motor, now, recorder);
         if let Some(Controller::Voltage(voltage)) = external.controller {
             now.voltage_reference = voltage;
             command = Command::Voltage(self.state.power.in_the_stator(voltage, motor));
@@ -104,19 +105,18 @@ impl ClosedLoop {
         now.motor_disturbance = self.disturbances.effort_at(DisturbedBody::Motor, k) + external.motor_effort;
         now.load_disturbance = self.disturbances.effort_at(DisturbedBody::Load, k) + external.load_effort;
         now.following_error = [now.motor_reference - now.motor.position, now.reference - now.load.position];
-        now
     }
 
-    /// sample(k): the bodies in the axis coordinate, and the motor in its own.
-    pub(crate) fn sample(&self, external: &External) -> (Instant, BodyState) {
+    /// sample(k): the bodies in the axis coordinate come to `now`; the motor in its own is returned.
+    pub(crate) fn sample(&self, external: &External, now: &mut Instant) -> BodyState {
         let measured = external.measured.as_ref().map(<[BodyState; 2]>::as_slice);
         let bodies = measured.unwrap_or_else(|| self.mechanics.bodies());
         let own = bodies[0];
-        let motor =
+        now.motor =
             BodyState { position: self.transmission * own.position, velocity: self.transmission * own.velocity };
-        let load = if bodies.len() == 1 { motor } else { bodies[bodies.len() - 1] };
-        let table = if bodies.len() == 3 { bodies[1] } else { BodyState::default() };
-        (Instant { motor, table, load, ..Instant::default() }, own)
+        now.load = if bodies.len() == 1 { now.motor } else { bodies[bodies.len() - 1] };
+        now.table = if bodies.len() == 3 { bodies[1] } else { BodyState::default() };
+        own
     }
 
     /// Brings the powers of the tick that has ended, with the motor at `position` now, to `now`. At tick 0 they are zero.
@@ -124,12 +124,6 @@ impl ClosedLoop {
         let Shaft { effort, position: before } = self.state.shaft;
         now.power = self.state.power.power();
         now.shaft_power = effort * (position - before) * f64::from(self.base_rate.hertz());
-    }
-
-    /// Brings `now` to where the bodies are.
-    pub(crate) fn look(&self, external: &External, now: &mut Instant) {
-        let (bodies, _) = self.sample(external);
-        (now.motor, now.table, now.load) = (bodies.motor, bodies.table, bodies.load);
     }
 
     /// set-point(k) and control(k): the firmware sees its sensors and what it is to do. `motor` is in the motor's own

@@ -1,5 +1,5 @@
 //! The closed loop with what is recorded of it.
-use crate::channels::{Instant, Selection};
+use crate::channels::{self, Instant, Selection};
 use crate::closed_loop::{ClosedLoop, Source, State};
 use crate::joint_watch::JointWatch;
 use crate::limit_watch::{LimitWatch, PerLimit};
@@ -21,8 +21,6 @@ pub(crate) struct Recorded {
     pub(crate) closed_loop: ClosedLoop,
     /// The channels that the scenario asks for.
     pub(crate) wanted: Selection,
-    /// Those that are recorded: these, and what the run is judged by.
-    pub(crate) selection: Selection,
     pub(crate) recorder: Recorder,
     /// Base ticks from row to row, and to the next one. One, unless the run is too long for that.
     pub(crate) record_every: u32,
@@ -44,9 +42,10 @@ pub(crate) struct Saved {
 }
 
 impl Recorded {
-    /// Tick k, recorded, but for the mechanics' way to k+1. What is recorded together belongs to the same instant.
-    pub(crate) fn observe(&mut self, external: &External) -> Instant {
-        let mut now = self.closed_loop.tick(self.tick, external, &mut self.recorder);
+    /// Tick k, recorded, but for the mechanics' way to k+1; it is left in `now`. What is recorded together belongs to the
+    /// same instant.
+    pub(crate) fn observe(&mut self, external: &External, now: &mut Instant) {
+        self.closed_loop.tick(self.tick, external, &mut self.recorder, now);
         let cut = PerLimit { voltage: now.voltage.q, current: now.effort_reference, effort: now.effort_reference };
         let t = self.time();
         self.watch.tick(t, now.binds, cut, &mut self.recorder);
@@ -54,10 +53,9 @@ impl Recorded {
         if self.ticks_to_row == 0 {
             self.ticks_to_row = self.record_every;
             now.saturation = self.watch.shares();
-            self.recorder.push(self.selection.pick(&now));
+            self.recorder.push_with(|row| channels::write(now, row));
         }
         self.ticks_to_row -= 1;
-        now
     }
 
     /// The way to k+1.

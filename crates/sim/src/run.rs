@@ -1,5 +1,6 @@
 //! A run from the first tick to the last, and what it leaves behind.
 use crate::bench::{Axis, Bench};
+use crate::channels::Instant;
 use crate::stepper::External;
 use servobench_plant::MechanicsError;
 use servobench_trace::Recording;
@@ -54,9 +55,9 @@ impl Bench {
             Axis::Coupled(coupled) => return coupled.run(ticks, progress),
             Axis::Alone(recorded) => *recorded,
         };
-        let mut failure = None;
+        let (external, mut now, mut failure) = (External::default(), Instant::default(), None);
         loop {
-            let now = recorded.observe(&External::default());
+            recorded.observe(&external, &mut now);
             if recorded.tick.is_multiple_of(PROGRESS_EVERY) {
                 progress(recorded.tick as f64 / ticks as f64);
             }

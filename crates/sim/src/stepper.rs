@@ -97,7 +97,7 @@ impl Bench {
         };
         let recorder = Recorder::silent(recorder.about().clone(), closed_loop.base_rate);
         let mut now = Instant::default();
-        closed_loop.look(&External::default(), &mut now);
+        closed_loop.sample(&External::default(), &mut now);
         Stepper { closed_loop, tick: 0, now, selection, recorder }
     }
 }
@@ -160,16 +160,15 @@ impl Stepper {
     /// # Errors
     /// [`Failure`]; the loop must not be stepped again, but may go back.
     pub fn step(&mut self, external: &External) -> Result<(), Failure> {
-        let mut now = self.closed_loop.tick(self.tick, external, &mut self.recorder);
+        let now = &mut self.now;
+        self.closed_loop.tick(self.tick, external, &mut self.recorder, now);
         let time = self.closed_loop.base_rate.time(Tick(self.tick));
-        let done =
-            if external.measured.is_some() { self.closed_loop.check() } else { self.closed_loop.integrate(&now) };
+        let done = if external.measured.is_some() { self.closed_loop.check() } else { self.closed_loop.integrate(now) };
         done.map_err(|reason: Reason| Failure { time, reason })?;
-        self.closed_loop.look(external, &mut now);
+        self.closed_loop.sample(external, now);
         let share = |binds: bool| f64::from(u8::from(binds));
         let PerLimit { voltage, current, effort } = now.binds;
         now.saturation = PerLimit { voltage: share(voltage), current: share(current), effort: share(effort) };
-        self.now = now;
         self.tick += 1;
         Ok(())
     }

@@ -24,8 +24,12 @@ pub struct Mark {
 #[derive(Debug)]
 pub struct Recorder {
     recording: Recording,
-    /// Up to [`BLOCK`] rows, one after the other.
+    /// Room for [`BLOCK`] rows, one after the other, of which the first `rows` are there.
     block: Vec<f64>,
+    rows: usize,
+    /// Values in a row, and where that of each channel stands.
+    width: usize,
+    columns: Vec<usize>,
     log: Log,
     is_silent: bool,
 }
@@ -34,10 +38,22 @@ impl Recorder {
     /// A recorder with room for `rows` rows; more rows work, but allocate.
     #[must_use]
     pub fn new(about: About, rate: Rate, channels: Vec<ChannelSpec>, rows: usize) -> Self {
-        let block = Vec::with_capacity(BLOCK * channels.len());
+        let (width, columns) = (channels.len(), (0..channels.len()).collect());
         let channels = channels.into_iter().map(|spec| Channel { spec, values: Vec::with_capacity(rows) }).collect();
         let recording = Recording { channels, ..Recording::new(about, rate) };
-        Self { recording, block, log: Log::default(), is_silent: false }
+        let block = vec![0.0; BLOCK * width];
+        Self { recording, block, rows: 0, width, columns, log: Log::default(), is_silent: false }
+    }
+
+    /// The same recorder for rows of `width` values, of which it keeps the one at `columns[i]` in channel i.
+    ///
+    /// # Panics
+    /// When there is not one column in the row for each channel.
+    #[must_use]
+    pub fn with_rows(self, width: usize, columns: Vec<usize>) -> Self {
+        assert_eq!(columns.len(), self.recording.channels.len(), "a row has one value for each channel");
+        assert!(columns.iter().all(|column| *column < width), "a row has one value for each channel");
+        Self { block: vec![0.0; BLOCK * width], width, columns, ..self }
     }
 
     /// A recorder that keeps nothing, for a loop that nobody records and that may go on for ever.
@@ -46,26 +62,31 @@ impl Recorder {
         Self { is_silent: true, ..Self::new(about, rate, vec![], 0) }
     }
 
-    /// Appends one value to every channel, in the order of the channels.
+    /// Appends a row.
     ///
     /// # Panics
-    /// When `row` has not as many values as there are channels: the loop that writes it is wrong.
+    /// When `row` is not as long as the recorder's rows: the loop that writes it is wrong.
     pub fn push(&mut self, row: &[f64]) {
-        let width = self.recording.channels.len();
-        assert_eq!(row.len(), width, "a row has one value for each channel");
-        self.block.extend_from_slice(row);
-        if self.block.len() == BLOCK * width {
+        self.push_with(|slot| slot.copy_from_slice(row));
+    }
+
+    /// Appends the row that `write` fills in where it is kept.
+    #[inline]
+    pub fn push_with(&mut self, write: impl FnOnce(&mut [f64])) {
+        let from = self.rows * self.width;
+        write(&mut self.block[from..from + self.width]);
+        self.rows += 1;
+        if self.rows == BLOCK {
             self.flush();
         }
     }
 
     /// Moves the block to the columns.
     fn flush(&mut self) {
-        let width = self.recording.channels.len();
-        for (i, channel) in self.recording.channels.iter_mut().enumerate() {
-            channel.values.extend(self.block[i..].iter().step_by(width));
+        for (channel, column) in self.recording.channels.iter_mut().zip(&self.columns) {
+            channel.values.extend(self.block.chunks_exact(self.width).take(self.rows).map(|row| row[*column]));
         }
-        self.block.clear();
+        self.rows = 0;
     }
 
     /// What the recording is of.
@@ -132,8 +153,7 @@ impl Recorder {
     /// Where the recording is at `time` (s), of which and after which nothing is noted yet.
     #[must_use]
     pub fn mark(&self, time: f64) -> Mark {
-        let width = self.recording.channels.len().max(1);
-        let rows = self.recording.channels.first().map_or(0, |channel| channel.values.len()) + self.block.len() / width;
+        let rows = self.recording.channels.first().map_or(0, |channel| channel.values.len()) + self.rows;
         Mark { rows, moves: self.recording.moves.len(), events: self.recording.events.len(), time }
     }
 
@@ -156,9 +176,7 @@ impl Recorder {
     /// The recording, events in order of their start.
     #[must_use]
     pub fn finish(mut self) -> Recording {
-        if !self.block.is_empty() {
-            self.flush();
-        }
+        self.flush();
         self.recording.events.sort_by(|one, two| one.start.total_cmp(&two.start));
         self.recording.log = self.log.finish();
         self.recording

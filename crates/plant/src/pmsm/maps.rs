@@ -14,23 +14,37 @@
 //! on 1 + D, so that a slow motor keeps its digits. Scaling and squaring: Moler and Van Loan, *SIAM Review* 45(1), 2003,
 //! method 3; the integrals of forms: Van Loan, *IEEE Transactions on Automatic Control* 23(3), 1978.
 //!
-//! A part is so short that `M` coefficients of its series leave out less than the rounding: with at most
-//! [`LARGEST_PART`] of change in it, (2·0.044)⁹/10! < 1e-16 of a mean of products, and less of the currents.
+//! A part is so short that `M` terms of its series leave out less than the rounding: with at most [`LARGEST_PART`] of
+//! change in it, (2·0.76)²⁰/21! < 1e-16 of a mean of products, and less of the currents.
 use super::Params;
 use core::array::from_fn;
 use core::ops::{Add, Mul};
 
 /// Numbers, or polynomials of the speed: see [`table`](super::table).
-pub(super) trait Scalar: Copy + From<f64> + Add<Output = Self> + Mul<Output = Self> {}
+pub(super) trait Scalar: Copy + From<f64> + Add<Output = Self> + Mul<Output = Self> {
+    /// `factor` times as much.
+    fn times(self, factor: f64) -> Self;
 
-impl<T: Copy + From<f64> + Add<Output = T> + Mul<Output = T>> Scalar for T {}
+    /// Times the angle `turn`.
+    fn times_turn(self, turn: Self) -> Self;
+}
+
+impl Scalar for f64 {
+    fn times(self, factor: f64) -> Self {
+        self * factor
+    }
+
+    fn times_turn(self, turn: Self) -> Self {
+        self * turn
+    }
+}
 
 /// Entries of w.
 pub(super) const N: usize = 5;
-/// Coefficients of a series.
-const M: usize = 9;
+/// Terms of a series.
+const M: usize = 20;
 /// Largest change in a part, relative to what changes.
-const LARGEST_PART: f64 = 0.044;
+const LARGEST_PART: f64 = 0.76;
 
 pub(super) type Matrix<T> = [[T; N]; N];
 
@@ -74,38 +88,9 @@ impl<T: Scalar> Maps<T> {
     /// Over one of 2^`doublings` parts of a tick of `h` (s), in which the rotor turns by `turn` (rad).
     pub(super) fn part(p: &Params, turn: T, h: f64, doublings: i32) -> Self {
         let share = libm::scalbn(1.0, -doublings);
-        let (h, turn) = (share * h, turn * T::from(share));
-        let columns: [Polynomials<T>; N] = from_fn(|column| Polynomials::of_column(p, turn, h, column));
-        let forms = |p: &Params, j: usize, k: usize| {
-            let (a, b) = (&columns[j], &columns[k]);
-            let mut torque = a.i_d.mean_product(&b.i_q) * T::from(p.inductance.d - p.inductance.q);
-            if k == N - 1 {
-                torque = torque + a.i_q.mean() * T::from(p.flux_linkage);
-            }
-            let square = a.i_d.mean_product(&b.i_d) + a.i_q.mean_product(&b.i_q);
-            let input = a.u_d.mean_product(&b.i_d) + a.u_q.mean_product(&b.i_q);
-            Forms { torque, square, input }
-        };
-        let both: Matrix<Forms<T>> = from_fn(|j| from_fn(|k| forms(p, j, k)));
-        let half = T::from(0.5);
-        let symmetric =
-            |of: &dyn Fn(&Forms<T>) -> T| from_fn(|j| from_fn(|k| (of(&both[j][k]) + of(&both[k][j])) * half));
-        let zero = [T::from(0.0); N];
-        let row = |of: &dyn Fn(&Polynomials<T>) -> T| from_fn(|k| of(&columns[k]));
-        Self {
-            change: [
-                row(&|c| c.i_d.change()),
-                row(&|c| c.i_q.change()),
-                row(&|c| c.u_d.change()),
-                row(&|c| c.u_q.change()),
-                zero,
-            ],
-            forms: Forms {
-                torque: symmetric(&|form| form.torque),
-                square: symmetric(&|form| form.square),
-                input: symmetric(&|form| form.input),
-            },
-        }
+        let (h, turn) = (share * h, turn.times(share));
+        let slope = Slope::new(p, turn, h);
+        Self { change: slope.change(), forms: forms(p).map(|form| slope.mean(&form)) }
     }
 
     /// Over twice the time.
@@ -123,68 +108,82 @@ impl<T: Scalar> Maps<T> {
     }
 }
 
+/// The forms themselves.
+fn forms<T: Scalar>(p: &Params) -> Forms<Matrix<T>> {
+    let symmetric = |products: &[(usize, usize, f64)]| {
+        let mut form = [[0.0; N]; N];
+        for (j, k, factor) in products {
+            form[*j][*k] += factor / 2.0;
+            form[*k][*j] += factor / 2.0;
+        }
+        form.map(|row| row.map(T::from))
+    };
+    Forms {
+        torque: symmetric(&[(1, 4, p.flux_linkage), (0, 1, p.inductance.d - p.inductance.q)]),
+        square: symmetric(&[(0, 0, 1.0), (1, 1, 1.0)]),
+        input: symmetric(&[(0, 2, 1.0), (1, 3, 1.0)]),
+    }
+}
+
+/// dw/dτ by w.
+struct Slope<T> {
+    /// Entries that are not zero: row, column, what stands there, and whether it is per turn.
+    entries: [(usize, usize, f64, bool); 9],
+    turn: T,
+}
+
+impl<T: Scalar> Slope<T> {
+    fn new(p: &Params, turn: T, h: f64) -> Self {
+        let l = p.inductance;
+        let entries = [
+            (0, 0, -h * p.resistance / l.d, false),
+            (0, 1, l.q / l.d, true),
+            (0, 2, h / l.d, false),
+            (1, 1, -h * p.resistance / l.q, false),
+            (1, 0, -l.d / l.q, true),
+            (1, 3, h / l.q, false),
+            (1, 4, -p.flux_linkage / l.q, true),
+            (2, 3, 1.0, true),
+            (3, 2, -1.0, true),
+        ];
+        Self { entries, turn }
+    }
+
+    /// D = A + A²/2! + A³/3! + …, the smallest first.
+    fn change(&self) -> Matrix<T> {
+        let unit: Matrix<T> = from_fn(|j| from_fn(|k| T::from(if j == k { 1.0 } else { 0.0 })));
+        let sum = (2..=M).rev().fold(unit, |sum, n| {
+            let next = self.after(&sum);
+            from_fn(|j| from_fn(|k| unit[j][k] + next[j][k].times(1.0 / n as f64)))
+        });
+        self.after(&sum)
+    }
+
+    /// S = Q + L(Q)/2! + L²(Q)/3! + … with L(Q) = Q·A + (Q·A)ᵀ, the slope of a symmetric form; the smallest first.
+    fn mean(&self, form: &Matrix<T>) -> Matrix<T> {
+        (2..=M).rev().fold(*form, |sum, n| {
+            let next = self.after(&sum);
+            from_fn(|j| from_fn(|k| form[j][k] + (next[j][k] + next[k][j]).times(1.0 / n as f64)))
+        })
+    }
+
+    /// `matrix`·A.
+    fn after(&self, matrix: &Matrix<T>) -> Matrix<T> {
+        let mut product = [[T::from(0.0); N]; N];
+        for (row, column, slope, is_per_turn) in self.entries {
+            for (product, factor) in product.iter_mut().zip(matrix) {
+                let term = factor[row].times(slope);
+                product[column] = product[column] + if is_per_turn { term.times_turn(self.turn) } else { term };
+            }
+        }
+        product
+    }
+}
+
 fn sum<T: Scalar>(term: impl Fn(usize) -> T) -> T {
     (1..N).fold(term(0), |sum, n| sum + term(n))
 }
 
 fn product<T: Scalar>(a: &Matrix<T>, b: &Matrix<T>) -> Matrix<T> {
     from_fn(|j| from_fn(|k| sum(|n| a[j][n] * b[n][k])))
-}
-
-/// Coefficients of τⁿ.
-#[derive(Clone, Copy)]
-struct Polynomial<T>([T; M]);
-
-/// Those of currents and voltages that begin as one column of the unit matrix.
-struct Polynomials<T> {
-    i_d: Polynomial<T>,
-    i_q: Polynomial<T>,
-    u_d: Polynomial<T>,
-    u_q: Polynomial<T>,
-}
-
-impl<T: Scalar> Polynomials<T> {
-    fn of_column(p: &Params, turn: T, h: f64, column: usize) -> Self {
-        let (l, constant) = (p.inductance, T::from);
-        let (per_d, per_q) = (h / l.d, h / l.q);
-        let (cross_d, cross_q) = (turn * constant(l.q / l.d), turn * constant(-l.d / l.q));
-        let mut w: [T; N] = from_fn(|row| constant(if row == column { 1.0 } else { 0.0 }));
-        let mut all = [[constant(0.0); M]; N];
-        for n in 0..M {
-            for (all, w) in all.iter_mut().zip(w) {
-                all[n] = w;
-            }
-            let [i_d, i_q, u_d, u_q, one] = w;
-            let next = [
-                i_d * constant(-per_d * p.resistance) + cross_d * i_q + u_d * constant(per_d),
-                i_q * constant(-per_q * p.resistance)
-                    + cross_q * i_d
-                    + u_q * constant(per_q)
-                    + turn * one * constant(-p.flux_linkage / l.q),
-                turn * u_q,
-                turn * u_d * constant(-1.0),
-                constant(0.0),
-            ];
-            w = next.map(|slope| slope * constant(1.0 / (n + 1) as f64));
-        }
-        let [i_d, i_q, u_d, u_q, _] = all.map(Polynomial);
-        Self { i_d, i_q, u_d, u_q }
-    }
-}
-
-impl<T: Scalar> Polynomial<T> {
-    /// From τ = 0 to 1.
-    fn change(&self) -> T {
-        self.0[1..].iter().rev().fold(T::from(0.0), |sum, a| sum + *a)
-    }
-
-    /// From τ = 0 to 1.
-    fn mean(&self) -> T {
-        self.0.iter().enumerate().rev().fold(T::from(0.0), |sum, (n, a)| sum + *a * T::from(1.0 / (n + 1) as f64))
-    }
-
-    /// Of the product, as far as its coefficients go.
-    fn mean_product(&self, other: &Self) -> T {
-        Self(from_fn(|k| (0..=k).fold(T::from(0.0), |sum, n| sum + self.0[n] * other.0[k - n]))).mean()
-    }
 }

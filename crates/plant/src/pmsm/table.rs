@@ -2,26 +2,27 @@
 //! multiplications.
 //!
 //! A rotor that turns the other way exchanges the sign of q: each entry of the maps is even or odd in x = ω·h. So with
-//! y = x² an entry is a polynomial of y, or x times one. Of its size, ``TERMS` coefficients leave out (2x)^16/17! < 1e-16 up to
-//! [`FURTHEST`]; a smaller x needs fewer.
-use super::maps::{Forms, Maps, Matrix, N, doublings};
+//! y = x² an entry is a polynomial of y, or x times one. Of its size, `TERMS` coefficients leave out (2x)^16/17! < 1e-16 up to
+//! [`FURTHEST`]; a smaller x needs fewer. A faster rotor takes several parts of a tick, whose maps are made when the first one comes.
+use super::maps::{Forms, Maps, Matrix, Scalar, doublings};
 use super::{Input, Params};
 use core::array::from_fn;
 use core::ops::{Add, Mul};
 use servobench_base::Dq;
+use std::sync::OnceLock;
+use wide::f64x2;
 
 /// Coefficients in y.
 const TERMS: usize = 8;
 /// Largest turn for which the table holds (rad): ½·(1e-16·17!)^(1/16).
 const FURTHEST: f64 = 0.405;
-/// The tick itself, a quarter and a sixteenth of it: what a fast rotor takes several of.
-const LEVELS: usize = 3;
-/// From the tick to the finest of them.
-const HALVINGS: i32 = 4;
+/// How often a tick is halved to give the parts that a fast rotor takes several of: a quarter and a sixteenth.
+const HALVINGS: [i32; 2] = [2, 4];
 
-/// For which 4 and 6 are enough: ½·(1e-16·(2n + 1)!)^(1/2n).
-const NEAR: f64 = 0.0247;
-const FAR: f64 = 0.151;
+/// For which 4, 5 and 6 are enough: ½·(1e-16·(2n + 1)!)^(1/2n).
+const ENOUGH_FOR_4: f64 = 0.0247;
+const ENOUGH_FOR_5: f64 = 0.072;
+const ENOUGH_FOR_6: f64 = 0.151;
 
 /// Polynomial in x, cut after as many coefficients as the table has.
 #[derive(Clone, Copy)]
@@ -57,37 +58,58 @@ impl Mul for InTurn {
     }
 }
 
-/// The maps over a part of a tick.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Table {
-    /// Change of i_d per i_d, u_d, 1 and of i_q per i_q, u_q, even in x; of i_d per i_q, u_q and of i_q per i_d, u_d, 1,
-    /// odd.
-    change: [[f64; 10]; TERMS],
-    /// By product of two entries of w.
-    forms: Forms<[[f64; 16]; TERMS]>,
+impl Scalar for InTurn {
+    fn times(self, factor: f64) -> Self {
+        Self(self.0.map(|coefficient| factor * coefficient))
+    }
+
+    /// An angle is x times something.
+    fn times_turn(self, turn: Self) -> Self {
+        Self(from_fn(|n| if n == 0 { 0.0 } else { turn.0[1] * self.0[n - 1] }))
+    }
 }
 
-/// Products of two entries of w: i_d, u_d, 1 among themselves, i_q and u_q among themselves, then one of each. A form of
-/// which the first are even in x has odd ones behind.
-const PRODUCTS: [(usize, usize); 15] = [
-    (0, 0),
-    (0, 2),
-    (0, 4),
-    (2, 2),
-    (2, 4),
-    (4, 4),
-    (1, 1),
-    (1, 3),
-    (3, 3),
-    (0, 1),
-    (0, 3),
-    (2, 1),
-    (2, 3),
-    (4, 1),
-    (4, 3),
+/// The maps over a part of a tick, by powers of y. Values stand in pairs, as the processor multiplies them.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Table {
+    /// Change of i_d and i_q: per current of the same axis, per voltage of it, and by itself, even in x; per current of the
+    /// other axis, per voltage of it, and by itself, odd.
+    change: [[f64x2; 6]; TERMS],
+    /// By [`PRODUCTS`].
+    forms: Forms<[[f64x2; PRODUCTS.len()]; TERMS]>,
+}
+
+/// Products of two entries of w. The first [`ALIKE`] are of d entries (i_d, u_d, 1) among themselves and of q entries (i_q,
+/// u_q) among themselves. A form in which they are even in x has the others, one of each kind, odd, and the other way round.
+const PRODUCTS: [[Option<(usize, usize)>; 2]; 8] = [
+    [Some((0, 2)), Some((1, 3))],
+    [Some((2, 2)), Some((3, 3))],
+    [Some((2, 4)), None],
+    [Some((0, 0)), Some((1, 1))],
+    [Some((0, 4)), Some((4, 4))],
+    [Some((0, 3)), Some((1, 2))],
+    [Some((2, 3)), Some((3, 4))],
+    [Some((0, 1)), Some((1, 4))],
 ];
-/// How many of them come before the others.
-const LIKE: usize = 9;
+const ALIKE: usize = 5;
+/// How many of each kind have a voltage: they come first, and there is nothing else in the input.
+const WITH_VOLTAGE: [usize; 2] = [3, 2];
+
+/// [`PRODUCTS`] at `i` and `u`.
+#[inline]
+fn products(i: Dq, u: Dq) -> [f64x2; PRODUCTS.len()] {
+    let [current, voltage] = [i, u].map(|of| f64x2::new([of.d, of.q]));
+    [
+        current * voltage,
+        voltage * voltage,
+        f64x2::new([u.d, 0.0]),
+        current * current,
+        f64x2::new([i.d, 1.0]),
+        current * f64x2::new([u.q, u.d]),
+        f64x2::new([u.d, 1.0]) * f64x2::splat(u.q),
+        f64x2::new([i.d, 1.0]) * f64x2::splat(i.q),
+    ]
+}
 
 /// What a part of a tick gives.
 #[derive(Debug, Clone, Copy)]
@@ -103,27 +125,27 @@ impl Table {
         let [d, q, ..] = &maps.change;
         let change = |k| {
             [
-                even(&d[0], k),
-                even(&d[2], k),
-                even(&d[4], k),
-                even(&q[1], k),
-                even(&q[3], k),
-                odd(&d[1], k),
-                odd(&d[3], k),
-                odd(&q[0], k),
-                odd(&q[2], k),
-                odd(&q[4], k),
+                [even(&d[0], k), even(&q[1], k)],
+                [even(&d[2], k), even(&q[3], k)],
+                [even(&d[4], k), 0.0],
+                [odd(&d[1], k), odd(&q[0], k)],
+                [odd(&d[3], k), odd(&q[2], k)],
+                [0.0, odd(&q[4], k)],
             ]
+            .map(f64x2::new)
         };
-        let form = |form: &Matrix<InTurn>, like_is_even: bool| {
-            from_fn(|k| {
-                let mut all = [0.0; 16];
-                for (at, (a, b)) in PRODUCTS.into_iter().enumerate() {
+        let form = |form: &Matrix<InTurn>, alike_are_even: bool| {
+            let coefficient = |product: Option<(usize, usize)>, k: usize, is_even: bool| {
+                product.map_or(0.0, |(a, b)| {
                     let times = if a == b { 1.0 } else { 2.0 };
-                    let is_even = (at < LIKE) == like_is_even;
-                    all[at] = times * if is_even { even(&form[a][b], k) } else { odd(&form[a][b], k) };
-                }
-                all
+                    times * if is_even { even(&form[a][b], k) } else { odd(&form[a][b], k) }
+                })
+            };
+            from_fn(|k| {
+                from_fn(|at| {
+                    let is_even = (at < ALIKE) == alike_are_even;
+                    f64x2::new(PRODUCTS[at].map(|product| coefficient(product, k, is_even)))
+                })
             })
         };
         let Forms { torque, square, input } = &maps.forms;
@@ -137,62 +159,77 @@ impl Table {
     #[inline]
     fn solve<const TERMS_USED: usize, const POWER: bool>(&self, x: f64, i: Dq, u: Dq) -> Solution {
         let y = x * x;
-        let c = horner::<10, TERMS_USED>(&self.change, y);
-        let change = Dq {
-            d: (c[0] * i.d + c[1] * u.d + c[2]) + x * (c[5] * i.q + c[6] * u.q),
-            q: (c[3] * i.q + c[4] * u.q) + x * (c[7] * i.d + c[8] * u.d + c[9]),
-        };
-        let w: [f64; N] = [i.d, i.q, u.d, u.q, 1.0];
-        let products = PRODUCTS.map(|(a, b)| w[a] * w[b]);
-        let (like, unlike) = parts::<TERMS_USED>(&self.forms.torque, &products, y);
-        let mut means = Forms { torque: x * like + unlike, square: 0.0, input: 0.0 };
+        let per = [f64x2::new([i.d, i.q]), f64x2::new([u.d, u.q]), f64x2::ONE];
+        let per_other = [f64x2::new([i.q, i.d]), f64x2::new([u.q, u.d]), f64x2::ONE];
+        let even = in_y::<TERMS_USED>(y, |k| sum_of_products(&self.change[k][..3], &per));
+        let odd = in_y::<TERMS_USED>(y, |k| sum_of_products(&self.change[k][3..], &per_other));
+        let [d, q] = (even + f64x2::splat(x) * odd).to_array();
+
+        let products = products(i, u);
+        let forms = &self.forms;
+        let torque = mean::<TERMS_USED>(&forms.torque, &products, y, [ALIKE, PRODUCTS.len() - ALIKE], [x, 1.0]);
+        let mut means = Forms { torque, square: 0.0, input: 0.0 };
         if POWER {
-            let (like, unlike) = parts::<TERMS_USED>(&self.forms.square, &products, y);
-            means.square = like + x * unlike;
-            let (like, unlike) = parts::<TERMS_USED>(&self.forms.input, &products, y);
-            means.input = like + x * unlike;
+            means.square = mean::<TERMS_USED>(&forms.square, &products, y, [ALIKE, PRODUCTS.len() - ALIKE], [1.0, x]);
+            means.input = mean::<TERMS_USED>(&forms.input, &products, y, WITH_VOLTAGE, [1.0, x]);
         }
-        Solution { change, means }
+        Solution { change: Dq { d, q }, means }
     }
 }
 
-/// A form's polynomials, each times its product: of those of like entries, and of the others.
+/// A form's mean, of which there are so many products of each kind, with the kind's factor.
 #[inline]
-fn parts<const USED: usize>(form: &[[f64; 16]; TERMS], products: &[f64; PRODUCTS.len()], y: f64) -> (f64, f64) {
-    let e = horner::<16, USED>(form, y);
-    let p = products;
-    let like = ((e[0] * p[0] + e[1] * p[1]) + (e[2] * p[2] + e[3] * p[3]))
-        + ((e[4] * p[4] + e[5] * p[5]) + (e[6] * p[6] + e[7] * p[7]))
-        + e[8] * p[8];
-    let unlike = ((e[9] * p[9] + e[10] * p[10]) + (e[11] * p[11] + e[12] * p[12])) + (e[13] * p[13] + e[14] * p[14]);
-    (like, unlike)
+fn mean<const USED: usize>(
+    form: &[[f64x2; PRODUCTS.len()]; TERMS],
+    products: &[f64x2; PRODUCTS.len()],
+    y: f64,
+    [alike, others]: [usize; 2],
+    [of_alike, of_others]: [f64; 2],
+) -> f64 {
+    let alike = in_y::<USED>(y, |k| sum_of_products(&form[k][..alike], &products[..alike]));
+    let others =
+        in_y::<USED>(y, |k| sum_of_products(&form[k][ALIKE..ALIKE + others], &products[ALIKE..ALIKE + others]));
+    let [one, other] = (f64x2::splat(of_alike) * alike + f64x2::splat(of_others) * others).to_array();
+    one + other
 }
 
 #[inline]
-fn horner<const E: usize, const USED: usize>(coefficients: &[[f64; E]; TERMS], y: f64) -> [f64; E] {
-    let mut all = coefficients[USED - 1];
-    for row in coefficients[..USED - 1].iter().rev() {
-        for (sum, coefficient) in all.iter_mut().zip(row) {
-            *sum = *sum * y + coefficient;
-        }
-    }
-    all
+fn sum_of_products(coefficients: &[f64x2], products: &[f64x2]) -> f64x2 {
+    let mut both = coefficients.iter().zip(products).map(|(c, p)| *c * *p);
+    let first = both.next().unwrap_or_default();
+    both.fold(first, |sum, product| sum + product)
+}
+
+/// Two polynomials of y by their `USED` coefficients, side by side (Horner).
+#[inline]
+fn in_y<const USED: usize>(y: f64, coefficient: impl Fn(usize) -> f64x2) -> f64x2 {
+    let y = f64x2::splat(y);
+    (0..USED - 1).rev().fold(coefficient(USED - 1), |sum, k| sum * y + coefficient(k))
 }
 
 /// The tables of a tick.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Tables([Table; LEVELS]);
+#[derive(Debug, Clone)]
+pub(super) struct Tables {
+    tick: Table,
+    params: Params,
+    /// Length of a tick (s).
+    h: f64,
+    /// Those of the parts of a tick, made for the first rotor that needs them.
+    parts: [OnceLock<Table>; HALVINGS.len()],
+}
+
+/// Of a part of a tick of `h` (s), which is so often halved.
+fn table(p: &Params, h: f64, halvings: i32) -> Table {
+    let mut turn = InTurn::from(0.0);
+    turn.0[1] = 1.0;
+    // The rotor may turn by as much as the table holds for in a part.
+    let all = doublings(p, FURTHEST * libm::scalbn(1.0, halvings), h).max(halvings);
+    Table::of(&(halvings..all).fold(Maps::part(p, turn, h, all), |maps, _| maps.doubled()))
+}
 
 impl Tables {
     pub(super) fn new(p: &Params, h: f64) -> Self {
-        let mut turn = InTurn::from(0.0);
-        turn.0[1] = 1.0;
-        // The finest level takes the fastest rotor, so its parts are made for that.
-        let all = doublings(p, FURTHEST * libm::scalbn(1.0, HALVINGS), h).max(HALVINGS);
-        let finest = (HALVINGS..all).fold(Maps::part(p, turn, h, all), |maps, _| maps.doubled());
-        let quarter = finest.doubled().doubled();
-        let whole = quarter.doubled().doubled();
-        Self([Table::of(&whole), Table::of(&quarter), Table::of(&finest)])
+        Self { tick: table(p, h, 0), params: *p, h, parts: HALVINGS.map(|_| OnceLock::new()) }
     }
 
     /// A tick from the current `i` on, if the rotor is slow enough.
@@ -201,12 +238,14 @@ impl Tables {
         let turn = x.abs();
         if turn <= FURTHEST {
             let voltage = u.voltage.to_dq(u.rotor);
-            return Some(if turn <= NEAR {
-                self.0[0].solve::<4, POWER>(x, i, voltage)
-            } else if turn <= FAR {
-                self.0[0].solve::<6, POWER>(x, i, voltage)
+            return Some(if turn <= ENOUGH_FOR_4 {
+                self.tick.solve::<4, POWER>(x, i, voltage)
+            } else if turn <= ENOUGH_FOR_5 {
+                self.tick.solve::<5, POWER>(x, i, voltage)
+            } else if turn <= ENOUGH_FOR_6 {
+                self.tick.solve::<6, POWER>(x, i, voltage)
             } else {
-                self.0[0].solve::<TERMS, POWER>(x, i, voltage)
+                self.tick.solve::<TERMS, POWER>(x, i, voltage)
             });
         }
         self.in_parts::<POWER>(x, i, u)
@@ -214,9 +253,10 @@ impl Tables {
 
     #[cold]
     fn in_parts<const POWER: bool>(&self, x: f64, i: Dq, u: &Input) -> Option<Solution> {
-        let (table, parts) = [(&self.0[1], 4_u32), (&self.0[2], 16)]
-            .into_iter()
-            .find(|(_, parts)| x.abs() <= FURTHEST * f64::from(*parts))?;
+        let parts_of = |halvings: i32| 1_u32 << halvings;
+        let at = HALVINGS.iter().position(|halvings| x.abs() <= FURTHEST * f64::from(parts_of(*halvings)))?;
+        let table = self.parts[at].get_or_init(|| table(&self.params, self.h, HALVINGS[at]));
+        let parts = parts_of(HALVINGS[at]);
         let share = 1.0 / f64::from(parts);
         let (mut now, mut means) = (i, Forms { torque: 0.0, square: 0.0, input: 0.0 });
         for part in 0..parts {
@@ -235,10 +275,21 @@ impl Tables {
 mod tests {
     use super::*;
 
+    #[test]
+    fn products_are_of_the_entries_that_they_say() {
+        let w = [-1.3, 2.4, 7.0, -11.0, 1.0];
+        let found = products(Dq { d: w[0], q: w[1] }, Dq { d: w[2], q: w[3] });
+        for (found, said) in found.into_iter().zip(PRODUCTS) {
+            for (value, said) in found.to_array().into_iter().zip(said) {
+                assert!(said.is_none_or(|(a, b)| value.to_bits() == f64::to_bits(w[a] * w[b])), "{said:?}: {value}");
+            }
+        }
+    }
+
     /// Oracle: the bound that the module's text gives, by its logarithm.
     #[test]
     fn what_the_table_leaves_out_is_below_the_rounding() {
-        for (bound, count) in [(NEAR, 4), (FAR, 6), (FURTHEST, TERMS)] {
+        for (bound, count) in [(ENOUGH_FOR_4, 4), (ENOUGH_FOR_5, 5), (ENOUGH_FOR_6, 6), (FURTHEST, TERMS)] {
             let factorial: f64 = (1..=2 * count + 1).map(|n| (n as f64).ln()).sum();
             let left_out = 2.0 * count as f64 * (2.0 * bound).ln() - factorial;
             assert!(left_out < 1e-16_f64.ln() && left_out > 0.7e-16_f64.ln(), "{count}: {}", left_out.exp());

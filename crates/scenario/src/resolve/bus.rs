@@ -5,7 +5,7 @@ use crate::file;
 use crate::file::File;
 use crate::resolve::{bus_fault, mode, need, refuse, whole};
 use crate::scenario::{
-    Actuator, Bus, BusMode, Counter, DriveUnits, EffortFeedforward, Estimate, Feedback, InterpolationMode, Motion,
+    Actuator, Bus, BusMode, Counter, Drive, DriveUnits, EffortFeedforward, Feedback, InterpolationMode, Motion,
     ObjectWrite, Sequencing, Step,
 };
 use crate::source::At;
@@ -52,7 +52,7 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
     let motion_every = motion_every(given, cycle, known, report);
     refuse_fast_cycle(given, cycle, known, report);
     let position_gain = mode.and_then(|mode| position_gain(given, mode, report));
-    let effort_offset = effort_offset(given, known.actuator.and_then(Actuator::drive).map(|d| &d.estimate), report);
+    let effort_offset = effort_offset(given, known.actuator, report);
     warn_of_what_is_added_twice(given, known.actuator, report);
     let margin = margin(given, cycle.zip(motion_every), known, report);
     let units = units(file, given, known.actuator, report);
@@ -174,12 +174,22 @@ fn position_gain(given: &file::Bus, mode: BusMode, report: &mut Report) -> Optio
     Some(None)
 }
 
-/// The model behind the torque offset, which must have what it computes with.
-fn effort_offset(given: &file::Bus, estimate: Option<&Estimate>, report: &mut Report) -> Option<EffortFeedforward> {
+/// The model behind the torque offset, which must have what it computes with, and a scale.
+fn effort_offset(given: &file::Bus, actuator: Option<&Actuator>, report: &mut Report) -> Option<EffortFeedforward> {
     let Some(at) = given.effort_offset.at() else {
         return given.effort_offset.optional().ok().map(|_| EffortFeedforward::Off);
     };
-    let Some(estimate) = estimate else { return Some(at.value) };
+    let Some((actuator, Drive { estimate, .. })) = actuator.and_then(|it| Some((it, it.drive()?))) else {
+        return Some(at.value);
+    };
+    if at.value != EffortFeedforward::Off && actuator.rated_effort().is_none() {
+        let (key, example) = match report.motor {
+            Some(Motion::Linear) => ("max_force", "300 N"),
+            Some(Motion::Rotary) | None => ("max_torque", "12 Nm"),
+        };
+        let message = "the torque offset is sent in thousandths of the largest effort, and this drive has no limit";
+        report.error(at.span, message, format!("give `{key}` in `[drive]`, such as \"{example}\""));
+    }
     let is_heavy = estimate.motor_inertia + estimate.load_inertia > 0.0;
     let is_elastic = estimate.stiffness.is_finite() && estimate.load_inertia > 0.0;
     if at.value != EffortFeedforward::Off && !is_heavy {

@@ -50,4 +50,15 @@ impl Actuator {
             Self::IdealSource { drive, .. } => drive.max_effort,
         }
     }
+
+    /// Largest effort that the drive knows of (N·m or N): its limit, or what an ideal source's output leaves of it. A
+    /// thousand of CiA 402's torque objects stand for it; there is none where nothing has a limit.
+    #[must_use]
+    pub fn rated_effort(&self) -> Option<f64> {
+        let rated = match self {
+            Self::IdealSource { source, estimated_gain, drive } => drive.max_effort.min(estimated_gain * source.limit),
+            Self::Prescribed | Self::Off | Self::Pmsm { .. } => self.max_effort(),
+        };
+        rated.is_finite().then_some(rated)
+    }
 }

@@ -174,6 +174,14 @@ fn the_master_knows_what_it_feeds_forward() {
     let expected = "4:17: the axis is rigid: there are no two masses; write \"rigid\", or give `stiffness` and `load_inertia` \
                     in `[drive.estimate]`";
     assert_eq!(said(&rigid, &bus("effort_offset = \"two-mass\"\n"))[0], [expected]);
+    let axis = bare();
+    let (mechanics, drive) =
+        (axis.split_once("[motor]\n").unwrap().0, axis.split_once("[drive.velocity]\n").unwrap().1);
+    let source = "[motor]\nkind = \"ideal-source\"\ninertia = \"1.57 kg cm2\"\n";
+    let unlimited = format!("{mechanics}{source}[drive.velocity]\n{drive}");
+    let expected = "4:17: the torque offset is sent in thousandths of the largest effort, and this drive has no limit; give \
+                    `max_torque` in `[drive]`, such as \"12 Nm\"";
+    assert_eq!(said(&unlimited, &bus("effort_offset = \"rigid\"\n"))[0], [expected]);
     let twice = [
         "4:19: the drive feeds the velocity forward too: it is added twice; leave `velocity` out of \
          `[drive.feedforward]`, or this out",

@@ -45,7 +45,7 @@ pub(super) struct Axis {
 impl Axis {
     pub(super) fn new(recorded: Recorded, ticks: u64, takes: Vec<LoopSignal>, gives: Selection) -> Self {
         let mut now = Instant::default();
-        recorded.closed_loop.look(&External::default(), &mut now);
+        recorded.closed_loop.sample(&External::default(), &mut now);
         Self { recorded, ticks, takes, gives, now, external: External::default(), saved: None }
     }
 
@@ -74,7 +74,7 @@ impl Axis {
 
     /// The bodies and the set-point of the tick that comes.
     fn look(&mut self) {
-        self.recorded.closed_loop.look(&External::default(), &mut self.now);
+        self.recorded.closed_loop.sample(&External::default(), &mut self.now);
         if let Some(setpoint) = self.recorded.closed_loop.look_ahead(self.recorded.tick) {
             self.now.setpoint = setpoint;
         }
@@ -82,9 +82,9 @@ impl Axis {
 
     /// The loop with its last tick recorded.
     pub(super) fn recorded_to_the_end(self, is_complete: bool) -> Recorded {
-        let Self { mut recorded, external, .. } = self;
+        let Self { mut recorded, external, mut now, .. } = self;
         if is_complete {
-            recorded.observe(&external);
+            recorded.observe(&external, &mut now);
         }
         recorded
     }
@@ -124,7 +124,7 @@ impl Block for Part {
                 break;
             }
             axis.external = axis.external(inputs, rate.time(Tick(tick)), rate.period());
-            axis.now = axis.recorded.observe(&axis.external);
+            axis.recorded.observe(&axis.external, &mut axis.now);
             axis.recorded.go_on(&axis.now).map_err(PartError::Axis)?;
         }
         axis.look();

@@ -239,8 +239,7 @@ fn dynamics_of_calls(calls: &scenario::Plc) -> Dynamics {
 
 /// What a thousand of 6071h stands for: the largest effort of the drive, or one unit where it has no limit.
 fn rated_effort(scenario: &Scenario) -> f64 {
-    let most = scenario.actuator.max_effort();
-    if most.is_finite() { most } else { 1.0 }
+    scenario.actuator.rated_effort().unwrap_or(1.0)
 }
 
 fn counted(scenario: &Scenario, loops: &drive::Params) -> Result<Counted, BuildError> {
