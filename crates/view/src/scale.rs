@@ -34,7 +34,7 @@ impl Scale {
     }
 
     /// A value (SI) in this unit, to `digits` significant digits.
-    fn rounded(&self, value: f64, digits: u8) -> f64 {
+    pub(crate) fn rounded(&self, value: f64, digits: u8) -> f64 {
         let shown = value * self.factor;
         let places = f64::from(digits) - 1.0 - shown.abs().log10().floor();
         if !places.is_finite() {
