@@ -4,7 +4,7 @@
 //! against the motor is enlarged, as the title says; a pointer at the ruler shows where the load is without that.
 use crate::curves::TIMELINE;
 use crate::run::{Run, range};
-use crate::scale::Scale;
+use crate::scale::{Scale, short};
 use crate::scene::{Body, NAMED, Poses, Scene};
 use crate::style::{self, Rgb};
 use rerun::datatypes::Mat3x3;
@@ -230,7 +230,7 @@ fn log_ruler(stream: &RecordingStream, run: &Run<'_>, scene: &Scene) -> Recordin
         .map(|position| [[scene.place(*position), -0.155, -0.06], [scene.place(*position), -0.10, -0.06]]);
     // Six decimals hide the rounding of a nice number and keep ticks of a short move far from zero apart.
     let number = |position: &f64| (position * scale.factor * 1e6).round() / 1e6;
-    let mut labels: Vec<String> = positions.iter().map(|position| number(position).to_string()).collect();
+    let mut labels: Vec<String> = positions.iter().map(|position| short(number(position))).collect();
     if let Some(last) = labels.last_mut() {
         *last = format!("{last} {}", scale.unit);
     }

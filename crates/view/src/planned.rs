@@ -181,7 +181,7 @@ impl<'a> PlannedPlot<'a> {
         let values: Vec<(&str, f64)> = ranges.map(|(name, range)| (name, headline.of(range))).collect();
         let show = |value: f64| self.scale.show(value, 3);
         // The title has the unit already.
-        let number = |value: f64| self.scale.rounded(value, 3);
+        let number = |value: f64| self.scale.number(value, 3);
         let said = match &values[..] {
             [] => return,
             [(_, value)] => show(*value),
