@@ -208,15 +208,17 @@ const fn of_move(step: &Step) -> bool {
 /// What a viewer says of a run that was judged.
 pub(crate) fn shown(recording: &Recording, metrics: &Metrics, verdict: &Verdict) -> servobench_view::Verdict {
     let judged = RunResult::judged(RunIdentity::default(), recording, metrics, verdict);
-    servobench_view::Verdict {
-        outcome: match judged.verdict {
-            Outcome::Passed => servobench_view::Outcome::Passed,
-            Outcome::Unjudged => servobench_view::Outcome::Unjudged,
-            Outcome::Failed | Outcome::Invalid | Outcome::Error => servobench_view::Outcome::Failed,
-        },
-        reasons: judged.reasons,
-        warnings: verdict.warnings.clone(),
-    }
+    said_of(judged.verdict, judged.reasons, judged.warnings)
+}
+
+/// The words of a result for a viewer.
+pub(crate) const fn said_of(outcome: Outcome, reasons: Vec<String>, warnings: Vec<String>) -> servobench_view::Verdict {
+    let outcome = match outcome {
+        Outcome::Passed => servobench_view::Outcome::Passed,
+        Outcome::Unjudged => servobench_view::Outcome::Unjudged,
+        Outcome::Failed | Outcome::Invalid | Outcome::Error => servobench_view::Outcome::Failed,
+    };
+    servobench_view::Verdict { outcome, reasons, warnings }
 }
 
 /// What a viewer is told beside the recording: limits and the settling window.

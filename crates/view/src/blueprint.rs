@@ -1,5 +1,6 @@
 //! Which view stands where.
 use crate::catalogue::Page;
+use crate::curves::TIMELINE;
 use crate::happenings::Happenings;
 use crate::layout::{Layout, Node, View};
 use crate::legend;
@@ -8,23 +9,30 @@ use crate::reached::Reached;
 use crate::scene::Scene;
 use crate::signals::Lanes;
 use crate::verdict::Head;
+use rerun::EntityPath;
 use rerun::blueprint::components::{ContainerKind, LinkAxis};
 use rerun::datatypes::{TimeInt, TimeRange, TimeRangeBoundary};
 use rerun::external::re_sdk_types::blueprint::archetypes::{
     EyeControls3D, LineGrid3D, PlotLegend, ScalarAxis, TextLogColumns, TimeAxis,
 };
-use rerun::external::re_sdk_types::blueprint::datatypes::{TextLogColumn, TextLogColumnKind};
+use rerun::external::re_sdk_types::blueprint::datatypes::{TextLogColumn, TextLogColumnKind, TimelineColumn};
 use servobench_metrics::round_below;
 
 /// Height of what stands below the tabs in a window of 1400 × 900 points.
-const PAGE: f32 = 790.0;
-/// Height of the title and the frame of a text, and of a line of it (points).
-const FRAME: f32 = 38.0;
-const LINE: f32 = 22.0;
-/// Most lines of the head on the first page, and on the others; more can be scrolled to.
-const LINES: (usize, usize) = (8, 1);
-/// More plots than this on a page stand in two columns.
-const COLUMN: usize = 3;
+const PAGE: f64 = 815.0;
+/// Most that the head takes of the first page; more can be scrolled to (points).
+const HEAD: f64 = 200.0;
+/// Height of title and time axis of a plot (points).
+const AROUND: f64 = 40.0;
+/// Least height of a plot in which curve and legend can be read, where lanes stand beside it (points).
+const LEAST: f64 = 165.0;
+/// Height of title and time axis of lanes, and of a lane (points).
+const LANES: f64 = 54.0;
+const LANE: f64 = 40.0;
+/// Most of a column that lanes take, when there are plots too.
+const MOST: f64 = 0.6;
+/// More plots than this on a page stand in two columns; of the set-point, more than the second number.
+const COLUMN: (usize, usize) = (3, 2);
 
 /// What is to be arranged.
 pub(crate) struct Parts<'p, 'a> {
@@ -44,48 +52,51 @@ pub(crate) struct Parts<'p, 'a> {
     pub(crate) duration: f64,
 }
 
+/// Height of a part of a column.
+#[derive(Debug, Clone, Copy)]
+enum Room {
+    /// Its share of what is left.
+    Share(f64),
+    /// Points.
+    Points(f64),
+}
+
+/// A part of a column.
+enum Part<'p, 'a> {
+    /// A plot, whose axis depends on its height.
+    Plot(&'p PlannedPlot<'a>),
+    /// Anything else.
+    View(Node),
+}
+
+/// The parts of a column, from above.
+type Column<'p, 'a> = Vec<(Room, Part<'p, 'a>)>;
+
 /// The layout of `parts`.
 pub(crate) fn layout(parts: Parts<'_, '_>) -> Layout {
     let Parts { plots, scene, happenings, signals, reached, head, duration } = parts;
-    let on = |page: Page| plots.iter().filter(move |plot| plot.page == page).map(|plot| (share(plot), plot_view(plot)));
-    let mut left: Vec<(f32, Node)> = Vec::new();
-    left.extend(scene.map(|scene| (if scene.roots.len() > 1 { 2.0 } else { 1.5 }, scene_view(scene))));
-    left.extend(on(Page::Motion));
-    left.extend(lanes_view(&happenings));
-    let right = on(Page::Errors).collect();
-    let columns = [(0.45, left), (0.55, right)]
-        .into_iter()
-        .filter_map(|(share, parts)| Some((share, Node::of(ContainerKind::Vertical, None, parts)?)));
-    let mut blocks: Vec<(f32, Node)> = Vec::new();
-    if !signals.paths.is_empty() || !signals.fates.is_empty() {
-        blocks.extend(on(Page::Motion).map(|(_, plot)| (0.85, plot)));
-        // A lane takes 40 points, its view the height of title and time axis.
-        let height = 0.45 + 0.3 * signals.fates.len().min(5) as f32;
-        let fates = (height, "Calls that were never executed, or failed", signals.fates);
-        for (height, title, paths) in [fates, (2.0, "Blocks, axis and drive", signals.paths)] {
-            blocks.extend((!paths.is_empty()).then(|| (height, Node::View(View::new("StateTimeline", title, paths)))));
-        }
-    }
-    let mut first = [
-        ("Axis", Node::of(ContainerKind::Horizontal, None, columns.collect())),
-        ("Program", Node::of(ContainerKind::Vertical, None, blocks)),
-    ];
-    if signals.has_program {
-        first.reverse();
-    }
-    let [one, two] = first;
-    let lanes = reached.as_ref().map_or(0, |reached| reached.paths.len().min(6));
-    let height = 0.14 + 0.07 * lanes as f32;
-    let drive = [(1.0, in_columns(on(Page::Electrical).collect())), (height, reached.map(reached_view))];
-    let drive = drive.into_iter().filter_map(|(share, part)| Some((share, part?))).collect();
-    let pages = [
-        one,
-        two,
-        ("Set-point", Node::of(ContainerKind::Grid, None, on(Page::SetPoint).collect())),
-        ("Drive", Node::of(ContainerKind::Vertical, None, drive)),
-        ("Other", in_columns(on(Page::Other).collect())),
+    let is_first = |name: &str| (name == "Program") == signals.has_program;
+    let height = |name: &str| PAGE - head_height(head, ["Axis", "Program"].contains(&name) && is_first(name));
+    let on =
+        |page: Page| plots.iter().filter(move |plot| plot.page == page).map(|plot| (share(plot), Part::Plot(plot)));
+    let program = program(on(Page::Motion).collect(), &signals, height("Program"));
+    let mut drive: Column<'_, '_> = Vec::new();
+    let lanes = reached.map(|reached| (lanes_height(reached.paths.len().min(6)), reached_view(reached)));
+    let rest = height("Drive") - lanes.as_ref().map_or(0.0, |(points, _)| *points);
+    let electrical = in_columns(on(Page::Electrical).collect(), COLUMN.0, rest);
+    drive.extend(electrical.map(|node| (Room::Share(1.0), Part::View(node))));
+    drive.extend(lanes.map(|(points, node)| (Room::Points(points), Part::View(node))));
+    let mut pages = [
+        ("Axis", axis(on(Page::Motion).collect(), on(Page::Errors).collect(), scene, &happenings, height("Axis"))),
+        ("Program", program),
+        ("Set-point", in_columns(on(Page::SetPoint).collect(), COLUMN.1, height("Set-point"))),
+        ("Drive", stack(drive, height("Drive"))),
+        ("Other", in_columns(on(Page::Other).collect(), COLUMN.0, height("Other"))),
         ("Log", log_view(&happenings)),
     ];
+    if signals.has_program {
+        pages.swap(0, 1);
+    }
     let pages = pages.into_iter().filter_map(|(name, page)| Some((name, page?)));
     let pages = pages.enumerate().map(|(index, (name, page))| (1.0, with_head(name, page, head, index == 0)));
     let root = Node::of(ContainerKind::Tabs, None, pages.collect());
@@ -93,21 +104,95 @@ pub(crate) fn layout(parts: Parts<'_, '_>) -> Layout {
     Layout { root, playback_speed: playback_speed(duration) }
 }
 
+/// The page of the axis: bodies and motion at the left, errors at the right.
+fn axis<'p, 'a>(
+    motion: Column<'p, 'a>,
+    mut right: Column<'p, 'a>,
+    scene: Option<&Scene>,
+    happenings: &Happenings,
+    height: f64,
+) -> Option<Node> {
+    let is_comparison = scene.is_some_and(|scene| scene.roots.len() > 1);
+    let share = if is_comparison { 2.0 } else { 1.5 };
+    let mut left: Column<'p, 'a> = Vec::new();
+    left.extend(scene.map(|scene| (Room::Share(share), Part::View(scene_view(scene)))));
+    left.extend(motion);
+    // The lanes of several runs would leave the 3D view no room.
+    if is_comparison { &mut right } else { &mut left }.extend(lanes_view(happenings));
+    let columns = [(0.45, left), (0.55, right)];
+    let columns = columns.into_iter().filter_map(|(share, parts)| Some((share, stack(parts, height)?)));
+    Node::of(ContainerKind::Horizontal, None, columns.collect())
+}
+
+/// The page of signals: the motion, calls that came to no end, and a lane for each signal.
+fn program(motion: Column<'_, '_>, signals: &Lanes, height: f64) -> Option<Node> {
+    if signals.paths.is_empty() && signals.fates.is_empty() {
+        return None;
+    }
+    let lanes = |title: &str, paths: &[EntityPath], most: f64| {
+        let points = lanes_height(paths.len()).min(most);
+        let view = || Part::View(Node::View(View::new("StateTimeline", title, paths.to_vec())));
+        (!paths.is_empty()).then(|| (Room::Points(points), view()))
+    };
+    let fates = lanes("Calls that were never executed, or failed", &signals.fates, lanes_height(4));
+    let taken =
+        LEAST * motion.len() as f64 + lanes_height(signals.fates.len().min(4)) * f64::from(u8::from(fates.is_some()));
+    let all = lanes("Blocks, axis and drive", &signals.paths, (height - taken).max(lanes_height(2)));
+    stack(motion.into_iter().chain(fates).chain(all).collect(), height)
+}
+
+/// `parts` below each other in `height` points.
+fn stack(parts: Column<'_, '_>, height: f64) -> Option<Node> {
+    let points = |room: &Room| if let Room::Points(points) = room { *points } else { 0.0 };
+    let shares = |room: &Room| if let Room::Share(share) = room { *share } else { 0.0 };
+    let fixed: f64 = parts.iter().map(|(room, _)| points(room)).sum();
+    let all: f64 = parts.iter().map(|(room, _)| shares(room)).sum();
+    // Plots keep some of the height, however many lanes there are.
+    let squeezed = if all > 0.0 && fixed > 0.0 { (MOST * height / fixed).min(1.0) } else { 1.0 };
+    let rest = (height - squeezed * fixed).max(0.0);
+    let nodes = parts.into_iter().map(|(room, part)| {
+        let own = squeezed * points(&room) + if all > 0.0 { rest * shares(&room) / all } else { 0.0 };
+        let node = match part {
+            Part::Plot(plot) => plot_view(plot, own - AROUND),
+            Part::View(node) => node,
+        };
+        #[expect(clippy::cast_possible_truncation, reason = "rounds, to far less than a pixel")]
+        let own = own as f32;
+        (own, node)
+    });
+    Node::of(ContainerKind::Vertical, None, nodes.collect())
+}
+
+/// `plots` below each other, or in two columns when there are more than `most`.
+fn in_columns(mut plots: Column<'_, '_>, most: usize, height: f64) -> Option<Node> {
+    if plots.len() <= most {
+        return stack(plots, height);
+    }
+    let right = plots.split_off(plots.len().div_ceil(2));
+    let columns = [plots, right].into_iter().filter_map(|column| Some((0.5, stack(column, height)?)));
+    Node::of(ContainerKind::Horizontal, None, columns.collect())
+}
+
 /// The tab `name`: the head above `page`, whole as far as there is room on the first.
 fn with_head(name: &'static str, page: Node, head: &Head, is_first: bool) -> Node {
-    let most = if is_first { LINES.0 } else { LINES.1 };
-    let height = FRAME + LINE * head.lines().clamp(1, most) as f32;
-    let mut parts = vec![(PAGE - height, page)];
+    let height = head_height(head, is_first);
+    #[expect(clippy::cast_possible_truncation, reason = "rounds, to far less than a pixel")]
+    let [page_share, head_share] = [PAGE - height, height].map(|points| points as f32);
+    let mut parts = vec![(page_share, page)];
     if let Some(path) = head.path() {
-        parts.insert(0, (height, Node::View(View::new("TextDocument", head.subject.clone(), vec![path]))));
+        parts.insert(0, (head_share, Node::View(View::new("TextDocument", head.subject.clone(), vec![path]))));
     }
     Node::tab(name, parts)
 }
 
-/// `plots` below each other, or in two columns when there are many.
-fn in_columns(plots: Vec<(f32, Node)>) -> Option<Node> {
-    let kind = if plots.len() > COLUMN { ContainerKind::Grid } else { ContainerKind::Vertical };
-    Node::of(kind, None, plots)
+/// Height of the head (points).
+fn head_height(head: &Head, is_first: bool) -> f64 {
+    head.path().map_or(0.0, |_| head.height(is_first).min(HEAD))
+}
+
+/// Height of a view of `count` lanes (points).
+fn lanes_height(count: usize) -> f64 {
+    LANES + LANE * count as f64
 }
 
 /// Slow motion in which a run of `duration` (s) lasts six to fifteen seconds, so that the eye can follow a vibration;
@@ -117,15 +202,15 @@ fn playback_speed(duration: f64) -> f64 {
 }
 
 /// Share of a column that a plot takes: a disturbance has little to show.
-fn share(plot: &PlannedPlot<'_>) -> f32 {
-    if plot.path.ends_with("_disturbance") { 0.6 } else { 1.0 }
+fn share(plot: &PlannedPlot<'_>) -> Room {
+    Room::Share(if plot.path.ends_with("_disturbance") { 0.6 } else { 1.0 })
 }
 
 /// Moves and events, as high as it has lanes.
-fn lanes_view(happenings: &Happenings) -> Option<(f32, Node)> {
+fn lanes_view<'p, 'a>(happenings: &Happenings) -> Option<(Room, Part<'p, 'a>)> {
     let lanes = happenings.lanes.clone();
-    let height = 0.4 + 0.25 * lanes.len().min(4) as f32;
-    (!lanes.is_empty()).then(|| (height, Node::View(View::new("StateTimeline", "Moves and events", lanes))))
+    let height = Room::Points(lanes_height(lanes.len().min(4)));
+    (!lanes.is_empty()).then(|| (height, Part::View(Node::View(View::new("StateTimeline", "Moves and events", lanes)))))
 }
 
 fn reached_view(reached: Reached) -> Node {
@@ -135,12 +220,15 @@ fn reached_view(reached: Reached) -> Node {
 fn log_view(happenings: &Happenings) -> Option<Node> {
     let columns = [TextLogColumnKind::LogLevel, TextLogColumnKind::Body];
     let columns = columns.map(|kind| TextLogColumn { kind, visible: true.into() });
-    let columns = TextLogColumns::new().with_text_log_columns(columns);
+    // Rerun's own column of times is too narrow for them: each line begins with its time.
+    let time = TimelineColumn { visible: false.into(), timeline: TIMELINE.into() };
+    let columns = TextLogColumns::new().with_text_log_columns(columns).with_timeline_columns([time]);
     let logs = happenings.logs.clone();
     (!logs.is_empty()).then(|| Node::View(View::new("TextLog", "Log", logs).with("TextLogColumns", &columns)))
 }
 
-fn plot_view(plot: &PlannedPlot<'_>) -> Node {
+/// A plot of `height` points.
+fn plot_view(plot: &PlannedPlot<'_>, height: f64) -> Node {
     let shown = plot.shown().map(|series| series.path.clone());
     let axis = match plot.own_time {
         None => TimeAxis::new().with_link(LinkAxis::LinkToGlobal),
@@ -148,10 +236,11 @@ fn plot_view(plot: &PlannedPlot<'_>) -> Node {
             TimeAxis::new().with_link(LinkAxis::Independent).with_view_range(TimeRange { start: at(from), end: at(to) })
         }
     };
-    let (low, high) = plot.range;
+    let (low, high) = plot.range(height);
     let values = ScalarAxis::new().with_range([low * plot.scale.factor, high * plot.scale.factor]);
     // The title says what a single curve is.
-    let legend = PlotLegend::new().with_corner(legend::corner(plot)).with_visible(plot.shown().count() > 1);
+    let legend =
+        PlotLegend::new().with_corner(legend::corner(plot, (low, high))).with_visible(plot.shown().count() > 1);
     let view = View::new("TimeSeries", plot.title.clone(), shown.collect());
     Node::View(view.with("TimeAxis", &axis).with("ScalarAxis", &values).with("PlotLegend", &legend))
 }

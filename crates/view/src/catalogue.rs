@@ -29,17 +29,6 @@ pub(crate) struct Curve {
     pub(crate) width: f32,
 }
 
-impl Page {
-    /// Height of one of its plots in a window of 1400 × 900 points, without title and time axis (points).
-    pub(crate) const fn plot_height(self) -> f64 {
-        match self {
-            Self::Motion => 155.0,
-            Self::Errors | Self::Electrical | Self::Other => 210.0,
-            Self::SetPoint => 340.0,
-        }
-    }
-}
-
 /// What a title says of the curves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Headline {
@@ -110,8 +99,10 @@ const PLAIN: Plot = Plot {
     curves: &[],
 };
 
-// Curves of one plot often coincide. What is drawn later is thinner, so that all of them can be seen.
-const WIDE: f32 = 4.0;
+// Curves of one plot often coincide. Rerun draws them in the alphabetical order of their paths: what comes later is thinner,
+// so that all of them can be seen.
+const WIDEST: f32 = 5.0;
+const WIDE: f32 = 3.5;
 const MIDDLE: f32 = 2.0;
 const THIN: f32 = 1.0;
 
@@ -124,10 +115,10 @@ pub(crate) const PLOTS: &[Plot] = &[
         headline: Headline::None,
         includes: &[],
         curves: &[
-            curve(&["load.position"], "load", style::LOAD, WIDE),
-            curve(&["motor.position"], "motor", style::MOTOR, MIDDLE),
-            curve(&["table.position"], "table", style::TABLE, MIDDLE),
-            curve(&["reference.position", "setpoint.position"], "reference", style::REFERENCE, THIN),
+            curve(&["load.position"], "load", style::LOAD, WIDEST),
+            curve(&["motor.position"], "motor", style::MOTOR, WIDE),
+            curve(&["table.position"], "table", style::TABLE, THIN),
+            curve(&["reference.position", "setpoint.position"], "reference", style::REFERENCE, MIDDLE),
         ],
         ..PLAIN
     },
@@ -136,10 +127,10 @@ pub(crate) const PLOTS: &[Plot] = &[
         path: "velocity",
         page: Page::Motion,
         curves: &[
-            curve(&["load.velocity"], "load", style::LOAD, WIDE),
-            curve(&["motor.velocity"], "motor", style::MOTOR, MIDDLE),
-            curve(&["table.velocity"], "table", style::TABLE, MIDDLE),
-            curve(&["velocity.reference", "setpoint.velocity"], "reference", style::REFERENCE, THIN),
+            curve(&["load.velocity"], "load", style::LOAD, WIDEST),
+            curve(&["motor.velocity"], "motor", style::MOTOR, WIDE),
+            curve(&["table.velocity"], "table", style::TABLE, THIN),
+            curve(&["velocity.reference", "setpoint.velocity"], "reference", style::REFERENCE, MIDDLE),
         ],
         ..PLAIN
     },
@@ -173,7 +164,7 @@ pub(crate) const PLOTS: &[Plot] = &[
         linear_title: Some("Motor force"),
         path: "effort",
         curves: &[
-            curve(&["effort.motor"], "motor", style::MOTOR, MIDDLE),
+            curve(&["effort.motor"], "motor", style::MOTOR, WIDE),
             curve(&["effort.reference"], "reference", style::REFERENCE, THIN),
         ],
         ..PLAIN
@@ -184,7 +175,7 @@ pub(crate) const PLOTS: &[Plot] = &[
         page: Page::Electrical,
         amplitude: true,
         curves: &[
-            curve(&["current.q"], "q", style::MOTOR, MIDDLE),
+            curve(&["current.q"], "q", style::MOTOR, WIDE),
             curve(&["current.d"], "d", style::AUXILIARY, MIDDLE),
             curve(&["current.q_reference"], "q reference", style::REFERENCE, THIN),
         ],
@@ -197,12 +188,30 @@ pub(crate) const PLOTS: &[Plot] = &[
         curves: &[curve(&["command.output"], "output", style::MOTOR, MIDDLE)],
         ..PLAIN
     },
+    // The way of the set-point: from the motion task over the bus to what the motor is to follow, and what the master hears.
+    Plot {
+        title: "Set-point position",
+        path: "setpoint_position",
+        page: Page::SetPoint,
+        headline: Headline::None,
+        includes: &[],
+        curves: &[
+            curve(&["setpoint.position"], "set-point", style::REFERENCE, THIN),
+            curve(&["reference.motor_position"], "motor reference", style::MOTOR, MIDDLE),
+            curve(&["task.position"], "motion task", style::TABLE, WIDE),
+            curve(&["bus.position"], "master reads", style::AUXILIARY, WIDEST),
+        ],
+        ..PLAIN
+    },
     Plot {
         title: "Set-point velocity",
         path: "setpoint_velocity",
         derivative: Some(0),
         page: Page::SetPoint,
-        curves: &[curve(&["setpoint.velocity"], "velocity", style::REFERENCE, MIDDLE)],
+        curves: &[
+            curve(&["setpoint.velocity"], "set-point", style::REFERENCE, MIDDLE),
+            curve(&["task.velocity"], "motion task", style::TABLE, WIDE),
+        ],
         ..PLAIN
     },
     Plot {
@@ -237,10 +246,10 @@ pub(crate) const PLOTS: &[Plot] = &[
         amplitude: true,
         page: Page::Electrical,
         curves: &[
-            curve(&["voltage.q"], "q", style::MOTOR, MIDDLE),
-            curve(&["voltage.d"], "d", style::AUXILIARY, MIDDLE),
-            curve(&["voltage.command_q"], "q commanded", style::REFERENCE, THIN),
-            curve(&["voltage.command_d"], "d commanded", style::DISTURBANCE, THIN),
+            curve(&["voltage.q"], "q", style::MOTOR, WIDE),
+            curve(&["voltage.d"], "d", style::AUXILIARY, WIDE),
+            curve(&["voltage.q_reference"], "q reference", style::REFERENCE, THIN),
+            curve(&["voltage.d_reference"], "d reference", style::DISTURBANCE, THIN),
         ],
         ..PLAIN
     },
@@ -252,7 +261,6 @@ pub(crate) const PLOTS: &[Plot] = &[
         page: Page::Electrical,
         curves: &[
             curve(&["voltage.magnitude"], "applied", style::TABLE, MIDDLE),
-            curve(&["voltage.command_magnitude"], "commanded", style::REFERENCE, THIN),
             curve(&["voltage.limit"], BOUND, style::LIMIT, THIN),
         ],
         ..PLAIN
@@ -263,10 +271,11 @@ pub(crate) const PLOTS: &[Plot] = &[
         page: Page::Electrical,
         curves: &[
             curve(&["power.electrical"], "electrical", style::MOTOR, WIDE),
-            curve(&["power.air_gap"], "air gap", style::TABLE, MIDDLE),
+            curve(&["power.air_gap"], "air gap", style::TABLE, WIDEST),
             curve(&["power.shaft"], "shaft", style::LOAD, THIN),
             curve(&["power.copper"], "copper", style::DISTURBANCE, MIDDLE),
-            curve(&["power.stored"], "stored", style::AUXILIARY, MIDDLE),
+            curve(&["power.stored"], "stored", style::AUXILIARY, THIN),
+            curve(&["power.residual"], "residual", style::REFERENCE, MIDDLE),
         ],
         ..PLAIN
     },

@@ -6,7 +6,7 @@ use crate::scale::{Scale, shown_unit};
 use crate::style;
 use rerun::{EntityPath, RecordingStream, RecordingStreamResult, TextLog, TimeColumn};
 use servobench_base::Severity;
-use servobench_trace::CallFate;
+use servobench_trace::{Call, CallFate};
 
 /// Entities that were logged.
 #[derive(Debug, Default)]
@@ -58,7 +58,8 @@ fn log_text(stream: &RecordingStream, run: &Run<'_>) -> RecordingStreamResult<()
             lines.push((span.end, "INFO", format!("{what}: end")));
         }
     }
-    for event in &run.recording.events {
+    let is_of_a_call = |message: &str| run.recording.calls.iter().any(|call| says(call, message));
+    for event in run.recording.events.iter().filter(|event| !is_of_a_call(&event.message)) {
         let until = if event.end > event.start { format!(" (until {:.4} s)", event.end) } else { String::new() };
         lines.push((event.start, "WARN", format!("{}: {}{until}", event.source, event.message)));
     }
@@ -75,7 +76,7 @@ fn log_text(stream: &RecordingStream, run: &Run<'_>) -> RecordingStreamResult<()
         }
     }
     lines.sort_by(|one, two| one.0.total_cmp(&two.0));
-    // Rerun's own column of times is too narrow for them.
+    // The view shows no column of times.
     for (time, _, text) in &mut lines {
         text.insert_str(0, &format!("{time:.4} s  "));
     }
@@ -87,14 +88,29 @@ fn log_text(stream: &RecordingStream, run: &Run<'_>) -> RecordingStreamResult<()
     stream.send_columns(run.path(&["log"]), [times], columns)
 }
 
+/// Whether what became of `call` is `message`: then it is said of the call, with its block.
+fn says(call: &Call, message: &str) -> bool {
+    match &call.fate {
+        CallFate::Executed => false,
+        CallFate::NeverExecuted(why) | CallFate::Unfinished(why) => why == message,
+        CallFate::Failed { message: own, .. } => own == message,
+    }
+}
+
 /// What is to be said of calls that were never executed, which is known at the end of the run, and of those that failed.
 fn calls(run: &Run<'_>) -> Vec<(f64, &'static str, String)> {
     let line = |call: &servobench_trace::Call| {
         let who = format!("`{}` ({})", call.name, call.block);
         let level = if call.is_optional { "INFO" } else { "ERROR" };
         match &call.fate {
-            CallFate::NeverExecuted(why) => Some((run.end(), level, format!("{who} was never executed: {why}"))),
-            CallFate::Failed { time, id, message } => Some((*time, level, format!("{who} failed: {message} ({id})"))),
+            CallFate::NeverExecuted(why) => {
+                // The reason begins with the name of the call.
+                let why = why.strip_prefix(&format!("`{}` was not executed: ", call.name)).unwrap_or(why);
+                Some((run.end(), level, format!("{who} was never executed: {why}")))
+            }
+            CallFate::Failed { time, id, message } => {
+                Some((*time, level, format!("{who} failed: {message} (ErrorID {id:X}h)")))
+            }
             CallFate::Unfinished(why) => Some((run.end(), level, format!("{who} did not come to its end: {why}"))),
             CallFate::Executed => None,
         }
@@ -116,7 +132,7 @@ fn lanes<'a>(run: &Run<'a>, index: usize) -> Vec<Lane<'a>> {
     let colour = run.label.map_or(style::MOTOR, |_| style::of_run(index));
     let moves = run.recording.moves.iter();
     let moves =
-        moves.map(|made| Span { start: made.start, end: made.end, text: (&made.label).into(), colour }).collect();
+        moves.map(|made| Span { start: made.start, end: made.end, text: short(&made.label).into(), colour }).collect();
     let mut lanes = vec![Lane { path: run.path(&["moves"]), spans: moves, otherwise: "at rest" }];
     for (channel, name, _) in DISTURBANCES {
         let spans = disturbed(run, channel);
@@ -133,6 +149,11 @@ fn lanes<'a>(run: &Run<'a>, index: usize) -> Vec<Lane<'a>> {
     }
     lanes.retain(|lane| !lane.spans.is_empty());
     lanes
+}
+
+/// What a lane of moves says: where from and where to come first in the room that there is.
+fn short(label: &str) -> &str {
+    label.strip_prefix("move from ").unwrap_or(label)
 }
 
 /// When the effort in `channel` acts and how large it is. A row of zero between two others is a sine on its way.

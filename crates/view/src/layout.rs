@@ -13,9 +13,6 @@ use rerun::external::re_sdk_types::blueprint::archetypes as blueprint;
 use rerun::external::uuid::Uuid;
 use rerun::{AsComponents, EntityPath, RecordingStream, RecordingStreamBuilder, SerializedComponentBatch};
 
-/// Columns of a grid.
-const GRID_COLUMNS: u32 = 2;
-
 /// How the viewer arranges a recording. Made by [`Presentation::blueprint`](crate::Presentation::blueprint).
 #[derive(Debug)]
 pub struct Layout {
@@ -148,8 +145,7 @@ fn log_node(stream: &RecordingStream, node: &Node) -> rerun::RecordingStreamResu
     archetype = match container.kind {
         ContainerKind::Horizontal => archetype.with_col_shares(shares),
         ContainerKind::Vertical => archetype.with_row_shares(shares),
-        ContainerKind::Grid => archetype.with_grid_columns(GRID_COLUMNS),
-        ContainerKind::Tabs => archetype,
+        ContainerKind::Grid | ContainerKind::Tabs => archetype,
     };
     if let Some(name) = container.name {
         archetype = archetype.with_display_name(name);

@@ -20,12 +20,11 @@ const CORNERS: [(Corner2D, bool, bool, usize); 4] = [
     (Corner2D::LeftBottom, false, false, 2),
 ];
 
-/// The corner in which the fewest points of the curves lie.
-pub(crate) fn corner(plot: &PlannedPlot<'_>) -> Corner2D {
+/// The corner in which the fewest points of the curves lie, on an axis from `low` to `high`.
+pub(crate) fn corner(plot: &PlannedPlot<'_>, (low, high): (f64, f64)) -> Corner2D {
     let lines = plot.shown().count();
     let height = (FRAME + LINE * lines as f64).min(1.0);
     let (start, end) = plot.time();
-    let (low, high) = plot.range;
     let covered = |right: bool, top: bool| -> usize {
         let (from, to) =
             if right { (end - WIDTH * (end - start), end) } else { (start, start + WIDTH * (end - start)) };

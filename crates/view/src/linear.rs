@@ -4,8 +4,8 @@
 //! against the motor is enlarged, as the title says; a pointer at the ruler shows where the load is without that.
 use crate::curves::TIMELINE;
 use crate::run::{Run, range};
-use crate::scale::Scale;
-use crate::scene::{Body, Poses, Scene};
+use crate::scale::{Scale, short};
+use crate::scene::{Body, NAMED, Poses, Scene};
 use crate::style::{self, Rgb};
 use rerun::datatypes::Mat3x3;
 use rerun::{
@@ -23,8 +23,10 @@ const HEIGHTS: (f32, f32) = (0.05, 0.08);
 const LEAF: f32 = 0.065;
 /// Largest displayed deflection (travels): about half a body.
 pub(crate) const ROOM: f64 = 0.08;
-/// Distance between the rails of two runs (travels).
-const LANE: f32 = 0.7;
+/// Distance between the rails of two runs, and of more (travels).
+const LANES: (f32, f32) = (0.7, 0.45);
+/// Room of the names of runs beside their rails (travels).
+const RUN_NAMES: f32 = 0.5;
 /// Room of the names beside the bodies (travels).
 const NAMES: f32 = 0.2;
 /// Most steps of the ruler, as more labels would not stand beside each other; a travel that overshoots by little has no more.
@@ -46,17 +48,28 @@ fn storey(number: usize) -> (f32, f32) {
     if number == 0 { (0.0, motor / 2.0) } else { (below(number), other / 2.0) }
 }
 
+/// Place of the rail of run `index` of `runs`.
+fn lane(index: usize, runs: usize) -> f32 {
+    let (apart, close) = LANES;
+    index as f32 * if runs > NAMED { close } else { apart }
+}
+
 /// Camera for `runs` rails of `bodies` bodies: place and target.
 pub(crate) fn camera(runs: usize, bodies: usize) -> ([f32; 3], [f32; 3]) {
-    let depth = LANE * runs.saturating_sub(1) as f32;
+    let depth = lane(runs.saturating_sub(1), runs);
     let (bottom, half) = storey(bodies.saturating_sub(1));
     // Of two runs, the names of one stand at the left and of the other at the right.
-    let middle = if runs > 1 { 0.5 } else { 0.5 - NAMES / 2.0 };
+    let middle = match runs {
+        0 | 1 => 0.5 - NAMES / 2.0,
+        2 => 0.5,
+        _ => 0.5 - RUN_NAMES / 2.0,
+    };
     let height = 0.4 * (bottom + 2.0 * half);
     let away = (HALF_BED + NAMES / 2.0) / VIEW + 0.2 + 0.5 * depth;
     // Steeper for several rails, or the bodies in front would hide those behind.
     let (back, up) = if runs > 1 { (0.72, 0.7) } else { (0.9, 0.45) };
-    let target = 0.42 * depth;
+    // What is near takes more of the picture than what is far.
+    let target = if runs > NAMED { 0.3 } else { 0.42 } * depth;
     ([middle, target - back * away, height + up * away], [middle, target, height])
 }
 
@@ -68,7 +81,7 @@ pub(crate) fn log(
     scene: &Scene,
     poses: &Poses,
 ) -> RecordingStreamResult<()> {
-    let y = LANE * index as f32;
+    let y = lane(index, scene.roots.len());
     log_bed(stream, run, y)?;
     if index == 0 {
         log_ruler(stream, run, scene)?;
@@ -81,10 +94,17 @@ pub(crate) fn log(
         let path = run.path(&["axis", body.name]);
         let x = body.positions.iter().map(|position| [scene.place(*position), y, 0.0]);
         poses.send(stream, path.clone(), Transform3D::update_fields().with_many_translation(x))?;
-        log_body(stream, path, body, [index, number], run.label.is_some())?;
+        log_body(stream, path.clone(), body, number)?;
+        if let Some(word) = body.label.as_ref().filter(|_| poses.name.is_none()) {
+            stream.log_static(path, &label(beside(run, [index, number]), word, body.ink))?;
+        }
         below = Some(body);
     }
     log_force(stream, run, poses)?;
+    if let Some((name, colour)) = &poses.name {
+        let place = [0.5 - HALF_BED - RUN_NAMES / 2.0, y, 0.0];
+        stream.log_static(run.path(&["axis", "name"]), &label(place, name, *colour))?;
+    }
     let load = poses.bodies.last().filter(|load| load.actual != load.positions);
     let pointers = [
         ("reference", poses.reference.as_ref(), style::REFERENCE),
@@ -133,21 +153,23 @@ fn log_body(
     stream: &RecordingStream,
     path: rerun::EntityPath,
     body: &Body,
-    [index, number]: [usize; 2],
-    is_one_of_several: bool,
+    number: usize,
 ) -> RecordingStreamResult<()> {
     let (bottom, half) = storey(number);
-    let middle = bottom + half;
-    let shape = Boxes3D::from_centers_and_half_sizes([[0.0, 0.0, middle]], [[HALF_BODY, HALF_WIDTH, half]])
+    let shape = Boxes3D::from_centers_and_half_sizes([[0.0, 0.0, bottom + half]], [[HALF_BODY, HALF_WIDTH, half]])
         .with_colors([body.colour])
         .with_fill_mode(FillMode::Solid);
-    stream.log_static(path.clone(), &shape)?;
-    let Some(word) = &body.label else { return Ok(()) };
+    stream.log_static(path, &shape)
+}
+
+/// Place of the name of body `number` of run `index`, from that of the body.
+fn beside(run: &Run<'_>, [index, number]: [usize; 2]) -> [f32; 3] {
+    let (bottom, half) = storey(number);
     // Names of a run are not in the way of those of the run behind it.
     let side = if index.is_multiple_of(2) { -1.0 } else { 1.0 };
     // With the name of a run in front they are longer, and of rails further away.
-    let (away, height) = if is_one_of_several { (1.6 * NAMES, 0.19 * number as f32) } else { (NAMES, middle) };
-    stream.log_static(path, &label([side * (HALF_BODY + away / 2.0), 0.0, height], word, body.ink))
+    let (away, height) = if run.label.is_some() { (1.6 * NAMES, 0.19 * number as f32) } else { (NAMES, bottom + half) };
+    [side * (HALF_BODY + away / 2.0), 0.0, height]
 }
 
 /// A word at `place`.
@@ -208,7 +230,7 @@ fn log_ruler(stream: &RecordingStream, run: &Run<'_>, scene: &Scene) -> Recordin
         .map(|position| [[scene.place(*position), -0.155, -0.06], [scene.place(*position), -0.10, -0.06]]);
     // Six decimals hide the rounding of a nice number and keep ticks of a short move far from zero apart.
     let number = |position: &f64| (position * scale.factor * 1e6).round() / 1e6;
-    let mut labels: Vec<String> = positions.iter().map(|position| number(position).to_string()).collect();
+    let mut labels: Vec<String> = positions.iter().map(|position| short(number(position))).collect();
     if let Some(last) = labels.last_mut() {
         *last = format!("{last} {}", scale.unit);
     }

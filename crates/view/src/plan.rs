@@ -37,6 +37,9 @@ pub(crate) fn plots<'a>(runs: &[Run<'a>], options: &ViewOptions) -> Vec<PlannedP
 /// acceleration, and the order of a move need not limit what follows.
 const ACCELERATION: usize = 1;
 
+/// Width of a curve that is alone (points).
+const ALONE: f32 = 2.0;
+
 /// A curve that is to be plotted.
 struct Wanted<'c> {
     channels: &'c [&'c str],
@@ -84,6 +87,11 @@ fn plan<'a>(plot: &Plot, others: &[Unlisted<'a>], runs: &[Run<'a>], options: &Vi
     }
     if !series.iter().any(|one| one.shown && one.range().is_some()) {
         return None;
+    }
+    // A curve is thin where it lies on others.
+    let mut shown = series.iter_mut().filter(|one| one.shown);
+    if let (Some(only), None) = (shown.next(), shown.next()) {
+        only.width = ALONE;
     }
     let limits = options.limits.iter().filter(|(channel, _)| shows(plot, channel)).map(|(_, limit)| *limit);
     let limit = limits.chain(plot.derivative.and_then(|derivative| planned_limit(runs, derivative))).reduce(f64::min);

@@ -13,6 +13,8 @@ const IN_SIGHT: f64 = 3.0;
 const ROUNDING: f64 = 1e-9;
 /// More runs than this are not listed one by one in a title.
 const LISTED: usize = 3;
+/// Height of the lowest plot that is reckoned with (points).
+const LOWEST: f64 = 60.0;
 
 /// A plot with the curves that it can have.
 #[derive(Debug)]
@@ -29,8 +31,8 @@ pub(crate) struct PlannedPlot<'a> {
     pub(crate) series: Vec<Series<'a>>,
     /// Whether a value holds until the next one.
     pub(crate) held: bool,
-    /// Range of the value axis (SI).
-    pub(crate) range: (f64, f64),
+    /// Smallest and largest value that must be in sight (SI).
+    pub(crate) reach: (f64, f64),
     /// First and last instant that it shows (s), when it does not share the time axis of the others.
     pub(crate) own_time: Option<(f64, f64)>,
 }
@@ -120,7 +122,7 @@ impl<'a> PlannedPlot<'a> {
         let title = scale.title(frame.title);
         let span = span.unwrap_or_default();
         let (path, page, held) = (frame.path.to_owned(), frame.page, frame.held);
-        let mut plot = Self { title, path, page, scale, series, held, range, own_time: None };
+        let mut plot = Self { title, path, page, scale, series, held, reach: range, own_time: None };
         plot.add_headline(frame.headline, frame.lead);
         for remark in &frame.remarks {
             plot.title = format!("{}, {remark}", plot.title);
@@ -130,16 +132,23 @@ impl<'a> PlannedPlot<'a> {
         for bound in frame.bounds.iter().filter(|bound| bound.value.is_finite() && bound.value > 0.0) {
             plot.add_bound(bound, &unit, peak, is_negative, span);
         }
-        let shown = plot.shown().filter_map(Series::range).chain([plot.range]);
-        let (low, high) = shown.reduce(|one, two| (one.0.min(two.0), one.1.max(two.1))).unwrap_or_default();
-        plot.range = range_with_labels(low, high, page.plot_height());
+        let shown = plot.shown().filter_map(Series::range).chain([plot.reach]);
+        plot.reach = shown.reduce(|one, two| (one.0.min(two.0), one.1.max(two.1))).unwrap_or_default();
+        // From end to end of the axis, which in a low plot is longer than in a high one.
+        let upright = plot.range(LOWEST);
         for Mark { path, name, time, colour } in frame.marks.iter().filter(|mark| mark.time <= span.1) {
-            let values = Values::Instant { time: *time, range: plot.range };
+            let values = Values::Instant { time: *time, range: upright };
             let (path, name) = (path.clone(), name.clone());
             let mark = Series { path, name, colour: *colour, width: 2.0, shown: true, role: Role::Bound, values };
             plot.series.push(mark);
         }
         plot
+    }
+
+    /// Range of the value axis (SI) where the plot is `height` points high.
+    pub(crate) fn range(&self, height: f64) -> (f64, f64) {
+        let (low, high) = self.reach;
+        range_with_labels(low, high, height.max(LOWEST))
     }
 
     /// The lines that the plot shows.
@@ -155,8 +164,15 @@ impl<'a> PlannedPlot<'a> {
 
     /// Appends to the title what a reader would otherwise have to read off.
     fn add_headline(&mut self, headline: Headline, lead: Option<&str>) {
+        let is_comparison = self.series.iter().filter(|series| series.role == Role::Lead).count() > 1;
         let word = match headline {
-            Headline::None => return,
+            Headline::None => {
+                // The legend names the runs, and not what of them is shown.
+                if let Some(lead) = lead.filter(|_| is_comparison) {
+                    self.title = format!("{}, {lead}", self.title);
+                }
+                return;
+            }
             Headline::Peak => "peak",
             Headline::PeakToPeak => "p-p",
         };
@@ -164,11 +180,13 @@ impl<'a> PlannedPlot<'a> {
         let ranges = leads.filter_map(|lead| Some((lead.name.as_str(), lead.range()?)));
         let values: Vec<(&str, f64)> = ranges.map(|(name, range)| (name, headline.of(range))).collect();
         let show = |value: f64| self.scale.show(value, 3);
+        // The title has the unit already.
+        let number = |value: f64| self.scale.number(value, 3);
         let said = match &values[..] {
             [] => return,
             [(_, value)] => show(*value),
             few if few.len() <= LISTED => {
-                few.iter().map(|(run, value)| format!("{} ({run})", show(*value))).collect::<Vec<_>>().join(", ")
+                few.iter().map(|(run, value)| format!("{} ({run})", number(*value))).collect::<Vec<_>>().join(", ")
             }
             many => format!("up to {}", show(many.iter().map(|(_, value)| *value).fold(0.0, f64::max))),
         };

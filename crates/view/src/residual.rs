@@ -67,12 +67,14 @@ pub(crate) fn plan<'a>(runs: &[Run<'a>], options: &ViewOptions) -> Option<Planne
     if series.is_empty() {
         return None;
     }
+    let is_alone = runs.iter().all(|run| run.label.is_none());
     let moved = runs.iter().any(|run| !run.recording.moves.is_empty());
     if let Some(most) = allowed(options, Name::ResidualVibrationPp) {
         remarks.push(format!("{ALLOWED} p-p {}", shown(most, unit)));
     }
     let frame = Frame {
-        title: if moved { "Residual vibration after the last move" } else { "Residual vibration" },
+        // The title of a comparison has the numbers of all runs.
+        title: if moved && is_alone { "Residual vibration after the last move" } else { "Residual vibration" },
         lead: (series.len() == 1).then_some("load"),
         path: PATH,
         page: Page::Errors,

@@ -1,6 +1,6 @@
 //! A rotary axis in 3D: discs on a shaft, a mark on each.
 use crate::run::Run;
-use crate::scene::Poses;
+use crate::scene::{NAMED, Poses};
 use crate::style;
 use rerun::{
     Angle, Boxes3D, Cylinders3D, FillMode, LineStrips3D, Points3D, RecordingStream, RecordingStreamResult,
@@ -23,6 +23,11 @@ const SHAFT: [f32; 3] = [1.0, 0.0, 0.0];
 /// Camera for `runs` shafts of `bodies` discs: place and target.
 pub(crate) fn camera(runs: usize, bodies: usize) -> ([f32; 3], [f32; 3]) {
     let middle = (start(runs, bodies) - LANE) / 2.0;
+    if runs > NAMED {
+        // From the front, or the discs at the far end would be too small; as far away as all of them need.
+        let away = 1.2 * middle + 2.5;
+        return ([middle - 0.5 * away, -0.85 * away, 0.25 * away], [middle, 0.0, 0.1]);
+    }
     ([middle - 2.8, -2.2 - 0.6 * middle, 0.9 + 0.1 * middle], [middle, 0.0, 0.1])
 }
 
@@ -55,7 +60,7 @@ pub(crate) fn log(stream: &RecordingStream, run: &Run<'_>, index: usize, poses: 
             .with_colors([[245, 245, 245]])
             .with_fill_mode(FillMode::Solid);
         stream.log_static(path, &mark)?;
-        if let Some(word) = &body.label {
+        if let Some(word) = body.label.as_ref().filter(|_| poses.name.is_none()) {
             // An entity of its own, as it must not turn with the disc.
             let label = Points3D::new([[place[0], 0.0, 1.55]])
                 .with_radii([0.001])
@@ -64,6 +69,14 @@ pub(crate) fn log(stream: &RecordingStream, run: &Run<'_>, index: usize, poses: 
                 .with_show_labels(true);
             stream.log_static(run.path(&["axis", "label", body.name]), &label)?;
         }
+    }
+    if let Some((name, colour)) = &poses.name {
+        let label = Points3D::new([[start + last / 2.0, 0.0, 1.55]])
+            .with_radii([0.001])
+            .with_colors([*colour])
+            .with_labels([name.as_str()])
+            .with_show_labels(true);
+        stream.log_static(run.path(&["axis", "name"]), &label)?;
     }
     if let Some(reference) = &poses.reference {
         let path = run.path(&["axis", "reference"]);

@@ -1,6 +1,9 @@
 //! Units a person can read: µm for a following error, mm/s for a slow axis.
 use servobench_metrics::Quantity;
 
+/// Numbers from here on are written with an exponent.
+const MANY: f64 = 1e7;
+
 /// Factor from SI to the unit that is shown.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Scale {
@@ -29,8 +32,13 @@ impl Scale {
 
     /// A value (SI) in this unit, to `digits` significant digits, with the unit.
     pub(crate) fn show(&self, value: f64, digits: u8) -> String {
-        let number = self.rounded(value, digits);
-        if self.unit.is_empty() { number.to_string() } else { format!("{number} {}", self.unit) }
+        let number = self.number(value, digits);
+        if self.unit.is_empty() { number } else { format!("{number} {}", self.unit) }
+    }
+
+    /// A value (SI) in this unit, to `digits` significant digits.
+    pub(crate) fn number(&self, value: f64, digits: u8) -> String {
+        short(self.rounded(value, digits))
     }
 
     /// A value (SI) in this unit, to `digits` significant digits.
@@ -49,6 +57,11 @@ impl Scale {
     pub(crate) fn title(&self, name: &str) -> String {
         if self.unit.is_empty() { name.to_owned() } else { format!("{name} ({})", self.unit) }
     }
+}
+
+/// A number as it is written: that of a run that diverges has more digits than a title has room for.
+pub(crate) fn short(number: f64) -> String {
+    if number.abs() < MANY { number.to_string() } else { format!("{number:.2e}") }
 }
 
 #[cfg(test)]
@@ -81,6 +94,8 @@ mod tests {
             (123_456.0, 1.0, "123500"),
             (-0.012_345, 1.0, "-0.01235"),
             (0.0, 1e6, "0"),
+            (2.713_4e114, 1.0, "2.71e114"),
+            (-3e300, 1.0, "-3.00e300"),
         ] {
             assert_eq!(show(value, factor), shown, "{value}");
         }

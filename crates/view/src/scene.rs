@@ -46,6 +46,8 @@ pub(crate) struct Poses {
     pub(crate) force: Option<Vec<f64>>,
     /// The bodies, the motor's first.
     pub(crate) bodies: Vec<Body>,
+    /// Name of the run and its colour, where it stands in place of those of its bodies.
+    pub(crate) name: Option<(String, Rgb)>,
 }
 
 /// One body of one run.
@@ -65,6 +67,10 @@ pub(crate) struct Body {
     pub(crate) actual: Vec<f64>,
 }
 
+/// More runs than this have no room for a name beside each body: each has its own beside the rail or the shaft.
+pub(crate) const NAMED: usize = 2;
+/// A longer subject is left out of the title; it stands above the page.
+const SUBJECT: usize = 50;
 /// Largest enlargement that is chosen: a deflection that needs more is none to be looked at.
 const ENLARGED: f64 = 10_000.0;
 const REFERENCES: [&str; 2] = ["reference.position", "setpoint.position"];
@@ -90,7 +96,8 @@ impl Scene {
         let travel = span.max(exaggeration * deflection / linear::ROOM);
         let enlarged = deflection > 0.0 && (exaggeration - 1.0).abs() > 0.0;
         let enlargement = if enlarged { format!(", deflection × {exaggeration}") } else { String::new() };
-        let title = format!("Axis{enlargement}: {subject}");
+        let subject = if subject.chars().count() > SUBJECT { String::new() } else { format!(": {subject}") };
+        let title = format!("Axis{enlargement}{subject}");
         let (eye, target) =
             if rotary { rotary::camera(runs.len(), bodies) } else { linear::camera(runs.len(), bodies) };
         let roots = runs.iter().map(|run| run.path(&["axis"])).collect();
@@ -112,7 +119,8 @@ impl Scene {
     pub(crate) fn log(&self, stream: &RecordingStream, runs: &[Run<'_>]) -> RecordingStreamResult<()> {
         for (index, run) in runs.iter().enumerate() {
             stream.log_static(run.path(&["axis"]), &ViewCoordinates::RIGHT_HAND_Z_UP())?;
-            let poses = poses(run, index, self.exaggeration);
+            let mut poses = poses(run, index, self.exaggeration);
+            poses.name = run.label.filter(|_| runs.len() > NAMED).map(|label| (label.to_owned(), style::of_run(index)));
             if self.rotary {
                 rotary::log(stream, run, index, &poses)?;
             } else {
@@ -185,7 +193,7 @@ fn poses(run: &Run<'_>, index: usize, exaggeration: f64) -> Poses {
     }
     let reference = reference(run).map(pick);
     let force = recording.channel("disturbance.load").filter(|values| values.len() == recording.len()).map(pick);
-    Poses { times: kept.iter().map(|index| recording.time_of(*index)).collect(), reference, force, bodies }
+    Poses { times: kept.iter().map(|index| recording.time_of(*index)).collect(), reference, force, bodies, name: None }
 }
 
 /// Colour of the body `name`; a shade of the run's colour in a comparison.

@@ -24,8 +24,8 @@ pub(crate) const ALLOWED: Rgb = [200, 60, 190];
 /// An instant that is marked.
 pub(crate) const MARK: Rgb = [128, 134, 145];
 
-/// One colour per run of a comparison; starts again after the last.
-const RUNS: [Rgb; 6] = [LOAD, [40, 180, 220], [160, 110, 230], [110, 190, 70], [230, 90, 160], [190, 160, 60]];
+/// One colour per run of a comparison; starts again after the last. None is like that of a bound.
+const RUNS: [Rgb; 6] = [LOAD, [40, 180, 220], [110, 190, 70], [160, 110, 230], [165, 110, 70], [200, 170, 40]];
 
 /// Colour of a run in a comparison.
 pub(crate) fn of_run(index: usize) -> Rgb {

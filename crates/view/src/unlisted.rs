@@ -52,3 +52,24 @@ fn is_listed(channel: &str) -> bool {
 pub(crate) fn colour(index: usize) -> Rgb {
     COLOURS[index % COLOURS.len()]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use servobench_scenario::CHANNELS;
+
+    /// `CHANNELS` is what a scenario can ask to record, and what the loop records.
+    #[test]
+    fn no_channel_of_our_own_is_among_the_others() {
+        let others: Vec<&&str> = CHANNELS.iter().filter(|channel| !is_listed(channel)).collect();
+        assert!(others.is_empty(), "{others:?} have no plot");
+    }
+
+    #[test]
+    fn a_plot_names_no_channel_that_nobody_records() {
+        let named = PLOTS.iter().flat_map(|plot| plot.curves).flat_map(|curve| curve.channels);
+        // An inverter whose limit moves with its DC link would record that; ours is a number.
+        let unknown: Vec<&&str> = named.filter(|one| !CHANNELS.contains(one) && **one != "voltage.limit").collect();
+        assert!(unknown.is_empty(), "{unknown:?} are recorded by nobody");
+    }
+}

@@ -5,6 +5,11 @@ use rerun::{EntityPath, RecordingStream, RecordingStreamResult, TextDocument};
 
 /// Its entity.
 const PATH: &str = "verdict";
+/// Height of title and margins, of a paragraph, of the room above a list and of a line of it (points).
+const FRAME: f64 = 33.0;
+const PARAGRAPH: f64 = 29.0;
+const LIST: f64 = 13.0;
+const ITEM: f64 = 16.0;
 
 /// The text that stands above everything.
 #[derive(Debug, Clone)]
@@ -22,10 +27,10 @@ impl Head {
         let text = if runs.iter().all(is_empty) {
             String::new()
         } else if options.verdicts.is_empty() {
-            "no verdict is known".to_owned()
+            "no verdict is known: opened without the results of its run".to_owned()
         } else {
-            let paragraphs = runs.iter().zip(&options.verdicts).map(|(run, verdict)| paragraph(run.label, verdict));
-            paragraphs.collect::<Vec<_>>().join("\n\n")
+            let judged: Vec<_> = runs.iter().map(|run| run.label).zip(&options.verdicts).collect();
+            text(&judged)
         };
         Self { subject, text }
     }
@@ -35,9 +40,13 @@ impl Head {
         (!self.text.is_empty()).then(|| EntityPath::from(PATH))
     }
 
-    /// How many lines it has.
-    pub(crate) fn lines(&self) -> usize {
-        self.text.lines().filter(|line| !line.is_empty()).count()
+    /// Height of its view (points), with the title: whole, or that of the first line alone.
+    pub(crate) fn height(&self, is_whole: bool) -> f64 {
+        let lists = self.text.split("\n\n").filter(|part| part.contains("\n- ")).count();
+        let items = self.text.lines().filter(|line| line.starts_with("- ")).count();
+        let paragraphs = self.text.split("\n\n").count();
+        let [paragraphs, lists, items] = if is_whole { [paragraphs, lists, items] } else { [1, 0, 0] };
+        FRAME + PARAGRAPH * paragraphs as f64 + LIST * lists as f64 + ITEM * items as f64
     }
 
     /// Logs it.
@@ -47,18 +56,30 @@ impl Head {
     }
 }
 
-/// What is said of one run: the outcome, then why, a line each.
-fn paragraph(label: Option<&str>, verdict: &Verdict) -> String {
-    let of = label.map_or(String::new(), |label| format!("{}: ", escaped(label)));
-    let reasons = verdict.reasons.iter().map(|reason| format!("- {}", escaped(reason)));
-    let warnings = verdict.warnings.iter().map(|warning| format!("- warning: {}", escaped(warning)));
-    let outcome = match verdict.outcome {
-        Outcome::Passed => "passed",
-        Outcome::Failed => "**FAILED**",
-        Outcome::Unjudged => "no limits",
+/// What is said of `runs`: the outcomes of all in one line, which is what a page other than the first shows, then why, a
+/// line each.
+fn text(runs: &[(Option<&str>, &Verdict)]) -> String {
+    let outcome = |(label, verdict): &(Option<&str>, &Verdict)| {
+        let of = label.map_or(String::new(), |label| format!("{}: ", escaped(label)));
+        let outcome = match verdict.outcome {
+            Outcome::Passed => "passed",
+            Outcome::Failed => "**FAILED**",
+            Outcome::Unjudged => "no limits",
+        };
+        format!("{of}{outcome}")
     };
-    let lines = std::iter::once(format!("{of}{outcome}")).chain(reasons).chain(warnings);
-    lines.collect::<Vec<_>>().join("\n")
+    let mut text = runs.iter().map(outcome).collect::<Vec<_>>().join(" · ");
+    for (label, verdict) in runs {
+        let reasons = verdict.reasons.iter().map(|reason| format!("\n- {}", escaped(reason)));
+        let warnings = verdict.warnings.iter().map(|warning| format!("\n- warning: {}", escaped(warning)));
+        let lines: String = reasons.chain(warnings).collect();
+        if let Some(label) = label.filter(|_| !lines.is_empty()) {
+            text.push_str("\n\n");
+            text.push_str(&escaped(label));
+        }
+        text.push_str(&lines);
+    }
+    text
 }
 
 /// `text` in one line in which Markdown sees no marks but those of code.
@@ -86,9 +107,11 @@ mod tests {
             reasons: vec!["settling_time 35.2 ms, limit 20.0 ms".into(), "executed: `a_b` was\nnot".into()],
             warnings: vec!["a * b".into()],
         };
-        let expected = "jerk: **FAILED**\n- settling\\_time 35.2 ms, limit 20.0 ms\n- executed: `a_b` was not\n\
-                        - warning: a \\* b";
-        assert_eq!(paragraph(Some("jerk"), &verdict), expected);
-        assert_eq!(paragraph(None, &Verdict::default()), "no limits");
+        let lines = "\n- settling\\_time 35.2 ms, limit 20.0 ms\n- executed: `a_b` was not\n- warning: a \\* b";
+        assert_eq!(text(&[(None, &verdict)]), format!("**FAILED**{lines}"));
+        assert_eq!(text(&[(None, &Verdict::default())]), "no limits");
+        let passed = Verdict { outcome: Outcome::Passed, ..Verdict::default() };
+        let of_three = text(&[(Some("jerk"), &passed), (Some("snap"), &verdict), (Some("a_c"), &passed)]);
+        assert_eq!(of_three, format!("jerk: passed · snap: **FAILED** · a\\_c: passed\n\nsnap{lines}"));
     }
 }

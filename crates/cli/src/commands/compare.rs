@@ -168,7 +168,8 @@ fn listed(of: &str, all: &[Difference]) -> String {
 fn write_recording(args: &CompareArgs, jobs: &[Job], labels: &[String], runs: &[Run]) -> Result<String, CliError> {
     let labelled: Vec<(&str, &Recording)> =
         labels.iter().map(String::as_str).zip(runs.iter().map(|run| &run.recording)).collect();
-    let options = jobs.first().map(|job| output::view_options(&job.scenario)).unwrap_or_default();
+    let options = jobs.iter().map(|job| output::view_options(&job.scenario));
+    let options = options.reduce(|one, other| agreed(one, &other)).unwrap_or_default();
     let verdicts = runs.iter().map(|run| output::shown(&run.recording, &run.metrics, &run.verdict)).collect();
     let options = ViewOptions { verdicts, ..options };
     let name = labels.join("-against-");
@@ -178,6 +179,15 @@ fn write_recording(args: &CompareArgs, jobs: &[Job], labels: &[String], runs: &[
         .map_err(|error| CliError::Run(error.to_string()))?;
     interrupt::written(&args.out.join(&name));
     Ok(name)
+}
+
+/// What both are held to: a line over all runs must not be the bound of one of them.
+fn agreed(mut one: ViewOptions, other: &ViewOptions) -> ViewOptions {
+    one.limits.retain(|limit| other.limits.contains(limit));
+    one.allowed.retain(|allowed| other.allowed.contains(allowed));
+    one.window = one.window.filter(|_| one.window == other.window);
+    one.residual_from = one.residual_from.filter(|_| one.residual_from == other.residual_from);
+    one
 }
 
 /// What tells the names apart: `lambrechts-jerk` and `lambrechts-snap` are `jerk` and `snap`.
@@ -198,6 +208,7 @@ fn labels(names: &[&str]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use servobench_metrics::Name;
 
     #[test]
     fn differences_are_listed_by_key_and_value() {
@@ -217,6 +228,21 @@ mod tests {
         assert!(text.ends_with("long.name\n      1 kHz against nothing"), "{text}");
         let many: Vec<_> = (0..20).map(|k| difference(&format!("key{k}"), "1", Some("2"))).collect();
         assert!(listed("", &many).ends_with("\n  and 8 more: see `parameters` in comparison.json"));
+    }
+
+    #[test]
+    fn a_bound_of_one_run_is_not_drawn_over_all() {
+        let options = |most, window| ViewOptions {
+            limits: vec![("current.q".into(), 18.0)],
+            allowed: vec![(Name::SettlingTime, most), (Name::CurrentPeak, 18.0)],
+            window: Some(window),
+            ..ViewOptions::default()
+        };
+        let drawn = agreed(options(0.02, 5e-6), &options(0.9, 1e-5));
+        assert_eq!(drawn.limits, [("current.q".to_owned(), 18.0)]);
+        assert_eq!((drawn.allowed, drawn.window), (vec![(Name::CurrentPeak, 18.0)], None));
+        let same = options(0.02, 5e-6);
+        assert_eq!(agreed(same.clone(), &same), same);
     }
 
     #[test]

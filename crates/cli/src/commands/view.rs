@@ -1,8 +1,8 @@
 //! `servobench view`: opens a recording in the Rerun viewer.
 use crate::args::ViewArgs;
 use crate::exit::{CliError, Exit};
-use crate::output::{COMPARISON, RESULTS};
-use servobench_report::Results;
+use crate::output::{self, COMPARISON, RESULTS};
+use servobench_report::{Results, RunResult};
 use servobench_trace::Recording;
 use servobench_view::{ViewOptions, write_rrd};
 use std::ffi::OsStr;
@@ -67,9 +67,31 @@ fn as_rrd(path: &Path) -> Result<PathBuf, CliError> {
     let rrd = path.with_extension("rrd");
     if !modified(&rrd).is_ok_and(|made| made >= written) {
         let recording = Recording::read_parquet(path).map_err(|error| CliError::Input(error.to_string()))?;
-        write_rrd(&recording, &rrd, &ViewOptions::default()).map_err(|error| CliError::Run(error.to_string()))?;
+        let verdicts = verdict_beside(path, &recording).into_iter().collect();
+        let options = ViewOptions { verdicts, ..ViewOptions::default() };
+        write_rrd(&recording, &rrd, &options).map_err(|error| CliError::Run(error.to_string()))?;
     }
     Ok(rrd)
+}
+
+/// What the results beside the recording at `path` say of its run; `None` where there are none, or they are of another run.
+fn verdict_beside(path: &Path, recording: &Recording) -> Option<servobench_view::Verdict> {
+    let results = path.with_file_name(RESULTS);
+    // A run writes its results last: a younger recording is of another one.
+    if modified(&results).ok()? < modified(path).ok()? {
+        return None;
+    }
+    let results = Results::from_json(&std::fs::read_to_string(results).ok()?).ok()?;
+    let name = path.file_name()?.to_str()?;
+    let run = results.scenarios.into_iter().find(|run| run.recording.as_deref() == Some(name))?;
+    is_of(&run, recording).then(|| output::said_of(run.verdict, run.reasons, run.warnings))
+}
+
+/// Whether `run` is that of `recording`: the same scenario on the same engine for as long, to a row of the recording.
+fn is_of(run: &RunResult, recording: &Recording) -> bool {
+    let end = recording.time_of(recording.len().saturating_sub(1));
+    let about = &recording.about;
+    run.name == about.scenario && run.engine == about.engine && (run.duration - end).abs() <= recording.rate.period()
 }
 
 /// When the file was written last.
@@ -90,4 +112,54 @@ fn viewer() -> Option<PathBuf> {
         .flat_map(|exe| exe.ancestors().skip(1).take(3).map(Path::to_owned).collect::<Vec<_>>())
         .map(|folder| folder.join("viewer").join("bin").join(&name));
     on_path.chain(fetched).find(|candidate| candidate.is_file())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use servobench_base::Rate;
+    use servobench_metrics::Metrics;
+    use servobench_report::RunIdentity;
+    use servobench_trace::{About, Channel, ChannelSpec};
+    use servobench_view::Outcome;
+
+    /// A run of 11 rows at 10 Hz, on the engine `exact`.
+    fn recording(engine: &str) -> Recording {
+        let about = About { scenario: "slide".into(), engine: engine.into(), axis_unit: "m".into(), bodies: vec![] };
+        let rate = Rate::new(10).unwrap();
+        let mut recording = Recording::new(about, rate);
+        let spec = ChannelSpec { name: "load.position".into(), unit: "m".into(), writer: "mechanics".into(), rate };
+        recording.channels.push(Channel { spec, values: vec![0.0; 11] });
+        recording
+    }
+
+    #[test]
+    fn a_stored_recording_has_the_verdict_of_the_results_beside_it_that_are_of_its_run() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("slide.exact.parquet");
+        let own = recording("exact");
+        own.write_parquet(&path).unwrap();
+        assert_eq!(verdict_beside(&path, &own), None, "no results");
+        let identity = RunIdentity {
+            name: "slide".into(),
+            engine: "exact".into(),
+            recording: Some("slide.exact.parquet".into()),
+            ..RunIdentity::default()
+        };
+        let run = RunResult::error(identity, Some((&own, &Metrics::default())), vec!["it broke".into()]);
+        let results = Results::new(vec![run]).to_json().unwrap();
+        std::fs::write(folder.path().join(RESULTS), results).unwrap();
+        let verdict = verdict_beside(&path, &own).unwrap();
+        assert_eq!((verdict.outcome, verdict.reasons), (Outcome::Failed, vec!["it broke".to_owned()]));
+        assert_eq!(verdict_beside(&path, &recording("rapier")), None, "another engine");
+        let mut longer = recording("exact");
+        longer.channels[0].values.extend([0.0; 2]);
+        assert_eq!(verdict_beside(&path, &longer), None, "another duration");
+        let other = folder.path().join("other.parquet");
+        own.write_parquet(&other).unwrap();
+        assert_eq!(verdict_beside(&other, &own), None, "the results do not name it");
+        let later = SystemTime::now() + std::time::Duration::from_secs(10);
+        std::fs::File::options().write(true).open(&path).unwrap().set_modified(later).unwrap();
+        assert_eq!(verdict_beside(&path, &own), None, "the recording is of a later run");
+    }
 }

@@ -61,7 +61,7 @@ pub struct RunResult {
     pub(crate) expected: Vec<ExpectedResult>,
     /// What breaks no requirement and should be known.
     #[serde(default)]
-    pub(crate) warnings: Vec<String>,
+    pub warnings: Vec<String>,
     /// What the scenario file says, models merged in, by key.
     #[serde(default)]
     pub(crate) parameters: Ordered<String>,

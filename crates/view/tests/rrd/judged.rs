@@ -3,7 +3,7 @@ use crate::content::{assert_views_are_fed, read, written};
 use crate::{example, options};
 use servobench_base::Rate;
 use servobench_metrics::{Name, Question, measure};
-use servobench_trace::{Call, CallFate, Channel, ChannelSpec, Recording};
+use servobench_trace::{Call, CallFate, Channel, ChannelSpec, Event, Recording};
 use servobench_view::{Outcome, Verdict, ViewOptions, write_comparison_rrd};
 
 fn add(recording: &mut Recording, name: &str, unit: &str, value: impl Fn(usize) -> f64) {
@@ -29,8 +29,9 @@ fn the_verdict_stands_above_every_page() {
     let options = ViewOptions { verdicts: vec![verdict, passed], ..options() };
     write_comparison_rrd(&[("jerk", &runs[0]), ("snap", &runs[1])], &path, &options).unwrap();
     let text = &read(&path).documents[0];
-    assert!(text.starts_with("jerk: **FAILED**\n- ") && text.ends_with("\n\nsnap: passed"), "{text}");
-    assert_eq!(written(&example(3), &crate::options()).documents, ["no verdict is known"]);
+    assert!(text.starts_with("jerk: **FAILED** · snap: passed\n\njerk\n- settling"), "{text}");
+    let unknown = &written(&example(3), &crate::options()).documents[0];
+    assert!(unknown.starts_with("no verdict is known"), "{unknown}");
 }
 
 /// Oracle: the metric of the same name.
@@ -120,7 +121,11 @@ fn calls_that_did_not_come_to_their_end_say_why() {
         call("third", true, CallFate::NeverExecuted("no error".into())),
         call("fourth", false, CallFate::Failed { time: 0.25, id: 7, message: "out of range".into() }),
     ];
+    let message = "`first.Done` did not become TRUE".to_owned();
+    recording.events.push(Event { start: 1.0, end: 1.0, source: "PLC".into(), message });
     let content = written(&recording, &options());
+    let of_second = content.log.iter().filter(|(_, line)| line.contains("`first.Done`")).count();
+    assert_eq!(of_second, 1, "said of the call, and not again as an event: {:?}", content.log);
     assert_eq!(content.lanes["/blocks/second/never_executed"], [(0, "`first.Done` did not become TRUE".to_owned())]);
     let failed = [(0, "no error".to_owned()), (250_000_000, "out of range".to_owned())];
     assert_eq!(content.lanes["/blocks/fourth/failed"], failed);
@@ -145,7 +150,7 @@ fn channels_that_nobody_expected_are_plotted_with_their_group() {
         ("power.factor", ""),
         ("cutting.force_x", "N"),
         ("cutting.force_y", "N"),
-        ("voltage.command_q", "V"),
+        ("voltage.q_reference", "V"),
         ("lonely", "K"),
     ] {
         add(&mut recording, name, unit, |k| k as f64);
@@ -158,7 +163,7 @@ fn channels_that_nobody_expected_are_plotted_with_their_group() {
         "/other/power.factor",
         "/other/cutting.force_x",
         "/other/cutting.force_y",
-        "/voltage/q_commanded",
+        "/voltage/q_reference",
         "/other/lonely",
     ] {
         assert!(content.queries.contains(curve), "{curve} in {:?}", content.queries);

@@ -3,7 +3,7 @@ use crate::axis::{Case, run};
 use crate::content::{assert_views_are_fed, read, written};
 use crate::{MAX_INSTANTS, example, options};
 use servobench_base::Rate;
-use servobench_trace::{Channel, ChannelSpec, Recording};
+use servobench_trace::{Channel, ChannelSpec, Recording, Signal};
 use servobench_view::{ViewOptions, write_comparison_rrd};
 
 /// Largest magnitude of `values`.
@@ -103,7 +103,7 @@ fn a_comparison_says_the_peak_of_each_run() {
     let content = read(&path);
     let title = content.title("Following error");
     let of = |recording: &Recording| 1e6 * peak(recording.channel("following_error.load").unwrap());
-    let (said_of_jerk, said_of_snap) = (number(title, "peak", "µm (jerk)"), number(title, "µm (jerk), ", "µm (snap)"));
+    let (said_of_jerk, said_of_snap) = (number(title, "peak", "(jerk)"), number(title, "(jerk), ", "(snap)"));
     assert!((said_of_jerk - of(&jerk)).abs() <= 0.005 * of(&jerk), "{title}: {}", of(&jerk));
     assert!((said_of_snap - of(&snap)).abs() <= 0.005 * of(&snap), "{title}: {}", of(&snap));
     assert!(content.title("Voltage magnitude").ends_with("(snap), limit 311.8 Vpk"), "a bound of all runs");
@@ -165,4 +165,27 @@ fn names_colours_and_bodies_come_before_the_curves() {
     // The first chunk of a curve's entity is its style; its values, of which there are as many as are kept, come later.
     assert!(is_early("/axis/load") && is_early("/voltage_magnitude/applied") && is_early("/moves"));
     assert!(content.curves["/position/load"].len() <= MAX_INSTANTS);
+}
+
+/// On the page of a program the plots are low: their axes go as far as two labels need.
+#[test]
+fn a_low_plot_has_an_axis_of_its_own() {
+    let mut recording = example(3);
+    let velocities = (0..recording.len()).map(|k| 0.258 * (k as f64 * 1e-3).sin() + 0.06).collect();
+    recording.channels.retain(|channel| !["velocity.reference", "load.velocity"].contains(&channel.spec.name.as_str()));
+    add(&mut recording, "load.velocity", "m/s", velocities);
+    let changes = vec![(0.0, "FALSE".to_owned()), (0.5, "TRUE".to_owned())];
+    for k in 0..20 {
+        recording.signals.push(Signal { source: format!("block{k}"), name: "Done".into(), changes: changes.clone() });
+    }
+    let content = written(&recording, &options());
+    let ranges: Vec<_> = content.views.values().filter(|view| view.title.starts_with("Velocity")).collect();
+    assert_eq!(ranges.len(), 2, "one on the page of the axis, one on that of the program");
+    for view in ranges {
+        let [low, high] = view.range.unwrap();
+        let labels = |tick: f64| (high / tick).floor() - (low / tick).ceil() + 1.0;
+        // The lower of the two is 125 points high, of which a label takes 21.
+        let is_labelled = |tick: f64| labels(tick) >= 2.0 && tick / (high - low) * 125.0 >= 21.0;
+        assert!([10.0, 100.0, 1000.0, 0.1, 1.0].into_iter().any(is_labelled), "{low} to {high}");
+    }
 }

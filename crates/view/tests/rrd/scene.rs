@@ -71,3 +71,22 @@ fn every_body_of_a_comparison_says_of_which_run_it_is() {
         assert_eq!(labels, ["jerk load", "jerk motor", "snap load", "snap motor"], "rotary: {rotary}");
     }
 }
+
+/// Names of three runs and more stand one above the other, each beside its rail and clear of the next.
+#[test]
+fn each_of_three_runs_has_one_name() {
+    for rotary in [false, true] {
+        let recordings = [3, 4, 3].map(|order| run(Case { name: "example", order, rotary, duration: 1.5 }));
+        let runs: Vec<_> = ["one", "two", "three"].into_iter().zip(&recordings).collect();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("compare.rrd");
+        write_comparison_rrd(&runs, &path, &options()).unwrap();
+        let labels: Vec<String> =
+            read(&path).labels.into_iter().map(|(entity, label)| format!("{entity}: {label}")).collect();
+        assert_eq!(
+            labels,
+            ["/one/axis/name: one", "/three/axis/name: three", "/two/axis/name: two"],
+            "rotary: {rotary}"
+        );
+    }
+}
