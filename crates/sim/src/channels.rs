@@ -223,11 +223,13 @@ fn row(now: &Instant) -> [f64; COUNT] {
 }
 
 /// Writes the values of `now` to a row of [`Selection::recorder`].
+///
+/// # Panics
+/// When the row is that of another recorder.
 #[inline]
 pub(crate) fn write(now: &Instant, to: &mut [f64]) {
-    if let Ok(to) = <&mut [f64; COUNT]>::try_from(to) {
-        *to = row(now);
-    }
+    let to: &mut [f64; COUNT] = to.try_into().expect("a row has room for each channel");
+    *to = row(now);
 }
 
 /// The channels to keep and where they stand in a row.
