@@ -87,10 +87,7 @@ impl FmuMechanics {
         if !said.is_empty() {
             message = format!("{message}; it said: {}", said[said.len().saturating_sub(LINES)..].join(" / "));
         }
-        match error {
-            SlaveError::NotFinite { .. } => MechanicsError::Diverged { engine: NAME, message },
-            _ => native(message),
-        }
+        native(message)
     }
 
     /// Adds what acts in this tick.
@@ -154,8 +151,7 @@ impl FmuMechanics {
         self.slave.read(None, &mut self.outputs).map_err(|error| self.wrong(&error))?;
         for (port, value) in self.model.outputs().zip(&self.outputs) {
             if !value.is_finite() {
-                let message = format!("the FMU's output `{}` is {value}", port.variable);
-                return Err(MechanicsError::Diverged { engine: NAME, message });
+                return Err(native(format!("the FMU's output `{}` is {value}", port.variable)));
             }
         }
         let mut outputs = self.outputs.iter().copied();

@@ -1,5 +1,5 @@
 //! Limits of the machine that bound during a run, in words.
-use crate::results::EventResult;
+use crate::results::{EventResult, RunResult};
 use servobench_metrics::Quantity;
 
 /// How an event says that a limit bound.
@@ -10,8 +10,13 @@ pub(crate) fn is_bound(event: &EventResult) -> bool {
     event.message.contains(BINDS)
 }
 
-/// One line for each limit that bound: `voltage limit bound for 636 ms`.
-pub(crate) fn bound_limits(events: &[EventResult]) -> Vec<String> {
+/// One line for each limit that bound, unless a reason of the verdict says it: `voltage limit bound for 636 ms`.
+pub(crate) fn bound_limits(run: &RunResult) -> Vec<String> {
+    let is_said = |words: &String| run.reasons.iter().any(|reason| reason.contains(words.as_str()));
+    words(&run.events).into_iter().filter(|words| !is_said(words)).collect()
+}
+
+fn words(events: &[EventResult]) -> Vec<String> {
     let mut limits: Vec<Bound<'_>> = Vec::new();
     for event in events {
         let Some((limit, rest)) = event.message.split_once(BINDS) else { continue };
@@ -63,11 +68,8 @@ mod tests {
             event(0.5, 0.5, "something else"),
             event(0.8, 1.0, "voltage limit binds"),
         ];
-        assert_eq!(
-            bound_limits(&events),
-            ["voltage limit bound 2 times, for 300 ms in all", "effort limit bound for 400 ms"]
-        );
+        assert_eq!(words(&events), ["voltage limit bound 2 times, for 300 ms in all", "effort limit bound for 400 ms"]);
         let cut = [event(0.0, 0.5, "effort limit binds; later ones are not listed")];
-        assert_eq!(bound_limits(&cut), ["effort limit bound more than 1 times, for more than 500 ms in all"]);
+        assert_eq!(words(&cut), ["effort limit bound more than 1 times, for more than 500 ms in all"]);
     }
 }

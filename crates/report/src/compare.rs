@@ -71,7 +71,7 @@ impl<'a> Comparison<'a> {
             reasons.flat_map(|reason| wrapped(&printable(&format!("{} failed: {reason}", run.label)), width))
         });
         let bound = self.runs.iter().flat_map(|run| {
-            let limits = bound_limits(&run.result.events);
+            let limits = bound_limits(run.result);
             limits.into_iter().flat_map(|limit| wrapped(&format!("{}: {limit}", run.label), width))
         });
         let lifted = self.runs.iter().flat_map(|run| {

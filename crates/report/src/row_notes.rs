@@ -43,7 +43,7 @@ fn remarkable(run: &RunResult) -> Vec<String> {
     // A reason or a warning may be of what an event tells.
     let is_told = |event: &EventResult| run.reasons.iter().chain(&run.warnings).any(|one| one.contains(&event.message));
     all.extend(run.events.iter().filter(|event| !is_bound(event) && !is_told(event)).map(happened));
-    all.extend(bound_limits(&run.events));
+    all.extend(bound_limits(run));
     all
 }
 

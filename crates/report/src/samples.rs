@@ -180,7 +180,13 @@ pub(crate) fn short() -> RunResult {
         "expected, but did not come: 8611h of `drive` from 0.5 s on".into(),
     ];
     run.warnings = vec!["two frames were lost".into()];
-    run.events = vec![EventResult { start: 2.0, end: 2.0, source: "PLC".into(), message: jog.into() }];
+    let event = |start, end, source: &str, message: &str| EventResult {
+        start,
+        end,
+        source: source.into(),
+        message: message.into(),
+    };
+    run.events = vec![event(0.01, 2.0, "velocity loop", "effort limit binds"), event(2.0, 2.0, "PLC", jog)];
     run
 }
 

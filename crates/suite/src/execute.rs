@@ -8,7 +8,7 @@ use servobench_metrics::{
     EarlyEnd, Limit, Metrics, Name, Question, UnknownMetric, Verdict, judge_requirements, measure,
 };
 use servobench_plant::{Engine, MechanicsError};
-use servobench_scenario::{self as scenario, EngineName, Scenario, Step};
+use servobench_scenario::{self as scenario, Scenario, Step};
 use servobench_sim::{Bench, Failure, Partners, Reason, selected, thinned};
 use servobench_trace::Recording;
 
@@ -47,8 +47,7 @@ pub(crate) enum Interruption {
 impl From<Failure> for Interruption {
     fn from(failure: Failure) -> Self {
         match failure.reason {
-            // What is not a number in an FMU is the FMU's.
-            Reason::Mechanics(MechanicsError::Diverged { engine, message }) if engine != EngineName::Fmu.as_str() => {
+            Reason::Mechanics(MechanicsError::Diverged { message, .. }) => {
                 Self::Early(EarlyEnd::Diverged { time: failure.time, reason: message })
             }
             Reason::Program(reason) => Self::Early(EarlyEnd::GaveUp(reason)),

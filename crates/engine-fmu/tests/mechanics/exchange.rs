@@ -175,7 +175,7 @@ fn what_goes_wrong_in_a_step_ends_the_run_with_the_reason() {
         assert!(error.to_string().contains(words), "{error}");
     }
     let error = says(|time, _| Err(SlaveError::NotFinite { variable: "x".into(), value: f64::NAN, time }));
-    assert!(matches!(error, MechanicsError::Diverged { .. }), "{error}");
+    assert!(matches!(error, MechanicsError::Native { .. }), "{error}");
 }
 
 #[test]
@@ -183,7 +183,7 @@ fn a_position_that_is_not_finite_is_not_passed_on() {
     let toy = Scripted { position: f64::INFINITY, ..Scripted::new(|_, _| Ok(Progress::Done)) };
     let built = FmuMechanics::new(Box::new(Fmu(toy)), &single_body(1), TICK);
     let error = built.err().unwrap();
-    assert_eq!(error.to_string(), "engine `fmu` diverged: the FMU's output `angle` is inf");
+    assert_eq!(error.to_string(), "engine `fmu` failed: the FMU's output `angle` is inf");
 }
 
 #[test]

@@ -197,7 +197,7 @@ fn what_a_library_does_wrong_is_reported_as_what_it_is() {
     assert!(error.to_string().contains("did not come back from its step at 0.001 s within 1 s"), "{error}");
     let mut mass = build(Mischief::NanOutput, isolated(patience));
     let error = mass.advance(&push()).unwrap_err();
-    assert!(matches!(&error, MechanicsError::Diverged { .. }), "{error}");
+    assert!(matches!(&error, MechanicsError::Native { .. }), "{error}");
     let error = ENGINE.build(&setup(&File::new(), Mischief::CrashInStart, isolated(patience))).err().unwrap();
     assert!(error.to_string().contains("the FMU's process ended at 0 s: signal 11"), "{error}");
 }
