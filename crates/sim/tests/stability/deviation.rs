@@ -4,8 +4,9 @@
 //! by 1e-9. So it may grow and fall by many orders of magnitude.
 //!
 //! Whether it grows in the long run is read from the modes that it shows ([`modes`]): the largest growth among them, found alike in
-//! the third and in the last quarter of the run so far, and long enough to be more than what it is found with. No single number, as
-//! the largest deviation, tells: a fast mode that fades slowly hides a slow one that grows.
+//! the third and in the last quarter of the run so far. It counts when it has changed the deviation by a good deal, so that what is
+//! small beside it has had time to show; at the end of the longest run, when it is more than rounding. No single number, as the
+//! largest deviation, tells: a fast mode that fades slowly hides a slow one that grows.
 use crate::modes;
 use servobench_base::Rate;
 use servobench_plant::Exact;
@@ -24,6 +25,8 @@ const MOST_SAMPLES: usize = 4_096;
 const ALIKE: f64 = 0.1;
 /// e to this is what the growth has made of the deviation by now, at least; or its inverse.
 const TELLING: f64 = 0.2;
+/// The same at the end of the longest run. Modes on the circle show what rounding alone makes of them: 1e-11 1/s, 4e-9 in 400 s.
+const TELLING_AT_THE_END: f64 = 1e-6;
 /// Channels in which modes are looked for. Positions have a pole at 1 where no position loop is closed.
 const SHOWN: [&str; 5] =
     ["motor.velocity", "table.velocity", "load.velocity", "velocity.reference", "effort.reference"];
@@ -88,13 +91,19 @@ impl Deviation {
         slope(&self.logarithms[self.logarithms.len() / 2..])
     }
 
-    /// Growth of the mode that grows most, from window to window, if the run tells it by now.
-    fn growth(&self) -> Option<f64> {
+    /// Growth of the mode that grows most, from window to window.
+    ///
+    /// # Errors
+    /// [`NotTold`] where the run does not tell it by now.
+    fn growth(&self, telling: f64) -> Result<f64, NotTold> {
         let quarter = self.samples.len() / 4;
+        let per_second = f64::from(self.stepper.base_rate().hertz()) / self.stride as f64;
         let found = [2, 3].map(|i| modes::largest(&self.samples[i * quarter..(i + 1) * quarter]));
-        let [Some(third), Some(last)] = found.map(|mode| Some(mode?.growth / self.stride as f64)) else { return None };
-        let tells = (third - last).abs() < ALIKE * last.abs() && last.abs() * self.stepper.tick().0 as f64 > TELLING;
-        tells.then_some(last * WINDOW as f64)
+        let quarters = found.map(|mode| mode.map_or(f64::NAN, |mode| mode.growth * per_second));
+        let [third, last] = quarters;
+        let seconds = self.logarithms.len() as f64 * self.seconds();
+        let tells = (third - last).abs() < ALIKE * last.abs() && last.abs() * seconds > telling;
+        if tells { Ok(last * self.seconds()) } else { Err(NotTold { quarters, seconds }) }
     }
 
     /// Seconds of a window.
@@ -119,6 +128,16 @@ fn common_period(scenario: &Scenario) -> u64 {
     period
 }
 
+/// A run that does not tell whether a deviation grows.
+#[derive(Debug, Clone, Copy)]
+#[expect(dead_code, reason = "it is shown")]
+pub(crate) struct NotTold {
+    /// The largest growth that its third and its last quarter show (1/s).
+    quarters: [f64; 2],
+    /// How long it is (s).
+    seconds: f64,
+}
+
 fn slope(logarithms: &[f64]) -> f64 {
     let middle = (logarithms.len() - 1) as f64 / 2.0;
     let (mut above, mut below) = (0.0, 0.0);
@@ -129,8 +148,11 @@ fn slope(logarithms: &[f64]) -> f64 {
     above / below
 }
 
-/// Growth of a deviation of `scenario` in the long run, from window to window; `None` where even the longest run hardly tells.
-pub(crate) fn growth(scenario: &Scenario) -> Option<f64> {
+/// Growth of a deviation of `scenario` in the long run, from window to window.
+///
+/// # Errors
+/// [`NotTold`] where even the longest run hardly tells.
+pub(crate) fn growth(scenario: &Scenario) -> Result<f64, NotTold> {
     let mut deviation = Deviation::new(scenario);
     let (mut largest, mut next) = (f64::NEG_INFINITY, FIRST);
     for count in 1..=LONGEST {
@@ -138,18 +160,18 @@ pub(crate) fn growth(scenario: &Scenario) -> Option<f64> {
         let now = deviation.logarithms[count - 1];
         // Of a deviation of 1e-9: has become large, or is 43 orders of magnitude below what it was.
         if now > (1e-2_f64).ln() {
-            return Some(if now.is_finite() && count > FIRST { deviation.slope() } else { f64::INFINITY });
+            return Ok(if now.is_finite() && count > FIRST { deviation.slope() } else { f64::INFINITY });
         }
         if count > FIRST && now < largest - 100.0 {
-            return Some(deviation.slope());
+            return Ok(deviation.slope());
         }
         largest = largest.max(now);
         if count == next {
             next += next.div_ceil(2);
-            if let Some(growth) = deviation.growth() {
-                return Some(growth);
+            if let Ok(growth) = deviation.growth(TELLING) {
+                return Ok(growth);
             }
         }
     }
-    None
+    deviation.growth(TELLING_AT_THE_END)
 }
