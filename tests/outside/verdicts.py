@@ -1,7 +1,7 @@
 """Verdicts of random scenarios against a judgement of our own: no bad run passes, no good one fails.
 
-Five classes: gains around the boundary of stability, torque that is scarce or not, limits on metrics, programs of function
-blocks, and faults. What is bad, and which requirement of docs/requirements.md or which limit it breaks, is known from the
+Six classes: gains around the boundary of stability, torque that is scarce or not, limits on metrics, programs of function
+blocks, modulo axes, and faults. Of some scenarios hardly anything is recorded, which changes no verdict. What is bad, and which requirement of docs/requirements.md or which limit it breaks, is known from the
 eigenvalues of a loop and from runs that are computed here (verdict_classes/loop.py), or from how the scenario was put together.
 Nothing is judged within 2 % of a threshold: that is left out, and counted. At least a quarter of each class is good, and a
 quarter bad.
@@ -26,7 +26,7 @@ from pathlib import Path
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from draws import Random, sweep_size
-from verdict_classes import blocks, faults, gains, limits, torque
+from verdict_classes import blocks, faults, gains, limits, modulo, torque
 from verdict_classes.case import Case, toml
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -36,6 +36,7 @@ CLASSES: dict[str, Callable[[Random], Case | None]] = {
     "torque": torque.draw,
     "limits": limits.draw,
     "blocks": blocks.draw,
+    "modulo": modulo.draw,
     "faults": faults.draw,
 }
 USUAL = 40
@@ -60,7 +61,7 @@ def program() -> Path:
 
 def draw(name: str, size: int) -> tuple[list[Case], int]:
     """So many cases, at most three quarters of them good and as many bad, and how many were left out."""
-    random = Random(f"{SEED} {name}")
+    random, thinning = Random(f"{SEED} {name}"), Random(f"{SEED} {name} recorded")
     cases: list[Case] = []
     counts, left_out = Counter[bool](), 0
     most = size - max(1, size // 4) if size > 1 else 1
@@ -74,9 +75,21 @@ def draw(name: str, size: int) -> tuple[list[Case], int]:
             left_out += 1
         elif counts[case.is_bad] < most:
             counts[case.is_bad] += 1
+            thin_out(thinning, case)
             cases.append(case)
     assert len(cases) == size, f"{name}: {len(cases)} scenarios of {size} in {DRAWS * size} draws"
     return cases, left_out
+
+
+def thin_out(random: Random, case: Case) -> None:
+    """Now and then a row in a hundred ticks or so is kept, and of it one channel. A limit needs the channels of its metric."""
+    if random.random() < 0.7:
+        return
+    base = int(case.tree["run"]["base_rate"].removesuffix(" Hz"))
+    kept: dict[str, str] = {"rate": f"{random.choice([rate for rate in range(50, 400) if base % rate == 0])} Hz"}
+    if "limits" not in case.tree:
+        kept["channels"] = random.choice(("motor.position", "motor.velocity", "load.position", "setpoint.position"))
+    case.tree["record"] = kept
 
 
 def broken(run: dict) -> set[str]:

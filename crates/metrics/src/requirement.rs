@@ -3,6 +3,7 @@
 //! A requirement is a line of [`Requirement`] and a module that gives the reasons for which a recording breaks it. What each of
 //! them means exactly, with its numbers, is in `docs/requirements.md`.
 mod arrival;
+mod asked;
 mod bounds;
 mod execution;
 mod fault;
@@ -144,8 +145,10 @@ mod tests {
             window: None,
             increment: 0.0,
             modulo: None,
+            transmission: 1.0,
             driven: Driven::ByLoops,
             linear_loop: LinearLoop::Stable,
+            not_analysed: None,
             ended: None,
         }
     }
@@ -178,6 +181,23 @@ mod tests {
         let lifted = judge_requirements(&recording, &Rules { linear_loop, lifted: &[Requirement::Stable], ..rules() });
         let standing = Standing::Lifted(vec!["the loop is unstable".into()]);
         assert!(lifted.passed() && lifted.requirements.contains(&(Requirement::Stable, standing)), "{lifted:?}");
+    }
+
+    /// A loop of which the run alone is judged passes with a warning; where it fails anyway, or is lifted, nobody needs one.
+    #[test]
+    fn what_is_not_analysed_is_a_warning() {
+        let recording = Build::new(1000, 11).channel("load.position", "m", |_| 0.0).finish();
+        let not_analysed = Some("an FMU stands for the drive".to_owned());
+        let open = Rules { linear_loop: LinearLoop::NotAnalysed, not_analysed, ..rules() };
+        let verdict = judge_requirements(&recording, &open);
+        assert!(verdict.passed());
+        assert_eq!(verdict.warnings, ["stable: an FMU stands for the drive"]);
+        for (lifted, driven) in [(Requirement::ALL, Driven::ByLoops), (&[], Driven::Not)] {
+            let verdict = judge_requirements(&recording, &Rules { lifted, driven, ..open.clone() });
+            assert_eq!(verdict.warnings, [""; 0]);
+        }
+        let unstable = Rules { linear_loop: LinearLoop::Unstable("the loop is unstable".into()), ..open };
+        assert_eq!(judge_requirements(&recording, &unstable).warnings, [""; 0]);
     }
 
     /// Of a run that diverged there is nothing to judge: no lift makes it pass.

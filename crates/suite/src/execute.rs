@@ -2,7 +2,7 @@
 use crate::engines::Engines;
 use crate::error::RunError;
 use crate::job::Job;
-use crate::requirements::{linear_loop, rules};
+use crate::requirements::rules;
 use crate::worker::{self, WorkerCommand};
 use servobench_metrics::{
     EarlyEnd, Limit, Metrics, Name, Question, UnknownMetric, Verdict, judge_requirements, measure,
@@ -82,7 +82,7 @@ pub fn execute(
         Some(Interruption::Early(ended)) => (Some(ended), None),
         Some(Interruption::Broken(error)) => (None, Some(error)),
     };
-    let requirements = judge_requirements(&recording, &rules(&job.scenario, linear_loop(&job.scenario), ended));
+    let requirements = judge_requirements(&recording, &rules(&job.scenario, ended));
     let (asked, record) = (&job.scenario.measure, &job.scenario.record);
     let recording = selected(recording, &record.channels);
     let mut metrics = measure(&recording, &Question { window: asked.window, from: asked.from, mode: asked.mode });

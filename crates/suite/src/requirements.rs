@@ -1,35 +1,44 @@
 //! From a scenario to what its run is held to beside its limits.
 use servobench_metrics::{Driven, EarlyEnd, LinearLoop, Rules};
 use servobench_scenario::{Actuator, Feedback, Scenario};
-use servobench_sim::{Analysis, analyse_stability};
-use servobench_stability::Depth;
+use servobench_sim::{Analysis, NotAnalysed, analyse_stability};
+use servobench_stability::{Depth, StabilityError};
 
 /// What the run of `scenario`, which ended early if it says so, is held to.
-pub(crate) fn rules(scenario: &Scenario, linear_loop: LinearLoop, ended: Option<EarlyEnd>) -> Rules<'_> {
+pub(crate) fn rules(scenario: &Scenario, ended: Option<EarlyEnd>) -> Rules<'_> {
+    let (linear_loop, not_analysed) = linear_loop(scenario);
     Rules {
         lifted: &scenario.requirements.lifted,
         expected: &scenario.requirements.expected,
         window: scenario.measure.window,
         increment: increment(scenario),
         modulo: scenario.axis.modulo,
+        transmission: scenario.axis.transmission,
         driven: match scenario.actuator {
             Actuator::Prescribed => Driven::Exactly,
             Actuator::Off => Driven::Not,
             Actuator::Pmsm { .. } | Actuator::IdealSource { .. } => Driven::ByLoops,
         },
         linear_loop,
+        not_analysed,
         ended,
     }
 }
 
-/// What the analysis of the linear loop of `scenario` says. Where it is stable, its boundaries are nobody's concern.
-pub(crate) fn linear_loop(scenario: &Scenario) -> LinearLoop {
+/// What the analysis of the linear loop of `scenario` says, and what is not in it. Where it is stable, its boundaries are nobody's
+/// concern.
+fn linear_loop(scenario: &Scenario) -> (LinearLoop, Option<String>) {
     match analyse_stability(scenario, Depth::Verdict) {
-        Ok(Analysis::Done { report, .. }) => match report.instability {
-            Some(instability) => LinearLoop::Unstable(instability.to_string()),
-            None => LinearLoop::Stable,
+        Ok(Analysis::Done { report, without }) => match report.instability {
+            Some(instability) => (LinearLoop::Unstable(instability.to_string()), None),
+            None => (LinearLoop::Stable, without.map(|what| what.to_string())),
         },
-        Ok(Analysis::NotPossible(_)) | Err(_) => LinearLoop::NotAnalysed,
+        // What grows beyond all numbers within a period is not stable, though its poles cannot be computed.
+        Ok(Analysis::NotPossible(NotAnalysed::Failed(error @ StabilityError::Overflow { .. }))) => {
+            (LinearLoop::Unstable(error.to_string()), None)
+        }
+        Ok(Analysis::NotPossible(why)) => (LinearLoop::NotAnalysed, Some(format!("the run alone is judged: {why}"))),
+        Err(error) => (LinearLoop::NotAnalysed, Some(format!("the run alone is judged: {error}"))),
     }
 }
 

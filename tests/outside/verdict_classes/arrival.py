@@ -70,13 +70,12 @@ def arrives(
 def swings(run: Run, course: Course, asked: int = 1) -> tuple[bool, bool, int]:
     """Whether effort goes from limit to limit too often, whether that is near, and how often beyond what is asked for.
 
-    A move asks for one, a disturbance for another.
+    A move asks for one, a disturbance for another; before the first move nothing but a disturbance does.
     """
-    edges = [move.start for move in course.moves] + [float("inf")]
-    parts = [(float("-inf"), float("inf"))] if not course.moves else list(zip(edges, edges[1:]))
+    starts = [float("-inf"), *(move.start for move in course.moves), float("inf")]
     most = -99
-    for start, end in parts:
+    for number, (start, end) in enumerate(zip(starts, starts[1:])):
         cut = run.cut[(run.t >= start) & (run.t < end)]
         cut = cut[cut != 0]
-        most = max(most, int(numpy.sum(cut[1:] != cut[:-1])) - asked)
+        most = max(most, int(numpy.sum(cut[1:] != cut[:-1])) - (asked if number else asked - 1))
     return most > SWINGS, abs(most - SWINGS) <= NEAR_SWINGS, most

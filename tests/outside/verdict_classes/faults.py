@@ -90,14 +90,19 @@ class Undecided(Exception):
     """A draw whose outcome the documentation does not tell."""
 
 
-def lost(p: Program) -> Fault | None:
-    """Frames that are lost during a move, as many as the drive bridges or more."""
+def on_its_way(p: Program, least: float, most: float) -> tuple[float, float, str]:
+    """A move by so much either way: when it begins, how long it lasts, and its call."""
     p.power()
     begun = p.time + 0.02
-    target = p.random.sign() * p.random.uniform(0.2, 0.4)
+    target = p.random.sign() * p.random.uniform(least, most)
     name = p.call("MC_MoveAbsolute", p.after, position=f"{target} m")
-    whole = p.machine.bounds.duration(target)
     p.went(target, name)
+    return begun, p.machine.bounds.duration(target), name
+
+
+def lost(p: Program) -> Fault | None:
+    """Frames that are lost during a move, as many as the drive bridges or more."""
+    begun, whole, name = on_its_way(p, 0.2, 0.4)
     start = round(begun + p.random.uniform(0.2, 0.7) * whole, 3)
     cycles = p.random.choice((1, 2, p.random.randint(4, 12)))
     p.machine.tree["bus"]["fault"] = [{"kind": "lost", "start": f"{start} s", "cycles": cycles}]
@@ -109,12 +114,7 @@ def lost(p: Program) -> Fault | None:
 
 def outside(p: Program) -> Fault | None:
     """The external fault signal during a move, or none."""
-    p.power()
-    begun = p.time + 0.02
-    target = p.random.sign() * p.random.uniform(0.2, 0.4)
-    name = p.call("MC_MoveAbsolute", p.after, position=f"{target} m")
-    whole = p.machine.bounds.duration(target)
-    p.went(target, name)
+    begun, whole, name = on_its_way(p, 0.2, 0.4)
     if p.random.random() < 0.4:
         back(p)
         return None
@@ -125,12 +125,7 @@ def outside(p: Program) -> Fault | None:
 
 def silent(p: Program) -> Fault | None:
     """A drive that is silent during a move, for half as long as the master waits or for longer."""
-    p.power()
-    begun = p.time + 0.02
-    target = p.random.sign() * p.random.uniform(0.3, 0.5)
-    name = p.call("MC_MoveAbsolute", p.after, position=f"{target} m")
-    whole = p.machine.bounds.duration(target)
-    p.went(target, name)
+    begun, whole, name = on_its_way(p, 0.3, 0.5)
     start, patience = round(begun + p.random.uniform(0.1, 0.3) * whole, 3), round(0.2 * whole, 3)
     lasts = p.random.choice((0.5, p.random.uniform(1.3, 2))) * patience
     p.machine.tree["bus"] |= {"drive_timeout": f"{patience} s"}

@@ -13,6 +13,8 @@ use servobench_trace::{Ending, Recording};
 const PART_OF_MOVE: f64 = 1e-3;
 /// It is at least so many increments of the encoder.
 const INCREMENTS: f64 = 10.0;
+/// Differences of positions say nothing about so small a part of them; it is the window of a move over no distance.
+const ROUNDING: f64 = 1e-12;
 /// The mean is over the last one of so many parts of the time after the profile.
 const REST: usize = 10;
 /// A pause is longer than so many periods of the rows.
@@ -77,7 +79,8 @@ fn miss(recording: &Recording, positions: &[f64], phase: &Phase<'_>, rules: &Rul
     }
     let error = rest.iter().map(|x| nearest(made.to - x, rules.modulo)).sum::<f64>() / rest.len() as f64;
     let distance = made.to - made.from;
-    let window = rules.window.unwrap_or_else(|| arrival_window(distance, rules.increment));
+    let rounding = ROUNDING * made.from.abs().max(made.to.abs());
+    let window = rules.window.unwrap_or_else(|| arrival_window(distance, rules.increment).max(rounding));
     if error.abs() <= window {
         return None;
     }
@@ -137,6 +140,17 @@ mod tests {
         let rules = rules();
         let broken = broken(&recording, &rules).unwrap();
         assert_eq!(broken, ["the load ended 50.0 mm short of 200 mm (window ±200 µm); effort limit bound for 300 ms"]);
+    }
+
+    /// From 0.2 m to 0.2 m: a thousandth of nothing would be no window.
+    #[test]
+    fn a_move_over_no_distance_arrives_but_for_rounding() {
+        for (off, arrives) in [(0.0, true), (1e-15, true), (1e-12, false)] {
+            let mut recording = one_move(|_| 0.2 + off);
+            recording.moves = vec![planned(0.0, 0.0, 0.2, 0.2).made()];
+            let found = broken(&recording, &rules()).unwrap();
+            assert_eq!(found.is_empty(), arrives, "{off}: {found:?}");
+        }
     }
 
     /// The window is met inclusively, and a rounding beyond it is a miss.

@@ -37,7 +37,10 @@ pub fn judge_requirements(recording: &Recording, rules: &Rules<'_>) -> Verdict {
     };
     let requirements: Vec<(Requirement, Standing)> =
         Requirement::ALL.iter().map(|requirement| (*requirement, standing(*requirement))).collect();
-    Verdict { requirements, expected, ..Verdict::default() }
+    let is_met = requirements.contains(&(Requirement::Stable, Standing::Met));
+    let not_analysed = rules.not_analysed.iter().filter(|_| is_met);
+    let warnings = not_analysed.map(|why| format!("{}: {why}", Requirement::Stable)).collect();
+    Verdict { requirements, expected, warnings, ..Verdict::default() }
 }
 
 /// The first reasons, and how many others there are.

@@ -1,19 +1,20 @@
 //! `stable`: the linear loop has no pole outside the unit circle; nothing swings between its limits; no oscillation grows.
 //!
-//! A stretch is from the start of a move to that of the next, or to the end of the run; without a move it is the whole run.
+//! A stretch is from the start of the run to that of the first move, from there to that of the next, and from that of the last to the
+//! end of the run; without a move it is the whole run.
 //!
 //! - **Limit to limit.** In each stretch the reversals of a limited quantity are counted: cut at one limit after it was cut at the
-//!   other. A set-point that accelerates and brakes asks for one at each change of the sign of its acceleration, and a sine that
-//!   disturbs the axis at each change of its own. More than [`MOST_REVERSALS`] beyond those are an oscillation. A limit that binds
-//!   on one side is none.
-//! - **Growth.** After the last profile of a sequence, or in the whole run without a move, the following error of the motor is cut
-//!   into [`PARTS`] equal parts. It grows when it swings in each of them, each part swings further than the one before, the last
+//!   other. More than [`MOST_REVERSALS`] beyond those that set-point and disturbances ask for (module [`asked`](super::asked)) are an
+//!   oscillation. A limit that binds on one side is none. Where a recording holds as many as are kept, what follows is not known.
+//! - **Growth.** Before the first move, after the last profile of a sequence, or in the whole run without a move, the following error
+//!   of the motor is cut into [`PARTS`] equal parts. It grows when it swings in each of them, each part swings further than the one before, the last
 //!   [`GROWTH`] times as far as the first, and the growth does not fade from part to part, as that of a beat would.
 use super::Rules;
+use super::asked::{is_disturbed, reversals_asked_for, sign_changes};
 use super::rules::{Driven, LinearLoop};
 use crate::quantity::Quantity;
 use crate::span::{Phase, phases};
-use servobench_trace::Recording;
+use servobench_trace::{LimitReversals, Recording};
 use std::ops::Range;
 
 /// Reversals between limits in a stretch that nobody asks for, at most.
@@ -42,45 +43,36 @@ pub(super) fn broken(recording: &Recording, rules: &Rules<'_>) -> Option<Vec<Str
         LinearLoop::Unstable(words) => Some(words.clone()),
         LinearLoop::Stable | LinearLoop::NotAnalysed => None,
     };
-    Some(linear.into_iter().chain(between_limits(recording)).chain(growth(recording, rules)).collect())
+    Some(linear.into_iter().chain(between_limits(recording, rules)).chain(growth(recording, rules)).collect())
 }
 
 /// The worst swinging between limits, in words.
-fn between_limits(recording: &Recording) -> Option<String> {
+fn between_limits(recording: &Recording, rules: &Rules<'_>) -> Option<String> {
     let stretches = stretches(recording);
     let worst = stretches.iter().flat_map(|rows| {
         recording.limit_reversals.iter().map(move |reversals| {
             let (from, to) = (recording.time_of(rows.start), recording.time_of(rows.end));
             let within: Vec<f64> = reversals.times.iter().copied().filter(|t| (from..to).contains(t)).collect();
-            (reversals.limit.as_str(), within, asked_for(recording, rows))
+            (reversals.limit.as_str(), within, reversals_asked_for(recording, rows, rules.transmission))
         })
     });
     let (limit, times, asked) = worst.max_by_key(|(_, times, asked)| times.len().saturating_sub(*asked))?;
-    let (first, last) = (times.first()?, times.last()?);
-    (times.len() > asked + MOST_REVERSALS).then(|| {
-        let (first, last) = (Quantity::new(*first, "s"), Quantity::new(*last, "s"));
-        format!("it goes from one {limit} to the other {} times from {first} to {last}", times.len())
-    })
+    if times.len() <= asked + MOST_REVERSALS {
+        return recording.limit_reversals.iter().find_map(not_known);
+    }
+    let (first, last) = (Quantity::new(*times.first()?, "s"), Quantity::new(*times.last()?, "s"));
+    Some(format!("it goes from one {limit} to the other {} times from {first} to {last}", times.len()))
 }
 
-/// Reversals that set-point and disturbances ask for in `rows`.
-fn asked_for(recording: &Recording, rows: &Range<usize>) -> usize {
-    let channels = ["setpoint.acceleration", "disturbance.motor", "disturbance.load"];
-    channels
-        .into_iter()
-        .filter_map(|name| recording.channel(name))
-        .map(|values| sign_changes(&values[rows.clone()]))
-        .sum()
+/// Of a run with more reversals than are kept nobody can say that the others were asked for.
+fn not_known(reversals: &LimitReversals) -> Option<String> {
+    let LimitReversals { limit, times } = reversals;
+    let last = times.get(LimitReversals::MOST - 1)?;
+    let (most, last) = (LimitReversals::MOST, Quantity::new(*last, "s"));
+    Some(format!("it has gone from one {limit} to the other {most} times by {last}, and what follows is not judged"))
 }
 
-/// How often the sign of `values` changes.
-fn sign_changes(values: &[f64]) -> usize {
-    let mut signs = values.iter().filter(|value| **value != 0.0).map(|value| value.is_sign_positive());
-    let Some(mut sign) = signs.next() else { return 0 };
-    signs.filter(|next| std::mem::replace(&mut sign, *next) != *next).count()
-}
-
-/// Rows from the start of each move to the next; all without a move.
+/// Rows before the first move, and from the start of each move to the next; all without a move.
 fn stretches(recording: &Recording) -> Vec<Range<usize>> {
     let of_moves: Vec<_> = phases(recording).iter().map(Phase::rows).collect();
     match of_moves.first() {
@@ -90,20 +82,21 @@ fn stretches(recording: &Recording) -> Vec<Range<usize>> {
     }
 }
 
+/// Rows in which the set-point rests: before the first move, and after each of them; all without a move.
+fn at_rest(recording: &Recording) -> Vec<Range<usize>> {
+    let phases = phases(recording);
+    let before = 0..phases.first().map_or(recording.len(), |first| first.profile.start);
+    std::iter::once(before).chain(phases.into_iter().map(|phase| phase.after)).collect()
+}
+
 /// An oscillation that grows, in words.
 fn growth(recording: &Recording, rules: &Rules<'_>) -> Option<String> {
     let error = recording.channel("following_error.motor")?;
     let largest = recording.channel("motor.position")?.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
     let floor = (INCREMENTS * rules.increment).max(ROUNDING * largest);
-    let disturbed = |rows: &Range<usize>| {
-        let channels = ["disturbance.motor", "disturbance.load"].into_iter().filter_map(|name| recording.channel(name));
-        channels
-            .into_iter()
-            .any(|values| values[rows.clone()].windows(2).any(|pair| pair[0].to_bits() != pair[1].to_bits()))
-    };
-    let quiet: Vec<_> = phases(recording).into_iter().map(|phase| phase.after).collect();
-    let quiet = if recording.moves.is_empty() { stretches(recording) } else { quiet };
-    let growing = quiet.into_iter().find(|rows| !disturbed(rows) && grows(&error[rows.clone()], floor))?;
+    let is_growing =
+        |rows: &Range<usize>| !is_disturbed(recording, rows, rules.transmission) && grows(&error[rows.clone()], floor);
+    let growing = at_rest(recording).into_iter().find(is_growing)?;
     let (from, to) = (recording.time_of(growing.start), recording.time_of(growing.end - 1));
     let (from, to) = (Quantity::new(from, "s"), Quantity::new(to, "s"));
     Some(format!("the following error of the motor swings further and further from {from} to {to}"))
@@ -130,7 +123,7 @@ fn swing(values: &[f64]) -> Option<f64> {
     let steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let (low, high) =
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
-    (sign_changes(&steps) >= TURNS && high > low).then_some(high - low)
+    (sign_changes(steps.into_iter()) >= TURNS && high > low).then_some(high - low)
 }
 
 #[cfg(test)]
@@ -181,6 +174,9 @@ mod tests {
         let mut recording = recording(|t| if t < 0.5 { 1e-4 * (8.0 * t).exp() * (TAU * 33.0 * t).sin() } else { 0.0 });
         recording.moves = vec![planned(0.0, 0.5, 0.0, 1.0).made()];
         assert_eq!(broken(&recording, &rules()).unwrap(), [""; 0]);
+        recording.moves = vec![planned(0.5, 0.6, 0.0, 1.0).made()];
+        let before = "the following error of the motor swings further and further from 0 s to 499 ms";
+        assert_eq!(broken(&recording, &rules()).unwrap(), [before], "and before the first move it rests too");
     }
 
     fn reversing(times: usize, acceleration: impl Fn(f64) -> f64) -> Recording {
@@ -204,6 +200,26 @@ mod tests {
         let sine = |t: f64| (TAU * 5.0 * t).sin();
         assert_eq!(broken(&reversing(17, sine), &rules()).unwrap(), [""; 0]);
         assert_eq!(broken(&reversing(20, sine), &rules()).unwrap().len(), 1);
+    }
+
+    #[test]
+    fn reversals_before_the_first_move_count_too() {
+        let mut recording = reversing(12, |_| 0.0);
+        recording.moves = vec![planned(0.25, 0.5, 0.0, 1.0).made()];
+        let found = broken(&recording, &rules()).unwrap();
+        assert_eq!(found, ["it goes from one effort limit to the other 12 times from 100 ms to 210 ms"]);
+    }
+
+    #[test]
+    fn reversals_beyond_those_that_are_kept_are_not_judged_as_none() {
+        let mut recording = reversing(0, |t| (TAU * 400.0 * t).sin());
+        let late = |count: usize| vec![LimitReversals { limit: "effort limit".into(), times: vec![-1.0; count] }];
+        recording.limit_reversals = late(LimitReversals::MOST - 1);
+        assert_eq!(broken(&recording, &rules()).unwrap(), [""; 0], "outside of all stretches");
+        recording.limit_reversals = late(LimitReversals::MOST);
+        let found = broken(&recording, &rules()).unwrap();
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].contains("what follows is not judged"), "{found:?}");
     }
 
     /// Each stretch is judged for itself.

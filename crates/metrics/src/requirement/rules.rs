@@ -15,10 +15,14 @@ pub struct Rules<'a> {
     pub increment: f64,
     /// Period of a modulo axis (axis unit).
     pub modulo: Option<f64>,
+    /// Axis coordinate per motor coordinate.
+    pub transmission: f64,
     /// What moves the axis.
     pub driven: Driven,
     /// What the analysis of the linear loop found.
     pub linear_loop: LinearLoop,
+    /// What of the loops is not in that, and why: there the run alone is judged.
+    pub not_analysed: Option<String>,
     /// Why the run ended before its end, if it did.
     pub ended: Option<EarlyEnd>,
 }

@@ -1,5 +1,6 @@
 //! The analysis of the linear loop against runs.
 mod deviation;
 mod files;
+mod modes;
 mod random;
 mod sweep;
