@@ -200,12 +200,14 @@ fn check_expectations(scenario: &Scenario) -> Result<(), BuildError> {
 }
 
 /// Channels that a run is judged by, whatever is kept of it.
-const JUDGED_BY: [&str; 7] = [
+const JUDGED_BY: [&str; 9] = [
     "setpoint.position",
     "setpoint.acceleration",
     "motor.position",
     "load.position",
     "following_error.motor",
+    "effort.reference",
+    "effort.motor",
     "disturbance.motor",
     "disturbance.load",
 ];

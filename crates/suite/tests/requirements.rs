@@ -13,7 +13,15 @@ fn folder() -> PathBuf {
 
 /// The requirements that the run breaks, and why.
 fn broken(path: &Path) -> (Vec<&'static str>, Vec<String>) {
-    let loaded = load(path).unwrap_or_else(|error| panic!("{error}"));
+    broken_of(path, &[])
+}
+
+/// The same of a run that keeps only `channels`, or all where there are none.
+fn broken_of(path: &Path, channels: &[&str]) -> (Vec<&'static str>, Vec<String>) {
+    let mut loaded = load(path).unwrap_or_else(|error| panic!("{error}"));
+    if !channels.is_empty() {
+        loaded.scenario.record.channels = channels.iter().map(|name| (*name).to_owned()).collect();
+    }
     let text = std::fs::read_to_string(path).unwrap();
     let source = Source { scenario: loaded.scenario, text };
     let job = jobs(vec![source], &[EngineName::Exact]).remove(0);
@@ -64,6 +72,13 @@ fn each_run_breaks_what_its_first_line_says() {
         println!("{}: {names:?}\n  {}", path.file_stem().unwrap().display(), reasons.join("\n  "));
         if names != said {
             wrong.push(format!("{}: says {said:?}, breaks {names:?}: {reasons:?}", path.display()));
+        }
+        // Limits are of what is kept; requirements are not.
+        let (mut of_little, _) = broken_of(&path, &["load.velocity"]);
+        of_little.retain(|name| !perhaps.iter().any(|perhaps| perhaps.trim_end_matches('?') == *name));
+        of_little.sort_unstable();
+        if of_little != names {
+            wrong.push(format!("{}: with one channel kept it breaks {of_little:?}, not {names:?}", path.display()));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
