@@ -80,11 +80,13 @@ impl ClosedLoop {
     /// Within control a slower loop's output reaches the faster loop in the same tick; the voltage of the current loop goes
     /// out one period of that loop later. The power stage takes the motor's position and velocity at k, and its mean torque
     /// over the tick drives the mechanics; a disturbance is held over the tick.
+    ///
+    /// `now` is that of the tick before; what nobody writes in this loop stays as it was.
     pub(crate) fn tick(&mut self, k: u64, external: &External, recorder: &mut Recorder, now: &mut Instant) {
         if external.start && self.state.begun.is_none() {
             self.state.begun = Some(k);
         }
-        *now = Instant::default();
+        now.binds = PerLimit::default();
         let motor = self.sample(external, now);
         self.account(motor.position, now);
         let mut command = self.control(k, external, motor, now, recorder);
