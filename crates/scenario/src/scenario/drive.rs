@@ -153,7 +153,13 @@ impl CurrentLoop {
     pub fn max_effort(&self) -> f64 {
         let MotorEstimate { electrical_ratio, flux_linkage, inductance_d, inductance_q, .. } = self.motor;
         let constant = 1.5 * electrical_ratio * (flux_linkage + (inductance_d - inductance_q) * self.d_reference);
-        constant * q_current(self.max_current, self.d_reference)
+        constant * self.max_q_current()
+    }
+
+    /// What the largest length leaves for the q axis (A, peak).
+    #[must_use]
+    pub fn max_q_current(&self) -> f64 {
+        q_current(self.max_current, self.d_reference)
     }
 }
 
