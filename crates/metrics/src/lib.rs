@@ -34,7 +34,7 @@ pub use modal::{Mode, Signal, fit_mode};
 pub use name::{Name, UnknownMetric};
 pub use quantity::Quantity;
 pub use requirement::{
-    Driven, EarlyEnd, Expectation, Expected, LinearLoop, Requirement, Rules, Standing, arrival_window,
+    Driven, EarlyEnd, Expectation, Expected, JUDGED_BY, LinearLoop, Requirement, Rules, Standing, arrival_window,
     judge_requirements,
 };
 pub use round::{round_above, round_below};

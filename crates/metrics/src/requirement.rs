@@ -54,6 +54,19 @@ requirements! {
     Bounded "bounded" "positions stay finite and within a multiple of the range of the program",
 }
 
+/// Channels that requirements are judged by, of those that the axis has. They are recorded at every tick, whatever is kept.
+pub const JUDGED_BY: [&str; 9] = [
+    "setpoint.position",
+    "setpoint.acceleration",
+    "motor.position",
+    "load.position",
+    "following_error.motor",
+    "effort.reference",
+    "effort.motor",
+    "disturbance.motor",
+    "disturbance.load",
+];
+
 impl fmt::Display for Requirement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.as_str())

@@ -18,6 +18,7 @@ use crate::recorded::Recorded;
 use servobench_base::{Rate, Setpoint};
 use servobench_drive as drive;
 use servobench_fieldbus::LinkFault;
+use servobench_metrics::JUDGED_BY;
 use servobench_plant::{Chain, Engine};
 use servobench_scenario::{self as scenario, Actuator, AxisMechanics, Feedback, LoopSignal, Scenario};
 use servobench_trace::{About, Event};
@@ -198,19 +199,6 @@ fn check_expectations(scenario: &Scenario) -> Result<(), BuildError> {
     }
     Ok(())
 }
-
-/// Channels that a run is judged by, whatever is kept of it.
-const JUDGED_BY: [&str; 9] = [
-    "setpoint.position",
-    "setpoint.acceleration",
-    "motor.position",
-    "load.position",
-    "following_error.motor",
-    "effort.reference",
-    "effort.motor",
-    "disturbance.motor",
-    "disturbance.load",
-];
 
 /// Of `all` channels of the axis those `wanted`, and those that its run is judged by; all when the list is empty.
 fn measured(all: &Selection, wanted: &[String]) -> Result<Selection, BuildError> {
