@@ -118,6 +118,22 @@ fn what_the_coupling_adds_is_of_second_order() {
     }
 }
 
+/// The axis of the published point speeds up; its position loop has half the rate of its velocity loop. Held from cycle to
+/// cycle the velocity that is fed forward is a staircase, and so is the torque.
+#[test]
+fn a_velocity_fed_forward_between_cycles_of_the_position_loop_spares_the_motor_a_staircase() {
+    let text = include_str!("../../../scenarios/msl-operating-point.toml");
+    let switch = "[drive.feedforward]\n";
+    assert!(text.contains(switch));
+    let [goes_on, held] = [true, false].map(|interpolate| {
+        let recording = run(&text.replace(switch, &format!("{switch}interpolate = {interpolate}\n")));
+        // Constant acceleration, before the load comes.
+        let torque = &channel(&recording, "effort.motor")[recording.index_at(0.03)..recording.index_at(0.09)];
+        torque.windows(3).map(|three| (three[2] - 2.0 * three[1] + three[0]).abs()).fold(0.0, f64::max)
+    });
+    assert!(held > 5.0 * goes_on, "second differences of {held} and {goes_on} N·m");
+}
+
 /// Oracle: published (Modelica Standard Library, `SM_PermanentMagnet`): 100 V, 100 A and 1500 rpm give 181.4 N·m, the rotor
 /// angle 20.75° and the power factor 0.98; recomputed from its parameters 181.44 N·m, 20.756° and 0.98004.
 #[test]
