@@ -72,8 +72,9 @@ start = "power.Status"
 position = "15 rad"
 "#;
 
-/// Name of the candidate that is driven over a bus.
+/// Names of the candidates: one driven over a bus, one that records every channel.
 const BY_BLOCKS: &str = "by blocks";
+const ALL_CHANNELS: &str = "all channels";
 
 /// What is measured: one round of it returns nanoseconds per tick.
 struct Candidate {
@@ -90,6 +91,14 @@ struct Line {
     bare: Option<f64>,
     /// The loop on `exact` with the bare step after each tick, of no effect: what no coupling could be cheaper than.
     in_turn: Option<f64>,
+}
+
+/// What is added to a tick on `exact` (ns).
+struct Adds {
+    /// By blocks, drive and bus.
+    blocks: f64,
+    /// By all channels in place of twenty, the powers of the motor among them.
+    channels: f64,
 }
 
 fn main() {
@@ -109,16 +118,16 @@ fn main() {
             Some(Line { engine, tick, bare: of(format!("bare {engine}")), in_turn: of(format!("{engine} in turn")) })
         })
         .collect();
-    let by_blocks = of(BY_BLOCKS.to_owned()).map_or(f64::NAN, |tick| tick - exact_tick(&lines));
-    if json { print_json(&lines, by_blocks) } else { print_table(&lines, by_blocks) }
+    let added = |by: &str| of(by.to_owned()).map_or(f64::NAN, |tick| tick - exact_tick(&lines));
+    let adds = Adds { blocks: added(BY_BLOCKS), channels: added(ALL_CHANNELS) };
+    if json { print_json(&lines, &adds) } else { print_table(&lines, &adds) }
 }
 
 fn exact_tick(lines: &[Line]) -> f64 {
     lines.iter().find(|line| line.engine == Exact.name()).map_or(f64::NAN, |line| line.tick)
 }
 
-/// `by_blocks` is what blocks, drive and bus add to a tick (ns).
-fn print_json(lines: &[Line], by_blocks: f64) {
+fn print_json(lines: &[Line], Adds { blocks, channels }: &Adds) {
     let number = |value: Option<f64>| value.map_or("null".to_owned(), |value| format!("{value:.1}"));
     let exact = exact_tick(lines);
     let engines: Vec<String> = lines
@@ -137,13 +146,13 @@ fn print_json(lines: &[Line], by_blocks: f64) {
         })
         .collect();
     println!(
-        "{{\"base_rate_hz\":{BASE_RATE},\"channels\":{CHANNELS},\"blocks_drive_and_bus_add_ns\":{by_blocks:.1},\
+        "{{\"base_rate_hz\":{BASE_RATE},\"channels\":{CHANNELS},\"blocks_drive_and_bus_add_ns\":{blocks:.1},\"all_channels_add_ns\":{channels:.1},\
          \"engines\":[{}]}}",
         engines.join(",")
     );
 }
 
-fn print_table(lines: &[Line], by_blocks: f64) {
+fn print_table(lines: &[Line], Adds { blocks, channels }: &Adds) {
     let number = |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.0} ns"));
     let exact = exact_tick(lines);
     println!("{:8} {:>9} {:>12} {:>10} {:>19} {:>9}", "", "", "", "", "above bare + exact", "");
@@ -164,18 +173,23 @@ fn print_table(lines: &[Line], by_blocks: f64) {
     }
     println!("apart: both measured alone, each with the caches to itself; in turn: one after the other at every tick");
     println!(
-        "blocks, drive and bus add {by_blocks:.0} ns per tick: MC_Power and MC_MoveAbsolute every 4 ms, a frame every 1 ms"
+        "blocks, drive and bus add {blocks:.0} ns per tick: MC_Power and MC_MoveAbsolute every 4 ms, a frame every 1 ms"
     );
+    println!("all channels in place of {CHANNELS}, the powers of the motor among them, add {channels:.0} ns per tick");
 }
 
 fn candidates() -> Vec<Candidate> {
     let direct = scenario(&[AXIS, DIRECT].concat());
     let motion = Arc::new(Motion::of(&direct));
+    let recording_all = direct.clone();
     let axis = with_twenty_channels(direct);
     let mut on_a_bus = scenario(&[AXIS, ON_A_BUS].concat());
     on_a_bus.record.channels.clone_from(&axis.record.channels);
     assert_moves(&on_a_bus);
-    let mut all = vec![candidate(BY_BLOCKS.into(), move || loop_round(&on_a_bus, &Exact))];
+    let mut all = vec![
+        candidate(BY_BLOCKS.into(), move || loop_round(&on_a_bus, &Exact)),
+        candidate(ALL_CHANNELS.into(), move || loop_round(&recording_all, &Exact)),
+    ];
     for engine in servobench_tests::engines() {
         let looped = axis.clone();
         all.push(candidate(engine.name().into(), move || loop_round(&looped, engine)));
