@@ -7,8 +7,8 @@
 //!   other. More than [`MOST_REVERSALS`] beyond those that set-point and disturbances ask for (module [`asked`](super::asked)) are an
 //!   oscillation. A limit that binds on one side is none. Where a recording holds as many as are kept, what follows is not known.
 //! - **Growth.** Before the first move, after the last profile of a sequence, or in the whole run without a move, the following error
-//!   of the motor is cut into [`PARTS`] equal parts. It grows when it swings in each of them, each part swings further than the one before, the last
-//!   [`GROWTH`] times as far as the first, and the growth does not fade from part to part, as that of a beat would.
+//!   of the motor is cut into [`PARTS`] equal parts. It grows when it swings in each of them, each part swings further than the one
+//!   before, the last [`GROWTH`] times as far as the first, and the growth does not fade from part to part, as that of a beat would.
 use super::Rules;
 use super::asked::{is_disturbed, reversals_asked_for, sign_changes};
 use super::rules::{Driven, LinearLoop};

@@ -3,7 +3,8 @@
 //!
 //! A rotor that turns the other way exchanges the sign of q: each entry of the maps is even or odd in x = ω·h. So with
 //! y = x² an entry is a polynomial of y, or x times one. Of its size, `TERMS` coefficients leave out (2x)^16/17! < 1e-16 up to
-//! [`FURTHEST`]; a smaller x needs fewer. A faster rotor takes several parts of a tick, whose maps are made when the first one comes.
+//! [`FURTHEST`]; a smaller x needs fewer. A faster rotor takes several parts of a tick, whose maps are made when the first one
+//! comes.
 use super::maps::{Forms, Maps, Matrix, Scalar, doublings};
 use super::{Input, Params};
 use core::array::from_fn;
