@@ -222,6 +222,34 @@ fn what_no_run_can_keep_is_a_warning_at_its_place() {
     }
 }
 
+/// The pieces of a table meet with steps of the acceleration, on an axis with a limit of the jerk.
+#[test]
+fn a_table_with_corners_is_a_warning_on_an_axis_with_a_jerk() {
+    let scenario = fs::read_to_string(repository().join("scenarios/plc/velocity-profile.toml")).unwrap();
+    let models = repository().join("models");
+    for (pairs, jerk, expected) in [
+        ("200,900\n500,900\n", "jerk = \"73 m/s3\"", Some("steps by up to 4.50 m/s² between pairs of the table")),
+        // From 0.3 m/s² up to 0.4 in a corner, and from there to none at the end.
+        ("200,60\n300,100\n", "jerk = \"73 m/s3\"", Some("steps by up to 400 mm/s²")),
+        ("100,0\n200,0\n", "jerk = \"73 m/s3\"", None),
+        ("200,900\n500,900\n", "", None),
+    ] {
+        let order = if jerk.is_empty() { "order = 2" } else { "order = 3" };
+        let text = scenario.replace("order = 2", &format!("{order}\n{jerk}")).replace("velocities.csv", "own.csv");
+        let table = format!("time [ms],velocity [mm/s]\n{pairs}");
+        let work = folder(&[("table.toml", &text), ("own.csv", &table)]);
+        std::os::unix::fs::symlink(&models, work.path().join("models")).unwrap();
+        let output = servobench(&["check", work.path().join("table.toml").to_str().unwrap()]);
+        let said = said(&output).split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
+        assert_eq!(code(&output), 0, "{said}");
+        assert_eq!(said.contains("the acceleration steps"), expected.is_some(), "{said}");
+        assert!(
+            expected.is_none_or(|expected| said.contains(expected) && said.contains("limit of 73.0 m/s³")),
+            "{said}"
+        );
+    }
+}
+
 /// A slide as the joint of a motor that turns, and a hinge as the load of a linear axis.
 #[test]
 fn joints_have_to_be_of_the_kind_that_the_axis_is() {

@@ -19,6 +19,7 @@ mod resistance;
 mod screen;
 mod servo;
 mod stability;
+mod tables;
 
 pub use cost::Cost;
 pub use demand::{Demand, EffortDemand, VoltageDemand};
@@ -77,6 +78,7 @@ pub fn preview(jobs: &[Job]) -> Result<Option<Preview>, BuildError> {
     doubts.extend(stability.doubts());
     doubts.extend(demand.doubts(scenario));
     doubts.extend(engines.iter().filter_map(|engine| engine.doubt(program.run)));
+    doubts.extend(tables::doubts(scenario));
     doubts.extend(mjcf::doubts(scenario, &names));
     Ok(Some(Preview {
         name: scenario.name.clone(),
