@@ -19,6 +19,7 @@ mod supervision;
 
 use crate::error::AxisError;
 use crate::ledger::{CommandId, Ledger, Progress};
+use crate::name::BlockName;
 use crate::params::AxisParams;
 use crate::state::AxisState;
 use activity::Activity;
@@ -52,8 +53,10 @@ pub struct Axis {
     superimposed: Option<Superimposed>,
     /// What ended superimposed motions have added to the activity.
     shift: f64,
-    /// Set-point of this cycle, both together.
+    /// Set-point of this cycle, both together; until the cycle has begun that of the one before.
     setpoint: Setpoint,
+    /// Whether the cycle is being begun.
+    is_beginning: bool,
     /// Direction of the last motion, 1 or −1.
     last_direction: f64,
     factors: Override,
@@ -83,6 +86,7 @@ impl Axis {
             superimposed: None,
             shift: 0.0,
             setpoint: Setpoint::default(),
+            is_beginning: false,
             last_direction: 1.0,
             factors: Override::NONE,
             queue: Queue::EMPTY,
@@ -95,14 +99,17 @@ impl Axis {
     pub fn begin(&mut self, feedback: &AxisFeedback) {
         self.feedback = *feedback;
         self.supervise();
+        self.is_beginning = true;
         self.advance();
         self.advance_superimposed();
+        self.is_beginning = false;
         self.add_up();
         self.watch_permission();
     }
 
     /// Ends a cycle: what the axis is to do until the next one.
     pub fn end(&mut self) -> AxisCommand {
+        self.watch_leading();
         let task = match &self.activity {
             Activity::Homing(homing) => Task::Home { position: homing.position },
             Activity::Effort(effort) => Task::Effort(effort.present),
@@ -150,6 +157,13 @@ impl Axis {
     #[must_use]
     pub const fn error(&self) -> Option<&AxisError> {
         self.error.as_ref()
+    }
+
+    /// The block whose command the axis follows, without one on top of it; `None` while it rests, and MC_Halt where it brakes by
+    /// itself.
+    #[must_use]
+    pub fn commanded_by(&self) -> Option<BlockName> {
+        self.activity.command().map(|(_, command)| command.block)
     }
 
     /// What became of a command.

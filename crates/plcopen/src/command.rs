@@ -79,8 +79,8 @@ impl Direction {
 /// Velocity and its derivatives as a block limits them, magnitudes in the axis unit (m or rad).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dynamics {
-    /// Velocity (m/s or rad/s); infinite where the block has no such input.
-    pub velocity: f64,
+    /// Velocity (m/s or rad/s); `None` where the block has no such input.
+    pub velocity: Option<f64>,
     /// Acceleration (m/s² or rad/s²).
     pub acceleration: f64,
     /// Deceleration (m/s² or rad/s²).
@@ -94,19 +94,19 @@ pub struct Dynamics {
 impl Dynamics {
     /// Those of a command for which nothing is planned.
     pub(crate) const NONE: Self =
-        Self { velocity: 0.0, acceleration: 0.0, deceleration: 0.0, jerk: Some(0.0), snap: Some(0.0) };
+        Self { velocity: Some(0.0), acceleration: 0.0, deceleration: 0.0, jerk: Some(0.0), snap: Some(0.0) };
 
     /// Those of a stop.
     #[must_use]
     pub const fn braking(deceleration: f64, jerk: Option<f64>, snap: Option<f64>) -> Self {
-        Self { velocity: f64::INFINITY, acceleration: deceleration, deceleration, jerk, snap }
+        Self { velocity: None, acceleration: deceleration, deceleration, jerk, snap }
     }
 
     /// # Errors
     /// [`BlockError`] names the first input that is not positive or above the limit of the axis.
     pub(crate) fn check(&self, block: BlockName, limits: &Limits) -> Result<(), BlockError> {
         let inputs = [
-            ("Velocity", Some(self.velocity).filter(|velocity| *velocity < f64::INFINITY), limits.velocity),
+            ("Velocity", self.velocity, limits.velocity),
             ("Acceleration", Some(self.acceleration), limits.acceleration),
             ("Deceleration", Some(self.deceleration), limits.acceleration),
             ("Jerk", self.jerk, limits.jerk),
@@ -127,14 +127,14 @@ impl Dynamics {
 /// Where a motion leads, in the unit of the axis as the program sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Goal {
-    /// To a position, passed at a velocity with a sign, zero to stop there.
+    /// To a position.
     Absolute {
         /// Position (m or rad).
         position: f64,
         /// Which way round on a modulo axis.
         direction: Direction,
-        /// Velocity there (m/s or rad/s).
-        end_velocity: f64,
+        /// Velocity with a sign at which it is passed and which is kept from then on (m/s or rad/s); `None` to be done there.
+        end_velocity: Option<f64>,
     },
     /// By a distance from where the motion begins.
     Relative(f64),
@@ -196,10 +196,12 @@ impl Command {
         match self.goal {
             Goal::Absolute { position, end_velocity, .. } => {
                 finite_input(block, "Position", position)?;
-                finite_input(block, "EndVelocity", end_velocity)?;
-                if end_velocity.abs() > self.dynamics.velocity {
-                    let (value, bound) = (end_velocity, "at most Velocity in magnitude");
-                    return Err(BlockError::Input { block, input: "EndVelocity", value, bound });
+                if let Some(value) = end_velocity {
+                    finite_input(block, "EndVelocity", value)?;
+                    if self.dynamics.velocity.is_some_and(|velocity| value.abs() > velocity) {
+                        let bound = "at most Velocity in magnitude";
+                        return Err(BlockError::Input { block, input: "EndVelocity", value, bound });
+                    }
                 }
                 if let Some(period) = params.modulo
                     && !(0.0..period).contains(&position)
@@ -223,7 +225,9 @@ impl Command {
                 if ramp.is_nan() || ramp <= 0.0 {
                     return Err(BlockError::Input { block, input: "TorqueRamp", value: ramp, bound: "positive" });
                 }
-                return check_input(block, "Velocity", self.dynamics.velocity, params.limits.velocity);
+                if let Some(velocity) = self.dynamics.velocity {
+                    check_input(block, "Velocity", velocity, params.limits.velocity)?;
+                }
             }
             Goal::Reference(position) => {
                 finite_input(block, "Position", position)?;
@@ -238,10 +242,19 @@ impl Command {
 
     /// Whether the axis is at Standstill when it is done.
     pub(crate) fn ends_at_standstill(&self) -> bool {
+        !self.is_endless() && self.goal != Goal::Led(Ending::Moving)
+    }
+
+    /// Whether it keeps what it has reached until another one takes the axis from it.
+    pub(crate) const fn is_endless(&self) -> bool {
         match self.goal {
-            Goal::Absolute { .. } => self.block == BlockName::MoveAbsolute,
-            Goal::Relative(_) | Goal::Additive(_) | Goal::Rest | Goal::Reference(_) | Goal::Led(Ending::AtRest) => true,
-            Goal::Velocity { .. } | Goal::Effort { .. } | Goal::Led(Ending::Moving) => false,
+            Goal::Absolute { end_velocity: Some(_), .. } | Goal::Velocity { .. } | Goal::Effort { .. } => true,
+            Goal::Absolute { end_velocity: None, .. }
+            | Goal::Relative(_)
+            | Goal::Additive(_)
+            | Goal::Rest
+            | Goal::Reference(_)
+            | Goal::Led(_) => false,
         }
     }
 

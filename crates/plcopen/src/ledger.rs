@@ -1,4 +1,5 @@
 //! What became of the commands: each block asks for its own by number.
+use crate::axis::MOST_BUFFERED;
 use crate::error::BlockError;
 use crate::name::BlockName;
 
@@ -29,61 +30,92 @@ pub enum Progress {
     Failed,
 }
 
-/// Number of commands that are remembered.
-const REMEMBERED: u32 = 64;
+/// Most commands that are not over at a time: those that wait, the one that runs, and one on top of it that takes the place of
+/// another.
+const MOST_OPEN: usize = MOST_BUFFERED + 3;
+/// Number of commands of which the end is remembered.
+const REMEMBERED: usize = 64;
 
-/// The last 64 commands. A block that is not called while 64 others are given hears that its own was aborted.
+/// A command and what became of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Entry {
+    id: CommandId,
+    /// The block that gave it.
+    block: BlockName,
+    progress: Progress,
+    /// Why it failed.
+    failure: Option<BlockError>,
+}
+
+/// All commands that wait or run, and the last 64 that ended. A block that is not called while 64 others end hears that its own
+/// was aborted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Ledger {
     last: u32,
-    progress: [Progress; REMEMBERED as usize],
-    /// The blocks that gave them.
-    blocks: [BlockName; REMEMBERED as usize],
-    /// Why the last one failed that did.
+    open: [Option<Entry>; MOST_OPEN],
+    ended: [Option<Entry>; REMEMBERED],
+    /// Where the next end is written.
+    place: usize,
+    /// Why what fails now does.
     failure: Option<BlockError>,
 }
 
 impl Ledger {
     pub(crate) const fn new() -> Self {
-        const PLACES: usize = REMEMBERED as usize;
-        Self { last: 0, progress: [Progress::Aborted; PLACES], blocks: [BlockName::Home; PLACES], failure: None }
+        Self { last: 0, open: [None; MOST_OPEN], ended: [None; REMEMBERED], place: 0, failure: None }
     }
 
     /// The next command, of `block`, which waits.
     pub(crate) fn issue(&mut self, block: BlockName) -> CommandId {
         self.last = self.last.wrapping_add(1).max(1);
-        let id = CommandId(self.last);
-        (self.progress[Self::place(id)], self.blocks[Self::place(id)]) = (Progress::Buffered, block);
-        id
+        let entry = Entry { id: CommandId(self.last), block, progress: Progress::Buffered, failure: None };
+        let free = self.open.iter_mut().find(|place| place.is_none());
+        debug_assert!(free.is_some(), "a command that is over was not said to be");
+        if let Some(place) = free {
+            *place = Some(entry);
+        }
+        entry.id
     }
 
-    /// The command that runs, and whatever waits or moves with it, fails for this reason.
+    /// Whatever fails from now on does so for this reason.
     pub(crate) const fn fail(&mut self, error: BlockError) {
         self.failure = Some(error);
     }
 
     /// Why the command failed: each block speaks for itself of an error of the axis.
     pub(crate) fn failure(&self, id: CommandId) -> Option<BlockError> {
-        match self.failure? {
-            BlockError::Axis { error, .. } => Some(BlockError::Axis { block: self.blocks[Self::place(id)], error }),
+        let entry = self.entry(id)?;
+        match entry.failure? {
+            BlockError::Axis { error, .. } => Some(BlockError::Axis { block: entry.block, error }),
             other => Some(other),
         }
     }
 
     #[inline]
     pub(crate) fn set(&mut self, id: CommandId, progress: Progress) {
-        if id != CommandId::OWN {
-            self.progress[Self::place(id)] = progress;
+        let of_id = |place: &&mut Option<Entry>| place.as_ref().is_some_and(|entry| entry.id == id);
+        let Some(place) = self.open.iter_mut().find(of_id) else { return };
+        match progress {
+            Progress::Buffered | Progress::Active | Progress::InTarget => {
+                if let Some(entry) = place {
+                    entry.progress = progress;
+                }
+            }
+            Progress::Done | Progress::Aborted | Progress::Failed => {
+                let failure = self.failure.filter(|_| progress == Progress::Failed);
+                self.ended[self.place] = place.take().map(|entry| Entry { progress, failure, ..entry });
+                self.place = (self.place + 1) % REMEMBERED;
+            }
         }
     }
 
     #[inline]
     pub(crate) fn progress(&self, id: CommandId) -> Progress {
-        if self.last.wrapping_sub(id.0) < REMEMBERED { self.progress[Self::place(id)] } else { Progress::Aborted }
+        self.entry(id).map_or(Progress::Aborted, |entry| entry.progress)
     }
 
-    const fn place(id: CommandId) -> usize {
-        (id.0 % REMEMBERED) as usize
+    fn entry(&self, id: CommandId) -> Option<&Entry> {
+        self.open.iter().chain(&self.ended).flatten().find(|entry| entry.id == id)
     }
 }
 
@@ -92,18 +124,45 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_became_of_a_command_is_known_until_64_others_are_given() {
+    fn the_end_of_a_command_is_known_until_64_others_have_ended() {
         let mut ledger = Ledger::new();
         let id = ledger.issue(BlockName::Halt);
         ledger.set(id, Progress::Done);
-        for _ in 1..REMEMBERED {
+        for _ in 0..REMEMBERED {
+            assert_eq!(ledger.progress(id), Progress::Done);
             let other = ledger.issue(BlockName::Halt);
             ledger.set(other, Progress::Active);
             assert_eq!(ledger.progress(id), Progress::Done);
+            ledger.set(other, Progress::Failed);
         }
-        let other = ledger.issue(BlockName::Halt);
-        ledger.set(other, Progress::Active);
         assert_eq!(ledger.progress(id), Progress::Aborted);
+    }
+
+    #[test]
+    fn what_runs_or_waits_is_known_whatever_else_is_asked_for() {
+        let mut ledger = Ledger::new();
+        let [running, waiting] = [BlockName::MoveVelocity, BlockName::Halt].map(|block| ledger.issue(block));
+        ledger.set(running, Progress::InTarget);
+        for _ in 0..10 * REMEMBERED {
+            let other = ledger.issue(BlockName::MoveSuperimposed);
+            ledger.set(other, Progress::Aborted);
+        }
+        assert_eq!([running, waiting].map(|id| ledger.progress(id)), [Progress::InTarget, Progress::Buffered]);
+    }
+
+    #[test]
+    fn each_command_keeps_the_reason_of_its_own_failure() {
+        let mut ledger = Ledger::new();
+        let refusals = [BlockName::MoveAbsolute, BlockName::MoveVelocity].map(|block| {
+            let id = ledger.issue(block);
+            let error = BlockError::Input { block, input: "Velocity", value: 0.0, bound: "positive" };
+            ledger.fail(error);
+            ledger.set(id, Progress::Failed);
+            (id, error)
+        });
+        for (id, error) in refusals {
+            assert_eq!(ledger.failure(id), Some(error));
+        }
     }
 
     #[test]

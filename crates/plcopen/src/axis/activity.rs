@@ -1,8 +1,8 @@
 //! What the axis is doing, and how it goes on from cycle to cycle.
 use super::Axis;
 use super::run::Run;
-use crate::arrows::Cause;
-use crate::command::{BufferMode, Command, Goal};
+use crate::arrows::{Cause, arrow};
+use crate::command::{BufferMode, Command};
 use crate::error::{AxisError, BlockError};
 use crate::ledger::{CommandId, Progress};
 use crate::state::AxisState;
@@ -68,7 +68,7 @@ pub(super) struct Led {
     pub(super) command: Command,
     /// From where the program counted when it began: MC_SetPosition moves nothing.
     pub(super) offset: f64,
-    /// Whether there was one for this cycle.
+    /// Whether the set-point of this cycle is there.
     pub(super) is_fresh: bool,
     /// Cycles since it began.
     pub(super) cycles: u64,
@@ -89,17 +89,6 @@ impl Activity {
     /// The number of the command.
     pub(super) fn id(&self) -> Option<CommandId> {
         self.command().map(|(id, _)| id)
-    }
-}
-
-impl Moving {
-    /// Whether the motion goes on when the way is over.
-    fn is_endless(&self) -> bool {
-        match self.command.goal {
-            Goal::Velocity { .. } => true,
-            Goal::Absolute { end_velocity, .. } => end_velocity != 0.0,
-            _ => false,
-        }
     }
 }
 
@@ -129,9 +118,11 @@ impl Axis {
                 Err(error) => self.fail(AxisError::PlanLost { error }),
             },
             Activity::Effort(effort) => {
-                self.base = Setpoint { v: self.feedback.velocity, ..Setpoint::at_rest(self.feedback.position) };
-                let (velocity, limit) = (self.feedback.velocity, effort.command.dynamics.velocity);
-                if velocity.abs() > limit {
+                let velocity = self.feedback.velocity;
+                self.base = Setpoint { v: velocity, ..Setpoint::at_rest(self.feedback.position) };
+                if let Some(limit) = effort.command.dynamics.velocity
+                    && velocity.abs() > limit
+                {
                     return self.fail(AxisError::Overspeed { velocity, limit });
                 }
                 let missing = effort.target - effort.present;
@@ -144,7 +135,7 @@ impl Axis {
                 }
             }
             Activity::Homing(homing) => {
-                self.base = Setpoint::at_rest(self.feedback.position);
+                self.base = Setpoint { v: self.feedback.velocity, ..Setpoint::at_rest(self.feedback.position) };
                 let id = homing.id;
                 match self.feedback.homing {
                     Homing::Idle | Homing::Busy => homing.has_begun = true,
@@ -159,10 +150,7 @@ impl Axis {
             }
             Activity::Led(led) => {
                 led.cycles += 1;
-                if !core::mem::take(&mut led.is_fresh) {
-                    let block = led.command.block;
-                    self.fail(AxisError::NotLed { block });
-                }
+                led.is_fresh = false;
             }
         }
     }
@@ -171,7 +159,7 @@ impl Axis {
     fn arrive(&mut self) {
         let Activity::Moving(moving) = &self.activity else { return };
         let (id, end, beyond) = (moving.id, moving.run.end(), moving.run.beyond());
-        if moving.is_endless() {
+        if moving.command.is_endless() {
             self.forget_position();
             return self.go_on(id, self.base);
         }
@@ -230,9 +218,11 @@ impl Axis {
                     self.arrive_early();
                 }
             }
-            Err(BlockError::Plan { error, .. }) => {
+            Err(BlockError::Plan { block, error }) => {
+                let error = AxisError::PlanLost { error };
+                self.ledger.fail(BlockError::Axis { block, error });
                 self.ledger.set(id, Progress::Failed);
-                self.fail(AxisError::PlanLost { error });
+                self.fail(error);
             }
             Err(error) => self.refuse_waiting(id, error, from, lead),
         }
@@ -257,12 +247,15 @@ impl Axis {
     /// A command that waited is refused when its turn comes at `from`, `lead` seconds ago, since something was changed in
     /// between: the one behind it takes its place (PLCopen part 1, section 2.2.2). Without one the axis halts.
     fn refuse_waiting(&mut self, id: CommandId, error: BlockError, from: Setpoint, lead: f64) {
-        self.ledger.set(id, Progress::Failed);
         self.ledger.fail(error);
-        let is_at_rest = from.v == 0.0 && from.a == 0.0;
+        self.ledger.set(id, Progress::Failed);
+        let is_at_rest = from.v == 0.0 && from.a == 0.0 && arrow(self.state, Cause::Done).is_some();
         match self.queue.first() {
             Some(next) if !next.begins_at_standstill() => self.take_next(from, lead),
-            Some(_) if is_at_rest => self.rest(),
+            _ if is_at_rest => {
+                self.base = from;
+                self.rest();
+            }
             _ => {
                 self.end_waiting(Progress::Aborted);
                 self.halt();

@@ -38,7 +38,7 @@ pub(super) fn blended(
     let rise = x - fast.covered(&cruise, direction * speed)?;
     if direction * bounds.covered(from, cruise.v)? <= direction * (rise - from.x) {
         let way = bounds.plan(from, &Target::Position { x: rise, v: cruise.v })?;
-        return Ok(Run::new(way, lead, Some((target, fast))));
+        return Ok(Run::new(way, lead, Some((target, fast)), axis));
     }
     planned(from, &target, &fast, axis, lead)
 }
@@ -76,9 +76,10 @@ impl Axis {
             return Ok(0.0);
         }
         // Who is to turn round behind the end comes to rest there.
-        let exit = match end_velocity {
-            0.0 => self.exit_speed(end, direction, bounds.velocity, queue, place + 1)?,
-            speed => speed.max(0.0),
+        let exit = if command.is_endless() {
+            end_velocity.max(0.0)
+        } else {
+            self.exit_speed(end, direction, bounds.velocity, queue, place + 1)?
         };
         let start = Setpoint { v: exit, ..Setpoint::default() };
         let backwards = bounds.faster(wanted.max(exit)).backwards();

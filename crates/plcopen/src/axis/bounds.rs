@@ -34,7 +34,7 @@ pub(crate) struct Bounds {
 impl Bounds {
     pub(crate) fn of(dynamics: &Dynamics, limits: &Limits, factors: &Override) -> Self {
         Self {
-            velocity: dynamics.velocity.min(limits.velocity) * factors.velocity,
+            velocity: dynamics.velocity.unwrap_or(limits.velocity) * factors.velocity,
             acceleration: dynamics.acceleration * factors.acceleration,
             deceleration: dynamics.deceleration * factors.acceleration,
             jerk: dynamics.jerk.unwrap_or(limits.jerk) * factors.jerk,

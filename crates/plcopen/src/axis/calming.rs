@@ -22,12 +22,37 @@ pub(super) fn planned(
 ) -> Result<Run, PlanError> {
     let way = bounds.plan(from, target)?;
     if way.excess() == 0.0 || keeps(&way, axis) {
-        return Ok(Run::new(way, lead, None));
+        return Ok(Run::new(way, lead, None, axis));
     }
     // What is left of the velocity when the acceleration goes to zero at the jerk of the axis.
     let rest = from.v + from.a * from.a.abs() / (2.0 * axis.jerk);
     let calmed = axis.plan(from, &Target::Velocity(rest.clamp(-axis.velocity, axis.velocity)))?;
-    Ok(Run::new(calmed, lead, Some((*target, *bounds))))
+    Ok(Run::new(calmed, lead, Some((*target, *bounds)), axis))
+}
+
+/// `from` with no more jerk and acceleration than the velocity that is left on an axis with the bounds `axis` takes up: a table
+/// whose velocity has corners leads to states that no way within the limits of the axis does, and from which none leads on. The
+/// acceleration then falls in a step, as it does at each of the corners.
+pub(super) fn settled(from: &Setpoint, axis: &Bounds) -> Setpoint {
+    let keeps_limits = axis.plan(from, &Target::Velocity(0.0)).is_ok_and(|way| keeps(&way, axis));
+    if keeps_limits || axis.jerk == f64::INFINITY {
+        return *from;
+    }
+    let room = (axis.velocity - from.v.copysign(from.v * from.a)).max(0.0);
+    let steepest = steepest_before(room, axis).min(axis.acceleration);
+    Setpoint { a: from.a.clamp(-steepest, steepest), j: 0.0, s: 0.0, ..*from }
+}
+
+/// The acceleration that is brought to zero while the velocity rises by `room`.
+fn steepest_before(room: f64, axis: &Bounds) -> f64 {
+    let Bounds { jerk, snap, .. } = *axis;
+    if snap == f64::INFINITY {
+        return libm::sqrt(2.0 * jerk * room);
+    }
+    // The jerk is a trapezoid, in a/j + j/s; or a triangle, in 2·√(a/s).
+    let least = jerk * jerk / snap;
+    let trapezoid = 0.5 * (libm::sqrt(least * least + 8.0 * jerk * room) - least);
+    if trapezoid >= least { trapezoid } else { libm::cbrt(snap * room * room) }
 }
 
 /// Whether velocity and acceleration stay within those of the axis, as far as `way` is not on its way back into them.

@@ -3,7 +3,7 @@ use super::Axis;
 use super::activity::{Activity, EffortRamp, HomingWait, Led, Moving};
 use super::blending::blended;
 use super::bounds::{Bounds, Override};
-use super::calming::planned;
+use super::calming::{planned, settled};
 use super::modulo;
 use super::queue::Queue;
 use super::run::Run;
@@ -16,6 +16,14 @@ use crate::state::AxisState;
 use servobench_base::Setpoint;
 use servobench_motion::PlanError;
 use servobench_motion::online::Target;
+
+/// A state from which the axis goes on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Start {
+    pub(super) from: Setpoint,
+    /// How long ago it was (s).
+    pub(super) lead: f64,
+}
 
 impl Axis {
     /// Takes a command: it begins, or waits behind others.
@@ -41,13 +49,13 @@ impl Axis {
                 return self.wait(command);
             }
         }
-        let from = if is_aborting { self.present() } else { self.base };
-        let activity = self.prepared(CommandId::OWN, command, from, 0.0, &Queue::EMPTY)?;
+        let start = if is_aborting { self.present() } else { Start { from: self.base, lead: 0.0 } };
+        let activity = self.prepared(CommandId::OWN, command, start.from, start.lead, &Queue::EMPTY)?;
         if is_aborting {
             self.end_all(Progress::Aborted);
         }
         let id = self.ledger.issue(block);
-        self.begin_activity(id, activity, from);
+        self.begin_activity(id, activity, start);
         self.state = arrow.to;
         Ok(id)
     }
@@ -60,11 +68,11 @@ impl Axis {
             return Err(BlockError::State { block, state: self.state });
         }
         command.check(&self.params)?;
-        let from = self.present();
-        let activity = self.prepared(CommandId::OWN, command, from, 0.0, &Queue::EMPTY)?;
+        let start = self.present();
+        let activity = self.prepared(CommandId::OWN, command, start.from, start.lead, &Queue::EMPTY)?;
         self.end_all(Progress::Aborted);
         let id = self.ledger.issue(block);
-        self.begin_activity(id, activity, from);
+        self.begin_activity(id, activity, start);
         self.stop_holder = Some(id);
         self.follow(Cause::Block(block));
         Ok(id)
@@ -109,7 +117,7 @@ impl Axis {
         self.check_beside(&command)?;
         if let Some(waiting) = self.queue.get_mut(id) {
             *waiting = command;
-            return self.rejoin();
+            return self.rejoin(&self.beside());
         }
         let from = self.base;
         match &self.activity {
@@ -117,7 +125,7 @@ impl Axis {
                 let origin = moving.origin;
                 let target = match (command.goal, moving.target) {
                     // The position is behind; what goes on is the velocity.
-                    (Goal::Absolute { end_velocity, .. }, Target::Velocity(_)) => Target::Velocity(end_velocity),
+                    (Goal::Absolute { end_velocity: Some(v), .. }, Target::Velocity(_)) => Target::Velocity(v),
                     (Goal::Relative(distance), _) => Target::Position { x: origin + distance, v: 0.0 },
                     _ => self.target(&command, &from, origin)?,
                 };
@@ -143,7 +151,8 @@ impl Axis {
             return Ok(());
         }
         let before = core::mem::replace(&mut self.factors, factors);
-        let done = self.rejoin().and_then(|()| {
+        let running = self.activity.clone();
+        let done = self.rejoin(&self.half_beside()).and_then(|()| {
             let Some(superimposed) = &self.superimposed else { return Ok(()) };
             let planned = self.superimposed_run(&superimposed.command, &superimposed.now, superimposed.distance)?;
             if let Some(superimposed) = &mut self.superimposed {
@@ -152,7 +161,7 @@ impl Axis {
             Ok(())
         });
         if done.is_err() {
-            self.factors = before;
+            (self.factors, self.activity) = (before, running);
         }
         done
     }
@@ -168,13 +177,18 @@ impl Axis {
         Ok(())
     }
 
-    /// The state from which an aborting command goes on: that of the set-point, or of the axis where nothing was set.
-    pub(super) fn present(&self) -> Setpoint {
+    /// Where an aborting command goes on from: the set-point, which is that of the cycle before as long as the one of this cycle is
+    /// not there.
+    pub(super) fn present(&self) -> Start {
+        let cycle_time = self.params.cycle_time;
         match &self.activity {
-            Activity::Effort(_) | Activity::Homing(_) => {
-                Setpoint { v: self.feedback.velocity, ..Setpoint::at_rest(self.feedback.position) }
+            // Follows what the drive says, which it has just said.
+            Activity::Effort(_) | Activity::Homing(_) if self.is_beginning => Start { from: self.base, lead: 0.0 },
+            Activity::Led(led) => {
+                let from = settled(&self.setpoint, &Bounds::of_axis(&self.params.limits));
+                Start { from, lead: if led.is_fresh { 0.0 } else { cycle_time } }
             }
-            Activity::Rest | Activity::Moving(_) | Activity::Led(_) => self.setpoint,
+            _ => Start { from: self.setpoint, lead: if self.is_beginning { cycle_time } else { 0.0 } },
         }
     }
 
@@ -186,7 +200,7 @@ impl Axis {
         let id = self.ledger.issue(command.block);
         self.queue.push(id, command);
         if command.buffer_mode != BufferMode::Buffered
-            && let Err(error) = self.rejoin()
+            && let Err(error) = self.rejoin(&self.beside())
         {
             self.queue.drop_last();
             self.ledger.set(id, Progress::Aborted);
@@ -195,26 +209,33 @@ impl Axis {
         Ok(id)
     }
 
-    fn begin_activity(&mut self, id: CommandId, activity: Activity, from: Setpoint) {
+    fn begin_activity(&mut self, id: CommandId, activity: Activity, Start { from, lead }: Start) {
         self.activate(activity, from);
         match &mut self.activity {
-            Activity::Moving(Moving { id: own, .. })
-            | Activity::Effort(EffortRamp { id: own, .. })
-            | Activity::Homing(HomingWait { id: own, .. })
-            | Activity::Led(Led { id: own, .. }) => *own = id,
+            Activity::Moving(moving) => {
+                moving.id = id;
+                self.base = moving.run.now();
+            }
+            Activity::Led(led) => {
+                led.id = id;
+                if lead > 0.0 {
+                    (led.cycles, led.is_fresh) = (1, false);
+                }
+            }
+            Activity::Effort(EffortRamp { id: own, .. }) | Activity::Homing(HomingWait { id: own, .. }) => *own = id,
             Activity::Rest => {}
         }
+        self.add_up();
         self.ledger.set(id, Progress::Active);
     }
 
-    /// Plans the rest of the active command anew, with what has changed.
-    fn rejoin(&mut self) -> Result<(), BlockError> {
+    /// Plans the rest of the active command anew, with what has changed, on what there is of the `axis`.
+    fn rejoin(&mut self, axis: &Bounds) -> Result<(), BlockError> {
         let Activity::Moving(moving) = &self.activity else { return Ok(()) };
         if moving.command.goal == Goal::Rest {
             return Ok(());
         }
-        let (run, is_paused) =
-            self.run(&moving.command, &moving.target, &self.base, &self.beside(), 0.0, &self.queue)?;
+        let (run, is_paused) = self.run(&moving.command, &moving.target, &self.base, axis, 0.0, &self.queue)?;
         if let Activity::Moving(moving) = &mut self.activity {
             (moving.run, moving.is_paused) = (run, is_paused);
             self.ledger.set(moving.id, Progress::Active);
@@ -246,7 +267,7 @@ impl Axis {
                 let target = self.target(&command, &from, origin)?;
                 self.check_permission(block, &from, &target)?;
                 // An aborting command has the axis for itself.
-                let axis = if is_aborting { self.spare(None) } else { self.beside() };
+                let axis = if is_aborting { Bounds::of_axis(&self.params.limits) } else { self.beside() };
                 let (run, is_paused) = self.run(&command, &target, &from, &axis, lead, behind)?;
                 let origin = if matches!(command.goal, Goal::Additive(_)) { origin } else { from.x };
                 Ok(Activity::Moving(Moving { id, command, target, origin, is_paused, run }))
@@ -285,7 +306,7 @@ impl Axis {
         additive_origin: f64,
     ) -> Result<Target, BlockError> {
         Ok(match command.goal {
-            Goal::Absolute { position, direction, end_velocity: v } => {
+            Goal::Absolute { position, direction, end_velocity } => {
                 let position = position - self.offset;
                 let x = match self.params.modulo {
                     None => position,
@@ -294,7 +315,7 @@ impl Axis {
                         modulo::place(position, period, stop, direction, self.last_direction)
                     }
                 };
-                Target::Position { x, v }
+                Target::Position { x, v: end_velocity.unwrap_or(0.0) }
             }
             Goal::Relative(distance) => Target::Position { x: from.x + distance, v: 0.0 },
             Goal::Additive(distance) => Target::Position { x: additive_origin + distance, v: 0.0 },
@@ -334,21 +355,28 @@ impl Axis {
         behind: &Queue,
     ) -> Result<(Run, bool), BlockError> {
         let plan_error = |error: PlanError| BlockError::Plan { block: command.block, error };
-        let limits = &self.params.limits;
+        // A command without a velocity of its own has what there is; on an axis that has none left it stands.
+        let spare = Some(axis.velocity.max(from.v.abs())).filter(|spare| *spare > 0.0);
+        let bounds_with = |factors: &Override| {
+            let bounds = Bounds::of(&command.dynamics, &self.params.limits, factors);
+            Bounds { velocity: bounds.velocity.min(spare.unwrap_or(bounds.velocity)), ..bounds }
+        };
         if command.goal == Goal::Rest {
-            let bounds = Bounds::of(&command.dynamics, limits, &Override::NONE);
+            let bounds = bounds_with(&Override::NONE);
             return Ok((planned(from, target, &bounds, axis, lead).map_err(plan_error)?, false));
         }
         if self.factors.velocity == 0.0 {
-            let bounds = Bounds::of(&command.dynamics, limits, &Override { velocity: 1.0, ..self.factors });
+            let bounds = bounds_with(&Override { velocity: 1.0, ..self.factors });
             return Ok((planned(from, &Target::Velocity(0.0), &bounds, axis, lead).map_err(plan_error)?, true));
         }
-        let bounds = Bounds::of(&command.dynamics, limits, &self.factors);
+        let bounds = bounds_with(&self.factors);
         let target = match *target {
             Target::Velocity(v) => Target::Velocity(v * self.factors.velocity),
             Target::Position { x, v } => Target::Position { x, v: v * self.factors.velocity },
         };
-        if let Target::Position { x, v: 0.0 } = target {
+        if let Target::Position { x, v: 0.0 } = target
+            && !command.is_endless()
+        {
             let direction = if x < from.x { -1.0 } else { 1.0 };
             let wanted = self.exit_speed(x, direction, bounds.velocity, behind, 0)?;
             if wanted > 0.0 {

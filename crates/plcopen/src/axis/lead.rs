@@ -31,7 +31,6 @@ impl Axis {
             return;
         }
         let setpoint = Setpoint { x: setpoint.x - led.offset - self.shift, ..setpoint };
-        led.is_fresh = true;
         let (block, before, limits, h) = (led.command.block, self.base, &self.params.limits, self.params.cycle_time);
         // What lies between two set-points: the mean velocity and acceleration.
         let way = (setpoint.x - before.x) / h;
@@ -48,8 +47,19 @@ impl Axis {
                 return self.fail(AxisError::Profile { block, quantity, value, limit });
             }
         }
+        led.is_fresh = true;
         self.base = setpoint;
         self.add_up();
+    }
+
+    /// A cycle ends: without a set-point of the block that leads the axis it stops with an error.
+    pub(super) fn watch_leading(&mut self) {
+        if let Activity::Led(led) = &self.activity
+            && !led.is_fresh
+        {
+            let block = led.command.block;
+            self.fail(AxisError::NotLed { block });
+        }
     }
 
     /// The active command `id` begins where the program sees the axis now.

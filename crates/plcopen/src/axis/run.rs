@@ -20,13 +20,15 @@ pub(crate) struct Run {
     time: f64,
     /// What follows at the end of the way, planned when it is reached.
     then: Option<(Target, Bounds)>,
+    /// What there is of the axis for the way where it may use more than its command does.
+    axis: Bounds,
 }
 
 impl Run {
-    /// `way`, begun `lead` seconds before this cycle.
+    /// `way`, begun `lead` seconds before this cycle, on an axis with the bounds `axis`.
     #[expect(clippy::large_types_passed_by_value, reason = "it is moved in, once per command")]
-    pub(crate) fn new(way: Transition, lead: f64, then: Option<(Target, Bounds)>) -> Self {
-        Self { piece: way.piece(lead), way, lead, cycles: 0, time: lead, then }
+    pub(crate) fn new(way: Transition, lead: f64, then: Option<(Target, Bounds)>, axis: &Bounds) -> Self {
+        Self { piece: way.piece(lead), way, lead, cycles: 0, time: lead, then, axis: *axis }
     }
 
     /// The set-point one cycle later.
@@ -38,7 +40,7 @@ impl Run {
         if let Some((target, bounds)) = self.then
             && self.beyond() >= 0.0
         {
-            *self = Self::new(bounds.plan(&self.end(), &target)?, self.beyond(), None);
+            *self = Self::new(bounds.plan(&self.end(), &target)?, self.beyond(), None, &self.axis);
         }
         Ok(self.now())
     }
@@ -62,6 +64,11 @@ impl Run {
     #[inline]
     pub(crate) fn is_over(&self) -> bool {
         self.beyond() >= 0.0 && self.then.is_none()
+    }
+
+    /// What there is of the axis for it, while it may use more than its command does.
+    pub(crate) fn bounds_beyond_command(&self) -> Option<&Bounds> {
+        self.is_leading_in().then_some(&self.axis)
     }
 
     /// Whether it may use more than its command does: on the way back into the limits of that, or before it.

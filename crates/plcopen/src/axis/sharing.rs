@@ -1,5 +1,6 @@
 //! What a motion leaves of the axis to another one on top of it.
 use super::Axis;
+use super::activity::Activity;
 use super::bounds::Bounds;
 use crate::command::{Command, Goal};
 use crate::error::BlockError;
@@ -14,7 +15,7 @@ fn demand(command: &Command, limits: &Limits) -> [f64; 4] {
     let velocity = match command.goal {
         Goal::Velocity { velocity, .. } => velocity.abs(),
         Goal::Rest => 0.0,
-        _ => dynamics.velocity,
+        _ => dynamics.velocity.unwrap_or(limits.velocity),
     };
     [
         velocity,
@@ -56,12 +57,25 @@ impl Axis {
 
     /// What the axis has beside a superimposed motion.
     pub(super) fn beside(&self) -> Bounds {
-        self.spare(self.superimposed.as_ref().map(|superimposed| &superimposed.command))
+        self.without(&self.used_on_top())
     }
 
     /// What the axis has beside the commands that run or wait below a superimposed motion.
     pub(super) fn on_top(&self) -> Bounds {
-        self.spare(self.below())
+        let used = match &self.activity {
+            Activity::Moving(moving) => moving.run.bounds_beyond_command().map_or([0.0; 4], used_of),
+            _ => [0.0; 4],
+        };
+        self.without(&most(used, self.used_below()))
+    }
+
+    /// What the motion below may use where it and the superimposed one are planned anew: of what neither command asks for, half.
+    pub(super) fn half_beside(&self) -> Bounds {
+        let (limits, below) = (supply(&self.params.limits), self.used_below());
+        let Some(superimposed) = &self.superimposed else { return self.beside() };
+        let on_top = demand(&superimposed.command, &self.params.limits);
+        let half = |k: usize| if limits[k] < f64::INFINITY { 0.5 * (limits[k] - below[k] - on_top[k]) } else { 0.0 };
+        self.without(&core::array::from_fn(|k| on_top[k] + half(k).max(0.0)))
     }
 
     /// The commands that run or wait, without the one on top of them.
@@ -70,23 +84,31 @@ impl Axis {
         active.into_iter().chain(self.queue.iter().map(|(_, command)| command))
     }
 
-    /// What the axis has beside the most that one of `others` uses.
-    pub(super) fn spare<'a>(&self, others: impl IntoIterator<Item = &'a Command>) -> Bounds {
-        let limits = &self.params.limits;
-        let used = others.into_iter().fold([0.0; 4], |used: [f64; 4], command| {
-            let demand = demand(command, limits);
-            core::array::from_fn(|k| used[k].max(demand[k]))
-        });
-        let [velocity, acceleration, jerk, snap] = supply(limits);
-        // Of an infinite limit all is left, whatever is used.
-        let left = |limit: f64, used: f64| if limit < f64::INFINITY { limit - used } else { limit };
-        let acceleration = left(acceleration, used[1]);
-        Bounds {
-            velocity: left(velocity, used[0]),
-            acceleration,
-            deceleration: acceleration,
-            jerk: left(jerk, used[2]),
-            snap: left(snap, used[3]),
-        }
+    /// The most that one of the commands below a superimposed motion asks for.
+    fn used_below(&self) -> [f64; 4] {
+        self.below().fold([0.0; 4], |used, command| most(used, demand(command, &self.params.limits)))
     }
+
+    /// What a superimposed motion uses.
+    fn used_on_top(&self) -> [f64; 4] {
+        let Some(superimposed) = &self.superimposed else { return [0.0; 4] };
+        let used = superimposed.run.bounds_beyond_command().map_or([0.0; 4], used_of);
+        most(used, demand(&superimposed.command, &self.params.limits))
+    }
+
+    /// What the axis has beside what is `used`.
+    fn without(&self, used: &[f64; 4]) -> Bounds {
+        let limits = supply(&self.params.limits);
+        // Of an infinite limit all is left, whatever is used.
+        let left = |k: usize| if limits[k] < f64::INFINITY { limits[k] - used[k] } else { limits[k] };
+        Bounds { velocity: left(0), acceleration: left(1), deceleration: left(1), jerk: left(2), snap: left(3) }
+    }
+}
+
+const fn used_of(bounds: &Bounds) -> [f64; 4] {
+    [bounds.velocity, bounds.acceleration.max(bounds.deceleration), bounds.jerk, bounds.snap]
+}
+
+fn most(one: [f64; 4], other: [f64; 4]) -> [f64; 4] {
+    core::array::from_fn(|k| one[k].max(other[k]))
 }

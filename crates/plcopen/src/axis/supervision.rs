@@ -2,6 +2,7 @@
 use super::Axis;
 use super::activity::{Activity, Moving};
 use super::bounds::Bounds;
+use super::commands::Start;
 use super::run::Run;
 use crate::arrows::{Cause, arrow};
 use crate::command::{BufferMode, Command, Dynamics, Goal};
@@ -107,16 +108,17 @@ impl Axis {
 
     /// An error of the axis: it comes to rest if the power allows it, and takes no command until MC_Reset.
     pub(super) fn fail(&mut self, error: AxisError) {
-        let from = self.present();
+        let start = self.present();
         self.ledger.fail(BlockError::Axis { block: BlockName::Power, error });
         self.end_waiting(Progress::Failed);
         self.end_all(Progress::Failed);
         self.error = Some(error);
         self.follow(Cause::AxisError);
-        self.base = from;
+        self.base = start.from;
         if self.is_powered() {
-            self.halt_from(from);
+            self.halt_from(start);
         }
+        self.add_up();
     }
 
     /// MC_Power.
@@ -203,22 +205,24 @@ impl Axis {
 
     /// Brings the axis to rest, without a block that asked for it.
     pub(super) fn halt(&mut self) {
-        let from = self.present();
+        let start = self.present();
         self.end_all(Progress::Aborted);
-        self.base = from;
+        self.base = start.from;
         self.follow(Cause::Block(BlockName::Halt));
-        self.halt_from(from);
+        self.halt_from(start);
+        self.add_up();
     }
 
     /// The axis's own stop; at once where it cannot be planned.
-    fn halt_from(&mut self, from: Setpoint) {
+    fn halt_from(&mut self, Start { from, lead }: Start) {
         let (limits, target) = (&self.params.limits, Target::Velocity(0.0));
         let bounds = Bounds::of_axis(limits);
         self.activity = bounds.plan(&from, &target).map_or(Activity::Rest, |way| {
             let dynamics = Dynamics::braking(limits.acceleration, None, None);
             let command =
                 Command { block: BlockName::Halt, goal: Goal::Rest, dynamics, buffer_mode: BufferMode::Aborting };
-            let run = Run::new(way, 0.0, None);
+            let mut run = Run::new(way, lead, None, &bounds);
+            self.base = run.now();
             Activity::Moving(Moving { id: CommandId::OWN, command, target, origin: from.x, is_paused: false, run })
         });
     }

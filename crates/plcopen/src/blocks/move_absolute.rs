@@ -68,8 +68,8 @@ impl MotionInputs for MoveAbsoluteInputs {
         let Self { position, velocity, acceleration, deceleration, jerk, snap, direction, buffer_mode, .. } = *self;
         Command {
             block: Self::NAME,
-            goal: Goal::Absolute { position, direction, end_velocity: 0.0 },
-            dynamics: Dynamics { velocity, acceleration, deceleration, jerk, snap },
+            goal: Goal::Absolute { position, direction, end_velocity: None },
+            dynamics: Dynamics { velocity: Some(velocity), acceleration, deceleration, jerk, snap },
             buffer_mode,
         }
     }

@@ -66,7 +66,7 @@ impl MotionInputs for MoveAdditiveInputs {
         Command {
             block: Self::NAME,
             goal: Goal::Additive(distance),
-            dynamics: Dynamics { velocity, acceleration, deceleration, jerk, snap },
+            dynamics: Dynamics { velocity: Some(velocity), acceleration, deceleration, jerk, snap },
             buffer_mode,
         }
     }

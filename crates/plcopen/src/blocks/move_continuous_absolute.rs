@@ -19,7 +19,7 @@ pub struct MoveContinuousAbsoluteInputs {
     pub continuous_update: bool,
     /// Position (m or rad).
     pub position: f64,
-    /// EndVelocity, with its sign (m/s or rad/s); zero is that of MC_MoveAbsolute, but for the state of the axis.
+    /// EndVelocity, with its sign (m/s or rad/s); at zero the axis stands there, in Continuous Motion.
     pub end_velocity: f64,
     /// Velocity (m/s or rad/s).
     pub velocity: f64,
@@ -74,8 +74,8 @@ impl MotionInputs for MoveContinuousAbsoluteInputs {
         let Self { velocity, acceleration, deceleration, jerk, snap, .. } = *self;
         Command {
             block: Self::NAME,
-            goal: Goal::Absolute { position, direction, end_velocity },
-            dynamics: Dynamics { velocity, acceleration, deceleration, jerk, snap },
+            goal: Goal::Absolute { position, direction, end_velocity: Some(end_velocity) },
+            dynamics: Dynamics { velocity: Some(velocity), acceleration, deceleration, jerk, snap },
             buffer_mode,
         }
     }

@@ -66,7 +66,7 @@ impl MotionInputs for MoveRelativeInputs {
         Command {
             block: Self::NAME,
             goal: Goal::Relative(distance),
-            dynamics: Dynamics { velocity, acceleration, deceleration, jerk, snap },
+            dynamics: Dynamics { velocity: Some(velocity), acceleration, deceleration, jerk, snap },
             buffer_mode,
         }
     }

@@ -59,11 +59,11 @@ impl MoveSuperimposedInputs {
 
 impl MoveSuperimposedInputs {
     fn command(&self) -> Command {
-        let Self { velocity_diff: velocity, acceleration, deceleration, jerk, snap, .. } = *self;
+        let Self { velocity_diff, acceleration, deceleration, jerk, snap, .. } = *self;
         Command {
             block: BlockName::MoveSuperimposed,
             goal: Goal::Relative(self.distance),
-            dynamics: Dynamics { velocity, acceleration, deceleration, jerk, snap },
+            dynamics: Dynamics { velocity: Some(velocity_diff), acceleration, deceleration, jerk, snap },
             buffer_mode: BufferMode::Aborting,
         }
     }

@@ -68,7 +68,7 @@ impl MotionInputs for MoveVelocityInputs {
         Command {
             block: Self::NAME,
             goal: Goal::Velocity { velocity, direction },
-            dynamics: Dynamics { velocity: f64::INFINITY, acceleration, deceleration, jerk, snap },
+            dynamics: Dynamics { velocity: None, acceleration, deceleration, jerk, snap },
             buffer_mode,
         }
     }

@@ -218,7 +218,10 @@ impl Leading {
             *id = Some(issued);
             Ok(*id)
         });
-        if !has_begun {
+        if has_begun {
+            // Where another block led the axis in the cycle before and not yet in this one.
+            self.lead(axis, course);
+        } else {
             self.begin(axis, course);
         }
         report
@@ -234,13 +237,19 @@ impl Leading {
         }
     }
 
-    /// Gives the set-point of this cycle, where the command has the axis.
+    /// Goes on along the course, as long as the command has the axis.
     fn go_on(&mut self, axis: &mut Axis, course: &mut impl Course) {
         let Some(id) = self.id else { return };
         if matches!(axis.progress(id), Progress::Done | Progress::Aborted | Progress::Failed) {
             self.id = None;
             return;
         }
+        self.lead(axis, course);
+    }
+
+    /// Gives the set-point of this cycle, where the command has the axis and it is not there yet.
+    fn lead(&mut self, axis: &mut Axis, course: &mut impl Course) {
+        let Some(id) = self.id else { return };
         let (cycle_time, Some(cycles)) = (axis.params().cycle_time, axis.led_cycles(id)) else { return };
         if cycles > 0 {
             let (t, end) = (cycles as f64 * cycle_time, course.duration());
@@ -258,5 +267,5 @@ impl Leading {
 fn dynamics(axis: &Axis) -> Dynamics {
     let limits = &axis.params().limits;
     let (velocity, acceleration) = (limits.velocity, limits.acceleration);
-    Dynamics { velocity, acceleration, deceleration: acceleration, jerk: None, snap: None }
+    Dynamics { velocity: Some(velocity), acceleration, deceleration: acceleration, jerk: None, snap: None }
 }

@@ -189,7 +189,13 @@ fn begin(axis: &mut Axis, limits: &Limits, position: f64) -> Result<CommandId, B
         return Err(BlockError::NotHomed { block, value: position });
     }
     let Limits { velocity, acceleration, jerk, snap } = *limits;
-    let dynamics = Dynamics { velocity, acceleration, deceleration: acceleration, jerk: Some(jerk), snap: Some(snap) };
+    let dynamics = Dynamics {
+        velocity: Some(velocity),
+        acceleration,
+        deceleration: acceleration,
+        jerk: Some(jerk),
+        snap: Some(snap),
+    };
     axis.submit(Command { block, goal: Goal::Led(Ending::AtRest), dynamics, buffer_mode: BufferMode::Aborting })
 }
 

@@ -18,11 +18,11 @@ pub struct SetOverride {
 pub struct SetOverrideInputs {
     /// Enable.
     pub enable: bool,
-    /// VelFactor, from 0, which holds the axis without ending its command, to 1.
+    /// VelFactor: 0, which holds the axis without ending its command, or from 1e-6 to 1.
     pub vel_factor: f64,
-    /// AccFactor, above 0 up to 1, of acceleration and deceleration.
+    /// AccFactor, from 1e-6 to 1, of acceleration and deceleration.
     pub acc_factor: f64,
-    /// JerkFactor, above 0 up to 1, of jerk and snap.
+    /// JerkFactor, from 1e-6 to 1, of jerk and snap.
     pub jerk_factor: f64,
 }
 
@@ -45,16 +45,20 @@ pub struct SetOverrideOutputs {
     pub error_id: ErrorId,
 }
 
+/// A smaller factor other than 0 was meant to be something else.
+const SMALLEST: f64 = 1e-6;
+
 impl SetOverride {
     fn set(axis: &mut Axis, inputs: &SetOverrideInputs) -> Result<(), BlockError> {
         let SetOverrideInputs { vel_factor: velocity, acc_factor: acceleration, jerk_factor: jerk, .. } = *inputs;
         let block = Self::NAME;
-        if !(0.0..=1.0).contains(&velocity) {
-            return Err(BlockError::Input { block, input: "VelFactor", value: velocity, bound: "from 0 to 1" });
+        if velocity != 0.0 && !(SMALLEST..=1.0).contains(&velocity) {
+            let bound = "0, or from 1e-6 to 1";
+            return Err(BlockError::Input { block, input: "VelFactor", value: velocity, bound });
         }
         for (input, value) in [("AccFactor", acceleration), ("JerkFactor", jerk)] {
-            if !(value > 0.0 && value <= 1.0) {
-                return Err(BlockError::Input { block, input, value, bound: "above 0 and at most 1" });
+            if !(SMALLEST..=1.0).contains(&value) {
+                return Err(BlockError::Input { block, input, value, bound: "from 1e-6 to 1" });
             }
         }
         axis.set_factors(Override { velocity, acceleration, jerk })

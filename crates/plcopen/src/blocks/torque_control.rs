@@ -62,7 +62,7 @@ impl MotionInputs for TorqueControlInputs {
 
     fn command(&self) -> Command {
         let Self { torque: effort, torque_ramp: ramp, velocity, direction, buffer_mode, .. } = *self;
-        let dynamics = Dynamics { velocity, ..Dynamics::braking(f64::INFINITY, None, None) };
+        let dynamics = Dynamics { velocity: Some(velocity), ..Dynamics::braking(f64::INFINITY, None, None) };
         Command { block: Self::NAME, goal: Goal::Effort { effort, ramp, direction }, dynamics, buffer_mode }
     }
 }

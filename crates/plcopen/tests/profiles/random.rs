@@ -8,10 +8,9 @@ use servobench_plcopen::{
     VelocityProfileInputs,
 };
 
-/// A profile keeps the limits of the axis, with jumps of the jerk. Who aborts it at 5 m/s² and 50 m/s³ needs j/s = 0.05 s for the
-/// jerk, in which the acceleration grows by j²/2s, and a/j = 0.125 s for that, in which the velocity grows by a²/2j and a·j/s.
-const STEEPEST: f64 = LIMITS.acceleration + 1.25;
-const FASTEST: f64 = LIMITS.velocity + 6.25 * 6.25 / 100.0 + 6.25 * 0.05;
+/// A profile keeps the limits of the axis, with jumps of the jerk, and so does what takes over from it.
+const STEEPEST: f64 = LIMITS.acceleration * (1.0 + 1e-9);
+const FASTEST: f64 = LIMITS.velocity * (1.0 + 1e-9);
 
 fn table(value: f64) -> impl Strategy<Value = Vec<Pair>> {
     let pair = (0.02..0.6_f64, -value..value).prop_map(|(delta_time, value)| Pair { delta_time, value });

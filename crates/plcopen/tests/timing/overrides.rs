@@ -61,5 +61,5 @@ fn factors_outside_their_range_are_refused() {
     let inputs = SetOverrideInputs { enable: true, acc_factor: 0.0, ..SetOverrideInputs::default() };
     assert_eq!(bench.cycle(|axis| slow.step(axis, &inputs)).error_id, ErrorId::Input);
     let message = slow.error().unwrap().to_string();
-    assert_eq!(message, "MC_SetOverride: `AccFactor` must be above 0 and at most 1, got 0: correct the input");
+    assert_eq!(message, "MC_SetOverride: `AccFactor` must be from 1e-6 to 1, got 0: correct the input");
 }

@@ -1,0 +1,67 @@
+//! What happens by chance.
+use servobench_motion::Limits;
+
+/// Part of the limits that a block may use so that two of them may on top of each other.
+const PART: f64 = 0.5;
+
+/// SplitMix64 (Steele, Lea & Flood 2014).
+pub(crate) struct Chance(u64);
+
+impl Chance {
+    pub(crate) const fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        mixed ^ (mixed >> 31)
+    }
+
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * ((self.next() >> 11) as f64 / 9_007_199_254_740_992.0)
+    }
+
+    pub(crate) fn once_in(&mut self, times: u64) -> bool {
+        self.next().is_multiple_of(times)
+    }
+
+    pub(crate) fn one_of<T: Copy>(&mut self, choices: &[T]) -> T {
+        choices[usize::try_from(self.next() % choices.len() as u64).unwrap()]
+    }
+
+    /// `value`, or now and then something that no program should give.
+    pub(crate) fn input(&mut self, value: f64) -> f64 {
+        if self.once_in(500) {
+            return self.one_of(&[f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, f64::MIN_POSITIVE, -0.0, -value]);
+        }
+        value
+    }
+
+    /// Limits of a block: those of the axis, or so that two of them together are within them; a snap where the axis has none.
+    pub(crate) fn limits(&mut self, axis: Limits) -> Limits {
+        let whole = if self.once_in(2) { 1.0 } else { PART };
+        let mut part = || {
+            let part = whole * if self.once_in(2) { 1.0 } else { self.between(0.5, 1.0) };
+            self.input(part)
+        };
+        Limits {
+            velocity: part() * axis.velocity,
+            acceleration: part() * axis.acceleration,
+            jerk: part() * axis.jerk,
+            snap: part() * axis.snap,
+        }
+    }
+
+    /// Values of a table: `pairs` of them up to `most`, and the times between them.
+    pub(crate) fn table(&mut self, most: f64) -> Vec<(f64, f64)> {
+        let pairs = self.one_of(&[1, 2, 3, 5]);
+        let quick = self.between(0.02, 0.6);
+        let mut pair = || {
+            let value = self.between(-most, most);
+            (self.input(quick), self.input(value))
+        };
+        (0..pairs).map(|_| pair()).collect()
+    }
+}

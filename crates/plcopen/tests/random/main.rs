@@ -1,0 +1,65 @@
+//! Programs gone mad: random calls with random inputs, some of them no numbers, on an axis whose drive lags, faults and fails at
+//! random. Nothing leaves the state diagram, no limit is exceeded, no set-point jumps, and outputs keep the rules of the standard.
+//!
+//! The sweep is small in ordinary runs. `SERVOBENCH_SWEEP=7500000 cargo test --release -p servobench-plcopen --test random` runs the
+//! large one; the number is that of cycles per order.
+mod chance;
+mod drive;
+mod outputs;
+mod program;
+mod setpoints;
+
+use chance::Chance;
+use program::Program;
+use servobench_motion::Limits;
+use servobench_plcopen::{ARROWS, Arrow, AxisParams, AxisState, Cause};
+
+const CYCLE_TIME: f64 = 2e-3;
+const LIMITS: Limits = Limits { velocity: 2.0, acceleration: 10.0, jerk: 200.0, snap: 8000.0 };
+/// Cycles after which a new program starts on a new axis.
+const LIFE: usize = 5_000;
+
+fn cycles() -> usize {
+    std::env::var("SERVOBENCH_SWEEP").ok().and_then(|count| count.parse().ok()).unwrap_or(100_000)
+}
+
+#[test]
+fn no_program_of_order_4_leaves_the_diagram_or_the_limits() {
+    sweep(LIMITS);
+}
+
+#[test]
+fn no_program_of_order_3_leaves_the_diagram_or_the_limits() {
+    sweep(Limits { snap: f64::INFINITY, ..LIMITS });
+}
+
+#[test]
+fn no_program_of_order_2_leaves_the_diagram_or_the_limits() {
+    sweep(Limits { snap: f64::INFINITY, jerk: f64::INFINITY, ..LIMITS });
+}
+
+fn sweep(limits: Limits) {
+    let mut chance = Chance::new(limits.jerk.to_bits() ^ limits.snap.to_bits());
+    let mut seen = [0_usize; AxisState::ALL.len()];
+    let mut taken = [0_usize; ARROWS.len()];
+    let (mut done, mut followed) = (0, 0);
+    for life in 0..cycles().div_ceil(LIFE) {
+        let modulo = chance.once_in(2).then_some(3.0);
+        let needs_homing = chance.once_in(4);
+        let params = AxisParams { modulo, needs_homing, buffered_commands: 3, ..AxisParams::new(CYCLE_TIME, limits) };
+        let mut program = Program::new(params, chance.one_of(&[150, 5000]));
+        for cycle in 0..LIFE {
+            program.cycle(&mut chance, &format!("life {life}, cycle {cycle}"), &mut taken);
+            seen[program.state() as usize] += 1;
+        }
+        done += program.done;
+        followed += program.followed;
+    }
+    // The test is where it matters: in every state for a while, on every arrow, with moves and profiles that end.
+    let few = cycles() / 2000;
+    assert!(seen.iter().all(|times| *times > few), "{seen:?}");
+    // A generator that moves an axis of order 2 or 3 has no snap to move with.
+    let is_called = |arrow: &Arrow| arrow.causes != [Cause::DoneMoving];
+    assert!(ARROWS.iter().zip(taken).all(|(arrow, times)| times > 0 || !is_called(arrow)), "{taken:?}");
+    assert!(done > few / 10 && followed > few / 20, "{done} moves, {followed} profiles");
+}

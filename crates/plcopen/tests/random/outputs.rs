@@ -1,0 +1,55 @@
+//! The rules of the standard for the outputs of a block (PLCopen part 1, version 2.0, section 2.4.1).
+use servobench_plcopen::{Axis, BlockName, ErrorId, FunctionBlock, Outputs};
+
+/// Outputs that blocks have in common, FALSE where a block has no such output.
+#[derive(Debug, Clone, Copy, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an output of the standard")]
+pub(crate) struct Flags {
+    pub(crate) done: bool,
+    pub(crate) busy: bool,
+    pub(crate) active: bool,
+    pub(crate) in_target: bool,
+    pub(crate) aborted: bool,
+    pub(crate) error: bool,
+    pub(crate) error_id: u64,
+}
+
+/// One call of `block`.
+pub(crate) fn call<B: FunctionBlock>(block: &mut B, axis: &mut Axis, inputs: &B::Inputs<'_>) -> Flags {
+    let outputs = block.step(axis, inputs);
+    let (mut flags, mut names) = (Flags::default(), B::Outputs::NAMES.iter());
+    outputs.each(|value| {
+        let is_true = value > 0.5;
+        match *names.next().expect("as many names as values") {
+            "Done" | "ProfileCompleted" => flags.done = is_true,
+            "Busy" => flags.busy = is_true,
+            "Active" => flags.active = is_true,
+            "InVelocity" | "InTorque" | "InEndVelocity" => flags.in_target = is_true,
+            "CommandAborted" => flags.aborted = is_true,
+            "Error" => flags.error = is_true,
+            "ErrorID" => flags.error_id = value.to_bits(),
+            "CoveredDistance" | "Ready" => assert!(value.is_finite()),
+            other => unreachable!("{other}"),
+        }
+    });
+    assert_eq!(block.error().is_some(), flags.error, "{} in words", B::NAME);
+    // The generator has no other word for limits that are none.
+    if let Some(error) = block.error().filter(|_| B::NAME != BlockName::Profile4th) {
+        assert!(!matches!(error.id(), ErrorId::Plan | ErrorId::PlanLost), "{error}");
+    }
+    flags
+}
+
+impl Flags {
+    /// What holds in every cycle; `before` are those of the call before.
+    pub(crate) fn check(&self, place: &str, execute: bool, before: &Self) {
+        let Self { done, busy, active, in_target, aborted, error, error_id } = *self;
+        let one = [done, busy, aborted, error].into_iter().filter(|flag| *flag).count();
+        assert!(one <= 1, "{place}: {self:?}");
+        assert!(one == 1 || !execute, "{place}: executed, and says nothing: {self:?}");
+        assert!(busy || !active && !in_target, "{place}: {self:?}");
+        assert_eq!(error, error_id != f64::from(ErrorId::None as u16).to_bits(), "{place}: {self:?}");
+        // How it ended is said as long as Execute is TRUE, and once at least.
+        assert!(execute || busy || one == 0 || before.busy, "{place}: goes on to say how it ended: {self:?}");
+    }
+}

@@ -1,0 +1,57 @@
+//! What is commanded from cycle to cycle.
+use super::CYCLE_TIME;
+use servobench_base::Setpoint;
+use servobench_fieldbus::{AxisCommand, AxisFeedback, Power, Task};
+use servobench_plcopen::{Axis, AxisState, BlockName};
+
+/// Blocks that follow tables, whose pieces meet without regard to jerk and snap.
+const TABLES: [BlockName; 3] = [BlockName::PositionProfile, BlockName::VelocityProfile, BlockName::AccelerationProfile];
+
+/// The set-points of an axis.
+#[derive(Debug, Default)]
+pub(crate) struct Setpoints {
+    last: Option<Setpoint>,
+    /// Whether a table has led to the last one.
+    was_led: bool,
+}
+
+impl Setpoints {
+    /// Nothing is asked of an axis that is disabled, and nothing jumps but the jerk of tables.
+    pub(crate) fn check(&mut self, axis: &Axis, feedback: &AxisFeedback, command: &AxisCommand, place: &str) {
+        let is_led = axis.commanded_by().is_some_and(|block| TABLES.contains(&block));
+        let (state, limits) = (axis.state(), axis.params().limits);
+        let is_disabled = state == AxisState::Disabled;
+        assert!(!is_disabled || !command.power || feedback.power != Power::On, "{place}");
+        assert!(!matches!(command.task, Task::Home { .. }) || state == AxisState::Homing, "{place}");
+        let was_led = std::mem::replace(&mut self.was_led, is_led);
+        let Task::Follow(sample) = command.task else {
+            assert!(matches!(state, AxisState::Homing | AxisState::ContinuousMotion), "{place}: {state}");
+            self.last = None;
+            return;
+        };
+        let is_where_it_is = (sample.x - feedback.position).abs() == 0.0;
+        assert!(!is_disabled || is_where_it_is || self.last.is_none(), "{place}: moves a disabled axis");
+        let now = Setpoint { x: sample.x, ..axis.commanded() };
+        assert!([now.x, now.v, now.a, now.j].iter().all(|value| value.is_finite()), "{place}: {now:?}");
+        // Without power, or under a fault at rest, the set-point is where the axis is.
+        let follows = is_disabled || state == AxisState::ErrorStop && (feedback.power != Power::On || is_where_it_is);
+        if let Some(last) = self.last.filter(|_| !follows) {
+            // The mean of each derivative over a cycle is within its limit. Two motions on top of each other and limits that were
+            // higher before keep those of the axis together; the margin is rounding.
+            let step = |name, one: f64, other: f64, limit: f64, rounding: f64| {
+                let mean = (other - one).abs() / CYCLE_TIME;
+                let most = limit * (1.0 + 1e-6) + rounding;
+                assert!(mean <= most, "{place} in {state}: {name} {mean} {limit}\n{last:?}\n{now:?}");
+            };
+            step("x", last.x, now.x, limits.velocity, 1e-12 / CYCLE_TIME);
+            step("v", last.v, now.v, limits.acceleration, 1e-9 / CYCLE_TIME);
+            if limits.jerk < f64::INFINITY && !was_led && !is_led {
+                step("a", last.a, now.a, limits.jerk, 1e-7 / CYCLE_TIME);
+            }
+            if limits.snap < f64::INFINITY && !was_led && !is_led {
+                step("j", last.j, now.j, limits.snap, 1e-5 / CYCLE_TIME);
+            }
+        }
+        self.last = (!follows).then_some(now);
+    }
+}

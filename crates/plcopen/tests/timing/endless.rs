@@ -1,0 +1,95 @@
+//! Commands that keep the axis until another one takes it.
+use crate::bench::{Bench, LIMITS};
+use crate::calls::{at, running, to};
+use servobench_plcopen::{
+    AxisState, BufferMode, FunctionBlock, MoveAbsolute, MoveAbsoluteInputs, MoveContinuousAbsolute,
+    MoveContinuousAbsoluteInputs, MoveSuperimposed, MoveSuperimposedInputs, MoveVelocity, MoveVelocityInputs,
+};
+
+/// At EndVelocity 0 the axis stands at the position, in Continuous Motion, until another command takes it.
+#[test]
+fn a_continuous_move_may_end_at_rest() {
+    for position in [0.25, -0.173] {
+        let (mut bench, mut pass, mut go) =
+            (Bench::standstill(), MoveContinuousAbsolute::default(), MoveAbsolute::default());
+        let inputs =
+            MoveContinuousAbsoluteInputs { execute: true, position, ..MoveContinuousAbsoluteInputs::within(&LIMITS) };
+        let mut arrived = None;
+        for cycle in 0..2500 {
+            let execute = cycle >= 2000;
+            let (passed, moved) = bench.cycle(|axis| {
+                let passed = pass.step(axis, &inputs);
+                (passed, go.step(axis, &MoveAbsoluteInputs { execute, ..to(0.1) }))
+            });
+            assert!(!passed.error && !moved.error);
+            assert!(passed.busy != passed.command_aborted, "{cycle}");
+            if passed.in_end_velocity && arrived.is_none() {
+                at(&bench, position);
+                arrived = Some(cycle);
+            }
+            assert_eq!(passed.in_end_velocity, arrived.is_some() && !passed.command_aborted, "{cycle}");
+            assert_eq!(passed.command_aborted, execute && cycle >= 2000 && !passed.busy);
+            if !execute {
+                assert_eq!(bench.axis.state(), AxisState::ContinuousMotion);
+            }
+        }
+        assert!(arrived.is_some_and(|cycle| cycle < 1500));
+    }
+}
+
+/// A command that waits behind it takes the axis where it passes its position, at rest here, whatever the buffer mode would blend.
+#[test]
+fn a_continuous_move_to_rest_is_not_blended() {
+    let (mut bench, mut pass, mut go) =
+        (Bench::standstill(), MoveContinuousAbsolute::default(), MoveAbsolute::default());
+    let inputs =
+        MoveContinuousAbsoluteInputs { execute: true, position: 0.21, ..MoveContinuousAbsoluteInputs::within(&LIMITS) };
+    let behind = MoveAbsoluteInputs { buffer_mode: BufferMode::BlendingHigh, ..to(0.43) };
+    let mut aborted_at = None;
+    for _ in 0..4000 {
+        let passed = bench.cycle(|axis| {
+            let passed = pass.step(axis, &inputs);
+            go.step(axis, &behind);
+            passed
+        });
+        if passed.command_aborted && aborted_at.is_none() {
+            aborted_at = Some(bench.axis.commanded());
+        }
+    }
+    let there = aborted_at.unwrap();
+    assert!((there.x - 0.21).abs() < 1e-12 && there.v.abs() < 1e-9, "{there:?}");
+    at(&bench, 0.43);
+}
+
+/// The outputs of a block are its own, however many commands others have given since.
+#[test]
+fn a_block_that_runs_says_so_however_many_others_are_called() {
+    let (mut bench, mut run) = (Bench::standstill(), MoveVelocity::default());
+    let below = MoveVelocityInputs {
+        acceleration: 2.0,
+        deceleration: 2.0,
+        jerk: Some(20.0),
+        snap: Some(400.0),
+        ..running(0.3)
+    };
+    let top = MoveSuperimposedInputs {
+        velocity_diff: 0.2,
+        acceleration: 2.0,
+        deceleration: 2.0,
+        ..MoveSuperimposedInputs::within(&LIMITS)
+    };
+    let top = MoveSuperimposedInputs { jerk: Some(20.0), snap: Some(400.0), distance: 0.01, ..top };
+    let mut has_arrived = false;
+    for cycle in 0..1500 {
+        // A new instance in each cycle, each a command.
+        let (outputs, on_top) = bench.cycle(|axis| {
+            let on_top = MoveSuperimposed::default().step(axis, &MoveSuperimposedInputs { execute: cycle > 5, ..top });
+            (run.step(axis, &below), on_top)
+        });
+        assert!(!on_top.error, "{cycle}: {on_top:?}");
+        assert!(outputs.busy && outputs.active && !outputs.command_aborted, "{cycle}: {outputs:?}");
+        has_arrived |= outputs.in_velocity;
+        assert_eq!(outputs.in_velocity, has_arrived, "{cycle}");
+    }
+    assert!(has_arrived);
+}
