@@ -89,7 +89,9 @@ impl Demand {
     /// [`BuildError`] of a program that cannot be planned.
     pub(super) fn of(scenario: &Scenario, chain: Option<&Chain>, length: f64) -> Result<Self, BuildError> {
         let units = Units::of(scenario);
-        let resistance = resistance(scenario, chain);
+        // What function blocks make of their program only a run can tell.
+        let is_planned = scenario.plc.is_none();
+        let resistance = resistance(scenario, chain).filter(|_| is_planned);
         let motor = match &scenario.actuator {
             Actuator::Pmsm { motor, current, .. } => Some((motor, current.d_reference)),
             _ => None,
@@ -128,7 +130,7 @@ impl Demand {
             is_believed,
         });
         let voltage = match &scenario.actuator {
-            Actuator::Pmsm { motor, dc_link, current, .. } => Some(VoltageDemand {
+            Actuator::Pmsm { motor, dc_link, current, .. } if is_planned => Some(VoltageDemand {
                 peak: voltage.value,
                 at: voltage.at,
                 back_emf: motor.electrical_ratio * speed * motor.flux_linkage,
