@@ -213,6 +213,7 @@ impl Params {
             period: self.segment,
             count: self.units.from_position(1),
             stop: Steepness { acceleration: self.profile.quick_stop_deceleration, jerk },
+            velocity: self.limits.velocity,
         }
     }
 
