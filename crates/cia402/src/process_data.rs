@@ -65,7 +65,7 @@ pub struct Actuals {
     pub following_error: i32,
     /// Code of the last fault (603Fh), 0 without one.
     pub error_code: u16,
-    /// 60FDh: bit 0 negative limit switch, bit 1 positive limit switch, bit 2 home switch.
+    /// 60FDh: bit 0 negative limit switch, bit 1 positive limit switch, bit 2 home switch; set while the input is closed.
     pub digital_inputs: u32,
     /// Free points of the trajectory buffer (2011h).
     pub buffer_free: u16,

@@ -14,6 +14,8 @@ impl State {
     #[must_use]
     pub fn actuals(&self, p: &Params) -> Actuals {
         let Actual { velocity, effort, negative_limit, positive_limit, home, .. } = self.now.actual;
+        // The inputs as they are: the master has to know how the switches are wired.
+        let closed = |is_met: bool, bit: u32| u32::from(is_met != p.reverse_switches) << bit;
         let follows_position = matches!(self.last, Demand::Position { .. });
         Actuals {
             statusword: self.statusword,
@@ -27,7 +29,7 @@ impl State {
             torque: p.units.effort(effort),
             following_error: if follows_position { p.units.distance(self.following_error) } else { 0 },
             error_code: self.fault.map_or(0, Fault::code),
-            digital_inputs: u32::from(negative_limit) | u32::from(positive_limit) << 1 | u32::from(home) << 2,
+            digital_inputs: closed(negative_limit, 0) | closed(positive_limit, 1) | closed(home, 2),
             buffer_free: u16::try_from(self.buffer.free()).unwrap_or(u16::MAX),
             buffer_status: self.buffer.status(),
         }
