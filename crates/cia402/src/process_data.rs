@@ -57,6 +57,8 @@ pub struct Actuals {
     pub mode: i8,
     /// 6064h.
     pub position: i32,
+    /// What the position loop follows (6062h); the actual position where there is no position loop.
+    pub position_demand: i32,
     /// 606Ch.
     pub velocity: i32,
     /// 6077h.

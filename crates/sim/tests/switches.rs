@@ -102,9 +102,10 @@ position = \"3 mm\"
             is_ever(&closed, "home", "Done", "TRUE") && is_ever(&closed, "axis", "homed", "TRUE"),
             "method {method}"
         );
-        // It stops behind its reference, from 5 mm/s at 0.5 m/s²: 25 µm and as much again for what it lags.
+        // It stops behind its reference: what the drive follows is up to 70 µm ahead of the axis at 5 mm/s when that meets it, and
+        // is stopped at 0.5 m/s² within 25 µm.
         let found = closed.channel("load.position").and_then(|values| values.last().copied()).unwrap_or_default();
-        assert!((found - reference).abs() < 60e-6, "method {method}: {found} instead of {reference}");
+        assert!((found - reference).abs() < 100e-6, "method {method}: {found} instead of {reference}");
     }
 }
 

@@ -172,7 +172,7 @@ impl Axis {
     pub(super) fn present(&self) -> Setpoint {
         match &self.activity {
             Activity::Effort(_) | Activity::Homing(_) => {
-                Setpoint { v: self.feedback.velocity, ..Setpoint::at_rest(self.feedback.position) }
+                Setpoint { v: self.feedback.velocity, ..Setpoint::at_rest(self.feedback.demanded()) }
             }
             Activity::Rest | Activity::Moving(_) | Activity::Led(_) => self.setpoint,
         }
