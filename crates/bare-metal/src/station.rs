@@ -121,6 +121,7 @@ impl Drive {
         if outputs.drive == DriveFunction::Follow {
             self.position = commands.target_position;
         }
-        Actuals { statusword: outputs.statusword, mode: commands.mode, position: self.position, ..Actuals::default() }
+        let (position, position_demand) = (self.position, self.position);
+        Actuals { statusword: outputs.statusword, mode: commands.mode, position, position_demand, ..Actuals::default() }
     }
 }

@@ -57,6 +57,8 @@ pub struct Actuals {
     pub mode: i8,
     /// 6064h.
     pub position: i32,
+    /// What the position loop follows (6062h); the actual position where there is no position loop.
+    pub position_demand: i32,
     /// 606Ch.
     pub velocity: i32,
     /// 6077h.
@@ -65,7 +67,7 @@ pub struct Actuals {
     pub following_error: i32,
     /// Code of the last fault (603Fh), 0 without one.
     pub error_code: u16,
-    /// 60FDh: bit 0 negative limit switch, bit 1 positive limit switch, bit 2 home switch.
+    /// 60FDh: bit 0 negative limit switch, bit 1 positive limit switch, bit 2 home switch; set while the input is closed.
     pub digital_inputs: u32,
     /// Free points of the trajectory buffer (2011h).
     pub buffer_free: u16,

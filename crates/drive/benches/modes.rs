@@ -30,7 +30,7 @@ fn follow(answer: &Answer) -> Setpoint {
 
 fn params(ms: u8) -> interpolated::Params {
     let period = TimePeriod::new(ms, -3).unwrap_or_else(|error| panic!("{error}"));
-    interpolated::Params { sub_mode: SubMode::Cubic, period, count: 1e-6, stop: STEEPNESS }
+    interpolated::Params { sub_mode: SubMode::Cubic, period, count: 1e-6, stop: STEEPNESS, velocity: f64::INFINITY }
 }
 
 /// Points `ms` apart, always as many as there is room for.

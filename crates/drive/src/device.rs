@@ -90,11 +90,11 @@ pub struct Measured {
     pub following_error: f64,
     /// Whether the loops cut the effort at their last turn.
     pub effort_is_cut: bool,
-    /// Switch of the negative end, inverted where it is wired so.
+    /// Whether the input for the switch of the negative end is closed.
     pub negative_limit: bool,
-    /// Switch of the positive end.
+    /// Whether the input for the switch of the positive end is closed.
     pub positive_limit: bool,
-    /// Home switch.
+    /// Whether the input for the home switch is closed.
     pub home: bool,
     /// Increments at which the last index pulse came, when one came since the last step.
     pub index: Option<i64>,
@@ -280,9 +280,9 @@ impl State {
             position: position(measured.increments),
             velocity: if measured.velocity.is_finite() { measured.velocity } else { 0.0 },
             effort: if measured.effort.is_finite() { measured.effort } else { 0.0 },
-            negative_limit: measured.negative_limit,
-            positive_limit: measured.positive_limit,
-            home: measured.home,
+            negative_limit: measured.negative_limit != p.reverse_switches,
+            positive_limit: measured.positive_limit != p.reverse_switches,
+            home: measured.home != p.reverse_switches,
             index: measured.index.map(position),
         };
         self.now.demanded = match self.last {

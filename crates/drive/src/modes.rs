@@ -7,6 +7,7 @@ pub mod homing;
 pub mod interpolated;
 pub mod profile;
 mod ramp;
+mod reach;
 pub mod stop;
 
 use crate::Demand;

@@ -76,6 +76,8 @@ pub enum TrajectoryPoint {
 pub struct AxisFeedback {
     /// Actual position.
     pub position: f64,
+    /// By how much the position that the drive's loops follow is ahead of the actual one; 0 where they follow none.
+    pub following_error: f64,
     /// Actual velocity.
     pub velocity: f64,
     /// Actual effort.
@@ -92,6 +94,14 @@ pub struct AxisFeedback {
     pub way: WayFeedback,
     /// The switches, inverted where they are wired so.
     pub switches: Switches,
+}
+
+impl AxisFeedback {
+    /// Position that the drive's loops follow, or the actual one where they follow none: where a set-point begins.
+    #[must_use]
+    pub const fn demanded(&self) -> f64 {
+        self.position + self.following_error
+    }
 }
 
 /// How far the drive is on a way of its own.

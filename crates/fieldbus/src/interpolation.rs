@@ -5,7 +5,7 @@
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(i8)]
 pub enum Interpolation {
-    /// Disabled: what is commanded is the actual position.
+    /// Disabled: what is commanded is what the drive follows itself, without a position loop the actual position.
     #[default]
     Off = 0,
     /// Too few samples yet; the axis waits where it is.
@@ -66,7 +66,9 @@ impl Interpolation {
     #[must_use]
     pub const fn meaning(self) -> &'static str {
         match self {
-            Self::Off => "no set-points are asked for, or the drive does not follow: the actual position is put out",
+            Self::Off => {
+                "no set-points are asked for, or the drive does not follow them: where the drive is by itself is put out"
+            }
             Self::Wait => "too few samples yet: the axis waits where it is",
             Self::Run1 => "every sample came in time",
             Self::Run2 => "a sample is late: its interval is made with a predicted one until it comes",

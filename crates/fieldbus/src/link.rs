@@ -33,8 +33,8 @@
 //! does not come back by itself.
 //!
 //! Each holds until the rising edge of `reset`, and as long as its cause. After a limit switch the axis may move out of it only.
-//! Without power, and in each of these, what is put out is the actual position, so that nothing jumps when the drive follows
-//! again.
+//! Without power, in each of these, and while the drive is in another mode, what is put out is what the drive follows itself (6062h),
+//! without a position loop the actual position, so that nothing jumps when the drive follows again.
 mod buffer;
 mod course;
 mod ears;
@@ -186,6 +186,7 @@ impl State {
         };
         AxisFeedback {
             position: self.position(params),
+            following_error: scale.position(self.following_error(params)),
             velocity,
             effort: scale.effort(self.actuals.torque),
             power: self.power(params),
@@ -247,6 +248,11 @@ impl State {
     fn switches(&self, params: &Params) -> Switches {
         let closed = |bit: u32| (self.actuals.digital_inputs >> bit & 1 == 1) != params.settings.reverse_switches;
         Switches { negative_limit: closed(0), positive_limit: closed(1), home: closed(2) }
+    }
+
+    /// By how much what the drive's loops follow is ahead of the actual position (counts).
+    fn following_error(&self, params: &Params) -> i64 {
+        self.position.as_ref().map_or(0, |_| params.scale.between(self.actuals.position, self.actuals.position_demand))
     }
 
     fn position(&self, params: &Params) -> f64 {

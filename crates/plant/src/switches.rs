@@ -1,12 +1,13 @@
 //! Limit and home switches along the axis, and the index pulse of the motor's encoder.
 //!
-//! A switch is active or not at the position of the load. The index pulse comes once per revolution of the motor and its
+//! A switch is active or not at the position of the load. Wired normally open it closes its input while it is active, wired
+//! normally closed it opens it then; an input without a switch is open. The index pulse comes once per revolution of the motor and its
 //! position is latched where it comes, between two ticks too: an encoder's hardware does that.
 use core::f64::consts::TAU;
 use core::ops::RangeInclusive;
 use servobench_base::{ParamError, finite};
 
-/// Where the switches are; constant during a run.
+/// Where the switches are, and how they are wired; constant during a run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Switches {
     /// The negative end: active at and below it (axis coordinate).
@@ -17,16 +18,18 @@ pub struct Switches {
     pub home: Option<RangeInclusive<f64>>,
     /// Angle of the motor at which the index pulse comes (rad); `None` for a motor without one.
     pub index: Option<f64>,
+    /// Whether the switches are wired normally closed.
+    pub normally_closed: bool,
 }
 
-/// What the switches say at a tick.
+/// What the inputs for the switches are at a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SwitchReading {
-    /// Whether the switch of the negative end is active.
+    /// Whether the input for the switch of the negative end is closed.
     pub negative: bool,
-    /// Whether the switch of the positive end is active.
+    /// Whether the input for the switch of the positive end is closed.
     pub positive: bool,
-    /// Whether the home switch is active.
+    /// Whether the input for the home switch is closed.
     pub home: bool,
     /// Position of the motor at the last index pulse since the tick before (rad); `None` without one.
     pub index: Option<f64>,
@@ -49,13 +52,14 @@ impl Switches {
         Ok(())
     }
 
-    /// What they say with the load at `load` (axis coordinate), and of the motor's way from `before` to `now` (rad).
+    /// The inputs with the load at `load` (axis coordinate), and of the motor's way from `before` to `now` (rad).
     #[must_use]
     pub fn read(&self, load: f64, before: f64, now: f64) -> SwitchReading {
+        let is_closed = |is_active: bool| is_active != self.normally_closed;
         SwitchReading {
-            negative: self.negative.is_some_and(|end| load <= end),
-            positive: self.positive.is_some_and(|end| load >= end),
-            home: self.home.as_ref().is_some_and(|home| home.contains(&load)),
+            negative: self.negative.is_some_and(|end| is_closed(load <= end)),
+            positive: self.positive.is_some_and(|end| is_closed(load >= end)),
+            home: self.home.as_ref().is_some_and(|home| is_closed(home.contains(&load))),
             index: self.index.and_then(|index| last_pulse(index, before, now)),
         }
     }
@@ -114,7 +118,11 @@ mod tests {
             (0.5, (false, false, true)),
         ] {
             assert_eq!(at(load), expected, "{load}");
+            let opened = Switches { normally_closed: true, ..switches.clone() }.read(load, 0.0, 0.0);
+            assert_eq!((!opened.negative, !opened.home, !opened.positive), expected, "{load}, normally closed");
         }
+        let none = Switches { normally_closed: true, ..Switches::default() };
+        assert_eq!(none.read(0.0, 0.0, 100.0), SwitchReading::default(), "an input without a switch is open");
         assert_eq!(Switches::default().read(0.0, 0.0, 100.0), SwitchReading::default());
     }
 

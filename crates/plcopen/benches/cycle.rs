@@ -17,6 +17,7 @@ fn main() {
 const LIMITS: Limits = Limits { velocity: 1.0, acceleration: 5.0, jerk: 50.0, snap: 1000.0 };
 const FEEDBACK: AxisFeedback = AxisFeedback {
     position: 0.0,
+    following_error: 0.0,
     velocity: 0.0,
     effort: 0.0,
     power: DrivePower::On,

@@ -161,7 +161,7 @@ impl Bench {
             prescribed: matches!(scenario.actuator, Actuator::Prescribed),
             transmission: scenario.axis.transmission,
             disturbances,
-            switches: plant::switches(&scenario.axis.switches)?,
+            switches: plant::switches(scenario)?,
         };
         let (watch, joints) = (LimitWatch::default(), JointWatch::default());
         let recorded =

@@ -236,7 +236,7 @@ impl Network {
                         Some(setpoint) => self.reference.push(turn.due.0 as f64 * self.tick, setpoint),
                         None => self.reference.restart(),
                     }
-                    self.asked = setpoint.unwrap_or(Setpoint::at_rest(self.bus_position));
+                    self.asked = setpoint.unwrap_or(Setpoint::at_rest(state.feedback(params).demanded()));
                     torn = turn.is_torn.then_some((turn.due, command));
                     if turn.is_torn {
                         self.mailbox.begin();

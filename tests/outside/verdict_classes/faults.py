@@ -235,7 +235,7 @@ def afterwards(p: Program, fault: Fault) -> frozenset[str]:
 
 
 def reversed_switches(random: Random) -> Case:
-    """Switches that the link takes for closers, which they are not: both seem to be met from the start."""
+    """Switches taken for normally closed on an axis that has none: the inputs are open, and both seem to be met from the start."""
     p = Program(draw_machine(random), random)
     p.machine.tree |= {"plc": {"homing_required": False}}
     p.machine.tree["bus"]["reverse_switches"] = True

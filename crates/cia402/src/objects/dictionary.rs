@@ -240,6 +240,7 @@ impl Dictionary {
         }
         self.set(signal::STATUSWORD, actuals.statusword.bits());
         self.set(signal::MODES_OF_OPERATION_DISPLAY, actuals.mode);
+        self.set(signal::POSITION_DEMAND_VALUE, actuals.position_demand);
         self.set(signal::POSITION_ACTUAL_VALUE, actuals.position);
         self.set(signal::VELOCITY_ACTUAL_VALUE, actuals.velocity);
         self.set(signal::TORQUE_ACTUAL_VALUE, actuals.torque);

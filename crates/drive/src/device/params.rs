@@ -45,6 +45,8 @@ pub struct Params {
     pub sub_mode: SubMode,
     /// Time of a segment between two points where they have none of their own (60C2h).
     pub segment: TimePeriod,
+    /// Whether limit and home switches are wired normally closed: a switch is then met where its input is open.
+    pub reverse_switches: bool,
 }
 
 /// What no mode may exceed.
@@ -127,6 +129,7 @@ impl Default for Params {
             },
             sub_mode: SubMode::LinearAdapted,
             segment: TimePeriod::new(1, -3).expect("a millisecond is in range"),
+            reverse_switches: false,
         }
     }
 }
@@ -213,6 +216,7 @@ impl Params {
             period: self.segment,
             count: self.units.from_position(1),
             stop: Steepness { acceleration: self.profile.quick_stop_deceleration, jerk },
+            velocity: self.limits.velocity,
         }
     }
 

@@ -14,20 +14,25 @@ impl State {
     #[must_use]
     pub fn actuals(&self, p: &Params) -> Actuals {
         let Actual { velocity, effort, negative_limit, positive_limit, home, .. } = self.now.actual;
+        let demand = match &self.last {
+            Demand::Position { setpoint, .. } => p.units.position_at(setpoint.x),
+            Demand::Velocity { .. } | Demand::Effort(_) | Demand::Off => self.position(p),
+        };
+        #[expect(clippy::cast_possible_truncation, reason = "32 bits of an object, as an unsigned counter uses them")]
+        let shown = |position: i64| p.shown(position) as i32;
+        // The inputs as they are: the master has to know how the switches are wired.
+        let closed = |is_met: bool, bit: u32| u32::from(is_met != p.reverse_switches) << bit;
         let follows_position = matches!(self.last, Demand::Position { .. });
         Actuals {
             statusword: self.statusword,
             mode: self.mode.map_or(0, Mode::code),
-            #[expect(
-                clippy::cast_possible_truncation,
-                reason = "32 bits of an object, as an unsigned counter uses them"
-            )]
-            position: p.shown(self.position(p)) as i32,
+            position: shown(self.position(p)),
+            position_demand: shown(demand),
             velocity: p.units.velocity(velocity),
             torque: p.units.effort(effort),
             following_error: if follows_position { p.units.distance(self.following_error) } else { 0 },
             error_code: self.fault.map_or(0, Fault::code),
-            digital_inputs: u32::from(negative_limit) | u32::from(positive_limit) << 1 | u32::from(home) << 2,
+            digital_inputs: closed(negative_limit, 0) | closed(positive_limit, 1) | closed(home, 2),
             buffer_free: u16::try_from(self.buffer.free()).unwrap_or(u16::MAX),
             buffer_status: self.buffer.status(),
         }

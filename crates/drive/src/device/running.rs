@@ -88,9 +88,10 @@ impl Running {
         match self {
             Self::Pp(x) => x.is_limited(),
             Self::Pv(x) => x.is_limited(),
+            Self::Ip(x) => x.is_limited(),
             Self::Csp(x) => x.is_limited(),
             Self::Csv(x) => x.is_limited(),
-            Self::Tq(_) | Self::Hm(_) | Self::Ip(_) | Self::Cst(_) => false,
+            Self::Tq(_) | Self::Hm(_) | Self::Cst(_) => false,
         }
     }
 

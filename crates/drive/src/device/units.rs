@@ -85,6 +85,13 @@ impl Units {
         self.scaling.position(increments.into()).unwrap_or_default() as i64
     }
 
+    /// Position in user-defined units nearest to a position (m or rad).
+    #[inline]
+    #[must_use]
+    pub fn position_at(&self, metres_or_radians: f64) -> i64 {
+        nearest(metres_or_radians / self.position)
+    }
+
     /// Metres or radians at a position in user-defined units.
     #[inline]
     #[must_use]

@@ -25,6 +25,10 @@
 //! not. Then, and at a last point that has a velocity, the axis is stopped within [`Params::stop`] from the state that it has:
 //! position and velocity do not jump, with a jerk nor does the acceleration.
 //!
+//! The points may ask for no more than the highest velocity (6080h): what is beyond is cut, and the drive says so (bit 11). What is
+//! missing of the way is made up for behind it, as far as the highest velocity allows, and a move whose last point is not reached in
+//! time goes on until it is there.
+//!
 //! # Errors
 //!
 //! Underflow, overflow and a break in the sequence of 2010h are latched in the status of the buffer (2012h) until they are cleared:
@@ -43,7 +47,7 @@ use super::ramp::{Ramp, Steepness};
 use super::{Answer, Moment};
 use crate::Demand;
 use course::{Course, HELD, Pace, Step, next_knot};
-use servobench_base::{ParamError, Setpoint};
+use servobench_base::{ParamError, Setpoint, limit};
 use servobench_cia402::ControlBit;
 use thiserror::Error;
 
@@ -62,6 +66,8 @@ pub struct Params {
     pub count: f64,
     /// How a move that is broken off is stopped: quick stop deceleration (6085h) and its jerk.
     pub stop: Steepness,
+    /// Highest velocity (6080h), a magnitude; may be infinite.
+    pub velocity: f64,
 }
 
 impl Params {
@@ -71,7 +77,8 @@ impl Params {
         if !(self.count != 0.0 && self.count.is_finite()) {
             return Err(ParamError { name: "count", value: self.count, bound: "finite and not zero" });
         }
-        self.stop.check()
+        self.stop.check()?;
+        limit("max_motor_speed", self.velocity).map(|_| ())
     }
 }
 
@@ -144,6 +151,12 @@ impl State {
         matches!(self.phase, Phase::Following { .. })
     }
 
+    /// Whether the move is slower than its points ask for.
+    #[must_use]
+    pub const fn is_limited(&self) -> bool {
+        matches!(&self.phase, Phase::Following { course, .. } if course.is_limited())
+    }
+
     /// A start by the bus or the serial interface.
     fn start(&mut self, p: &Params, buffer: &mut Buffer, now: &Moment, by_bus: bool) {
         self.refused = None;
@@ -163,7 +176,7 @@ impl State {
     fn approach(&mut self, p: &Params, buffer: &mut Buffer, now: &Moment, pace: Pace) {
         let at = now.demanded.x;
         let duration = f64::from(p.period.microseconds()) / 1e6;
-        let course = Course::approach(at, nearest(at / p.count), duration, p.count, buffer);
+        let course = Course::approach(at, nearest(at / p.count), duration, p, buffer);
         self.follow(course, pace, true, buffer);
     }
 
@@ -179,7 +192,7 @@ impl State {
             *buffer = as_before;
             self.refused = Some(StartRefused::FarPoint { first: first.counts, axis: here });
         } else if !first.is_last() {
-            self.follow(Course::from_knot(first, at, p.count, buffer), Pace::Given, by_bus, buffer);
+            self.follow(Course::from_knot(first, at, p, buffer), Pace::Given, by_bus, buffer);
         }
     }
 
@@ -214,7 +227,7 @@ pub fn step(p: &Params, x: &mut State, buffer: &mut Buffer, now: &Moment) -> Ans
         if starts {
             x.refused = Some(StartRefused::Running);
         }
-        match course.step(now.period, p.count, *pace, buffer) {
+        match course.step(now.period, p, *pace, buffer) {
             Step::Along(setpoint) => return answer(setpoint, true),
             Step::Ended(end) => {
                 x.phase = Phase::Resting;

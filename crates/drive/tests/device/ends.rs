@@ -116,3 +116,28 @@ fn a_halt_at_a_limit_switch_does_not_make_the_way_longer() {
     assert!((way - 2e-3).abs() < 1e-12 && axis.velocity == 0.0, "{way}");
     assert!(axis.has(StatusBit::InternalLimitActive));
 }
+
+/// Which way a drive moves at 0.1 m/s, whose switches are wired and read as given, beyond the positive end or in between. The master
+/// sees the inputs as they are.
+#[test]
+fn a_switch_is_met_by_its_input_and_by_how_that_is_read() {
+    for (is_closed, reverse_switches, is_beyond) in
+        [false, true].into_iter().flat_map(|a| [false, true].map(|b| [false, true].map(|c| (a, b, c)))).flatten()
+    {
+        let level = |is_met: bool| is_met != is_closed;
+        for sign in [1, -1] {
+            let params = Params { reverse_switches, ..Params::default() };
+            let mut axis = Axis::new(&params);
+            (axis.measured.negative_limit, axis.measured.home) = (level(false), level(false));
+            axis.measured.positive_limit = level(is_beyond);
+            axis.enable(Mode::ProfileVelocity);
+            axis.frame.target_velocity = sign * 100_000;
+            axis.cycles(200);
+            let is_met = if is_closed == reverse_switches { is_beyond && sign > 0 } else { !(is_beyond && sign > 0) };
+            let what = format!("{is_closed} {reverse_switches} {is_beyond} {sign}");
+            assert_eq!((axis.velocity == 0.0, bits(&axis)[0]), (is_met, is_met), "{what}");
+            let inputs = if is_closed { 0b111 } else { 0 } ^ u32::from(is_beyond) << 1;
+            assert_eq!(axis.actuals().digital_inputs, inputs, "{what}");
+        }
+    }
+}

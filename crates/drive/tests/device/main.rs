@@ -4,6 +4,7 @@ mod cyclic;
 mod ends;
 mod halt;
 mod handshake;
+mod highest_velocity;
 mod homing;
 mod interpolated;
 mod modulo;

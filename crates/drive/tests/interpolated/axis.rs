@@ -11,7 +11,7 @@ pub(crate) const COUNT: f64 = 1e-6;
 pub(crate) const STOP: Steepness = Steepness { acceleration: 10.0, jerk: Some(1000.0) };
 
 pub(crate) fn params(sub_mode: SubMode) -> Params {
-    Params { sub_mode, period: TimePeriod::new(10, -3).unwrap(), count: COUNT, stop: STOP }
+    Params { sub_mode, period: TimePeriod::new(10, -3).unwrap(), count: COUNT, stop: STOP, velocity: f64::INFINITY }
 }
 
 pub(crate) struct Axis {

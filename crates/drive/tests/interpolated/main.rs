@@ -9,5 +9,6 @@ mod buffer;
 mod commands;
 mod doors;
 mod fuzz;
+mod limited;
 mod starts;
 mod streamed;

@@ -46,9 +46,9 @@ impl State {
 
     pub(super) fn put_out(&mut self, p: &Params, post: Post, now: u64) {
         let follows = self.follows(p);
-        let actual = self.position(p);
+        let demanded = self.position(p) + p.scale.position(self.following_error(p));
         if !(follows && matches!(self.command.task, Task::Follow(_))) {
-            self.stream.switch_off(actual, now);
+            self.stream.switch_off(demanded, now);
             self.position_loop.open();
         }
         if !(follows && matches!(self.command.task, Task::Effort(_))) {
@@ -115,11 +115,12 @@ impl State {
         self.position_loop.error()
     }
 
-    /// Asks for what the axis does anyway: for its position and for neither velocity nor effort.
+    /// Asks for what the axis does anyway: for the position that its drive follows and for neither velocity nor effort.
     pub(super) fn rest(&mut self, p: &Params) {
+        let ahead = self.following_error(p);
         let commands = &mut self.commands;
         if let Some(position) = &self.position {
-            commands.target_position = p.scale.target(position.counts());
+            commands.target_position = p.scale.target(position.counts() + ahead);
         }
         (commands.target_velocity, commands.target_torque) = (0, 0);
         (commands.velocity_offset, commands.torque_offset) = (0, 0);

@@ -104,7 +104,7 @@ impl Stream {
         }
     }
 
-    /// Puts out the actual position.
+    /// Puts out the position that the drive follows.
     pub(crate) fn switch_off(&mut self, position: f64, now: u64) {
         if self.state != Interpolation::Off {
             *self = Self::OFF;

@@ -96,6 +96,15 @@ impl Scale {
         if self.counter.lowest() < 0 { bits.into() } else { bits.cast_unsigned().into() }
     }
 
+    /// Counts from one reading to another, by the shorter way.
+    pub(crate) fn between(&self, from: i32, to: i32) -> i64 {
+        let range = self.counter.range();
+        let way = (self.reading(to) - self.reading(from)).rem_euclid(range);
+        #[expect(clippy::cast_possible_truncation, reason = "at most half of 32 bits")]
+        let shorter = if way > range / 2 { way - range } else { way } as i64;
+        shorter
+    }
+
     /// Velocity in the drive's unit; `None` beyond 32 bits.
     pub(crate) fn drive_velocity(&self, v: f64) -> Option<i32> {
         whole(self.velocity * v, i32::MAX.into()).and_then(|v| i32::try_from(v).ok())

@@ -155,3 +155,26 @@ impl Rig {
         assert!(acceleration < LIMITS.acceleration + recovery.acceleration + predicted + ROUNDING, "{acceleration}");
     }
 }
+
+/// Friction and a lag keep the axis from where the drive stops what it follows when it is homed. Oracle: the master counts from there,
+/// and neither the drive's demand nor the axis moves by more than the half count of rounding when csp takes over.
+#[test]
+fn homing_hands_over_what_the_drive_follows() {
+    for behind in [-36.4e-6, 41.3e-6, 0.0, 2.49e-3] {
+        let mut rig = Rig::new();
+        rig.run(START, resting(0.0));
+        rig.behind = behind;
+        let home = |_| AxisCommand { power: true, reset: false, task: Task::Home { position: -0.125 } };
+        rig.run(5 * MOTION + 7, home);
+        let feedback = rig.feedback();
+        assert_eq!((feedback.homing, feedback.fault), (Homing::Attained, None));
+        // By homing method 35 the reference is where the axis is.
+        assert!((feedback.position + 0.125).abs() < 1e-12, "{feedback:?}");
+        assert!((feedback.following_error - behind).abs() <= 0.51e-6, "{feedback:?}");
+        let (at, setpoint) = (rig.axis.x, feedback.demanded());
+        rig.peaks = [0.0; 2];
+        rig.run(10 * MOTION, resting(setpoint));
+        assert!((rig.axis.x - at).abs() <= 0.51e-6, "{behind}: {} {at}", rig.axis.x);
+        assert!(rig.peaks[0] <= 0.51e-6 * 1.6 / 1e-3, "{behind}: {:?}", rig.peaks);
+    }
+}

@@ -61,8 +61,9 @@ pub(crate) struct Rig {
     pub(crate) fault: Option<u16>,
     frame: Option<Commands>,
     pub(crate) controlword: Controlword,
-    /// Where the axis is, by the encoder.
+    /// Where the axis is to be, by the encoder, and how far it is from there.
     pub(crate) axis: Setpoint,
+    pub(crate) behind: f64,
     pub(crate) tick: u64,
     /// Largest velocity and acceleration that the drive demanded between its steps.
     pub(crate) peaks: [f64; 2],
@@ -85,6 +86,7 @@ impl Rig {
             frame: None,
             controlword: Controlword::default(),
             axis: Setpoint::default(),
+            behind: 0.0,
             tick: 0,
             peaks: [0.0; 2],
         }
@@ -123,7 +125,7 @@ impl Rig {
     }
 
     fn turn(&mut self) {
-        self.measured.increments = self.drive_params.units.increments(self.axis.x);
+        self.measured.increments = self.drive_params.units.increments(self.axis.x - self.behind);
         self.measured.velocity = self.axis.v;
         let frame = self.frame.take();
         let inputs = Inputs { frame: frame.as_ref(), measured: self.measured, fault: self.fault, main_voltage: true };

@@ -106,7 +106,8 @@ impl Loop {
 
     /// A step of the drive: it measures, and the axis goes on.
     fn step(&mut self) {
-        self.answer = Actuals { position: counts(self.x), ..self.drive.step(&self.commands) };
+        let position = counts(self.x);
+        self.answer = Actuals { position, position_demand: position, ..self.drive.step(&self.commands) };
         let [from, to] = self.velocities;
         let at = |steps: u64| from + (to - from) * steps as f64 * STEP as f64 / BUS as f64;
         let v = match self.between {

@@ -114,6 +114,7 @@ impl Drive {
                 .with(StatusBit::TargetReached, bit_10),
             mode,
             position: low_bits(self.counter.wrap(self.counts)),
+            position_demand: low_bits(self.counter.wrap(self.counts)),
             velocity: i32::try_from((self.counts - before) * 1000).unwrap_or(i32::MAX),
             torque,
             error_code: if self.fault { 0x7121 } else { self.actuals.error_code },

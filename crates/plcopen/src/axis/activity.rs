@@ -100,12 +100,12 @@ impl Axis {
             Activity::Rest => {
                 let follows = match self.state {
                     AxisState::Disabled => true,
-                    // Under a fault the link puts out where the axis is, whatever is commanded.
+                    // Under a fault the link puts out what the drive follows, whatever is commanded.
                     AxisState::ErrorStop => !self.is_powered() || self.feedback.fault.is_some(),
                     _ => false,
                 };
                 if follows {
-                    self.base = Setpoint::at_rest(self.feedback.position);
+                    self.base = Setpoint::at_rest(self.feedback.demanded());
                 }
             }
             Activity::Moving(moving) => match moving.run.advance(cycle_time) {
@@ -135,7 +135,8 @@ impl Axis {
                 }
             }
             Activity::Homing(homing) => {
-                self.base = Setpoint { v: self.feedback.velocity, ..Setpoint::at_rest(self.feedback.position) };
+                // Where the drive has stopped what it follows, the axis is still on its way to.
+                self.base = Setpoint { v: self.feedback.velocity, ..Setpoint::at_rest(self.feedback.demanded()) };
                 let id = homing.id;
                 match self.feedback.homing {
                     Homing::Idle | Homing::Busy => homing.has_begun = true,

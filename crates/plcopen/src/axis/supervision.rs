@@ -87,7 +87,7 @@ impl Axis {
     /// Leaves Disabled when the power is there that was asked for.
     fn try_enable(&mut self, is_powered: bool) {
         if self.power.enable && is_powered {
-            self.base = Setpoint::at_rest(self.feedback.position);
+            self.base = Setpoint::at_rest(self.feedback.demanded());
             self.follow(Cause::Powered);
         }
     }
@@ -127,7 +127,7 @@ impl Axis {
         if !request.enable && arrow(self.state, Cause::Unpowered).is_some() {
             self.end_all(Progress::Aborted);
             self.follow(Cause::Unpowered);
-            self.base = Setpoint::at_rest(self.feedback.position);
+            self.base = Setpoint::at_rest(self.feedback.demanded());
             self.add_up();
         }
         if self.state == AxisState::Disabled {

@@ -123,7 +123,8 @@ table! {
         units: DriveUnits = (),
         /// Whether the master makes the actual velocity of differences of positions; the drive sends it unless given.
         velocity_from_differences: bool = (),
-        /// Whether the switches are wired normally closed, so that the master inverts them; they are not unless given.
+        /// Whether the switches are wired normally closed and drive and master invert their inputs, of which one without a switch
+        /// then reads as met; they are wired normally open unless given.
         reverse_switches: bool = (),
         /// What goes wrong; `[[bus.fault]]` for each.
         fault: Many<BusFault> = (),

@@ -109,9 +109,11 @@ pub(super) fn encoder(encoder: scenario::Encoder) -> Result<Encoder, BuildError>
     Ok(encoder)
 }
 
-pub(super) fn switches(switches: &scenario::Switches) -> Result<Switches, BuildError> {
-    let scenario::Switches { negative, positive, home, index } = *switches;
-    let switches = Switches { negative, positive, home: home.map(|home| home.from..=home.to), index };
+pub(super) fn switches(scenario: &scenario::Scenario) -> Result<Switches, BuildError> {
+    let scenario::Switches { negative, positive, home, index } = scenario.axis.switches;
+    let home = home.map(|home| home.from..=home.to);
+    let normally_closed = scenario.bus.as_ref().is_some_and(|bus| bus.reverse_switches);
+    let switches = Switches { negative, positive, home, index, normally_closed };
     switches.check()?;
     Ok(switches)
 }

@@ -284,6 +284,7 @@ fn device_params(
             DriveInterpolation::Cubic => Mode::Cubic,
         },
         units,
+        reverse_switches: bus.reverse_switches,
         profile: device::Profile {
             velocity: dynamics.velocity,
             acceleration: dynamics.acceleration,

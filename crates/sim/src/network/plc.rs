@@ -87,7 +87,7 @@ impl Plc {
             *asked = sample(followed);
             setpoint = Some(followed);
         }
-        let x = origin + setpoint.map_or(feedback.position, |followed| followed.x);
+        let x = origin + setpoint.map_or(feedback.demanded(), |followed| followed.x);
         self.followed = Setpoint { x, ..commanded };
         for call in &mut self.calls {
             call.follow_motion(t, self.followed, &mut self.made);

@@ -10,10 +10,13 @@
 //! | cubic B-spline | the targets as control points | two cycles; passed by in a curve |
 //!
 //! The targets may ask for no more than the highest velocity: what is beyond is cut, and the drive says so (bit 11). A cubic
-//! that would pass it between two targets is replaced by the line.
+//! that would pass it between two targets is replaced by the line. A B-spline needs no such watch: its velocity is a mean of the
+//! slopes between its control points, with weights that are not negative. It could not be replaced either, as the line from the
+//! last target is a cycle ahead of it. What rounding makes of a velocity just at the limit is not beyond it.
 use super::{Linear, Progress};
 use crate::Demand;
 use crate::device::Beat;
+use crate::modes::reach::Reach;
 use crate::modes::{Answer, Moment};
 use servobench_base::{ParamError, Setpoint, limit};
 use servobench_motion::interpolate::{Interval, Mode, Sample};
@@ -84,18 +87,15 @@ impl State {
     /// The next cycle goes to `target`.
     fn go_to(&mut self, p: &Params, cycle: f64, target: Sample) {
         let [_, b, c, d] = self.points;
-        let furthest = p.velocity * cycle;
-        let kept = Sample {
-            x: d.x + (target.x - d.x).clamp(-furthest, furthest),
-            v: target.v.clamp(-p.velocity, p.velocity),
-            ..target
-        };
-        self.points = [b, c, d, kept];
-        let (curve, is_slow_enough) = match self.along(p.interpolation, cycle) {
-            Some(curve) if peak_velocity(&curve, cycle) <= p.velocity => (Some(curve), true),
-            _ => (self.along(Mode::Linear, cycle), false),
-        };
-        self.is_limited = kept != target || !is_slow_enough;
+        let way = target.x - d.x;
+        let reach = Reach::new(p.velocity, cycle, target.x.abs() + d.x.abs());
+        let cut = reach.cut(way);
+        let x = cut.map_or(target.x, |way| d.x + way);
+        self.points = [b, c, d, Sample { x, v: reach.velocity(target.v), ..target }];
+        let is_slow_enough = |curve: &Setpoint| p.interpolation != Mode::Cubic || !reach.is_passed_by(curve);
+        let curve = self.along(p.interpolation, cycle).filter(is_slow_enough);
+        self.is_limited = cut.is_some() || reach.is_exceeded_by(target.v) || curve.is_none();
+        let curve = curve.or_else(|| self.along(Mode::Linear, cycle));
         // Targets are finite: they are whole numbers of drive units.
         self.start = curve.unwrap_or(Setpoint::at_rest(d.x));
         self.progress = Progress::default();
@@ -122,14 +122,6 @@ impl State {
         .map(sample);
         self.has_begun = true;
     }
-}
-
-/// Highest magnitude of the velocity on a cubic that begins with `start`.
-fn peak_velocity(start: &Setpoint, cycle: f64) -> f64 {
-    let turn = -start.a / start.j;
-    let between = if turn > 0.0 && turn < cycle { start.v + 0.5 * start.a * turn } else { 0.0 };
-    // Of the ends the targets take care, but for a rounding.
-    between.abs()
 }
 
 /// The demand of a step.

@@ -7,7 +7,12 @@
 //! ```
 //!
 //! A cubic segment behind a linear one begins with the velocity of that; behind a first point without a velocity, at rest.
+//!
+//! No segment is faster than the highest velocity: one that is too long ends before its point, and the next one makes up for it as
+//! far as it can, behind the last point a line that leads there; a cubic that would be too fast between its ends is a line.
+use super::Params;
 use super::buffer::{Buffer, Entry, Point};
+use crate::modes::reach::Reach;
 use servobench_base::Setpoint;
 
 /// Unit of a drive's velocity (counts/s).
@@ -43,6 +48,10 @@ pub(super) struct Course {
     passed: f64,
     duration: f64,
     end: Knot,
+    /// How far before that point the segment ends (m or rad): not zero where it could not get there in time.
+    left: f64,
+    /// Whether it is slower than the points ask for.
+    is_limited: bool,
 }
 
 /// What a step of the course comes to.
@@ -72,31 +81,39 @@ impl Course {
     /// From a first point on, which lasts until the second; `None` without that.
     ///
     /// The axis sets out from where it is, within a count of the first point.
-    pub(super) fn from_knot(first: Knot, at: f64, unit: f64, buffer: &mut Buffer) -> Option<Self> {
-        let v = first.velocity(unit).unwrap_or(0.0);
+    pub(super) fn from_knot(first: Knot, at: f64, p: &Params, buffer: &mut Buffer) -> Option<Self> {
+        let v = first.velocity(p.count).unwrap_or(0.0);
         let start = Setpoint { v, ..Setpoint::at_rest(at) };
         let end = next_knot(buffer, first.counts)?;
-        Some(Self::segment(start, first.duration(), end, unit, end.offset(at, unit)))
+        Some(Self::segment(start, first.duration(), end, p, end.offset(at, p.count)))
     }
 
     /// From where the axis is to the first point in a constant time (s).
-    pub(super) fn approach(at: f64, counts: i64, duration: f64, unit: f64, buffer: &mut Buffer) -> Option<Self> {
+    pub(super) fn approach(at: f64, counts: i64, duration: f64, p: &Params, buffer: &mut Buffer) -> Option<Self> {
         let end = next_knot(buffer, counts)?;
-        Some(Self::segment(Setpoint::at_rest(at), duration, end, unit, end.offset(at, unit)))
+        Some(Self::segment(Setpoint::at_rest(at), duration, end, p, end.offset(at, p.count)))
     }
 
-    /// From `start` to `end`, which is `distance` away.
-    fn segment(start: Setpoint, duration: f64, end: Knot, unit: f64, distance: f64) -> Self {
-        let slope = distance / duration;
-        let (v0, h) = (start.v, duration);
-        let start = match end.velocity(unit) {
-            None => Setpoint { v: slope, ..Setpoint::at_rest(start.x) },
-            Some(v1) => {
+    /// From `start` to `end`, which is `distance` away, as far as the highest velocity allows.
+    fn segment(start: Setpoint, duration: f64, end: Knot, p: &Params, distance: f64) -> Self {
+        let reach = Reach::new(p.velocity, duration, start.x.abs() + distance.abs());
+        let cut = reach.cut(distance);
+        let way = cut.unwrap_or(distance);
+        let (slope, h) = (way / duration, duration);
+        let line = Setpoint { v: slope, ..Setpoint::at_rest(start.x) };
+        let (start, is_slower) = match end.velocity(p.count) {
+            None => (line, false),
+            Some(asked) => {
+                let (v0, v1) = (reach.velocity(start.v), reach.velocity(asked));
                 let (a, j) = ((3.0 * slope - 2.0 * v0 - v1) * 2.0 / h, (v0 + v1 - 2.0 * slope) * 6.0 / h / h);
-                Setpoint { x: start.x, v: v0, a, j, s: 0.0 }
+                let cubic = Setpoint { x: start.x, v: v0, a, j, s: 0.0 };
+                let is_too_fast = reach.is_passed_by(&cubic);
+                let is_slower = is_too_fast || reach.is_exceeded_by(asked) || reach.is_exceeded_by(start.v);
+                (if is_too_fast { line } else { cubic }, is_slower)
             }
         };
-        Self { start, passed: 0.0, duration, end }
+        let left = cut.map_or(0.0, |way| distance - way);
+        Self { start, passed: 0.0, duration, end, left, is_limited: cut.is_some() || is_slower }
     }
 
     /// The first set-point.
@@ -104,26 +121,47 @@ impl Course {
         self.start
     }
 
+    /// Whether the highest velocity makes it slower than the points ask for.
+    pub(super) const fn is_limited(&self) -> bool {
+        self.is_limited
+    }
+
     /// One period of the drive on.
-    pub(super) fn step(&mut self, period: f64, unit: f64, pace: Pace, buffer: &mut Buffer) -> Step {
+    pub(super) fn step(&mut self, period: f64, p: &Params, pace: Pace, buffer: &mut Buffer) -> Step {
         self.passed += period;
         while self.passed >= self.duration {
-            let v = self.end.velocity(unit).unwrap_or(self.start.v);
-            let at = Setpoint { v, ..Setpoint::at_rest(self.end.counts as f64 * unit) };
-            if self.end.point.time == 0 {
-                return Step::Ended(Setpoint { v: self.end.velocity(unit).unwrap_or(0.0), ..at });
+            let at = self.reached(p.count);
+            let passed = self.passed - self.duration;
+            if self.end.is_last() {
+                if self.left != 0.0 {
+                    *self = Self { passed, ..self.rest(at.x, p) };
+                    continue;
+                }
+                return Step::Ended(Setpoint { v: self.end.velocity(p.count).unwrap_or(0.0), ..at });
             }
             let waiting = buffer.count();
             let Some(next) = next_knot(buffer, self.end.counts) else { return Step::Starved };
-            let distance = (next.counts - self.end.counts) as f64 * unit;
+            let distance = (next.counts - self.end.counts) as f64 * p.count + self.left;
             let duration = match pace {
                 Pace::Given => self.end.duration(),
                 Pace::Adapted => adapted(self.end.duration(), waiting, period),
             };
-            let passed = self.passed - self.duration;
-            *self = Self { passed, ..Self::segment(at, duration, next, unit, distance) };
+            *self = Self { passed, ..Self::segment(at, duration, next, p, distance) };
         }
         Step::Along(self.start.after(self.passed))
+    }
+
+    /// Where the segment ends, and at what velocity.
+    fn reached(&self, count: f64) -> Setpoint {
+        let x = self.end.counts as f64 * count - self.left;
+        let asked = self.end.velocity(count).filter(|_| !self.is_limited);
+        Setpoint { v: asked.unwrap_or_else(|| self.start.after(self.duration).v), ..Setpoint::at_rest(x) }
+    }
+
+    /// What is left of the way to the last point, from `x` on at the highest velocity.
+    fn rest(&self, x: f64, p: &Params) -> Self {
+        let start = Setpoint { v: p.velocity.copysign(self.left), ..Setpoint::at_rest(x) };
+        Self { start, duration: self.left.abs() / p.velocity, left: 0.0, ..*self }
     }
 }
 
