@@ -145,7 +145,7 @@ pub fn step(params: &Params, state: &mut State, input: Input<'_>) -> Commands {
         state.sequencer = Sequencer::start(now);
     }
     state.hear(params, input.actuals, now);
-    let post = state.open(params, input.mailbox);
+    let post = state.open(params, input.mailbox, now);
     state.supervise(params, input.external_fault, now);
     let wanted = state.wanted();
     let timeout = params.settings.drive_timeout;

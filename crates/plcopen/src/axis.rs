@@ -113,7 +113,7 @@ impl Axis {
         let task = match &self.activity {
             Activity::Homing(homing) => Task::Home { position: homing.position },
             Activity::Effort(effort) => Task::Effort(effort.present),
-            Activity::Rest | Activity::Moving(_) | Activity::Led(_) => {
+            Activity::Rest | Activity::Moving(_) | Activity::Leaving(_) | Activity::Led(_) => {
                 let Setpoint { x, v, a, .. } = self.setpoint;
                 Task::Follow(Sample { x, v, a, torque: 0.0 })
             }

@@ -2,7 +2,7 @@
 use super::mailbox::{Letter, Mailbox};
 use super::position::Position;
 use super::stream::{Arrival, Post};
-use super::{Params, Procedure, State};
+use super::{Params, State};
 use crate::{LinkFault, Task};
 use servobench_cia402::Actuals;
 use servobench_motion::interpolate::Sample;
@@ -22,7 +22,7 @@ impl State {
     }
 
     /// Reads the command, and the sample in it where there is a new one.
-    pub(super) fn open(&mut self, p: &Params, mailbox: &Mailbox) -> Post {
+    pub(super) fn open(&mut self, p: &Params, mailbox: &Mailbox, now: u64) -> Post {
         self.own_way.has_news = false;
         let Some(Letter { number, tick, command }) = mailbox.read() else { return Post::Torn };
         if number == self.read {
@@ -35,7 +35,7 @@ impl State {
             self.reset(p);
         }
         if core::mem::discriminant(&command.task) != core::mem::discriminant(&self.command.task) {
-            self.homing = Procedure::Idle;
+            self.homing.leave(now);
             self.own_way.restart();
         }
         let (before, sample) = (self.command, command.task);

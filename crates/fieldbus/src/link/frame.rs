@@ -16,6 +16,7 @@ impl State {
     /// Asks for the mode that the task needs, and for how long.
     pub(super) fn ask_for_the_mode(&mut self, p: &Params, now: u64) {
         let mode = match (&self.command.task, &p.settings.control) {
+            _ if self.homing.is_interrupted() => Mode::Homing,
             (Task::Follow(_), Control::Position { .. }) => Mode::CyclicSynchronousPosition,
             (Task::Follow(_), Control::Velocity { .. }) => Mode::CyclicSynchronousVelocity,
             (Task::Effort(_), _) => Mode::CyclicSynchronousTorque,
@@ -45,7 +46,8 @@ impl State {
     }
 
     pub(super) fn put_out(&mut self, p: &Params, post: Post, now: u64) {
-        let follows = self.follows(p);
+        self.end_homing(p);
+        let follows = self.follows(p) && !self.homing.is_interrupted();
         let demanded = self.position(p) + p.scale.position(self.following_error(p));
         if !(follows && matches!(self.command.task, Task::Follow(_))) {
             self.stream.switch_off(demanded, now);
@@ -152,10 +154,27 @@ impl State {
         }
         // What was heard now answers what was told a round trip ago.
         if self.homing.step(self.actuals.statusword, self.heard.saturating_sub(p.round_trip), now) {
-            match Position::near(&p.scale, reference.into(), self.actuals.position, self.heard) {
-                Ok(position) => self.position = Some(position),
-                Err(_) => self.fault = self.fault.or(Some(LinkFault::PositionLost)),
+            self.count_from_reference(p);
+        }
+    }
+
+    /// A homing that was interrupted is over when the drive is known to rest, or does nothing at all.
+    fn end_homing(&mut self, p: &Params) {
+        if !self.follows(p) {
+            if self.homing.is_interrupted() && !self.was_on {
+                self.homing.fail();
             }
+        } else if self.homing.end(self.actuals.statusword, self.heard.saturating_sub(p.round_trip)) {
+            self.count_from_reference(p);
+        }
+    }
+
+    /// The reference was found: the position is the one of all readings that is nearest to it.
+    fn count_from_reference(&mut self, p: &Params) {
+        let reference = self.commands.home_offset;
+        match Position::near(&p.scale, reference.into(), self.actuals.position, self.heard) {
+            Ok(position) => self.position = Some(position),
+            Err(_) => self.fault = self.fault.or(Some(LinkFault::PositionLost)),
         }
     }
 }

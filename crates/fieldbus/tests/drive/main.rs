@@ -4,6 +4,7 @@ mod rig;
 use rig::{BUS, DELAY, MOTION, RATE, Rig};
 use servobench_base::{Setpoint, Tick};
 use servobench_cia402::PowerState;
+use servobench_drive::modes::homing::Method;
 use servobench_fieldbus::bus::{BusFault, BusFaultKind};
 use servobench_fieldbus::{AxisCommand, Fault, Homing, Interpolation, LinkFault, Power, Task};
 use servobench_motion::interpolate::Sample;
@@ -70,6 +71,29 @@ fn homing_and_a_move_from_there() {
         follow(Setpoint { x: 0.25 + setpoint.x, ..setpoint })
     });
     assert!((rig.axis.x - 1.0).abs() < 1e-9, "{}", rig.axis.x);
+}
+
+/// Once the drive has found its reference it counts from another zero. Whenever it is taken back about that time, nothing jumps by
+/// the distance between the two.
+#[test]
+fn a_homing_that_is_taken_back_as_it_ends_moves_nothing() {
+    let places = (0..900_u32).map(|place| 1e-3 + 37e-6 * f64::from(place));
+    let found = places.clone().filter(|switch| {
+        let mut rig = Rig::new();
+        rig.drive_params.homing.method = Method::from_number(24).unwrap();
+        rig.run(START, resting(0.0));
+        let taken_back = rig.tick + 45 * MOTION;
+        while rig.tick < taken_back + 12 * MOTION {
+            rig.measured.home = rig.axis.x >= *switch;
+            let heard = rig.feedback().demanded();
+            let home = AxisCommand { power: true, reset: false, task: Task::Home { position: 0.7374 } };
+            rig.run(1, |tick| if tick < taken_back { home } else { resting(heard)(tick) });
+        }
+        assert_eq!((rig.feedback().fault, rig.feedback().homing), (None, Homing::Idle));
+        assert!(rig.peaks[0] < 0.051, "switch at {switch} m: {:?}", rig.peaks);
+        rig.feedback().position > 0.5
+    });
+    assert!((40..860).contains(&found.count()));
 }
 
 #[test]

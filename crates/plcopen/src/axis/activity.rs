@@ -1,5 +1,6 @@
 //! What the axis is doing, and how it goes on from cycle to cycle.
 use super::Axis;
+use super::queue::Queue;
 use super::run::Run;
 use crate::arrows::{Cause, arrow};
 use crate::command::{BufferMode, Command};
@@ -22,6 +23,8 @@ pub(super) enum Activity {
     Effort(EffortRamp),
     /// The drive looks for its reference.
     Homing(HomingWait),
+    /// Waits for the drive to end a reference run that another command has taken the axis from.
+    Leaving(Leaving),
     /// A block gives the set-points.
     Led(Led),
 }
@@ -61,6 +64,13 @@ pub(super) struct HomingWait {
     pub(super) has_begun: bool,
 }
 
+/// A command that brings the axis to rest when the drive has ended its reference run, and with it counts from one zero.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Leaving {
+    pub(super) id: CommandId,
+    pub(super) command: Command,
+}
+
 /// A command whose set-points its block gives.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Led {
@@ -82,6 +92,7 @@ impl Activity {
             Self::Moving(Moving { id, command, .. })
             | Self::Effort(EffortRamp { id, command, .. })
             | Self::Homing(HomingWait { id, command, .. })
+            | Self::Leaving(Leaving { id, command })
             | Self::Led(Led { id, command, .. }) => Some((*id, command)),
         }
     }
@@ -147,6 +158,17 @@ impl Axis {
                     }
                     Homing::Failed if homing.has_begun => self.fail(AxisError::HomingFailed),
                     Homing::Attained | Homing::Failed => {}
+                }
+            }
+            Activity::Leaving(Leaving { id, command }) => {
+                let (id, command) = (*id, *command);
+                self.base = Setpoint { v: self.feedback.velocity, ..Setpoint::at_rest(self.feedback.demanded()) };
+                if self.feedback.homing != Homing::Busy {
+                    match self.prepared(id, command, self.base, 0.0, &Queue::EMPTY) {
+                        Ok(activity) => self.activate(activity, self.base),
+                        Err(BlockError::Plan { error, .. }) => self.fail(AxisError::PlanLost { error }),
+                        Err(_) => self.halt(),
+                    }
                 }
             }
             Activity::Led(led) => {

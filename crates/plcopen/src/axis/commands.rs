@@ -1,6 +1,6 @@
 //! Taking commands from blocks: what is refused, what waits, what begins at once.
 use super::Axis;
-use super::activity::{Activity, EffortRamp, HomingWait, Led, Moving};
+use super::activity::{Activity, EffortRamp, HomingWait, Leaving, Led, Moving};
 use super::blending::blended;
 use super::bounds::{Bounds, Override};
 use super::calming::{planned, settled};
@@ -69,7 +69,10 @@ impl Axis {
         }
         command.check(&self.params)?;
         let start = self.present();
-        let activity = self.prepared(CommandId::OWN, command, start.from, start.lead, &Queue::EMPTY)?;
+        let activity = match self.activity {
+            Activity::Homing(_) | Activity::Leaving(_) => Activity::Leaving(Leaving { id: CommandId::OWN, command }),
+            _ => self.prepared(CommandId::OWN, command, start.from, start.lead, &Queue::EMPTY)?,
+        };
         self.end_all(Progress::Aborted);
         let id = self.ledger.issue(block);
         self.begin_activity(id, activity, start);
@@ -183,7 +186,9 @@ impl Axis {
         let cycle_time = self.params.cycle_time;
         match &self.activity {
             // Follows what the drive says, which it has just said.
-            Activity::Effort(_) | Activity::Homing(_) if self.is_beginning => Start { from: self.base, lead: 0.0 },
+            Activity::Effort(_) | Activity::Homing(_) | Activity::Leaving(_) if self.is_beginning => {
+                Start { from: self.base, lead: 0.0 }
+            }
             Activity::Led(led) => {
                 let from = settled(&self.setpoint, &Bounds::of_axis(&self.params.limits));
                 Start { from, lead: if led.is_fresh { 0.0 } else { cycle_time } }
@@ -222,7 +227,9 @@ impl Axis {
                     (led.cycles, led.is_fresh) = (1, false);
                 }
             }
-            Activity::Effort(EffortRamp { id: own, .. }) | Activity::Homing(HomingWait { id: own, .. }) => *own = id,
+            Activity::Effort(EffortRamp { id: own, .. })
+            | Activity::Homing(HomingWait { id: own, .. })
+            | Activity::Leaving(Leaving { id: own, .. }) => *own = id,
             Activity::Rest => {}
         }
         self.add_up();

@@ -1,6 +1,6 @@
 //! Power, faults and the reset: the arrows that no motion command sets off.
 use super::Axis;
-use super::activity::{Activity, Moving};
+use super::activity::{Activity, Leaving, Moving};
 use super::bounds::Bounds;
 use super::commands::Start;
 use super::run::Run;
@@ -109,6 +109,7 @@ impl Axis {
     /// An error of the axis: it comes to rest if the power allows it, and takes no command until MC_Reset.
     pub(super) fn fail(&mut self, error: AxisError) {
         let start = self.present();
+        let was_homing = matches!(self.activity, Activity::Homing(_) | Activity::Leaving(_));
         self.ledger.fail(BlockError::Axis { block: BlockName::Power, error });
         self.end_waiting(Progress::Failed);
         self.end_all(Progress::Failed);
@@ -116,7 +117,7 @@ impl Axis {
         self.follow(Cause::AxisError);
         self.base = start.from;
         if self.is_powered() {
-            self.halt_from(start);
+            self.halt_from(start, was_homing);
         }
         self.add_up();
     }
@@ -209,21 +210,25 @@ impl Axis {
         self.end_all(Progress::Aborted);
         self.base = start.from;
         self.follow(Cause::Block(BlockName::Halt));
-        self.halt_from(start);
+        self.halt_from(start, false);
         self.add_up();
     }
 
-    /// The axis's own stop; at once where it cannot be planned.
-    fn halt_from(&mut self, Start { from, lead }: Start) {
+    /// The axis's own stop, when the drive has ended its reference run; at once where it cannot be planned.
+    fn halt_from(&mut self, Start { from, lead }: Start, was_homing: bool) {
         let (limits, target) = (&self.params.limits, Target::Velocity(0.0));
+        let dynamics = Dynamics::braking(limits.acceleration, None, None);
+        let command = Command { block: BlockName::Halt, goal: Goal::Rest, dynamics, buffer_mode: BufferMode::Aborting };
+        let id = CommandId::OWN;
+        if was_homing {
+            self.activity = Activity::Leaving(Leaving { id, command });
+            return;
+        }
         let bounds = Bounds::of_axis(limits);
         self.activity = bounds.plan(&from, &target).map_or(Activity::Rest, |way| {
-            let dynamics = Dynamics::braking(limits.acceleration, None, None);
-            let command =
-                Command { block: BlockName::Halt, goal: Goal::Rest, dynamics, buffer_mode: BufferMode::Aborting };
             let mut run = Run::new(way, lead, None, &bounds);
             self.base = run.now();
-            Activity::Moving(Moving { id: CommandId::OWN, command, target, origin: from.x, is_paused: false, run })
+            Activity::Moving(Moving { id, command, target, origin: from.x, is_paused: false, run })
         });
     }
 }

@@ -3,14 +3,18 @@
 //!
 //! The sweep is small in ordinary runs. `SERVOBENCH_SWEEP=7500000 cargo test --release -p servobench-plcopen --test random` runs the
 //! large one; the number is that of cycles per order.
+mod chain;
 mod chance;
 mod drive;
 mod outputs;
 mod program;
 mod setpoints;
 
+use chain::Chain;
 use chance::Chance;
+use drive::Drive;
 use program::Program;
+use servobench_fieldbus::{AxisCommand, AxisFeedback};
 use servobench_motion::Limits;
 use servobench_plcopen::{ARROWS, Arrow, AxisParams, AxisState, Cause};
 
@@ -25,20 +29,34 @@ fn cycles() -> usize {
 
 #[test]
 fn no_program_of_order_4_leaves_the_diagram_or_the_limits() {
-    sweep(LIMITS);
+    sweep::<Drive>(LIMITS);
 }
 
 #[test]
 fn no_program_of_order_3_leaves_the_diagram_or_the_limits() {
-    sweep(Limits { snap: f64::INFINITY, ..LIMITS });
+    sweep::<Drive>(Limits { snap: f64::INFINITY, ..LIMITS });
 }
 
 #[test]
 fn no_program_of_order_2_leaves_the_diagram_or_the_limits() {
-    sweep(Limits { snap: f64::INFINITY, jerk: f64::INFINITY, ..LIMITS });
+    sweep::<Drive>(Limits { snap: f64::INFINITY, jerk: f64::INFINITY, ..LIMITS });
 }
 
-fn sweep(limits: Limits) {
+/// Over a link and a bus, with a drive that has a state machine of its own.
+#[test]
+fn no_program_over_a_bus_leaves_the_diagram_or_the_limits() {
+    sweep::<Chain>(LIMITS);
+}
+
+/// What follows the set-points of an axis.
+trait Follower: Default {
+    fn feedback(&self) -> AxisFeedback;
+
+    /// One cycle.
+    fn follow(&mut self, command: &AxisCommand, chance: &mut Chance, place: &str);
+}
+
+fn sweep<F: Follower>(limits: Limits) {
     let mut chance = Chance::new(limits.jerk.to_bits() ^ limits.snap.to_bits());
     let mut seen = [0_usize; AxisState::ALL.len()];
     let mut taken = [0_usize; ARROWS.len()];
@@ -48,8 +66,11 @@ fn sweep(limits: Limits) {
         let needs_homing = chance.once_in(4);
         let params = AxisParams { modulo, needs_homing, buffered_commands: 3, ..AxisParams::new(CYCLE_TIME, limits) };
         let mut program = Program::new(params, chance.one_of(&[150, 5000]));
+        let mut follower = F::default();
         for cycle in 0..LIFE {
-            program.cycle(&mut chance, &format!("life {life}, cycle {cycle}"), &mut taken);
+            let place = format!("life {life}, cycle {cycle}");
+            let command = program.cycle(&follower.feedback(), &mut chance, &place, &mut taken);
+            follower.follow(&command, &mut chance, &place);
             seen[program.state() as usize] += 1;
         }
         done += program.done;

@@ -1,10 +1,9 @@
 //! A program that calls every block in every cycle.
 use super::LIMITS;
 use super::chance::Chance;
-use super::drive::drive;
 use super::outputs::{Flags, call};
 use super::setpoints::Setpoints;
-use servobench_fieldbus::AxisFeedback;
+use servobench_fieldbus::{AxisCommand, AxisFeedback};
 use servobench_motion::Limits;
 use servobench_motion::pvt::Knot;
 use servobench_plcopen::{
@@ -46,7 +45,6 @@ const PAIRS: usize = 5;
 
 pub(crate) struct Program {
     axis: Axis,
-    feedback: AxisFeedback,
     enable: bool,
     setpoints: Setpoints,
     /// Moves that were done, and profiles.
@@ -105,7 +103,6 @@ impl Program {
         };
         Self {
             axis: Axis::new(params).unwrap(),
-            feedback: AxisFeedback::default(),
             enable: false,
             setpoints: Setpoints::default(),
             done: 0,
@@ -122,16 +119,22 @@ impl Program {
         self.axis.state()
     }
 
-    pub(crate) fn cycle(&mut self, chance: &mut Chance, place: &str, taken: &mut [usize]) {
+    pub(crate) fn cycle(
+        &mut self,
+        feedback: &AxisFeedback,
+        chance: &mut Chance,
+        place: &str,
+        taken: &mut [usize],
+    ) -> AxisCommand {
         let before = self.axis.state();
-        self.axis.begin(&self.feedback);
+        self.axis.begin(feedback);
         self.passed(before, place, taken);
         self.call(chance, place, taken);
         let before = self.axis.state();
         let command = self.axis.end();
         self.passed(before, place, taken);
-        self.setpoints.check(&self.axis, &self.feedback, &command, place);
-        drive(&mut self.feedback, &command, chance);
+        self.setpoints.check(&self.axis, feedback, &command, place);
+        command
     }
 
     /// The state has changed along an arrow, if at all; several at once only through Standstill.
@@ -175,7 +178,7 @@ impl Program {
             let was = self.execute[number];
             let quick = match name {
                 BlockName::Reset => 10,
-                BlockName::Home => self.patience / 2,
+                BlockName::Home => self.patience / 3,
                 BlockName::TorqueControl | BlockName::Profile4th => 2 * self.patience,
                 _ => self.patience,
             };

@@ -29,12 +29,14 @@ impl Setpoints {
             self.last = None;
             return;
         };
-        let is_where_it_is = (sample.x - feedback.position).abs() == 0.0;
+        let is_where_it_is = (sample.x - feedback.demanded()).abs() == 0.0;
         assert!(!is_disabled || is_where_it_is || self.last.is_none(), "{place}: moves a disabled axis");
         let now = Setpoint { x: sample.x, ..axis.commanded() };
         assert!([now.x, now.v, now.a, now.j].iter().all(|value| value.is_finite()), "{place}: {now:?}");
-        // Without power, or under a fault at rest, the set-point is where the axis is.
-        let follows = is_disabled || state == AxisState::ErrorStop && (feedback.power != Power::On || is_where_it_is);
+        // Without power, under a fault at rest, and while the drive ends a homing, the set-point is where the axis is.
+        let follows = is_disabled
+            || state == AxisState::ErrorStop && (feedback.power != Power::On || is_where_it_is)
+            || state == AxisState::Stopping && is_where_it_is;
         if let Some(last) = self.last.filter(|_| !follows) {
             // The mean of each derivative over a cycle is within its limit. Two motions on top of each other and limits that were
             // higher before keep those of the axis together; the margin is rounding.
