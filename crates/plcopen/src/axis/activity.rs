@@ -181,7 +181,9 @@ impl Axis {
     /// The way of the active command is over.
     fn arrive(&mut self) {
         let Activity::Moving(moving) = &self.activity else { return };
-        let (id, end, beyond) = (moving.id, moving.run.end(), moving.run.beyond());
+        // A way that began a cycle ago may have been over in the cycle before.
+        let beyond = moving.run.beyond().min(self.params.cycle_time);
+        let (id, end) = (moving.id, moving.run.end());
         if moving.command.is_endless() {
             self.forget_position();
             return self.go_on(id, self.base);
