@@ -207,6 +207,23 @@ fn position_profiles_are_sent_as_commands() {
     assert!(error(one_less) > 1e-4, "{rate}");
 }
 
+/// A bus takes commands at whole multiples of its cycle: plateaus hit their positions all the same, steps are as far off as told, and
+/// more of them than cycles are no better.
+#[test]
+fn position_profiles_are_sent_in_the_cycle_of_a_bus() {
+    let work = folder(&[("ten.csv", &ten_positions())]);
+    let (points, commands) = (work.path().join("ten.csv"), work.path().join("commands.csv"));
+    let line = format!("--profile position --points {} --commands {}", points.display(), commands.display());
+    let said = plan(&format!("{line} --plateau 0.25 --command-cycle 4ms"));
+    assert!(said.contains("velocity commands, α = 0.25: every position is hit"), "{said}");
+    for row in rows(&commands) {
+        assert!((row[0] / 4e-3 - (row[0] / 4e-3).round()).abs() < 1e-6, "{row:?}");
+    }
+    let error =
+        |rate: u64| number(&json_of(&format!("{line} --command-rate {rate}Hz --command-cycle 4ms"))["position_error"]);
+    assert!(error(300) > 0.0 && error(300).to_bits() == error(4000).to_bits(), "{} {}", error(300), error(4000));
+}
+
 /// A ZVD shaper adds a period, averages add their lengths.
 #[test]
 fn filters_make_a_move_longer() {

@@ -41,14 +41,23 @@
 //! and turns at most twice between two points where it does not: the largest error of all is found in one pass over
 //! the points, however many commands there are.
 //!
+//! # On a bus
+//!
+//! Both send their commands at any time. A bus takes them at the instants of a [`Clock`], and a command that waits for the next one
+//! moves every position behind it: [`ClockedPlateaus`] and [`ClockedSpline`] are the same for a drive on a bus.
+//!
 //! Source: N. D. Baikov, A. N. Godunov, *An Approach to Implementing Functional Blocks of the PLCopen Specification*,
 //! sections 4 and 5 (which asks for the error to be estimated and leaves it open how).
 
+mod clock;
+mod clocked;
 mod command;
 mod plateaus;
 mod rate;
 mod stepped;
 
+pub use clock::Clock;
+pub use clocked::{ClockedPlateaus, ClockedSpline, ClockedSteps};
 pub use command::Command;
 pub use plateaus::{PlateauCommands, Plateaus};
 pub use stepped::{PointErrors, Spline, Stepped, SteppedCommands};

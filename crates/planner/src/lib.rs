@@ -18,6 +18,7 @@
 //! ```
 mod analysis;
 mod cascade;
+mod clocked;
 mod filter;
 mod plan;
 mod polynomials;
@@ -27,6 +28,7 @@ mod slowed;
 mod table;
 
 pub use analysis::{Binding, Peak, Span};
+pub use clocked::CommandCycle;
 pub use filter::{Averages, Filter};
 pub use plan::{Plan, Told};
 pub use reader::Reader;

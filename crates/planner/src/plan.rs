@@ -62,7 +62,8 @@ pub enum Told {
     Commands {
         /// What is sent.
         commands: Vec<Command>,
-        /// What the position differs from the spline's at most (m or rad).
+        /// What the position differs at most (m or rad): with plateaus from the points at their times, otherwise from the spline's at
+        /// any time.
         error: f64,
         /// Commands per second, where they are sent at a rate.
         rate: Option<f64>,

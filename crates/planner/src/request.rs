@@ -1,4 +1,5 @@
 //! What can be asked for.
+use crate::clocked::CommandCycle;
 use crate::filter::Filter;
 use crate::plan::{Plan, Told};
 use crate::table::TableMove;
@@ -16,6 +17,8 @@ pub struct Request {
     pub duration: Option<f64>,
     /// What filters it.
     pub filter: Filter,
+    /// How velocity commands get to the drive, of a table that is followed by them; at any time and exactly without.
+    pub commands: Option<CommandCycle>,
 }
 
 /// Which way a move goes.
@@ -124,7 +127,7 @@ impl Request {
     /// As fast as the limits allow, and not filtered.
     #[must_use]
     pub const fn new(way: Way) -> Self {
-        Self { way, duration: None, filter: Filter::NONE }
+        Self { way, duration: None, filter: Filter::NONE, commands: None }
     }
 
     /// Plans it.
@@ -133,7 +136,10 @@ impl Request {
     /// [`PlanError`] of the generator; [`PlanError::TooShort`] for a duration below that at the limits;
     /// [`PlanError::Parameter`] for a duration or a filter of a move that starts or ends in motion.
     pub fn plan(&self) -> Result<Plan, PlanError> {
-        let plan = self.way.plan()?;
+        let plan = match (&self.way, &self.commands) {
+            (Way::Table(table), Some(cycle)) if table.is_sent() => table.plan_in(cycle)?,
+            (way, _) => way.plan()?,
+        };
         if self.duration.is_some() || self.filter.length() > 0.0 {
             for (name, value) in [("start_velocity", plan.start().v), ("end_velocity", plan.end().v)] {
                 if value != 0.0 {
@@ -153,6 +159,18 @@ impl Request {
 impl Request {
     /// `plan`, which this request is, in `duration` seconds.
     fn slowed(&self, plan: Plan, duration: f64) -> Result<Plan, PlanError> {
+        if let (Way::Table(table), Some(cycle)) = (&self.way, &self.commands)
+            && table.is_sent()
+        {
+            // Commands stay at their instants.
+            let factor = (duration - self.filter.length()) / plan.duration();
+            let is_slower = factor > 1.0 && factor.is_finite() && plan.duration() > 0.0;
+            return if is_slower {
+                table.slowed(factor).plan_in(cycle)
+            } else {
+                plan.stretched_to(duration, self.filter.length())
+            };
+        }
         let Way::PointToPoint(way @ PointToPoint { grid: Some(grid), .. }) = &self.way else {
             return plan.stretched_to(duration, self.filter.length());
         };

@@ -48,7 +48,7 @@ pub enum Follow {
 /// A difference below this part of the largest value is none.
 const ROUNDING: f64 = 1e-9;
 /// Commands at most that are kept of a move.
-const MOST_COMMANDS: f64 = 1e7;
+pub(crate) const MOST_COMMANDS: f64 = 1e7;
 
 impl TableMove {
     pub(crate) fn plan(&self) -> Result<Plan, PlanError> {
@@ -85,7 +85,7 @@ impl TableMove {
     }
 
     /// Velocities of the first and the last point.
-    fn ends(&self) -> (f64, f64) {
+    pub(crate) fn ends(&self) -> (f64, f64) {
         let velocity = |knot: Option<&Knot>| knot.and_then(|knot| knot.v).unwrap_or(0.0);
         (velocity(self.knots.first()), velocity(self.knots.last()))
     }

@@ -7,8 +7,8 @@ use servobench_motion::rockwell::{Jerk, MaximumJerk, Move, Shape};
 use servobench_motion::shape::{Impulses, Vibration};
 use servobench_motion::{Limits, Order};
 use servobench_planner::{
-    Averages, Execution, Filter, Follow, Grid, Method, Plan, PointToPoint, Replanning, Request, Rockwell, Sampling,
-    TableMove, Velocities, Way,
+    Averages, CommandCycle, Execution, Filter, Follow, Grid, Method, Plan, PointToPoint, Replanning, Request, Rockwell,
+    Sampling, TableMove, Velocities, Way,
 };
 
 /// Numbers that a request of any family is made of, and which family and variant it is.
@@ -110,7 +110,10 @@ impl Asked {
         let averages = (self.filter.is_multiple_of(7) && other > 1e-3)
             .then(|| Averages { lengths: vec![3.0 * other, other], sample_time: other });
         let duration = self.filter.is_multiple_of(5).then_some(one);
-        Request { way: self.way(), duration, filter: Filter { shaper, averages } }
+        let unit = if self.variant.is_multiple_of(2) { other } else { 0.0 };
+        let cycle = CommandCycle { period: one, first: self.signed[5], unit };
+        let commands = self.filter.is_multiple_of(3).then_some(cycle);
+        Request { way: self.way(), duration, filter: Filter { shaper, averages }, commands }
     }
 }
 
@@ -150,6 +153,7 @@ fn is_quick(request: &Request) -> bool {
             .map_or(true, |plan| plan.duration() / grid.sample_time < 3e3)
         }
         Way::Table(TableMove { follow: Follow::Steps(rate) | Follow::Within(rate), knots, .. }) => {
+            let rate = request.commands.map_or(*rate, |cycle| rate.max(1.0 / cycle.period));
             let length = knots.last().map_or(0.0, |last| last.t);
             (rate * length).abs() < 1e4 || !rate.is_finite()
         }

@@ -5,8 +5,8 @@ mod request;
 use crate::error::{BuildError, check_length};
 use fine::Fine;
 use servobench_base::Setpoint;
-use servobench_planner::{Plan, Reader};
-use servobench_scenario::{Goal, OnlineMove, Scenario, Step, Way};
+use servobench_planner::{CommandCycle, Plan, Reader, Told};
+use servobench_scenario::{BusMode, Goal, OnlineMove, Scenario, Step, Way};
 use servobench_trace::{Ending, Move};
 
 /// A planned move, and when it starts and ends: later than its plan where a velocity is held, earlier where it is aborted.
@@ -55,7 +55,15 @@ impl Program {
     /// # Errors
     /// [`BuildError::Plan`], [`BuildError::NothingToAbort`] and [`BuildError::TooLong`] name the step.
     pub fn new(scenario: &Scenario) -> Result<Self, BuildError> {
-        let mut program = Self::plan(&scenario.program, scenario.base_rate.period())?;
+        let tick = scenario.base_rate.period();
+        // In profile velocity the drive follows commands that the motion task sends, once per cycle and in whole units.
+        let by_velocity = scenario.bus.as_ref().filter(|bus| bus.mode == BusMode::ProfileVelocity);
+        let cycle = by_velocity.map(|bus| CommandCycle {
+            period: f64::from(bus.cycle.saturating_mul(bus.motion_every)) * tick,
+            first: 0.0,
+            unit: bus.units.axis / f64::from(bus.units.drive),
+        });
+        let mut program = Self::plan(&scenario.program, tick, cycle)?;
         if let Some(interpolation) = &scenario.interpolation {
             let fine = Fine::new(interpolation, scenario.base_rate)?;
             program.end += fine.delay();
@@ -65,8 +73,8 @@ impl Program {
         Ok(program)
     }
 
-    /// Plans every move; a tick lasts `tick` (s).
-    fn plan(steps: &[Step], tick: f64) -> Result<Self, BuildError> {
+    /// Plans every move; a tick lasts `tick` (s), and velocity commands are sent in `cycle`, whose times count from the start.
+    fn plan(steps: &[Step], tick: f64, cycle: Option<CommandCycle>) -> Result<Self, BuildError> {
         let (mut moves, mut end, mut state) = (Vec::<Planned>::new(), 0.0, Setpoint::default());
         for (index, step) in steps.iter().enumerate() {
             match step {
@@ -75,7 +83,8 @@ impl Program {
                     if let (Some(after), Some(last)) = (step.aborts_after, moves.last_mut()) {
                         (end, state) = last.abort(after, index)?;
                     }
-                    let plan = request::request(step, state, tick).plan();
+                    let cycle = cycle.map(|cycle| CommandCycle { first: cycle.first - end % cycle.period, ..cycle });
+                    let plan = request::request(step, state, tick, cycle).plan();
                     let plan = plan.map_err(|error| BuildError::Plan { index, error })?;
                     let held = match step.way {
                         Way::Online(OnlineMove { goal: Goal::Velocity(_, hold), .. }) => hold,
@@ -115,6 +124,17 @@ impl Program {
     /// How long each move lasts (s).
     pub fn durations(&self) -> impl Iterator<Item = f64> {
         self.course.moves.iter().map(|planned| planned.end - planned.start)
+    }
+
+    /// What the position of each move will differ at most (m or rad), as [`Told::Commands`] announces it; `None` of one that is not sent
+    /// as velocity commands.
+    #[must_use]
+    pub fn announced(&self) -> Vec<Option<f64>> {
+        let error = |planned: &Planned| match planned.plan.told() {
+            Told::Commands { error, .. } => Some(*error),
+            _ => None,
+        };
+        self.course.moves.iter().map(error).collect()
     }
 
     /// When each move starts (s), where from, and its plan.
@@ -250,7 +270,7 @@ mod tests {
     #[test]
     fn moves_follow_each_other_and_pauses_hold_the_target() {
         let steps = [Step::Wait(0.1), to(Target::Absolute(1.0)), Step::Wait(0.5), to(Target::Relative(-1.0))];
-        let mut program = Program::plan(&steps, TICK).unwrap();
+        let mut program = Program::plan(&steps, TICK, None).unwrap();
         // Lambrechts' move lasts 1.35 s each way.
         assert!((program.end() - (0.1 + 1.35 + 0.5 + 1.35)).abs() < 1e-12);
         assert_eq!(program.at(0.05), Setpoint::at_rest(0.0));
@@ -268,7 +288,7 @@ mod tests {
     fn a_label_shows_no_rounding() {
         let quarter = core::f64::consts::FRAC_PI_2;
         let steps = [0.1, 0.2, -0.3, quarter].map(|distance| to(Target::Relative(distance)));
-        let labels: Vec<_> = Program::plan(&steps, TICK).unwrap().moves("m").map(|made| made.label).collect();
+        let labels: Vec<_> = Program::plan(&steps, TICK, None).unwrap().moves("m").map(|made| made.label).collect();
         let ends = [("0", "0.1"), ("0.1", "0.3"), ("0.3", "0"), ("0", "1.5708")];
         assert_eq!(labels, ends.map(|(from, to)| format!("move from {from} m to {to} m, order 4")));
     }
@@ -280,7 +300,7 @@ mod tests {
         let to = |target| to(Target::Absolute(target));
         let steps = [to(0.3), to(0.3), to(-0.2), Step::Wait(0.05), to(1.0)];
         for skip in [1, 7, 5_000, 12_000] {
-            let mut program = Program::plan(&steps, TICK).unwrap();
+            let mut program = Program::plan(&steps, TICK, None).unwrap();
             for k in (0..60_000_u32).step_by(skip) {
                 let t = f64::from(k) / 16e3;
                 let made = program.course.moves.iter().take_while(|planned| planned.start <= t).last().unwrap();
@@ -294,7 +314,7 @@ mod tests {
 
     #[test]
     fn without_a_move_the_axis_is_to_stay() {
-        let mut program = Program::plan(&[Step::Wait(0.5)], TICK).unwrap();
+        let mut program = Program::plan(&[Step::Wait(0.5)], TICK, None).unwrap();
         assert!([0.0, 0.1, 7.0].iter().all(|t| program.at(*t) == Setpoint::at_rest(0.0)));
         assert!((program.end() - 0.5).abs() < 1e-15);
     }
@@ -309,7 +329,7 @@ mod tests {
             (vec![Step::Wait(0.5), Step::Wait(f64::INFINITY)], "inf"),
             (vec![Step::Wait(0.5), Step::Wait(f64::NAN)], "NaN"),
         ] {
-            let message = Program::plan(&steps, TICK).unwrap_err().to_string();
+            let message = Program::plan(&steps, TICK, None).unwrap_err().to_string();
             assert!(message.starts_with(&format!("program step 2 would end at {end}")), "{message}");
             assert!(message.contains("a run lasts 1000000 s at most"), "{message}");
         }

@@ -143,6 +143,10 @@ pub(crate) struct PlanArgs {
     #[arg(long, value_name = "DISTANCE", help_heading = TABLE)]
     pub(crate) allowed_error: Option<String>,
 
+    /// Position profile: commands at whole multiples of this cycle alone, as a bus sends them, "1 ms".
+    #[arg(long, value_name = "TIME", help_heading = TABLE)]
+    pub(crate) command_cycle: Option<String>,
+
     /// Input shaper for one vibration.
     #[arg(long, value_enum, help_heading = FILTER)]
     pub(crate) shaper: Option<PlanShaper>,

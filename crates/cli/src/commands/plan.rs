@@ -11,7 +11,7 @@ use crate::console::print;
 use crate::exit::{CliError, Exit};
 use crate::output::write_file;
 use arguments::Arguments;
-use servobench_planner::Request;
+use servobench_planner::{CommandCycle, Request};
 use servobench_report::{PlannedMove, ReportError};
 use servobench_scenario::Motion;
 use std::path::Path;
@@ -45,6 +45,10 @@ fn planned(args: &PlanArgs) -> Result<(PlannedMove, Option<f64>), CliError> {
         PlanProfile::Position => table::position(args, &mut arguments),
     };
     let duration = arguments.time("duration");
+    // A bus whose units are finer than what matters, at its first instant when the move begins.
+    let is_sent = matches!(args.profile, PlanProfile::Position);
+    let cycle = is_sent.then(|| arguments.positive_time("command-cycle")).flatten();
+    let commands = cycle.map(|period| CommandCycle { period, first: 0.0, unit: 0.0 });
     let csv_step = arguments.positive_time("csv-step");
     let filter = filter::filter(args, &mut arguments);
     let (motion, units) = arguments.finish()?;
@@ -53,7 +57,7 @@ fn planned(args: &PlanArgs) -> Result<(PlannedMove, Option<f64>), CliError> {
         return Err(CliError::Input("the move is not described".into()));
     };
     let unit = if motion == Some(Motion::Rotary) { "rad" } else { "m" };
-    let planned = PlannedMove::new(Request { way, duration, filter }, unit);
+    let planned = PlannedMove::new(Request { way, duration, filter, commands }, unit);
     let planned = planned.map_err(|error| CliError::Input(by_flags(&error.to_string())))?;
     let planned =
         units.into_iter().fold(planned, |planned, told| planned.as_given(told.derivative, &told.text, told.value));

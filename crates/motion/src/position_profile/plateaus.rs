@@ -29,11 +29,7 @@ impl<'a> Plateaus<'a> {
         alpha: f64,
         scratch: &mut [f64],
     ) -> Result<Self, PlanError> {
-        if !((RANGE.0..=0.5).contains(&alpha)) {
-            return Err(
-                ParamError { name: "alpha", value: alpha, bound: "above 0 (at least 1e-30) and at most 0.5" }.into()
-            );
-        }
+        let alpha = checked_share(alpha)?;
         let scratch = scratch_for(scratch, knots.len())?;
         set_ends(knots, start, end)?;
         let last = knots.len() - 1;
@@ -109,6 +105,14 @@ impl<'a> Plateaus<'a> {
         let (left, right) = (from.map_or(0.0, |_| ramp(k - 1)), to.map_or(0.0, |_| ramp(k)));
         Some(Command { t: point.t - left, velocity, acceleration: (velocity - before).abs() / (left + right) })
     }
+}
+
+/// `alpha` if it is a share of a segment that leaves room for the other end.
+pub(super) fn checked_share(alpha: f64) -> Result<f64, PlanError> {
+    if (RANGE.0..=0.5).contains(&alpha) {
+        return Ok(alpha);
+    }
+    Err(ParamError { name: "alpha", value: alpha, bound: "above 0 (at least 1e-30) and at most 0.5" }.into())
 }
 
 /// The share dT_i/(dT_i + dT_(i+1)) of the segment before a point in the time of the two beside it.

@@ -9,6 +9,8 @@ use servobench_planner::{Execution, Filter, Follow, Grid, Method, Sampling, Tabl
 
 /// An excess below this part of a limit is rounding.
 const EXCESS: f64 = 1e-9;
+/// A position that is missed by less (m or rad) is hit: that is rounding.
+const HIT: f64 = 1e-12;
 
 impl PlannedMove {
     /// `point-to-point`, `online`, `rockwell`, `pvt` or `position`.
@@ -167,9 +169,14 @@ impl PlannedMove {
                     commands.len(),
                     self.show_error(*error)
                 ),
-                (Follow::Plateaus(alpha), None) => {
+                (Follow::Plateaus(alpha), None) if *error < HIT => {
                     format!("{} velocity commands, α = {alpha}: every position is hit", commands.len())
                 }
+                (Follow::Plateaus(alpha), None) => format!(
+                    "{} velocity commands, α = {alpha}: at most {} off the positions",
+                    commands.len(),
+                    self.show_error(*error)
+                ),
                 (_, None) => format!("{} velocity commands", commands.len()),
             }],
             _ => Vec::new(),

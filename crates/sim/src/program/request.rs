@@ -6,7 +6,7 @@ use servobench_motion::rockwell::{self, Jerk, MaximumJerk, Shape};
 use servobench_motion::shape::{Impulses, Vibration};
 use servobench_motion::{Limits, Order, PlanError};
 use servobench_planner as planner;
-use servobench_planner::{Averages, Plan, PointToPoint, Replanning, Request};
+use servobench_planner::{Averages, CommandCycle, Plan, PointToPoint, Replanning, Request};
 use servobench_scenario::{
     Execution, Filter, Follow, Goal, Grid, Method, MoveStep, OnlineMove, PlanEffort, RestMove, RockwellJerk,
     RockwellMove, RockwellShape, Sampling, Shaper, ShaperKind, TableMove, Target, Velocities, Way,
@@ -18,11 +18,13 @@ pub(super) struct Asked<'a> {
     step: &'a MoveStep,
     from: Setpoint,
     tick: f64,
+    cycle: Option<CommandCycle>,
 }
 
-/// The plan of `step` from `from`, whose position is the zero of the plan; a tick lasts `tick` (s).
-pub(super) fn request(step: &MoveStep, from: Setpoint, tick: f64) -> Asked<'_> {
-    Asked { step, from, tick }
+/// The plan of `step` from `from`, whose position is the zero of the plan; a tick lasts `tick` (s), and velocity commands are sent in
+/// `cycle`.
+pub(super) const fn request(step: &MoveStep, from: Setpoint, tick: f64, cycle: Option<CommandCycle>) -> Asked<'_> {
+    Asked { step, from, tick, cycle }
 }
 
 /// What a label says of the move besides its order.
@@ -49,7 +51,7 @@ impl Asked<'_> {
             Way::Table(asked) => planner::Way::Table(self.table(asked)?),
         };
         let filter = filter(&self.step.filter, self.tick)?;
-        Request { way, duration: self.step.duration, filter }.plan()
+        Request { way, duration: self.step.duration, filter, commands: self.cycle }.plan()
     }
 
     /// From here to `target`.
@@ -136,7 +138,7 @@ impl Asked<'_> {
     }
 
     fn table(&self, asked: &TableMove) -> Result<planner::TableMove, PlanError> {
-        let first = asked.points.first().map_or(0.0, |first| first.1);
+        let (begin, first) = asked.points.first().map_or((0.0, 0.0), |first| (first.0, first.1));
         let origin = if asked.is_relative { 0.0 } else { self.from.x };
         if (first - origin).abs() > NEAR {
             return Err(PlanError::Point {
@@ -152,7 +154,7 @@ impl Asked<'_> {
             });
         }
         Ok(planner::TableMove {
-            knots: asked.points.iter().map(|(t, x, v)| Knot { t: *t, x: x - first, v: *v }).collect(),
+            knots: asked.points.iter().map(|(t, x, v)| Knot { t: t - begin, x: x - first, v: *v }).collect(),
             velocities: match asked.velocities {
                 Velocities::Given => planner::Velocities::Given,
                 Velocities::Average => planner::Velocities::Average,

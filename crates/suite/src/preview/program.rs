@@ -32,6 +32,8 @@ const ROUNDING: f64 = 1e-9;
 pub struct PlannedProgram {
     /// Moves, each with its peaks.
     pub moves: Vec<Move>,
+    /// What the position of any move that is sent as velocity commands will differ at most (axis unit); `None` without one.
+    pub position_error: Option<f64>,
     /// End of the last step (s).
     pub end: f64,
     /// Length of the run (s).
@@ -47,6 +49,7 @@ impl PlannedProgram {
         let axis_unit = Units::of(scenario).axis;
         Self {
             moves: planned.moves(axis_unit).collect(),
+            position_error: planned.announced().into_iter().flatten().reduce(f64::max),
             end: planned.end(),
             run: run_length(scenario, planned),
             by_blocks: scenario.plc.is_some(),

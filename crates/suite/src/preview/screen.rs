@@ -82,6 +82,10 @@ impl Preview {
         let peaks: Vec<_> =
             peaks.map(|(peak, power)| Quantity::new(peak, &format!("{unit}/s{power}")).to_string()).collect();
         screen.line("peaks", &peaks);
+        if let Some(error) = self.program.position_error {
+            let words = format!("velocity commands: at most {} off their points or spline", Quantity::new(error, unit));
+            screen.line("profiles", &[words]);
+        }
     }
 
     fn demand_lines(&self, screen: &mut Screen) {

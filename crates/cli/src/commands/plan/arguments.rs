@@ -46,7 +46,7 @@ const ELSEWHERE: [(&[&str], &str); 6] = [
     ),
     (&["distance", "velocity", "acceleration", "jerk"], "the table says where the move goes"),
     (&["points", "velocities", "passes"], "or choose --profile pvt"),
-    (&["plateau", "command-rate", "allowed-error", "commands"], "or choose --profile position"),
+    (&["plateau", "command-rate", "allowed-error", "command-cycle", "commands"], "or choose --profile position"),
     (&["sample-time"], "--csv-step says how far the rows of a table are apart"),
 ];
 
@@ -87,6 +87,7 @@ impl<'a> Arguments<'a> {
             ("plateau", args.plateau.as_deref()),
             ("command-rate", args.command_rate.as_deref()),
             ("allowed-error", args.allowed_error.as_deref()),
+            ("command-cycle", args.command_cycle.as_deref()),
             ("commands", args.commands.as_ref().map(|_| "")),
             ("shaper", args.shaper.map(|_| "")),
             ("shaper-frequency", args.shaper_frequency.as_deref()),
