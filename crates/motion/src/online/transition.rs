@@ -108,8 +108,7 @@ impl Transition {
             let remedy = "start nearer to the limits, or raise them";
             return Err(PlanError::OutOfRange { name: "duration", value, lowest: 0.0, highest: LONGEST, remedy });
         }
-        let segments = path.stretches().iter().map(|stretch| (stretch.value, stretch.length));
-        let way = Trajectory::new(order, from, segments, |end| match target {
+        let way = Trajectory::new(order, from, path.stretches(), |end| match target {
             Target::Position { x, v } => Setpoint { v: *v, ..Setpoint::at_rest(*x) },
             Target::Velocity(v) => Setpoint { v: *v, ..Setpoint::at_rest(end.x) },
         });
@@ -191,11 +190,12 @@ fn second_order(from: &Setpoint, target: &Target, velocity: Sides, rates: &Rates
 
 fn third_order(from: &Setpoint, target: &Target, limits: &DirectionalLimits) -> Result<Transition, PlanError> {
     let DirectionalLimits { velocity, acceleration, jerk, .. } = *limits;
-    let start = State3 { p: from.x, v: from.v, a: from.a };
-    let path = match target {
+    // The distance alone matters.
+    let start = State3 { p: 0.0, v: from.v, a: from.a };
+    let (path, excess) = match target {
         Target::Position { x, v } => {
-            let to = State3 { p: *x, v: *v, a: 0.0 };
-            third::fastest(start, to, &Limits3 { v: velocity, a: acceleration, j: jerk })
+            let to = State3 { p: x - from.x, v: *v, a: 0.0 };
+            third::passing(start, to, &Limits3 { v: velocity, a: acceleration, j: jerk })
         }
         Target::Velocity(v) => {
             let mut path = Path::EMPTY;
@@ -204,10 +204,9 @@ fn third_order(from: &Setpoint, target: &Target, limits: &DirectionalLimits) -> 
             let turn = start.along(&path);
             let limits = Limits2 { a: acceleration, j: jerk };
             path.extend(&second::fastest(State2 { v: turn.v, a: turn.a }, State2 { v: *v, a: 0.0 }, &limits));
-            path
+            (path, start.excess(&path, velocity, acceleration).1)
         }
     };
-    let excess = start.excess(&path, velocity, acceleration);
     Transition::new(Order::Third, Setpoint { j: 0.0, s: 0.0, ..*from }, &path, target, excess)
 }
 
@@ -219,7 +218,6 @@ fn fourth_order(
 ) -> Result<Transition, PlanError> {
     let DirectionalLimits { velocity, acceleration, jerk, snap } = *limits;
     let limits = Limits4 { v: velocity, a: acceleration, j: jerk, d: snap };
-    // The distance alone matters.
     let start = State4 { x: 0.0, v: from.v, a: from.a, j: from.j };
     let goal = match target {
         Target::Position { x, v } => Goal::State(State4 { x: x - from.x, v: *v, a: 0.0, j: 0.0 }),
