@@ -56,6 +56,7 @@ mod second;
 mod third;
 mod transition;
 mod trapezoid;
+mod turning;
 mod watch;
 
 use crate::limits::{in_range, within_range};

@@ -112,6 +112,11 @@ impl<const N: usize> Trajectory<N> {
         })
     }
 
+    /// The states at the starts of the segments, with the highest derivative that holds, and their lengths (s).
+    pub(crate) fn pieces(&self) -> impl Iterator<Item = (Setpoint, f64)> + '_ {
+        self.anchors[..self.count].iter().copied().zip(self.lengths[..self.count].iter().copied())
+    }
+
     /// With `next` behind it, which begins where it ends.
     ///
     /// More than `N` segments of both are a defect of the caller.

@@ -95,7 +95,7 @@ pub(crate) fn passing(from: State3, to: State3, limits: &Limits3) -> (Path<STRET
 }
 
 /// The fastest way from `from` to what `to` is above its position.
-fn straight<const N: usize>(from: State3, to: State3, limits: &Limits3) -> Path<N> {
+pub(crate) fn straight<const N: usize>(from: State3, to: State3, limits: &Limits3) -> Path<N> {
     let mut path = Path::EMPTY;
     let start = led_back(from, limits, &mut path);
     path.extend(&second::fastest(start.upper(), to.upper(), &Limits2 { a: limits.a, j: limits.j }));
@@ -144,7 +144,7 @@ pub(crate) fn way(from: State3, to: State3, limits: &Limits3, near: &Near) -> Wa
         // From where the ways part to where they are the same again.
         let bracket = Bracket {
             low: if there.rate * direct.rate > 0.0 { there.up.min(direct.up) } else { 0.0 },
-            high: if there.rate * sign > 0.0 { there.up + there.hold } else { there.duration() },
+            high: if there.rate * sign > 0.0 && sign * to.a <= 0.0 { there.up + there.hold } else { there.duration() },
             missing: missing.abs(),
         };
         bracket.root(near, libm::cbrt, |time| {

@@ -11,3 +11,4 @@ mod request;
 mod rest;
 mod ruckig;
 mod trapezoid;
+mod turning;
