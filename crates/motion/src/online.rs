@@ -43,6 +43,7 @@
 //! | [`passing_velocity`] | 0.3, 0.6 | 0.6, 1.1 | 5, 18 |
 //!
 //! The slowest start beyond their limits and have to turn round.
+mod arrival;
 mod costate;
 mod first;
 mod fourth;
@@ -55,6 +56,7 @@ mod second;
 mod third;
 mod transition;
 mod trapezoid;
+mod turning;
 mod watch;
 
 use crate::limits::{in_range, within_range};
@@ -62,6 +64,7 @@ use crate::{Limits, Order, PlanError};
 use servobench_base::{ParamError, finite, positive};
 
 pub use passing::{braking_velocity, passing_velocity};
+pub(crate) use path::Stretch;
 pub use ramps::RampLimits;
 pub use second::Sides;
 pub use transition::Transition;

@@ -14,6 +14,7 @@
 //! Source: Rockwell Automation, *Logix5000 Controllers Motion Instructions*, MOTION-RM002, "Motion Axis Move"; the distances
 //! that K. T. Erickson, *Programmable Logic Controllers*, §3.2.3.1, prints for its examples are not those of its profiles.
 use crate::limits::in_range;
+use crate::online::Stretch;
 use crate::root::increasing;
 use crate::{Order, PlanError, Trajectory};
 use servobench_base::{ParamError, Setpoint, finite, positive};
@@ -102,16 +103,16 @@ impl Move {
         let cruise = ((length - ramps(peak)) / peak).max(0.0);
         let sign = distance.signum();
         let ([j_1, a_1], [j_2, a_2]) = (up.times(peak), down.times(peak));
-        let segments = [
-            (sign * up.jerk, j_1),
-            (0.0, a_1),
-            (-sign * up.jerk, j_1),
-            (0.0, cruise),
-            (-sign * down.jerk, j_2),
-            (0.0, a_2),
-            (sign * down.jerk, j_2),
+        let stretches = [
+            Stretch { value: sign * up.jerk, length: j_1, zeros: 0 },
+            Stretch { value: sign * up.jerk * j_1, length: a_1, zeros: 1 },
+            Stretch { value: -sign * up.jerk, length: j_1, zeros: 0 },
+            Stretch { value: sign * peak, length: cruise, zeros: 2 },
+            Stretch { value: -sign * down.jerk, length: j_2, zeros: 0 },
+            Stretch { value: -sign * down.jerk * j_2, length: a_2, zeros: 1 },
+            Stretch { value: sign * down.jerk, length: j_2, zeros: 0 },
         ];
-        Ok(Trajectory::new(Order::Third, Setpoint::default(), segments, |_| Setpoint::at_rest(distance)))
+        Ok(Trajectory::new(Order::Third, Setpoint::default(), stretches, |_| Setpoint::at_rest(distance)))
     }
 }
 

@@ -1,4 +1,5 @@
 //! A way through time whose highest derivative is constant piece by piece.
+use crate::online::Stretch;
 use crate::{Order, Piece, Segment};
 use servobench_base::Setpoint;
 
@@ -6,8 +7,9 @@ use servobench_base::Setpoint;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Trajectory<const N: usize> {
     order: Order,
-    /// Starts of the segments (s); infinite beyond the last.
-    starts: [f64; N],
+    /// Lengths of the segments (s). Differences of their starts would be other numbers: a second that begins after a day is known to
+    /// 1e-11 s only.
+    lengths: [f64; N],
     /// Their states at the start, with the highest derivative that holds until the next.
     anchors: [Setpoint; N],
     count: usize,
@@ -17,38 +19,33 @@ pub struct Trajectory<const N: usize> {
 }
 
 impl<const N: usize> Trajectory<N> {
-    /// From `from`, through segments of (highest derivative, length), those without a length left out; at the end it is as
-    /// `arrive` says of what the segments lead to, so that nothing of their rounding is left.
+    /// From `from`, through `stretches`, those without a length left out; at the end it is as `arrive` says of what they lead to,
+    /// so that nothing of their rounding is left.
     ///
     /// More than `N` segments are a defect of the caller.
     pub(crate) fn new(
         order: Order,
         from: Setpoint,
-        segments: impl IntoIterator<Item = (f64, f64)>,
+        stretches: impl IntoIterator<Item = Stretch>,
         arrive: impl FnOnce(Setpoint) -> Setpoint,
     ) -> Self {
-        let (mut state, mut start) = (from, 0.0);
-        let mut way = Self {
-            order,
-            starts: [f64::INFINITY; N],
-            anchors: [Setpoint::default(); N],
-            count: 0,
-            duration: 0.0,
-            end: from,
-        };
-        for (value, length) in segments.into_iter().filter(|(_, length)| *length > 0.0) {
-            match order {
-                Order::Second => state.a = value,
-                Order::Third => state.j = value,
-                Order::Fourth => state.s = value,
-            }
-            way.starts[way.count] = start;
+        let mut state = from;
+        let mut way =
+            Self { order, lengths: [0.0; N], anchors: [Setpoint::default(); N], count: 0, duration: 0.0, end: from };
+        for Stretch { value, length, zeros } in stretches.into_iter().filter(|stretch| stretch.length > 0.0) {
+            let Setpoint { x, v, .. } = state;
+            state = match order.derivative() - usize::from(zeros) {
+                4 => Setpoint { s: value, ..state },
+                3 => Setpoint { j: value, s: 0.0, ..state },
+                2 => Setpoint { v, a: value, ..Setpoint::at_rest(x) },
+                _ => Setpoint { v: value, ..Setpoint::at_rest(x) },
+            };
+            way.lengths[way.count] = length;
             way.anchors[way.count] = state;
             way.count += 1;
             state = state.after(length);
-            start += length;
+            way.duration += length;
         }
-        way.duration = start;
         way.end = arrive(state);
         way
     }
@@ -67,13 +64,17 @@ impl<const N: usize> Trajectory<N> {
         if t >= self.duration || self.count == 0 {
             return Piece::forward(self.end, self.duration, f64::MAX, f64::INFINITY);
         }
-        let i = self.starts[1..self.count].iter().take_while(|start| **start <= t).count();
-        let until = self.end_of(i);
-        Piece::forward(self.anchors[i], self.starts[i], until - self.starts[i], until)
-    }
-
-    fn end_of(&self, i: usize) -> f64 {
-        if i + 1 < self.count { self.starts[i + 1] } else { self.duration }
+        let (mut i, mut start) = (0, 0.0);
+        let last = self.count - 1;
+        for length in &self.lengths[..last] {
+            let end = start + length;
+            let is_passed = end <= t;
+            if !is_passed {
+                return Piece::forward(self.anchors[i], start, *length, end);
+            }
+            (i, start) = (i + 1, end);
+        }
+        Piece::forward(self.anchors[last], start, self.lengths[last], self.duration)
     }
 
     /// Duration (s).
@@ -97,15 +98,23 @@ impl<const N: usize> Trajectory<N> {
     /// The segments with their highest derivative.
     #[must_use]
     pub fn segments(&self) -> impl ExactSizeIterator<Item = Segment> + '_ {
-        (0..self.count).map(|i| {
+        let mut end = 0.0;
+        (0..self.count).map(move |i| {
             let anchor = self.anchors[i];
             let value = match self.order {
                 Order::Second => anchor.a,
                 Order::Third => anchor.j,
                 Order::Fourth => anchor.s,
             };
-            Segment { start: self.starts[i], length: self.end_of(i) - self.starts[i], value }
+            let (start, length) = (end, self.lengths[i]);
+            end += length;
+            Segment { start, length, value }
         })
+    }
+
+    /// The states at the starts of the segments, with the highest derivative that holds, and their lengths (s).
+    pub(crate) fn pieces(&self) -> impl Iterator<Item = (Setpoint, f64)> + '_ {
+        self.anchors[..self.count].iter().copied().zip(self.lengths[..self.count].iter().copied())
     }
 
     /// With `next` behind it, which begins where it ends.
@@ -113,7 +122,7 @@ impl<const N: usize> Trajectory<N> {
     /// More than `N` segments of both are a defect of the caller.
     pub(crate) fn then(mut self, next: &Self) -> Self {
         for i in 0..next.count {
-            self.starts[self.count] = self.duration + next.starts[i];
+            self.lengths[self.count] = next.lengths[i];
             self.anchors[self.count] = next.anchors[i];
             self.count += 1;
         }
@@ -128,7 +137,7 @@ impl<const N: usize> Trajectory<N> {
         const ROUNDING: f64 = 1e-11;
         let (mut lowest, mut highest) = (0.0_f64, 0.0_f64);
         for (i, anchor) in self.anchors[..self.count].iter().enumerate() {
-            let length = self.end_of(i) - self.starts[i];
+            let length = self.lengths[i];
             // a + j·t + s·t²/2 = 0 without cancellation.
             let root = libm::sqrt((anchor.j * anchor.j - 2.0 * anchor.s * anchor.a).max(0.0));
             let sum = -anchor.j - root.copysign(anchor.j);

@@ -13,20 +13,41 @@ const CLIMB: usize = 30;
 
 /// A state that a stretch leads on.
 pub(crate) trait State: Copy {
-    /// The state `t` later while the highest derivative is `value`.
-    fn after(self, value: f64, t: f64) -> Self;
+    /// How many derivatives, from the highest on, are zero in a cruise.
+    const CRUISE: u8;
+
+    /// The lowest of its integrals.
+    fn position(self) -> f64;
+
+    /// Its rate.
+    fn velocity(self) -> f64;
+
+    /// The state `t` later while the highest derivative is `rate`.
+    fn after(self, rate: f64, t: f64) -> Self;
+
+    /// The state with the `zeros` highest of its derivatives, from the one that switches on, at zero and the next at `value`.
+    fn held(self, zeros: u8, value: f64) -> Self;
+
+    /// The state `t` after the start of `stretch`.
+    #[inline]
+    fn on(self, stretch: &Stretch, t: f64) -> Self {
+        let start = if stretch.zeros == 0 { self } else { self.held(stretch.zeros, stretch.value) };
+        start.after(stretch.rate(), t)
+    }
 
     /// The state at the end of `path`.
+    #[inline]
     fn along<const N: usize>(self, path: &Path<N>) -> Self {
-        path.stretches().iter().fold(self, |state, Stretch { value, length }| state.after(*value, *length))
+        path.stretches().fold(self, |state, stretch| state.on(&stretch, stretch.length))
     }
 
     /// The state after `time` on `path`, and the highest derivative there.
+    #[inline]
     fn until<const N: usize>(self, path: &Path<N>, mut time: f64) -> (Self, f64) {
         let (mut state, mut last) = (self, 0.0);
-        for Stretch { value, length } in path.stretches() {
-            (state, last) = (state.after(*value, length.min(time)), *value);
-            time -= length;
+        for stretch in path.stretches() {
+            (state, last) = (state.on(&stretch, stretch.length.min(time)), stretch.rate());
+            time -= stretch.length;
             if time <= 0.0 {
                 break;
             }
@@ -35,16 +56,21 @@ pub(crate) trait State: Copy {
     }
 }
 
-/// The first time on the way of these `stretches` from `start` at which `beyond` is zero; `None` when it stays below, as it is at
+/// The first time on `path` from `start` at which `beyond` is zero; `None` when it stays below, as it is at
 /// the start. It gives its value at a state, and its slope while the highest derivative is what it is there.
 ///
 /// Who turns home later covers more than whoever turned before and waits at the target's velocity. Towards a target that
 /// moves away, or rests, that is more by any measure, and [`Bracket::root`] finds where it is enough. Towards one that moves
 /// the other way the waiting counts against it: what is beyond may rise, sink and rise again, and there can be several times.
-pub(crate) fn meeting<S: State>(start: S, stretches: &[Stretch], beyond: impl Fn(S, f64) -> (f64, f64)) -> Option<f64> {
+pub(crate) fn meeting<S: State, const N: usize>(
+    start: S,
+    path: &Path<N>,
+    beyond: impl Fn(S, f64) -> (f64, f64),
+) -> Option<f64> {
     let (mut state, mut begin) = (start, 0.0);
-    for Stretch { value, length } in stretches {
-        let beyond = |time: f64| beyond(state.after(*value, time), *value);
+    for stretch in path.stretches() {
+        let length = stretch.length;
+        let beyond = |time: f64| beyond(state.on(&stretch, time), stretch.rate());
         let mut low = Point::of(&beyond, 0.0);
         for k in 1..=PARTS {
             let high = Point::of(&beyond, length * f64::from(k) / f64::from(PARTS));
@@ -56,7 +82,7 @@ pub(crate) fn meeting<S: State>(start: S, stretches: &[Stretch], beyond: impl Fn
             }
             low = high;
         }
-        state = state.after(*value, *length);
+        state = state.on(&stretch, length);
         begin += length;
     }
     None

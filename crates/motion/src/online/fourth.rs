@@ -3,9 +3,10 @@
 //! Towards the largest acceleration, and on with it, for a while τ; then the fastest way to the target's velocity
 //! ([`super::third`]). Where that would exceed the velocity limit, the limit is touched for an instant, with the jerk with
 //! which the target's position is met; where a touch at rest (jerk zero) is not far enough, it cruises.
+use super::arrival::{NEGLIGIBLE, is_met, meet};
 use super::first::{State, THIRD, meeting};
 use super::newton::{Bracket, Near};
-use super::path::{Path, Stretch};
+use super::path::Path;
 use super::second::{self, Limits2, Sides, State2};
 use super::third::{self, Limits3, State3};
 use super::watch::{ROUNDING, Watch};
@@ -42,6 +43,16 @@ impl Limits4 {
 }
 
 impl State for State4 {
+    const CRUISE: u8 = 3;
+
+    fn position(self) -> f64 {
+        self.x
+    }
+
+    fn velocity(self) -> f64 {
+        self.v
+    }
+
     fn after(self, d: f64, t: f64) -> Self {
         let Self { x, v, a, j } = self;
         Self {
@@ -49,6 +60,15 @@ impl State for State4 {
             v: v + t * (a + t / 2.0 * (j + t * THIRD * d)),
             a: a + t * (j + t / 2.0 * d),
             j: j + t * d,
+        }
+    }
+
+    #[inline]
+    fn held(self, zeros: u8, value: f64) -> Self {
+        match zeros {
+            1 => Self { j: value, ..self },
+            2 => Self { a: value, j: 0.0, ..self },
+            _ => Self { v: value, a: 0.0, j: 0.0, ..self },
         }
     }
 }
@@ -59,43 +79,48 @@ impl State4 {
     }
 
     /// Hands the velocities at the turning points of `path` and at the ends of its stretches to `see`, in the order of time.
-    pub(crate) fn velocities<const N: usize>(self, path: &Path<N>, mut see: impl FnMut(f64)) {
-        let mut state = self;
-        for Stretch { value, length } in path.stretches() {
-            // a + j·t + d·t²/2 = 0
-            let [one, other] = if *value == 0.0 {
-                [-state.a / state.j, f64::NAN]
-            } else {
-                let root = libm::sqrt(state.j * state.j - 2.0 * value * state.a);
-                [(-state.j - root) / value, (-state.j + root) / value]
-            };
-            let in_order = if one > other { [other, one] } else { [one, other] };
-            for t in in_order.into_iter().filter(|t| *t > 0.0 && *t < *length) {
-                see(state.after(*value, t).v);
-            }
-            state = state.after(*value, *length);
-            see(state.v);
-        }
+    pub(crate) fn velocities<const N: usize>(self, path: &Path<N>, see: impl FnMut(f64)) {
+        self.extremes(path, see, |_| ());
     }
 
-    /// The same of the accelerations.
-    fn accelerations<const N: usize>(self, path: &Path<N>, mut see: impl FnMut(f64)) {
+    /// The same, and the accelerations at theirs; gives the state at the end.
+    #[inline]
+    fn extremes<const N: usize>(
+        self,
+        path: &Path<N>,
+        mut see_velocity: impl FnMut(f64),
+        mut see_acceleration: impl FnMut(f64),
+    ) -> Self {
         let mut state = self;
-        for Stretch { value, length } in path.stretches() {
-            let turn = -state.j / value;
-            if turn > 0.0 && turn < *length {
-                see(state.after(*value, turn).a);
+        for stretch in path.stretches() {
+            // a + j·t + d·t²/2 = 0
+            let [one, other] = if stretch.zeros > 0 {
+                state = state.held(stretch.zeros, stretch.value);
+                [-state.a / state.j, f64::NAN]
+            } else {
+                let d = stretch.value;
+                let root = libm::sqrt(state.j * state.j - 2.0 * d * state.a);
+                [(-state.j - root) / d, (-state.j + root) / d]
+            };
+            let in_order = if one > other { [other, one] } else { [one, other] };
+            for t in in_order.into_iter().filter(|t| *t > 0.0 && *t < stretch.length) {
+                see_velocity(state.after(stretch.rate(), t).v);
             }
-            state = state.after(*value, *length);
-            see(state.a);
+            let turn = -state.j / stretch.rate();
+            if turn > 0.0 && turn < stretch.length {
+                see_acceleration(state.after(stretch.rate(), turn).a);
+            }
+            state = state.after(stretch.rate(), stretch.length);
+            see_velocity(state.v);
+            see_acceleration(state.a);
         }
+        state
     }
 
     /// How velocity and acceleration keep their limits on `path`.
     pub(crate) fn watched<const N: usize>(self, path: &Path<N>, limits: &Limits4) -> [Watch; 2] {
         let (mut velocity, mut acceleration) = (Watch::new(limits.v, self.v), Watch::new(limits.a, self.a));
-        self.velocities(path, |v| velocity.see(v));
-        self.accelerations(path, |a| acceleration.see(a));
+        self.extremes(path, |v| velocity.see(v), |a| acceleration.see(a));
         [velocity, acceleration]
     }
 
@@ -106,13 +131,30 @@ impl State4 {
 }
 
 /// The way from `from` to `to`, which is at rest or passed at a constant velocity; `None` when this family has none.
+///
+/// There is room for one more cruise at the end: that of [`cruise`] is where the way back begins, which is not led back first.
 pub(crate) fn fastest(from: State4, to: State4, limits: &Limits4) -> Option<Path<STRETCHES>> {
+    let path = through(from, to, limits)?;
+    if to.v == 0.0 || is_met(from, to, from.along(&path), &path) {
+        return Some(path);
+    }
+    let mut straight = Path::EMPTY;
+    straight.extend(&third::fastest(from.upper(), to.upper(), &limits.upper()));
+    meet([from, to], path, |x| through(from, State4 { x, ..to }, limits), &straight)
+}
+
+/// The same, met but for what its pulses round.
+fn through(from: State4, to: State4, limits: &Limits4) -> Option<Path<STRETCHES>> {
     let Limits4 { v, a, j, d } = *limits;
     let upper = limits.upper();
     let direct = third::fastest(from.upper(), to.upper(), &upper);
     let missing = to.x - from.along(&direct).x;
     let mut path = Path::EMPTY;
-    if missing == 0.0 {
+    let is_negligible = || {
+        let covered = (from.v.abs() + to.v.abs()) * direct.duration();
+        to.v != 0.0 && missing.abs() <= NEGLIGIBLE * ((to.x - from.x).abs() + covered)
+    };
+    if missing == 0.0 || is_negligible() {
         path.extend(&direct);
         return Some(path);
     }
@@ -125,12 +167,12 @@ pub(crate) fn fastest(from: State4, to: State4, limits: &Limits4) -> Option<Path
     let limit = State2 { v: a.at(sign), a: 0.0 };
     let mut away = Path::<{ second::STRETCHES + 1 }>::EMPTY;
     away.extend(&second::fastest(State2 { v: from.a, a: from.j }, limit, &Limits2 { a: Sides::both(j), j: d }));
-    away.push(0.0, (v.towards(sign) - sign * from.along(&away).v) / a.towards(sign));
+    away.hold(2, limit.v, (v.towards(sign) - sign * from.along(&away).v) / a.towards(sign));
     let near = Near::nothing();
     let home = |turn: State4| third::way(turn.upper(), to.upper(), &upper, &near);
     let beyond = |turn: State4, rate: f64| {
         let third::Way { path, by_a } = home(turn);
-        let first = path.stretches().first().map_or(0.0, |first| first.value);
+        let first = path.stretches().next().map_or(0.0, |first| first.rate());
         (sign * (turn.along(&path).x - to.x), sign * (rate - first) * by_a)
     };
     let time = if grows {
@@ -141,7 +183,7 @@ pub(crate) fn fastest(from: State4, to: State4, limits: &Limits4) -> Option<Path
             beyond(turn, rate)
         })
     } else {
-        meeting(from, away.stretches(), beyond)
+        meeting(from, &away, beyond)
     };
     if let Some(time) = time {
         path.extend_until(&away, time);
@@ -166,7 +208,7 @@ fn cruise(from: State4, to: State4, sign: f64, limits: &Limits4) -> Option<Path<
     }
     let mut path = Path::EMPTY;
     path.extend(&away);
-    path.push(0.0, short / v.towards(sign));
+    path.hold(State4::CRUISE, limit.p, short / v.towards(sign));
     path.extend(&rest);
     Some(path)
 }
@@ -182,8 +224,8 @@ fn touch(from: State4, to: State4, sign: f64, limits: &Limits4) -> Option<Path<S
         let join = State3 { p: limits.v.at(sign), v: 0.0, a: -sign * jerk };
         let there = third::way(from.upper(), join, &upper, &near[0]).path;
         let back = third::way(join, to.upper(), &upper, &near[1]).path;
-        let arrives = there.stretches().last().is_none_or(|last| last.value * sign >= 0.0);
-        let leaves = back.stretches().first().is_none_or(|first| first.value * sign <= 0.0);
+        let arrives = there.stretches().next_back().is_none_or(|last| last.rate() * sign >= 0.0);
+        let leaves = back.stretches().next().is_none_or(|first| first.rate() * sign <= 0.0);
         (arrives && leaves).then_some((there, back))
     };
     let missed = |there: &Path<{ third::STRETCHES }>, back: &Path<{ third::STRETCHES }>| {

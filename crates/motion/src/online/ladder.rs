@@ -136,10 +136,10 @@ fn crossing(from: State4, path: &Path<{ second::STRETCHES }>) -> f64 {
         return 0.0;
     }
     for stretch in path.stretches() {
-        let end = state.after(stretch.value, stretch.length);
+        let end = state.on(&stretch, stretch.length);
         if end.a * state.a <= 0.0 {
             // a + j·t + d·t²/2 = 0, the first root after the start, without cancellation.
-            let root = libm::sqrt((state.j * state.j - 2.0 * stretch.value * state.a).max(0.0));
+            let root = libm::sqrt((state.j * state.j - 2.0 * stretch.rate() * state.a).max(0.0));
             let towards = if state.a > 0.0 { state.j - root } else { state.j + root };
             return start + (-2.0 * state.a / towards).clamp(0.0, stretch.length);
         }
@@ -185,7 +185,7 @@ fn by_way_of_a_velocity(from: State4, goal: &Goal, limits: &Limits4) -> Path<{ f
             let [there, back] = both(velocity);
             path.extend(&there);
             if velocity >= limits.v.above || velocity <= -limits.v.below {
-                path.push(0.0, -beyond(velocity) / velocity);
+                path.hold(State4::CRUISE, velocity, -beyond(velocity) / velocity);
             }
             path.extend(&back);
         }

@@ -1,6 +1,6 @@
 //! The fastest way between two states of a chain of two integrators.
 
-use super::first::THIRD;
+use super::first::{State, THIRD};
 use super::path::Path;
 
 /// Stretches at most: a rate, a hold, and the other rate.
@@ -69,10 +69,43 @@ pub(crate) struct Way {
 impl Way {
     pub(crate) fn path(&self) -> Path<STRETCHES> {
         let mut path = Path::EMPTY;
-        path.push(self.rate, self.up);
-        path.push(0.0, self.hold);
-        path.push(-self.rate, self.down);
+        self.add_to(&mut path);
         path
+    }
+
+    /// Adds its stretches to `path`.
+    #[inline]
+    pub(crate) fn add_to<const N: usize>(&self, path: &mut Path<N>) {
+        path.push(self.rate, self.up);
+        path.hold(1, self.peak.copysign(self.rate), self.hold);
+        path.push(-self.rate, self.down);
+    }
+
+    /// The first `time` seconds of it.
+    #[inline]
+    pub(crate) fn first(&self, time: f64) -> Self {
+        let up = time.min(self.up);
+        let hold = (time - up).min(self.hold);
+        Self { up, hold, down: time - up - hold, ..*self }
+    }
+
+    /// The state at its end.
+    #[inline]
+    pub(crate) fn end<S: State>(&self, from: S) -> S {
+        let Self { rate, up, hold, down, peak } = *self;
+        let top = from.after(rate, up);
+        let top = if hold == 0.0 { top } else { top.held(1, peak.copysign(rate)).after(0.0, hold) };
+        top.after(-rate, down)
+    }
+
+    /// The state after `time` on it, and the rate there.
+    #[inline]
+    pub(crate) fn until<S: State>(&self, from: S, time: f64) -> (S, f64) {
+        if time <= self.up {
+            return (from.after(self.rate, time), self.rate);
+        }
+        let part = self.first(time);
+        (part.end(from), if time - self.up <= self.hold { 0.0 } else { -self.rate })
     }
 
     pub(crate) fn duration(&self) -> f64 {

@@ -4,15 +4,16 @@
 //! acceleration from there on, covers the more the longer τ is. The τ with which the target's position is met is the
 //! fastest way: one rate, the other, the first again, with holds where acceleration or velocity is at its limit. When the
 //! whole way to the velocity limit is not far enough, a cruise there makes up the rest.
+use super::arrival::{NEGLIGIBLE, is_met, meet};
 use super::costate;
 use super::first::{State, THIRD, meeting};
 use super::newton::{Bracket, Near};
-use super::path::{Path, Stretch};
+use super::path::Path;
 use super::second::{self, Limits2, Sides, State2};
 use super::watch::Watch;
 
-/// Stretches at most: back into the limit of acceleration, there, a cruise, and back.
-pub(crate) const STRETCHES: usize = 1 + second::STRETCHES + 1 + second::STRETCHES;
+/// Stretches at most: back into the limit of acceleration, there, a cruise, back, and a cruise at the velocity of the target.
+pub(crate) const STRETCHES: usize = 1 + second::STRETCHES + 1 + second::STRETCHES + 1;
 
 /// A state of three integrators in a row.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,26 +33,41 @@ pub(crate) struct Limits3 {
 }
 
 impl State for State3 {
+    const CRUISE: u8 = 2;
+
+    fn position(self) -> f64 {
+        self.p
+    }
+
+    fn velocity(self) -> f64 {
+        self.v
+    }
+
     fn after(self, j: f64, t: f64) -> Self {
         let Self { p, v, a } = self;
         Self { p: p + t * (v + t / 2.0 * (a + t * THIRD * j)), v: v + t * (a + t / 2.0 * j), a: a + t * j }
     }
+
+    #[inline]
+    fn held(self, zeros: u8, value: f64) -> Self {
+        if zeros == 1 { Self { a: value, ..self } } else { Self { v: value, a: 0.0, ..self } }
+    }
 }
 
 impl State3 {
-    /// How far `path` is beyond these limits of `v` and `a`, as a part of them.
-    pub(crate) fn excess<const N: usize>(self, path: &Path<N>, v: Sides, a: Sides) -> f64 {
+    /// Where `path` ends, and how far it is beyond these limits of `v` and `a`, as a part of them.
+    pub(crate) fn excess<const N: usize>(self, path: &Path<N>, v: Sides, a: Sides) -> (Self, f64) {
         let (mut state, mut velocity, mut acceleration) = (self, Watch::new(v, self.v), Watch::new(a, self.a));
-        for Stretch { value, length } in path.stretches() {
-            let turn = -state.a / value;
-            if turn > 0.0 && turn < *length {
-                velocity.see(state.after(*value, turn).v);
+        for stretch in path.stretches() {
+            let turn = -state.a / stretch.rate();
+            if turn > 0.0 && turn < stretch.length {
+                velocity.see(state.on(&stretch, turn).v);
             }
-            state = state.after(*value, *length);
+            state = state.on(&stretch, stretch.length);
             velocity.see(state.v);
             acceleration.see(state.a);
         }
-        velocity.most.max(acceleration.most)
+        (state, velocity.most.max(acceleration.most))
     }
 
     const fn upper(self) -> State2 {
@@ -66,6 +82,33 @@ pub(crate) struct Way {
     pub(crate) by_a: f64,
 }
 
+/// The fastest way from `from` to `to`, which is passed without acceleration at its velocity, and how far it is beyond the limits.
+pub(crate) fn passing(from: State3, to: State3, limits: &Limits3) -> (Path<STRETCHES>, f64) {
+    let path = fastest(from, to, limits);
+    let (end, excess) = from.excess(&path, limits.v, limits.a);
+    if is_met(from, to, end, &path) {
+        return (path, excess);
+    }
+    let plan = |p: f64| Some(fastest(from, State3 { p, ..to }, limits));
+    let path = meet([from, to], path, plan, &straight(from, to, limits)).unwrap_or(path);
+    (path, from.excess(&path, limits.v, limits.a).1)
+}
+
+/// The fastest way from `from` to what `to` is above its position.
+pub(crate) fn straight<const N: usize>(from: State3, to: State3, limits: &Limits3) -> Path<N> {
+    let mut path = Path::EMPTY;
+    let start = led_back(from, limits, &mut path);
+    path.extend(&second::fastest(start.upper(), to.upper(), &Limits2 { a: limits.a, j: limits.j }));
+    path
+}
+
+/// Adds the way back into the limits of acceleration to `path`, and gives the state behind it.
+fn led_back<const N: usize>(from: State3, limits: &Limits3, path: &mut Path<N>) -> State3 {
+    let (excess, side) = limits.a.excess(from.a);
+    path.push(-side * limits.j, excess / limits.j);
+    from.along(path)
+}
+
 /// The fastest way from `from` to `to`. A target that is passed with an acceleration may be missed, as there may be no way of
 /// this kind.
 pub(crate) fn fastest(from: State3, to: State3, limits: &Limits3) -> Path<STRETCHES> {
@@ -76,22 +119,22 @@ pub(crate) fn fastest(from: State3, to: State3, limits: &Limits3) -> Path<STRETC
 pub(crate) fn way(from: State3, to: State3, limits: &Limits3, near: &Near) -> Way {
     let Limits3 { v, a, j } = *limits;
     let upper = Limits2 { a, j };
-    let mut path = Path::EMPTY;
-    // Back into the limit of acceleration first.
-    let (excess, side) = a.excess(from.a);
-    path.push(-side * j, excess / j);
-    let start = from.along(&path);
+    let mut way = Way { path: Path::EMPTY, by_a: 0.0 };
+    let start = led_back(from, limits, &mut way.path);
     let home = |turn: State3| second::way(turn.upper(), to.upper(), &upper);
     let direct = home(start);
     let missing = to.p - (start.p + direct.covered(start.upper(), to.upper()));
-    if missing == 0.0 {
-        path.extend(&direct.path());
-        return Way { path, by_a: 0.0 };
+    let is_negligible = || {
+        let covered = (start.v.abs() + to.v.abs()) * direct.duration();
+        to.v != 0.0 && missing.abs() <= NEGLIGIBLE * ((to.p - start.p).abs() + covered)
+    };
+    if missing == 0.0 || is_negligible() {
+        direct.add_to(&mut way.path);
+        return way;
     }
     let sign = if missing > 0.0 { 1.0 } else { -1.0 };
     let limit = State2 { v: v.at(sign), a: 0.0 };
     let there = second::way(start.upper(), limit, &upper);
-    let away = there.path();
     let beyond = |turn: State3, rate: f64| {
         let back = home(turn);
         let covered = turn.p + back.covered(turn.upper(), to.upper());
@@ -101,28 +144,30 @@ pub(crate) fn way(from: State3, to: State3, limits: &Limits3, near: &Near) -> Wa
         // From where the ways part to where they are the same again.
         let bracket = Bracket {
             low: if there.rate * direct.rate > 0.0 { there.up.min(direct.up) } else { 0.0 },
-            high: if there.rate * sign > 0.0 { there.up + there.hold } else { there.duration() },
+            high: if there.rate * sign > 0.0 && sign * to.a <= 0.0 { there.up + there.hold } else { there.duration() },
             missing: missing.abs(),
         };
         bracket.root(near, libm::cbrt, |time| {
-            let (turn, rate) = start.until(&away, time);
+            let (turn, rate) = there.until(start, time);
             beyond(turn, rate)
         })
     } else {
-        meeting(start, away.stretches(), beyond)
+        meeting(start, &there.path(), beyond)
     };
     if let Some(time) = time {
-        let back = home(start.until(&away, time).0);
-        path.extend_until(&away, time);
-        path.extend(&back.path());
-        let risen = time.min(there.up);
-        let held = (time - risen).min(there.hold);
-        return Way { path, by_a: costate::by_a([risen, held, time - risen - held], None, &back, to.p) };
+        let back = home(there.until(start, time).0);
+        let away = there.first(time);
+        away.add_to(&mut way.path);
+        back.add_to(&mut way.path);
+        way.by_a = costate::by_a([away.up, away.hold, away.down], None, &back, to.p);
+        return way;
     }
     let back = second::way(limit, to.upper(), &upper);
-    let cruise = (to.p - start.along(&away).along(&back.path()).p) / limit.v;
-    path.extend(&away);
-    path.push(0.0, cruise);
-    path.extend(&back.path());
-    Way { path, by_a: costate::by_a([there.up, there.hold, there.down], Some(cruise), &back, to.p) }
+    let at_limit = there.end(start).held(State3::CRUISE, limit.v);
+    let cruise = (to.p - back.end(at_limit).p) / limit.v;
+    there.add_to(&mut way.path);
+    way.path.hold(State3::CRUISE, limit.v, cruise);
+    back.add_to(&mut way.path);
+    way.by_a = costate::by_a([there.up, there.hold, there.down], Some(cruise), &back, to.p);
+    way
 }

@@ -6,8 +6,8 @@ use super::path::Path;
 use super::second::{self, Limits2, Sides, State2};
 use super::third::{self, Limits3, State3};
 use super::trapezoid::{self, Rates};
-use super::watch::Watch;
-use super::{DirectionalLimits, Effort, RampLimits, Target};
+use super::watch::{ROUNDING, Watch};
+use super::{DirectionalLimits, Effort, RampLimits, Target, turning};
 use crate::limits::within_range;
 use crate::stretch::LONGEST;
 use crate::{Order, Piece, PlanError, Segment, Trajectory};
@@ -53,9 +53,10 @@ impl Transition {
     /// The same with one acceleration while the speed grows and another one while it falls.
     ///
     /// Order 2 is the shortest way that keeps them. At orders 3 and 4 so is the way of an axis that keeps its direction, planned
-    /// [`towards`](RampLimits::towards) it. An axis that has to turn round takes the shorter of two ways that keep every limit:
-    /// with the smaller of both accelerations all the way ([`either_way`](RampLimits::either_way)), unless it brakes harder
-    /// than that already; or to a stop, and from there. That takes four plans.
+    /// [`towards`](RampLimits::towards) it. An axis that has to turn round brakes with the deceleration, passes zero with the smaller
+    /// of both accelerations at most, and speeds up with the acceleration: at order 3 in the shortest time, at order 4 within about
+    /// 0.2 % of it. Who has to turn round more than once takes the shorter of the smaller one all the way
+    /// ([`either_way`](RampLimits::either_way)) and a stop, and from there. That takes up to five plans, at order 4 up to a dozen.
     ///
     /// # Errors
     /// As [`plan`](Self::plan).
@@ -72,28 +73,22 @@ impl Transition {
         if order == Order::Second {
             return second_order(from, target, limits.velocity, &limits.rates());
         }
-        let plan = |from: &Setpoint, target: &Target, limits| Self::plan(order, from, target, &limits, effort);
-        let one_way = |from: &Setpoint| {
-            let sign = heading(order, from, target);
-            let planned = plan(from, target, limits.towards(sign))?;
-            let is_kept = limits.towards(sign) == limits.either_way() || planned.way.keeps_direction(sign);
-            Ok::<_, PlanError>(is_kept.then_some(planned))
-        };
-        if let Some(planned) = one_way(from)? {
-            return Ok(planned);
-        }
-        let turning = plan(from, target, limits.either_way())?;
-        let stop = plan(from, &Target::Velocity(0.0), limits.towards(heading(order, from, target)))?;
-        let onwards = match one_way(&stop.way.end())? {
-            Some(planned) => planned,
-            None => plan(&stop.way.end(), target, limits.either_way())?,
-        };
-        let is_shorter = turning.duration() <= stop.duration() + onwards.duration();
-        if turning.excess == 0.0 && is_shorter { Ok(turning) } else { Ok(stop.then(&onwards)) }
+        turning::Request { order, target, limits, effort }.plan(from)
     }
 
-    fn then(self, next: &Self) -> Self {
+    /// With `next` behind it, which begins where it ends.
+    pub(super) fn then(self, next: &Self) -> Self {
         Self { way: self.way.then(&next.way), excess: self.excess.max(next.excess) }
+    }
+
+    /// The same, known to be this far beyond the limits.
+    pub(super) fn exceeding(self, excess: f64) -> Self {
+        Self { excess: if excess > 2.0 * ROUNDING { excess } else { 0.0 }, ..self }
+    }
+
+    /// What it is made of.
+    pub(super) const fn way(&self) -> &Trajectory<STRETCHES> {
+        &self.way
     }
 
     fn new<const N: usize>(
@@ -103,17 +98,25 @@ impl Transition {
         target: &Target,
         excess: f64,
     ) -> Result<Self, PlanError> {
-        let value = path.duration();
-        if value.is_nan() || value > LONGEST {
-            let remedy = "start nearer to the limits, or raise them";
-            return Err(PlanError::OutOfRange { name: "duration", value, lowest: 0.0, highest: LONGEST, remedy });
-        }
-        let segments = path.stretches().iter().map(|stretch| (stretch.value, stretch.length));
-        let way = Trajectory::new(order, from, segments, |end| match target {
+        let path = within_time(path)?;
+        let way = Trajectory::new(order, from, path.stretches(), |end| match target {
             Target::Position { x, v } => Setpoint { v: *v, ..Setpoint::at_rest(*x) },
             Target::Velocity(v) => Setpoint { v: *v, ..Setpoint::at_rest(end.x) },
         });
         Ok(Self { way, excess: excess.max(0.0) })
+    }
+
+    /// The way along `path` to `a` and `j` at rest.
+    pub(super) fn through_rest<const N: usize>(
+        order: Order,
+        from: Setpoint,
+        path: &Path<N>,
+        a: f64,
+        j: f64,
+    ) -> Result<Self, PlanError> {
+        let path = within_time(path)?;
+        let way = Trajectory::new(order, from, path.stretches(), |end| Setpoint { a, j, ..Setpoint::at_rest(end.x) });
+        Ok(Self { way, excess: 0.0 })
     }
 
     /// The set-point `t` seconds after the start; before it the first one, from the end on the target, which goes on at its
@@ -165,14 +168,14 @@ pub(super) fn check_state(order: Order, from: &Setpoint) -> Result<(), PlanError
     Ok(())
 }
 
-/// In which direction an axis that does not turn round moves.
-fn heading(order: Order, from: &Setpoint, target: &Target) -> f64 {
-    let state = &[from.v, from.a, from.j][..order.derivative() - 1];
-    let towards = match target {
-        Target::Position { x, v } => [x - from.x, *v],
-        Target::Velocity(v) => [*v, *v],
-    };
-    state.iter().chain(&towards).find(|value| **value != 0.0).map_or(1.0, |value| value.signum())
+/// A path that does not take too long.
+fn within_time<const N: usize>(path: &Path<N>) -> Result<&Path<N>, PlanError> {
+    let value = path.duration();
+    if value.is_nan() || value > LONGEST {
+        let remedy = "start nearer to the limits, or raise them";
+        return Err(PlanError::OutOfRange { name: "duration", value, lowest: 0.0, highest: LONGEST, remedy });
+    }
+    Ok(path)
 }
 
 fn second_order(from: &Setpoint, target: &Target, velocity: Sides, rates: &Rates) -> Result<Transition, PlanError> {
@@ -191,11 +194,12 @@ fn second_order(from: &Setpoint, target: &Target, velocity: Sides, rates: &Rates
 
 fn third_order(from: &Setpoint, target: &Target, limits: &DirectionalLimits) -> Result<Transition, PlanError> {
     let DirectionalLimits { velocity, acceleration, jerk, .. } = *limits;
-    let start = State3 { p: from.x, v: from.v, a: from.a };
-    let path = match target {
+    // The distance alone matters.
+    let start = State3 { p: 0.0, v: from.v, a: from.a };
+    let (path, excess) = match target {
         Target::Position { x, v } => {
-            let to = State3 { p: *x, v: *v, a: 0.0 };
-            third::fastest(start, to, &Limits3 { v: velocity, a: acceleration, j: jerk })
+            let to = State3 { p: x - from.x, v: *v, a: 0.0 };
+            third::passing(start, to, &Limits3 { v: velocity, a: acceleration, j: jerk })
         }
         Target::Velocity(v) => {
             let mut path = Path::EMPTY;
@@ -204,10 +208,9 @@ fn third_order(from: &Setpoint, target: &Target, limits: &DirectionalLimits) -> 
             let turn = start.along(&path);
             let limits = Limits2 { a: acceleration, j: jerk };
             path.extend(&second::fastest(State2 { v: turn.v, a: turn.a }, State2 { v: *v, a: 0.0 }, &limits));
-            path
+            (path, start.excess(&path, velocity, acceleration).1)
         }
     };
-    let excess = start.excess(&path, velocity, acceleration);
     Transition::new(Order::Third, Setpoint { j: 0.0, s: 0.0, ..*from }, &path, target, excess)
 }
 
@@ -219,7 +222,6 @@ fn fourth_order(
 ) -> Result<Transition, PlanError> {
     let DirectionalLimits { velocity, acceleration, jerk, snap } = *limits;
     let limits = Limits4 { v: velocity, a: acceleration, j: jerk, d: snap };
-    // The distance alone matters.
     let start = State4 { x: 0.0, v: from.v, a: from.a, j: from.j };
     let goal = match target {
         Target::Position { x, v } => Goal::State(State4 { x: x - from.x, v: *v, a: 0.0, j: 0.0 }),

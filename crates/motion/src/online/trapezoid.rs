@@ -87,7 +87,7 @@ pub(crate) fn fastest(from: f64, to: f64, distance: f64, limit: Sides, rates: &R
         let cruise = sign * limit;
         let ramps = rates.covered(from, cruise) + rates.covered(cruise, to);
         rates.ramp(from, cruise, &mut path);
-        path.push(0.0, (distance - ramps) / cruise);
+        path.hold(1, cruise, (distance - ramps) / cruise);
         rates.ramp(cruise, to, &mut path);
     }
     path

@@ -1,0 +1,61 @@
+//! A target that is passed at a velocity is met, however near the straight way to that velocity comes to it.
+//!
+//! Where the straight way from a state to the target's velocity v is all but long enough, the rest is made up for by pulses
+//! so short that there are no numbers for them beside the times of the way: what it covers grows with the root of the turning
+//! time (order 3), or its third root (order 4), and is met to √ε or ∛ε. Who aims a little nearer and goes on at v for what is
+//! left to the target meets it to rounding, and takes no longer: next to the straight way another metre costs 1/v seconds
+//! either way.
+use super::first::State;
+use super::path::Path;
+
+/// What a target may be missed by, as a part of what is covered.
+pub(crate) const ROUNDING: f64 = 1e-13;
+
+/// What the straight way may end away from the target, as a part of what is covered, and is still taken.
+pub(crate) const NEGLIGIBLE: f64 = 1e-12;
+
+/// How often it is aimed nearer, each time by four times as much.
+const AIMS: u32 = 8;
+
+/// Whether `path`, which ends at `end`, meets `to`, or comes to rest there, where the pulses cover nothing.
+#[inline]
+pub(crate) fn is_met<S: State, const N: usize>(from: S, to: S, end: S, path: &Path<N>) -> bool {
+    let (missed, v) = (to.position() - end.position(), to.velocity());
+    v == 0.0 || missed.abs() <= ROUNDING * ((to.position() - from.position()).abs() + v.abs() * path.duration())
+}
+
+/// The way from `from` to `to` by `plan`, which has one to any position, instead of `path`, which misses it; `straight` is the
+/// straight way to the velocity at which it is passed.
+#[cold]
+pub(crate) fn meet<S: State, const N: usize>(
+    [from, to]: [S; 2],
+    path: Path<N>,
+    plan: impl Fn(f64) -> Option<Path<N>>,
+    straight: &Path<N>,
+) -> Option<Path<N>> {
+    let (goal, v) = (to.position(), to.velocity());
+    // Time at v that is left to the target.
+    let left = |path: &Path<N>| (goal - from.along(path).position()) / v;
+    let waiting = |mut path: Path<N>, time: f64| {
+        path.hold(S::CRUISE, v, time);
+        path
+    };
+    let missed = left(&path);
+    if missed >= 0.0 {
+        return Some(waiting(path, missed));
+    }
+    let whole = left(straight);
+    let mut nearer = missed;
+    for _ in 0..AIMS {
+        if whole > 0.0 && -nearer >= whole {
+            return Some(waiting(*straight, whole));
+        }
+        let path = plan(goal + nearer * v)?;
+        let time = left(&path);
+        if time >= 0.0 || is_met(from, to, from.along(&path), &path) {
+            return Some(waiting(path, time));
+        }
+        nearer *= 4.0;
+    }
+    Some(path)
+}
