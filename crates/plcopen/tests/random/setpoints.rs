@@ -45,7 +45,8 @@ impl Setpoints {
                 let most = limit * (1.0 + 1e-6) + rounding;
                 assert!(mean <= most, "{place} in {state}: {name} {mean} {limit}\n{last:?}\n{now:?}");
             };
-            step("x", last.x, now.x, limits.velocity, 1e-12 / CYCLE_TIME);
+            // A stop begins with the velocity that an effort, or whatever the drive did, has left.
+            step("x", last.x, now.x, limits.velocity.max(last.v.abs()), 1e-12 / CYCLE_TIME);
             step("v", last.v, now.v, limits.acceleration, 1e-9 / CYCLE_TIME);
             if limits.jerk < f64::INFINITY && !was_led && !is_led {
                 step("a", last.a, now.a, limits.jerk, 1e-7 / CYCLE_TIME);
