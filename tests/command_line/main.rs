@@ -2,6 +2,7 @@
 mod check;
 mod compare;
 mod fmu;
+mod fmu_standard;
 mod fmu_suite;
 mod getting_started;
 mod objects;

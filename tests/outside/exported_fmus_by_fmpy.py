@@ -4,15 +4,19 @@ For every part of some scenarios and both versions of the standard:
 - `fmpy.validation` finds nothing in the model description: schema, names, model structure, start values, units;
 - the axis, simulated by FMPy at the base rate, gives what a run of the scenario records, to the bit;
 - the toolbox makes one FMU of drive and mechanics, which FMPy simulates: what it gives is the axis in one, to the bit;
-- a saved state, and its bytes in another instance, go on to the bit, as FMPy calls them.
+- a saved state, and its bytes in another instance, go on to the bit, as FMPy calls them;
+- without a word on times FMPy simulates the whole program (`DefaultExperiment`);
+- a step that never fits ends FMPy's simulation with an error: what is discarded it asks for again without end.
 """
 
 import logging
+import signal
 import tempfile
 from pathlib import Path
 
 import fmpy
 import numpy
+from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Slave
 from fmpy.fmi3 import FMU3Slave
 from fmpy.validation import validate_fmu
@@ -24,6 +28,11 @@ PARTS = ("axis", "drive", "mechanics")
 # A move, a table of points from a file, and function blocks over a fieldbus with the states of drive and axis.
 SCENARIOS = ("demo/jerk", "setpoints/pvt", "plc/figure-3a")
 BODIES = ("motor.", "table.", "load.")
+# Steps in base ticks that no whole number of them makes, and the status error of both versions.
+MISFITS = (0.3, 0.5, 1.5, 2.01)
+ERROR = 3
+# Real time for a simulation of some steps (s).
+PATIENCE = 60
 
 
 def simulated(fmu: str, rate: int, ticks: int) -> numpy.ndarray:
@@ -118,6 +127,32 @@ def check_states(fmu: str, rate: int) -> None:
         instance.freeInstance()
 
 
+def check_default(name: str, fmu: str, channels: dict[str, numpy.ndarray], rate: int) -> None:
+    """Simulates it as it says itself, and compares its end with that of the recording."""
+    result, ticks = fmpy.simulate_fmu(fmu), len(next(iter(channels.values()))) - 1
+    if abs(result["time"][-1] - ticks / rate) > 1e-9:
+        raise SystemExit(f"{name}: it ends at {result['time'][-1]} s by itself, a run at {ticks / rate} s")
+    for channel, values in channels.items():
+        if channel.startswith(BODIES) and result[channel][-1] != values[-1]:
+            raise SystemExit(f"{name}: `{channel}` is {result[channel][-1]!r} at its end, recorded {values[-1]!r}")
+
+
+def check_misfits(name: str, fmu: str, rate: int) -> None:
+    """Steps that never fit: each is an error, and none goes on for ever."""
+    for ticks in MISFITS:
+        step = ticks / rate
+        signal.alarm(PATIENCE)
+        try:
+            fmpy.simulate_fmu(fmu, stop_time=100 / rate, step_size=step, output_interval=step)
+        except FMICallException as refused:
+            if refused.status != ERROR or not refused.function.endswith("DoStep"):
+                raise SystemExit(f"{name}: {refused} for a step of {ticks} ticks") from refused
+        else:
+            raise SystemExit(f"{name}: FMPy simulates it by steps of {ticks} ticks")
+        finally:
+            signal.alarm(0)
+
+
 def main() -> None:
     # It tells of every input and output that is not connected; what fails raises an exception.
     logging.getLogger("fmu_manipulation_toolbox").setLevel(logging.CRITICAL)
@@ -140,7 +175,10 @@ def main() -> None:
                 if scenario == SCENARIOS[0]:
                     check_container(folder, version, rate, axis)
                     check_states(axis, rate)
-                    print("; drive and mechanics in a container are the axis; saved states go on", end="")
+                    check_default(f"{scenario}, FMI {version}", axis, channels, rate)
+                    for part in PARTS:
+                        check_misfits(f"FMI {version}, {part}", str(folder / f"{part}{version}.fmu"), rate)
+                    print("; drive and mechanics in a container are the axis; saved states go on; ends and misfits", end="")
                 print()
 
 

@@ -1,9 +1,20 @@
-//! What an interrupted run leaves: no process, no half-written file, and no recording that no results name.
+//! What an interrupted run leaves: no process, no half-written file, no recording that no results name, and no FMU that was unpacked.
 //!
 //! On SIGINT and SIGTERM the processes that were started are ended, then the files removed, then the program ends as it would
 //! have without all this, so that a shell sees 130 or 143 and knows why.
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Whether a signal has come.
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+/// Waits for the end if a signal has come: what a process that was ended for it has left undone is nobody's failure.
+pub(crate) fn end_if_interrupted() {
+    while INTERRUPTED.load(Ordering::SeqCst) {
+        std::thread::park();
+    }
+}
 
 /// Files of this run that no results name yet.
 static UNTOLD: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
@@ -30,7 +41,7 @@ pub(crate) use unix::{end_with_parent, watch};
 
 #[cfg(unix)]
 mod unix {
-    use super::untold;
+    use super::{INTERRUPTED, untold};
     use crate::console::say;
     use crate::exit::CliError;
     use rustix::process::{Pid, Signal, kill_process, set_parent_process_death_signal};
@@ -38,6 +49,7 @@ mod unix {
     use signal_hook::iterator::Signals;
     use signal_hook::low_level::emulate_default_handler;
     use std::path::Path;
+    use std::sync::atomic::Ordering;
     use std::time::Duration;
 
     /// Until what is under way in other threads has seen that its process or its file is gone.
@@ -63,17 +75,21 @@ mod unix {
     }
 
     fn end(signal: i32, folder: &Path) {
+        INTERRUPTED.store(true, Ordering::SeqCst);
         say("servobench: interrupted; what was not finished is removed\n");
         // No thread can note another file until the end.
         let files = untold();
+        let mut ended = Vec::new();
         for _ in 0..2 {
             for child in children() {
                 // One that has ended already is as good.
                 kill_process(child, Signal::KILL).ok();
+                ended.push(child.as_raw_pid().unsigned_abs());
             }
             std::thread::sleep(BREATH);
             remove_unfinished(folder);
         }
+        remove_unpacked(&ended);
         for file in files.iter() {
             // What cannot be removed is only in the way.
             std::fs::remove_file(file).ok();
@@ -82,6 +98,15 @@ mod unix {
         emulate_default_handler(signal).ok();
         std::process::exit(128 + signal);
     }
+
+    /// FMUs that were unpacked, here and by workers, which had no time for it.
+    #[cfg(feature = "fmu")]
+    fn remove_unpacked(ended: &[u32]) {
+        servobench_fmi::remove_unpacked(ended);
+    }
+
+    #[cfg(not(feature = "fmu"))]
+    fn remove_unpacked(_: &[u32]) {}
 
     /// The processes that this one started and that have not ended, as Linux lists them; none where it does not.
     fn children() -> Vec<Pid> {

@@ -42,6 +42,7 @@ fn dispatch(command: &Command) -> Exit {
         Command::FmuHost => commands::fmu_host(),
         Command::Worker(args) => commands::worker(args),
     };
+    interrupt::end_if_interrupted();
     done.unwrap_or_else(|error| {
         console::say(&format!("servobench: {error}\n"));
         error.exit()

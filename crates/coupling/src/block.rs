@@ -25,6 +25,31 @@ pub trait Block {
     /// Whether `output` follows `input` without a step (direct feedthrough); true where that is not known.
     fn feeds_through(&self, output: usize, input: usize) -> bool;
 
+    /// Whether `output` changes at events only, as integers, booleans and what is sampled do: between two of its values it has the
+    /// older one, and nothing leads on from it.
+    fn is_discrete(&self, _output: usize) -> bool {
+        false
+    }
+
+    /// Whether it is initialised by [`start`](Self::start): until then its outputs are those of its initial equations, which may
+    /// be read with one input after the other.
+    fn has_initial_equations(&self) -> bool {
+        false
+    }
+
+    /// Whether `output` follows `input` by the initial equations; true where that is not known.
+    fn follows_at_start(&self, output: usize, input: usize) -> bool {
+        self.feeds_through(output, input)
+    }
+
+    /// Ends the initialisation with the inputs at time 0. It is called once, and only where there are initial equations.
+    ///
+    /// # Errors
+    /// The block's own; the simulation does not begin.
+    fn start(&mut self, _inputs: &[f64]) -> Result<(), Self::Error> {
+        Ok(())
+    }
+
     /// Goes from `time` to `time + length` (s).
     ///
     /// # Errors
@@ -60,6 +85,22 @@ impl<B: Block + ?Sized> Block for Box<B> {
 
     fn feeds_through(&self, output: usize, input: usize) -> bool {
         (**self).feeds_through(output, input)
+    }
+
+    fn is_discrete(&self, output: usize) -> bool {
+        (**self).is_discrete(output)
+    }
+
+    fn has_initial_equations(&self) -> bool {
+        (**self).has_initial_equations()
+    }
+
+    fn follows_at_start(&self, output: usize, input: usize) -> bool {
+        (**self).follows_at_start(output, input)
+    }
+
+    fn start(&mut self, inputs: &[f64]) -> Result<(), Self::Error> {
+        (**self).start(inputs)
     }
 
     fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<Step, Self::Error> {

@@ -15,10 +15,14 @@ pub(crate) struct FixedPoint {
     pub(crate) cycle: String,
     pub(crate) iteration: Iteration,
     unknowns: Vec<Unknown>,
+    /// Those that change at events only: they are taken as they come, and agree when they are the same.
+    discrete: Vec<Unknown>,
     accelerator: Accelerator,
     x: Vec<f64>,
     r: Vec<f64>,
     weights: Vec<f64>,
+    /// What the discrete ones were at the start of the evaluation.
+    before: Vec<f64>,
 }
 
 #[derive(Clone, Copy)]
@@ -43,8 +47,8 @@ impl FixedPoint {
         iteration: Iteration,
         cycle: String,
     ) -> Self {
-        let unknowns: Vec<_> =
-            unknowns.iter().map(|output| Unknown { block: wiring.block_of(*output), output: *output }).collect();
+        let unknowns = unknowns.iter().map(|output| Unknown { block: wiring.block_of(*output), output: *output });
+        let (discrete, unknowns): (Vec<_>, Vec<_>) = unknowns.partition(|unknown| wiring.discrete[unknown.output]);
         let zeros = vec![0.0; unknowns.len()];
         Self {
             blocks,
@@ -52,6 +56,8 @@ impl FixedPoint {
             iteration,
             accelerator: Accelerator::new(iteration.acceleration, unknowns.len()),
             unknowns,
+            before: vec![0.0; discrete.len()],
+            discrete,
             x: zeros.clone(),
             r: zeros.clone(),
             weights: zeros,
@@ -68,11 +74,18 @@ impl FixedPoint {
         for (x, unknown) in self.x.iter_mut().zip(&self.unknowns) {
             *x = signals.newest(unknown.output);
         }
+        for (before, unknown) in self.before.iter_mut().zip(&self.discrete) {
+            *before = signals.newest(unknown.output);
+        }
     }
 
     /// Where the evaluation came back farthest from its start, as parts of what is allowed; `None` if it agrees.
     pub(crate) fn disagreement(&mut self, signals: &Signals) -> Option<Disagreement> {
-        let mut worst = None;
+        let changed = |(unknown, before): (&Unknown, &f64)| {
+            let change = signals.newest(unknown.output) - before;
+            (change != 0.0).then_some(Disagreement { output: unknown.output, change, allowed: 0.0 })
+        };
+        let mut worst = self.discrete.iter().zip(&self.before).find_map(changed);
         let mut most = 1.0;
         for (signal, unknown) in self.unknowns.iter().enumerate() {
             let magnitude = self.x[signal].abs().max(signals.magnitude(unknown.block, unknown.output));

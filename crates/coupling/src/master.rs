@@ -125,17 +125,42 @@ impl<B: Block> Master<B> {
             plan,
             clock,
         };
-        master.start()?;
+        master.start(settings)?;
         Ok(master)
     }
 
     /// The first exchange: a loop is looked for from what its outputs are without inputs.
-    fn start(&mut self) -> Result<(), CouplingError<B::Error>> {
+    fn start(&mut self, settings: &Settings) -> Result<(), CouplingError<B::Error>> {
+        if self.blocks.iter().any(Block::has_initial_equations) {
+            self.initialise(settings)?;
+        }
+        self.read_all()?;
+        self.settle(0)
+    }
+
+    /// All outputs as they are without inputs.
+    fn read_all(&mut self) -> Result<(), CouplingError<B::Error>> {
         for block in 0..self.blocks.len() {
             self.signals.open(block, 0);
             self.read(block, None)?;
         }
-        self.settle(0)
+        Ok(())
+    }
+
+    /// Solves the initial equations of all blocks together, and starts with what they have come to those that wait for it.
+    fn initialise(&mut self, settings: &Settings) -> Result<(), CouplingError<B::Error>> {
+        let start = Plan::of_start(&self.wiring, &self.blocks, settings.algebraic)?;
+        let plan = std::mem::replace(&mut self.plan, start);
+        self.read_all()?;
+        self.settle(0)?;
+        self.plan = plan;
+        for block in 0..self.blocks.len() {
+            if self.blocks[block].has_initial_equations() {
+                self.begin(block)?;
+            }
+        }
+        self.fresh.fill(false);
+        Ok(())
     }
 
     /// Goes through one communication step, to the next exchange. Does nothing once a block has ended the simulation.
@@ -331,7 +356,7 @@ fn watched(wiring: &Wiring) -> Vec<Watched> {
         for (connection, wire) in wiring.connections.iter().enumerate() {
             let output = wiring.shapes[wire.from.block].first_output + wire.from.port;
             let inside = component.contains(&wire.from.block) && component.contains(&wire.to.block);
-            let inside = inside && !wire.is_discrete;
+            let inside = inside && !wire.is_discrete && !wiring.discrete[output];
             if inside && found.iter().all(|watched| watched.output != output) {
                 found.push(Watched { block: wire.from.block, output, connection, watch: Watch::default() });
             }

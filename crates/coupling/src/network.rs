@@ -48,7 +48,8 @@ pub struct Connection {
     pub gain: f64,
     /// Summand in the input's unit; finite.
     pub offset: f64,
-    /// Whether it changes at exchanges only, as what a controller samples or gives: the newest value holds through a step.
+    /// Whether it changes at exchanges only, as what a controller samples or gives: the newest value holds through a step, also one
+    /// that lies ahead. An output that its block calls discrete is held without that.
     pub is_discrete: bool,
 }
 
@@ -219,6 +220,8 @@ pub(crate) struct Wiring {
     /// By input.
     pub(crate) wires: Vec<Wire>,
     pub(crate) connections: Vec<Connection>,
+    /// By output: whether it changes at events only.
+    pub(crate) discrete: Vec<bool>,
     block_names: Vec<String>,
     input_names: Vec<String>,
     output_names: Vec<String>,
@@ -230,6 +233,7 @@ impl Wiring {
             shapes: Vec::new(),
             wires: Vec::new(),
             connections: network.connections.clone(),
+            discrete: Vec::new(),
             block_names: Vec::new(),
             input_names: Vec::new(),
             output_names: Vec::new(),
@@ -244,6 +248,7 @@ impl Wiring {
             });
             wiring.block_names.push(member.name.clone());
             wiring.input_names.extend(member.inputs.iter().map(|input| format!("{}.{}", member.name, input.name)));
+            wiring.discrete.extend((0..member.outputs.len()).map(|output| member.block.is_discrete(output)));
             wiring.output_names.extend(member.outputs.iter().map(|output| format!("{}.{output}", member.name)));
             wiring.wires.extend(member.inputs.iter().map(|i| Wire {
                 source: None,

@@ -68,11 +68,17 @@ impl Schedule {
     pub(crate) fn delays(&self, wiring: &Wiring, settings: &Settings) -> Vec<Delay> {
         let delay = |(connection, wire): (usize, &crate::network::Connection)| {
             let (from, to) = (wire.from.block, wire.to.block);
-            let ahead = self.is_known(from, to);
-            let steps = oldest(wiring.shapes[from].every, wiring.shapes[to].every, ahead, !self.announced);
+            // What changes at events is not known before its time, whoever has been stepped first.
+            let is_held = wiring.discrete[wiring.shapes[from].first_output + wire.from.port] && !wire.is_discrete;
+            let ahead = self.is_known(from, to) && !is_held;
+            let steps = oldest(wiring.shapes[from].every, wiring.shapes[to].every, ahead, !self.announced || is_held);
             let ticks = steps * u64::from(Divider::ticks(settings.step));
             // What lies partly ahead is a line at least.
-            let order = if ahead { settings.order.max(Order::Linear) } else { settings.order };
+            let order = match (is_held, ahead) {
+                (true, _) => Order::Constant,
+                (_, true) => settings.order.max(Order::Linear),
+                (_, false) => settings.order,
+            };
             Delay { connection, ticks, steps, extrapolated: (steps > 0).then_some(order) }
         };
         wiring.connections.iter().enumerate().map(delay).collect()

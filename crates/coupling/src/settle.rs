@@ -34,9 +34,28 @@ struct Level {
 }
 
 impl Plan {
+    /// The plan of an exchange.
     pub(crate) fn new<B: Block>(wiring: &Wiring, blocks: &[B], solve: Option<Iteration>) -> Result<Self, NetworkError> {
+        Self::of(wiring, blocks, solve, B::feeds_through)
+    }
+
+    /// The plan of the initialisation.
+    pub(crate) fn of_start<B: Block>(
+        wiring: &Wiring,
+        blocks: &[B],
+        solve: Option<Iteration>,
+    ) -> Result<Self, NetworkError> {
+        Self::of(wiring, blocks, solve, B::follows_at_start)
+    }
+
+    fn of<B: Block>(
+        wiring: &Wiring,
+        blocks: &[B],
+        solve: Option<Iteration>,
+        follows: impl Fn(&B, usize, usize) -> bool,
+    ) -> Result<Self, NetworkError> {
         solve.map_or(Ok(()), |iteration| iteration.check())?;
-        let through = Feedthrough::new(wiring, blocks);
+        let through = Feedthrough::new(wiring, blocks, follows);
         let mut levels = vec![Level::default(); wiring.outputs()];
         let mut loops = Vec::new();
         for component in components(&through.successors) {
@@ -86,7 +105,7 @@ struct Feedthrough {
 }
 
 impl Feedthrough {
-    fn new<B: Block>(wiring: &Wiring, blocks: &[B]) -> Self {
+    fn new<B: Block>(wiring: &Wiring, blocks: &[B], follows: impl Fn(&B, usize, usize) -> bool) -> Self {
         let outputs = wiring.outputs();
         let mut found = Self {
             successors: vec![Vec::new(); outputs],
@@ -95,7 +114,7 @@ impl Feedthrough {
         };
         for (block, shape) in blocks.iter().zip(&wiring.shapes) {
             for output in 0..shape.outputs {
-                for input in (0..shape.inputs).filter(|input| block.feeds_through(output, *input)) {
+                for input in (0..shape.inputs).filter(|input| follows(block, output, *input)) {
                     let to = shape.first_output + output;
                     found.follows[to] = true;
                     if let Some(source) = wiring.wires[shape.first_input + input].source {

@@ -1,7 +1,8 @@
 //! What has been exchanged: the last values of each output, and the inputs that follow from them.
 //!
 //! The values of an output are those at the ends of its own block's steps, the newest first. The newest may lie ahead of the
-//! present: a block that has gone through its step before others is known to them, and a slow one is known to faster ones.
+//! present: a block that has gone through its step before others is known to them, and a slow one is known to faster ones. Of an
+//! output that changes at events only nobody knows before its time: it is held at what it was.
 use crate::Input;
 use crate::network::{Wire, Wiring};
 use crate::polynomial::{Order, later, through};
@@ -11,6 +12,8 @@ pub(crate) struct Signals {
     samples: Vec<[f64; 3]>,
     /// What the newest value was expected to be by the values before it.
     expected: Vec<f64>,
+    /// By output: whether it changes at events only, and is held between them.
+    discrete: Vec<bool>,
     tracks: Vec<Track>,
     order: Order,
     /// The communication step (s).
@@ -45,6 +48,7 @@ impl Signals {
         Self {
             samples: vec![[0.0; 3]; wiring.outputs()],
             expected: vec![0.0; wiring.outputs()],
+            discrete: wiring.discrete.clone(),
             tracks: wiring.shapes.iter().map(track).collect(),
             order,
             step,
@@ -64,11 +68,22 @@ impl Signals {
     /// The polynomial of an output from `now` on.
     fn output(&self, block: usize, output: usize, now: u64) -> Input {
         let track = &self.tracks[block];
+        if self.discrete[output] {
+            return [self.held(block, output, now), 0.0, 0.0];
+        }
         // A value that lies ahead is not held: the signal would be ahead of its time, and push what it moves.
         let order = if track.at <= now { self.order } else { self.order.max(Order::Linear) };
         let degree = order.degree().min(track.count.saturating_sub(1));
         let since = if track.at <= now { (now - track.at) as f64 } else { -((track.at - now) as f64) };
         through(&self.samples[output], degree, f64::from(track.every) * self.step, since * self.step)
+    }
+
+    /// The newest value of an output that does not lie ahead of `now`; the oldest that is known, if all of them do.
+    fn held(&self, block: usize, output: usize, now: u64) -> f64 {
+        let track = &self.tracks[block];
+        let ahead = track.at.saturating_sub(now).div_ceil(u64::from(track.every));
+        let oldest = track.count.saturating_sub(1);
+        self.samples[output][usize::from(u8::try_from(ahead).unwrap_or(oldest).min(oldest))]
     }
 
     /// The value of an output at `now`.
@@ -78,7 +93,12 @@ impl Signals {
 
     /// The value of an input at the end of its step.
     pub(crate) fn at_end(&self, wire: &Wire, now: u64, until: u64) -> f64 {
-        later(&self.input(wire, now), (until - now) as f64 * self.step)[0]
+        match wire.source {
+            Some(source) if !wire.is_discrete && self.discrete[source.output] => {
+                wire.gain * self.held(source.block, source.output, until) + wire.offset
+            }
+            _ => later(&self.input(wire, now), (until - now) as f64 * self.step)[0],
+        }
     }
 
     /// Makes room for the values of `block` at `at`, filled with what they are expected to be. Does nothing if it is there.
@@ -92,7 +112,8 @@ impl Signals {
         for output in track.first..track.first + track.outputs {
             let [y0, y1, _] = self.samples[output];
             let since = (at - track.at) as f64 * self.step;
-            self.expected[output] = through(&self.samples[output], degree, spacing, since)[0];
+            self.expected[output] =
+                if self.discrete[output] { y0 } else { through(&self.samples[output], degree, spacing, since)[0] };
             self.samples[output] = [self.expected[output], y0, y1];
         }
         self.tracks[block] = Track { at, count: (track.count + 1).min(3), degree, ..track };

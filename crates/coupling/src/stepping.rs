@@ -74,12 +74,24 @@ impl<B: Block> Master<B> {
     /// Reads a block with its inputs at the exchange `now`.
     pub(crate) fn follow(&mut self, block: usize, now: u64) -> Result<(), CouplingError<B::Error>> {
         self.signals.open(block, now);
+        let inputs = self.present_inputs(block, now);
+        self.read(block, Some(inputs))
+    }
+
+    /// Ends the initialisation of a block with the inputs that it has come to.
+    pub(crate) fn begin(&mut self, block: usize) -> Result<(), CouplingError<B::Error>> {
+        let inputs = self.present_inputs(block, 0);
+        let started = self.blocks[block].start(&self.present[..inputs]);
+        started.map_err(|source| self.failed(block, 0, source))
+    }
+
+    /// Takes down the inputs of a block at the exchange `now`; how many there are.
+    fn present_inputs(&mut self, block: usize, now: u64) -> usize {
         let shape = &self.wiring.shapes[block];
         for (value, wire) in self.present.iter_mut().zip(&self.wiring.wires[shape.first_input..][..shape.inputs]) {
             *value = self.signals.input(wire, now)[0];
         }
-        let inputs = shape.inputs;
-        self.read(block, Some(inputs))
+        shape.inputs
     }
 
     /// Makes known what a block has come to before the exchange, outputs that follow inputs with these as they were stepped with.

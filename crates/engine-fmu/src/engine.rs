@@ -5,7 +5,7 @@ use crate::open::{Wanted, open};
 use servobench_base::{ParamError, finite, positive};
 use servobench_fmi::Slave;
 use servobench_plant::{
-    Drive, Engine, FmuMistake, FmuModel, FmuPartner, Mechanics, MechanicsError, MechanicsSetup, Model,
+    Drive, Engine, FmuEntry, FmuMistake, FmuModel, FmuPartner, Mechanics, MechanicsError, MechanicsSetup, Model,
 };
 use std::io;
 
@@ -38,13 +38,16 @@ impl Fmu {
             });
         }
         check(model)?;
-        let wanted =
-            Wanted { name: None, inputs: model.inputs().collect(), outputs: model.outputs().collect(), end: None };
-        let slave = open(&model.file, &wanted, self.host).map_err(|mistakes| MechanicsError::Fmu {
-            engine: NAME,
-            path: model.file.path.clone(),
-            mistakes,
-        })?;
+        let wanted = Wanted {
+            name: None,
+            inputs: model.inputs().collect(),
+            outputs: model.outputs().collect(),
+            end: None,
+            step: f64::from(model.ticks) * setup.step,
+            // Nothing acts before the first tick: its inputs begin as the FMU has them.
+            waits: false,
+        };
+        let slave = open(&model.file, &wanted, self.host).map_err(|mistakes| refused(model, mistakes))?;
         FmuMechanics::new(slave, model, setup.step)
     }
 
@@ -58,6 +61,8 @@ impl Fmu {
             inputs: partner.inputs.iter().collect(),
             outputs: partner.outputs.iter().collect(),
             end: Some(partner.end),
+            step: partner.step,
+            waits: true,
         };
         open(&partner.file, &wanted, self.host)
     }
@@ -70,6 +75,15 @@ impl Engine for Fmu {
 
     fn build(&self, setup: &MechanicsSetup) -> Result<Box<dyn Mechanics>, MechanicsError> {
         Ok(Box::new(self.mechanics(setup)?))
+    }
+}
+
+/// What is wrong with the data, or with what the FMU does.
+fn refused(model: &FmuModel, mistakes: Vec<FmuMistake>) -> MechanicsError {
+    let path = model.file.path.clone();
+    match mistakes.iter().find(|mistake| mistake.at == FmuEntry::Conduct) {
+        Some(conduct) => MechanicsError::Native { engine: NAME, message: format!("`{}`: {conduct}", path.display()) },
+        None => MechanicsError::Fmu { engine: NAME, path, mistakes },
     }
 }
 

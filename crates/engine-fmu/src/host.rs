@@ -25,6 +25,13 @@ static PAGE: OnceLock<&'static Page> = OnceLock::new();
 /// One speaks at a time.
 static SPEAKING: Mutex<()> = Mutex::new(());
 
+/// Notes which function of the FMU is under way where the parent finds it.
+pub(crate) fn note_call(name: &'static str) {
+    if let Some(page) = PAGE.get() {
+        page.header().answered.note_call(name);
+    }
+}
+
 /// Puts what the FMU says where the parent finds it, whatever happens next; `false` if this process is no host.
 pub(crate) fn say_at_once(line: &LogLine) -> bool {
     let _speaking = SPEAKING.lock().unwrap_or_else(PoisonError::into_inner);
@@ -136,6 +143,8 @@ impl Host {
         };
         while let Some(command) = self.next() {
             if command == Command::End {
+                slave.end();
+                pass_on(&slave.take_log());
                 drop(slave);
                 self.answer(Status::Done);
                 return;
@@ -169,6 +178,11 @@ impl Work {
             (Command::ReadFor, _) => self.read_for(slave)?,
             (Command::Save, _) => slave.save()?,
             (Command::Restore, _) => slave.restore()?,
+            (Command::Start, _) => slave.start(None)?,
+            (Command::StartWith, _) => {
+                self.take_present();
+                slave.start(Some(&self.values))?;
+            }
             // Neither comes here.
             (Command::Load | Command::End, _) => {}
         }
@@ -202,11 +216,15 @@ impl Work {
     }
 
     fn read_for(&mut self, slave: &mut dyn Slave) -> Result<(), SlaveError> {
-        let values = self.page.inputs().iter().step_by(3);
-        self.values.iter_mut().zip(values).for_each(|(value, word)| *value = number(word));
+        self.take_present();
         slave.read(Some(&self.values), &mut self.outputs)?;
         self.write_outputs();
         Ok(())
+    }
+
+    fn take_present(&mut self) {
+        let values = self.page.inputs().iter().step_by(3);
+        self.values.iter_mut().zip(values).for_each(|(value, word)| *value = number(word));
     }
 
     fn write_outputs(&self) {

@@ -20,6 +20,14 @@ impl InSi {
     }
 }
 
+/// `inputs` in the units of the FMU.
+fn own<'a>(present: &'a mut [f64], ports: &Ports, inputs: &[f64]) -> &'a [f64] {
+    for ((own, wire), si) in present.iter_mut().zip(&ports.inputs).zip(inputs) {
+        *own = wire.of_si(*si);
+    }
+    present
+}
+
 impl Slave for InSi {
     fn capabilities(&self) -> Capabilities {
         self.slave.capabilities()
@@ -27,6 +35,27 @@ impl Slave for InSi {
 
     fn feeds_through(&self, output: usize, input: usize) -> bool {
         self.slave.feeds_through(output, input)
+    }
+
+    fn is_discrete(&self, output: usize) -> bool {
+        self.slave.is_discrete(output)
+    }
+
+    fn is_initialising(&self) -> bool {
+        self.slave.is_initialising()
+    }
+
+    fn follows_at_start(&self, output: usize, input: usize) -> bool {
+        self.slave.follows_at_start(output, input)
+    }
+
+    fn start(&mut self, inputs: Option<&[f64]>) -> Result<(), SlaveError> {
+        let present = inputs.map(|inputs| own(&mut self.present, &self.ports, inputs));
+        self.slave.start(present)
+    }
+
+    fn end(&mut self) {
+        self.slave.end();
     }
 
     fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
@@ -37,12 +66,7 @@ impl Slave for InSi {
     }
 
     fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
-        let present = inputs.map(|inputs| {
-            for ((own, wire), si) in self.present.iter_mut().zip(&self.ports.inputs).zip(inputs) {
-                *own = wire.of_si(*si);
-            }
-            self.present.as_slice()
-        });
+        let present = inputs.map(|inputs| own(&mut self.present, &self.ports, inputs));
         self.slave.read(present, outputs)?;
         for (output, wire) in outputs.iter_mut().zip(&self.ports.outputs) {
             *output = wire.to_si(*output);

@@ -4,7 +4,7 @@ use crate::error::IsolationError;
 use crate::keeper::{HostCommand, Keeper};
 use crate::memory::in_words;
 use crate::page::{Answered, Asked, Page};
-use crate::protocol::{Command, Message, Status, log_of_lines};
+use crate::protocol::{Command, Message, Status, kept, log_of_lines};
 use serde::Serialize;
 use servobench_fmi::{Capabilities, Feedthrough, LogLine, Progress, Severity, Slave, SlaveError, Unpacked};
 use std::sync::atomic::Ordering::Relaxed;
@@ -54,12 +54,18 @@ pub struct Isolated {
     listener: Listener,
     /// Number of the last order, from 1.
     number: u32,
-    /// Present time (s).
+    /// Time of what was asked for last (s).
     time: f64,
+    /// Where the last step has come to (s).
+    reached: f64,
     /// The outputs are there since the last step.
     fresh: bool,
     /// Why it cannot go on.
     failed: Option<SlaveError>,
+    is_initialising: bool,
+    has_ended: bool,
+    /// What went wrong at its end, until somebody takes it.
+    warning: Option<SlaveError>,
     known: Option<Known>,
 }
 
@@ -67,6 +73,8 @@ pub struct Isolated {
 #[derive(Debug)]
 pub(crate) struct Known {
     pub(crate) feedthrough: Feedthrough,
+    /// It waits in its initialisation.
+    pub(crate) waits: bool,
     /// What it was unpacked to, which goes after it.
     pub(crate) _unpacked: Unpacked,
 }
@@ -106,8 +114,12 @@ impl Isolated {
             listener: Listener::default(),
             number: 0,
             time: 0.0,
+            reached: 0.0,
             fresh: false,
             failed: None,
+            is_initialising: known.as_ref().is_some_and(|known| known.waits),
+            has_ended: false,
+            warning: None,
             known,
         };
         match isolated.ask(Command::Load)? {
@@ -164,16 +176,24 @@ impl Isolated {
     fn lost(&mut self, command: Command) -> SlaveError {
         let ended_by_itself = self.keeper.shared.ending().is_some();
         let (time, patience) = (self.time, self.patience.as_secs_f64());
+        // What a step is by itself need not be said.
+        let call = kept(self.answered().call());
+        let call = if command == Command::Step && call.ends_with("DoStep") { "" } else { call };
         let intact = self.page().intact();
         let error = match self.keeper.end() {
-            Some(ending) if !intact => SlaveError::Crashed { time, how: format!("{OVERWRITTEN}: {}", ending.how()) },
-            Some(ending) if ended_by_itself => SlaveError::Crashed { time, how: ending.how() },
+            Some(ending) if !intact => {
+                let how = format!("{OVERWRITTEN}: {}", ending.how());
+                SlaveError::Crashed { call: "", time, how }
+            }
+            Some(ending) if ended_by_itself => SlaveError::Crashed { call, time, how: ending.how() },
             Some(ending) if ending.of_memory() => SlaveError::Crashed {
+                call,
                 time,
                 how: crate::ending::Ending { status: None, ..ending.clone() }.how()
                     + &format!("; it did not come back within {patience} s and was ended"),
             },
-            _ => SlaveError::Hung { call: command.words(), time, patience },
+            _ if call.is_empty() => SlaveError::Hung { call: command.words(), time, patience },
+            _ => SlaveError::Hung { call, time, patience },
         };
         self.fail(error)
     }
@@ -181,7 +201,7 @@ impl Isolated {
     /// The answer is none.
     fn overwritten(&mut self) -> SlaveError {
         self.keeper.end();
-        self.fail(SlaveError::Crashed { time: self.time, how: OVERWRITTEN.into() })
+        self.fail(SlaveError::Crashed { call: "", time: self.time, how: OVERWRITTEN.into() })
     }
 
     /// Notes that it cannot go on.
@@ -226,6 +246,34 @@ impl Slave for Isolated {
         self.known.as_ref().is_none_or(|known| known.feedthrough.between(output, input))
     }
 
+    fn is_discrete(&self, output: usize) -> bool {
+        self.known.as_ref().is_some_and(|known| known.feedthrough.is_discrete(output))
+    }
+
+    fn is_initialising(&self) -> bool {
+        self.is_initialising
+    }
+
+    fn follows_at_start(&self, output: usize, input: usize) -> bool {
+        self.known.as_ref().is_none_or(|known| known.feedthrough.at_start(output, input))
+    }
+
+    fn start(&mut self, inputs: Option<&[f64]>) -> Result<(), SlaveError> {
+        self.is_initialising = false;
+        let Some(inputs) = inputs else { return self.order(Command::Start) };
+        self.write_present(inputs);
+        self.order(Command::StartWith)
+    }
+
+    fn end(&mut self) {
+        // What cannot go on is ended without a word: it has had the last one.
+        if self.failed.is_none() && !std::mem::replace(&mut self.has_ended, true) {
+            // A sum of times, said without its roundings.
+            self.time = (self.reached * 1e12).round() / 1e12;
+            self.warning = self.leave().err();
+        }
+    }
+
     fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
         let words = self.page().inputs();
         assert_eq!(3 * inputs.len(), words.len(), "inputs are those that the FMU was wired with");
@@ -236,6 +284,10 @@ impl Slave for Isolated {
         let status = self.ask(Command::Step)?;
         self.fresh = self.answered().fresh.load(Relaxed) != 0;
         let reached = f64::from_bits(self.answered().reached.load(Relaxed));
+        // What was said when it failed is not where it is.
+        if status != Status::Message && reached.is_finite() {
+            self.reached = reached;
+        }
         match status {
             Status::Done => Ok(Progress::Done),
             Status::Until => Ok(Progress::Until(reached)),
@@ -247,9 +299,7 @@ impl Slave for Isolated {
     fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
         assert_eq!(outputs.len(), self.page().outputs().len(), "outputs are those that the FMU was wired with");
         if let Some(inputs) = inputs {
-            let words = self.page().inputs();
-            assert_eq!(3 * inputs.len(), words.len(), "inputs are those that the FMU was wired with");
-            words.iter().step_by(3).zip(inputs).for_each(|(word, value)| word.store(value.to_bits(), Relaxed));
+            self.write_present(inputs);
             self.order(Command::ReadFor)?;
         } else if !self.fresh {
             self.order(Command::Read)?;
@@ -286,20 +336,44 @@ impl Slave for Isolated {
             let lines = text.lines().filter(|text| !text.trim().is_empty());
             log.extend(lines.map(|text| line(Severity::Info, text.trim_end().to_owned())));
         }
+        drop(output);
+        let time = self.time;
+        log.extend(self.warning.take().map(|error| LogLine {
+            time,
+            severity: Severity::Warning,
+            category: String::new(),
+            message: format!("its results are complete, but {error}"),
+        }));
         log
+    }
+}
+
+impl Isolated {
+    /// Gives the inputs of the present.
+    fn write_present(&self, inputs: &[f64]) {
+        let words = self.page().inputs();
+        assert_eq!(3 * inputs.len(), words.len(), "inputs are those that the FMU was wired with");
+        words.iter().step_by(3).zip(inputs).for_each(|(word, value)| word.store(value.to_bits(), Relaxed));
+    }
+
+    /// Has the FMU freed and the process ended.
+    fn leave(&mut self) -> Result<(), SlaveError> {
+        self.order(Command::End)?;
+        let leave = Instant::now() + LEAVE.min(self.patience);
+        let shared = &self.keeper.shared;
+        // Wakes when the process has ended.
+        let over = 1 << 31 | self.number;
+        let go_on = || shared.ending().is_none() && Instant::now() < leave;
+        Listener::default().wait(&shared.page.header().answer, over, GLANCE, go_on);
+        Ok(())
     }
 }
 
 impl Drop for Isolated {
     fn drop(&mut self) {
         // What cannot go on is ended; so is what does not end as it was asked to: its results are all there.
-        if self.keeper.shared.ending().is_none() && self.order(Command::End).is_ok() {
-            let leave = Instant::now() + LEAVE.min(self.patience);
-            let shared = &self.keeper.shared;
-            // Wakes when the process has ended.
-            let over = 1 << 31 | self.number;
-            let go_on = || shared.ending().is_none() && Instant::now() < leave;
-            Listener::default().wait(&shared.page.header().answer, over, GLANCE, go_on);
+        if !self.has_ended && self.keeper.shared.ending().is_none() {
+            self.leave().ok();
         }
     }
 }

@@ -1,10 +1,10 @@
 //! An FMU, here or in a process of its own.
 use crate::error::{HostError, IsolationError};
-use crate::host::{say_at_once, serve};
+use crate::host::{note_call, say_at_once, serve};
 use crate::isolated::{Bounds, Isolated, Known, Wires};
 use crate::keeper::HostCommand;
 use crate::order::Order;
-use servobench_fmi::{Feedthrough, FmuError, Loaded, Setup, Slave, Unpacked, hear_at_once};
+use servobench_fmi::{Feedthrough, FmuError, Loaded, Setup, Slave, Unpacked, hear_at_once, note_calls};
 use thiserror::Error;
 
 /// Where an FMU runs.
@@ -19,6 +19,17 @@ pub enum Place {
         /// What it may take.
         bounds: Bounds,
     },
+}
+
+impl LoadError {
+    /// Whether the FMU did not get as far as to be refused: it crashed, hung or found no process.
+    #[must_use]
+    pub const fn is_of_the_run(&self) -> bool {
+        match self {
+            Self::Fmu(_) | Self::Isolation(IsolationError::Refused(_)) => false,
+            Self::Isolation(_) => true,
+        }
+    }
 }
 
 /// Why an FMU cannot be used.
@@ -43,7 +54,8 @@ pub fn load(fmu: &Unpacked, setup: &Setup, place: &Place) -> Result<Box<dyn Slav
             // What is wrong with it is better said here, before anything is started.
             setup.check(fmu)?;
             let wires = Wires { inputs: setup.inputs.len(), outputs: setup.outputs.len() };
-            let known = Known { feedthrough: Feedthrough::new(fmu.description(), setup), _unpacked: fmu.clone() };
+            let feedthrough = Feedthrough::new(fmu.description(), setup);
+            let known = Known { feedthrough, waits: setup.waits, _unpacked: fmu.clone() };
             Ok(Box::new(Isolated::start_known(command, &Order::new(fmu, setup), wires, *bounds, Some(known))?))
         }
     }
@@ -55,5 +67,6 @@ pub fn load(fmu: &Unpacked, setup: &Setup, place: &Place) -> Result<Box<dyn Slav
 /// [`HostError`] if nobody has started this process as a host.
 pub fn host() -> Result<(), HostError> {
     hear_at_once(say_at_once);
+    note_calls(note_call);
     serve(|order: Order| order.load().map_err(|error| error.to_string()))
 }

@@ -13,6 +13,10 @@ use servobench_plant::{Actuation, BodyState, FmuModel, Input, Mechanics, Mechani
 
 /// Name of the engine.
 pub(crate) const NAME: &str = "fmu";
+/// Part of a step that is left out at its end: the rounding of a time in seconds.
+const ROUNDING: f64 = 1e-9;
+/// Times that an FMU may return early one after the other without having gone on.
+const MOST_STALLS: u32 = 100;
 /// Times that an FMU may return early in one step.
 const MOST_PARTS: u32 = 10_000;
 /// Lines of its log in the message of what went wrong: the last ones.
@@ -31,6 +35,8 @@ pub struct FmuMechanics {
     marked: Option<State>,
     inputs: Vec<[f64; 3]>,
     outputs: Vec<f64>,
+    /// When it wanted the simulation to end (s): at the end of the last step, so that only another one is too much.
+    ended: Option<f64>,
 }
 
 /// Where it is, the FMU itself apart.
@@ -71,6 +77,7 @@ impl FmuMechanics {
             marked: None,
             inputs: vec![[0.0; 3]; inputs],
             outputs: vec![0.0; model.outputs().count()],
+            ended: None,
         };
         mechanics.read()?;
         mechanics.go_on();
@@ -127,16 +134,26 @@ impl FmuMechanics {
         let (mut time, end) = (at(self.state.exchanges), at(self.state.exchanges + 1));
         self.state.exchanges += 1;
         let mut length = count * self.tick;
+        let (rounding, mut stalls) = (ROUNDING * length, 0);
+        if let Some(ended) = self.ended {
+            return Err(native(format!("the FMU wants the simulation to end at {ended} s")));
+        }
         for _ in 0..MOST_PARTS {
             match self.slave.step(time, length, &self.inputs).map_err(|error| self.wrong(&error))? {
                 Progress::Done => return self.read(),
-                Progress::Until(reached) if reached > time && reached < end => {
+                // An event at the very start is one too, but not without end.
+                Progress::Until(reached) if reached >= time && stalls < MOST_STALLS && reached < end - rounding => {
+                    stalls = if reached > time { 0 } else { stalls + 1 };
                     time = reached;
                     length = end - reached;
                 }
-                Progress::Until(reached) if reached >= end => return self.read(),
+                Progress::Until(reached) if (reached - end).abs() <= rounding => return self.read(),
                 Progress::Until(reached) => {
                     return Err(native(format!("the FMU came back from a step from {time} s at {reached} s")));
+                }
+                Progress::Terminated(reached) if (reached - end).abs() <= rounding => {
+                    self.ended = Some(reached);
+                    return self.read();
                 }
                 Progress::Terminated(reached) => {
                     return Err(native(format!("the FMU wants the simulation to end at {reached} s")));
@@ -202,7 +219,15 @@ impl Mechanics for FmuMechanics {
     fn rewind(&mut self) -> Result<(), MechanicsError> {
         let Some(marked) = &self.marked else { return Err(MechanicsError::no_way_back()) };
         self.state.clone_from(marked);
+        self.ended = None;
         self.slave.restore().map_err(|error| self.wrong(&error))
+    }
+
+    fn end(&mut self) {
+        self.slave.end();
+        // What it says now is heard whatever the tick.
+        let lines = self.slave.take_log();
+        self.said.extend(lines);
     }
 
     /// It speaks when it is asked for something: in the ticks between two exchanges nobody looks.

@@ -14,8 +14,12 @@ pub(crate) struct Wanted<'a> {
     pub(crate) name: Option<&'a str>,
     pub(crate) inputs: Vec<&'a FmuPort>,
     pub(crate) outputs: Vec<&'a FmuPort>,
-    /// When the simulation ends (s), if that is known.
+    /// When its last step ends (s), if that is known.
     pub(crate) end: Option<f64>,
+    /// How long its steps are (s).
+    pub(crate) step: f64,
+    /// Whether it is to wait in its initialisation for its inputs.
+    pub(crate) waits: bool,
 }
 
 /// The FMU, initialised and wired; its numbers are SI numbers. `host` is the program that runs one in a process of its own.
@@ -47,13 +51,47 @@ pub(crate) fn open(
         inputs: wires(ports.as_ref().map(|ports| &ports.inputs)),
         outputs: wires(ports.as_ref().map(|ports| &ports.outputs)),
         stop_time: wanted.end,
+        waits: wanted.waits,
+        without_event_mode: !file.event_mode,
         ..Setup::default()
     };
     mistakes.extend(misfits(&mut setup, &fmu));
+    mistakes.extend(step_mistake(wanted.step, it));
+    mistakes.extend(event_mode_mistake(file, it));
     let Some(ports) = ports.filter(|_| mistakes.is_empty()) else { return Err(mistakes) };
     let place = place(file.isolation, host).map_err(|error| of_file(&error))?;
-    let slave = load(&fmu, &setup, &place).map_err(|error| of_file(&error))?;
+    let slave = load(&fmu, &setup, &place).map_err(|error| {
+        let at = if error.is_of_the_run() { FmuEntry::Conduct } else { FmuEntry::File };
+        vec![FmuMistake { at, ..FmuMistake::of_file(&error) }]
+    })?;
     Ok(Box::new(InSi::new(slave, ports)))
+}
+
+/// Part of an internal step that a step may be longer or shorter than a whole number of them: times are rounded.
+const ROUNDING: f64 = 1e-6;
+
+/// FMI 3.0.1, §4.4.1: steps are whole numbers of the internal steps of the FMU, if these are of one length. Between them it would be
+/// somewhere else than it is asked to be.
+fn step_mistake(step: f64, it: &ModelDescription) -> Option<FmuMistake> {
+    let internal =
+        it.co_simulation.fixed_internal_step_size.filter(|internal| internal.is_finite() && *internal > 0.0)?;
+    let count = step / internal;
+    if count >= 1.0 - ROUNDING && (count - count.round()).abs() <= ROUNDING * count.max(1.0) {
+        return None;
+    }
+    let message = format!(
+        "the FMU steps by {internal} s inside (`fixedInternalStepSize`), and {step} s is no whole number of that"
+    );
+    let way_out = format!("give it a `step` that is a multiple of {internal} s");
+    Some(FmuMistake { at: FmuEntry::Step, message, way_out })
+}
+
+fn event_mode_mistake(file: &FmuFile, it: &ModelDescription) -> Option<FmuMistake> {
+    (!file.event_mode && !it.co_simulation.has_event_mode).then(|| FmuMistake {
+        at: FmuEntry::EventMode,
+        message: "the FMU has no event mode that could be switched off".into(),
+        way_out: "leave `event_mode` out".into(),
+    })
 }
 
 /// Everything of `setup` that does not fit; start values that do not are taken out.
@@ -93,15 +131,37 @@ fn place(isolation: Isolation, host: fn() -> io::Result<HostCommand>) -> io::Res
 /// A start value in the unit of its variable.
 fn value(start: &FmuStart, it: &ModelDescription) -> Result<Value, FmuMistake> {
     let convert = |value: &FmuValue| match value {
+        FmuValue::Text(text) => match unknown_unit(&start.variable, text, it) {
+            Some(mistake) => Err(mistake),
+            None => Ok(Value::Text(text.clone())),
+        },
         FmuValue::Number(number) => Ok(Value::Number(*number)),
         FmuValue::Boolean(is) => Ok(Value::Boolean(*is)),
-        FmuValue::Text(text) => Ok(Value::Text(text.clone())),
         FmuValue::Quantity { text, si, exponents } => quantity(&start.variable, text, *si, *exponents, it),
     };
     match &start.values[..] {
         [value] => convert(value),
         values => Ok(Value::List(values.iter().map(convert).collect::<Result<_, _>>()?)),
     }
+}
+
+/// A number with something behind it that is no unit, for a variable that is a number.
+fn unknown_unit(name: &str, text: &str, it: &ModelDescription) -> Option<FmuMistake> {
+    let variable =
+        it.variable(name).filter(|variable| !is_named(variable) && variable.data_type != DataType::Boolean)?;
+    let ends = text.char_indices().map(|(at, _)| at).chain([text.len()]);
+    let (number, unit) =
+        ends.rev().map(|end| text.split_at(end)).find(|(number, _)| number.trim().parse::<f64>().is_ok())?;
+    let unit = unit.trim();
+    if unit.is_empty() || !number.trim().starts_with(|first: char| first.is_ascii_digit() || "+-.".contains(first)) {
+        return None;
+    }
+    let of_variable = it.unit(variable).map_or_else(String::new, |unit| format!(" in `{}`", unit.name));
+    Some(FmuMistake {
+        at: FmuEntry::Start(name.to_owned()),
+        message: format!("\"{text}\": `{unit}` is an unknown unit"),
+        way_out: format!("give a quantity with a unit of SI, or a plain number{of_variable}"),
+    })
 }
 
 fn quantity(name: &str, text: &str, si: f64, exponents: [i32; 4], it: &ModelDescription) -> Result<Value, FmuMistake> {

@@ -18,6 +18,8 @@ pub(crate) struct Order {
     stop_time: Option<u64>,
     tolerance: Option<u64>,
     logging: bool,
+    waits: bool,
+    without_event_mode: bool,
 }
 
 /// A [`Value`] on its way.
@@ -45,6 +47,8 @@ impl Order {
             stop_time: setup.stop_time.map(f64::to_bits),
             tolerance: setup.tolerance.map(f64::to_bits),
             logging: setup.logging,
+            waits: setup.waits,
+            without_event_mode: setup.without_event_mode,
         }
     }
 
@@ -61,6 +65,8 @@ impl Order {
             stop_time: self.stop_time.map(f64::from_bits),
             tolerance: self.tolerance.map(f64::from_bits),
             logging: self.logging,
+            waits: self.waits,
+            without_event_mode: self.without_event_mode,
         }
     }
 
@@ -121,6 +127,8 @@ mod tests {
             stop_time: Some(f64::MAX),
             tolerance: Some(1e-7),
             logging: true,
+            waits: true,
+            without_event_mode: true,
         };
         let order = Order {
             path: "a.fmu".into(),
@@ -133,6 +141,8 @@ mod tests {
             stop_time: setup.stop_time.map(f64::to_bits),
             tolerance: setup.tolerance.map(f64::to_bits),
             logging: true,
+            waits: true,
+            without_event_mode: true,
         };
         let sent = serde_json::to_string(&order).unwrap();
         let arrived: Order = serde_json::from_str(&sent).unwrap();

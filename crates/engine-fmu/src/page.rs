@@ -23,7 +23,7 @@ use std::sync::atomic::{
 use std::{io, ptr, slice};
 
 /// Says that a page is one, of this layout.
-const MAGIC: u64 = u64::from_le_bytes(*b"servofm1");
+const MAGIC: u64 = u64::from_le_bytes(*b"servofm2");
 /// Bytes of an answer that is more than numbers.
 const MESSAGE: usize = 1 << 16;
 /// Bytes of log between two visits.
@@ -86,6 +86,35 @@ pub(crate) struct Answered {
     pub(crate) reached: AtomicU64,
     /// Bytes of memory that the host had when it crashed.
     pub(crate) held: AtomicU64,
+    /// Name of the function that is under way, zeros behind it.
+    call: [AtomicU64; CALL / 8],
+}
+
+/// Bytes of the name of a function; the longest of the standard has 27.
+const CALL: usize = 32;
+
+impl Answered {
+    /// Notes which function is called; an empty name when it has come back.
+    pub(crate) fn note_call(&self, name: &str) {
+        let mut bytes = [0; CALL];
+        let length = name.len().min(CALL);
+        bytes[..length].copy_from_slice(&name.as_bytes()[..length]);
+        // An empty name is one word.
+        let words = if name.is_empty() { 1 } else { self.call.len() };
+        for (word, bytes) in self.call.iter().zip(bytes.chunks_exact(8)).take(words) {
+            word.store(bytes.iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte)), Relaxed);
+        }
+    }
+
+    /// The function that is under way; empty if there is none, and if this is no name.
+    pub(crate) fn call(&self) -> String {
+        let words = self.call.iter().map(|word| word.load(Relaxed).to_le_bytes());
+        let bytes: Vec<u8> = words.flatten().take_while(|byte| *byte != 0).collect();
+        String::from_utf8(bytes)
+            .ok()
+            .filter(|name| name.bytes().all(|byte| byte.is_ascii_alphanumeric()))
+            .unwrap_or_default()
+    }
 }
 
 /// Where things are.

@@ -22,13 +22,27 @@ pub(crate) enum Command {
     Restore = 6,
     /// Terminate and free the FMU, then end.
     End = 7,
+    /// End the initialisation.
+    Start = 8,
+    /// End the initialisation with these inputs.
+    StartWith = 9,
 }
 
 impl Command {
     pub(crate) fn of(number: u32) -> Option<Self> {
-        [Self::Load, Self::Step, Self::Read, Self::ReadFor, Self::Save, Self::Restore, Self::End]
-            .into_iter()
-            .find(|command| *command as u32 == number)
+        [
+            Self::Load,
+            Self::Step,
+            Self::Read,
+            Self::ReadFor,
+            Self::Save,
+            Self::Restore,
+            Self::End,
+            Self::Start,
+            Self::StartWith,
+        ]
+        .into_iter()
+        .find(|command| *command as u32 == number)
     }
 
     /// What an FMU does not come back from, in a message.
@@ -40,6 +54,7 @@ impl Command {
             Self::Save => "saving its state",
             Self::Restore => "restoring its state",
             Self::End => "its end",
+            Self::Start | Self::StartWith => "its initialisation",
         }
     }
 }
@@ -90,7 +105,8 @@ pub(crate) enum Failure {
     NotFinite { variable: String, value: u64, time: u64 },
     Value { variable: String, bound: String, value: u64, time: u64 },
     Unable { what: String, capability: String },
-    Crashed { time: u64, how: String },
+    Astray { call: String, from: u64, to: u64, at: u64 },
+    Crashed { call: String, time: u64, how: String },
     Hung { call: String, time: u64, patience: u64 },
 }
 
@@ -112,7 +128,10 @@ impl From<SlaveError> for Failure {
             SlaveError::Unable { what, capability } => {
                 Self::Unable { what: what.into(), capability: capability.into() }
             }
-            SlaveError::Crashed { time, how } => Self::Crashed { time: time.to_bits(), how },
+            SlaveError::Astray { call, from, to, at } => {
+                Self::Astray { call: call.into(), from: from.to_bits(), to: to.to_bits(), at: at.to_bits() }
+            }
+            SlaveError::Crashed { call, time, how } => Self::Crashed { call: call.into(), time: time.to_bits(), how },
             SlaveError::Hung { call, time, patience } => {
                 Self::Hung { call: call.into(), time: time.to_bits(), patience: patience.to_bits() }
             }
@@ -137,7 +156,10 @@ impl From<Failure> for SlaveError {
                 Self::Value { variable, bound: kept(bound), value: number(value), time: number(time) }
             }
             Failure::Unable { what, capability } => Self::Unable { what: kept(what), capability: kept(capability) },
-            Failure::Crashed { time, how } => Self::Crashed { time: number(time), how },
+            Failure::Astray { call, from, to, at } => {
+                Self::Astray { call: kept(call), from: number(from), to: number(to), at: number(at) }
+            }
+            Failure::Crashed { call, time, how } => Self::Crashed { call: kept(call), time: number(time), how },
             Failure::Hung { call, time, patience } => {
                 Self::Hung { call: kept(call), time: number(time), patience: number(patience) }
             }
@@ -145,7 +167,8 @@ impl From<Failure> for SlaveError {
     }
 }
 
-fn kept(text: String) -> &'static str {
+/// `text` for good.
+pub(crate) fn kept(text: String) -> &'static str {
     static WORDS: Mutex<Words> = Mutex::new(Words(BTreeSet::new()));
     WORDS.lock().unwrap_or_else(std::sync::PoisonError::into_inner).keep(text)
 }
@@ -222,7 +245,8 @@ mod tests {
             SlaveError::NotFinite { variable: "x[1]".into(), value: f64::NEG_INFINITY, time },
             SlaveError::Value { variable: "n".into(), bound: "integers", value: 0.5, time },
             SlaveError::Unable { what: "save its state", capability: "canGetAndSetFMUState" },
-            SlaveError::Crashed { time, how: "signal 11".into() },
+            SlaveError::Crashed { call, time, how: "signal 11".into() },
+            SlaveError::Astray { call, from: time, to: 1.0, at: -2.0 },
             SlaveError::Hung { call, time, patience: 1.5 },
         ] {
             let sent = serde_json::to_vec(&Message::Failed(error.clone().into())).unwrap();
@@ -249,7 +273,7 @@ mod tests {
             assert!(Command::of(number).is_none_or(|command| command as u32 == number));
             assert!(Status::of(number).is_none_or(|status| status as u32 == number));
         }
-        assert_eq!((Command::of(7), Command::of(8)), (Some(Command::End), None));
+        assert_eq!((Command::of(9), Command::of(10)), (Some(Command::StartWith), None));
         assert_eq!((Status::of(4), Status::of(5)), (Some(Status::Message), None));
     }
 

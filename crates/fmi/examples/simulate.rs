@@ -78,6 +78,7 @@ fn answer() -> Result<serde_json::Value, Box<dyn Error>> {
         stop_time: None,
         tolerance: request.tolerance,
         logging: false,
+        ..Setup::default()
     };
     let mut slave = Loaded::new(&unpacked, &setup)?;
     let mut run = Run { request: &request, rows: vec![], outputs: vec![0.0; setup.outputs.len()] };

@@ -2,22 +2,26 @@
 //!
 //! Nothing is written before every entry has been looked at: its name, kind and size as the directory of the archive has them.
 //! While it is unpacked no file becomes longer than that. Names that lead out of the folder, links, devices, encrypted files,
-//! duplicates and compressions that the standard does not have are refused.
+//! duplicates with different bytes and compressions that the standard does not have are refused.
 //!
 //! Source: FMI 2.0.5, §2.3, and FMI 3.0.2, §2.5 (a zip with `deflate` or no compression); PKWARE, *.ZIP File Format
 //! Specification*, 6.3.10, §4.3.16 (end of the directory).
 
+mod folder;
 mod name;
+mod twice;
 
 use crate::description::{MOST_BYTES, ModelDescription};
 use crate::error::{ArchiveProblem, FmuError};
+use folder::{Own, writing};
 use name::Names;
+
+pub use folder::remove_unpacked;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom};
-use std::os::unix::fs::OpenOptionsExt;
+use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use tempfile::TempDir;
 use zip::{CompressionMethod, ZipArchive};
 
 /// How much an archive may hold.
@@ -55,6 +59,8 @@ pub struct Archive {
     path: PathBuf,
     zip: ZipArchive<File>,
     names: Names,
+    /// What is odd about it.
+    remarks: Vec<String>,
 }
 
 impl Archive {
@@ -66,15 +72,18 @@ impl Archive {
         let path = path.into();
         let at = |problem| FmuError::Archive { path: path.clone(), problem };
         let unreadable = |source| FmuError::File { path: path.clone(), what: "read", source };
-        let mut file = File::open(&path).map_err(unreadable)?;
-        let bytes = file.metadata().map_err(unreadable)?.len();
+        let (mut file, bytes) = open_file(&path).map_err(unreadable)?;
         refuse_long_directory(&mut file, bytes).map_err(unreadable)?.map_err(at)?;
+        let mut other = file.try_clone().map_err(unreadable)?;
         let mut zip = ZipArchive::new(file).map_err(|error| at(ArchiveProblem::Zip(error.to_string())))?;
-        if zip.has_duplicate_names() {
-            return Err(at(ArchiveProblem::Zip("a name is in it twice".into())));
-        }
+        let remarks = if zip.has_duplicate_names() {
+            let place = (zip.central_directory_start(), zip.offset());
+            remarks(&twice::same_twice(&mut other, place, bytes).map_err(at)?).map_err(at)?
+        } else {
+            Vec::new()
+        };
         let names = look(&mut zip, bytes, limits).map_err(at)?;
-        Ok(Self { path, zip, names })
+        Ok(Self { path, zip, names, remarks })
     }
 
     /// The file.
@@ -94,7 +103,9 @@ impl Archive {
     /// [`FmuError`]
     pub fn description(&mut self) -> Result<ModelDescription, FmuError> {
         let text = self.description_text().map_err(|problem| self.refuse(problem))?;
-        ModelDescription::read(&text, &format!("{}/{DESCRIPTION}", self.path.display()))
+        let mut description = ModelDescription::read(&text, &format!("{}/{DESCRIPTION}", self.path.display()))?;
+        description.remarks.extend_from_slice(&self.remarks);
+        Ok(description)
     }
 
     fn refuse(&self, problem: ArchiveProblem) -> FmuError {
@@ -125,8 +136,7 @@ impl Archive {
     pub fn unpack(mut self) -> Result<Unpacked, FmuError> {
         let description = self.description()?;
         let parent = std::env::temp_dir();
-        let folder = tempfile::Builder::new().prefix("servobench-fmu-").tempdir_in(&parent);
-        let folder = folder.map_err(|source| FmuError::File { path: parent, what: "written to", source })?;
+        let folder = Own::new(&parent).map_err(|source| FmuError::File { path: parent, what: "written to", source })?;
         for index in 0..self.zip.len() {
             self.unpack_entry(index, folder.path())?;
         }
@@ -134,6 +144,7 @@ impl Archive {
     }
 
     fn unpack_entry(&mut self, index: usize, folder: &Path) -> Result<(), FmuError> {
+        let _writing = writing();
         let name = self.names.name(index);
         let target = folder.join(name);
         let unwritable = |source| FmuError::File { path: target.clone(), what: "written", source };
@@ -161,6 +172,33 @@ impl Archive {
     }
 }
 
+/// Opens a file that is one, and says how long it is. What else there may be under a name could keep its reader waiting for ever, as a
+/// FIFO does that nobody writes to; the name may be something else by now, so that what was opened is looked at.
+fn open_file(path: &Path) -> io::Result<(File, u64)> {
+    let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK).open(path)?;
+    let about = file.metadata()?;
+    let kind = about.file_type();
+    let what = match () {
+        () if kind.is_file() => return Ok((file, about.len())),
+        () if kind.is_dir() => "a folder",
+        () if kind.is_fifo() => "a FIFO",
+        () => "a device or a socket",
+    };
+    Err(io::Error::new(io::ErrorKind::InvalidInput, format!("it is {what}, and no file")))
+}
+
+/// What is said of names that are there more than once with the same bytes.
+fn remarks(twice: &[(String, usize)]) -> Result<Vec<String>, ArchiveProblem> {
+    if twice.is_empty() {
+        // Either names are the same in different encodings, or the directory announces more than it has.
+        return Err(ArchiveProblem::Zip("its directory has fewer different names than entries".into()));
+    }
+    let remark = |(name, count): &(String, usize)| {
+        format!("`{name}` is in the archive {count} times, always with the same bytes")
+    };
+    Ok(twice.iter().map(remark).collect())
+}
+
 /// An FMU that is unpacked. Its folder is removed with the last copy of this.
 #[derive(Debug, Clone)]
 pub struct Unpacked {
@@ -172,7 +210,7 @@ pub struct Unpacked {
 #[derive(Debug)]
 enum Folder {
     /// Removed when it is dropped.
-    Own(TempDir),
+    Own(Own),
     /// Somebody else's.
     Foreign(PathBuf),
 }

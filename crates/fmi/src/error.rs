@@ -152,7 +152,9 @@ pub enum ArchiveProblem {
         what: &'static str,
     },
     /// More than a limit allows.
-    #[error("{what} is {value}, at most {most} is unpacked; raise the limit if the file is to be trusted")]
+    #[error(
+        "{what} is {value}, at most {most} is unpacked, which no FMU needs; pack it anew without what does not belong to it"
+    )]
     Limit {
         /// What is limited.
         what: String,

@@ -1,5 +1,5 @@
 //! Direct feedthrough between what is wired.
-use crate::description::{Causality, DataType, ModelDescription, Version};
+use crate::description::{Causality, DataType, Initial, ModelDescription, Unknown, Variability, Version};
 use crate::setup::Setup;
 use crate::slave::Port;
 
@@ -9,6 +9,10 @@ pub struct Feedthrough {
     inputs: usize,
     /// By output, then by input.
     pairs: Vec<bool>,
+    /// The same by the initial equations.
+    initial: Vec<bool>,
+    /// By output: whether it changes at events only.
+    discrete: Vec<bool>,
 }
 
 impl Feedthrough {
@@ -18,13 +22,19 @@ impl Feedthrough {
     pub fn new(it: &ModelDescription, setup: &Setup) -> Self {
         let position = |port: &Port| it.position(&port.variable);
         let inputs: Vec<_> = setup.inputs.iter().map(position).collect();
-        let of = |output: &Port| {
-            let output = position(output);
-            inputs
-                .iter()
-                .map(move |input| output.zip(*input).is_none_or(|(output, input)| may_follow(it, output, input)))
+        let outputs: Vec<_> = setup.outputs.iter().map(position).collect();
+        let pairs = |may_follow: fn(&ModelDescription, usize, usize) -> bool| {
+            let all = outputs.iter().flat_map(|output| inputs.iter().map(move |input| (*output, *input)));
+            all.map(|(output, input)| output.zip(input).is_none_or(|(output, input)| may_follow(it, output, input)))
+                .collect()
         };
-        Self { inputs: inputs.len(), pairs: setup.outputs.iter().flat_map(of).collect() }
+        let is_discrete = |at: usize| it.variables[at].variability != Variability::Continuous;
+        Self {
+            inputs: inputs.len(),
+            pairs: pairs(may_follow),
+            initial: pairs(may_follow_at_start),
+            discrete: outputs.iter().map(|output| output.is_some_and(is_discrete)).collect(),
+        }
     }
 
     /// Whether the output with this position in the setup may follow the input with that position. What the FMU does not
@@ -33,15 +43,36 @@ impl Feedthrough {
     pub fn between(&self, output: usize, input: usize) -> bool {
         input >= self.inputs || self.pairs.get(output * self.inputs + input).is_none_or(|may| *may)
     }
+
+    /// The same by the initial equations.
+    #[must_use]
+    pub fn at_start(&self, output: usize, input: usize) -> bool {
+        input >= self.inputs || self.initial.get(output * self.inputs + input).is_none_or(|may| *may)
+    }
+
+    /// Whether the output with this position in the setup changes at events only.
+    #[must_use]
+    pub fn is_discrete(&self, output: usize) -> bool {
+        self.discrete.get(output).is_some_and(|is| *is)
+    }
 }
 
 /// FMI 2.0.5, §2.2.8, and FMI 3.0.2, §2.4.8: dependencies list inputs and states. Of parameters they say nothing.
 fn may_follow(it: &ModelDescription, output: usize, input: usize) -> bool {
-    let of_output = it.structure.outputs.iter().filter(|unknown| are_one(it, unknown.variable, output));
-    let mut said = of_output.filter_map(|unknown| unknown.dependencies.as_ref());
     let is_input = it.variables[input].causality == Causality::Input;
-    let dependencies = said.next().filter(|_| is_input);
-    dependencies.is_none_or(|all| all.iter().any(|(variable, _)| are_one(it, *variable, input)))
+    !is_input || is_among(it, &it.structure.outputs, output, input)
+}
+
+/// FMI 2.0.4, §2.2.8, and FMI 3.0.1, §2.4.8: what is started by its own value is no unknown of the initialisation.
+fn may_follow_at_start(it: &ModelDescription, output: usize, input: usize) -> bool {
+    it.variables[output].initial != Some(Initial::Exact) && is_among(it, &it.structure.initial_unknowns, output, input)
+}
+
+/// Whether `input` is among what the unknown `output` depends on, as far as `unknowns` say.
+fn is_among(it: &ModelDescription, unknowns: &[Unknown], output: usize, input: usize) -> bool {
+    let of_output = unknowns.iter().filter(|unknown| are_one(it, unknown.variable, output));
+    let mut said = of_output.filter_map(|unknown| unknown.dependencies.as_ref());
+    said.next().is_none_or(|all| all.iter().any(|(variable, _)| are_one(it, *variable, input)))
 }
 
 /// Whether two variables are one to the library. In FMI 2.0 enumerations have the value references of the integers.

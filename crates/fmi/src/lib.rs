@@ -16,7 +16,7 @@ mod log;
 mod setup;
 mod slave;
 
-pub use archive::{Archive, Limits, Unpacked};
+pub use archive::{Archive, Limits, Unpacked, remove_unpacked};
 pub use description::{
     Alias, BaseUnit, Causality, CoSimulation, DataType, DefaultExperiment, DependencyKind, Dimension, DisplayUnit,
     Enumeration, Exponents, Initial, IntervalVariability, Item, LogCategory, ModelDescription, ModelStructure, Named,
@@ -24,6 +24,7 @@ pub use description::{
 };
 pub use error::{ArchiveProblem, DescriptionProblem, FmuError, LibraryProblem};
 pub use feedthrough::Feedthrough;
+pub use library::calls::note_calls;
 pub use loaded::Loaded;
 pub use log::hear_at_once;
 pub use servobench_base::Severity;

@@ -3,6 +3,7 @@
 //! All that is `unsafe` is in the modules below: they know the functions' types and lifetimes, and give what Rust can check.
 
 pub(crate) mod callbacks;
+pub(crate) mod calls;
 pub(crate) mod open;
 pub(crate) mod status;
 pub(crate) mod three;

@@ -24,6 +24,7 @@ use two::LoadedTwo;
 /// An FMU that is loaded into this process and initialised. It is terminated, freed and unloaded when it is dropped.
 pub struct Loaded {
     instance: Box<dyn Instance>,
+    is_initialising: bool,
     redo: Redo,
     feedthrough: Feedthrough,
     /// The FMU reads its resources when it likes: they go after it.
@@ -31,7 +32,7 @@ pub struct Loaded {
 }
 
 impl Loaded {
-    /// Loads the library, instantiates the FMU and initialises it.
+    /// Loads the library, instantiates the FMU and initialises it, unless it is to wait.
     ///
     /// # Errors
     /// [`FmuError::Setup`], [`FmuError::Library`], [`FmuError::Initialise`]
@@ -42,7 +43,15 @@ impl Loaded {
         };
         let feedthrough = Feedthrough::new(unpacked.description(), setup);
         let redo = Redo::new(instance.as_ref(), setup.inputs.len(), setup.outputs.len());
-        Ok(Self { instance, redo, feedthrough, _unpacked: unpacked.clone() })
+        Ok(Self { instance, is_initialising: setup.waits, redo, feedthrough, _unpacked: unpacked.clone() })
+    }
+
+    /// Nothing but reading goes before the start.
+    fn started(&mut self) -> Result<&mut dyn Instance, SlaveError> {
+        if self.is_initialising {
+            self.start(None)?;
+        }
+        Ok(self.instance.as_mut())
     }
 }
 
@@ -61,25 +70,47 @@ impl Slave for Loaded {
         self.feedthrough.between(output, input)
     }
 
+    fn is_discrete(&self, output: usize) -> bool {
+        self.feedthrough.is_discrete(output)
+    }
+
+    fn is_initialising(&self) -> bool {
+        self.is_initialising
+    }
+
+    fn follows_at_start(&self, output: usize, input: usize) -> bool {
+        self.feedthrough.at_start(output, input)
+    }
+
+    fn start(&mut self, inputs: Option<&[f64]>) -> Result<(), SlaveError> {
+        self.is_initialising = false;
+        self.instance.start(inputs)
+    }
+
+    fn end(&mut self) {
+        self.instance.end();
+    }
+
     fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+        self.started()?;
         self.redo.step(self.instance.as_mut(), time, length, inputs)
     }
 
     fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
-        if let Some(inputs) = inputs {
+        if let Some(inputs) = inputs.filter(|_| !self.is_initialising) {
             self.redo.reads(inputs);
         }
         self.instance.read(inputs, outputs)
     }
 
     fn save(&mut self) -> Result<(), SlaveError> {
-        self.instance.save(Slot::Caller)?;
+        self.started()?.save(Slot::Caller)?;
         self.redo.is_kept(Slot::Caller);
         Ok(())
     }
 
     fn restore(&mut self) -> Result<(), SlaveError> {
-        self.instance.restore(Slot::Caller)?;
+        self.started()?.restore(Slot::Caller)?;
         self.redo.is_kept(Slot::Caller);
         Ok(())
     }

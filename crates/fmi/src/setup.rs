@@ -46,6 +46,10 @@ pub struct Setup {
     pub tolerance: Option<f64>,
     /// Whether the FMU is to say what it does.
     pub logging: bool,
+    /// Whether it waits in its initialisation until it is started ([`Slave::start`](crate::Slave::start)).
+    pub waits: bool,
+    /// Whether it is to deal with events by itself, although it has an event mode (FMI 3.0).
+    pub without_event_mode: bool,
 }
 
 /// What is to be set or read, found in the description.

@@ -79,6 +79,34 @@ pub trait Slave: Send {
         true
     }
 
+    /// Whether an output, by its position among those that were wired, changes at events only: what is no real number, and what is
+    /// not continuous. Between two of its values it has the older one.
+    fn is_discrete(&self, _output: usize) -> bool {
+        false
+    }
+
+    /// Whether it is in its initialisation, which [`start`](Self::start) ends. Until then it is only read.
+    fn is_initialising(&self) -> bool {
+        false
+    }
+
+    /// Whether an output may follow an input by the initial equations; true where that is not known.
+    fn follows_at_start(&self, output: usize, input: usize) -> bool {
+        self.feeds_through(output, input)
+    }
+
+    /// Ends the initialisation, with these inputs if they are given.
+    ///
+    /// # Errors
+    /// [`SlaveError`]
+    fn start(&mut self, _inputs: Option<&[f64]>) -> Result<(), SlaveError> {
+        Ok(())
+    }
+
+    /// Terminates and frees it, after which only its log can be taken. What goes wrong with that is a warning there: its results
+    /// are all known. Where it is not called, dropping does the same without a word.
+    fn end(&mut self) {}
+
     /// Goes from `time` to `time + length` (s). Each input is its value at `time` with its first and second derivative to the
     /// time; an FMU that takes none gets the mean over the step, u + u'·H/2 + u''·H²/6.
     ///
@@ -164,9 +192,23 @@ pub enum SlaveError {
         /// Attribute that it lacks.
         capability: &'static str,
     },
+    /// It came back from a step at a time where it cannot be.
+    #[error("the FMU was asked by {call} to go from {from} s to {to} s, and says that it is at {at} s")]
+    Astray {
+        /// Function of the standard.
+        call: &'static str,
+        /// Where the step began (s).
+        from: f64,
+        /// Where it should have ended (s).
+        to: f64,
+        /// Where it says that it is (s).
+        at: f64,
+    },
     /// Its process ended.
-    #[error("the FMU's process ended at {time} s: {how}")]
+    #[error("the FMU's process ended{} at {time} s: {how}", during(call))]
     Crashed {
+        /// Function of the standard that it was in; empty if it was in none.
+        call: &'static str,
         /// When (s).
         time: f64,
         /// Signal or exit code, and what it left on standard error.
@@ -182,6 +224,10 @@ pub enum SlaveError {
         /// How long it was waited for (s).
         patience: f64,
     },
+}
+
+fn during(call: &str) -> String {
+    if call.is_empty() { String::new() } else { format!(" in {call}") }
 }
 
 fn tried(shortest: Option<f64>) -> String {

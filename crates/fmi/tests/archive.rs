@@ -76,15 +76,64 @@ fn names_that_lead_out_are_refused_before_anything_is_written() {
     assert!(!inside.exists());
 }
 
+/// [`good`] with `resources/tool` there once more.
+fn with_a_second_tool(content: &[u8], mode: u32) -> Vec<u8> {
+    let mut entries = good();
+    entries.push(("resources/tooL", content, mode));
+    let mut bytes = zipped(&entries);
+    replace(&mut bytes, b"resources/tooL", b"resources/tool");
+    bytes
+}
+
 /// A directory that names a file twice: other readers take the first or the last, so that what is looked at and what is
 /// used could be two things.
 #[test]
-fn a_name_that_is_there_twice_is_refused() {
+fn a_name_that_is_there_twice_with_different_bytes_is_refused() {
+    let why = "the name `resources/tool` in it is there twice, and not with the same bytes; nothing was unpacked";
+    for (content, mode) in [(&b"other"[..], 0o777), (b"#!/bin/sh ", 0o777), (b"#!/bin/sh\n", 0o644)] {
+        let message = refusal(&with_a_second_tool(content, mode));
+        assert!(message.contains(why), "{message}");
+    }
+    // One that claims to be the same: size and sum are those of the other, the bytes are not.
+    let mut bytes = with_a_second_tool(b"#!/bin/sh\n", 0o777);
+    let last = find(&bytes, b"PK\x03\x04").pop().unwrap();
+    bytes[last + 30 + "resources/tool".len() + 3] ^= 1;
+    assert!(refusal(&bytes).contains(why), "{}", refusal(&bytes));
+}
+
+/// An official Reference FMU has such.
+#[test]
+fn a_name_that_is_there_twice_with_the_same_bytes_is_remarked() {
+    let file = file(&with_a_second_tool(b"#!/bin/sh\n", 0o777));
+    let mut archive = Archive::open(file.path(), &Limits::default()).unwrap();
+    assert_eq!(archive.files().count(), 4);
+    let remark = "`resources/tool` is in the archive 2 times, always with the same bytes";
+    assert_eq!(archive.description().unwrap().remarks.last().unwrap(), remark);
+    let unpacked = archive.unpack().unwrap();
+    assert_eq!(fs::read(unpacked.folder().join("resources/tool")).unwrap(), b"#!/bin/sh\n");
+}
+
+#[test]
+fn a_path_that_begins_with_a_point_is_inside_its_folder() {
     let mut entries = good();
-    entries.push(("resources/tooL", b"other", 0o644));
-    let mut bytes = zipped(&entries);
-    replace(&mut bytes, b"resources/tooL", b"resources/tool");
-    assert!(refusal(&bytes).contains("a name is in it twice"));
+    entries[0].0 = "./modelDescription.xml";
+    entries[2].0 = "resources/./a/b/table.csv";
+    let file = file(&zipped(&entries));
+    let unpacked = Unpacked::new(file.path()).unwrap();
+    assert_eq!(fs::read(unpacked.folder().join("resources/a/b/table.csv")).unwrap(), b"1,2\n");
+    assert_eq!(unpacked.description().model_name, "Drive");
+}
+
+/// Opening a FIFO waits for somebody who writes to it.
+#[test]
+fn what_is_no_file_is_refused_at_once() {
+    let folder = tempdir().unwrap();
+    let fifo = folder.path().join("fifo.fmu");
+    assert!(std::process::Command::new("mkfifo").arg(&fifo).status().unwrap().success());
+    let said = |path: &std::path::Path| Archive::open(path, &Limits::default()).unwrap_err().to_string();
+    assert!(said(&fifo).ends_with("cannot be read: it is a FIFO, and no file"), "{}", said(&fifo));
+    assert!(said(folder.path()).ends_with("it is a folder, and no file"));
+    assert!(said(std::path::Path::new("/dev/zero")).ends_with("it is a device or a socket, and no file"));
 }
 
 #[test]

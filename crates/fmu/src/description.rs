@@ -43,7 +43,7 @@ pub(crate) fn describe(
     };
     description.default_experiment = DefaultExperiment {
         start_time: Some(0.0),
-        stop_time: Some(scenario.duration.unwrap_or(1.0)),
+        stop_time: Some(model.length),
         step_size: Some(step),
         tolerance: None,
     };
@@ -99,7 +99,7 @@ fn variable(at: u32, row: &Row, units: &mut Vec<Unit>) -> Result<Variable, NoUni
         enumeration: None,
         dimensions: vec![],
         start: has_start.then_some(start),
-        min: (row.kind == Kind::Real && least >= 0.0).then_some(0.0),
+        min: (row.kind == Kind::Real && least > f64::MIN).then_some(least),
         max: (row.kind == Kind::Real && most < f64::MAX).then_some(most),
         nominal: None,
         quantity: String::new(),

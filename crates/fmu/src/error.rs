@@ -84,8 +84,8 @@ pub(crate) enum Refusal {
     #[error("the communication point {given} s is not the time of the FMU, {now} s")]
     Point { given: f64, now: f64 },
     #[error(
-        "the step of {length} s from {from} s is no whole number of base ticks of 1/{rate} s: nothing was computed; take a \
-         multiple of {tick} s"
+        "the step of {length} s from {from} s is no whole number of base ticks of 1/{rate} s, and never fits: step by multiples of \
+         {tick} s"
     )]
     Step { from: f64, length: f64, rate: u32, tick: f64 },
     #[error("the step to {to} s goes beyond the stop time {stop} s")]
@@ -100,13 +100,6 @@ pub(crate) enum Refusal {
     State { why: &'static str },
     #[error("the state takes {wanted} bytes, the buffer has {given}")]
     Size { given: usize, wanted: usize },
-}
-
-impl Refusal {
-    /// Whether the call was not carried out and everything is as before it, so that another one may follow (status discard).
-    pub(crate) const fn is_discard(&self) -> bool {
-        matches!(self, Self::Step { .. })
-    }
 }
 
 /// What a variable takes.

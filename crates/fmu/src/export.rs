@@ -59,8 +59,12 @@ fn archive(files: &[(String, &[u8])]) -> zip::result::ZipResult<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use servobench_fmi::{Archive, Causality, Limits, ModelDescription};
+    use crate::instance::{Asked, Instance};
+    use crate::interface::Kind;
+    use servobench_fmi::{Archive, Causality, DataType, Limits, ModelDescription, Variable};
     use servobench_scenario::{embedded_demo, parse};
+    use servobench_sim::Program;
+    use std::sync::Arc;
 
     fn demo() -> Loaded {
         let (name, text) = embedded_demo()[0];
@@ -93,6 +97,56 @@ mod tests {
                 assert!(kinds(Causality::Input) > 0 && kinds(Causality::Parameter) > 0);
                 // Nothing follows without a step.
                 assert!(read.structure.outputs.iter().all(|one| one.dependencies.as_ref().is_some_and(Vec::is_empty)));
+            }
+        }
+    }
+
+    /// Oracle: the instance itself. What `min` and `max` allow is taken, and what is a rounding beyond them is refused.
+    #[test]
+    fn the_bounds_that_are_written_are_those_that_are_kept() {
+        let asked = Asked { name: "Float64", takes: |kind| kind == Kind::Real, name_of: |_| "another type" };
+        let mut bounded = 0;
+        for part in Part::ALL {
+            let model = Arc::new(Model::new(part, &demo().scenario).unwrap());
+            let written = describe(&model, Version::Three, "{token}", IDENTIFIER).unwrap();
+            let written = ModelDescription::read(&written.write(), "modelDescription.xml").unwrap();
+            let is_settable = |one: &&Variable| {
+                one.data_type == DataType::Float64 && matches!(one.causality, Causality::Input | Causality::Parameter)
+            };
+            for one in written.variables.iter().filter(is_settable) {
+                let mut instance = Instance::new(Arc::clone(&model));
+                let mut set = |value| instance.set(one.value_reference, &asked, value);
+                for (bound, beyond) in [(one.min, f64::next_down as fn(f64) -> f64), (one.max, f64::next_up)] {
+                    let Some(bound) = bound else { continue };
+                    assert_eq!(set(bound), Ok(()), "{} at {bound}", one.name);
+                    assert!(set(beyond(bound)).is_err(), "{} beyond {bound}", one.name);
+                    bounded += 1;
+                }
+                if one.min.is_none() {
+                    assert_eq!(set(-1e300), Ok(()), "{}", one.name);
+                }
+            }
+        }
+        assert!(bounded > 10, "{bounded}");
+    }
+
+    /// Oracle: the end of the program by `sim`, and the run that records it.
+    #[test]
+    fn the_default_experiment_covers_the_program() {
+        const SLOW: &str = "[[program]]\nmove_to = \"4 m\"\n[[program]]\nwait = \"1.23456 s\"\n";
+        let text = embedded_demo()[0].1;
+        let (before, _) = text.split_once("[[program]]").unwrap();
+        for (text, least) in [(text.to_owned(), 0.0), (format!("{before}{SLOW}"), 5.0)] {
+            let loaded = parse("slow", &text, None).unwrap_or_else(|error| panic!("{error}"));
+            let end = Program::new(&loaded.scenario).unwrap().end();
+            assert!(end > least, "{end}");
+            for part in Part::ALL {
+                let model = Model::new(part, &loaded.scenario).unwrap();
+                let written = describe(&model, Version::Two, "{token}", IDENTIFIER).unwrap().default_experiment;
+                let (stop, step) = (written.stop_time.unwrap(), written.step_size.unwrap());
+                assert!(stop >= end, "{part:?}: {stop} of {end}");
+                let count = stop / step;
+                assert!((count - count.round()).abs() < 1e-6, "{part:?}: {count} steps");
             }
         }
     }

@@ -17,16 +17,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Categories of the log, which the standard names (FMI 2.0.5, §2.2.4).
-pub(crate) const CATEGORIES: [(&str, &str); 2] = [
-    ("logStatusError", "calls that are refused, and why"),
-    ("logStatusDiscard", "steps that cannot be computed, and why"),
-];
+pub(crate) const CATEGORIES: [(&str, &str); 1] = [("logStatusError", "calls that are refused, and why")];
 
-/// How a call ended, in the order of the statuses of both versions.
+/// How a call ended, in the order of the statuses of both versions. Nothing is discarded: that would say that the same may be asked
+/// again, as some importers do without end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Outcome {
     Ok = 0,
-    Discard = 2,
     Error = 3,
 }
 
@@ -40,8 +37,8 @@ struct Handle {
     instance: Instance,
     token: String,
     log: Box<dyn Log>,
-    /// Categories that are logged: error, discard.
-    logged: [bool; 2],
+    /// Whether errors are logged, the only category.
+    logged: bool,
 }
 
 impl Handle {
@@ -56,7 +53,7 @@ impl Handle {
         }
         let is_chosen =
             |name: &str| categories.is_empty() || categories.iter().any(|one| one.to_bytes() == name.as_bytes());
-        self.logged = CATEGORIES.map(|(name, _)| is_on && is_chosen(name));
+        self.logged = is_on && CATEGORIES.iter().all(|(name, _)| is_chosen(name));
         Ok(())
     }
 
@@ -73,10 +70,9 @@ impl Handle {
     }
 }
 
-fn say(log: &dyn Log, logged: [bool; 2], outcome: Outcome, message: &str) {
-    let at = usize::from(outcome == Outcome::Discard);
-    if logged[at]
-        && let (Ok(category), Ok(message)) = (CString::new(CATEGORIES[at].0), CString::new(message.replace('\0', " ")))
+fn say(log: &dyn Log, logged: bool, outcome: Outcome, message: &str) {
+    if logged
+        && let (Ok(category), Ok(message)) = (CString::new(CATEGORIES[0].0), CString::new(message.replace('\0', " ")))
     {
         log.say(outcome, &category, &message);
     }
@@ -98,10 +94,6 @@ unsafe fn call(pointer: *mut c_void, function: &str, body: impl FnOnce(&mut Hand
     let Some(handle) = (unsafe { pointer.cast::<Handle>().as_mut() }) else { return Outcome::Error };
     let message = match catch_unwind(AssertUnwindSafe(|| body(handle))) {
         Ok(Ok(())) => return Outcome::Ok,
-        Ok(Err(refusal)) if refusal.is_discard() => {
-            handle.say(Outcome::Discard, &format!("{function}: {refusal}"));
-            return Outcome::Discard;
-        }
         Ok(Err(refusal)) => refusal.to_string(),
         Err(panic) => words_of(&*panic),
     };
@@ -111,7 +103,7 @@ unsafe fn call(pointer: *mut c_void, function: &str, body: impl FnOnce(&mut Hand
 }
 
 /// Makes an instance of what `place` says: the folder of the resources and the token. NULL and a message when there is none.
-fn give(function: &str, log: Box<dyn Log>, logged: [bool; 2], place: Result<(PathBuf, String), String>) -> *mut c_void {
+fn give(function: &str, log: Box<dyn Log>, logged: bool, place: Result<(PathBuf, String), String>) -> *mut c_void {
     let made = catch_unwind(|| {
         let (folder, token) = place?;
         let files = Resources::read(&folder)?;
@@ -278,7 +270,7 @@ mod tests {
     fn a_panic_is_an_error_and_stays_inside() {
         let room = Room::new(Part::Axis);
         let place = Ok((room.folder().to_owned(), room.token.to_str().unwrap().to_owned()));
-        let handle = give("fmi2Instantiate", Box::new(Nothing), [true; 2], place);
+        let handle = give("fmi2Instantiate", Box::new(Nothing), true, place);
         assert!(!handle.is_null());
         // SAFETY: the handle is the one above.
         unsafe {

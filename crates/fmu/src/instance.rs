@@ -7,7 +7,7 @@
 //! Source: FMI 2.0.5, §4.2.4; FMI 3.0.2, §2.3 and §4.2.
 //!
 //! Time of the FMU is the tick of its loop: t = start + k/f. A step goes over a whole number of base ticks and holds the inputs;
-//! another one is discarded, and nothing was computed.
+//! another one is an error: it never fits, whatever is asked for next.
 use crate::error::Refusal;
 use crate::history::{History, Past};
 use crate::interface::{Kind, Role, Variable};
@@ -62,7 +62,7 @@ pub(crate) struct Instance {
     /// Whether the outputs among them are those of the machine.
     is_read: bool,
     run: Option<Run>,
-    /// Where the last step ended (s), for the importer that asks after a discard.
+    /// Where the last step ended (s).
     last_successful_time: f64,
     text: CString,
 }

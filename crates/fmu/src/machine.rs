@@ -15,6 +15,8 @@ pub(crate) struct Model {
     pub(crate) part: Part,
     pub(crate) scenario: Scenario,
     pub(crate) variables: Vec<Variable>,
+    /// How long a run of the scenario lasts (s), a whole number of base ticks.
+    pub(crate) length: f64,
 }
 
 impl Model {
@@ -31,9 +33,12 @@ impl Model {
         if !own.fmus.is_empty() {
             return Err(FmuError::Beside { scenario: name() });
         }
-        let stepper = stepper(&own).map_err(|error| FmuError::Build { scenario: name(), error })?;
+        let built = |error| FmuError::Build { scenario: name(), error };
+        let stepper = stepper(&own).map_err(built)?;
         let variables = variables(part, &own, &stepper);
-        Ok(Self { part, scenario: own, variables })
+        // Mechanics have no program of their own, and are stepped through that of the scenario.
+        let length = Bench::length(scenario).map_err(built)?;
+        Ok(Self { part, scenario: own, variables, length })
     }
 
     /// Start values of all variables.

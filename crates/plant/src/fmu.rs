@@ -12,6 +12,8 @@ pub struct FmuFile {
     pub start: Vec<FmuStart>,
     /// Where it runs.
     pub isolation: Isolation,
+    /// Whether its event mode is used, if it has one (FMI 3.0); otherwise it deals with events by itself.
+    pub event_mode: bool,
 }
 
 /// An FMU that is the mechanics of an axis.
@@ -67,7 +69,9 @@ pub struct FmuPartner {
     pub inputs: Vec<FmuPort>,
     /// Outputs that are exchanged.
     pub outputs: Vec<FmuPort>,
-    /// When the simulation ends (s).
+    /// How long its steps are (s).
+    pub step: f64,
+    /// When its last step ends (s): at the end of the run or after it, since steps are whole.
     pub end: f64,
 }
 
@@ -170,6 +174,12 @@ pub struct FmuMistake {
 pub enum FmuEntry {
     /// The file itself.
     File,
+    /// What it does: it crashed or did not come back, which is nobody's data.
+    Conduct,
+    /// The length of its steps.
+    Step,
+    /// Whether its event mode is used.
+    EventMode,
     /// The start value of this variable.
     Start(String),
     /// This input.

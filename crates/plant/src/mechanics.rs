@@ -100,6 +100,9 @@ pub trait Mechanics: Send {
         Err(MechanicsError::no_way_back())
     }
 
+    /// Frees what it holds of somebody else's, after which only its log is taken. What goes wrong with that is in its log.
+    fn end(&mut self) {}
+
     /// What it has said since the last time, also after an error.
     fn take_log(&mut self) -> Vec<Said> {
         Vec::new()

@@ -30,7 +30,13 @@ pub fn junit(results: &Results, times: &[Duration]) -> Result<String, ReportErro
         report.set_time(sum);
     }
     report.add_test_suite(suite);
-    Ok(report.to_string()?)
+    Ok(well_formed(&report.to_string()?))
+}
+
+/// `xml` without what is no character of XML 1.0 (§2.2), wherever it comes from: a single one makes a file that nobody reads.
+fn well_formed(xml: &str) -> String {
+    let is_allowed = |c: char| matches!(c, '\t' | '\n' | '\r' | '\u{20}'..='\u{fffd}' | '\u{10000}'..);
+    xml.chars().map(|c| if is_allowed(c) { c } else { char::REPLACEMENT_CHARACTER }).collect()
 }
 
 fn case(run: &RunResult, time: Option<Duration>) -> TestCase {

@@ -14,16 +14,23 @@ pub fn elided(text: &str, width: usize) -> String {
     format!("{start}…{end}")
 }
 
-/// What a terminal may get of a text that somebody else wrote: no control characters, nothing that turns the direction of
-/// writing, and no commands to a runner of continuous integration, which are lines that begin with `::`.
+/// What a terminal, or a file of XML, may get of a text that somebody else wrote: no control characters, nothing that turns the
+/// direction of writing, nothing that is no character, and no commands to a runner of continuous integration, which are lines that begin with `::`.
 #[must_use]
 pub fn printable(text: &str) -> String {
     let shown = |c: char| match c {
-        '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => '\u{fffd}',
+        '\u{fffe}' | '\u{ffff}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => {
+            '\u{fffd}'
+        }
         c if c.is_control() => ' ',
         c => c,
     };
     text.replace("::", ": :").chars().map(shown).collect()
+}
+
+/// The same of each line of `text`.
+pub(crate) fn printable_lines(text: &str) -> String {
+    text.split('\n').map(printable).collect::<Vec<_>>().join("\n")
 }
 
 /// `text` broken between words into lines of at most `width` characters. A longer word stays whole, and a number keeps

@@ -15,7 +15,7 @@ use crate::limit_watch::LimitWatch;
 use crate::network::Network;
 use crate::program::Program;
 use crate::recorded::Recorded;
-use servobench_base::{Rate, Setpoint};
+use servobench_base::{Rate, Setpoint, Tick};
 use servobench_drive as drive;
 use servobench_fieldbus::LinkFault;
 use servobench_metrics::JUDGED_BY;
@@ -47,6 +47,19 @@ impl Bench {
     /// [`BuildError`] says which part of the scenario cannot be built.
     pub fn new(scenario: &Scenario, engine: &dyn Engine) -> Result<Self, BuildError> {
         Self::with_partners(scenario, engine, &NoPartners)
+    }
+
+    /// How long a run of `scenario` has to last to see all of it (s): as long as it says, or half a second longer than its program, and
+    /// in any case as long as the program, in whole base ticks.
+    ///
+    /// # Errors
+    /// [`BuildError`] for a program that cannot be planned.
+    pub fn length(scenario: &Scenario) -> Result<f64, BuildError> {
+        let (base_rate, program) = (scenario.base_rate, Program::new(scenario)?);
+        let ticks = base_rate.tick_at(scenario.duration.unwrap_or(program.end() + TAIL));
+        let end = base_rate.tick_at(program.end());
+        let end = if base_rate.time(end) < program.end() { Tick(end.0 + 1) } else { end };
+        Ok(base_rate.time(ticks.max(end)))
     }
 
     /// The lumped bodies of `scenario` as engines have them; `None` where a file of the user's describes the mechanics.

@@ -13,13 +13,13 @@ use crate::channels::{Equipment, WriterRates};
 use crate::error::{BuildError, UnusableFmu};
 use crate::recorded::{LISTEN_EVERY, Recorded};
 use crate::run::{Failure, Outcome, PROGRESS_EVERY, Reason};
-use block::{Axis, Part, PartError};
+use block::{Axis, Company, Part, PartError};
 use servobench_base::{Divider, Tick};
 use servobench_coupling::{
     Advance, CouplingError, InputPort, Iteration, Master, Member, Method, Network, Order, Settings,
 };
 use servobench_fmi::Slave;
-use servobench_plant::{FmuMistake, FmuPartner};
+use servobench_plant::{FmuEntry, FmuMistake, FmuPartner};
 use servobench_scenario::{CoSimulation, CouplingMethod, Scenario};
 use std::num::NonZeroU32;
 use wiring::Wiring;
@@ -83,10 +83,10 @@ impl Coupled {
         partners: &dyn Partners,
     ) -> Result<Self, BuildError> {
         let wiring = Wiring::new(scenario, equipment, rates)?;
-        let end = scenario.base_rate.time(Tick(ticks));
+        let end = scenario.base_rate.time(Tick(ticks.saturating_sub(1)));
         let (mut members, mut unusable) = (Vec::new(), Vec::new());
         for (index, fmu) in scenario.fmus.iter().enumerate() {
-            let partner = wiring.partner(index, equipment, end);
+            let partner = wiring.partner(index, equipment, ticks);
             let slave = match partners.open(&partner) {
                 Ok(slave) => slave,
                 Err(mistakes) => {
@@ -99,11 +99,11 @@ impl Coupled {
                 inputs: partner.inputs.into_iter().map(|port| InputPort { name: port.variable, held: 0.0 }).collect(),
                 outputs: partner.outputs.into_iter().map(|port| port.variable).collect(),
                 every: steps(fmu.every, scenario.coupling.every),
-                block: Part::Fmu(slave),
+                block: Part::Fmu(Company { slave, end }),
             });
         }
         if !unusable.is_empty() {
-            return Err(BuildError::Fmus(unusable));
+            return Err(refused(unusable));
         }
         let names = members.iter().map(|member| member.name.clone()).collect();
         let axis = Axis::new(recorded, ticks, wiring.takes.clone(), wiring.gives.clone());
@@ -115,8 +115,7 @@ impl Coupled {
             block: Part::Axis(Box::new(axis)),
         });
         let network = Network { members, connections: wiring.connections.clone(), bonds: Vec::new() };
-        let master =
-            Master::new(network, &settings(scenario)).map_err(|error| BuildError::Coupling(error.to_string()))?;
+        let master = Master::new(network, &settings(scenario)).map_err(not_begun)?;
         let delays = master.delays().iter().map(|delay| wiring.described(delay)).collect();
         Ok(Self { master, names, delays })
     }
@@ -152,7 +151,7 @@ impl Coupled {
     /// Notes what the FMUs have said since the last time. What they say in a step that is repeated they say again.
     fn listen(&mut self) {
         for (index, name) in self.names.iter().enumerate() {
-            let Part::Fmu(slave) = self.master.block_mut(index) else { continue };
+            let Part::Fmu(Company { slave, .. }) = self.master.block_mut(index) else { continue };
             let said = slave.take_log();
             if said.is_empty() {
                 continue;
@@ -166,6 +165,11 @@ impl Coupled {
     }
 
     fn finish(mut self, failure: Option<Failure>) -> Outcome {
+        for index in 0..self.names.len() {
+            if let Part::Fmu(Company { slave, .. }) = self.master.block_mut(index) {
+                slave.end();
+            }
+        }
         self.listen();
         self.into_axis().recorded_to_the_end(failure.is_none()).finish(failure)
     }
@@ -187,6 +191,29 @@ impl Coupled {
     /// Every connection with how late it is.
     pub(crate) fn delays(&self) -> &[ConnectionDelay] {
         &self.delays
+    }
+}
+
+/// Data that do not fit come before FMUs that did not get far enough to say so.
+fn refused(mut unusable: Vec<UnusableFmu>) -> BuildError {
+    let is_conduct = |mistake: &FmuMistake| mistake.at == FmuEntry::Conduct;
+    let wrong = |fmu: &UnusableFmu| !fmu.mistakes.iter().all(is_conduct);
+    if !unusable.iter().any(wrong) {
+        return BuildError::Broken(unusable);
+    }
+    unusable.retain(wrong);
+    BuildError::Fmus(unusable)
+}
+
+/// Why there is no first exchange: what an FMU does then is nobody's data.
+fn not_begun(error: CouplingError<PartError>) -> BuildError {
+    match error {
+        CouplingError::Block { source: PartError::Axis(failure), .. } => BuildError::NotBegun(failure.to_string()),
+        CouplingError::Block { block, source: PartError::Fmu(error), .. } => {
+            BuildError::NotBegun(format!("`{block}`: {error}"))
+        }
+        CouplingError::Block { source: PartError::Mechanics(error), .. } => error.into(),
+        other => BuildError::Coupling(other.to_string()),
     }
 }
 

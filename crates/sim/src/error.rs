@@ -78,6 +78,12 @@ pub enum BuildError {
     /// FMUs beside the axis cannot be had, each for its reasons; at least one.
     #[error("{}", in_one_line(.0))]
     Fmus(Vec<UnusableFmu>),
+    /// FMUs beside the axis crashed, or did not come back, before the first tick.
+    #[error("{}", in_one_line(.0))]
+    Broken(Vec<UnusableFmu>),
+    /// Axis and FMUs did not come to their first exchange: what one of them did.
+    #[error("at 0 s: {0}")]
+    NotBegun(String),
     /// An input of an FMU is given a channel that the axis does not have.
     #[error("this axis has no channel `{name}` for the input `{variable}` of an FMU; it has {}", available.join(", "))]
     NoSuchSignal {

@@ -121,6 +121,7 @@ impl Recorded {
 
     /// What the run leaves behind.
     pub(crate) fn finish(mut self, failure: Option<Failure>) -> Outcome {
+        self.closed_loop.mechanics.end();
         self.hear_mechanics();
         let t = failure.as_ref().map_or_else(|| self.time(), |failure| failure.time);
         self.watch.finish(t, &mut self.recorder);

@@ -1,6 +1,6 @@
 //! What keeps a scenario from being built on an engine, told without running it.
 use crate::engines::Engines;
-use crate::error::RunError;
+use crate::error::{RunError, is_of_the_run};
 use crate::job::Job;
 use crate::panicked::caught;
 use crate::worker::{self, WorkerCommand, WorkerError};
@@ -63,8 +63,7 @@ pub(crate) fn objections(
 ) -> Result<Vec<Objection>, RunError> {
     let mut all = Vec::new();
     for error in Bench::objections(scenario, engine, partners) {
-        // A library that does not load is not the scenario's fault.
-        if matches!(error, BuildError::Mechanics(MechanicsError::Native { .. })) {
+        if is_of_the_run(&error) {
             return Err(error.into());
         }
         all.extend(of(&error, scenario));
@@ -81,7 +80,7 @@ fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
         BuildError::Mechanics(MechanicsError::Fmu { mistakes, .. }) => {
             return mistakes.iter().map(|mistake| Objection::to_fmu(mistake, "axis.fmu")).collect();
         }
-        BuildError::Fmus(fmus) => {
+        BuildError::Fmus(fmus) | BuildError::Broken(fmus) => {
             let of = |fmu: &UnusableFmu| {
                 let table = format!("fmu.{}", fmu.index);
                 fmu.mistakes.iter().map(|mistake| Objection::to_fmu(mistake, &table)).collect::<Vec<_>>()
@@ -111,7 +110,7 @@ fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
         BuildError::Units(_) => "bus.units".to_owned(),
         BuildError::Link(_) | BuildError::NoDriveOnTheBus => "bus".to_owned(),
         BuildError::Points(_) => "program".to_owned(),
-        BuildError::Coupling(_) => "fmu".to_owned(),
+        BuildError::Coupling(_) | BuildError::NotBegun(_) => "fmu".to_owned(),
         BuildError::OnlyAnFmu { .. } | BuildError::NoFmu => "engine".to_owned(),
     };
     vec![Objection::new(&key, error.to_string())]
@@ -141,7 +140,9 @@ impl Objection {
     /// What does not fit the file of the FMU that `table` describes.
     fn to_fmu(mistake: &FmuMistake, table: &str) -> Self {
         let key = match &mistake.at {
-            FmuEntry::File => format!("{table}.file"),
+            FmuEntry::File | FmuEntry::Conduct => format!("{table}.file"),
+            FmuEntry::Step => format!("{table}.step"),
+            FmuEntry::EventMode => format!("{table}.event_mode"),
             FmuEntry::Start(variable) => format!("{table}.parameters.{variable}"),
             FmuEntry::Input(variable) => format!("{table}.inputs.{variable}"),
             FmuEntry::Output(variable) => format!("{table}.outputs.{variable}"),

@@ -30,13 +30,21 @@ pub enum RunError {
     Worker(#[from] WorkerError),
 }
 
+/// Whether `error` is one of what was tried, not of the scenario.
+pub(crate) const fn is_of_the_run(error: &BuildError) -> bool {
+    matches!(
+        error,
+        BuildError::Mechanics(MechanicsError::Native { .. }) | BuildError::Broken(_) | BuildError::NotBegun(_)
+    )
+}
+
 impl RunError {
     /// Whether the scenario is at fault: it asks for what cannot be built.
     #[must_use]
     pub const fn is_input(&self) -> bool {
         match self {
-            // A library that does not load is not the scenario's fault.
-            Self::Build(BuildError::Mechanics(MechanicsError::Native { .. })) => false,
+            // A library that does not load, or an FMU that crashes, is not the scenario's fault.
+            Self::Build(error) if is_of_the_run(error) => false,
             Self::Build(_) | Self::Metric(_) | Self::Worker(WorkerError::Input(_)) => true,
             Self::EngineMissing(_) | Self::Failed(_) | Self::Panicked(_) | Self::Worker(_) => false,
         }

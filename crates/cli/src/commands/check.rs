@@ -4,10 +4,11 @@ use crate::console::{print, say};
 use crate::diagnostics::{mistakes, render};
 use crate::engines;
 use crate::exit::{CliError, Exit};
+use crate::interrupt;
 use crate::sources;
 use crate::workers;
 use miette::Severity;
-use servobench_report::{Style, elided};
+use servobench_report::{Style, elided, printable};
 use servobench_scenario::{Diagnostic, EngineName, Loaded};
 use servobench_sim::ConnectionDelay;
 use servobench_suite::{
@@ -22,6 +23,7 @@ const PATIENCE: Duration = Duration::from_mins(1);
 /// that it names object to.
 pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     let (engines, worker) = (engines::installed(), workers::command(&std::env::temp_dir(), PATIENCE)?);
+    interrupt::watch(&std::env::temp_dir())?;
     let files = sources::files(&args.scenarios)?;
     let (mut wrong, mut failed, mut missing, mut shown) = (Vec::new(), Vec::new(), Vec::new(), String::new());
     let in_full = args.verbose || files.len() == 1;
@@ -30,7 +32,8 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
             Ok(loaded) => {
                 let asked = Asked::about(&loaded, &engines, &worker);
                 wrong.extend((!asked.mistakes.is_empty()).then(|| mistakes(&asked.mistakes, &loaded.sources)));
-                failed.extend(asked.failed.iter().map(|error| format!("{}: {error}", file.display())));
+                let in_words = |error: &RunError| format!("{}: {}", file.display(), printable(&error.to_string()));
+                failed.extend(asked.failed.iter().map(in_words));
                 missing.extend(asked.missing);
                 if let Some(preview) = &asked.preview {
                     if !asked.doubts.is_empty() {
@@ -94,7 +97,9 @@ impl Asked {
                     Err(error) => asked.failed.push(error),
                 }
             }
-            for objection in found {
+            for mut objection in found {
+                // It may quote what an FMU or an engine has said.
+                objection.message = printable(&objection.message);
                 let mistake = match objection.line {
                     Some(line) => loaded.mistake_in_mjcf(line, objection.message, &objection.way_out),
                     None => loaded.mistake(&objection.key, objection.message, objection.way_out),

@@ -6,7 +6,7 @@ use crate::output::{spares, write_file};
 use crate::sources;
 use servobench_fmi::{Archive, Limits, Version};
 use servobench_fmu::{Part, export, library};
-use servobench_report::fmu_table;
+use servobench_report::{fmu_table, printable};
 use std::path::PathBuf;
 
 /// Info or export.
@@ -25,7 +25,7 @@ pub(crate) fn fmu_host() -> Result<Exit, CliError> {
 
 /// Nothing of the FMU is executed for it.
 fn info(args: &FmuInfoArgs) -> Result<Exit, CliError> {
-    let mistake = |error: servobench_fmi::FmuError| CliError::Input(error.to_string());
+    let mistake = |error: servobench_fmi::FmuError| CliError::Input(printable(&error.to_string()));
     let mut archive = Archive::open(&args.file, &Limits::default()).map_err(mistake)?;
     let description = archive.description().map_err(mistake)?;
     let files: Vec<String> = archive.files().map(str::to_owned).collect();

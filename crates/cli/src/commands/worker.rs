@@ -9,6 +9,8 @@ use std::io::Read;
 /// Runs the scenario that comes in on standard input; everything that is to be said of it is said by [`serve`].
 pub(crate) fn worker(args: &WorkerArgs) -> Result<Exit, CliError> {
     interrupt::end_with_parent()?;
+    // Ctrl-C reaches it as well: what it has unpacked goes with it.
+    interrupt::watch(&std::env::temp_dir())?;
     let mut text = String::new();
     std::io::stdin().read_to_string(&mut text).map_err(|error| CliError::Run(format!("standard input: {error}")))?;
     let order = Order {

@@ -10,3 +10,4 @@ mod oscillator;
 mod properties;
 mod servo;
 mod stability;
+mod start;

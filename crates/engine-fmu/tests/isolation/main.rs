@@ -52,7 +52,7 @@ fn error_of_step(bad: &Bad, bounds: Bounds) -> SlaveError {
 /// How it crashed in a step from 0.5 s.
 fn crash_of_step(bad: &Bad, bounds: Bounds) -> String {
     match error_of_step(bad, bounds) {
-        SlaveError::Crashed { time: 0.5, how } => how,
+        SlaveError::Crashed { time: 0.5, how, .. } => how,
         other => panic!("{bad:?}: {other}"),
     }
 }

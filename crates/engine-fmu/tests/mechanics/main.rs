@@ -149,7 +149,7 @@ fn port(variable: &str, (name, exponents): (&str, [i32; 4])) -> FmuPort {
 
 fn model(ticks: u32, extrapolation: Extrapolation) -> FmuModel {
     FmuModel {
-        file: FmuFile { path: "table.fmu".into(), start: Vec::new(), isolation: Isolation::None },
+        file: FmuFile { path: "table.fmu".into(), start: Vec::new(), isolation: Isolation::None, event_mode: true },
         effort: port("torque", NEWTON_METRE),
         motor: FmuBody { position: port("angle", RADIAN), velocity: Some(port("speed", RADIAN_PER_SECOND)) },
         load: Some(FmuBody { position: port("x", METRE), velocity: Some(port("v", METRE_PER_SECOND)) }),

@@ -121,6 +121,7 @@ fn setup(file: &File, mischief: Mischief, isolation: Isolation) -> MechanicsSetu
     let start = |variable: &str, value| FmuStart { variable: variable.into(), values: vec![value] };
     let model = FmuModel {
         file: FmuFile {
+            event_mode: true,
             path: file.path.clone(),
             start: vec![
                 start("mass", FmuValue::Number(MASS)),
@@ -199,7 +200,10 @@ fn what_a_library_does_wrong_is_reported_as_what_it_is() {
     let error = mass.advance(&push()).unwrap_err();
     assert!(matches!(&error, MechanicsError::Native { .. }), "{error}");
     let error = ENGINE.build(&setup(&File::new(), Mischief::CrashInStart, isolated(patience))).err().unwrap();
-    assert!(error.to_string().contains("the FMU's process ended at 0 s: signal 11"), "{error}");
+    assert!(
+        error.to_string().contains("the FMU's process ended in fmi2ExitInitializationMode at 0 s: signal 11"),
+        "{error}"
+    );
 }
 
 #[test]

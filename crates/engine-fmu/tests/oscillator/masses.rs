@@ -106,10 +106,11 @@ fn member(
         .map(|(variable, value)| FmuStart { variable: (*variable).into(), values: vec![FmuValue::Number(*value)] })
         .collect();
     let partner = FmuPartner {
-        file: FmuFile { path: path.into(), start, isolation },
+        file: FmuFile { path: path.into(), start, isolation, event_mode: true },
         name: name.into(),
         inputs: ports(inputs),
         outputs: ports(outputs),
+        step: 1.0 / f64::from(RATE),
         end: 2.0,
     };
     Member {
@@ -138,6 +139,18 @@ impl Block for Coupled {
 
     fn feeds_through(&self, output: usize, input: usize) -> bool {
         self.0.feeds_through(output, input)
+    }
+
+    fn has_initial_equations(&self) -> bool {
+        self.0.is_initialising()
+    }
+
+    fn follows_at_start(&self, output: usize, input: usize) -> bool {
+        self.0.follows_at_start(output, input)
+    }
+
+    fn start(&mut self, inputs: &[f64]) -> Result<(), SlaveError> {
+        self.0.start(Some(inputs))
     }
 
     fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<Step, SlaveError> {

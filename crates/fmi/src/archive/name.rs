@@ -26,23 +26,28 @@ impl Names {
         if let Some(why) = mistake(&name) {
             return refuse(why);
         }
-        let path = name.strip_suffix('/').unwrap_or(&name);
-        let kind = if path.len() < name.len() { Kind::Folder } else { Kind::File(self.all.len()) };
+        let path = direct(&name);
+        let kind = if name.ends_with('/') { Kind::Folder } else { Kind::File(self.all.len()) };
+        if path.is_empty() {
+            // The folder itself.
+            self.all.push(name);
+            return Ok(());
+        }
         for (end, _) in path.match_indices('/') {
             if let Kind::File(_) = self.known.entry(path[..end].to_owned()).or_insert(Kind::Folder) {
                 return refuse("has a file of the archive as a folder");
             }
         }
-        if let Some(known) = self.known.insert(path.to_owned(), kind)
+        if let Some(known) = self.known.insert(path.clone(), kind)
             && (kind, known) != (Kind::Folder, Kind::Folder)
         {
             return refuse("is there twice");
         }
-        self.all.push(name);
+        self.all.push(if kind == Kind::Folder { path + "/" } else { path });
         Ok(())
     }
 
-    /// The name of an entry.
+    /// The name of an entry, without detours.
     pub(super) fn name(&self, index: usize) -> &str {
         &self.all[index]
     }
@@ -60,6 +65,12 @@ impl Names {
     }
 }
 
+/// The path that a name stands for, without a slash at its end: `./x` is `x`.
+fn direct(name: &str) -> String {
+    let parts = name.split('/').filter(|part| !matches!(*part, "" | "."));
+    parts.collect::<Vec<_>>().join("/")
+}
+
 /// Parts of a name. All its beginnings are kept.
 const DEEPEST: usize = 32;
 
@@ -75,12 +86,15 @@ fn mistake(name: &str) -> Option<&'static str> {
         return Some("is absolute");
     }
     let path = name.strip_suffix('/').unwrap_or(name);
+    if name.ends_with("/.") || name == "." {
+        return Some("is that of a folder, without a slash behind it");
+    }
     if path.split('/').count() > DEEPEST {
         return Some("has more than 32 folders in each other");
     }
     path.split('/').find_map(|part| match part {
         "" => Some("has a folder without a name"),
-        "." | ".." => Some("leads out of its folder"),
+        ".." => Some("leads out of its folder"),
         // The longest that file systems have.
         _ if part.len() > 255 => Some("has a part of more than 255 bytes"),
         _ => None,
@@ -107,7 +121,8 @@ mod tests {
             "a/..",
             "..",
             ".",
-            "./a",
+            "a/.",
+            "./../a",
             "/a",
             "//a",
             "C:/a",
@@ -121,7 +136,7 @@ mod tests {
         ] {
             assert!(refusal(&[name]).is_some(), "{name:?}");
         }
-        for name in ["a", "a/b/c", "a/", "..a", "a..", ".hidden", "a b/ü.xml", "..."] {
+        for name in ["a", "a/b/c", "a/", "..a", "a..", ".hidden", "a b/ü.xml", "...", "./a", "a/./b", "./", "./a/"] {
             assert_eq!(refusal(&[name]), None, "{name:?}");
         }
         assert_eq!(refusal(&[&"x".repeat(256)]), Some("has a part of more than 255 bytes"));
@@ -133,6 +148,8 @@ mod tests {
         assert_eq!(refusal(&["a/b", "a"]), Some("is there twice"));
         assert_eq!(refusal(&["a/", "a"]), Some("is there twice"));
         assert_eq!(refusal(&["a", "a/"]), Some("is there twice"));
+        assert_eq!(refusal(&["a/b", "./a/./b"]), Some("is there twice"));
+        assert_eq!(refusal(&["./a", "a/b"]), Some("has a file of the archive as a folder"));
         assert_eq!(refusal(&["a/b", "a/", "a/c"]), None, "folders may be named or not");
     }
 }

@@ -1,5 +1,6 @@
 //! Opening a library and finding its functions.
 #![expect(unsafe_code, reason = "a library is foreign code, and its functions have the types that the standard says")]
+use super::calls::during;
 use crate::archive::Unpacked;
 use crate::error::{FmuError, LibraryProblem};
 use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
@@ -19,7 +20,8 @@ impl Open {
         let fmu = unpacked.path().to_owned();
         // SAFETY: the library's initialisers are foreign code. That nothing vouches for it is what the process of its own is
         // for, in which FMUs run unless the scenario trusts them.
-        let library = unsafe { Library::open(Some(&path), RTLD_NOW | RTLD_LOCAL) }.map_err(|error| {
+        let library = during("dlopen", || unsafe { Library::open(Some(&path), RTLD_NOW | RTLD_LOCAL) });
+        let library = library.map_err(|error| {
             let why = chain(&error);
             // Libraries of Python FMUs leave its functions to the program that loads them.
             let hint = if why.contains("undefined symbol: Py") || why.contains("undefined symbol: _Py") {

@@ -1,5 +1,6 @@
 //! What functions of an FMU return, in both versions by the same numbers.
 use crate::abi::{v2, v3};
+use crate::log::Log;
 use crate::slave::SlaveError;
 
 /// What a call returned.
@@ -52,6 +53,21 @@ pub(crate) enum Health {
 }
 
 impl Outcome {
+    /// What it means for an instance that is no longer needed: a warning.
+    pub(crate) fn warn(self, call: &str, health: &mut Health, log: &Log) {
+        let status = match self {
+            Self::Done => return,
+            Self::Discarded => "discard",
+            Self::Failed(status) => status,
+            Self::Fatal(status) => {
+                *health = Health::Dead;
+                status
+            }
+        };
+        // Its own words are in the log before that.
+        log.push(1, "", &format!("{call} returned {status}"));
+    }
+
     /// What it means for the instance and for who called.
     pub(crate) fn check(
         self,

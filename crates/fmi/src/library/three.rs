@@ -1,6 +1,7 @@
 //! An instance of an FMU of version 3.0: its functions with the types of Rust.
 #![expect(unsafe_code, reason = "calls of a C interface")]
 use super::callbacks::{Environment, log_three};
+use super::calls::during;
 use super::open::Open;
 use super::status::{Health, Outcome};
 use crate::abi::v3::{
@@ -129,7 +130,7 @@ pub(crate) struct Updated {
     pub(crate) next_event_time: Option<f64>,
 }
 
-/// An instance; it is terminated if it is well, and freed, when it is dropped.
+/// An instance; it is terminated if it is well, and freed, when it is dropped at the latest.
 pub(crate) struct Three {
     functions: Functions,
     instance: Instance,
@@ -137,6 +138,7 @@ pub(crate) struct Three {
     /// By slot.
     states: [FmuState; Slot::COUNT],
     is_initialised: bool,
+    is_freed: bool,
     pub(crate) health: Health,
     library: ManuallyDrop<Open>,
 }
@@ -146,7 +148,13 @@ pub(crate) struct Three {
 unsafe impl Send for Three {}
 
 impl Three {
-    pub(crate) fn new(fmu: &Unpacked, instance_name: &CStr, logging: bool, clock: Clock) -> Result<Self, FmuError> {
+    pub(crate) fn new(
+        fmu: &Unpacked,
+        instance_name: &CStr,
+        logging: bool,
+        event_mode: bool,
+        clock: Clock,
+    ) -> Result<Self, FmuError> {
         let library = Open::new(fmu)?;
         check_version(&library, fmu)?;
         let functions = Functions::of(&library, fmu)?;
@@ -163,14 +171,14 @@ impl Three {
         let resources = resources.is_dir().then(|| CString::new(format!("{}/", resources.display())));
         let resources = resources.transpose().map_err(|error| refused(error.to_string()))?;
         // SAFETY: the texts live during the call, the environment as long as the instance.
-        let instance = unsafe {
+        let instance = during("fmi3InstantiateCoSimulation", || unsafe {
             (functions.instantiate)(
                 instance_name.as_ptr(),
                 token.as_ptr(),
                 resources.as_ref().map_or(ptr::null(), |path| path.as_ptr()),
                 FALSE,
                 flag(logging),
-                flag(can.has_event_mode),
+                flag(event_mode),
                 flag(can.might_return_early_from_do_step),
                 ptr::null(),
                 0,
@@ -178,7 +186,7 @@ impl Three {
                 Some(log_three),
                 None,
             )
-        };
+        });
         if instance.is_null() {
             return Err(refused(environment.log().last()));
         }
@@ -188,6 +196,7 @@ impl Three {
             environment,
             states: [ptr::null_mut(); Slot::COUNT],
             is_initialised: false,
+            is_freed: false,
             health: Health::Well,
             library: ManuallyDrop::new(library),
         })
@@ -198,9 +207,9 @@ impl Three {
     }
 
     /// Changes the mode by a function that the FMU may not have: then there is nothing to do.
-    fn transition(&self, function: Option<Transition>) -> Outcome {
+    fn transition(&self, call: &'static str, function: Option<Transition>) -> Outcome {
         // SAFETY: the instance lives.
-        function.map_or(Outcome::Done, |function| unsafe { function(self.instance) }.into())
+        function.map_or(Outcome::Done, |function| during(call, || unsafe { function(self.instance) }).into())
     }
 
     pub(crate) fn has_configuration_mode(&self) -> bool {
@@ -208,11 +217,11 @@ impl Three {
     }
 
     pub(crate) fn enter_configuration_mode(&self) -> Outcome {
-        self.transition(self.functions.enter_configuration_mode)
+        self.transition("fmi3EnterConfigurationMode", self.functions.enter_configuration_mode)
     }
 
     pub(crate) fn exit_configuration_mode(&self) -> Outcome {
-        self.transition(self.functions.exit_configuration_mode)
+        self.transition("fmi3ExitConfigurationMode", self.functions.exit_configuration_mode)
     }
 
     pub(crate) fn enter_initialization_mode(&self, tolerance: Option<f64>, start: f64, stop: Option<f64>) -> Outcome {
@@ -220,20 +229,23 @@ impl Three {
         let (tolerance, stop) = (tolerance.unwrap_or(0.0), stop.unwrap_or(0.0));
         let enter = self.functions.enter_initialization_mode;
         // SAFETY: the instance lives.
-        unsafe { enter(self.instance, has_tolerance, tolerance, start, has_stop, stop) }.into()
+        during("fmi3EnterInitializationMode", || unsafe {
+            enter(self.instance, has_tolerance, tolerance, start, has_stop, stop)
+        })
+        .into()
     }
 
     pub(crate) fn exit_initialization_mode(&mut self) -> Outcome {
         self.is_initialised = true;
-        self.transition(Some(self.functions.exit_initialization_mode))
+        self.transition("fmi3ExitInitializationMode", Some(self.functions.exit_initialization_mode))
     }
 
     pub(crate) fn enter_event_mode(&self) -> Outcome {
-        self.transition(self.functions.enter_event_mode)
+        self.transition("fmi3EnterEventMode", self.functions.enter_event_mode)
     }
 
     pub(crate) fn enter_step_mode(&self) -> Outcome {
-        self.transition(self.functions.enter_step_mode)
+        self.transition("fmi3EnterStepMode", self.functions.enter_step_mode)
     }
 
     pub(crate) fn update_discrete_states(&self) -> (Outcome, Updated) {
@@ -241,8 +253,10 @@ impl Three {
         let [nominals, values, has_next] = &mut others;
         let status = self.functions.update_discrete_states.map_or(Outcome::Done, |update| {
             // SAFETY: all that is written to lives during the call.
-            unsafe { update(self.instance, &raw mut again, &raw mut end, nominals, values, has_next, &raw mut next) }
-                .into()
+            during("fmi3UpdateDiscreteStates", || unsafe {
+                update(self.instance, &raw mut again, &raw mut end, nominals, values, has_next, &raw mut next)
+            })
+            .into()
         });
         let next_event_time = (*has_next != FALSE).then_some(next);
         (status, Updated { again: again != FALSE, terminate_simulation: end != FALSE, next_event_time })
@@ -250,8 +264,9 @@ impl Three {
 
     pub(crate) fn set_strings(&self, reference: u32, values: &[CString]) -> Outcome {
         let texts: Vec<Text> = values.iter().map(|value| value.as_ptr()).collect();
+        let set = self.functions.set_string;
         // SAFETY: one reference and all texts of its array, which live during the call.
-        unsafe { (self.functions.set_string)(self.instance, &raw const reference, 1, texts.as_ptr(), texts.len()) }
+        during("fmi3SetString", || unsafe { set(self.instance, &raw const reference, 1, texts.as_ptr(), texts.len()) })
             .into()
     }
 
@@ -260,17 +275,20 @@ impl Three {
         let all: Vec<*const u8> = values.iter().map(Vec::as_ptr).collect();
         let set = self.functions.set_binary;
         // SAFETY: one reference and all elements of its array with their sizes, which live during the call.
-        unsafe { set(self.instance, &raw const reference, 1, sizes.as_ptr(), all.as_ptr(), all.len()) }.into()
+        during("fmi3SetBinary", || unsafe {
+            set(self.instance, &raw const reference, 1, sizes.as_ptr(), all.as_ptr(), all.len())
+        })
+        .into()
     }
 
     pub(crate) fn do_step(&self, time: f64, length: f64, never_goes_back: bool) -> (Outcome, Stepped) {
         let (mut event, mut end, mut early, mut last) = (FALSE, FALSE, FALSE, time + length);
         let never = flag(never_goes_back);
+        let step = self.functions.do_step;
         // SAFETY: all that is written to lives during the call.
-        let status = unsafe {
-            let step = self.functions.do_step;
+        let status = during("fmi3DoStep", || unsafe {
             step(self.instance, time, length, never, &raw mut event, &raw mut end, &raw mut early, &raw mut last)
-        };
+        });
         let stepped = Stepped {
             event_handling_needed: event != FALSE,
             terminate_simulation: end != FALSE,
@@ -281,8 +299,10 @@ impl Three {
     }
 
     pub(crate) fn save(&mut self, slot: Slot) -> Option<Outcome> {
+        let get = self.functions.get_state?;
+        let (instance, state) = (self.instance, &raw mut self.states[slot as usize]);
         // SAFETY: the state is NULL or one of this instance's.
-        Some(unsafe { self.functions.get_state?(self.instance, &raw mut self.states[slot as usize]) }.into())
+        Some(during("fmi3GetFMUState", || unsafe { get(instance, state) }).into())
     }
 
     /// Whether there is a state to go back to.
@@ -294,28 +314,41 @@ impl Three {
         let state = self.states[slot as usize];
         let set = self.functions.set_state.filter(|_| !state.is_null())?;
         // SAFETY: the state is one of this instance's.
-        Some(unsafe { set(self.instance, state) }.into())
+        Some(during("fmi3SetFMUState", || unsafe { set(self.instance, state) }).into())
+    }
+}
+
+impl Three {
+    /// Terminates it if it is well, and frees it; what is not OK then is a warning in its log. Nothing but the log is used after it.
+    pub(crate) fn end(&mut self) {
+        // After a fatal error nothing may be called: the library stays, with what it has allocated.
+        if self.health == Health::Dead || std::mem::replace(&mut self.is_freed, true) {
+            return;
+        }
+        if let Some(free) = self.functions.free_state {
+            for state in self.states.iter_mut().filter(|state| !state.is_null()) {
+                // SAFETY: it is this instance's, and not used again.
+                during("fmi3FreeFMUState", || unsafe { free(self.instance, state) });
+            }
+        }
+        if self.is_initialised && self.health == Health::Well {
+            // SAFETY: the instance lives.
+            let outcome = during("fmi3Terminate", || unsafe { (self.functions.terminate)(self.instance) });
+            Outcome::from(outcome).warn("fmi3Terminate", &mut self.health, self.environment.log());
+        }
+        if self.health != Health::Dead {
+            // SAFETY: it is not used again.
+            during("fmi3FreeInstance", || unsafe { (self.functions.free_instance)(self.instance) });
+        }
     }
 }
 
 impl Drop for Three {
     fn drop(&mut self) {
-        if self.health == Health::Dead {
-            // After a fatal error nothing may be called: the library stays, with what it has allocated.
-            return;
-        }
-        // SAFETY: what is freed is this instance's, and not used again; then nothing of the library is used.
-        unsafe {
-            for state in self.states.iter_mut().filter(|state| !state.is_null()) {
-                if let Some(free) = self.functions.free_state {
-                    free(self.instance, state);
-                }
-            }
-            if self.is_initialised && self.health == Health::Well {
-                (self.functions.terminate)(self.instance);
-            }
-            (self.functions.free_instance)(self.instance);
-            ManuallyDrop::drop(&mut self.library);
+        self.end();
+        if self.health != Health::Dead {
+            // SAFETY: it is not used again, and nothing of the library either.
+            during("dlclose", || unsafe { ManuallyDrop::drop(&mut self.library) });
         }
     }
 }
@@ -326,18 +359,20 @@ macro_rules! access {
         impl super::Access<$type> for Three {
             fn get(&self, references: &[u32], values: &mut [$type]) -> super::Called {
                 let (all, count) = (values.as_mut_ptr().cast::<$raw>(), values.len());
-                let get = self.functions.$get;
+                let (call, get) = (concat!("fmi3Get", $name), self.functions.$get);
                 // SAFETY: both live during the call with the lengths that are said; the types have the same representation.
-                let status = unsafe { get(self.instance, references.as_ptr(), references.len(), all, count) };
-                (concat!("fmi3Get", $name), status.into())
+                let status =
+                    during(call, || unsafe { get(self.instance, references.as_ptr(), references.len(), all, count) });
+                (call, status.into())
             }
 
             fn set(&self, references: &[u32], values: &[$type]) -> super::Called {
                 let (all, count) = (values.as_ptr().cast::<$raw>(), values.len());
-                let set = self.functions.$set;
+                let (call, set) = (concat!("fmi3Set", $name), self.functions.$set);
                 // SAFETY: both live during the call with the lengths that are said; the types have the same representation.
-                let status = unsafe { set(self.instance, references.as_ptr(), references.len(), all, count) };
-                (concat!("fmi3Set", $name), status.into())
+                let status =
+                    during(call, || unsafe { set(self.instance, references.as_ptr(), references.len(), all, count) });
+                (call, status.into())
             }
         }
     )*};
@@ -366,7 +401,8 @@ fn check_version(library: &Open, fmu: &Unpacked) -> Result<(), FmuError> {
     let call = "fmi3GetVersion";
     // SAFETY: the type is that of the function, which returns a text of the library's.
     let said = unsafe {
-        let text = library.function::<GetVersion>(call)?();
+        let ask = library.function::<GetVersion>(call)?;
+        let text = during(call, || ask());
         if text.is_null() { "nothing".into() } else { CStr::from_ptr(text).to_string_lossy().into_owned() }
     };
     if said.starts_with(VERSION) {

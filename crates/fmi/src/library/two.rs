@@ -1,6 +1,7 @@
 //! An instance of an FMU of version 2.0: its functions with the types of Rust.
 #![expect(unsafe_code, reason = "calls of a C interface")]
 use super::callbacks::{Environment, of_two};
+use super::calls::during;
 use super::open::Open;
 use super::status::{Health, Outcome};
 use crate::abi::v2::{
@@ -87,7 +88,7 @@ impl Functions {
     }
 }
 
-/// An instance; it is terminated if it is well, and freed, when it is dropped.
+/// An instance; it is terminated if it is well, and freed, when it is dropped at the latest.
 pub(crate) struct Two {
     functions: Functions,
     component: Component,
@@ -97,6 +98,7 @@ pub(crate) struct Two {
     /// By slot.
     states: [FmuState; Slot::COUNT],
     is_initialised: bool,
+    is_freed: bool,
     pub(crate) health: Health,
     library: ManuallyDrop<Open>,
 }
@@ -121,7 +123,7 @@ impl Two {
         let location = CString::new(file_uri(&fmu.folder().join("resources").to_string_lossy()));
         let location = location.map_err(|error| refused(error.to_string()))?;
         // SAFETY: the texts live during the call, callbacks and environment as long as the instance.
-        let component = unsafe {
+        let component = during("fmi2Instantiate", || unsafe {
             (functions.instantiate)(
                 instance_name.as_ptr(),
                 Type::CO_SIMULATION,
@@ -131,7 +133,7 @@ impl Two {
                 FALSE,
                 flag(logging),
             )
-        };
+        });
         if component.is_null() {
             return Err(refused(environment.log().last()));
         }
@@ -142,6 +144,7 @@ impl Two {
             _callbacks: callbacks,
             states: [ptr::null_mut(); Slot::COUNT],
             is_initialised: false,
+            is_freed: false,
             health: Health::Well,
             library: ManuallyDrop::new(library),
         })
@@ -154,25 +157,31 @@ impl Two {
     pub(crate) fn setup_experiment(&self, tolerance: Option<f64>, start: f64, stop: Option<f64>) -> Outcome {
         let (has_tolerance, has_stop) = (flag(tolerance.is_some()), flag(stop.is_some()));
         let (tolerance, stop) = (tolerance.unwrap_or(0.0), stop.unwrap_or(0.0));
+        let setup = self.functions.setup_experiment;
         // SAFETY: the instance lives.
-        unsafe { (self.functions.setup_experiment)(self.component, has_tolerance, tolerance, start, has_stop, stop) }
-            .into()
+        during("fmi2SetupExperiment", || unsafe {
+            setup(self.component, has_tolerance, tolerance, start, has_stop, stop)
+        })
+        .into()
     }
 
     pub(crate) fn enter_initialization_mode(&self) -> Outcome {
         // SAFETY: the instance lives.
-        unsafe { (self.functions.enter_initialization_mode)(self.component) }.into()
+        during("fmi2EnterInitializationMode", || unsafe { (self.functions.enter_initialization_mode)(self.component) })
+            .into()
     }
 
     pub(crate) fn exit_initialization_mode(&mut self) -> Outcome {
         self.is_initialised = true;
         // SAFETY: the instance lives.
-        unsafe { (self.functions.exit_initialization_mode)(self.component) }.into()
+        during("fmi2ExitInitializationMode", || unsafe { (self.functions.exit_initialization_mode)(self.component) })
+            .into()
     }
 
     pub(crate) fn set_string(&self, reference: u32, value: &CStr) -> Outcome {
+        let set = self.functions.set_string;
         // SAFETY: one reference and one text, which live during the call.
-        unsafe { (self.functions.set_string)(self.component, &raw const reference, 1, &value.as_ptr()) }.into()
+        during("fmi2SetString", || unsafe { set(self.component, &raw const reference, 1, &value.as_ptr()) }).into()
     }
 
     /// Derivatives of inputs of one order.
@@ -181,20 +190,28 @@ impl Two {
         debug_assert!(count == orders.len() && count == values.len());
         let Some(set) = self.functions.set_real_input_derivatives else { return Outcome::Done };
         // SAFETY: all three have `count` elements.
-        unsafe { set(self.component, references.as_ptr(), count, orders.as_ptr(), values.as_ptr()) }.into()
+        during("fmi2SetRealInputDerivatives", || unsafe {
+            set(self.component, references.as_ptr(), count, orders.as_ptr(), values.as_ptr())
+        })
+        .into()
     }
 
     pub(crate) fn do_step(&self, time: f64, length: f64, never_goes_back: bool) -> Outcome {
         // SAFETY: the instance lives.
-        unsafe { (self.functions.do_step)(self.component, time, length, flag(never_goes_back)) }.into()
+        during("fmi2DoStep", || unsafe {
+            (self.functions.do_step)(self.component, time, length, flag(never_goes_back))
+        })
+        .into()
     }
 
     /// To which time (s) a discarded step went, if the FMU says so.
     pub(crate) fn last_successful_time(&self) -> Option<f64> {
         let mut time = f64::NAN;
+        let ask = self.functions.get_real_status?;
         // SAFETY: the value lives during the call.
-        let status =
-            unsafe { self.functions.get_real_status?(self.component, StatusKind::LAST_SUCCESSFUL_TIME, &raw mut time) };
+        let status = during("fmi2GetRealStatus", || unsafe {
+            ask(self.component, StatusKind::LAST_SUCCESSFUL_TIME, &raw mut time)
+        });
         (Outcome::from(status) == Outcome::Done && time.is_finite()).then_some(time)
     }
 
@@ -203,13 +220,16 @@ impl Two {
         let Some(ask) = self.functions.get_boolean_status else { return false };
         let mut wants = FALSE;
         // SAFETY: the value lives during the call.
-        let status = unsafe { ask(self.component, StatusKind::TERMINATED, &raw mut wants) };
+        let status =
+            during("fmi2GetBooleanStatus", || unsafe { ask(self.component, StatusKind::TERMINATED, &raw mut wants) });
         Outcome::from(status) == Outcome::Done && wants != FALSE
     }
 
     pub(crate) fn save(&mut self, slot: Slot) -> Option<Outcome> {
+        let get = self.functions.get_state?;
+        let (component, state) = (self.component, &raw mut self.states[slot as usize]);
         // SAFETY: the state is NULL or one of this instance's.
-        Some(unsafe { self.functions.get_state?(self.component, &raw mut self.states[slot as usize]) }.into())
+        Some(during("fmi2GetFMUstate", || unsafe { get(component, state) }).into())
     }
 
     /// Whether there is a state to go back to.
@@ -221,28 +241,41 @@ impl Two {
         let state = self.states[slot as usize];
         let set = self.functions.set_state.filter(|_| !state.is_null())?;
         // SAFETY: the state is one of this instance's.
-        Some(unsafe { set(self.component, state) }.into())
+        Some(during("fmi2SetFMUstate", || unsafe { set(self.component, state) }).into())
+    }
+}
+
+impl Two {
+    /// Terminates it if it is well, and frees it; what is not OK then is a warning in its log. Nothing but the log is used after it.
+    pub(crate) fn end(&mut self) {
+        // After a fatal error nothing may be called: the library stays, with what it has allocated.
+        if self.health == Health::Dead || std::mem::replace(&mut self.is_freed, true) {
+            return;
+        }
+        if let Some(free) = self.functions.free_state {
+            for state in self.states.iter_mut().filter(|state| !state.is_null()) {
+                // SAFETY: it is this instance's, and not used again.
+                during("fmi2FreeFMUstate", || unsafe { free(self.component, state) });
+            }
+        }
+        if self.is_initialised && self.health == Health::Well {
+            // SAFETY: the instance lives.
+            let outcome = during("fmi2Terminate", || unsafe { (self.functions.terminate)(self.component) });
+            Outcome::from(outcome).warn("fmi2Terminate", &mut self.health, self.environment.log());
+        }
+        if self.health != Health::Dead {
+            // SAFETY: it is not used again.
+            during("fmi2FreeInstance", || unsafe { (self.functions.free_instance)(self.component) });
+        }
     }
 }
 
 impl Drop for Two {
     fn drop(&mut self) {
-        if self.health == Health::Dead {
-            // After a fatal error nothing may be called: the library stays, with what it has allocated.
-            return;
-        }
-        // SAFETY: what is freed is this instance's, and not used again; then nothing of the library is used.
-        unsafe {
-            for state in self.states.iter_mut().filter(|state| !state.is_null()) {
-                if let Some(free) = self.functions.free_state {
-                    free(self.component, state);
-                }
-            }
-            if self.is_initialised && self.health == Health::Well {
-                (self.functions.terminate)(self.component);
-            }
-            (self.functions.free_instance)(self.component);
-            ManuallyDrop::drop(&mut self.library);
+        self.end();
+        if self.health != Health::Dead {
+            // SAFETY: it is not used again, and nothing of the library either.
+            during("dlclose", || unsafe { ManuallyDrop::drop(&mut self.library) });
         }
     }
 }
@@ -254,19 +287,23 @@ macro_rules! access {
             fn get(&self, references: &[u32], values: &mut [$type]) -> super::Called {
                 debug_assert_eq!(references.len(), values.len());
                 let values = values.as_mut_ptr().cast::<$raw>();
+                let call = concat!("fmi2Get", $name);
                 // SAFETY: as many values as references; the types have the same representation.
-                let status =
-                    unsafe { (self.functions.$get)(self.component, references.as_ptr(), references.len(), values) };
-                (concat!("fmi2Get", $name), status.into())
+                let status = during(call, || unsafe {
+                    (self.functions.$get)(self.component, references.as_ptr(), references.len(), values)
+                });
+                (call, status.into())
             }
 
             fn set(&self, references: &[u32], values: &[$type]) -> super::Called {
                 debug_assert_eq!(references.len(), values.len());
                 let values = values.as_ptr().cast::<$raw>();
+                let call = concat!("fmi2Set", $name);
                 // SAFETY: as many values as references; the types have the same representation.
-                let status =
-                    unsafe { (self.functions.$set)(self.component, references.as_ptr(), references.len(), values) };
-                (concat!("fmi2Set", $name), status.into())
+                let status = during(call, || unsafe {
+                    (self.functions.$set)(self.component, references.as_ptr(), references.len(), values)
+                });
+                (call, status.into())
             }
         }
     };
@@ -289,7 +326,7 @@ fn check_platform(library: &Open, fmu: &Unpacked) -> Result<(), FmuError> {
             (library.function("fmi2GetVersion")?, "fmi2GetVersion", VERSION),
         ];
         ask.map(|(ask, call, wanted)| {
-            let text = ask();
+            let text = during(call, || ask());
             let said =
                 if text.is_null() { "nothing".into() } else { CStr::from_ptr(text).to_string_lossy().into_owned() };
             (call, wanted, said)

@@ -258,8 +258,18 @@ pub(super) fn batches<I: Batched>(
     counts: &[usize],
     is_in: impl Fn(Variability) -> bool,
 ) -> Batches<I> {
+    batches_of(it, wires.iter().enumerate(), counts, is_in)
+}
+
+/// The same of some of the wires, each with the number of its port.
+pub(super) fn batches_of<'a, I: Batched>(
+    it: &ModelDescription,
+    wires: impl Iterator<Item = (usize, &'a Wire)>,
+    counts: &[usize],
+    is_in: impl Fn(Variability) -> bool,
+) -> Batches<I> {
     let mut layouts: Vec<(DataType, Layout)> = vec![];
-    for (port, wire) in wires.iter().enumerate() {
+    for (port, wire) in wires {
         let variable = &it.variables[wire.variable];
         if !is_in(variable.variability) {
             continue;

@@ -26,9 +26,15 @@ pub(super) enum Attempt {
     },
 }
 
-/// An initialised instance.
+/// An instance in its initialisation or after it.
 pub(super) trait Instance: Send {
     fn capabilities(&self) -> Capabilities;
+
+    /// As [`crate::Slave::start`].
+    fn start(&mut self, inputs: Option<&[f64]>) -> Result<(), SlaveError>;
+
+    /// As [`crate::Slave::end`].
+    fn end(&mut self);
 
     /// As [`crate::Slave::step`].
     fn attempt(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Attempt, SlaveError>;
@@ -44,6 +50,18 @@ pub(super) trait Instance: Send {
 
     /// As [`crate::Slave::take_log`].
     fn take_log(&mut self) -> Vec<LogLine>;
+}
+
+/// The time (s) that a step is said to have come to, which has to be one of the step.
+pub(super) fn reached(call: &'static str, time: f64, length: f64, at: f64) -> Result<f64, SlaveError> {
+    let to = time + length;
+    // What the FMU adds up by itself is rounded in another way.
+    let rounding = 4.0 * f64::EPSILON * to.abs().max(time.abs()) + 1e-9 * length;
+    if at >= time - rounding && at <= to + rounding {
+        Ok(at.clamp(time, to))
+    } else {
+        Err(SlaveError::Astray { call, from: time, to, at })
+    }
 }
 
 /// A time that a discarded step is said to have come to, if that is within it.

@@ -8,6 +8,9 @@ use crate::setup::Setup;
 use crate::slave::{Capabilities, Port, Progress, SlaveError};
 use std::ffi::CString;
 
+/// Part of a step that is a rounding of the times that it is made of.
+const ROUNDING: f64 = 1e-9;
+
 /// What is known of a running instance.
 pub(super) struct Session {
     pub(super) capabilities: Capabilities,
@@ -15,6 +18,10 @@ pub(super) struct Session {
     pub(super) time: f64,
     /// For whoever listens to the FMU.
     clock: Clock,
+    /// The time beyond which it is never asked to go (s).
+    stop: Option<f64>,
+    /// Whether it is in the initialisation mode.
+    pub(super) is_initialising: bool,
     /// Where it was when it was saved (s).
     saved: [f64; Slot::COUNT],
     inputs: Vec<Port>,
@@ -25,7 +32,26 @@ impl Session {
     pub(super) fn new(capabilities: Capabilities, setup: &Setup, clock: Clock) -> Self {
         let (inputs, outputs) = (setup.inputs.clone(), setup.outputs.clone());
         let time = setup.start_time;
-        Self { capabilities, time, clock, saved: [time; Slot::COUNT], inputs, outputs }
+        let stop = setup.stop_time;
+        Self { capabilities, time, clock, stop, is_initialising: true, saved: [time; Slot::COUNT], inputs, outputs }
+    }
+
+    /// A step that is not beyond the stop time by a rounding: an FMU may take that as an error (FMI 2.0.4, §2.1.6).
+    pub(super) fn within_stop(&self, time: f64, length: f64) -> f64 {
+        let Some(stop) = self.stop.filter(|stop| time + length > *stop && time + length - stop <= ROUNDING * length)
+        else {
+            return length;
+        };
+        let mut fitting = stop - time;
+        while time + fitting > stop {
+            fitting = fitting.next_down();
+        }
+        fitting
+    }
+
+    /// Outputs that are read before all inputs are known: what is no number is only where to begin from.
+    pub(super) fn guess(outputs: &mut [f64]) {
+        outputs.iter_mut().filter(|value| !value.is_finite()).for_each(|value| *value = 0.0);
     }
 
     /// The mean of an input over a step of length `h`: u + u'·h/2 + u''·h²/6.

@@ -1,6 +1,6 @@
 //! FMI 3.0 in the order of FMI 3.0.2, §4.2 (state machine of co-simulation), with the event mode where the FMU has it.
 use super::batch::{self, Batches, batches};
-use super::instance::{Attempt, Instance, Slot, within};
+use super::instance::{Attempt, Instance, Slot, reached, within};
 use super::session::{Session, instance_name};
 use super::time_event::TimeEvent;
 use crate::archive::Unpacked;
@@ -37,19 +37,20 @@ impl LoadedThree {
         let it = fmu.description();
         let plan = setup.plan(fmu)?;
         let clock = Clock::at(setup.start_time);
-        let instance = Three::new(fmu, &instance_name(setup, it)?, setup.logging, clock.clone())?;
         let can = &it.co_simulation;
+        let has_event_mode = can.has_event_mode && !setup.without_event_mode;
+        let instance = Three::new(fmu, &instance_name(setup, it)?, setup.logging, has_event_mode, clock.clone())?;
         let capabilities = Capabilities {
             saves_state: can.can_get_and_set_state,
             interpolates_inputs: false,
             variable_step: can.can_handle_variable_communication_step_size,
         };
         let counts = &plan.counts;
-        let event = TimeEvent::new(capabilities.variable_step);
+        let event = TimeEvent::new(capabilities.variable_step, setup.stop_time);
         let mut loaded = Self {
             instance,
             session: Session::new(capabilities, setup, clock),
-            has_event_mode: can.has_event_mode,
+            has_event_mode,
             event,
             saved_event: [event; Slot::COUNT],
             continuous: batches(it, &plan.inputs, counts, |variability| variability == Variability::Continuous),
@@ -95,14 +96,8 @@ impl LoadedThree {
         }
         let outcome = self.instance.enter_initialization_mode(setup.tolerance, setup.start_time, setup.stop_time);
         self.check("fmi3EnterInitializationMode", outcome)?;
-        let outcome = self.instance.exit_initialization_mode();
-        self.check("fmi3ExitInitializationMode", outcome)?;
-        if self.has_event_mode && self.settle()? {
-            let message = "it wants to end at its start".to_owned();
-            let (call, time) = ("fmi3UpdateDiscreteStates", self.session.time);
-            return Err(SlaveError::Failed { call, time, status: "fmi3OK", message });
-        }
-        self.read_unwired_elements()
+        self.read_unwired_elements()?;
+        if setup.waits { Ok(()) } else { self.start(None) }
     }
 
     /// An array is set as a whole: elements that nothing is wired to keep what they start with.
@@ -143,17 +138,18 @@ impl LoadedThree {
         continuous: &dyn Fn(usize) -> f64,
         discrete: &dyn Fn(usize) -> f64,
     ) -> Result<bool, SlaveError> {
+        let has_event_mode = self.has_event_mode && !self.session.is_initialising;
         let mut is_new = false;
         for batch in &mut self.discrete {
             is_new |= batch.take(discrete).map_err(|misfit| self.session.misfit(misfit))?;
         }
-        let is_event = self.has_event_mode && (is_new || self.event.is_due(self.session.time));
+        let is_event = has_event_mode && (is_new || self.event.is_due(self.session.time));
         if is_event {
             let outcome = self.instance.enter_event_mode();
             self.check("fmi3EnterEventMode", outcome)?;
         }
         self.set_continuous(continuous)?;
-        if is_new || !self.has_event_mode {
+        if is_new || !has_event_mode {
             let (call, outcome) = batch::all(self.discrete.iter().map(|batch| batch.set(&self.instance)));
             self.check(call, outcome)?;
         }
@@ -174,8 +170,29 @@ impl Instance for LoadedThree {
         self.session.capabilities
     }
 
+    fn start(&mut self, inputs: Option<&[f64]>) -> Result<(), SlaveError> {
+        if let Some(inputs) = inputs {
+            let now = |port: usize| inputs[port];
+            self.set_inputs(&now, &now)?;
+        }
+        let outcome = self.instance.exit_initialization_mode();
+        self.check("fmi3ExitInitializationMode", outcome)?;
+        self.session.is_initialising = false;
+        if self.has_event_mode && self.settle()? {
+            let message = "it wants to end at its start".to_owned();
+            let (call, time) = ("fmi3UpdateDiscreteStates", self.session.time);
+            return Err(SlaveError::Failed { call, time, status: "fmi3OK", message });
+        }
+        Ok(())
+    }
+
+    fn end(&mut self) {
+        self.instance.end();
+    }
+
     fn attempt(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Attempt, SlaveError> {
         self.session.go_to(time);
+        let length = self.session.within_stop(time, length);
         let leg = self.event.leg(time, length);
         let mean = |port: usize| Session::mean(inputs[port], leg.length);
         if self.set_inputs(&mean, &|port| inputs[port][0])? {
@@ -195,11 +212,14 @@ impl Instance for LoadedThree {
             return Ok(discarded);
         }
         self.check("fmi3DoStep", outcome)?;
-        let (reached, end) = (stepped.last_successful_time, time + leg.length);
+        let end = time + leg.length;
+        // Without an early return an FMU may be a little elsewhere, where a solver of its own has come to (FMI 3.0.1, §4.2.1).
+        let is_early = stepped.early_return || stepped.terminate_simulation;
+        let at = if is_early { reached("fmi3DoStep", time, leg.length, stepped.last_successful_time)? } else { end };
         let mut progress = if stepped.terminate_simulation {
-            Progress::Terminated(reached)
-        } else if stepped.early_return && reached < end {
-            Progress::Until(reached)
+            Progress::Terminated(at)
+        } else if at < end {
+            Progress::Until(at)
         } else if leg.is_cut {
             Progress::Until(end)
         } else {
@@ -226,6 +246,9 @@ impl Instance for LoadedThree {
         let Self { instance, outputs: batches, .. } = self;
         let (call, outcome) = batch::read(batches, instance, outputs);
         self.check(call, outcome)?;
+        if self.session.is_initialising && inputs.is_none() {
+            Session::guess(outputs);
+        }
         self.session.check_finite(outputs)
     }
 

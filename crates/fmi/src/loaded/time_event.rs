@@ -13,6 +13,8 @@ pub(super) struct TimeEvent {
     next: Option<f64>,
     /// Steps may be of any length.
     variable_step: bool,
+    /// No event is beyond this (s).
+    stop: f64,
 }
 
 /// A step that is to be taken.
@@ -25,13 +27,13 @@ pub(super) struct Leg {
 }
 
 impl TimeEvent {
-    pub(super) fn new(variable_step: bool) -> Self {
-        Self { next: None, variable_step }
+    pub(super) fn new(variable_step: bool, stop: Option<f64>) -> Self {
+        Self { next: None, variable_step, stop: stop.unwrap_or(f64::INFINITY) }
     }
 
     /// What the FMU says now, which replaces what it has said before.
     pub(super) fn announce(&mut self, next: Option<f64>) {
-        self.next = next.filter(|next| next.is_finite());
+        self.next = next.filter(|next| next.is_finite() && *next <= self.stop);
     }
 
     /// Whether the event is at `now` (s) or has been passed.
@@ -64,7 +66,7 @@ mod tests {
     use super::*;
 
     fn event(next: f64) -> TimeEvent {
-        TimeEvent { next: Some(next), variable_step: true }
+        TimeEvent { next: Some(next), ..TimeEvent::new(true, None) }
     }
 
     #[test]
@@ -75,7 +77,7 @@ mod tests {
             assert_eq!(event(elsewhere).leg(1.0, 0.5), whole, "{elsewhere}");
         }
         assert_eq!(TimeEvent { variable_step: false, ..event(1.25) }.leg(1.0, 0.5), whole);
-        assert_eq!(TimeEvent::new(true).leg(1.0, 0.5), whole);
+        assert_eq!(TimeEvent::new(true, None).leg(1.0, 0.5), whole);
     }
 
     /// An FMU that compares its time with that of the event finds it there.

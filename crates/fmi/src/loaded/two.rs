@@ -1,9 +1,9 @@
 //! FMI 2.0 in the order of FMI 2.0.5, §4.2.4 (state machine of co-simulation).
 use super::batch::{self, Batches, batches};
-use super::instance::{Attempt, Instance, Slot, within};
+use super::instance::{Attempt, Instance, Slot, reached, within};
 use super::session::{Session, instance_name};
 use crate::archive::Unpacked;
-use crate::description::{DataType, Values, Variability};
+use crate::description::{Causality, DataType, ModelDescription, Values, Variability};
 use crate::error::FmuError;
 use crate::library::status::Outcome;
 use crate::library::two::{Flag, Two};
@@ -22,6 +22,8 @@ pub(super) struct LoadedTwo {
     /// All other inputs, which take their value at the time.
     discrete: Batches<Two>,
     outputs: Batches<Two>,
+    /// Outputs that may be read in the initialization mode.
+    initial_outputs: Batches<Two>,
     derivatives: Option<Derivatives>,
 }
 
@@ -55,6 +57,7 @@ impl LoadedTwo {
             continuous: batches(it, &plan.inputs, counts, |variability| variability == Variability::Continuous),
             discrete: batches(it, &plan.inputs, counts, |variability| variability != Variability::Continuous),
             outputs: batches(it, &plan.outputs, counts, |_| true),
+            initial_outputs: readable_at_start(it, &plan),
             derivatives: can.can_interpolate_inputs.then(|| Derivatives::of(fmu, &plan)),
         };
         let initialised = loaded.initialise(fmu, setup, &plan.starts);
@@ -80,8 +83,7 @@ impl LoadedTwo {
         }
         let outcome = self.instance.enter_initialization_mode();
         self.check("fmi2EnterInitializationMode", outcome)?;
-        let outcome = self.instance.exit_initialization_mode();
-        self.check("fmi2ExitInitializationMode", outcome)
+        if setup.waits { Ok(()) } else { self.start(None) }
     }
 
     /// Sets all inputs that are given: those that change at any time by `continuous`, all others by `discrete`.
@@ -103,12 +105,13 @@ impl LoadedTwo {
     }
 
     /// What a discarded step has come to.
-    fn discarded(&self, time: f64, length: f64) -> Attempt {
-        let reached = self.instance.last_successful_time();
+    fn discarded(&self, time: f64, length: f64) -> Result<Attempt, SlaveError> {
+        let (call, at) = ("fmi2DoStep", self.instance.last_successful_time());
         if self.instance.wants_to_end() {
-            return Attempt::Came(Progress::Terminated(reached.unwrap_or(time)));
+            let at = reached(call, time, length, at.unwrap_or(time))?;
+            return Ok(Attempt::Came(Progress::Terminated(at)));
         }
-        Attempt::Discarded { call: "fmi2DoStep", within: within(reached, time, length) }
+        Ok(Attempt::Discarded { call, within: within(at, time, length) })
     }
 }
 
@@ -117,8 +120,24 @@ impl Instance for LoadedTwo {
         self.session.capabilities
     }
 
+    fn start(&mut self, inputs: Option<&[f64]>) -> Result<(), SlaveError> {
+        if let Some(inputs) = inputs {
+            let now = |port: usize| inputs[port];
+            self.set_inputs(&now, &now)?;
+        }
+        let outcome = self.instance.exit_initialization_mode();
+        self.check("fmi2ExitInitializationMode", outcome)?;
+        self.session.is_initialising = false;
+        Ok(())
+    }
+
+    fn end(&mut self) {
+        self.instance.end();
+    }
+
     fn attempt(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Attempt, SlaveError> {
         self.session.go_to(time);
+        let length = self.session.within_stop(time, length);
         let now = |port: usize| inputs[port][0];
         let mean = |port: usize| Session::mean(inputs[port], length);
         if self.derivatives.is_some() {
@@ -129,7 +148,7 @@ impl Instance for LoadedTwo {
         }
         let outcome = self.instance.do_step(time, length, !self.instance.has_saved());
         let attempt = match outcome {
-            Outcome::Discarded => self.discarded(time, length),
+            Outcome::Discarded => self.discarded(time, length)?,
             outcome => {
                 self.check("fmi2DoStep", outcome)?;
                 Attempt::Came(Progress::Done)
@@ -144,9 +163,13 @@ impl Instance for LoadedTwo {
             let now = |port: usize| inputs[port];
             self.set_inputs(&now, &now)?;
         }
-        let Self { instance, outputs: batches, .. } = self;
-        let (call, outcome) = batch::read(batches, instance, outputs);
+        let is_initialising = self.session.is_initialising;
+        let Self { instance, outputs: all, initial_outputs, .. } = self;
+        let (call, outcome) = batch::read(if is_initialising { initial_outputs } else { all }, instance, outputs);
         self.check(call, outcome)?;
+        if is_initialising && inputs.is_none() {
+            Session::guess(outputs);
+        }
         self.session.check_finite(outputs)
     }
 
@@ -170,6 +193,17 @@ impl Instance for LoadedTwo {
     fn take_log(&mut self) -> Vec<LogLine> {
         self.instance.log().take()
     }
+}
+
+/// FMI 2.0.4, §4.2.4: in the initialization mode outputs are read and what is among the initial unknowns. All others count as
+/// what they start with until it is over.
+fn readable_at_start(it: &ModelDescription, plan: &Plan) -> Batches<Two> {
+    let is_readable = |variable: usize| {
+        let mut unknowns = it.structure.initial_unknowns.iter();
+        it.variables[variable].causality == Causality::Output || unknowns.any(|unknown| unknown.variable == variable)
+    };
+    let all = plan.outputs.iter().enumerate().filter(|(_, wire)| is_readable(wire.variable));
+    batch::batches_of(it, all, &plan.counts, |_| true)
 }
 
 impl Derivatives {

@@ -8,7 +8,7 @@
 
 typedef void (*logger)(void *, int, const char *, const char *);
 enum { OK, WARNING, DISCARD, ERROR, FATAL };
-enum { NORMAL, END, CIRCLE, FAIL, DIE, REFUSE, END_AT_START, COARSE };
+enum { NORMAL, END, CIRCLE, FAIL, DIE, REFUSE, END_AT_START, COARSE, AT_NAN, BEYOND, BEFORE, AT_END, AT_START, END_AT_NAN };
 
 typedef struct {
     double u, y, array[8], time, first, period;
@@ -22,7 +22,7 @@ typedef struct {
     void *environment;
     logger log;
     char path[300];
-    bool is_stepping, has_configured;
+    bool is_stepping, has_configured, event_mode;
     state s;
 } instance;
 
@@ -40,10 +40,11 @@ void *fmi3InstantiateCoSimulation(const char *name, const char *token, const cha
                                   bool early_return, const uint32_t *required, size_t n_required, void *environment, logger log, void *update) {
     instance *me = calloc(1, sizeof *me);
     (void)name, (void)logging, (void)required;
-    if (strcmp(token, "{three}") || visible || !event_mode || !early_return || n_required || update || resources) {
+    if (strcmp(token, "{three}") || visible || !early_return || n_required || update || resources) {
         log(environment, ERROR, "logStatusError", "not what was agreed");
         return NULL;
     }
+    me->event_mode = event_mode;
     me->environment = environment, me->log = log, me->s.n = 3;
     for (int i = 0; i < 8; i++) me->s.array[i] = i + 1;
     said(me, OK, "instantiate");
@@ -57,8 +58,8 @@ int fmi3EnterInitializationMode(instance *me, bool has_tolerance, double toleran
     snprintf(text, sizeof text, "enter initialization %d %g %g %d %g", has_tolerance, tolerance, start, has_stop, stop);
     return said(me, OK, text);
 }
-int fmi3ExitInitializationMode(instance *me) { return said(me, OK, "exit initialization"); }
-int fmi3EnterEventMode(instance *me) { me->is_stepping = false; return said(me, OK, "enter event"); }
+int fmi3ExitInitializationMode(instance *me) { me->is_stepping = !me->event_mode; return said(me, OK, "exit initialization"); }
+int fmi3EnterEventMode(instance *me) { if (!me->event_mode) return ERROR; me->is_stepping = false; return said(me, OK, "enter event"); }
 int fmi3EnterStepMode(instance *me) { me->is_stepping = true; return said(me, OK, "enter step"); }
 int fmi3Terminate(instance *me) { farewell(me, "terminate"); return OK; }
 int fmi3UpdateDiscreteStates(instance *me, bool *again, bool *end, bool *nominals, bool *values, bool *has_next, double *next) {
@@ -96,7 +97,7 @@ int fmi3GetFloat64(instance *me, const uint32_t *vr, size_t n, double *values, s
 }
 /* In the step mode what changes at events cannot be set. */
 int fmi3SetInt32(instance *me, const uint32_t *vr, size_t n, const int32_t *values, size_t n_values) {
-    if (n != 1 || n_values != 1 || me->is_stepping) return said(me, ERROR, "set in the wrong mode");
+    if (n != 1 || n_values != 1 || (me->is_stepping && me->event_mode)) return said(me, ERROR, "set in the wrong mode");
     *(vr[0] == 2 ? &me->s.d : &me->s.mode) = values[0];
     return OK;
 }
@@ -149,6 +150,11 @@ int fmi3DoStep(instance *me, double t, double h, bool no_set_prior, bool *event,
     if (me->s.mode == FAIL) return said(me, ERROR, "no root\n");
     if (me->s.mode == DIE) return FATAL;
     if (me->s.mode == REFUSE) return DISCARD;
+    if (me->s.mode >= AT_NAN) {
+        *early = me->s.mode != END_AT_NAN, *end = me->s.mode == END_AT_NAN;
+        *last = me->s.mode == BEYOND ? t + 2 * h : me->s.mode == BEFORE ? t - h : me->s.mode == AT_END ? t + h : me->s.mode == AT_START ? t : strtod("nan", NULL);
+        return OK;
+    }
     if (me->s.mode == COARSE) {
         *last = t;
         if (h > 0.3) return DISCARD;

@@ -234,3 +234,60 @@ fn a_saved_state_comes_back() {
     slave.read(None, &mut read).unwrap();
     assert_eq!(read, [0.1]);
 }
+
+/// FMI 3.0.1, §4.2.1: an early return is at a time within the step, its start included.
+#[test]
+fn an_early_return_is_within_its_step() {
+    let step = |mode| loaded(mode, &["u"], &["y"]).step(1.0, 0.5, &[[0.0; 3]]);
+    for (mode, at) in [(8, f64::NAN), (9, 2.0), (10, 0.5), (13, f64::NAN)] {
+        match step(mode) {
+            Err(SlaveError::Astray { call: "fmi3DoStep", from: 1.0, to: 1.5, at: found }) => {
+                assert_eq!(found.to_bits() << 1, at.to_bits() << 1, "{mode}: {found}");
+            }
+            other => panic!("{mode}: {other:?}"),
+        }
+    }
+    assert_eq!(step(11), Ok(Progress::Done), "at the end of the step it is not early");
+    assert_eq!(step(12), Ok(Progress::Until(1.0)));
+}
+
+/// The library counts, and returns an error for an event mode that was not agreed on.
+#[test]
+fn without_the_event_mode_no_event_is_dealt_with() {
+    let setup = Setup { without_event_mode: true, stop_time: Some(2.0), ..setup(&[], &["u", "d"], &["y", "events"]) };
+    let mut slave = room().load(&setup).unwrap();
+    assert_eq!(messages(&mut slave), ["instantiate", "enter initialization 0 0 0 1 2", "exit initialization"]);
+    let inputs = |d| [[2.0, 0.0, 0.0], [d, 0.0, 0.0]];
+    assert_eq!(slave.step(0.0, 0.125, &inputs(7.0)), Ok(Progress::Done), "a new discrete input");
+    assert_eq!(slave.step(0.125, 1.0, &inputs(8.0)), Ok(Progress::Until(0.25)), "it still may return early");
+    assert_eq!(slave.step(0.25, 0.75, &inputs(8.0)), Ok(Progress::Done));
+    let mut read = [0.0; 2];
+    slave.read(None, &mut read).unwrap();
+    assert_eq!((read, messages(&mut slave)), ([2.0, 0.0], vec![]));
+}
+
+#[test]
+fn one_that_waits_is_started_with_its_inputs() {
+    let setup = Setup { waits: true, ..setup(&[], &["u", "d", "array"], &["y", "events", "sum"]) };
+    let mut slave = room().load(&setup).unwrap();
+    assert_eq!(messages(&mut slave), ["instantiate", "enter initialization 0 0 0 0 0"]);
+    let mut read = [0.0; 3];
+    slave.read(Some(&[1.0, 7.0, 40.0]), &mut read).unwrap();
+    assert_eq!(read[2], 45.0, "elements that nothing is wired to keep what they start with");
+    slave.start(Some(&[2.0, 8.0, 10.0])).unwrap();
+    assert_eq!(messages(&mut slave), ["exit initialization", "update", "enter step"]);
+    slave.step(0.0, 0.125, &[[2.0, 0.0, 0.0], [8.0, 0.0, 0.0], [10.0, 0.0, 0.0]]).unwrap();
+    assert_eq!(messages(&mut slave), [""; 0], "what was there at the start is not new");
+    assert_eq!([0, 1, 2].map(|output| slave.is_discrete(output)), [false, true, false]);
+}
+
+/// An event at the stop time or beyond it is met by no step that is longer for it.
+#[test]
+fn no_event_leads_beyond_the_stop_time() {
+    let start = [("first", Value::Number(0.5_f64.next_up())), ("period", Value::Number(0.5))];
+    let setup = Setup { stop_time: Some(0.5), ..setup(&start, &["u"], &["y"]) };
+    let mut slave = room().load(&setup).unwrap();
+    slave.take_log();
+    assert_eq!(slave.step(0.0, 0.5, &[[0.0; 3]]), Ok(Progress::Done));
+    assert_eq!(messages(&mut slave), [""; 0]);
+}

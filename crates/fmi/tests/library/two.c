@@ -13,10 +13,10 @@ typedef struct {
     void *environment;
 } callbacks;
 enum { OK, WARNING, DISCARD, ERROR, FATAL, PENDING };
-enum { NORMAL, REFUSE, HALF, END, FAIL, DIE, NOT_A_NUMBER, ASYNCHRONOUS, UNKNOWN, FLOOD, COARSE, TELLING, WALL };
+enum { NORMAL, REFUSE, HALF, END, FAIL, DIE, NOT_A_NUMBER, ASYNCHRONOUS, UNKNOWN, FLOOD, COARSE, TELLING, WALL, STRICT, BEYOND };
 
 typedef struct {
-    double u, y, du, ddu, reached, longest;
+    double u, y, du, ddu, reached, longest, stop;
     int mode, flag, steps;
 } state;
 typedef struct {
@@ -63,6 +63,7 @@ void fmi2FreeInstance(instance *me) {
 }
 int fmi2SetupExperiment(instance *me, int has_tolerance, double tolerance, double start, int has_stop, double stop) {
     me->functions->log(me->functions->environment, me->name, OK, "calls", "setup %d %g %g %d %g", has_tolerance, tolerance, start, has_stop, stop);
+    me->s.stop = stop;
     return OK;
 }
 int fmi2EnterInitializationMode(instance *me) { note(me, "enter initialization"); return OK; }
@@ -134,6 +135,8 @@ int fmi2DoStep(instance *me, double t, double h, int no_set_prior) {
     case TELLING: if (h > me->s.longest) return discard(me, t + me->s.longest); break;
     case WALL: if (t + h > me->s.longest) return discard(me, t); break;
     case END: me->s.reached = t + h / 4; return DISCARD;
+    case BEYOND: me->s.reached = t + 2 * h; return DISCARD;
+    case STRICT: if (t + h > me->s.stop) return ERROR; break;
     case FAIL: me->functions->log(me->functions->environment, me->name, ERROR, "logStatusError", "no root at %g%%", 100 * t); return ERROR;
     case DIE: return FATAL;
     case ASYNCHRONOUS: return PENDING;
@@ -145,7 +148,7 @@ int fmi2DoStep(instance *me, double t, double h, int no_set_prior) {
     return OK;
 }
 int fmi2GetRealStatus(instance *me, int kind, double *value) { *value = me->s.reached; return kind == 2 ? OK : DISCARD; }
-int fmi2GetBooleanStatus(instance *me, int kind, int *value) { *value = me->s.mode == END; return kind == 3 ? OK : DISCARD; }
+int fmi2GetBooleanStatus(instance *me, int kind, int *value) { *value = me->s.mode == END || me->s.mode == BEYOND; return kind == 3 ? OK : DISCARD; }
 
 int fmi2GetFMUstate(instance *me, void **saved) {
     if (!*saved) *saved = malloc(sizeof(state));

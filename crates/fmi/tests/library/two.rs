@@ -300,3 +300,68 @@ fn instances_are_apart() {
     assert_eq!(read, [2.0]);
     assert_eq!(setup.outputs, [port("y", 0)]);
 }
+
+/// x(0) may follow u(0): inputs come before the end of the initialization, as often as somebody asks what would follow from them.
+#[test]
+fn one_that_waits_is_started_with_its_inputs() {
+    let waiting =
+        |mode: &str| Setup { waits: true, ..setup(&[("mode", text(mode))], &["u", "flag"], &["y", "u", "steps"]) };
+    let load = |mode| room().load(&waiting(mode)).unwrap();
+    let mut slave = load("normal");
+    assert!(slave.is_initialising());
+    assert_eq!(messages(&mut slave).last().unwrap(), "enter initialization of it at 0, 0");
+    let mut read = [0.0; 3];
+    for input in [3.0, -1.0, 5.0] {
+        slave.read(Some(&[input, 1.0]), &mut read).unwrap();
+        // An input is neither an output nor an initial unknown, and is not read.
+        assert_eq!(read, [0.0; 3]);
+    }
+    slave.start(Some(&[5.0, 1.0])).unwrap();
+    assert!(!slave.is_initialising());
+    assert_eq!(messages(&mut slave), ["exit initialization of it at 0, 5"]);
+    slave.step(0.0, 0.5, &[[5.0, 0.0, 0.0], [1.0, 0.0, 0.0]]).unwrap();
+    slave.read(None, &mut read).unwrap();
+    assert_eq!(read, [2.5, 5.0, 1.0]);
+    // One that nobody starts begins by itself with the first step.
+    let mut unasked = load("normal");
+    unasked.step(0.0, 0.5, &[[5.0, 0.0, 0.0], [0.0; 3]]).unwrap();
+    assert!(!unasked.is_initialising());
+    let error = load("fail early").start(Some(&[0.0; 2])).unwrap_err();
+    assert!(matches!(error, SlaveError::Failed { call: "fmi2ExitInitializationMode", .. }), "{error}");
+}
+
+#[test]
+fn one_that_was_not_started_is_freed_and_not_terminated() {
+    let room = room();
+    let path = room.notes();
+    let setup = Setup { waits: true, ..setup(&[("path", text(path.to_str().unwrap()))], &["u"], &["y"]) };
+    let mut slave = room.load(&setup).unwrap();
+    slave.end();
+    assert_eq!(fs::read_to_string(&path).unwrap(), "free\n");
+    drop(slave);
+    assert_eq!(fs::read_to_string(&path).unwrap(), "free\n", "once");
+}
+
+#[test]
+fn what_is_no_real_number_is_discrete() {
+    let slave = loaded("normal", &["y", "steps"]);
+    assert_eq!([slave.is_discrete(0), slave.is_discrete(1)], [false, true]);
+}
+
+/// 0.2 + 0.1 is a rounding beyond 0.3, which is no step beyond it; FMI 2.0.4, §2.1.6, has FMUs return an error there.
+#[test]
+fn roundings_are_not_beyond_the_stop_time() {
+    let setup = Setup { stop_time: Some(0.3), ..setup(&[("mode", text("strict"))], &["u"], &["y"]) };
+    let mut slave = room().load(&setup).unwrap();
+    assert_eq!(slave.step(0.2, 0.1, &[[1.0, 0.0, 0.0]]), Ok(Progress::Done));
+    let mut read = [0.0];
+    slave.read(None, &mut read).unwrap();
+    assert!((read[0] - 0.1).abs() < 1e-15, "{read:?}");
+    assert!(slave.step(0.25, 0.1, &[[1.0, 0.0, 0.0]]).is_err(), "what really goes beyond it is not hidden");
+}
+
+#[test]
+fn an_end_beyond_the_step_is_none() {
+    let error = loaded("beyond", &[]).step(1.0, 0.125, &[[0.0; 3]]).unwrap_err();
+    assert_eq!(error, SlaveError::Astray { call: "fmi2DoStep", from: 1.0, to: 1.125, at: 1.25 });
+}

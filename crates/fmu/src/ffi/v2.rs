@@ -93,7 +93,7 @@ unsafe extern "C" fn fmi2Instantiate(
     resource_location: Text,
     functions: *const v2::CallbackFunctions,
     _visible: Boolean,
-    logging_on: Boolean,
+    _logging_on: Boolean,
 ) -> Component {
     // SAFETY: the host gives its functions, and they stay (§2.1.5).
     let functions = unsafe { functions.as_ref() };
@@ -114,7 +114,7 @@ unsafe extern "C" fn fmi2Instantiate(
         Ok((folder(told(resource_location, "fmuResourceLocation")?)?, guid))
     };
     // Errors are said in any case: `loggingOn` is about debugging.
-    give("fmi2Instantiate", Box::new(log), [true, logging_on != v2::FALSE], place())
+    give("fmi2Instantiate", Box::new(log), true, place())
 }
 
 #[unsafe(no_mangle)]

@@ -68,7 +68,7 @@ unsafe extern "C" fn fmi3InstantiateCoSimulation(
     token: Text,
     resource_path: Text,
     _visible: Boolean,
-    logging_on: Boolean,
+    _logging_on: Boolean,
     _event_mode_used: Boolean,
     _early_return_allowed: Boolean,
     _intermediate: *const ValueReference,
@@ -90,7 +90,7 @@ unsafe extern "C" fn fmi3InstantiateCoSimulation(
     };
     let log = Logger { function: log_message, environment };
     // Errors are said in any case: `loggingOn` is about debugging.
-    give("fmi3InstantiateCoSimulation", Box::new(log), [true, logging_on != v3::FALSE], place())
+    give("fmi3InstantiateCoSimulation", Box::new(log), true, place())
 }
 const _: v3::InstantiateCoSimulation = fmi3InstantiateCoSimulation;
 
@@ -105,7 +105,7 @@ unsafe extern "C" fn fmi3InstantiateModelExchange(
     log_message: Option<v3::LogMessageCallback>,
 ) -> Instance {
     let why = "this FMU is for co-simulation; it cannot be instantiated for model exchange".into();
-    give("fmi3InstantiateModelExchange", Box::new(Logger { function: log_message, environment }), [true; 2], Err(why))
+    give("fmi3InstantiateModelExchange", Box::new(Logger { function: log_message, environment }), true, Err(why))
 }
 const _: v3::InstantiateModelExchange = fmi3InstantiateModelExchange;
 
@@ -124,7 +124,7 @@ unsafe extern "C" fn fmi3InstantiateScheduledExecution(
 ) -> Instance {
     let why = "this FMU is for co-simulation; it cannot be instantiated for scheduled execution".into();
     let log = Logger { function: log_message, environment };
-    give("fmi3InstantiateScheduledExecution", Box::new(log), [true; 2], Err(why))
+    give("fmi3InstantiateScheduledExecution", Box::new(log), true, Err(why))
 }
 const _: v3::InstantiateScheduledExecution = fmi3InstantiateScheduledExecution;
 

@@ -4,6 +4,7 @@ use super::entry::{
     EventResult, ExpectedResult, LogResult, MetricResult, MoveResult, RequirementResult, StandingResult, of_set,
 };
 use crate::ordered::Ordered;
+use crate::text::printable_lines;
 use serde::{Deserialize, Serialize};
 use servobench_metrics::{Metrics, Name, Verdict};
 use servobench_trace::Recording;
@@ -83,6 +84,14 @@ pub struct RunResult {
     pub files: Vec<String>,
 }
 
+/// Reasons may quote what somebody else's code has said: they are cleaned here, before anything shows them.
+fn shown(mut reasons: Vec<String>) -> Vec<String> {
+    for reason in &mut reasons {
+        *reason = printable_lines(reason);
+    }
+    reasons
+}
+
 impl RunResult {
     /// A run that was judged.
     #[must_use]
@@ -118,7 +127,7 @@ impl RunResult {
     /// A scenario that cannot be read or built, and why.
     #[must_use]
     pub fn invalid(run: RunIdentity, reasons: Vec<String>) -> Self {
-        Self { verdict: Outcome::Invalid, reasons, ..Self::of(run, None, &Metrics::default()) }
+        Self { verdict: Outcome::Invalid, reasons: shown(reasons), ..Self::of(run, None, &Metrics::default()) }
     }
 
     /// A run that could not be carried out and why, with what was recorded and measured until then.
@@ -127,7 +136,7 @@ impl RunResult {
         let nothing = Metrics::default();
         let (recording, metrics) =
             until_then.map_or((None, &nothing), |(recording, metrics)| (Some(recording), metrics));
-        Self { reasons, ..Self::of(run, recording, metrics) }
+        Self { reasons: shown(reasons), ..Self::of(run, recording, metrics) }
     }
 
     /// Metrics of the run, or of a move.

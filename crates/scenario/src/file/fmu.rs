@@ -33,6 +33,9 @@ table! {
         step: f64 = positive(Plain(&TIME), "1 ms"),
         /// Where it runs; "process" unless given.
         isolation: Isolation = (),
+        /// Whether the event mode of an FMU of FMI 3.0 is used; if it has one, it is unless this is `false`: then the FMU deals with
+        /// events by itself.
+        event_mode: bool = (),
         /// How long one of its calls may take (real time); 10 s unless given.
         patience: f64 = positive(Plain(&TIME), "10 s"),
         /// Megabytes of memory that its process may take; 2048 unless given.

@@ -230,6 +230,7 @@ fn fmu<P: Port>(
         path: path?,
         every: every?,
         isolation: isolation?,
+        event_mode: given.event_mode.optional().ok()?.copied().unwrap_or(true),
         patience: given.patience.optional().ok()?.copied().unwrap_or(PATIENCE),
         memory: given.memory.optional().ok()?.copied().unwrap_or(MEMORY),
         start,

@@ -13,6 +13,8 @@ pub struct Fmu<To> {
     pub every: u32,
     /// Where it runs.
     pub isolation: Isolation,
+    /// Whether its event mode is used, if it has one.
+    pub event_mode: bool,
     /// How long one of its calls may take (s, real time).
     pub patience: f64,
     /// Memory that its process may take (MB).

@@ -38,13 +38,13 @@ pub(super) fn mechanics(fmu: &Fmu<BodySignal>, scenario: &Scenario) -> Result<Fm
 }
 
 /// An FMU beside the axis, of whose outputs `outputs` are wanted, each with what it is if it goes to the axis. `channels` are those
-/// that FMUs are given; the run ends at `end` (s).
+/// that FMUs are given; its steps are `step` (s) long, and the last one ends at `end` (s).
 pub(crate) fn partner(
     fmu: &Fmu<LoopSignal>,
     outputs: &[(&str, Option<LoopSignal>)],
     (equipment, motor_motion): (&Equipment, Motion),
     channels: &[ChannelSpec],
-    end: f64,
+    (step, end): (f64, f64),
 ) -> FmuPartner {
     let shaft = length_unit(motor_motion);
     let given = |signal: &Signal| match signal {
@@ -73,6 +73,7 @@ pub(crate) fn partner(
             .iter()
             .map(|(variable, signal)| port(variable, &signal.map_or_else(String::new, taken)))
             .collect(),
+        step,
         end,
     }
 }
@@ -81,6 +82,7 @@ fn file<To>(fmu: &Fmu<To>) -> FmuFile {
     FmuFile {
         path: fmu.path.clone(),
         start: fmu.start.iter().map(|(variable, value)| start(variable, value)).collect(),
+        event_mode: fmu.event_mode,
         isolation: match fmu.isolation {
             scenario::Isolation::None => Isolation::None,
             scenario::Isolation::Process => Isolation::Process {

@@ -12,10 +12,20 @@ use servobench_scenario::LoopSignal;
 /// What the axis gives before channels of the recording.
 pub(super) const OWN: [&str; 3] = ["time", "shaft.position", "shaft.velocity"];
 
+/// Part of a step that is a rounding of its times.
+const ROUNDING: f64 = 1e-9;
+
 /// One of those that are coupled.
 pub(super) enum Part {
     Axis(Box<Axis>),
-    Fmu(Box<dyn Slave>),
+    Fmu(Company),
+}
+
+/// An FMU beside the axis.
+pub(super) struct Company {
+    pub(super) slave: Box<dyn Slave>,
+    /// When the run ends (s): an FMU that wants to end then, or after it, keeps nobody from anything.
+    pub(super) end: f64,
 }
 
 /// Why a part could not go on.
@@ -96,23 +106,52 @@ impl Block for Part {
     fn saves_state(&self) -> bool {
         match self {
             Self::Axis(axis) => axis.recorded.closed_loop.mechanics.marks(),
-            Self::Fmu(slave) => slave.capabilities().saves_state,
+            Self::Fmu(fmu) => fmu.slave.capabilities().saves_state,
         }
     }
 
     fn feeds_through(&self, output: usize, input: usize) -> bool {
         match self {
             Self::Axis(_) => false,
-            Self::Fmu(slave) => slave.feeds_through(output, input),
+            Self::Fmu(fmu) => fmu.slave.feeds_through(output, input),
+        }
+    }
+
+    fn is_discrete(&self, output: usize) -> bool {
+        match self {
+            Self::Axis(_) => false,
+            Self::Fmu(fmu) => fmu.slave.is_discrete(output),
+        }
+    }
+
+    fn has_initial_equations(&self) -> bool {
+        match self {
+            Self::Axis(_) => false,
+            Self::Fmu(fmu) => fmu.slave.is_initialising(),
+        }
+    }
+
+    fn follows_at_start(&self, output: usize, input: usize) -> bool {
+        match self {
+            Self::Axis(_) => false,
+            Self::Fmu(fmu) => fmu.slave.follows_at_start(output, input),
+        }
+    }
+
+    fn start(&mut self, inputs: &[f64]) -> Result<(), PartError> {
+        match self {
+            Self::Axis(_) => Ok(()),
+            Self::Fmu(fmu) => fmu.slave.start(Some(inputs)).map_err(PartError::Fmu),
         }
     }
 
     fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<Step, PartError> {
         let axis = match self {
             Self::Axis(axis) => axis,
-            Self::Fmu(slave) => {
+            Self::Fmu(Company { slave, end }) => {
                 return Ok(match slave.step(time, length, inputs).map_err(PartError::Fmu)? {
                     Progress::Done => Step::Done,
+                    Progress::Terminated(time) if time >= *end - ROUNDING * length => Step::Done,
                     Progress::Until(time) => Step::Until(time),
                     Progress::Terminated(time) => Step::Terminated(time),
                 });
@@ -143,7 +182,7 @@ impl Block for Part {
                 }
                 Ok(())
             }
-            Self::Fmu(slave) => slave.read(inputs, outputs).map_err(PartError::Fmu),
+            Self::Fmu(fmu) => fmu.slave.read(inputs, outputs).map_err(PartError::Fmu),
         }
     }
 
@@ -154,7 +193,7 @@ impl Block for Part {
                 axis.saved = Some((saved, axis.now, axis.external));
                 Ok(())
             }
-            Self::Fmu(slave) => slave.save().map_err(PartError::Fmu),
+            Self::Fmu(fmu) => fmu.slave.save().map_err(PartError::Fmu),
         }
     }
 
@@ -168,7 +207,7 @@ impl Block for Part {
                 (axis.now, axis.external) = (*now, *external);
                 Ok(())
             }
-            Self::Fmu(slave) => slave.restore().map_err(PartError::Fmu),
+            Self::Fmu(fmu) => fmu.slave.restore().map_err(PartError::Fmu),
         }
     }
 }

@@ -4,6 +4,7 @@ use super::block::OWN;
 use crate::bench::fmu::partner;
 use crate::channels::{Equipment, Selection, WriterRates};
 use crate::error::BuildError;
+use servobench_base::Tick;
 use servobench_coupling::{Connection, Delay, Order, Port};
 use servobench_plant::FmuPartner;
 use servobench_scenario::{LoopSignal, Scenario, Signal};
@@ -62,10 +63,15 @@ impl<'a> Wiring<'a> {
         Ok(Self { scenario, outputs, gives: all.only(&columns), takes, connections })
     }
 
-    /// The FMU number `index` as it is to be opened.
-    pub(super) fn partner(&self, index: usize, equipment: &Equipment, end: f64) -> FmuPartner {
+    /// The FMU number `index` as it is to be opened for a run of `ticks`.
+    pub(super) fn partner(&self, index: usize, equipment: &Equipment, ticks: u64) -> FmuPartner {
         let (fmu, motion) = (&self.scenario.fmus[index], self.scenario.axis.motor_motion);
-        partner(fmu, &self.outputs[index], (equipment, motion), &self.gives.specs, end)
+        let every = (self.scenario.coupling.every, fmu.every);
+        let (rate, [before, last]) = (self.scenario.base_rate, last_step(ticks, every));
+        let step = rate.time(Tick(last - before));
+        // As it is stepped: a sum of times may be a rounding away from the time of the tick.
+        let end = rate.time(Tick(last)).max(rate.time(Tick(before)) + step);
+        partner(fmu, &self.outputs[index], (equipment, motion), &self.gives.specs, (step, end))
     }
 
     /// Names of what the axis gives.
@@ -91,6 +97,15 @@ impl<'a> Wiring<'a> {
             is_extrapolated: delay.extrapolated.is_some_and(|order| order != Order::Constant),
         }
     }
+}
+
+/// Start and end (ticks) of the last step of an FMU in a run of `ticks`, the last of which is only recorded. Exchanges are whole steps
+/// of the `coupling`, and those of the FMU are `every`, a multiple of them: the last one may end after the run.
+fn last_step(ticks: u64, (coupling, every): (u32, u32)) -> [u64; 2] {
+    let (coupling, every) = (u64::from(coupling.max(1)), u64::from(every.max(1)));
+    let exchanged = ticks.saturating_sub(1).next_multiple_of(coupling);
+    let last = exchanged.next_multiple_of(every).max(every);
+    [last - every, last]
 }
 
 /// Whether an FMU stands for the drive.

@@ -99,13 +99,13 @@ fn what_it_computes_is_what_a_run_records() {
 }
 
 #[test]
-fn a_step_of_no_whole_number_of_ticks_is_discarded() {
+fn a_step_of_no_whole_number_of_ticks_is_an_error() {
     let room = Room::new(Part::Axis);
     let fmu = begun(&room);
     assert_eq!(fmu.step(0, 3.0), (Status::OK, 3.0 / RATE));
-    assert_eq!(fmu.step(3, 0.7), (Status::DISCARD, 3.0 / RATE));
+    assert_eq!(fmu.step(3, 0.7), (Status::ERROR, 3.0 / RATE));
     assert!(fmu.said().starts_with("fmi3DoStep: the step of "));
-    assert_eq!(fmu.step(3, 1.0).0, Status::OK);
+    assert_eq!(fmu.step(3, 1.0).0, Status::ERROR, "it stays so");
 }
 
 /// Oracle: §2.3 and §4.2; an error ends the instance, but for reset and saved states.
