@@ -9,7 +9,7 @@
 //! rise takes; where there is not so much, it rises at once.
 use super::Axis;
 use super::bounds::Bounds;
-use super::calming::planned;
+use super::calming::{is_fit_for, planned};
 use super::queue::Queue;
 use super::run::Run;
 use crate::command::Goal;
@@ -38,7 +38,9 @@ pub(super) fn blended(
     let rise = x - fast.covered(&cruise, direction * speed)?;
     if direction * bounds.covered(from, cruise.v)? <= direction * (rise - from.x) {
         let way = bounds.plan(from, &Target::Position { x: rise, v: cruise.v })?;
-        return Ok(Run::new(way, lead, Some((target, fast)), axis));
+        if is_fit_for(&way, axis) {
+            return Ok(Run::new(way, lead, Some((target, fast)), axis));
+        }
     }
     planned(from, &target, &fast, axis, lead)
 }

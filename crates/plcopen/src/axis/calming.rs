@@ -21,7 +21,7 @@ pub(super) fn planned(
     lead: f64,
 ) -> Result<Run, PlanError> {
     let way = bounds.plan(from, target)?;
-    if way.excess() == 0.0 || keeps(&way, axis) {
+    if is_fit_for(&way, axis) {
         return Ok(Run::new(way, lead, None, axis));
     }
     // What is left of the velocity when the acceleration goes to zero at the jerk of the axis.
@@ -53,6 +53,11 @@ fn steepest_before(room: f64, axis: &Bounds) -> f64 {
     let least = jerk * jerk / snap;
     let trapezoid = 0.5 * (libm::sqrt(least * least + 8.0 * jerk * room) - least);
     if trapezoid >= least { trapezoid } else { libm::cbrt(snap * room * room) }
+}
+
+/// Whether an axis with the bounds `axis` can go the way.
+pub(super) fn is_fit_for(way: &Transition, axis: &Bounds) -> bool {
+    way.excess() == 0.0 || keeps(way, axis)
 }
 
 /// Whether velocity and acceleration stay within those of the axis, as far as `way` is not on its way back into them.
