@@ -47,6 +47,11 @@ impl Bell {
         futex::wake(&self.number, futex::Flags::empty(), 1).ok();
     }
 
+    /// Whether it has rung with `number`, also where the other side has given up after that.
+    pub(crate) fn has_rung(&self, number: u32) -> bool {
+        self.number.load(SeqCst) & (u32::MAX >> 1) == number
+    }
+
     fn rings(&self, number: u32) -> bool {
         self.number.load(SeqCst) == number
     }
