@@ -196,6 +196,9 @@ fn discrete_outputs_are_held_between_different_steps() {
     let (output, results) = run(&work);
     assert!([0, 4].contains(&code(&output)), "{}", said(&output));
     for (name, _) in &scenarios {
+        // An orderly end is no crash, however late it is looked at.
+        let said = log(of(&results, name));
+        assert!(said.iter().all(|line| !line.starts_with("\"warning\"")), "{name}: {said:?}");
         let force = force(&work, &results, name);
         for (tick, force) in force.iter().enumerate().skip(1).take(1599) {
             let count = (tick - 1) / 4;

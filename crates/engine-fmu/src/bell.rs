@@ -145,6 +145,16 @@ mod tests {
         });
     }
 
+    /// Who looks late finds both: that it has rung, and that it will not again.
+    #[test]
+    fn what_has_rung_is_known_after_it_has_given_up() {
+        let bell = Bell::default();
+        bell.ring(7);
+        bell.give_up();
+        assert!(bell.has_rung(7) && !bell.rings(7));
+        assert!(!bell.has_rung(6));
+    }
+
     #[test]
     fn one_that_gives_up_wakes_who_waits() {
         let bell = Bell::default();
