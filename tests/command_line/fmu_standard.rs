@@ -50,6 +50,39 @@ const DESCRIPTION: &str = r#"<?xml version="1.0"?>
 </ModelStructure>
 </fmiModelDescription>"#;
 
+/// Official FMUs have a file twice: the run says so and goes on.
+#[test]
+fn identical_duplicates_are_a_warning_of_the_run() {
+    let work = work(&[("twice", format!("{SLIDE}{}", fmu("strict", "outputs = { x = \"disturbance.load\" }")))]);
+    let path = work.path().join("strict.fmu");
+    let mut zip = ZipWriter::new(File::create(&path).unwrap());
+    for (name, content) in [
+        ("modelDescription.xml", DESCRIPTION.as_bytes()),
+        ("binaries/linux64/strict.so", library()),
+        ("resources/table.txt", b"1 2 3"),
+        ("resources/tablE.txt", b"1 2 3"),
+    ] {
+        zip.start_file(name, SimpleFileOptions::default()).unwrap();
+        zip.write_all(content).unwrap();
+    }
+    zip.finish().unwrap();
+    let mut bytes = fs::read(&path).unwrap();
+    let name = b"resources/tablE.txt";
+    for at in 0..bytes.len() - name.len() {
+        if bytes[at..].starts_with(name) {
+            bytes[at..at + name.len()].copy_from_slice(b"resources/table.txt");
+        }
+    }
+    fs::write(&path, bytes).unwrap();
+    let (output, results) = run(&work);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    let warning = "\"warning\": `resources/table.txt` is in the archive 2 times, always with the same bytes";
+    let said_by_it = log(of(&results, "twice"));
+    assert!(said_by_it.iter().any(|line| line == warning), "{said_by_it:?}");
+    let info = command(&["fmu", "info"]).arg(&path).output().unwrap();
+    assert!(code(&info) == 0 && said(&info).contains("is in the archive 2 times"), "{}", said(&info));
+}
+
 /// The compiled library, once for all tests of this process.
 fn library() -> &'static [u8] {
     static LIBRARY: OnceLock<Vec<u8>> = OnceLock::new();
@@ -163,6 +196,9 @@ fn discrete_outputs_are_held_between_different_steps() {
     let (output, results) = run(&work);
     assert!([0, 4].contains(&code(&output)), "{}", said(&output));
     for (name, _) in &scenarios {
+        // An orderly end is no crash, however late it is looked at.
+        let said = log(of(&results, name));
+        assert!(said.iter().all(|line| !line.starts_with("\"warning\"")), "{name}: {said:?}");
         let force = force(&work, &results, name);
         for (tick, force) in force.iter().enumerate().skip(1).take(1599) {
             let count = (tick - 1) / 4;

@@ -47,6 +47,11 @@ impl Bell {
         futex::wake(&self.number, futex::Flags::empty(), 1).ok();
     }
 
+    /// Whether it has rung with `number`, also where the other side has given up after that.
+    pub(crate) fn has_rung(&self, number: u32) -> bool {
+        self.number.load(SeqCst) & (u32::MAX >> 1) == number
+    }
+
     fn rings(&self, number: u32) -> bool {
         self.number.load(SeqCst) == number
     }
@@ -138,6 +143,16 @@ mod tests {
                 assert!(listener.wait(&back, turn, GLANCE, || true));
             }
         });
+    }
+
+    /// Who looks late finds both: that it has rung, and that it will not again.
+    #[test]
+    fn what_has_rung_is_known_after_it_has_given_up() {
+        let bell = Bell::default();
+        bell.ring(7);
+        bell.give_up();
+        assert!(bell.has_rung(7) && !bell.rings(7));
+        assert!(!bell.has_rung(6));
     }
 
     #[test]

@@ -20,6 +20,11 @@ pub(crate) struct Ending {
 }
 
 impl Ending {
+    /// Whether it ended by itself with exit code 0.
+    pub(crate) fn is_orderly(&self) -> bool {
+        self.status.is_some_and(|status| status.success())
+    }
+
     /// Whether it ran out of its memory, as far as one can tell from outside.
     ///
     /// What grows by doubling asks for twice what it holds, and holds both while it copies: one that crashes with a third of

@@ -1,6 +1,6 @@
 //! A slave whose numbers are SI numbers.
 use crate::ports::Ports;
-use servobench_fmi::{Capabilities, LogLine, Progress, Slave, SlaveError};
+use servobench_fmi::{Capabilities, LogLine, Progress, Severity, Slave, SlaveError};
 
 /// A slave that was wired with ports, whose numbers are in SI units here and in its own there.
 pub struct InSi {
@@ -9,6 +9,8 @@ pub struct InSi {
     /// Inputs of a step, and of a reading, in its units.
     moving: Vec<[f64; 3]>,
     present: Vec<f64>,
+    /// What is said of it before it speaks itself.
+    notes: Vec<LogLine>,
 }
 
 impl InSi {
@@ -16,7 +18,19 @@ impl InSi {
     #[must_use]
     pub fn new(slave: Box<dyn Slave>, ports: Ports) -> Self {
         let inputs = ports.inputs.len();
-        Self { slave, ports, moving: vec![[0.0; 3]; inputs], present: vec![0.0; inputs] }
+        Self { slave, ports, moving: vec![[0.0; 3]; inputs], present: vec![0.0; inputs], notes: Vec::new() }
+    }
+
+    /// The same with warnings at the beginning of its log.
+    #[must_use]
+    pub fn with_warnings(self, warnings: &[String]) -> Self {
+        let note = |message: &String| LogLine {
+            time: 0.0,
+            severity: Severity::Warning,
+            category: String::new(),
+            message: message.clone(),
+        };
+        Self { notes: warnings.iter().map(note).collect(), ..self }
     }
 }
 
@@ -83,6 +97,8 @@ impl Slave for InSi {
     }
 
     fn take_log(&mut self) -> Vec<LogLine> {
-        self.slave.take_log()
+        let mut log = std::mem::take(&mut self.notes);
+        log.extend(self.slave.take_log());
+        log
     }
 }

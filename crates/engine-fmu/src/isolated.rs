@@ -1,5 +1,6 @@
 //! The simulation's side of an FMU in a process of its own.
 use crate::bell::Listener;
+use crate::ending::Ending;
 use crate::error::IsolationError;
 use crate::keeper::{HostCommand, Keeper};
 use crate::memory::in_words;
@@ -189,7 +190,7 @@ impl Isolated {
             Some(ending) if ending.of_memory() => SlaveError::Crashed {
                 call,
                 time,
-                how: crate::ending::Ending { status: None, ..ending.clone() }.how()
+                how: Ending { status: None, ..ending.clone() }.how()
                     + &format!("; it did not come back within {patience} s and was ended"),
             },
             _ if call.is_empty() => SlaveError::Hung { call: command.words(), time, patience },
@@ -358,7 +359,10 @@ impl Isolated {
 
     /// Has the FMU freed and the process ended.
     fn leave(&mut self) -> Result<(), SlaveError> {
-        self.order(Command::End)?;
+        if let Err(error) = self.order(Command::End) {
+            // It answers and ends: whoever is slow to listen finds it gone.
+            return if self.has_left() { Ok(()) } else { Err(error) };
+        }
         let leave = Instant::now() + LEAVE.min(self.patience);
         let shared = &self.keeper.shared;
         // Wakes when the process has ended.
@@ -366,6 +370,16 @@ impl Isolated {
         let go_on = || shared.ending().is_none() && Instant::now() < leave;
         Listener::default().wait(&shared.page.header().answer, over, GLANCE, go_on);
         Ok(())
+    }
+}
+
+impl Isolated {
+    /// Whether it has ended as it was asked to, after it had answered.
+    fn has_left(&self) -> bool {
+        let header = self.page().header();
+        header.answer.has_rung(self.number)
+            && Status::of(header.answered.status.load(Relaxed)) == Some(Status::Done)
+            && self.keeper.shared.ending().is_some_and(Ending::is_orderly)
     }
 }
 

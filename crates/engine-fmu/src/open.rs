@@ -64,7 +64,7 @@ pub(crate) fn open(
         let at = if error.is_of_the_run() { FmuEntry::Conduct } else { FmuEntry::File };
         vec![FmuMistake { at, ..FmuMistake::of_file(&error) }]
     })?;
-    Ok(Box::new(InSi::new(slave, ports)))
+    Ok(Box::new(InSi::new(slave, ports).with_warnings(fmu.remarks())))
 }
 
 /// Part of an internal step that a step may be longer or shorter than a whole number of them: times are rounded.

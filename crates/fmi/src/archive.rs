@@ -140,7 +140,8 @@ impl Archive {
         for index in 0..self.zip.len() {
             self.unpack_entry(index, folder.path())?;
         }
-        Ok(Unpacked { path: self.path, folder: Arc::new(Folder::Own(folder)), description: Arc::new(description) })
+        let (folder, description) = (Arc::new(Folder::Own(folder)), Arc::new(description));
+        Ok(Unpacked { path: self.path, folder, description, remarks: self.remarks })
     }
 
     fn unpack_entry(&mut self, index: usize, folder: &Path) -> Result<(), FmuError> {
@@ -205,6 +206,7 @@ pub struct Unpacked {
     path: PathBuf,
     folder: Arc<Folder>,
     description: Arc<ModelDescription>,
+    remarks: Vec<String>,
 }
 
 #[derive(Debug)]
@@ -233,7 +235,8 @@ impl Unpacked {
         let file = folder.join(DESCRIPTION);
         let text = fs::read_to_string(&file).map_err(|source| FmuError::File { path: file, what: "read", source })?;
         let description = ModelDescription::read(&text, &format!("{}/{DESCRIPTION}", path.display()))?;
-        Ok(Self { path, folder: Arc::new(Folder::Foreign(folder)), description: Arc::new(description) })
+        let (folder, description) = (Arc::new(Folder::Foreign(folder)), Arc::new(description));
+        Ok(Self { path, folder, description, remarks: Vec::new() })
     }
 
     /// The file that was unpacked.
@@ -249,6 +252,12 @@ impl Unpacked {
             Folder::Own(folder) => folder.path(),
             Folder::Foreign(folder) => folder,
         }
+    }
+
+    /// What is odd about its archive, which is taken all the same.
+    #[must_use]
+    pub fn remarks(&self) -> &[String] {
+        &self.remarks
     }
 
     /// What it says that it is.

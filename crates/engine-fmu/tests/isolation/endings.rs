@@ -50,6 +50,22 @@ fn lives() {
     assert_eq!(children(), [""; 0]);
 }
 
+/// It answers and is gone: on some turns it ends before its answer is looked at.
+#[test]
+fn an_orderly_end_is_no_crash() {
+    for turn in 0..100 {
+        let mut slave = start(&Bad::Nothing, Bounds::default()).unwrap();
+        slave.step(0.0, 0.1, &[[0.0; 3]]).unwrap();
+        slave.end();
+        let said = slave.take_log();
+        assert!(said.iter().all(|line| line.severity < Severity::Warning), "turn {turn}: {said:?}");
+    }
+    let mut slave = start(&Bad::HangInEnd, impatient()).unwrap();
+    slave.end();
+    let said = slave.take_log();
+    assert!(said.iter().any(|line| line.severity == Severity::Warning), "{said:?}");
+}
+
 #[test]
 fn what_it_has_started_ends_with_it() {
     let how = crash_of_step(&Bad::ForkThenCrash, Bounds::default());

@@ -11,7 +11,7 @@ mod same;
 
 use bad::Bad;
 use servobench_engine_fmu::{Bounds, HostCommand, HostError, Isolated, IsolationError, Wires, serve};
-use servobench_fmi::{Slave, SlaveError};
+use servobench_fmi::{Severity, Slave, SlaveError};
 use std::time::Duration;
 
 /// Not a test: the process that the others start.

@@ -243,10 +243,14 @@ impl Instance for LoadedThree {
             // An FMU that wants to end here says so again at the next step.
             self.set_inputs(&now, &now)?;
         }
+        let is_guess = self.session.is_initialising && inputs.is_none();
         let Self { instance, outputs: batches, .. } = self;
         let (call, outcome) = batch::read(batches, instance, outputs);
-        self.check(call, outcome)?;
-        if self.session.is_initialising && inputs.is_none() {
+        // While not all inputs are known, what it cannot say yet is only where to begin from.
+        if !(is_guess && outcome == Outcome::Discarded) {
+            self.check(call, outcome)?;
+        }
+        if is_guess {
             Session::guess(outputs);
         }
         self.session.check_finite(outputs)

@@ -165,9 +165,16 @@ impl Instance for LoadedTwo {
         }
         let is_initialising = self.session.is_initialising;
         let Self { instance, outputs: all, initial_outputs, .. } = self;
+        if is_initialising {
+            outputs.fill(0.0);
+        }
         let (call, outcome) = batch::read(if is_initialising { initial_outputs } else { all }, instance, outputs);
-        self.check(call, outcome)?;
-        if is_initialising && inputs.is_none() {
+        // While not all inputs are known, what it cannot say yet is only where to begin from.
+        let is_guess = is_initialising && inputs.is_none();
+        if !(is_guess && outcome == Outcome::Discarded) {
+            self.check(call, outcome)?;
+        }
+        if is_guess {
             Session::guess(outputs);
         }
         self.session.check_finite(outputs)

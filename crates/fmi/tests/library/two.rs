@@ -310,7 +310,7 @@ fn one_that_waits_is_started_with_its_inputs() {
     let mut slave = load("normal");
     assert!(slave.is_initialising());
     assert_eq!(messages(&mut slave).last().unwrap(), "enter initialization of it at 0, 0");
-    let mut read = [0.0; 3];
+    let mut read = [9.0; 3];
     for input in [3.0, -1.0, 5.0] {
         slave.read(Some(&[input, 1.0]), &mut read).unwrap();
         // An input is neither an output nor an initial unknown, and is not read.
