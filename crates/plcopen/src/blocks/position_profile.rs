@@ -104,7 +104,9 @@ impl<K: Memory<Knot>, S: Memory<f64>> PositionProfile<K, S> {
 
     /// The commands of the profile velocity mode for the profile that was begun last, in its time; `rate` of them per second
     /// (1/s) for the spline. The drive meets the positions of plateaus, and those of the spline but for the error that
-    /// [`Stepped`](servobench_motion::position_profile::Stepped) announces. None before a profile has begun.
+    /// [`Stepped`](servobench_motion::position_profile::Stepped) announces, when it gets each of them at its time; for a drive on a bus
+    /// there are [`ClockedPlateaus`](servobench_motion::position_profile::ClockedPlateaus) and
+    /// [`ClockedSpline`](servobench_motion::position_profile::ClockedSpline). None before a profile has begun.
     ///
     /// # Errors
     /// [`PlanError`] where [`Spline::stepped`] refuses the rate.
