@@ -15,6 +15,10 @@
 //!
 //! So g meets s once between w_c and the highest w, or once between zero and w_c, or nowhere. The root is bracketed, and
 //! found in a few looks, each of which is closed at orders 2 and 3 and a plan of order 3 at order 4.
+//!
+//! That is the fastest way at once. Two things may make room for a higher speed, both of them by braking first
+//! ([`super::braking`]): a longer run-up, where the axis is braking already; and, at order 4, what keeps a state next to its velocity
+//! limit from passing it. There the speeds that can be passed need not be an interval. What comes of it is tried by a plan.
 use super::braking::{Braking, least};
 use super::first::State;
 use super::fourth::{Limits4, State4};
