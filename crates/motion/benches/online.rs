@@ -79,6 +79,18 @@ fn requests(passing: f64) -> Vec<Request> {
     all
 }
 
+/// From any state within the limits, which may force the velocity beyond its own.
+fn anywhere() -> Vec<Request> {
+    let mut random = Random::seeded(5);
+    let mut all = requests(1.0);
+    for Request { from, limits, .. } in &mut all {
+        let Limits { velocity, acceleration, jerk, .. } = *limits;
+        let [v, a, j] = [velocity, acceleration, jerk].map(|limit| limit * random.signed());
+        *from = Setpoint { v, a, j, ..Setpoint::default() };
+    }
+    all
+}
+
 /// Times of single calls (ns), sorted.
 fn times<T>(requests: &[Request], mut call: impl FnMut(&Request) -> T) -> Vec<f64> {
     let mut times = vec![f64::INFINITY; requests.len()];
@@ -95,7 +107,14 @@ fn times<T>(requests: &[Request], mut call: impl FnMut(&Request) -> T) -> Vec<f6
 
 fn row(name: &str, times: &[f64]) {
     let at = |per_mille: usize| times[(times.len() - 1) * per_mille / 1000];
-    println!("{name:<36} {:>9.0} {:>9.0} {:>9.0} {:>9.0}", at(500), at(900), at(990), at(999));
+    println!(
+        "{name:<36} {:>9.0} {:>9.0} {:>9.0} {:>9.0} {:>9.0}",
+        at(500),
+        at(900),
+        at(990),
+        at(999),
+        times[times.len() - 1]
+    );
 }
 
 /// `rsruckig` from `from` to the target of `request`.
@@ -125,7 +144,7 @@ impl Peer {
 
 fn main() {
     let (stopping, passing) = (requests(0.0), requests(1.0));
-    println!("{:<36} {:>9} {:>9} {:>9} {:>9}", "plan, ns", "median", "90 %", "99 %", "99.9 %");
+    println!("{:<36} {:>9} {:>9} {:>9} {:>9} {:>9}", "plan, ns", "median", "90 %", "99 %", "99.9 %", "worst");
     row("nothing: what the clock takes", &times(&stopping, |_| ()));
     let mut peer = Peer::new();
     for (requests, what) in [(&stopping, "to rest"), (&passing, "to a velocity")] {
@@ -139,6 +158,10 @@ fn main() {
         row(&format!("{name} to rest, two accelerations"), &times(&stopping, |r| r.ramps(order)));
         row(&format!("{name}, passing velocity"), &times(&stopping, |r| r.passing(order)));
     }
+    let anywhere = anywhere();
+    row("order 4 from anywhere, fast", &times(&anywhere, |r| r.plan(Order::Fourth, Effort::Fast)));
+    row("order 4 from anywhere, refined", &times(&anywhere, |r| r.plan(Order::Fourth, Effort::Refined)));
+    row("order 3 from anywhere", &times(&anywhere, |r| r.plan(Order::Third, Effort::Fast)));
     let at_rest = Setpoint::default();
     row("order 3 rest to rest, rsruckig", &times(&stopping, |r| peer.plan(&at_rest, r)));
     row("order 4 rest to rest, published", &times(&stopping, |r| Profile::plan(Order::Fourth, r.x, &r.limits)));

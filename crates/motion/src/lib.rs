@@ -65,7 +65,7 @@
 //! and the subset sum above for (50)–(54) and (63). Several are misprinted there; `tests/plans/paper.rs` holds them
 //! in corrected form, as the second planner that this one is compared with. The sign of the move is applied once,
 //! through `d`. Orders 2 and 3 are the same with two and three boxes. Order 3 is time-optimal; order 4 is not quite,
-//! since this shape brings the jerk to zero at peak velocity (up to 7.5 % of the time when there is no cruise).
+//! since this shape brings the jerk to zero at peak velocity (up to 6.94 % of the time when there is no cruise).
 //!
 //! # Executing a plan
 //!

@@ -44,6 +44,7 @@
 //!
 //! The slowest start beyond their limits and have to turn round.
 mod arrival;
+mod braking;
 mod costate;
 mod first;
 mod fourth;

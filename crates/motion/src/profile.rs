@@ -137,8 +137,8 @@ impl Profile {
     /// Plans the shortest move of `distance` (m or rad; its sign is the direction) in continuous time.
     ///
     /// At orders 2 and 3, and where an order 4 cruises, that is [`plan`](Self::plan); without a cruise the jerk goes on
-    /// through peak velocity and the move takes up to 7.457 % less time: (384·x/d)^¼ instead of (512·x/d)^¼ with the snap
-    /// alone limited. With a cruise the shortest way to the velocity limit would leave it again in ever shorter swings
+    /// through peak velocity and the move takes up to 6.94 % less time: (384·x/d)^¼ instead of (512·x/d)^¼, which is 7.457 %
+    /// longer, with the snap alone limited. With a cruise the shortest way to the velocity limit would leave it again in ever shorter swings
     /// (Fuller's phenomenon); what that would gain, below 0.1 %, is left.
     ///
     /// # Errors

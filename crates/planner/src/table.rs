@@ -79,8 +79,15 @@ impl TableMove {
                 let polynomials = Polynomials::collect(knots[0].t, knots[knots.len() - 1].t, |t| cursor.piece(t));
                 Ok(Plan::of(polynomials, Told::Commands { commands, error: 0.0, rate: None }))
             }
-            Follow::Steps(rate) => self.stepped(|_| Ok(rate)),
-            Follow::Within(error) => self.stepped(|spline| spline.lowest_rate(error).map(f64::from)),
+            Follow::Steps(rate) => {
+                let bound = "low enough for at most 10 million commands";
+                self.stepped(|_| Ok(rate), ParamError { name: "rate", value: rate, bound })
+            }
+            Follow::Within(error) => {
+                let bound = "large enough for at most 10 million commands";
+                let too_many = ParamError { name: "allowed", value: error, bound };
+                self.stepped(|spline| spline.lowest_rate(error).map(f64::from), too_many)
+            }
         }
     }
 
@@ -90,16 +97,19 @@ impl TableMove {
         (velocity(self.knots.first()), velocity(self.knots.last()))
     }
 
-    /// The plan that follows the spline by as many commands per second as `choose` says.
-    fn stepped(&self, choose: impl FnOnce(Spline<'_>) -> Result<f64, PlanError>) -> Result<Plan, PlanError> {
+    /// The plan that follows the spline by as many commands per second as `choose` says, unless these are `too_many`.
+    fn stepped(
+        &self,
+        choose: impl FnOnce(Spline<'_>) -> Result<f64, PlanError>,
+        too_many: ParamError,
+    ) -> Result<Plan, PlanError> {
         let (mut knots, mut scratch) = (self.knots.clone(), vec![0.0; self.knots.len()]);
         let (start, end) = self.ends();
         let spline = Spline::solve(&mut knots, start, end, &mut scratch)?;
         let rate = choose(spline)?;
         let stepped = spline.stepped(rate)?;
         if rate * spline.table().duration() > MOST_COMMANDS {
-            let bound = "low enough for at most 10 million commands";
-            return Err(ParamError { name: "rate", value: rate, bound }.into());
+            return Err(too_many.into());
         }
         let commands: Vec<Command> = stepped.commands().collect();
         let (first, last) = (self.knots[0], self.knots[self.knots.len() - 1]);

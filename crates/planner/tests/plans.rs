@@ -387,6 +387,24 @@ fn the_lowest_rate_within_an_error_is_found() {
     assert!(error <= 1e-5 && steps(Follow::Steps(rate - 1.0)).0 > 1e-5, "{error} at {rate}");
 }
 
+/// What cannot be kept is said of the error that was asked for, not of a rate that was not: late times are known too roughly, and
+/// memory ends.
+#[test]
+fn an_error_that_is_too_small_is_refused_by_its_name() {
+    let late = |error: f64| {
+        let mut late = table(Follow::Within(error), Velocities::Given);
+        late.knots.iter_mut().for_each(|knot| knot.t += 1e9);
+        Request::new(Way::Table(late)).plan().map(|_| ()).map_err(|error| error.to_string())
+    };
+    let refused = late(1e-12).unwrap_err();
+    assert!(refused.starts_with("`allowed` must be"), "{refused}");
+    assert!(refused.ends_with("allow a larger error, or let the table begin at time 0"), "{refused}");
+    assert_eq!(late(1e-4), Ok(()));
+    let refused = Request::new(Way::Table(table(Follow::Within(1e-16), Velocities::Given))).plan().unwrap_err();
+    let bound = "large enough for at most 10 million commands";
+    assert_eq!(refused.to_string(), format!("`allowed` must be {bound}, got 0.0000000000000001"));
+}
+
 /// A velocity would jump where the parts of a shaper begin, or where time is stretched.
 #[test]
 fn a_move_that_starts_in_motion_is_neither_filtered_nor_slowed() {

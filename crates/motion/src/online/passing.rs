@@ -15,14 +15,21 @@
 //!
 //! So g meets s once between w_c and the highest w, or once between zero and w_c, or nowhere. The root is bracketed, and
 //! found in a few looks, each of which is closed at orders 2 and 3 and a plan of order 3 at order 4.
-use super::DirectionalLimits;
+//!
+//! That is the fastest way at once. Two things may make room for a higher speed, both of them by braking first
+//! ([`super::braking`]): a longer run-up, where the axis is braking already; and, at order 4, what keeps a state next to its velocity
+//! limit from passing it. There the speeds that can be passed need not be an interval. What comes of it is tried by a plan.
+use super::braking::{Braking, least};
 use super::first::State;
 use super::fourth::{Limits4, State4};
+use super::ladder::{self, Goal};
+use super::newton::Near;
 use super::second::{self, Limits2, Sides, State2};
-use super::third::{self, State3};
+use super::third::{self, Limits3, State3};
 use super::transition::check_state;
 use super::trapezoid::Rates;
 use super::watch;
+use super::{DirectionalLimits, Effort};
 use crate::limits::within_range;
 use crate::root::increasing;
 use crate::{Order, PlanError};
@@ -31,17 +38,28 @@ use servobench_base::{Setpoint, non_negative};
 /// What rounding may take from a distance, as a part of it and of the positions between which it lies.
 const ROUNDING: f64 = 1e-12;
 
-/// Into how many parts a speed is divided of which the highest is taken that does without passing the velocity limit.
-const PARTS: u32 = 8;
+/// By how much a speed that is reached by one way only is lowered, as a part of it, until a plan finds a way.
+const LOWER: [f64; 3] = [1e-6, 1e-4, 1e-2];
+
+/// At how many times it is looked whether braking on until then helps, and how often the step between them is halved.
+const SAMPLES: u32 = 4;
+const STEPS: usize = 5;
+
+/// Into how many parts the highest speed is divided where no way is found that keeps the velocity limit.
+const PARTS: u32 = 16;
 
 /// The highest speed, `most` at most (m/s or rad/s), to which the fastest way from the state `from` reaches before `x` (m or rad),
 /// so that `x` can be passed at it without turning back; `None` when there is none, as when a brake that has been put on cannot be
 /// released soon enough.
 ///
-/// It is a magnitude, towards `x`; an axis that moves away from `x` has to turn round once, to come to it. One that is braking
-/// may be a little faster at `x` when it brakes on first, for a longer run-up: that is not looked for. Where the way is just long
-/// enough, the speed is by about 1e-12 below the one with which it would be, so that rounding turns no axis round. At order 4, from
-/// a state so near its velocity limit that the fastest way would pass it, the speed is rounded down to eighths of that.
+/// It is a magnitude, towards `x`; an axis that moves away from `x` has to turn round once, to come to it. Where the way is just
+/// long enough, the speed is by about 1e-12 below the one with which it would be, so that rounding turns no axis round.
+///
+/// What is promised is that the plan to `x` at this speed does not turn back. Whether it does is not monotonic in the speed, so that a
+/// higher one may pass, too. Who is braking may be faster at `x` after braking on first, for a longer run-up: that is looked for at
+/// a few times. And from a state of order 4 so near its velocity limit that the fastest way would pass it, the least braking that
+/// keeps it is halved a few times. In 30 000 random situations each a speed higher by more than 0.1 % of the limit passed in 0.2 % of
+/// them at order 3, in 2 % at order 4; higher by 3 % at most at order 3, by 25 % at order 4; none at order 2.
 ///
 /// With [`braking_velocity`] for the distance of the next move as `most` it is what blending needs (`PLCopen` Motion Control,
 /// part 1, `BufferMode`): the velocity at which one move ends and the next one begins. With
@@ -79,31 +97,195 @@ pub fn passing_velocity(
     within_range("x", x)?;
     non_negative("most", most)?;
     let sign = if x >= from.x { 1.0 } else { -1.0 };
-    let distance = sign * (x - from.x);
-    let most = most.min(limits.velocity.towards(sign));
-    let covered = |speed: f64| sign * covered(order, from, sign * speed, limits);
-    let rounding = ROUNDING * distance + 4.0 * f64::EPSILON * (x.abs() + from.x.abs());
-    let beyond = |speed: f64| covered(speed) - (distance - rounding);
-    let calm = (sign * calmed(order, from, limits)).max(0.0).min(most);
-    let (low, high) = if covered(calm) <= distance {
-        (calm, most)
-    } else if covered(0.0) <= distance {
-        (0.0, calm)
-    } else {
-        return Ok(None);
-    };
-    let mut highest = increasing(low, high, beyond);
-    // Next to w_c what is covered rises so steeply that the numbers next to the root are too much.
-    let mut step = f64::EPSILON * highest;
-    while covered(highest) > distance && highest > low {
-        (highest, step) = ((highest - step).max(low), 2.0 * step);
+    let search = Search { order, x, sign, limits, most: most.min(limits.velocity.towards(sign)) };
+    Ok(search.highest(from))
+}
+
+/// What is looked for.
+struct Search<'a> {
+    order: Order,
+    x: f64,
+    /// Of the direction towards `x`.
+    sign: f64,
+    limits: &'a DirectionalLimits,
+    most: f64,
+}
+
+impl Search<'_> {
+    fn highest(&self, from: &Setpoint) -> Option<f64> {
+        let Some(at_once) = self.by_the_fastest_way(from) else {
+            // There is a way where nothing but the velocity limit makes the fastest one too long.
+            let is_too_fast = self.sign * calmed(self.order, from, self.limits) > self.most;
+            return if self.order == Order::Fourth && is_too_fast { self.by_trying(from) } else { None };
+        };
+        if self.order == Order::Second {
+            return Some(at_once);
+        }
+        if self.keeps_the_velocity(from, at_once) {
+            let is_highest = at_once >= self.most || !self.is_braking(from);
+            return Some(if is_highest { at_once } else { self.after_braking_on(from, at_once).unwrap_or(at_once) });
+        }
+        // As little braking as the velocity limit asks for; either on through zero, or to no acceleration.
+        let braking = Braking::towards(self.order, from, -self.sign, self.limits);
+        let calming = Braking::calming(from, self.limits);
+        let ways = [(&braking, braking.crossing()), (&calming, calming.duration())];
+        let most = ways.into_iter().filter_map(|(way, longest)| least(longest, |time| self.kept(&way.after(time))));
+        let by_braking = most.reduce(f64::max).and_then(|most| self.lowered(from, most));
+        by_braking.or_else(|| self.by_trying(from))
     }
-    if order < Order::Fourth || keeps_the_velocity(from, sign * highest, limits) {
-        return Ok(Some(highest));
+
+    /// The highest speed that is found by plans, from the highest one down.
+    fn by_trying(&self, from: &Setpoint) -> Option<f64> {
+        let part = self.most / f64::from(PARTS);
+        let mut low = (0..=PARTS).rev().map(|k| f64::from(k) * part).find(|speed| self.is_passed(from, *speed))?;
+        let mut high = (low + part).min(self.most);
+        for _ in 0..STEPS {
+            let middle = 0.5 * (low + high);
+            if self.is_passed(from, middle) { low = middle } else { high = middle }
+        }
+        Some(low)
     }
-    let lower = (0..PARTS).rev().map(|k| highest * f64::from(k) / f64::from(PARTS));
-    let fits = |speed: &f64| beyond(*speed) <= 0.0 && keeps_the_velocity(from, sign * speed, limits);
-    Ok(lower.into_iter().find(fits))
+
+    /// A higher speed than `at_once` by braking on first, for a longer run-up.
+    fn after_braking_on(&self, from: &Setpoint, at_once: f64) -> Option<f64> {
+        let braking = Braking::towards(self.order, from, -self.sign, self.limits);
+        // Until it would stand.
+        let end = braking.end(|at| self.sign * calmed(self.order, at, self.limits));
+        let reaches_after = |part: f64| self.reaches(&braking.after(part * end), at_once);
+        if !self.is_nearer_braked(from, at_once) && !reaches_after(1.0) && !reaches_after(0.5) {
+            return None;
+        }
+        // Where the highest so far is not reached, no root is looked for.
+        let mut best = at_once;
+        let mut higher = |time: f64| {
+            let at = braking.after(time);
+            let found = if self.reaches(&at, best) { self.kept(&at) } else { None };
+            found.filter(|speed| *speed > best).is_some_and(|speed| {
+                best = speed;
+                true
+            })
+        };
+        let (mut time, mut step) = (0.0, end / f64::from(SAMPLES));
+        for k in (1..=SAMPLES).rev() {
+            let sample = step * f64::from(k);
+            if higher(sample) {
+                time = sample;
+            }
+        }
+        let steps = if self.order == Order::Third { 2 * STEPS } else { STEPS };
+        for _ in 0..steps {
+            step *= 0.5;
+            for next in [(time - step).max(0.0), (time + step).min(end)] {
+                if higher(next) {
+                    time = next;
+                    break;
+                }
+            }
+        }
+        if best > at_once { self.lowered(from, best).filter(|speed| *speed > at_once) } else { None }
+    }
+
+    /// `speed`, or a little less, at which a plan passes `x` without turning back: it meets a speed that is reached by one way only
+    /// from next to it.
+    fn lowered(&self, from: &Setpoint, speed: f64) -> Option<f64> {
+        let lowered = LOWER.into_iter().map(|part| speed * (1.0 - part));
+        lowered.into_iter().find(|speed| *speed > 0.0 && self.is_passed(from, *speed))
+    }
+
+    /// Whether the plan that passes `x` at `speed` does so without turning back.
+    fn is_passed(&self, from: &Setpoint, speed: f64) -> bool {
+        let &DirectionalLimits { velocity, acceleration, jerk, .. } = self.limits;
+        let (distance, v) = (self.x - from.x, self.sign * speed);
+        let mut lowest = f64::INFINITY;
+        if self.order == Order::Third {
+            let start = State3 { p: 0.0, v: from.v, a: from.a };
+            let to = State3 { p: distance, v, a: 0.0 };
+            let (path, _) = third::passing(start, to, &Limits3 { v: velocity, a: acceleration, j: jerk });
+            start.velocities(&path, |v| lowest = lowest.min(self.sign * v));
+        } else {
+            let start = State4 { x: 0.0, v: from.v, a: from.a, j: from.j };
+            let goal = Goal::State(State4 { x: distance, v, a: 0.0, j: 0.0 });
+            let plan = ladder::plan(start, &goal, &limits4(self.limits), Effort::Fast);
+            start.velocities(&plan.path, |v| lowest = lowest.min(self.sign * v));
+        }
+        lowest >= -watch::ROUNDING * velocity.towards(self.sign)
+    }
+
+    /// What the fastest way reaches from here, where that keeps the velocity limit and does not turn back.
+    fn kept(&self, from: &Setpoint) -> Option<f64> {
+        let is_ahead = self.sign * calmed(self.order, from, self.limits) >= 0.0 && self.sign * (self.x - from.x) >= 0.0;
+        let speed = if is_ahead { self.by_the_fastest_way(from)? } else { return None };
+        self.keeps_the_velocity(from, speed).then_some(speed)
+    }
+
+    fn covered(&self, from: &Setpoint, speed: f64) -> f64 {
+        self.sign * covered(self.order, from, self.sign * speed, self.limits)
+    }
+
+    fn distance(&self, from: &Setpoint) -> f64 {
+        self.sign * (self.x - from.x)
+    }
+
+    fn rounding(&self, from: &Setpoint) -> f64 {
+        ROUNDING * self.distance(from) + 4.0 * f64::EPSILON * (self.x.abs() + from.x.abs())
+    }
+
+    fn reaches(&self, from: &Setpoint, speed: f64) -> bool {
+        self.covered(from, speed) <= self.distance(from) - self.rounding(from)
+    }
+
+    /// The highest speed that the fastest way reaches before `x`.
+    fn by_the_fastest_way(&self, from: &Setpoint) -> Option<f64> {
+        let (distance, rounding) = (self.distance(from), self.rounding(from));
+        let beyond = |speed: f64| self.covered(from, speed) - (distance - rounding);
+        let calm = (self.sign * calmed(self.order, from, self.limits)).max(0.0).min(self.most);
+        let (low, high) = if self.covered(from, calm) <= distance {
+            (calm, self.most)
+        } else if self.covered(from, 0.0) <= distance {
+            (0.0, calm)
+        } else {
+            return None;
+        };
+        let mut highest = increasing(low, high, beyond);
+        // Next to w_c what is covered rises so steeply that the numbers next to the root are too much.
+        let mut step = f64::EPSILON * highest;
+        while self.covered(from, highest) > distance && highest > low {
+            (highest, step) = ((highest - step).max(low), 2.0 * step);
+        }
+        Some(highest)
+    }
+
+    /// Whether the fastest way of order 4 to a speed keeps the limits of velocity, or comes back into them.
+    fn keeps_the_velocity(&self, from: &Setpoint, speed: f64) -> bool {
+        if self.order < Order::Fourth {
+            return true;
+        }
+        let (start, limits) = (within_jerk(from, self.limits), limits4(self.limits));
+        let to = State3 { p: self.sign * speed, v: 0.0, a: 0.0 };
+        let [velocity, _] = start.watched(&third::fastest(start.upper(), to, &limits.upper()), &limits);
+        velocity.fault <= watch::ROUNDING
+    }
+
+    /// Whether it slows down on its way to `x`, if it is brought to a constant velocity at once.
+    fn is_braking(&self, from: &Setpoint) -> bool {
+        self.sign * from.v > 0.0 && self.sign * (calmed(self.order, from, self.limits) - from.v) < 0.0
+    }
+
+    /// Whether the fastest way to a speed covers less after braking on for an instant: how it changes by that is known as it is in
+    /// [`second`] and [`super::costate`].
+    fn is_nearer_braked(&self, from: &Setpoint, speed: f64) -> bool {
+        let DirectionalLimits { acceleration, jerk, snap, .. } = *self.limits;
+        if self.order == Order::Third {
+            let start = within_acceleration(from, self.limits);
+            let (start, to) = (State2 { v: start.v, a: start.a }, State2 { v: self.sign * speed, a: 0.0 });
+            let way = second::way(start, to, &Limits2 { a: acceleration, j: jerk });
+            return self.sign * way.grows(start, to, -self.sign * jerk) < 0.0;
+        }
+        let (start, to) = (within_jerk(from, self.limits), State3 { p: self.sign * speed, v: 0.0, a: 0.0 });
+        let third::Way { path, by_a } = third::way(start.upper(), to, &limits4(self.limits).upper(), &Near::nothing());
+        let first = path.stretches().next().map_or(0.0, |first| first.rate());
+        self.sign * (-self.sign * snap - first) * by_a < 0.0
+    }
 }
 
 /// The highest speed (m/s or rad/s) within its limit from which an axis without acceleration comes to a stop within `distance`
@@ -121,14 +303,6 @@ pub fn braking_velocity(order: Order, distance: f64, limits: &DirectionalLimits)
         sign * covered(order, &from, 0.0, limits) - room
     };
     Ok(increasing(0.0, limits.velocity.towards(sign), beyond))
-}
-
-/// Whether the fastest way of order 4 to the velocity `to` keeps the limits of velocity, or comes back into them.
-fn keeps_the_velocity(from: &Setpoint, to: f64, limits: &DirectionalLimits) -> bool {
-    let (start, limits) = (within_jerk(from, limits), limits4(limits));
-    let path = third::fastest(start.upper(), State3 { p: to, v: 0.0, a: 0.0 }, &limits.upper());
-    let [velocity, _] = start.watched(&path, &limits);
-    velocity.fault <= watch::ROUNDING
 }
 
 const fn limits4(limits: &DirectionalLimits) -> Limits4 {

@@ -55,19 +55,38 @@ impl State for State3 {
 }
 
 impl State3 {
-    /// Where `path` ends, and how far it is beyond these limits of `v` and `a`, as a part of them.
-    pub(crate) fn excess<const N: usize>(self, path: &Path<N>, v: Sides, a: Sides) -> (Self, f64) {
-        let (mut state, mut velocity, mut acceleration) = (self, Watch::new(v, self.v), Watch::new(a, self.a));
+    /// Hands the velocities at the turning points of `path` and at the ends of its stretches to `see`, in the order of time.
+    pub(crate) fn velocities<const N: usize>(self, path: &Path<N>, see: impl FnMut(f64)) {
+        self.extremes(path, see, |_| ());
+    }
+
+    /// The same, and the accelerations at the ends; gives the state at the end.
+    #[inline]
+    fn extremes<const N: usize>(
+        self,
+        path: &Path<N>,
+        mut see_velocity: impl FnMut(f64),
+        mut see_acceleration: impl FnMut(f64),
+    ) -> Self {
+        let mut state = self;
         for stretch in path.stretches() {
             let turn = -state.a / stretch.rate();
             if turn > 0.0 && turn < stretch.length {
-                velocity.see(state.on(&stretch, turn).v);
+                see_velocity(state.on(&stretch, turn).v);
             }
             state = state.on(&stretch, stretch.length);
-            velocity.see(state.v);
-            acceleration.see(state.a);
+            see_velocity(state.v);
+            see_acceleration(state.a);
         }
-        (state, velocity.most.max(acceleration.most))
+        state
+    }
+
+    /// Where `path` ends, and how far it is beyond these limits of `v` and `a`, as a part of them.
+    #[inline]
+    pub(crate) fn excess<const N: usize>(self, path: &Path<N>, v: Sides, a: Sides) -> (Self, f64) {
+        let (mut velocity, mut acceleration) = (Watch::new(v, self.v), Watch::new(a, self.a));
+        let end = self.extremes(path, |v| velocity.see(v), |a| acceleration.see(a));
+        (end, velocity.most.max(acceleration.most))
     }
 
     const fn upper(self) -> State2 {

@@ -22,17 +22,26 @@ impl Spline<'_> {
     /// and bisects downwards from there.
     ///
     /// # Errors
-    /// [`PlanError`] if `allowed` is not positive, or so small that more than 2^32 commands per second were needed.
+    /// [`PlanError`] if `allowed` is not positive, or so small that more commands per second were needed than 2^32, or than the times
+    /// of the table are known for.
     pub fn lowest_rate(self, allowed: f64) -> Result<u32, PlanError> {
         let allowed = in_range("allowed", positive("allowed", allowed)?, "give the error in m or rad")?;
         let (square, cube) = self.error_bound();
         // Half of the allowed error for either term.
         let sure = libm::sqrt(square * 2.0 / allowed).max(libm::cbrt(cube * 2.0 / allowed));
-        let highest = f64::from(u32::MAX);
-        if sure > highest {
+        let highest = f64::from(u32::MAX).min(libm::floor(self.highest_rate()));
+        let sure = if sure <= highest {
+            sure
+        } else if highest >= 1.0 && self.stepped(highest)?.largest_error() <= allowed {
+            highest
+        } else {
             // No error below this one can be promised.
             let lowest = square / (highest * highest) + cube / (highest * highest * highest);
-            let remedy = "allow a larger error, or give the move more time";
+            let remedy = if highest < f64::from(u32::MAX) {
+                "allow a larger error, or let the table begin at time 0"
+            } else {
+                "allow a larger error, or give the move more time"
+            };
             return Err(PlanError::OutOfRange {
                 name: "allowed",
                 value: allowed,
@@ -40,7 +49,7 @@ impl Spline<'_> {
                 highest: f64::INFINITY,
                 remedy,
             });
-        }
+        };
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number within 32 bits")]
         let (mut enough, mut too_few) = ((libm::ceil(sure) as u32).max(1), 0);
         while enough - too_few > 1 {

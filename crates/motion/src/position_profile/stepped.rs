@@ -45,10 +45,7 @@ impl<'a> Spline<'a> {
     /// commands apart.
     pub fn stepped(self, rate: f64) -> Result<Stepped<'a>, PlanError> {
         let rate = in_range("rate", positive("rate", rate)?, "give commands per second")?;
-        let knots = self.table.knots();
-        // What rounding of the times may amount to (s).
-        let resolution = 4.0 * f64::EPSILON * knots[0].t.abs().max(knots[knots.len() - 1].t.abs());
-        let highest = 1e-3 / resolution;
+        let (resolution, highest) = (self.resolution(), self.highest_rate());
         if rate > highest {
             let remedy = "send fewer commands, or let the table begin at time 0";
             return Err(PlanError::OutOfRange { name: "rate", value: rate, lowest: RANGE.0, highest, remedy });
@@ -58,6 +55,17 @@ impl<'a> Spline<'a> {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number below 2^43")]
         let count = (libm::ceil(intervals) as u64).max(1);
         Ok(Stepped { table: self.table, rate, count })
+    }
+
+    /// The highest rate (1/s) for which the times of the table are known well enough.
+    pub(super) fn highest_rate(self) -> f64 {
+        1e-3 / self.resolution()
+    }
+
+    /// What rounding of the times may amount to (s).
+    fn resolution(self) -> f64 {
+        let knots = self.table.knots();
+        4.0 * f64::EPSILON * knots[0].t.abs().max(knots[knots.len() - 1].t.abs())
     }
 }
 

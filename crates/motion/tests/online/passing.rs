@@ -113,3 +113,63 @@ fn closed_forms() {
         assert_eq!(passing_velocity(order, &moving, 0.0, &limits, 1e3), Ok(Some(3.0)));
     }
 }
+
+/// No speed that is higher by more than a part of the limit can be passed at, by the plan that would: speeds all over what is left are
+/// tried. Whether a speed can be passed is not monotonic: a higher one needs a longer run-up, and braking on first makes room for it.
+#[test]
+fn no_much_higher_speed_passes() {
+    const PARTS: [f64; 16] = [1e-4, 1e-3, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0];
+    let mut random = Random::seeded(31);
+    for (order, allowed) in ORDERS.into_iter().zip([1e-9, 0.05, 0.4]) {
+        let (mut worst, mut higher, mut count) = (0.0_f64, 0, 0);
+        for _ in 0..sweep_size(30_000) / 10 {
+            let (from, x, limits) = situation(&mut random, order);
+            let sign = (x - from.x).signum();
+            let limit = if sign > 0.0 { limits.velocity.above } else { limits.velocity.below };
+            let stop = Transition::plan(order, &from, &Target::Velocity(0.0), &limits, Effort::Fast).unwrap();
+            let back = |k: u32| sign * stop.at(f64::from(k) / 400.0 * stop.duration()).v < -1e-9 * limit;
+            if sign * from.v < 0.0 || (0..=400).any(back) {
+                continue;
+            }
+            let found = passing_velocity(order, &from, x, &limits, f64::MAX).unwrap();
+            let speed = found.unwrap_or(0.0);
+            let context = || format!("{order:?} {found:?} from {from:?} to {x} within {limits:?}");
+            assert!(found.is_none() || lowest(order, &from, x, speed, &limits) >= -1e-9, "{}", context());
+            let mut most = 0.0_f64;
+            for part in PARTS {
+                let faster = (speed + part * (limit - speed)).min(limit);
+                let target = Target::Position { x, v: sign * faster };
+                let planned = Transition::plan(order, &from, &target, &limits, Effort::Refined).unwrap();
+                if planned.excess() <= 0.0 && lowest(order, &from, x, faster, &limits) >= -1e-9 {
+                    most = most.max((faster - speed) / limit);
+                }
+            }
+            assert!(most <= allowed, "{most} {}", context());
+            (worst, count, higher) = (worst.max(most), count + 1, higher + usize::from(most > 1e-3));
+        }
+        println!(
+            "{order:?}: at {higher} of {count} a speed passes that is higher by 0.1 % of the limit; by {worst} at most"
+        );
+        assert!(100 * higher <= 3 * count, "{order:?}: {higher} of {count}");
+    }
+}
+
+/// Next to the velocity limit the speed was rounded down to an eighth of it: 14.5 m/s, where 29.0 m/s are passed.
+#[test]
+fn next_to_its_limit_the_velocity_is_not_halved() {
+    let from = Setpoint {
+        v: 28.131_263_881_380_12,
+        a: 1.450_447_681_007_900_3,
+        j: -1.130_477_121_291_381_1,
+        ..Setpoint::default()
+    };
+    let limits = DirectionalLimits {
+        velocity: Sides::both(29.006),
+        acceleration: Sides { below: 68.24, above: 41.49 },
+        jerk: 1.586,
+        snap: 0.2628,
+    };
+    let speed = passing_velocity(Order::Fourth, &from, 2.539e3, &limits, f64::MAX).unwrap().unwrap();
+    assert!(speed > 0.999 * 29.006, "{speed}");
+    assert!(lowest(Order::Fourth, &from, 2.539e3, speed, &limits) >= -1e-9);
+}
