@@ -25,6 +25,8 @@ const PERIOD: f64 = DRIVE as f64 / RATE as f64;
 const DELAY: u32 = 1;
 /// With which time constant the axis follows the demand (s).
 const LAG: f64 = 7e-3;
+/// A count of the drive within a cycle of the bus (m/s).
+const ROUNDING: f64 = 1e-6 * RATE as f64 / BUS as f64;
 /// How long after that the demand may jump (steps of the drive).
 const TAKES_OVER: u32 = 80;
 /// Velocity that the link commands at most, and with it the drive demands.
@@ -147,7 +149,7 @@ impl Chain {
                 self.taking_over = if is_on { self.taking_over.saturating_sub(1) } else { TAKES_OVER };
                 if let Some(last) = last.filter(|_| self.taking_over == 0) {
                     let mean = (setpoint.x - last).abs() / PERIOD;
-                    assert!(mean <= FASTEST * (1.0 + 1e-6), "{place}: {mean} m/s from {last} to {setpoint:?}");
+                    assert!(mean <= FASTEST + ROUNDING, "{place}: {mean} m/s from {last} to {setpoint:?}");
                 }
                 self.demand = Some(setpoint.x);
                 (setpoint.x - before.x) * PERIOD / LAG + setpoint.v * PERIOD
