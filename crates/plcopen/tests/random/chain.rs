@@ -25,8 +25,8 @@ const PERIOD: f64 = DRIVE as f64 / RATE as f64;
 const DELAY: u32 = 1;
 /// With which time constant the axis follows the demand (s).
 const LAG: f64 = 7e-3;
-/// A count of the drive within a cycle of the bus (m/s).
-const ROUNDING: f64 = 1e-6 * RATE as f64 / BUS as f64;
+/// A count of the drive within a cycle of the bus, and as much again for the cubic between rounded targets (m/s).
+const ROUNDING: f64 = 2.0 * 1e-6 * RATE as f64 / BUS as f64;
 /// How long after that the demand may jump (steps of the drive).
 const TAKES_OVER: u32 = 80;
 /// Velocity that the link commands at most, and with it the drive demands.
