@@ -38,11 +38,12 @@
 //!
 //! | | order 2 | order 3 | order 4 |
 //! |---|---|---|---|
-//! | [`Transition::plan`] | 0.2, 0.4 | 0.8, 1.3 | 7, 26 |
-//! | [`Transition::plan_ramps`] | 0.2, 0.3 | 1.2, 4 | 9, 115 |
-//! | [`passing_velocity`] | 0.3, 0.6 | 0.6, 1.1 | 5, 18 |
+//! | [`Transition::plan`], from own plans | 0.2, 0.3 | 0.7, 1.4 | 5, 26 |
+//! | [`Transition::plan_ramps`] | 0.2, 0.3 | 1.1, 6 | 7, 130 |
+//! | [`passing_velocity`] | 0.3, 0.5 | 0.5, 11 | 4, 200 |
 //!
-//! The slowest start beyond their limits and have to turn round.
+//! The slowest start next to their limits and have to turn round; those of [`passing_velocity`] try plans. From any state within its
+//! limits order 4 takes 8 µs and one in a thousand 130 µs, at most 0.3 ms; [`Effort::Refined`] up to 1.3 ms.
 mod arrival;
 mod braking;
 mod costate;
