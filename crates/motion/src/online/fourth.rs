@@ -13,7 +13,7 @@ use super::watch::{ROUNDING, Watch};
 use crate::root::increasing;
 
 /// Stretches at most: there, a cruise, and back.
-pub(crate) const STRETCHES: usize = third::STRETCHES + 1 + third::STRETCHES;
+pub(crate) const STRETCHES: usize = third::FASTEST + 1 + third::FASTEST;
 
 /// A state of four integrators in a row.
 #[derive(Debug, Clone, Copy, PartialEq)]

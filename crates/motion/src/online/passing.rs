@@ -112,17 +112,19 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
+    #[inline]
     fn highest(&self, from: &Setpoint) -> Option<f64> {
-        let Some(at_once) = self.by_the_fastest_way(from) else {
+        let calm = self.sign * calmed(self.order, from, self.limits);
+        let Some(at_once) = self.by_the_fastest_way(from, calm) else {
             // There is a way where nothing but the velocity limit makes the fastest one too long.
-            let is_too_fast = self.sign * calmed(self.order, from, self.limits) > self.most;
+            let is_too_fast = calm > self.most;
             return if self.order == Order::Fourth && is_too_fast { self.by_trying(from) } else { None };
         };
         if self.order == Order::Second {
             return Some(at_once);
         }
         if self.keeps_the_velocity(from, at_once) {
-            let is_highest = at_once >= self.most || !self.is_braking(from);
+            let is_highest = at_once >= self.most || !self.is_braking(from, calm);
             return Some(if is_highest { at_once } else { self.after_braking_on(from, at_once).unwrap_or(at_once) });
         }
         // As little braking as the velocity limit asks for; either on through zero, or to no acceleration.
@@ -213,11 +215,13 @@ impl Search<'_> {
 
     /// What the fastest way reaches from here, where that keeps the velocity limit and does not turn back.
     fn kept(&self, from: &Setpoint) -> Option<f64> {
-        let is_ahead = self.sign * calmed(self.order, from, self.limits) >= 0.0 && self.sign * (self.x - from.x) >= 0.0;
-        let speed = if is_ahead { self.by_the_fastest_way(from)? } else { return None };
+        let calm = self.sign * calmed(self.order, from, self.limits);
+        let is_ahead = calm >= 0.0 && self.distance(from) >= 0.0;
+        let speed = if is_ahead { self.by_the_fastest_way(from, calm)? } else { return None };
         self.keeps_the_velocity(from, speed).then_some(speed)
     }
 
+    #[inline]
     fn covered(&self, from: &Setpoint, speed: f64) -> f64 {
         self.sign * covered(self.order, from, self.sign * speed, self.limits)
     }
@@ -234,11 +238,13 @@ impl Search<'_> {
         self.covered(from, speed) <= self.distance(from) - self.rounding(from)
     }
 
-    /// The highest speed that the fastest way reaches before `x`.
-    fn by_the_fastest_way(&self, from: &Setpoint) -> Option<f64> {
+    /// The highest speed that the fastest way reaches before `x`; `calm` is the one that is left when the acceleration is brought to
+    /// zero at once.
+    #[inline]
+    fn by_the_fastest_way(&self, from: &Setpoint, calm: f64) -> Option<f64> {
         let (distance, rounding) = (self.distance(from), self.rounding(from));
         let beyond = |speed: f64| self.covered(from, speed) - (distance - rounding);
-        let calm = (self.sign * calmed(self.order, from, self.limits)).max(0.0).min(self.most);
+        let calm = calm.max(0.0).min(self.most);
         let (low, high) = if self.covered(from, calm) <= distance {
             (calm, self.most)
         } else if self.covered(from, 0.0) <= distance {
@@ -267,8 +273,8 @@ impl Search<'_> {
     }
 
     /// Whether it slows down on its way to `x`, if it is brought to a constant velocity at once.
-    fn is_braking(&self, from: &Setpoint) -> bool {
-        self.sign * from.v > 0.0 && self.sign * (calmed(self.order, from, self.limits) - from.v) < 0.0
+    fn is_braking(&self, from: &Setpoint, calm: f64) -> bool {
+        self.sign * from.v > 0.0 && calm < self.sign * from.v
     }
 
     /// Whether the fastest way to a speed covers less after braking on for an instant: how it changes by that is known as it is in
@@ -311,6 +317,7 @@ const fn limits4(limits: &DirectionalLimits) -> Limits4 {
 }
 
 /// What the fastest way from `from` to the velocity `to` covers.
+#[inline]
 fn covered(order: Order, from: &Setpoint, to: f64, limits: &DirectionalLimits) -> f64 {
     let DirectionalLimits { acceleration, jerk, .. } = *limits;
     match order {

@@ -12,8 +12,10 @@ use super::path::Path;
 use super::second::{self, Limits2, Sides, State2};
 use super::watch::Watch;
 
-/// Stretches at most: back into the limit of acceleration, there, a cruise, back, and a cruise at the velocity of the target.
-pub(crate) const STRETCHES: usize = 1 + second::STRETCHES + 1 + second::STRETCHES + 1;
+/// Stretches of a fastest way at most: back into the limit of acceleration, there, a cruise, and back.
+pub(crate) const FASTEST: usize = 1 + second::STRETCHES + 1 + second::STRETCHES;
+/// The same, and a cruise at the velocity of the target.
+pub(crate) const STRETCHES: usize = FASTEST + 1;
 
 /// A state of three integrators in a row.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,6 +104,7 @@ pub(crate) struct Way {
 }
 
 /// The fastest way from `from` to `to`, which is passed without acceleration at its velocity, and how far it is beyond the limits.
+#[inline]
 pub(crate) fn passing(from: State3, to: State3, limits: &Limits3) -> (Path<STRETCHES>, f64) {
     let path = fastest(from, to, limits);
     let (end, excess) = from.excess(&path, limits.v, limits.a);
@@ -122,6 +125,7 @@ pub(crate) fn straight<const N: usize>(from: State3, to: State3, limits: &Limits
 }
 
 /// Adds the way back into the limits of acceleration to `path`, and gives the state behind it.
+#[inline]
 fn led_back<const N: usize>(from: State3, limits: &Limits3, path: &mut Path<N>) -> State3 {
     let (excess, side) = limits.a.excess(from.a);
     path.push(-side * limits.j, excess / limits.j);
@@ -130,6 +134,7 @@ fn led_back<const N: usize>(from: State3, limits: &Limits3, path: &mut Path<N>) 
 
 /// The fastest way from `from` to `to`. A target that is passed with an acceleration may be missed, as there may be no way of
 /// this kind.
+#[inline]
 pub(crate) fn fastest(from: State3, to: State3, limits: &Limits3) -> Path<STRETCHES> {
     way(from, to, limits, &Near::nothing()).path
 }

@@ -15,7 +15,7 @@ use servobench_base::Setpoint;
 
 /// Stretches at most: those of a plan to a stop, at which there is neither a second way home nor a cruise, and those of one from
 /// rest, before which nothing is led back.
-const STRETCHES: usize = ladder::STRETCHES + third::STRETCHES;
+const STRETCHES: usize = ladder::STRETCHES + third::FASTEST;
 
 /// The way from one state to a target, in the axis unit (m or rad) and seconds from its start.
 #[derive(Debug, Clone, Copy, PartialEq)]
