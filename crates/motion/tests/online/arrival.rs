@@ -3,15 +3,20 @@ use crate::random::{Random, sweep_size};
 use crate::request::{Request, jump};
 use servobench_base::Setpoint;
 use servobench_motion::Order;
-use servobench_motion::online::{DirectionalLimits, Effort, Target, Transition, passing_velocity};
+use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target, Transition, passing_velocity};
 
 /// Of what is covered: what the straight way may be away from the target so that it is taken.
 const ROUNDING: f64 = 1e-12;
 
-/// What is missed, as a part of what is covered.
+/// What is missed, as a part of what is covered, but for what a rounding of the velocities is worth: at order 2 nothing but they say
+/// how far it is from one to the other, (v₁² − v₀²)/2a.
 fn missed(request: &Request, planned: &Transition) -> f64 {
     let Target::Position { x, v } = request.target else { panic!("{request:?} has no position") };
-    jump(planned)[0] / ((x - request.from.x).abs() + v.abs() * planned.duration())
+    let Sides { below, above } = request.limits.acceleration;
+    let fastest = request.from.v.abs().max(v.abs());
+    let is_second = request.order == Order::Second;
+    let rounding = if is_second { 2.0 * f64::EPSILON * fastest * fastest / below.min(above) } else { 0.0 };
+    (jump(planned)[0] - rounding).max(0.0) / ((x - request.from.x).abs() + v.abs() * planned.duration())
 }
 
 /// A state on the way of a move, and the limits of that.
