@@ -61,7 +61,7 @@ impl Clock {
         let (from, to) = (behind(self.place(first.t)), before(self.place(last.t)));
         let cycles = to - from;
         if !(2.0..=LONGEST).contains(&cycles) {
-            let bound = "at least two and at most 1e9 times in the table";
+            let bound = "so short that at least two and at most 1e9 of them fit into the table";
             return Err(ParamError { name: "command_cycle", value: self.period, bound }.into());
         }
         let moved =

@@ -143,7 +143,8 @@ fn what_has_no_instants_is_refused() {
     let mut knots = [Knot::new(0.0, 0.0), Knot::new(0.0199, 1.0)];
     let clock = Clock::new(0.0, 0.01).unwrap();
     let refused = ClockedPlateaus::solve(&mut knots, 0.0, 0.0, 0.25, clock, &mut [0.0; 2]).unwrap_err();
-    let said = "`command_cycle` must be at least two and at most 1e9 times in the table, got 0.01";
+    let said =
+        "`command_cycle` must be so short that at least two and at most 1e9 of them fit into the table, got 0.01";
     assert_eq!(refused.to_string(), said);
     for alpha in [0.0, -0.1, 0.51, f64::NAN, f64::INFINITY] {
         assert!(ClockedPlateaus::solve(&mut knots, 0.0, 0.0, alpha, clock, &mut [0.0; 2]).is_err(), "{alpha}");
