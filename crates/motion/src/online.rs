@@ -34,16 +34,17 @@
 //!
 //! # Cost
 //!
-//! Of one call, in µs, where `rsruckig` takes 0.43 to rest (median, and what one in a thousand takes; `cargo bench --bench online`):
+//! Of one call, in µs, where `rsruckig` takes 0.39 to rest (median, and what one in a thousand takes; `cargo bench --bench online`):
 //!
 //! | | order 2 | order 3 | order 4 |
 //! |---|---|---|---|
-//! | [`Transition::plan`], from own plans | 0.2, 0.3 | 0.7, 1.4 | 5, 26 |
-//! | [`Transition::plan_ramps`] | 0.2, 0.3 | 1.1, 6 | 7, 130 |
-//! | [`passing_velocity`] | 0.3, 0.5 | 0.5, 11 | 4, 200 |
+//! | [`Transition::plan`], from own plans | 0.2, 0.3 | 0.7, 1.3 | 5, 26 |
+//! | [`Transition::plan_ramps`] | 0.2, 0.3 | 1.0, 5 | 6, 130 |
+//! | [`passing_velocity`] | 0.3, 0.4 | 0.5, 11 | 3, 200 |
 //!
 //! The slowest start next to their limits and have to turn round; those of [`passing_velocity`] try plans. From any state within its
-//! limits order 4 takes 8 µs and one in a thousand 130 µs, at most 0.3 ms; [`Effort::Refined`] up to 1.3 ms.
+//! limits ("from anywhere") order 4 takes 8 and one in a thousand 117, the slowest of the bench 190; with [`Effort::Refined`] 8, 131 and
+//! 830.
 mod arrival;
 mod braking;
 mod costate;

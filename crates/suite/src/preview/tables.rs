@@ -17,6 +17,9 @@ pub(super) fn doubts(scenario: &Scenario) -> Vec<Doubt> {
 
 fn doubt(index: usize, Call { block, .. }: &Call, limits: &[f64; 4], axis_unit: &str) -> Option<Doubt> {
     let [_, most, jerk, _] = *limits;
+    if jerk == f64::INFINITY {
+        return None;
+    }
     let step = match block {
         Block::VelocityProfile { pairs, scales, .. } => Step::Of(step_of_velocities(pairs, scales)),
         Block::AccelerationProfile { pairs, scales, .. } => Step::Of(step_of_accelerations(pairs, scales)),
@@ -34,9 +37,6 @@ fn doubt(index: usize, Call { block, .. }: &Call, limits: &[f64; 4], axis_unit: 
         Step::At(place) => format!("where {place}"),
         Step::Of(_) => return None,
     };
-    if jerk == f64::INFINITY {
-        return None;
-    }
     let message = format!(
         "the acceleration steps {where_it_steps}: infinite jerk, on an axis with a limit of {}",
         Quantity::new(jerk, &format!("{axis_unit}/s³"))
