@@ -1,5 +1,5 @@
 //! Cost of planning from any state and of reading a set-point, beside `rsruckig` (order 3) on the same requests:
-//! `cargo bench -p servobench-motion --bench online`.
+//! `cargo bench -p servobench-motion --bench online`; with `-- "order 3"` behind it only the rows with that in their names.
 //!
 //! A control cycle must bear the slow plans too: the table has percentiles of single calls. Each is timed in several passes over
 //! all requests, of which the shortest counts: the others have in them what the operating system did in between. Calls shorter than
@@ -117,7 +117,13 @@ fn times<T>(requests: &[Request], mut call: impl FnMut(&Request) -> T) -> Vec<f6
     times
 }
 
-fn row(name: &str, times: &[f64]) {
+/// Times the calls of `work`, unless only rows with other names are wanted.
+fn row<T>(name: &str, requests: &[Request], work: impl FnMut(&Request) -> T) {
+    let mut wanted = std::env::args().skip(1).filter(|argument| !argument.starts_with('-')).peekable();
+    if wanted.peek().is_some() && !wanted.any(|part| name.contains(&part)) {
+        return;
+    }
+    let times = times(requests, work);
     let at = |per_mille: usize| times[(times.len() - 1) * per_mille / 1000];
     println!(
         "{name:<36} {:>9.0} {:>9.0} {:>9.0} {:>9.0} {:>9.0}",
@@ -157,27 +163,27 @@ impl Peer {
 fn main() {
     let (stopping, passing) = (requests(0.0), requests(1.0));
     println!("{:<36} {:>9} {:>9} {:>9} {:>9} {:>9}", "plan, ns", "median", "90 %", "99 %", "99.9 %", "worst");
-    row("nothing: what the clock takes", &times(&stopping, |_| ()));
+    row("nothing: what the clock takes", &stopping, |_| ());
     let mut peer = Peer::new();
     for (requests, what) in [(&stopping, "to rest"), (&passing, "to a velocity")] {
-        row(&format!("order 4 {what}, fast"), &times(requests, |r| r.plan(Order::Fourth, Effort::Fast)));
-        row(&format!("order 4 {what}, refined"), &times(requests, |r| r.plan(Order::Fourth, Effort::Refined)));
-        row(&format!("order 3 {what}"), &times(requests, |r| r.plan(Order::Third, Effort::Fast)));
-        row(&format!("order 3 {what}, rsruckig"), &times(requests, |r| peer.plan(&r.from, r)));
-        row(&format!("order 2 {what}"), &times(requests, |r| r.plan(Order::Second, Effort::Fast)));
+        row(&format!("order 4 {what}, fast"), requests, |r| r.plan(Order::Fourth, Effort::Fast));
+        row(&format!("order 4 {what}, refined"), requests, |r| r.plan(Order::Fourth, Effort::Refined));
+        row(&format!("order 3 {what}"), requests, |r| r.plan(Order::Third, Effort::Fast));
+        row(&format!("order 3 {what}, rsruckig"), requests, |r| peer.plan(&r.from, r));
+        row(&format!("order 2 {what}"), requests, |r| r.plan(Order::Second, Effort::Fast));
     }
     for (order, name) in [(Order::Second, "order 2"), (Order::Third, "order 3"), (Order::Fourth, "order 4")] {
-        row(&format!("{name} to rest, two accelerations"), &times(&stopping, |r| r.ramps(order)));
-        row(&format!("{name}, passing velocity"), &times(&stopping, |r| r.passing(order)));
+        row(&format!("{name} to rest, two accelerations"), &stopping, |r| r.ramps(order));
+        row(&format!("{name}, passing velocity"), &stopping, |r| r.passing(order));
     }
     let anywhere = anywhere();
-    row("order 4 from anywhere, fast", &times(&anywhere, |r| r.plan(Order::Fourth, Effort::Fast)));
-    row("order 4 from anywhere, refined", &times(&anywhere, |r| r.plan(Order::Fourth, Effort::Refined)));
-    row("order 3 from anywhere", &times(&anywhere, |r| r.plan(Order::Third, Effort::Fast)));
+    row("order 4 from anywhere, fast", &anywhere, |r| r.plan(Order::Fourth, Effort::Fast));
+    row("order 4 from anywhere, refined", &anywhere, |r| r.plan(Order::Fourth, Effort::Refined));
+    row("order 3 from anywhere", &anywhere, |r| r.plan(Order::Third, Effort::Fast));
     let at_rest = Setpoint::default();
-    row("order 3 rest to rest, rsruckig", &times(&stopping, |r| peer.plan(&at_rest, r)));
-    row("order 4 rest to rest, published", &times(&stopping, |r| Profile::plan(Order::Fourth, r.x, &r.limits)));
-    row("order 4 rest to rest, optimal", &times(&stopping, |r| Profile::plan_optimal(Order::Fourth, r.x, &r.limits)));
+    row("order 3 rest to rest, rsruckig", &stopping, |r| peer.plan(&at_rest, r));
+    row("order 4 rest to rest, published", &stopping, |r| Profile::plan(Order::Fourth, r.x, &r.limits));
+    row("order 4 rest to rest, optimal", &stopping, |r| Profile::plan_optimal(Order::Fourth, r.x, &r.limits));
     samples(&stopping);
 }
 

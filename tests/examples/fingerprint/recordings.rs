@@ -15,7 +15,8 @@ pub(crate) fn of(file: &Path) -> String {
     for channel in &recording.channels {
         let spec = &channel.spec;
         let hash = hash::of_numbers(&channel.values);
-        writeln!(lines, "  {} [{}] {} {} Hz: {hash:016x}", spec.name, spec.unit, spec.writer, spec.rate.hertz()).unwrap();
+        writeln!(lines, "  {} [{}] {} {} Hz: {hash:016x}", spec.name, spec.unit, spec.writer, spec.rate.hertz())
+            .unwrap();
     }
     for signal in &recording.signals {
         writeln!(lines, "  {}.{}: {:016x}", signal.source, signal.name, of_debug(&signal.changes)).unwrap();

@@ -25,8 +25,10 @@ pub(crate) fn of(program: &Path, file: &Path) -> Runs {
     for engines in [&[][..], &ENGINES[..]] {
         let work = tempfile::tempdir().unwrap();
         let out = work.path().to_string_lossy();
-        let arguments: Vec<&str> =
-            ["run", &name, "--quiet", "--jobs", "1", "--out", &out].into_iter().chain(engines.iter().copied()).collect();
+        let arguments: Vec<&str> = ["run", &name, "--quiet", "--jobs", "1", "--out", &out]
+            .into_iter()
+            .chain(engines.iter().copied())
+            .collect();
         let ran = call(program, folder, &arguments);
         let plain = |text: String| text.replace(&*out, "OUT").replace(&*folder.to_string_lossy(), "FOLDER");
         runs.said += &plain(said(&ran));

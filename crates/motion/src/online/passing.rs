@@ -24,6 +24,7 @@ use super::first::State;
 use super::fourth::{Limits4, State4};
 use super::ladder::{self, Goal};
 use super::newton::Near;
+use super::path::Path;
 use super::second::{self, Limits2, Sides, State2};
 use super::third::{self, Limits3, State3};
 use super::transition::check_state;
@@ -202,7 +203,8 @@ impl Search<'_> {
         if self.order == Order::Third {
             let start = State3 { p: 0.0, v: from.v, a: from.a };
             let to = State3 { p: distance, v, a: 0.0 };
-            let (path, _) = third::passing(start, to, &Limits3 { v: velocity, a: acceleration, j: jerk });
+            let mut path = Path::EMPTY;
+            third::passing(start, to, &Limits3 { v: velocity, a: acceleration, j: jerk }, &mut path);
             start.velocities(&path, |v| lowest = lowest.min(self.sign * v));
         } else {
             let start = State4 { x: 0.0, v: from.v, a: from.a, j: from.j };

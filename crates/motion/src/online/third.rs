@@ -103,17 +103,18 @@ pub(crate) struct Way {
     pub(crate) by_a: f64,
 }
 
-/// The fastest way from `from` to `to`, which is passed without acceleration at its velocity, and how far it is beyond the limits.
+/// Sets `path` to the fastest way from `from` to `to`, which is passed without acceleration at its velocity, and gives how far it is
+/// beyond the limits.
 #[inline]
-pub(crate) fn passing(from: State3, to: State3, limits: &Limits3) -> (Path<STRETCHES>, f64) {
-    let path = fastest(from, to, limits);
-    let (end, excess) = from.excess(&path, limits.v, limits.a);
-    if is_met(from, to, end, &path) {
-        return (path, excess);
+pub(crate) fn passing(from: State3, to: State3, limits: &Limits3, path: &mut Path<STRETCHES>) -> f64 {
+    find::<false>(from, to, limits, &Near::nothing(), path);
+    let (end, excess) = from.excess(path, limits.v, limits.a);
+    if is_met(from, to, end, path) {
+        return excess;
     }
     let plan = |p: f64| Some(fastest(from, State3 { p, ..to }, limits));
-    let path = meet([from, to], path, plan, &straight(from, to, limits)).unwrap_or(path);
-    (path, from.excess(&path, limits.v, limits.a).1)
+    *path = meet([from, to], *path, plan, &straight(from, to, limits)).unwrap_or(*path);
+    from.excess(path, limits.v, limits.a).1
 }
 
 /// The fastest way from `from` to what `to` is above its position.
@@ -136,15 +137,24 @@ fn led_back<const N: usize>(from: State3, limits: &Limits3, path: &mut Path<N>) 
 /// this kind.
 #[inline]
 pub(crate) fn fastest(from: State3, to: State3, limits: &Limits3) -> Path<STRETCHES> {
-    way(from, to, limits, &Near::nothing()).path
+    let mut path = Path::EMPTY;
+    find::<false>(from, to, limits, &Near::nothing(), &mut path);
+    path
 }
 
 /// The same, where τ is `near` the one of the last way.
+#[inline]
 pub(crate) fn way(from: State3, to: State3, limits: &Limits3, near: &Near) -> Way {
+    let mut way = Way { path: Path::EMPTY, by_a: 0.0 };
+    way.by_a = find::<true>(from, to, limits, near, &mut way.path);
+    way
+}
+
+/// Adds the fastest way to `path`, which is empty, and gives its [`Way::by_a`] if that is wanted.
+fn find<const BY_A: bool>(from: State3, to: State3, limits: &Limits3, near: &Near, path: &mut Path<STRETCHES>) -> f64 {
     let Limits3 { v, a, j } = *limits;
     let upper = Limits2 { a, j };
-    let mut way = Way { path: Path::EMPTY, by_a: 0.0 };
-    let start = led_back(from, limits, &mut way.path);
+    let start = led_back(from, limits, path);
     let home = |turn: State3| second::way(turn.upper(), to.upper(), &upper);
     let direct = home(start);
     let missing = to.p - (start.p + direct.covered(start.upper(), to.upper()));
@@ -153,8 +163,8 @@ pub(crate) fn way(from: State3, to: State3, limits: &Limits3, near: &Near) -> Wa
         to.v != 0.0 && missing.abs() <= NEGLIGIBLE * ((to.p - start.p).abs() + covered)
     };
     if missing == 0.0 || is_negligible() {
-        direct.add_to(&mut way.path);
-        return way;
+        direct.add_to(path);
+        return 0.0;
     }
     let sign = if missing > 0.0 { 1.0 } else { -1.0 };
     let limit = State2 { v: v.at(sign), a: 0.0 };
@@ -181,17 +191,15 @@ pub(crate) fn way(from: State3, to: State3, limits: &Limits3, near: &Near) -> Wa
     if let Some(time) = time {
         let back = home(there.until(start, time).0);
         let away = there.first(time);
-        away.add_to(&mut way.path);
-        back.add_to(&mut way.path);
-        way.by_a = costate::by_a([away.up, away.hold, away.down], None, &back, to.p);
-        return way;
+        away.add_to(path);
+        back.add_to(path);
+        return if BY_A { costate::by_a([away.up, away.hold, away.down], None, &back, to.p) } else { 0.0 };
     }
     let back = second::way(limit, to.upper(), &upper);
     let at_limit = there.end(start).held(State3::CRUISE, limit.v);
     let cruise = (to.p - back.end(at_limit).p) / limit.v;
-    there.add_to(&mut way.path);
-    way.path.hold(State3::CRUISE, limit.v, cruise);
-    back.add_to(&mut way.path);
-    way.by_a = costate::by_a([there.up, there.hold, there.down], Some(cruise), &back, to.p);
-    way
+    there.add_to(path);
+    path.hold(State3::CRUISE, limit.v, cruise);
+    back.add_to(path);
+    if BY_A { costate::by_a([there.up, there.hold, there.down], Some(cruise), &back, to.p) } else { 0.0 }
 }

@@ -196,19 +196,19 @@ fn third_order(from: &Setpoint, target: &Target, limits: &DirectionalLimits) -> 
     let DirectionalLimits { velocity, acceleration, jerk, .. } = *limits;
     // The distance alone matters.
     let start = State3 { p: 0.0, v: from.v, a: from.a };
-    let (path, excess) = match target {
+    let mut path = Path::EMPTY;
+    let excess = match target {
         Target::Position { x, v } => {
             let to = State3 { p: x - from.x, v: *v, a: 0.0 };
-            third::passing(start, to, &Limits3 { v: velocity, a: acceleration, j: jerk })
+            third::passing(start, to, &Limits3 { v: velocity, a: acceleration, j: jerk }, &mut path)
         }
         Target::Velocity(v) => {
-            let mut path = Path::EMPTY;
             let (beyond, side) = acceleration.excess(start.a);
             path.push(-side * jerk, beyond / jerk);
             let turn = start.along(&path);
             let limits = Limits2 { a: acceleration, j: jerk };
             path.extend(&second::fastest(State2 { v: turn.v, a: turn.a }, State2 { v: *v, a: 0.0 }, &limits));
-            (path, start.excess(&path, velocity, acceleration).1)
+            start.excess(&path, velocity, acceleration).1
         }
     };
     Transition::new(Order::Third, Setpoint { j: 0.0, s: 0.0, ..*from }, &path, target, excess)
