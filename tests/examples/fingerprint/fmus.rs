@@ -56,7 +56,7 @@ fn contents(file: &Path) -> String {
     let mut lines = String::new();
     for index in 0..zip.len() {
         let mut entry = zip.by_index(index).unwrap();
-        let name = entry.name().to_owned();
+        let name = entry.name().unwrap().into_owned();
         if !name.starts_with("binaries/") {
             let mut content = Vec::new();
             entry.read_to_end(&mut content).unwrap();
@@ -69,11 +69,14 @@ fn contents(file: &Path) -> String {
 /// What it puts out while its inputs swing.
 fn outputs(file: &Path) -> String {
     let unpacked = Unpacked::new(file).unwrap();
-    let ports = |causality: Causality| -> Vec<Port> {
+    let variables = |causality: Causality| -> Vec<&Variable> {
         let all = unpacked.description().variables.iter();
-        let wanted = all.filter(|variable| variable.causality == causality && is_number(variable));
-        wanted.map(|variable| Port { variable: variable.name.clone(), element: 0 }).collect()
+        all.filter(|variable| variable.causality == causality && is_number(variable)).collect()
     };
+    let ports = |causality: Causality| -> Vec<Port> {
+        variables(causality).into_iter().map(|one| Port { variable: one.name.clone(), element: 0 }).collect()
+    };
+    let inputs = variables(Causality::Input);
     let setup = Setup { inputs: ports(Causality::Input), outputs: ports(Causality::Output), ..Setup::default() };
     let mut fmu = match Loaded::new(&unpacked, &setup) {
         Ok(fmu) => fmu,
@@ -84,8 +87,11 @@ fn outputs(file: &Path) -> String {
     for step in 0..STEPS {
         let time = f64::from(step) * STEP;
         // Each input at a frequency of its own, so that none hides another.
-        let swing = |index: usize| [1e-3 * (time * 10.0 * (index + 1) as f64).sin(), 0.0, 0.0];
-        let inputs: Vec<[f64; 3]> = (0..setup.inputs.len()).map(swing).collect();
+        let swing = |(index, input): (usize, &&Variable)| {
+            let swing = (time * 10.0 * (index + 1) as f64).sin();
+            [if input.data_type.is_float() { 1e-3 * swing } else { f64::from(swing > 0.5) }, 0.0, 0.0]
+        };
+        let inputs: Vec<[f64; 3]> = inputs.iter().enumerate().map(swing).collect();
         if let Err(error) = fmu.step(time, STEP, &inputs).and_then(|_| fmu.read(None, &mut values)) {
             return format!("  step {step}: {error}\n");
         }

@@ -34,6 +34,8 @@ fn main() -> ExitCode {
         eprintln!("usage: fingerprint PROGRAM OUT SCENARIOS...");
         return ExitCode::from(2);
     };
+    let version = call(program, Path::new("."), &["--version"]);
+    assert!(version.status.success(), "{} does not run: {}", program.display(), said(&version));
     fs::create_dir_all(out).unwrap();
     let files: Vec<PathBuf> = scenarios.iter().flat_map(|one| scenario_files(one)).collect();
     let all = in_parallel(&files, |file| runs::of(program, file));
