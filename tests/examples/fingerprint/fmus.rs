@@ -1,6 +1,6 @@
 //! What is in exported FMUs, and what they put out.
 use crate::{call, hash, repository, said};
-use servobench_fmi::{Causality, DataType, Loaded, Port, Setup, Slave, Unpacked, Variable};
+use servobench_fmi::{Causality, DataType, Loaded, Port, Setup, Slave, Unpacked, Values, Variable};
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::Read as _;
@@ -89,7 +89,11 @@ fn outputs(file: &Path) -> String {
         // Each input at a frequency of its own, so that none hides another.
         let swing = |(index, input): (usize, &&Variable)| {
             let swing = (time * 10.0 * (index + 1) as f64).sin();
-            [if input.data_type.is_float() { 1e-3 * swing } else { f64::from(swing > 0.5) }, 0.0, 0.0]
+            let value = match &input.start {
+                Some(Values::Float(start)) => start[0] + 1e-3 * swing,
+                _ => f64::from(u8::from(swing > 0.5)),
+            };
+            [value, 0.0, 0.0]
         };
         let inputs: Vec<[f64; 3]> = inputs.iter().enumerate().map(swing).collect();
         if let Err(error) = fmu.step(time, STEP, &inputs).and_then(|_| fmu.read(None, &mut values)) {
