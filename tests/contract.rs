@@ -1,7 +1,8 @@
 //! What `Engine` and `Mechanics` promise, held against every engine of the build.
+use servobench_base::Coordinate;
 use servobench_base::Setpoint;
 use servobench_plant::{
-    Actuation, Body, BodyState, Chain, Coordinate, Drive, DryFriction, Engine, Input, Link, Mechanics, MechanicsError,
+    Actuation, Body, BodyState, Chain, Drive, DryFriction, Engine, Input, Link, Mechanics, MechanicsError,
     MechanicsSetup, Model,
 };
 use servobench_tests::engines;

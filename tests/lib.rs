@@ -1,5 +1,5 @@
 //! What the tests of this folder share: runs of scenario texts on the engines of the build.
-use servobench_metrics::{Metrics, Name, Question, measure};
+use servobench_metrics::{Metrics, Name, measure};
 use servobench_plant::{Engine, Exact};
 use servobench_scenario::Scenario;
 use servobench_sim::Bench;
@@ -56,8 +56,7 @@ pub fn run(scenario: &Scenario, engine: &dyn Engine) -> Recording {
 /// What is measured on `recording`, as `scenario` asks.
 #[must_use]
 pub fn measured(scenario: &Scenario, recording: &Recording) -> Metrics {
-    let asked = &scenario.measure;
-    measure(recording, &Question { window: asked.window, from: asked.from, mode: asked.mode })
+    measure(recording, &scenario.measure)
 }
 
 /// The value of `name`.

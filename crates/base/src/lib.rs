@@ -3,12 +3,14 @@
 //! `no_std`; depends on nothing of servobench. Plain `f64` in SI, the unit in the doc of every item.
 #![cfg_attr(not(test), no_std)]
 
+mod coordinate;
 mod frames;
 mod parameter;
 mod setpoint;
 mod severity;
 mod time;
 
+pub use coordinate::Coordinate;
 pub use frames::{AlphaBeta, Dq, ElectricalAngle, Rotation};
 pub use parameter::{ParamError, finite, limit, non_negative, positive};
 pub use setpoint::Setpoint;

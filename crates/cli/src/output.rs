@@ -224,8 +224,8 @@ pub(crate) const fn said_of(outcome: Outcome, reasons: Vec<String>, warnings: Ve
 /// What a viewer is told beside the recording: limits and the settling window.
 pub(crate) fn view_options(scenario: &Scenario) -> ViewOptions {
     ViewOptions {
-        limits: channel_limits(scenario).into_iter().map(|(channel, limit)| (channel.to_owned(), limit)).collect(),
-        allowed: scenario.limits.iter().filter_map(|limit| Some((limit.metric.parse().ok()?, limit.max?))).collect(),
+        limits: channel_limits(scenario).into_iter().map(|(signal, limit)| (signal.name().to_owned(), limit)).collect(),
+        allowed: scenario.limits.iter().filter_map(|limit| Some((limit.metric, limit.max?))).collect(),
         window: scenario.measure.window,
         residual_from: scenario.measure.from,
         ..ViewOptions::default()

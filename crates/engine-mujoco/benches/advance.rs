@@ -3,10 +3,11 @@
 //! `MUJOCO_DYNAMIC_LINK_DIR=<target>/native/lib cargo bench -p servobench-engine-mujoco`
 
 use mujoco_rs::prelude::{MjModel, MjtDisableBit};
+use servobench_base::Coordinate;
 use servobench_base::Setpoint;
 use servobench_engine_mujoco::Mujoco;
 use servobench_plant::{
-    Actuation, Body, Chain, Coordinate, Drive, DryFriction, Engine as _, Input, Link, Mechanics, MechanicsSetup, Model,
+    Actuation, Body, Chain, Drive, DryFriction, Engine as _, Input, Link, Mechanics, MechanicsSetup, Model,
     chain_to_mjcf,
 };
 

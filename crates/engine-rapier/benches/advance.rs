@@ -4,10 +4,10 @@
 //! dry friction, reading back. Both run alternately in one process, so that a busy machine slows both.
 use divan::Bencher;
 use rapier3d_f64::prelude::*;
+use servobench_base::Coordinate;
 use servobench_engine_rapier::Rapier;
 use servobench_plant::{
-    Actuation, Body, Chain, Coordinate, Drive, DryFriction, Engine, Input, Link, Mechanics, MechanicsSetup, MjcfModel,
-    Model,
+    Actuation, Body, Chain, Drive, DryFriction, Engine, Input, Link, Mechanics, MechanicsSetup, MjcfModel, Model,
 };
 use std::hint::black_box;
 

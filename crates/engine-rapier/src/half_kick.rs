@@ -92,7 +92,8 @@ impl<const N: usize> HalfKick<N> {
 mod tests {
     use super::*;
     use nalgebra::{Matrix3, Vector3};
-    use servobench_plant::{Body, Coordinate, DryFriction, Link};
+    use servobench_base::Coordinate;
+    use servobench_plant::{Body, DryFriction, Link};
 
     const H: f64 = 1.0 / 16_000.0;
 

@@ -4,7 +4,8 @@ use crate::parameter::{Least, OF_DRIVE, OF_MECHANICS, Parameter, effort, limits_
 use crate::part::{Part, has_one_body};
 use servobench_cia402::PowerState;
 use servobench_plcopen::AxisState;
-use servobench_scenario::{Actuator, Motion, Scenario};
+use servobench_scenario::{Actuator, Scenario};
+use servobench_signals::Writer;
 use servobench_sim::Stepper;
 
 /// What a variable counts in. Whatever it is, it is kept as a number, but for texts.
@@ -142,8 +143,7 @@ impl Variable {
 
 /// The variables of `part` of `scenario`; `stepper` is its loop.
 pub(crate) fn variables(part: Part, scenario: &Scenario, stepper: &Stepper) -> Vec<Variable> {
-    let symbol = |motion| if motion == Motion::Rotary { "rad" } else { "m" };
-    let (axis, motor) = (symbol(scenario.axis.motion), symbol(scenario.axis.motor_motion));
+    let (axis, motor) = (scenario.axis.motion.unit(), scenario.axis.motor_motion.unit());
     let is_commanded = part != Part::Mechanics && !matches!(scenario.actuator, Actuator::Off);
     let table = Table { axis, motor, all: Vec::new() };
     table
@@ -257,19 +257,17 @@ impl Table {
 
     fn outputs(mut self, part: Part, scenario: &Scenario, stepper: &Stepper) -> Vec<Variable> {
         let motor = self.motor;
-        let is_body = |name: &str| ["motor.", "table.", "load."].iter().any(|body| name.starts_with(body));
-        for (at, channel) in stepper.channels().iter().enumerate() {
-            let name = channel.name.as_str();
+        for (at, (signal, channel)) in stepper.signals().iter().zip(stepper.channels()).enumerate() {
+            let is_of_a_body = signal.writer() == Writer::Mechanics;
             let is_there = match part {
                 Part::Axis => true,
-                Part::Drive => !is_body(name),
-                Part::Mechanics => is_body(name),
+                Part::Drive => !is_of_a_body,
+                Part::Mechanics => is_of_a_body,
             };
             if is_there {
-                let when = if is_body(name) { "now" } else { "of the base tick that has ended" };
-                let text = servobench_scenario::channel_meaning(name).unwrap_or_default();
-                let text = format!("{text} ({when})");
-                self.add(name, Kind::Real, channel.unit.clone(), Role::Output(Output::Channel(at)), text);
+                let when = if is_of_a_body { "now" } else { "of the base tick that has ended" };
+                let text = format!("{} ({when})", signal.meaning());
+                self.add(signal.name(), Kind::Real, channel.unit.clone(), Role::Output(Output::Channel(at)), text);
             }
         }
         let mut output = |name, kind, unit: &str, role, text: &str| {

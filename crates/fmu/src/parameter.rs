@@ -1,5 +1,5 @@
 //! Parameters: values of the scenario that may be set before the simulation begins.
-use servobench_scenario::{Actuator, AxisMechanics, Body, Drive, Motion, Scenario, Step, Way};
+use servobench_scenario::{Actuator, AxisMechanics, Body, Drive, Scenario, Step, Way};
 
 /// A parameter.
 #[derive(Debug)]
@@ -34,16 +34,12 @@ impl Parameter {
     }
 }
 
-const fn is_rotary(motion: Motion) -> bool {
-    matches!(motion, Motion::Rotary)
-}
-
 fn axis(scenario: &Scenario) -> &'static str {
-    if is_rotary(scenario.axis.motion) { "rad" } else { "m" }
+    scenario.axis.motion.unit()
 }
 
 fn motor(scenario: &Scenario) -> &'static str {
-    if is_rotary(scenario.axis.motor_motion) { "rad" } else { "m" }
+    scenario.axis.motor_motion.unit()
 }
 
 /// Symbol of an effort in the coordinate with this unit.

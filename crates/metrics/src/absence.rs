@@ -1,21 +1,22 @@
 //! Why a metric has no value.
 use crate::quantity::Quantity;
+use servobench_signals::{Presence, Signal, Unit};
 use thiserror::Error;
 
 /// Why a metric has no value. What is absent is never zero.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Absence {
     /// The recording lacks a channel.
-    #[error("`{channel}` is not recorded{}", only_of_a_pmsm(channel))]
+    #[error("`{channel}` is not recorded{}", only_of_a_pmsm(*channel))]
     NoChannel {
         /// Missing channel.
-        channel: &'static str,
+        channel: Signal,
     },
     /// A channel holds something that is not a number.
     #[error("`{channel}` is not finite at {time} s")]
     NotFinite {
         /// The channel.
-        channel: &'static str,
+        channel: Signal,
         /// First instant at which it is not finite (s).
         time: f64,
     },
@@ -72,9 +73,9 @@ pub enum Absence {
     #[error("`{one}` and `{two}` differ in unit")]
     UnitsDiffer {
         /// First channel.
-        one: &'static str,
+        one: Signal,
         /// Second channel.
-        two: &'static str,
+        two: Signal,
     },
     /// The load is at rest, or drifts without oscillating.
     #[error("the load does not oscillate")]
@@ -109,14 +110,16 @@ pub enum Absence {
     },
 }
 
-/// Why a channel of the motor's electrical side may be missing.
-fn only_of_a_pmsm(channel: &str) -> &'static str {
-    match channel.split_once('.') {
-        Some(("current", _) | ("saturation", "current")) => "; only a PMSM has a current",
-        Some(("power", "electrical" | "copper" | "stored" | "air_gap" | "residual")) => {
-            "; only a PMSM has electrical power"
-        }
-        Some(("voltage", _) | ("saturation", "voltage")) => "; only a PMSM has a voltage",
+/// Why a signal of the motor's electrical side may be missing.
+fn only_of_a_pmsm(signal: Signal) -> &'static str {
+    match (signal.presence(), signal) {
+        (Presence::WithCurrentLoop, Signal::SaturationVoltage) => "; only a PMSM has a voltage",
+        (Presence::WithCurrentLoop, _) => "; only a PMSM has a current",
+        (Presence::WithCurrents, _) => match signal.unit() {
+            Unit::Ampere => "; only a PMSM has a current",
+            Unit::Watt => "; only a PMSM has electrical power",
+            _ => "; only a PMSM has a voltage",
+        },
         _ => "",
     }
 }

@@ -4,6 +4,7 @@ use crate::metric::MetricSet;
 use crate::name::Name;
 use crate::power;
 use crate::span::{channel, largest, root_mean, unit};
+use servobench_signals::Signal;
 use servobench_trace::Recording;
 use std::ops::Range;
 
@@ -11,23 +12,23 @@ use std::ops::Range;
 const PEAK_CURRENT: &str = "Apk";
 /// Effective value of a phase current.
 const RMS_CURRENT: &str = "Arms";
-const EFFORT: &str = "effort.motor";
-const EFFORT_REFERENCE: &str = "effort.reference";
+const EFFORT: Signal = Signal::EffortMotor;
+const EFFORT_REFERENCE: Signal = Signal::EffortReference;
 
 /// Notes current, voltage and torque over `rows`.
 pub(crate) fn note(set: &mut MetricSet, recording: &Recording, rows: &Range<usize>) {
     let peak = |squares: &Vec<f64>| largest(squares.iter().copied(), PART).map(f64::sqrt);
-    let current = vector_squared(recording, "current.d", "current.q", rows);
+    let current = vector_squared(recording, Signal::CurrentD, Signal::CurrentQ, rows);
     // A phase of amplitude |i_dq| has the effective value |i_dq|/√2.
     let rms = |squares: &Vec<f64>| root_mean(squares.iter().map(|square| square / 2.0), PART);
     set.note(Name::CurrentPeak, PEAK_CURRENT, current.as_ref().map_err(Clone::clone).and_then(peak));
     set.note(Name::CurrentRms, RMS_CURRENT, current.as_ref().map_err(Clone::clone).and_then(rms));
-    let voltage = vector_squared(recording, "voltage.d", "voltage.q", rows);
+    let voltage = vector_squared(recording, Signal::VoltageD, Signal::VoltageQ, rows);
     set.note(Name::VoltagePeak, "V", voltage.as_ref().map_err(Clone::clone).and_then(peak));
     for (name, share) in [
-        (Name::CurrentSaturationTime, "saturation.current"),
-        (Name::VoltageSaturationTime, "saturation.voltage"),
-        (Name::EffortSaturationTime, "saturation.effort"),
+        (Name::CurrentSaturationTime, Signal::SaturationCurrent),
+        (Name::VoltageSaturationTime, Signal::SaturationVoltage),
+        (Name::EffortSaturationTime, Signal::SaturationEffort),
     ] {
         set.note(name, "s", saturation_time(recording, share, rows));
     }
@@ -43,18 +44,13 @@ pub(crate) fn note(set: &mut MetricSet, recording: &Recording, rows: &Range<usiz
 
 const PART: &str = "of motor and inverter";
 
-fn vector_squared(
-    recording: &Recording,
-    d: &'static str,
-    q: &'static str,
-    rows: &Range<usize>,
-) -> Result<Vec<f64>, Absence> {
+fn vector_squared(recording: &Recording, d: Signal, q: Signal, rows: &Range<usize>) -> Result<Vec<f64>, Absence> {
     let (d, q) = (channel(recording, d)?, channel(recording, q)?);
     Ok(d[rows.clone()].iter().zip(&q[rows.clone()]).map(|(d, q)| d * d + q * q).collect())
 }
 
 /// Σ share·period: the channel holds which share of the control ticks since the last row was saturated.
-fn saturation_time(recording: &Recording, share: &'static str, rows: &Range<usize>) -> Result<f64, Absence> {
+fn saturation_time(recording: &Recording, share: Signal, rows: &Range<usize>) -> Result<f64, Absence> {
     let shares = &channel(recording, share)?[rows.clone()];
     if shares.is_empty() {
         return Err(Absence::NothingRecorded { part: PART });
@@ -70,13 +66,13 @@ mod tests {
 
     fn measured() -> MetricSet {
         let recording = Build::new(10_000, 10_000)
-            .channel("current.d", "A", |t| -3.0 * (2.0 * PI * 10.0 * t).cos())
-            .channel("current.q", "A", |t| 3.0 * (2.0 * PI * 10.0 * t).sin())
-            .channel("voltage.d", "V", |_| 3.0)
-            .channel("voltage.q", "V", |t| if t < 0.5 { 4.0 } else { 0.0 })
-            .channel("saturation.voltage", "", |t| if t < 0.1 { 0.25 } else { 0.0 })
-            .channel("effort.reference", "N m", |t| if t < 0.3 { -1.75 } else { 1.5 })
-            .channel("effort.motor", "N m", |t| -2.0 * (2.0 * PI * 3.0 * t).sin())
+            .channel(Signal::CurrentD, "A", |t| -3.0 * (2.0 * PI * 10.0 * t).cos())
+            .channel(Signal::CurrentQ, "A", |t| 3.0 * (2.0 * PI * 10.0 * t).sin())
+            .channel(Signal::VoltageD, "V", |_| 3.0)
+            .channel(Signal::VoltageQ, "V", |t| if t < 0.5 { 4.0 } else { 0.0 })
+            .channel(Signal::SaturationVoltage, "", |t| if t < 0.1 { 0.25 } else { 0.0 })
+            .channel(Signal::EffortReference, "N m", |t| if t < 0.3 { -1.75 } else { 1.5 })
+            .channel(Signal::EffortMotor, "N m", |t| -2.0 * (2.0 * PI * 3.0 * t).sin())
             .finish();
         let mut set = MetricSet::default();
         note(&mut set, &recording, &(0..10_000));

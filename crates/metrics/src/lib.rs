@@ -31,7 +31,7 @@ pub use absence::Absence;
 pub use measure::{Question, measure};
 pub use metric::{Metric, MetricSet, Metrics, MoveMetrics};
 pub use modal::{Mode, Signal, fit_mode};
-pub use name::{Name, UnknownMetric};
+pub use name::{Name, Scope, UnknownMetric};
 pub use quantity::Quantity;
 pub use requirement::{
     Driven, EarlyEnd, Expectation, Expected, JUDGED_BY, LinearLoop, Requirement, Rules, Standing, arrival_window,

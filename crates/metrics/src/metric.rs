@@ -138,12 +138,12 @@ impl Metrics {
 
     /// Judges the metrics of each move by its own limits, as [`Metrics::judge`] does it for the run. Limits of moves that
     /// were not made are missed.
-    pub fn judge_moves(&mut self, limits: &[Vec<Limit>]) -> Verdict {
+    pub fn judge_moves(&mut self, limits: &[impl AsRef<[Limit]>]) -> Verdict {
         let mut misses = Vec::new();
         for (index, limits) in limits.iter().enumerate() {
             match self.moves.get_mut(index) {
-                Some(made) => misses.extend(made.metrics.judge(limits, Some(index))),
-                None => misses.extend(MetricSet::default().judge(limits, Some(index))),
+                Some(made) => misses.extend(made.metrics.judge(limits.as_ref(), Some(index))),
+                None => misses.extend(MetricSet::default().judge(limits.as_ref(), Some(index))),
             }
         }
         Verdict { misses, ..Verdict::default() }

@@ -1,11 +1,13 @@
-//! The stable names of the metrics.
+//! The metrics: their stable names, what they measure, what they mean.
+use servobench_config::{Kind, Measure, any, not_negative, quantities};
 use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
 
-/// Declares [`Name`] once: variant, name in files, meaning in a few words.
+/// Declares [`Name`] once: variant, name in files, what it is of, what it measures, a limit as users write it, meaning in a few
+/// words.
 macro_rules! names {
-    ($($variant:ident $text:literal $meaning:literal,)*) => {
+    ($($variant:ident $text:literal $scope:ident $kind:ident $example:literal $meaning:literal,)*) => {
         /// A metric; the order is the order of tables.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Name {
@@ -22,6 +24,24 @@ macro_rules! names {
                 match self { $(Self::$variant => $text,)* }
             }
 
+            /// What it is of.
+            #[must_use]
+            pub const fn scope(self) -> Scope {
+                match self { $(Self::$variant => Scope::$scope,)* }
+            }
+
+            /// What it measures.
+            #[must_use]
+            pub const fn kind(self) -> Kind {
+                match self { $(Self::$variant => $kind,)* }
+            }
+
+            /// A limit as users write it.
+            #[must_use]
+            pub const fn example(self) -> &'static str {
+                match self { $(Self::$variant => $example,)* }
+            }
+
             /// Meaning in a few words.
             #[must_use]
             pub const fn meaning(self) -> &'static str {
@@ -31,49 +51,94 @@ macro_rules! names {
     };
 }
 
+const TIME: Kind = Kind::Plain(&quantities::TIME);
+const RATIO: Kind = Kind::Plain(&quantities::RATIO);
+const LENGTH: Kind = Kind::Axis(&quantities::POSITION);
+const VELOCITY: Kind = Kind::Axis(&quantities::VELOCITY);
+const FREQUENCY: Kind = Kind::Plain(&quantities::FREQUENCY);
+const EFFORT: Kind = Kind::Motor(&quantities::EFFORT);
+const CURRENT: Kind = Kind::Plain(&quantities::CURRENT);
+const CURRENT_RMS: Kind = Kind::Plain(&quantities::CURRENT_RMS);
+const VOLTAGE: Kind = Kind::Plain(&quantities::VOLTAGE_AMPLITUDE);
+const POWER: Kind = Kind::Plain(&quantities::POWER);
+const ENERGY: Kind = Kind::Plain(&quantities::ENERGY);
+
 names! {
-    MoveTime "move_time" "duration of the longest set-point profile",
-    SettlingTime "settling_time" "last exit of the load from the window after the end of the profile",
-    MoveAndSettlingTime "move_and_settling_time" "longest profile with its settling time",
-    Overshoot "overshoot" "largest excursion of the load beyond the target",
-    SteadyStateError "steady_state_error" "target minus load position once at rest",
-    FollowingErrorPeakMotor "following_error_peak_motor" "largest following error of the motor",
-    FollowingErrorPeakLoad "following_error_peak_load" "largest following error of the load",
-    FollowingErrorRmsMotor "following_error_rms_motor" "RMS following error of the motor during moves",
-    FollowingErrorRmsLoad "following_error_rms_load" "RMS following error of the load during moves",
-    FollowingErrorCruiseMotor "following_error_cruise_motor" "following error of the motor at constant velocity",
-    FollowingErrorCruiseLoad "following_error_cruise_load" "following error of the load at constant velocity",
-    VelocityErrorPeak "velocity_error_peak" "largest difference between commanded and actual motor velocity",
-    ResidualVibrationPp "residual_vibration_pp" "peak-to-peak vibration of the load after the profile",
-    ResidualVibrationRms "residual_vibration_rms" "RMS vibration of the load after the profile",
-    ResidualVibrationAmplitude "residual_vibration_amplitude" "amplitude of the dominant mode at the end of the profile",
-    ResidualVibrationFrequency "residual_vibration_frequency" "natural frequency of the dominant mode",
-    ResidualVibrationDamping "residual_vibration_damping" "damping ratio of the dominant mode",
-    ResidualVibrationShare "residual_vibration_share" "share of the vibration that the fitted modes explain",
-    SetpointVelocityRatio "setpoint_velocity_ratio" "peak velocity of the set-point over its limit",
-    SetpointAccelerationRatio "setpoint_acceleration_ratio" "peak acceleration of the set-point over its limit",
-    SetpointJerkRatio "setpoint_jerk_ratio" "peak jerk of the set-point over its limit",
-    SetpointSnapRatio "setpoint_snap_ratio" "peak snap of the set-point over its limit",
-    CurrentPeak "current_peak" "largest current vector",
-    CurrentRms "current_rms" "effective phase current over the recording",
-    CurrentSaturationTime "current_saturation_time" "time at the current limit",
-    VoltagePeak "voltage_peak" "largest voltage vector of the inverter",
-    VoltageSaturationTime "voltage_saturation_time" "time at the voltage limit",
-    EffortSaturationTime "effort_saturation_time" "time at the effort limit",
-    TorquePeak "torque_peak" "largest torque or force of the motor",
-    TorqueReferencePeak "torque_reference_peak" "largest torque or force that the drive asks for",
-    TorqueRms "torque_rms" "RMS torque or force of the motor over the recording",
-    ElectricalPowerPeak "electrical_power_peak" "largest electrical power of the motor, taken or given back",
-    ShaftPowerPeak "shaft_power_peak" "largest power of the motor on its shaft, driving or braking",
-    ElectricalEnergy "electrical_energy" "electrical energy that the motor takes, less what it gives back",
-    CopperLoss "copper_loss" "energy lost in the winding",
+    MoveTime "move_time" Move TIME "1.35 s" "duration of the longest set-point profile",
+    SettlingTime "settling_time" Move TIME "50 ms" "last exit of the load from the window after the end of the profile",
+    MoveAndSettlingTime "move_and_settling_time" Move TIME "1.4 s" "longest profile with its settling time",
+    Overshoot "overshoot" Move LENGTH "5 um" "largest excursion of the load beyond the target",
+    SteadyStateError "steady_state_error" Move LENGTH "1 um" "target minus load position once at rest",
+    FollowingErrorPeakMotor "following_error_peak_motor" Run LENGTH "10 um" "largest following error of the motor",
+    FollowingErrorPeakLoad "following_error_peak_load" Run LENGTH "10 um" "largest following error of the load",
+    FollowingErrorRmsMotor "following_error_rms_motor" Run LENGTH "5 um" "RMS following error of the motor during moves",
+    FollowingErrorRmsLoad "following_error_rms_load" Run LENGTH "5 um" "RMS following error of the load during moves",
+    FollowingErrorCruiseMotor "following_error_cruise_motor" Move LENGTH "0.8 mm" "following error of the motor at constant velocity",
+    FollowingErrorCruiseLoad "following_error_cruise_load" Move LENGTH "0.8 mm" "following error of the load at constant velocity",
+    VelocityErrorPeak "velocity_error_peak" Run VELOCITY "5 mm/s" "largest difference between commanded and actual motor velocity",
+    ResidualVibrationPp "residual_vibration_pp" AfterMove LENGTH "1 um" "peak-to-peak vibration of the load after the profile",
+    ResidualVibrationRms "residual_vibration_rms" AfterMove LENGTH "0.3 um" "RMS vibration of the load after the profile",
+    ResidualVibrationAmplitude "residual_vibration_amplitude" AfterMove LENGTH "0.5 um" "amplitude of the dominant mode at the end of the profile",
+    ResidualVibrationFrequency "residual_vibration_frequency" AfterMove FREQUENCY "40 Hz" "natural frequency of the dominant mode",
+    ResidualVibrationDamping "residual_vibration_damping" AfterMove RATIO "0.02" "damping ratio of the dominant mode",
+    ResidualVibrationShare "residual_vibration_share" AfterMove RATIO "0.9" "share of the vibration that the fitted modes explain",
+    SetpointVelocityRatio "setpoint_velocity_ratio" Move RATIO "1" "peak velocity of the set-point over its limit",
+    SetpointAccelerationRatio "setpoint_acceleration_ratio" Move RATIO "1" "peak acceleration of the set-point over its limit",
+    SetpointJerkRatio "setpoint_jerk_ratio" Move RATIO "1" "peak jerk of the set-point over its limit",
+    SetpointSnapRatio "setpoint_snap_ratio" Move RATIO "1" "peak snap of the set-point over its limit",
+    CurrentPeak "current_peak" Run CURRENT "12 Apk" "largest current vector",
+    CurrentRms "current_rms" Run CURRENT_RMS "4 Arms" "effective phase current over the recording",
+    CurrentSaturationTime "current_saturation_time" Run TIME "0 s" "time at the current limit",
+    VoltagePeak "voltage_peak" Run VOLTAGE "300 V" "largest voltage vector of the inverter",
+    VoltageSaturationTime "voltage_saturation_time" Run TIME "0 s" "time at the voltage limit",
+    EffortSaturationTime "effort_saturation_time" Run TIME "0 s" "time at the effort limit",
+    TorquePeak "torque_peak" Run EFFORT "8 Nm" "largest torque or force of the motor",
+    TorqueReferencePeak "torque_reference_peak" Run EFFORT "8 Nm" "largest torque or force that the drive asks for",
+    TorqueRms "torque_rms" Run EFFORT "2 Nm" "RMS torque or force of the motor over the recording",
+    ElectricalPowerPeak "electrical_power_peak" Run POWER "800 W" "largest electrical power of the motor, taken or given back",
+    ShaftPowerPeak "shaft_power_peak" Run POWER "750 W" "largest power of the motor on its shaft, driving or braking",
+    ElectricalEnergy "electrical_energy" Run ENERGY "120 J" "electrical energy that the motor takes, less what it gives back",
+    CopperLoss "copper_loss" Run ENERGY "15 J" "energy lost in the winding",
+}
+
+/// What a metric is of, and with it what a run must have so that it can be measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scope {
+    /// Any part of a run.
+    Run,
+    /// A move.
+    Move,
+    /// What follows a move, or the time from which on residual vibration is measured.
+    AfterMove,
 }
 
 impl Name {
+    /// Whether there is none without a settling window.
+    #[must_use]
+    pub const fn needs_window(self) -> bool {
+        matches!(self, Self::SettlingTime | Self::MoveAndSettlingTime)
+    }
+
     /// Whether the sign of the value means a direction. A largest allowed value then bounds the magnitude.
     #[must_use]
     pub const fn is_signed(self) -> bool {
         matches!(self, Self::SteadyStateError | Self::FollowingErrorCruiseMotor | Self::FollowingErrorCruiseLoad)
+    }
+
+    /// What a largest allowed value must be.
+    #[must_use]
+    pub const fn largest(self) -> Measure {
+        not_negative(self.kind(), self.example())
+    }
+
+    /// What an end of an allowed range must be: below zero only where the value can be, and its sign is no direction (the damping of a
+    /// vibration that grows); other bounds are of magnitudes.
+    #[must_use]
+    pub const fn end_of_range(self) -> Measure {
+        match self {
+            Self::ResidualVibrationDamping => any(self.kind(), self.example()),
+            _ => self.largest(),
+        }
     }
 }
 

@@ -5,6 +5,7 @@ use crate::absence::Absence;
 use crate::metric::MetricSet;
 use crate::name::Name;
 use crate::span::{channel, largest};
+use servobench_signals::Signal;
 use servobench_trace::Recording;
 use std::ops::Range;
 
@@ -12,16 +13,18 @@ const PART: &str = "of the motor's power";
 
 /// Notes power and energy over `rows`.
 pub(crate) fn note(set: &mut MetricSet, recording: &Recording, rows: &Range<usize>) {
-    for (name, power) in [(Name::ElectricalPowerPeak, "power.electrical"), (Name::ShaftPowerPeak, "power.shaft")] {
+    for (name, power) in
+        [(Name::ElectricalPowerPeak, Signal::PowerElectrical), (Name::ShaftPowerPeak, Signal::PowerShaft)]
+    {
         let peak = |all: &[f64]| largest(all.iter().map(|power| power.abs()), PART);
         set.note(name, "W", channel(recording, power).and_then(|all| peak(&all[rows.clone()])));
     }
-    for (name, power) in [(Name::ElectricalEnergy, "power.electrical"), (Name::CopperLoss, "power.copper")] {
+    for (name, power) in [(Name::ElectricalEnergy, Signal::PowerElectrical), (Name::CopperLoss, Signal::PowerCopper)] {
         set.note(name, "J", energy(recording, power, rows));
     }
 }
 
-fn energy(recording: &Recording, power: &'static str, rows: &Range<usize>) -> Result<f64, Absence> {
+fn energy(recording: &Recording, power: Signal, rows: &Range<usize>) -> Result<f64, Absence> {
     let powers = &channel(recording, power)?[rows.clone()];
     if powers.is_empty() {
         return Err(Absence::NothingRecorded { part: PART });
@@ -39,9 +42,9 @@ mod tests {
     fn energy_is_what_is_taken_less_what_is_given_back_and_a_peak_has_no_sign() {
         let power = |t: f64| if t < 0.25 - 1e-9 { 20.0_f64 } else { -30.0 };
         let recording = Build::new(12_000, 12_000)
-            .channel("power.electrical", "W", move |t| 4.0 * power(t).max(-7.5))
-            .channel("power.copper", "W", |_| 3.0)
-            .channel("power.shaft", "W", power)
+            .channel(Signal::PowerElectrical, "W", move |t| 4.0 * power(t).max(-7.5))
+            .channel(Signal::PowerCopper, "W", |_| 3.0)
+            .channel(Signal::PowerShaft, "W", power)
             .finish();
         let mut set = MetricSet::default();
         note(&mut set, &recording, &(0..12_000));
@@ -61,7 +64,7 @@ mod tests {
 
     #[test]
     fn an_axis_without_currents_has_no_electrical_power() {
-        let recording = Build::new(1_000, 10).channel("power.shaft", "W", |_| 1.0).finish();
+        let recording = Build::new(1_000, 10).channel(Signal::PowerShaft, "W", |_| 1.0).finish();
         let mut set = MetricSet::default();
         note(&mut set, &recording, &(0..10));
         let why = set.absence(Name::ElectricalEnergy).unwrap().to_string();

@@ -15,6 +15,7 @@ pub use arrival::arrival_window;
 pub use judge::judge_requirements;
 pub use rules::{Driven, EarlyEnd, LinearLoop, Rules};
 
+use servobench_signals::Signal;
 use std::fmt;
 use std::str::FromStr;
 
@@ -55,16 +56,16 @@ requirements! {
 }
 
 /// Channels that requirements are judged by, of those that the axis has. They are recorded at every tick, whatever is kept.
-pub const JUDGED_BY: [&str; 9] = [
-    "setpoint.position",
-    "setpoint.acceleration",
-    "motor.position",
-    "load.position",
-    "following_error.motor",
-    "effort.reference",
-    "effort.motor",
-    "disturbance.motor",
-    "disturbance.load",
+pub const JUDGED_BY: [Signal; 9] = [
+    Signal::SetpointPosition,
+    Signal::SetpointAcceleration,
+    Signal::MotorPosition,
+    Signal::LoadPosition,
+    Signal::FollowingErrorMotor,
+    Signal::EffortReference,
+    Signal::EffortMotor,
+    Signal::DisturbanceMotor,
+    Signal::DisturbanceLoad,
 ];
 
 impl fmt::Display for Requirement {
@@ -185,7 +186,7 @@ mod tests {
 
     #[test]
     fn what_is_lifted_keeps_its_reasons_and_fails_nothing() {
-        let recording = Build::new(1000, 11).channel("load.position", "m", |_| 0.0).finish();
+        let recording = Build::new(1000, 11).channel(Signal::LoadPosition, "m", |_| 0.0).finish();
         let linear_loop = LinearLoop::Unstable("the loop is unstable".into());
         let strict = judge_requirements(&recording, &Rules { linear_loop: linear_loop.clone(), ..rules() });
         let broken = Standing::Broken(vec!["the loop is unstable".into()]);
@@ -199,7 +200,7 @@ mod tests {
     /// A loop of which the run alone is judged passes with a warning; where it fails anyway, or is lifted, nobody needs one.
     #[test]
     fn what_is_not_analysed_is_a_warning() {
-        let recording = Build::new(1000, 11).channel("load.position", "m", |_| 0.0).finish();
+        let recording = Build::new(1000, 11).channel(Signal::LoadPosition, "m", |_| 0.0).finish();
         let not_analysed = Some("an FMU stands for the drive".to_owned());
         let open = Rules { linear_loop: LinearLoop::NotAnalysed, not_analysed, ..rules() };
         let verdict = judge_requirements(&recording, &open);

@@ -45,14 +45,15 @@ mod tests {
     use crate::measure::{Question, measure};
     use crate::name::Name;
     use crate::synthetic::{Build, planned};
+    use servobench_signals::Signal;
 
     /// Beside 1 m, 3e-16 m is one or two roundings; a picometre is not.
     #[test]
     fn rounding_is_zero_and_a_picometre_is_not() {
         for (error, reported) in [(3.3e-16, 0.0), (1e-12, 1e-12)] {
             let recording = Build::new(1000, 2000)
-                .channel("load.position", "m", |t| t.min(1.0))
-                .channel("following_error.load", "m", |_| error)
+                .channel(Signal::LoadPosition, "m", |t| t.min(1.0))
+                .channel(Signal::FollowingErrorLoad, "m", |_| error)
                 .moves([planned(0.0, 1.0, 0.0, 1.0).made()])
                 .finish();
             let metrics = measure(&recording, &Question::default());

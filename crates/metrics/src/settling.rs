@@ -4,9 +4,10 @@ use crate::metric::{MetricSet, MoveMetrics};
 use crate::modal::{Mode, rest_beside};
 use crate::name::Name;
 use crate::span::{Phase, channel, largest};
+use servobench_signals::Signal;
 use servobench_trace::Recording;
 
-const LOAD: &str = "load.position";
+const LOAD: Signal = Signal::LoadPosition;
 /// The load must be seen inside the window for one part in so many of the time after the profile, or it has not settled:
 /// a vibration beyond the window passes through it, too.
 const DWELL: usize = 20;
@@ -146,7 +147,7 @@ mod tests {
     /// One move to 1 m that ends at 1 s; the load is `deviation(t)` beyond the target afterwards.
     fn after_a_move(deviation: impl Fn(f64) -> f64) -> Recording {
         Build::new(8000, 16_000)
-            .channel("load.position", "m", |t| if t < 1.0 { t } else { 1.0 + deviation(t - 1.0) })
+            .channel(Signal::LoadPosition, "m", |t| if t < 1.0 { t } else { 1.0 + deviation(t - 1.0) })
             .moves([planned(0.0, 1.0, 0.0, 1.0).made()])
             .finish()
     }
@@ -228,7 +229,7 @@ mod tests {
         };
         for (from, to) in [(0.0, 2e-3), (2e-3, 0.0), (0.0, -2e-3)] {
             let recording = Build::new(100_000, 50_000)
-                .channel("load.position", "m", |t| from + (to - from) * step(t))
+                .channel(Signal::LoadPosition, "m", |t| from + (to - from) * step(t))
                 .moves([planned(0.0, 0.01, from, to).made()])
                 .finish();
             let set = of_first(&recording, None);
@@ -243,7 +244,7 @@ mod tests {
     fn the_worst_move_stands_for_the_run() {
         let slow = |t: f64| 1e-3 * (-t / 0.08).exp();
         let recording = Build::new(1000, 6000)
-            .channel("load.position", "m", |t| match t {
+            .channel(Signal::LoadPosition, "m", |t| match t {
                 0.0..1.0 => t,
                 1.0..3.0 => 1.0 + 1e-3 * (-(t - 1.0) / 0.04).exp(),
                 3.0..3.5 => 1.0 - 2.0 * (t - 3.0),

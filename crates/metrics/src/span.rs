@@ -1,6 +1,7 @@
 //! Which rows of a recording a metric is about.
 use crate::absence::Absence;
 use servobench_base::Tick;
+use servobench_signals::Signal;
 use servobench_trace::{Move, Recording};
 use std::ops::Range;
 
@@ -40,17 +41,17 @@ pub(crate) fn phases(recording: &Recording) -> Vec<Phase<'_>> {
 ///
 /// # Errors
 /// [`Absence::NoChannel`], [`Absence::NotFinite`].
-pub(crate) fn channel<'a>(recording: &'a Recording, name: &'static str) -> Result<&'a [f64], Absence> {
-    let values = recording.channel(name).ok_or(Absence::NoChannel { channel: name })?;
+pub(crate) fn channel(recording: &Recording, signal: Signal) -> Result<&[f64], Absence> {
+    let values = recording.channel(signal).ok_or(Absence::NoChannel { channel: signal })?;
     match values.iter().position(|value| !value.is_finite()) {
         None => Ok(values),
-        Some(row) => Err(Absence::NotFinite { channel: name, time: recording.rate.time(Tick(row as u64)) }),
+        Some(row) => Err(Absence::NotFinite { channel: signal, time: recording.rate.time(Tick(row as u64)) }),
     }
 }
 
 /// Unit of a channel; empty when the recording lacks it.
-pub(crate) fn unit<'a>(recording: &'a Recording, name: &str) -> &'a str {
-    let of = recording.channels.iter().find(|channel| channel.spec.name == name);
+pub(crate) fn unit(recording: &Recording, signal: Signal) -> &str {
+    let of = recording.channels.iter().find(|channel| channel.spec.name == signal.name());
     of.map_or("", |channel| channel.spec.unit.as_str())
 }
 

@@ -3,12 +3,13 @@ use crate::absence::Absence;
 use crate::metric::MetricSet;
 use crate::name::Name;
 use crate::span::{Phase, channel, largest, root_mean, unit};
+use servobench_signals::Signal;
 use servobench_trace::{Move, Recording};
 use std::ops::Range;
 
 /// One side of the axis.
 struct Side {
-    channel: &'static str,
+    channel: Signal,
     peak: Name,
     rms: Name,
     cruise: Name,
@@ -16,13 +17,13 @@ struct Side {
 
 const SIDES: [Side; 2] = [
     Side {
-        channel: "following_error.motor",
+        channel: Signal::FollowingErrorMotor,
         peak: Name::FollowingErrorPeakMotor,
         rms: Name::FollowingErrorRmsMotor,
         cruise: Name::FollowingErrorCruiseMotor,
     },
     Side {
-        channel: "following_error.load",
+        channel: Signal::FollowingErrorLoad,
         peak: Name::FollowingErrorPeakLoad,
         rms: Name::FollowingErrorRmsLoad,
         cruise: Name::FollowingErrorCruiseLoad,
@@ -77,8 +78,8 @@ fn cruise(recording: &Recording, error: &[f64], made: &Move) -> Result<f64, Abse
     Ok(values.iter().sum::<f64>() / values.len() as f64)
 }
 
-const MOTOR_VELOCITY: &str = "motor.velocity";
-const VELOCITY_REFERENCE: &str = "velocity.reference";
+const MOTOR_VELOCITY: Signal = Signal::MotorVelocity;
+const VELOCITY_REFERENCE: Signal = Signal::VelocityReference;
 
 fn velocity_error_peak(recording: &Recording, rows: Range<usize>) -> Result<f64, Absence> {
     let reference = channel(recording, VELOCITY_REFERENCE)?;
@@ -93,9 +94,9 @@ fn velocity_error_peak(recording: &Recording, rows: Range<usize>) -> Result<f64,
     largest(error, "at a turn of the position loop")
 }
 
-/// Tells the rows at whose instant `channel` was written from those at which it was held.
-fn written(recording: &Recording, channel: &str) -> impl Fn(usize) -> bool + use<> {
-    let of = recording.channels.iter().find(|other| other.spec.name == channel);
+/// Tells the rows at whose instant `signal` was written from those at which it was held.
+fn written(recording: &Recording, signal: Signal) -> impl Fn(usize) -> bool + use<> {
+    let of = recording.channels.iter().find(|other| other.spec.name == signal.name());
     let row_rate = u64::from(recording.rate.hertz());
     let rate = of.map_or(row_rate, |channel| u64::from(channel.spec.rate.hertz()));
     move |row| (row as u64 * rate).is_multiple_of(row_rate)
@@ -118,7 +119,7 @@ mod tests {
         let there = planned(0.0, 1.0, 0.0, 0.1).cruising(0.2, 0.6);
         let back = planned(2.0, 3.0, 0.1, 0.0).cruising(2.2, 0.6);
         Build::new(1000, 4000)
-            .channel("following_error.motor", "m", |t| match t {
+            .channel(Signal::FollowingErrorMotor, "m", |t| match t {
                 0.2..0.8 => lag(t - 0.2, 0.12),
                 2.2..2.8 => -lag(t - 2.2, 0.15),
                 _ => 0.0,
@@ -147,7 +148,7 @@ mod tests {
     #[test]
     fn rms_is_taken_during_the_profile() {
         let recording = Build::new(1000, 4000)
-            .channel("following_error.load", "m", |t| {
+            .channel(Signal::FollowingErrorLoad, "m", |t| {
                 if (1.0..2.0).contains(&t) { (2.0 * core::f64::consts::PI * 5.0 * t).sin() } else { 0.0 }
             })
             .moves([planned(1.0, 2.0, 0.0, 1.0).made()])
@@ -164,7 +165,7 @@ mod tests {
     #[test]
     fn what_is_missing_is_absent_with_a_reason() {
         let recording = Build::new(1000, 100)
-            .channel("following_error.load", "m", |t| if t > 0.05 { f64::NAN } else { 0.0 })
+            .channel(Signal::FollowingErrorLoad, "m", |t| if t > 0.05 { f64::NAN } else { 0.0 })
             .finish();
         let mut set = MetricSet::default();
         note(&mut set, &recording, 0..100, &[]);
@@ -177,8 +178,8 @@ mod tests {
     #[test]
     fn velocity_error_is_commanded_minus_actual() {
         let recording = Build::new(1000, 1000)
-            .channel("velocity.reference", "m/s", |t| t)
-            .channel("motor.velocity", "m/s", |t| 0.75 * t)
+            .channel(Signal::VelocityReference, "m/s", |t| t)
+            .channel(Signal::MotorVelocity, "m/s", |t| 0.75 * t)
             .finish();
         let mut set = MetricSet::default();
         note(&mut set, &recording, 0..1000, &[]);
@@ -191,8 +192,8 @@ mod tests {
     #[test]
     fn a_held_velocity_command_is_no_error() {
         let mut recording = Build::new(1000, 1000)
-            .channel("velocity.reference", "m/s", |t| (t * 125.0 + 1e-9).floor() / 125.0)
-            .channel("motor.velocity", "m/s", |t| t - 1e-3)
+            .channel(Signal::VelocityReference, "m/s", |t| (t * 125.0 + 1e-9).floor() / 125.0)
+            .channel(Signal::MotorVelocity, "m/s", |t| t - 1e-3)
             .finish();
         recording.channels[0].spec.rate = servobench_base::Rate::new(125).unwrap();
         let mut set = MetricSet::default();

@@ -133,12 +133,13 @@ impl fmt::Display for Miss {
 mod tests {
     use super::*;
     use crate::metric::{MetricSet, Metrics, MoveMetrics};
+    use servobench_signals::Signal;
 
     fn measured() -> Metrics {
         let mut metrics = Metrics::default();
         metrics.run.note(Name::SettlingTime, "s", Ok(0.035));
         metrics.run.note(Name::FollowingErrorCruiseLoad, "m", Ok(-0.8e-3));
-        metrics.run.note(Name::TorqueRms, "N", Err(Absence::NoChannel { channel: "effort.motor" }));
+        metrics.run.note(Name::TorqueRms, "N", Err(Absence::NoChannel { channel: Signal::EffortMotor }));
         metrics
     }
 

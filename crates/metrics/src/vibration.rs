@@ -1,13 +1,14 @@
 //! Residual vibration of the load: what is left when the set-point has come to rest.
 use crate::absence::Absence;
 use crate::metric::MetricSet;
-use crate::modal::{Mode, Signal, fit_mode};
+use crate::modal::{self, Mode, fit_mode};
 use crate::name::Name;
 use crate::span::{Phase, channel, root_mean};
+use servobench_signals::Signal;
 use servobench_trace::Recording;
 use std::ops::Range;
 
-const LOAD: &str = "load.position";
+const LOAD: Signal = Signal::LoadPosition;
 
 /// Vibration over one stretch of the recording.
 #[derive(Debug, Clone)]
@@ -52,7 +53,7 @@ impl Residual {
         let first = deviation.first().copied().unwrap_or_default();
         let mean = first + deviation.iter().map(|x| x - first).sum::<f64>() / deviation.len() as f64;
         let period = recording.rate.period();
-        let signal = Signal {
+        let signal = modal::Signal {
             values: &deviation,
             start: rows.start as f64 * period - zero,
             step: period,

@@ -8,16 +8,7 @@
 //! `r = p/2π` (m/rad), every other body `r = 1`.
 use crate::friction::DryFriction;
 use crate::mechanics::BodyState;
-use servobench_base::{ParamError, finite, non_negative, positive};
-
-/// Whether a coordinate is a length or an angle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Coordinate {
-    /// Metres, newtons, kilograms.
-    Linear,
-    /// Radians, newton metres, kg·m².
-    Rotary,
-}
+use servobench_base::{Coordinate, ParamError, finite, non_negative, positive};
 
 /// One lumped body.
 #[derive(Debug, Clone, PartialEq)]

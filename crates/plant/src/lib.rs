@@ -20,7 +20,7 @@ mod refusal;
 mod sensor;
 mod switches;
 
-pub use chain::{Body, Chain, Coordinate, Link};
+pub use chain::{Body, Chain, Link};
 pub use exact::{Exact, transition};
 pub use fmu::{
     Extrapolation, FmuBody, FmuEntry, FmuFile, FmuMistake, FmuModel, FmuPartner, FmuPort, FmuStart, FmuValue,

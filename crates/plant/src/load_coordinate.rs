@@ -11,7 +11,7 @@
 //! both motor joint and load joint. a_i are unit axes in the reference pose: c is 1 for the load joint itself, ±1 for
 //! a parallel one, 0 for one at right angles to it. A scale along the load joint's axis reads this when it is fixed to
 //! the body that carries both; for hinges an encoder does, exactly so when they are parallel.
-use crate::chain::Coordinate;
+use servobench_base::Coordinate;
 
 /// Cosines that are this close to 0, 1 or −1 are: rotations in floating point leave some 1e-16 each.
 const ROUNDING: f64 = 1e-12;

@@ -3,8 +3,9 @@
 //!
 //! Dry friction, the bias and the disturbances are not in the file: the engine applies them, so that all engines stick
 //! and slip alike.
-use crate::chain::{Chain, Coordinate};
+use crate::chain::Chain;
 use crate::mechanics::Drive;
+use servobench_base::Coordinate;
 use std::fmt::Write as _;
 
 /// The chain as MJCF text. Joints are named after the bodies, the actuator is `motor_effort`, tendons are

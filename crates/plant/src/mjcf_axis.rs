@@ -2,9 +2,9 @@
 //!
 //! A joint's coordinate is taken for the motor's, or the load's, as it is. A hinge where metres are meant would show its
 //! radians as metres.
-use crate::chain::Coordinate;
 use crate::mechanics::MjcfModel;
 use crate::refusal::{Refusal, RefusedAt};
+use servobench_base::Coordinate;
 
 /// The axis that a file is to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,10 +43,7 @@ impl MjcfModel {
         if beyond <= high && -beyond >= low {
             return None;
         }
-        let unit = match self.axis?.motor {
-            Coordinate::Linear => "N",
-            Coordinate::Rotary => "N m",
-        };
+        let unit = self.axis?.motor.effort_unit();
         let name = &self.actuator;
         let asked = if max_effort.is_finite() { format!("up to {max_effort} {unit}") } else { "any effort".into() };
         let message = format!(

@@ -117,8 +117,9 @@ impl Chain {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::chain::{Body, Coordinate, Link};
+    use crate::chain::{Body, Link};
     use crate::friction::DryFriction;
+    use servobench_base::Coordinate;
     use std::f64::consts::TAU;
 
     fn body(inertia: f64, transmission: f64, viscous: f64) -> Body {

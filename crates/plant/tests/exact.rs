@@ -1,8 +1,9 @@
 //! The engine `exact` against closed forms.
+use servobench_base::Coordinate;
 use servobench_base::Setpoint;
 use servobench_plant::{
-    Actuation, Body, BodyState, Chain, Coordinate, Drive, DryFriction, Engine, Exact, Input, Link, Mechanics,
-    MechanicsError, MechanicsSetup, MjcfModel, Model, transition,
+    Actuation, Body, BodyState, Chain, Drive, DryFriction, Engine, Exact, Input, Link, Mechanics, MechanicsError,
+    MechanicsSetup, MjcfModel, Model, transition,
 };
 
 const H: f64 = 1.0 / 16_000.0;

@@ -1,8 +1,9 @@
 //! Quantities on a command line: read and checked as in a scenario file.
-use crate::physical::{ACCELERATION, Counterparts, FREQUENCY, JERK, POSITION, Physical, RATIO, SNAP, TIME, VELOCITY};
 use crate::quantity;
 use crate::reading::{self, ReadError, names, proposals};
-use crate::scenario::Motion;
+use servobench_base::Coordinate;
+use servobench_config::quantities::{ACCELERATION, FREQUENCY, JERK, POSITION, RATIO, SNAP, TIME, VELOCITY};
+use servobench_config::{Counterparts, Physical};
 use thiserror::Error;
 
 /// A derivative of position with respect to time.
@@ -37,9 +38,9 @@ pub struct ArgumentError {
 /// [`ArgumentError`] for what is no quantity, has no unit or another dimension.
 pub fn axis_quantity(
     derivative: Derivative,
-    motion: Option<Motion>,
+    motion: Option<Coordinate>,
     text: &str,
-) -> Result<(f64, Motion), ArgumentError> {
+) -> Result<(f64, Coordinate), ArgumentError> {
     let Counterparts { linear, rotary } = match derivative {
         Derivative::Position => &POSITION,
         Derivative::Velocity => &VELOCITY,
@@ -48,11 +49,11 @@ pub fn axis_quantity(
         Derivative::Snap => &SNAP,
     };
     match motion {
-        Some(Motion::Linear) => Ok((read(&[linear], text)?.0, Motion::Linear)),
-        Some(Motion::Rotary) => Ok((read(&[rotary], text)?.0, Motion::Rotary)),
+        Some(Coordinate::Linear) => Ok((read(&[linear], text)?.0, Coordinate::Linear)),
+        Some(Coordinate::Rotary) => Ok((read(&[rotary], text)?.0, Coordinate::Rotary)),
         None => {
             let (value, which) = read(&[linear, rotary], text)?;
-            Ok((value, if which == 0 { Motion::Linear } else { Motion::Rotary }))
+            Ok((value, if which == 0 { Coordinate::Linear } else { Coordinate::Rotary }))
         }
     }
 }
@@ -114,16 +115,16 @@ mod tests {
 
     #[test]
     fn the_first_quantity_says_whether_the_axis_is_linear_or_rotary() {
-        assert_eq!(axis_quantity(Derivative::Position, None, "250 mm"), Ok((0.25, Motion::Linear)));
+        assert_eq!(axis_quantity(Derivative::Position, None, "250 mm"), Ok((0.25, Coordinate::Linear)));
         let (angle, motion) = axis_quantity(Derivative::Position, None, "180 deg").unwrap();
-        assert!((angle - std::f64::consts::PI).abs() < 1e-15 && motion == Motion::Rotary);
+        assert!((angle - std::f64::consts::PI).abs() < 1e-15 && motion == Coordinate::Rotary);
         assert_eq!(time("1 ms"), Ok(1e-3));
         assert_eq!((frequency("8 kHz"), ratio("2 %"), ratio("0.02")), (Ok(8000.0), Ok(0.02), Ok(0.02)));
     }
 
     #[test]
     fn what_is_wrong_is_said_with_the_way_out() {
-        let said = |text| axis_quantity(Derivative::Velocity, Some(Motion::Linear), text).unwrap_err().to_string();
+        let said = |text| axis_quantity(Derivative::Velocity, Some(Coordinate::Linear), text).unwrap_err().to_string();
         assert_eq!(said("1"), "`1`: a velocity needs its unit; write \"1 m/s\"");
         assert_eq!(said("1 m"), "`1 m`: a velocity is needed, this is a length (mm)");
         assert_eq!(said("3000 rpm"), "`3000 rpm`: a velocity is needed, this is an angular velocity (rpm)");

@@ -4,6 +4,7 @@
 //! `Profile4th`, are ours. Outputs are those that are TRUE or FALSE.
 use crate::diagnostic::Report;
 use crate::field::{Field, key, written};
+
 use crate::nearest::suggestion;
 use crate::scenario::Output;
 use crate::tree::Node;
@@ -322,8 +323,6 @@ impl Output {
 }
 
 impl Field for BlockName {
-    type Spec = ();
-
     fn decode(path: &str, node: &Node, (): &(), report: &mut Report) -> Option<Self> {
         let Some(text) = node.value.as_text() else {
             let message = format!("`{}` must be the name of a function block, got {}", key(path), written(node));

@@ -1,7 +1,6 @@
 //! What is wrong with a scenario, where, and what to do about it.
-use crate::scenario::Motion;
 use crate::source::{SourceId, Sources, Span};
-use servobench_base::Rate;
+use servobench_base::{Coordinate, Rate};
 use std::fmt;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -131,9 +130,9 @@ pub(crate) struct Report {
     /// Tables of points that were read.
     pub(crate) tables: Vec<NamedFile>,
     /// Coordinate of the axis, once known.
-    pub(crate) axis: Option<Motion>,
+    pub(crate) axis: Option<Coordinate>,
     /// Coordinate of the motor, once known.
-    pub(crate) motor: Option<Motion>,
+    pub(crate) motor: Option<Coordinate>,
 }
 
 impl Report {

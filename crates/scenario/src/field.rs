@@ -1,23 +1,21 @@
 //! What the value of a key may be: how it is read, what is said when it is wrong, and its JSON Schema.
 use crate::diagnostic::Report;
-use crate::physical::{Kind, Physical, RATIO};
 use crate::quantity;
 use crate::reading::{self, ReadError, names, proposals};
 use crate::source::{At, Span};
 use crate::tree::{Node, Number, Value};
 use serde_json::{Value as Json, json};
+use servobench_config::quantities::RATIO;
+use servobench_config::{Bound, Kind, Measure, Physical};
 use std::ops::Range;
 
-/// A type that keys can have.
-pub(crate) trait Field: Sized {
-    /// What one key demands beyond the type: a dimension, a bound.
-    type Spec: 'static;
-
+/// A type that keys can have; `Spec` is what one key demands beyond the type: a dimension, a bound.
+pub(crate) trait Field<Spec = ()>: Sized {
     /// Reads `node`; `path` is `drive.velocity.rate`. Says what is wrong and returns nothing when it is.
-    fn decode(path: &str, node: &Node, spec: &Self::Spec, report: &mut Report) -> Option<Self>;
+    fn decode(path: &str, node: &Node, spec: &Spec, report: &mut Report) -> Option<Self>;
 
     /// JSON Schema of what [`Self::decode`] accepts.
-    fn schema(spec: &Self::Spec) -> Json;
+    fn schema(spec: &Spec) -> Json;
 }
 
 /// The value of a key, if there is one.
@@ -70,76 +68,18 @@ pub(crate) fn key(path: &str) -> &str {
     path.rsplit('.').next().unwrap_or(path)
 }
 
-/// What a physical quantity must be beyond its dimension (SI).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Bound {
-    Positive,
-    NotNegative,
-    Any,
-    /// Both ends are allowed.
-    Within(f64, f64),
-}
-
-impl Bound {
-    fn holds(self, value: f64) -> bool {
-        match self {
-            Self::Positive => value > 0.0,
-            Self::NotNegative => value >= 0.0,
-            Self::Any => true,
-            Self::Within(low, high) => (low..=high).contains(&value),
-        }
-    }
-
-    fn words(self) -> String {
-        match self {
-            Self::Positive => "above zero".into(),
-            Self::NotNegative => "zero or more".into(),
-            Self::Any => "any".into(),
-            Self::Within(low, high) => format!("from {low} to {high}"),
-        }
-    }
-}
-
-/// What a physical key demands.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Measure {
-    pub(crate) kind: Kind,
-    pub(crate) bound: Bound,
-    pub(crate) example: &'static str,
-}
-
-pub(crate) const fn positive(kind: Kind, example: &'static str) -> Measure {
-    Measure { kind, bound: Bound::Positive, example }
-}
-
-pub(crate) const fn not_negative(kind: Kind, example: &'static str) -> Measure {
-    Measure { kind, bound: Bound::NotNegative, example }
-}
-
-pub(crate) const fn any(kind: Kind, example: &'static str) -> Measure {
-    Measure { kind, bound: Bound::Any, example }
-}
-
-impl Measure {
-    fn is_ratio(&self) -> bool {
-        self.kind == Kind::Plain(&RATIO)
-    }
-}
-
 /// Number and unit; the unit itself is for `check` to judge.
 const QUANTITY_PATTERN: &str = r"^ *[-+]?([0-9]+[.]?[0-9]*|[.][0-9]+)([eE][-+]?[0-9]+)? *(1/)?[A-Za-z%°µμΩΩ(].*$";
 
 /// A physical quantity, in SI.
-impl Field for f64 {
-    type Spec = Measure;
-
+impl Field<Measure> for f64 {
     fn decode(path: &str, node: &Node, spec: &Measure, report: &mut Report) -> Option<Self> {
-        let candidates = spec.kind.candidates(report.axis, report.motor);
+        let candidates: Vec<_> = spec.kind.candidates(report.axis, report.motor).collect();
         let (_, value) = physical(path, node, &candidates, report)?;
         if spec.bound.holds(value) {
             return Some(value);
         }
-        let message = format!("`{}` must be {}, got {}", key(path), spec.bound.words(), written(node));
+        let message = format!("`{}` must be {}, got {}", key(path), spec.bound, written(node));
         report.error(node.span, message, "");
         None
     }
@@ -177,11 +117,9 @@ pub(crate) struct EitherMeasure {
     pub(crate) example: &'static str,
 }
 
-impl Field for Either {
-    type Spec = EitherMeasure;
-
+impl Field<EitherMeasure> for Either {
     fn decode(path: &str, node: &Node, spec: &EitherMeasure, report: &mut Report) -> Option<Self> {
-        let mut candidates = spec.first.candidates(report.axis, report.motor);
+        let mut candidates: Vec<_> = spec.first.candidates(report.axis, report.motor).collect();
         let firsts = candidates.len();
         candidates.extend(spec.second.candidates(report.axis, report.motor));
         let (which, value) = physical(path, node, &candidates, report)?;

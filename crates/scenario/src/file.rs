@@ -23,17 +23,18 @@ pub(crate) use program::{Disturbance, ProgramStep};
 pub(crate) use requirements::{Expect, RequirementTable};
 pub(crate) use setpoint::{FollowRule, Rockwell, Setpoint, Shaper, ShaperName, TableOfPoints, VelocityRule};
 
-use crate::channel::Channel;
-use crate::field::{any, not_negative, positive};
 use crate::format::FORMAT;
 use crate::limit_table::LimitTable;
 use crate::list::{Many, OneOrMany};
-use crate::physical::Kind::{Axis as InAxis, Plain};
-use crate::physical::{FREQUENCY, POSITION, TIME, VELOCITY};
 use crate::scenario::EngineName;
-use crate::simple::Choice;
+use crate::simple::OneOf;
 use crate::table::table;
 use servobench_base::Rate;
+use servobench_config::Choice;
+use servobench_config::Kind::{Axis as InAxis, Plain};
+use servobench_config::quantities::{FREQUENCY, POSITION, TIME, VELOCITY};
+use servobench_config::{any, not_negative, positive};
+use servobench_signals::Signal;
 
 impl Choice for EngineName {
     const ALL: &'static [(&'static str, Self, &'static str)] = &[
@@ -55,7 +56,7 @@ table! {
         /// What the scenario shows, in a sentence.
         description: String = (),
         /// Engine or engines to run it on; "exact" unless given.
-        engine: OneOrMany<EngineName> = (),
+        engine: OneOrMany<EngineName> = OneOf,
         /// Time base of the run.
         run: Run = (),
         /// The mechanics.
@@ -122,7 +123,7 @@ table! {
         /// tick.
         rate: Rate = "4 kHz",
         /// Channels to keep; all that the axis has unless given.
-        channels: OneOrMany<Channel> = (),
+        channels: OneOrMany<Signal> = (),
     }
 }
 

@@ -10,7 +10,6 @@ mod argument;
 mod block;
 mod channel;
 mod diagnostic;
-mod dimension;
 mod field;
 mod file;
 mod format;
@@ -22,7 +21,6 @@ mod name_table;
 mod nearest;
 mod object_table;
 mod parameters;
-mod physical;
 mod place;
 mod points;
 mod quantity;
@@ -38,7 +36,6 @@ mod unit;
 mod when;
 
 pub use argument::{ArgumentError, Derivative, any_quantity, axis_quantity, frequency, ratio, time};
-pub use channel::{CHANNELS, channel_meaning};
 pub use diagnostic::{Diagnostic, Invalid, LoadError, MOST_MISTAKES, NamedFile, Shown, shown};
 pub use load::{Loaded, load, parse};
 pub use models::{embedded_demo, embedded_models};
@@ -51,11 +48,11 @@ pub use scenario::{
     Call, CoSimulation, Command, Condition, Counter, Coupling, CouplingMethod, CurrentGain, CurrentLoop, Direction,
     Disturbance, DisturbedBody, Drive, DriveInterpolation, DriveUnits, Dynamics, EffortFeedforward, Encoder,
     EngineName, Estimate, Execution, Feedback, Feedforward, Filter, Fmu, Follow, Goal, Grid, HomeSwitch, IdealSource,
-    Initial, Interpolation, InterpolationMode, Isolation, LONGEST_RUN, Limit, LoopSignal, Measure, Method, Mjcf,
-    Motion, MotorEstimate, MoveStep, ObjectWrite, OnlineMove, Output, Pair, PlanEffort, Plc, Pmsm, PositionLoop,
-    ProfileFollow, Record, Requirements, RestMove, RockwellJerk, RockwellMove, RockwellShape, Sampling, Scales,
-    Scenario, Sequencing, Shaper, ShaperKind, Signal, SourceOutput, StartValue, Step, Switches, TableMove, Target,
-    TrajectoryBuffer, Update, Velocities, VelocityLoop, Way,
+    Initial, InputSource, Interpolation, InterpolationMode, Isolation, LONGEST_RUN, LoopSignal, Method, Mjcf,
+    MotorEstimate, MoveStep, ObjectWrite, OnlineMove, Output, Pair, PlanEffort, Plc, Pmsm, PositionLoop, ProfileFollow,
+    Record, Requirements, RestMove, RockwellJerk, RockwellMove, RockwellShape, Sampling, Scales, Scenario, Sequencing,
+    Shaper, ShaperKind, SourceOutput, StartValue, Step, Switches, TableMove, Target, TrajectoryBuffer, Update,
+    Velocities, VelocityLoop, Way,
 };
 pub use schema::json_schema;
 pub use source::{SourceId, Sources};

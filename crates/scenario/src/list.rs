@@ -1,20 +1,20 @@
 //! Keys that hold several values, or one of several types.
 use crate::diagnostic::Report;
-use crate::field::{Bound, Field, Measure, key, written};
-use crate::physical::{Kind, RATIO, TIME};
+use crate::field::{Field, key, written};
+
 use crate::quantity;
 use crate::source::At;
 use crate::tree::{Node, Value};
 use serde_json::{Value as Json, json};
+use servobench_config::quantities::{RATIO, TIME};
+use servobench_config::{Bound, Kind, Measure};
 
 /// One value or a list of them.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct OneOrMany<T>(pub(crate) Vec<At<T>>);
 
-impl<T: Field> Field for OneOrMany<T> {
-    type Spec = T::Spec;
-
-    fn decode(path: &str, node: &Node, spec: &T::Spec, report: &mut Report) -> Option<Self> {
+impl<Spec, T: Field<Spec>> Field<Spec> for OneOrMany<T> {
+    fn decode(path: &str, node: &Node, spec: &Spec, report: &mut Report) -> Option<Self> {
         let Value::Array(items) = &node.value else {
             let value = T::decode(path, node, spec, report)?;
             return Some(Self(vec![At { value, span: node.span }]));
@@ -26,7 +26,7 @@ impl<T: Field> Field for OneOrMany<T> {
         decode_items(path, items, spec, report).map(Self)
     }
 
-    fn schema(spec: &T::Spec) -> Json {
+    fn schema(spec: &Spec) -> Json {
         let one = T::schema(spec);
         json!({ "anyOf": [one, { "type": "array", "minItems": 1, "items": one }] })
     }
@@ -36,10 +36,8 @@ impl<T: Field> Field for OneOrMany<T> {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Many<T>(pub(crate) Vec<At<T>>);
 
-impl<T: Field> Field for Many<T> {
-    type Spec = T::Spec;
-
-    fn decode(path: &str, node: &Node, spec: &T::Spec, report: &mut Report) -> Option<Self> {
+impl<Spec, T: Field<Spec>> Field<Spec> for Many<T> {
+    fn decode(path: &str, node: &Node, spec: &Spec, report: &mut Report) -> Option<Self> {
         match &node.value {
             Value::Array(items) => decode_items(path, items, spec, report).map(Self),
             other => {
@@ -53,13 +51,18 @@ impl<T: Field> Field for Many<T> {
         }
     }
 
-    fn schema(spec: &T::Spec) -> Json {
+    fn schema(spec: &Spec) -> Json {
         json!({ "type": "array", "items": T::schema(spec) })
     }
 }
 
 /// Reads every item, so that the mistakes of all are found.
-fn decode_items<T: Field>(path: &str, items: &[Node], spec: &T::Spec, report: &mut Report) -> Option<Vec<At<T>>> {
+fn decode_items<Spec, T: Field<Spec>>(
+    path: &str,
+    items: &[Node],
+    spec: &Spec,
+    report: &mut Report,
+) -> Option<Vec<At<T>>> {
     let all: Vec<Option<At<T>>> = items
         .iter()
         .map(|item| T::decode(path, item, spec, report).map(|value| At { value, span: item.span }))
@@ -74,8 +77,6 @@ pub(crate) struct Share(pub(crate) f64);
 const SHARE: Measure = Measure { kind: Kind::Plain(&RATIO), bound: Bound::Within(0.0, 1.0), example: "0.95" };
 
 impl Field for Share {
-    type Spec = ();
-
     fn decode(path: &str, node: &Node, (): &(), report: &mut Report) -> Option<Self> {
         match &node.value {
             Value::Bool(all) => Some(Self(f64::from(u8::from(*all)))),
@@ -104,8 +105,6 @@ pub(crate) enum AutoTime {
 const DELAY: Measure = Measure { kind: Kind::Plain(&TIME), bound: Bound::NotNegative, example: "125 us" };
 
 impl Field for AutoTime {
-    type Spec = ();
-
     fn decode(path: &str, node: &Node, (): &(), report: &mut Report) -> Option<Self> {
         match node.value.as_text() {
             Some("auto") => Some(Self::Auto),

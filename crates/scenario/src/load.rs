@@ -6,10 +6,11 @@ use crate::format;
 use crate::models::lay_on_models;
 use crate::parameters::parameters;
 use crate::resolve;
-use crate::scenario::{AxisMechanics, Motion, Scenario};
-use crate::simple::Choice;
+use crate::scenario::{AxisMechanics, Scenario};
 use crate::source::{Place, SourceId, Sources, Span};
 use crate::tree::{self, Node, Table, Value};
+use servobench_base::Coordinate;
+use servobench_config::Choice;
 use std::ops::Range;
 use std::path::Path;
 
@@ -115,26 +116,26 @@ fn in_order(mut all: Vec<Diagnostic>) -> Vec<Diagnostic> {
 }
 
 /// Coordinates of axis and motor, on which the meaning of units depends, before anything else is read.
-fn motions(root: &Table) -> (Option<Motion>, Option<Motion>) {
+fn motions(root: &Table) -> (Option<Coordinate>, Option<Coordinate>) {
     let table = |key| root.get(key).and_then(|node: &Node| node.value.as_table());
     let own = table("motor").and_then(motor_by_its_keys);
     let Some(axis) = table("axis") else { return (None, own) };
-    let motion = named::<Motion>(axis, "motion");
+    let motion = named::<Coordinate>(axis, "motion");
     (motion, motion.map(|motion| resolve::motor_motion(motion, axis.get("lead").is_some(), own)).or(own))
 }
 
 /// Whether a synchronous motor turns or is linear: its poles are counted in pairs around a shaft, or have a pitch along a
 /// line. What the scenario says displaces what the model says.
-fn motor_by_its_keys(motor: &Table) -> Option<Motion> {
+fn motor_by_its_keys(motor: &Table) -> Option<Coordinate> {
     if named(motor, "kind") != Some(MotorKind::Pmsm) {
         return None;
     }
     let source = |key| motor.get(key).map(|node| node.span.source);
     match (source("pole_pairs"), source("pole_pitch")) {
         (None, None) => None,
-        (Some(_), None) => Some(Motion::Rotary),
-        (None, Some(_)) => Some(Motion::Linear),
-        (Some(pairs), Some(pitch)) => Some(if pitch < pairs { Motion::Linear } else { Motion::Rotary }),
+        (Some(_), None) => Some(Coordinate::Rotary),
+        (None, Some(_)) => Some(Coordinate::Linear),
+        (Some(pairs), Some(pitch)) => Some(if pitch < pairs { Coordinate::Linear } else { Coordinate::Rotary }),
     }
 }
 

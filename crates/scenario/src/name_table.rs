@@ -1,6 +1,7 @@
 //! Tables whose keys are names that somebody else chose: the variables of an FMU, with what is connected or set.
 use crate::diagnostic::Report;
 use crate::field::{Field, written};
+
 use crate::source::{At, Span};
 use crate::tree::{Entry, Node, Value};
 use serde_json::{Value as Json, json};
@@ -71,8 +72,6 @@ fn decode<T>(
 }
 
 impl Field for SignalTable {
-    type Spec = ();
-
     fn decode(path: &str, node: &Node, (): &(), report: &mut Report) -> Option<Self> {
         let signal = |node: &Node, report: &mut Report| {
             let text = node.value.as_text().map(str::to_owned);
@@ -95,8 +94,6 @@ impl Field for SignalTable {
 }
 
 impl Field for StartTable {
-    type Spec = ();
-
     fn decode(path: &str, node: &Node, (): &(), report: &mut Report) -> Option<Self> {
         decode(path, node, report, value).map(Self)
     }

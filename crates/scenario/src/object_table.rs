@@ -7,6 +7,7 @@
 //! Which objects there are, and what they take, is for the object dictionary to say.
 use crate::diagnostic::Report;
 use crate::field::{Field, written};
+
 use crate::scenario::ObjectWrite;
 use crate::source::Span;
 use crate::tree::{Entry, Node, Number, Value};
@@ -19,8 +20,6 @@ pub(crate) struct ObjectTable(pub(crate) Vec<ObjectWrite>);
 const HELP: &str = "write \"6065h\" = 10000, or \"607Dh.2\" with a sub-index";
 
 impl Field for ObjectTable {
-    type Spec = ();
-
     fn decode(path: &str, node: &Node, (): &(), report: &mut Report) -> Option<Self> {
         let Value::Table(table) = &node.value else {
             let message = format!("`{path}` must be a table, got {}", node.value.kind());

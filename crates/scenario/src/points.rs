@@ -14,9 +14,9 @@ mod column;
 mod mistake;
 mod rows;
 
-use crate::scenario::Motion;
 use column::Layout;
 use rows::{Head, read_rows};
+use servobench_base::Coordinate;
 
 pub use column::Column;
 pub use mistake::{PointsError, PointsMistake};
@@ -28,7 +28,7 @@ pub const MOST_POINTS: usize = 5_000_000;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Points {
     /// Whether positions are lengths or angles.
-    pub motion: Motion,
+    pub motion: Coordinate,
     /// Times (s), each later than the one before.
     pub times: Vec<f64>,
     /// Positions (m or rad), one for each time.
@@ -43,7 +43,7 @@ pub struct Points {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
     /// Whether its values are those of lengths or of angles.
-    pub motion: Motion,
+    pub motion: Coordinate,
     /// Times (s), each later than the one before.
     pub times: Vec<f64>,
     /// Velocities or accelerations, one for each time.
@@ -103,9 +103,9 @@ fn read(text: &str, most: usize) -> Result<Points, PointsError> {
 }
 
 /// Whether the values below `heads` are those of lengths or of angles.
-fn motion(heads: &[Head]) -> Motion {
+fn motion(heads: &[Head]) -> Coordinate {
     let is_rotary = heads.iter().any(|head| head.column != Column::Time && head.which == 1);
-    if is_rotary { Motion::Rotary } else { Motion::Linear }
+    if is_rotary { Coordinate::Rotary } else { Coordinate::Linear }
 }
 
 #[cfg(test)]
@@ -118,7 +118,7 @@ mod tests {
         let text =
             "\u{feff}position [mm], time [ms] ,velocity [m/min]\r\n0,0,0\r\n\r\n 250 , 10,\r\n1e3,+20.5,-30\r\n\r\n";
         let points = read_points(text).unwrap();
-        assert_eq!((points.motion, &points.times), (Motion::Linear, &vec![0.0, 0.01, 0.0205]));
+        assert_eq!((points.motion, &points.times), (Coordinate::Linear, &vec![0.0, 0.01, 0.0205]));
         assert_eq!(points.positions, [0.0, 0.25, 1.0]);
         assert_eq!(points.velocities, Some(vec![Some(0.0), None, Some(-0.5)]));
         assert_eq!(points.units.map(Option::unwrap), ["ms", "mm", "m/min"]);
@@ -127,10 +127,10 @@ mod tests {
     #[test]
     fn a_profile_is_times_and_values() {
         let profile = read_velocities("velocity [m/min],time [ms]\n0,0\n30,10").unwrap();
-        let expected = Profile { motion: Motion::Linear, times: vec![0.0, 0.01], values: vec![0.0, 0.5] };
+        let expected = Profile { motion: Coordinate::Linear, times: vec![0.0, 0.01], values: vec![0.0, 0.5] };
         assert_eq!(profile, expected);
         let profile = read_accelerations("time [s],acceleration [rad/s2]\n0,0\n1,-2").unwrap();
-        let expected = Profile { motion: Motion::Rotary, times: vec![0.0, 1.0], values: vec![0.0, -2.0] };
+        let expected = Profile { motion: Coordinate::Rotary, times: vec![0.0, 1.0], values: vec![0.0, -2.0] };
         assert_eq!(profile, expected);
         for (read, text, said) in [
             (
@@ -164,7 +164,7 @@ mod tests {
     #[test]
     fn angles_make_a_rotary_axis() {
         let points = read_points("time [s],position [rev]\n0,0\n1,-2").unwrap();
-        assert_eq!((points.motion, points.velocities), (Motion::Rotary, None));
+        assert_eq!((points.motion, points.velocities), (Coordinate::Rotary, None));
         assert!((points.positions[1] + 2.0 * std::f64::consts::TAU).abs() < 1e-15);
     }
 

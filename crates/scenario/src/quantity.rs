@@ -6,8 +6,8 @@
 //! factor   = symbol [power]          m2  m^2  m²  s-1  s^-1  s⁻¹  1
 //! ```
 //! A product after a quotient ("N/m s") would be read in two ways and is refused.
-use crate::dimension::Dimension;
 use crate::unit::{hint, unit};
+use servobench_config::Dimension;
 use std::ops::{Range, RangeInclusive};
 use winnow::ascii::digit1;
 use winnow::combinator::{alt, delimited, opt, preceded, repeat, separated};
@@ -250,8 +250,8 @@ fn raised_digit(c: char) -> Option<char> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dimension::Dimension as D;
     use proptest::prelude::*;
+    use servobench_config::Dimension as D;
     use std::f64::consts::{PI, SQRT_2};
 
     /// Oracle: the same value as Rust reads it from the decimal text on the right.

@@ -1,7 +1,8 @@
 //! Reading a quantity of a certain dimension, and what to say when it has another.
-use crate::dimension::Dimension;
-use crate::physical::{Physical, describe};
 use crate::quantity::{self, QuantityError};
+use servobench_config::Dimension;
+use servobench_config::Physical;
+use servobench_config::quantities::NAMED;
 
 /// Why a text is not the quantity that is wanted.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,4 +86,45 @@ pub(crate) fn proposals(number: &str, candidates: &[&Physical]) -> String {
 pub(crate) fn names(candidates: &[&Physical]) -> String {
     let names: Vec<&str> = candidates.iter().map(|physical| physical.name).collect();
     names.join(" or ")
+}
+
+/// What a quantity of dimension `dimension` is: "a force (kg·m/s²)".
+pub(crate) fn describe(dimension: Dimension) -> String {
+    if dimension == Dimension::ONE {
+        return "a pure number".to_owned();
+    }
+    // The first dimension in each list is the proper one.
+    let named = NAMED.iter().find(|physical| physical.accepts.first().is_some_and(|(own, _)| *own == dimension));
+    match named {
+        Some(physical) if physical.name.contains('(') => physical.name.to_owned(),
+        Some(physical) => format!("{} ({})", physical.name, physical.unit),
+        None if dimension == Dimension::AMPERE => "a current (A)".to_owned(),
+        None => format!("in {dimension}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use servobench_config::quantities::*;
+
+    #[test]
+    fn the_unit_of_every_proposal_is_accepted_as_it_is() {
+        let plain = [&RATIO, &BANDWIDTH, &LEAD, &VOLTAGE_AMPLITUDE, &CURRENT_RMS, &CURRENT_GAIN];
+        let pairs = [&INERTIAL, &EFFORT, &STIFFNESS, &VISCOUS, &VOLT_GAIN, &SOURCE_GAIN];
+        let pairs = pairs.iter().flat_map(|pair| [&pair.linear, &pair.rotary]);
+        for physical in plain.into_iter().chain(pairs).chain(NAMED) {
+            let read = quantity::parse(&format!("1 {}", physical.unit)).unwrap();
+            assert!(physical.accepts.iter().any(|(own, _)| *own == read.dimension), "{physical:?}");
+        }
+    }
+
+    #[test]
+    fn dimensions_have_names() {
+        assert_eq!(describe(Dimension::NEWTON), "a force (N)");
+        assert_eq!(describe(Dimension::METRE), "a length (mm)");
+        assert_eq!(describe(Dimension::AMPERE), "a current (A)");
+        assert_eq!(describe(Dimension::KILOGRAM.times(Dimension::AMPERE, 3)), "in kg·A³");
+        assert_eq!(describe(Dimension::ONE), "a pure number");
+    }
 }

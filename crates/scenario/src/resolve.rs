@@ -31,10 +31,11 @@ use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file::{File, MotorKind, Run};
 use crate::limit_table::LimitTable;
-use crate::scenario::{EngineName, LONGEST_RUN, Limit, Measure, Record, Scenario};
+use crate::scenario::{EngineName, LONGEST_RUN, Record, Scenario};
 use crate::simple::MAX_RATE;
 use crate::source::{At, SourceId, Sources, Span};
 use servobench_base::Rate;
+use servobench_metrics::{Limit, Question};
 use std::collections::BTreeSet;
 
 pub(crate) use axis::motor_motion;
@@ -112,7 +113,7 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
         disturbances: disturbances?,
         initial,
         record: record?,
-        measure: file.measure.given().map_or_else(Measure::default, |measure| Measure {
+        measure: file.measure.given().map_or_else(Question::default, |measure| Question {
             window: measure.window.given().copied(),
             from: measure.from.given().copied(),
             mode: measure.mode.given().copied(),
@@ -150,12 +151,9 @@ fn record(file: &File, base_rate: Option<Rate>, report: &mut Report) -> Option<R
         Slot::Absent => base_rate,
         _ => task_rate(&record.rate, base_rate, report),
     };
-    let channels = record.channels.given().map(|names| names.0.iter().map(|name| name.value.0.to_owned()).collect());
+    let channels = record.channels.given().map(|names| names.0.iter().map(|name| name.value).collect());
     Some(Record { rate: rate?, channels: channels.unwrap_or_default() })
 }
-
-/// Metrics that need a window around the target.
-const IN_A_WINDOW: [&str; 2] = ["settling_time", "move_and_settling_time"];
 
 fn has_window(file: &File) -> bool {
     file.measure.given().is_some_and(|measure| measure.window.span().is_some())
@@ -163,12 +161,12 @@ fn has_window(file: &File) -> bool {
 
 fn limits(limits: &LimitTable, has_window: bool, report: &mut Report) -> Vec<Limit> {
     for limit in &limits.0 {
-        if !has_window && IN_A_WINDOW.contains(&limit.value.metric.as_str()) {
+        if !has_window && limit.value.metric.needs_window() {
             let message = format!("`{}` needs a settling window", limit.value.metric);
             report.error(limit.span, message, "give `window` in `[measure]`");
         }
     }
-    limits.0.iter().map(|limit| limit.value.clone()).collect()
+    limits.0.iter().map(|limit| limit.value).collect()
 }
 
 /// The value of a key that must be there.

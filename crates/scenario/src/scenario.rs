@@ -16,7 +16,7 @@ mod program;
 mod requirements;
 
 pub use actuator::Actuator;
-pub use axis::{Axis, AxisMechanics, Body, Coupling, HomeSwitch, Mjcf, Motion, Switches};
+pub use axis::{Axis, AxisMechanics, Body, Coupling, HomeSwitch, Mjcf, Switches};
 pub use bus::{
     Bus, BusFault, BusFaultKind, BusMode, Counter, DriveInterpolation, DriveUnits, ObjectWrite, Sequencing,
     TrajectoryBuffer,
@@ -28,7 +28,7 @@ pub use drive::{
     VelocityLoop,
 };
 pub use filter::{Filter, Interpolation, InterpolationMode, Shaper, ShaperKind};
-pub use fmu::{BodySignal, CoSimulation, CouplingMethod, Fmu, Isolation, LoopSignal, Signal, StartValue};
+pub use fmu::{BodySignal, CoSimulation, CouplingMethod, Fmu, InputSource, Isolation, LoopSignal, StartValue};
 pub use motor::{Encoder, IdealSource, Pmsm, SourceOutput};
 pub use plc::{
     Block, Braking, BufferMode, Call, Command, Condition, Direction, Dynamics, Output, Pair, Plc, ProfileFollow,
@@ -42,6 +42,8 @@ pub use requirements::Requirements;
 
 use crate::parameters::Parameter;
 use servobench_base::Rate;
+use servobench_metrics::{Limit, Question};
+use servobench_signals::Signal;
 use std::path::PathBuf;
 
 /// Longest run (s), 11.6 days. At the highest base rate its ticks are fewer than 2⁵³: the time of every tick is exact.
@@ -85,24 +87,13 @@ pub struct Scenario {
     /// What to record.
     pub record: Record,
     /// What the measures need to know.
-    pub measure: Measure,
+    pub measure: Question,
     /// What it is held to beside its limits.
     pub requirements: Requirements,
     /// What makes it pass or fail, in the order of the file.
     pub limits: Vec<Limit>,
     /// What the file says, models merged in, key by key.
     pub parameters: Vec<Parameter>,
-}
-
-/// Bounds of one metric (SI).
-#[derive(Debug, Clone, PartialEq)]
-pub struct Limit {
-    /// Name of the metric.
-    pub metric: String,
-    /// Smallest allowed value.
-    pub min: Option<f64>,
-    /// Largest allowed value.
-    pub max: Option<f64>,
 }
 
 /// Engines a scenario can name.
@@ -123,19 +114,8 @@ pub enum EngineName {
 pub struct Record {
     /// Rate of the recording; divides the base rate.
     pub rate: Rate,
-    /// Channels to keep; empty for all.
-    pub channels: Vec<String>,
-}
-
-/// What the measures need to know.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Measure {
-    /// Settling window, ± (axis coordinate); without it there is no settling time.
-    pub window: Option<f64>,
-    /// From when on residual vibration is measured when there is no move (s).
-    pub from: Option<f64>,
-    /// Where to look for the residual mode (Hz); without it, everywhere.
-    pub mode: Option<f64>,
+    /// Signals to keep; empty for all.
+    pub channels: Vec<Signal>,
 }
 
 impl EngineName {

@@ -1,17 +1,17 @@
 //! Keys that hold no physical quantity but a rate, a count, a text or one of a few names.
 use crate::diagnostic::Report;
 use crate::field::{Field, key, physical, written};
+
 use crate::nearest::suggestion;
-use crate::physical::FREQUENCY;
 use crate::tree::{Node, Value};
 use serde_json::{Value as Json, json};
 use servobench_base::Rate;
+use servobench_config::Choice;
+use servobench_config::quantities::FREQUENCY;
 use std::ops::RangeInclusive;
 
 /// A task rate in whole hertz.
-impl Field for Rate {
-    type Spec = &'static str;
-
+impl Field<&'static str> for Rate {
     fn decode(path: &str, node: &Node, _: &&'static str, report: &mut Report) -> Option<Self> {
         let (_, hertz) = physical(path, node, &[&FREQUENCY], report)?;
         let whole = Self::from_hertz(hertz).map_err(|e| e.to_string());
@@ -38,10 +38,8 @@ impl Field for Rate {
 pub(crate) const MAX_RATE: u32 = 10_000_000;
 
 /// A count.
-impl Field for u32 {
-    type Spec = RangeInclusive<u32>;
-
-    fn decode(path: &str, node: &Node, spec: &Self::Spec, report: &mut Report) -> Option<Self> {
+impl Field<RangeInclusive<u32>> for u32 {
+    fn decode(path: &str, node: &Node, spec: &RangeInclusive<Self>, report: &mut Report) -> Option<Self> {
         let whole = match &node.value {
             Value::Number(number) => number.whole.and_then(|whole| Self::try_from(whole).ok()),
             _ => None,
@@ -55,14 +53,12 @@ impl Field for u32 {
         value
     }
 
-    fn schema(spec: &Self::Spec) -> Json {
+    fn schema(spec: &RangeInclusive<Self>) -> Json {
         json!({ "type": "integer", "minimum": spec.start(), "maximum": spec.end() })
     }
 }
 
 impl Field for bool {
-    type Spec = ();
-
     fn decode(path: &str, node: &Node, (): &(), report: &mut Report) -> Option<Self> {
         if let Value::Bool(value) = node.value {
             return Some(value);
@@ -77,8 +73,6 @@ impl Field for bool {
 }
 
 impl Field for String {
-    type Spec = ();
-
     fn decode(path: &str, node: &Node, (): &(), report: &mut Report) -> Option<Self> {
         if let Value::Text(text) = &node.value {
             return Some(text.clone());
@@ -92,16 +86,11 @@ impl Field for String {
     }
 }
 
-/// A type with a few named values.
-pub(crate) trait Choice: Copy + 'static {
-    /// Name in files, value, meaning.
-    const ALL: &'static [(&'static str, Self, &'static str)];
-}
+/// One of the named values of the type.
+pub(crate) struct OneOf;
 
-impl<T: Choice> Field for T {
-    type Spec = ();
-
-    fn decode(path: &str, node: &Node, (): &(), report: &mut Report) -> Option<Self> {
+impl<T: Choice> Field<OneOf> for T {
+    fn decode(path: &str, node: &Node, OneOf: &OneOf, report: &mut Report) -> Option<Self> {
         let names = || Self::ALL.iter().map(|(name, ..)| *name);
         let Some(text) = node.value.as_text() else {
             let list = names().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
@@ -109,7 +98,7 @@ impl<T: Choice> Field for T {
             report.error(node.span, message, "");
             return None;
         };
-        let found = Self::ALL.iter().find(|(name, ..)| *name == text).map(|(_, value, _)| *value);
+        let found = Self::from_name(text);
         if found.is_none() {
             let message = format!("`{}` has no value \"{text}\"", key(path));
             report.error(node.span, message, suggestion(text, names()));
@@ -117,7 +106,7 @@ impl<T: Choice> Field for T {
         found
     }
 
-    fn schema((): &()) -> Json {
+    fn schema(OneOf: &OneOf) -> Json {
         let each = Self::ALL.iter().map(|(name, _, meaning)| json!({ "const": name, "description": meaning }));
         json!({ "oneOf": each.collect::<Vec<_>>() })
     }

@@ -2,6 +2,7 @@
 //! keys, the JSON Schema and the reference in `docs/scenario.md`.
 use crate::diagnostic::Report;
 use crate::field::{Field, Slot};
+
 use crate::nearest::suggestion;
 use crate::source::{At, Span};
 use crate::tree::{Node, Table, Value};
@@ -43,7 +44,6 @@ macro_rules! table {
         }
 
         impl $crate::field::Field for $table {
-            type Spec = ();
 
             fn decode(
                 path: &str,
@@ -56,10 +56,7 @@ macro_rules! table {
                 let mut open = $crate::table::OpenTable::new(path, node, &keys, required, report)?;
                 Some(Self {
                     span: node.span,
-                    $($field: {
-                        let spec: <$type as $crate::field::Field>::Spec = $spec;
-                        open.field($crate::table::key_name!($field $(as $name)?), &spec)
-                    },)+
+                    $($field: open.field($crate::table::key_name!($field $(as $name)?), &$spec),)+
                 })
             }
 
@@ -71,10 +68,7 @@ macro_rules! table {
                     vec![$((
                         $crate::table::key_name!($field $(as $name)?),
                         &[$($doc,)+] as &[&str],
-                        {
-                            let spec: <$type as $crate::field::Field>::Spec = $spec;
-                            <$type as $crate::field::Field>::schema(&spec)
-                        },
+                        <$type as $crate::field::Field<_>>::schema(&$spec),
                     ),)+],
                 )
             }
@@ -131,7 +125,7 @@ impl<'a> OpenTable<'a> {
     }
 
     /// Reads one key.
-    pub(crate) fn field<T: Field>(&mut self, key: &str, spec: &T::Spec) -> Slot<T> {
+    pub(crate) fn field<Spec, T: Field<Spec>>(&mut self, key: &str, spec: &Spec) -> Slot<T> {
         let Some(node) = self.table.get(key) else { return Slot::Absent };
         let path = if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) };
         match T::decode(&path, node, spec, self.report) {

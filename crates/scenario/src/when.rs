@@ -1,6 +1,7 @@
 //! When something happens: an output in short, or a table.
 use crate::diagnostic::Report;
 use crate::field::{Field, key, written};
+
 use crate::file::Condition;
 use crate::source::At;
 use crate::tree::{Node, Value};
@@ -16,8 +17,6 @@ pub(crate) enum When {
 }
 
 impl Field for When {
-    type Spec = ();
-
     fn decode(path: &str, node: &Node, (): &(), report: &mut Report) -> Option<Self> {
         match &node.value {
             Value::Text(text) => Some(Self::Output(At { value: text.clone(), span: node.span })),

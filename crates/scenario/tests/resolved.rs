@@ -1,4 +1,6 @@
 //! What a scenario becomes: derived gains, merged bodies, overridden models.
+use servobench_base::Coordinate;
+use servobench_metrics::{Limit, Name};
 use servobench_scenario::*;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
@@ -75,7 +77,7 @@ fn a_rigid_body_is_reflected_through_the_screw() {
     let scenario = scenario(SCREW);
     let r = 0.01 / TAU;
     assert!(same(scenario.axis.transmission, r));
-    assert_eq!((scenario.axis.motion, scenario.axis.motor_motion), (Motion::Linear, Motion::Rotary));
+    assert_eq!((scenario.axis.motion, scenario.axis.motor_motion), (Coordinate::Linear, Coordinate::Rotary));
     let [motor, load] = bodies(&scenario) else { panic!("the table is merged") };
     assert_eq!((motor.name, load.name), ("motor", "load"));
     assert!(same(motor.inertia, 1.57e-4 + 1e-4 + r * r * 30.0));
@@ -234,7 +236,7 @@ fn a_linear_motor_by_any_of_its_constants() {
     assert!(same(motor.electrical_ratio, PI / 0.024));
     assert!(same(1.5 * PI / 0.024 * motor.flux_linkage, per_amplitude) && same(motor.effort_constant(), per_amplitude));
     let scenario = scenario(LINEAR);
-    assert_eq!(scenario.axis.motor_motion, Motion::Linear);
+    assert_eq!(scenario.axis.motor_motion, Coordinate::Linear);
     assert!(same(scenario.axis.transmission, 1.0) && same(bodies(&scenario)[0].inertia, 105.0), "forcer and slide");
     assert!(same(scenario.actuator.max_effort(), 800.0), "80 N/Arms times 10 Arms");
     let emf = 3_f64.sqrt() * per_amplitude / 1.5;
@@ -482,7 +484,7 @@ residual_vibration_damping = "5 %"
 setpoint_jerk_ratio = 1
 "#
     );
-    let limit = |metric: &str, min, max| Limit { metric: metric.to_owned(), min, max: Some(max) };
+    let limit = |metric: &str, min, max| Limit { metric: metric.parse().unwrap(), min, max: Some(max) };
     let limits = scenario(&text).limits;
     assert!(same(limits[2].max.unwrap(), 10.0), "an effective value is judged as one");
     assert!(same(limits[1].max.unwrap(), 10.0 * 2_f64.sqrt()), "a peak as one");
@@ -527,7 +529,7 @@ fn a_prescribed_motor_needs_neither_drive_nor_inertia() {
         "[run]\nbase_rate = \"16 kHz\"\n[axis]\nmotion = \"linear\"\n[axis.load]\nmass = \"10 kg\"\nstiffness = \"6e5 N/m\"\n\
          [motor]\nkind = \"prescribed\"\n",
     );
-    assert_eq!((scenario.actuator, scenario.axis.motor_motion), (Actuator::Prescribed, Motion::Linear));
+    assert_eq!((scenario.actuator, scenario.axis.motor_motion), (Actuator::Prescribed, Coordinate::Linear));
 }
 
 #[test]
@@ -556,7 +558,7 @@ fn a_move_has_limits_of_its_own_and_a_pause_has_none() {
     else {
         panic!("a move")
     };
-    let metric = "following_error_cruise_load".to_owned();
+    let metric = Name::FollowingErrorCruiseLoad;
     assert_eq!(metric_limits, [Limit { metric, min: Some(0.8e-3), max: Some(0.9e-3) }]);
     for (step, limit, refusal) in [
         ("wait = \"1 s\"", band, "a pause has no `limits`"),

@@ -5,7 +5,6 @@ pub(crate) mod fmu;
 mod objections;
 pub(crate) mod plant;
 
-use crate::channels::{Amplifier, Equipment, Motor, Selection, WriterRates};
 use crate::closed_loop::{ClosedLoop, Control, Shaft, Source, State};
 use crate::coupled::{self, ConnectionDelay, Coupled, NoPartners, Partners};
 use crate::disturbance::Disturbances;
@@ -21,6 +20,7 @@ use servobench_fieldbus::LinkFault;
 use servobench_metrics::JUDGED_BY;
 use servobench_plant::{Chain, Engine};
 use servobench_scenario::{self as scenario, Actuator, AxisMechanics, Feedback, LoopSignal, Scenario};
+use servobench_signals::{Amplifier, Equipment, Motor, NotRecorded, Rates, Selection, Signal, Unit};
 use servobench_trace::{About, Event};
 
 /// How long a run goes on after its program, when the scenario does not say (s).
@@ -128,17 +128,17 @@ impl Bench {
         let equipment = equipment(scenario, bodies.len() == 3);
         let rates = writer_rates(scenario);
         let all = Selection::all(&equipment, &rates);
-        let wanted = all.named(&scenario.record.channels)?;
+        let wanted = recorded(&all, &scenario.record.channels)?;
         let selection = measured(&all, &scenario.record.channels)?;
-        if scenario.fmus.is_empty() && !selection.names().any(|name| name.starts_with("power.")) {
+        if scenario.fmus.is_empty() && !selection.signals().iter().any(|signal| is_power(*signal)) {
             power.leave_power_out();
         }
-        let (rate, record_every) = recorded_rate(scenario, selection.specs.len(), ticks, duration)?;
+        let (rate, record_every) = recorded_rate(scenario, selection.signals().len(), ticks, duration)?;
         let rows = ticks.div_ceil(u64::from(record_every));
         let about = About {
             scenario: scenario.name.clone(),
             engine: engine.name().into(),
-            axis_unit: equipment.axis_unit.into(),
+            axis_unit: equipment.axis.unit().into(),
             bodies,
         };
         let rows = usize::try_from(rows).unwrap_or(usize::MAX);
@@ -148,7 +148,7 @@ impl Bench {
         }
         let source = match (bus, &control) {
             (None, _) => {
-                for made in program.moves(equipment.axis_unit) {
+                for made in program.moves(equipment.axis.unit()) {
                     recorder.note_move(made);
                 }
                 Source::Program(Box::new(program))
@@ -213,16 +213,26 @@ fn check_expectations(scenario: &Scenario) -> Result<(), BuildError> {
     Ok(())
 }
 
-/// Of `all` channels of the axis those `wanted`, and those that its run is judged by; all when the list is empty.
-fn measured(all: &Selection, wanted: &[String]) -> Result<Selection, BuildError> {
-    let judged_by = JUDGED_BY.into_iter().filter(|name| !wanted.is_empty() && all.place(name).is_some());
-    all.named(&wanted.iter().map(String::as_str).chain(judged_by).collect::<Vec<_>>())
+/// Of `all` signals of the axis those `wanted`; all when the list is empty.
+fn recorded(all: &Selection, wanted: &[Signal]) -> Result<Selection, BuildError> {
+    let available = || all.signals().to_vec();
+    all.of(wanted).map_err(|NotRecorded { signal }| BuildError::UnknownChannel { signal, available: available() })
+}
+
+/// The same, and those that its run is judged by.
+fn measured(all: &Selection, wanted: &[Signal]) -> Result<Selection, BuildError> {
+    let judged_by = JUDGED_BY.into_iter().filter(|signal| !wanted.is_empty() && all.has(*signal));
+    recorded(all, &wanted.iter().copied().chain(judged_by).collect::<Vec<_>>())
+}
+
+/// Whether it costs the motor's powers.
+fn is_power(signal: Signal) -> bool {
+    signal.unit() == Unit::Watt
 }
 
 /// Which channels the axis of `scenario` has; `table` is a body between motor and load.
 fn equipment(scenario: &Scenario, table: bool) -> Equipment {
-    let rotary = |motion| motion == scenario::Motion::Rotary;
-    let effort_unit = if rotary(scenario.axis.motor_motion) { "N m" } else { "N" };
+    let effort_unit = scenario.axis.motor_motion.effort_unit();
     let is_replaced = coupled::replaces_the_drive(scenario);
     let gives = |signal| scenario.fmus.iter().flat_map(|fmu| &fmu.outputs).any(|(_, given)| *given == signal);
     let amplifier = match &scenario.actuator {
@@ -236,9 +246,8 @@ fn equipment(scenario: &Scenario, table: bool) -> Equipment {
         }),
     };
     Equipment {
-        axis_unit: if rotary(scenario.axis.motion) { "rad" } else { "m" },
-        effort_unit,
-        load_effort_unit: if rotary(scenario.axis.motion) { "N m" } else { "N" },
+        axis: scenario.axis.motion,
+        motor_coordinate: scenario.axis.motor_motion,
         disturbed: [scenario::DisturbedBody::Motor, scenario::DisturbedBody::Load]
             .map(|body| is_disturbed(scenario, body)),
         table,
@@ -265,12 +274,12 @@ fn is_disturbed(scenario: &Scenario, body: scenario::DisturbedBody) -> bool {
 }
 
 /// How often each writer renews its channels.
-fn writer_rates(scenario: &Scenario) -> WriterRates {
+fn writer_rates(scenario: &Scenario) -> Rates {
     let base_rate = scenario.base_rate;
     let drive = scenario.actuator.drive();
     let every = |ticks: u32| Rate::new(base_rate.hertz() / ticks.max(1)).unwrap_or(base_rate);
     let bus = scenario.bus.as_ref();
-    WriterRates {
+    Rates {
         base: base_rate,
         task: bus.map_or(base_rate, |bus| every(bus.cycle.saturating_mul(bus.motion_every))),
         bus: bus.map_or(base_rate, |bus| every(bus.cycle)),

@@ -1,7 +1,5 @@
 //! The closed loop, in execution order.
-use crate::channels::Instant;
 use crate::disturbance::Disturbances;
-use crate::limit_watch::PerLimit;
 use crate::network::{Asked, Network, Seen};
 use crate::power::PowerStage;
 use crate::program::Program;
@@ -12,6 +10,8 @@ use servobench_drive::velocity::Cut;
 use servobench_drive::{self as drive, Command, Demand, Feedback, Sensors};
 use servobench_plant::{Actuation, BodyState, Encoder, Input, Mechanics, MechanicsError, Switches};
 use servobench_scenario::DisturbedBody;
+use servobench_signals::Instant;
+use servobench_signals::PerLimit;
 use servobench_trace::Recorder;
 
 /// All that a tick needs and leaves changed.

@@ -9,7 +9,6 @@ mod wiring;
 
 pub(crate) use wiring::replaces_the_drive;
 
-use crate::channels::{Equipment, WriterRates};
 use crate::error::{BuildError, UnusableFmu};
 use crate::recorded::{LISTEN_EVERY, Recorded};
 use crate::run::{Failure, Outcome, PROGRESS_EVERY, Reason};
@@ -21,6 +20,7 @@ use servobench_coupling::{
 use servobench_fmi::Slave;
 use servobench_plant::{FmuEntry, FmuMistake, FmuPartner};
 use servobench_scenario::{CoSimulation, CouplingMethod, Scenario};
+use servobench_signals::{Equipment, Rates};
 use std::num::NonZeroU32;
 use wiring::Wiring;
 
@@ -79,7 +79,7 @@ impl Coupled {
         scenario: &Scenario,
         recorded: Recorded,
         ticks: u64,
-        (equipment, rates): (&Equipment, &WriterRates),
+        (equipment, rates): (&Equipment, &Rates),
         partners: &dyn Partners,
     ) -> Result<Self, BuildError> {
         let wiring = Wiring::new(scenario, equipment, rates)?;
@@ -109,7 +109,11 @@ impl Coupled {
         let axis = Axis::new(recorded, ticks, wiring.takes.clone(), wiring.gives.clone());
         members.push(Member {
             name: "axis".into(),
-            inputs: wiring.takes.iter().map(|signal| InputPort { name: signal.name().into(), held: 0.0 }).collect(),
+            inputs: wiring
+                .takes
+                .iter()
+                .map(|signal| InputPort { name: signal.signal().name().into(), held: 0.0 })
+                .collect(),
             outputs: wiring.axis_outputs().map(String::from).collect(),
             every: NonZeroU32::MIN,
             block: Part::Axis(Box::new(axis)),

@@ -8,6 +8,7 @@ use servobench_fieldbus::FieldbusError;
 use servobench_motion::PlanError;
 use servobench_plant::{FmuMistake, MechanicsError};
 use servobench_scenario::LONGEST_RUN;
+use servobench_signals::Signal;
 use std::fmt::Display;
 use thiserror::Error;
 
@@ -85,16 +86,16 @@ pub enum BuildError {
     #[error("at 0 s: {0}")]
     NotBegun(String),
     /// An input of an FMU is given a channel that the axis does not have.
-    #[error("this axis has no channel `{name}` for the input `{variable}` of an FMU; it has {}", available.join(", "))]
+    #[error("this axis has no channel `{signal}` for the input `{variable}` of an FMU; it has {}", names(available))]
     NoSuchSignal {
         /// Which of the scenario's FMUs, from 0.
         index: usize,
         /// The input.
         variable: String,
         /// What it was to be given.
-        name: String,
-        /// Channels that there are.
-        available: Vec<String>,
+        signal: Signal,
+        /// Signals that there are.
+        available: Vec<Signal>,
     },
     /// What the FMUs are connected with cannot be run so.
     #[error("{0}")]
@@ -161,13 +162,18 @@ pub enum BuildError {
         limit: f64,
     },
     /// A channel that the recording does not have.
-    #[error("`record.channels` names `{name}`, which this axis does not have; it has {}", available.join(", "))]
+    #[error("`record.channels` names `{signal}`, which this axis does not have; it has {}", names(available))]
     UnknownChannel {
         /// What was asked for.
-        name: String,
+        signal: Signal,
         /// What there is.
-        available: Vec<String>,
+        available: Vec<Signal>,
     },
+}
+
+fn names(signals: &[Signal]) -> String {
+    let names: Vec<&str> = signals.iter().map(|signal| signal.name()).collect();
+    names.join(", ")
 }
 
 /// Whether the run, or the step of its program, ends at `end` (s) within the longest run.

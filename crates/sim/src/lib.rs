@@ -3,7 +3,6 @@
 //! [`Bench::run`] is the whole loop in one function, in execution order.
 
 mod bench;
-mod channels;
 mod closed_loop;
 mod coupled;
 mod disturbance;

@@ -1,19 +1,9 @@
 //! Watches the limits that bind: nothing is cut in silence, and what goes from limit to limit is noted.
+use servobench_signals::PerLimit;
 use servobench_trace::{Event, LimitReversals, Recorder};
 
 /// Events noted for one limit at most; one more says that there were others.
 const MOST_EVENTS: usize = 100;
-
-/// Something for each limit that is watched.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct PerLimit<T> {
-    /// Voltage limit, which the current loop keeps to or the inverter enforces.
-    pub(crate) voltage: T,
-    /// Current limit, which cuts what the velocity loop asks for.
-    pub(crate) current: T,
-    /// Effort limit of the velocity loop.
-    pub(crate) effort: T,
-}
 
 /// One limit: whether it binds, since when, and how often it did since the last row.
 #[derive(Debug, Clone, Default)]

@@ -1,12 +1,12 @@
 //! The closed loop with what is recorded of it.
-use crate::channels::{self, Instant, Selection};
 use crate::closed_loop::{ClosedLoop, Source, State};
 use crate::joint_watch::JointWatch;
-use crate::limit_watch::{LimitWatch, PerLimit};
+use crate::limit_watch::LimitWatch;
 use crate::run::{Failure, Outcome};
 use crate::stepper::External;
 use servobench_base::{Severity, Tick};
 use servobench_plant::MechanicsError;
+use servobench_signals::{Instant, PerLimit, Selection, write_row};
 use servobench_trace::{Mark, Recorder};
 
 /// Who speaks where mechanics do: no engine but `fmu` has anything to say.
@@ -53,7 +53,7 @@ impl Recorded {
         if self.ticks_to_row == 0 {
             self.ticks_to_row = self.record_every;
             now.saturation = self.watch.shares();
-            self.recorder.push_with(|row| channels::write(now, row));
+            self.recorder.push_with(|row| write_row(now, row));
         }
         self.ticks_to_row -= 1;
     }

@@ -1,8 +1,8 @@
 //! A run from the first tick to the last, and what it leaves behind.
 use crate::bench::{Axis, Bench};
-use crate::channels::Instant;
 use crate::stepper::External;
 use servobench_plant::MechanicsError;
+use servobench_signals::Instant;
 use servobench_trace::Recording;
 
 /// What a run leaves behind.

@@ -1,8 +1,6 @@
 //! The closed loop tick by tick, for somebody else's simulation: what acts on the axis comes from outside, and it can go back.
 use crate::bench::{Axis, Bench};
-use crate::channels::{Instant, Selection};
 use crate::closed_loop::{ClosedLoop, Source};
-use crate::limit_watch::PerLimit;
 use crate::recorded::Recorded;
 use crate::run::{Failure, Reason};
 use servobench_base::{Dq, Rate, Setpoint, Tick};
@@ -10,6 +8,8 @@ use servobench_cia402::PowerState;
 use servobench_fieldbus::Fault;
 use servobench_plant::BodyState;
 use servobench_plcopen::AxisState;
+use servobench_signals::PerLimit;
+use servobench_signals::{Instant, Selection, Signal};
 use servobench_trace::{ChannelSpec, Recorder};
 
 /// What comes from outside, held over a tick.
@@ -118,13 +118,19 @@ impl Stepper {
     /// What [`values`](Self::values) are.
     #[must_use]
     pub fn channels(&self) -> &[ChannelSpec] {
-        &self.selection.specs
+        self.selection.specs()
+    }
+
+    /// The signals that they are.
+    #[must_use]
+    pub fn signals(&self) -> &[Signal] {
+        self.selection.signals()
     }
 
     /// What a recording would say: positions and velocities of the bodies at the present tick, everything else of the tick
     /// before, whose efforts have brought the bodies there. Before the first tick that is zero.
     pub fn values(&mut self) -> &[f64] {
-        self.selection.pick(&self.now)
+        self.selection.values(&self.now)
     }
 
     /// The motor in its own coordinate at the present tick, as its encoder and its effort have it.

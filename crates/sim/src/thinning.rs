@@ -1,5 +1,6 @@
 //! What is kept of a recording when it has been measured.
 use servobench_base::Rate;
+use servobench_signals::Signal;
 use servobench_trace::{Channel, Recording};
 
 /// `recording` with rows at `rate` only: every n-th row, but of the shares of saturated ticks the mean since the last row
@@ -31,9 +32,9 @@ fn means(values: &[f64], every: usize) -> Vec<f64> {
 /// `recording` with the channels `wanted` only; all when the list is empty. What a run is judged by is recorded whatever is
 /// wanted of it.
 #[must_use]
-pub fn selected(mut recording: Recording, wanted: &[String]) -> Recording {
+pub fn selected(mut recording: Recording, wanted: &[Signal]) -> Recording {
     if !wanted.is_empty() {
-        recording.channels.retain(|channel| wanted.contains(&channel.spec.name));
+        recording.channels.retain(|channel| wanted.iter().any(|signal| channel.spec.name == signal.name()));
     }
     recording
 }

@@ -12,9 +12,9 @@ use crate::report::{Boundaries, Boundary, GainName, Instability, LoopName, LoopR
 use crate::state::CURRENT;
 use crate::tick::{Closed, Factors, Tick};
 use nalgebra::Complex;
+use servobench_base::Coordinate;
 use servobench_base::Dq;
 use servobench_drive::Stage;
-use servobench_plant::Coordinate;
 use std::f64::consts::TAU;
 
 /// How much is asked for.

@@ -1,6 +1,7 @@
 //! Runs side by side: each at its own limits, at equal ones, or slowed to equal duration.
 use crate::job::Job;
-use servobench_scenario::{Motion, MoveStep, Scenario, Step};
+use servobench_config::Choice as _;
+use servobench_scenario::{MoveStep, Scenario, Step};
 use servobench_sim::{BuildError, Program};
 use thiserror::Error;
 
@@ -70,10 +71,7 @@ pub enum CompareError {
 /// [`CompareError::Axes`] of the first job that is of another kind than the first of all.
 pub fn comparable(jobs: &[Job]) -> Result<(), CompareError> {
     let Some((one, others)) = jobs.split_first() else { return Ok(()) };
-    let kind = |job: &Job| match job.scenario.axis.motion {
-        Motion::Linear => "linear",
-        Motion::Rotary => "rotary",
-    };
+    let kind = |job: &Job| job.scenario.axis.motion.name();
     let Some(other) = others.iter().find(|other| kind(other) != kind(one)) else { return Ok(()) };
     let (motion, other_motion) = (kind(one), kind(other));
     let (one, other) = (one.scenario.name.clone(), other.scenario.name.clone());

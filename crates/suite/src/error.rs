@@ -2,7 +2,6 @@
 use crate::engines::EngineMissing;
 use crate::panicked::Panicked;
 use crate::worker::WorkerError;
-use servobench_metrics::UnknownMetric;
 use servobench_plant::MechanicsError;
 use servobench_sim::{BuildError, Failure};
 use thiserror::Error;
@@ -13,9 +12,6 @@ pub enum RunError {
     /// The closed loop cannot be built.
     #[error(transparent)]
     Build(#[from] BuildError),
-    /// A limit is on a metric that there is not.
-    #[error(transparent)]
-    Metric(#[from] UnknownMetric),
     /// The build lacks the engine.
     #[error(transparent)]
     EngineMissing(#[from] EngineMissing),
@@ -45,7 +41,7 @@ impl RunError {
         match self {
             // A library that does not load, or an FMU that crashes, is not the scenario's fault.
             Self::Build(error) if is_of_the_run(error) => false,
-            Self::Build(_) | Self::Metric(_) | Self::Worker(WorkerError::Input(_)) => true,
+            Self::Build(_) | Self::Worker(WorkerError::Input(_)) => true,
             Self::EngineMissing(_) | Self::Failed(_) | Self::Panicked(_) | Self::Worker(_) => false,
         }
     }

@@ -4,11 +4,9 @@ use crate::error::RunError;
 use crate::job::Job;
 use crate::requirements::rules;
 use crate::worker::{self, WorkerCommand};
-use servobench_metrics::{
-    EarlyEnd, Limit, Metrics, Name, Question, UnknownMetric, Verdict, judge_requirements, measure,
-};
+use servobench_metrics::{EarlyEnd, Limit, Metrics, Verdict, judge_requirements, measure};
 use servobench_plant::{Engine, MechanicsError};
-use servobench_scenario::{self as scenario, Scenario, Step};
+use servobench_scenario::{Scenario, Step};
 use servobench_sim::{Bench, Failure, Partners, Reason, selected, thinned};
 use servobench_trace::Recording;
 
@@ -70,12 +68,6 @@ pub fn execute(
     progress: &mut dyn FnMut(f64),
 ) -> Result<Run, Box<Broken>> {
     let broken = |error, until_then| Box::new(Broken { error, until_then });
-    let limits = limits(&job.scenario.limits).map_err(|error| broken(error.into(), None))?;
-    let of_moves = job.scenario.program.iter().filter_map(|step| match step {
-        Step::Move(step) => Some(self::limits(&step.metric_limits)),
-        Step::Wait(_) => None,
-    });
-    let of_moves: Vec<_> = of_moves.collect::<Result<_, _>>().map_err(|error| broken(error.into(), None))?;
     let (recording, interruption) = recorded(job, engines, worker, progress).map_err(|error| broken(error, None))?;
     let (ended, failure) = match interruption {
         None => (None, None),
@@ -83,15 +75,16 @@ pub fn execute(
         Some(Interruption::Broken(error)) => (None, Some(error)),
     };
     let requirements = judge_requirements(&recording, &rules(&job.scenario, ended));
-    let (asked, record) = (&job.scenario.measure, &job.scenario.record);
+    let record = &job.scenario.record;
     let recording = selected(recording, &record.channels);
-    let mut metrics = measure(&recording, &Question { window: asked.window, from: asked.from, mode: asked.mode });
+    let mut metrics = measure(&recording, &job.scenario.measure);
     // What is measured does not depend on how much of it is kept.
     let recording = thinned(recording, record.rate);
     if let Some(failure) = failure {
         return Err(broken(failure, Some((recording, metrics))));
     }
-    let limits = metrics.judge(&limits).and(metrics.judge_moves(&of_moves));
+    let of_moves: Vec<&[Limit]> = job.scenario.program.iter().filter_map(limits_of_move).collect();
+    let limits = metrics.judge(&job.scenario.limits).and(metrics.judge_moves(&of_moves));
     Ok(Run { verdict: limits.and(requirements), recording, metrics })
 }
 
@@ -119,9 +112,9 @@ pub(crate) fn run_here(
     Ok((outcome.recording, outcome.failure.map(Interruption::from)))
 }
 
-fn limits(limits: &[scenario::Limit]) -> Result<Vec<Limit>, UnknownMetric> {
-    limits
-        .iter()
-        .map(|limit| Ok(Limit { metric: limit.metric.parse::<Name>()?, min: limit.min, max: limit.max }))
-        .collect()
+fn limits_of_move(step: &Step) -> Option<&[Limit]> {
+    match step {
+        Step::Move(step) => Some(&step.metric_limits),
+        Step::Wait(_) => None,
+    }
 }

@@ -1,5 +1,6 @@
 //! One scenario on one engine.
-use servobench_scenario::{CHANNELS, EngineName, Scenario, Step};
+use servobench_scenario::{EngineName, Scenario, Step};
+use servobench_signals::Signal;
 use servobench_sim::Program;
 use std::collections::HashMap;
 
@@ -42,7 +43,7 @@ impl Job {
         let Some(duration) = duration.or_else(planned) else {
             return 0;
         };
-        let channels = if record.channels.is_empty() { CHANNELS.len() } else { record.channels.len() };
+        let channels = if record.channels.is_empty() { Signal::ALL.len() } else { record.channels.len() };
         let bytes = |hertz: u32| (duration * f64::from(hertz) + 1.0) * channels as f64 * VALUE;
         // Every tick until it is measured, beside what is kept of it.
         let kept = if record.rate == *base_rate { 0.0 } else { bytes(record.rate.hertz()) };

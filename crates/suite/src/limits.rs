@@ -1,17 +1,18 @@
-//! What bounds the channels of an axis.
+//! What bounds the signals of an axis.
 use servobench_plant::inverter;
 use servobench_scenario::{Actuator, Scenario};
+use servobench_signals::Signal;
 
-/// Channels with the largest magnitude that motor and drive allow them (SI); those without a bound are left out.
+/// Signals with the largest magnitude that motor and drive allow them (SI); those without a bound are left out.
 #[must_use]
-pub fn channel_limits(scenario: &Scenario) -> Vec<(&'static str, f64)> {
-    let effort = ("effort.reference", scenario.actuator.max_effort());
+pub fn channel_limits(scenario: &Scenario) -> Vec<(Signal, f64)> {
+    let effort = (Signal::EffortReference, scenario.actuator.max_effort());
     let limits = match &scenario.actuator {
         Actuator::Pmsm { dc_link, current, .. } => {
             let voltage = inverter::voltage_limit(*dc_link);
-            vec![effort, ("current.q", current.max_current), ("voltage.magnitude", voltage)]
+            vec![effort, (Signal::CurrentQ, current.max_current), (Signal::VoltageMagnitude, voltage)]
         }
-        Actuator::IdealSource { source, .. } => vec![effort, ("command.output", source.limit)],
+        Actuator::IdealSource { source, .. } => vec![effort, (Signal::CommandOutput, source.limit)],
         Actuator::Prescribed | Actuator::Off => Vec::new(),
     };
     limits.into_iter().filter(|(_, limit)| limit.is_finite()).collect()
@@ -26,10 +27,10 @@ mod tests {
         let (_, demo) = servobench_scenario::embedded_demo().into_iter().next().unwrap();
         let demo = servobench_scenario::parse("demo", demo, None).unwrap_or_else(|e| panic!("{e}")).scenario;
         let limits = channel_limits(&demo);
-        let of = |name: &str| limits.iter().find(|(channel, _)| *channel == name).map(|(_, limit)| *limit);
+        let of = |signal| limits.iter().find(|(limited, _)| *limited == signal).map(|(_, limit)| *limit);
         // `dc_link = "320 V"`: 320 V/√3 without overmodulation; `max_torque = "6.09 Nm"`.
-        assert!((of("voltage.magnitude").unwrap() - 184.752_086).abs() < 1e-6, "{limits:?}");
-        assert_eq!((of("effort.reference"), limits.len()), (Some(6.09), 3));
+        assert!((of(Signal::VoltageMagnitude).unwrap() - 184.752_086).abs() < 1e-6, "{limits:?}");
+        assert_eq!((of(Signal::EffortReference), limits.len()), (Some(6.09), 3));
         let free = Scenario { actuator: Actuator::Prescribed, ..demo };
         assert_eq!(channel_limits(&free), []);
     }

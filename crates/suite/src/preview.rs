@@ -105,9 +105,7 @@ struct Units {
 
 impl Units {
     fn of(scenario: &Scenario) -> Self {
-        use servobench_scenario::Motion::{Linear, Rotary};
-        let unit = |motion| if motion == Linear { "m" } else { "rad" };
-        let effort = if scenario.axis.motor_motion == Rotary { "N m" } else { "N" };
-        Self { axis: unit(scenario.axis.motion), motor: unit(scenario.axis.motor_motion), effort }
+        let (axis, motor) = (scenario.axis.motion, scenario.axis.motor_motion);
+        Self { axis: axis.unit(), motor: motor.unit(), effort: motor.effort_unit() }
     }
 }

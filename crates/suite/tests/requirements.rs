@@ -20,7 +20,7 @@ fn broken(path: &Path) -> (Vec<&'static str>, Vec<String>) {
 fn broken_of(path: &Path, channels: &[&str]) -> (Vec<&'static str>, Vec<String>) {
     let mut loaded = load(path).unwrap_or_else(|error| panic!("{error}"));
     if !channels.is_empty() {
-        loaded.scenario.record.channels = channels.iter().map(|name| (*name).to_owned()).collect();
+        loaded.scenario.record.channels = channels.iter().map(|name| name.parse().unwrap()).collect();
     }
     let text = std::fs::read_to_string(path).unwrap();
     let source = Source { scenario: loaded.scenario, text };

@@ -175,7 +175,8 @@ impl Recording {
 
     /// Values of the channel `name`.
     #[must_use]
-    pub fn channel(&self, name: &str) -> Option<&[f64]> {
+    pub fn channel(&self, name: impl AsRef<str>) -> Option<&[f64]> {
+        let name = name.as_ref();
         self.channels.iter().find(|channel| channel.spec.name == name).map(|channel| channel.values.as_slice())
     }
 

@@ -1,5 +1,6 @@
 //! Which channels are plotted together, under which name.
 use crate::style::{self, Rgb};
+use servobench_signals::Signal;
 
 /// Page of the blueprint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -115,10 +116,15 @@ pub(crate) const PLOTS: &[Plot] = &[
         headline: Headline::None,
         includes: &[],
         curves: &[
-            curve(&["load.position"], "load", style::LOAD, WIDEST),
-            curve(&["motor.position"], "motor", style::MOTOR, WIDE),
-            curve(&["table.position"], "table", style::TABLE, THIN),
-            curve(&["reference.position", "setpoint.position"], "reference", style::REFERENCE, MIDDLE),
+            curve(&[Signal::LoadPosition.name()], "load", style::LOAD, WIDEST),
+            curve(&[Signal::MotorPosition.name()], "motor", style::MOTOR, WIDE),
+            curve(&[Signal::TablePosition.name()], "table", style::TABLE, THIN),
+            curve(
+                &[Signal::ReferencePosition.name(), Signal::SetpointPosition.name()],
+                "reference",
+                style::REFERENCE,
+                MIDDLE,
+            ),
         ],
         ..PLAIN
     },
@@ -127,10 +133,15 @@ pub(crate) const PLOTS: &[Plot] = &[
         path: "velocity",
         page: Page::Motion,
         curves: &[
-            curve(&["load.velocity"], "load", style::LOAD, WIDEST),
-            curve(&["motor.velocity"], "motor", style::MOTOR, WIDE),
-            curve(&["table.velocity"], "table", style::TABLE, THIN),
-            curve(&["velocity.reference", "setpoint.velocity"], "reference", style::REFERENCE, MIDDLE),
+            curve(&[Signal::LoadVelocity.name()], "load", style::LOAD, WIDEST),
+            curve(&[Signal::MotorVelocity.name()], "motor", style::MOTOR, WIDE),
+            curve(&[Signal::TableVelocity.name()], "table", style::TABLE, THIN),
+            curve(
+                &[Signal::VelocityReference.name(), Signal::SetpointVelocity.name()],
+                "reference",
+                style::REFERENCE,
+                MIDDLE,
+            ),
         ],
         ..PLAIN
     },
@@ -138,8 +149,8 @@ pub(crate) const PLOTS: &[Plot] = &[
         title: "Following error",
         path: "following_error",
         curves: &[
-            curve(&["following_error.load"], "load", style::LOAD, MIDDLE),
-            curve(&["following_error.motor"], "motor", style::MOTOR, MIDDLE),
+            curve(&[Signal::FollowingErrorLoad.name()], "load", style::LOAD, MIDDLE),
+            curve(&[Signal::FollowingErrorMotor.name()], "motor", style::MOTOR, MIDDLE),
         ],
         ..PLAIN
     },
@@ -148,7 +159,7 @@ pub(crate) const PLOTS: &[Plot] = &[
         path: "load_disturbance",
         held: true,
         needs_a_value: true,
-        curves: &[curve(&["disturbance.load"], "load", style::DISTURBANCE, MIDDLE)],
+        curves: &[curve(&[Signal::DisturbanceLoad.name()], "load", style::DISTURBANCE, MIDDLE)],
         ..PLAIN
     },
     Plot {
@@ -156,7 +167,7 @@ pub(crate) const PLOTS: &[Plot] = &[
         path: "motor_disturbance",
         held: true,
         needs_a_value: true,
-        curves: &[curve(&["disturbance.motor"], "motor", style::DISTURBANCE, MIDDLE)],
+        curves: &[curve(&[Signal::DisturbanceMotor.name()], "motor", style::DISTURBANCE, MIDDLE)],
         ..PLAIN
     },
     Plot {
@@ -164,8 +175,8 @@ pub(crate) const PLOTS: &[Plot] = &[
         linear_title: Some("Motor force"),
         path: "effort",
         curves: &[
-            curve(&["effort.motor"], "motor", style::MOTOR, WIDE),
-            curve(&["effort.reference"], "reference", style::REFERENCE, THIN),
+            curve(&[Signal::EffortMotor.name()], "motor", style::MOTOR, WIDE),
+            curve(&[Signal::EffortReference.name()], "reference", style::REFERENCE, THIN),
         ],
         ..PLAIN
     },
@@ -175,9 +186,9 @@ pub(crate) const PLOTS: &[Plot] = &[
         page: Page::Electrical,
         amplitude: true,
         curves: &[
-            curve(&["current.q"], "q", style::MOTOR, WIDE),
-            curve(&["current.d"], "d", style::AUXILIARY, MIDDLE),
-            curve(&["current.q_reference"], "q reference", style::REFERENCE, THIN),
+            curve(&[Signal::CurrentQ.name()], "q", style::MOTOR, WIDE),
+            curve(&[Signal::CurrentD.name()], "d", style::AUXILIARY, MIDDLE),
+            curve(&[Signal::CurrentQReference.name()], "q reference", style::REFERENCE, THIN),
         ],
         ..PLAIN
     },
@@ -185,7 +196,7 @@ pub(crate) const PLOTS: &[Plot] = &[
         title: "Output of the drive",
         path: "output",
         page: Page::Electrical,
-        curves: &[curve(&["command.output"], "output", style::MOTOR, MIDDLE)],
+        curves: &[curve(&[Signal::CommandOutput.name()], "output", style::MOTOR, MIDDLE)],
         ..PLAIN
     },
     // The way of the set-point: from the motion task over the bus to what the motor is to follow, and what the master hears.
@@ -196,10 +207,10 @@ pub(crate) const PLOTS: &[Plot] = &[
         headline: Headline::None,
         includes: &[],
         curves: &[
-            curve(&["setpoint.position"], "set-point", style::REFERENCE, THIN),
-            curve(&["reference.motor_position"], "motor reference", style::MOTOR, MIDDLE),
-            curve(&["task.position"], "motion task", style::TABLE, WIDE),
-            curve(&["bus.position"], "master reads", style::AUXILIARY, WIDEST),
+            curve(&[Signal::SetpointPosition.name()], "set-point", style::REFERENCE, THIN),
+            curve(&[Signal::ReferenceMotorPosition.name()], "motor reference", style::MOTOR, MIDDLE),
+            curve(&[Signal::TaskPosition.name()], "motion task", style::TABLE, WIDE),
+            curve(&[Signal::BusPosition.name()], "master reads", style::AUXILIARY, WIDEST),
         ],
         ..PLAIN
     },
@@ -209,8 +220,8 @@ pub(crate) const PLOTS: &[Plot] = &[
         derivative: Some(0),
         page: Page::SetPoint,
         curves: &[
-            curve(&["setpoint.velocity"], "set-point", style::REFERENCE, MIDDLE),
-            curve(&["task.velocity"], "motion task", style::TABLE, WIDE),
+            curve(&[Signal::SetpointVelocity.name()], "set-point", style::REFERENCE, MIDDLE),
+            curve(&[Signal::TaskVelocity.name()], "motion task", style::TABLE, WIDE),
         ],
         ..PLAIN
     },
@@ -219,7 +230,7 @@ pub(crate) const PLOTS: &[Plot] = &[
         path: "setpoint_acceleration",
         derivative: Some(1),
         page: Page::SetPoint,
-        curves: &[curve(&["setpoint.acceleration"], "acceleration", style::MOTOR, MIDDLE)],
+        curves: &[curve(&[Signal::SetpointAcceleration.name()], "acceleration", style::MOTOR, MIDDLE)],
         ..PLAIN
     },
     Plot {
@@ -228,7 +239,7 @@ pub(crate) const PLOTS: &[Plot] = &[
         held: true,
         derivative: Some(2),
         page: Page::SetPoint,
-        curves: &[curve(&["setpoint.jerk"], "jerk", style::TABLE, MIDDLE)],
+        curves: &[curve(&[Signal::SetpointJerk.name()], "jerk", style::TABLE, MIDDLE)],
         ..PLAIN
     },
     Plot {
@@ -237,7 +248,7 @@ pub(crate) const PLOTS: &[Plot] = &[
         held: true,
         derivative: Some(3),
         page: Page::SetPoint,
-        curves: &[curve(&["setpoint.snap"], "snap", style::AUXILIARY, MIDDLE)],
+        curves: &[curve(&[Signal::SetpointSnap.name()], "snap", style::AUXILIARY, MIDDLE)],
         ..PLAIN
     },
     Plot {
@@ -246,10 +257,10 @@ pub(crate) const PLOTS: &[Plot] = &[
         amplitude: true,
         page: Page::Electrical,
         curves: &[
-            curve(&["voltage.q"], "q", style::MOTOR, WIDE),
-            curve(&["voltage.d"], "d", style::AUXILIARY, WIDE),
-            curve(&["voltage.q_reference"], "q reference", style::REFERENCE, THIN),
-            curve(&["voltage.d_reference"], "d reference", style::DISTURBANCE, THIN),
+            curve(&[Signal::VoltageQ.name()], "q", style::MOTOR, WIDE),
+            curve(&[Signal::VoltageD.name()], "d", style::AUXILIARY, WIDE),
+            curve(&[Signal::VoltageQReference.name()], "q reference", style::REFERENCE, THIN),
+            curve(&[Signal::VoltageDReference.name()], "d reference", style::DISTURBANCE, THIN),
         ],
         ..PLAIN
     },
@@ -260,7 +271,7 @@ pub(crate) const PLOTS: &[Plot] = &[
         amplitude: true,
         page: Page::Electrical,
         curves: &[
-            curve(&["voltage.magnitude"], "applied", style::TABLE, MIDDLE),
+            curve(&[Signal::VoltageMagnitude.name()], "applied", style::TABLE, MIDDLE),
             curve(&["voltage.limit"], BOUND, style::LIMIT, THIN),
         ],
         ..PLAIN
@@ -270,12 +281,12 @@ pub(crate) const PLOTS: &[Plot] = &[
         path: "power",
         page: Page::Electrical,
         curves: &[
-            curve(&["power.electrical"], "electrical", style::MOTOR, WIDE),
-            curve(&["power.air_gap"], "air gap", style::TABLE, WIDEST),
-            curve(&["power.shaft"], "shaft", style::LOAD, THIN),
-            curve(&["power.copper"], "copper", style::DISTURBANCE, MIDDLE),
-            curve(&["power.stored"], "stored", style::AUXILIARY, THIN),
-            curve(&["power.residual"], "residual", style::REFERENCE, MIDDLE),
+            curve(&[Signal::PowerElectrical.name()], "electrical", style::MOTOR, WIDE),
+            curve(&[Signal::PowerAirGap.name()], "air gap", style::TABLE, WIDEST),
+            curve(&[Signal::PowerShaft.name()], "shaft", style::LOAD, THIN),
+            curve(&[Signal::PowerCopper.name()], "copper", style::DISTURBANCE, MIDDLE),
+            curve(&[Signal::PowerStored.name()], "stored", style::AUXILIARY, THIN),
+            curve(&[Signal::PowerResidual.name()], "residual", style::REFERENCE, MIDDLE),
         ],
         ..PLAIN
     },

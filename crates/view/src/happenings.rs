@@ -6,6 +6,7 @@ use crate::scale::{Scale, shown_unit};
 use crate::style;
 use rerun::{EntityPath, RecordingStream, RecordingStreamResult, TextLog, TimeColumn};
 use servobench_base::Severity;
+use servobench_signals::Signal;
 use servobench_trace::{Call, CallFate};
 
 /// Entities that were logged.
@@ -19,8 +20,8 @@ pub(crate) struct Happenings {
 
 /// Channel, its lane, and what it is.
 const DISTURBANCES: [(&str, &str, &str); 2] = [
-    ("disturbance.motor", "motor_disturbance", "disturbance on the motor"),
-    ("disturbance.load", "load_disturbance", "disturbance on the load"),
+    (Signal::DisturbanceMotor.name(), "motor_disturbance", "disturbance on the motor"),
+    (Signal::DisturbanceLoad.name(), "load_disturbance", "disturbance on the load"),
 ];
 
 impl Happenings {

@@ -8,6 +8,7 @@ use crate::series::{Role, Series, Values};
 use crate::style::{self, Rgb};
 use crate::unlisted::{self, Unlisted};
 use servobench_metrics::Name;
+use servobench_signals::Signal;
 use std::borrow::Cow;
 
 /// All plots that have at least one curve, in the order of the catalogue; the residual vibration after the errors, and at
@@ -213,13 +214,13 @@ fn allowed(plot: &Plot, series: &[Series<'_>], options: &ViewOptions) -> Vec<Bou
 }
 
 /// The channel whose magnitude is bounded when `metric` is.
-const fn bounded_channel(metric: Name) -> Option<&'static str> {
+const fn bounded_channel(metric: Name) -> Option<Signal> {
     match metric {
-        Name::FollowingErrorPeakLoad => Some("following_error.load"),
-        Name::FollowingErrorPeakMotor => Some("following_error.motor"),
-        Name::TorquePeak => Some("effort.motor"),
-        Name::CurrentPeak => Some("current.q"),
-        Name::VoltagePeak => Some("voltage.magnitude"),
+        Name::FollowingErrorPeakLoad => Some(Signal::FollowingErrorLoad),
+        Name::FollowingErrorPeakMotor => Some(Signal::FollowingErrorMotor),
+        Name::TorquePeak => Some(Signal::EffortMotor),
+        Name::CurrentPeak => Some(Signal::CurrentQ),
+        Name::VoltagePeak => Some(Signal::VoltageMagnitude),
         _ => None,
     }
 }

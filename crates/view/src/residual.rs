@@ -9,6 +9,7 @@ use crate::series::{Role, Series, Values};
 use crate::settling::{Settling, settling};
 use crate::style;
 use servobench_metrics::Name;
+use servobench_signals::Signal;
 
 /// First part of its entity paths.
 pub(crate) const PATH: &str = "residual_vibration";
@@ -18,7 +19,7 @@ pub(crate) fn plan<'a>(runs: &[Run<'a>], options: &ViewOptions) -> Option<Planne
     let (mut unit, mut series) = ("", Vec::new());
     let (mut marks, mut remarks) = (Vec::new(), Vec::new());
     for (index, run) in runs.iter().enumerate() {
-        let Some(channel) = run.first_of(&["load.position"]) else { continue };
+        let Some(channel) = run.first_of(&[Signal::LoadPosition.name()]) else { continue };
         let Some((from, target)) = run.after_the_last_move().or_else(|| {
             // Without a target, where the load is in the end.
             Some((options.residual_from?, *channel.values.last()?))

@@ -7,6 +7,7 @@ use crate::run::{Run, range};
 use crate::style::{self, Rgb};
 use rerun::{EntityPath, RecordingStream, RecordingStreamResult, TimeColumn, Transform3D, ViewCoordinates};
 use servobench_metrics::round_below;
+use servobench_signals::Signal;
 
 /// Largest number of poses per run: a screen shows far fewer.
 const POSES: usize = 4_000;
@@ -73,9 +74,9 @@ pub(crate) const NAMED: usize = 2;
 const SUBJECT: usize = 50;
 /// Largest enlargement that is chosen: a deflection that needs more is none to be looked at.
 const ENLARGED: f64 = 10_000.0;
-const REFERENCES: [&str; 2] = ["reference.position", "setpoint.position"];
+const REFERENCES: [&str; 2] = [Signal::ReferencePosition.name(), Signal::SetpointPosition.name()];
 /// Channels of the bodies, the motor's first.
-const BODIES: [&str; 3] = ["motor.position", "table.position", "load.position"];
+const BODIES: [&str; 3] = [Signal::MotorPosition.name(), Signal::TablePosition.name(), Signal::LoadPosition.name()];
 
 impl Scene {
     /// The scene of `runs`, of which `subject` says what they are; `None` when no position was recorded.
@@ -192,7 +193,7 @@ fn poses(run: &Run<'_>, index: usize, exaggeration: f64) -> Poses {
         bodies.push(Body { name, label, colour, ink, positions, actual });
     }
     let reference = reference(run).map(pick);
-    let force = recording.channel("disturbance.load").filter(|values| values.len() == recording.len()).map(pick);
+    let force = recording.channel(Signal::DisturbanceLoad).filter(|values| values.len() == recording.len()).map(pick);
     Poses { times: kept.iter().map(|index| recording.time_of(*index)).collect(), reference, force, bodies, name: None }
 }
 

@@ -1,6 +1,7 @@
 //! When the load is in its window for good after the last move.
 use crate::run::Run;
 use servobench_metrics::{Absence, Name, Question, measure};
+use servobench_signals::Signal;
 use servobench_trace::Recording;
 
 /// How the load settles after the last move.
@@ -16,7 +17,7 @@ pub(crate) enum Settling {
 pub(crate) fn settling(run: &Run<'_>, window: f64) -> Option<Settling> {
     let recording = run.recording;
     let last = recording.moves.iter().max_by(|one, two| one.end.total_cmp(&two.end))?;
-    let load = run.first_of(&["load.position"])?;
+    let load = run.first_of(&[Signal::LoadPosition.name()])?;
     // What the metric does not need would only take its time.
     let mut only = Recording::new(recording.about.clone(), recording.rate);
     (only.channels, only.moves) = (vec![load.clone()], vec![last.clone()]);

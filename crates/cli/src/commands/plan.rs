@@ -11,9 +11,9 @@ use crate::console::print;
 use crate::exit::{CliError, Exit};
 use crate::output::write_file;
 use arguments::Arguments;
+use servobench_base::Coordinate;
 use servobench_planner::{CommandCycle, Request};
 use servobench_report::{PlannedMove, ReportError};
-use servobench_scenario::Motion;
 use std::path::Path;
 
 /// Plans the move and prints, tabulates or draws it.
@@ -56,7 +56,7 @@ fn planned(args: &PlanArgs) -> Result<(PlannedMove, Option<f64>), CliError> {
         // Whatever is missing has been told.
         return Err(CliError::Input("the move is not described".into()));
     };
-    let unit = if motion == Some(Motion::Rotary) { "rad" } else { "m" };
+    let unit = motion.unwrap_or(Coordinate::Linear).unit();
     let planned = PlannedMove::new(Request { way, duration, filter, commands }, unit);
     let planned = planned.map_err(|error| CliError::Input(by_flags(&error.to_string())))?;
     let planned =

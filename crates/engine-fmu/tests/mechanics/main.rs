@@ -3,11 +3,12 @@ mod allocation;
 mod exchange;
 mod ports;
 
+use servobench_base::Coordinate;
 use servobench_engine_fmu::{FmuMechanics, InSi, Ports};
 use servobench_fmi::{Capabilities, LogLine, ModelDescription, Progress, Slave, SlaveError};
 use servobench_plant::{
-    Actuation, Body, Chain, Coordinate, Drive, DryFriction, Engine, Exact, Extrapolation, FmuBody, FmuFile, FmuMistake,
-    FmuModel, FmuPort, Input, Isolation, Link, Mechanics, MechanicsSetup, Model, SiUnit,
+    Actuation, Body, Chain, Drive, DryFriction, Engine, Exact, Extrapolation, FmuBody, FmuFile, FmuMistake, FmuModel,
+    FmuPort, Input, Isolation, Link, Mechanics, MechanicsSetup, Model, SiUnit,
 };
 
 /// Base tick (s).

@@ -2,7 +2,8 @@
 use crate::NAME;
 use crate::simulation::Data;
 use mujoco_rs::prelude::{MjModel, MjtBias, MjtDisableBit, MjtDyn, MjtGain, MjtJoint, MjtObjBase, MjtTrn};
-use servobench_plant::{Coordinate, LoadCoordinate, MechanicsError, MjcfModel, PosedJoint, Refusal, RefusedAt};
+use servobench_base::Coordinate;
+use servobench_plant::{LoadCoordinate, MechanicsError, MjcfModel, PosedJoint, Refusal, RefusedAt};
 use std::iter::successors;
 
 /// What the axis is made of.

@@ -1,8 +1,9 @@
 //! Chains behind a prescribed base.
 use super::{STEP, body, held_omega, motion, mujoco, order, ticks, two_mass};
 use nalgebra::DMatrix;
+use servobench_base::Coordinate;
 use servobench_base::Setpoint;
-use servobench_plant::{Body, Chain, Coordinate, Drive, Link};
+use servobench_plant::{Body, Chain, Drive, Link};
 use std::f64::consts::TAU;
 
 /// A base that starts anywhere and has all derivatives.

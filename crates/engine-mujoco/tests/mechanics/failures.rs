@@ -1,8 +1,9 @@
 //! What goes wrong is said, and what goes right goes the same way twice.
 use super::{STEP, body, efforts, motion, mujoco, setup, two_mass, unchecked};
+use servobench_base::Coordinate;
 use servobench_base::Setpoint;
 use servobench_engine_mujoco::Mujoco;
-use servobench_plant::{Actuation, Chain, Coordinate, Drive, Engine as _, Input, Link, Mechanics, MechanicsError};
+use servobench_plant::{Actuation, Chain, Drive, Engine as _, Input, Link, Mechanics, MechanicsError};
 use std::path::Path;
 use std::process::Command;
 

@@ -1,8 +1,9 @@
 //! Sticking and sliding.
 use super::{STEP, body, efforts, motion, mujoco, setup, ticks};
+use servobench_base::Coordinate;
 use servobench_base::Setpoint;
 use servobench_engine_mujoco::Mujoco;
-use servobench_plant::{Body, Chain, Coordinate, Drive, DryFriction, Engine as _, Exact, Input, Link};
+use servobench_plant::{Body, Chain, Drive, DryFriction, Engine as _, Exact, Input, Link};
 
 const DRY: DryFriction = DryFriction { coulomb: 20.0, breakaway: 30.0, stribeck_velocity: 2e-3 };
 

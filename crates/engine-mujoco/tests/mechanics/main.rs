@@ -6,10 +6,11 @@ mod friction;
 mod mjcf;
 mod oscillator;
 
+use servobench_base::Coordinate;
 use servobench_engine_mujoco::Mujoco;
 use servobench_plant::{
-    Actuation, Body, BodyState, Chain, Coordinate, Drive, DryFriction, Engine as _, Input, Link, Mechanics,
-    MechanicsSetup, MjcfModel, Model, chain_to_mjcf,
+    Actuation, Body, BodyState, Chain, Drive, DryFriction, Engine as _, Input, Link, Mechanics, MechanicsSetup,
+    MjcfModel, Model, chain_to_mjcf,
 };
 use std::f64::consts::TAU;
 

@@ -1,10 +1,11 @@
 //! A user's own MJCF files.
 use super::{STEP, efforts, free_omega, motion, ticks};
+use servobench_base::Coordinate;
 use servobench_base::Setpoint;
 use servobench_engine_mujoco::Mujoco;
 use servobench_plant::{
-    BodyState, Coordinate, Drive, Engine as _, Mechanics, MechanicsError, MechanicsSetup, MjcfAxis, MjcfModel, Model,
-    Refusal, RefusedAt,
+    BodyState, Drive, Engine as _, Mechanics, MechanicsError, MechanicsSetup, MjcfAxis, MjcfModel, Model, Refusal,
+    RefusedAt,
 };
 use std::fs;
 use std::path::Path;

@@ -1,10 +1,11 @@
 //! Free and forced motion of chains.
 use super::{STEP, efforts, free_omega, held_omega, motion, mujoco, order, setup, ticks, two_mass, unchecked};
 use nalgebra::DMatrix;
+use servobench_base::Coordinate;
 use servobench_base::Setpoint;
 use servobench_engine_mujoco::Mujoco;
 use servobench_plant::{
-    Body, BodyState, Chain, Coordinate, Distortion, Drive, DryFriction, Engine as _, Input, Integrator, Link, Mechanics,
+    Body, BodyState, Chain, Distortion, Drive, DryFriction, Engine as _, Input, Integrator, Link, Mechanics,
 };
 use std::f64::consts::TAU;
 

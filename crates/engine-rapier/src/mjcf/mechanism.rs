@@ -10,7 +10,8 @@ use mjcf_rs::glam::{DQuat, DVec3};
 use rapier3d_f64::math::Pose;
 use rapier3d_f64::prelude::{MassProperties, Vector};
 use roxmltree::{Document, Node};
-use servobench_plant::{Coordinate, LoadCoordinate, MjcfModel, PosedJoint, Refusal, RefusedAt};
+use servobench_base::Coordinate;
+use servobench_plant::{LoadCoordinate, MjcfModel, PosedJoint, Refusal, RefusedAt};
 use std::path::Path;
 
 /// A mechanism.

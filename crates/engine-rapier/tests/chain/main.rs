@@ -8,11 +8,11 @@ mod refusals;
 mod rotation;
 mod two_mass;
 
+use servobench_base::Coordinate;
 use servobench_base::Setpoint;
 use servobench_engine_rapier::Rapier;
 use servobench_plant::{
-    Actuation, Body, BodyState, Chain, Coordinate, Drive, DryFriction, Engine, Input, Link, Mechanics, MechanicsSetup,
-    Model,
+    Actuation, Body, BodyState, Chain, Drive, DryFriction, Engine, Input, Link, Mechanics, MechanicsSetup, Model,
 };
 
 /// Tick length (s): the 16 kHz of the project's speed and accuracy bars.

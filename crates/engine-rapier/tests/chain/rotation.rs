@@ -1,6 +1,7 @@
 //! Many revolutions.
 use super::{H, body, build, effort, state};
-use servobench_plant::{Body, Chain, Coordinate, Drive, Link};
+use servobench_base::Coordinate;
+use servobench_plant::{Body, Chain, Drive, Link};
 use std::f64::consts::TAU;
 
 /// 3000 rpm (rad/s).

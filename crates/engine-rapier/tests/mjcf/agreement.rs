@@ -1,9 +1,8 @@
 //! Agreement with chains, which are simulated by other code of this engine.
 use super::{H, MjcfModel, effort, file, try_build};
+use servobench_base::Coordinate;
 use servobench_engine_rapier::Rapier;
-use servobench_plant::{
-    Body, Chain, Coordinate, Drive, DryFriction, Engine, Link, MechanicsSetup, Model, chain_to_mjcf,
-};
+use servobench_plant::{Body, Chain, Drive, DryFriction, Engine, Link, MechanicsSetup, Model, chain_to_mjcf};
 
 /// A servo motor on a ball screw of 10 mm lead, a table and a flexible load.
 fn feed_axis() -> Chain {

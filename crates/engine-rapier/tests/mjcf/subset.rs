@@ -123,7 +123,8 @@ fn what_only_looks_good_or_measures_is_let_in() {
 
 #[test]
 fn the_mjcf_of_a_chain_is_in_the_subset() {
-    use servobench_plant::{Body, Chain, Coordinate, DryFriction, Link};
+    use servobench_base::Coordinate;
+    use servobench_plant::{Body, Chain, DryFriction, Link};
     let body = Body {
         name: "m",
         coordinate: Coordinate::Rotary,

@@ -7,6 +7,7 @@ use super::Rules;
 use super::rules::Driven;
 use crate::quantity::Quantity;
 use crate::span::{Phase, phases};
+use servobench_signals::Signal;
 use servobench_trace::{Ending, Recording};
 
 /// The default window is the distance of the move by this.
@@ -30,8 +31,8 @@ pub fn arrival_window(distance: f64, increment: f64) -> f64 {
 /// Why targets are not reached; `None` where no move ends at a target.
 pub(super) fn broken(recording: &Recording, rules: &Rules<'_>) -> Option<Vec<String>> {
     let (channel, body) = match rules.driven {
-        Driven::ByLoops => ("load.position", "load"),
-        Driven::Exactly => ("motor.position", "motor"),
+        Driven::ByLoops => (Signal::LoadPosition, "load"),
+        Driven::Exactly => (Signal::MotorPosition, "motor"),
         Driven::Not => return None,
     };
     let phases = phases(recording);
@@ -124,8 +125,8 @@ mod tests {
     /// One move from 0 to 0.2 m in 0.5 s, of 1 s recorded at 1 kHz; the load is at `load(t)`.
     fn one_move(load: impl Fn(f64) -> f64) -> Recording {
         Build::new(1000, 1001)
-            .channel("load.position", "m", load)
-            .channel("motor.position", "m", |_| 0.2)
+            .channel(Signal::LoadPosition, "m", load)
+            .channel(Signal::MotorPosition, "m", |_| 0.2)
             .moves([planned(0.0, 0.5, 0.0, 0.2).made()])
             .finish()
     }
@@ -191,14 +192,14 @@ mod tests {
     #[test]
     fn a_run_that_ends_before_its_move_does_not_arrive() {
         let recording = Build::new(1000, 401)
-            .channel("load.position", "m", |_| 0.2)
+            .channel(Signal::LoadPosition, "m", |_| 0.2)
             .moves([planned(0.0, 0.5, 0.0, 0.2).made()])
             .finish();
         let found = broken(&recording, &rules()).unwrap();
         assert_eq!(found, ["the run ends at 400 ms, before `move to 0.2 m` does at 500 ms"]);
         // Its end may lie on the last row.
         let recording = Build::new(1000, 501)
-            .channel("load.position", "m", |_| 0.2)
+            .channel(Signal::LoadPosition, "m", |_| 0.2)
             .moves([planned(0.0, 0.5, 0.0, 0.2).made()])
             .finish();
         assert_eq!(broken(&recording, &rules()).unwrap(), [""; 0]);
@@ -210,7 +211,7 @@ mod tests {
         let recording = |ending, gap: f64| {
             let first = Move { ending, ..planned(0.0, 0.3, 0.0, 0.9).made() };
             Build::new(1000, 1001)
-                .channel("load.position", "m", |_| 0.2)
+                .channel(Signal::LoadPosition, "m", |_| 0.2)
                 .moves([first, planned(0.3 + gap, 0.6, 0.9, 0.2).made()])
                 .finish()
         };
@@ -241,8 +242,9 @@ mod tests {
 
     #[test]
     fn what_is_not_recorded_does_not_pass() {
-        let recording =
-            Build::new(1000, 1001).channel("motor.position", "m", |_| 0.2).moves([planned(0.0, 0.5, 0.0, 0.2).made()]);
+        let recording = Build::new(1000, 1001)
+            .channel(Signal::MotorPosition, "m", |_| 0.2)
+            .moves([planned(0.0, 0.5, 0.0, 0.2).made()]);
         assert_eq!(broken(&recording.finish(), &rules()).unwrap().len(), 1);
     }
 }

@@ -3,6 +3,7 @@
 //! A set-point that accelerates and brakes asks for one way from limit to limit at each change of the sign of its acceleration, and a
 //! sine that disturbs the axis at each change of its own. What is far smaller than what is there anyway asks for nothing: signs of
 //! the roundings of an interpolation change from tick to tick, and a millinewton sends no axis from limit to limit.
+use servobench_signals::Signal;
 use servobench_trace::Recording;
 use std::ops::Range;
 
@@ -13,7 +14,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// Ways from limit to limit that set-point and disturbances ask for in `rows`; `transmission` is axis per motor coordinate.
 pub(super) fn reversals_asked_for(recording: &Recording, rows: &Range<usize>, transmission: f64) -> usize {
-    let accelerations = recording.channel("setpoint.acceleration").map_or(0, |values| {
+    let accelerations = recording.channel(Signal::SetpointAcceleration).map_or(0, |values| {
         let least = (SHARE * largest(&values[rows.clone()])).max(ROUNDING * largest(values));
         sign_changes(values[rows.clone()].iter().copied().filter(|a| a.abs() >= least))
     });
@@ -46,13 +47,14 @@ fn disturbances<'a>(
     transmission: f64,
 ) -> impl Iterator<Item = (&'a [f64], f64)> {
     let rows = rows.clone();
-    let both = [("disturbance.motor", 1.0), ("disturbance.load", transmission.abs())];
+    let both = [(Signal::DisturbanceMotor, 1.0), (Signal::DisturbanceLoad, transmission.abs())];
     both.into_iter().filter_map(move |(name, scale)| Some((recording.channel(name)?.get(rows.clone())?, scale)))
 }
 
 /// The largest effort of the motor in `rows`, as the drive asks for it or as it is.
 fn effort(recording: &Recording, rows: &Range<usize>) -> f64 {
-    let channels = ["effort.reference", "effort.motor"].into_iter().filter_map(|name| recording.channel(name));
+    let channels =
+        [Signal::EffortReference, Signal::EffortMotor].into_iter().filter_map(|name| recording.channel(name));
     channels.map(|values| largest(&values[rows.clone()])).fold(0.0, f64::max)
 }
 
@@ -69,9 +71,9 @@ mod tests {
     /// A second at 1 kHz.
     fn asked(acceleration: impl Fn(f64) -> f64, on_load: impl Fn(f64) -> f64, transmission: f64) -> (usize, bool) {
         let recording = Build::new(1000, 1000)
-            .channel("setpoint.acceleration", "m/s²", acceleration)
-            .channel("disturbance.load", "N", on_load)
-            .channel("effort.reference", "N m", |t| 3.0 * (TAU * 50.0 * t).cos())
+            .channel(Signal::SetpointAcceleration, "m/s²", acceleration)
+            .channel(Signal::DisturbanceLoad, "N", on_load)
+            .channel(Signal::EffortReference, "N m", |t| 3.0 * (TAU * 50.0 * t).cos())
             .finish();
         (reversals_asked_for(&recording, &(0..1000), transmission), is_disturbed(&recording, &(0..1000), transmission))
     }

@@ -2,6 +2,7 @@
 use super::Rules;
 use super::rules::{Driven, EarlyEnd};
 use crate::quantity::Quantity;
+use servobench_signals::Signal;
 use servobench_trace::Recording;
 
 /// How many times the range of the program an axis may leave it by.
@@ -14,12 +15,12 @@ pub(super) fn broken(recording: &Recording, rules: &Rules<'_>) -> Vec<String> {
     }
     let unit = recording.about.axis_unit.as_str();
     let range = range(recording, rules);
-    let outside = ["motor.position", "load.position"].into_iter().find_map(|channel| {
+    let outside = [Signal::MotorPosition, Signal::LoadPosition].into_iter().find_map(|channel| {
         let positions = recording.channel(channel)?;
         let is_outside = |x: f64| !x.is_finite() || range.is_some_and(|range| range.is_left_by(x));
         let row = positions.iter().position(|x| is_outside(*x))?;
         let (x, time) = (Quantity::new(positions[row], unit), Quantity::new(recording.time_of(row), "s"));
-        let body = channel.trim_end_matches(".position");
+        let body = channel.name().trim_end_matches(".position");
         Some(match range {
             Some(range) if positions[row].is_finite() => format!(
                 "the {body} is at {x} at {time}: more than {TIMES_THE_RANGE} times the range of the program, {}, outside of it",
@@ -51,9 +52,10 @@ fn range(recording: &Recording, rules: &Rules<'_>) -> Option<Range> {
     if rules.driven == Driven::Not {
         return None;
     }
-    let start =
-        ["load.position", "motor.position"].into_iter().filter_map(|name| recording.channel(name)?.first().copied());
-    let all = recording.channel("setpoint.position")?.iter().copied().chain(start);
+    let start = [Signal::LoadPosition, Signal::MotorPosition]
+        .into_iter()
+        .filter_map(|name| recording.channel(name)?.first().copied());
+    let all = recording.channel(Signal::SetpointPosition)?.iter().copied().chain(start);
     let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
     let moves = recording.moves.iter().any(|made| made.peaks[0] > 0.0);
     (moves && high > low).then_some(Range { low, high })
@@ -68,8 +70,8 @@ mod tests {
     /// A move over 0.2 m, of which the load is at `load(t)`.
     fn recording(load: impl Fn(f64) -> f64) -> Recording {
         Build::new(1000, 1001)
-            .channel("setpoint.position", "m", |t| 0.2 * t.min(0.5) / 0.5)
-            .channel("load.position", "m", load)
+            .channel(Signal::SetpointPosition, "m", |t| 0.2 * t.min(0.5) / 0.5)
+            .channel(Signal::LoadPosition, "m", load)
             .moves([planned(0.0, 0.5, 0.0, 0.2).made()])
             .finish()
     }

@@ -14,6 +14,7 @@ use super::asked::{is_disturbed, reversals_asked_for, sign_changes};
 use super::rules::{Driven, LinearLoop};
 use crate::quantity::Quantity;
 use crate::span::{Phase, phases};
+use servobench_signals::Signal;
 use servobench_trace::{LimitReversals, Recording};
 use std::ops::Range;
 
@@ -91,8 +92,8 @@ fn at_rest(recording: &Recording) -> Vec<Range<usize>> {
 
 /// An oscillation that grows, in words.
 fn growth(recording: &Recording, rules: &Rules<'_>) -> Option<String> {
-    let error = recording.channel("following_error.motor")?;
-    let largest = recording.channel("motor.position")?.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+    let error = recording.channel(Signal::FollowingErrorMotor)?;
+    let largest = recording.channel(Signal::MotorPosition)?.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
     let floor = (INCREMENTS * rules.increment).max(ROUNDING * largest);
     let is_growing =
         |rows: &Range<usize>| !is_disturbed(recording, rows, rules.transmission) && grows(&error[rows.clone()], floor);
@@ -137,8 +138,8 @@ mod tests {
     /// A second at 1 kHz in which the motor is off by `error(t)`.
     fn recording(error: impl Fn(f64) -> f64) -> Recording {
         Build::new(1000, 1001)
-            .channel("following_error.motor", "m", error)
-            .channel("motor.position", "m", |_| 1.0)
+            .channel(Signal::FollowingErrorMotor, "m", error)
+            .channel(Signal::MotorPosition, "m", |_| 1.0)
             .finish()
     }
 
@@ -180,7 +181,7 @@ mod tests {
     }
 
     fn reversing(times: usize, acceleration: impl Fn(f64) -> f64) -> Recording {
-        let mut recording = Build::new(1000, 1001).channel("setpoint.acceleration", "m/s²", acceleration).finish();
+        let mut recording = Build::new(1000, 1001).channel(Signal::SetpointAcceleration, "m/s²", acceleration).finish();
         let times = (0..times).map(|k| 0.1 + 0.01 * k as f64).collect();
         recording.limit_reversals = vec![LimitReversals { limit: "effort limit".into(), times }];
         recording

@@ -1,15 +1,16 @@
 //! Velocity and position over time.
 use super::window::Window;
 use crate::drawing::{Axis, COLOURS, about_four, unit_at, with_zero};
+use servobench_signals::Signal;
 use servobench_trace::{Channel, Recording, envelope};
 use std::fmt::Write;
 
 /// Height of a panel (pixels).
 pub(super) const HEIGHT: f64 = 104.0;
 /// The panels from top to bottom: name, colour, set-point, what the load does.
-const PANELS: [(&str, &str, &str, &str); 2] = [
-    ("velocity", COLOURS[1], "setpoint.velocity", "load.velocity"),
-    ("position", COLOURS[0], "setpoint.position", "load.position"),
+const PANELS: [(&str, &str, Signal, Signal); 2] = [
+    ("velocity", COLOURS[1], Signal::SetpointVelocity, Signal::LoadVelocity),
+    ("position", COLOURS[0], Signal::SetpointPosition, Signal::LoadPosition),
 ];
 /// Values from here on are no motion, but a loop that diverged.
 const DIVERGED: f64 = 1e100;
@@ -41,11 +42,13 @@ pub(super) struct Line {
 pub(super) fn panels(recording: &Recording, window: Window, width: f64) -> Vec<Panel<'_>> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some thousand pixels")]
     let buckets = width as usize;
-    let panel = |(name, colour, setpoint, load): (&'static str, &'static str, &str, &str)| {
+    let panel = |(name, colour, setpoint, load): (&'static str, &'static str, Signal, Signal)| {
         let mut unit = "";
         let mut lines = Vec::new();
-        for (channel, label, class) in [(setpoint, "set-point", "c"), (load, "load", "a")] {
-            let Some(channel) = recording.channels.iter().find(|known| known.spec.name == channel) else { continue };
+        for (signal, label, class) in [(setpoint, "set-point", "c"), (load, "load", "a")] {
+            let Some(channel) = recording.channels.iter().find(|known| known.spec.name == signal.name()) else {
+                continue;
+            };
             let points = points(recording, channel, window, buckets);
             if points.iter().any(|(_, value)| is_value(*value)) {
                 unit = &channel.spec.unit;

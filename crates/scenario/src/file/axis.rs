@@ -1,18 +1,11 @@
 //! `[axis]`: the mechanics.
 use super::fmu::Fmu;
-use crate::field::{any, not_negative, positive};
-use crate::physical::Kind::{Axis as InAxis, Motor as InMotor, Plain};
-use crate::physical::{EFFORT, INERTIA, LEAD, MASS, POSITION, RATIO, STIFFNESS, VELOCITY, VISCOUS};
-use crate::scenario::Motion;
-use crate::simple::Choice;
+use crate::simple::OneOf;
 use crate::table::table;
-
-impl Choice for Motion {
-    const ALL: &'static [(&'static str, Self, &'static str)] = &[
-        ("linear", Self::Linear, "the load moves along a line: m, N, kg"),
-        ("rotary", Self::Rotary, "the load turns: rad, N·m, kg·m²"),
-    ];
-}
+use servobench_base::Coordinate;
+use servobench_config::Kind::{Axis as InAxis, Motor as InMotor, Plain};
+use servobench_config::quantities::{EFFORT, INERTIA, LEAD, MASS, POSITION, RATIO, STIFFNESS, VELOCITY, VISCOUS};
+use servobench_config::{any, not_negative, positive};
 
 table! {
     /// The mechanics: up to three bodies in a row, `motor_side` – `table` – `load`, or a user's own MJCF file.
@@ -22,7 +15,7 @@ table! {
         /// Where the values come from.
         source: String = (),
         /// Whether the load moves along a line or turns.
-        motion: Motion = (),
+        motion: Coordinate = OneOf,
         /// Travel per revolution of a screw, pinion or pulley. Without it a linear axis has a linear motor.
         lead: f64 = positive(Plain(&LEAD), "10 mm"),
         /// Revolutions of the motor per revolution behind the gear; 1 unless given.

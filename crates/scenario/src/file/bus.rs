@@ -1,13 +1,14 @@
 //! `[bus]`: the fieldbus between the motion task and the drive.
-use crate::field::{not_negative, positive};
 use crate::list::Many;
-use crate::physical::Kind::{Axis as InAxis, Plain};
-use crate::physical::{POSITION, POSITION_GAIN, TIME};
 use crate::scenario::{
     BusMode, DriveInterpolation, EffortFeedforward, InterpolationMode, Sequencing, TrajectoryBuffer,
 };
-use crate::simple::Choice;
+use crate::simple::OneOf;
 use crate::table::table;
+use servobench_config::Choice;
+use servobench_config::Kind::{Axis as InAxis, Plain};
+use servobench_config::quantities::{POSITION, POSITION_GAIN, TIME};
+use servobench_config::{not_negative, positive};
 
 impl Choice for BusMode {
     const ALL: &'static [(&'static str, Self, &'static str)] = &[
@@ -93,26 +94,26 @@ table! {
         /// Cycle of the bus, a whole number of base ticks.
         cycle: f64 = positive(Plain(&TIME), "1 ms"),
         /// Mode of operation in which the axis moves; "csp" unless given.
-        mode: BusMode = (),
+        mode: BusMode = OneOf,
         /// Cycle of the motion task, with `[[call]]` of the PLC, a whole number of bus cycles; one unless given.
         motion_cycle: f64 = positive(Plain(&TIME), "4 ms"),
         /// How the master fills the bus cycles between two of the motion task's; "cubic" unless given.
-        interpolation: InterpolationMode = (),
+        interpolation: InterpolationMode = OneOf,
         /// How the drive fills the ticks between two frames; "linear" unless given.
-        drive_interpolation: DriveInterpolation = (),
+        drive_interpolation: DriveInterpolation = OneOf,
         /// How points get into the buffer of the drive, with the mode "ip"; "2010h" unless given.
-        trajectory_buffer: TrajectoryBuffer = (),
+        trajectory_buffer: TrajectoryBuffer = OneOf,
         /// Bus cycles from the sampling of a frame to its effect; 1 unless given.
         delay: u32 = 0..=15,
         /// Whether the velocity offset (60B1h) carries the velocity of the set-point; it does not unless given.
         velocity_offset: bool = (),
         /// Model of the torque or force that the torque offset (60B2h) carries, by the drive's `estimate`; "off" unless given.
-        effort_offset: EffortFeedforward = (),
+        effort_offset: EffortFeedforward = OneOf,
         /// How late a command of the motion task may come without being predicted, a whole number of base ticks and two of the
         /// task's cycles at most; it makes the way to the drive longer. None unless given.
         margin: f64 = positive(Plain(&TIME), "1 ms"),
         /// How the master brings the drive to power; "strict" unless given.
-        sequencing: Sequencing = (),
+        sequencing: Sequencing = OneOf,
         /// How long the master waits for the drive; 0.5 s unless given.
         drive_timeout: f64 = positive(Plain(&TIME), "0.5 s"),
         /// Proportional gain of the master's position loop, with "csv".
@@ -157,7 +158,7 @@ table! {
     /// else lasts to the end of the run.
     pub(crate) struct BusFault requires ["kind"] {
         /// What goes wrong.
-        kind: FaultName = (),
+        kind: FaultName = OneOf,
         /// Start: from the first cycle that is not before it; 0 unless given.
         start: f64 = not_negative(Plain(&TIME), "0.5 s"),
         /// How many cycles it concerns.

@@ -1,16 +1,18 @@
 //! `[drive]`: the firmware.
-use crate::field::{Either, EitherMeasure, any, not_negative, positive};
+use crate::field::{Either, EitherMeasure};
 use crate::list::{AutoTime, Share};
 use crate::object_table::ObjectTable;
-use crate::physical::Kind::{Axis as InAxis, Motor as InMotor, Plain};
-use crate::physical::{
+use crate::scenario::EffortFeedforward;
+use crate::simple::OneOf;
+use crate::table::table;
+use servobench_base::Rate;
+use servobench_config::Choice;
+use servobench_config::Kind::{Axis as InAxis, Motor as InMotor, Plain};
+use servobench_config::quantities::{
     BANDWIDTH, CURRENT, CURRENT_GAIN, EFFORT, FLUX_LINKAGE, FORCE, INDUCTANCE, INERTIAL, LEAD, POSITION, POSITION_GAIN,
     RATIO, RESISTANCE, SOURCE_GAIN, STIFFNESS, TIME, TORQUE, VISCOUS, VOLT_GAIN, VOLTAGE,
 };
-use crate::scenario::EffortFeedforward;
-use crate::simple::Choice;
-use crate::table::table;
-use servobench_base::Rate;
+use servobench_config::{any, not_negative, positive};
 
 /// Which encoder closes the position loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,7 +68,7 @@ table! {
         /// Largest force that the drive asks for, with a linear motor.
         max_force: f64 = positive(Plain(&FORCE), "300 N"),
         /// Encoder that closes the position loop; the motor's unless given.
-        position_feedback: FeedbackEncoder = (),
+        position_feedback: FeedbackEncoder = OneOf,
         /// Current loop of a synchronous motor.
         current: Current = (),
         /// Velocity loop.
@@ -112,7 +114,7 @@ table! {
         /// Task rate; it divides the rate of the current loop, or the base rate where there is none.
         rate: Rate = "8 kHz",
         /// P or PI; PI unless given.
-        kind: VelocityKind = (),
+        kind: VelocityKind = OneOf,
         /// Closed-loop bandwidth ω, from which the gain follows: the estimated inertia times ω.
         bandwidth: f64 = positive(Plain(&BANDWIDTH), "100 Hz"),
         /// Proportional gain instead of the bandwidth: torque or force per velocity, or volts per velocity of an ideal
@@ -146,7 +148,7 @@ table! {
         /// cycle of the velocity loop; it does unless given. `false`: a staircase, which costs torque ripple.
         interpolate: bool = (),
         /// Model of the force or torque that is added; "off" unless given.
-        effort: EffortFeedforward = (),
+        effort: EffortFeedforward = OneOf,
         /// Whether estimated Coulomb friction and bias are added too; they are not unless given.
         friction: bool = (),
         /// How long the reference waits for the feedforward path; "auto", as long as that path takes, unless given.

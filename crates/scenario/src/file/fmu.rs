@@ -1,11 +1,12 @@
 //! `[axis.fmu]`, `[[fmu]]` and `[coupling]`: parts that somebody else simulates.
-use crate::field::positive;
 use crate::name_table::{SignalTable, StartTable};
-use crate::physical::Kind::Plain;
-use crate::physical::{RATIO, TIME};
 use crate::scenario::{CouplingMethod, Isolation};
-use crate::simple::Choice;
+use crate::simple::OneOf;
 use crate::table::table;
+use servobench_config::Choice;
+use servobench_config::Kind::Plain;
+use servobench_config::positive;
+use servobench_config::quantities::{RATIO, TIME};
 
 impl Choice for Isolation {
     const ALL: &'static [(&'static str, Self, &'static str)] = &[
@@ -32,7 +33,7 @@ table! {
         /// From exchange to exchange, a whole number of base ticks; one tick, or the step of `[coupling]`, unless given.
         step: f64 = positive(Plain(&TIME), "1 ms"),
         /// Where it runs; "process" unless given.
-        isolation: Isolation = (),
+        isolation: Isolation = OneOf,
         /// Whether the event mode of an FMU of FMI 3.0 is used; if it has one, it is unless this is `false`: then the FMU deals with
         /// events by itself.
         event_mode: bool = (),
@@ -59,7 +60,7 @@ table! {
         /// From exchange to exchange, a whole number of base ticks; one tick unless given.
         step: f64 = positive(Plain(&TIME), "0.5 ms"),
         /// Who steps when; "gauss-seidel" in the order of the file, the axis last, unless given.
-        method: CouplingMethod = (),
+        method: CouplingMethod = OneOf,
         /// Order with which inputs go on within a step; 0 unless given: they are held.
         extrapolation: u32 = 0..=2,
         /// With "iterated": how well inputs and outputs agree, relative to their size; 1e-9 unless given.

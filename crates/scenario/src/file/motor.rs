@@ -1,12 +1,14 @@
 //! `[motor]`: what moves the axis.
-use crate::field::{Either, EitherMeasure, positive};
-use crate::physical::Kind::{Motor as InMotor, Plain};
-use crate::physical::{
+use crate::field::{Either, EitherMeasure};
+use crate::simple::OneOf;
+use crate::table::table;
+use servobench_config::Choice;
+use servobench_config::Kind::{Motor as InMotor, Plain};
+use servobench_config::positive;
+use servobench_config::quantities::{
     BACK_EMF, CURRENT, EFFORT, FLUX_LINKAGE, FORCE_CONSTANT, INDUCTANCE, INERTIA, MASS, POSITION, RESISTANCE,
     SOURCE_GAIN, TORQUE_CONSTANT, VOLTAGE,
 };
-use crate::simple::Choice;
-use crate::table::table;
 
 /// What kind of motor it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,7 +38,7 @@ table! {
         /// Where the values come from.
         source: String = (),
         /// What kind of motor it is.
-        kind: MotorKind = (),
+        kind: MotorKind = OneOf,
         /// Pole pairs p of a motor that turns.
         pole_pairs: u32 = 1..=1000,
         /// Distance τ_p from a north pole to the next south pole of a linear motor, half an electrical period. Catalogues

@@ -1,14 +1,15 @@
 //! `[plc]` and `[[call]]`: the PLC program.
 use super::setpoint::TableOfPoints;
 use crate::block::BlockName;
-use crate::field::{any, not_negative, positive};
 use crate::list::Many;
-use crate::physical::Kind::{Axis as InAxis, Motor as InMotor, Plain};
-use crate::physical::{ACCELERATION, EFFORT, EFFORT_RATE, JERK, POSITION, RATIO, SNAP, TIME, VELOCITY};
 use crate::scenario::{BufferMode, Direction};
-use crate::simple::Choice;
+use crate::simple::OneOf;
 use crate::table::table;
 use crate::when::When;
+use servobench_config::Choice;
+use servobench_config::Kind::{Axis as InAxis, Motor as InMotor, Plain};
+use servobench_config::quantities::{ACCELERATION, EFFORT, EFFORT_RATE, JERK, POSITION, RATIO, SNAP, TIME, VELOCITY};
+use servobench_config::{any, not_negative, positive};
 
 impl Choice for BufferMode {
     const ALL: &'static [(&'static str, Self, &'static str)] = &[
@@ -79,9 +80,9 @@ table! {
         snap: f64 = positive(InAxis(&SNAP), "1000 m/s4"),
         /// Which way the axis goes. Of a move to a position on a modulo axis, "shortest" unless given; otherwise "positive", and
         /// a negative velocity or torque goes the other way.
-        direction: Direction = (),
+        direction: Direction = OneOf,
         /// What becomes of the motion under way; "aborting" unless given.
-        buffer_mode: BufferMode = (),
+        buffer_mode: BufferMode = OneOf,
         /// Whether `updates` count while `Execute` is TRUE; they do not unless given.
         continuous_update: bool = (),
         /// Torque, of a linear motor the force.
@@ -145,7 +146,7 @@ table! {
         /// Largest snap.
         snap: f64 = positive(InAxis(&SNAP), "1000 m/s4"),
         /// Which way the axis goes.
-        direction: Direction = (),
+        direction: Direction = OneOf,
         /// Torque, of a linear motor the force.
         torque: f64 = any(InMotor(&EFFORT), "2 Nm"),
         /// Largest change of the torque.

@@ -1,13 +1,14 @@
 //! `[[program]]` and `[[disturbance]]`: what happens.
 use super::setpoint::{Rockwell, Shaper, TableOfPoints};
-use crate::field::{any, not_negative, positive};
 use crate::limit_table::LimitTable;
 use crate::list::Many;
-use crate::physical::Kind::{Axis as InAxis, Plain};
-use crate::physical::{ACCELERATION, FORCE, FREQUENCY, JERK, POSITION, SNAP, TIME, TORQUE, VELOCITY};
 use crate::scenario::{DisturbedBody, Execution, Method, PlanEffort, Sampling};
-use crate::simple::Choice;
+use crate::simple::OneOf;
 use crate::table::table;
+use servobench_config::Choice;
+use servobench_config::Kind::{Axis as InAxis, Plain};
+use servobench_config::quantities::{ACCELERATION, FORCE, FREQUENCY, JERK, POSITION, SNAP, TIME, TORQUE, VELOCITY};
+use servobench_config::{any, not_negative, positive};
 
 impl Choice for DisturbedBody {
     const ALL: &'static [(&'static str, Self, &'static str)] =
@@ -45,15 +46,15 @@ table! {
         /// Largest snap.
         snap: f64 = positive(InAxis(&SNAP), "1000 m/s4"),
         /// Which profile goes from rest to rest.
-        method: Method = (),
+        method: Method = OneOf,
         /// Sample time of the plan, a whole number of base ticks.
         sample_time: f64 = positive(Plain(&TIME), "1 ms"),
         /// How the times are made whole numbers of samples.
-        sampling: Sampling = (),
+        sampling: Sampling = OneOf,
         /// How set-points are made of the samples.
-        execution: Execution = (),
+        execution: Execution = OneOf,
         /// Plans as if the axis were in motion, with so much work.
-        online: PlanEffort = (),
+        online: PlanEffort = OneOf,
         /// Largest velocity below zero, of a move that is planned in motion.
         negative_velocity: f64 = positive(InAxis(&VELOCITY), "20 m/min"),
         /// Largest acceleration below zero, of a move that is planned in motion.
@@ -75,7 +76,7 @@ table! {
     /// An external force or torque: a step, or a sine with `frequency`.
     pub(crate) struct Disturbance requires ["on"] {
         /// Body it acts on.
-        on: DisturbedBody = (),
+        on: DisturbedBody = OneOf,
         /// Start: it acts from the first tick that is not before it; 0 unless given.
         start: f64 = not_negative(Plain(&TIME), "0.5 s"),
         /// How long it lasts: it acts up to the last tick before its end; to the end of the run unless given.

@@ -1,13 +1,14 @@
 //! `[requirements]` and `[[expect]]`: what a run is held to beside its limits, and the faults that belong to it.
 use crate::diagnostic::Report;
-use crate::field::{Field, not_negative, positive};
+use crate::field::Field;
 use crate::nearest::suggestion;
-use crate::physical::Kind::Plain;
-use crate::physical::TIME;
 use crate::source::At;
 use crate::table::{object_schema, table};
 use crate::tree::{Node, Value};
 use serde_json::{Value as Json, json};
+use servobench_config::Kind::Plain;
+use servobench_config::quantities::TIME;
+use servobench_config::{not_negative, positive};
 use servobench_metrics::Requirement;
 
 /// The requirements that the file names, each with whether it holds.
@@ -15,8 +16,6 @@ use servobench_metrics::Requirement;
 pub(crate) struct RequirementTable(pub(crate) Vec<At<(Requirement, bool)>>);
 
 impl Field for RequirementTable {
-    type Spec = ();
-
     fn decode(path: &str, node: &Node, (): &(), report: &mut Report) -> Option<Self> {
         let Value::Table(table) = &node.value else {
             let message = format!("`{path}` must be a table, got {}", node.value.kind());

@@ -1,11 +1,12 @@
 //! `[setpoint]`: what every move respects, and how set-points are generated, filtered and interpolated.
-use crate::field::{not_negative, positive};
 use crate::list::Many;
-use crate::physical::Kind::{Axis as InAxis, Plain};
-use crate::physical::{ACCELERATION, FREQUENCY, JERK, RATIO, SNAP, TIME, VELOCITY};
 use crate::scenario::{Execution, InterpolationMode, Method, PlanEffort, RockwellShape, Sampling};
-use crate::simple::Choice;
+use crate::simple::OneOf;
 use crate::table::table;
+use servobench_config::Choice;
+use servobench_config::Kind::{Axis as InAxis, Plain};
+use servobench_config::quantities::{ACCELERATION, FREQUENCY, JERK, RATIO, SNAP, TIME, VELOCITY};
+use servobench_config::{not_negative, positive};
 
 impl Choice for Method {
     const ALL: &'static [(&'static str, Self, &'static str)] = &[
@@ -130,15 +131,15 @@ table! {
         /// Largest snap.
         snap: f64 = positive(InAxis(&SNAP), "1000 m/s4"),
         /// Which profile goes from rest to rest; "published" unless given.
-        method: Method = (),
+        method: Method = OneOf,
         /// Sample time of moves from rest to rest, a whole number of base ticks; continuous unless given.
         sample_time: f64 = positive(Plain(&TIME), "1 ms"),
         /// How the times are made whole numbers of samples; "published" unless given.
-        sampling: Sampling = (),
+        sampling: Sampling = OneOf,
         /// How set-points are made of the samples; "hold" unless given.
-        execution: Execution = (),
+        execution: Execution = OneOf,
         /// Plans every move as one that may start in motion, with so much work; "fast" where a move does and nothing is given.
-        online: PlanEffort = (),
+        online: PlanEffort = OneOf,
         /// Largest velocity below zero, of moves that are planned in motion; as `velocity` unless given.
         negative_velocity: f64 = positive(InAxis(&VELOCITY), "20 m/min"),
         /// Largest acceleration below zero, of moves that are planned in motion; as `acceleration` unless given.
@@ -158,7 +159,7 @@ table! {
     /// Rockwell's axis move: velocity from rest to the speed and back, with jerk as a value (`jerk` of the move) or as a part.
     pub(crate) struct Rockwell requires ["shape"] {
         /// Shape of the velocity.
-        shape: RockwellShape = (),
+        shape: RockwellShape = OneOf,
         /// Largest deceleration; as `acceleration` unless given.
         deceleration: f64 = positive(InAxis(&ACCELERATION), "8 m/s2"),
         /// Jerk as the part of the ramp in which the acceleration changes, above 0 to 100 %.
@@ -183,7 +184,7 @@ table! {
     /// cancel.
     pub(crate) struct Shaper requires ["kind"] {
         /// Which one.
-        kind: ShaperName = (),
+        kind: ShaperName = OneOf,
         /// Natural frequency of the mode.
         frequency: f64 = positive(Plain(&FREQUENCY), "17.5 Hz"),
         /// Damping ratio of the mode; 0 unless given.
@@ -197,7 +198,7 @@ table! {
     /// Between a slow task that commands and the drive.
     pub(crate) struct Interpolation requires ["mode", "period"] {
         /// How values between two commands are found.
-        mode: InterpolationMode = (),
+        mode: InterpolationMode = OneOf,
         /// Time between two commands, a whole number of base ticks.
         period: f64 = positive(Plain(&TIME), "4 ms"),
     }
@@ -212,11 +213,11 @@ table! {
         /// Whether the positions count from where the axis is when the move starts.
         relative: bool = (),
         /// Where the velocities come from; "given" unless given.
-        velocities: VelocityRule = (),
+        velocities: VelocityRule = OneOf,
         /// How often "smooth" passes over them; 2 unless given.
         passes: u32 = 0..=1_000_000,
         /// How it is followed; "segments" unless given.
-        follow: FollowRule = (),
+        follow: FollowRule = OneOf,
         /// Share of a segment at either end in which the velocity of "plateaus" changes, up to 0.5; 0.25 unless given.
         plateau_share: f64 = positive(Plain(&RATIO), "0.25"),
         /// Commands per second of "steps".

@@ -1,5 +1,6 @@
 //! The columns of a table of points.
-use crate::physical::{ACCELERATION, POSITION, Physical, TIME, VELOCITY};
+use servobench_config::Physical;
+use servobench_config::quantities::{ACCELERATION, POSITION, TIME, VELOCITY};
 use std::fmt;
 
 /// A column of a table of points.

@@ -4,10 +4,11 @@ use crate::field::Slot;
 use crate::file;
 use crate::file::MotorKind;
 use crate::models::read_beside;
-use crate::physical::EFFORT;
 use crate::resolve::need;
-use crate::scenario::{Axis, AxisMechanics, Body, BodySignal, Coupling, Fmu, HomeSwitch, Mjcf, Motion, Switches};
+use crate::scenario::{Axis, AxisMechanics, Body, BodySignal, Coupling, Fmu, HomeSwitch, Mjcf, Switches};
 use crate::source::{Sources, Span};
+use servobench_base::Coordinate;
+use servobench_config::quantities::EFFORT;
 use std::f64::consts::TAU;
 
 /// Inertia of a motor body that follows a prescribed motion: it does not matter, but engines want one.
@@ -54,32 +55,32 @@ pub(super) fn resolve(
 
 /// Coordinate of the motor: what its own keys say, or otherwise what the axis needs. A linear axis without a lead has a
 /// linear motor.
-pub(crate) fn motor_motion(axis: Motion, has_lead: bool, own: Option<Motion>) -> Motion {
-    own.unwrap_or(if axis == Motion::Linear && !has_lead { Motion::Linear } else { Motion::Rotary })
+pub(crate) fn motor_motion(axis: Coordinate, has_lead: bool, own: Option<Coordinate>) -> Coordinate {
+    own.unwrap_or(if axis == Coordinate::Linear && !has_lead { Coordinate::Linear } else { Coordinate::Rotary })
 }
 
 /// Axis coordinate per motor coordinate.
 fn transmission(
     axis: &file::Axis,
-    motion: Motion,
+    motion: Coordinate,
     motor: &file::Motor,
-    motor_motion: Motion,
+    motor_motion: Coordinate,
     report: &mut Report,
 ) -> Option<f64> {
     let gear = axis.gear_ratio.optional().ok().map(|ratio| ratio.copied().unwrap_or(1.0));
     match (motion, motor_motion) {
-        (Motion::Rotary, Motion::Rotary) => {
+        (Coordinate::Rotary, Coordinate::Rotary) => {
             if let Some(span) = axis.lead.span() {
                 report.error(span, "a rotary axis has no `lead`", "give `gear_ratio`");
             }
             Some(1.0 / gear?)
         }
-        (Motion::Rotary, Motion::Linear) => {
+        (Coordinate::Rotary, Coordinate::Linear) => {
             let span = motor.pole_pitch.span().unwrap_or(motor.span);
             report.error(span, "a linear motor cannot turn a rotary axis", "a motor that turns has `pole_pairs`");
             None
         }
-        (Motion::Linear, Motion::Rotary) => {
+        (Coordinate::Linear, Coordinate::Rotary) => {
             if matches!(axis.lead, Slot::Absent) {
                 let help =
                     "give the travel per revolution of the motor; a linear motor has `pole_pitch`, no `pole_pairs`";
@@ -87,7 +88,7 @@ fn transmission(
             }
             Some(axis.lead.given()? / TAU / gear?)
         }
-        (Motion::Linear, Motion::Linear) => {
+        (Coordinate::Linear, Coordinate::Linear) => {
             if let Some(span) = axis.lead.span() {
                 report.error(
                     span,
@@ -107,8 +108,8 @@ fn transmission(
     }
 }
 
-fn switches(axis: &file::Axis, motor_motion: Motion, report: &mut Report) -> Option<Switches> {
-    let turns = motor_motion == Motion::Rotary;
+fn switches(axis: &file::Axis, motor_motion: Coordinate, report: &mut Report) -> Option<Switches> {
+    let turns = motor_motion == Coordinate::Rotary;
     let Some(given) = axis.switches.optional().ok()? else {
         return Some(Switches { index: turns.then_some(0.0), ..Switches::default() });
     };
@@ -181,7 +182,7 @@ struct Dry {
 fn bodies(
     axis: &file::Axis,
     motor: &file::Motor,
-    motor_motion: Motion,
+    motor_motion: Coordinate,
     transmission: Option<f64>,
     report: &mut Report,
 ) -> Option<Vec<Body>> {
@@ -206,7 +207,7 @@ fn bodies(
     }
     if let Some(motor_body) = chain.first_mut().filter(|body| body.inertia == 0.0) {
         if motor.kind.given() != Some(&MotorKind::Prescribed) {
-            let key = if motor_motion == Motion::Rotary { "inertia" } else { "mass" };
+            let key = if motor_motion == Coordinate::Rotary { "inertia" } else { "mass" };
             let help = format!("give `{key}` in `[axis.motor_side]` or in `[motor]`");
             if !report.without_model.contains(&"motor") {
                 report.lacking("axis", axis.span, "nothing moves with the motor", help);
@@ -219,7 +220,7 @@ fn bodies(
 }
 
 /// The motor's body in its own coordinate, rotor included; without inertia when none is given.
-fn motor_side(axis: &file::Axis, motor: &file::Motor, motion: Motion, report: &mut Report) -> Option<Body> {
+fn motor_side(axis: &file::Axis, motor: &file::Motor, motion: Coordinate, report: &mut Report) -> Option<Body> {
     let rotor = inertia(&motor.mass, &motor.inertia, motion, "motor", report);
     let Some(side) = axis.motor_side.given() else {
         return match axis.motor_side {
@@ -233,10 +234,15 @@ fn motor_side(axis: &file::Axis, motor: &file::Motor, motion: Motion, report: &m
     Some(Body { viscous, bias, ..plain("motor", rotor? + own?) }.with_friction(&dry))
 }
 
-fn body(name: &'static str, body: &file::Body, motion: Option<Motion>, report: &mut Report) -> Option<(Body, Span)> {
+fn body(
+    name: &'static str,
+    body: &file::Body,
+    motion: Option<Coordinate>,
+    report: &mut Report,
+) -> Option<(Body, Span)> {
     let inertia = motion.and_then(|motion| inertia(&body.mass, &body.inertia, motion, "axis", report));
     if inertia == Some(0.0) {
-        let key = if motion == Some(Motion::Rotary) { "inertia" } else { "mass" };
+        let key = if motion == Some(Coordinate::Rotary) { "inertia" } else { "mass" };
         report.missing(&format!("axis.{name}"), key, body.span);
         return None;
     }
@@ -284,13 +290,13 @@ fn or_zero(slot: &Slot<f64>) -> Option<f64> {
 }
 
 /// Mass or moment of inertia, whichever the coordinate has; 0 when neither is given.
-fn inertia(mass: &Slot<f64>, inertia: &Slot<f64>, motion: Motion, of: &str, report: &mut Report) -> Option<f64> {
+fn inertia(mass: &Slot<f64>, inertia: &Slot<f64>, motion: Coordinate, of: &str, report: &mut Report) -> Option<f64> {
     let (fitting, other, right, wrong) = match motion {
-        Motion::Linear => (mass, inertia, "mass", "inertia"),
-        Motion::Rotary => (inertia, mass, "inertia", "mass"),
+        Coordinate::Linear => (mass, inertia, "mass", "inertia"),
+        Coordinate::Rotary => (inertia, mass, "inertia", "mass"),
     };
     if let Some(span) = other.span() {
-        let moves = if motion == Motion::Linear { "moves along a line" } else { "turns" };
+        let moves = if motion == Coordinate::Linear { "moves along a line" } else { "turns" };
         report.error(span, format!("the {of} {moves} and has no `{wrong}`"), format!("give its `{right}`"));
         return None;
     }
@@ -301,14 +307,14 @@ fn dry_friction(
     coulomb: &Slot<f64>,
     breakaway: &Slot<f64>,
     stribeck_velocity: &Slot<f64>,
-    motion: Motion,
+    motion: Coordinate,
     report: &mut Report,
 ) -> Option<Dry> {
     let given = breakaway.at();
     if let (Some(sliding), Some(resting)) = (coulomb.at(), given)
         && resting.value < sliding.value
     {
-        let unit = if motion == Motion::Linear { EFFORT.linear.unit } else { EFFORT.rotary.unit };
+        let unit = if motion == Coordinate::Linear { EFFORT.linear.unit } else { EFFORT.rotary.unit };
         let [above, below] = [sliding.value, resting.value].map(|effort| format!("{effort} {unit}"));
         // What the scenario says is in question, not the model that it stands on.
         let (span, message) = if sliding.span.source < resting.span.source {

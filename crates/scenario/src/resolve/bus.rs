@@ -5,11 +5,11 @@ use crate::file;
 use crate::file::File;
 use crate::resolve::{bus_fault, mode, need, refuse, whole};
 use crate::scenario::{
-    Actuator, Bus, BusMode, Counter, Drive, DriveUnits, EffortFeedforward, Feedback, InterpolationMode, Motion,
-    ObjectWrite, Sequencing, Step,
+    Actuator, Bus, BusMode, Counter, Drive, DriveUnits, EffortFeedforward, Feedback, InterpolationMode, ObjectWrite,
+    Sequencing, Step,
 };
 use crate::source::At;
-use servobench_base::Rate;
+use servobench_base::{Coordinate, Rate};
 use std::f64::consts::TAU;
 
 /// The parts that are known by now.
@@ -184,8 +184,8 @@ fn effort_offset(given: &file::Bus, actuator: Option<&Actuator>, report: &mut Re
     };
     if at.value != EffortFeedforward::Off && actuator.rated_effort().is_none() {
         let (key, example) = match report.motor {
-            Some(Motion::Linear) => ("max_force", "300 N"),
-            Some(Motion::Rotary) | None => ("max_torque", "12 Nm"),
+            Some(Coordinate::Linear) => ("max_force", "300 N"),
+            Some(Coordinate::Rotary) | None => ("max_torque", "12 Nm"),
         };
         let message = "the torque offset is sent in thousandths of the largest effort, and this drive has no limit";
         report.error(at.span, message, format!("give `{key}` in `[drive]`, such as \"{example}\""));
@@ -242,7 +242,7 @@ fn units(file: &File, given: &file::Bus, actuator: Option<&Actuator>, report: &m
         Feedback::Motor => {
             // The lead itself, not what 2π makes of it and back: units stay the decimal numbers that they are.
             let per_turn = axis.lead.given().copied().unwrap_or(TAU) / gear;
-            let per_step = if report.motor == Some(Motion::Rotary) { per_turn / TAU } else { 1.0 };
+            let per_step = if report.motor == Some(Coordinate::Rotary) { per_turn / TAU } else { 1.0 };
             match file.motor.given()?.encoder.optional().ok()? {
                 Some(encoder) => (&encoder.counts_per_rev, &encoder.step, per_step, per_turn),
                 None => (&Slot::Absent, &Slot::Absent, per_step, per_turn),

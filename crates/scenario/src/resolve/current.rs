@@ -1,6 +1,7 @@
 //! `[drive.current]`: the current loop of a synchronous motor.
 use crate::diagnostic::Report;
 use crate::field::{Reported, Slot};
+
 use crate::file;
 use crate::resolve::drive::Known;
 use crate::resolve::motor::Motor;

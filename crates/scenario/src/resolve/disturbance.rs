@@ -3,8 +3,8 @@ use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
 use crate::file::File;
-use crate::scenario::{Axis, AxisMechanics, Disturbance, DisturbedBody, Initial, Motion};
-use servobench_base::Rate;
+use crate::scenario::{Axis, AxisMechanics, Disturbance, DisturbedBody, Initial};
+use servobench_base::{Coordinate, Rate};
 
 /// When ticks are and how long the run is (s), as far as the file says it.
 pub(super) struct Timing {
@@ -69,11 +69,11 @@ fn disturbance(
         (Some(Fixed::Motor) | None, _) => {}
     }
     let (slot, other, right, wrong) = match motion {
-        Motion::Linear => (&given.force, &given.torque, "force", "torque"),
-        Motion::Rotary => (&given.torque, &given.force, "torque", "force"),
+        Coordinate::Linear => (&given.force, &given.torque, "force", "torque"),
+        Coordinate::Rotary => (&given.torque, &given.force, "torque", "force"),
     };
     if let Some(span) = other.span() {
-        let moves = if motion == Motion::Linear { "moves along a line" } else { "turns" };
+        let moves = if motion == Coordinate::Linear { "moves along a line" } else { "turns" };
         report.error(span, format!("the {body} {moves} and feels no `{wrong}`"), format!("give a `{right}`"));
         return None;
     }

@@ -124,7 +124,7 @@ fn strength(motor: &Motor, i_d: f64) -> f64 {
 
 /// The effort limit of the velocity loop: as given, and what an ideal source of the estimated gain can give.
 fn max_effort(drive: &file::Drive, motor: Option<&Motor>, used: &Source, report: &mut Report) -> Option<f64> {
-    use crate::scenario::Motion::{Linear, Rotary};
+    use servobench_base::Coordinate::{Linear, Rotary};
     let turns = report.motor == Some(Rotary);
     let (slot, other) =
         if turns { (&drive.max_torque, &drive.max_force) } else { (&drive.max_force, &drive.max_torque) };

@@ -3,8 +3,9 @@ use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
 use crate::resolve::motor::Motor;
-use crate::scenario::{Axis, AxisMechanics, Body, Coupling, Estimate, Motion, MotorEstimate, Pmsm, SourceOutput};
+use crate::scenario::{Axis, AxisMechanics, Body, Coupling, Estimate, MotorEstimate, Pmsm, SourceOutput};
 use crate::source::Span;
+use servobench_base::Coordinate;
 use std::f64::consts::TAU;
 
 /// The estimate and whether it holds inertias at all: of a user's own MJCF file only what `[drive.estimate]` says is
@@ -54,12 +55,12 @@ fn believed_transmission(
     axis: &Axis,
     report: &mut Report,
 ) -> Option<f64> {
-    let has_lead = (axis.motion, axis.motor_motion) == (Motion::Linear, Motion::Rotary);
+    let has_lead = (axis.motion, axis.motor_motion) == (Coordinate::Linear, Coordinate::Rotary);
     let mut refuse = |span: Option<Span>, message: &str| span.map(|span| report.error(span, message, ""));
     if !has_lead && refuse(given.lead.span(), "the axis has no `lead` to estimate").is_some() {
         return None;
     }
-    if axis.motor_motion == Motion::Linear {
+    if axis.motor_motion == Coordinate::Linear {
         let refused = refuse(given.gear_ratio.span(), "the axis has no `gear_ratio` to estimate");
         return refused.is_none().then_some(axis.transmission);
     }

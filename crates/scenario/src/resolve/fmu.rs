@@ -1,5 +1,4 @@
 //! `[axis.fmu]`, `[[fmu]]` and `[coupling]`: which files, what they are connected to, and how often.
-use crate::channel::CHANNELS;
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file::{self, File};
@@ -7,10 +6,11 @@ use crate::name_table::Named;
 use crate::nearest::suggestion;
 use crate::resolve::{refuse, whole};
 use crate::scenario::{
-    Actuator, BodySignal, CoSimulation, CouplingMethod, EngineName, Fmu, Isolation, LoopSignal, Signal,
+    Actuator, BodySignal, CoSimulation, CouplingMethod, EngineName, Fmu, InputSource, Isolation, LoopSignal,
 };
 use crate::source::{At, Place, Sources, Span};
 use servobench_base::Rate;
+use servobench_signals::Signal;
 use std::path::{Path, PathBuf};
 
 /// How long a call of an FMU may take, unless given (s).
@@ -39,24 +39,15 @@ impl Port for BodySignal {
 }
 
 impl Port for LoopSignal {
-    const ALL: &'static [Self] = &[
-        Self::MotorEffort,
-        Self::LoadEffort,
-        Self::SetpointPosition,
-        Self::SetpointVelocity,
-        Self::SetpointAcceleration,
-        Self::Effort,
-        Self::VoltageD,
-        Self::VoltageQ,
-    ];
+    const ALL: &'static [Self] = Self::ALL;
 
     fn name(self) -> &'static str {
-        self.name()
+        self.signal().name()
     }
 }
 
 /// What acts on mechanics.
-const ON_MECHANICS: [&str; 3] = ["effort.motor", "disturbance.motor", "disturbance.load"];
+const ON_MECHANICS: [Signal; 3] = [Signal::EffortMotor, Signal::DisturbanceMotor, Signal::DisturbanceLoad];
 /// Position and velocity of the two bodies that mechanics can have; a velocity needs its position.
 const BODIES: [[BodySignal; 2]; 2] =
     [[BodySignal::ShaftPosition, BodySignal::ShaftVelocity], [BodySignal::LoadPosition, BodySignal::LoadVelocity]];
@@ -82,8 +73,10 @@ pub(super) fn mechanics(file: &File, known: Known<'_>, report: &mut Report) -> O
     if asked.is_none() {
         report.warning(*span, "`fmu` is not used", "add \"fmu\" to `engine`");
     }
-    let signals = |text: &str| ON_MECHANICS.iter().find(|name| **name == text).map(|name| Signal::Channel(name));
-    let fmu = fmu(given, 1, known, report, &signals, &ON_MECHANICS);
+    let signals = |text: &str| {
+        ON_MECHANICS.iter().find(|signal| signal.name() == text).map(|signal| InputSource::Signal(*signal))
+    };
+    let fmu = fmu(given, 1, known, report, &signals, &ON_MECHANICS.map(Signal::name));
     if let Some(fmu) = &fmu {
         let gives = |port: BodySignal| fmu.outputs.iter().any(|(_, to)| *to == port);
         let at = |port: BodySignal| fmu.outputs.iter().position(|(_, to)| *to == port);
@@ -102,7 +95,7 @@ pub(super) fn mechanics(file: &File, known: Known<'_>, report: &mut Report) -> O
             report.error(span, "a load with a velocity has a position", "connect `load.position` too");
             return None;
         }
-        let effort = fmu.inputs.iter().any(|(_, signal)| *signal == Signal::Channel("effort.motor"));
+        let effort = fmu.inputs.iter().any(|(_, signal)| *signal == InputSource::Signal(Signal::EffortMotor));
         if !effort {
             let help = "write inputs = { variable = \"effort.motor\" }";
             report.error(given.inputs.span().unwrap_or(*span), "no input is given `effort.motor`", help);
@@ -130,7 +123,11 @@ pub(super) fn others(
         check_name(&names, index, &one.value, report);
         let signals = |text: &str| signal(text, &names);
         let every = coupling.map_or(1, |coupling| coupling.every);
-        let offered: Vec<&str> = CHANNELS.iter().copied().chain(["shaft.position", "shaft.velocity", "time"]).collect();
+        let offered: Vec<&str> = Signal::ALL
+            .iter()
+            .map(|signal| signal.name())
+            .chain(["shaft.position", "shaft.velocity", "time"])
+            .collect();
         all.push(fmu(&one.value, every, known, report, &signals, &offered));
     }
     let all: Vec<_> = all.into_iter().collect::<Option<_>>()?;
@@ -180,7 +177,7 @@ fn fmu<P: Port>(
     every: u32,
     known: Known<'_>,
     report: &mut Report,
-    signal: &dyn Fn(&str) -> Option<Signal>,
+    signal: &dyn Fn(&str) -> Option<InputSource>,
     signals: &[&str],
 ) -> Option<Fmu<P>> {
     let path = path(&given.file, known.sources, report);
@@ -264,19 +261,19 @@ fn twice(given: &file::Fmu, index: usize, port: impl Port, report: &mut Report) 
 }
 
 /// A channel, or the output of an FMU.
-fn signal(text: &str, names: &[String]) -> Option<Signal> {
+fn signal(text: &str, names: &[String]) -> Option<InputSource> {
     match text {
-        "time" => return Some(Signal::Time),
-        "shaft.position" => return Some(Signal::ShaftPosition),
-        "shaft.velocity" => return Some(Signal::ShaftVelocity),
+        "time" => return Some(InputSource::Time),
+        "shaft.position" => return Some(InputSource::ShaftPosition),
+        "shaft.velocity" => return Some(InputSource::ShaftVelocity),
         _ => {}
     }
-    if let Some(channel) = CHANNELS.iter().find(|channel| **channel == text) {
-        return Some(Signal::Channel(channel));
+    if let Ok(signal) = text.parse() {
+        return Some(InputSource::Signal(signal));
     }
     let (name, variable) = text.split_once('.')?;
     let fmu = names.iter().position(|one| one == name)?;
-    Some(Signal::Fmu { fmu, variable: variable.to_owned() })
+    Some(InputSource::Fmu { fmu, variable: variable.to_owned() })
 }
 
 fn name(given: &file::Fmu) -> String {
@@ -289,10 +286,11 @@ fn name(given: &file::Fmu) -> String {
 fn check_name(names: &[String], index: usize, given: &file::Fmu, report: &mut Report) {
     let name = names[index].as_str();
     let span = given.name.span().unwrap_or(given.span);
-    let is_of_channels = CHANNELS.iter().any(|channel| channel.split_once('.').is_some_and(|(group, _)| group == name));
+    let is_of_signals =
+        Signal::ALL.iter().any(|signal| signal.name().split_once('.').is_some_and(|(group, _)| group == name));
     if names[..index].iter().any(|before| before == name) {
         report.error(span, format!("a second FMU is called `{name}`"), "give each its own `name`");
-    } else if name.is_empty() || name.contains('.') || is_of_channels || name == "time" || name == "shaft" {
+    } else if name.is_empty() || name.contains('.') || is_of_signals || name == "time" || name == "shaft" {
         let message = format!("`{name}` cannot name an FMU");
         report.error(
             span,

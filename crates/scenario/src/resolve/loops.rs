@@ -1,6 +1,7 @@
 //! `[drive.velocity]` and `[drive.position]`: the outer loops, with gains derived from bandwidths.
 use crate::diagnostic::Report;
 use crate::field::{Either, Reported, Slot};
+
 use crate::file;
 use crate::file::VelocityKind;
 use crate::resolve::estimate::Belief;

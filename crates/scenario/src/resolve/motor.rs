@@ -1,10 +1,12 @@
 //! `[motor]`: one set of parameters from whichever a data sheet gives.
 use crate::diagnostic::Report;
 use crate::field::{Either, Slot};
+use servobench_base::Coordinate;
+
 use crate::file;
 use crate::file::MotorKind;
 use crate::resolve::{Way, need, one_way, refuse};
-use crate::scenario::{Encoder, IdealSource, Motion, Pmsm, SourceOutput};
+use crate::scenario::{Encoder, IdealSource, Pmsm, SourceOutput};
 use crate::source::Span;
 use std::f64::consts::{PI, TAU};
 
@@ -88,14 +90,14 @@ fn electrical_ratio(motor: &file::Motor, report: &mut Report) -> Option<f64> {
         return None;
     }
     let (of_another, constant, turns) = match report.motor? {
-        Motion::Rotary => (&motor.force_constant, "torque_constant", "turns"),
-        Motion::Linear => (&motor.torque_constant, "force_constant", "moves along a line"),
+        Coordinate::Rotary => (&motor.force_constant, "torque_constant", "turns"),
+        Coordinate::Linear => (&motor.torque_constant, "force_constant", "moves along a line"),
     };
     if let Some(span) = of_another.span() {
         let other = if constant == "torque_constant" { "force_constant" } else { "torque_constant" };
         report.error(span, format!("the motor {turns} and has no `{other}`"), format!("give its `{constant}`"));
     }
-    if report.motor == Some(Motion::Rotary) {
+    if report.motor == Some(Coordinate::Rotary) {
         return need(&motor.pole_pairs, "motor", "pole_pairs", motor.span, report).map(f64::from);
     }
     if matches!(motor.pole_pitch, Slot::Absent) {
@@ -127,8 +129,8 @@ fn inductances(motor: &file::Motor, report: &mut Report) -> Option<(f64, f64)> {
 /// for p in a linear motor.
 fn flux_linkage(motor: &file::Motor, electrical_ratio: Option<f64>, report: &mut Report) -> Option<f64> {
     let constant = match report.motor? {
-        Motion::Rotary => ("torque_constant", &motor.torque_constant),
-        Motion::Linear => ("force_constant", &motor.force_constant),
+        Coordinate::Rotary => ("torque_constant", &motor.torque_constant),
+        Coordinate::Linear => ("force_constant", &motor.force_constant),
     };
     let ways = [
         ("flux_linkage", motor.flux_linkage.span()),
@@ -175,7 +177,7 @@ fn encoder(slot: &Slot<file::Encoder>, report: &mut Report) -> Option<Encoder> {
 pub(super) fn resolution(
     step: &Slot<f64>,
     counts_per_rev: &Slot<u32>,
-    motion: Option<Motion>,
+    motion: Option<Coordinate>,
     report: &mut Report,
 ) -> Option<Encoder> {
     let ways = [("step", step.span()), ("counts_per_rev", counts_per_rev.span())];
@@ -185,7 +187,7 @@ pub(super) fn resolution(
         Way::Use(0) => Some(*step.given()?),
         Way::Use(_) => {
             let counts = counts_per_rev.at()?;
-            if motion == Some(Motion::Linear) {
+            if motion == Some(Coordinate::Linear) {
                 report.error(counts.span, "what moves along a line has no `counts_per_rev`", "give one `step`");
                 return None;
             }

@@ -5,8 +5,9 @@ use crate::file::{FollowRule, TableOfPoints, VelocityRule};
 use crate::models::read_beside;
 use crate::points::{PointsError, read_points};
 use crate::resolve::refuse;
-use crate::scenario::{Follow, Motion, TableMove, Velocities};
+use crate::scenario::{Follow, TableMove, Velocities};
 use crate::source::{At, Sources};
+use servobench_base::Coordinate;
 
 /// Passes of smoothing unless something is said: what the source of the formulas shows.
 const PASSES: u32 = 2;
@@ -40,7 +41,7 @@ pub(super) fn read<T>(
     values: &str,
     sources: &Sources,
     report: &mut Report,
-    read: impl FnOnce(&str) -> Result<(Motion, T), PointsError>,
+    read: impl FnOnce(&str) -> Result<(Coordinate, T), PointsError>,
 ) -> Option<T> {
     let place = sources.place(file.span.source)?;
     let (path, text) = match read_beside(&file.value, place) {
@@ -63,8 +64,8 @@ pub(super) fn read<T>(
     };
     if let Some(axis) = report.axis.filter(|axis| *axis != motion) {
         let (is, needs) = match axis {
-            Motion::Linear => ("angles", "lengths"),
-            Motion::Rotary => ("lengths", "angles"),
+            Coordinate::Linear => ("angles", "lengths"),
+            Coordinate::Rotary => ("lengths", "angles"),
         };
         let message = format!("the {values} in {} are {is}, this axis needs {needs}", path.display());
         report.error(file.span, message, "change the units of its heading");

@@ -6,7 +6,9 @@ use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file::File;
 use crate::limit_table::LimitTable;
-use crate::scenario::{Actuator, Motion};
+use crate::scenario::Actuator;
+use servobench_base::Coordinate;
+use servobench_metrics::Name;
 
 /// How far above the drive's limit a limit of the motor's torque is still in doubt.
 const OVERSHOOT: f64 = 1.05;
@@ -18,7 +20,7 @@ pub(super) fn check(file: &File, actuator: &Actuator, report: &mut Report) {
     let (Actuator::Pmsm { drive, .. }, Some(given), Slot::Absent) = (actuator, file.drive.given(), &file.fmu) else {
         return;
     };
-    let key = if report.motor == Some(Motion::Linear) { "max_force" } else { "max_torque" };
+    let key = if report.motor == Some(Coordinate::Linear) { "max_force" } else { "max_torque" };
     let slot = if key == "max_force" { &given.max_force } else { &given.max_torque };
     if slot.given().is_none() {
         return;
@@ -27,7 +29,7 @@ pub(super) fn check(file: &File, actuator: &Actuator, report: &mut Report) {
     let steps = file.program.given().map_or(&[][..], |program| &program.0);
     let tables = steps.iter().map(|step| &step.value.limits).chain([&file.limits]);
     for limit in tables.filter_map(Slot::given).flat_map(|LimitTable(limits)| limits) {
-        if limit.value.metric == "torque_peak" && limit.value.max.is_some_and(|max| doubtful.contains(&max)) {
+        if limit.value.metric == Name::TorquePeak && limit.value.max.is_some_and(|max| doubtful.contains(&max)) {
             let message = format!("a torque at `drive.{key}` exceeds this limit: the current loop overshoots");
             let help = "`torque_peak` is what the motor gives; limit `torque_reference_peak`, what the drive asks for, or leave \
                         5 % and more above";

@@ -1,23 +1,15 @@
 //! The mechanics: bodies and what couples them.
 use super::fmu::{BodySignal, Fmu};
+use servobench_base::Coordinate;
 use std::path::PathBuf;
-
-/// Whether a coordinate is a length or an angle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Motion {
-    /// m, N, kg.
-    Linear,
-    /// rad, N·m, kg·m².
-    Rotary,
-}
 
 /// The mechanics of the axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     /// Coordinate of the load.
-    pub motion: Motion,
+    pub motion: Coordinate,
     /// Coordinate of the motor.
-    pub motor_motion: Motion,
+    pub motor_motion: Coordinate,
     /// Axis coordinate per motor coordinate: lead/2π (m/rad), 1/gear ratio, or 1.
     pub transmission: f64,
     /// The bodies.

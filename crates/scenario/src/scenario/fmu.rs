@@ -1,5 +1,6 @@
 //! Parts that somebody else simulates.
 pub use crate::name_table::StartValue;
+use servobench_signals::Signal;
 use std::path::PathBuf;
 
 /// A Functional Mock-up Unit and what it is connected to. `To` is what its outputs can be.
@@ -22,7 +23,7 @@ pub struct Fmu<To> {
     /// Start values by variable, in the order of the file.
     pub start: Vec<(String, StartValue)>,
     /// Inputs by variable with the signal that each is given.
-    pub inputs: Vec<(String, Signal)>,
+    pub inputs: Vec<(String, InputSource)>,
     /// Outputs by variable with what each is.
     pub outputs: Vec<(String, To)>,
 }
@@ -39,15 +40,15 @@ pub enum Isolation {
 
 /// What an input of an FMU is given (SI).
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Signal {
+pub enum InputSource {
     /// The time (s).
     Time,
     /// `shaft.position`: the motor's position in its own coordinate.
     ShaftPosition,
     /// `shaft.velocity`.
     ShaftVelocity,
-    /// A channel of the recording.
-    Channel(&'static str),
+    /// A signal of the axis.
+    Signal(Signal),
     /// An output of another FMU, in that one's unit converted to SI.
     Fmu {
         /// Position among the scenario's FMUs.
@@ -105,18 +106,30 @@ pub enum LoopSignal {
 }
 
 impl LoopSignal {
-    /// The name that files write.
+    /// All of them.
+    pub const ALL: &'static [Self] = &[
+        Self::MotorEffort,
+        Self::LoadEffort,
+        Self::SetpointPosition,
+        Self::SetpointVelocity,
+        Self::SetpointAcceleration,
+        Self::Effort,
+        Self::VoltageD,
+        Self::VoltageQ,
+    ];
+
+    /// The signal of the axis that the FMU gives.
     #[must_use]
-    pub const fn name(self) -> &'static str {
+    pub const fn signal(self) -> Signal {
         match self {
-            Self::MotorEffort => "disturbance.motor",
-            Self::LoadEffort => "disturbance.load",
-            Self::SetpointPosition => "setpoint.position",
-            Self::SetpointVelocity => "setpoint.velocity",
-            Self::SetpointAcceleration => "setpoint.acceleration",
-            Self::Effort => "effort.motor",
-            Self::VoltageD => "voltage.d",
-            Self::VoltageQ => "voltage.q",
+            Self::MotorEffort => Signal::DisturbanceMotor,
+            Self::LoadEffort => Signal::DisturbanceLoad,
+            Self::SetpointPosition => Signal::SetpointPosition,
+            Self::SetpointVelocity => Signal::SetpointVelocity,
+            Self::SetpointAcceleration => Signal::SetpointAcceleration,
+            Self::Effort => Signal::EffortMotor,
+            Self::VoltageD => Signal::VoltageD,
+            Self::VoltageQ => Signal::VoltageQ,
         }
     }
 }

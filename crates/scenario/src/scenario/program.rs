@@ -1,5 +1,6 @@
 //! The program: moves of every family, and pauses.
-use super::{Filter, Limit};
+use super::Filter;
+use servobench_metrics::Limit;
 
 /// A step of the program.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,8 @@
 //! Quantities on the command line.
 use crate::WORDS;
+use servobench_base::Coordinate;
 use servobench_fuzz::{Splice, check, fuzz};
-use servobench_scenario::{Derivative, Motion, axis_quantity, time};
+use servobench_scenario::{Derivative, axis_quantity, time};
 
 const QUANTITIES: [&str; 12] = [
     "250 mm",
@@ -26,7 +27,7 @@ const DERIVATIVES: [Derivative; 5] =
 fn quantities() {
     fuzz(check!(), 3_000, Splice::text(&QUANTITIES, WORDS), |text| {
         for (order, derivative) in DERIVATIVES.into_iter().enumerate() {
-            for asked in [None, Some(Motion::Linear), Some(Motion::Rotary)] {
+            for asked in [None, Some(Coordinate::Linear), Some(Coordinate::Rotary)] {
                 let (value, motion) = match axis_quantity(derivative, asked, text) {
                     Ok(read) => read,
                     Err(error) => {
@@ -35,7 +36,7 @@ fn quantities() {
                     }
                 };
                 assert!(value.is_finite() && asked.is_none_or(|asked| asked == motion), "{value} {motion:?}");
-                let unit = if motion == Motion::Linear { "m" } else { "rad" };
+                let unit = if motion == Coordinate::Linear { "m" } else { "rad" };
                 let written = format!("{value:e} {unit}/s{order}").replace("/s0", "");
                 assert_eq!(axis_quantity(derivative, None, &written), Ok((value, motion)), "{written}");
             }

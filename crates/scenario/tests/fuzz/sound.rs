@@ -52,15 +52,14 @@ pub(crate) fn check(scenario: &Scenario) {
     finite("load_position", scenario.initial.load_position);
     finite("load_velocity", scenario.initial.load_velocity);
     divides(scenario.record.rate, *base_rate);
-    assert!(scenario.record.channels.iter().all(|channel| CHANNELS.contains(&channel.as_str())));
     optional("window", scenario.measure.window);
     not_negative("from", scenario.measure.from.unwrap_or_default());
     optional("mode", scenario.measure.mode);
-    for Limit { metric, min, max } in &scenario.limits {
+    for servobench_metrics::Limit { metric, min, max } in &scenario.limits {
         assert!(min.is_some() || max.is_some(), "{metric}");
         assert!(min.zip(*max).is_none_or(|(min, max)| min <= max), "{metric}: {min:?} to {max:?}");
         for bound in [min, max].into_iter().flatten() {
-            finite(metric, *bound);
+            finite(metric.as_str(), *bound);
         }
     }
 }
@@ -218,7 +217,7 @@ fn switches(axis: &Axis) {
     assert!(negative.zip(positive).is_none_or(|(negative, positive)| negative < positive));
     assert!(home.is_none_or(|home| home.from < home.to));
     assert!(index.is_none_or(|index| (0.0..std::f64::consts::TAU).contains(&index)));
-    assert_eq!(index.is_some(), axis.motor_motion == Motion::Rotary);
+    assert_eq!(index.is_some(), axis.motor_motion == servobench_base::Coordinate::Rotary);
 }
 
 fn bus(bus: &Bus, scenario: &Scenario) {

@@ -1,70 +1,58 @@
 //! FMUs of a scenario as the plant and the coupling take them.
-use crate::channels::Equipment;
 use crate::error::BuildError;
+use servobench_base::Coordinate;
 use servobench_plant::{
     Extrapolation, FmuBody, FmuFile, FmuModel, FmuPartner, FmuPort, FmuStart, FmuValue, Isolation, SiUnit,
 };
-use servobench_scenario::{self as scenario, BodySignal, Fmu, LoopSignal, Motion, Scenario, Signal, StartValue};
-use servobench_trace::ChannelSpec;
+use servobench_scenario::{self as scenario, BodySignal, Fmu, InputSource, LoopSignal, Scenario, StartValue};
+use servobench_signals::{Equipment, Signal};
 use std::time::Duration;
 
 /// Which variables of an FMU are the mechanics.
 pub(super) fn mechanics(fmu: &Fmu<BodySignal>, scenario: &Scenario) -> Result<FmuModel, BuildError> {
     let axis = &scenario.axis;
-    let input = |channel: &'static str, unit| {
-        let given = fmu.inputs.iter().find(|(_, signal)| *signal == Signal::Channel(channel));
+    let input = |signal, unit| {
+        let given = fmu.inputs.iter().find(|(_, source)| *source == InputSource::Signal(signal));
         given.map(|(variable, _)| port(variable, unit))
     };
-    let body = |motion, position, velocity| {
+    let body = |motion: Coordinate, position, velocity| {
         let output = |signal, unit: String| {
             fmu.outputs.iter().find(|(_, to)| *to == signal).map(|(variable, _)| port(variable, &unit))
         };
-        let unit = length_unit(motion);
+        let unit = motion.unit();
         Some(FmuBody { position: output(position, unit.to_owned())?, velocity: output(velocity, format!("{unit}/s")) })
     };
-    let (motor_effort, load_effort) = (effort_unit(axis.motor_motion), effort_unit(axis.motion));
+    let (motor_effort, load_effort) = (axis.motor_motion.effort_unit(), axis.motion.effort_unit());
     Ok(FmuModel {
         file: file(fmu),
-        effort: input("effort.motor", motor_effort).ok_or(BuildError::NoFmu)?,
+        effort: input(Signal::EffortMotor, motor_effort).ok_or(BuildError::NoFmu)?,
         motor: body(axis.motor_motion, BodySignal::ShaftPosition, BodySignal::ShaftVelocity)
             .ok_or(BuildError::NoFmu)?,
         load: body(axis.motion, BodySignal::LoadPosition, BodySignal::LoadVelocity),
-        motor_disturbance: input("disturbance.motor", motor_effort),
-        load_disturbance: input("disturbance.load", load_effort),
+        motor_disturbance: input(Signal::DisturbanceMotor, motor_effort),
+        load_disturbance: input(Signal::DisturbanceLoad, load_effort),
         transmission: axis.transmission,
         ticks: fmu.every,
         extrapolation: Extrapolation::Linear,
     })
 }
 
-/// An FMU beside the axis, of whose outputs `outputs` are wanted, each with what it is if it goes to the axis. `channels` are those
-/// that FMUs are given; its steps are `step` (s) long, and the last one ends at `end` (s).
+/// An FMU beside the axis, of whose outputs `outputs` are wanted, each with what it is if it goes to the axis. Its steps are `step` (s) long, and the last one ends at `end` (s).
 pub(crate) fn partner(
     fmu: &Fmu<LoopSignal>,
     outputs: &[(&str, Option<LoopSignal>)],
-    (equipment, motor_motion): (&Equipment, Motion),
-    channels: &[ChannelSpec],
+    (equipment, motor_motion): (&Equipment, Coordinate),
     (step, end): (f64, f64),
 ) -> FmuPartner {
-    let shaft = length_unit(motor_motion);
-    let given = |signal: &Signal| match signal {
-        Signal::Time => "s".to_owned(),
-        Signal::ShaftPosition => shaft.to_owned(),
-        Signal::ShaftVelocity => format!("{shaft}/s"),
-        Signal::Channel(name) => channels
-            .iter()
-            .find(|channel| channel.name == *name)
-            .map_or_else(String::new, |channel| channel.unit.clone()),
-        Signal::Fmu { .. } => String::new(),
+    let shaft = motor_motion.unit();
+    let given = |source: &InputSource| match source {
+        InputSource::Time => "s".to_owned(),
+        InputSource::ShaftPosition => shaft.to_owned(),
+        InputSource::ShaftVelocity => format!("{shaft}/s"),
+        InputSource::Signal(signal) => signal.unit().symbol(equipment),
+        InputSource::Fmu { .. } => String::new(),
     };
-    let taken = |signal: LoopSignal| match signal {
-        LoopSignal::MotorEffort | LoopSignal::Effort => equipment.effort_unit.to_owned(),
-        LoopSignal::LoadEffort => equipment.load_effort_unit.to_owned(),
-        LoopSignal::SetpointPosition => equipment.axis_unit.to_owned(),
-        LoopSignal::SetpointVelocity => format!("{}/s", equipment.axis_unit),
-        LoopSignal::SetpointAcceleration => format!("{}/s²", equipment.axis_unit),
-        LoopSignal::VoltageD | LoopSignal::VoltageQ => "V".to_owned(),
-    };
+    let taken = |taken: LoopSignal| taken.signal().unit().symbol(equipment);
     FmuPartner {
         file: file(fmu),
         name: fmu.name.clone(),
@@ -120,20 +108,6 @@ fn port(variable: &str, unit: &str) -> FmuPort {
 fn si_unit(name: &str) -> Option<SiUnit> {
     let (_, exponents) = scenario::any_quantity(&format!("1 {name}"))?;
     Some(SiUnit { name: name.to_owned(), exponents })
-}
-
-const fn length_unit(motion: Motion) -> &'static str {
-    match motion {
-        Motion::Linear => "m",
-        Motion::Rotary => "rad",
-    }
-}
-
-const fn effort_unit(motion: Motion) -> &'static str {
-    match motion {
-        Motion::Linear => "N",
-        Motion::Rotary => "N m",
-    }
 }
 
 #[cfg(test)]

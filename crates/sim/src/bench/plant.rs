@@ -40,8 +40,8 @@ pub(super) fn mechanics(
                 actuator: mjcf.actuator.clone(),
                 transmission: scenario.axis.transmission,
                 axis: Some(plant::MjcfAxis {
-                    motor: coordinate(scenario.axis.motor_motion),
-                    load: coordinate(scenario.axis.motion),
+                    motor: scenario.axis.motor_motion,
+                    load: scenario.axis.motion,
                     max_effort: max_effort(scenario),
                 }),
             };
@@ -70,13 +70,6 @@ fn max_effort(scenario: &Scenario) -> f64 {
     }
 }
 
-fn coordinate(motion: scenario::Motion) -> plant::Coordinate {
-    match motion {
-        scenario::Motion::Linear => plant::Coordinate::Linear,
-        scenario::Motion::Rotary => plant::Coordinate::Rotary,
-    }
-}
-
 pub(crate) fn chain(axis: &scenario::Axis, bodies: &[scenario::Body]) -> Result<Chain, BuildError> {
     let links = bodies
         .iter()
@@ -88,7 +81,7 @@ pub(crate) fn chain(axis: &scenario::Axis, bodies: &[scenario::Body]) -> Result<
         .enumerate()
         .map(|(i, body)| plant::Body {
             name: body.name,
-            coordinate: coordinate(if i == 0 { axis.motor_motion } else { axis.motion }),
+            coordinate: if i == 0 { axis.motor_motion } else { axis.motion },
             inertia: body.inertia,
             transmission: if i == 0 { axis.transmission } else { 1.0 },
             viscous: body.viscous,

@@ -1,5 +1,4 @@
 //! Axis and FMUs as blocks of a coupling.
-use crate::channels::{Instant, Selection};
 use crate::recorded::{Recorded, Saved};
 use crate::run::Failure;
 use crate::stepper::{Controller, External};
@@ -8,6 +7,7 @@ use servobench_coupling::{Block, Input, Step, later, mean, value};
 use servobench_fmi::{Progress, Slave, SlaveError};
 use servobench_plant::MechanicsError;
 use servobench_scenario::LoopSignal;
+use servobench_signals::{Instant, Selection};
 
 /// What the axis gives before channels of the recording.
 pub(super) const OWN: [&str; 3] = ["time", "shaft.position", "shaft.velocity"];
@@ -178,7 +178,7 @@ impl Block for Part {
                 let shaft = axis.recorded.closed_loop.mechanics.bodies()[0];
                 own.copy_from_slice(&[axis.recorded.time(), shaft.position, shaft.velocity]);
                 if !channels.is_empty() {
-                    channels.copy_from_slice(axis.gives.pick(&axis.now));
+                    channels.copy_from_slice(axis.gives.values(&axis.now));
                 }
                 Ok(())
             }

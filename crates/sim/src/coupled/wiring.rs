@@ -2,12 +2,12 @@
 use super::ConnectionDelay;
 use super::block::OWN;
 use crate::bench::fmu::partner;
-use crate::channels::{Equipment, Selection, WriterRates};
 use crate::error::BuildError;
 use servobench_base::Tick;
 use servobench_coupling::{Connection, Delay, Order, Port};
 use servobench_plant::FmuPartner;
-use servobench_scenario::{LoopSignal, Scenario, Signal};
+use servobench_scenario::{InputSource, LoopSignal, Scenario};
+use servobench_signals::{Equipment, Rates, Selection};
 
 /// Which ports there are, and how they are connected.
 pub(super) struct Wiring<'a> {
@@ -24,10 +24,10 @@ pub(super) struct Wiring<'a> {
 impl<'a> Wiring<'a> {
     /// # Errors
     /// [`BuildError::NoSuchSignal`]
-    pub(super) fn new(scenario: &'a Scenario, equipment: &Equipment, rates: &WriterRates) -> Result<Self, BuildError> {
+    pub(super) fn new(scenario: &'a Scenario, equipment: &Equipment, rates: &Rates) -> Result<Self, BuildError> {
         let axis = scenario.fmus.len();
         let all = Selection::all(equipment, rates);
-        let (mut outputs, mut columns, mut takes) = (vec![Vec::new(); axis], Vec::new(), Vec::new());
+        let (mut outputs, mut given, mut takes) = (vec![Vec::new(); axis], Vec::new(), Vec::new());
         let mut connections = Vec::new();
         let mut connect = |from, to, is_discrete| {
             connections.push(Connection { from, to, gain: 1.0, offset: 0.0, is_discrete });
@@ -36,19 +36,21 @@ impl<'a> Wiring<'a> {
             let is_controller = fmu.outputs.iter().any(|(_, signal)| is_of_a_controller(*signal));
             for (port, (variable, signal)) in fmu.inputs.iter().enumerate() {
                 let from = match signal {
-                    Signal::Time => Port { block: axis, port: 0 },
-                    Signal::ShaftPosition => Port { block: axis, port: 1 },
-                    Signal::ShaftVelocity => Port { block: axis, port: 2 },
-                    Signal::Channel(name) => {
-                        let column = all.place(name).ok_or_else(|| BuildError::NoSuchSignal {
+                    InputSource::Time => Port { block: axis, port: 0 },
+                    InputSource::ShaftPosition => Port { block: axis, port: 1 },
+                    InputSource::ShaftVelocity => Port { block: axis, port: 2 },
+                    InputSource::Signal(signal) if all.has(*signal) => {
+                        Port { block: axis, port: OWN.len() + place(&mut given, *signal) }
+                    }
+                    InputSource::Signal(signal) => {
+                        return Err(BuildError::NoSuchSignal {
                             index: block,
                             variable: variable.clone(),
-                            name: (*name).to_owned(),
-                            available: all.names().map(String::from).collect(),
-                        })?;
-                        Port { block: axis, port: OWN.len() + place(&mut columns, column) }
+                            signal: *signal,
+                            available: all.signals().to_vec(),
+                        });
                     }
-                    Signal::Fmu { fmu, variable } => {
+                    InputSource::Fmu { fmu, variable } => {
                         Port { block: *fmu, port: output(&mut outputs[*fmu], variable, None) }
                     }
                 };
@@ -60,7 +62,7 @@ impl<'a> Wiring<'a> {
                 connect(from, to, is_of_a_controller(*signal));
             }
         }
-        Ok(Self { scenario, outputs, gives: all.only(&columns), takes, connections })
+        Ok(Self { scenario, outputs, gives: all.only(&given), takes, connections })
     }
 
     /// The FMU number `index` as it is to be opened for a run of `ticks`.
@@ -71,12 +73,12 @@ impl<'a> Wiring<'a> {
         let step = rate.time(Tick(last - before));
         // As it is stepped: a sum of times may be a rounding away from the time of the tick.
         let end = rate.time(Tick(last)).max(rate.time(Tick(before)) + step);
-        partner(fmu, &self.outputs[index], (equipment, motion), &self.gives.specs, (step, end))
+        partner(fmu, &self.outputs[index], (equipment, motion), (step, end))
     }
 
     /// Names of what the axis gives.
     pub(super) fn axis_outputs(&self) -> impl Iterator<Item = &str> {
-        OWN.into_iter().chain(self.gives.names())
+        OWN.into_iter().chain(self.gives.signals().iter().map(|signal| signal.name()))
     }
 
     /// A connection and how late it is.
@@ -90,7 +92,7 @@ impl<'a> Wiring<'a> {
             },
             to: match self.scenario.fmus.get(to.block) {
                 Some(fmu) => of_fmu(to.block, &fmu.inputs[to.port].0),
-                None => self.takes[to.port].name().to_owned(),
+                None => self.takes[to.port].signal().name().to_owned(),
             },
             delay: delay.ticks as f64 * self.scenario.base_rate.period(),
             steps: delay.steps,

@@ -5,16 +5,17 @@
 //! the axis with every revolution.
 use crate::error::BuildError;
 use core::f64::consts::TAU;
+use servobench_base::Coordinate;
 use servobench_base::ParamError;
 use servobench_cia402::units::{AxisUnit, FactorGroup, Ratio};
 use servobench_drive::device::Units;
-use servobench_scenario::{self as scenario, Motion};
+use servobench_scenario as scenario;
 
 /// What closes the position loop, and the way from it to the axis.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Counted {
     /// Coordinate of the encoder.
-    pub(super) motion: Motion,
+    pub(super) motion: Coordinate,
     /// One increment (m or rad); `None` for an ideal encoder.
     pub(super) increment: Option<f64>,
     /// Axis coordinate per coordinate of the encoder.
@@ -37,14 +38,14 @@ pub(super) struct DriveUnits {
 /// Units of a drive whose user-defined unit is `unit`, on an axis of `motion`.
 pub(super) fn units(
     counted: &Counted,
-    motion: Motion,
+    motion: Coordinate,
     unit: scenario::DriveUnits,
     rated_effort: f64,
 ) -> Result<DriveUnits, BuildError> {
     // What a linear encoder does in a metre stands for a revolution.
     let revolution = match counted.motion {
-        Motion::Rotary => TAU,
-        Motion::Linear => 1.0,
+        Coordinate::Rotary => TAU,
+        Coordinate::Linear => 1.0,
     };
     let length = unit.axis / f64::from(unit.drive);
     let feed = fraction("bus.units", counted.transmission * revolution / length)?;
@@ -54,13 +55,13 @@ pub(super) fn units(
         None => [feed[0].saturating_mul(FINER), feed[1]],
     };
     let [numerator, denominator] = match motion {
-        Motion::Linear => fraction("bus.units.axis", unit.axis)?,
-        Motion::Rotary => fraction("bus.units.axis", unit.axis / TAU)?,
+        Coordinate::Linear => fraction("bus.units.axis", unit.axis)?,
+        Coordinate::Rotary => fraction("bus.units.axis", unit.axis / TAU)?,
     };
     let ratio = Ratio::new(numerator.into(), i64::from(denominator) * i64::from(unit.drive))?;
     let unit = match motion {
-        Motion::Linear => AxisUnit::Metre(ratio),
-        Motion::Rotary => AxisUnit::Revolution(ratio),
+        Coordinate::Linear => AxisUnit::Metre(ratio),
+        Coordinate::Rotary => AxisUnit::Revolution(ratio),
     };
     let factors =
         FactorGroup { position_encoder_resolution: increments, feed_constant: feed, ..FactorGroup::default() };
@@ -117,9 +118,10 @@ mod tests {
     /// A screw of 5 mm, an encoder of 2²⁰ increments per revolution, a unit of a micrometre.
     #[test]
     fn a_micrometre_is_what_the_screw_moves_in_a_fraction_of_a_turn() {
-        let counted = Counted { motion: Motion::Rotary, increment: Some(TAU / 1_048_576.0), transmission: 5e-3 / TAU };
+        let counted =
+            Counted { motion: Coordinate::Rotary, increment: Some(TAU / 1_048_576.0), transmission: 5e-3 / TAU };
         let unit = scenario::DriveUnits { drive: 1000, axis: 1e-3 };
-        let DriveUnits { conversions: units, increment, .. } = units(&counted, Motion::Linear, unit, 1.0).unwrap();
+        let DriveUnits { conversions: units, increment, .. } = units(&counted, Coordinate::Linear, unit, 1.0).unwrap();
         assert!((increment - TAU / 1_048_576.0).abs() < 1e-20);
         assert_eq!(units.position(1_048_576), 5000);
         assert!((units.from_position(250_000) - 0.25).abs() < 1e-15);

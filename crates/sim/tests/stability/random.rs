@@ -1,8 +1,9 @@
 //! Random loops: all combinations of motors, bodies, rates, filters and wrong estimates.
 use crate::files::scenario;
+use servobench_base::Coordinate;
 use servobench_base::Rate;
 use servobench_scenario::{
-    Actuator, AxisMechanics, Body, Coupling, CurrentGain, EffortFeedforward, Encoder, Feedback, Motion, Scenario,
+    Actuator, AxisMechanics, Body, Coupling, CurrentGain, EffortFeedforward, Encoder, Feedback, Scenario,
 };
 
 /// SplitMix64 (Steele, Lea, Flood 2014).
@@ -105,7 +106,7 @@ pub(crate) fn random_loop(random: &mut Random) -> Scenario {
     let is_screw = random.chance(0.3);
     let transmission = if is_screw { random.between(1e-3, 5e-3) } else { 1.0 };
     if is_screw {
-        scenario.axis.motion = Motion::Linear;
+        scenario.axis.motion = Coordinate::Linear;
     }
     scenario.axis.transmission = transmission;
     let bodies = bodies(random, base, transmission);

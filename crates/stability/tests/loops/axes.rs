@@ -1,7 +1,8 @@
 //! Loops to analyse.
+use servobench_base::Coordinate;
 use servobench_base::{Divider, Dq, Rate};
 use servobench_drive::{self as drive, current, feedforward, velocity};
-use servobench_plant::{Body, Chain, Coordinate, DryFriction, Link, pmsm};
+use servobench_plant::{Body, Chain, DryFriction, Link, pmsm};
 use servobench_stability::{
     CurrentGain, Depth, Loop, OperatingPoint, PositionFeedback, Report, Source, VelocitySignal, analyse,
 };

@@ -10,7 +10,7 @@ const SOFT: f64 = 700.0;
 fn two_bodies(stiffness: f64) -> Chain {
     let mut bodies = vec![body(0.005, 0.0), body(0.005, 0.0)];
     for body in &mut bodies {
-        body.coordinate = servobench_plant::Coordinate::Rotary;
+        body.coordinate = servobench_base::Coordinate::Rotary;
     }
     chain(bodies, &[(stiffness, 0.01)])
 }
@@ -66,7 +66,7 @@ fn one_mass_beyond_its_boundary() {
 fn a_rotor_under_far_too_much_gain() {
     let tuning = Tuning { current: 1200.0, velocity: 9.0, integral_time: 10e-3, filter_time: 0.0, position: 30.0 };
     let mut rotor = body(1e-3, 0.0);
-    rotor.coordinate = servobench_plant::Coordinate::Rotary;
+    rotor.coordinate = servobench_base::Coordinate::Rotary;
     let found = report(&servo(tuning, chain(vec![rotor], &[]))).instability.unwrap();
     println!("{found}");
     assert_eq!(found.name, LoopName::Velocity);

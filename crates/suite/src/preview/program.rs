@@ -1,29 +1,13 @@
 //! The moves as they are planned, and limits that no run of them can keep.
 use super::{Doubt, Units};
 use crate::job::run_length;
-use servobench_metrics::Quantity;
-use servobench_scenario::{Limit, Scenario, Step};
+use servobench_metrics::{Limit, Name, Quantity, Scope};
+use servobench_scenario::{Scenario, Step};
 use servobench_sim::Program;
 use servobench_trace::Move;
 
-/// Metrics of moves alone: without one they have no value, and a limit on them is missed.
-const OF_MOVES: [&str; 11] = [
-    "move_time",
-    "settling_time",
-    "move_and_settling_time",
-    "overshoot",
-    "steady_state_error",
-    "following_error_cruise_motor",
-    "following_error_cruise_load",
-    "setpoint_velocity_ratio",
-    "setpoint_acceleration_ratio",
-    "setpoint_jerk_ratio",
-    "setpoint_snap_ratio",
-];
-/// Metrics of what follows a move, or of what follows `measure.from`.
-const AFTERWARDS: &str = "residual_vibration_";
 /// Durations that are no shorter than the planned one.
-const NO_SHORTER: [&str; 2] = ["move_time", "move_and_settling_time"];
+const NO_SHORTER: [Name; 2] = [Name::MoveTime, Name::MoveAndSettlingTime];
 /// A limit that is the planned duration may differ from it by rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -91,19 +75,20 @@ impl PlannedProgram {
                 doubts.extend(scenario.limits.iter().filter_map(|limit| missed(limit, longest, it, key)));
             }
             None if !self.by_blocks => {
-                let lacks_a_move = |limit: &&Limit| {
-                    OF_MOVES.contains(&limit.metric.as_str())
-                        || (limit.metric.starts_with(AFTERWARDS) && scenario.measure.from.is_none())
+                let lacks_a_move = |limit: &&Limit| match limit.metric.scope() {
+                    Scope::Run => false,
+                    Scope::Move => true,
+                    Scope::AfterMove => scenario.measure.from.is_none(),
                 };
                 doubts.extend(scenario.limits.iter().filter(lacks_a_move).map(|limit| {
-                    let metric = &limit.metric;
-                    let help = if metric.starts_with(AFTERWARDS) {
+                    let metric = limit.metric;
+                    let help = if metric.scope() == Scope::AfterMove {
                         "give a `[[program]]`, or `from` in `[measure]`"
                     } else {
                         "give a `[[program]]`, or leave the limit out"
                     };
                     Doubt::new(
-                        key(metric),
+                        key(metric.as_str()),
                         format!("`{metric}` is about a move, and there is none: the limit is missed"),
                         help,
                     )
@@ -122,18 +107,18 @@ fn length(made: &Move) -> f64 {
 
 /// What of `limit` a move that lasts `planned` (s) cannot keep.
 fn missed(limit: &Limit, planned: f64, it: &str, key: impl Fn(&str) -> String) -> Option<Doubt> {
-    let name = limit.metric.as_str();
+    let name = limit.metric;
     let show = |seconds: f64, beside: f64| {
         format!("{:.1$}", Quantity::new(seconds, "s"), Quantity::digits_apart(seconds, beside))
     };
     let too_short = limit.max.filter(|max| NO_SHORTER.contains(&name) && *max < planned * (1.0 - ROUNDING));
-    let too_long = limit.min.filter(|min| name == "move_time" && *min > planned * (1.0 + ROUNDING));
+    let too_long = limit.min.filter(|min| name == Name::MoveTime && *min > planned * (1.0 + ROUNDING));
     let bound = too_short.or(too_long)?;
     let side = if too_short.is_some() { "at most" } else { "at least" };
     let (planned_text, bound_text) = (show(planned, bound), show(bound, planned));
     let message = format!("no run keeps `{name}` {side} {bound_text}: {it} is planned to take {planned_text}");
     let help = if too_short.is_some() { "raise this limit, or those of the set-point" } else { "lower it" };
-    Some(Doubt::new(key(name), message, help))
+    Some(Doubt::new(key(name.as_str()), message, help))
 }
 
 #[cfg(test)]

@@ -27,7 +27,7 @@ impl Inertias {
         let (first, others) = chain.bodies().split_first()?;
         let r = first.transmission;
         let load = others.iter().map(|body| body.inertia * (r / body.transmission).powi(2)).sum();
-        Some(Self { motor: first.inertia, load, turns: first.coordinate == servobench_plant::Coordinate::Rotary })
+        Some(Self { motor: first.inertia, load, turns: first.coordinate == servobench_base::Coordinate::Rotary })
     }
 }
 

@@ -11,8 +11,9 @@ enum May {
 }
 
 /// The floor plan, lower floors first. Dev-dependencies are free: the oracle of a test may come from anywhere.
-const PLAN: [(&str, May); 28] = [
+const PLAN: [(&str, May); 30] = [
     ("base", May::On(&[])),
+    ("config", May::On(&["base"])),
     ("cia402", May::On(&["base"])),
     ("motion", May::On(&["base"])),
     ("planner", May::On(&["base", "motion"])),
@@ -27,8 +28,9 @@ const PLAN: [(&str, May); 28] = [
     ("engine-fmu", May::On(&["base", "plant", "fmi"])),
     ("coupling", May::On(&["base"])),
     ("trace", May::On(&["base"])),
-    ("metrics", May::On(&["base", "trace"])),
-    ("scenario", May::On(&["base", "metrics"])),
+    ("signals", May::On(&["base", "plant", "trace"])),
+    ("metrics", May::On(&["base", "config", "signals", "trace"])),
+    ("scenario", May::On(&["base", "config", "metrics", "signals"])),
     (
         "sim",
         May::On(&[
@@ -44,14 +46,15 @@ const PLAN: [(&str, May); 28] = [
             "fmi",
             "coupling",
             "trace",
+            "signals",
             "metrics",
             "scenario",
         ]),
     ),
-    ("fmu", May::On(&["base", "cia402", "motion", "planner", "plcopen", "plant", "fmi", "scenario", "sim"])),
-    ("suite", May::On(&["base", "plant", "stability", "sim", "scenario", "trace", "metrics"])),
-    ("report", May::On(&["base", "cia402", "motion", "planner", "fmi", "trace", "metrics"])),
-    ("view", May::On(&["base", "trace", "metrics"])),
+    ("fmu", May::On(&["base", "cia402", "motion", "planner", "plcopen", "plant", "fmi", "signals", "scenario", "sim"])),
+    ("suite", May::On(&["base", "config", "plant", "stability", "sim", "scenario", "signals", "trace", "metrics"])),
+    ("report", May::On(&["base", "cia402", "motion", "planner", "fmi", "signals", "trace", "metrics"])),
+    ("view", May::On(&["base", "signals", "trace", "metrics"])),
     ("cli", May::OnAll),
     ("tests", May::OnAll),
     ("bare-metal", May::On(&["base", "cia402", "motion", "fieldbus", "plcopen"])),

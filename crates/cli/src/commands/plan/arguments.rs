@@ -1,7 +1,8 @@
 //! The arguments of a plan, taken one by one: what is wrong with them and what nobody has taken is told in one go.
 use crate::args::PlanArgs;
 use crate::exit::CliError;
-use servobench_scenario::{ArgumentError, Derivative, Motion, axis_quantity, frequency, ratio, time};
+use servobench_base::Coordinate;
+use servobench_scenario::{ArgumentError, Derivative, axis_quantity, frequency, ratio, time};
 use std::collections::BTreeSet;
 
 /// The arguments that not every family uses.
@@ -12,7 +13,7 @@ pub(super) struct Arguments<'a> {
     taken: BTreeSet<&'static str>,
     mistakes: Vec<String>,
     /// Of the axis, as soon as a quantity says so.
-    motion: Option<Motion>,
+    motion: Option<Coordinate>,
     units: Vec<Told>,
 }
 
@@ -204,11 +205,11 @@ impl<'a> Arguments<'a> {
         }
     }
 
-    pub(super) const fn set_motion(&mut self, motion: Motion) {
+    pub(super) const fn set_motion(&mut self, motion: Coordinate) {
         self.motion = Some(motion);
     }
 
-    pub(super) const fn motion(&self) -> Option<Motion> {
+    pub(super) const fn motion(&self) -> Option<Coordinate> {
         self.motion
     }
 
@@ -218,7 +219,7 @@ impl<'a> Arguments<'a> {
     }
 
     /// The motion of the axis and the units in which it is told, if nothing is wrong and everything has been taken.
-    pub(super) fn finish(mut self) -> Result<(Option<Motion>, Vec<Told>), CliError> {
+    pub(super) fn finish(mut self) -> Result<(Option<Coordinate>, Vec<Told>), CliError> {
         for (name, _) in self.given.iter().filter(|(name, _)| !self.taken.contains(name)) {
             let elsewhere = ELSEWHERE.iter().find(|(names, _)| names.contains(name));
             let way_out = elsewhere.map_or("or choose --profile rockwell", |(_, way_out)| way_out);

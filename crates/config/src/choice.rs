@@ -1,0 +1,101 @@
+//! Types with a few named values.
+use servobench_base::Coordinate;
+
+/// A type with a few named values: an enumeration of alternatives among which users choose by name.
+pub trait Choice: Copy + 'static {
+    /// Every value: its name, itself, its meaning.
+    const ALL: &'static [(&'static str, Self, &'static str)];
+
+    /// The value of this name.
+    #[must_use]
+    fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(known, ..)| *known == name).map(|(_, value, _)| *value)
+    }
+
+    /// Its name.
+    #[must_use]
+    fn name(self) -> &'static str
+    where
+        Self: PartialEq,
+    {
+        Self::ALL.iter().find(|(_, value, _)| *value == self).map_or("", |(name, ..)| name)
+    }
+}
+
+impl Choice for Coordinate {
+    const ALL: &'static [(&'static str, Self, &'static str)] = &[
+        ("linear", Self::Linear, "the load moves along a line: m, N, kg"),
+        ("rotary", Self::Rotary, "the load turns: rad, N·m, kg·m²"),
+    ];
+}
+
+/// Declares an enumeration whose values users choose by name; the doc comment of a value is its meaning. One may be the default:
+/// `enum Kind default Pi`.
+///
+/// ```
+/// servobench_config::choices! {
+///     /// What a velocity loop is.
+///     pub enum Kind {
+///         /// proportional
+///         P = "p",
+///         /// proportional and integral
+///         Pi = "pi",
+///     }
+/// }
+/// use servobench_config::Choice as _;
+/// assert_eq!(Kind::from_name("pi"), Some(Kind::Pi));
+/// assert_eq!(Kind::P.name(), "p");
+/// assert_eq!(Kind::ALL[1].2, "proportional and integral");
+/// ```
+#[macro_export]
+macro_rules! choices {
+    (
+        $(#[doc = $doc:literal])+
+        $visibility:vis enum $type:ident $(default $default:ident)? {
+            $( $(#[doc = $meaning:literal])+ $variant:ident = $name:literal, )+
+        }
+    ) => {
+        $(#[doc = $doc])+
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        $visibility enum $type {
+            $( $(#[doc = $meaning])+ $variant, )+
+        }
+
+        $(
+            impl Default for $type {
+                fn default() -> Self {
+                    Self::$default
+                }
+            }
+        )?
+
+        impl $crate::Choice for $type {
+            const ALL: &'static [(&'static str, Self, &'static str)] =
+                &[$( ($name, Self::$variant, concat!($($meaning),+).trim_ascii()), )+];
+        }
+    };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    choices! {
+        /// An example.
+        enum Example default Second {
+            /// the first of them,
+            /// in two lines
+            First = "first",
+            /// the second
+            Second = "second",
+        }
+    }
+
+    #[test]
+    fn values_have_names_and_meanings() {
+        assert_eq!(Example::First.name(), "first");
+        assert_eq!(Example::from_name("second"), Some(Example::default()));
+        assert_eq!(Example::from_name("third"), None);
+        assert_eq!(Example::ALL[0].2, "the first of them, in two lines");
+    }
+}

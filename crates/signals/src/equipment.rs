@@ -1,0 +1,174 @@
+//! What an axis has, and with it which signals, from whom and how often.
+use servobench_base::{Coordinate, Rate};
+
+/// What an axis has.
+#[derive(Debug, Clone, Copy)]
+pub struct Equipment {
+    /// Coordinate of the load.
+    pub axis: Coordinate,
+    /// Coordinate of the motor.
+    pub motor_coordinate: Coordinate,
+    /// Whether there is a body between motor and load.
+    pub table: bool,
+    /// Whether something disturbs the motor, and the load.
+    pub disturbed: [bool; 2],
+    /// Whether there is a fieldbus between the motion task and the drive.
+    pub bus: bool,
+    /// What the firmware commands; `None` without firmware.
+    pub amplifier: Option<Amplifier>,
+    /// What the motor has: by the firmware, or by an FMU in its place.
+    pub motor: Motor,
+}
+
+/// What there is of a motor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Motor {
+    /// Nothing: it is off, or follows the set-point exactly.
+    Motion,
+    /// An effort.
+    Effort,
+    /// Currents and voltages too.
+    Currents,
+}
+
+/// What the firmware commands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Amplifier {
+    /// The currents of a synchronous motor.
+    Current,
+    /// An ideal source.
+    Ideal {
+        /// Unit of its output.
+        output_unit: &'static str,
+    },
+}
+
+/// When an axis has a signal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Presence {
+    /// Always.
+    Always,
+    /// With a fieldbus.
+    OnBus,
+    /// With a body between motor and load.
+    WithTable,
+    /// With firmware.
+    WithFirmware,
+    /// With a current loop.
+    WithCurrentLoop,
+    /// With a motor that has an effort.
+    WithEffort,
+    /// With a motor that has currents.
+    WithCurrents,
+    /// With an ideal source.
+    WithOutput,
+    /// Where something disturbs the motor.
+    MotorDisturbed,
+    /// Where something disturbs the load.
+    LoadDisturbed,
+}
+
+impl Presence {
+    /// Whether an axis with `equipment` has it.
+    #[must_use]
+    pub fn holds(self, equipment: &Equipment) -> bool {
+        match self {
+            Self::Always => true,
+            Self::OnBus => equipment.bus,
+            Self::WithTable => equipment.table,
+            Self::WithFirmware => equipment.amplifier.is_some(),
+            Self::WithCurrentLoop => equipment.amplifier == Some(Amplifier::Current),
+            Self::WithEffort => equipment.motor != Motor::Motion,
+            Self::WithCurrents => equipment.motor == Motor::Currents,
+            Self::WithOutput => matches!(equipment.amplifier, Some(Amplifier::Ideal { .. })),
+            Self::MotorDisturbed => equipment.disturbed[0],
+            Self::LoadDisturbed => equipment.disturbed[1],
+        }
+    }
+}
+
+/// Stage of the loop that writes a signal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Writer {
+    /// The motion task behind a fieldbus.
+    MotionTask,
+    /// The fieldbus.
+    Fieldbus,
+    /// The generator of set-points, or what interpolates them.
+    SetPoint,
+    /// The mechanics.
+    Mechanics,
+    /// The position loop.
+    PositionLoop,
+    /// The velocity loop.
+    VelocityLoop,
+    /// The current loop.
+    CurrentLoop,
+    /// The current loop, or the controller that stands in its place.
+    Commander,
+    /// What is measured from outside.
+    Measurement,
+    /// Inverter and motor, or the ideal source.
+    PowerStage,
+    /// The motor.
+    Motor,
+    /// A disturbance.
+    Disturbance,
+}
+
+/// How often the writers renew what they write.
+#[derive(Debug, Clone, Copy)]
+pub struct Rates {
+    /// Base rate of the run.
+    pub base: Rate,
+    /// Of the motion task behind a fieldbus.
+    pub task: Rate,
+    /// Of the fieldbus.
+    pub bus: Rate,
+    /// Of the position loop.
+    pub position: Rate,
+    /// Of the velocity loop.
+    pub velocity: Rate,
+    /// Of the current loop.
+    pub current: Rate,
+}
+
+impl Writer {
+    /// Its name in recordings.
+    #[must_use]
+    pub fn name(self, equipment: &Equipment) -> &'static str {
+        match self {
+            Self::MotionTask => "motion task",
+            Self::Fieldbus => "fieldbus",
+            Self::SetPoint => "set-point",
+            Self::Mechanics => "mechanics",
+            Self::PositionLoop => "position loop",
+            Self::VelocityLoop => "velocity loop",
+            Self::CurrentLoop => "current loop",
+            Self::Commander if equipment.amplifier == Some(Amplifier::Current) => "current loop",
+            Self::Commander => "controller",
+            Self::Measurement => "measurement",
+            Self::PowerStage => "power stage",
+            Self::Motor => "motor",
+            Self::Disturbance => "disturbance",
+        }
+    }
+
+    /// How often it writes.
+    #[must_use]
+    pub const fn rate(self, rates: &Rates) -> Rate {
+        match self {
+            Self::MotionTask => rates.task,
+            Self::Fieldbus => rates.bus,
+            Self::PositionLoop => rates.position,
+            Self::VelocityLoop => rates.velocity,
+            Self::CurrentLoop | Self::Commander => rates.current,
+            Self::SetPoint
+            | Self::Mechanics
+            | Self::Measurement
+            | Self::PowerStage
+            | Self::Motor
+            | Self::Disturbance => rates.base,
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! All that is known at one tick.
+use servobench_base::{Dq, Setpoint};
+use servobench_plant::BodyState;
+use servobench_plant::pmsm::Power;
+
+/// All that is known at tick k, before the integration to k+1. In the axis coordinate unless said otherwise.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Instant {
+    /// Set-point of the motion task, before it goes over the bus.
+    pub task: Setpoint,
+    /// Actual position as the master reads it.
+    pub bus_position: f64,
+    /// The set-point.
+    pub setpoint: Setpoint,
+    /// The motor.
+    pub motor: BodyState,
+    /// The body between motor and load.
+    pub table: BodyState,
+    /// The load.
+    pub load: BodyState,
+    /// What the load is to follow.
+    pub reference: f64,
+    /// What the motor is to follow.
+    pub motor_reference: f64,
+    /// Reference less position, of motor and load.
+    pub following_error: [f64; 2],
+    /// Velocity command.
+    pub velocity_reference: f64,
+    /// What the velocity loop asks for (motor coordinate).
+    pub effort_reference: f64,
+    /// What the motor gives (motor coordinate).
+    pub effort: f64,
+    /// Currents of the motor.
+    pub current: Dq,
+    /// q-axis current that is asked for.
+    pub current_reference: f64,
+    /// What the current loop computes at this tick.
+    pub voltage_reference: Dq,
+    /// What the inverter gives over the coming tick.
+    pub voltage: Dq,
+    /// Mean powers over the tick that ends here.
+    pub power: Power,
+    /// Mean power on the shaft over the tick that ends here.
+    pub shaft_power: f64,
+    /// Output of an ideal source.
+    pub output: f64,
+    /// External effort on the motor over the coming tick (motor coordinate).
+    pub motor_disturbance: f64,
+    /// External effort on the load over the coming tick.
+    pub load_disturbance: f64,
+    /// Which limits bind at this tick.
+    pub binds: PerLimit<bool>,
+    /// In which share of the ticks since the last row they did.
+    pub saturation: PerLimit<f64>,
+}
+
+/// Something for each limit that is watched.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct PerLimit<T> {
+    /// Voltage limit, which the current loop keeps to or the inverter enforces.
+    pub voltage: T,
+    /// Current limit, which cuts what the velocity loop asks for.
+    pub current: T,
+    /// Effort limit of the velocity loop.
+    pub effort: T,
+}

@@ -1,0 +1,62 @@
+//! In which unit a signal is.
+use crate::equipment::{Amplifier, Equipment};
+use std::fmt;
+
+/// The unit of a signal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unit {
+    /// That of the axis, m or rad, per second to this power.
+    Axis(u8),
+    /// Of an effort of the motor: N or N·m.
+    MotorEffort,
+    /// Of an effort on the load: N or N·m.
+    LoadEffort,
+    /// A.
+    Ampere,
+    /// V.
+    Volt,
+    /// W.
+    Watt,
+    /// That of what an ideal source puts out: V, or that of its effort.
+    Output,
+    /// A pure number.
+    One,
+}
+
+const POWERS: [&str; 5] = ["", "/s", "/s²", "/s³", "/s⁴"];
+
+impl Unit {
+    /// Its symbol on an axis with `equipment`; empty for a pure number.
+    #[must_use]
+    pub fn symbol(self, equipment: &Equipment) -> String {
+        match self {
+            Self::Axis(power) => format!("{}{}", equipment.axis.unit(), POWERS[usize::from(power)]),
+            Self::MotorEffort => equipment.motor_coordinate.effort_unit().into(),
+            Self::LoadEffort => equipment.axis.effort_unit().into(),
+            Self::Ampere => "A".into(),
+            Self::Volt => "V".into(),
+            Self::Watt => "W".into(),
+            Self::Output => match equipment.amplifier {
+                Some(Amplifier::Ideal { output_unit }) => output_unit.into(),
+                Some(Amplifier::Current) | None => String::new(),
+            },
+            Self::One => String::new(),
+        }
+    }
+}
+
+/// On any axis: U is its unit, E that of the motor's effort, F that of an effort on the load.
+impl fmt::Display for Unit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Axis(power) => write!(f, "U{}", POWERS[usize::from(*power)]),
+            Self::MotorEffort => f.write_str("E"),
+            Self::LoadEffort => f.write_str("F"),
+            Self::Ampere => f.write_str("A"),
+            Self::Volt => f.write_str("V"),
+            Self::Watt => f.write_str("W"),
+            Self::Output => f.write_str("V or E"),
+            Self::One => f.write_str("1"),
+        }
+    }
+}
