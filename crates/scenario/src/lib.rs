@@ -44,15 +44,13 @@ pub use points::{
     Column, MOST_POINTS, Points, PointsError, PointsMistake, Profile, read_accelerations, read_points, read_velocities,
 };
 pub use scenario::{
-    Actuator, Axis, AxisMechanics, Block, Body, BodySignal, Braking, BufferMode, Bus, BusFault, BusFaultKind, BusMode,
-    Call, CoSimulation, Command, Condition, Counter, Coupling, CouplingMethod, CurrentGain, CurrentLoop, Direction,
-    Disturbance, DisturbedBody, Drive, DriveInterpolation, DriveUnits, Dynamics, EffortFeedforward, Encoder,
-    EngineName, Estimate, Execution, Feedback, Feedforward, Filter, Fmu, Follow, Goal, Grid, HomeSwitch, IdealSource,
-    Initial, InputSource, Interpolation, InterpolationMode, Isolation, LONGEST_RUN, LoopSignal, Method, Mjcf,
-    MotorEstimate, MoveStep, ObjectWrite, OnlineMove, Output, Pair, PlanEffort, Plc, Pmsm, PositionLoop, ProfileFollow,
-    Record, Requirements, RestMove, RockwellJerk, RockwellMove, RockwellShape, Sampling, Scales, Scenario, Sequencing,
-    Shaper, ShaperKind, SourceOutput, StartValue, Step, Switches, TableMove, Target, TrajectoryBuffer, Update,
-    Velocities, VelocityLoop, Way,
+    Actuator, Axis, AxisMechanics, Block, BodySignal, Braking, BufferMode, Bus, BusFault, BusFaultKind, BusMode, Call,
+    CoSimulation, Command, Condition, Counter, CouplingMethod, Direction, Disturbance, DisturbedBody, Drive,
+    DriveInterpolation, DriveUnits, Dynamics, EngineName, Execution, Feedback, Filter, Fmu, Follow, Goal, Grid,
+    Initial, InputSource, Interpolation, InterpolationMode, Isolation, LONGEST_RUN, LoopSignal, Method, MoveStep,
+    ObjectWrite, OnlineMove, Output, Pair, PlanEffort, Plc, ProfileFollow, Record, Requirements, RestMove,
+    RockwellJerk, RockwellMove, RockwellShape, Sampling, Scales, Scenario, Sequencing, Shaper, ShaperKind, StartValue,
+    Step, TableMove, Target, TrajectoryBuffer, Update, Velocities, Way,
 };
 pub use schema::json_schema;
 pub use source::{SourceId, Sources};

@@ -9,27 +9,23 @@ pub(crate) fn check(scenario: &Scenario) {
     optional("duration", scenario.duration);
     assert!(scenario.duration.is_none_or(|duration| duration <= LONGEST_RUN));
     positive("transmission", axis.transmission);
-    if let AxisMechanics::Bodies(bodies) = &axis.mechanics {
-        assert!((1..=3).contains(&bodies.len()) && bodies[0].name == "motor" && bodies[0].coupling.is_none());
-        bodies.iter().for_each(body);
-        for body in &bodies[1..] {
-            coupling(body.coupling.expect("only the motor has no coupling"));
-        }
+    if let AxisMechanics::Bodies(chain) = &axis.mechanics {
+        assert!((1..=3).contains(&chain.bodies().len()) && chain.bodies()[0].name == "motor");
+        assert_eq!(chain.check(), Ok(()));
     }
     match actuator {
         Actuator::Prescribed | Actuator::Off => {}
-        Actuator::Pmsm { motor, dc_link, current, drive } => {
-            pmsm(motor);
+        Actuator::Pmsm { motor, encoder, dc_link, drive } => {
+            assert_eq!((motor.check(), encoder.check()), (Ok(()), Ok(())));
             positive("dc_link", *dc_link);
-            self::current(current, *base_rate);
+            assert!(drive.params.current_loop().is_some() && drive.current_tuning.is_some());
             self::drive(drive, *base_rate);
-            assert!(current.rate.divider(drive.velocity.rate).is_ok(), "{:?} in {:?}", drive.velocity, current.rate);
         }
-        Actuator::IdealSource { source, estimated_gain, drive } => {
+        Actuator::IdealSource { source, encoder, drive } => {
             positive("gain", source.gain);
-            positive("estimated gain", *estimated_gain);
             limit("limit", source.limit);
-            resolution(&source.encoder);
+            assert_eq!(encoder.check(), Ok(()));
+            assert!(drive.params.current_loop().is_none() && drive.current_tuning.is_none());
             self::drive(drive, *base_rate);
         }
     }
@@ -64,71 +60,11 @@ pub(crate) fn check(scenario: &Scenario) {
     }
 }
 
-fn body(body: &Body) {
-    positive("inertia", body.inertia);
-    not_negative("viscous", body.viscous);
-    not_negative("coulomb", body.coulomb);
-    finite("breakaway", body.breakaway);
-    assert!(body.breakaway >= body.coulomb, "{body:?}");
-    not_negative("stribeck_velocity", body.stribeck_velocity);
-    finite("bias", body.bias);
-}
-
-fn coupling(coupling: Coupling) {
-    positive("stiffness", coupling.stiffness);
-    not_negative("damping", coupling.damping);
-}
-
-fn pmsm(motor: &Pmsm) {
-    positive("electrical_ratio", motor.electrical_ratio);
-    positive("resistance", motor.resistance);
-    positive("inductance_d", motor.inductance_d);
-    positive("inductance_q", motor.inductance_q);
-    positive("flux_linkage", motor.flux_linkage);
-    resolution(&motor.encoder);
-}
-
-fn resolution(encoder: &Encoder) {
-    optional("resolution", encoder.resolution);
-}
-
-fn current(current: &CurrentLoop, base_rate: Rate) {
-    divides(current.rate, base_rate);
-    match current.gain {
-        CurrentGain::Bandwidth(bandwidth) => positive("bandwidth", bandwidth),
-        CurrentGain::PerAxis { d, q } => {
-            positive("gain, d", d);
-            positive("gain, q", q);
-        }
-    }
-    if let Some((d, q)) = current.integral_time {
-        positive("integral time, d", d);
-        positive("integral time, q", q);
-    }
-    positive("max_current", current.max_current);
-    positive("estimated dc_link", current.dc_link);
-    let MotorEstimate { electrical_ratio, resistance, inductance_d, inductance_q, flux_linkage } = current.motor;
-    positive("estimated electrical_ratio", electrical_ratio);
-    positive("estimated resistance", resistance);
-    positive("estimated inductance_d", inductance_d);
-    positive("estimated inductance_q", inductance_q);
-    positive("estimated flux_linkage", flux_linkage);
-}
-
 fn drive(drive: &Drive, base_rate: Rate) {
-    limit("max_effort", drive.max_effort);
-    let VelocityLoop { rate, gain, integral_time, filter_time } = drive.velocity;
-    divides(rate, base_rate);
-    not_negative("velocity gain", gain);
-    optional("integral_time", integral_time);
-    not_negative("filter_time", filter_time);
-    divides(drive.position.rate, rate);
-    not_negative("position gain", drive.position.gain);
+    assert_eq!((drive.params.check(), drive.params.base_rate), (Ok(()), base_rate));
     if let Feedback::Load(encoder) = &drive.position_feedback {
-        resolution(encoder);
+        assert_eq!(encoder.check(), Ok(()));
     }
-    assert!((0.0..=1.0).contains(&drive.feedforward.velocity));
-    not_negative("delay", drive.feedforward.delay.unwrap_or_default());
     let estimate = &drive.estimate;
     positive("estimated transmission", estimate.transmission);
     not_negative("motor_inertia", estimate.motor_inertia);
@@ -210,12 +146,11 @@ fn way(way: &Way, order: u8) -> usize {
 }
 
 fn switches(axis: &Axis) {
-    let Switches { negative, positive, home, index } = axis.switches;
-    for end in [negative, positive].into_iter().flatten() {
-        finite("switch", end);
-    }
+    let switches = &axis.switches;
+    assert_eq!((switches.check(), switches.normally_closed), (Ok(()), false));
+    let (negative, positive, index) = (switches.negative, switches.positive, switches.index);
     assert!(negative.zip(positive).is_none_or(|(negative, positive)| negative < positive));
-    assert!(home.is_none_or(|home| home.from < home.to));
+    assert!(switches.home.as_ref().is_none_or(|home| home.start() < home.end()));
     assert!(index.is_none_or(|index| (0.0..std::f64::consts::TAU).contains(&index)));
     assert_eq!(index.is_some(), axis.motor_motion == servobench_base::Coordinate::Rotary);
 }

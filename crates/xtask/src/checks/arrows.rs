@@ -17,7 +17,7 @@ const PLAN: [(&str, May); 30] = [
     ("cia402", May::On(&["base"])),
     ("motion", May::On(&["base"])),
     ("planner", May::On(&["base", "motion"])),
-    ("drive", May::On(&["base", "cia402", "motion"])),
+    ("drive", May::On(&["base", "config", "cia402", "motion"])),
     ("fieldbus", May::On(&["base", "cia402", "motion"])),
     ("plcopen", May::On(&["base", "fieldbus", "motion"])),
     ("plant", May::On(&["base"])),
@@ -30,7 +30,7 @@ const PLAN: [(&str, May); 30] = [
     ("trace", May::On(&["base"])),
     ("signals", May::On(&["base", "plant", "trace"])),
     ("metrics", May::On(&["base", "config", "signals", "trace"])),
-    ("scenario", May::On(&["base", "config", "metrics", "signals"])),
+    ("scenario", May::On(&["base", "config", "drive", "plant", "signals", "metrics"])),
     (
         "sim",
         May::On(&[
@@ -51,8 +51,16 @@ const PLAN: [(&str, May); 30] = [
             "scenario",
         ]),
     ),
-    ("fmu", May::On(&["base", "cia402", "motion", "planner", "plcopen", "plant", "fmi", "signals", "scenario", "sim"])),
-    ("suite", May::On(&["base", "config", "plant", "stability", "sim", "scenario", "signals", "trace", "metrics"])),
+    (
+        "fmu",
+        May::On(&[
+            "base", "cia402", "motion", "planner", "plcopen", "drive", "plant", "fmi", "signals", "scenario", "sim",
+        ]),
+    ),
+    (
+        "suite",
+        May::On(&["base", "config", "drive", "plant", "stability", "sim", "scenario", "signals", "trace", "metrics"]),
+    ),
     ("report", May::On(&["base", "cia402", "motion", "planner", "fmi", "signals", "trace", "metrics"])),
     ("view", May::On(&["base", "signals", "trace", "metrics"])),
     ("cli", May::OnAll),
