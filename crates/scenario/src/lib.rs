@@ -44,14 +44,13 @@ pub use points::{
     Column, MOST_POINTS, Points, PointsError, PointsMistake, Profile, read_accelerations, read_points, read_velocities,
 };
 pub use scenario::{
-    Actuator, Axis, AxisMechanics, Block, Body, BodySignal, Braking, BufferMode, Bus, BusFault, BusFaultKind, BusMode,
-    Call, CoSimulation, Command, Condition, Counter, Coupling, CouplingMethod, CurrentGain, CurrentLoop, Direction,
-    Disturbance, DisturbedBody, Drive, DriveInterpolation, DriveUnits, Dynamics, EffortFeedforward, Encoder,
-    EngineName, Estimate, Execution, Feedback, Feedforward, Filter, Fmu, Follow, Goal, Grid, HomeSwitch, IdealSource,
-    Initial, InputSource, Interpolation, InterpolationMode, Isolation, LONGEST_RUN, LoopSignal, Method, Mjcf,
-    MotorEstimate, MoveStep, ObjectWrite, OnlineMove, Output, Pair, PlanEffort, Plc, Pmsm, PositionLoop, ProfileFollow,
-    Record, Requirements, RestMove, RockwellJerk, RockwellMove, RockwellShape, Sampling, Scales, Scenario, Sequencing,
-    Shaper, ShaperKind, SourceOutput, StartValue, Step, Switches, TableMove, Target, TrajectoryBuffer, Update,
+    Actuator, Axis, AxisMechanics, Body, BodySignal, Bus, BusFault, BusFaultKind, BusMode, CoSimulation, Counter,
+    Coupling, CouplingMethod, CurrentGain, CurrentLoop, Disturbance, DisturbedBody, Drive, DriveInterpolation,
+    DriveUnits, EffortFeedforward, Encoder, EngineName, Estimate, Execution, Feedback, Feedforward, Filter, Fmu,
+    Follow, Goal, Grid, HomeSwitch, IdealSource, Initial, InputSource, Interpolation, InterpolationMode, Isolation,
+    LONGEST_RUN, LoopSignal, Method, Mjcf, MotorEstimate, MoveStep, ObjectWrite, OnlineMove, PlanEffort, Plc, Pmsm,
+    PositionLoop, Record, Requirements, RestMove, RockwellJerk, RockwellMove, RockwellShape, Sampling, Scenario,
+    Sequencing, Shaper, ShaperKind, SourceOutput, StartValue, Step, Switches, TableMove, Target, TrajectoryBuffer,
     Velocities, VelocityLoop, Way,
 };
 pub use schema::json_schema;

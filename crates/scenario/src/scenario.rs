@@ -30,10 +30,7 @@ pub use drive::{
 pub use filter::{Filter, Interpolation, InterpolationMode, Shaper, ShaperKind};
 pub use fmu::{BodySignal, CoSimulation, CouplingMethod, Fmu, InputSource, Isolation, LoopSignal, StartValue};
 pub use motor::{Encoder, IdealSource, Pmsm, SourceOutput};
-pub use plc::{
-    Block, Braking, BufferMode, Call, Command, Condition, Direction, Dynamics, Output, Pair, Plc, ProfileFollow,
-    Scales, Update,
-};
+pub use plc::Plc;
 pub use program::{
     Execution, Follow, Goal, Grid, Method, MoveStep, OnlineMove, PlanEffort, RestMove, RockwellJerk, RockwellMove,
     RockwellShape, Sampling, Step, TableMove, Target, Velocities, Way,
