@@ -44,13 +44,12 @@ pub use points::{
     Column, MOST_POINTS, Points, PointsError, PointsMistake, Profile, read_accelerations, read_points, read_velocities,
 };
 pub use scenario::{
-    Actuator, Axis, AxisMechanics, Block, BodySignal, Braking, BufferMode, Bus, BusFault, BusFaultKind, BusMode, Call,
-    CoSimulation, Command, Condition, Counter, CouplingMethod, Direction, Disturbance, DisturbedBody, Drive,
-    DriveInterpolation, DriveUnits, Dynamics, EngineName, Execution, Feedback, Filter, Fmu, Follow, Goal, Grid,
-    Initial, InputSource, Interpolation, InterpolationMode, Isolation, LONGEST_RUN, LoopSignal, Method, MoveStep,
-    ObjectWrite, OnlineMove, Output, Pair, PlanEffort, Plc, ProfileFollow, Record, Requirements, RestMove,
-    RockwellJerk, RockwellMove, RockwellShape, Sampling, Scales, Scenario, Sequencing, Shaper, ShaperKind, StartValue,
-    Step, TableMove, Target, TrajectoryBuffer, Update, Velocities, Way,
+    Actuator, Axis, AxisMechanics, BodySignal, Bus, BusFault, BusFaultKind, BusMode, CoSimulation, Counter,
+    CouplingMethod, Disturbance, DisturbedBody, Drive, DriveInterpolation, DriveUnits, EngineName, Execution, Feedback,
+    Filter, Fmu, Follow, Goal, Grid, Initial, InputSource, Interpolation, InterpolationMode, Isolation, LONGEST_RUN,
+    LoopSignal, Method, MoveStep, ObjectWrite, OnlineMove, PlanEffort, Plc, Record, Requirements, RestMove,
+    RockwellJerk, RockwellMove, RockwellShape, Sampling, Scenario, Sequencing, Shaper, ShaperKind, StartValue, Step,
+    TableMove, Target, TrajectoryBuffer, Velocities, Way,
 };
 pub use schema::json_schema;
 pub use source::{SourceId, Sources};

@@ -24,10 +24,7 @@ pub use disturbance::{Disturbance, DisturbedBody, Initial};
 pub use drive::{Drive, Feedback};
 pub use filter::{Filter, Interpolation, InterpolationMode, Shaper, ShaperKind};
 pub use fmu::{BodySignal, CoSimulation, CouplingMethod, Fmu, InputSource, Isolation, LoopSignal, StartValue};
-pub use plc::{
-    Block, Braking, BufferMode, Call, Command, Condition, Direction, Dynamics, Output, Pair, Plc, ProfileFollow,
-    Scales, Update,
-};
+pub use plc::Plc;
 pub use program::{
     Execution, Follow, Goal, Grid, Method, MoveStep, OnlineMove, PlanEffort, RestMove, RockwellJerk, RockwellMove,
     RockwellShape, Sampling, Step, TableMove, Target, Velocities, Way,

@@ -4,8 +4,8 @@ use crate::file::{FollowRule, TableOfPoints, VelocityRule};
 use crate::points::{PointsError, Profile, read_accelerations, read_points, read_velocities};
 use crate::resolve::points::{self, PLATEAU_SHARE};
 use crate::resolve::refuse;
-use crate::scenario::{Pair, ProfileFollow};
 use crate::source::{At, Sources};
+use servobench_plcopen::{Follow as ProfileFollow, Pair};
 
 /// Positions.
 pub(super) fn positions(table: &At<TableOfPoints>, sources: &Sources, report: &mut Report) -> Option<Vec<Pair>> {

@@ -1,5 +1,7 @@
 //! What the loop may take for granted of every scenario that was loaded.
 use servobench_base::Rate;
+use servobench_plcopen::program::{Condition, Inputs};
+use servobench_plcopen::{Absent, BlockName, Input, InputType, Pair, Value};
 use servobench_scenario::*;
 
 /// Every number is finite and on its side of zero, or infinite where that has a meaning.
@@ -179,10 +181,9 @@ fn plc(plc: &Plc) {
             self::condition(condition, plc);
         }
         limit("timeout", call.timeout);
-        let same = |update: &Update| std::mem::discriminant(&update.block) == std::mem::discriminant(&call.block);
-        assert!(!call.name.is_empty() && call.updates.iter().all(same));
-        for block in [&call.block].into_iter().chain(call.updates.iter().map(|update| &update.block)) {
-            self::block(block);
+        assert!(!call.name.is_empty());
+        for inputs in [&call.inputs].into_iter().chain(call.updates.iter().map(|update| &update.inputs)) {
+            self::inputs(call.block, inputs);
         }
     }
 }
@@ -199,72 +200,35 @@ fn condition(condition: Condition, plc: &Plc) {
     }
 }
 
-fn block(block: &Block) {
-    match block {
-        Block::MoveAbsolute { dynamics, .. }
-        | Block::MoveRelative { dynamics, .. }
-        | Block::MoveAdditive { dynamics, .. }
-        | Block::MoveSuperimposed { dynamics, .. }
-        | Block::MoveContinuousAbsolute { dynamics, .. } => {
-            positive("velocity", dynamics.velocity);
-            self::dynamics(dynamics);
-        }
-        Block::TorqueControl { torque, torque_ramp, velocity, .. } => {
-            finite("torque", *torque);
-            limit("torque_ramp", *torque_ramp);
-            positive("velocity", *velocity);
-        }
-        Block::MoveVelocity { velocity, dynamics, .. } => {
-            assert_eq!(velocity.abs().to_bits(), dynamics.velocity.to_bits());
-            not_negative("velocity", dynamics.velocity);
-            self::dynamics(dynamics);
-        }
-        Block::Stop(braking) | Block::Halt { braking, .. } => positive("deceleration", braking.deceleration),
-        Block::PositionProfile { pairs, scales, end_velocity, .. } => {
-            self::pairs(pairs);
-            self::scales(scales);
-            finite("end_velocity", *end_velocity);
-        }
-        Block::VelocityProfile { pairs, scales, .. } | Block::AccelerationProfile { pairs, scales, .. } => {
-            self::pairs(pairs);
-            self::scales(scales);
-        }
-        Block::SetOverride { factors } => factors.iter().for_each(|factor| not_negative("factor", *factor)),
-        Block::Profile4th { limits, settling_time, .. } => {
-            for limit in limits {
-                positive("limit", *limit);
+/// What a block needs is there, and each value is on its side of zero.
+fn inputs(block: BlockName, inputs: &Inputs) {
+    for own in block.inputs() {
+        let is_needed = matches!(own.absent, Absent::Refused(_) | Absent::Limit(_));
+        match (inputs.get(own.input), own.input.value_type()) {
+            (Some(Value::Number(number)), InputType::Quantity(measure)) => {
+                finite(own.input.key(), *number);
+                assert!(measure.bound.holds(*number) && own.bound.holds(*number), "{own:?}: {number}");
             }
-            positive("settling_time", *settling_time);
+            (Some(Value::Table(table)), InputType::Table) => pairs(&table.pairs),
+            (Some(Value::Flag(_)), InputType::Flag)
+            | (Some(Value::Direction(_)), InputType::Direction)
+            | (Some(Value::BufferMode(_)), InputType::BufferMode) => {}
+            (None, _) => assert!(!is_needed, "{block}: {own:?}"),
+            (Some(other), _) => panic!("{block}: {own:?} is {other:?}"),
         }
-        Block::Home { position, .. } | Block::SetPosition { position, .. } => finite("position", *position),
-        Block::Power { .. }
-        | Block::Reset
-        | Block::ReadStatus
-        | Block::ReadAxisError
-        | Block::ReadActualPosition
-        | Block::ReadActualVelocity
-        | Block::ReadActualTorque => {}
+    }
+    assert!(inputs.number(Input::ValueScale) != Some(0.0), "{inputs:?}");
+    if let (Some(velocity), true) = (inputs.number(Input::Velocity), block != BlockName::MoveVelocity) {
+        positive("velocity", velocity);
+    }
+    if inputs.number(Input::Snap).is_some() {
+        assert!(inputs.number(Input::Jerk).is_some(), "{inputs:?}");
     }
 }
 
 fn pairs(pairs: &[Pair]) {
     assert!(pairs.len() >= 2 && pairs[0].delta_time >= 0.0);
     assert!(pairs[1..].iter().all(|pair| pair.delta_time > 0.0 && pair.value.is_finite()));
-}
-
-fn scales(scales: &Scales) {
-    positive("time_scale", scales.time);
-    finite("value_scale", scales.value);
-    assert!(scales.value != 0.0, "{scales:?}");
-    finite("offset", scales.offset);
-}
-
-fn dynamics(dynamics: &Dynamics) {
-    positive("acceleration", dynamics.acceleration);
-    positive("deceleration", dynamics.deceleration);
-    limit("jerk", dynamics.jerk);
-    limit("snap", dynamics.snap);
-    assert!(dynamics.jerk.is_finite() || dynamics.snap.is_infinite(), "{dynamics:?}");
 }
 
 fn finite(what: &str, value: f64) {

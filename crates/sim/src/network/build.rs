@@ -1,9 +1,9 @@
 //! From a scenario to the network.
 use super::own_way::OwnWay;
 use super::plc::{self, Plc};
+use super::program_cursor::ProgramCursor;
 use super::reference::DelayedReference;
 use super::signals::Signals;
-use super::underway::Underway;
 use super::units::{Counted, DriveUnits, units};
 use super::{MotionTask, Network};
 use crate::error::BuildError;
@@ -136,10 +136,10 @@ impl Network {
         let task = match &scenario.plc {
             Some(plc) => MotionTask::Plc(Box::new(Plc::new(plc, scenario.axis.modulo, period, recorder)?)),
             None if !bus.mode.is_cyclic() => {
-                let moves = Underway::new(program, period);
+                let moves = ProgramCursor::new(program, period);
                 MotionTask::OwnWay(Box::new(OwnWay::new(moves, bus, &device)?))
             }
-            None => MotionTask::Moves(Box::new(Underway::new(program, period))),
+            None => MotionTask::Moves(Box::new(ProgramCursor::new(program, period))),
         };
         let network = Self {
             task,

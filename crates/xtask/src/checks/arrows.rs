@@ -19,7 +19,7 @@ const PLAN: [(&str, May); 30] = [
     ("planner", May::On(&["base", "motion"])),
     ("drive", May::On(&["base", "config", "cia402", "motion"])),
     ("fieldbus", May::On(&["base", "cia402", "motion"])),
-    ("plcopen", May::On(&["base", "fieldbus", "motion"])),
+    ("plcopen", May::On(&["base", "config", "fieldbus", "motion"])),
     ("plant", May::On(&["base"])),
     ("stability", May::On(&["base", "drive", "plant"])),
     ("engine-mujoco", May::On(&["base", "plant"])),
@@ -30,7 +30,7 @@ const PLAN: [(&str, May); 30] = [
     ("trace", May::On(&["base"])),
     ("signals", May::On(&["base", "plant", "trace"])),
     ("metrics", May::On(&["base", "config", "signals", "trace"])),
-    ("scenario", May::On(&["base", "config", "drive", "plant", "signals", "metrics"])),
+    ("scenario", May::On(&["base", "config", "drive", "plant", "plcopen", "signals", "metrics"])),
     (
         "sim",
         May::On(&[
@@ -59,7 +59,19 @@ const PLAN: [(&str, May); 30] = [
     ),
     (
         "suite",
-        May::On(&["base", "config", "drive", "plant", "stability", "sim", "scenario", "signals", "trace", "metrics"]),
+        May::On(&[
+            "base",
+            "config",
+            "drive",
+            "plant",
+            "plcopen",
+            "stability",
+            "sim",
+            "scenario",
+            "signals",
+            "trace",
+            "metrics",
+        ]),
     ),
     ("report", May::On(&["base", "cia402", "motion", "planner", "fmi", "signals", "trace", "metrics"])),
     ("view", May::On(&["base", "signals", "trace", "metrics"])),
