@@ -200,21 +200,21 @@ fn shows(plot: &Plot, channel: &str) -> bool {
 /// What is allowed of the curves of `plot` that are shown.
 fn allowed(plot: &Plot, series: &[Series<'_>], options: &ViewOptions) -> Vec<Bound> {
     let bound = |(metric, most): &(Name, f64)| {
-        let channel = bounded_channel(*metric)?;
-        let curve = plot.curves.iter().find(|curve| curve.channels.contains(&channel))?;
+        let signal = bounded_signal(*metric)?;
+        let curve = plot.curves.iter().find(|curve| curve.channels.contains(&signal.name()))?;
         let part = curve.name.replace(' ', "_");
         let of_it = |one: &&Series<'_>| one.path.last().is_some_and(|last| last.unescaped_str() == part);
         series.iter().filter(of_it).find(|one| one.shown)?;
         // Motor and load can both have a limit; all others are alone in their plot.
-        let is_one_of_two = channel.starts_with("following_error");
+        let is_one_of_two = matches!(signal, Signal::FollowingErrorMotor | Signal::FollowingErrorLoad);
         let name = if is_one_of_two { format!("{ALLOWED} {}", curve.name) } else { ALLOWED.to_owned() };
         Some(Bound::allowed(name, *most, Sides::Curves))
     };
     options.allowed.iter().filter_map(bound).collect()
 }
 
-/// The channel whose magnitude is bounded when `metric` is.
-const fn bounded_channel(metric: Name) -> Option<Signal> {
+/// The signal whose magnitude is bounded when `metric` is.
+const fn bounded_signal(metric: Name) -> Option<Signal> {
     match metric {
         Name::FollowingErrorPeakLoad => Some(Signal::FollowingErrorLoad),
         Name::FollowingErrorPeakMotor => Some(Signal::FollowingErrorMotor),
