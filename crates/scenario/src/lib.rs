@@ -47,12 +47,10 @@ pub use scenario::{
     Actuator, Axis, AxisMechanics, Block, Body, BodySignal, Braking, BufferMode, Bus, BusFault, BusFaultKind, BusMode,
     Call, CoSimulation, Command, Condition, Counter, Coupling, CouplingMethod, CurrentGain, CurrentLoop, Direction,
     Disturbance, DisturbedBody, Drive, DriveInterpolation, DriveUnits, Dynamics, EffortFeedforward, Encoder,
-    EngineName, Estimate, Execution, Feedback, Feedforward, Filter, Fmu, Follow, Goal, Grid, HomeSwitch, IdealSource,
-    Initial, InputSource, Interpolation, InterpolationMode, Isolation, LONGEST_RUN, LoopSignal, Method, Mjcf,
-    MotorEstimate, MoveStep, ObjectWrite, OnlineMove, Output, Pair, PlanEffort, Plc, Pmsm, PositionLoop, ProfileFollow,
-    Record, Requirements, RestMove, RockwellJerk, RockwellMove, RockwellShape, Sampling, Scales, Scenario, Sequencing,
-    Shaper, ShaperKind, SourceOutput, StartValue, Step, Switches, TableMove, Target, TrajectoryBuffer, Update,
-    Velocities, VelocityLoop, Way,
+    EngineName, Estimate, Feedback, Feedforward, Fmu, HomeSwitch, IdealSource, Initial, InputSource, Interpolation,
+    Isolation, LONGEST_RUN, LoopSignal, Mjcf, MotorEstimate, MoveStep, ObjectWrite, Output, Pair, Plc, Pmsm,
+    PositionLoop, ProfileFollow, Record, Requirements, Scales, Scenario, Sequencing, SourceOutput, StartValue, Step,
+    Switches, TrajectoryBuffer, Update, VelocityLoop,
 };
 pub use schema::json_schema;
 pub use source::{SourceId, Sources};

@@ -8,7 +8,6 @@ mod axis;
 mod bus;
 mod disturbance;
 mod drive;
-mod filter;
 mod fmu;
 mod motor;
 mod plc;
@@ -27,17 +26,13 @@ pub use drive::{
     CurrentGain, CurrentLoop, Drive, EffortFeedforward, Estimate, Feedback, Feedforward, MotorEstimate, PositionLoop,
     VelocityLoop,
 };
-pub use filter::{Filter, Interpolation, InterpolationMode, Shaper, ShaperKind};
 pub use fmu::{BodySignal, CoSimulation, CouplingMethod, Fmu, InputSource, Isolation, LoopSignal, StartValue};
 pub use motor::{Encoder, IdealSource, Pmsm, SourceOutput};
 pub use plc::{
     Block, Braking, BufferMode, Call, Command, Condition, Direction, Dynamics, Output, Pair, Plc, ProfileFollow,
     Scales, Update,
 };
-pub use program::{
-    Execution, Follow, Goal, Grid, Method, MoveStep, OnlineMove, PlanEffort, RestMove, RockwellJerk, RockwellMove,
-    RockwellShape, Sampling, Step, TableMove, Target, Velocities, Way,
-};
+pub use program::{Interpolation, MoveStep, Step};
 pub use requirements::Requirements;
 
 use crate::parameters::Parameter;

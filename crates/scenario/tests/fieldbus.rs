@@ -1,4 +1,5 @@
 //! What `[bus]`, `[drive.objects]` and `[axis.switches]` become.
+use servobench_motion::interpolate::Mode;
 use servobench_scenario::*;
 use std::f64::consts::TAU;
 
@@ -31,7 +32,7 @@ fn a_bus_that_says_its_cycle_alone() {
         cycle: 16,
         mode: BusMode::CyclicPosition,
         motion_every: 1,
-        interpolation: InterpolationMode::Cubic,
+        interpolation: Mode::Cubic,
         drive_interpolation: DriveInterpolation::Linear,
         trajectory_buffer: TrajectoryBuffer::MoveSegment,
         delay: 1,
@@ -73,7 +74,7 @@ reverse_switches = true
         cycle: 16,
         mode: BusMode::CyclicVelocity,
         motion_every: 4,
-        interpolation: InterpolationMode::Quintic,
+        interpolation: Mode::Quintic,
         drive_interpolation: DriveInterpolation::Linear,
         trajectory_buffer: TrajectoryBuffer::MoveSegment,
         delay: 0,

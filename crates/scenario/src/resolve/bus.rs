@@ -5,11 +5,11 @@ use crate::file;
 use crate::file::File;
 use crate::resolve::{bus_fault, mode, need, refuse, whole};
 use crate::scenario::{
-    Actuator, Bus, BusMode, Counter, Drive, DriveUnits, EffortFeedforward, Feedback, InterpolationMode, ObjectWrite,
-    Sequencing, Step,
+    Actuator, Bus, BusMode, Counter, Drive, DriveUnits, EffortFeedforward, Feedback, ObjectWrite, Sequencing, Step,
 };
 use crate::source::At;
 use servobench_base::{Coordinate, Rate};
+use servobench_motion::interpolate::Mode as InterpolationMode;
 use std::f64::consts::TAU;
 
 /// The parts that are known by now.
