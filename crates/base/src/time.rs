@@ -66,6 +66,15 @@ impl Rate {
         }
     }
 
+    /// The rate of a task that turns every `every` ticks of this one; rounded down where it is no whole number of hertz.
+    #[must_use]
+    pub const fn of_task(self, every: Divider) -> Self {
+        match NonZeroU32::new(self.0.get() / every.0.get()) {
+            Some(hz) => Self(hz),
+            None => Self(NonZeroU32::MIN),
+        }
+    }
+
     /// A rate from a number of hertz that must be whole.
     ///
     /// # Errors

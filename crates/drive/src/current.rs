@@ -24,6 +24,15 @@ pub struct MotorEstimate {
     pub flux_linkage: f64,
 }
 
+/// What the proportional gains follow from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Tuning {
+    /// The closed-loop bandwidth (rad/s) and the estimated motor.
+    Bandwidth(f64),
+    /// They are given (V/A).
+    Gains(Dq),
+}
+
 /// Gains of the two axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gains {
@@ -99,6 +108,16 @@ impl Gains {
         Self::cancelling(motor, Dq { d: alpha * d, q: alpha * q })
     }
 
+    /// Those of `tuning`, with these integral times (s), or L/R of each axis.
+    #[must_use]
+    pub fn tuned(motor: &MotorEstimate, tuning: Tuning, integral_times: Option<Dq>) -> Self {
+        let derived = match tuning {
+            Tuning::Bandwidth(alpha) => Self::from_bandwidth(motor, alpha),
+            Tuning::Gains(k_p) => Self::cancelling(motor, k_p),
+        };
+        integral_times.map_or(derived, |t_i| Self::with_integral_times(derived.k_p, t_i))
+    }
+
     /// The proportional gains `k_p` (V/A) with the integral time L/R of each axis: the controller's zero cancels the
     /// motor's pole.
     #[must_use]
@@ -149,10 +168,7 @@ impl Params {
     /// Largest q-axis current that the d axis leaves (A, peak): the limit is on the vector.
     #[must_use]
     pub fn max_q_current(&self) -> f64 {
-        if self.d_reference == 0.0 {
-            return self.max_current;
-        }
-        libm::sqrt((self.max_current - self.d_reference) * (self.max_current + self.d_reference))
+        q_current(self.max_current, self.d_reference)
     }
 
     /// Largest effort that the current limit leaves (N·m or N).
@@ -160,6 +176,12 @@ impl Params {
     pub fn max_effort(&self) -> f64 {
         self.effort_constant() * self.max_q_current()
     }
+}
+
+/// What a current of the length `max` leaves for the q axis beside `d` (A, peak).
+#[must_use]
+pub fn q_current(max: f64, d: f64) -> f64 {
+    if d == 0.0 { max } else { libm::sqrt(((max - d) * (max + d)).max(0.0)) }
 }
 
 /// Largest phase voltage amplitude on a DC link of `dc_link` (V): the linear range of space-vector modulation, U_dc/√3

@@ -8,6 +8,7 @@ pub mod current;
 pub mod delay;
 mod demand;
 pub mod device;
+mod estimate;
 pub mod feedforward;
 mod firmware;
 pub mod modes;
@@ -15,5 +16,6 @@ mod params;
 pub mod velocity;
 
 pub use demand::{Demand, Offsets};
+pub use estimate::{EffortFeedforward, Estimate};
 pub use firmware::{Command, Feedback, Held, Sensors, State, step};
 pub use params::{Params, Stage};

@@ -80,6 +80,36 @@ impl Params {
         }
     }
 
+    /// Rate of the position loop.
+    #[must_use]
+    pub const fn position_rate(&self) -> Rate {
+        self.base_rate.of_task(self.position_every)
+    }
+
+    /// Rate of the velocity loop.
+    #[must_use]
+    pub const fn velocity_rate(&self) -> Rate {
+        self.base_rate.of_task(self.velocity_every)
+    }
+
+    /// Largest effort reference (N·m or N): the limit of the velocity loop, or what that of the current leaves of it.
+    #[must_use]
+    pub fn max_effort(&self) -> f64 {
+        match &self.stage {
+            Stage::Direct { .. } => self.velocity.max_effort,
+            Stage::Current { params, .. } => self.velocity.max_effort.min(params.max_effort()),
+        }
+    }
+
+    /// The current loop and its rate, where there is one.
+    #[must_use]
+    pub const fn current_loop(&self) -> Option<(&current::Params, Rate)> {
+        match &self.stage {
+            Stage::Direct { .. } => None,
+            Stage::Current { params, every } => Some((params, self.base_rate.of_task(*every))),
+        }
+    }
+
     /// Period of the task that turns every `every` base ticks (s).
     #[inline]
     #[must_use]

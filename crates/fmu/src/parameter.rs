@@ -1,6 +1,8 @@
 //! Parameters: values of the scenario that may be set before the simulation begins.
+use servobench_drive::{Params, Stage, current};
 use servobench_planner::Generator;
-use servobench_scenario::{Actuator, AxisMechanics, Body, Drive, Scenario, Step};
+use servobench_plant::{Body, Chain, Link};
+use servobench_scenario::{Actuator, AxisMechanics, Scenario, Step};
 
 /// A parameter.
 #[derive(Debug)]
@@ -48,26 +50,54 @@ pub(crate) fn effort(unit: &str) -> &'static str {
     if unit == "rad" { "N m" } else { "N" }
 }
 
-fn drive(scenario: &mut Scenario) -> Option<&mut Drive> {
+fn drive(scenario: &Scenario) -> Option<&Params> {
+    scenario.actuator.drive().map(|drive| &drive.params)
+}
+
+fn drive_mut(scenario: &mut Scenario) -> Option<&mut Params> {
     match &mut scenario.actuator {
         Actuator::Prescribed | Actuator::Off => None,
-        Actuator::Pmsm { drive, .. } | Actuator::IdealSource { drive, .. } => Some(drive),
+        Actuator::Pmsm { drive, .. } | Actuator::IdealSource { drive, .. } => Some(&mut drive.params),
+    }
+}
+
+fn current_mut(scenario: &mut Scenario) -> Option<&mut current::Params> {
+    match &mut drive_mut(scenario)?.stage {
+        Stage::Current { params, .. } => Some(params),
+        Stage::Direct { .. } => None,
+    }
+}
+
+fn chain(scenario: &Scenario) -> Option<&Chain> {
+    match &scenario.axis.mechanics {
+        AxisMechanics::Bodies(chain) => Some(chain),
+        AxisMechanics::Mjcf(_) | AxisMechanics::InTheFmu => None,
+    }
+}
+
+fn chain_mut(scenario: &mut Scenario) -> Option<&mut Chain> {
+    match &mut scenario.axis.mechanics {
+        AxisMechanics::Bodies(chain) => Some(chain),
+        AxisMechanics::Mjcf(_) | AxisMechanics::InTheFmu => None,
     }
 }
 
 /// The load, where it is a body of its own.
 fn load(scenario: &Scenario) -> Option<&Body> {
-    match &scenario.axis.mechanics {
-        AxisMechanics::Bodies(bodies) if bodies.len() > 1 => bodies.last(),
-        _ => None,
-    }
+    chain(scenario)?.bodies()[1..].last()
 }
 
 fn load_mut(scenario: &mut Scenario) -> Option<&mut Body> {
-    match &mut scenario.axis.mechanics {
-        AxisMechanics::Bodies(bodies) if bodies.len() > 1 => bodies.last_mut(),
-        _ => None,
-    }
+    chain_mut(scenario)?.bodies_mut()[1..].last_mut()
+}
+
+/// The coupling before the load.
+fn coupling(scenario: &Scenario) -> Option<&Link> {
+    chain(scenario)?.links().last()
+}
+
+fn coupling_mut(scenario: &mut Scenario) -> Option<&mut Link> {
+    chain_mut(scenario)?.links_mut().last_mut()
 }
 
 /// Limits of velocity, acceleration and jerk of the first move that has all of them.
@@ -92,55 +122,52 @@ pub(crate) const OF_DRIVE: &[Parameter] = &[
         description: "proportional gain of the position loop, K_v",
         unit: |_| "1/s".into(),
         least: Least::Zero,
-        get: |scenario| Some(scenario.actuator.drive()?.position.gain),
-        set: |scenario, value| drive(scenario).into_iter().for_each(|drive| drive.position.gain = value),
+        get: |scenario| Some(drive(scenario)?.position_gain),
+        set: |scenario, value| drive_mut(scenario).into_iter().for_each(|drive| drive.position_gain = value),
     },
     Parameter {
         name: "drive.velocity_gain",
         description: "proportional gain of the velocity loop, effort per velocity of the motor coordinate",
         unit: |scenario| format!("{} s/{}", effort(motor(scenario)), motor(scenario)),
         least: Least::Zero,
-        get: |scenario| Some(scenario.actuator.drive()?.velocity.gain),
-        set: |scenario, value| drive(scenario).into_iter().for_each(|drive| drive.velocity.gain = value),
+        get: |scenario| Some(drive(scenario)?.velocity.k_p),
+        set: |scenario, value| drive_mut(scenario).into_iter().for_each(|drive| drive.velocity.k_p = value),
     },
     Parameter {
         name: "drive.velocity_integral_time",
         description: "integral time of the velocity loop",
         unit: |_| "s".into(),
         least: Least::Positive,
-        get: |scenario| scenario.actuator.drive()?.velocity.integral_time,
-        set: |scenario, value| drive(scenario).into_iter().for_each(|drive| drive.velocity.integral_time = Some(value)),
+        get: |scenario| drive(scenario)?.velocity.integral_time,
+        set: |scenario, value| {
+            if let Some(drive) = drive_mut(scenario) {
+                drive.velocity.integral_time = Some(value);
+            }
+        },
     },
     Parameter {
         name: "drive.velocity_feedforward",
         description: "share of the reference velocity that is fed forward",
         unit: |_| String::new(),
         least: Least::Zero,
-        get: |scenario| Some(scenario.actuator.drive()?.feedforward.velocity),
-        set: |scenario, value| drive(scenario).into_iter().for_each(|drive| drive.feedforward.velocity = value),
+        get: |scenario| Some(drive(scenario)?.feedforward.velocity),
+        set: |scenario, value| drive_mut(scenario).into_iter().for_each(|drive| drive.feedforward.velocity = value),
     },
     Parameter {
         name: "drive.max_effort",
         description: "largest torque or force that the velocity loop asks for",
         unit: |scenario| effort(motor(scenario)).into(),
         least: Least::Positive,
-        get: |scenario| Some(scenario.actuator.drive()?.max_effort),
-        set: |scenario, value| drive(scenario).into_iter().for_each(|drive| drive.max_effort = value),
+        get: |scenario| Some(drive(scenario)?.velocity.max_effort),
+        set: |scenario, value| drive_mut(scenario).into_iter().for_each(|drive| drive.velocity.max_effort = value),
     },
     Parameter {
         name: "drive.max_current",
         description: "largest current reference, amplitude",
         unit: |_| "A".into(),
         least: Least::Positive,
-        get: |scenario| match &scenario.actuator {
-            Actuator::Pmsm { current, .. } => Some(current.max_current),
-            _ => None,
-        },
-        set: |scenario, value| {
-            if let Actuator::Pmsm { current, .. } = &mut scenario.actuator {
-                current.max_current = value;
-            }
-        },
+        get: |scenario| drive(scenario)?.current_loop().map(|(current, _)| current.max_current),
+        set: |scenario, value| current_mut(scenario).into_iter().for_each(|current| current.max_current = value),
     },
 ];
 
@@ -159,24 +186,16 @@ pub(crate) const OF_MECHANICS: &[Parameter] = &[
         description: "stiffness of the coupling before the load",
         unit: |scenario| format!("{}/{}", effort(axis(scenario)), axis(scenario)),
         least: Least::Positive,
-        get: |scenario| Some(load(scenario)?.coupling?.stiffness),
-        set: |scenario, value| {
-            if let Some(coupling) = load_mut(scenario).and_then(|load| load.coupling.as_mut()) {
-                coupling.stiffness = value;
-            }
-        },
+        get: |scenario| Some(coupling(scenario)?.stiffness),
+        set: |scenario, value| coupling_mut(scenario).into_iter().for_each(|coupling| coupling.stiffness = value),
     },
     Parameter {
         name: "load.damping",
         description: "damping of the coupling before the load",
         unit: |scenario| format!("{} s/{}", effort(axis(scenario)), axis(scenario)),
         least: Least::Zero,
-        get: |scenario| Some(load(scenario)?.coupling?.damping),
-        set: |scenario, value| {
-            if let Some(coupling) = load_mut(scenario).and_then(|load| load.coupling.as_mut()) {
-                coupling.damping = value;
-            }
-        },
+        get: |scenario| Some(coupling(scenario)?.damping),
+        set: |scenario, value| coupling_mut(scenario).into_iter().for_each(|coupling| coupling.damping = value),
     },
     Parameter {
         name: "initial.load_position",

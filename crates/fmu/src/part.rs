@@ -51,7 +51,7 @@ impl Part {
 /// Whether the motor is the load too.
 pub(crate) fn has_one_body(scenario: &Scenario) -> bool {
     match &scenario.axis.mechanics {
-        AxisMechanics::Bodies(bodies) => bodies.len() == 1,
+        AxisMechanics::Bodies(chain) => chain.bodies().len() == 1,
         AxisMechanics::Mjcf(mjcf) => mjcf.motor_joint == mjcf.load_joint,
         AxisMechanics::InTheFmu => false,
     }

@@ -54,24 +54,33 @@ impl Chain {
     /// # Errors
     /// [`ParamError`] names the first parameter out of its bound; `bodies` and `links` when their numbers do not fit.
     pub fn new(bodies: Vec<Body>, links: Vec<Link>) -> Result<Self, ParamError> {
+        let chain = Self { bodies, links };
+        chain.check()?;
+        Ok(chain)
+    }
+
+    /// # Errors
+    /// As [`new`](Self::new), of one whose bodies or links were changed since.
+    pub fn check(&self) -> Result<(), ParamError> {
+        let Self { bodies, links } = self;
         if bodies.is_empty() || bodies.len() > Self::MAX_BODIES {
             return Err(ParamError { name: "bodies", value: bodies.len() as f64, bound: "1 to 4 in number" });
         }
         if links.len() + 1 != bodies.len() {
             return Err(ParamError { name: "links", value: links.len() as f64, bound: "one fewer than the bodies" });
         }
-        for body in &bodies {
+        for body in bodies {
             positive("inertia", body.inertia)?;
             positive("transmission", body.transmission)?;
             non_negative("viscous", body.viscous)?;
             finite("bias", body.bias)?;
             body.dry.check()?;
         }
-        for link in &links {
+        for link in links {
             positive("stiffness", link.stiffness)?;
             non_negative("damping", link.damping)?;
         }
-        Ok(Self { bodies, links })
+        Ok(())
     }
 
     /// The bodies, the motor first.
@@ -84,6 +93,18 @@ impl Chain {
     #[must_use]
     pub fn links(&self) -> &[Link] {
         &self.links
+    }
+
+    /// The bodies, to change what they are.
+    #[must_use]
+    pub fn bodies_mut(&mut self) -> &mut [Body] {
+        &mut self.bodies
+    }
+
+    /// The links, to change what they are.
+    #[must_use]
+    pub fn links_mut(&mut self) -> &mut [Link] {
+        &mut self.links
     }
 
     /// Effort on body `i` from its links, viscous friction and bias; neither actuation nor dry friction.

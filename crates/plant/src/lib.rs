@@ -18,6 +18,7 @@ mod modes;
 pub mod pmsm;
 mod refusal;
 mod sensor;
+mod source;
 mod switches;
 
 pub use chain::{Body, Chain, Link};
@@ -38,4 +39,5 @@ pub use mjcf_axis::MjcfAxis;
 pub use modes::Mode;
 pub use refusal::{Refusal, RefusedAt};
 pub use sensor::{Encoder, Reading};
+pub use source::{IdealSource, SourceOutput};
 pub use switches::{SwitchReading, Switches};

@@ -28,8 +28,9 @@ use table::{Solution, Tables};
 /// Parameters of the motor; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Params {
-    /// Pole pairs, `p`.
-    pub pole_pairs: f64,
+    /// Electrical angle per motor coordinate: the pole pairs `p` of a motor that turns (rad/rad), π/τ_p of a linear motor with the pole
+    /// pitch τ_p (rad/m).
+    pub electrical_ratio: f64,
     /// Stator resistance, phase to neutral (Ω).
     pub resistance: f64,
     /// Inductances, phase to neutral (H).
@@ -60,12 +61,19 @@ impl Params {
     /// # Errors
     /// [`ParamError`] names the first parameter that is not finite and positive.
     pub fn check(&self) -> Result<(), ParamError> {
-        positive("pole_pairs", self.pole_pairs)?;
+        positive("electrical_ratio", self.electrical_ratio)?;
         positive("resistance", self.resistance)?;
         positive("inductance_d", self.inductance.d)?;
         positive("inductance_q", self.inductance.q)?;
         positive("flux_linkage", self.flux_linkage)?;
         Ok(())
+    }
+
+    /// Torque or force per q-axis current at the d-axis current `i_d` (N·m/A or N/A, peak): 1.5·p·(ψ + (L_d − L_q)·i_d).
+    #[must_use]
+    pub fn effort_constant(&self, i_d: f64) -> f64 {
+        let reluctance = if i_d == 0.0 { 0.0 } else { (self.inductance.d - self.inductance.q) * i_d };
+        1.5 * self.electrical_ratio * (self.flux_linkage + reluctance)
     }
 
     /// Torque at `current` (N·m).
@@ -202,7 +210,7 @@ fn solve(p: &Params, i: Dq, u: &Input, h: f64) -> Solution {
 impl Params {
     /// Torque per ψ·i_q + (L_d − L_q)·i_d·i_q.
     fn torque_factor(&self) -> f64 {
-        1.5 * self.pole_pairs
+        1.5 * self.electrical_ratio
     }
 
     fn output(&self, solution: &Solution, before: Dq, after: Dq, omega_e: f64, h: f64) -> Output {
@@ -216,7 +224,7 @@ impl Params {
             electrical: 1.5 * input,
             copper: 1.5 * self.resistance * square,
             stored: 0.75 * energy / h,
-            air_gap: torque * omega_e / self.pole_pairs,
+            air_gap: torque * omega_e / self.electrical_ratio,
         };
         Output { torque, power }
     }
@@ -235,7 +243,7 @@ mod tests {
 
     /// Saarakkala/Hinkkanen, 2.2 kW.
     const MOTOR: Params =
-        Params { pole_pairs: 3.0, resistance: 3.6, inductance: Dq { d: 36e-3, q: 51e-3 }, flux_linkage: 0.545 };
+        Params { electrical_ratio: 3.0, resistance: 3.6, inductance: Dq { d: 36e-3, q: 51e-3 }, flux_linkage: 0.545 };
 
     /// Runs at constant speed with a voltage that is constant in the rotor frame, and returns current and last torque.
     fn run(p: &Params, omega_e: f64, voltage: Dq, h: f64, ticks: u32) -> (Dq, f64) {
@@ -267,7 +275,7 @@ mod tests {
         let omega = 2.0 * PI * 50.0;
         let l = 0.4 / omega;
         let p = Params {
-            pole_pairs: 2.0,
+            electrical_ratio: 2.0,
             resistance: 0.03,
             inductance: Dq { d: l, q: l },
             flux_linkage: 112.3 * 2.0_f64.sqrt() / omega,
@@ -293,8 +301,12 @@ mod tests {
 
     /// Salient, round (Teknic M-2310P at 8 kHz), nearly without resistance, and over-damped: L/R far below the tick.
     fn motors() -> [(Params, f64); 4] {
-        let round =
-            Params { pole_pairs: 4.0, resistance: 0.36, inductance: Dq { d: 2e-4, q: 2e-4 }, flux_linkage: 6.395e-3 };
+        let round = Params {
+            electrical_ratio: 4.0,
+            resistance: 0.36,
+            inductance: Dq { d: 2e-4, q: 2e-4 },
+            flux_linkage: 6.395e-3,
+        };
         let fast = Params { inductance: Dq { d: 1e-6, q: 2e-6 }, ..MOTOR };
         let lossless = Params { resistance: 1e-9, ..MOTOR };
         [(MOTOR, 1.0 / 12_000.0), (round, 1.0 / 8_000.0), (lossless, 1.0 / 20_000.0), (fast, 20e-6)]
@@ -384,7 +396,7 @@ mod tests {
                     (x.d - y.d).abs() < 1e-11 * scale && (x.q - y.q).abs() < 1e-11 * scale,
                     "{p:?} {turn}: {x:?} {y:?}"
                 );
-                let most = 1.5 * p.pole_pairs * p.flux_linkage * scale;
+                let most = 1.5 * p.electrical_ratio * p.flux_linkage * scale;
                 assert!((ours - torque).abs() < 1e-11 * most.max(torque.abs()), "{p:?} {turn}: {ours} {torque}");
             }
         }
@@ -401,7 +413,7 @@ mod tests {
             (i_d, i_q, u_d, u_q) in (-20.0..20.0_f64, -20.0..20.0_f64, -50.0..50.0_f64, -50.0..50.0_f64),
         ) {
             let h = 1.0 / 12_000.0;
-            let p = Params { pole_pairs: 5.0, resistance, inductance: Dq { d, q: d * q }, flux_linkage };
+            let p = Params { electrical_ratio: 5.0, resistance, inductance: Dq { d, q: d * q }, flux_linkage };
             let rotor = ElectricalAngle(-1.1).rotation();
             let voltage = Dq { d: u_d, q: u_q + turn / h * flux_linkage }.to_alpha_beta(rotor);
             let (mut x, input) = (State { current: Dq { d: i_d, q: i_q } }, Input { voltage, rotor, omega_e: turn / h });

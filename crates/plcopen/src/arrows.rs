@@ -6,7 +6,7 @@
 //!
 //! `MC_PositionProfile` leads to a last position and says Done there, so that it is a Discrete Motion; of the profiles of velocity
 //! and acceleration the standard says (sections 3.15 and 3.16) that the axis stays in Continuous Motion.
-use crate::name::BlockName;
+use crate::blocks::BlockName;
 use crate::state::AxisState::{
     self, ContinuousMotion, Disabled, DiscreteMotion, ErrorStop, Homing, Standstill, Stopping,
 };

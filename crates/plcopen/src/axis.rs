@@ -17,9 +17,9 @@ mod sharing;
 mod superimposed;
 mod supervision;
 
+use crate::blocks::BlockName;
 use crate::error::AxisError;
 use crate::ledger::{CommandId, Ledger, Progress};
-use crate::name::BlockName;
 use crate::params::AxisParams;
 use crate::state::AxisState;
 use activity::Activity;

@@ -1,4 +1,5 @@
-//! The function blocks.
+//! The function blocks, and the lists of their inputs, their outputs and of themselves: what a block has is said once, in its module
+//! and here.
 //!
 //! # Execute
 //!
@@ -14,6 +15,14 @@
 //! # Enable
 //!
 //! The outputs of a block with Enable follow it from cycle to cycle; Valid or Error says whether they mean anything.
+//!
+//! # Another block
+//!
+//! A block is a module here that implements [`FunctionBlock`], and a line in the list below. Its inputs say by [`BlockInput`]s which
+//! inputs of the list they are, and what counts where one is not given; its outputs say which outputs of the list they are. Programs
+//! call it, scenario files have its keys, recordings its outputs, and the references in `docs/` list it from there on
+//! (`SERVOBENCH_WRITE_DOCS=1 cargo test -p servobench-plcopen -p servobench-scenario` writes them). One that commands the axis also
+//! needs its place in the state diagram, `ARROWS`.
 mod execution;
 mod home;
 mod motion;
@@ -35,6 +44,14 @@ mod set_position;
 mod stop;
 mod time_profile;
 mod torque_control;
+
+use crate::interface::{BlockInput, BlockInputs, InputType, OutputType, Trigger};
+use crate::list::{list_blocks, list_inputs, list_outputs};
+use core::fmt;
+use servobench_config::Kind::{Axis, Motor, Plain};
+use servobench_config::quantities::{ACCELERATION, EFFORT, EFFORT_RATE, JERK, POSITION, RATIO, SNAP, TIME, VELOCITY};
+use servobench_config::{any, not_negative, positive};
+use servobench_motion::pvt::Knot;
 
 pub use execution::Report;
 pub use home::{Home, HomeInputs};
@@ -64,3 +81,157 @@ pub use time_profile::{
     AccelerationProfile, AccelerationProfileInputs, ProfileOutputs, VelocityProfile, VelocityProfileInputs,
 };
 pub use torque_control::{TorqueControl, TorqueControlInputs, TorqueControlOutputs};
+
+list_inputs! {
+    Position "position" changes InputType::Quantity(any(Axis(&POSITION), "250 mm")),
+        "Target position" + ", of MC_Home and MC_SetPosition the position that the axis is given";
+    Distance "distance" changes InputType::Quantity(any(Axis(&POSITION), "-250 mm")), "Distance";
+    Velocity "velocity" changes InputType::Quantity(any(Axis(&VELOCITY), "30 m/min")),
+        "Velocity; of MC_MoveVelocity it may be negative";
+    EndVelocity "end_velocity" changes InputType::Quantity(any(Axis(&VELOCITY), "5 m/min")),
+        "Velocity at the target, kept afterwards" + "; of MC_PositionProfile at its last position, 0 unless given";
+    VelocityDifference "velocity_difference" changes InputType::Quantity(positive(Axis(&VELOCITY), "5 m/min")),
+        "Largest velocity on top of the motion under way";
+    Acceleration "acceleration" changes InputType::Quantity(positive(Axis(&ACCELERATION), "5 m/s2")), "Largest acceleration";
+    Deceleration "deceleration" changes InputType::Quantity(positive(Axis(&ACCELERATION), "8 m/s2")),
+        "Largest deceleration" + "; as `acceleration` unless given";
+    Jerk "jerk" changes InputType::Quantity(positive(Axis(&JERK), "50 m/s3")), "Largest jerk";
+    Snap "snap" changes InputType::Quantity(positive(Axis(&SNAP), "1000 m/s4")),
+        "Largest snap" + ", an input beside those of the standard";
+    Direction "direction" changes InputType::Direction,
+        "Which way the axis goes" + ". Of a move to a position on a modulo axis, \"shortest\" unless given; otherwise \"positive\", \
+         and a negative velocity or torque goes the other way";
+    BufferMode "buffer_mode" stays InputType::BufferMode,
+        "What becomes of the motion under way" + "; \"aborting\" unless given";
+    ContinuousUpdate "continuous_update" stays InputType::Flag,
+        "Whether `updates` count while `Execute` is TRUE" + "; they do not unless given";
+    Torque "torque" changes InputType::Quantity(any(Motor(&EFFORT), "2 Nm")), "Torque, of a linear motor the force";
+    TorqueRamp "torque_ramp" changes InputType::Quantity(positive(Motor(&EFFORT_RATE), "10 Nm/s")),
+        "Largest change of the torque" + "; at once unless given";
+    VelocityFactor "velocity_factor" changes InputType::Quantity(not_negative(Plain(&RATIO), "50 %")),
+        "Factor of all velocities" + "; 1 unless given";
+    AccelerationFactor "acceleration_factor" changes InputType::Quantity(positive(Plain(&RATIO), "50 %")),
+        "Factor of all accelerations and decelerations" + "; 1 unless given";
+    JerkFactor "jerk_factor" changes InputType::Quantity(positive(Plain(&RATIO), "50 %")),
+        "Factor of all jerks" + "; 1 unless given";
+    Relative "relative" stays InputType::Flag,
+        "Whether MC_SetPosition shifts the position by the given one" + "; it does not unless given";
+    SettlingTime "settling_time" stays InputType::Quantity(positive(Plain(&TIME), "50 ms")),
+        "From the end of a profile until the generator is ready for the next";
+    Reversed "reversed" stays InputType::Flag,
+        "Whether the motor is mounted the other way round" + "; it is not unless given";
+    EnablePositive "enable_positive" changes InputType::Flag,
+        "Whether MC_Power permits motion upwards" + "; it does unless given";
+    EnableNegative "enable_negative" changes InputType::Flag,
+        "Whether MC_Power permits motion downwards" + "; it does unless given";
+    Table "table" stays InputType::Table,
+        "Table of a profile, whose times count from its start; a first row at 0 says where the axis is then. The file of \
+         MC_PositionProfile has the columns `time` and `position`, that of MC_VelocityProfile `velocity`, that of \
+         MC_AccelerationProfile `acceleration`. Positions are followed along the cubic spline, or by `follow = \"plateaus\"`";
+    TimeScale "time_scale" stays InputType::Quantity(positive(Plain(&RATIO), "2")),
+        "Factor of the times of a table" + "; 1 unless given";
+    ValueScale "value_scale" stays InputType::Quantity(any(Plain(&RATIO), "-0.5")),
+        "Factor of the values of a table, not 0" + "; 1 unless given";
+    PositionOffset "position_offset" stays InputType::Quantity(any(Axis(&POSITION), "10 mm")),
+        "What is then added to the positions of a table" + "; nothing unless given";
+    VelocityOffset "velocity_offset" stays InputType::Quantity(any(Axis(&VELOCITY), "1 m/min")),
+        "What is then added to the velocities of a table" + "; nothing unless given";
+    AccelerationOffset "acceleration_offset" stays InputType::Quantity(any(Axis(&ACCELERATION), "1 m/s2")),
+        "What is then added to the accelerations of a table" + "; nothing unless given";
+}
+
+list_outputs! {
+    Done "Done" Flag "the command has ended as commanded";
+    Busy "Busy" Flag "the block is not finished";
+    Active "Active" Flag "the block controls the axis";
+    CommandAborted "CommandAborted" Flag "another command has taken over";
+    Error "Error" Flag "something is wrong";
+    ErrorId "ErrorID" Number "what is wrong";
+    Status "Status" Flag "the power is on";
+    Valid "Valid" Flag "the other outputs are valid";
+    InVelocity "InVelocity" Flag "the commanded velocity is reached";
+    InEndVelocity "InEndVelocity" Flag "the target is passed at its velocity";
+    InTorque "InTorque" Flag "the commanded torque is reached";
+    ProfileCompleted "ProfileCompleted" Flag "the profile is over";
+    CoveredDistance "CoveredDistance" Number "how far the motion on top has come";
+    Enabled "Enabled" Flag "the override holds";
+    Ready "Ready" Flag "the generator takes a new command";
+    ErrorStop "ErrorStop" Flag "the axis is in the state ErrorStop";
+    Disabled "Disabled" Flag "the axis is in the state Disabled";
+    Stopping "Stopping" Flag "the axis is in the state Stopping";
+    Homing "Homing" Flag "the axis is in the state Homing";
+    Standstill "Standstill" Flag "the axis is in the state Standstill";
+    DiscreteMotion "DiscreteMotion" Flag "the axis is in the state Discrete Motion";
+    ContinuousMotion "ContinuousMotion" Flag "the axis is in the state Continuous Motion";
+    SynchronizedMotion "SynchronizedMotion" Never "the axis follows another one";
+    AxisErrorId "AxisErrorID" Number "the error of the axis";
+    DriveCode "DriveCode" Number "the code of the drive";
+    Position "Position" Number "the actual position";
+    Velocity "Velocity" Number "the actual velocity";
+    Torque "Torque" Number "the actual effort";
+}
+
+/// Memory of a table: in a program as long as it has to be.
+#[cfg(feature = "program")]
+type Rows<T> = alloc::vec::Vec<T>;
+#[cfg(not(feature = "program"))]
+type Rows<T> = [T; 0];
+
+list_blocks! {
+    Power: Power, "MC_Power", "powers the axis as long as it is enabled";
+    Home: Home, "MC_Home" command, "homes by the method of the drive (6098h)";
+    Stop: Stop, "MC_Stop" command, "brakes to rest and lets no other motion begin while `Execute` is TRUE";
+    Halt: Halt, "MC_Halt" command, "brakes to rest; another motion may take over";
+    Reset: Reset, "MC_Reset", "leaves ErrorStop";
+    MoveAbsolute: MoveAbsolute, "MC_MoveAbsolute" command, "moves to a position";
+    MoveRelative: MoveRelative, "MC_MoveRelative" command, "moves by a distance from where it begins";
+    MoveAdditive: MoveAdditive, "MC_MoveAdditive" command, "moves by a distance from the target of the move before";
+    MoveSuperimposed: MoveSuperimposed, "MC_MoveSuperimposed" command,
+        "moves by a distance on top of the motion under way";
+    MoveVelocity: MoveVelocity, "MC_MoveVelocity" command, "goes over to a velocity and keeps it";
+    MoveContinuousAbsolute: MoveContinuousAbsolute, "MC_MoveContinuousAbsolute" command,
+        "passes a position at a velocity and keeps that";
+    PositionProfile: PositionProfile<Rows<Knot>, Rows<f64>>, "MC_PositionProfile" command,
+        "moves through a table of positions";
+    VelocityProfile: VelocityProfile<Rows<Pair>>, "MC_VelocityProfile" command, "moves by a table of velocities";
+    AccelerationProfile: AccelerationProfile<Rows<Pair>>, "MC_AccelerationProfile" command,
+        "moves by a table of accelerations";
+    SetPosition: SetPosition, "MC_SetPosition", "gives the axis a position without moving it";
+    SetOverride: SetOverride, "MC_SetOverride",
+        "scales velocities, accelerations and jerks as long as it is enabled";
+    TorqueControl: TorqueControl, "MC_TorqueControl" command, "goes over to a torque or force and keeps it";
+    ReadStatus: ReadStatus, "MC_ReadStatus", "tells the state of the axis";
+    ReadAxisError: ReadAxisError, "MC_ReadAxisError", "tells the error of the axis";
+    ReadActualPosition: ReadActualPosition, "MC_ReadActualPosition", "tells the actual position";
+    ReadActualVelocity: ReadActualVelocity, "MC_ReadActualVelocity", "tells the actual velocity";
+    ReadActualTorque: ReadActualTorque, "MC_ReadActualTorque", "tells the actual torque or force";
+    Profile4th: Profile4th, "Profile4th" command, "the generator of fourth order as a block: moves to a position";
+}
+
+impl BlockName {
+    /// The block of this name in the standard.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|block| block.name() == name)
+    }
+
+    /// The block's own version of an input; `None` where it has no such input.
+    #[must_use]
+    pub fn input(self, input: Input) -> Option<&'static BlockInput> {
+        self.inputs().iter().find(|own| own.input == input)
+    }
+}
+
+impl fmt::Display for BlockName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl Output {
+    /// Whether a program can wait for it: TRUE or FALSE, and not always the same.
+    #[must_use]
+    pub const fn is_condition(self) -> bool {
+        matches!(self.value_type(), OutputType::Flag)
+    }
+}

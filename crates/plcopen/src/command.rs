@@ -1,32 +1,32 @@
 //! What a block asks of the axis.
+use crate::blocks::BlockName;
 use crate::error::BlockError;
-use crate::name::BlockName;
 use crate::params::AxisParams;
 use servobench_base::{finite, positive};
 use servobench_motion::Limits;
 
-/// How a command follows those before it (MC_BUFFER_MODE).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum BufferMode {
-    /// At once; what ran or waited is aborted.
-    #[default]
-    Aborting,
-    /// When the command before it is done.
-    Buffered,
-    /// The same, without a stop: the end of the command before is passed at the lower of both velocities.
-    BlendingLow,
-    /// At the velocity of the command before.
-    BlendingPrevious,
-    /// At the velocity of this command.
-    BlendingNext,
-    /// At the higher of both velocities.
-    BlendingHigh,
+servobench_config::choices! {
+    /// How a command follows those before it (MC_BUFFER_MODE).
+    pub enum BufferMode default Aborting {
+        /// the motion under way is broken off
+        Aborting = "aborting",
+        /// the motion under way ends first
+        Buffered = "buffered",
+        /// its target is passed at the lower of both velocities
+        BlendingLow = "blending-low",
+        /// its target is passed at its own velocity
+        BlendingPrevious = "blending-previous",
+        /// its target is passed at the velocity of the next
+        BlendingNext = "blending-next",
+        /// its target is passed at the higher of both velocities
+        BlendingHigh = "blending-high",
+    }
 }
 
 impl BufferMode {
     /// Name in the spelling of the standard.
     #[must_use]
-    pub const fn name(self) -> &'static str {
+    pub const fn standard_name(self) -> &'static str {
         match self {
             Self::Aborting => "mcAborting",
             Self::Buffered => "mcBuffered",
@@ -49,24 +49,24 @@ impl BufferMode {
     }
 }
 
-/// Which way round (MC_DIRECTION).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Direction {
-    /// Upwards.
-    Positive,
-    /// The shorter way, upwards where both are as long.
-    #[default]
-    Shortest,
-    /// Downwards.
-    Negative,
-    /// The way the axis goes, or went last.
-    Current,
+servobench_config::choices! {
+    /// Which way round (MC_DIRECTION).
+    pub enum Direction default Shortest {
+        /// upwards
+        Positive = "positive",
+        /// downwards
+        Negative = "negative",
+        /// the shorter way of a modulo axis
+        Shortest = "shortest",
+        /// as the axis goes already
+        Current = "current",
+    }
 }
 
 impl Direction {
     /// Name in the spelling of the standard.
     #[must_use]
-    pub const fn name(self) -> &'static str {
+    pub const fn standard_name(self) -> &'static str {
         match self {
             Self::Positive => "mcPositiveDirection",
             Self::Shortest => "mcShortestWay",
@@ -264,13 +264,13 @@ impl Command {
     }
 
     pub(crate) const fn wrong_buffer_mode(&self, bound: &'static str) -> BlockError {
-        BlockError::BufferMode { block: self.block, value: self.buffer_mode.name(), bound }
+        BlockError::BufferMode { block: self.block, value: self.buffer_mode.standard_name(), bound }
     }
 }
 
 /// What has no end has no shortest way to it.
 fn endless_direction(block: BlockName, direction: Direction) -> Result<(), BlockError> {
-    let value = direction.name();
+    let value = direction.standard_name();
     match direction {
         Direction::Shortest => Err(BlockError::Direction { block, value, bound: "a direction to run in" }),
         Direction::Positive | Direction::Negative | Direction::Current => Ok(()),

@@ -2,7 +2,7 @@
 //!
 //! The standard leaves the numbers of ErrorID to the supplier. Here the thousands are the class: 1 an input, 2 the state of the
 //! axis, 3 the plan of a move, 4 the axis itself.
-use crate::name::BlockName;
+use crate::blocks::BlockName;
 use crate::state::AxisState;
 use servobench_fieldbus::Fault;
 use servobench_motion::PlanError;

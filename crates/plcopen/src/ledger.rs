@@ -1,7 +1,7 @@
 //! What became of the commands: each block asks for its own by number.
 use crate::axis::MOST_BUFFERED;
+use crate::blocks::BlockName;
 use crate::error::BlockError;
-use crate::name::BlockName;
 
 /// The number of a command, counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

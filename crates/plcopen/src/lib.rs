@@ -25,8 +25,11 @@
 //! # Ok::<(), servobench_base::ParamError>(())
 //! ```
 //!
-//! `no_std`, no heap.
+//! `no_std`, no heap; without the feature `program`, whose programs keep their calls in a heap.
 #![cfg_attr(not(test), no_std)]
+
+#[cfg(feature = "program")]
+extern crate alloc;
 
 mod arrows;
 mod axis;
@@ -34,9 +37,12 @@ mod blocks;
 mod command;
 mod error;
 pub mod generator;
+mod interface;
 mod ledger;
-mod name;
+mod list;
 mod params;
+#[cfg(feature = "program")]
+pub mod program;
 mod state;
 
 pub use arrows::{ARROWS, Arrow, Cause};
@@ -44,7 +50,7 @@ pub use axis::{Axis, MOST_BUFFERED};
 pub use blocks::*;
 pub use command::{BufferMode, Command, Direction, Dynamics, Ending, Goal};
 pub use error::{AxisError, BlockError, ErrorId};
+pub use interface::{Absent, BlockInput, BlockInputs, InputType, OutputType, Table, Trigger, Value, Values};
 pub use ledger::{CommandId, Progress};
-pub use name::BlockName;
 pub use params::AxisParams;
 pub use state::AxisState;

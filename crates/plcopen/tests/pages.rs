@@ -1,12 +1,6 @@
 //! `docs/plcopen.md` holds the tables of the arrows, the ErrorIDs and the outputs.
 //! `SERVOBENCH_WRITE_DOCS=1 cargo test -p servobench-plcopen` writes them.
-use servobench_motion::pvt::Knot;
-use servobench_plcopen::{
-    ARROWS, AccelerationProfile, ErrorId, FunctionBlock, Halt, Home, MoveAbsolute, MoveAdditive,
-    MoveContinuousAbsolute, MoveRelative, MoveSuperimposed, MoveVelocity, Outputs, Pair, PositionProfile, Power,
-    Profile4th, ReadActualPosition, ReadActualTorque, ReadActualVelocity, ReadAxisError, ReadStatus, Reset,
-    SetOverride, SetPosition, Stop, TorqueControl, VelocityProfile,
-};
+use servobench_plcopen::{ARROWS, BlockName, ErrorId};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -54,35 +48,11 @@ fn errors() -> String {
 
 fn outputs() -> String {
     let mut table = String::from("| block | outputs |\n|---|---|\n");
-    let mut row = |(name, outputs): (&str, &[&str])| writeln!(table, "| {name} | {} |", outputs.join(", ")).unwrap();
-    row(of::<Power>());
-    row(of::<Home>());
-    row(of::<Stop>());
-    row(of::<Halt>());
-    row(of::<Reset>());
-    row(of::<MoveAbsolute>());
-    row(of::<MoveRelative>());
-    row(of::<MoveAdditive>());
-    row(of::<MoveSuperimposed>());
-    row(of::<MoveVelocity>());
-    row(of::<MoveContinuousAbsolute>());
-    row(of::<TorqueControl>());
-    row(of::<PositionProfile<[Knot; 0], [f64; 0]>>());
-    row(of::<VelocityProfile<[Pair; 0]>>());
-    row(of::<AccelerationProfile<[Pair; 0]>>());
-    row(of::<Profile4th>());
-    row(of::<SetPosition>());
-    row(of::<SetOverride>());
-    row(of::<ReadStatus>());
-    row(of::<ReadAxisError>());
-    row(of::<ReadActualPosition>());
-    row(of::<ReadActualVelocity>());
-    row(of::<ReadActualTorque>());
+    for block in BlockName::ALL {
+        let names: Vec<&str> = block.outputs().iter().map(|output| output.name()).collect();
+        writeln!(table, "| {block} | {} |", names.join(", ")).unwrap();
+    }
     table
-}
-
-fn of<B: FunctionBlock>() -> (&'static str, &'static [&'static str]) {
-    (B::NAME.name(), B::Outputs::NAMES)
 }
 
 #[test]

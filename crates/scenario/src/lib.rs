@@ -44,13 +44,10 @@ pub use points::{
     Column, MOST_POINTS, Points, PointsError, PointsMistake, Profile, read_accelerations, read_points, read_velocities,
 };
 pub use scenario::{
-    Actuator, Axis, AxisMechanics, Block, Body, BodySignal, Braking, BufferMode, Bus, BusFault, BusFaultKind, BusMode,
-    Call, CoSimulation, Command, Condition, Counter, Coupling, CouplingMethod, CurrentGain, CurrentLoop, Direction,
-    Disturbance, DisturbedBody, Drive, DriveInterpolation, DriveUnits, Dynamics, EffortFeedforward, Encoder,
-    EngineName, Estimate, Feedback, Feedforward, Fmu, HomeSwitch, IdealSource, Initial, InputSource, Interpolation,
-    Isolation, LONGEST_RUN, LoopSignal, Mjcf, MotorEstimate, MoveStep, ObjectWrite, Output, Pair, Plc, Pmsm,
-    PositionLoop, ProfileFollow, Record, Requirements, Scales, Scenario, Sequencing, SourceOutput, StartValue, Step,
-    Switches, TrajectoryBuffer, Update, VelocityLoop,
+    Actuator, Axis, AxisMechanics, BodySignal, Bus, BusFault, BusFaultKind, BusMode, CoSimulation, Counter,
+    CouplingMethod, Disturbance, DisturbedBody, Drive, DriveInterpolation, DriveUnits, EngineName, Feedback, Fmu,
+    Initial, InputSource, Interpolation, Isolation, LONGEST_RUN, LoopSignal, MoveStep, ObjectWrite, Plc, Record,
+    Requirements, Scenario, Sequencing, StartValue, Step, TrajectoryBuffer,
 };
 pub use schema::json_schema;
 pub use source::{SourceId, Sources};

@@ -9,29 +9,20 @@ mod bus;
 mod disturbance;
 mod drive;
 mod fmu;
-mod motor;
 mod plc;
 mod program;
 mod requirements;
 
 pub use actuator::Actuator;
-pub use axis::{Axis, AxisMechanics, Body, Coupling, HomeSwitch, Mjcf, Switches};
+pub use axis::{Axis, AxisMechanics};
 pub use bus::{
     Bus, BusFault, BusFaultKind, BusMode, Counter, DriveInterpolation, DriveUnits, ObjectWrite, Sequencing,
     TrajectoryBuffer,
 };
 pub use disturbance::{Disturbance, DisturbedBody, Initial};
-pub(crate) use drive::q_current;
-pub use drive::{
-    CurrentGain, CurrentLoop, Drive, EffortFeedforward, Estimate, Feedback, Feedforward, MotorEstimate, PositionLoop,
-    VelocityLoop,
-};
+pub use drive::{Drive, Feedback};
 pub use fmu::{BodySignal, CoSimulation, CouplingMethod, Fmu, InputSource, Isolation, LoopSignal, StartValue};
-pub use motor::{Encoder, IdealSource, Pmsm, SourceOutput};
-pub use plc::{
-    Block, Braking, BufferMode, Call, Command, Condition, Direction, Dynamics, Output, Pair, Plc, ProfileFollow,
-    Scales, Update,
-};
+pub use plc::Plc;
 pub use program::{Interpolation, MoveStep, Step};
 pub use requirements::Requirements;
 

@@ -18,10 +18,12 @@ use serde_json::{Map, Value as Json, json};
 ///         key: Type = specification,
 ///         /// A key that Rust cannot spell.
 ///         field as "static": Type = specification,
+///         ..field: Keys = specification
 ///     }
 /// }
 /// ```
-/// Each key becomes a field `Slot<Type>`; the struct also knows the `span` of its header.
+/// Each key becomes a field `Slot<Type>`; the struct also knows the `span` of its header. What follows `..` is a group of keys that is
+/// listed elsewhere.
 macro_rules! table {
     (
         $(#[doc = $table_doc:literal])+
@@ -30,6 +32,7 @@ macro_rules! table {
                 $(#[doc = $doc:literal])+
                 $field:ident $(as $name:literal)? : $type:ty = $spec:expr,
             )+
+            $(..$group:ident: $group_type:ty = $group_spec:expr)?
         }
     ) => {
         $(#[doc = $table_doc])+
@@ -41,6 +44,10 @@ macro_rules! table {
                 $(#[doc = $doc])+
                 pub(crate) $field: $crate::field::Slot<$type>,
             )+
+            $(
+                /// Keys that are listed elsewhere.
+                pub(crate) $group: $group_type,
+            )?
         }
 
         impl $crate::field::Field for $table {
@@ -52,25 +59,29 @@ macro_rules! table {
                 report: &mut $crate::diagnostic::Report,
             ) -> Option<Self> {
                 let keys = [$($crate::table::key_name!($field $(as $name)?),)+];
+                $(let keys: Vec<&str> = keys.into_iter().chain(<$group_type>::keys($group_spec)).collect();)?
                 let required: &[&str] = &[$($($required),+)?];
                 let mut open = $crate::table::OpenTable::new(path, node, &keys, required, report)?;
                 Some(Self {
                     span: node.span,
                     $($field: open.field($crate::table::key_name!($field $(as $name)?), &$spec),)+
+                    $($group: <$group_type>::read(&mut open, $group_spec),)?
                 })
             }
 
             fn schema((): &()) -> serde_json::Value {
                 let required: &[&str] = &[$($($required),+)?];
-                $crate::table::object_schema(
-                    &[$($table_doc,)+],
-                    required,
-                    vec![$((
-                        $crate::table::key_name!($field $(as $name)?),
-                        &[$($doc,)+] as &[&str],
-                        <$type as $crate::field::Field<_>>::schema(&$spec),
-                    ),)+],
-                )
+                let keys = [$((
+                    $crate::table::key_name!($field $(as $name)?),
+                    &[$($doc,)+] as &[&str],
+                    <$type as $crate::field::Field<_>>::schema(&$spec),
+                ),)+];
+                $(
+                    let group = <$group_type>::schemas($group_spec);
+                    let group = group.iter().map(|(key, doc, schema)| (*key, doc.as_slice(), schema.clone()));
+                    let keys = keys.into_iter().chain(group);
+                )?
+                $crate::table::object_schema(&[$($table_doc,)+], required, keys.into_iter().collect())
             }
         }
     };

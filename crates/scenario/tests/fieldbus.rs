@@ -1,5 +1,7 @@
 //! What `[bus]`, `[drive.objects]` and `[axis.switches]` become.
+use servobench_drive::EffortFeedforward;
 use servobench_motion::interpolate::Mode;
+use servobench_plant::Switches;
 use servobench_scenario::*;
 use std::f64::consts::TAU;
 
@@ -226,8 +228,9 @@ fn switches_of_the_axis() {
     let expected = Switches {
         negative: Some(-0.02),
         positive: Some(0.52),
-        home: Some(HomeSwitch { from: 0.0, to: 0.01 }),
+        home: Some(0.0..=0.01),
         index: Some(0.75 * TAU),
+        normally_closed: false,
     };
     assert_eq!(all, expected);
     assert_eq!(switches("index = \"720 deg\"").index, Some(0.0));

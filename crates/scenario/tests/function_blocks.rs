@@ -1,5 +1,15 @@
 //! What `[plc]` and `[[call]]` become.
-use servobench_scenario::*;
+use servobench_motion::Limits;
+use servobench_plcopen::generator::Mounting;
+use servobench_plcopen::program::{Call, Condition, Inputs};
+use servobench_plcopen::{
+    AccelerationProfileInputs, BlockInputs, BlockName, BufferMode, Direction, Follow, HaltInputs, HomeInputs,
+    MoveAbsoluteInputs, MoveAdditiveInputs, MoveContinuousAbsoluteInputs, MoveRelativeInputs, MoveSuperimposedInputs,
+    MoveVelocityInputs, Output, Pair, PositionProfileInputs, PowerInputs, Profile4thInputs, ReadInputs, ResetInputs,
+    SetOverrideInputs, SetPositionInputs, StopInputs, TimePosition, TorqueControlInputs, VelocityProfileInputs,
+};
+use servobench_scenario::{Plc, Scenario, parse};
+use std::fmt::Debug;
 use std::path::Path;
 
 const AXIS: &str = r#"
@@ -43,182 +53,112 @@ fn call(block: &str, keys: &str) -> Call {
 }
 
 /// What `[setpoint]` says.
-const DYNAMICS: Dynamics = Dynamics { velocity: 0.5, acceleration: 5.0, deceleration: 5.0, jerk: 100.0, snap: 5000.0 };
-const BRAKING: Braking = Braking { deceleration: 5.0, jerk: 100.0, snap: 5000.0 };
+const LIMITS: Limits = Limits { velocity: 0.5, acceleration: 5.0, jerk: 100.0, snap: 5000.0 };
 
-/// The call of a block that says nothing but its inputs.
-fn alone(name: &str, block: Block) -> Call {
-    Call {
+/// The call of a block with `keys` has these inputs, and says nothing else.
+fn check<I: for<'i> BlockInputs<'i> + PartialEq + Debug + Copy>(name: &str, keys: &str, inputs: I) {
+    let call = call(name, keys);
+    assert_eq!(I::read(&call.inputs, false), inputs, "{name}");
+    let alone = Call {
         name: format!("{name}_0"),
-        block,
+        block: BlockName::from_name(name).unwrap(),
+        inputs: call.inputs.clone(),
         start: Condition::AtOnce,
         stop: None,
         timeout: f64::INFINITY,
         is_optional: false,
         updates: vec![],
-    }
+    };
+    assert_eq!(call, alone);
 }
 
 #[test]
 fn every_block_with_its_least_inputs() {
-    let (aborting, command) = (BufferMode::Aborting, Command::default());
-    for (name, keys, block) in [
-        ("MC_Power", "", Block::Power { positive: true, negative: true }),
-        ("MC_Home", "", Block::Home { position: 0.0, buffer_mode: aborting }),
-        ("MC_Stop", "", Block::Stop(BRAKING)),
-        ("MC_Halt", "", Block::Halt { braking: BRAKING, buffer_mode: aborting }),
-        ("MC_Reset", "", Block::Reset),
-        (
-            "MC_MoveAbsolute",
-            "position = \"1 mm\"",
-            Block::MoveAbsolute { position: 0.001, direction: Direction::Shortest, dynamics: DYNAMICS, command },
-        ),
-        (
-            "MC_MoveRelative",
-            "distance = \"-1 mm\"",
-            Block::MoveRelative { distance: -0.001, dynamics: DYNAMICS, command },
-        ),
-        (
-            "MC_MoveAdditive",
-            "distance = \"1 mm\"",
-            Block::MoveAdditive { distance: 0.001, dynamics: DYNAMICS, command },
-        ),
-        (
-            "MC_MoveSuperimposed",
-            "distance = \"1 mm\"\nvelocity_difference = \"0.1 m/s\"",
-            Block::MoveSuperimposed {
-                distance: 0.001,
-                dynamics: Dynamics { velocity: 0.1, ..DYNAMICS },
-                continuous_update: false,
-            },
-        ),
-        (
-            "MC_MoveVelocity",
-            "velocity = \"-0.25 m/s\"",
-            Block::MoveVelocity {
-                velocity: -0.25,
-                direction: Direction::Positive,
-                dynamics: Dynamics { velocity: 0.25, ..DYNAMICS },
-                command,
-            },
-        ),
-        (
-            "MC_MoveContinuousAbsolute",
-            "position = \"1 mm\"\nend_velocity = \"-0.1 m/s\"",
-            Block::MoveContinuousAbsolute {
-                position: 0.001,
-                end_velocity: -0.1,
-                direction: Direction::Shortest,
-                dynamics: DYNAMICS,
-                command,
-            },
-        ),
-        ("MC_SetPosition", "position = \"1 mm\"", Block::SetPosition { position: 0.001, relative: false }),
-        ("MC_SetOverride", "", Block::SetOverride { factors: [1.0; 3] }),
-        (
-            "MC_TorqueControl",
-            "torque = \"-2 Nm\"",
-            Block::TorqueControl {
-                torque: -2.0,
-                torque_ramp: f64::INFINITY,
-                velocity: 0.5,
-                direction: Direction::Positive,
-                command,
-            },
-        ),
-        ("MC_ReadStatus", "", Block::ReadStatus),
-        ("MC_ReadAxisError", "", Block::ReadAxisError),
-        ("MC_ReadActualPosition", "", Block::ReadActualPosition),
-        ("MC_ReadActualVelocity", "", Block::ReadActualVelocity),
-        ("MC_ReadActualTorque", "", Block::ReadActualTorque),
-        (
-            "Profile4th",
-            "position = \"1 mm\"\nsettling_time = \"50 ms\"",
-            Block::Profile4th {
-                position: 0.001,
-                limits: [0.5, 5.0, 100.0, 5000.0],
-                settling_time: 0.05,
-                reversed: false,
-            },
-        ),
-    ] {
-        assert_eq!(call(name, keys), alone(name, block));
+    check("MC_Power", "", PowerInputs::default());
+    check("MC_Home", "", HomeInputs::default());
+    check("MC_Stop", "", StopInputs::within(&LIMITS));
+    check("MC_Halt", "", HaltInputs::within(&LIMITS));
+    check("MC_Reset", "", ResetInputs::default());
+    let inputs = MoveAbsoluteInputs { position: 0.001, ..MoveAbsoluteInputs::within(&LIMITS) };
+    check("MC_MoveAbsolute", "position = \"1 mm\"", inputs);
+    let inputs = MoveRelativeInputs { distance: -0.001, ..MoveRelativeInputs::within(&LIMITS) };
+    check("MC_MoveRelative", "distance = \"-1 mm\"", inputs);
+    let inputs = MoveAdditiveInputs { distance: 0.001, ..MoveAdditiveInputs::within(&LIMITS) };
+    check("MC_MoveAdditive", "distance = \"1 mm\"", inputs);
+    let inputs =
+        MoveSuperimposedInputs { distance: 0.001, velocity_diff: 0.1, ..MoveSuperimposedInputs::within(&LIMITS) };
+    check("MC_MoveSuperimposed", "distance = \"1 mm\"\nvelocity_difference = \"0.1 m/s\"", inputs);
+    let inputs = MoveVelocityInputs { velocity: -0.25, ..MoveVelocityInputs::within(&LIMITS) };
+    check("MC_MoveVelocity", "velocity = \"-0.25 m/s\"", inputs);
+    let inputs = MoveContinuousAbsoluteInputs {
+        position: 0.001,
+        end_velocity: -0.1,
+        ..MoveContinuousAbsoluteInputs::within(&LIMITS)
+    };
+    check("MC_MoveContinuousAbsolute", "position = \"1 mm\"\nend_velocity = \"-0.1 m/s\"", inputs);
+    let inputs = SetPositionInputs { position: 0.001, ..SetPositionInputs::default() };
+    check("MC_SetPosition", "position = \"1 mm\"", inputs);
+    check("MC_SetOverride", "", SetOverrideInputs::default());
+    let inputs = TorqueControlInputs { torque: -2.0, ..TorqueControlInputs::within(&LIMITS) };
+    check("MC_TorqueControl", "torque = \"-2 Nm\"", inputs);
+    for name in
+        ["MC_ReadStatus", "MC_ReadAxisError", "MC_ReadActualPosition", "MC_ReadActualVelocity", "MC_ReadActualTorque"]
+    {
+        check(name, "", ReadInputs::default());
     }
+    let inputs = Profile4thInputs { settling_time: 0.05, ..Profile4thInputs::to(0.001, LIMITS) };
+    check("Profile4th", "position = \"1 mm\"\nsettling_time = \"50 ms\"", inputs);
 }
 
 /// Times count from the start of the profile, pairs from the one before.
 #[test]
 fn profiles_of_positions_velocities_and_accelerations() {
-    let buffer_mode = BufferMode::Aborting;
     let pairs = |values: [f64; 3]| {
         let times = [0.0, 0.01, 0.01];
-        times.into_iter().zip(values).map(|(delta_time, value)| Pair { delta_time, value }).collect()
+        std::array::from_fn::<_, 3, _>(|i| Pair { delta_time: times[i], value: values[i] })
     };
-    let scales = Scales { time: 1.0, value: 1.0, offset: 0.0 };
-    let positions = |is_relative, follow, end_velocity| Block::PositionProfile {
-        pairs: pairs([0.0, 0.005, 0.0]),
-        scales,
-        is_relative,
-        follow,
-        end_velocity,
-        buffer_mode,
-    };
-    let plateaus = |share| positions(false, ProfileFollow::Plateaus(share), 0.0);
-    for (name, keys, block) in [
-        ("MC_PositionProfile", "table = { file = \"x.csv\" }", positions(false, ProfileFollow::Spline, 0.0)),
+    let rows = pairs([0.0, 0.005, 0.0]);
+    let spline = PositionProfileInputs::along(&rows);
+    let plateaus = |share| PositionProfileInputs { follow: Follow::Plateaus(share), ..spline };
+    let relative = TimePosition { is_absolute: false, ..spline.time_position };
+    for (keys, expected) in [
+        ("table = { file = \"x.csv\" }", spline),
         (
-            "MC_PositionProfile",
             "table = { file = \"x.csv\", relative = true, velocities = \"continuous\" }\nend_velocity = \"-0.1 m/s\"",
-            positions(true, ProfileFollow::Spline, -0.1),
+            PositionProfileInputs { time_position: relative, end_velocity: -0.1, ..spline },
         ),
         (
-            "MC_PositionProfile",
             "table = { file = \"x.csv\" }\ntime_scale = \"50 %\"\nvalue_scale = 3\nposition_offset = \"-10 mm\"",
-            Block::PositionProfile {
-                pairs: pairs([0.0, 0.005, 0.0]),
-                scales: Scales { time: 0.5, value: 3.0, offset: -0.01 },
-                is_relative: false,
-                follow: ProfileFollow::Spline,
-                end_velocity: 0.0,
-                buffer_mode,
-            },
+            PositionProfileInputs { time_scale: 0.5, position_scale: 3.0, offset: -0.01, ..spline },
         ),
-        ("MC_PositionProfile", "table = { file = \"x.csv\", follow = \"plateaus\" }", plateaus(0.25)),
+        ("table = { file = \"x.csv\", follow = \"plateaus\" }", plateaus(0.25)),
+        ("table = { file = \"x.csv\", follow = \"plateaus\", plateau_share = 0.3 }", plateaus(0.3)),
+    ] {
+        let call = call("MC_PositionProfile", keys);
+        assert_eq!(PositionProfileInputs::read(&call.inputs, false), expected);
+    }
+    let along = VelocityProfileInputs::along(&rows);
+    for (keys, expected) in [
+        ("table = { file = \"v.csv\" }", along),
         (
-            "MC_PositionProfile",
-            "table = { file = \"x.csv\", follow = \"plateaus\", plateau_share = 0.3 }",
-            plateaus(0.3),
-        ),
-        (
-            "MC_VelocityProfile",
-            "table = { file = \"v.csv\" }",
-            Block::VelocityProfile { pairs: pairs([0.0, 0.005, 0.0]), scales, buffer_mode },
-        ),
-        (
-            "MC_VelocityProfile",
             "table = { file = \"v.csv\" }\ntime_scale = 2\nvalue_scale = \"-50 %\"\nvelocity_offset = \"0.1 m/s\"",
-            Block::VelocityProfile {
-                pairs: pairs([0.0, 0.005, 0.0]),
-                scales: Scales { time: 2.0, value: -0.5, offset: 0.1 },
-                buffer_mode,
-            },
-        ),
-        (
-            "MC_AccelerationProfile",
-            "table = { file = \"a.csv\" }",
-            Block::AccelerationProfile { pairs: pairs([0.0, 5.0, 0.0]), scales, buffer_mode },
-        ),
-        (
-            "MC_AccelerationProfile",
-            "table = { file = \"a.csv\" }\nacceleration_offset = \"-2 m/s2\"",
-            Block::AccelerationProfile {
-                pairs: pairs([0.0, 5.0, 0.0]),
-                scales: Scales { offset: -2.0, ..scales },
-                buffer_mode,
-            },
+            VelocityProfileInputs { time_scale: 2.0, velocity_scale: -0.5, offset: 0.1, ..along },
         ),
     ] {
-        assert_eq!(call(name, keys), alone(name, block));
+        let call = call("MC_VelocityProfile", keys);
+        assert_eq!(VelocityProfileInputs::read(&call.inputs, false), expected);
+    }
+    let rows = pairs([0.0, 5.0, 0.0]);
+    let along = AccelerationProfileInputs::along(&rows);
+    for (keys, expected) in [
+        ("table = { file = \"a.csv\" }", along),
+        (
+            "table = { file = \"a.csv\" }\nacceleration_offset = \"-2 m/s2\"",
+            AccelerationProfileInputs { offset: -2.0, ..along },
+        ),
+    ] {
+        let call = call("MC_AccelerationProfile", keys);
+        assert_eq!(AccelerationProfileInputs::read(&call.inputs, false), expected);
     }
 }
 
@@ -226,63 +166,87 @@ fn profiles_of_positions_velocities_and_accelerations() {
 fn every_block_with_inputs_of_its_own() {
     let own = "velocity = \"0.1 m/s\"\nacceleration = \"1 m/s2\"\ndeceleration = \"2 m/s2\"\njerk = \"3 m/s3\"\n\
                snap = \"4 m/s4\"\nbuffer_mode = \"blending-high\"\ncontinuous_update = true\n";
-    let dynamics = Dynamics { velocity: 0.1, acceleration: 1.0, deceleration: 2.0, jerk: 3.0, snap: 4.0 };
-    let command = Command { buffer_mode: BufferMode::BlendingHigh, continuous_update: true };
-    for (name, keys, block) in [
-        ("MC_MoveRelative", "distance = \"1 mm\"\n", Block::MoveRelative { distance: 0.001, dynamics, command }),
-        (
-            "MC_MoveVelocity",
-            "direction = \"current\"\n",
-            Block::MoveVelocity { velocity: 0.1, direction: Direction::Current, dynamics, command },
-        ),
-    ] {
-        assert_eq!(call(name, &format!("{keys}{own}")).block, block);
-    }
-    assert_eq!(
-        call(
-            "MC_TorqueControl",
-            "torque = \"1 Nm\"\ntorque_ramp = \"10 Nm/s\"\nvelocity = \"0.1 m/s\"\ndirection = \"negative\"\n\
-             buffer_mode = \"blending-high\"\ncontinuous_update = true\n"
-        )
-        .block,
-        Block::TorqueControl { torque: 1.0, torque_ramp: 10.0, velocity: 0.1, direction: Direction::Negative, command }
+    let (jerk, snap, buffer_mode) = (Some(3.0), Some(4.0), BufferMode::BlendingHigh);
+    let inputs = MoveRelativeInputs {
+        execute: false,
+        distance: 0.001,
+        velocity: 0.1,
+        acceleration: 1.0,
+        deceleration: 2.0,
+        jerk,
+        snap,
+        buffer_mode,
+        continuous_update: true,
+    };
+    check("MC_MoveRelative", &format!("distance = \"1 mm\"\n{own}"), inputs);
+    let inputs = MoveVelocityInputs {
+        execute: false,
+        velocity: 0.1,
+        acceleration: 1.0,
+        deceleration: 2.0,
+        jerk,
+        snap,
+        direction: Direction::Current,
+        buffer_mode,
+        continuous_update: true,
+    };
+    check("MC_MoveVelocity", &format!("direction = \"current\"\n{own}"), inputs);
+    check(
+        "MC_TorqueControl",
+        "torque = \"1 Nm\"\ntorque_ramp = \"10 Nm/s\"\nvelocity = \"0.1 m/s\"\ndirection = \"negative\"\n\
+         buffer_mode = \"blending-high\"\ncontinuous_update = true\n",
+        TorqueControlInputs {
+            execute: false,
+            torque: 1.0,
+            torque_ramp: 10.0,
+            velocity: 0.1,
+            direction: Direction::Negative,
+            buffer_mode,
+            continuous_update: true,
+        },
     );
-    assert_eq!(
-        call("MC_Halt", "deceleration = \"2 m/s2\"\njerk = \"3 m/s3\"\nsnap = \"4 m/s4\"\nbuffer_mode = \"buffered\"")
-            .block,
-        Block::Halt { braking: Braking { deceleration: 2.0, jerk: 3.0, snap: 4.0 }, buffer_mode: BufferMode::Buffered }
+    check(
+        "MC_Halt",
+        "deceleration = \"2 m/s2\"\njerk = \"3 m/s3\"\nsnap = \"4 m/s4\"\nbuffer_mode = \"buffered\"",
+        HaltInputs { execute: false, deceleration: 2.0, jerk, snap, buffer_mode: BufferMode::Buffered },
     );
-    assert_eq!(
-        call("MC_SetOverride", "velocity_factor = 0\nacceleration_factor = \"50 %\"\njerk_factor = 0.25").block,
-        Block::SetOverride { factors: [0.0, 0.5, 0.25] }
+    check(
+        "MC_SetOverride",
+        "velocity_factor = 0\nacceleration_factor = \"50 %\"\njerk_factor = 0.25",
+        SetOverrideInputs { enable: false, vel_factor: 0.0, acc_factor: 0.5, jerk_factor: 0.25 },
     );
-    assert_eq!(
-        call("MC_SetPosition", "position = \"1 mm\"\nrelative = true").block,
-        Block::SetPosition { position: 0.001, relative: true }
+    check(
+        "MC_SetPosition",
+        "position = \"1 mm\"\nrelative = true",
+        SetPositionInputs { execute: false, position: 0.001, relative: true },
     );
-    assert_eq!(
-        call("MC_Home", "position = \"-1 mm\"\nbuffer_mode = \"buffered\"").block,
-        Block::Home { position: -0.001, buffer_mode: BufferMode::Buffered }
+    check(
+        "MC_Home",
+        "position = \"-1 mm\"\nbuffer_mode = \"buffered\"",
+        HomeInputs { execute: false, position: -0.001, buffer_mode: BufferMode::Buffered },
     );
-    assert_eq!(
-        call("MC_MoveSuperimposed", "distance = \"0 mm\"\nvelocity_difference = \"0.1 m/s\"\ncontinuous_update = true")
-            .block,
-        Block::MoveSuperimposed {
-            distance: 0.0,
-            dynamics: Dynamics { velocity: 0.1, ..DYNAMICS },
-            continuous_update: true
-        }
+    check(
+        "MC_MoveSuperimposed",
+        "distance = \"0 mm\"\nvelocity_difference = \"0.1 m/s\"\ncontinuous_update = true",
+        MoveSuperimposedInputs {
+            velocity_diff: 0.1,
+            continuous_update: true,
+            ..MoveSuperimposedInputs::within(&LIMITS)
+        },
     );
-    for (name, mode) in [
+    check(
+        "Profile4th",
+        "position = \"1 mm\"\nsettling_time = \"50 ms\"\nreversed = true",
+        Profile4thInputs { settling_time: 0.05, mounting: Mounting::Opposite, ..Profile4thInputs::to(0.001, LIMITS) },
+    );
+    for (name, buffer_mode) in [
         ("aborting", BufferMode::Aborting),
         ("blending-low", BufferMode::BlendingLow),
         ("blending-previous", BufferMode::BlendingPrevious),
         ("blending-next", BufferMode::BlendingNext),
     ] {
-        let Block::Halt { buffer_mode, .. } = call("MC_Halt", &format!("buffer_mode = \"{name}\"")).block else {
-            panic!("a halt")
-        };
-        assert_eq!(buffer_mode, mode);
+        let inputs = HaltInputs { buffer_mode, ..HaltInputs::within(&LIMITS) };
+        check("MC_Halt", &format!("buffer_mode = \"{name}\""), inputs);
     }
 }
 
@@ -302,7 +266,8 @@ fn limits_are_those_of_the_order() {
     ] {
         let plc = of_order(order);
         assert_eq!(plc.limits.map(f64::to_bits), [0.5, 5.0, jerk, snap].map(f64::to_bits), "{order}");
-        assert_eq!(plc.calls[0].block, Block::Stop(Braking { jerk, snap, ..BRAKING }), "{order}");
+        let inputs = StopInputs::read(&plc.calls[0].inputs, false);
+        assert_eq!(inputs, StopInputs::within(&Limits { jerk, snap, ..LIMITS }), "{order}");
     }
 }
 
@@ -315,8 +280,7 @@ fn a_modulo_axis_has_directions() {
     assert_eq!(scenario.axis.modulo, Some(0.1));
     let plc = scenario.plc.unwrap();
     assert!(!plc.homing_required);
-    let Block::MoveAbsolute { direction, .. } = plc.calls[0].block else { panic!("{:?}", plc.calls) };
-    assert_eq!(direction, Direction::Negative);
+    assert_eq!(MoveAbsoluteInputs::read(&plc.calls[0].inputs, false).direction, Direction::Negative);
 }
 
 #[test]
@@ -368,10 +332,12 @@ fn permissions_change_under_power() {
     let when =
         "{ when = { at = \"1 s\" }, enable_positive = false }, { when = { at = \"1.5 s\" }, enable_negative = true }";
     let call = call("MC_Power", &format!("enable_negative = false\nupdates = [{when}]"));
-    assert_eq!(call.block, Block::Power { positive: true, negative: false });
-    let blocks: Vec<_> = call.updates.into_iter().map(|update| update.block).collect();
-    let denied = |negative| Block::Power { positive: false, negative };
-    assert_eq!(blocks, [denied(false), denied(true)]);
+    let permits = |inputs: &Inputs| {
+        let PowerInputs { enable_positive, enable_negative, .. } = PowerInputs::read(inputs, false);
+        [enable_positive, enable_negative]
+    };
+    let updates: Vec<_> = call.updates.iter().map(|update| permits(&update.inputs)).collect();
+    assert_eq!((permits(&call.inputs), updates), ([true, false], vec![[false, false], [false, true]]));
 }
 
 /// An update says what changes; what it does not say is as the update before left it.
@@ -387,16 +353,20 @@ updates = [
 ]
 "#,
     );
-    let block = |velocity, acceleration, direction| Block::MoveVelocity {
+    let inputs = |velocity, acceleration, direction| MoveVelocityInputs {
         velocity,
+        acceleration,
+        deceleration: acceleration,
         direction,
-        dynamics: Dynamics { velocity, acceleration, deceleration: acceleration, ..DYNAMICS },
-        command: Command { continuous_update: true, ..Command::default() },
+        continuous_update: true,
+        ..MoveVelocityInputs::within(&LIMITS)
     };
-    assert_eq!(call.block, block(0.5, 5.0, Direction::Positive));
+    let read = |inputs: &Inputs| MoveVelocityInputs::read(inputs, false);
+    assert_eq!(read(&call.inputs), inputs(0.5, 5.0, Direction::Positive));
+    let updates: Vec<_> = call.updates.iter().map(|update| (update.when, read(&update.inputs))).collect();
     let expected = [
-        Update { when: Condition::At(0.3), block: block(0.1, 5.0, Direction::Positive) },
-        Update { when: Condition::At(0.6), block: block(0.1, 1.0, Direction::Negative) },
+        (Condition::At(0.3), inputs(0.1, 5.0, Direction::Positive)),
+        (Condition::At(0.6), inputs(0.1, 1.0, Direction::Negative)),
     ];
-    assert_eq!(call.updates, expected);
+    assert_eq!(updates, expected);
 }

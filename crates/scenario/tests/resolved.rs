@@ -1,5 +1,7 @@
 //! What a scenario becomes: derived gains, merged bodies, overridden models.
-use servobench_base::{Coordinate, Setpoint};
+use servobench_base::{Coordinate, Dq, Setpoint};
+use servobench_drive::current::{self, Gains, Tuning};
+use servobench_drive::{Params, Stage, feedforward};
 use servobench_metrics::{Limit, Name};
 use servobench_motion::interpolate::Mode;
 use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target};
@@ -11,6 +13,7 @@ use servobench_planner::{
     Averages, CommandRate, Filter, Follow, Generator, Grid, Method, PointToPoint, Positioning, Replanning, Rockwell,
     Shaping, TableMove, Velocities,
 };
+use servobench_plant::{Body, Chain, Encoder, IdealSource, SourceOutput, inverter, pmsm};
 use servobench_scenario::*;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
@@ -19,17 +22,21 @@ fn scenario(text: &str) -> Scenario {
     parse("test.toml", text, None).unwrap_or_else(|e| panic!("{e}")).scenario
 }
 
-fn bodies(scenario: &Scenario) -> &[Body] {
+fn chain(scenario: &Scenario) -> &Chain {
     match &scenario.axis.mechanics {
-        AxisMechanics::Bodies(bodies) => bodies,
+        AxisMechanics::Bodies(chain) => chain,
         AxisMechanics::Mjcf(_) | AxisMechanics::InTheFmu => panic!("bodies"),
     }
 }
 
+fn bodies(scenario: &Scenario) -> &[Body] {
+    chain(scenario).bodies()
+}
+
 /// The synchronous motor, its DC link and its current loop.
-fn motor(scenario: &Scenario) -> (&Pmsm, f64, &CurrentLoop) {
+fn motor(scenario: &Scenario) -> (&pmsm::Params, f64, &current::Params) {
     match &scenario.actuator {
-        Actuator::Pmsm { motor, dc_link, current, .. } => (motor, *dc_link, current),
+        Actuator::Pmsm { motor, dc_link, drive, .. } => (motor, *dc_link, drive.params.current_loop().unwrap().0),
         other => panic!("a synchronous motor, not {other:?}"),
     }
 }
@@ -37,7 +44,10 @@ fn motor(scenario: &Scenario) -> (&Pmsm, f64, &CurrentLoop) {
 /// The ideal source and its gain as the drive knows it.
 fn source(scenario: &Scenario) -> (&IdealSource, f64) {
     match &scenario.actuator {
-        Actuator::IdealSource { source, estimated_gain, .. } => (source, *estimated_gain),
+        Actuator::IdealSource { source, drive, .. } => match drive.params.stage {
+            Stage::Direct { gain } => (source, gain),
+            Stage::Current { .. } => panic!("a current loop"),
+        },
         other => panic!("an ideal source, not {other:?}"),
     }
 }
@@ -52,6 +62,10 @@ fn grid(step: &MoveStep) -> Grid {
 
 fn drive(scenario: &Scenario) -> &Drive {
     scenario.actuator.drive().unwrap()
+}
+
+fn params(scenario: &Scenario) -> &Params {
+    &drive(scenario).params
 }
 
 /// Equal but for a few roundings.
@@ -100,12 +114,13 @@ fn a_rigid_body_is_reflected_through_the_screw() {
     assert_eq!((motor.name, load.name), ("motor", "load"));
     assert!(same(motor.inertia, 1.57e-4 + 1e-4 + r * r * 30.0));
     assert!(same(motor.viscous, 1e-3 + r * r * 100.0));
-    assert!(same(motor.coulomb, 0.05 + r * 20.0));
-    assert!(same(motor.breakaway, 0.05 + r * 32.0));
-    assert!(same(motor.stribeck_velocity, 0.002 / r));
+    assert!(same(motor.dry.coulomb, 0.05 + r * 20.0));
+    assert!(same(motor.dry.breakaway, 0.05 + r * 32.0));
+    assert!(same(motor.dry.stribeck_velocity, 0.002 / r));
     assert!(same(motor.bias, r * 9.81));
-    let coupling = load.coupling.unwrap();
-    assert!(same(coupling.stiffness, 2e6) && same(coupling.damping, 50.0));
+    assert_eq!((load.coordinate, motor.transmission.to_bits()), (Coordinate::Linear, r.to_bits()));
+    let [link] = chain(&scenario).links() else { panic!("one link") };
+    assert!(same(link.stiffness, 2e6) && same(link.damping, 50.0));
 }
 
 /// Oracle: by hand, in the axis coordinate: J/r², τ/r.
@@ -122,7 +137,7 @@ fn the_estimate_is_the_plant_as_two_masses() {
     assert!(estimate.load_viscous == 0.0);
     let (motor, dc_link, current) = motor(&scenario);
     assert!(same(current.motor.resistance, motor.resistance) && same(current.motor.flux_linkage, motor.flux_linkage));
-    assert!(same(current.dc_link, dc_link));
+    assert!(same(current.max_voltage, inverter::voltage_limit(dc_link)));
 }
 
 #[test]
@@ -144,14 +159,17 @@ fn gains_follow_from_bandwidths() {
     let scenario = scenario(SCREW);
     let r = 0.01 / TAU;
     let inertia = 1.57e-4 + 1e-4 + r * r * 40.0;
-    let Drive { velocity, position, .. } = drive(&scenario);
-    assert!(same(velocity.gain, inertia * TAU * 60.0), "{}", velocity.gain);
+    let params = params(&scenario);
+    let velocity = &params.velocity;
+    assert!(same(velocity.k_p, inertia * TAU * 60.0), "{}", velocity.k_p);
     assert!(same(velocity.integral_time.unwrap(), 4.0 / (TAU * 60.0)));
-    assert!(same(position.gain, TAU * 12.0));
-    assert_eq!((velocity.rate.hertz(), position.rate.hertz()), (8_000, 4_000));
-    let (.., current) = motor(&scenario);
-    assert!(matches!(current.gain, CurrentGain::Bandwidth(alpha) if same(alpha, TAU * 1200.0)), "{current:?}");
-    assert_eq!(current.integral_time, None, "L/R");
+    assert!(same(params.position_gain, TAU * 12.0));
+    assert_eq!((params.velocity_rate().hertz(), params.position_rate().hertz()), (8_000, 4_000));
+    let (motor, _, current) = motor(&scenario);
+    let tuning = drive(&scenario).current_tuning;
+    assert!(matches!(tuning, Some(Tuning::Bandwidth(alpha)) if same(alpha, TAU * 1200.0)), "{tuning:?}");
+    assert!(same(current.gains.k_p.q, TAU * 1200.0 * motor.inductance.q));
+    assert!(same(current.gains.k_i.q, TAU * 1200.0 * motor.resistance), "the integral time is L/R");
 }
 
 /// A wrong belief of the inertia reaches the gain: the firmware knows its estimate only.
@@ -161,7 +179,7 @@ fn an_estimate_overrides_single_values() {
     let wrong = scenario(&format!("{SCREW}[drive.estimate]\nload_inertia = \"20 kg\"\nmotor.resistance = \"2 Ohm\"\n"));
     let r = 0.01 / TAU;
     // The difference of two nearly equal gains loses a digit or two.
-    let difference = drive(&wrong).velocity.gain - drive(&right).velocity.gain;
+    let difference = params(&wrong).velocity.k_p - params(&right).velocity.k_p;
     assert!((difference / (r * r * 10.0 * TAU * 60.0) - 1.0).abs() < 1e-12, "{difference}");
     assert!(same(drive(&wrong).estimate.motor_inertia, drive(&right).estimate.motor_inertia));
     let (plant, _, current) = motor(&wrong);
@@ -180,9 +198,9 @@ fn what_the_drive_believes_does_not_change_the_plant() {
     assert!(same(estimate.transmission, r));
     let shaft = 1.57e-4 + 1e-4 + (0.01 / TAU) * (0.01 / TAU) * 30.0;
     assert!(same(estimate.motor_inertia * r * r, shaft), "{estimate:?}");
-    assert!(same(drive(&wrong).velocity.gain, (shaft + r * r * 10.0) * TAU * 60.0));
+    assert!(same(params(&wrong).velocity.k_p, (shaft + r * r * 10.0) * TAU * 60.0));
     let (_, dc_link, current) = motor(&wrong);
-    assert!(same(dc_link, 560.0) && same(current.dc_link, 600.0));
+    assert!(same(dc_link, 560.0) && same(current.max_voltage, inverter::voltage_limit(600.0)));
 }
 
 /// Oracle: by hand. Gains in volts are volts whatever the drive believes a volt to be; the limit of the output becomes one
@@ -194,19 +212,23 @@ fn an_ideal_source_has_a_gain_that_the_drive_believes() {
     let wrong = scenario(&format!("{text}[drive.estimate]\ngain = \"20 N/V\"\n"));
     let (source, estimated_gain) = source(&wrong);
     assert!(same(source.gain, 35.1507) && same(estimated_gain, 20.0));
-    assert!(same(drive(&wrong).velocity.gain, 20.0 * 243.45) && same(drive(&wrong).max_effort, 200.0));
+    assert!(same(params(&wrong).velocity.k_p, 20.0 * 243.45) && same(params(&wrong).velocity.max_effort, 200.0));
 }
 
 #[test]
 fn gains_of_the_current_loop_are_those_of_the_file() {
     let with = |current: &str| scenario(&SCREW.replace("load_encoder = {", &format!("{current}\nload_encoder = {{")));
     let given = with("current.gain_d = \"12 V/A\"\ncurrent.gain_q = \"15 V/A\"");
-    let (.., current) = motor(&given);
-    assert_eq!((current.gain, current.integral_time), (CurrentGain::PerAxis { d: 12.0, q: 15.0 }, None));
+    let (motor_of_file, _, current) = motor(&given);
+    assert_eq!(drive(&given).current_tuning, Some(Tuning::Gains(Dq { d: 12.0, q: 15.0 })));
+    let l_over_r = motor_of_file.inductance.q / motor_of_file.resistance;
+    assert!(same(current.gains.k_p.d, 12.0) && same(current.gains.k_p.q / current.gains.k_i.q, l_over_r));
     let given = with("current.integral_time_d = \"2 ms\"\ncurrent.integral_time_q = \"4 ms\"");
     let (.., current) = motor(&given);
-    assert_eq!(current.integral_time, Some((0.002, 0.004)));
-    assert!(matches!(current.gain, CurrentGain::Bandwidth(_)), "the bandwidth of the model stays");
+    let Gains { k_p, k_i } = current.gains;
+    assert!(same(k_p.d / k_i.d, 0.002) && same(k_p.q / k_i.q, 0.004));
+    let tuning = drive(&given).current_tuning;
+    assert!(matches!(tuning, Some(Tuning::Bandwidth(_))), "the bandwidth of the model stays");
 }
 
 #[test]
@@ -214,11 +236,17 @@ fn limits_of_the_motor_and_its_encoder() {
     let scenario = scenario(SCREW);
     let (motor, dc_link, current) = motor(&scenario);
     assert!(same(current.max_current, 13.3 * 2_f64.sqrt()), "effective becomes peak");
-    assert!(drive(&scenario).max_effort.is_infinite(), "the current is the only limit unless another is given");
-    assert!(same(scenario.actuator.max_effort(), motor.effort_constant() * current.max_current));
-    assert!(same(motor.encoder.resolution.unwrap(), TAU / 1_048_576.0));
+    assert!(
+        params(&scenario).velocity.max_effort.is_infinite(),
+        "the current is the only limit unless another is given"
+    );
+    assert!(same(scenario.actuator.max_effort(), motor.effort_constant(0.0) * current.max_current));
+    let Actuator::Pmsm { encoder: Encoder { increment: Some(increment) }, .. } = scenario.actuator else {
+        panic!("an encoder with increments")
+    };
+    assert!(same(increment, TAU / 1_048_576.0));
     let Feedback::Load(encoder) = drive(&scenario).position_feedback else { panic!("the load's") };
-    assert!(same(encoder.resolution.unwrap(), 1e-7));
+    assert!(same(encoder.increment.unwrap(), 1e-7));
     assert!(same(dc_link, 560.0));
 }
 
@@ -241,24 +269,26 @@ max_current = "10 Arms"
 model = "servo-16khz"
 "#;
 
-fn pmsm(text: &str) -> Pmsm {
-    motor(&scenario(text)).0.clone()
+fn pmsm_of(text: &str) -> pmsm::Params {
+    *motor(&scenario(text)).0
 }
 
 /// Oracle: by hand. F = 3/2·(π/τ_p)·ψ·i with i an amplitude, and the power balance F·v = 3/2·e·i: at 1 m/s the EMF of a
 /// phase has the amplitude e = (π/τ_p)·ψ·1 m/s, √3 times that between two lines.
 #[test]
 fn a_linear_motor_by_any_of_its_constants() {
-    let motor = pmsm(LINEAR);
+    let motor = pmsm_of(LINEAR);
     let per_amplitude = 80.0 / 2_f64.sqrt();
     assert!(same(motor.electrical_ratio, PI / 0.024));
-    assert!(same(1.5 * PI / 0.024 * motor.flux_linkage, per_amplitude) && same(motor.effort_constant(), per_amplitude));
+    assert!(
+        same(1.5 * PI / 0.024 * motor.flux_linkage, per_amplitude) && same(motor.effort_constant(0.0), per_amplitude)
+    );
     let scenario = scenario(LINEAR);
     assert_eq!(scenario.axis.motor_motion, Coordinate::Linear);
     assert!(same(scenario.axis.transmission, 1.0) && same(bodies(&scenario)[0].inertia, 105.0), "forcer and slide");
     assert!(same(scenario.actuator.max_effort(), 800.0), "80 N/Arms times 10 Arms");
     let emf = 3_f64.sqrt() * per_amplitude / 1.5;
-    let by_emf = pmsm(&LINEAR.replace("force_constant = \"80 N/Arms\"", &format!("back_emf = \"{emf} Vpk s/m\"")));
+    let by_emf = pmsm_of(&LINEAR.replace("force_constant = \"80 N/Arms\"", &format!("back_emf = \"{emf} Vpk s/m\"")));
     assert!(same(by_emf.flux_linkage, motor.flux_linkage), "{} {}", by_emf.flux_linkage, motor.flux_linkage);
 }
 
@@ -268,16 +298,16 @@ fn a_linear_motor_is_a_rotary_one_unrolled() {
     let unrolled = LINEAR
         .replace("motion = \"linear\"", "motion = \"linear\"\nlead = \"48 mm\"")
         .replace("pole_pitch = \"24 mm\"", "pole_pairs = 1")
-        .replace("force_constant = \"80 N/Arms\"", &format!("flux_linkage = \"{} V s\"", pmsm(LINEAR).flux_linkage))
+        .replace("force_constant = \"80 N/Arms\"", &format!("flux_linkage = \"{} V s\"", pmsm_of(LINEAR).flux_linkage))
         .replace("[axis.motor_side]\nmass = \"100 kg\"", "[axis.table]\nmass = \"105 kg\"")
         .replace("mass = \"5 kg\"\n", "");
     let (linear, rotary) = (scenario(LINEAR), scenario(&unrolled));
     let r = rotary.axis.transmission;
     assert!(same(linear.actuator.max_effort(), rotary.actuator.max_effort() / r), "the same force at the slide");
-    let [linear_gain, rotary_gain] = [&linear, &rotary].map(|scenario| drive(scenario).velocity.gain);
+    let [linear_gain, rotary_gain] = [&linear, &rotary].map(|scenario| params(scenario).velocity.k_p);
     assert!(same(linear_gain, rotary_gain / (r * r)), "the same gain at the slide");
     assert!(
-        same(pmsm(LINEAR).electrical_ratio, pmsm(&unrolled).electrical_ratio / r),
+        same(pmsm_of(LINEAR).electrical_ratio, pmsm_of(&unrolled).electrical_ratio / r),
         "the same frequency at one speed"
     );
 }
@@ -288,17 +318,20 @@ fn the_emps_controller_in_newtons() {
     let text =
         std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/emps.toml")).unwrap();
     let scenario = scenario(&text);
-    let drive = drive(&scenario);
-    assert!(same(drive.velocity.gain, 35.1507 * 243.45) && same(drive.position.gain, 160.18));
-    assert_eq!(drive.velocity.integral_time, None);
-    assert!(same(drive.max_effort, 351.507));
-    assert!(drive.feedforward.velocity == 0.0 && drive.feedforward.effort == EffortFeedforward::Off);
+    let params = params(&scenario);
+    assert!(same(params.velocity.k_p, 35.1507 * 243.45) && same(params.position_gain, 160.18));
+    assert_eq!(params.velocity.integral_time, None);
+    assert!(same(params.velocity.max_effort, 351.507));
+    assert!(params.feedforward.velocity == 0.0 && params.feedforward.model == feedforward::Model::Off);
     let (source, estimated_gain) = source(&scenario);
     assert!(same(source.gain, 35.1507) && same(source.limit, 10.0) && same(estimated_gain, 35.1507));
     assert_eq!(source.output, SourceOutput::Voltage);
     let [body] = bodies(&scenario) else { panic!("one body") };
     assert!(same(body.inertia, 95.1089) && same(body.viscous, 203.5034) && same(body.bias, -3.1648));
-    assert!(same(body.coulomb, 20.3935) && same(body.breakaway, body.coulomb), "no static friction: as Coulomb");
+    assert!(
+        same(body.dry.coulomb, 20.3935) && same(body.dry.breakaway, body.dry.coulomb),
+        "no static friction: as Coulomb"
+    );
     assert_eq!(scenario.engines, [EngineName::Exact, EngineName::Rapier, EngineName::Mujoco]);
 }
 
@@ -330,8 +363,8 @@ fn what_the_scenario_says_displaces_what_the_model_says() {
     let (motor, _, current) = motor(&scenario);
     assert!(same(motor.flux_linkage, 0.5 / 6.0), "instead of the model's back-EMF");
     assert!(same(current.max_current, 5.0) && same(motor.resistance, 1.615));
-    assert!(same(drive(&scenario).velocity.gain, 0.2), "instead of the model's bandwidth");
-    assert_eq!(drive(&scenario).velocity.rate.hertz(), 8_000, "the rest of the sub-table stays");
+    assert!(same(params(&scenario).velocity.k_p, 0.2), "instead of the model's bandwidth");
+    assert_eq!(params(&scenario).velocity_rate().hertz(), 8_000, "the rest of the sub-table stays");
 }
 
 #[test]
@@ -568,7 +601,7 @@ fn a_users_own_mjcf_is_read_beside_the_file_that_names_it() {
         (mjcf.motor_joint.as_str(), mjcf.load_joint.as_str(), mjcf.actuator.as_str()),
         ("carriage", "load", "force")
     );
-    assert!(same(drive(&scenario).velocity.gain, 30.0 * TAU * 15.0), "from the estimate");
+    assert!(same(params(&scenario).velocity.k_p, 30.0 * TAU * 15.0), "from the estimate");
 }
 
 #[test]

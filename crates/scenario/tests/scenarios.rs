@@ -104,12 +104,12 @@ fn peak_and_effective_values_of_the_motors() {
              model = \"servo-16khz\"\n"
         );
         match parse("motor.toml", &text, None).unwrap().scenario.actuator {
-            Actuator::Pmsm { motor, current, .. } => (motor, current.max_current),
+            Actuator::Pmsm { motor, drive, .. } => (motor, drive.params.current_loop().unwrap().0.max_current),
             other => panic!("{other:?}"),
         }
     };
     let pmsm = |name| motor_and_limit(name).0;
-    let torque_constant = |name| pmsm(name).effort_constant();
+    let torque_constant = |name| pmsm(name).effort_constant(0.0);
     let near = |a: f64, b: f64, digits: i32| (a - b).abs() <= 0.5 * 10_f64.powi(-digits);
     // Teknic: 4.64 Vpk/krpm line to line are 6.395 mVs and 0.0384 Nm/Apk.
     assert!(near(pmsm("teknic-m2310p").flux_linkage, 6.395e-3, 6));
@@ -124,11 +124,11 @@ fn peak_and_effective_values_of_the_motors() {
     let omega_e = linear.electrical_ratio * 2.66;
     assert!(near(omega_e * linear.flux_linkage / 2_f64.sqrt(), 145.4, 1), "{}", linear.flux_linkage);
     assert!((57.0..58.0).contains(&(omega_e / (2.0 * std::f64::consts::PI))), "{omega_e}");
-    assert!(near(linear.effort_constant() * max_current, 8100.0, 2));
+    assert!(near(linear.effort_constant(0.0) * max_current, 8100.0, 2));
     // Modelica: 112.3 V effective per phase at 50 Hz.
     let back_emf = pmsm("msl-sm-permanent-magnet").flux_linkage * 2.0 * std::f64::consts::PI * 50.0 / 2_f64.sqrt();
     assert!(near(back_emf, 112.3, 6), "{back_emf}");
-    assert!(near(pmsm("msl-sm-permanent-magnet").inductance_d * 100.0 * std::f64::consts::PI, 0.4, 9));
+    assert!(near(pmsm("msl-sm-permanent-magnet").inductance.d * 100.0 * std::f64::consts::PI, 0.4, 9));
 }
 
 /// Oracle: the published modes, from `√(c/m)/2π` and `√(c·(1/m1 + 1/m2))/2π`.
@@ -136,9 +136,9 @@ fn peak_and_effective_values_of_the_motors() {
 fn modes_of_the_published_axes() {
     let modes = |file: &str| {
         let scenario = load(&repository().join("scenarios").join(file)).unwrap().scenario;
-        let AxisMechanics::Bodies(bodies) = scenario.axis.mechanics else { panic!("bodies") };
-        let [motor, load] = bodies.as_slice() else { panic!("two bodies") };
-        let stiffness = load.coupling.unwrap().stiffness;
+        let AxisMechanics::Bodies(chain) = scenario.axis.mechanics else { panic!("bodies") };
+        let ([motor, load], [link]) = (chain.bodies(), chain.links()) else { panic!("two bodies") };
+        let stiffness = link.stiffness;
         let hertz = |inverse: f64| (stiffness * inverse).sqrt() / std::f64::consts::TAU;
         (hertz(1.0 / load.inertia), hertz(1.0 / load.inertia + 1.0 / motor.inertia))
     };

@@ -1,6 +1,5 @@
 //! From a scenario and an engine to everything that the loop needs.
 
-pub(crate) mod firmware;
 pub(crate) mod fmu;
 mod objections;
 pub(crate) mod plant;
@@ -15,10 +14,9 @@ use crate::network::Network;
 use crate::program::Program;
 use crate::recorded::Recorded;
 use servobench_base::{Rate, Setpoint, Tick};
-use servobench_drive as drive;
 use servobench_fieldbus::LinkFault;
 use servobench_metrics::JUDGED_BY;
-use servobench_plant::{Chain, Engine};
+use servobench_plant::{Chain, Encoder, Engine, SourceOutput};
 use servobench_scenario::{self as scenario, Actuator, AxisMechanics, Feedback, LoopSignal, Scenario};
 use servobench_signals::{Amplifier, Equipment, Motor, NotRecorded, Rates, Selection, Signal, Unit};
 use servobench_trace::{About, Event};
@@ -68,7 +66,7 @@ impl Bench {
     /// [`BuildError::Parameter`] names what is out of its bound.
     pub fn chain(scenario: &Scenario) -> Result<Option<Chain>, BuildError> {
         match &scenario.axis.mechanics {
-            AxisMechanics::Bodies(bodies) => plant::chain(&scenario.axis, bodies).map(Some),
+            AxisMechanics::Bodies(chain) => plant::checked(chain).map(Some),
             AxisMechanics::Mjcf(_) | AxisMechanics::InTheFmu => Ok(None),
         }
     }
@@ -107,21 +105,8 @@ impl Bench {
         let control = match &scenario.actuator {
             Actuator::Prescribed | Actuator::Off => None,
             _ if is_replaced => None,
-            Actuator::Pmsm { motor, current, drive, .. } => {
-                let stage = firmware::current_stage(base_rate, current)?;
-                Some(Control::new(
-                    firmware::params(base_rate, drive, bus, stage)?,
-                    motor.encoder,
-                    drive.position_feedback,
-                )?)
-            }
-            Actuator::IdealSource { source, estimated_gain, drive } => {
-                let stage = drive::Stage::Direct { gain: *estimated_gain };
-                Some(Control::new(
-                    firmware::params(base_rate, drive, bus, stage)?,
-                    source.encoder,
-                    drive.position_feedback,
-                )?)
+            Actuator::Pmsm { encoder, drive, .. } | Actuator::IdealSource { encoder, drive, .. } => {
+                Some(Control::new(drive, *encoder)?)
             }
         };
 
@@ -189,14 +174,17 @@ impl Bench {
 }
 
 impl Control {
-    /// The drive at rest at zero.
-    fn new(params: drive::Params, motor: scenario::Encoder, feedback: Feedback) -> Result<Self, BuildError> {
-        let state = drive::State::new(&params, Setpoint::default())?;
-        let load_encoder = match feedback {
+    /// The drive at rest at zero, with the encoder `motor_encoder` on the motor.
+    fn new(drive: &scenario::Drive, motor_encoder: Encoder) -> Result<Self, BuildError> {
+        let params = drive.params.clone();
+        let state = servobench_drive::State::new(&params, Setpoint::default())?;
+        let load_encoder = match drive.position_feedback {
             Feedback::Motor => None,
-            Feedback::Load(encoder) => Some(plant::encoder(encoder)?),
+            Feedback::Load(encoder) => Some(encoder),
         };
-        Ok(Self { params, state, motor_encoder: plant::encoder(motor)?, load_encoder })
+        motor_encoder.check()?;
+        load_encoder.map_or(Ok(()), |encoder| encoder.check())?;
+        Ok(Self { params, state, motor_encoder, load_encoder })
     }
 }
 
@@ -240,8 +228,8 @@ fn equipment(scenario: &Scenario, table: bool) -> Equipment {
         Actuator::Pmsm { .. } => Some(Amplifier::Current),
         Actuator::IdealSource { source, .. } => Some(Amplifier::Ideal {
             output_unit: match source.output {
-                scenario::SourceOutput::Voltage => "V",
-                scenario::SourceOutput::Effort => effort_unit,
+                SourceOutput::Voltage => "V",
+                SourceOutput::Effort => effort_unit,
             },
         }),
     };
@@ -276,19 +264,16 @@ fn is_disturbed(scenario: &Scenario, body: scenario::DisturbedBody) -> bool {
 /// How often each writer renews its channels.
 fn writer_rates(scenario: &Scenario) -> Rates {
     let base_rate = scenario.base_rate;
-    let drive = scenario.actuator.drive();
+    let drive = scenario.actuator.drive().map(|drive| &drive.params);
     let every = |ticks: u32| Rate::new(base_rate.hertz() / ticks.max(1)).unwrap_or(base_rate);
     let bus = scenario.bus.as_ref();
     Rates {
         base: base_rate,
         task: bus.map_or(base_rate, |bus| every(bus.cycle.saturating_mul(bus.motion_every))),
         bus: bus.map_or(base_rate, |bus| every(bus.cycle)),
-        position: drive.map_or(base_rate, |drive| drive.position.rate),
-        velocity: drive.map_or(base_rate, |drive| drive.velocity.rate),
-        current: match &scenario.actuator {
-            Actuator::Pmsm { current, .. } => current.rate,
-            Actuator::Prescribed | Actuator::Off | Actuator::IdealSource { .. } => base_rate,
-        },
+        position: drive.map_or(base_rate, servobench_drive::Params::position_rate),
+        velocity: drive.map_or(base_rate, servobench_drive::Params::velocity_rate),
+        current: drive.and_then(servobench_drive::Params::current_loop).map_or(base_rate, |(_, rate)| rate),
     }
 }
 

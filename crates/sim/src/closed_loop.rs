@@ -1,6 +1,6 @@
 //! The closed loop, in execution order.
 use crate::disturbance::Disturbances;
-use crate::network::{Asked, Network, Seen};
+use crate::network::{Measurement, Network, Request};
 use crate::power::PowerStage;
 use crate::program::Program;
 use crate::run::Reason;
@@ -171,7 +171,7 @@ impl ClosedLoop {
             Source::Network(network, _) => {
                 let switches = self.switches.read(now.load.position, self.state.motor_before, motor.position);
                 self.state.motor_before = motor.position;
-                let see = || Seen {
+                let measure = || Measurement {
                     position: sensors.closing_position(),
                     velocity: state.velocity(params),
                     effort: state.held().effort.effort,
@@ -181,8 +181,8 @@ impl ClosedLoop {
                 };
                 let t = self.base_rate.time(Tick(k));
                 let program = self.state.begun.map(|_| since);
-                let asked = Asked { t, program, setpoint: external.setpoint };
-                let demand = network.step(k, &asked, switches.index, see, recorder);
+                let request = Request { t, program, setpoint: external.setpoint };
+                let demand = network.step(k, &request, switches.index, measure, recorder);
                 let command = drive::step(params, state, demand, &sensors);
                 now.setpoint = network.setpoint(now.motor.position);
                 (now.task, now.bus_position) = network.told();

@@ -13,10 +13,10 @@ mod build;
 mod own_way;
 mod plc;
 mod points;
+mod program_cursor;
 mod reference;
 mod signals;
 mod stream;
-mod underway;
 mod units;
 
 pub use points::Unsendable;
@@ -24,6 +24,7 @@ pub use points::Unsendable;
 use crate::stepper::States;
 use own_way::OwnWay;
 use plc::Plc;
+use program_cursor::ProgramCursor;
 use reference::DelayedReference;
 use servobench_base::{Countdown, Divider, Setpoint, Tick};
 use servobench_cia402::{Commands, Mode};
@@ -37,7 +38,6 @@ use servobench_motion::interpolate::Sample;
 use servobench_plant::SwitchReading;
 use servobench_trace::Recorder;
 use signals::Signals;
-use underway::Underway;
 
 /// From the motion task to the door of the drive.
 #[derive(Debug, Clone)]
@@ -82,7 +82,7 @@ pub(crate) struct Network {
 #[derive(Debug, Clone)]
 enum MotionTask {
     /// The moves of `[[program]]`.
-    Moves(Box<Underway>),
+    Moves(Box<ProgramCursor>),
     /// The same, left to the drive.
     OwnWay(Box<OwnWay>),
     /// The calls of `[[call]]`.
@@ -91,7 +91,7 @@ enum MotionTask {
 
 /// What the motion task is told at a tick.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Asked {
+pub(crate) struct Request {
     /// The time (s).
     pub(crate) t: f64,
     /// The time of the program (s), which begins later where somebody else says when; `None` before that.
@@ -135,7 +135,7 @@ impl MotionTask {
         };
         match self {
             Self::Moves(moves) => {
-                let now = moves.turn(feedback).unwrap_or(0.0);
+                let now = moves.cycle(feedback).unwrap_or(0.0);
                 let setpoint = moves.at(now);
                 let command = AxisCommand { power: true, reset: false, task: Task::Follow(sample(setpoint)) };
                 Ok(Step { command, setpoint: Some(setpoint) })
@@ -148,7 +148,7 @@ impl MotionTask {
 
 /// What the drive's sensors say at one of its steps.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Seen {
+pub(crate) struct Measurement {
     /// Reading of the encoder that closes the position loop (its own coordinate).
     pub(crate) position: f64,
     /// Velocity as the velocity loop sees it (axis coordinate).
@@ -169,9 +169,9 @@ impl Network {
     pub(crate) fn step(
         &mut self,
         k: u64,
-        asked: &Asked,
+        request: &Request,
         pulse: Option<f64>,
-        see: impl FnOnce() -> Seen,
+        measure: impl FnOnce() -> Measurement,
         recorder: &mut Recorder,
     ) -> &Demand {
         if let Some(pulse) = pulse {
@@ -179,26 +179,26 @@ impl Network {
         }
         let (params, state) = &mut self.bus;
         if let Some(cycle) = bus::step(&params.with_faults(&self.faults), state, Tick(k)) {
-            self.step_bus(&cycle, asked, recorder);
+            self.step_bus(&cycle, request, recorder);
         }
         if self.drive_turn.is_due(self.drive_every) {
-            self.step_drive(asked.t, &see(), recorder);
+            self.step_drive(request.t, &measure(), recorder);
         }
         &self.demand
     }
 
-    fn step_drive(&mut self, t: f64, seen: &Seen, recorder: &mut Recorder) {
+    fn step_drive(&mut self, t: f64, measurement: &Measurement, recorder: &mut Recorder) {
         let (params, state) = &mut self.drive;
         let frame = self.frame.take();
         let measured = device::Measured {
-            increments: counts(seen.position / self.increment),
-            velocity: seen.velocity,
-            effort: seen.effort,
-            following_error: seen.following_error,
-            effort_is_cut: seen.effort_is_cut,
-            negative_limit: seen.switches.negative,
-            positive_limit: seen.switches.positive,
-            home: seen.switches.home,
+            increments: counts(measurement.position / self.increment),
+            velocity: measurement.velocity,
+            effort: measurement.effort,
+            following_error: measurement.following_error,
+            effort_is_cut: measurement.effort_is_cut,
+            negative_limit: measurement.switches.negative,
+            positive_limit: measurement.switches.positive,
+            home: measurement.switches.home,
             index: self.index.take(),
         };
         let inputs = device::Inputs { frame: frame.as_ref(), measured, fault: None, main_voltage: true };
@@ -206,14 +206,14 @@ impl Network {
         self.signals.of_drive(t, state, recorder);
     }
 
-    fn step_bus(&mut self, cycle: &bus::Cycle, asked: &Asked, recorder: &mut Recorder) {
+    fn step_bus(&mut self, cycle: &bus::Cycle, request: &Request, recorder: &mut Recorder) {
         let origin = self.origin();
         let (params, state) = &mut self.link;
         let (wire, frames) = &mut self.bus;
         let actuals = frames.to_master(wire, cycle, self.drive.1.actuals(&self.drive.0));
         let mut torn = None;
         while let Some(turn) = task::step(&self.turns.0.with_faults(&self.task_faults), &mut self.turns.1, cycle.due) {
-            let now = match (asked.setpoint, asked.program) {
+            let now = match (request.setpoint, request.program) {
                 _ if cycle.master_stopped => continue,
                 (Some(setpoint), _) => Now::Follow(setpoint),
                 (None, Some(t)) => Now::Program(t),
@@ -261,7 +261,7 @@ impl Network {
         if let Some(arrived) = frames.to_drive(wire, cycle, commands) {
             self.frame = Some(arrived);
         }
-        self.signals.of_link(asked.t, state, recorder);
+        self.signals.of_link(request.t, state, recorder);
     }
 
     /// The set-point that the loops follow, so long after the drive's last step.

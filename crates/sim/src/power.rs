@@ -35,7 +35,7 @@ impl PowerStage {
     pub(crate) fn measured_current(&mut self, motor: BodyState) -> AlphaBeta {
         match self {
             Self::Pmsm { motor: synchronous, state, rotor, .. } => {
-                let ratio = synchronous.params().pole_pairs;
+                let ratio = synchronous.params().electrical_ratio;
                 *rotor = ElectricalAngle::from_mechanical(motor.position, ratio).rotation();
                 state.current.to_alpha_beta(*rotor)
             }
@@ -109,8 +109,11 @@ impl PowerStage {
                 *last_speed = motor.velocity;
                 let given = inverter::output(wanted, *u_dc);
                 *shortens = is_shorter(given, wanted);
-                let input =
-                    pmsm::Input { voltage: given, rotor: *rotor, omega_e: ticks.params().pole_pairs * mean_speed };
+                let input = pmsm::Input {
+                    voltage: given,
+                    rotor: *rotor,
+                    omega_e: ticks.params().electrical_ratio * mean_speed,
+                };
                 *voltage = input.voltage_at_middle(h);
                 match power {
                     None => ticks.step(state, &input),
@@ -147,8 +150,12 @@ mod tests {
     use super::*;
 
     /// Saarakkala/Hinkkanen, 2.2 kW.
-    const MOTOR: pmsm::Params =
-        pmsm::Params { pole_pairs: 3.0, resistance: 3.6, inductance: Dq { d: 36e-3, q: 51e-3 }, flux_linkage: 0.545 };
+    const MOTOR: pmsm::Params = pmsm::Params {
+        electrical_ratio: 3.0,
+        resistance: 3.6,
+        inductance: Dq { d: 36e-3, q: 51e-3 },
+        flux_linkage: 0.545,
+    };
     const H: f64 = 1.0 / 16e3;
 
     /// On 540 V, a tick after it turned at `last_speed` (rad/s).

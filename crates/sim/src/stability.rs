@@ -1,12 +1,10 @@
 //! The linear loop of a scenario, for the analysis of its stability.
-use crate::bench::{firmware, plant};
+use crate::bench::plant;
 use crate::coupled;
 use crate::error::BuildError;
 use servobench_base::Dq;
-use servobench_drive as drive;
-use servobench_scenario::{
-    self as scenario, Actuator, AxisMechanics, BusMode, CurrentGain, Feedback, LoopSignal, Scenario,
-};
+use servobench_plant::Encoder;
+use servobench_scenario::{Actuator, AxisMechanics, BusMode, Feedback, LoopSignal, Scenario};
 use servobench_stability::{
     self as stability, Depth, Loop, OperatingPoint, PositionFeedback, Report, Source, VelocitySignal,
 };
@@ -85,44 +83,32 @@ fn linear_loop(scenario: &Scenario) -> Result<Found, BuildError> {
     if coupled::replaces_the_drive(scenario) {
         return Ok(Err(NotAnalysed::ForeignDrive));
     }
-    let bodies = match &scenario.axis.mechanics {
-        AxisMechanics::Bodies(bodies) => bodies,
+    let chain = match &scenario.axis.mechanics {
+        AxisMechanics::Bodies(chain) => chain,
         AxisMechanics::Mjcf(_) => return Ok(Err(NotAnalysed::ForeignMechanics("an MJCF file"))),
         AxisMechanics::InTheFmu => return Ok(Err(NotAnalysed::ForeignMechanics("an FMU"))),
     };
-    let base_rate = scenario.base_rate;
-    let (drive, stage, source, encoder, current_gain) = match &scenario.actuator {
+    let (drive, source, encoder) = match &scenario.actuator {
         Actuator::Prescribed | Actuator::Off => return Ok(Err(NotAnalysed::NoDrive)),
-        Actuator::Pmsm { motor, current, drive, .. } => {
-            let current_gain = match current.gain {
-                CurrentGain::Bandwidth(_) => stability::CurrentGain::Bandwidth,
-                CurrentGain::PerAxis { .. } => stability::CurrentGain::PerAxis,
-            };
-            let source = Source::Pmsm(plant::synchronous_motor(motor));
-            (drive, firmware::current_stage(base_rate, current)?, source, motor.encoder, current_gain)
-        }
-        Actuator::IdealSource { source, estimated_gain, drive } => {
-            let stage = drive::Stage::Direct { gain: *estimated_gain };
-            (drive, stage, Source::Ideal { gain: source.gain }, source.encoder, stability::CurrentGain::Bandwidth)
-        }
+        Actuator::Pmsm { motor, encoder, drive, .. } => (drive, Source::Pmsm(*motor), encoder),
+        Actuator::IdealSource { source, encoder, drive } => (drive, Source::Ideal { gain: source.gain }, encoder),
     };
     let bus = scenario.bus.as_ref();
     let closes_position = bus.is_none_or(|bus| !matches!(bus.mode, BusMode::CyclicVelocity | BusMode::ProfileVelocity));
     let model = Loop {
-        drive: firmware::params(base_rate, drive, bus, stage)?,
+        drive: drive.params.clone(),
         closes_position,
-        velocity_signal: velocity_signal(encoder),
+        velocity_signal: velocity_signal(*encoder),
         position_feedback: match drive.position_feedback {
             Feedback::Motor => PositionFeedback::Motor,
             Feedback::Load(_) => PositionFeedback::Load,
         },
-        current_gain,
+        current_tuning: drive.current_tuning,
         source,
-        mechanics: plant::chain(&scenario.axis, bodies)?,
-        point: match &scenario.actuator {
-            Actuator::Pmsm { current, .. } => OperatingPoint { current: Dq { d: current.d_reference, q: 0.0 } },
-            Actuator::Prescribed | Actuator::Off | Actuator::IdealSource { .. } => OperatingPoint::default(),
-        },
+        mechanics: plant::checked(chain)?,
+        point: drive.params.current_loop().map_or_else(OperatingPoint::default, |(current, _)| OperatingPoint {
+            current: Dq { d: current.d_reference, q: 0.0 },
+        }),
     };
     let without = if bus.is_some_and(|bus| bus.mode == BusMode::CyclicVelocity) {
         Some(NotAnalysed::MastersPositionLoop)
@@ -132,8 +118,8 @@ fn linear_loop(scenario: &Scenario) -> Result<Found, BuildError> {
     Ok(Ok((model, without)))
 }
 
-const fn velocity_signal(encoder: scenario::Encoder) -> VelocitySignal {
-    match encoder.resolution {
+const fn velocity_signal(encoder: Encoder) -> VelocitySignal {
+    match encoder.increment {
         None => VelocitySignal::Encoder,
         Some(_) => VelocitySignal::Differences,
     }

@@ -1,6 +1,6 @@
 //! What keeps a scenario from being built is told at once.
-use servobench_plant::{Exact, MechanicsError};
-use servobench_scenario::{AxisMechanics, Mjcf, Scenario};
+use servobench_plant::{Exact, MechanicsError, MjcfModel};
+use servobench_scenario::{AxisMechanics, Scenario};
 use servobench_signals::Signal;
 use servobench_sim::{Bench, BuildError, NoPartners};
 
@@ -40,12 +40,14 @@ channels = "table.position"
 fn program_and_mechanics_are_objected_to_together() {
     let mut scenario = scenario("duration = \"1 ms\"");
     let name = || "m".to_owned();
-    scenario.axis.mechanics = AxisMechanics::Mjcf(Mjcf {
+    scenario.axis.mechanics = AxisMechanics::Mjcf(MjcfModel {
         xml: "<mujoco/>".into(),
         path: "m.xml".into(),
         motor_joint: name(),
         load_joint: name(),
         actuator: name(),
+        transmission: 1.0,
+        axis: None,
     });
     let found = Bench::objections(&scenario, &Exact, &NoPartners);
     let [BuildError::Plan { index: 0, .. }, BuildError::Mechanics(MechanicsError::Unsupported { .. })] = &found[..]

@@ -55,8 +55,12 @@ impl Electrical {
 mod tests {
     use super::*;
 
-    const MOTOR: pmsm::Params =
-        pmsm::Params { pole_pairs: 3.0, resistance: 3.6, inductance: Dq { d: 36e-3, q: 51e-3 }, flux_linkage: 0.545 };
+    const MOTOR: pmsm::Params = pmsm::Params {
+        electrical_ratio: 3.0,
+        resistance: 3.6,
+        inductance: Dq { d: 36e-3, q: 51e-3 },
+        flux_linkage: 0.545,
+    };
     const H: f64 = 1.0 / 12_000.0;
 
     /// Mean over a tick of what decays from 1 to `after`.

@@ -27,6 +27,6 @@ mod tick;
 
 pub use analyse::{Depth, analyse};
 pub use error::StabilityError;
-pub use model::{CurrentGain, LEFT_OUT, Loop, OperatingPoint, PositionFeedback, Source, VelocitySignal};
+pub use model::{LEFT_OUT, Loop, OperatingPoint, PositionFeedback, Source, VelocitySignal};
 pub use pole::Pole;
 pub use report::{Boundaries, Boundary, GainName, Instability, LoopName, LoopReport, Report, Warning};

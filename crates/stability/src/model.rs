@@ -1,6 +1,7 @@
 //! What is analysed: an axis, the drive that closes its loops, and where it is operated.
 use servobench_base::{Dq, ParamError, finite, positive};
 use servobench_drive as drive;
+use servobench_drive::current::Tuning;
 use servobench_plant::{Chain, pmsm};
 
 /// What the analysis leaves out, in a sentence.
@@ -18,8 +19,8 @@ pub struct Loop {
     pub velocity_signal: VelocitySignal,
     /// Which position closes the position loop.
     pub position_feedback: PositionFeedback,
-    /// How the gains of the current loop are set.
-    pub current_gain: CurrentGain,
+    /// What the gains of the current loop follow from, which is how reports call them; `None` without one.
+    pub current_tuning: Option<Tuning>,
     /// What turns the drive's command into effort.
     pub source: Source,
     /// The bodies.
@@ -44,15 +45,6 @@ pub enum PositionFeedback {
     Motor,
     /// The load's: the last body.
     Load,
-}
-
-/// How the gains of the current loop are set, which is how reports call them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum CurrentGain {
-    /// One bandwidth for both axes.
-    Bandwidth,
-    /// A gain for each axis.
-    PerAxis,
 }
 
 /// What turns the drive's command into effort. It must be the kind of the drive's [`Stage`](drive::Stage).
@@ -94,7 +86,7 @@ impl Loop {
 
     /// Whether all current gains, those of both axes by the same factor, are one number in the scenario.
     pub(crate) const fn has_bandwidth(&self) -> bool {
-        matches!(self.current_gain, CurrentGain::Bandwidth)
+        !matches!(self.current_tuning, Some(Tuning::Gains(_)))
     }
 
     /// The inertia of all bodies in the motor's coordinate.

@@ -216,9 +216,9 @@ impl<'a> Tick<'a> {
                 let mean_speed = speed + (speed - x.last_speed) / 2.0;
                 x.last_speed = speed;
                 // Held in the stator frame: in the rotor's it turns back.
-                let back = turned(electrical.voltage, -motor.pole_pairs * x.applied_travel);
+                let back = turned(electrical.voltage, -motor.electrical_ratio * x.applied_travel);
                 let voltage = Dq { d: x.applied.d + back.d, q: x.applied.q + back.q };
-                let (current, torque) = electrical.step(x.current, voltage, motor.pole_pairs * mean_speed);
+                let (current, torque) = electrical.step(x.current, voltage, motor.electrical_ratio * mean_speed);
                 x.current = current;
                 torque
             }

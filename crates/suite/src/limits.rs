@@ -8,9 +8,10 @@ use servobench_signals::Signal;
 pub fn channel_limits(scenario: &Scenario) -> Vec<(Signal, f64)> {
     let effort = (Signal::EffortReference, scenario.actuator.max_effort());
     let limits = match &scenario.actuator {
-        Actuator::Pmsm { dc_link, current, .. } => {
+        Actuator::Pmsm { dc_link, drive, .. } => {
             let voltage = inverter::voltage_limit(*dc_link);
-            vec![effort, (Signal::CurrentQ, current.max_current), (Signal::VoltageMagnitude, voltage)]
+            let current = drive.params.current_loop().map_or(f64::INFINITY, |(current, _)| current.max_current);
+            vec![effort, (Signal::CurrentQ, current), (Signal::VoltageMagnitude, voltage)]
         }
         Actuator::IdealSource { source, .. } => vec![effort, (Signal::CommandOutput, source.limit)],
         Actuator::Prescribed | Actuator::Off => Vec::new(),

@@ -45,12 +45,11 @@ fn linear_loop(scenario: &Scenario) -> (LinearLoop, Option<String>) {
 /// One increment of the encoder that closes the position loop (axis unit); 0 for an ideal one, or none.
 fn increment(scenario: &Scenario) -> f64 {
     let motor = match &scenario.actuator {
-        Actuator::Pmsm { motor, .. } => motor.encoder,
-        Actuator::IdealSource { source, .. } => source.encoder,
+        Actuator::Pmsm { encoder, .. } | Actuator::IdealSource { encoder, .. } => encoder,
         Actuator::Prescribed | Actuator::Off => return 0.0,
     };
     match scenario.actuator.drive().map(|drive| drive.position_feedback) {
-        Some(Feedback::Load(encoder)) => encoder.resolution.unwrap_or_default(),
-        _ => scenario.axis.transmission * motor.resolution.unwrap_or_default(),
+        Some(Feedback::Load(encoder)) => encoder.increment.unwrap_or_default(),
+        _ => scenario.axis.transmission * motor.increment.unwrap_or_default(),
     }
 }

@@ -1,6 +1,7 @@
 //! What an engine objects to, and the key or line that is to blame.
+use servobench_plant::MjcfModel;
 use servobench_plant::{Engine, Mechanics, MechanicsError, MechanicsSetup, Refusal, RefusedAt};
-use servobench_scenario::{AxisMechanics, Mjcf};
+use servobench_scenario::AxisMechanics;
 use servobench_suite::{Engines, Installed, Job, Objection, RunError, Source, WorkerCommand, check, jobs};
 use std::time::Duration;
 
@@ -62,12 +63,14 @@ fn engines(engine: &'static Refuses) -> Engines {
 fn job() -> Job {
     let mut scenario =
         servobench_scenario::parse("test", TEXT, None).unwrap_or_else(|error| panic!("{error}")).scenario;
-    scenario.axis.mechanics = AxisMechanics::Mjcf(Mjcf {
+    scenario.axis.mechanics = AxisMechanics::Mjcf(MjcfModel {
         xml: "<mujoco/>".into(),
         path: "arm.xml".into(),
         motor_joint: "shoulder".into(),
         load_joint: "elbow".into(),
         actuator: "servo".into(),
+        transmission: 1.0,
+        axis: None,
     });
     jobs(vec![Source { scenario, text: TEXT.into() }], &[]).remove(0)
 }

@@ -3,10 +3,10 @@ use super::Axis;
 use super::activity::Activity;
 use super::queue::Queue;
 use crate::arrows::Cause;
+use crate::blocks::BlockName;
 use crate::command::{BufferMode, Command, Direction, Ending, Goal};
 use crate::error::AxisError;
 use crate::ledger::{CommandId, Progress};
-use crate::name::BlockName;
 use servobench_base::Setpoint;
 
 /// What rounding may add to a limit, as a part of it.

@@ -2,9 +2,9 @@
 use super::Axis;
 use super::activity::Activity;
 use super::bounds::Bounds;
+use crate::blocks::BlockName;
 use crate::command::{Command, Goal};
 use crate::error::BlockError;
-use crate::name::BlockName;
 use servobench_motion::Limits;
 
 const INPUTS: [&str; 4] = ["Velocity", "Acceleration", "Jerk", "Snap"];

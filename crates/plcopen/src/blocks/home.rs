@@ -2,9 +2,10 @@
 use super::execution::Execution;
 use super::outputs::{FunctionBlock, MotionOutputs};
 use crate::axis::Axis;
+use crate::blocks::{BlockName, Input};
 use crate::command::{BufferMode, Command, Dynamics, Goal};
 use crate::error::BlockError;
-use crate::name::BlockName;
+use crate::interface::{buffer_mode, inputs, or};
 
 /// Has the drive look for its reference, by the method that it is set to.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -12,15 +13,15 @@ pub struct Home {
     execution: Execution,
 }
 
-/// Inputs of [`Home`].
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct HomeInputs {
-    /// Execute.
-    pub execute: bool,
-    /// Position of the reference (m or rad).
-    pub position: f64,
-    /// BufferMode: aborting at Standstill, where there is nothing to abort, or buffered behind a command that ends there.
-    pub buffer_mode: BufferMode,
+inputs! {
+    /// Inputs of [`Home`].
+    #[derive(Default)]
+    pub struct HomeInputs on execute {
+        /// Position of the reference (m or rad).
+        position: f64 = or(Input::Position, 0.0),
+        /// BufferMode: aborting at Standstill, where there is nothing to abort, or buffered behind a command that ends there.
+        buffer_mode: BufferMode = buffer_mode(),
+    }
 }
 
 impl FunctionBlock for Home {

@@ -1,73 +1,18 @@
 //! `MC_MoveAdditive`: by a distance from the last target.
-use super::motion::{MotionBlock, MotionInputs};
+use super::motion::{MotionBlock, moves};
 use super::outputs::MotionOutputs;
-use crate::command::{BufferMode, Command, Dynamics, Goal};
-use crate::name::BlockName;
-use servobench_motion::Limits;
+use crate::blocks::{BlockName, Input};
+use crate::command::Goal;
+use crate::interface::required;
 
 /// By a distance, counted from where the last command leads; in ContinuousMotion from where the axis is commanded to be.
 pub type MoveAdditive = MotionBlock<MoveAdditiveInputs>;
 
-/// Inputs of [`MoveAdditive`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MoveAdditiveInputs {
-    /// Execute.
-    pub execute: bool,
-    /// ContinuousUpdate.
-    pub continuous_update: bool,
-    /// Distance (m or rad).
-    pub distance: f64,
-    /// Velocity (m/s or rad/s).
-    pub velocity: f64,
-    /// Acceleration (m/s² or rad/s²).
-    pub acceleration: f64,
-    /// Deceleration (m/s² or rad/s²).
-    pub deceleration: f64,
-    /// Jerk (m/s³ or rad/s³); `None` leaves it to the axis.
-    pub jerk: Option<f64>,
-    /// Snap (m/s⁴ or rad/s⁴), beyond the standard; `None` leaves it to the axis.
-    pub snap: Option<f64>,
-    /// BufferMode.
-    pub buffer_mode: BufferMode,
-}
-
-impl MoveAdditiveInputs {
-    /// By no distance as fast as `limits` allow, not executed.
-    #[must_use]
-    pub fn within(limits: &Limits) -> Self {
-        Self {
-            execute: false,
-            continuous_update: false,
-            distance: 0.0,
-            velocity: limits.velocity,
-            acceleration: limits.acceleration,
-            deceleration: limits.acceleration,
-            jerk: Some(limits.jerk).filter(|jerk| jerk.is_finite()),
-            snap: Some(limits.snap).filter(|snap| snap.is_finite()),
-            buffer_mode: BufferMode::default(),
-        }
-    }
-}
-
-impl MotionInputs for MoveAdditiveInputs {
-    const NAME: BlockName = BlockName::MoveAdditive;
-    type Outputs = MotionOutputs;
-
-    fn execute(&self) -> bool {
-        self.execute
-    }
-
-    fn continuous_update(&self) -> bool {
-        self.continuous_update
-    }
-
-    fn command(&self) -> Command {
-        let Self { distance, velocity, acceleration, deceleration, jerk, snap, buffer_mode, .. } = *self;
-        Command {
-            block: Self::NAME,
-            goal: Goal::Additive(distance),
-            dynamics: Dynamics { velocity: Some(velocity), acceleration, deceleration, jerk, snap },
-            buffer_mode,
-        }
-    }
+moves! {
+    /// Inputs of [`MoveAdditive`].
+    pub struct MoveAdditiveInputs of MoveAdditive -> MotionOutputs {
+        /// Distance (m or rad).
+        distance: f64 = required(Input::Distance),
+    } {}
+    |inputs| Goal::Additive(inputs.distance)
 }

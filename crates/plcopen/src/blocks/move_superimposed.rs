@@ -1,10 +1,11 @@
 //! `MC_MoveSuperimposed`: by a distance, on top of what runs.
 use super::execution::{Execution, Report};
-use super::outputs::{FunctionBlock, MotionOutputs, Outputs, flag, number};
+use super::outputs::{FunctionBlock, MotionOutputs};
 use crate::axis::Axis;
+use crate::blocks::{BlockName, Input};
 use crate::command::{BufferMode, Command, Dynamics, Goal};
 use crate::error::{BlockError, ErrorId};
-use crate::name::BlockName;
+use crate::interface::{flag, inputs, like, limit, limit_if_any, outputs, required};
 use servobench_motion::Limits;
 
 /// By a distance on top of the motion below, which goes on; at Standstill on its own.
@@ -19,25 +20,24 @@ pub struct MoveSuperimposed {
     covered: f64,
 }
 
-/// Inputs of [`MoveSuperimposed`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MoveSuperimposedInputs {
-    /// Execute.
-    pub execute: bool,
-    /// ContinuousUpdate.
-    pub continuous_update: bool,
-    /// Distance (m or rad).
-    pub distance: f64,
-    /// VelocityDiff: the velocity on top (m/s or rad/s).
-    pub velocity_diff: f64,
-    /// Acceleration (m/s² or rad/s²).
-    pub acceleration: f64,
-    /// Deceleration (m/s² or rad/s²).
-    pub deceleration: f64,
-    /// Jerk (m/s³ or rad/s³); `None` leaves it to the axis.
-    pub jerk: Option<f64>,
-    /// Snap (m/s⁴ or rad/s⁴), beyond the standard; `None` leaves it to the axis.
-    pub snap: Option<f64>,
+inputs! {
+    /// Inputs of [`MoveSuperimposed`].
+    pub struct MoveSuperimposedInputs on execute {
+        /// Distance (m or rad).
+        distance: f64 = required(Input::Distance),
+        /// VelocityDiff: the velocity on top (m/s or rad/s).
+        velocity_diff: f64 = required(Input::VelocityDifference),
+        /// Acceleration (m/s² or rad/s²).
+        acceleration: f64 = limit(Input::Acceleration),
+        /// Deceleration (m/s² or rad/s²).
+        deceleration: f64 = like(Input::Deceleration, Input::Acceleration),
+        /// Jerk (m/s³ or rad/s³); `None` leaves it to the axis.
+        jerk: Option<f64> = limit_if_any(Input::Jerk),
+        /// Snap (m/s⁴ or rad/s⁴), beyond the standard; `None` leaves it to the axis.
+        snap: Option<f64> = limit_if_any(Input::Snap),
+        /// ContinuousUpdate.
+        continuous_update: bool = flag(Input::ContinuousUpdate, false),
+    }
 }
 
 impl MoveSuperimposedInputs {
@@ -55,9 +55,7 @@ impl MoveSuperimposedInputs {
             snap: Some(limits.snap).filter(|snap| snap.is_finite()),
         }
     }
-}
 
-impl MoveSuperimposedInputs {
     fn command(&self) -> Command {
         let Self { velocity_diff, acceleration, deceleration, jerk, snap, .. } = *self;
         Command {
@@ -69,22 +67,23 @@ impl MoveSuperimposedInputs {
     }
 }
 
-/// Outputs of [`MoveSuperimposed`].
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[expect(clippy::struct_excessive_bools, reason = "each is an output of the standard")]
-pub struct MoveSuperimposedOutputs {
-    /// Done: the distance is covered.
-    pub done: bool,
-    /// Busy: it is not yet.
-    pub busy: bool,
-    /// CommandAborted: another command took the axis.
-    pub command_aborted: bool,
-    /// Error.
-    pub error: bool,
-    /// ErrorID.
-    pub error_id: ErrorId,
-    /// CoveredDistance since the motion on top began (m or rad).
-    pub covered_distance: f64,
+outputs! {
+    /// Outputs of [`MoveSuperimposed`].
+    #[derive(Debug, Clone, Copy, PartialEq, Default)]
+    pub struct MoveSuperimposedOutputs {
+        /// Done: the distance is covered.
+        done: bool = Done,
+        /// Busy: it is not yet.
+        busy: bool = Busy,
+        /// CommandAborted: another command took the axis.
+        command_aborted: bool = CommandAborted,
+        /// Error.
+        error: bool = Error,
+        /// ErrorID.
+        error_id: ErrorId = ErrorId,
+        /// CoveredDistance since the motion on top began (m or rad).
+        covered_distance: f64 = CoveredDistance,
+    }
 }
 
 impl FunctionBlock for MoveSuperimposed {
@@ -121,15 +120,5 @@ impl FunctionBlock for MoveSuperimposed {
 
     fn error(&self) -> Option<&BlockError> {
         self.execution.error()
-    }
-}
-
-impl Outputs for MoveSuperimposedOutputs {
-    const NAMES: &'static [&'static str] = &["Done", "Busy", "CommandAborted", "Error", "ErrorID", "CoveredDistance"];
-
-    fn each(&self, record: impl FnMut(f64)) {
-        let Self { done, busy, command_aborted, error, error_id, covered_distance } = *self;
-        let flags = [done, busy, command_aborted, error].map(flag);
-        flags.into_iter().chain([number(error_id), covered_distance]).for_each(record);
     }
 }

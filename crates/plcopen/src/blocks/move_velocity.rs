@@ -1,36 +1,33 @@
 //! `MC_MoveVelocity`: to a velocity.
-use super::execution::Report;
 use super::motion::{MotionBlock, MotionInputs};
-use super::outputs::{Outputs, flag, number};
+use crate::blocks::{BlockName, Input};
 use crate::command::{BufferMode, Command, Direction, Dynamics, Goal};
-use crate::error::ErrorId;
-use crate::name::BlockName;
+use crate::interface::{buffer_mode, command_outputs, direction, flag, inputs, like, limit, limit_if_any};
 use servobench_motion::Limits;
 
 /// To a velocity, which is kept.
 pub type MoveVelocity = MotionBlock<MoveVelocityInputs>;
 
-/// Inputs of [`MoveVelocity`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MoveVelocityInputs {
-    /// Execute.
-    pub execute: bool,
-    /// ContinuousUpdate.
-    pub continuous_update: bool,
-    /// Velocity (m/s or rad/s); a sign counts in the direction.
-    pub velocity: f64,
-    /// Acceleration (m/s² or rad/s²).
-    pub acceleration: f64,
-    /// Deceleration (m/s² or rad/s²).
-    pub deceleration: f64,
-    /// Jerk (m/s³ or rad/s³); `None` leaves it to the axis.
-    pub jerk: Option<f64>,
-    /// Snap (m/s⁴ or rad/s⁴), beyond the standard; `None` leaves it to the axis.
-    pub snap: Option<f64>,
-    /// Direction: positive, negative or current.
-    pub direction: Direction,
-    /// BufferMode.
-    pub buffer_mode: BufferMode,
+inputs! {
+    /// Inputs of [`MoveVelocity`].
+    pub struct MoveVelocityInputs on execute {
+        /// Velocity (m/s or rad/s); a sign counts in the direction.
+        velocity: f64 = limit(Input::Velocity),
+        /// Acceleration (m/s² or rad/s²).
+        acceleration: f64 = limit(Input::Acceleration),
+        /// Deceleration (m/s² or rad/s²).
+        deceleration: f64 = like(Input::Deceleration, Input::Acceleration),
+        /// Jerk (m/s³ or rad/s³); `None` leaves it to the axis.
+        jerk: Option<f64> = limit_if_any(Input::Jerk),
+        /// Snap (m/s⁴ or rad/s⁴), beyond the standard; `None` leaves it to the axis.
+        snap: Option<f64> = limit_if_any(Input::Snap),
+        /// Direction: positive, negative or current.
+        direction: Direction = direction(Direction::Positive),
+        /// BufferMode.
+        buffer_mode: BufferMode = buffer_mode(),
+        /// ContinuousUpdate.
+        continuous_update: bool = flag(Input::ContinuousUpdate, false),
+    }
 }
 
 impl MoveVelocityInputs {
@@ -39,7 +36,6 @@ impl MoveVelocityInputs {
     pub fn within(limits: &Limits) -> Self {
         Self {
             execute: false,
-            continuous_update: false,
             velocity: limits.velocity,
             acceleration: limits.acceleration,
             deceleration: limits.acceleration,
@@ -47,6 +43,7 @@ impl MoveVelocityInputs {
             snap: Some(limits.snap).filter(|snap| snap.is_finite()),
             direction: Direction::Positive,
             buffer_mode: BufferMode::default(),
+            continuous_update: false,
         }
     }
 }
@@ -74,43 +71,9 @@ impl MotionInputs for MoveVelocityInputs {
     }
 }
 
-/// Outputs of [`MoveVelocity`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[expect(clippy::struct_excessive_bools, reason = "each is an output of the standard")]
-pub struct MoveVelocityOutputs {
+command_outputs! {
+    /// Outputs of [`MoveVelocity`].
+    pub struct MoveVelocityOutputs;
     /// InVelocity: the commanded velocity is reached.
-    pub in_velocity: bool,
-    /// Busy: the block is not aborted.
-    pub busy: bool,
-    /// Active: the block has the axis.
-    pub active: bool,
-    /// CommandAborted: another command took the axis.
-    pub command_aborted: bool,
-    /// Error.
-    pub error: bool,
-    /// ErrorID.
-    pub error_id: ErrorId,
-}
-
-impl From<Report> for MoveVelocityOutputs {
-    fn from(report: Report) -> Self {
-        Self {
-            in_velocity: report == Report::InTarget,
-            busy: report.is_busy(),
-            active: report.is_active(),
-            command_aborted: report == Report::Aborted,
-            error: report.error_id() != ErrorId::None,
-            error_id: report.error_id(),
-        }
-    }
-}
-
-impl Outputs for MoveVelocityOutputs {
-    const NAMES: &'static [&'static str] = &["InVelocity", "Busy", "Active", "CommandAborted", "Error", "ErrorID"];
-
-    fn each(&self, record: impl FnMut(f64)) {
-        let Self { in_velocity, busy, active, command_aborted, error, error_id } = *self;
-        let flags = [in_velocity, busy, active, command_aborted, error].map(flag);
-        flags.into_iter().chain([number(error_id)]).for_each(record);
-    }
+    in_velocity = InVelocity by InTarget
 }

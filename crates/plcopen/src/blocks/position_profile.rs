@@ -5,11 +5,14 @@
 //! cubic spline. Both begin with the velocity that the axis has. The axis follows the profile itself, set-point by set-point;
 //! and the [commands](PositionProfile::commands) are what the paper sends to a drive in the profile velocity mode instead.
 use super::outputs::{FunctionBlock, MotionOutputs};
-use super::profile::{Beyond, Call, Course, Leading, Memory, Names, Pair, Scales, check_room};
+use super::profile::{
+    Beyond, Call, Course, Leading, Memory, Names, Pair, Scales, TIME_SCALE, VALUE_SCALE, check_room, pairs,
+};
 use crate::axis::Axis;
+use crate::blocks::{BlockName, Input};
 use crate::command::{BufferMode, Ending};
 use crate::error::BlockError;
-use crate::name::BlockName;
+use crate::interface::{BlockInput, BlockInputs, FromValues as _, Table, Trigger, Values, buffer_mode, or, required};
 use servobench_base::Setpoint;
 use servobench_motion::position_profile::{Command, PlateauCommands, Plateaus, Spline, SteppedCommands};
 use servobench_motion::pvt::Knot;
@@ -82,6 +85,30 @@ impl<'a> PositionProfileInputs<'a> {
         Scales { time: self.time_scale, value: self.position_scale, offset: self.offset }
     }
 }
+
+impl<'i> BlockInputs<'i> for PositionProfileInputs<'i> {
+    const TRIGGER: Trigger = Trigger::Execute;
+    const INPUTS: &'static [BlockInput] =
+        &[required(Input::Table), TIME_SCALE, VALUE_SCALE, OFFSET, END_VELOCITY, buffer_mode()];
+
+    fn read<P: AsRef<[Pair]>>(values: &'i Values<Table<P>>, execute: bool) -> Self {
+        let pairs = pairs(values);
+        let of_table = values.table();
+        Self {
+            execute,
+            time_position: TimePosition { pairs, is_absolute: !of_table.is_some_and(|table| table.is_relative) },
+            time_scale: f64::read(values, &TIME_SCALE),
+            position_scale: f64::read(values, &VALUE_SCALE),
+            offset: f64::read(values, &OFFSET),
+            follow: of_table.map_or(Follow::Spline, |table| table.follow),
+            end_velocity: f64::read(values, &END_VELOCITY),
+            buffer_mode: BufferMode::read(values, &buffer_mode()),
+        }
+    }
+}
+
+const OFFSET: BlockInput = or(Input::PositionOffset, 0.0);
+const END_VELOCITY: BlockInput = or(Input::EndVelocity, 0.0);
 
 impl<K: Memory<Knot>, S: Memory<f64>> PositionProfile<K, S> {
     /// With the memory for a table of one pair less than `knots` and `scratch` hold.
@@ -163,6 +190,15 @@ impl<K: Memory<Knot>, S: Memory<f64>> FunctionBlock for PositionProfile<K, S> {
 
     fn error(&self) -> Option<&BlockError> {
         self.leading.execution.error()
+    }
+}
+
+#[cfg(feature = "program")]
+impl crate::program::New for PositionProfile<alloc::vec::Vec<Knot>, alloc::vec::Vec<f64>> {
+    fn new_for(inputs: &crate::program::Inputs) -> Self {
+        // Where the profile begins is a point too.
+        let points = pairs(inputs).len() + 1;
+        Self::new(alloc::vec![Knot::default(); points], alloc::vec![0.0; points])
     }
 }
 

@@ -1,22 +1,23 @@
 //! `MC_Power`: the power of the axis, and the directions in which it may move.
-use super::outputs::{FunctionBlock, Outputs, flag, number};
+use super::outputs::FunctionBlock;
 use crate::axis::{Axis, PowerRequest};
+use crate::blocks::{BlockName, Input};
 use crate::error::ErrorId;
-use crate::name::BlockName;
+use crate::interface::{flag, inputs, outputs};
 
 /// Powers the axis while Enable is TRUE.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Power;
 
-/// Inputs of [`Power`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct PowerInputs {
-    /// Enable.
-    pub enable: bool,
-    /// EnablePositive: motion in the positive direction is permitted.
-    pub enable_positive: bool,
-    /// EnableNegative: motion in the negative direction is permitted.
-    pub enable_negative: bool,
+inputs! {
+    /// Inputs of [`Power`].
+    #[derive(Eq)]
+    pub struct PowerInputs on enable {
+        /// EnablePositive: motion in the positive direction is permitted.
+        enable_positive: bool = flag(Input::EnablePositive, true),
+        /// EnableNegative: motion in the negative direction is permitted.
+        enable_negative: bool = flag(Input::EnableNegative, true),
+    }
 }
 
 impl Default for PowerInputs {
@@ -25,17 +26,19 @@ impl Default for PowerInputs {
     }
 }
 
-/// Outputs of [`Power`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct PowerOutputs {
-    /// Status: the axis is powered.
-    pub status: bool,
-    /// Valid: the outputs mean something.
-    pub valid: bool,
-    /// Error: the axis is in ErrorStop.
-    pub error: bool,
-    /// ErrorID.
-    pub error_id: ErrorId,
+outputs! {
+    /// Outputs of [`Power`].
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub struct PowerOutputs {
+        /// Status: the axis is powered.
+        status: bool = Status,
+        /// Valid: the outputs mean something.
+        valid: bool = Valid,
+        /// Error: the axis is in ErrorStop.
+        error: bool = Error,
+        /// ErrorID.
+        error_id: ErrorId = ErrorId,
+    }
 }
 
 impl FunctionBlock for Power {
@@ -50,14 +53,5 @@ impl FunctionBlock for Power {
         let error_id = axis.error().filter(|_| enable).map_or(ErrorId::None, crate::AxisError::id);
         let error = error_id != ErrorId::None;
         PowerOutputs { status: axis.power_status(), valid: enable && !error, error, error_id }
-    }
-}
-
-impl Outputs for PowerOutputs {
-    const NAMES: &'static [&'static str] = &["Status", "Valid", "Error", "ErrorID"];
-
-    fn each(&self, record: impl FnMut(f64)) {
-        let Self { status, valid, error, error_id } = *self;
-        [status, valid, error].map(flag).into_iter().chain([number(error_id)]).for_each(record);
     }
 }

@@ -17,10 +17,11 @@
 //! (which the standard leaves to the supplier).
 use super::execution::{Execution, Report};
 use crate::axis::Axis;
+use crate::blocks::{BlockName, Input};
 use crate::command::{BufferMode, Command, Dynamics, Ending, Goal};
 use crate::error::BlockError;
+use crate::interface::{BlockInput, Table, Values, or};
 use crate::ledger::{CommandId, Progress};
-use crate::name::BlockName;
 use crate::state::AxisState;
 use servobench_base::Setpoint;
 use servobench_motion::{Limits, PlanError};
@@ -53,6 +54,14 @@ pub(super) fn check_room(
     }
     Ok(())
 }
+
+/// The rows of the table; none where there is no table.
+pub(super) fn pairs<P: AsRef<[Pair]>>(values: &Values<Table<P>>) -> &[Pair] {
+    values.table().map_or(&[], |table| table.pairs.as_ref())
+}
+
+pub(super) const TIME_SCALE: BlockInput = or(Input::TimeScale, 1.0);
+pub(super) const VALUE_SCALE: BlockInput = or(Input::ValueScale, 1.0);
 
 /// What the inputs of the block make of a table.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -15,13 +15,16 @@
 //!
 //! As at the generator, a falling Enable does not end the move, and one that stays TRUE starts again as soon as the block is
 //! ready: here, when `pref` is another than that of the last start.
-use super::outputs::{FunctionBlock, Outputs, flag, number};
+use super::outputs::FunctionBlock;
 use crate::axis::Axis;
+use crate::blocks::{BlockName, Input, Pair};
 use crate::command::{BufferMode, Command, Dynamics, Ending, Goal};
 use crate::error::{BlockError, ErrorId};
-use crate::generator::{self, Input, Method, Mounting};
+use crate::generator::{self, Method, Mounting};
+use crate::interface::{
+    BlockInput, BlockInputs, FromValues as _, Table, Trigger, Values, flag, limit, outputs, required, required_for,
+};
 use crate::ledger::{CommandId, Progress};
-use crate::name::BlockName;
 use servobench_base::Setpoint;
 use servobench_motion::Limits;
 
@@ -51,24 +54,25 @@ pub struct Profile4thInputs {
     pub mounting: Mounting,
 }
 
-/// Outputs of [`Profile4th`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[expect(clippy::struct_excessive_bools, reason = "each is an output of the block")]
-pub struct Profile4thOutputs {
-    /// `Ready`.
-    pub ready: bool,
-    /// `CmdDone`.
-    pub done: bool,
-    /// Busy.
-    pub busy: bool,
-    /// Active.
-    pub active: bool,
-    /// CommandAborted: another command took the axis.
-    pub command_aborted: bool,
-    /// Error.
-    pub error: bool,
-    /// ErrorID.
-    pub error_id: ErrorId,
+outputs! {
+    /// Outputs of [`Profile4th`].
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub struct Profile4thOutputs {
+        /// `Ready`.
+        ready: bool = Ready,
+        /// `CmdDone`.
+        done: bool = Done,
+        /// Busy.
+        busy: bool = Busy,
+        /// Active.
+        active: bool = Active,
+        /// CommandAborted: another command took the axis.
+        command_aborted: bool = CommandAborted,
+        /// Error.
+        error: bool = Error,
+        /// ErrorID.
+        error_id: ErrorId = ErrorId,
+    }
 }
 
 impl Profile4thInputs {
@@ -78,6 +82,37 @@ impl Profile4thInputs {
         Self { enable: false, position, limits, settling_time: 0.0, mounting: Mounting::Same }
     }
 }
+
+impl BlockInputs<'_> for Profile4thInputs {
+    const TRIGGER: Trigger = Trigger::Enable;
+    const INPUTS: &'static [BlockInput] = &[POSITION, VELOCITY, ACCELERATION, JERK, SNAP, SETTLING_TIME, REVERSED];
+    /// A start takes them over.
+    const ARE_FOLLOWED: bool = false;
+
+    fn read<P: AsRef<[Pair]>>(values: &Values<Table<P>>, enable: bool) -> Self {
+        Self {
+            enable,
+            position: f64::read(values, &POSITION),
+            limits: Limits {
+                velocity: f64::read(values, &VELOCITY),
+                acceleration: f64::read(values, &ACCELERATION),
+                jerk: f64::read(values, &JERK),
+                snap: f64::read(values, &SNAP),
+            },
+            settling_time: f64::read(values, &SETTLING_TIME),
+            mounting: if bool::read(values, &REVERSED) { Mounting::Opposite } else { Mounting::Same },
+        }
+    }
+}
+
+const POSITION: BlockInput = required(Input::Position);
+const VELOCITY: BlockInput = limit(Input::Velocity);
+const ACCELERATION: BlockInput = limit(Input::Acceleration);
+const JERK: BlockInput = limit(Input::Jerk);
+const SNAP: BlockInput = limit(Input::Snap);
+const SETTLING_TIME: BlockInput =
+    required_for(Input::SettlingTime, "from the end of a profile until the block is ready for the next");
+const REVERSED: BlockInput = flag(Input::Reversed, false);
 
 impl FunctionBlock for Profile4th {
     const NAME: BlockName = BlockName::Profile4th;
@@ -125,7 +160,7 @@ impl Profile4th {
             BlockError::Input { block: Self::NAME, input, value: settling_time, bound }
         })?;
         let stands = axis.commanded().x;
-        let input = Input {
+        let input = generator::Input {
             method: Method::Step,
             reference: self.reference.unwrap_or(position),
             limits,
@@ -197,14 +232,4 @@ fn begin(axis: &mut Axis, limits: &Limits, position: f64) -> Result<CommandId, B
         snap: Some(snap),
     };
     axis.submit(Command { block, goal: Goal::Led(Ending::AtRest), dynamics, buffer_mode: BufferMode::Aborting })
-}
-
-impl Outputs for Profile4thOutputs {
-    const NAMES: &'static [&'static str] = &["Ready", "Done", "Busy", "Active", "CommandAborted", "Error", "ErrorID"];
-
-    fn each(&self, record: impl FnMut(f64)) {
-        let Self { ready, done, busy, active, command_aborted, error, error_id } = *self;
-        let flags = [ready, done, busy, active, command_aborted, error].map(flag);
-        flags.into_iter().chain([number(error_id)]).for_each(record);
-    }
 }

@@ -1,10 +1,11 @@
 //! `MC_ReadStatus`, `MC_ReadAxisError`, `MC_ReadActualPosition`, `MC_ReadActualVelocity`, `MC_ReadActualTorque`.
 //!
 //! They cannot fail: Error and ErrorID stay what they are without an error.
-use super::outputs::{FunctionBlock, Outputs, flag, number};
+use super::outputs::{FunctionBlock, Outputs};
 use crate::axis::Axis;
+use crate::blocks::{BlockName, Output};
 use crate::error::{AxisError, ErrorId};
-use crate::name::BlockName;
+use crate::interface::{Recorded as _, inputs};
 use crate::state::AxisState;
 use core::marker::PhantomData;
 
@@ -28,11 +29,10 @@ pub struct ReadActualVelocity;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ReadActualTorque;
 
-/// Inputs of a block that reads.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct ReadInputs {
-    /// Enable.
-    pub enable: bool,
+inputs! {
+    /// Inputs of a block that reads.
+    #[derive(Eq, Default)]
+    pub struct ReadInputs on enable {}
 }
 
 /// Outputs of [`ReadStatus`].
@@ -68,20 +68,20 @@ pub struct ReadValueOutputs<Block> {
 
 /// A block that reads a value.
 pub trait ReadsValue: Copy {
-    /// Name of the output that has the value.
-    const OUTPUT: &'static str;
+    /// The output that has the value.
+    const OUTPUT: Output;
 }
 
 impl ReadsValue for ReadActualPosition {
-    const OUTPUT: &'static str = "Position";
+    const OUTPUT: Output = Output::Position;
 }
 
 impl ReadsValue for ReadActualVelocity {
-    const OUTPUT: &'static str = "Velocity";
+    const OUTPUT: Output = Output::Velocity;
 }
 
 impl ReadsValue for ReadActualTorque {
-    const OUTPUT: &'static str = "Torque";
+    const OUTPUT: Output = Output::Torque;
 }
 
 impl ReadStatusOutputs {
@@ -169,42 +169,44 @@ impl<Block> ReadValueOutputs<Block> {
 }
 
 impl Outputs for ReadStatusOutputs {
-    const NAMES: &'static [&'static str] = &[
-        "Valid",
-        "Busy",
-        "Error",
-        "ErrorID",
-        "ErrorStop",
-        "Disabled",
-        "Stopping",
-        "Homing",
-        "Standstill",
-        "DiscreteMotion",
-        "ContinuousMotion",
-        "SynchronizedMotion",
+    const LIST: &'static [Output] = &[
+        Output::Valid,
+        Output::Busy,
+        Output::Error,
+        Output::ErrorId,
+        Output::ErrorStop,
+        Output::Disabled,
+        Output::Stopping,
+        Output::Homing,
+        Output::Standstill,
+        Output::DiscreteMotion,
+        Output::ContinuousMotion,
+        Output::SynchronizedMotion,
     ];
 
     fn each(&self, record: impl FnMut(f64)) {
-        let states = Self::STATES.map(|state| flag(self.state == Some(state)));
-        let valid = flag(self.valid);
+        let states = Self::STATES.map(|state| (self.state == Some(state)).recorded());
+        let valid = self.valid.recorded();
         [valid, valid, 0.0, 0.0].into_iter().chain(states).chain([0.0]).for_each(record);
     }
 }
 
 impl Outputs for ReadAxisErrorOutputs {
-    const NAMES: &'static [&'static str] = &["Valid", "Busy", "Error", "ErrorID", "AxisErrorID", "DriveCode"];
+    const LIST: &'static [Output] =
+        &[Output::Valid, Output::Busy, Output::Error, Output::ErrorId, Output::AxisErrorId, Output::DriveCode];
 
     fn each(&self, record: impl FnMut(f64)) {
-        let valid = flag(self.valid);
-        [valid, valid, 0.0, 0.0, number(self.axis_error_id), f64::from(self.drive_code)].into_iter().for_each(record);
+        let valid = self.valid.recorded();
+        let axis_error = [self.axis_error_id.recorded(), self.drive_code.recorded()];
+        [valid, valid, 0.0, 0.0].into_iter().chain(axis_error).for_each(record);
     }
 }
 
 impl<Block: ReadsValue> Outputs for ReadValueOutputs<Block> {
-    const NAMES: &'static [&'static str] = &["Valid", "Busy", "Error", "ErrorID", Block::OUTPUT];
+    const LIST: &'static [Output] = &[Output::Valid, Output::Busy, Output::Error, Output::ErrorId, Block::OUTPUT];
 
     fn each(&self, record: impl FnMut(f64)) {
-        let valid = flag(self.valid);
+        let valid = self.valid.recorded();
         [valid, valid, 0.0, 0.0, self.value].into_iter().for_each(record);
     }
 }

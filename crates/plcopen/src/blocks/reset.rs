@@ -2,8 +2,9 @@
 use super::execution::{Execution, Report};
 use super::outputs::{DoneOutputs, FunctionBlock};
 use crate::axis::Axis;
+use crate::blocks::BlockName;
 use crate::error::BlockError;
-use crate::name::BlockName;
+use crate::interface::inputs;
 
 /// Takes the error of the axis away, once its cause is gone and the axis at rest.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -11,11 +12,10 @@ pub struct Reset {
     execution: Execution,
 }
 
-/// Inputs of [`Reset`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct ResetInputs {
-    /// Execute.
-    pub execute: bool,
+inputs! {
+    /// Inputs of [`Reset`].
+    #[derive(Eq, Default)]
+    pub struct ResetInputs on execute {}
 }
 
 impl FunctionBlock for Reset {

@@ -1,8 +1,9 @@
 //! `MC_SetOverride`: slower.
-use super::outputs::{FunctionBlock, Outputs, flag, number};
+use super::outputs::FunctionBlock;
 use crate::axis::{Axis, Override};
+use crate::blocks::{BlockName, Input};
 use crate::error::{BlockError, ErrorId};
-use crate::name::BlockName;
+use crate::interface::{inputs, or, outputs};
 
 /// Scales velocity, acceleration and jerk of all commands but MC_Stop and MC_Halt while Enable is TRUE; the factors stay when it
 /// falls. A command that runs is planned anew from where it is, so that nothing jumps.
@@ -13,17 +14,16 @@ pub struct SetOverride {
     error: Option<BlockError>,
 }
 
-/// Inputs of [`SetOverride`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SetOverrideInputs {
-    /// Enable.
-    pub enable: bool,
-    /// VelFactor: 0, which holds the axis without ending its command, or from 1e-6 to 1.
-    pub vel_factor: f64,
-    /// AccFactor, from 1e-6 to 1, of acceleration and deceleration.
-    pub acc_factor: f64,
-    /// JerkFactor, from 1e-6 to 1, of jerk and snap.
-    pub jerk_factor: f64,
+inputs! {
+    /// Inputs of [`SetOverride`].
+    pub struct SetOverrideInputs on enable {
+        /// VelFactor: 0, which holds the axis without ending its command, or from 1e-6 to 1.
+        vel_factor: f64 = or(Input::VelocityFactor, 1.0),
+        /// AccFactor, from 1e-6 to 1, of acceleration and deceleration.
+        acc_factor: f64 = or(Input::AccelerationFactor, 1.0),
+        /// JerkFactor, from 1e-6 to 1, of jerk and snap.
+        jerk_factor: f64 = or(Input::JerkFactor, 1.0),
+    }
 }
 
 impl Default for SetOverrideInputs {
@@ -32,17 +32,19 @@ impl Default for SetOverrideInputs {
     }
 }
 
-/// Outputs of [`SetOverride`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct SetOverrideOutputs {
-    /// Enabled: the factors act.
-    pub enabled: bool,
-    /// Busy.
-    pub busy: bool,
-    /// Error.
-    pub error: bool,
-    /// ErrorID.
-    pub error_id: ErrorId,
+outputs! {
+    /// Outputs of [`SetOverride`].
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub struct SetOverrideOutputs {
+        /// Enabled: the factors act.
+        enabled: bool = Enabled,
+        /// Busy.
+        busy: bool = Busy,
+        /// Error.
+        error: bool = Error,
+        /// ErrorID.
+        error_id: ErrorId = ErrorId,
+    }
 }
 
 /// A smaller factor other than 0 was meant to be something else.
@@ -84,14 +86,5 @@ impl FunctionBlock for SetOverride {
 
     fn error(&self) -> Option<&BlockError> {
         self.error.as_ref()
-    }
-}
-
-impl Outputs for SetOverrideOutputs {
-    const NAMES: &'static [&'static str] = &["Enabled", "Busy", "Error", "ErrorID"];
-
-    fn each(&self, record: impl FnMut(f64)) {
-        let Self { enabled, busy, error, error_id } = *self;
-        [enabled, busy, error].map(flag).into_iter().chain([number(error_id)]).for_each(record);
     }
 }

@@ -2,8 +2,9 @@
 use super::execution::Execution;
 use super::outputs::{DoneOutputs, FunctionBlock};
 use crate::axis::Axis;
+use crate::blocks::{BlockName, Input};
 use crate::error::BlockError;
-use crate::name::BlockName;
+use crate::interface::{flag, inputs, required};
 
 /// Shifts what the program sees as position, actual and commanded alike, without a motion; commands that run go on to where they
 /// lead. Refused in Homing, which sets the position itself. ExecutionMode is left out: it is always immediately.
@@ -12,15 +13,15 @@ pub struct SetPosition {
     execution: Execution,
 }
 
-/// Inputs of [`SetPosition`].
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct SetPositionInputs {
-    /// Execute.
-    pub execute: bool,
-    /// Position (m or rad): the actual one from now on; with Relative, what is added to it.
-    pub position: f64,
-    /// Relative.
-    pub relative: bool,
+inputs! {
+    /// Inputs of [`SetPosition`].
+    #[derive(Default)]
+    pub struct SetPositionInputs on execute {
+        /// Position (m or rad): the actual one from now on; with Relative, what is added to it.
+        position: f64 = required(Input::Position),
+        /// Relative.
+        relative: bool = flag(Input::Relative, false),
+    }
 }
 
 impl FunctionBlock for SetPosition {

@@ -1,30 +1,30 @@
 //! `MC_Halt` and `MC_Stop`: to rest.
 use super::execution::{Execution, Report};
 use super::motion::{MotionBlock, MotionInputs};
-use super::outputs::{FunctionBlock, MotionOutputs, Outputs, flag, number};
+use super::outputs::{FunctionBlock, MotionOutputs};
 use crate::axis::Axis;
+use crate::blocks::{BlockName, Input};
 use crate::command::{BufferMode, Command, Dynamics, Goal};
 use crate::error::{BlockError, ErrorId};
+use crate::interface::{braking, buffer_mode, inputs, limit_if_any, outputs};
 use crate::ledger::CommandId;
-use crate::name::BlockName;
 use servobench_motion::Limits;
 
 /// To rest; another command may take the axis on the way.
 pub type Halt = MotionBlock<HaltInputs>;
 
-/// Inputs of [`Halt`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HaltInputs {
-    /// Execute.
-    pub execute: bool,
-    /// Deceleration (m/s² or rad/s²).
-    pub deceleration: f64,
-    /// Jerk (m/s³ or rad/s³); `None` leaves it to the axis.
-    pub jerk: Option<f64>,
-    /// Snap (m/s⁴ or rad/s⁴), beyond the standard; `None` leaves it to the axis.
-    pub snap: Option<f64>,
-    /// BufferMode.
-    pub buffer_mode: BufferMode,
+inputs! {
+    /// Inputs of [`Halt`].
+    pub struct HaltInputs on execute {
+        /// Deceleration (m/s² or rad/s²).
+        deceleration: f64 = braking(),
+        /// Jerk (m/s³ or rad/s³); `None` leaves it to the axis.
+        jerk: Option<f64> = limit_if_any(Input::Jerk),
+        /// Snap (m/s⁴ or rad/s⁴), beyond the standard; `None` leaves it to the axis.
+        snap: Option<f64> = limit_if_any(Input::Snap),
+        /// BufferMode.
+        buffer_mode: BufferMode = buffer_mode(),
+    }
 }
 
 impl HaltInputs {
@@ -59,17 +59,16 @@ pub struct Stop {
     holding: Option<CommandId>,
 }
 
-/// Inputs of [`Stop`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StopInputs {
-    /// Execute.
-    pub execute: bool,
-    /// Deceleration (m/s² or rad/s²).
-    pub deceleration: f64,
-    /// Jerk (m/s³ or rad/s³); `None` leaves it to the axis.
-    pub jerk: Option<f64>,
-    /// Snap (m/s⁴ or rad/s⁴), beyond the standard; `None` leaves it to the axis.
-    pub snap: Option<f64>,
+inputs! {
+    /// Inputs of [`Stop`].
+    pub struct StopInputs on execute {
+        /// Deceleration (m/s² or rad/s²).
+        deceleration: f64 = braking(),
+        /// Jerk (m/s³ or rad/s³); `None` leaves it to the axis.
+        jerk: Option<f64> = limit_if_any(Input::Jerk),
+        /// Snap (m/s⁴ or rad/s⁴), beyond the standard; `None` leaves it to the axis.
+        snap: Option<f64> = limit_if_any(Input::Snap),
+    }
 }
 
 impl StopInputs {
@@ -85,35 +84,27 @@ impl StopInputs {
     }
 }
 
-/// Outputs of [`Stop`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[expect(clippy::struct_excessive_bools, reason = "each is an output of the standard")]
-pub struct StopOutputs {
-    /// Done: the axis stands still.
-    pub done: bool,
-    /// Busy: it brakes.
-    pub busy: bool,
-    /// CommandAborted: the power was taken away.
-    pub command_aborted: bool,
-    /// Error.
-    pub error: bool,
-    /// ErrorID.
-    pub error_id: ErrorId,
+outputs! {
+    /// Outputs of [`Stop`].
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub struct StopOutputs {
+        /// Done: the axis stands still.
+        done: bool = Done,
+        /// Busy: it brakes.
+        busy: bool = Busy,
+        /// CommandAborted: the power was taken away.
+        command_aborted: bool = CommandAborted,
+        /// Error.
+        error: bool = Error,
+        /// ErrorID.
+        error_id: ErrorId = ErrorId,
+    }
 }
 
 impl From<Report> for StopOutputs {
     fn from(report: Report) -> Self {
         let MotionOutputs { done, busy, command_aborted, error, error_id, .. } = report.into();
         Self { done, busy, command_aborted, error, error_id }
-    }
-}
-
-impl Outputs for StopOutputs {
-    const NAMES: &'static [&'static str] = &["Done", "Busy", "CommandAborted", "Error", "ErrorID"];
-
-    fn each(&self, record: impl FnMut(f64)) {
-        let Self { done, busy, command_aborted, error, error_id } = *self;
-        [done, busy, command_aborted, error].map(flag).into_iter().chain([number(error_id)]).for_each(record);
     }
 }
 

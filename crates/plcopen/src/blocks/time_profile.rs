@@ -3,13 +3,17 @@
 //! The velocity goes in straight lines from that of the axis to those of the pairs; the acceleration likewise, so that the velocity
 //! is made of parabolas. Behind the last pair the velocity is kept and the acceleration zero (PLCopen part 1, version 2.0,
 //! sections 3.15 and 3.16), and the axis stays in Continuous Motion.
-use super::execution::Report;
-use super::outputs::{FunctionBlock, Outputs, flag, number};
-use super::profile::{Beyond, Call, Course, Leading, Memory, Names, Pair, ROUNDING, Scales, check_room};
+use super::outputs::FunctionBlock;
+use super::profile::{
+    Beyond, Call, Course, Leading, Memory, Names, Pair, ROUNDING, Scales, TIME_SCALE, VALUE_SCALE, check_room, pairs,
+};
 use crate::axis::Axis;
+use crate::blocks::{BlockName, Input};
 use crate::command::{BufferMode, Ending};
-use crate::error::{BlockError, ErrorId};
-use crate::name::BlockName;
+use crate::error::BlockError;
+use crate::interface::{
+    BlockInput, BlockInputs, FromValues as _, Table, Trigger, Values, buffer_mode, command_outputs, or, required,
+};
 use servobench_base::Setpoint;
 use servobench_motion::Limits;
 
@@ -97,6 +101,81 @@ impl<'a> AccelerationProfileInputs<'a> {
     }
 }
 
+impl<'i> BlockInputs<'i> for VelocityProfileInputs<'i> {
+    const TRIGGER: Trigger = Trigger::Execute;
+    const INPUTS: &'static [BlockInput] =
+        &[required(Input::Table), TIME_SCALE, VALUE_SCALE, VELOCITY_OFFSET, buffer_mode()];
+
+    fn read<P: AsRef<[Pair]>>(values: &'i Values<Table<P>>, execute: bool) -> Self {
+        Self {
+            execute,
+            time_velocity: pairs(values),
+            time_scale: f64::read(values, &TIME_SCALE),
+            velocity_scale: f64::read(values, &VALUE_SCALE),
+            offset: f64::read(values, &VELOCITY_OFFSET),
+            buffer_mode: BufferMode::read(values, &buffer_mode()),
+        }
+    }
+}
+
+impl<'i> BlockInputs<'i> for AccelerationProfileInputs<'i> {
+    const TRIGGER: Trigger = Trigger::Execute;
+    const INPUTS: &'static [BlockInput] =
+        &[required(Input::Table), TIME_SCALE, VALUE_SCALE, ACCELERATION_OFFSET, buffer_mode()];
+
+    fn read<P: AsRef<[Pair]>>(values: &'i Values<Table<P>>, execute: bool) -> Self {
+        Self {
+            execute,
+            time_acceleration: pairs(values),
+            time_scale: f64::read(values, &TIME_SCALE),
+            acceleration_scale: f64::read(values, &VALUE_SCALE),
+            offset: f64::read(values, &ACCELERATION_OFFSET),
+            buffer_mode: BufferMode::read(values, &buffer_mode()),
+        }
+    }
+}
+
+const VELOCITY_OFFSET: BlockInput = or(Input::VelocityOffset, 0.0);
+const ACCELERATION_OFFSET: BlockInput = or(Input::AccelerationOffset, 0.0);
+
+impl VelocityProfileInputs<'_> {
+    const fn scales(&self) -> Scales {
+        Scales { time: self.time_scale, value: self.velocity_scale, offset: self.offset }
+    }
+
+    /// The pairs as the scales and the offset make them.
+    pub fn scaled(&self) -> impl Iterator<Item = Pair> {
+        let scales = self.scales();
+        self.time_velocity.iter().map(move |pair| scales.of(pair))
+    }
+}
+
+impl AccelerationProfileInputs<'_> {
+    const fn scales(&self) -> Scales {
+        Scales { time: self.time_scale, value: self.acceleration_scale, offset: self.offset }
+    }
+
+    /// The pairs as the scales and the offset make them.
+    pub fn scaled(&self) -> impl Iterator<Item = Pair> {
+        let scales = self.scales();
+        self.time_acceleration.iter().map(move |pair| scales.of(pair))
+    }
+}
+
+#[cfg(feature = "program")]
+impl crate::program::New for VelocityProfile<alloc::vec::Vec<Pair>> {
+    fn new_for(inputs: &crate::program::Inputs) -> Self {
+        Self::new(alloc::vec![Pair::default(); pairs(inputs).len()])
+    }
+}
+
+#[cfg(feature = "program")]
+impl crate::program::New for AccelerationProfile<alloc::vec::Vec<Pair>> {
+    fn new_for(inputs: &crate::program::Inputs) -> Self {
+        Self::new(alloc::vec![Pair::default(); pairs(inputs).len()])
+    }
+}
+
 impl<M: Memory<Pair>> FunctionBlock for VelocityProfile<M> {
     const NAME: BlockName = BlockName::VelocityProfile;
     type Inputs<'i> = VelocityProfileInputs<'i>;
@@ -104,7 +183,7 @@ impl<M: Memory<Pair>> FunctionBlock for VelocityProfile<M> {
 
     fn step(&mut self, axis: &mut Axis, inputs: &VelocityProfileInputs<'_>) -> ProfileOutputs {
         let VelocityProfileInputs { execute, time_velocity: pairs, buffer_mode, .. } = *inputs;
-        let scales = Scales { time: inputs.time_scale, value: inputs.velocity_scale, offset: inputs.offset };
+        let scales = inputs.scales();
         let names = Names { table: "TimeVelocity", scale: "VelocityScale", may_jump: false };
         let call = Call { block: Self::NAME, execute, ending: Ending::Moving, buffer_mode };
         let check = |sequence: &Sequence<M>, _: &Axis| {
@@ -127,7 +206,7 @@ impl<M: Memory<Pair>> FunctionBlock for AccelerationProfile<M> {
 
     fn step(&mut self, axis: &mut Axis, inputs: &AccelerationProfileInputs<'_>) -> ProfileOutputs {
         let AccelerationProfileInputs { execute, time_acceleration: pairs, buffer_mode, .. } = *inputs;
-        let scales = Scales { time: inputs.time_scale, value: inputs.acceleration_scale, offset: inputs.offset };
+        let scales = inputs.scales();
         let names = Names { table: "TimeAcceleration", scale: "AccelerationScale", may_jump: true };
         let call = Call { block: Self::NAME, execute, ending: Ending::Moving, buffer_mode };
         let check = |sequence: &Sequence<M>, _: &Axis| {
@@ -250,44 +329,9 @@ impl<M: Memory<Pair>> Course for Sequence<M> {
     }
 }
 
-/// Outputs of [`VelocityProfile`] and [`AccelerationProfile`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[expect(clippy::struct_excessive_bools, reason = "each is an output of the standard")]
-pub struct ProfileOutputs {
+command_outputs! {
+    /// Outputs of [`VelocityProfile`] and [`AccelerationProfile`].
+    pub struct ProfileOutputs;
     /// ProfileCompleted: the last pair is reached.
-    pub profile_completed: bool,
-    /// Busy: there is something left to do.
-    pub busy: bool,
-    /// Active: the block has the axis.
-    pub active: bool,
-    /// CommandAborted: another command took the axis.
-    pub command_aborted: bool,
-    /// Error.
-    pub error: bool,
-    /// ErrorID.
-    pub error_id: ErrorId,
-}
-
-impl From<Report> for ProfileOutputs {
-    fn from(report: Report) -> Self {
-        Self {
-            profile_completed: report == Report::Done,
-            busy: report.is_busy(),
-            active: report.is_active(),
-            command_aborted: report == Report::Aborted,
-            error: report.error_id() != ErrorId::None,
-            error_id: report.error_id(),
-        }
-    }
-}
-
-impl Outputs for ProfileOutputs {
-    const NAMES: &'static [&'static str] =
-        &["ProfileCompleted", "Busy", "Active", "CommandAborted", "Error", "ErrorID"];
-
-    fn each(&self, record: impl FnMut(f64)) {
-        let Self { profile_completed, busy, active, command_aborted, error, error_id } = *self;
-        let flags = [profile_completed, busy, active, command_aborted, error].map(flag);
-        flags.into_iter().chain([number(error_id)]).for_each(record);
-    }
+    profile_completed = ProfileCompleted by Done
 }

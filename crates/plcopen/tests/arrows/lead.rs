@@ -6,7 +6,7 @@ use servobench_plcopen::{
     AccelerationProfile, AccelerationProfileInputs, AxisState, BlockName, ErrorId, FunctionBlock, Halt, HaltInputs,
     Home, HomeInputs, MoveAbsolute, MoveAbsoluteInputs, MoveAdditive, MoveAdditiveInputs, MoveContinuousAbsolute,
     MoveContinuousAbsoluteInputs, MoveRelative, MoveRelativeInputs, MoveSuperimposed, MoveSuperimposedInputs,
-    MoveVelocity, MoveVelocityInputs, Outputs, Pair, PositionProfile, PositionProfileInputs, Profile4th,
+    MoveVelocity, MoveVelocityInputs, Output, Outputs, Pair, PositionProfile, PositionProfileInputs, Profile4th,
     Profile4thInputs, Reset, ResetInputs, Stop, StopInputs, TimePosition, TorqueControl, TorqueControlInputs,
     VelocityProfile, VelocityProfileInputs,
 };
@@ -106,10 +106,10 @@ fn call<B: FunctionBlock + Default>(bench: &mut Bench, inputs: &B::Inputs<'_>) -
 
 fn call_of<B: FunctionBlock>(mut block: B, bench: &mut Bench, inputs: &B::Inputs<'_>) -> Result<(), ErrorId> {
     let outputs = bench.cycle(|axis| block.step(axis, inputs));
-    let place = B::Outputs::NAMES.iter().position(|name| *name == "Error").unwrap();
+    let place = B::Outputs::LIST.iter().position(|output| *output == Output::Error).unwrap();
     let mut values = Vec::new();
     outputs.each(|value| values.push(value));
-    assert_eq!(values.len(), B::Outputs::NAMES.len());
+    assert_eq!(values.len(), B::Outputs::LIST.len());
     let id = block.error().map(servobench_plcopen::BlockError::id);
     assert_eq!(values[place] > 0.0, id.is_some());
     id.map_or(Ok(()), Err)

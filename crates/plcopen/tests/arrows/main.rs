@@ -235,7 +235,7 @@ fn arrows_7_and_9_to_14_are_the_blocks() {
 fn every_absent_arrow_is_refused() {
     let mut refusals = 0;
     for state in AxisState::ALL {
-        for block in BlockName::COMMANDS.into_iter().chain([BlockName::Reset]) {
+        for block in BlockName::ALL.iter().copied().filter(|block| block.is_command() || *block == BlockName::Reset) {
             let is_drawn =
                 |cause| ARROWS.iter().any(|arrow| arrow.from.contains(&state) && arrow.causes.contains(&cause));
             if is_drawn(Cause::Block(block)) || (block == BlockName::Reset && is_drawn(Cause::ResetPowered)) {

@@ -1,5 +1,5 @@
 //! The rules of the standard for the outputs of a block (PLCopen part 1, version 2.0, section 2.4.1).
-use servobench_plcopen::{Axis, BlockName, ErrorId, FunctionBlock, Outputs};
+use servobench_plcopen::{Axis, BlockName, ErrorId, FunctionBlock, Output, Outputs};
 
 /// Outputs that blocks have in common, FALSE where a block has no such output.
 #[derive(Debug, Clone, Copy, Default)]
@@ -17,19 +17,19 @@ pub(crate) struct Flags {
 /// One call of `block`.
 pub(crate) fn call<B: FunctionBlock>(block: &mut B, axis: &mut Axis, inputs: &B::Inputs<'_>) -> Flags {
     let outputs = block.step(axis, inputs);
-    let (mut flags, mut names) = (Flags::default(), B::Outputs::NAMES.iter());
+    let (mut flags, mut names) = (Flags::default(), B::Outputs::LIST.iter());
     outputs.each(|value| {
         let is_true = value > 0.5;
         match *names.next().expect("as many names as values") {
-            "Done" | "ProfileCompleted" => flags.done = is_true,
-            "Busy" => flags.busy = is_true,
-            "Active" => flags.active = is_true,
-            "InVelocity" | "InTorque" | "InEndVelocity" => flags.in_target = is_true,
-            "CommandAborted" => flags.aborted = is_true,
-            "Error" => flags.error = is_true,
-            "ErrorID" => flags.error_id = value.to_bits(),
-            "CoveredDistance" | "Ready" => assert!(value.is_finite()),
-            other => unreachable!("{other}"),
+            Output::Done | Output::ProfileCompleted => flags.done = is_true,
+            Output::Busy => flags.busy = is_true,
+            Output::Active => flags.active = is_true,
+            Output::InVelocity | Output::InTorque | Output::InEndVelocity => flags.in_target = is_true,
+            Output::CommandAborted => flags.aborted = is_true,
+            Output::Error => flags.error = is_true,
+            Output::ErrorId => flags.error_id = value.to_bits(),
+            Output::CoveredDistance | Output::Ready => assert!(value.is_finite()),
+            other => unreachable!("{other:?}"),
         }
     });
     assert_eq!(block.error().is_some(), flags.error, "{} in words", B::NAME);

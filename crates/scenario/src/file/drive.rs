@@ -2,7 +2,6 @@
 use crate::field::{Either, EitherMeasure};
 use crate::list::{AutoTime, Share};
 use crate::object_table::ObjectTable;
-use crate::scenario::EffortFeedforward;
 use crate::simple::OneOf;
 use crate::table::table;
 use servobench_base::Rate;
@@ -13,6 +12,7 @@ use servobench_config::quantities::{
     RATIO, RESISTANCE, SOURCE_GAIN, STIFFNESS, TIME, TORQUE, VISCOUS, VOLT_GAIN, VOLTAGE,
 };
 use servobench_config::{any, not_negative, positive};
+use servobench_drive::EffortFeedforward;
 
 /// Which encoder closes the position loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,14 +26,6 @@ pub(crate) enum FeedbackEncoder {
 impl Choice for FeedbackEncoder {
     const ALL: &'static [(&'static str, Self, &'static str)] =
         &[("motor", Self::Motor, "the encoder on the motor"), ("load", Self::Load, "the encoder on the load")];
-}
-
-impl Choice for EffortFeedforward {
-    const ALL: &'static [(&'static str, Self, &'static str)] = &[
-        ("off", Self::Off, "none"),
-        ("rigid", Self::Rigid, "inertia and viscous friction of one body"),
-        ("two-mass", Self::TwoMass, "two bodies and a spring: velocity, acceleration, jerk and snap"),
-    ];
 }
 
 /// P or PI.

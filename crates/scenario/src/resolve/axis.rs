@@ -5,10 +5,11 @@ use crate::file;
 use crate::file::MotorKind;
 use crate::models::read_beside;
 use crate::resolve::need;
-use crate::scenario::{Axis, AxisMechanics, Body, BodySignal, Coupling, Fmu, HomeSwitch, Mjcf, Switches};
+use crate::scenario::{Axis, AxisMechanics, BodySignal, Fmu};
 use crate::source::{Sources, Span};
 use servobench_base::Coordinate;
 use servobench_config::quantities::EFFORT;
+use servobench_plant::{Body, Chain, DryFriction, Link, MjcfModel, Switches};
 use std::f64::consts::TAU;
 
 /// Inertia of a motor body that follows a prescribed motion: it does not matter, but engines want one.
@@ -34,7 +35,7 @@ pub(super) fn resolve(
                     "the MJCF file holds it, as `armature` for example",
                 );
             }
-            mjcf_file(mjcf, sources, report).map(AxisMechanics::Mjcf)
+            mjcf_file(mjcf, transmission.unwrap_or(1.0), sources, report).map(AxisMechanics::Mjcf)
         }
         None if axis.mjcf.span().is_some() => None,
         None if fmu.is_some() && !has_bodies(axis) => Some(AxisMechanics::InTheFmu),
@@ -127,7 +128,7 @@ fn switches(axis: &file::Axis, motor_motion: Coordinate, report: &mut Report) ->
         report.error(to.span, "the home switch ends at or below where it begins", "swap `from` and `to`");
     }
     let home = match home {
-        Some(home) => Some(HomeSwitch { from: *home.from.given()?, to: *home.to.given()? }),
+        Some(home) => Some(*home.from.given()?..=*home.to.given()?),
         None => None,
     };
     if let (false, Some(span)) = (turns, given.index.span()) {
@@ -136,7 +137,8 @@ fn switches(axis: &file::Axis, motor_motion: Coordinate, report: &mut Report) ->
     // Just below a full revolution rounding makes it one, which is none.
     let index = given.index.optional().ok()?.copied().unwrap_or(0.0).rem_euclid(TAU) % TAU;
     let [negative, positive] = ends;
-    Some(Switches { negative: negative.ok()?, positive: positive.ok()?, home, index: turns.then_some(index) })
+    let (negative, positive, index) = (negative.ok()?, positive.ok()?, turns.then_some(index));
+    Some(Switches { negative, positive, home, index, normally_closed: false })
 }
 
 fn has_bodies(axis: &file::Axis) -> bool {
@@ -153,7 +155,8 @@ fn no_bodies_besides(axis: &file::Axis, report: &mut Report) {
     }
 }
 
-fn mjcf_file(mjcf: &file::Mjcf, sources: &Sources, report: &mut Report) -> Option<Mjcf> {
+/// The file as engines take it, on an axis of this transmission.
+fn mjcf_file(mjcf: &file::Mjcf, transmission: f64, sources: &Sources, report: &mut Report) -> Option<MjcfModel> {
     let file = mjcf.file.at()?;
     let Some(place) = sources.place(file.span.source) else {
         report.error(file.span, "a scenario without a folder cannot name files", "");
@@ -168,15 +171,16 @@ fn mjcf_file(mjcf: &file::Mjcf, sources: &Sources, report: &mut Report) -> Optio
     };
     let text = |slot: &Slot<String>| slot.given().cloned();
     let (motor_joint, load_joint) = (text(&mjcf.motor_joint)?, text(&mjcf.load_joint)?);
-    Some(Mjcf { xml, path, motor_joint, load_joint, actuator: text(&mjcf.actuator)? })
+    let actuator = text(&mjcf.actuator)?;
+    Some(MjcfModel { xml, path, motor_joint, load_joint, actuator, transmission, axis: None })
 }
 
-/// Dry friction of one body and where it is written.
-struct Dry {
-    coulomb: f64,
-    breakaway: f64,
-    stribeck_velocity: f64,
-    span: Option<Span>,
+/// A body of the chain, and what couples it to the one before it.
+struct Placed {
+    body: Body,
+    link: Option<Link>,
+    /// Where its friction is written, or else the body.
+    span: Span,
 }
 
 fn bodies(
@@ -185,24 +189,25 @@ fn bodies(
     motor_motion: Coordinate,
     transmission: Option<f64>,
     report: &mut Report,
-) -> Option<Vec<Body>> {
-    let first = motor_side(axis, motor, motor_motion, report);
+) -> Option<Chain> {
+    let first = motor_side(axis, motor, motor_motion, transmission.unwrap_or(1.0), report);
     let others: Vec<_> = [("table", &axis.table), ("load", &axis.load)]
         .into_iter()
         .filter(|(_, slot)| slot.span().is_some())
         .map(|(name, slot)| slot.given().and_then(|body| self::body(name, body, axis.motion.given().copied(), report)))
         .collect();
-    let mut chain = vec![first?];
+    let (mut chain, mut links) = (vec![first?], Vec::new());
     for other in others {
-        let (other, span) = other?;
+        let Placed { body, link, span } = other?;
         let Some(last) = chain.last_mut() else { continue };
-        if other.coupling.is_some() {
-            chain.push(other);
+        if let Some(link) = link {
+            chain.push(body);
+            links.push(link);
         } else if last.name == "motor" {
-            merge(last, &other, transmission?, span, report);
+            merge(last, &body, transmission?, span, report);
         } else {
-            merge(last, &other, 1.0, span, report);
-            last.name = other.name;
+            merge(last, &body, 1.0, span, report);
+            last.name = body.name;
         }
     }
     if let Some(motor_body) = chain.first_mut().filter(|body| body.inertia == 0.0) {
@@ -216,30 +221,33 @@ fn bodies(
         }
         motor_body.inertia = PRESCRIBED_INERTIA;
     }
-    Some(chain)
+    // Every value is within its bound by now.
+    Chain::new(chain, links).ok()
 }
 
 /// The motor's body in its own coordinate, rotor included; without inertia when none is given.
-fn motor_side(axis: &file::Axis, motor: &file::Motor, motion: Coordinate, report: &mut Report) -> Option<Body> {
-    let rotor = inertia(&motor.mass, &motor.inertia, motion, "motor", report);
+fn motor_side(
+    axis: &file::Axis,
+    motor: &file::Motor,
+    coordinate: Coordinate,
+    transmission: f64,
+    report: &mut Report,
+) -> Option<Body> {
+    let rotor = inertia(&motor.mass, &motor.inertia, coordinate, "motor", report);
+    let free = |inertia| Body { transmission, ..free("motor", coordinate, inertia) };
     let Some(side) = axis.motor_side.given() else {
         return match axis.motor_side {
             Slot::Wrong(_) => None,
-            _ => Some(plain("motor", rotor?)),
+            _ => Some(free(rotor?)),
         };
     };
-    let own = inertia(&side.mass, &side.inertia, motion, "motor", report);
-    let dry = dry_friction(&side.coulomb, &side.breakaway, &side.stribeck_velocity, motion, report);
+    let own = inertia(&side.mass, &side.inertia, coordinate, "motor", report);
+    let dry = dry_friction(&side.coulomb, &side.breakaway, &side.stribeck_velocity, coordinate, report);
     let (viscous, bias, dry) = (or_zero(&side.viscous)?, or_zero(&side.bias)?, dry?);
-    Some(Body { viscous, bias, ..plain("motor", rotor? + own?) }.with_friction(&dry))
+    Some(Body { viscous, bias, dry, ..free(rotor? + own?) })
 }
 
-fn body(
-    name: &'static str,
-    body: &file::Body,
-    motion: Option<Coordinate>,
-    report: &mut Report,
-) -> Option<(Body, Span)> {
+fn body(name: &'static str, body: &file::Body, motion: Option<Coordinate>, report: &mut Report) -> Option<Placed> {
     let inertia = motion.and_then(|motion| inertia(&body.mass, &body.inertia, motion, "axis", report));
     if inertia == Some(0.0) {
         let key = if motion == Some(Coordinate::Rotary) { "inertia" } else { "mass" };
@@ -258,30 +266,16 @@ fn body(
     }
     let damping = or_zero(&body.damping);
     let stiffness = body.stiffness.optional().ok()?;
-    let coupling = stiffness.zip(damping).map(|(stiffness, damping)| Coupling { stiffness: *stiffness, damping });
+    let link = stiffness.zip(damping).map(|(stiffness, damping)| Link { stiffness: *stiffness, damping });
     damping?;
     let (viscous, bias, dry) = (or_zero(&body.viscous)?, or_zero(&body.bias)?, dry?);
-    let span = dry.span.unwrap_or(body.span);
-    Some((Body { coupling, viscous, bias, ..plain(name, inertia?) }.with_friction(&dry), span))
+    let span = body.breakaway.at().map_or(body.span, |at| at.span);
+    Some(Placed { body: Body { viscous, bias, dry, ..free(name, motion?, inertia?) }, link, span })
 }
 
-fn plain(name: &'static str, inertia: f64) -> Body {
-    Body {
-        name,
-        inertia,
-        coupling: None,
-        viscous: 0.0,
-        coulomb: 0.0,
-        breakaway: 0.0,
-        stribeck_velocity: 0.0,
-        bias: 0.0,
-    }
-}
-
-impl Body {
-    fn with_friction(self, dry: &Dry) -> Self {
-        Self { coulomb: dry.coulomb, breakaway: dry.breakaway, stribeck_velocity: dry.stribeck_velocity, ..self }
-    }
+/// A body without friction, in the axis coordinate.
+const fn free(name: &'static str, coordinate: Coordinate, inertia: f64) -> Body {
+    Body { name, coordinate, inertia, transmission: 1.0, viscous: 0.0, dry: DryFriction::NONE, bias: 0.0 }
 }
 
 /// Value of a key that is zero unless given.
@@ -309,9 +303,8 @@ fn dry_friction(
     stribeck_velocity: &Slot<f64>,
     motion: Coordinate,
     report: &mut Report,
-) -> Option<Dry> {
-    let given = breakaway.at();
-    if let (Some(sliding), Some(resting)) = (coulomb.at(), given)
+) -> Option<DryFriction> {
+    if let (Some(sliding), Some(resting)) = (coulomb.at(), breakaway.at())
         && resting.value < sliding.value
     {
         let unit = if motion == Coordinate::Linear { EFFORT.linear.unit } else { EFFORT.rotary.unit };
@@ -331,26 +324,27 @@ fn dry_friction(
     }
     let coulomb = or_zero(coulomb)?;
     let breakaway = breakaway.optional().ok()?.copied().unwrap_or(coulomb);
-    Some(Dry { coulomb, breakaway, stribeck_velocity: or_zero(stribeck_velocity)?, span: given.map(|at| at.span) })
+    Some(DryFriction { coulomb, breakaway, stribeck_velocity: or_zero(stribeck_velocity)? })
 }
 
 /// Adds a rigidly coupled body to the one before it, whose coordinate moves the axis by `ratio`.
 fn merge(into: &mut Body, body: &Body, ratio: f64, span: Span, report: &mut Report) {
-    let has_stribeck = |body: &Body| body.breakaway > body.coulomb;
-    let own_velocity = body.stribeck_velocity / ratio;
+    let has_stribeck = |body: &Body| body.dry.breakaway > body.dry.coulomb;
+    let own_velocity = body.dry.stribeck_velocity / ratio;
     // Two curves of different width do not add up to a third.
-    let differ = (into.stribeck_velocity - own_velocity).abs() > 1e-9 * into.stribeck_velocity.max(own_velocity);
+    let differ =
+        (into.dry.stribeck_velocity - own_velocity).abs() > 1e-9 * into.dry.stribeck_velocity.max(own_velocity);
     if has_stribeck(into) && has_stribeck(body) && differ {
         let message =
             format!("`{}` and `{}` are coupled rigidly but differ in Stribeck velocity", into.name, body.name);
         report.error(span, message, "give static friction on one of them, or a `stiffness` between them");
     }
     if has_stribeck(body) {
-        into.stribeck_velocity = own_velocity;
+        into.dry.stribeck_velocity = own_velocity;
     }
     into.inertia += ratio * ratio * body.inertia;
     into.viscous += ratio * ratio * body.viscous;
-    into.coulomb += ratio * body.coulomb;
-    into.breakaway += ratio * body.breakaway;
+    into.dry.coulomb += ratio * body.dry.coulomb;
+    into.dry.breakaway += ratio * body.dry.breakaway;
     into.bias += ratio * body.bias;
 }

@@ -10,9 +10,10 @@
 //! filter, a spring, only takes from that. Source: Åström, Wittenmark, *Computer-Controlled Systems*, 3rd ed., §3.2 (Jury).
 use crate::diagnostic::Report;
 use crate::file::File;
-use crate::scenario::{Actuator, CurrentGain};
+use crate::scenario::Actuator;
 use crate::source::Span;
-use servobench_base::Rate;
+use servobench_base::{Dq, Rate};
+use servobench_drive::current::Tuning;
 use std::f64::consts::{PI, TAU};
 
 /// A loop as far as its sampling goes.
@@ -37,29 +38,29 @@ const DOUBTFUL: f64 = 0.1;
 /// Doubts loops that are unstable on any axis, and those near it. They are not refused: a bench may show how a loop diverges.
 pub(super) fn check(file: &File, actuator: &Actuator, report: &mut Report) {
     let (Some(given), Some(drive)) = (file.drive.given(), actuator.drive()) else { return };
-    if let (Actuator::Pmsm { current, .. }, Some(keys)) = (actuator, given.current.given()) {
-        let (bandwidth, gain) = match current.gain {
-            CurrentGain::Bandwidth(bandwidth) => (bandwidth, None),
-            CurrentGain::PerAxis { d, q } => {
-                let [d, q] = [d / current.motor.inductance_d, q / current.motor.inductance_q];
+    let params = &drive.params;
+    if let (Some((current, rate)), Some(tuning), Some(keys)) =
+        (params.current_loop(), drive.current_tuning, given.current.given())
+    {
+        let (bandwidth, gain) = match tuning {
+            Tuning::Bandwidth(bandwidth) => (bandwidth, None),
+            Tuning::Gains(Dq { d, q }) => {
+                let [d, q] = [d / current.motor.inductance.d, q / current.motor.inductance.q];
                 if d > q { (d, keys.gain_d.span()) } else { (q, keys.gain_q.span()) }
             }
         };
         let places = vec![keys.bandwidth.span(), gain, keys.rate.span()];
         let (limit, limit_in_words) = (TAU, "rate/2π");
-        Sampled { name: "current", bandwidth, rate: current.rate, limit, limit_in_words, delay: 1.5, places }
-            .check(report);
+        Sampled { name: "current", bandwidth, rate, limit, limit_in_words, delay: 1.5, places }.check(report);
     }
-    let estimate = &drive.estimate;
-    // Inertia as the motor feels it, τ/α = r²·M.
-    let inertia = estimate.transmission * estimate.transmission * (estimate.motor_inertia + estimate.load_inertia);
+    let inertia = drive.estimate.inertia_at_the_motor();
     if let Some(keys) = given.velocity.given().filter(|_| inertia > 0.0) {
         let places = vec![keys.bandwidth.span(), keys.gain.span(), keys.rate.span()];
-        Sampled::cascaded("velocity", drive.velocity.gain / inertia, drive.velocity.rate, places).check(report);
+        Sampled::cascaded("velocity", params.velocity.k_p / inertia, params.velocity_rate(), places).check(report);
     }
     if let Some(keys) = given.position.given() {
         let places = vec![keys.bandwidth.span(), keys.gain.span(), keys.rate.span()];
-        Sampled::cascaded("position", drive.position.gain, drive.position.rate, places).check(report);
+        Sampled::cascaded("position", params.position_gain, params.position_rate(), places).check(report);
     }
 }
 

@@ -1,13 +1,13 @@
-//! A function block with its inputs.
-use crate::block::BlockName;
+//! The inputs of a function block, by what `servobench_plcopen` lists of them.
 use crate::diagnostic::Report;
 use crate::field::Slot;
-use crate::file::TableOfPoints;
-use crate::resolve::inputs::{Defaults, Inputs, either};
-use crate::resolve::keys::{LIMITS, Said};
+use crate::resolve::inputs::{Defaults, Inputs};
+use crate::resolve::keys::Said;
 use crate::resolve::profile;
-use crate::scenario::{Block, Braking, BufferMode, Command, Direction, Dynamics, Scales};
-use crate::source::{At, Sources, Span};
+use crate::source::{At, Sources};
+use servobench_plcopen::{
+    Absent, BlockInput, BlockName, Direction, Follow, Input, Pair, Table, Trigger, Value, program,
+};
 
 /// What blocks need to know of the rest of the file.
 pub(super) struct Context<'a> {
@@ -17,313 +17,195 @@ pub(super) struct Context<'a> {
 }
 
 impl Context<'_> {
-    /// The block `name` with the inputs `inputs`.
-    pub(super) fn block(
+    /// The inputs of `block` where a file gives `inputs`.
+    pub(super) fn inputs(
         &self,
-        name: BlockName,
+        block: BlockName,
         inputs: &Inputs<'_>,
         said: &mut Said,
         report: &mut Report,
-    ) -> Option<Block> {
-        let mut read = Reading { context: self, name, inputs, said, report };
-        match name {
-            BlockName::Power => {
-                let [positive, negative] = inputs.permissions.map(|slot| flag_or(slot, true));
-                Some(Block::Power { positive: positive?, negative: negative? })
+    ) -> Option<program::Inputs> {
+        let mut reading = Reading { context: self, block, inputs, said, report };
+        reading.warn_beyond_the_axis();
+        // Every mistake is said, so all of them are read before one counts.
+        let values: Vec<_> = block.inputs().iter().map(|own| (own.input, reading.value(own))).collect();
+        let mut found = program::Inputs::default();
+        for (input, value) in values {
+            if let Some(value) = value.ok()? {
+                found.set(input, value);
             }
-            BlockName::Reset => Some(Block::Reset),
-            BlockName::ReadStatus => Some(Block::ReadStatus),
-            BlockName::ReadAxisError => Some(Block::ReadAxisError),
-            BlockName::ReadActualPosition => Some(Block::ReadActualPosition),
-            BlockName::ReadActualVelocity => Some(Block::ReadActualVelocity),
-            BlockName::ReadActualTorque => Some(Block::ReadActualTorque),
-            BlockName::Home => {
-                Some(Block::Home { position: read.or("position", 0.0)?, buffer_mode: read.buffer_mode()? })
-            }
-            BlockName::Stop => read.braking().map(Block::Stop),
-            BlockName::Halt => Some(Block::Halt { braking: read.braking()?, buffer_mode: read.buffer_mode()? }),
-            BlockName::MoveAbsolute => {
-                let (position, direction, motion) = (read.required("position"), read.way(), read.motion("velocity"));
-                let (dynamics, command) = motion?;
-                Some(Block::MoveAbsolute { position: position?, direction: direction?, dynamics, command })
-            }
-            BlockName::MoveRelative => {
-                let (distance, motion) = (read.required("distance"), read.motion("velocity"));
-                let (dynamics, command) = motion?;
-                Some(Block::MoveRelative { distance: distance?, dynamics, command })
-            }
-            BlockName::MoveAdditive => {
-                let (distance, motion) = (read.required("distance"), read.motion("velocity"));
-                let (dynamics, command) = motion?;
-                Some(Block::MoveAdditive { distance: distance?, dynamics, command })
-            }
-            BlockName::MoveSuperimposed => {
-                let (distance, motion) = (read.required("distance"), read.motion("velocity_difference"));
-                let (dynamics, Command { continuous_update, .. }) = motion?;
-                Some(Block::MoveSuperimposed { distance: distance?, dynamics, continuous_update })
-            }
-            BlockName::MoveVelocity => read.move_velocity(),
-            BlockName::MoveContinuousAbsolute => read.move_continuous_absolute(),
-            BlockName::PositionProfile => read.position_profile(),
-            BlockName::VelocityProfile => {
-                let pairs = read.table().and_then(|table| profile::velocities(table, self.sources, read.report));
-                let scales = read.scales(&inputs.call.velocity_offset);
-                Some(Block::VelocityProfile { pairs: pairs?, scales: scales?, buffer_mode: read.buffer_mode()? })
-            }
-            BlockName::AccelerationProfile => {
-                let pairs = read.table().and_then(|table| profile::accelerations(table, self.sources, read.report));
-                let scales = read.scales(&inputs.call.acceleration_offset);
-                Some(Block::AccelerationProfile { pairs: pairs?, scales: scales?, buffer_mode: read.buffer_mode()? })
-            }
-            BlockName::SetPosition => {
-                let (position, relative) = (read.required("position"), flag(&inputs.call.relative));
-                Some(Block::SetPosition { position: position?, relative: relative? })
-            }
-            BlockName::SetOverride => {
-                let factors = ["velocity_factor", "acceleration_factor", "jerk_factor"];
-                let [velocity, acceleration, jerk] = factors.map(|name| read.or(name, 1.0));
-                Some(Block::SetOverride { factors: [velocity?, acceleration?, jerk?] })
-            }
-            BlockName::TorqueControl => read.torque_control(),
-            BlockName::Profile4th => read.generator(),
         }
+        reading.check_end_velocity(&found);
+        Some(found)
     }
 }
+
+/// What is wrong with an input has been said.
+struct Wrong;
 
 /// A block whose inputs are being read.
 struct Reading<'a, 'r> {
     context: &'a Context<'a>,
-    name: BlockName,
+    block: BlockName,
     inputs: &'a Inputs<'a>,
     said: &'r mut Said,
     report: &'r mut Report,
 }
 
-impl<'a> Reading<'a, '_> {
-    fn span(&self) -> Span {
-        self.inputs.call.span
-    }
-
-    /// A quantity that the call must have.
-    fn required(&mut self, name: &str) -> Option<f64> {
-        let slot = self.inputs.quantity(name);
-        if matches!(slot, Slot::Absent) {
-            let help = format!("{} needs it", self.name.name());
-            self.report.missing_with_help("call", name, self.span(), &help);
+impl Reading<'_, '_> {
+    /// The value of an input, or of the limit that counts instead; `None` where it is left to the block.
+    fn value(&mut self, own: &BlockInput) -> Result<Option<Value<Table<Vec<Pair>>>>, Wrong> {
+        let input = own.input;
+        if input == Input::Table {
+            return self.table(own).map(|table| Some(Value::Table(table)));
         }
-        slot.given().copied()
+        match own.absent {
+            Absent::Refused(why) => self.require(input, why),
+            Absent::Direction(Direction::Shortest) => self.warn_without_modulo(),
+            Absent::Direction(_) => self.refuse_shortest(),
+            Absent::Limit(limit) => return self.needed_limit(own, limit).map(Value::Number).map(Some).ok_or(Wrong),
+            Absent::LimitIfAny(limit) => return self.free_limit(input, limit).map(|limit| limit.map(Value::Number)),
+            Absent::Number(_) | Absent::Flag(_) | Absent::Aborting | Absent::As(_) => {}
+        }
+        if input == Input::ValueScale {
+            self.refuse_zero(input);
+        }
+        match self.inputs.slot(input) {
+            Slot::Given(At { value: Value::Number(number), .. }) => Ok(Some(Value::Number(*number))),
+            Slot::Given(At { value: Value::Flag(flag), .. }) => Ok(Some(Value::Flag(*flag))),
+            Slot::Given(At { value: Value::Direction(direction), .. }) => Ok(Some(Value::Direction(*direction))),
+            Slot::Given(At { value: Value::BufferMode(mode), .. }) => Ok(Some(Value::BufferMode(*mode))),
+            Slot::Absent if !matches!(own.absent, Absent::Refused(_)) => Ok(None),
+            Slot::Absent | Slot::Wrong(_) | Slot::Given(At { value: Value::Table(_), .. }) => Err(Wrong),
+        }
     }
 
-    /// A quantity that has a value when the call says nothing.
-    fn or(&self, name: &str, otherwise: f64) -> Option<f64> {
-        self.inputs.quantity(name).optional().ok().map(|value| value.copied().unwrap_or(otherwise))
+    /// An input that the call must have.
+    fn require(&mut self, input: Input, why: Option<&str>) {
+        if matches!(self.inputs.slot(input), Slot::Absent) {
+            let help = why.map_or_else(|| format!("{} needs it", self.block), str::to_owned);
+            self.report.missing_with_help("call", input.key(), self.inputs.header, &help);
+        }
     }
 
     /// A limit of the call or of `[setpoint]`.
-    fn limit(&self, name: &str) -> &'a Slot<f64> {
-        either(self.inputs.quantity(name), self.context.defaults.limit(name))
+    fn limit(&self, input: Input, limit: Input) -> Slot<f64> {
+        match self.inputs.number(input) {
+            Slot::Absent => self.context.defaults.limit(limit).clone(),
+            own => own,
+        }
     }
 
     /// A limit that one of both must have.
-    fn needed_limit(&mut self, name: &'static str) -> Option<f64> {
-        let slot = self.limit(name);
-        if matches!(slot, Slot::Absent) {
-            let help = format!("{} needs it, here or in the call", self.name.name());
-            self.said.missing(name, self.span(), &help, self.report);
+    fn needed_limit(&mut self, own: &BlockInput, limit: Input) -> Option<f64> {
+        let (input, header) = (own.input, self.inputs.header);
+        let slot = self.limit(input, limit);
+        if matches!(slot, Slot::Absent) && input == limit {
+            let help = format!("{} needs it, here or in the call", self.block);
+            self.said.missing(input.key(), header, &help, self.report);
+        } else if matches!(slot, Slot::Absent) {
+            let help = format!("or `{}` in `[setpoint]`", limit.key());
+            self.report.missing_with_help("call", input.key(), header, &help);
         }
-        slot.given().copied()
-    }
-
-    /// A limit that may be left out; the call and `[setpoint]` then have none.
-    fn free_limit(&self, name: &str) -> Option<f64> {
-        self.limit(name).optional().ok().map(|limit| limit.copied().unwrap_or(f64::INFINITY))
-    }
-
-    /// Limits of jerk and snap. One of snap needs one of jerk.
-    fn jerk_and_snap(&mut self) -> Option<[f64; 2]> {
-        let [jerk, snap] = [self.free_limit("jerk")?, self.free_limit("snap")?];
-        if let (true, Some(span)) = (jerk.is_infinite() && snap.is_finite(), self.limit("snap").span()) {
-            let say = |report: &mut Report| report.error(span, "a limit of snap needs one of jerk", "give `jerk` too");
-            self.said.once(span, say, self.report);
-            return None;
-        }
-        Some([jerk, snap])
-    }
-
-    /// The input `velocity` or `velocity_difference`.
-    fn velocity(&mut self, name: &'static str) -> Option<f64> {
-        let is_magnitude = self.name != BlockName::MoveVelocity;
-        let most = if name == LIMITS[0] { self.needed_limit(name) } else { self.required(name) };
-        if let (true, Some(..=0.0), Some(span)) = (is_magnitude, most, self.inputs.quantity(name).span()) {
-            let message = format!("`{name}` of {} must be above zero", self.name.name());
+        let value = slot.given().copied();
+        if let (Some(value), Some(span)) = (value, self.inputs.slot(input).span())
+            && !own.bound.holds(value)
+        {
+            let message = format!("`{}` of {} must be {}", input.key(), self.block, own.bound);
             self.report.error(span, message, "the target says in which direction");
         }
-        self.warn_beyond_the_axis();
-        most
+        value
     }
 
-    /// Velocity, which is the input `velocity`, and what leads to it; and how the motion begins.
-    fn motion(&mut self, velocity: &'static str) -> Option<(Dynamics, Command)> {
-        let most = self.velocity(velocity);
-        let acceleration = self.needed_limit("acceleration");
-        let deceleration = self.inputs.quantity("deceleration").optional().ok();
-        let (jerk_and_snap, command) = (self.jerk_and_snap(), self.command());
-        let acceleration = acceleration?;
-        let deceleration = deceleration?.copied().unwrap_or(acceleration);
-        let [jerk, snap] = jerk_and_snap?;
-        Some((Dynamics { velocity: most?, acceleration, deceleration, jerk, snap }, command?))
+    /// A limit that may be left out; the call and `[setpoint]` then have none. One of snap needs one of jerk.
+    fn free_limit(&mut self, input: Input, limit: Input) -> Result<Option<f64>, Wrong> {
+        let slot = self.limit(input, limit);
+        if let (Input::Snap, Some(At { span, .. }), Slot::Absent) =
+            (input, slot.at(), self.limit(Input::Jerk, Input::Jerk))
+        {
+            let span = *span;
+            let say = |report: &mut Report| report.error(span, "a limit of snap needs one of jerk", "give `jerk` too");
+            self.said.once(span, say, self.report);
+            return Err(Wrong);
+        }
+        slot.optional().map(Option::<&f64>::copied).map_err(|_| Wrong)
     }
 
     /// A block refuses what is beyond the limits of its axis.
     fn warn_beyond_the_axis(&mut self) {
-        let both = LIMITS.map(|name| (name, name)).into_iter().chain([("deceleration", "acceleration")]);
-        for (input, limit) in both {
-            let (Some(own), Some(most)) =
-                (self.inputs.quantity(input).at(), self.context.defaults.limit(limit).given())
-            else {
-                continue;
-            };
+        let is_limited = self.block.inputs().iter().any(|own| matches!(own.absent, Absent::Limit(_)));
+        if !is_limited || self.block.trigger() != Trigger::Execute {
+            return;
+        }
+        let limits = [Input::Velocity, Input::Acceleration, Input::Jerk, Input::Snap].map(|input| (input, input));
+        for (input, limit) in limits.into_iter().chain([(Input::Deceleration, Input::Acceleration)]) {
+            let own = self.inputs.number(input);
+            let (Some(own), Some(most)) = (own.at(), self.context.defaults.limit(limit).given()) else { continue };
             if own.value.abs() > *most {
-                let message = format!("beyond the `{limit}` of `[setpoint]`, {most} in SI: the block will refuse it");
+                let key = limit.key();
+                let message = format!("beyond the `{key}` of `[setpoint]`, {most} in SI: the block will refuse it");
                 let say = |report: &mut Report| report.warning(own.span, message, "lower it or raise that");
                 self.said.once(own.span, say, self.report);
             }
         }
     }
 
-    fn braking(&mut self) -> Option<Braking> {
-        self.warn_beyond_the_axis();
-        let own = self.inputs.quantity("deceleration");
-        let slot = either(own, self.context.defaults.limit("acceleration"));
-        if matches!(slot, Slot::Absent) {
-            let help = "or `acceleration` in `[setpoint]`";
-            self.report.missing_with_help("call", "deceleration", self.span(), help);
-        }
-        let jerk_and_snap = self.jerk_and_snap();
-        let [jerk, snap] = jerk_and_snap?;
-        Some(Braking { deceleration: *slot.given()?, jerk, snap })
-    }
-
-    fn command(&self) -> Option<Command> {
-        let continuous_update = flag(&self.inputs.call.continuous_update)?;
-        Some(Command { buffer_mode: self.buffer_mode()?, continuous_update })
-    }
-
-    fn buffer_mode(&self) -> Option<BufferMode> {
-        self.inputs.call.buffer_mode.optional().ok().map(|mode| mode.copied().unwrap_or_default())
-    }
-
-    /// Which way round a modulo axis.
-    fn way(&mut self) -> Option<Direction> {
-        if let (false, Some(span)) = (self.context.is_modulo, self.inputs.direction.span()) {
+    /// Which way round: there are two on a modulo axis only.
+    fn warn_without_modulo(&mut self) {
+        if let (false, Some(span)) = (self.context.is_modulo, self.inputs.slot(Input::Direction).span()) {
             let message = "`direction` is ignored: on an axis with ends one way leads to a position";
             let help = "give the period `modulo` in `[axis]`, or leave it out";
             self.said.once(span, |report| report.warning(span, message, help), self.report);
         }
-        self.inputs.direction.optional().ok().map(|way| way.copied().unwrap_or(Direction::Shortest))
     }
 
-    /// Direction of a velocity or torque beside its sign.
-    fn sign(&mut self) -> Option<Direction> {
-        let given = self.inputs.direction.optional().ok()?.copied().unwrap_or(Direction::Positive);
-        if let (Direction::Shortest, Some(span)) = (given, self.inputs.direction.span()) {
-            let message = format!("{} does not go this way", self.name.name());
-            self.report.error(span, message, "write \"positive\", \"negative\" or \"current\"");
-        }
-        Some(given)
-    }
-
-    /// The table of a profile.
-    fn table(&mut self) -> Option<&'a At<TableOfPoints>> {
-        let call = self.inputs.call;
-        if matches!(call.table, Slot::Absent) {
-            self.report.missing_with_help("call", "table", call.span, &format!("{} needs it", self.name.name()));
-        }
-        call.table.at()
-    }
-
-    /// What becomes of the pairs of the table, to which `offset` is added.
-    fn scales(&mut self, offset: &Slot<f64>) -> Option<Scales> {
-        let call = self.inputs.call;
-        if let Some(zero) = call.value_scale.at().filter(|scale| scale.value == 0.0) {
-            self.report.error(zero.span, "`value_scale` must not be 0", "leave it out, or give a factor");
-        }
-        let or = |slot: &Slot<f64>, otherwise| slot.optional().ok().map(|value| value.copied().unwrap_or(otherwise));
-        Some(Scales { time: or(&call.time_scale, 1.0)?, value: or(&call.value_scale, 1.0)?, offset: or(offset, 0.0)? })
-    }
-
-    fn move_velocity(&mut self) -> Option<Block> {
-        let (direction, motion) = (self.sign(), self.motion("velocity"));
-        let (dynamics, command) = motion?;
-        let velocity = dynamics.velocity;
-        let dynamics = Dynamics { velocity: velocity.abs(), ..dynamics };
-        Some(Block::MoveVelocity { velocity, direction: direction?, dynamics, command })
-    }
-
-    fn move_continuous_absolute(&mut self) -> Option<Block> {
-        let (position, end_velocity) = (self.required("position"), self.required("end_velocity"));
-        let (direction, motion) = (self.way(), self.motion("velocity"));
-        let (dynamics, command) = motion?;
-        let (position, end_velocity, direction) = (position?, end_velocity?, direction?);
-        if let (true, Some(span)) =
-            (end_velocity.abs() > dynamics.velocity, self.inputs.quantity("end_velocity").span())
+    /// A velocity or torque has no shortest way to it.
+    fn refuse_shortest(&mut self) {
+        if let Slot::Given(At { value: Value::Direction(Direction::Shortest), span }) =
+            self.inputs.slot(Input::Direction)
         {
-            let message = format!("beyond the velocity limit, {} in SI", dynamics.velocity);
+            let message = format!("{} does not go this way", self.block);
+            self.report.error(*span, message, "write \"positive\", \"negative\" or \"current\"");
+        }
+    }
+
+    fn refuse_zero(&mut self, input: Input) {
+        if let Some(zero) = self.inputs.number(input).at().filter(|scale| scale.value == 0.0) {
+            let message = format!("`{}` must not be 0", input.key());
+            self.report.error(zero.span, message, "leave it out, or give a factor");
+        }
+    }
+
+    /// The velocity at a target is one that the block may have.
+    fn check_end_velocity(&mut self, inputs: &program::Inputs) {
+        let [end, most] = [Input::EndVelocity, Input::Velocity].map(|input| inputs.number(input));
+        if let (Some(end), Some(most), Some(span)) = (end, most, self.inputs.slot(Input::EndVelocity).span())
+            && end.abs() > most
+        {
+            let message = format!("beyond the velocity limit, {most} in SI");
             self.report.error(span, message, "lower it or raise `velocity`");
         }
-        Some(Block::MoveContinuousAbsolute { position, end_velocity, direction, dynamics, command })
     }
 
-    fn torque_control(&mut self) -> Option<Block> {
-        let (torque, torque_ramp) = (self.required("torque"), self.or("torque_ramp", f64::INFINITY));
-        let (direction, velocity, command) = (self.sign(), self.velocity("velocity"), self.command());
-        Some(Block::TorqueControl {
-            torque: torque?,
-            torque_ramp: torque_ramp?,
-            velocity: velocity?,
-            direction: direction?,
-            command: command?,
-        })
-    }
-
-    fn position_profile(&mut self) -> Option<Block> {
-        let table = self.table()?;
-        let follow = profile::follow(table, self.report);
-        let pairs = profile::positions(table, self.context.sources, self.report);
-        let scales = self.scales(&self.inputs.call.position_offset);
-        Some(Block::PositionProfile {
-            pairs: pairs?,
-            scales: scales?,
-            is_relative: flag(&table.value.relative)?,
-            follow: follow?,
-            end_velocity: self.or("end_velocity", 0.0)?,
-            buffer_mode: self.buffer_mode()?,
-        })
-    }
-
-    fn generator(&mut self) -> Option<Block> {
-        let position = self.required("position");
-        let limits = LIMITS.map(|name| self.needed_limit(name));
-        let call = self.inputs.call;
-        if matches!(call.settling_time, Slot::Absent) {
-            let help = "from the end of a profile until the block is ready for the next";
-            self.report.missing_with_help("call", "settling_time", call.span, help);
+    /// The table of a profile: what is added to its values says what they are.
+    fn table(&mut self, own: &BlockInput) -> Result<Table<Vec<Pair>>, Wrong> {
+        if let Absent::Refused(why) = own.absent {
+            self.require(own.input, why);
         }
-        let [velocity, acceleration, jerk, snap] = limits;
-        Some(Block::Profile4th {
-            position: position?,
-            limits: [velocity?, acceleration?, jerk?, snap?],
-            settling_time: *call.settling_time.given()?,
-            reversed: flag(&call.reversed)?,
-        })
+        let Slot::Given(At { value: Value::Table(table), .. }) = self.inputs.slot(own.input) else { return Err(Wrong) };
+        let sources = self.context.sources;
+        let has = |input| self.block.input(input).is_some();
+        if has(Input::VelocityOffset) {
+            let pairs = profile::velocities(table, sources, self.report);
+            return Ok(Table { pairs: pairs.ok_or(Wrong)?, is_relative: false, follow: Follow::Spline });
+        }
+        if has(Input::AccelerationOffset) {
+            let pairs = profile::accelerations(table, sources, self.report);
+            return Ok(Table { pairs: pairs.ok_or(Wrong)?, is_relative: false, follow: Follow::Spline });
+        }
+        let follow = profile::follow(table, self.report);
+        let pairs = profile::positions(table, sources, self.report);
+        let is_relative = table.value.relative.optional().map_err(|_| Wrong)?.copied().unwrap_or(false);
+        Ok(Table { pairs: pairs.ok_or(Wrong)?, is_relative, follow: follow.ok_or(Wrong)? })
     }
-}
-
-/// Something that is not so unless the call says it.
-fn flag(slot: &Slot<bool>) -> Option<bool> {
-    flag_or(slot, false)
-}
-
-fn flag_or(slot: &Slot<bool>, otherwise: bool) -> Option<bool> {
-    slot.optional().ok().map(|value| value.copied().unwrap_or(otherwise))
 }

@@ -4,11 +4,11 @@ use crate::field::Slot;
 use crate::file;
 use crate::file::File;
 use crate::resolve::{bus_fault, mode, need, refuse, whole};
-use crate::scenario::{
-    Actuator, Bus, BusMode, Counter, Drive, DriveUnits, EffortFeedforward, Feedback, ObjectWrite, Sequencing, Step,
-};
+use crate::scenario::{Actuator, Bus, BusMode, Counter, Drive, DriveUnits, Feedback, ObjectWrite, Sequencing, Step};
 use crate::source::At;
 use servobench_base::{Coordinate, Rate};
+use servobench_drive::EffortFeedforward;
+use servobench_drive::feedforward::Model;
 use servobench_motion::interpolate::Mode as InterpolationMode;
 use std::f64::consts::TAU;
 
@@ -155,7 +155,7 @@ fn margin(given: &file::Bus, cycles: Option<(u32, u32)>, known: &Known<'_>, repo
 fn refuse_fast_cycle(given: &file::Bus, cycle: Option<u32>, known: &Known<'_>, report: &mut Report) {
     let (Some(cycle), Some(span), Some(base_rate)) = (cycle, given.cycle.span(), known.base_rate) else { return };
     let Some(drive) = known.actuator.and_then(Actuator::drive) else { return };
-    let rate = drive.position.rate;
+    let rate = drive.params.position_rate();
     if u64::from(cycle) * u64::from(rate.hertz()) < u64::from(base_rate.hertz()) {
         let message = format!("the bus is faster than the position loop of the drive, {} Hz", rate.hertz());
         report.error(span, message, "give a longer `cycle`, or a higher `rate` in `[drive.position]`");
@@ -204,10 +204,10 @@ fn effort_offset(given: &file::Bus, actuator: Option<&Actuator>, report: &mut Re
 
 /// Master and drive may both feed forward; together it is too much.
 fn warn_of_what_is_added_twice(given: &file::Bus, actuator: Option<&Actuator>, report: &mut Report) {
-    let Some(feedforward) = actuator.and_then(Actuator::drive).map(|drive| &drive.feedforward) else { return };
+    let Some(feedforward) = actuator.and_then(Actuator::drive).map(|drive| &drive.params.feedforward) else { return };
     let velocity = given.velocity_offset.at().filter(|at| at.value && feedforward.velocity > 0.0);
     let effort = given.effort_offset.at().filter(|at| at.value != EffortFeedforward::Off);
-    let effort = effort.filter(|_| feedforward.effort != EffortFeedforward::Off);
+    let effort = effort.filter(|_| feedforward.model != Model::Off);
     for (what, key, span) in [
         ("the velocity", "velocity", velocity.map(|at| at.span)),
         ("the torque or force", "effort", effort.map(|at| at.span)),

@@ -1,13 +1,14 @@
 //! When something happens: references to outputs of calls, and what can never happen.
-use crate::block::BlockName;
+use crate::block::conditions;
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
 use crate::nearest::suggestion;
 use crate::resolve::{Way, one_way};
-use crate::scenario::{Condition, Output};
 use crate::source::{At, Span};
 use crate::when::When;
+use servobench_plcopen::program::Condition;
+use servobench_plcopen::{BlockName, Output};
 
 /// A call as others refer to it.
 #[derive(Debug)]
@@ -95,17 +96,17 @@ impl Context<'_> {
             report.error(text.span, format!("there is no call `{name}`"), help);
             return None;
         };
-        let interface = self.instances[call].block?.interface();
-        let found = output.and_then(|output| interface.outputs.iter().find(|own| own.name() == output));
+        let block = self.instances[call].block?;
+        let found = output.and_then(|output| conditions(block).find(|own| own.name() == output));
         if found.is_none() {
             let message = match output {
-                Some(output) => format!("{} has no output `{output}`", interface.name),
+                Some(output) => format!("{block} has no output `{output}`"),
                 None => format!("`{name}` is a call: name one of its outputs"),
             };
-            let outputs: Vec<_> = interface.outputs.iter().map(|output| output.name()).collect();
+            let outputs: Vec<_> = conditions(block).map(Output::name).collect();
             report.error(text.span, message, format!("its outputs are {}", outputs.join(", ")));
         }
-        found.map(|output| (call, *output))
+        found.map(|output| (call, output))
     }
 }
 

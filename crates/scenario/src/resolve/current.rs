@@ -6,16 +6,17 @@ use crate::file;
 use crate::resolve::drive::Known;
 use crate::resolve::motor::Motor;
 use crate::resolve::{Way, need, one_way, task_rate};
-use crate::scenario::CurrentGain;
 use crate::source::Span;
-use servobench_base::Rate;
+use servobench_base::{Dq, Rate};
+use servobench_drive::current::Tuning;
 
 /// What the file says of the loop.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Tuning {
+pub(super) struct CurrentLoop {
     pub(super) rate: Rate,
-    pub(super) gain: CurrentGain,
-    pub(super) integral_time: Option<(f64, f64)>,
+    pub(super) tuning: Tuning,
+    /// Integral times (s).
+    pub(super) integral_times: Option<Dq>,
     /// Reference of the d axis (A, peak).
     pub(super) d_reference: f64,
 }
@@ -26,8 +27,8 @@ pub(super) fn resolve(
     known: &Known<'_>,
     is_used: bool,
     report: &mut Report,
-) -> Result<Option<Tuning>, Reported> {
-    if matches!(known.motor, Some(Motor::IdealSource(_))) {
+) -> Result<Option<CurrentLoop>, Reported> {
+    if matches!(known.motor, Some(Motor::IdealSource { .. })) {
         if let Some(span) = drive.current.span() {
             report.warning(span, "the current loop is not used: an ideal source has no current", "");
         }
@@ -43,15 +44,15 @@ pub(super) fn resolve(
     let (path, header) = ("drive.current", given.span);
     need(&given.rate, path, "rate", header, report);
     let rate = task_rate(&given.rate, known.base_rate, report);
-    let gain = gain(given, path, report);
+    let tuning = tuning(given, path, report);
     let times = [("integral_time_d", &given.integral_time_d), ("integral_time_q", &given.integral_time_q)];
-    let integral_time = if times.iter().any(|(_, slot)| slot.span().is_some()) {
+    let integral_times = if times.iter().any(|(_, slot)| slot.span().is_some()) {
         Some(pair(times[0], times[1], path, header, report)?)
     } else {
         None
     };
     let d_reference = d_reference(&given.d_reference, known, report)?;
-    Ok(Some(Tuning { rate: rate.ok_or(Reported)?, gain: gain?, integral_time, d_reference }))
+    Ok(Some(CurrentLoop { rate: rate.ok_or(Reported)?, tuning: tuning?, integral_times, d_reference }))
 }
 
 /// It must leave the q axis some current, and the motor some torque.
@@ -61,7 +62,7 @@ fn d_reference(slot: &Slot<f64>, known: &Known<'_>, report: &mut Report) -> Resu
         Slot::Wrong(_) => return Err(Reported),
         Slot::Given(at) => at,
     };
-    let Some(Motor::Pmsm { motor, max_current }) = known.motor else { return Ok(at.value) };
+    let Some(Motor::Pmsm { motor, max_current, .. }) = known.motor else { return Ok(at.value) };
     if at.value.abs() >= *max_current {
         let message = format!(
             "`d_reference` of {:.5} A (peak) leaves nothing of the current limit, {max_current:.5} A",
@@ -70,7 +71,7 @@ fn d_reference(slot: &Slot<f64>, known: &Known<'_>, report: &mut Report) -> Resu
         report.error(at.span, message, "`motor.max_current` bounds the vector of both axes; give less");
         return Err(Reported);
     }
-    if motor.effort_constant_at(at.value) <= 0.0 {
+    if motor.effort_constant(at.value) <= 0.0 {
         let message =
             format!("at a d-axis current of {:.5} A (peak) the motor has no torque in its direction", at.value);
         report.error(at.span, message, "ψ + (L_d − L_q)·i_d must be above 0; give less");
@@ -79,13 +80,12 @@ fn d_reference(slot: &Slot<f64>, known: &Known<'_>, report: &mut Report) -> Resu
     Ok(at.value)
 }
 
-fn gain(given: &file::Current, path: &str, report: &mut Report) -> Result<CurrentGain, Reported> {
+fn tuning(given: &file::Current, path: &str, report: &mut Report) -> Result<Tuning, Reported> {
     let by_gain = given.gain_d.span().or(given.gain_q.span());
     match one_way(&[("bandwidth", given.bandwidth.span()), ("gain_d", by_gain)], report) {
-        Way::Use(0) => given.bandwidth.given().copied().map(CurrentGain::Bandwidth).ok_or(Reported),
+        Way::Use(0) => given.bandwidth.given().copied().map(Tuning::Bandwidth).ok_or(Reported),
         Way::Use(_) => {
-            let (d, q) = pair(("gain_d", &given.gain_d), ("gain_q", &given.gain_q), path, given.span, report)?;
-            Ok(CurrentGain::PerAxis { d, q })
+            pair(("gain_d", &given.gain_d), ("gain_q", &given.gain_q), path, given.span, report).map(Tuning::Gains)
         }
         Way::Contradiction => Err(Reported),
         Way::None => {
@@ -102,8 +102,8 @@ fn pair(
     path: &str,
     header: Span,
     report: &mut Report,
-) -> Result<(f64, f64), Reported> {
+) -> Result<Dq, Reported> {
     let d = need(d, path, d_key, header, report);
     let q = need(q, path, q_key, header, report);
-    d.zip(q).ok_or(Reported)
+    d.zip(q).map(|(d, q)| Dq { d, q }).ok_or(Reported)
 }

@@ -25,7 +25,7 @@ impl Fixed {
     /// Of an axis whose motion is prescribed.
     pub(super) fn of(axis: Option<&Axis>) -> Self {
         let has_one_body = axis.is_some_and(|axis| match &axis.mechanics {
-            AxisMechanics::Bodies(bodies) => bodies.len() == 1,
+            AxisMechanics::Bodies(chain) => chain.bodies().len() == 1,
             AxisMechanics::Mjcf(mjcf) => mjcf.motor_joint == mjcf.load_joint,
             AxisMechanics::InTheFmu => false,
         });

@@ -7,8 +7,11 @@ use crate::list::{AutoTime, Share};
 use crate::resolve::estimate::{self, Belief};
 use crate::resolve::motor::{Motor, resolution};
 use crate::resolve::{current, loops, need};
-use crate::scenario::{Actuator, Axis, CurrentLoop, Drive, EffortFeedforward, Feedback, Feedforward, q_current};
+use crate::scenario::{Actuator, Axis, Drive, Feedback};
 use servobench_base::Rate;
+use servobench_drive::current::{Gains, q_current, voltage_limit};
+use servobench_drive::{EffortFeedforward, Estimate, Params, Stage, delay, feedforward};
+use servobench_plant::pmsm;
 
 /// The parts that are known by now.
 pub(super) struct Known<'a> {
@@ -16,9 +19,6 @@ pub(super) struct Known<'a> {
     pub(super) axis: Option<&'a Axis>,
     pub(super) motor: Option<&'a Motor>,
 }
-
-const NO_FEEDFORWARD: Feedforward =
-    Feedforward { velocity: 0.0, interpolate: true, effort: EffortFeedforward::Off, friction: false, delay: None };
 
 pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Option<Actuator> {
     let given = match &file.drive {
@@ -34,20 +34,22 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
     if let (Some(estimates), Some(motor)) = (estimates, known.motor) {
         estimate::check_motor(estimates, motor, report);
     }
-    let tuning = current::resolve(given, known, is_used, report);
-    let current_rate = tuning.as_ref().ok().copied().flatten().map(|tuning| tuning.rate);
+    let current_loop = current::resolve(given, known, is_used, report);
+    let described = current_loop.as_ref().ok().copied().flatten();
     let belief = match (known.axis, file.axis.given()) {
         (Some(axis), Some(written)) => estimate::of_axis(estimates, written, axis, report),
         _ => None,
     };
     let gain = match known.motor {
-        Some(Motor::IdealSource(source)) => estimate::or_true(estimates, |given| &given.gain, source.gain),
+        Some(Motor::IdealSource { source, .. }) => estimate::or_true(estimates, |given| &given.gain, source.gain),
         _ => 1.0,
     };
-    let d_reference = tuning.as_ref().ok().copied().flatten().map_or(0.0, |tuning| tuning.d_reference);
+    let d_reference = described.map_or(0.0, |described| described.d_reference);
     let max_effort = max_effort(given, known.motor, &Source { gain, d_reference }, report);
-    let knowledge = loops::Knowledge { base_rate: known.base_rate, motor: known.motor, belief: belief.as_ref(), gain };
-    let velocity = loops::velocity(given, &knowledge, current_rate, is_used, report);
+    let belief_of = belief.as_ref();
+    let knowledge =
+        loops::Knowledge { base_rate: known.base_rate, motor: known.motor, belief: belief_of, max_effort, gain };
+    let velocity = loops::velocity(given, &knowledge, described.map(|described| described.rate), is_used, report);
     let velocity_rate = velocity.as_ref().map(|velocity| velocity.rate);
     let position = loops::position(given, known.base_rate, velocity_rate, is_used, report);
     let position_feedback = position_feedback(given, report);
@@ -56,37 +58,106 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
         check_feedforward(given, belief, feedforward.effort, report);
     }
 
-    let drive = || {
-        Some(Drive {
-            max_effort: max_effort?,
-            velocity: velocity?,
-            position: position?,
-            position_feedback: position_feedback?,
-            feedforward: feedforward?,
-            estimate: belief?.estimate,
-        })
-    };
-    match known.motor? {
-        Motor::Prescribed => Some(Actuator::Prescribed),
-        _ if !enabled => Some(Actuator::Off),
-        Motor::Pmsm { motor, max_current } => {
-            let (current::Tuning { rate, gain, integral_time, d_reference }, dc_link) =
-                (tuning.ok().flatten()?, dc_link?);
-            let current = CurrentLoop {
-                rate,
-                gain,
-                integral_time,
-                d_reference,
-                max_current: *max_current,
-                motor: estimate::of_motor(estimates, motor),
-                dc_link: estimate::or_true(estimates, |given| &given.dc_link, dc_link),
-            };
-            Some(Actuator::Pmsm { motor: motor.clone(), dc_link, current, drive: drive()? })
+    let (stage, current_tuning) = match known.motor? {
+        Motor::Prescribed => return Some(Actuator::Prescribed),
+        _ if !enabled => return Some(Actuator::Off),
+        Motor::Pmsm { motor, max_current, .. } => {
+            let (described, dc_link, base_rate) = (described?, dc_link?, known.base_rate?);
+            let params = current_params(&described, estimates, (motor, *max_current, dc_link));
+            (Stage::Current { params, every: base_rate.divider(described.rate).ok()? }, Some(described.tuning))
         }
-        Motor::IdealSource(source) => {
-            Some(Actuator::IdealSource { source: source.clone(), estimated_gain: gain, drive: drive()? })
+        Motor::IdealSource { .. } => (Stage::Direct { gain }, None),
+    };
+    let parts = Parts {
+        base_rate: known.base_rate?,
+        velocity: velocity?,
+        position: position?,
+        feedforward: feedforward?,
+        stage,
+        is_sent: is_sent(file),
+    };
+    let (position_feedback, estimate) = (position_feedback?, belief?.estimate);
+    let params = params(given, parts, &estimate, report)?;
+    let drive = Drive { params, position_feedback, estimate, current_tuning };
+    match known.motor? {
+        Motor::Prescribed => None,
+        Motor::Pmsm { motor, encoder, .. } => {
+            Some(Actuator::Pmsm { motor: *motor, encoder: *encoder, dc_link: dc_link?, drive })
+        }
+        Motor::IdealSource { source, encoder } => {
+            Some(Actuator::IdealSource { source: *source, encoder: *encoder, drive })
         }
     }
+}
+
+/// Whether the master sends an effort that is to be met by the reference, as that of the drive's own feedforward is.
+fn is_sent(file: &File) -> bool {
+    let offset = file.bus.given().and_then(|bus| bus.effort_offset.given());
+    offset.is_some_and(|offset| *offset != EffortFeedforward::Off)
+}
+
+/// The current loop on a motor of which the file says this, with its largest current (A) and DC link (V).
+fn current_params(
+    described: &current::CurrentLoop,
+    estimates: Option<&file::Estimate>,
+    (motor, max_current, dc_link): (&pmsm::Params, f64, f64),
+) -> servobench_drive::current::Params {
+    let motor = estimate::of_motor(estimates, motor);
+    let believed_dc_link = estimate::or_true(estimates, |given| &given.dc_link, dc_link);
+    servobench_drive::current::Params {
+        motor,
+        gains: Gains::tuned(&motor, described.tuning, described.integral_times),
+        d_reference: described.d_reference,
+        max_current,
+        max_voltage: voltage_limit(believed_dc_link),
+    }
+}
+
+/// What the firmware consists of.
+struct Parts {
+    base_rate: Rate,
+    velocity: loops::VelocityLoop,
+    position: loops::PositionLoop,
+    feedforward: Feedforward,
+    stage: Stage,
+    /// Whether the master sends an effort.
+    is_sent: bool,
+}
+
+/// The firmware of these parts, which believes the axis to be `estimate`.
+fn params(drive: &file::Drive, parts: Parts, estimate: &Estimate, report: &mut Report) -> Option<Params> {
+    let Parts { base_rate, velocity, position, feedforward, stage, is_sent } = parts;
+    let compensated = |value: f64| if feedforward.friction { value } else { 0.0 };
+    let mut params = Params {
+        base_rate,
+        transmission: estimate.transmission,
+        position_gain: position.gain,
+        position_every: base_rate.divider(position.rate).ok()?,
+        velocity: velocity.params,
+        velocity_every: base_rate.divider(velocity.rate).ok()?,
+        velocity_filter_time: velocity.filter_time,
+        feedforward: feedforward::Params {
+            velocity: feedforward.velocity,
+            interpolate: feedforward.interpolate,
+            model: estimate.model(feedforward.effort),
+            coulomb: compensated(estimate.coulomb),
+            bias: compensated(estimate.bias),
+        },
+        reference_delay: delay::Params::default(),
+        stage,
+    };
+    // Without effort feedforward, the drive's own or the master's, there is nothing to wait for.
+    let is_waited_for = feedforward.effort != EffortFeedforward::Off || is_sent;
+    let path = if is_waited_for { params.effort_path_delay() } else { 0.0 };
+    match delay::Params::new(feedforward.delay.unwrap_or(path), params.period(params.position_every)) {
+        Ok(delay) => params.reference_delay = delay,
+        Err(why) => {
+            let span = drive.feedforward.given().and_then(|feedforward| feedforward.delay.span());
+            report.error(span.unwrap_or(drive.span), why.to_string(), "");
+            return None;
+        }
+    }
+    Some(params)
 }
 
 /// Without `[drive]`: right for a prescribed motion only.
@@ -116,8 +187,8 @@ struct Source {
 /// Largest effort the motor can give (motor coordinate) at the d-axis current `i_d` (A).
 fn strength(motor: &Motor, i_d: f64) -> f64 {
     match motor {
-        Motor::Pmsm { motor, max_current } => motor.effort_constant_at(i_d) * q_current(*max_current, i_d),
-        Motor::IdealSource(source) => source.gain * source.limit,
+        Motor::Pmsm { motor, max_current, .. } => motor.effort_constant(i_d) * q_current(*max_current, i_d),
+        Motor::IdealSource { source, .. } => source.gain * source.limit,
         Motor::Prescribed => f64::INFINITY,
     }
 }
@@ -136,7 +207,7 @@ fn max_effort(drive: &file::Drive, motor: Option<&Motor>, used: &Source, report:
     }
     let motor = motor?;
     let available = match motor {
-        Motor::IdealSource(source) => used.gain * source.limit,
+        Motor::IdealSource { source, .. } => used.gain * source.limit,
         Motor::Pmsm { .. } | Motor::Prescribed => f64::INFINITY,
     };
     let strength = strength(motor, used.d_reference);
@@ -183,6 +254,21 @@ fn position_feedback(drive: &file::Drive, report: &mut Report) -> Option<Feedbac
         }
     }
 }
+
+/// What the file says of the feedforward.
+struct Feedforward {
+    /// Share of the reference velocity that is fed forward, 0 to 1.
+    velocity: f64,
+    interpolate: bool,
+    effort: EffortFeedforward,
+    /// Whether estimated Coulomb friction and bias are fed forward too.
+    friction: bool,
+    /// How long the reference waits for the feedforward path (s); `None`: as long as the effort path takes.
+    delay: Option<f64>,
+}
+
+const NO_FEEDFORWARD: Feedforward =
+    Feedforward { velocity: 0.0, interpolate: true, effort: EffortFeedforward::Off, friction: false, delay: None };
 
 fn feedforward(drive: &file::Drive) -> Option<Feedforward> {
     let Some(given) = drive.feedforward.optional().ok()? else { return Some(NO_FEEDFORWARD) };

@@ -3,9 +3,12 @@ use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
 use crate::resolve::motor::Motor;
-use crate::scenario::{Axis, AxisMechanics, Body, Coupling, Estimate, MotorEstimate, Pmsm, SourceOutput};
+use crate::scenario::{Axis, AxisMechanics};
 use crate::source::Span;
 use servobench_base::Coordinate;
+use servobench_drive::Estimate;
+use servobench_drive::current::MotorEstimate;
+use servobench_plant::{Chain, SourceOutput, pmsm};
 use std::f64::consts::TAU;
 
 /// The estimate and whether it holds inertias at all: of a user's own MJCF file only what `[drive.estimate]` says is
@@ -27,7 +30,7 @@ pub(super) fn of_axis(
         None => axis.transmission,
     };
     let mut estimate = match &axis.mechanics {
-        AxisMechanics::Bodies(bodies) => two_masses(bodies, transmission),
+        AxisMechanics::Bodies(chain) => two_masses(chain, transmission),
         AxisMechanics::Mjcf(_) | AxisMechanics::InTheFmu => unknown(transmission),
     };
     if let Some(given) = given {
@@ -74,13 +77,14 @@ fn believed_transmission(
 }
 
 /// What the firmware believes of its synchronous motor.
-pub(super) fn of_motor(given: Option<&file::Estimate>, motor: &Pmsm) -> MotorEstimate {
-    let Pmsm { electrical_ratio, resistance, inductance_d, inductance_q, flux_linkage, .. } = *motor;
-    let mut estimate = MotorEstimate { electrical_ratio, resistance, inductance_d, inductance_q, flux_linkage };
+pub(super) fn of_motor(given: Option<&file::Estimate>, motor: &pmsm::Params) -> MotorEstimate {
+    // The firmware has its own copy of what the plant is: both may differ.
+    let pmsm::Params { electrical_ratio, resistance, inductance, flux_linkage } = *motor;
+    let mut estimate = MotorEstimate { electrical_ratio, resistance, inductance, flux_linkage };
     if let Some(given) = given.and_then(|given| given.motor.given()) {
         override_with(&given.resistance, &mut estimate.resistance);
-        override_with(&given.inductance_d, &mut estimate.inductance_d);
-        override_with(&given.inductance_q, &mut estimate.inductance_q);
+        override_with(&given.inductance_d, &mut estimate.inductance.d);
+        override_with(&given.inductance_q, &mut estimate.inductance.q);
         override_with(&given.flux_linkage, &mut estimate.flux_linkage);
     }
     estimate
@@ -103,10 +107,10 @@ pub(super) fn check_motor(given: &file::Estimate, motor: &Motor, report: &mut Re
         refuse(given.dc_link.span(), "there is no inverter whose DC link could be estimated");
     }
     match motor {
-        Motor::IdealSource(source) if source.output == SourceOutput::Effort => {
+        Motor::IdealSource { source, .. } if source.output == SourceOutput::Effort => {
             refuse(given.gain.span(), "the output of the source is its effort: there is no `gain` to estimate");
         }
-        Motor::IdealSource(_) => {}
+        Motor::IdealSource { .. } => {}
         Motor::Pmsm { .. } | Motor::Prescribed => {
             refuse(given.gain.span(), "there is no ideal source whose `gain` could be estimated");
         }
@@ -134,13 +138,11 @@ const fn unknown(transmission: f64) -> Estimate {
 
 /// The chain split at its softest coupling, all in the axis coordinate: an inertia J at the motor is J/r² there, a
 /// torque τ is τ/r.
-fn two_masses(bodies: &[Body], transmission: f64) -> Estimate {
-    let softest = bodies
-        .iter()
-        .enumerate()
-        .filter_map(|(i, body)| body.coupling.map(|Coupling { stiffness, .. }| (i, stiffness)))
-        .min_by(|(_, one), (_, two)| one.total_cmp(two));
-    let (split, stiffness) = softest.unwrap_or((bodies.len(), f64::INFINITY));
+fn two_masses(chain: &Chain, transmission: f64) -> Estimate {
+    let bodies = chain.bodies();
+    let links = (1..).zip(chain.links());
+    let softest = links.min_by(|(_, one), (_, two)| one.stiffness.total_cmp(&two.stiffness));
+    let (split, stiffness) = softest.map_or((bodies.len(), f64::INFINITY), |(split, link)| (split, link.stiffness));
     let mut estimate = Estimate { stiffness, ..unknown(transmission) };
     for (i, body) in bodies.iter().enumerate() {
         let r = if i == 0 { transmission } else { 1.0 };
@@ -151,7 +153,7 @@ fn two_masses(bodies: &[Body], transmission: f64) -> Estimate {
         };
         *inertia += body.inertia / (r * r);
         *viscous += body.viscous / (r * r);
-        estimate.coulomb += body.coulomb / r;
+        estimate.coulomb += body.dry.coulomb / r;
         estimate.bias += body.bias / r;
     }
     estimate

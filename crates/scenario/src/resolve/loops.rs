@@ -7,14 +7,30 @@ use crate::file::VelocityKind;
 use crate::resolve::estimate::Belief;
 use crate::resolve::motor::Motor;
 use crate::resolve::{Way, need, one_way, task_rate};
-use crate::scenario::{PositionLoop, VelocityLoop};
 use servobench_base::{Rate, RateError};
+use servobench_drive::velocity;
+
+/// A velocity loop.
+pub(super) struct VelocityLoop {
+    pub(super) rate: Rate,
+    pub(super) params: velocity::Params,
+    /// Time constant of the low-pass on the measured velocity (s).
+    pub(super) filter_time: f64,
+}
+
+/// A position loop: its rate and gain, `K_v` (1/s).
+pub(super) struct PositionLoop {
+    pub(super) rate: Rate,
+    pub(super) gain: f64,
+}
 
 /// What the gains follow from.
 pub(super) struct Knowledge<'a> {
     pub(super) base_rate: Option<Rate>,
     pub(super) motor: Option<&'a Motor>,
     pub(super) belief: Option<&'a Belief>,
+    /// Largest effort that the drive asks for.
+    pub(super) max_effort: Option<f64>,
     /// Effort per unit of output of an ideal source, as the drive believes.
     pub(super) gain: f64,
 }
@@ -37,9 +53,8 @@ pub(super) fn velocity(
     need(&given.rate, path, "rate", given.span, report);
     let rate = outer_rate(&given.rate, known.base_rate, current.map(|rate| ("current", rate)), report);
     // Inertia as the drive believes that the motor feels it, τ/α = r²·M.
-    let inertia = known.belief.filter(|belief| belief.knows_inertia).map(|Belief { estimate, .. }| {
-        estimate.transmission * estimate.transmission * (estimate.motor_inertia + estimate.load_inertia)
-    });
+    let known_inertia = known.belief.filter(|belief| belief.knows_inertia);
+    let inertia = known_inertia.map(|belief| belief.estimate.inertia_at_the_motor());
     let gain = match one_way(&[("bandwidth", given.bandwidth.span()), ("gain", given.gain.span())], report) {
         Way::Use(0) => {
             if known.belief.is_some() && inertia.is_none() {
@@ -58,7 +73,8 @@ pub(super) fn velocity(
     };
     let filter_time = given.filter_time.optional().ok().map(|time| time.copied().unwrap_or_default());
     let integral_time = integral_time(given, gain.zip(inertia).map(|(gain, inertia)| gain / inertia), report);
-    Some(VelocityLoop { rate: rate?, gain: gain?, integral_time: integral_time.ok()?, filter_time: filter_time? })
+    let params = velocity::Params { k_p: gain?, integral_time: integral_time.ok()?, max_effort: known.max_effort? };
+    Some(VelocityLoop { rate: rate?, params, filter_time: filter_time? })
 }
 
 fn velocity_gain(gain: &Slot<Either>, known: &Knowledge<'_>, report: &mut Report) -> Option<f64> {
@@ -66,7 +82,7 @@ fn velocity_gain(gain: &Slot<Either>, known: &Knowledge<'_>, report: &mut Report
     match (at.value, known.motor?) {
         (Either::First(gain), _) => Some(gain),
         // An amplifier in volts: the force per volt, as the drive knows it, makes it effort.
-        (Either::Second(volts), Motor::IdealSource(_)) => Some(volts * known.gain),
+        (Either::Second(volts), Motor::IdealSource { .. }) => Some(volts * known.gain),
         (Either::Second(_), _) => {
             report.error(at.span, "a gain in volts belongs to an ideal source", "give torque per velocity");
             None

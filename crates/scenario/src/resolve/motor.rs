@@ -1,12 +1,12 @@
 //! `[motor]`: one set of parameters from whichever a data sheet gives.
 use crate::diagnostic::Report;
 use crate::field::{Either, Slot};
-use servobench_base::Coordinate;
+use servobench_base::{Coordinate, Dq};
+use servobench_plant::{Encoder, IdealSource, SourceOutput, pmsm};
 
 use crate::file;
 use crate::file::MotorKind;
 use crate::resolve::{Way, need, one_way, refuse};
-use crate::scenario::{Encoder, IdealSource, Pmsm, SourceOutput};
 use crate::source::Span;
 use std::f64::consts::{PI, TAU};
 
@@ -16,10 +16,14 @@ const SQRT_3: f64 = 1.732_050_807_568_877_2;
 pub(super) enum Motor {
     /// A synchronous motor and its largest phase current, peak (A).
     Pmsm {
-        motor: Pmsm,
+        motor: pmsm::Params,
+        encoder: Encoder,
         max_current: f64,
     },
-    IdealSource(IdealSource),
+    IdealSource {
+        source: IdealSource,
+        encoder: Encoder,
+    },
     Prescribed,
 }
 
@@ -49,7 +53,7 @@ pub(super) fn resolve(motor: &file::Motor, report: &mut Report) -> Option<Motor>
         }
         MotorKind::IdealSource => {
             refuse(electrical, "belongs to a synchronous motor, this is an ideal source", "", report);
-            ideal_source(motor, encoder, report).map(Motor::IdealSource)
+            Some(Motor::IdealSource { source: ideal_source(motor, report)?, encoder: encoder? })
         }
         MotorKind::Prescribed => {
             let why = "means nothing for a motor that follows the set-point exactly";
@@ -68,16 +72,13 @@ fn pmsm(motor: &file::Motor, encoder: Option<Encoder>, report: &mut Report) -> O
     let inductances = inductances(motor, report);
     let flux_linkage = flux_linkage(motor, electrical_ratio, report);
     let max_current = need(&motor.max_current, "motor", "max_current", header, report);
-    let (inductance_d, inductance_q) = inductances?;
-    let motor = Pmsm {
+    let motor = pmsm::Params {
+        inductance: inductances?,
         electrical_ratio: electrical_ratio?,
         resistance: resistance?,
-        inductance_d,
-        inductance_q,
         flux_linkage: flux_linkage?,
-        encoder: encoder?,
     };
-    Some(Motor::Pmsm { motor, max_current: max_current? })
+    Some(Motor::Pmsm { motor, encoder: encoder?, max_current: max_current? })
 }
 
 /// Electrical angle per motor coordinate: pole pairs of a motor that turns, π/τ_p of a linear one.
@@ -107,15 +108,15 @@ fn electrical_ratio(motor: &file::Motor, report: &mut Report) -> Option<f64> {
     motor.pole_pitch.given().map(|pitch| PI / pitch)
 }
 
-fn inductances(motor: &file::Motor, report: &mut Report) -> Option<(f64, f64)> {
+fn inductances(motor: &file::Motor, report: &mut Report) -> Option<Dq> {
     let per_axis = motor.inductance_d.span().or(motor.inductance_q.span());
     match one_way(&[("inductance", motor.inductance.span()), ("inductance_d", per_axis)], report) {
-        Way::Use(0) => motor.inductance.given().map(|both| (*both, *both)),
+        Way::Use(0) => motor.inductance.given().map(|both| Dq { d: *both, q: *both }),
         Way::Contradiction => None,
         Way::Use(_) => {
             let d = need(&motor.inductance_d, "motor", "inductance_d", motor.span, report);
             let q = need(&motor.inductance_q, "motor", "inductance_q", motor.span, report);
-            d.zip(q)
+            d.zip(q).map(|(d, q)| Dq { d, q })
         }
         Way::None => {
             let help = "or `inductance_d` and `inductance_q`";
@@ -150,7 +151,7 @@ fn flux_linkage(motor: &file::Motor, electrical_ratio: Option<f64>, report: &mut
     }
 }
 
-fn ideal_source(motor: &file::Motor, encoder: Option<Encoder>, report: &mut Report) -> Option<IdealSource> {
+fn ideal_source(motor: &file::Motor, report: &mut Report) -> Option<IdealSource> {
     let gain = motor.gain.optional().ok()?.copied();
     let limit = match (&motor.limit, gain) {
         (Slot::Absent, _) => f64::INFINITY,
@@ -165,11 +166,11 @@ fn ideal_source(motor: &file::Motor, encoder: Option<Encoder>, report: &mut Repo
         },
     };
     let output = if gain.is_some() { SourceOutput::Voltage } else { SourceOutput::Effort };
-    Some(IdealSource { gain: gain.unwrap_or(1.0), output, limit, encoder: encoder? })
+    Some(IdealSource { gain: gain.unwrap_or(1.0), output, limit })
 }
 
 fn encoder(slot: &Slot<file::Encoder>, report: &mut Report) -> Option<Encoder> {
-    let Some(encoder) = slot.optional().ok()? else { return Some(Encoder { resolution: None }) };
+    let Some(encoder) = slot.optional().ok()? else { return Some(Encoder::default()) };
     resolution(&encoder.step, &encoder.counts_per_rev, report.motor, report)
 }
 
@@ -181,7 +182,7 @@ pub(super) fn resolution(
     report: &mut Report,
 ) -> Option<Encoder> {
     let ways = [("step", step.span()), ("counts_per_rev", counts_per_rev.span())];
-    let resolution = match one_way(&ways, report) {
+    let increment = match one_way(&ways, report) {
         Way::None => None,
         Way::Contradiction => return None,
         Way::Use(0) => Some(*step.given()?),
@@ -194,5 +195,5 @@ pub(super) fn resolution(
             Some(TAU / f64::from(counts.value))
         }
     };
-    Some(Encoder { resolution })
+    Some(Encoder { increment })
 }

@@ -1,5 +1,4 @@
 //! `[plc]` and `[[call]]`: the PLC program, and what it needs of the rest of the file.
-use crate::block::{BlockName, Trigger};
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
@@ -8,8 +7,10 @@ use crate::resolve::condition::{self, Instance};
 use crate::resolve::inputs::{Defaults, Inputs};
 use crate::resolve::keys::{Keys, Said};
 use crate::resolve::{block, refuse};
-use crate::scenario::{BufferMode, Call, Condition, Plc, Update};
+use crate::scenario::Plc;
 use crate::source::{At, Sources, Span};
+use servobench_plcopen::program::{Call, Condition, Update};
+use servobench_plcopen::{BlockName, BufferMode, Input, Trigger, Value};
 
 /// What the calls need to know of the rest of the file.
 pub(super) struct Known<'a> {
@@ -90,7 +91,7 @@ fn instances(calls: &[At<file::Call>], report: &mut Report) -> Vec<Instance> {
             }
             (None, Some(block)) => {
                 let before = instances.iter().filter(|instance| instance.block == Some(block)).count();
-                format!("{}_{before}", block.name())
+                format!("{block}_{before}")
             }
             (None, None) => String::new(),
         };
@@ -126,12 +127,13 @@ fn warn_of_refusals(calls: &[At<file::Call>], homing_required: bool, report: &mu
     }
     let is_blended = |call: &&At<file::Call>| {
         let modes = [BufferMode::Aborting, BufferMode::Buffered];
+        let mode = call.value.inputs.slot(Input::BufferMode).given();
         call.value.block.given() == Some(&BlockName::Home)
-            && call.value.buffer_mode.given().is_some_and(|mode| !modes.contains(mode))
+            && matches!(mode, Some(Value::BufferMode(mode)) if !modes.contains(mode))
     };
     for home in calls.iter().filter(is_blended) {
         let help = "write \"buffered\", or leave it out";
-        let span = home.value.buffer_mode.span().unwrap_or(home.value.span);
+        let span = home.value.inputs.slot(Input::BufferMode).span().unwrap_or(home.value.span);
         report.warning(span, "homing begins at Standstill and blends with nothing: MC_Home will refuse it", help);
     }
     let is_absolute = |call: &&At<file::Call>| {
@@ -174,12 +176,13 @@ fn call(
     if let Some(block) = block {
         inputs.refuse_others(block, report);
     }
-    let resolved = block.and_then(|block| reading.block(block, &inputs, said, report));
+    let resolved = block.and_then(|block| reading.inputs(block, &inputs, said, report));
     let updates = block.and_then(|block| updates(given, block, &inputs, reading, conditions, said, report));
     let call = || {
         let (start, stop, timeout) = (start?, stop?, timeout?);
         let is_optional = given.optional.optional().ok()?.copied().unwrap_or(false);
-        Some(Call { name: name.to_owned(), block: resolved?, start, stop, timeout, is_optional, updates: updates? })
+        let (name, block, inputs, updates) = (name.to_owned(), block?, resolved?, updates?);
+        Some(Call { name, block, inputs, start, stop, timeout, is_optional, updates })
     };
     (start, call())
 }
@@ -218,32 +221,28 @@ fn updates(
         let update = &update.value;
         let changes = Inputs::of_update(given, update);
         changes.refuse_others(block, report);
-        if changes.named().all(|(_, span)| span.is_none()) {
+        if changes.spans().next().is_none() {
             report.error(update.span, "this update changes nothing", "");
         }
         before = changes.or(&before);
-        let resolved = reading.block(block, &before, said, report);
+        let resolved = reading.inputs(block, &before, said, report);
         let when = update.when.at().and_then(|when| condition::resolve(when, conditions, report));
-        updates.push(when.zip(resolved).map(|(when, block)| Update { when, block }));
+        updates.push(when.zip(resolved).map(|(when, inputs)| Update { when, inputs }));
     }
     updates.into_iter().collect()
 }
 
 /// Inputs are latched at the rising edge of `Execute` unless `ContinuousUpdate` is TRUE (section 2.4 of the standard).
 fn refuse_updates(given: &file::Call, block: BlockName, span: Span, report: &mut Report) {
-    let interface = block.interface();
-    let help = if interface.trigger == Trigger::Enable {
-        if matches!(block, BlockName::SetOverride | BlockName::Power) {
-            return;
+    if block.follows_inputs() {
+        return;
+    }
+    let mut help = "";
+    if block.trigger() == Trigger::Execute && block.input(Input::ContinuousUpdate).is_some() {
+        match given.inputs.slot(Input::ContinuousUpdate) {
+            Slot::Given(At { value: Value::Flag(true), .. }) | Slot::Wrong(_) => return,
+            _ => help = "write `continuous_update = true`",
         }
-        ""
-    } else if interface.inputs.contains(&"continuous_update") {
-        if given.continuous_update.given() == Some(&true) || matches!(given.continuous_update, Slot::Wrong(_)) {
-            return;
-        }
-        "write `continuous_update = true`"
-    } else {
-        ""
-    };
-    report.error(span, format!("{} keeps the inputs that it was started with", interface.name), help);
+    }
+    report.error(span, format!("{block} keeps the inputs that it was started with"), help);
 }

@@ -4,9 +4,9 @@ use crate::file::TableOfPoints;
 use crate::points::{PointsError, Profile, read_accelerations, read_points, read_velocities};
 use crate::resolve::points;
 use crate::resolve::refuse;
-use crate::scenario::{Pair, ProfileFollow};
 use crate::source::{At, Sources};
 use servobench_planner::{Follow, FollowKind, VelocitiesKind};
+use servobench_plcopen::{Follow as ProfileFollow, Pair};
 
 /// Positions.
 pub(super) fn positions(table: &At<TableOfPoints>, sources: &Sources, report: &mut Report) -> Option<Vec<Pair>> {

@@ -25,7 +25,8 @@ pub(super) fn check(file: &File, actuator: &Actuator, report: &mut Report) {
     if slot.given().is_none() {
         return;
     }
-    let doubtful = drive.max_effort * (1.0 - ROUNDING)..=drive.max_effort * OVERSHOOT;
+    let max_effort = drive.params.velocity.max_effort;
+    let doubtful = max_effort * (1.0 - ROUNDING)..=max_effort * OVERSHOOT;
     let steps = file.program.given().map_or(&[][..], |program| &program.0);
     let tables = steps.iter().map(|step| &step.value.limits).chain([&file.limits]);
     for limit in tables.filter_map(Slot::given).flat_map(|LimitTable(limits)| limits) {

@@ -1,6 +1,7 @@
 //! What moves the axis: the part of the plant that a drive commands, and the drive that goes with it.
-use super::drive::{CurrentLoop, Drive};
-use super::motor::{IdealSource, Pmsm};
+use super::drive::Drive;
+use servobench_drive::Stage;
+use servobench_plant::{Encoder, IdealSource, pmsm};
 
 /// What moves the axis, and what commands that.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,11 +13,11 @@ pub enum Actuator {
     /// A permanent-magnet synchronous motor on an averaged inverter.
     Pmsm {
         /// The motor.
-        motor: Pmsm,
+        motor: pmsm::Params,
+        /// Encoder on the motor.
+        encoder: Encoder,
         /// DC-link voltage of the inverter (V).
         dc_link: f64,
-        /// Current loop of the drive.
-        current: CurrentLoop,
         /// The drive.
         drive: Drive,
     },
@@ -24,8 +25,8 @@ pub enum Actuator {
     IdealSource {
         /// The source.
         source: IdealSource,
-        /// Effort per unit of output as the drive knows it.
-        estimated_gain: f64,
+        /// Encoder on the motor.
+        encoder: Encoder,
         /// The drive.
         drive: Drive,
     },
@@ -44,11 +45,7 @@ impl Actuator {
     /// Largest effort reference (N·m or N): the drive's effort limit, or what its current limit leaves of it.
     #[must_use]
     pub fn max_effort(&self) -> f64 {
-        match self {
-            Self::Prescribed | Self::Off => f64::INFINITY,
-            Self::Pmsm { current, drive, .. } => drive.max_effort.min(current.max_effort()),
-            Self::IdealSource { drive, .. } => drive.max_effort,
-        }
+        self.drive().map_or(f64::INFINITY, |drive| drive.params.max_effort())
     }
 
     /// Largest effort that the drive knows of (N·m or N): its limit, or what an ideal source's output leaves of it. A
@@ -56,7 +53,10 @@ impl Actuator {
     #[must_use]
     pub fn rated_effort(&self) -> Option<f64> {
         let rated = match self {
-            Self::IdealSource { source, estimated_gain, drive } => drive.max_effort.min(estimated_gain * source.limit),
+            Self::IdealSource { source, drive, .. } => match drive.params.stage {
+                Stage::Direct { gain } => self.max_effort().min(gain * source.limit),
+                Stage::Current { .. } => self.max_effort(),
+            },
             Self::Prescribed | Self::Off | Self::Pmsm { .. } => self.max_effort(),
         };
         rated.is_finite().then_some(rated)

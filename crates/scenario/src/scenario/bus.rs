@@ -1,5 +1,5 @@
 //! The fieldbus between the motion task and the drive, and what goes wrong on it.
-use super::drive::EffortFeedforward;
+use servobench_drive::EffortFeedforward;
 use servobench_motion::interpolate::Mode as InterpolationMode;
 use std::ops::Range;
 

@@ -3,6 +3,8 @@ use servobench_base::{Rate, Setpoint};
 use servobench_motion::online::Target;
 use servobench_motion::shape::Shaper;
 use servobench_planner::{Averages, Generator, Request, Shaping};
+use servobench_plcopen::program::{Condition, Inputs};
+use servobench_plcopen::{Absent, BlockName, Input, InputType, Pair, Value};
 use servobench_scenario::*;
 
 /// Every number is finite and on its side of zero, or infinite where that has a meaning.
@@ -12,27 +14,23 @@ pub(crate) fn check(scenario: &Scenario) {
     optional("duration", scenario.duration);
     assert!(scenario.duration.is_none_or(|duration| duration <= LONGEST_RUN));
     positive("transmission", axis.transmission);
-    if let AxisMechanics::Bodies(bodies) = &axis.mechanics {
-        assert!((1..=3).contains(&bodies.len()) && bodies[0].name == "motor" && bodies[0].coupling.is_none());
-        bodies.iter().for_each(body);
-        for body in &bodies[1..] {
-            coupling(body.coupling.expect("only the motor has no coupling"));
-        }
+    if let AxisMechanics::Bodies(chain) = &axis.mechanics {
+        assert!((1..=3).contains(&chain.bodies().len()) && chain.bodies()[0].name == "motor");
+        assert_eq!(chain.check(), Ok(()));
     }
     match actuator {
         Actuator::Prescribed | Actuator::Off => {}
-        Actuator::Pmsm { motor, dc_link, current, drive } => {
-            pmsm(motor);
+        Actuator::Pmsm { motor, encoder, dc_link, drive } => {
+            assert_eq!((motor.check(), encoder.check()), (Ok(()), Ok(())));
             positive("dc_link", *dc_link);
-            self::current(current, *base_rate);
+            assert!(drive.params.current_loop().is_some() && drive.current_tuning.is_some());
             self::drive(drive, *base_rate);
-            assert!(current.rate.divider(drive.velocity.rate).is_ok(), "{:?} in {:?}", drive.velocity, current.rate);
         }
-        Actuator::IdealSource { source, estimated_gain, drive } => {
+        Actuator::IdealSource { source, encoder, drive } => {
             positive("gain", source.gain);
-            positive("estimated gain", *estimated_gain);
             limit("limit", source.limit);
-            resolution(&source.encoder);
+            assert_eq!(encoder.check(), Ok(()));
+            assert!(drive.params.current_loop().is_none() && drive.current_tuning.is_none());
             self::drive(drive, *base_rate);
         }
     }
@@ -67,71 +65,11 @@ pub(crate) fn check(scenario: &Scenario) {
     }
 }
 
-fn body(body: &Body) {
-    positive("inertia", body.inertia);
-    not_negative("viscous", body.viscous);
-    not_negative("coulomb", body.coulomb);
-    finite("breakaway", body.breakaway);
-    assert!(body.breakaway >= body.coulomb, "{body:?}");
-    not_negative("stribeck_velocity", body.stribeck_velocity);
-    finite("bias", body.bias);
-}
-
-fn coupling(coupling: Coupling) {
-    positive("stiffness", coupling.stiffness);
-    not_negative("damping", coupling.damping);
-}
-
-fn pmsm(motor: &Pmsm) {
-    positive("electrical_ratio", motor.electrical_ratio);
-    positive("resistance", motor.resistance);
-    positive("inductance_d", motor.inductance_d);
-    positive("inductance_q", motor.inductance_q);
-    positive("flux_linkage", motor.flux_linkage);
-    resolution(&motor.encoder);
-}
-
-fn resolution(encoder: &Encoder) {
-    optional("resolution", encoder.resolution);
-}
-
-fn current(current: &CurrentLoop, base_rate: Rate) {
-    divides(current.rate, base_rate);
-    match current.gain {
-        CurrentGain::Bandwidth(bandwidth) => positive("bandwidth", bandwidth),
-        CurrentGain::PerAxis { d, q } => {
-            positive("gain, d", d);
-            positive("gain, q", q);
-        }
-    }
-    if let Some((d, q)) = current.integral_time {
-        positive("integral time, d", d);
-        positive("integral time, q", q);
-    }
-    positive("max_current", current.max_current);
-    positive("estimated dc_link", current.dc_link);
-    let MotorEstimate { electrical_ratio, resistance, inductance_d, inductance_q, flux_linkage } = current.motor;
-    positive("estimated electrical_ratio", electrical_ratio);
-    positive("estimated resistance", resistance);
-    positive("estimated inductance_d", inductance_d);
-    positive("estimated inductance_q", inductance_q);
-    positive("estimated flux_linkage", flux_linkage);
-}
-
 fn drive(drive: &Drive, base_rate: Rate) {
-    limit("max_effort", drive.max_effort);
-    let VelocityLoop { rate, gain, integral_time, filter_time } = drive.velocity;
-    divides(rate, base_rate);
-    not_negative("velocity gain", gain);
-    optional("integral_time", integral_time);
-    not_negative("filter_time", filter_time);
-    divides(drive.position.rate, rate);
-    not_negative("position gain", drive.position.gain);
+    assert_eq!((drive.params.check(), drive.params.base_rate), (Ok(()), base_rate));
     if let Feedback::Load(encoder) = &drive.position_feedback {
-        resolution(encoder);
+        assert_eq!(encoder.check(), Ok(()));
     }
-    assert!((0.0..=1.0).contains(&drive.feedforward.velocity));
-    not_negative("delay", drive.feedforward.delay.unwrap_or_default());
     let estimate = &drive.estimate;
     positive("estimated transmission", estimate.transmission);
     not_negative("motor_inertia", estimate.motor_inertia);
@@ -215,12 +153,11 @@ fn generator(generator: &Generator) -> usize {
 }
 
 fn switches(axis: &Axis) {
-    let Switches { negative, positive, home, index } = axis.switches;
-    for end in [negative, positive].into_iter().flatten() {
-        finite("switch", end);
-    }
+    let switches = &axis.switches;
+    assert_eq!((switches.check(), switches.normally_closed), (Ok(()), false));
+    let (negative, positive, index) = (switches.negative, switches.positive, switches.index);
     assert!(negative.zip(positive).is_none_or(|(negative, positive)| negative < positive));
-    assert!(home.is_none_or(|home| home.from < home.to));
+    assert!(switches.home.as_ref().is_none_or(|home| home.start() < home.end()));
     assert!(index.is_none_or(|index| (0.0..std::f64::consts::TAU).contains(&index)));
     assert_eq!(index.is_some(), axis.motor_motion == servobench_base::Coordinate::Rotary);
 }
@@ -249,10 +186,9 @@ fn plc(plc: &Plc) {
             self::condition(condition, plc);
         }
         limit("timeout", call.timeout);
-        let same = |update: &Update| std::mem::discriminant(&update.block) == std::mem::discriminant(&call.block);
-        assert!(!call.name.is_empty() && call.updates.iter().all(same));
-        for block in [&call.block].into_iter().chain(call.updates.iter().map(|update| &update.block)) {
-            self::block(block);
+        assert!(!call.name.is_empty());
+        for inputs in [&call.inputs].into_iter().chain(call.updates.iter().map(|update| &update.inputs)) {
+            self::inputs(call.block, inputs);
         }
     }
 }
@@ -269,72 +205,35 @@ fn condition(condition: Condition, plc: &Plc) {
     }
 }
 
-fn block(block: &Block) {
-    match block {
-        Block::MoveAbsolute { dynamics, .. }
-        | Block::MoveRelative { dynamics, .. }
-        | Block::MoveAdditive { dynamics, .. }
-        | Block::MoveSuperimposed { dynamics, .. }
-        | Block::MoveContinuousAbsolute { dynamics, .. } => {
-            positive("velocity", dynamics.velocity);
-            self::dynamics(dynamics);
-        }
-        Block::TorqueControl { torque, torque_ramp, velocity, .. } => {
-            finite("torque", *torque);
-            limit("torque_ramp", *torque_ramp);
-            positive("velocity", *velocity);
-        }
-        Block::MoveVelocity { velocity, dynamics, .. } => {
-            assert_eq!(velocity.abs().to_bits(), dynamics.velocity.to_bits());
-            not_negative("velocity", dynamics.velocity);
-            self::dynamics(dynamics);
-        }
-        Block::Stop(braking) | Block::Halt { braking, .. } => positive("deceleration", braking.deceleration),
-        Block::PositionProfile { pairs, scales, end_velocity, .. } => {
-            self::pairs(pairs);
-            self::scales(scales);
-            finite("end_velocity", *end_velocity);
-        }
-        Block::VelocityProfile { pairs, scales, .. } | Block::AccelerationProfile { pairs, scales, .. } => {
-            self::pairs(pairs);
-            self::scales(scales);
-        }
-        Block::SetOverride { factors } => factors.iter().for_each(|factor| not_negative("factor", *factor)),
-        Block::Profile4th { limits, settling_time, .. } => {
-            for limit in limits {
-                positive("limit", *limit);
+/// What a block needs is there, and each value is on its side of zero.
+fn inputs(block: BlockName, inputs: &Inputs) {
+    for own in block.inputs() {
+        let is_needed = matches!(own.absent, Absent::Refused(_) | Absent::Limit(_));
+        match (inputs.get(own.input), own.input.value_type()) {
+            (Some(Value::Number(number)), InputType::Quantity(measure)) => {
+                finite(own.input.key(), *number);
+                assert!(measure.bound.holds(*number) && own.bound.holds(*number), "{own:?}: {number}");
             }
-            positive("settling_time", *settling_time);
+            (Some(Value::Table(table)), InputType::Table) => pairs(&table.pairs),
+            (Some(Value::Flag(_)), InputType::Flag)
+            | (Some(Value::Direction(_)), InputType::Direction)
+            | (Some(Value::BufferMode(_)), InputType::BufferMode) => {}
+            (None, _) => assert!(!is_needed, "{block}: {own:?}"),
+            (Some(other), _) => panic!("{block}: {own:?} is {other:?}"),
         }
-        Block::Home { position, .. } | Block::SetPosition { position, .. } => finite("position", *position),
-        Block::Power { .. }
-        | Block::Reset
-        | Block::ReadStatus
-        | Block::ReadAxisError
-        | Block::ReadActualPosition
-        | Block::ReadActualVelocity
-        | Block::ReadActualTorque => {}
+    }
+    assert!(inputs.number(Input::ValueScale) != Some(0.0), "{inputs:?}");
+    if let (Some(velocity), true) = (inputs.number(Input::Velocity), block != BlockName::MoveVelocity) {
+        positive("velocity", velocity);
+    }
+    if inputs.number(Input::Snap).is_some() {
+        assert!(inputs.number(Input::Jerk).is_some(), "{inputs:?}");
     }
 }
 
 fn pairs(pairs: &[Pair]) {
     assert!(pairs.len() >= 2 && pairs[0].delta_time >= 0.0);
     assert!(pairs[1..].iter().all(|pair| pair.delta_time > 0.0 && pair.value.is_finite()));
-}
-
-fn scales(scales: &Scales) {
-    positive("time_scale", scales.time);
-    finite("value_scale", scales.value);
-    assert!(scales.value != 0.0, "{scales:?}");
-    finite("offset", scales.offset);
-}
-
-fn dynamics(dynamics: &Dynamics) {
-    positive("acceleration", dynamics.acceleration);
-    positive("deceleration", dynamics.deceleration);
-    limit("jerk", dynamics.jerk);
-    limit("snap", dynamics.snap);
-    assert!(dynamics.jerk.is_finite() || dynamics.snap.is_infinite(), "{dynamics:?}");
 }
 
 fn finite(what: &str, value: f64) {

@@ -3,8 +3,8 @@ use crate::coupled::replaces_the_drive;
 use crate::error::BuildError;
 use crate::power::PowerStage;
 use servobench_base::{Dq, Rotation};
-use servobench_plant::{self as plant, BodyState, Chain, Encoder, Engine, Mechanics, MechanicsSetup, Switches, pmsm};
-use servobench_scenario::{self as scenario, Actuator, EngineName, Scenario};
+use servobench_plant::{self as plant, BodyState, Chain, Engine, Mechanics, MechanicsSetup, Switches, pmsm};
+use servobench_scenario::{Actuator, AxisMechanics, EngineName, Scenario};
 use std::sync::Arc;
 
 /// The mechanics at tick 0 and the names of its bodies.
@@ -25,30 +25,20 @@ pub(super) fn mechanics(
         let setup = MechanicsSetup { model, drive, step: scenario.base_rate.period(), initial: Vec::new() };
         return Ok((engine.build(&setup)?, names));
     }
-    let (model, names) = match &scenario.axis.mechanics {
-        scenario::AxisMechanics::Bodies(bodies) => {
-            let names: Vec<String> = bodies.iter().map(|body| body.name.to_owned()).collect();
-            (plant::Model::Chain(chain(&scenario.axis, bodies)?), names)
+    let (model, names): (_, Vec<&str>) = match &scenario.axis.mechanics {
+        AxisMechanics::Bodies(chain) => {
+            let names = chain.bodies().iter().map(|body| body.name).collect();
+            (plant::Model::Chain(checked(chain)?), names)
         }
-        scenario::AxisMechanics::InTheFmu => return Err(BuildError::OnlyAnFmu { engine: engine.name() }),
-        scenario::AxisMechanics::Mjcf(mjcf) => {
-            let model = plant::MjcfModel {
-                xml: mjcf.xml.clone(),
-                path: mjcf.path.clone(),
-                motor_joint: mjcf.motor_joint.clone(),
-                load_joint: mjcf.load_joint.clone(),
-                actuator: mjcf.actuator.clone(),
-                transmission: scenario.axis.transmission,
-                axis: Some(plant::MjcfAxis {
-                    motor: scenario.axis.motor_motion,
-                    load: scenario.axis.motion,
-                    max_effort: max_effort(scenario),
-                }),
-            };
-            let names = if model.motor_joint == model.load_joint { &["motor"][..] } else { &["motor", "load"] };
-            (plant::Model::Mjcf(model), names.iter().map(|name| (*name).to_owned()).collect())
+        AxisMechanics::InTheFmu => return Err(BuildError::OnlyAnFmu { engine: engine.name() }),
+        AxisMechanics::Mjcf(mjcf) => {
+            let (motor, load) = (scenario.axis.motor_motion, scenario.axis.motion);
+            let axis = Some(plant::MjcfAxis { motor, load, max_effort: max_effort(scenario) });
+            let names = if mjcf.motor_joint == mjcf.load_joint { vec!["motor"] } else { vec!["motor", "load"] };
+            (plant::Model::Mjcf(plant::MjcfModel { axis, ..mjcf.clone() }), names)
         }
     };
+    let names: Vec<String> = names.into_iter().map(str::to_owned).collect();
     let mut initial = vec![BodyState::default(); names.len()];
     if let Some(load) = initial.last_mut() {
         *load = BodyState { position: scenario.initial.load_position, velocity: scenario.initial.load_velocity };
@@ -70,43 +60,15 @@ fn max_effort(scenario: &Scenario) -> f64 {
     }
 }
 
-pub(crate) fn chain(axis: &scenario::Axis, bodies: &[scenario::Body]) -> Result<Chain, BuildError> {
-    let links = bodies
-        .iter()
-        .filter_map(|body| body.coupling)
-        .map(|coupling| plant::Link { stiffness: coupling.stiffness, damping: coupling.damping })
-        .collect();
-    let bodies = bodies
-        .iter()
-        .enumerate()
-        .map(|(i, body)| plant::Body {
-            name: body.name,
-            coordinate: if i == 0 { axis.motor_motion } else { axis.motion },
-            inertia: body.inertia,
-            transmission: if i == 0 { axis.transmission } else { 1.0 },
-            viscous: body.viscous,
-            dry: plant::DryFriction {
-                coulomb: body.coulomb,
-                breakaway: body.breakaway,
-                stribeck_velocity: body.stribeck_velocity,
-            },
-            bias: body.bias,
-        })
-        .collect();
-    Ok(Chain::new(bodies, links)?)
+/// The chain, which may have been changed since it was made.
+pub(crate) fn checked(chain: &Chain) -> Result<Chain, BuildError> {
+    chain.check()?;
+    Ok(chain.clone())
 }
 
-pub(super) fn encoder(encoder: scenario::Encoder) -> Result<Encoder, BuildError> {
-    let encoder = Encoder { increment: encoder.resolution };
-    encoder.check()?;
-    Ok(encoder)
-}
-
-pub(super) fn switches(scenario: &scenario::Scenario) -> Result<Switches, BuildError> {
-    let scenario::Switches { negative, positive, home, index } = scenario.axis.switches;
-    let home = home.map(|home| home.from..=home.to);
+pub(super) fn switches(scenario: &Scenario) -> Result<Switches, BuildError> {
     let normally_closed = scenario.bus.as_ref().is_some_and(|bus| bus.reverse_switches);
-    let switches = Switches { negative, positive, home, index, normally_closed };
+    let switches = Switches { normally_closed, ..scenario.axis.switches.clone() };
     switches.check()?;
     Ok(switches)
 }
@@ -118,10 +80,9 @@ pub(super) fn power_stage(actuator: &Actuator, speed: f64, h: f64) -> Result<Pow
         Actuator::Prescribed | Actuator::Off => Ok(PowerStage::Off),
         Actuator::IdealSource { source, .. } => Ok(PowerStage::Ideal { gain: source.gain, limit: source.limit }),
         Actuator::Pmsm { motor, dc_link, .. } => {
-            let params = synchronous_motor(motor);
-            params.check()?;
+            motor.check()?;
             Ok(PowerStage::Pmsm {
-                motor: Arc::new(pmsm::Ticks::new(params, h)),
+                motor: Arc::new(pmsm::Ticks::new(*motor, h)),
                 state: pmsm::State::default(),
                 u_dc: *dc_link,
                 last_speed: speed,
@@ -131,14 +92,5 @@ pub(super) fn power_stage(actuator: &Actuator, speed: f64, h: f64) -> Result<Pow
                 power: Some(pmsm::Power::default()),
             })
         }
-    }
-}
-
-pub(crate) fn synchronous_motor(motor: &scenario::Pmsm) -> pmsm::Params {
-    pmsm::Params {
-        pole_pairs: motor.electrical_ratio,
-        resistance: motor.resistance,
-        inductance: Dq { d: motor.inductance_d, q: motor.inductance_q },
-        flux_linkage: motor.flux_linkage,
     }
 }

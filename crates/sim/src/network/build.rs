@@ -1,9 +1,9 @@
 //! From a scenario to the network.
 use super::own_way::OwnWay;
 use super::plc::{self, Plc};
+use super::program_cursor::ProgramCursor;
 use super::reference::DelayedReference;
 use super::signals::Signals;
-use super::underway::Underway;
 use super::units::{Counted, DriveUnits, units};
 use super::{MotionTask, Network};
 use crate::error::BuildError;
@@ -20,7 +20,7 @@ use servobench_fieldbus::link::{self, Mailbox};
 use servobench_fieldbus::task::{self, TaskFault, TaskFaultKind};
 use servobench_motion::Limits;
 use servobench_motion::interpolate::Mode;
-use servobench_scenario::{self as scenario, Bus, DriveInterpolation, Feedback, Scenario};
+use servobench_scenario::{self as scenario, Actuator, Bus, DriveInterpolation, Feedback, Scenario};
 use servobench_trace::Recorder;
 
 /// Cycles that the bus lets the drive miss before it gives up.
@@ -136,10 +136,10 @@ impl Network {
         let task = match &scenario.plc {
             Some(plc) => MotionTask::Plc(Box::new(Plc::new(plc, scenario.axis.modulo, period, recorder)?)),
             None if !bus.mode.is_cyclic() => {
-                let moves = Underway::new(program, period);
+                let moves = ProgramCursor::new(program, period);
                 MotionTask::OwnWay(Box::new(OwnWay::new(moves, bus, &device)?))
             }
-            None => MotionTask::Moves(Box::new(Underway::new(program, period))),
+            None => MotionTask::Moves(Box::new(ProgramCursor::new(program, period))),
         };
         let network = Self {
             task,
@@ -246,19 +246,14 @@ fn counted(scenario: &Scenario, loops: &drive::Params) -> Result<Counted, BuildE
     let feedback = scenario.actuator.drive().map_or(Feedback::Motor, |drive| drive.position_feedback);
     Ok(match (feedback, &scenario.actuator) {
         (Feedback::Load(encoder), _) => {
-            Counted { motion: scenario.axis.motion, increment: encoder.resolution, transmission: 1.0 }
+            Counted { motion: scenario.axis.motion, increment: encoder.increment, transmission: 1.0 }
         }
-        (Feedback::Motor, scenario::Actuator::Pmsm { motor, .. }) => Counted {
+        (Feedback::Motor, Actuator::Pmsm { encoder, .. } | Actuator::IdealSource { encoder, .. }) => Counted {
             motion: scenario.axis.motor_motion,
-            increment: motor.encoder.resolution,
+            increment: encoder.increment,
             transmission: loops.transmission,
         },
-        (Feedback::Motor, scenario::Actuator::IdealSource { source, .. }) => Counted {
-            motion: scenario.axis.motor_motion,
-            increment: source.encoder.resolution,
-            transmission: loops.transmission,
-        },
-        (Feedback::Motor, scenario::Actuator::Prescribed | scenario::Actuator::Off) => {
+        (Feedback::Motor, Actuator::Prescribed | Actuator::Off) => {
             return Err(BuildError::NoDriveOnTheBus);
         }
     })
@@ -339,13 +334,12 @@ fn with_objects(
 
 /// What the motion task knows of the axis: the estimate of the drive, for the model that the torque offset carries.
 fn master_model(bus: &Bus, loops: &drive::Params, scenario: &Scenario) -> feedforward::Params {
-    let model =
-        scenario.actuator.drive().map(|drive| crate::bench::firmware::model(&drive.estimate, bus.effort_offset));
+    let model = scenario.actuator.drive().map(|drive| drive.estimate.model(bus.effort_offset));
     feedforward::Params { model: model.unwrap_or(feedforward::Model::Off), ..loops.feedforward }
 }
 
 fn control(bus: &Bus, dynamics: &Dynamics) -> link::Control {
-    let torque_offset = bus.effort_offset != scenario::EffortFeedforward::Off;
+    let torque_offset = bus.effort_offset != drive::EffortFeedforward::Off;
     match bus.position_gain {
         Some(gain) => link::Control::Velocity {
             gain,

@@ -4,8 +4,8 @@
 //! a table. Times count from the cycle in which the axis is powered.
 use super::Step;
 use super::points::{Door, Unsendable, points};
+use super::program_cursor::ProgramCursor;
 use super::stream::{Message, Stream};
-use super::underway::Underway;
 use servobench_drive::device;
 use servobench_fieldbus::{AxisCommand, AxisFeedback, Task, Way};
 use servobench_motion::position_profile::Command;
@@ -18,7 +18,7 @@ const ROUNDING: f64 = 1e-9;
 /// A program of ways under way.
 #[derive(Debug, Clone)]
 pub(super) struct OwnWay {
-    moves: Underway,
+    moves: ProgramCursor,
     orders: Orders,
 }
 
@@ -38,7 +38,7 @@ impl OwnWay {
     ///
     /// # Errors
     /// [`Unsendable`] names a point of a table that cannot be sent, or why none can.
-    pub(super) fn new(moves: Underway, bus: &Bus, drive: &device::Params) -> Result<Self, Unsendable> {
+    pub(super) fn new(moves: ProgramCursor, bus: &Bus, drive: &device::Params) -> Result<Self, Unsendable> {
         let program = moves.program();
         let orders = match bus.mode {
             BusMode::ProfileVelocity => {
@@ -64,7 +64,7 @@ impl OwnWay {
         Ok(Self { moves, orders })
     }
 
-    pub(super) const fn moves(&self) -> &Underway {
+    pub(super) const fn moves(&self) -> &ProgramCursor {
         &self.moves
     }
 
@@ -78,7 +78,7 @@ impl OwnWay {
 
     /// One cycle.
     pub(super) fn cycle(&mut self, feedback: &AxisFeedback) -> Step {
-        let now = self.moves.turn(feedback);
+        let now = self.moves.cycle(feedback);
         // Before the axis is powered nothing is due.
         let way = self.orders.way(now.map_or(f64::NEG_INFINITY, |now| now + ROUNDING), feedback);
         // In profile velocity the drive knows no position: the plan says where the axis is to be. In the other modes the drive's

@@ -1,33 +1,47 @@
-//! A PLC program: every cycle its calls of function blocks, in the order of the file.
-mod block;
-mod call;
-mod made;
-
+//! A PLC program, as a recording keeps it.
 use super::Step;
 use super::signals::{Watched, word};
 use crate::error::BuildError;
-use block::block;
-use call::{Call, Known};
 use servobench_base::Setpoint;
 use servobench_fieldbus::{AxisFeedback, Task};
 use servobench_motion::Limits;
 use servobench_motion::interpolate::Sample;
-use servobench_plcopen::{Axis, AxisParams, AxisState, MOST_BUFFERED};
+use servobench_plcopen::program::{self, Executor, Fate, Listener, Motion, MotionEnd};
+use servobench_plcopen::{AxisParams, AxisState, BlockName, MOST_BUFFERED, Output};
 use servobench_scenario as scenario;
-use servobench_trace::{Event, Move, Recorder};
+use servobench_trace::{self as trace, CallFate, Ending, Event, Move, Recorder, SignalId};
 
 /// A program of function blocks and the axis that they command.
 #[derive(Debug, Clone)]
 pub(super) struct Plc {
-    axis: Axis,
+    executor: Executor,
     calls: Vec<Call>,
-    known: Known,
     state: Watched<AxisState>,
     homed: Watched<bool>,
     /// What is followed in this cycle, in the coordinate of the machine.
     followed: Setpoint,
-    /// What moved the axis, noted at the end.
-    made: Vec<Move>,
+}
+
+/// What a recording says of a call.
+#[derive(Debug, Clone)]
+struct Call {
+    name: String,
+    block: BlockName,
+    /// Signals of Execute or Enable and of the outputs.
+    trigger: SignalId,
+    outputs: Vec<SignalId>,
+}
+
+impl Call {
+    fn new(call: &program::Call, recorder: &mut Recorder) -> Self {
+        let mut signal = |name| recorder.add_signal(&call.name, name);
+        Self {
+            name: call.name.clone(),
+            block: call.block,
+            trigger: signal(call.block.trigger().name()),
+            outputs: call.block.outputs().iter().map(|output| signal(output.name())).collect(),
+        }
+    }
 }
 
 impl Plc {
@@ -47,18 +61,16 @@ impl Plc {
             buffered_commands: MOST_BUFFERED,
             ..AxisParams::new(cycle, limits(plc))
         };
-        let axis = Axis::new(params)?;
+        let executor = Executor::new(params, &plc.calls)?;
         let state = Watched::new("axis", "state", recorder);
         let homed = Watched::new("axis", "homed", recorder);
-        let calls = plc.calls.iter().map(|call| Call::new(call, block(&call.block), recorder));
-        let calls: Vec<Call> = calls.collect();
-        let known = Known { t: 0.0, position: 0.0, rises: calls.iter().map(Call::rises).collect() };
-        Ok(Self { axis, calls, known, state, homed, followed: Setpoint::default(), made: Vec::new() })
+        let calls = plc.calls.iter().map(|call| Call::new(call, recorder)).collect();
+        Ok(Self { executor, calls, state, homed, followed: Setpoint::default() })
     }
 
     /// The state of the axis.
-    pub(super) fn state(&self) -> AxisState {
-        self.axis.state()
+    pub(super) const fn state(&self) -> AxisState {
+        self.executor.axis().state()
     }
 
     /// One cycle at `t` (s). The drive counts from `origin`, a position of the machine.
@@ -73,13 +85,9 @@ impl Plc {
         recorder: &mut Recorder,
         sample: impl Fn(Setpoint) -> Sample,
     ) -> Result<Step, String> {
-        self.axis.begin(feedback);
-        (self.known.t, self.known.position) = (t, self.axis.actual().position);
-        for (index, call) in self.calls.iter_mut().enumerate() {
-            call.cycle(index, &mut self.known, &mut self.axis, recorder)?;
-        }
-        let mut command = self.axis.end();
-        let commanded = self.axis.commanded();
+        let mut notes = Notes { calls: &self.calls, recorder };
+        let mut command = self.executor.cycle(t, feedback, &mut notes).map_err(|overdue| overdue.to_string())?;
+        let commanded = self.executor.axis().commanded();
         let mut setpoint = None;
         if let Task::Follow(asked) = &mut command.task {
             // The axis counts from where the drive does; the program may have shifted its own zero.
@@ -89,56 +97,98 @@ impl Plc {
         }
         let x = origin + setpoint.map_or(feedback.demanded(), |followed| followed.x);
         self.followed = Setpoint { x, ..commanded };
-        for call in &mut self.calls {
-            call.follow_motion(t, self.followed, &mut self.made);
-        }
+        self.executor.follow_motions(t, self.followed);
         self.note(t, recorder);
         Ok(Step { command, setpoint })
     }
 
     fn note(&mut self, t: f64, recorder: &mut Recorder) {
-        let state = self.axis.state();
+        let axis = self.executor.axis();
+        let state = axis.state();
         let is_other = self.state.note(t, state, recorder, |state| state.name().into());
-        if let (true, AxisState::ErrorStop, Some(error)) = (is_other, state, self.axis.error()) {
+        if let (true, AxisState::ErrorStop, Some(error)) = (is_other, state, axis.error()) {
             recorder.note_event(Event { start: t, end: t, source: "axis".into(), message: error.to_string() });
         }
-        self.homed.note(t, self.axis.is_homed(), recorder, word);
+        self.homed.note(t, axis.is_homed(), recorder, word);
     }
 
     /// Notes at the end of the run, at `t` (s), what moved the axis and what was never executed; moves reach the axis
     /// `delay` (s) later.
     pub(super) fn finish(&mut self, t: f64, delay: f64, recorder: &mut Recorder) {
-        for call in &mut self.calls {
-            call.end_motion(t, self.followed, &mut self.made);
+        for motion in self.executor.end_motions(t, self.followed) {
+            recorder.note_move(made(&motion, &self.calls[motion.call], delay));
         }
-        self.made.sort_by(|one, other| one.start.total_cmp(&other.start));
-        for made in self.made.drain(..) {
-            recorder.note_move(Move { start: made.start + delay, end: made.end + delay, ..made });
+        let fates = self.executor.fates();
+        for ((fate, is_optional), call) in fates.iter().zip(&self.calls) {
+            let (name, block) = (call.name.clone(), call.block.name().to_owned());
+            recorder.note_call(trace::Call { name, block, is_optional: *is_optional, fate: as_recorded(fate) });
         }
-        for call in call::fates(&self.calls, &self.known) {
-            recorder.note_call(call);
-        }
-        for call in &self.calls {
-            if let Some(message) = call.never_executed(&self.known) {
+        for (fate, _) in fates {
+            if let Fate::NeverExecuted(message) = fate {
                 recorder.note_event(Event { start: t, end: t, source: "PLC".into(), message });
             }
         }
     }
 }
 
+/// Notes what happens in a program.
+struct Notes<'a> {
+    calls: &'a [Call],
+    recorder: &'a mut Recorder,
+}
+
+impl Listener for Notes<'_> {
+    fn on_trigger(&mut self, t: f64, call: usize, trigger: bool) {
+        self.recorder.note_value(self.calls[call].trigger, t, &word(trigger));
+    }
+
+    fn on_output(&mut self, t: f64, call: usize, output: usize, value: f64) {
+        let call = &self.calls[call];
+        let text = match call.block.outputs()[output] {
+            Output::ErrorId | Output::AxisErrorId => value.to_string(),
+            _ => word(value > 0.0),
+        };
+        self.recorder.note_value(call.outputs[output], t, &text);
+    }
+
+    fn on_error(&mut self, t: f64, call: usize, message: &str) {
+        let (source, message) = (self.calls[call].name.clone(), message.to_owned());
+        self.recorder.note_event(Event { start: t, end: t, source, message });
+    }
+}
+
+/// A motion of `call` that reaches the axis `delay` (s) later.
+fn made(motion: &Motion, call: &Call, delay: f64) -> Move {
+    let &Motion { start, end, from, to, peaks, ending, .. } = motion;
+    Move {
+        label: format!("{}: {}", call.name, call.block),
+        start: start + delay,
+        end: end + delay,
+        from,
+        to,
+        peaks,
+        limits: [None; 4],
+        cruise: (end, 0.0),
+        ending: match ending {
+            MotionEnd::AtRest => Ending::AtRest,
+            MotionEnd::InMotion => Ending::InMotion,
+            MotionEnd::Aborted => Ending::Aborted,
+        },
+    }
+}
+
+fn as_recorded(fate: &Fate) -> CallFate {
+    match fate {
+        Fate::Executed => CallFate::Executed,
+        Fate::Failed { time, id, message } => {
+            CallFate::Failed { time: *time, id: u32::from(*id), message: message.clone() }
+        }
+        Fate::NeverExecuted(why) => CallFate::NeverExecuted(why.clone()),
+        Fate::Unfinished(output) => CallFate::Unfinished(format!("its `{}` did not become TRUE", output.name())),
+    }
+}
+
 /// What the axis may do: what `[setpoint]` says, or the most that any call asks for.
 pub(super) fn limits(plc: &scenario::Plc) -> Limits {
-    let blocks = plc
-        .calls
-        .iter()
-        .flat_map(|call| std::iter::once(&call.block).chain(call.updates.iter().map(|update| &update.block)));
-    let dynamics: Vec<[f64; 4]> = blocks.filter_map(block::dynamics).collect();
-    let most = |k: usize| dynamics.iter().map(|dynamics| dynamics[k]).fold(0.0, f64::max);
-    let or = |value: f64, otherwise: f64| if value > 0.0 { value } else { otherwise };
-    let velocity = or(most(0), 1.0);
-    let acceleration = or(most(1), 10.0 * velocity);
-    let most = [velocity, acceleration, or(most(2), f64::INFINITY), or(most(3), f64::INFINITY)];
-    let [velocity, acceleration, jerk, snap] =
-        core::array::from_fn(|k| if plc.limits[k].is_finite() { plc.limits[k] } else { most[k] });
-    Limits { velocity, acceleration, jerk, snap }
+    program::limits(&plc.limits, &plc.calls)
 }

@@ -10,7 +10,7 @@
 use crate::modes;
 use servobench_base::Rate;
 use servobench_plant::Exact;
-use servobench_scenario::{Actuator, Scenario};
+use servobench_scenario::Scenario;
 use servobench_sim::{Bench, External, Stepper};
 
 /// Ticks over which the largest deviation is taken.
@@ -115,10 +115,9 @@ impl Deviation {
 /// Base ticks after which all loops of `scenario` are due together again.
 fn common_period(scenario: &Scenario) -> u64 {
     let drive = scenario.actuator.drive().unwrap_or_else(|| panic!("a motor with a drive"));
-    let mut rates = vec![drive.velocity.rate, drive.position.rate];
-    if let Actuator::Pmsm { current, .. } = &scenario.actuator {
-        rates.push(current.rate);
-    }
+    let params = &drive.params;
+    let mut rates = vec![params.velocity_rate(), params.position_rate()];
+    rates.extend(params.current_loop().map(|(_, rate)| rate));
     let every = |rate: &Rate| u64::from(scenario.base_rate.hertz() / rate.hertz());
     let every: Vec<u64> = rates.iter().map(every).collect();
     let mut period = 1;

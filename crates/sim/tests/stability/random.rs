@@ -1,10 +1,10 @@
 //! Random loops: all combinations of motors, bodies, rates, filters and wrong estimates.
 use crate::files::scenario;
-use servobench_base::Coordinate;
-use servobench_base::Rate;
-use servobench_scenario::{
-    Actuator, AxisMechanics, Body, Coupling, CurrentGain, EffortFeedforward, Encoder, Feedback, Scenario,
-};
+use servobench_base::{Coordinate, Rate};
+use servobench_drive::current::{Gains, Tuning};
+use servobench_drive::{Stage, delay};
+use servobench_plant::{Body, Chain, DryFriction, Encoder, Link};
+use servobench_scenario::{Actuator, AxisMechanics, Feedback, Scenario};
 
 /// SplitMix64 (Steele, Lea, Flood 2014).
 pub(crate) struct Random(pub(crate) u64);
@@ -109,79 +109,88 @@ pub(crate) fn random_loop(random: &mut Random) -> Scenario {
         scenario.axis.motion = Coordinate::Linear;
     }
     scenario.axis.transmission = transmission;
-    let bodies = bodies(random, base, transmission);
+    let chain = chain(random, base, transmission);
+    let bodies = chain.bodies();
     let inertia: f64 =
         bodies[0].inertia + transmission * transmission * bodies[1..].iter().map(|body| body.inertia).sum::<f64>();
-    scenario.axis.mechanics = AxisMechanics::Bodies(bodies);
+    scenario.axis.mechanics = AxisMechanics::Bodies(chain);
 
     let velocity_period = f64::from(velocity_every) / f64::from(base);
     let omega = random.between(0.01, 0.3) / velocity_period;
     let (gain, off) = (inertia * omega, random.between(0.9, 1.1));
+    let every = |every: u32| rate(1).divider(rate(every)).unwrap();
     let drive = match &mut scenario.actuator {
-        Actuator::Pmsm { current, drive, .. } => {
-            current.rate = rate(current_every);
-            current.gain = CurrentGain::Bandwidth(random.between(0.1, 0.7) * f64::from(base / current_every));
-            current.max_current = f64::INFINITY;
-            let motor = &mut current.motor;
+        Actuator::Pmsm { drive, .. } => {
+            let Stage::Current { params, every: of_current } = &mut drive.params.stage else {
+                panic!("a current loop")
+            };
+            *of_current = every(current_every);
+            let tuning = Tuning::Bandwidth(random.between(0.1, 0.7) * f64::from(base / current_every));
+            params.max_current = f64::INFINITY;
+            let motor = &mut params.motor;
             motor.resistance *= random.between(0.6, 1.6);
             let inductance = random.between(0.7, 1.3);
             // A deviation of the bodies does not reach the d axis, which must not be the first at the circle.
-            motor.inductance_d *= 0.7 * inductance;
-            motor.inductance_q *= inductance;
+            motor.inductance.d *= 0.7 * inductance;
+            motor.inductance.q *= inductance;
             motor.flux_linkage *= random.between(0.8, 1.25);
+            params.gains = Gains::tuned(motor, tuning, None);
+            drive.current_tuning = Some(tuning);
             drive
         }
-        Actuator::IdealSource { source, estimated_gain, drive } => {
+        Actuator::IdealSource { source, drive, .. } => {
             source.gain = random.between(0.5, 40.0);
             source.limit = f64::INFINITY;
-            *estimated_gain = source.gain * random.between(0.7, 1.4);
+            drive.params.stage = Stage::Direct { gain: source.gain * random.between(0.7, 1.4) };
             drive
         }
         Actuator::Prescribed | Actuator::Off => panic!("neither is asked for"),
     };
-    drive.max_effort = f64::INFINITY;
-    drive.velocity.rate = rate(velocity_every);
-    drive.velocity.gain = gain;
-    drive.velocity.integral_time = random.chance(0.6).then(|| random.between(2.0, 12.0) / omega);
-    drive.velocity.filter_time = if random.chance(0.5) { random.between(0.2, 3.0) * velocity_period } else { 0.0 };
-    drive.position.rate = rate(position_every);
-    drive.position.gain = if random.chance(0.1) { 0.0 } else { random.between(0.03, 0.3) * omega };
+    let params = &mut drive.params;
+    params.base_rate = rate(1);
+    params.velocity.max_effort = f64::INFINITY;
+    params.velocity_every = every(velocity_every);
+    params.velocity.k_p = gain;
+    params.velocity.integral_time = random.chance(0.6).then(|| random.between(2.0, 12.0) / omega);
+    params.velocity_filter_time = if random.chance(0.5) { random.between(0.2, 3.0) * velocity_period } else { 0.0 };
+    params.position_every = every(position_every);
+    params.position_gain = if random.chance(0.1) { 0.0 } else { random.between(0.03, 0.3) * omega };
+    params.reference_delay = delay::Params::default();
+    params.transmission = transmission * off;
     if random.chance(0.3) {
-        drive.position_feedback = Feedback::Load(Encoder { resolution: None });
+        drive.position_feedback = Feedback::Load(Encoder::default());
     }
-    drive.feedforward.effort = EffortFeedforward::Off;
-    drive.feedforward.delay = Some(0.0);
     drive.estimate.transmission = transmission * off;
     scenario
 }
 
 /// One to four bodies in a row.
-fn bodies(random: &mut Random, base: u32, transmission: f64) -> Vec<Body> {
+fn chain(random: &mut Random, base: u32, transmission: f64) -> Chain {
     let count = random.pick(&[1, 2, 2, 3, 4]);
     let damped = random.chance(0.7);
     let viscous = random.chance(0.4);
-    let mut bodies: Vec<Body> = Vec::new();
-    for name in &["motor", "table", "load", "tool"][..count] {
-        let own = if bodies.is_empty() { 1.0 } else { transmission };
+    let (mut bodies, mut links): (Vec<Body>, Vec<Link>) = (Vec::new(), Vec::new());
+    for name in ["motor", "table", "load", "tool"].into_iter().take(count) {
+        let is_first = bodies.is_empty();
+        let own = if is_first { 1.0 } else { transmission };
         let inertia = random.between(1e-3, 1e-2) / (own * own);
-        let coupling = bodies.last().map(|last| {
+        if let Some(last) = bodies.last() {
             let before = if bodies.len() == 1 { last.inertia / (transmission * transmission) } else { last.inertia };
             let reduced = before * inertia / (before + inertia);
             let omega = std::f64::consts::TAU * random.between(15.0, 0.3 * f64::from(base));
             let damping = if damped { 2.0 * random.between(1e-3, 3e-2) * reduced * omega } else { 0.0 };
-            Coupling { stiffness: reduced * omega * omega, damping }
-        });
+            links.push(Link { stiffness: reduced * omega * omega, damping });
+        }
         let viscous = if viscous { random.between(0.1, 3.0) * inertia } else { 0.0 };
         bodies.push(Body {
             name,
+            coordinate: Coordinate::Rotary,
             inertia,
-            coupling,
+            transmission: if is_first { transmission } else { 1.0 },
             viscous,
-            coulomb: 0.0,
-            breakaway: 0.0,
-            stribeck_velocity: 0.0,
+            dry: DryFriction::NONE,
             bias: 0.0,
         });
     }
-    bodies
+    Chain::new(bodies, links).unwrap()
 }

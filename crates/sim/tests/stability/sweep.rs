@@ -7,7 +7,9 @@
 use crate::deviation::{NotTold, growth};
 use crate::files::report;
 use crate::random::{Random, random_loop};
-use servobench_scenario::{Actuator, CurrentGain, Scenario};
+use servobench_drive::Stage;
+use servobench_drive::current::{Gains, Tuning};
+use servobench_scenario::{Actuator, Scenario};
 use servobench_stability::{Depth, GainName};
 use std::time::Instant;
 
@@ -24,12 +26,13 @@ fn scaled(scenario: &Scenario, name: GainName, factor: f64) -> Scenario {
         panic!("a motor with a drive")
     };
     match name {
-        GainName::Position => drive.position.gain *= factor,
-        GainName::Velocity => drive.velocity.gain *= factor,
+        GainName::Position => drive.params.position_gain *= factor,
+        GainName::Velocity => drive.params.velocity.k_p *= factor,
         GainName::CurrentBandwidth | GainName::CurrentD | GainName::CurrentQ => {
-            let Actuator::Pmsm { current, .. } = &mut scaled.actuator else { panic!("a synchronous motor") };
-            let CurrentGain::Bandwidth(alpha) = &mut current.gain else { panic!("a bandwidth") };
+            let Stage::Current { params, .. } = &mut drive.params.stage else { panic!("a synchronous motor") };
+            let Some(Tuning::Bandwidth(alpha)) = &mut drive.current_tuning else { panic!("a bandwidth") };
             *alpha *= factor;
+            params.gains = Gains::tuned(&params.motor, Tuning::Bandwidth(*alpha), None);
         }
     }
     scaled

@@ -3,9 +3,7 @@ use servobench_base::Coordinate;
 use servobench_base::{Divider, Dq, Rate};
 use servobench_drive::{self as drive, current, feedforward, velocity};
 use servobench_plant::{Body, Chain, DryFriction, Link, pmsm};
-use servobench_stability::{
-    CurrentGain, Depth, Loop, OperatingPoint, PositionFeedback, Report, Source, VelocitySignal, analyse,
-};
+use servobench_stability::{Depth, Loop, OperatingPoint, PositionFeedback, Report, Source, VelocitySignal, analyse};
 
 pub(crate) const TAU: f64 = std::f64::consts::TAU;
 
@@ -47,7 +45,7 @@ pub(crate) fn ideal(base: u32, every: u32, k_p: f64, mechanics: Chain) -> Loop {
         closes_position: false,
         velocity_signal: VelocitySignal::Encoder,
         position_feedback: PositionFeedback::Motor,
-        current_gain: CurrentGain::Bandwidth,
+        current_tuning: None,
         source: Source::Ideal { gain: 1.0 },
         mechanics,
         point: OperatingPoint::default(),
@@ -70,7 +68,7 @@ pub(crate) struct Tuning {
 }
 
 pub(crate) const MOTOR: pmsm::Params = pmsm::Params {
-    pole_pairs: 4.0,
+    electrical_ratio: 4.0,
     resistance: 1.615,
     inductance: Dq { d: 3.485e-3, q: 3.485e-3 },
     flux_linkage: 60.6e-3,
@@ -79,7 +77,7 @@ pub(crate) const MOTOR: pmsm::Params = pmsm::Params {
 /// A synchronous motor at 16/8/4 kHz.
 pub(crate) fn servo(tuning: Tuning, mechanics: Chain) -> Loop {
     let motor = current::MotorEstimate {
-        electrical_ratio: MOTOR.pole_pairs,
+        electrical_ratio: MOTOR.electrical_ratio,
         resistance: MOTOR.resistance,
         inductance: MOTOR.inductance,
         flux_linkage: MOTOR.flux_linkage,

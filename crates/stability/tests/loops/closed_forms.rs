@@ -1,7 +1,8 @@
 //! Loops whose poles are known in closed form.
 use crate::axes::{MOTOR, TAU, Tuning, body, chain, ideal, report, servo};
+use servobench_drive::current;
 use servobench_drive::{self as drive, velocity};
-use servobench_stability::{CurrentGain, GainName, Loop, LoopName, LoopReport, PositionFeedback, VelocitySignal};
+use servobench_stability::{GainName, Loop, LoopName, LoopReport, PositionFeedback, VelocitySignal};
 
 /// Boundaries are bisected to 1e-6 of the gain.
 const BISECTED: f64 = 2e-6;
@@ -109,7 +110,7 @@ fn the_current_loop_alone_is_stable_up_to_alpha_h_of_one() {
     let drive::Stage::Current { params, .. } = &mut model.drive.stage else { panic!("a current loop") };
     params.gains.k_p.d *= 1.1 * boundary / 2_000.0;
     params.gains.k_i.d *= 1.1 * boundary / 2_000.0;
-    model.current_gain = CurrentGain::PerAxis;
+    model.current_tuning = Some(current::Tuning::Gains(servobench_base::Dq::default()));
     let found = report(&model).instability.unwrap();
     assert_eq!((found.name, found.gain_name), (LoopName::Current, GainName::CurrentD));
     assert!((found.boundaries.below.unwrap().factor * 1.1 - 1.0).abs() < BISECTED, "{found:?}");

@@ -9,9 +9,10 @@
 //! program in [`MOST_SAMPLES`] places.
 use super::resistance::Resistance;
 use super::{Doubt, Units};
+use servobench_drive::Params;
 use servobench_metrics::Quantity;
-use servobench_plant::{Chain, inverter};
-use servobench_scenario::{Actuator, Pmsm, Scenario, Step};
+use servobench_plant::{Chain, inverter, pmsm};
+use servobench_scenario::{Actuator, Scenario, Step};
 use servobench_sim::{BuildError, Program};
 
 /// Places in which a program is sampled at most.
@@ -93,7 +94,7 @@ impl Demand {
         let is_planned = scenario.plc.is_none();
         let resistance = resistance(scenario, chain).filter(|_| is_planned);
         let motor = match &scenario.actuator {
-            Actuator::Pmsm { motor, current, .. } => Some((motor, current.d_reference)),
+            Actuator::Pmsm { motor, drive, .. } => Some((motor, d_current(&drive.params))),
             _ => None,
         };
         let (mut effort, mut voltage, mut speed, mut squares) = (Largest::default(), Largest::default(), 0.0_f64, 0.0);
@@ -130,12 +131,12 @@ impl Demand {
             is_believed,
         });
         let voltage = match &scenario.actuator {
-            Actuator::Pmsm { motor, dc_link, current, .. } if is_planned => Some(VoltageDemand {
+            Actuator::Pmsm { motor, dc_link, drive, .. } if is_planned => Some(VoltageDemand {
                 peak: voltage.value,
                 at: voltage.at,
                 back_emf: motor.electrical_ratio * speed * motor.flux_linkage,
                 available: inverter::voltage_limit(*dc_link),
-                angle_per_period: motor.electrical_ratio * speed / f64::from(current.rate.hertz()),
+                angle_per_period: motor.electrical_ratio * speed / current_rate(&drive.params),
             }),
             _ => None,
         };
@@ -196,23 +197,34 @@ fn resistance(scenario: &Scenario, chain: Option<&Chain>) -> Option<Resistance> 
     }
 }
 
+/// The d-axis current that the drive asks for (A, peak).
+fn d_current(drive: &Params) -> f64 {
+    drive.current_loop().map_or(0.0, |(current, _)| current.d_reference)
+}
+
+/// Rate of the current loop (Hz).
+fn current_rate(drive: &Params) -> f64 {
+    drive.current_loop().map_or(f64::INFINITY, |(_, rate)| rate.hertz().into())
+}
+
 /// What drive and motor give at most.
 fn available(actuator: &Actuator) -> f64 {
     let motor = match actuator {
         Actuator::Prescribed | Actuator::Off => f64::INFINITY,
-        Actuator::Pmsm { motor, current, .. } => {
-            motor.effort_constant_at(current.d_reference) * current.max_q_current()
-        }
+        Actuator::Pmsm { motor, drive, .. } => drive
+            .params
+            .current_loop()
+            .map_or(f64::INFINITY, |(current, _)| motor.effort_constant(current.d_reference) * current.max_q_current()),
         Actuator::IdealSource { source, .. } => source.gain * source.limit,
     };
     motor.min(actuator.max_effort())
 }
 
 /// |u| for `torque` at `speed`, both in the motor's coordinate, beside the d-axis current `i_d` (A).
-fn voltage_for(motor: &Pmsm, i_d: f64, torque: f64, speed: f64) -> f64 {
-    let (omega_e, i_q) = (motor.electrical_ratio * speed, torque / motor.effort_constant_at(i_d));
-    let u_d = motor.resistance * i_d - omega_e * motor.inductance_q * i_q;
-    let u_q = motor.resistance * i_q + omega_e * (motor.inductance_d * i_d + motor.flux_linkage);
+fn voltage_for(motor: &pmsm::Params, i_d: f64, torque: f64, speed: f64) -> f64 {
+    let (omega_e, i_q) = (motor.electrical_ratio * speed, torque / motor.effort_constant(i_d));
+    let u_d = motor.resistance * i_d - omega_e * motor.inductance.q * i_q;
+    let u_q = motor.resistance * i_q + omega_e * (motor.inductance.d * i_d + motor.flux_linkage);
     u_d.hypot(u_q)
 }
 

@@ -1,5 +1,7 @@
 //! How fast the loops are, and what comes late.
-use servobench_scenario::{Actuator, CurrentGain, Drive, Scenario};
+use servobench_base::Dq;
+use servobench_drive::current::Tuning;
+use servobench_scenario::Scenario;
 
 /// A loop of the drive.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,26 +27,20 @@ pub struct Delay {
 pub(super) fn loops(scenario: &Scenario) -> Vec<LoopBandwidth> {
     let Some(drive) = scenario.actuator.drive() else { return Vec::new() };
     let mut loops = Vec::new();
-    if let Actuator::Pmsm { current, .. } = &scenario.actuator {
-        let bandwidth = match current.gain {
-            CurrentGain::Bandwidth(bandwidth) => bandwidth,
-            CurrentGain::PerAxis { d, q } => (d / current.motor.inductance_d).max(q / current.motor.inductance_q),
+    let params = &drive.params;
+    if let (Some((current, rate)), Some(tuning)) = (params.current_loop(), drive.current_tuning) {
+        let bandwidth = match tuning {
+            Tuning::Bandwidth(bandwidth) => bandwidth,
+            Tuning::Gains(Dq { d, q }) => (d / current.motor.inductance.d).max(q / current.motor.inductance.q),
         };
-        loops.push(LoopBandwidth { name: "current", bandwidth: Some(bandwidth), rate: current.rate.hertz().into() });
+        loops.push(LoopBandwidth { name: "current", bandwidth: Some(bandwidth), rate: rate.hertz().into() });
     }
-    let (velocity, position) = (&drive.velocity, &drive.position);
-    let inertia = believed_inertia(drive);
-    let bandwidth = (inertia > 0.0).then(|| velocity.gain / inertia);
-    loops.push(LoopBandwidth { name: "velocity", bandwidth, rate: velocity.rate.hertz().into() });
-    let rate = position.rate.hertz().into();
-    loops.push(LoopBandwidth { name: "position", bandwidth: Some(position.gain), rate });
+    let inertia = drive.estimate.inertia_at_the_motor();
+    let bandwidth = (inertia > 0.0).then(|| params.velocity.k_p / inertia);
+    loops.push(LoopBandwidth { name: "velocity", bandwidth, rate: params.velocity_rate().hertz().into() });
+    let rate = params.position_rate().hertz().into();
+    loops.push(LoopBandwidth { name: "position", bandwidth: Some(params.position_gain), rate });
     loops
-}
-
-/// Inertia as the drive believes that the motor feels it.
-fn believed_inertia(drive: &Drive) -> f64 {
-    let estimate = &drive.estimate;
-    estimate.transmission.powi(2) * (estimate.motor_inertia + estimate.load_inertia)
 }
 
 /// What comes late in `scenario`, from the set-point to the voltage.
@@ -60,14 +56,14 @@ pub(super) fn delays(scenario: &Scenario) -> Vec<Delay> {
         note("motion task", f64::from(bus.motion_every) * cycle);
         note("bus", f64::from(bus.delay) * cycle);
     }
-    let Some(drive) = scenario.actuator.drive() else { return delays };
+    let Some(drive) = scenario.actuator.drive().map(|drive| &drive.params) else { return delays };
     // Half a period on average until a task takes up what is new.
-    note("position task", drive.position.rate.period() / 2.0);
-    note("velocity task", drive.velocity.rate.period() / 2.0);
-    note("velocity filter", drive.velocity.filter_time);
-    if let Actuator::Pmsm { current, .. } = &scenario.actuator {
+    note("position task", drive.position_rate().period() / 2.0);
+    note("velocity task", drive.velocity_rate().period() / 2.0);
+    note("velocity filter", drive.velocity_filter_time);
+    if let Some((_, rate)) = drive.current_loop() {
         // A period for the computation, half of one until the middle of the voltage.
-        note("current loop", 1.5 * current.rate.period());
+        note("current loop", 1.5 * rate.period());
     }
     delays
 }

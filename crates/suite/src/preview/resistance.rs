@@ -8,8 +8,10 @@
 //! (Lambrechts, Boerlage, Steinbuch, *Control Engineering Practice* 13, 2005), m1 and k1 in the axis coordinate. An axis at rest
 //! is held by its friction as far as that goes.
 use servobench_base::Setpoint;
+use servobench_drive::Estimate;
+use servobench_drive::feedforward::Model;
 use servobench_plant::{Body, Chain, DryFriction};
-use servobench_scenario::{Actuator, Disturbance, DisturbedBody, EffortFeedforward, Estimate, Scenario};
+use servobench_scenario::{Actuator, Disturbance, DisturbedBody, Scenario};
 use std::f64::consts::TAU;
 
 /// What the axis sets against its motion.
@@ -46,7 +48,7 @@ impl Resistance {
             transmission: r,
         };
         let load_follows = |actuator: &Actuator| {
-            actuator.drive().is_some_and(|drive| drive.feedforward.effort == EffortFeedforward::TwoMass)
+            actuator.drive().is_some_and(|drive| matches!(drive.params.feedforward.model, Model::TwoMass { .. }))
         };
         if let ([motor, load], [link], true) = (chain.bodies(), chain.links(), load_follows(&scenario.actuator)) {
             let [m1, k1] = [motor.inertia, motor.viscous].map(|own| own / (r * r));

@@ -1,7 +1,9 @@
 //! Tables of function blocks: their pieces meet with steps of the acceleration, which no limit of the jerk allows.
 use super::{Doubt, Units};
 use servobench_metrics::Quantity;
-use servobench_scenario::{Block, Call, Pair, Plc, ProfileFollow, Scales, Scenario};
+use servobench_plcopen::program::{Call, Inputs};
+use servobench_plcopen::{AccelerationProfileInputs, BlockInputs as _, BlockName, Follow, Pair, VelocityProfileInputs};
+use servobench_scenario::{Plc, Scenario};
 
 /// A step of this part of the largest acceleration is rounding.
 const ROUNDING: f64 = 1e-9;
@@ -15,18 +17,12 @@ pub(super) fn doubts(scenario: &Scenario) -> Vec<Doubt> {
     scenario.plc.as_ref().map_or_else(Vec::new, of_calls)
 }
 
-fn doubt(index: usize, Call { block, .. }: &Call, limits: &[f64; 4], axis_unit: &str) -> Option<Doubt> {
+fn doubt(index: usize, call: &Call, limits: &[f64; 4], axis_unit: &str) -> Option<Doubt> {
     let [_, most, jerk, _] = *limits;
     if jerk == f64::INFINITY {
         return None;
     }
-    let step = match block {
-        Block::VelocityProfile { pairs, scales, .. } => Step::Of(step_of_velocities(pairs, scales)),
-        Block::AccelerationProfile { pairs, scales, .. } => Step::Of(step_of_accelerations(pairs, scales)),
-        Block::PositionProfile { follow: ProfileFollow::Plateaus(_), .. } => Step::At("its ramps begin and end"),
-        Block::PositionProfile { follow: ProfileFollow::Spline, .. } => Step::At("the spline begins and ends"),
-        _ => return None,
-    };
+    let step = step(call.block, &call.inputs)?;
     let where_it_steps = match step {
         Step::Of(step) if step > ROUNDING * most => {
             format!(
@@ -52,11 +48,25 @@ enum Step {
     At(&'static str),
 }
 
+fn step(block: BlockName, inputs: &Inputs) -> Option<Step> {
+    let step = match block {
+        BlockName::VelocityProfile => Step::Of(step_of_velocities(VelocityProfileInputs::read(inputs, false).scaled())),
+        BlockName::AccelerationProfile => {
+            Step::Of(step_of_accelerations(AccelerationProfileInputs::read(inputs, false).scaled()))
+        }
+        BlockName::PositionProfile => match inputs.table()?.follow {
+            Follow::Plateaus(_) => Step::At("its ramps begin and end"),
+            Follow::Spline => Step::At("the spline begins and ends"),
+        },
+        _ => return None,
+    };
+    Some(step)
+}
+
 /// The largest step of the acceleration where velocities go in straight lines from pair to pair.
-fn step_of_velocities(pairs: &[Pair], scales: &Scales) -> f64 {
+fn step_of_velocities(pairs: impl Iterator<Item = Pair>) -> f64 {
     let (mut velocity, mut slope, mut largest) = (0.0, 0.0_f64, 0.0_f64);
-    for pair in pairs {
-        let (length, value) = scaled(pair, scales);
+    for Pair { delta_time: length, value } in pairs {
         if length > 0.0 {
             let next = (value - velocity) / length;
             largest = largest.max((next - slope).abs());
@@ -68,18 +78,13 @@ fn step_of_velocities(pairs: &[Pair], scales: &Scales) -> f64 {
 }
 
 /// The same where accelerations do; behind the last pair the acceleration is zero.
-fn step_of_accelerations(pairs: &[Pair], scales: &Scales) -> f64 {
+fn step_of_accelerations(pairs: impl Iterator<Item = Pair>) -> f64 {
     let (mut acceleration, mut largest) = (0.0_f64, 0.0_f64);
-    for pair in pairs {
-        let (length, value) = scaled(pair, scales);
+    for Pair { delta_time: length, value } in pairs {
         if length == 0.0 {
             largest = largest.max((value - acceleration).abs());
         }
         acceleration = value;
     }
     largest.max(acceleration.abs())
-}
-
-fn scaled(pair: &Pair, scales: &Scales) -> (f64, f64) {
-    (pair.delta_time * scales.time, pair.value * scales.value + scales.offset)
 }

@@ -1,4 +1,4 @@
-//! A program of moves under way: its time begins with the cycle in which the axis is powered.
+//! How far a program of moves is: its time begins with the cycle in which the axis is powered.
 use crate::program::Program;
 use servobench_base::Setpoint;
 use servobench_fieldbus::{AxisFeedback, Power};
@@ -6,7 +6,7 @@ use servobench_trace::Move;
 
 /// A program, and how far it is.
 #[derive(Debug, Clone)]
-pub(super) struct Underway {
+pub(super) struct ProgramCursor {
     program: Program,
     /// Cycle of the motion task (s).
     period: f64,
@@ -15,7 +15,7 @@ pub(super) struct Underway {
     passed: u64,
 }
 
-impl Underway {
+impl ProgramCursor {
     pub(super) const fn new(program: Program, period: f64) -> Self {
         Self { program, period, waited: 0, passed: 0 }
     }
@@ -25,7 +25,7 @@ impl Underway {
     }
 
     /// One cycle: the time of the program in it (s); `None` before the axis is powered.
-    pub(super) fn turn(&mut self, feedback: &AxisFeedback) -> Option<f64> {
+    pub(super) fn cycle(&mut self, feedback: &AxisFeedback) -> Option<f64> {
         if self.passed == 0 && feedback.power != Power::On {
             self.waited += 1;
             return None;

@@ -1,0 +1,408 @@
+//! How a block is called by its name: what its inputs are, what counts where one is not given, and what its outputs are.
+use crate::blocks::{Follow, Input, Pair};
+use crate::command::{BufferMode, Direction};
+use servobench_config::{Bound, Measure};
+
+/// What starts and ends a block.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Trigger {
+    /// The rising edge of Execute.
+    Execute,
+    /// Enable, as long as it is TRUE.
+    Enable,
+}
+
+impl Trigger {
+    /// Name in the standard.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Execute => "Execute",
+            Self::Enable => "Enable",
+        }
+    }
+}
+
+/// What an input holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum InputType {
+    /// A number.
+    Quantity(Measure),
+    /// TRUE or FALSE.
+    Flag,
+    /// Which way the axis goes.
+    Direction,
+    /// What becomes of the motion under way.
+    BufferMode,
+    /// The rows of a profile.
+    Table,
+}
+
+/// An input as a block has it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BlockInput {
+    /// Which.
+    pub input: Input,
+    /// What counts where it is not given.
+    pub absent: Absent,
+    /// What this block demands of it beside what the input must be anyway.
+    pub bound: Bound,
+}
+
+/// What counts where an input is not given.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Absent {
+    /// Nothing does: it must be given. The reason, where there is more to say than that the block needs it.
+    Refused(Option<&'static str>),
+    /// This number.
+    Number(f64),
+    /// TRUE or FALSE.
+    Flag(bool),
+    /// This way.
+    Direction(Direction),
+    /// The motion under way is broken off.
+    Aborting,
+    /// What another input is.
+    As(Input),
+    /// The limit of the axis for this input; the axis must have one.
+    Limit(Input),
+    /// The limit of the axis, if it has one.
+    LimitIfAny(Input),
+}
+
+impl BlockInput {
+    const fn new(input: Input, absent: Absent) -> Self {
+        Self { input, absent, bound: Bound::Any }
+    }
+
+    /// The same, above zero for this block.
+    pub(crate) const fn positive(self) -> Self {
+        Self { bound: Bound::Positive, ..self }
+    }
+}
+
+/// Must be given.
+pub(crate) const fn required(input: Input) -> BlockInput {
+    BlockInput::new(input, Absent::Refused(None))
+}
+
+/// Must be given, for this reason.
+pub(crate) const fn required_for(input: Input, why: &'static str) -> BlockInput {
+    BlockInput::new(input, Absent::Refused(Some(why)))
+}
+
+/// A number that has a default.
+pub(crate) const fn or(input: Input, number: f64) -> BlockInput {
+    BlockInput::new(input, Absent::Number(number))
+}
+
+/// TRUE or FALSE.
+pub(crate) const fn flag(input: Input, otherwise: bool) -> BlockInput {
+    BlockInput::new(input, Absent::Flag(otherwise))
+}
+
+/// A direction that has a default.
+pub(crate) const fn direction(otherwise: Direction) -> BlockInput {
+    BlockInput::new(Input::Direction, Absent::Direction(otherwise))
+}
+
+/// BufferMode.
+pub(crate) const fn buffer_mode() -> BlockInput {
+    BlockInput::new(Input::BufferMode, Absent::Aborting)
+}
+
+/// A limit of this block, unless given that of the axis.
+pub(crate) const fn limit(input: Input) -> BlockInput {
+    BlockInput::new(input, Absent::Limit(input))
+}
+
+/// A limit of this block or of the axis, if one of both has it.
+pub(crate) const fn limit_if_any(input: Input) -> BlockInput {
+    BlockInput::new(input, Absent::LimitIfAny(input))
+}
+
+/// What `other` is unless given.
+pub(crate) const fn like(input: Input, other: Input) -> BlockInput {
+    BlockInput::new(input, Absent::As(other))
+}
+
+/// Deceleration of a block that only brakes: the limit of the acceleration unless given.
+pub(crate) const fn braking() -> BlockInput {
+    BlockInput::new(Input::Deceleration, Absent::Limit(Input::Acceleration))
+}
+
+/// A value of an input; tables are kept as `T`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Value<T> {
+    /// A number (SI).
+    Number(f64),
+    /// TRUE or FALSE.
+    Flag(bool),
+    /// Which way the axis goes.
+    Direction(Direction),
+    /// What becomes of the motion under way.
+    BufferMode(BufferMode),
+    /// The rows of a profile.
+    Table(T),
+}
+
+/// The rows of a profile, which are kept as `P`, and how they are meant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Table<P> {
+    /// The rows.
+    pub pairs: P,
+    /// Whether positions count from where the profile begins.
+    pub is_relative: bool,
+    /// How the axis goes from position to position.
+    pub follow: Follow,
+}
+
+/// Values of inputs by their names; what is not among them is as the block says.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Values<T>([Option<Value<T>>; Input::ALL.len()]);
+
+impl<T> Default for Values<T> {
+    fn default() -> Self {
+        Self([const { None }; Input::ALL.len()])
+    }
+}
+
+impl<T> Values<T> {
+    /// Gives `input` a value.
+    pub fn set(&mut self, input: Input, value: Value<T>) {
+        self.0[input as usize] = Some(value);
+    }
+
+    /// The value of `input`, where it has one.
+    #[must_use]
+    pub const fn get(&self, input: Input) -> Option<&Value<T>> {
+        self.0[input as usize].as_ref()
+    }
+
+    /// A number, where it has one.
+    #[must_use]
+    pub fn number(&self, input: Input) -> Option<f64> {
+        if let Some(Value::Number(number)) = self.get(input) { Some(*number) } else { None }
+    }
+
+    /// The table, where there is one.
+    #[must_use]
+    pub fn table(&self) -> Option<&T> {
+        if let Some(Value::Table(table)) = self.get(Input::Table) { Some(table) } else { None }
+    }
+}
+
+/// The inputs of a block.
+pub trait BlockInputs<'i>: Sized {
+    /// What starts and ends the block.
+    const TRIGGER: Trigger;
+    /// The others, in the order in which they are listed.
+    const INPUTS: &'static [BlockInput];
+    /// Whether they count in every cycle as they are then, rather than as they were at the start.
+    const ARE_FOLLOWED: bool = matches!(Self::TRIGGER, Trigger::Enable) && !Self::INPUTS.is_empty();
+
+    /// What `values` say, with Execute or Enable as `trigger`. What must be given and is not is no number, which blocks refuse.
+    fn read<P: AsRef<[Pair]>>(values: &'i Values<Table<P>>, trigger: bool) -> Self;
+}
+
+/// A type that an input can have.
+pub(crate) trait FromValues: Sized {
+    fn read<T>(values: &Values<T>, own: &BlockInput) -> Self;
+}
+
+impl FromValues for f64 {
+    fn read<T>(values: &Values<T>, own: &BlockInput) -> Self {
+        values.number(own.input).unwrap_or_else(|| match own.absent {
+            Absent::Number(number) => number,
+            Absent::As(other) => values.number(other).unwrap_or(Self::NAN),
+            _ => Self::NAN,
+        })
+    }
+}
+
+/// A number that may be left to the axis.
+impl FromValues for Option<f64> {
+    fn read<T>(values: &Values<T>, own: &BlockInput) -> Self {
+        values.number(own.input)
+    }
+}
+
+impl FromValues for bool {
+    fn read<T>(values: &Values<T>, own: &BlockInput) -> Self {
+        match (values.get(own.input), own.absent) {
+            (Some(Value::Flag(flag)), _) => *flag,
+            (_, absent) => absent == Absent::Flag(true),
+        }
+    }
+}
+
+impl FromValues for Direction {
+    fn read<T>(values: &Values<T>, own: &BlockInput) -> Self {
+        match (values.get(own.input), own.absent) {
+            (Some(Value::Direction(direction)), _) => *direction,
+            (_, Absent::Direction(direction)) => direction,
+            _ => Self::default(),
+        }
+    }
+}
+
+impl FromValues for BufferMode {
+    fn read<T>(values: &Values<T>, own: &BlockInput) -> Self {
+        if let Some(Value::BufferMode(mode)) = values.get(own.input) { *mode } else { Self::default() }
+    }
+}
+
+/// A type that an output can have.
+pub(crate) trait Recorded {
+    /// As a recording keeps it; TRUE is 1.
+    fn recorded(self) -> f64;
+}
+
+impl Recorded for bool {
+    fn recorded(self) -> f64 {
+        f64::from(u8::from(self))
+    }
+}
+
+impl Recorded for crate::ErrorId {
+    fn recorded(self) -> f64 {
+        f64::from(self.number())
+    }
+}
+
+impl Recorded for u16 {
+    fn recorded(self) -> f64 {
+        f64::from(self)
+    }
+}
+
+impl Recorded for f64 {
+    fn recorded(self) -> f64 {
+        self
+    }
+}
+
+/// What an output holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum OutputType {
+    /// TRUE or FALSE.
+    Flag,
+    /// FALSE: what it stands for does not occur here.
+    Never,
+    /// A number.
+    Number,
+}
+
+/// Declares the inputs of a block: the struct, what counts where one is not given, and how it is read by names.
+macro_rules! inputs {
+    ($(#[$meta:meta])* pub struct $name:ident on $trigger:ident {}) => {
+        $(#[$meta])*
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub struct $name {
+            #[doc = $crate::interface::inputs!(@doc $trigger)]
+            pub $trigger: bool,
+        }
+
+        impl $crate::interface::BlockInputs<'_> for $name {
+            const TRIGGER: $crate::Trigger = $crate::interface::inputs!(@trigger $trigger);
+            const INPUTS: &'static [$crate::BlockInput] = &[];
+
+            fn read<P: AsRef<[$crate::Pair]>>(_: &$crate::Values<$crate::Table<P>>, $trigger: bool) -> Self {
+                Self { $trigger }
+            }
+        }
+    };
+    (
+        $(#[$meta:meta])*
+        pub struct $name:ident on $trigger:ident {
+            $( $(#[$field_meta:meta])* $field:ident: $type:ty = $spec:expr, )+
+        }
+    ) => {
+        $(#[$meta])*
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub struct $name {
+            #[doc = $crate::interface::inputs!(@doc $trigger)]
+            pub $trigger: bool,
+            $( $(#[$field_meta])* pub $field: $type, )+
+        }
+
+        impl $crate::interface::BlockInputs<'_> for $name {
+            const TRIGGER: $crate::Trigger = $crate::interface::inputs!(@trigger $trigger);
+            const INPUTS: &'static [$crate::BlockInput] = &[$($spec,)+];
+
+            fn read<P: AsRef<[$crate::Pair]>>(values: &$crate::Values<$crate::Table<P>>, trigger: bool) -> Self {
+                Self {
+                    $trigger: trigger,
+                    $( $field: $crate::interface::FromValues::read(values, const { &$spec }), )+
+                }
+            }
+        }
+    };
+    (@doc execute) => { "Execute." };
+    (@doc enable) => { "Enable." };
+    (@trigger execute) => { $crate::Trigger::Execute };
+    (@trigger enable) => { $crate::Trigger::Enable };
+}
+
+/// Declares the outputs of a block: the struct, and which output each field is.
+macro_rules! outputs {
+    (
+        $(#[$meta:meta])*
+        pub struct $name:ident {
+            $( $(#[$field_meta:meta])* $field:ident: $type:ty = $output:ident, )+
+        }
+    ) => {
+        $(#[$meta])*
+        pub struct $name {
+            $( $(#[$field_meta])* pub $field: $type, )+
+        }
+
+        impl $crate::Outputs for $name {
+            const LIST: &'static [$crate::Output] = &[$($crate::Output::$output),+];
+
+            fn each(&self, mut record: impl FnMut(f64)) {
+                $( record($crate::interface::Recorded::recorded(self.$field)); )+
+            }
+        }
+    };
+}
+
+/// Declares the outputs of a block that gives a motion command: the one that says that it came to what it is for, by the report
+/// that sets it, and those that all of them have.
+macro_rules! command_outputs {
+    ($(#[$meta:meta])* pub struct $name:ident; $(#[$aim_meta:meta])* $aim:ident = $output:ident by $report:ident) => {
+        $crate::interface::outputs! {
+            $(#[$meta])*
+            #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+            pub struct $name {
+                $(#[$aim_meta])*
+                $aim: bool = $output,
+                /// Busy: the block is neither done nor aborted.
+                busy: bool = Busy,
+                /// Active: the block has the axis.
+                active: bool = Active,
+                /// CommandAborted: another command took the axis.
+                command_aborted: bool = CommandAborted,
+                /// Error.
+                error: bool = Error,
+                /// ErrorID.
+                error_id: $crate::ErrorId = ErrorId,
+            }
+        }
+
+        impl From<$crate::Report> for $name {
+            fn from(report: $crate::Report) -> Self {
+                Self {
+                    $aim: report == $crate::Report::$report,
+                    busy: report.is_busy(),
+                    active: report.is_active(),
+                    command_aborted: report == $crate::Report::Aborted,
+                    error: report.error_id() != $crate::ErrorId::None,
+                    error_id: report.error_id(),
+                }
+            }
+        }
+    };
+}
+
+pub(crate) use {command_outputs, inputs, outputs};

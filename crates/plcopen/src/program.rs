@@ -1,0 +1,88 @@
+//! Programs: calls of function blocks by their names, when each is executed, and what became of it.
+//!
+//! An [`Executor`] calls the blocks once per cycle, in the order of the program, and tells a [`Listener`] what happens. Calls are kept
+//! in a heap.
+mod condition;
+mod executor;
+mod instance;
+mod motion_tracker;
+mod running;
+
+pub use condition::Condition;
+pub use executor::{Executor, Listener};
+pub use motion_tracker::{Motion, MotionEnd};
+pub use running::{Fate, Overdue};
+
+pub(crate) use instance::{Instance, New, called};
+
+use crate::blocks::{BlockName, Input, Pair};
+use crate::interface::{Table, Values};
+use alloc::string::String;
+use alloc::vec::Vec;
+use servobench_motion::Limits;
+
+/// The inputs of a call.
+pub type Inputs = Values<Table<Vec<Pair>>>;
+
+/// A call of a function block, with an instance of its own.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Call {
+    /// Name of the instance, unique.
+    pub name: String,
+    /// The block.
+    pub block: BlockName,
+    /// Its inputs.
+    pub inputs: Inputs,
+    /// When `Execute` or `Enable` becomes TRUE.
+    pub start: Condition,
+    /// When it becomes FALSE; `None`: `Execute` a cycle after the block has ended, `Enable` never.
+    pub stop: Option<Condition>,
+    /// How long `start` is waited for, from the beginning of the run (s); infinite where the end of the run is soon enough.
+    pub timeout: f64,
+    /// Whether the run may do without it.
+    pub is_optional: bool,
+    /// Inputs that change while `Execute` is TRUE, in their order.
+    pub updates: Vec<Update>,
+}
+
+/// New inputs of a block.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Update {
+    /// When.
+    pub when: Condition,
+    /// All inputs as they are from then on.
+    pub inputs: Inputs,
+}
+
+/// What an axis may do: `limits` of |velocity|, |acceleration|, |jerk| and |snap|, and where one is infinite the most that any of
+/// `calls` asks for.
+#[must_use]
+pub fn limits(limits: &[f64; 4], calls: &[Call]) -> Limits {
+    let demands = || calls.iter().flat_map(|call| all_inputs(call).map(|inputs| demand(call.block, inputs)));
+    let most = |k: usize| demands().map(|demand| demand[k]).fold(0.0, f64::max);
+    let or = |value: f64, otherwise: f64| if value > 0.0 { value } else { otherwise };
+    let velocity = or(most(0), 1.0);
+    let acceleration = or(most(1), 10.0 * velocity);
+    let most = [velocity, acceleration, or(most(2), f64::INFINITY), or(most(3), f64::INFINITY)];
+    let [velocity, acceleration, jerk, snap] =
+        core::array::from_fn(|k| if limits[k].is_finite() { limits[k] } else { most[k] });
+    Limits { velocity, acceleration, jerk, snap }
+}
+
+/// The inputs of a call and of its updates.
+fn all_inputs(call: &Call) -> impl Iterator<Item = &Inputs> {
+    core::iter::once(&call.inputs).chain(call.updates.iter().map(|update| &update.inputs))
+}
+
+/// Velocity, acceleration, jerk and snap that a block asks of its axis; zero for what it does not ask for, infinite for what it
+/// does not limit.
+fn demand(block: BlockName, inputs: &Inputs) -> [f64; 4] {
+    let of = |input: Input| inputs.number(input).map_or(0.0, f64::abs);
+    let free = |input: Input| match block.input(input) {
+        Some(_) => inputs.number(input).unwrap_or(f64::INFINITY),
+        None => 0.0,
+    };
+    let velocity = of(Input::Velocity).max(of(Input::VelocityDifference));
+    let acceleration = of(Input::Acceleration).max(of(Input::Deceleration));
+    [velocity, acceleration, free(Input::Jerk), free(Input::Snap)]
+}

@@ -1,0 +1,103 @@
+//! A program in a run.
+use super::Call;
+use super::condition::Situation;
+use super::motion_tracker::Motion;
+use super::running::{Fate, Overdue, RunningCall};
+use crate::axis::Axis;
+use crate::params::AxisParams;
+use alloc::string::String;
+use alloc::vec;
+use alloc::vec::Vec;
+use servobench_base::{ParamError, Setpoint};
+use servobench_fieldbus::{AxisCommand, AxisFeedback};
+
+/// Hears what happens in a program; calls and outputs are named by their indices.
+pub trait Listener {
+    /// From `t` (s) on Execute or Enable of `call` is `trigger`.
+    fn on_trigger(&mut self, t: f64, call: usize, trigger: bool);
+
+    /// From `t` (s) on `output` of `call` is `value`; TRUE is 1.
+    fn on_output(&mut self, t: f64, call: usize, output: usize, value: f64);
+
+    /// At `t` (s) `call` has an error.
+    fn on_error(&mut self, t: f64, call: usize, message: &str);
+}
+
+/// The calls of a program, and the axis that they command.
+#[derive(Debug, Clone)]
+pub struct Executor {
+    axis: Axis,
+    calls: Vec<RunningCall>,
+    names: Vec<String>,
+    situation: Situation,
+    motions: Vec<Motion>,
+}
+
+impl Executor {
+    /// The program `calls` on an axis that is disabled.
+    ///
+    /// # Errors
+    /// [`ParamError`] names the first parameter of the axis outside its bound.
+    pub fn new(params: AxisParams, calls: &[Call]) -> Result<Self, ParamError> {
+        let rises = |call: &Call| call.block.outputs().iter().map(|output| (*output, None)).collect();
+        Ok(Self {
+            axis: Axis::new(params)?,
+            calls: calls.iter().enumerate().map(|(index, call)| RunningCall::new(index, call)).collect(),
+            names: calls.iter().map(|call| call.name.clone()).collect(),
+            situation: Situation { t: 0.0, position: 0.0, rises: calls.iter().map(rises).collect() },
+            motions: Vec::new(),
+        })
+    }
+
+    /// The axis.
+    #[must_use]
+    pub const fn axis(&self) -> &Axis {
+        &self.axis
+    }
+
+    /// One cycle at `t` (s).
+    ///
+    /// # Errors
+    /// [`Overdue`] when a call was waited for for too long.
+    pub fn cycle(
+        &mut self,
+        t: f64,
+        feedback: &AxisFeedback,
+        listener: &mut impl Listener,
+    ) -> Result<AxisCommand, Overdue> {
+        self.axis.begin(feedback);
+        (self.situation.t, self.situation.position) = (t, self.axis.actual().position);
+        for call in &mut self.calls {
+            call.cycle(&mut self.situation, &self.names, &mut self.axis, listener)?;
+        }
+        Ok(self.axis.end())
+    }
+
+    /// Follows the motions of a cycle, in which the axis is commanded to be at `commanded`.
+    pub fn follow_motions(&mut self, t: f64, commanded: Setpoint) {
+        for call in &mut self.calls {
+            call.follow_motion(t, commanded, &mut self.motions);
+        }
+    }
+
+    /// Ends the motions at `t` (s), and returns all of them by when they began.
+    pub fn end_motions(&mut self, t: f64, commanded: Setpoint) -> Vec<Motion> {
+        for call in &mut self.calls {
+            call.end_motion(t, commanded, &mut self.motions);
+        }
+        self.motions.sort_by(|one, other| one.start.total_cmp(&other.start));
+        core::mem::take(&mut self.motions)
+    }
+
+    /// What became of each call so far, and whether the run may do without it.
+    #[must_use]
+    pub fn fates(&self) -> Vec<(Fate, bool)> {
+        let mut idle: Vec<bool> = vec![false; self.calls.len()];
+        // A call that waits on an idle one is idle too, and may stand before it: there are at most as many links as calls.
+        for _ in 0..self.calls.len() {
+            idle = self.calls.iter().map(|call| call.is_idle() && call.may_be_left_out(&idle)).collect();
+        }
+        let of = |call: &RunningCall| (call.fate(&self.situation, &self.names), call.is_optional(&idle));
+        self.calls.iter().map(of).collect()
+    }
+}

@@ -1,0 +1,275 @@
+//! A call in a run: when it is executed, and what became of it.
+use super::condition::{Condition, Situation};
+use super::executor::Listener;
+use super::instance::Instance;
+use super::motion_tracker::{Motion, MotionEnd, MotionTracker};
+use super::{Call, Update};
+use crate::axis::Axis;
+use crate::blocks::{BlockName, Output};
+use crate::interface::Trigger;
+use alloc::boxed::Box;
+use alloc::collections::VecDeque;
+use alloc::string::{String, ToString as _};
+use alloc::vec::Vec;
+use alloc::{format, vec};
+use servobench_base::Setpoint;
+use thiserror::Error;
+
+/// The outputs that say that a block came to what it is for; of a block that has several, the first of these.
+const AIMS: [Output; 8] = [
+    Output::Done,
+    Output::InVelocity,
+    Output::InEndVelocity,
+    Output::InTorque,
+    Output::ProfileCompleted,
+    Output::Status,
+    Output::Enabled,
+    Output::Valid,
+];
+
+/// What became of a call.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Fate {
+    /// It came to what it is for, or another command took the axis.
+    Executed,
+    /// It ended in Error.
+    Failed {
+        /// When (s).
+        time: f64,
+        /// ErrorID.
+        id: u16,
+        /// The error in words.
+        message: String,
+    },
+    /// Its `start` did not come: what it waited for.
+    NeverExecuted(String),
+    /// The output that says that it came to what it is for did not become TRUE.
+    Unfinished(Output),
+}
+
+/// A call was waited for for too long.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("{waiting} within {timeout} s")]
+pub struct Overdue {
+    /// Which call, and for what it waits.
+    pub waiting: String,
+    /// How long it was waited for (s).
+    pub timeout: f64,
+}
+
+/// A call in a run.
+#[expect(clippy::struct_excessive_bools, reason = "each is a state that a cycle asks for, and they are independent")]
+#[derive(Debug, Clone)]
+pub(super) struct RunningCall {
+    /// Where it stands in the program.
+    index: usize,
+    pub(super) name: String,
+    block: BlockName,
+    instance: Box<dyn Instance>,
+    start: Condition,
+    stop: Option<Condition>,
+    timeout: f64,
+    updates: VecDeque<Update>,
+    /// When Execute or Enable became TRUE.
+    started: Option<f64>,
+    is_optional: bool,
+    /// When it first ended in Error (s), ErrorID, and the error in words.
+    error: Option<(f64, u16, String)>,
+    /// Whether Execute or Enable became FALSE again.
+    is_over: bool,
+    trigger: bool,
+    /// What was told of Execute or Enable last.
+    told: Option<bool>,
+    has_ended: bool,
+    /// Outputs in this cycle, and as they were told last.
+    values: Vec<f64>,
+    told_values: Vec<f64>,
+    motion: Option<MotionTracker>,
+}
+
+impl RunningCall {
+    pub(super) fn new(index: usize, call: &Call) -> Self {
+        let outputs = call.block.outputs().len();
+        Self {
+            index,
+            name: call.name.clone(),
+            block: call.block,
+            instance: call.block.instance(&call.inputs),
+            start: call.start,
+            stop: call.stop,
+            timeout: call.timeout,
+            updates: call.updates.iter().cloned().collect(),
+            started: None,
+            is_optional: call.is_optional,
+            error: None,
+            is_over: false,
+            trigger: false,
+            told: None,
+            has_ended: false,
+            values: vec![0.0; outputs],
+            told_values: vec![f64::NAN; outputs],
+            motion: None,
+        }
+    }
+
+    /// One cycle.
+    ///
+    /// # Errors
+    /// [`Overdue`] when `start` was waited for for too long.
+    pub(super) fn cycle(
+        &mut self,
+        situation: &mut Situation,
+        names: &[String],
+        axis: &mut Axis,
+        listener: &mut impl Listener,
+    ) -> Result<(), Overdue> {
+        let t = situation.t;
+        self.decide(situation);
+        if self.started.is_none() && t > self.timeout {
+            return Err(Overdue { waiting: self.waiting(names), timeout: self.timeout });
+        }
+        if self.told != Some(self.trigger) {
+            self.told = Some(self.trigger);
+            listener.on_trigger(t, self.index, self.trigger);
+        }
+        self.instance.step(axis, self.trigger, &mut self.values);
+        for (place, output) in self.block.outputs().iter().enumerate() {
+            self.tell(place, *output, situation, listener);
+        }
+        Ok(())
+    }
+
+    /// Execute or Enable in this cycle.
+    fn decide(&mut self, situation: &Situation) {
+        match self.started {
+            None => {
+                if situation.holds(self.start, 0.0) {
+                    (self.started, self.trigger) = (Some(situation.t), true);
+                }
+            }
+            Some(_) if self.is_over => {}
+            Some(started) => {
+                let stops = match self.stop {
+                    Some(stop) => situation.holds(stop, started),
+                    None => self.block.trigger() == Trigger::Execute && self.has_ended,
+                };
+                if stops {
+                    (self.trigger, self.is_over) = (false, true);
+                    return;
+                }
+                while let Some(update) = self.updates.pop_front_if(|update| situation.holds(update.when, started)) {
+                    self.instance.load(update.inputs);
+                }
+            }
+        }
+    }
+
+    /// Tells of an output where it changed.
+    fn tell(&mut self, place: usize, output: Output, situation: &mut Situation, listener: &mut impl Listener) {
+        let t = situation.t;
+        let value = self.values[place];
+        if value > 0.0 {
+            situation.rises[self.index][place].1.get_or_insert(t);
+        }
+        if self.told_values[place].to_bits() == value.to_bits() {
+            return;
+        }
+        self.told_values[place] = value;
+        listener.on_output(t, self.index, place, value);
+        match output {
+            Output::ErrorId | Output::AxisErrorId => {
+                if let Some(error) = self.instance.error() {
+                    let message = error.to_string();
+                    listener.on_error(t, self.index, &message);
+                    if output == Output::ErrorId && self.error.is_none() {
+                        self.error = Some((t, error.id().number(), message));
+                    }
+                }
+            }
+            Output::Done | Output::CommandAborted | Output::Error => self.has_ended |= value > 0.0,
+            _ => {}
+        }
+    }
+
+    /// Whether `output` is TRUE.
+    fn is(&self, output: Output) -> bool {
+        self.block.outputs().iter().zip(&self.values).any(|(own, value)| *own == output && *value > 0.0)
+    }
+
+    /// Follows the motion that the block has the axis make.
+    pub(super) fn follow_motion(&mut self, t: f64, commanded: Setpoint, motions: &mut Vec<Motion>) {
+        // An effort leaves the motion to the load.
+        let moves = self.block.is_command() && self.block != BlockName::TorqueControl;
+        let is_active = self.is(Output::Active);
+        match (&mut self.motion, is_active) {
+            (Some(motion), true) => motion.follow(commanded),
+            (None, true) if moves => self.motion = Some(MotionTracker::begin(t, commanded)),
+            (Some(_), false) => self.end_motion(t, commanded, motions),
+            (None, _) => {}
+        }
+    }
+
+    pub(super) fn end_motion(&mut self, t: f64, commanded: Setpoint, motions: &mut Vec<Motion>) {
+        if let Some(motion) = self.motion.take() {
+            // A motion that ends as commanded ends in Done, and at rest: any other one is broken off, or goes on.
+            let is_aborted = self.is(Output::CommandAborted) || self.is(Output::Error);
+            let ending = match (is_aborted, commanded.v == 0.0) {
+                (true, _) => MotionEnd::Aborted,
+                (false, true) => MotionEnd::AtRest,
+                (false, false) => MotionEnd::InMotion,
+            };
+            motions.extend(motion.end(self.index, t, commanded, ending));
+        }
+    }
+
+    /// Whether it was never executed.
+    pub(super) const fn is_idle(&self) -> bool {
+        self.started.is_none()
+    }
+
+    /// Whether the run may do without it, beside what its program says: it waits on the failure of another call, or on one of
+    /// `idle` ones, which are optional and were never executed.
+    pub(super) fn may_be_left_out(&self, idle: &[bool]) -> bool {
+        let waits_in_vain = match self.start {
+            Condition::After { output: Output::Error | Output::CommandAborted, .. } => true,
+            Condition::After { call, .. } => idle.get(call).is_some_and(|is_idle| *is_idle),
+            Condition::AtOnce | Condition::At(_) | Condition::Above(_) | Condition::Below(_) => false,
+        };
+        self.is_optional || waits_in_vain
+    }
+
+    /// Whether it need not come to anything: what waits in vain may; what is executed has to end well unless it is marked.
+    pub(super) fn is_optional(&self, idle: &[bool]) -> bool {
+        self.is_optional || (self.is_idle() && self.may_be_left_out(idle))
+    }
+
+    /// What became of it so far.
+    pub(super) fn fate(&self, situation: &Situation, names: &[String]) -> Fate {
+        if let Some((time, id, message)) = self.error.clone() {
+            return Fate::Failed { time, id, message };
+        }
+        if self.is_idle() {
+            return Fate::NeverExecuted(self.waiting(names));
+        }
+        let risen = |output: Output| situation.risen(self.index, output).is_some();
+        let aim = self.block.outputs().iter().copied().find(|output| AIMS.contains(output));
+        match aim {
+            Some(aim) if !risen(aim) && !risen(Output::CommandAborted) => Fate::Unfinished(aim),
+            _ => Fate::Executed,
+        }
+    }
+
+    fn waiting(&self, names: &[String]) -> String {
+        let name = &self.name;
+        match self.start {
+            Condition::AtOnce => format!("`{name}` was not executed"),
+            Condition::At(time) => format!("`{name}` was not executed: it waits for {time} s"),
+            Condition::After { call, output, .. } => {
+                let other = names.get(call).map_or("another call", String::as_str);
+                format!("`{name}` was not executed: `{other}.{}` did not become TRUE", output.name())
+            }
+            Condition::Above(x) => format!("`{name}` was not executed: the axis did not pass {x} upwards"),
+            Condition::Below(x) => format!("`{name}` was not executed: the axis did not pass {x} downwards"),
+        }
+    }
+}
