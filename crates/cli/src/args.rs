@@ -1,9 +1,8 @@
 //! Arguments.
+mod choice;
 mod plan;
 
-pub(crate) use plan::{
-    PlanArgs, PlanExecution, PlanMethod, PlanOnline, PlanProfile, PlanSampling, PlanShape, PlanShaper, PlanVelocities,
-};
+pub(crate) use plan::{PlanArgs, PlanProfile};
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};

@@ -47,6 +47,26 @@ impl Choice for Coordinate {
 /// assert_eq!(Kind::P.name(), "p");
 /// assert_eq!(Kind::ALL[1].2, "proportional and integral");
 /// ```
+///
+/// Alternatives may have parameters; those that are chosen by name are a second type then, `kind` of the first:
+///
+/// ```
+/// servobench_config::choices! {
+///     /// How velocities are found.
+///     pub enum Velocities named VelocitiesKind {
+///         /// the mean of the neighbours
+///         Average = "average",
+///         /// the same, smoothed
+///         Smooth {
+///             /// How often.
+///             passes: u32,
+///         } = "smooth",
+///     }
+/// }
+/// use servobench_config::Choice as _;
+/// assert_eq!(VelocitiesKind::from_name("smooth"), Some(VelocitiesKind::Smooth));
+/// assert_eq!(Velocities::Smooth { passes: 3 }.kind().name(), "smooth");
+/// ```
 #[macro_export]
 macro_rules! choices {
     (
@@ -74,6 +94,43 @@ macro_rules! choices {
                 &[$( ($name, Self::$variant, concat!($($meaning),+).trim_ascii()), )+];
         }
     };
+    (
+        $(#[doc = $doc:literal])+
+        $visibility:vis enum $type:ident named $kind:ident $(default $default:ident)? {
+            $(
+                $(#[doc = $meaning:literal])+
+                $variant:ident $({ $( $(#[doc = $field_doc:literal])+ $field:ident: $field_type:ty, )+ })? = $name:literal,
+            )+
+        }
+    ) => {
+        $(#[doc = $doc])+
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        $visibility enum $type {
+            $(
+                $(#[doc = $meaning])+
+                $variant $({ $( $(#[doc = $field_doc])+ $field: $field_type, )+ })?,
+            )+
+        }
+
+        impl $type {
+            /// Which alternative it is, without its parameters.
+            #[must_use]
+            $visibility const fn kind(&self) -> $kind {
+                match self {
+                    $( Self::$variant { .. } => $kind::$variant, )+
+                }
+            }
+        }
+
+        $crate::choices! {
+            $(#[doc = $doc])+
+            ///
+            /// The alternatives without their parameters.
+            $visibility enum $kind $(default $default)? {
+                $( $(#[doc = $meaning])+ $variant = $name, )+
+            }
+        }
+    };
 }
 
 #[cfg(test)]
@@ -89,6 +146,30 @@ mod tests {
             /// the second
             Second = "second",
         }
+    }
+
+    choices! {
+        /// An example with parameters.
+        enum WithParameters named Kind default None {
+            /// no parameter
+            None = "none",
+            /// two of them
+            Two {
+                /// One.
+                one: f64,
+                /// The other.
+                other: u32,
+            } = "two",
+        }
+    }
+
+    #[test]
+    fn alternatives_with_parameters_are_chosen_by_their_kind() {
+        let both = [WithParameters::None, WithParameters::Two { one: 0.5, other: 3 }];
+        assert_eq!(both.map(|one| one.kind().name()), ["none", "two"]);
+        assert_eq!((Kind::default(), Kind::from_name("two")), (Kind::None, Some(Kind::Two)));
+        assert_eq!(Kind::ALL[1].2, "two of them");
+        assert!(matches!(both[1], WithParameters::Two { one: 0.5, other: 3 }));
     }
 
     #[test]

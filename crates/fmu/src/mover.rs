@@ -2,7 +2,7 @@
 use servobench_base::{Rate, Setpoint};
 use servobench_motion::online::{DirectionalLimits, Effort, Target};
 use servobench_motion::{Limits, Order, PlanError};
-use servobench_planner::{Plan, Replanning, Request, Way};
+use servobench_planner::{Generator, Plan, Replanning, Request};
 
 /// Generator of set-points for the command `target`: a rising edge of `execute` makes a move to `target`, jerk-limited, also
 /// while another is under way. A new override plans the rest of the move again, with the limit of velocity times it; at 0 the axis
@@ -61,14 +61,14 @@ impl Mover {
         let is_stop = factor == 0.0;
         let velocity = if is_stop { velocity } else { factor * velocity };
         let x = goal - self.now.x;
-        let way = Way::Replanning(Replanning {
+        let generator = Generator::Replanning(Replanning {
             from: Setpoint { x: 0.0, s: 0.0, ..self.now },
             target: if is_stop { Target::Velocity(0.0) } else { Target::Position { x, v: 0.0 } },
             order: Order::Third,
             limits: DirectionalLimits::from(Limits { velocity, acceleration, jerk, snap: f64::INFINITY }),
             effort: Effort::Fast,
         });
-        Request::new(way).plan()
+        Request::new(generator).plan()
     }
 }
 

@@ -1,7 +1,8 @@
 //! Parameters: values of the scenario that may be set before the simulation begins.
 use servobench_drive::{Params, Stage, current};
+use servobench_planner::Generator;
 use servobench_plant::{Body, Chain, Link};
-use servobench_scenario::{Actuator, AxisMechanics, Scenario, Step, Way};
+use servobench_scenario::{Actuator, AxisMechanics, Scenario, Step};
 
 /// A parameter.
 #[derive(Debug)]
@@ -102,8 +103,8 @@ fn coupling_mut(scenario: &mut Scenario) -> Option<&mut Link> {
 /// Limits of velocity, acceleration and jerk of the first move that has all of them.
 pub(crate) fn limits_of_moves(scenario: &Scenario) -> Option<[f64; 3]> {
     scenario.program.iter().find_map(|step| match step {
-        Step::Move(step) if !matches!(step.way, Way::Rockwell(_)) => {
-            let [velocity, acceleration, jerk, _] = step.limits;
+        Step::Move(step) if !matches!(step.request.generator, Generator::Rockwell(_)) => {
+            let [velocity, acceleration, jerk, _] = step.request.generator.limits();
             [velocity, acceleration, jerk].iter().all(|limit| limit.is_finite()).then_some([
                 velocity,
                 acceleration,

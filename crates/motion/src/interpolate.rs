@@ -57,51 +57,39 @@ mod stream;
 pub use interval::{Command, Interval, Sample};
 pub use stream::Interpolator;
 
-/// How the values between two slow samples are found; the table in the [module documentation](self) compares them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Mode {
-    /// Position linear, velocity its slope, acceleration zero.
-    Linear,
-    /// Cubic Hermite polynomial by positions and velocities.
-    Cubic,
-    /// Quintic Hermite polynomial by positions, velocities and accelerations.
-    Quintic,
-    /// Cubic B-spline with the positions as control points; does not pass through them.
-    CubicBSpline,
-    /// Quintic B-spline with the positions as control points; does not pass through them.
-    QuinticBSpline,
-    /// Position, velocity and acceleration each linear by itself.
-    AllLinear,
-    /// Position cubic by positions and velocities, velocity cubic by velocities and accelerations.
-    AllCubic,
+use servobench_config::Choice;
+
+servobench_config::choices! {
+    /// How the values between two slow samples are found; the table in the [module documentation](self) compares them.
+    pub enum Mode {
+        /// position linear, velocity its slope; one period late
+        Linear = "linear",
+        /// by positions and velocities; one period late
+        Cubic = "cubic",
+        /// by positions, velocities and accelerations; one period late
+        Quintic = "quintic",
+        /// positions as control points, not passed through; two periods late
+        CubicBSpline = "cubic-b-spline",
+        /// positions as control points, not passed through; three periods late
+        QuinticBSpline = "quintic-b-spline",
+        /// position, velocity, acceleration each linear; one period late
+        AllLinear = "all-linear",
+        /// position and velocity each cubic; one period late
+        AllCubic = "all-cubic",
+    }
 }
 
 impl Mode {
-    /// All modes, in the order of their numbers.
-    pub const ALL: [Self; 7] = [
-        Self::Linear,
-        Self::Cubic,
-        Self::Quintic,
-        Self::CubicBSpline,
-        Self::QuinticBSpline,
-        Self::AllLinear,
-        Self::AllCubic,
-    ];
-
-    /// The mode with this number, 1 to 7, in the source's parameter `InterpolationMode`; 8 and 9 are reserved there.
-    #[must_use]
-    pub const fn from_number(number: u8) -> Option<Self> {
-        match number {
-            1 => Some(Self::Linear),
-            2 => Some(Self::Cubic),
-            3 => Some(Self::Quintic),
-            4 => Some(Self::CubicBSpline),
-            5 => Some(Self::QuinticBSpline),
-            6 => Some(Self::AllLinear),
-            7 => Some(Self::AllCubic),
-            _ => None,
+    /// All modes, in the order of their numbers, from 1, in the source's parameter `InterpolationMode`.
+    pub const ALL: [Self; 7] = {
+        let mut all = [Self::Linear; 7];
+        let mut i = 0;
+        while i < all.len() {
+            all[i] = <Self as Choice>::ALL[i].1;
+            i += 1;
         }
-    }
+        all
+    };
 
     /// Number of samples that one interval needs, half of them on each side: 2, 4 or 6.
     #[must_use]

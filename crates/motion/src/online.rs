@@ -16,7 +16,7 @@
 //! one unknown over order n − 1, and order 2 is two parabolas. Where the velocity has a limit and rates that differ by its
 //! direction, as in a transition of order 2, `trapezoid` has them.
 //!
-//! How much farther one gets by a longer τ is known in closed form (`second::Way::grows`, `costate`), so that Newton's method
+//! How much farther one gets by a longer τ is known in closed form (`second::Fastest::grows`, `costate`), so that Newton's method
 //! finds each root in a few looks, and the inner one, which begins where the last one ended, in fewer.
 //!
 //! Order 4 adds the one thing that order 3 does not need: a state may be so near its velocity limit that the fastest way
@@ -72,13 +72,15 @@ pub use ramps::RampLimits;
 pub use second::Sides;
 pub use transition::Transition;
 
-/// How much work a plan of order 4 may take.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Effort {
-    /// A bounded amount, for a control cycle. Of a thousand random plans all but two are those of `Refined`.
-    Fast,
-    /// More, where the state is too near its velocity limit for the shortest way.
-    Refined,
+servobench_config::choices! {
+    /// How much work a plan of order 4 may take. Of a thousand random plans all but two are the same with either; the others are of
+    /// states too near their velocity limit for the shortest way.
+    pub enum Effort default Fast {
+        /// a bounded amount of work, for a control cycle
+        Fast = "fast",
+        /// more work where that makes the move shorter
+        Refined = "refined",
+    }
 }
 
 /// Where a transition ends, with neither acceleration nor jerk.

@@ -30,18 +30,19 @@ pub enum Jerk {
     PercentOfTime(f64),
 }
 
-/// Shape of the velocity over time.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Shape {
-    /// Acceleration as rectangular as the axis' jerk allows.
-    Trapezoid,
-    /// Acceleration with this jerk, and deceleration with that.
-    SCurve {
-        /// Of the acceleration.
-        acceleration: Jerk,
-        /// Of the deceleration.
-        deceleration: Jerk,
-    },
+servobench_config::choices! {
+    /// Shape of the velocity over time.
+    pub enum Shape named ShapeKind {
+        /// acceleration as rectangular as `maximum_jerk` allows
+        Trapezoid = "trapezoid",
+        /// acceleration with a jerk of its own
+        SCurve {
+            /// Of the acceleration.
+            acceleration: Jerk,
+            /// Of the deceleration.
+            deceleration: Jerk,
+        } = "s-curve",
+    }
 }
 
 /// Operands of a move, in the axis unit (m or rad).

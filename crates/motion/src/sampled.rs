@@ -55,19 +55,22 @@ mod shortest;
 #[cfg(feature = "std")]
 mod simplex;
 #[cfg(feature = "std")]
-mod way;
+mod symmetric;
 
 pub use cascade::{Along, Cascade};
 #[cfg(feature = "std")]
 pub use shortest::Shortest;
 
-/// How samples of the highest derivative become set-points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Execution {
-    /// By the [`Cascade`].
-    ForwardEuler,
-    /// By the exact hold.
-    ExactHold,
+servobench_config::choices! {
+    /// How samples of the highest derivative become set-points. What the [`Cascade`] sends lags on the way by half a sample for each
+    /// derivative but one.
+    pub enum Execution default ExactHold {
+        /// the exact polynomial, the highest derivative held: N samples, no lag
+        ExactHold = "hold",
+        /// the forward-Euler cascade, each sample held until the next: at rest at the same sample, and 1.5 samples late on the way at
+        /// order 4
+        ForwardEuler = "euler",
+    }
 }
 
 /// Samples in a row in which the highest derivative is the same.

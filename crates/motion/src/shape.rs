@@ -46,10 +46,12 @@ mod extra_insensitive;
 mod filter;
 mod impulses;
 mod mean;
+mod shaper;
 mod vibration;
 
 pub use averages::MovingAverages;
 pub use filter::ShapingFilter;
 pub use impulses::{Impulse, Impulses};
 pub use mean::MovingAverage;
+pub use shaper::{Shaper, ShaperKind};
 pub use vibration::Vibration;

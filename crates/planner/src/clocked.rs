@@ -1,7 +1,7 @@
 //! Position profiles for a drive on a bus: commands once per cycle, in whole units of the drive.
-use crate::plan::{Plan, Told};
+use crate::plan::{Plan, PlanDetails};
 use crate::polynomials::{Between, Polynomials};
-use crate::table::{Follow, MOST_COMMANDS, TableMove};
+use crate::table::{CommandRate, Follow, MOST_COMMANDS, TableMove};
 use servobench_base::{ParamError, Setpoint, non_negative};
 use servobench_motion::PlanError;
 use servobench_motion::position_profile::{Clock, ClockedPlateaus, ClockedSpline, Command, Spline};
@@ -43,7 +43,9 @@ impl TableMove {
         let slowed =
             |knot: &Knot| Knot { t: start + factor * (knot.t - start), x: knot.x, v: knot.v.map(|v| v / factor) };
         let follow = match self.follow {
-            Follow::Steps(rate) => Follow::Steps(rate / factor),
+            Follow::Steps { rate: CommandRate::Given(rate) } => {
+                Follow::Steps { rate: CommandRate::Given(rate / factor) }
+            }
             follow => follow,
         };
         Self { knots: self.knots.iter().map(slowed).collect(), follow, ..*self }
@@ -55,18 +57,18 @@ impl TableMove {
         let clock = Clock::new(self.knots.first().map_or(0.0, |knot| knot.t) + cycle.first, cycle.period)?;
         match self.follow {
             Follow::Segments => self.plan(),
-            Follow::Plateaus(alpha) => {
+            Follow::Plateaus { share } => {
                 let (mut knots, mut scratch) = (self.knots.clone(), vec![0.0; self.knots.len()]);
                 let (start, end) = self.ends();
-                let plateaus = ClockedPlateaus::solve(&mut knots, start, end, alpha, clock, &mut scratch)?;
+                let plateaus = ClockedPlateaus::solve(&mut knots, start, end, share, clock, &mut scratch)?;
                 let commands = rounded(plateaus.commands(), start, cycle.unit)?;
                 let obeyed = self.obeyed(&commands);
                 let missed = |knot: &Knot| (obeyed.at(knot.t).x - knot.x).abs();
                 let error = self.knots.iter().map(missed).fold(0.0, f64::max);
-                Ok(self.told(obeyed, Told::Commands { commands, error, rate: None }))
+                Ok(self.plan_of(obeyed, PlanDetails::Commands { commands, error, rate: None }))
             }
-            Follow::Steps(rate) => self.stepped_in(rate, clock, cycle.unit),
-            Follow::Within(allowed) => self.within(allowed, clock, cycle.unit),
+            Follow::Steps { rate: CommandRate::Given(rate) } => self.stepped_in(rate, clock, cycle.unit),
+            Follow::Steps { rate: CommandRate::LowestWithin(allowed) } => self.within(allowed, clock, cycle.unit),
         }
     }
 
@@ -85,13 +87,13 @@ impl TableMove {
         let spline = Spline::solve(&mut knots, start, end, &mut scratch)?;
         let obeyed = self.obeyed(&commands);
         let error = obeyed.largest_difference(spline.table());
-        Ok(self.told(obeyed, Told::Commands { commands, error, rate: Some(most) }))
+        Ok(self.plan_of(obeyed, PlanDetails::Commands { commands, error, rate: Some(most) }))
     }
 
     /// The plan of the fewest whole commands per second that keeps so near to the spline.
     fn within(&self, allowed: f64, clock: Clock, unit: f64) -> Result<Plan, PlanError> {
-        let error = |plan: &Plan| match plan.told() {
-            Told::Commands { error, .. } => *error,
+        let error = |plan: &Plan| match plan.details() {
+            PlanDetails::Commands { error, .. } => *error,
             _ => f64::INFINITY,
         };
         let highest = (1.0 / clock.period()).ceil();
@@ -126,11 +128,11 @@ impl TableMove {
         obeyed(commands, state, first.t, last.t)
     }
 
-    fn told(&self, obeyed: Obeyed, told: Told) -> Plan {
+    fn plan_of(&self, obeyed: Obeyed, details: PlanDetails) -> Plan {
         let start = self.knots[0].t;
         let Obeyed { parts, until, end } = obeyed;
         let parts = parts.into_iter().map(|(t, state)| (t - start, state));
-        Plan::of(Polynomials::new(parts, Between::Polynomial, until - start, end), told)
+        Plan::of(Polynomials::new(parts, Between::Polynomial, until - start, end), details)
     }
 }
 

@@ -2,17 +2,29 @@
 use crate::cascade::{MOST_SAMPLES, too_many};
 use crate::plan::Plan;
 use crate::polynomials::{Between, Polynomials};
+use core::f64::consts::TAU;
 use servobench_base::{ParamError, Setpoint, positive};
 use servobench_motion::PlanError;
-use servobench_motion::shape::{Impulses, MovingAverage};
+use servobench_motion::shape::{Impulses, MovingAverage, Shaper, Vibration};
 
 /// An input shaper, then moving averages.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Filter {
     /// A sum of parts of the set-point, each later than the one before; exact at any time.
-    pub shaper: Option<Impulses>,
+    pub shaper: Option<Shaping>,
     /// Means of the last samples.
     pub averages: Option<Averages>,
+}
+
+/// An input shaper and the vibration that it takes out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shaping {
+    /// Which shaper.
+    pub shaper: Shaper,
+    /// Natural frequency of the vibration (Hz).
+    pub frequency: f64,
+    /// Damping ratio of the vibration.
+    pub damping: f64,
 }
 
 /// Moving averages, one after the other, of samples; a set-point is held until the next one.
@@ -31,11 +43,34 @@ impl Filter {
     /// No filter.
     pub const NONE: Self = Self { shaper: None, averages: None };
 
+    /// The same with the impulses of the shaper.
+    pub(crate) fn solved(&self) -> Result<Solved<'_>, PlanError> {
+        let impulses = self.shaper.map(|shaping| shaping.impulses()).transpose()?;
+        Ok(Solved { impulses, averages: self.averages.as_ref() })
+    }
+}
+
+impl Shaping {
+    /// The impulses of the shaper.
+    ///
+    /// # Errors
+    /// As [`Vibration::new`] and [`Shaper::impulses`].
+    pub fn impulses(&self) -> Result<Impulses, PlanError> {
+        self.shaper.impulses(&Vibration::new(TAU * self.frequency, self.damping)?)
+    }
+}
+
+/// A filter with the impulses of its shaper.
+pub(crate) struct Solved<'a> {
+    pub(crate) impulses: Option<Impulses>,
+    pub(crate) averages: Option<&'a Averages>,
+}
+
+impl Solved<'_> {
     /// How much longer a move is behind it (s).
-    #[must_use]
-    pub fn length(&self) -> f64 {
-        self.shaper.as_ref().map_or(0.0, Impulses::duration)
-            + self.averages.as_ref().map_or(0.0, |averages| averages.lengths.iter().sum())
+    pub(crate) fn length(&self) -> f64 {
+        self.impulses.as_ref().map_or(0.0, Impulses::duration)
+            + self.averages.map_or(0.0, |averages| averages.lengths.iter().sum())
     }
 }
 

@@ -1,13 +1,12 @@
 //! A planned move.
 use crate::analysis::{self, Binding, Peak, Span};
 use crate::cascade::Sampled;
-use crate::filter::Filter;
-use crate::request::Execution;
+use crate::filter::Solved;
 use crate::slowed::Slowed;
 use servobench_base::{Setpoint, positive};
 use servobench_motion::online::Sides;
 use servobench_motion::position_profile::Command;
-use servobench_motion::sampled::Shortest;
+use servobench_motion::sampled::{Execution, Shortest};
 use servobench_motion::shape::Impulse;
 use servobench_motion::{Course, Order, Peaks, PlanError, Profile};
 use std::fmt;
@@ -21,7 +20,7 @@ pub struct Plan {
     parts: Vec<Impulse>,
     /// Limits of velocity, acceleration, jerk, snap; infinite where there is none.
     limits: [Sides; 4],
-    told: Told,
+    details: PlanDetails,
     /// Duration of the published profile (s), where this is another.
     published: Option<f64>,
     /// Length of what filters it (s).
@@ -32,9 +31,9 @@ pub struct Plan {
     held: Option<f64>,
 }
 
-/// What a generator has to tell of its plan.
+/// What is particular to the generator of a plan.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Told {
+pub enum PlanDetails {
     /// A profile from rest to rest.
     Profile(Box<Profile>),
     /// A sampled move of the fewest samples, through boxes or not.
@@ -74,25 +73,25 @@ pub enum Told {
 const LONGEST: f64 = 1e60;
 
 impl Plan {
-    pub(crate) fn of(course: impl Course + Send + Sync + 'static, told: Told) -> Self {
+    pub(crate) fn of(course: impl Course + Send + Sync + 'static, details: PlanDetails) -> Self {
         let parts = vec![Impulse { time: 0.0, amplitude: 1.0 }];
         Self {
             course: Arc::new(course),
             parts,
             limits: [Sides::both(f64::INFINITY); 4],
-            told,
+            details,
             published: None,
             filter: 0.0,
-            execution: Execution::Hold,
+            execution: Execution::ExactHold,
             held: None,
         }
     }
 
     /// That of `profile`.
     pub(crate) fn along(profile: &Profile, execution: Execution) -> Result<Self, PlanError> {
-        let told = Told::Profile(Box::new(*profile));
+        let details = PlanDetails::Profile(Box::new(*profile));
         match (execution, profile.samples()) {
-            (Execution::Euler, Some(samples)) => {
+            (Execution::ForwardEuler, Some(samples)) => {
                 let sampled = Sampled {
                     order: profile.order(),
                     distance: profile.distance(),
@@ -100,20 +99,20 @@ impl Plan {
                     samples: samples.total(),
                     duration: profile.duration(),
                 };
-                let plan = Self::of(sampled.cascade(profile.runs())?, told);
+                let plan = Self::of(sampled.cascade(profile.runs())?, details);
                 Ok(Self { execution, held: Some(samples.time), ..plan })
             }
-            _ => Ok(Self::of(*profile, told)),
+            _ => Ok(Self::of(*profile, details)),
         }
     }
 
     /// That of `shortest`.
     pub(crate) fn along_shortest(shortest: Shortest, execution: Execution) -> Result<Self, PlanError> {
         let sample_time = shortest.sample_time();
-        let told = Told::Shortest(Box::new(shortest.clone()));
+        let details = PlanDetails::Shortest(Box::new(shortest.clone()));
         match execution {
-            Execution::Hold => Ok(Self::of(shortest, told)),
-            Execution::Euler => {
+            Execution::ExactHold => Ok(Self::of(shortest, details)),
+            Execution::ForwardEuler => {
                 let sampled = Sampled {
                     order: shortest.order(),
                     distance: shortest.distance(),
@@ -121,7 +120,7 @@ impl Plan {
                     samples: shortest.samples(),
                     duration: shortest.duration(),
                 };
-                Ok(Self { execution, held: Some(sample_time), ..Self::of(sampled.cascade(shortest.runs())?, told) })
+                Ok(Self { execution, held: Some(sample_time), ..Self::of(sampled.cascade(shortest.runs())?, details) })
             }
         }
     }
@@ -143,11 +142,11 @@ impl Plan {
         }
         // The published profile would have been slowed, too.
         self.published = None;
-        if matches!(self.told, Told::Shortest(_)) {
+        if matches!(self.details, PlanDetails::Shortest(_)) {
             // Asked for its own duration: see the request.
             return Ok(self);
         }
-        if let Told::Profile(profile) = &self.told {
+        if let PlanDetails::Profile(profile) = &self.details {
             return Ok(Self::along(&profile.stretched_to(inner)?, self.execution)?.within(self.limits));
         }
         if self.course.duration() > 0.0 {
@@ -163,17 +162,17 @@ impl Plan {
             }
             let factor = (inner / self.course.duration()).max(1.0);
             self.course = Arc::new(Slowed { course: self.course, factor });
-            self.told.slow(factor);
+            self.details.slow(factor);
         }
         Ok(self)
     }
 
     /// The same move behind `filter`.
-    pub(crate) fn filtered(mut self, filter: &Filter) -> Result<Self, PlanError> {
-        if let Some(shaper) = &filter.shaper {
-            self.parts = shaper.iter().collect();
+    pub(crate) fn filtered(mut self, filter: &Solved<'_>) -> Result<Self, PlanError> {
+        if let Some(impulses) = &filter.impulses {
+            self.parts = impulses.iter().collect();
         }
-        if let Some(averages) = &filter.averages {
+        if let Some(averages) = filter.averages {
             self.course = Arc::new(averages.of(&self)?);
             self.held = Some(averages.sample_time);
             self.parts = vec![Impulse { time: 0.0, amplitude: 1.0 }];
@@ -226,10 +225,10 @@ impl Plan {
         &self.limits
     }
 
-    /// What its generator has to tell.
+    /// What is particular to its generator.
     #[must_use]
-    pub const fn told(&self) -> &Told {
-        &self.told
+    pub const fn details(&self) -> &PlanDetails {
+        &self.details
     }
 
     /// Duration of the published profile for the same request (s), where this is another one.
@@ -241,13 +240,13 @@ impl Plan {
     /// The highest derivative of position that is no impulse: 1 to 4.
     #[must_use]
     pub fn order(&self) -> usize {
-        match &self.told {
-            Told::Profile(profile) => profile.order().derivative(),
-            Told::Shortest(shortest) => shortest.order().derivative(),
-            Told::Transition { order, .. } => order.derivative(),
-            Told::Table { order } => *order,
-            Told::Rockwell { .. } => 3,
-            Told::Commands { .. } => 2,
+        match &self.details {
+            PlanDetails::Profile(profile) => profile.order().derivative(),
+            PlanDetails::Shortest(shortest) => shortest.order().derivative(),
+            PlanDetails::Transition { order, .. } => order.derivative(),
+            PlanDetails::Table { order } => *order,
+            PlanDetails::Rockwell { .. } => 3,
+            PlanDetails::Commands { .. } => 2,
         }
     }
 
@@ -292,8 +291,8 @@ impl Plan {
 
     /// The profile, where nothing filters it.
     fn plain_profile(&self) -> Option<&Profile> {
-        match &self.told {
-            Told::Profile(profile) if self.filter == 0.0 && self.held.is_none() => Some(profile),
+        match &self.details {
+            PlanDetails::Profile(profile) if self.filter == 0.0 && self.held.is_none() => Some(profile),
             _ => None,
         }
     }
@@ -307,8 +306,8 @@ impl Plan {
     }
 }
 
-impl Told {
-    /// What is told of the same in a time that is `factor` times as long.
+impl PlanDetails {
+    /// Those of the same move in a time that is `factor` times as long.
     fn slow(&mut self, factor: f64) {
         match self {
             Self::Rockwell { acceleration, deceleration } => {
@@ -334,12 +333,12 @@ impl Told {
 
 impl fmt::Debug for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { course, parts, limits, told, published, filter, execution, held } = self;
+        let Self { course, parts, limits, details, published, filter, execution, held } = self;
         f.debug_struct("Plan")
             .field("duration", &course.duration())
             .field("parts", parts)
             .field("limits", limits)
-            .field("told", told)
+            .field("details", details)
             .field("published", published)
             .field("filter", filter)
             .field("execution", execution)

@@ -1,18 +1,18 @@
 //! What can be asked for.
 use crate::clocked::CommandCycle;
 use crate::filter::Filter;
-use crate::plan::{Plan, Told};
+use crate::plan::{Plan, PlanDetails};
 use crate::table::TableMove;
 use servobench_base::{ParamError, Setpoint};
 use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target, Transition};
-use servobench_motion::sampled::Shortest;
+use servobench_motion::sampled::{Execution, Shortest};
 use servobench_motion::{Limits, Order, PlanError, Profile, rockwell};
 
 /// A move as it was asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
-    /// Which way it goes.
-    pub way: Way,
+    /// What generates its set-points, and from what.
+    pub generator: Generator,
     /// How long it lasts (s), slowed with every derivative in proportion; as fast as its limits allow without.
     pub duration: Option<f64>,
     /// What filters it.
@@ -21,9 +21,9 @@ pub struct Request {
     pub commands: Option<CommandCycle>,
 }
 
-/// Which way a move goes.
+/// A generator of set-points with its operands.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Way {
+pub enum Generator {
     /// From rest to rest.
     PointToPoint(PointToPoint),
     /// From any state.
@@ -60,43 +60,33 @@ pub struct Grid {
     pub execution: Execution,
 }
 
-/// How the times of a move are made whole numbers of samples.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Sampling {
-    /// One after the other, from the shortest on: as it is published.
-    #[default]
-    Published,
-    /// With the fewest samples that a step through boxes needs.
-    Fewest,
-}
-
-/// What is between two samples of the highest derivative.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Execution {
-    /// The exact polynomial: the highest derivative is held.
-    #[default]
-    Hold,
-    /// The forward-Euler cascade: sums sample by sample, each set-point held until the next. On the way it lags by half a
-    /// sample for each derivative but one: by 1.5 samples at order 4.
-    Euler,
+servobench_config::choices! {
+    /// How the times of a move are made whole numbers of samples.
+    pub enum Sampling default Published {
+        /// time after time is rounded up, as it is published
+        Published = "published",
+        /// the fewest samples that a step through boxes needs
+        Fewest = "fewest",
+    }
 }
 
 impl Grid {
     /// As it is published, and held exactly.
     #[must_use]
     pub const fn new(sample_time: f64) -> Self {
-        Self { sample_time, sampling: Sampling::Published, execution: Execution::Hold }
+        Self { sample_time, sampling: Sampling::Published, execution: Execution::ExactHold }
     }
 }
 
-/// Which profile goes from rest to rest.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Method {
-    /// The step through boxes that is published (Pietrusewicz et al. 2019): 15 segments at order 4.
-    #[default]
-    Published,
-    /// The shortest; of a sampled move that of the fewest samples, whatever its shape.
-    Optimal,
+servobench_config::choices! {
+    /// Which profile goes from rest to rest: the one of Pietrusewicz et al. 2019, or the shortest, which of a sampled move is that of the
+    /// fewest samples, whatever its shape.
+    pub enum Method default Published {
+        /// the published step through boxes, 15 segments at order 4
+        Published = "published",
+        /// the shortest: up to 6.94 % less time at order 4 where velocity does not cruise
+        Optimal = "optimal",
+    }
 }
 
 /// A move from any state.
@@ -126,21 +116,22 @@ pub struct Rockwell {
 impl Request {
     /// As fast as the limits allow, and not filtered.
     #[must_use]
-    pub const fn new(way: Way) -> Self {
-        Self { way, duration: None, filter: Filter::NONE, commands: None }
+    pub const fn new(generator: Generator) -> Self {
+        Self { generator, duration: None, filter: Filter::NONE, commands: None }
     }
 
     /// Plans it.
     ///
     /// # Errors
-    /// [`PlanError`] of the generator; [`PlanError::TooShort`] for a duration below that at the limits;
+    /// [`PlanError`] of the generator or of the shaper; [`PlanError::TooShort`] for a duration below that at the limits;
     /// [`PlanError::Parameter`] for a duration or a filter of a move that starts or ends in motion.
     pub fn plan(&self) -> Result<Plan, PlanError> {
-        let plan = match (&self.way, &self.commands) {
-            (Way::Table(table), Some(cycle)) if table.is_sent() => table.plan_in(cycle)?,
-            (way, _) => way.plan()?,
+        let filter = self.filter.solved()?;
+        let plan = match (&self.generator, &self.commands) {
+            (Generator::Table(table), Some(cycle)) if table.is_sent() => table.plan_in(cycle)?,
+            (generator, _) => generator.plan()?,
         };
-        if self.duration.is_some() || self.filter.length() > 0.0 {
+        if self.duration.is_some() || filter.length() > 0.0 {
             for (name, value) in [("start_velocity", plan.start().v), ("end_velocity", plan.end().v)] {
                 if value != 0.0 {
                     let bound = "zero for a move that is filtered or slowed";
@@ -149,44 +140,38 @@ impl Request {
             }
         }
         let plan = match self.duration {
-            Some(duration) => self.slowed(plan, duration)?,
+            Some(duration) => self.slowed(plan, duration, filter.length())?,
             None => plan,
         };
-        plan.filtered(&self.filter)
+        plan.filtered(&filter)
     }
 }
 
 impl Request {
-    /// `plan`, which this request is, in `duration` seconds.
-    fn slowed(&self, plan: Plan, duration: f64) -> Result<Plan, PlanError> {
-        if let (Way::Table(table), Some(cycle)) = (&self.way, &self.commands)
+    /// `plan`, which this request is, in `duration` seconds, of which what filters it takes `filter`.
+    fn slowed(&self, plan: Plan, duration: f64, filter: f64) -> Result<Plan, PlanError> {
+        if let (Generator::Table(table), Some(cycle)) = (&self.generator, &self.commands)
             && table.is_sent()
         {
             // Commands stay at their instants.
-            let factor = (duration - self.filter.length()) / plan.duration();
+            let factor = (duration - filter) / plan.duration();
             let is_slower = factor > 1.0 && factor.is_finite() && plan.duration() > 0.0;
-            return if is_slower {
-                table.slowed(factor).plan_in(cycle)
-            } else {
-                plan.stretched_to(duration, self.filter.length())
-            };
+            return if is_slower { table.slowed(factor).plan_in(cycle) } else { plan.stretched_to(duration, filter) };
         }
-        let Way::PointToPoint(way @ PointToPoint { grid: Some(grid), .. }) = &self.way else {
-            return plan.stretched_to(duration, self.filter.length());
+        let Generator::PointToPoint(shortest @ PointToPoint { grid: Some(grid), .. }) = &self.generator else {
+            return plan.stretched_to(duration, filter);
         };
-        if way.method == Method::Published
-            || (plan.duration() + self.filter.length() - duration).abs() <= 1e-9 * duration
-        {
-            return plan.stretched_to(duration, self.filter.length());
+        if shortest.method == Method::Published || (plan.duration() + filter - duration).abs() <= 1e-9 * duration {
+            return plan.stretched_to(duration, filter);
         }
         // Slower than its limits it need not be the shortest: through boxes all its times stay whole samples.
         let grid = Some(Grid { sampling: Sampling::Fewest, ..*grid });
-        let boxes = PointToPoint { method: Method::Published, grid, ..*way };
-        boxes.plan()?.stretched_to(duration, self.filter.length())
+        let boxes = PointToPoint { method: Method::Published, grid, ..*shortest };
+        boxes.plan()?.stretched_to(duration, filter)
     }
 }
 
-impl Way {
+impl Generator {
     fn plan(&self) -> Result<Plan, PlanError> {
         match self {
             Self::PointToPoint(request) => request.plan(),
@@ -222,7 +207,7 @@ impl PointToPoint {
                 return Ok(plan.within(sides).instead_of(Some(published()?.duration())));
             }
         };
-        let execution = grid.map_or(Execution::Hold, |grid| grid.execution);
+        let execution = grid.map_or(Execution::ExactHold, |grid| grid.execution);
         Ok(Plan::along(&profile, execution)?.within(sides).instead_of(compared))
     }
 }
@@ -234,7 +219,7 @@ impl Replanning {
         let DirectionalLimits { velocity, acceleration, jerk, snap } = *limits;
         let mut sides = [velocity, acceleration, Sides::both(jerk), Sides::both(snap)];
         sides[order.derivative()..].fill(Sides::both(f64::INFINITY));
-        Ok(Plan::of(transition, Told::Transition { order: *order, excess: transition.excess() }).within(sides))
+        Ok(Plan::of(transition, PlanDetails::Transition { order: *order, excess: transition.excess() }).within(sides))
     }
 }
 
@@ -251,6 +236,6 @@ impl Rockwell {
             Sides::both(up.max(down)),
             Sides::both(f64::INFINITY),
         ];
-        Ok(Plan::of(trajectory, Told::Rockwell { acceleration: up, deceleration: down }).within(sides))
+        Ok(Plan::of(trajectory, PlanDetails::Rockwell { acceleration: up, deceleration: down }).within(sides))
     }
 }

@@ -1,5 +1,5 @@
 //! Moves through tables: as they are, or as a drive follows that is told velocities.
-use crate::plan::{Plan, Told};
+use crate::plan::{Plan, PlanDetails};
 use crate::polynomials::{Between, Polynomials};
 use servobench_base::{ParamError, Setpoint};
 use servobench_motion::position_profile::{Command, Plateaus, Spline};
@@ -17,32 +17,58 @@ pub struct TableMove {
     pub follow: Follow,
 }
 
-/// Where the velocities at the points come from. At the first and the last one they are what the table says, zero unless it
-/// says.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Velocities {
-    /// The table's own; a point without one is approached linearly.
-    Given,
-    /// The mean of the segments before and behind.
-    Average,
-    /// The average rule, then so many passes of the formulas F2 and F1.
-    Smooth(usize),
-    /// Those of the cubic spline: continuous acceleration.
-    Continuous,
+servobench_config::choices! {
+    /// Where the velocities at the points come from. At the first and the last one they are what the table says, zero unless it says.
+    pub enum Velocities named VelocitiesKind default Given {
+        /// the table's own; a point without one is approached linearly
+        Given = "given",
+        /// the mean of the segments before and behind
+        Average = "average",
+        /// the average, then `passes` of smoothing
+        Smooth {
+            /// Passes of the formulas F2 and F1.
+            passes: u32,
+        } = "smooth",
+        /// those with continuous acceleration: the cubic spline
+        Continuous = "continuous",
+    }
 }
 
-/// How a table is followed.
+servobench_config::choices! {
+    /// How a table is followed.
+    pub enum Follow named FollowKind default Segments {
+        /// along its cubic and linear segments (PVT, PT)
+        Segments = "segments",
+        /// by profile velocities with a plateau in each segment; hits every position
+        Plateaus {
+            /// Share of a segment at either end in which velocity changes.
+            share: f64,
+        } = "plateaus",
+        /// by profile velocities along the cubic spline, sent at `command_rate`
+        Steps {
+            /// How often.
+            rate: CommandRate,
+        } = "steps",
+    }
+}
+
+/// How often velocities are sent.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Follow {
-    /// Along its cubic and linear segments.
-    Segments,
-    /// By profile velocities with a plateau in each segment, option 1; the share of a segment at either end in which
-    /// velocity changes.
-    Plateaus(f64),
-    /// By profile velocities along its spline, option 2; commands per second.
-    Steps(f64),
-    /// The same with the lowest whole number of commands per second that keeps the drive so near to the spline (m or rad).
-    Within(f64),
+pub enum CommandRate {
+    /// So many per second.
+    Given(f64),
+    /// At the lowest whole number per second that keeps the drive so near to the spline (m or rad).
+    LowestWithin(f64),
+}
+
+impl Velocities {
+    /// Passes by default: what the source of the formulas shows.
+    pub const PASSES: u32 = 2;
+}
+
+impl Follow {
+    /// Share of a segment in which velocity changes, by default.
+    pub const PLATEAU_SHARE: f64 = 0.25;
 }
 
 /// A difference below this part of the largest value is none.
@@ -60,30 +86,30 @@ impl TableMove {
                 match self.velocities {
                     Velocities::Given => {}
                     Velocities::Average => average(&mut knots, start, end)?,
-                    Velocities::Smooth(passes) => {
+                    Velocities::Smooth { passes } => {
                         average(&mut knots, start, end)?;
-                        smooth(&mut knots, passes)?;
+                        smooth(&mut knots, passes as usize)?;
                     }
                     Velocities::Continuous => continuous(&mut knots, start, end, &mut scratch)?,
                 }
                 let mut cursor = Table::new(&knots)?.cursor();
                 let polynomials = Polynomials::collect(knots[0].t, knots[knots.len() - 1].t, |t| cursor.piece(t));
                 let order = order(&polynomials, start);
-                Ok(Plan::of(polynomials, Told::Table { order }))
+                Ok(Plan::of(polynomials, PlanDetails::Table { order }))
             }
-            Follow::Plateaus(alpha) => {
-                let plateaus = Plateaus::solve(&mut knots, start, end, alpha, &mut scratch)?;
+            Follow::Plateaus { share } => {
+                let plateaus = Plateaus::solve(&mut knots, start, end, share, &mut scratch)?;
                 let commands = plateaus.commands().collect();
                 let mut cursor = plateaus.cursor();
                 let knots = plateaus.knots();
                 let polynomials = Polynomials::collect(knots[0].t, knots[knots.len() - 1].t, |t| cursor.piece(t));
-                Ok(Plan::of(polynomials, Told::Commands { commands, error: 0.0, rate: None }))
+                Ok(Plan::of(polynomials, PlanDetails::Commands { commands, error: 0.0, rate: None }))
             }
-            Follow::Steps(rate) => {
+            Follow::Steps { rate: CommandRate::Given(rate) } => {
                 let bound = "low enough for at most 10 million commands";
                 self.stepped(|_| Ok(rate), ParamError { name: "rate", value: rate, bound })
             }
-            Follow::Within(error) => {
+            Follow::Steps { rate: CommandRate::LowestWithin(error) } => {
                 let bound = "large enough for at most 10 million commands";
                 let too_many = ParamError { name: "allowed", value: error, bound };
                 self.stepped(|spline| spline.lowest_rate(error).map(f64::from), too_many)
@@ -115,8 +141,8 @@ impl TableMove {
         let (first, last) = (self.knots[0], self.knots[self.knots.len() - 1]);
         let state = Setpoint { v: start, ..Setpoint::at_rest(first.x) };
         let (parts, end) = obeyed(&commands, state, first.t, last.t);
-        let told = Told::Commands { commands, error: stepped.largest_error(), rate: Some(rate) };
-        Ok(Plan::of(Polynomials::new(parts, Between::Polynomial, last.t - first.t, end), told))
+        let details = PlanDetails::Commands { commands, error: stepped.largest_error(), rate: Some(rate) };
+        Ok(Plan::of(Polynomials::new(parts, Between::Polynomial, last.t - first.t, end), details))
     }
 }
 

@@ -1,7 +1,9 @@
 //! Position profiles for a drive on a bus: what is announced is what the commands lead to.
 use servobench_motion::position_profile::{Command, Spline};
 use servobench_motion::pvt::Knot;
-use servobench_planner::{CommandCycle, Follow, Plan, Request, TableMove, Told, Velocities, Way};
+use servobench_planner::{
+    CommandCycle, CommandRate, Follow, Generator, Plan, PlanDetails, Request, TableMove, Velocities,
+};
 
 /// No time is a whole number of a cycle of the tests; the table does not begin at 0.
 const POINTS: [(f64, f64); 7] =
@@ -13,11 +15,11 @@ fn table(follow: Follow) -> TableMove {
 }
 
 fn request(follow: Follow, cycle: CommandCycle) -> Request {
-    Request { commands: Some(cycle), ..Request::new(Way::Table(table(follow))) }
+    Request { commands: Some(cycle), ..Request::new(Generator::Table(table(follow))) }
 }
 
 fn told(plan: &Plan) -> (&[Command], f64, Option<f64>) {
-    let Told::Commands { commands, error, rate } = plan.told() else { panic!("{:?}", plan.told()) };
+    let PlanDetails::Commands { commands, error, rate } = plan.details() else { panic!("{:?}", plan.details()) };
     (commands, *error, *rate)
 }
 
@@ -32,9 +34,9 @@ const CYCLES: [CommandCycle; 4] = [
 #[test]
 fn what_is_announced_is_what_the_commands_lead_to() {
     for cycle in CYCLES {
-        for follow in
-            [0.25, 0.5, 0.1, 0.4321].map(Follow::Plateaus).into_iter().chain([300.0, 77.7, 1e4].map(Follow::Steps))
-        {
+        let plateaus = [0.25, 0.5, 0.1, 0.4321].map(|share| Follow::Plateaus { share });
+        let steps = [300.0, 77.7, 1e4].map(|rate| Follow::Steps { rate: CommandRate::Given(rate) });
+        for follow in plateaus.into_iter().chain(steps) {
             for slower in [1.0, 1.37] {
                 let free = request(follow, cycle).plan().unwrap();
                 let duration = (slower > 1.0).then(|| slower * free.duration());
@@ -55,14 +57,14 @@ fn what_is_announced_is_what_the_commands_lead_to() {
                     (plan.at(t).x - spline.table().at(start + t).x).abs()
                 };
                 let measured = match follow {
-                    Follow::Plateaus(_) => {
+                    Follow::Plateaus { .. } => {
                         knots.iter().map(|knot| (plan.at(knot.t - start).x - knot.x).abs()).fold(0.0, f64::max)
                     }
                     _ => (0..=20_000).map(off).fold(0.0, f64::max),
                 };
                 let what = format!("{follow:?} {cycle:?} {slower}: {measured} m, {error} m announced");
                 assert!(measured <= error + 1e-15 && (error - measured).abs() <= 1e-4 * error + 1e-15, "{what}");
-                if cycle.unit == 0.0 && matches!(follow, Follow::Plateaus(_)) {
+                if cycle.unit == 0.0 && matches!(follow, Follow::Plateaus { .. }) {
                     assert!(error < 1e-14, "{what}");
                 }
             }
@@ -73,22 +75,23 @@ fn what_is_announced_is_what_the_commands_lead_to() {
 #[test]
 fn the_lowest_rate_within_an_error_is_that_of_the_cycle_or_refused() {
     for cycle in CYCLES {
-        let plan = request(Follow::Within(1e-3), cycle).plan().unwrap();
+        let plan = request(Follow::Steps { rate: CommandRate::LowestWithin(1e-3) }, cycle).plan().unwrap();
         let (_, error, rate) = told(&plan);
         let rate = rate.unwrap();
-        let below = request(Follow::Steps(rate - 1.0), cycle).plan().unwrap();
+        let below = request(Follow::Steps { rate: CommandRate::Given(rate - 1.0) }, cycle).plan().unwrap();
         assert!(error <= 1e-3 && told(&below).1 > 1e-3, "{cycle:?}: {error} at {rate}");
-        let refused = request(Follow::Within(1e-9), cycle).plan().unwrap_err().to_string();
+        let refused =
+            request(Follow::Steps { rate: CommandRate::LowestWithin(1e-9) }, cycle).plan().unwrap_err().to_string();
         assert!(refused.contains("`allowed`") && refused.contains("a shorter cycle"), "{refused}");
     }
-    assert!(request(Follow::Within(f64::NAN), CYCLES[0]).plan().is_err());
+    assert!(request(Follow::Steps { rate: CommandRate::LowestWithin(f64::NAN) }, CYCLES[0]).plan().is_err());
 }
 
 /// Commands beyond what the objects of the drive hold, and cycles that mean nothing.
 #[test]
 fn what_cannot_be_sent_is_refused() {
     let unit = |unit| CommandCycle { unit, ..CYCLES[0] };
-    let said = |cycle| request(Follow::Plateaus(0.1), cycle).plan().unwrap_err().to_string();
+    let said = |cycle| request(Follow::Plateaus { share: 0.1 }, cycle).plan().unwrap_err().to_string();
     assert!(said(unit(1e-10)).starts_with("`acceleration` must be at most 2³² − 1 units"), "{}", said(unit(1e-10)));
     assert!(
         said(unit(1e-11)).starts_with("`velocity` must be at most 2³¹ − 1 velocity units"),

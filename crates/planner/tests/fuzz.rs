@@ -4,12 +4,14 @@ use servobench_fuzz::{Number, ValueGenerator, check, fuzz, produce};
 use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target};
 use servobench_motion::pvt::Knot;
 use servobench_motion::rockwell::{Jerk, MaximumJerk, Move, Shape};
-use servobench_motion::shape::{Impulses, Vibration};
+use servobench_motion::sampled::Execution;
+use servobench_motion::shape::Shaper;
 use servobench_motion::{Limits, Order};
 use servobench_planner::{
-    Averages, CommandCycle, Execution, Filter, Follow, Grid, Method, Plan, PointToPoint, Replanning, Request, Rockwell,
-    Sampling, TableMove, Velocities, Way,
+    Averages, CommandCycle, CommandRate, Filter, Follow, Generator, Grid, Method, Plan, PointToPoint, Replanning,
+    Request, Rockwell, Sampling, Shaping, TableMove, Velocities,
 };
+use std::f64::consts::TAU;
 
 /// Numbers that a request of any family is made of, and which family and variant it is.
 #[derive(Debug)]
@@ -32,12 +34,12 @@ impl Asked {
         [Order::Second, Order::Third, Order::Fourth][usize::from(self.variant % 3)]
     }
 
-    fn way(&self) -> Way {
+    fn generator(&self) -> Generator {
         let ([x, v, a, j, distance, end], [velocity, acceleration, jerk, snap, time, other, ..]) =
             (self.signed, self.magnitudes);
         let is = |bit: u8| self.variant >> bit & 1 == 1;
         match self.family {
-            0 => Way::PointToPoint(PointToPoint {
+            0 => Generator::PointToPoint(PointToPoint {
                 distance,
                 order: self.order(),
                 limits: Limits { velocity, acceleration, jerk, snap },
@@ -45,10 +47,10 @@ impl Asked {
                 grid: is(6).then_some(Grid {
                     sample_time: time,
                     sampling: if is(5) { Sampling::Fewest } else { Sampling::Published },
-                    execution: if is(4) { Execution::Euler } else { Execution::Hold },
+                    execution: if is(4) { Execution::ForwardEuler } else { Execution::ExactHold },
                 }),
             }),
-            1 => Way::Replanning(Replanning {
+            1 => Generator::Replanning(Replanning {
                 from: Setpoint { x, v, a, j, s: 0.0 },
                 target: if is(7) { Target::Velocity(end) } else { Target::Position { x: distance, v: end } },
                 order: self.order(),
@@ -70,7 +72,7 @@ impl Asked {
                     },
                 };
                 let (deceleration, maximum) = (snap, MaximumJerk { acceleration: other, deceleration: other });
-                Way::Rockwell(Rockwell {
+                Generator::Rockwell(Rockwell {
                     operands: Move { distance, speed: velocity, acceleration, deceleration, shape },
                     maximum,
                 })
@@ -85,27 +87,29 @@ impl Asked {
                 let velocities = match self.variant % 4 {
                     0 => Velocities::Given,
                     1 => Velocities::Average,
-                    2 => Velocities::Smooth(usize::from(self.variant >> 4)),
+                    2 => Velocities::Smooth { passes: u32::from(self.variant >> 4) },
                     _ => Velocities::Continuous,
                 };
                 let follow = match self.variant >> 2 & 3 {
-                    0 => Follow::Plateaus(time),
-                    1 => Follow::Steps(time),
-                    2 => Follow::Within(time),
+                    0 => Follow::Plateaus { share: time },
+                    1 => Follow::Steps { rate: CommandRate::Given(time) },
+                    2 => Follow::Steps { rate: CommandRate::LowestWithin(time) },
                     _ => Follow::Segments,
                 };
-                Way::Table(TableMove { knots, velocities, follow })
+                Generator::Table(TableMove { knots, velocities, follow })
             }
         }
     }
 
     fn request(&self) -> Request {
         let [.., one, other] = self.magnitudes;
+        let frequency = one / TAU;
         let shaper = match self.filter % 4 {
-            0 => Vibration::new(one, 0.1).ok().map(|mode| Impulses::zvd(&mode)),
-            1 => Vibration::new(one, 0.02).ok().and_then(|mode| Impulses::ei(&mode, 0.05).ok()),
+            0 => Some(Shaping { shaper: Shaper::Zvd, frequency, damping: 0.1 }),
+            1 => Some(Shaping { shaper: Shaper::Ei { tolerable: 0.05 }, frequency, damping: 0.02 }),
             _ => None,
         };
+        let shaper = shaper.filter(|shaping| shaping.impulses().is_ok());
         // As many samples as a person would wait for.
         let averages = (self.filter.is_multiple_of(7) && other > 1e-3)
             .then(|| Averages { lengths: vec![3.0 * other, other], sample_time: other });
@@ -113,7 +117,7 @@ impl Asked {
         let unit = if self.variant.is_multiple_of(2) { other } else { 0.0 };
         let cycle = CommandCycle { period: one, first: self.signed[5], unit };
         let commands = self.filter.is_multiple_of(3).then_some(cycle);
-        Request { way: self.way(), duration, filter: Filter { shaper, averages }, commands }
+        Request { generator: self.generator(), duration, filter: Filter { shaper, averages }, commands }
     }
 }
 
@@ -140,9 +144,9 @@ fn holds(plan: &Plan) {
 
 /// Long moves of short samples take their time: they are for the planners' own targets.
 fn is_quick(request: &Request) -> bool {
-    match &request.way {
-        Way::PointToPoint(PointToPoint { grid: Some(grid), distance, order, limits, .. }) => {
-            Request::new(Way::PointToPoint(PointToPoint {
+    match &request.generator {
+        Generator::PointToPoint(PointToPoint { grid: Some(grid), distance, order, limits, .. }) => {
+            Request::new(Generator::PointToPoint(PointToPoint {
                 grid: None,
                 distance: *distance,
                 order: *order,
@@ -152,7 +156,11 @@ fn is_quick(request: &Request) -> bool {
             .plan()
             .map_or(true, |plan| plan.duration() / grid.sample_time < 3e3)
         }
-        Way::Table(TableMove { follow: Follow::Steps(rate) | Follow::Within(rate), knots, .. }) => {
+        Generator::Table(TableMove {
+            follow: Follow::Steps { rate: CommandRate::Given(rate) | CommandRate::LowestWithin(rate) },
+            knots,
+            ..
+        }) => {
             let rate = request.commands.map_or(*rate, |cycle| rate.max(1.0 / cycle.period));
             let length = knots.last().map_or(0.0, |last| last.t);
             (rate * length).abs() < 1e4 || !rate.is_finite()

@@ -3,28 +3,35 @@ use servobench_base::Setpoint;
 use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target, Transition};
 use servobench_motion::pvt::{Knot, Table, average, continuous};
 use servobench_motion::rockwell::{Jerk, MaximumJerk, Move, Shape};
-use servobench_motion::shape::{Impulses, Vibration};
+use servobench_motion::sampled::Execution;
+use servobench_motion::shape::Shaper;
 use servobench_motion::{Limits, Order, PlanError, Profile};
 use servobench_planner::{
-    Averages, Binding, Execution, Filter, Follow, Grid, Method, Peak, Plan, PointToPoint, Reader, Replanning, Request,
-    Rockwell, Sampling, TableMove, Told, Velocities, Way,
+    Averages, Binding, CommandRate, Filter, Follow, Generator, Grid, Method, Peak, Plan, PlanDetails, PointToPoint,
+    Reader, Replanning, Request, Rockwell, Sampling, Shaping, TableMove, Velocities,
 };
+use std::f64::consts::TAU;
 
 const LIMITS: Limits = Limits { velocity: 1.0, acceleration: 5.0, jerk: 50.0, snap: 1000.0 };
 
-fn point_to_point(distance: f64, method: Method) -> Way {
-    Way::PointToPoint(PointToPoint { distance, order: Order::Fourth, limits: LIMITS, method, grid: None })
+fn point_to_point(distance: f64, method: Method) -> Generator {
+    Generator::PointToPoint(PointToPoint { distance, order: Order::Fourth, limits: LIMITS, method, grid: None })
 }
 
 /// 0.02 m, in samples of 1 ms.
-fn sampled(sampling: Sampling, execution: Execution) -> Way {
+fn sampled(sampling: Sampling, execution: Execution) -> Generator {
     let grid = Some(Grid { sample_time: 1e-3, sampling, execution });
     let (order, method) = (Order::Fourth, Method::Published);
-    Way::PointToPoint(PointToPoint { distance: 0.02, order, limits: LIMITS, method, grid })
+    Generator::PointToPoint(PointToPoint { distance: 0.02, order, limits: LIMITS, method, grid })
 }
 
-fn plan(way: Way) -> Plan {
-    Request::new(way).plan().unwrap()
+/// A shaper for a vibration of 60 rad/s.
+fn shaping(shaper: Shaper, damping: f64) -> Shaping {
+    Shaping { shaper, frequency: 60.0 / TAU, damping }
+}
+
+fn plan(generator: Generator) -> Plan {
+    Request::new(generator).plan().unwrap()
 }
 
 /// A transition from a state of motion, with limits by direction.
@@ -60,7 +67,7 @@ fn all() -> Vec<Plan> {
         },
         maximum: MaximumJerk { acceleration: 1e4, deceleration: 1e4 },
     };
-    let shaper = Impulses::zvd(&Vibration::new(60.0, 0.02).unwrap());
+    let shaper = shaping(Shaper::Zvd, 0.02);
     let shaped = |duration| Request {
         duration,
         filter: Filter { shaper: Some(shaper), averages: None },
@@ -74,14 +81,14 @@ fn all() -> Vec<Plan> {
     vec![
         plan(point_to_point(1.0, Method::Published)),
         plan(point_to_point(-0.02, Method::Optimal)),
-        plan(sampled(Sampling::Fewest, Execution::Hold)),
-        plan(sampled(Sampling::Published, Execution::Euler)),
-        plan(Way::Replanning(replanning())),
-        plan(Way::Rockwell(rockwell)),
-        plan(Way::Table(table(Follow::Segments, Velocities::Continuous))),
-        plan(Way::Table(table(Follow::Segments, Velocities::Given))),
-        plan(Way::Table(table(Follow::Plateaus(0.25), Velocities::Given))),
-        plan(Way::Table(table(Follow::Steps(500.0), Velocities::Given))),
+        plan(sampled(Sampling::Fewest, Execution::ExactHold)),
+        plan(sampled(Sampling::Published, Execution::ForwardEuler)),
+        plan(Generator::Replanning(replanning())),
+        plan(Generator::Rockwell(rockwell)),
+        plan(Generator::Table(table(Follow::Segments, Velocities::Continuous))),
+        plan(Generator::Table(table(Follow::Segments, Velocities::Given))),
+        plan(Generator::Table(table(Follow::Plateaus { share: 0.25 }, Velocities::Given))),
+        plan(Generator::Table(table(Follow::Steps { rate: CommandRate::Given(500.0) }, Velocities::Given))),
         shaped(None).plan().unwrap(),
         shaped(Some(2.0)).plan().unwrap(),
         averaged.plan().unwrap(),
@@ -101,8 +108,8 @@ fn a_plan_is_what_its_generator_says() {
     let mut knots = table(Follow::Segments, Velocities::Given).knots;
     average(&mut knots, 0.0, 0.0).unwrap();
     let through = Table::new(&knots).unwrap();
-    let [optimal, moving] = [point_to_point(-0.02, Method::Optimal), Way::Replanning(replanning())].map(plan);
-    let averaged = plan(Way::Table(table(Follow::Segments, Velocities::Average)));
+    let [optimal, moving] = [point_to_point(-0.02, Method::Optimal), Generator::Replanning(replanning())].map(plan);
+    let averaged = plan(Generator::Table(table(Follow::Segments, Velocities::Average)));
     for k in 0..=1000_u32 {
         let part = f64::from(k) / 1000.0;
         let t = part * profile.duration();
@@ -113,7 +120,7 @@ fn a_plan_is_what_its_generator_says() {
         let t = part * through.duration();
         assert!((averaged.at(t).x - through.at(0.5 + t).x).abs() < 1e-15, "{t}");
     }
-    let Told::Transition { excess, .. } = moving.told() else { panic!("{:?}", moving.told()) };
+    let PlanDetails::Transition { excess, .. } = moving.details() else { panic!("{:?}", moving.details()) };
     assert_eq!(excess.to_bits(), transition.excess().to_bits());
 }
 
@@ -184,7 +191,7 @@ fn peaks_and_cruise_of_a_profile_are_its_closed_forms() {
 /// A shaper of two impulses leaves of the cruise what both parts have of it.
 #[test]
 fn the_cruise_is_the_longest_part_at_constant_velocity() {
-    let shaper = Impulses::zv(&Vibration::new(60.0, 0.02).unwrap());
+    let shaper = shaping(Shaper::Zv, 0.02);
     let request = |shaper| Request {
         filter: Filter { shaper, averages: None },
         ..Request::new(point_to_point(1.0, Method::Published))
@@ -192,9 +199,9 @@ fn the_cruise_is_the_longest_part_at_constant_velocity() {
     let (start, length) = request(None).plan().unwrap().cruise();
     assert!((start - 0.35).abs() < 1e-12 && (length - 0.65).abs() < 1e-12, "{start} {length}");
     let (start, length) = request(Some(shaper)).plan().unwrap().cruise();
-    let delay = shaper.duration();
+    let delay = shaper.impulses().unwrap().duration();
     assert!((start - 0.35 - delay).abs() < 1e-12 && (length - 0.65 + delay).abs() < 1e-12, "{start} {length}");
-    let (_, length) = plan(Way::Replanning(replanning())).cruise();
+    let (_, length) = plan(Generator::Replanning(replanning())).cruise();
     assert!(length > 0.0, "a cruise at the limit");
 }
 
@@ -224,7 +231,7 @@ fn bindings_are_where_the_published_figure_shows_them() {
 fn a_way_from_limit_to_limit_is_no_binding() {
     let limits = DirectionalLimits::from(LIMITS);
     let (target, order, effort) = (Target::Velocity(0.5), Order::Fourth, Effort::Fast);
-    let plan = plan(Way::Replanning(Replanning { from: Setpoint::default(), target, order, limits, effort }));
+    let plan = plan(Generator::Replanning(Replanning { from: Setpoint::default(), target, order, limits, effort }));
     let jerks: Vec<Binding> = plan.bindings().into_iter().filter(|found| found.derivative == 3).collect();
     // 50 ms of snap up to the limit, and from there 100 ms down to that of the other side.
     let [high, low] = &jerks[..] else { panic!("{jerks:?}") };
@@ -238,7 +245,7 @@ fn a_touched_limit_is_a_binding_of_no_length() {
     let limits = Limits { velocity: 0.3, ..LIMITS };
     let request = |distance| {
         let order = Order::Fourth;
-        Way::PointToPoint(PointToPoint { distance, order, limits, method: Method::Optimal, grid: None })
+        Generator::PointToPoint(PointToPoint { distance, order, limits, method: Method::Optimal, grid: None })
     };
     let touching = (1..60).map(|k| f64::from(k) * 2e-3).find_map(|distance| {
         let plan = plan(request(distance));
@@ -254,15 +261,16 @@ fn a_touched_limit_is_a_binding_of_no_length() {
 /// Oracle: the shaper's own sum, and that nothing of a mode is left: ZVD at its frequency.
 #[test]
 fn a_shaped_plan_is_the_sum_of_its_parts() {
-    let shaper = Impulses::zvd(&Vibration::new(60.0, 0.02).unwrap());
-    let way = point_to_point(0.3, Method::Optimal);
-    let request = Request { filter: Filter { shaper: Some(shaper), averages: None }, ..Request::new(way) };
+    let shaper = shaping(Shaper::Zvd, 0.02);
+    let impulses = shaper.impulses().unwrap();
+    let generator = point_to_point(0.3, Method::Optimal);
+    let request = Request { filter: Filter { shaper: Some(shaper), averages: None }, ..Request::new(generator) };
     let plain = Profile::plan_optimal(Order::Fourth, 0.3, &LIMITS).unwrap();
     let shaped = request.plan().unwrap();
-    assert!((shaped.duration() - plain.duration() - shaper.duration()).abs() < 1e-15);
+    assert!((shaped.duration() - plain.duration() - impulses.duration()).abs() < 1e-15);
     for k in -10..=1010_i32 {
         let t = f64::from(k) / 1000.0 * shaped.duration();
-        assert_eq!(shaped.at(t), shaper.shape(t, |t| plain.at(t)), "{t}");
+        assert_eq!(shaped.at(t), impulses.shape(t, |t| plain.at(t)), "{t}");
     }
     assert_eq!(shaped.end(), Setpoint::at_rest(0.3));
     let stretched = Request { duration: Some(3.0), ..request.clone() }.plan().unwrap();
@@ -274,11 +282,11 @@ fn a_shaped_plan_is_the_sum_of_its_parts() {
 /// Oracle: a mean written down as a sum.
 #[test]
 fn averages_are_means_of_the_last_samples() {
-    let way = point_to_point(0.3, Method::Published);
+    let generator = point_to_point(0.3, Method::Published);
     let averages = Averages { lengths: vec![0.008], sample_time: 2e-3 };
     let filter = Filter { shaper: None, averages: Some(averages) };
-    let averaged = Request { filter: filter.clone(), ..Request::new(way.clone()) }.plan().unwrap();
-    let plain = plan(way.clone());
+    let averaged = Request { filter: filter.clone(), ..Request::new(generator.clone()) }.plan().unwrap();
+    let plain = plan(generator.clone());
     for k in 0..400_u32 {
         let t = f64::from(k) * 2e-3;
         let mean = (0..4).map(|i| plain.at(t - f64::from(i) * 2e-3).x).sum::<f64>() / 4.0;
@@ -286,7 +294,8 @@ fn averages_are_means_of_the_last_samples() {
     }
     assert_eq!(averaged.end(), Setpoint::at_rest(0.3));
     let odd = Averages { lengths: vec![0.009], sample_time: 2e-3 };
-    let refused = Request { filter: Filter { averages: Some(odd), ..filter }, ..Request::new(way) }.plan().unwrap_err();
+    let refused =
+        Request { filter: Filter { averages: Some(odd), ..filter }, ..Request::new(generator) }.plan().unwrap_err();
     assert_eq!(refused.to_string(), "`averages` must be a whole number of samples, 1 to 10 million, got 0.009");
 }
 
@@ -294,8 +303,8 @@ fn averages_are_means_of_the_last_samples() {
 /// that.
 #[test]
 fn commands_lead_as_near_to_the_spline_as_announced() {
-    let plan = plan(Way::Table(table(Follow::Steps(200.0), Velocities::Given)));
-    let Told::Commands { commands, error, .. } = plan.told() else { panic!("{:?}", plan.told()) };
+    let plan = plan(Generator::Table(table(Follow::Steps { rate: CommandRate::Given(200.0) }, Velocities::Given)));
+    let PlanDetails::Commands { commands, error, .. } = plan.details() else { panic!("{:?}", plan.details()) };
     assert_eq!(commands.len(), 100);
     let mut knots = table(Follow::Segments, Velocities::Given).knots;
     let mut scratch = [0.0; 5];
@@ -313,12 +322,12 @@ fn commands_lead_as_near_to_the_spline_as_announced() {
 /// Every position is hit where velocities have plateaus. Rounding of 0.05 m, added up over the segments.
 #[test]
 fn plateaus_hit_every_position() {
-    let table = table(Follow::Plateaus(0.3), Velocities::Given);
-    let plan = plan(Way::Table(table.clone()));
+    let table = table(Follow::Plateaus { share: 0.3 }, Velocities::Given);
+    let plan = plan(Generator::Table(table.clone()));
     for knot in table.knots {
         assert!((plan.at(knot.t - 0.5).x - knot.x).abs() < 1e-15, "{knot:?}");
     }
-    let Told::Commands { commands, error, .. } = plan.told() else { panic!("{:?}", plan.told()) };
+    let PlanDetails::Commands { commands, error, .. } = plan.details() else { panic!("{:?}", plan.details()) };
     assert_eq!((commands.len(), error.to_bits()), (5, 0.0_f64.to_bits()));
 }
 
@@ -333,8 +342,8 @@ fn the_gain_over_the_published_profile_is_known() {
 /// Oracle: the cascade written down as sums. 1e-15: those of 0.02 m over some hundred samples.
 #[test]
 fn the_cascade_sums_sample_by_sample() {
-    let hold = plan(sampled(Sampling::Published, Execution::Hold));
-    let euler = plan(sampled(Sampling::Published, Execution::Euler));
+    let hold = plan(sampled(Sampling::Published, Execution::ExactHold));
+    let euler = plan(sampled(Sampling::Published, Execution::ForwardEuler));
     assert_eq!((euler.held(), euler.duration().to_bits()), (Some(1e-3), hold.duration().to_bits()));
     let [mut x, mut v, mut a, mut j] = [0.0_f64; 4];
     for t in (0..).map(|k| (f64::from(k) + 0.5) * 1e-3).take_while(|t| *t < hold.duration()) {
@@ -343,7 +352,7 @@ fn the_cascade_sums_sample_by_sample() {
         (x, v, a, j) = (x + 1e-3 * v, v + 1e-3 * a, a + 1e-3 * j, j + 1e-3 * snap);
     }
     assert_eq!(euler.end(), Setpoint::at_rest(0.02));
-    let slow = Request { duration: Some(1.0), ..Request::new(sampled(Sampling::Published, Execution::Euler)) };
+    let slow = Request { duration: Some(1.0), ..Request::new(sampled(Sampling::Published, Execution::ForwardEuler)) };
     let slow = slow.plan().unwrap();
     assert!(slow.held() == Some(1e-3) && (slow.duration() - 1.0).abs() < 1e-12, "{slow:?}");
 }
@@ -351,7 +360,7 @@ fn the_cascade_sums_sample_by_sample() {
 #[test]
 fn the_fewest_samples_are_compared_with_the_published_ones() {
     let [published, fewest] =
-        [Sampling::Published, Sampling::Fewest].map(|sampling| plan(sampled(sampling, Execution::Hold)));
+        [Sampling::Published, Sampling::Fewest].map(|sampling| plan(sampled(sampling, Execution::ExactHold)));
     assert_eq!(fewest.published_duration().map(f64::to_bits), Some(published.duration().to_bits()));
     assert!(fewest.duration() <= published.duration());
 }
@@ -359,16 +368,16 @@ fn the_fewest_samples_are_compared_with_the_published_ones() {
 #[test]
 fn what_would_fill_the_memory_is_refused() {
     let grid = |sample_time, execution| Some(Grid { sample_time, sampling: Sampling::Published, execution });
-    let way = |grid, method| {
-        Way::PointToPoint(PointToPoint { distance: 1.0, order: Order::Fourth, limits: LIMITS, method, grid })
+    let generator = |grid, method| {
+        Generator::PointToPoint(PointToPoint { distance: 1.0, order: Order::Fourth, limits: LIMITS, method, grid })
     };
-    let said = |way| Request::new(way).plan().unwrap_err().to_string();
+    let said = |generator| Request::new(generator).plan().unwrap_err().to_string();
     assert_eq!(
-        said(way(grid(1e-9, Execution::Euler), Method::Published)),
+        said(generator(grid(1e-9, Execution::ForwardEuler), Method::Published)),
         "`sample_time` must be long enough for a move of at most 10 million samples, got 0.000000001"
     );
     assert_eq!(
-        said(Way::Table(table(Follow::Steps(1e10), Velocities::Given))),
+        said(Generator::Table(table(Follow::Steps { rate: CommandRate::Given(1e10) }, Velocities::Given))),
         "`rate` must be low enough for at most 10 million commands, got 10000000000"
     );
 }
@@ -377,14 +386,18 @@ fn what_would_fill_the_memory_is_refused() {
 #[test]
 fn the_lowest_rate_within_an_error_is_found() {
     let steps = |follow| {
-        let Told::Commands { error, rate, .. } = plan(Way::Table(table(follow, Velocities::Given))).told().clone()
+        let PlanDetails::Commands { error, rate, .. } =
+            plan(Generator::Table(table(follow, Velocities::Given))).details().clone()
         else {
             panic!("commands");
         };
         (error, rate.unwrap())
     };
-    let (error, rate) = steps(Follow::Within(1e-5));
-    assert!(error <= 1e-5 && steps(Follow::Steps(rate - 1.0)).0 > 1e-5, "{error} at {rate}");
+    let (error, rate) = steps(Follow::Steps { rate: CommandRate::LowestWithin(1e-5) });
+    assert!(
+        error <= 1e-5 && steps(Follow::Steps { rate: CommandRate::Given(rate - 1.0) }).0 > 1e-5,
+        "{error} at {rate}"
+    );
 }
 
 /// What cannot be kept is said of the error that was asked for, not of a rate that was not: late times are known too roughly, and
@@ -392,15 +405,20 @@ fn the_lowest_rate_within_an_error_is_found() {
 #[test]
 fn an_error_that_is_too_small_is_refused_by_its_name() {
     let late = |error: f64| {
-        let mut late = table(Follow::Within(error), Velocities::Given);
+        let mut late = table(Follow::Steps { rate: CommandRate::LowestWithin(error) }, Velocities::Given);
         late.knots.iter_mut().for_each(|knot| knot.t += 1e9);
-        Request::new(Way::Table(late)).plan().map(|_| ()).map_err(|error| error.to_string())
+        Request::new(Generator::Table(late)).plan().map(|_| ()).map_err(|error| error.to_string())
     };
     let refused = late(1e-12).unwrap_err();
     assert!(refused.starts_with("`allowed` must be"), "{refused}");
     assert!(refused.ends_with("allow a larger error, or let the table begin at time 0"), "{refused}");
     assert_eq!(late(1e-4), Ok(()));
-    let refused = Request::new(Way::Table(table(Follow::Within(1e-16), Velocities::Given))).plan().unwrap_err();
+    let refused = Request::new(Generator::Table(table(
+        Follow::Steps { rate: CommandRate::LowestWithin(1e-16) },
+        Velocities::Given,
+    )))
+    .plan()
+    .unwrap_err();
     let bound = "large enough for at most 10 million commands";
     assert_eq!(refused.to_string(), format!("`allowed` must be {bound}, got 0.0000000000000001"));
 }
@@ -408,10 +426,10 @@ fn an_error_that_is_too_small_is_refused_by_its_name() {
 /// A velocity would jump where the parts of a shaper begin, or where time is stretched.
 #[test]
 fn a_move_that_starts_in_motion_is_neither_filtered_nor_slowed() {
-    let shaper = Some(Impulses::zv(&Vibration::new(60.0, 0.0).unwrap()));
-    let way = Way::Replanning(replanning());
-    let filtered = Request { filter: Filter { shaper, averages: None }, ..Request::new(way.clone()) };
-    let slowed = Request { duration: Some(10.0), ..Request::new(way) };
+    let shaper = Some(shaping(Shaper::Zv, 0.0));
+    let generator = Generator::Replanning(replanning());
+    let filtered = Request { filter: Filter { shaper, averages: None }, ..Request::new(generator.clone()) };
+    let slowed = Request { duration: Some(10.0), ..Request::new(generator) };
     for request in [filtered, slowed] {
         let message = request.plan().unwrap_err().to_string();
         assert_eq!(message, "`start_velocity` must be zero for a move that is filtered or slowed, got 0.4");
@@ -425,12 +443,12 @@ fn the_shortest_sampled_move_is_shorter_than_any_boxes() {
     let request = |execution, duration| {
         let grid = Some(Grid { sample_time: 5e-3, sampling: Sampling::Published, execution });
         let (order, method) = (Order::Fourth, Method::Optimal);
-        let way = Way::PointToPoint(PointToPoint { distance: 0.01, order, limits: LIMITS, method, grid });
-        Request { duration, ..Request::new(way) }
+        let generator = Generator::PointToPoint(PointToPoint { distance: 0.01, order, limits: LIMITS, method, grid });
+        Request { duration, ..Request::new(generator) }
     };
-    for execution in [Execution::Hold, Execution::Euler] {
+    for execution in [Execution::ExactHold, Execution::ForwardEuler] {
         let plan = request(execution, None).plan().unwrap();
-        let Told::Shortest(shortest) = plan.told() else { panic!("{:?}", plan.told()) };
+        let PlanDetails::Shortest(shortest) = plan.details() else { panic!("{:?}", plan.details()) };
         assert_eq!((shortest.samples(), shortest.at_least()), (50, 50));
         assert!((plan.duration() - 0.25).abs() < 1e-12 && plan.end() == Setpoint::at_rest(0.01));
         assert!((plan.published_duration().unwrap() - 0.28).abs() < 1e-12);
@@ -439,10 +457,10 @@ fn the_shortest_sampled_move_is_shorter_than_any_boxes() {
         }
         // Slowed to its own time it stays what it is, below that of boxes there is nothing, above it goes through boxes.
         let slowed = |duration| request(execution, Some(duration)).plan();
-        assert!(matches!(slowed(0.25).unwrap().told(), Told::Shortest(_)));
+        assert!(matches!(slowed(0.25).unwrap().details(), PlanDetails::Shortest(_)));
         assert!(matches!(slowed(0.26), Err(PlanError::TooShort { shortest, .. }) if (shortest - 0.275).abs() < 1e-12));
         let slow = slowed(0.5).unwrap();
-        assert!(matches!(slow.told(), Told::Profile(_)) && (slow.duration() - 0.5).abs() < 1e-12);
+        assert!(matches!(slow.details(), PlanDetails::Profile(_)) && (slow.duration() - 0.5).abs() < 1e-12);
     }
 }
 
@@ -451,7 +469,7 @@ fn the_shortest_sampled_move_is_shorter_than_any_boxes() {
 #[test]
 fn a_table_says_what_jumps() {
     let order = |knots: Vec<Knot>, velocities| {
-        plan(Way::Table(TableMove { knots, velocities, follow: Follow::Segments })).order()
+        plan(Generator::Table(TableMove { knots, velocities, follow: Follow::Segments })).order()
     };
     let knots = table(Follow::Segments, Velocities::Given).knots;
     assert_eq!(order(knots.clone(), Velocities::Given), 1);
@@ -464,11 +482,11 @@ fn a_table_says_what_jumps() {
 /// each. Half the pace takes a quarter of the acceleration and an eighth of the jerk.
 #[test]
 fn what_is_told_of_a_slowed_move_is_slowed() {
-    for follow in [Follow::Plateaus(0.3), Follow::Steps(50.0)] {
-        let request = Request::new(Way::Table(table(follow, Velocities::Given)));
+    for follow in [Follow::Plateaus { share: 0.3 }, Follow::Steps { rate: CommandRate::Given(50.0) }] {
+        let request = Request::new(Generator::Table(table(follow, Velocities::Given)));
         let fast = request.plan().unwrap();
         let slow = Request { duration: Some(2.0 * fast.duration()), ..request }.plan().unwrap();
-        let Told::Commands { commands, .. } = slow.told() else { panic!("{:?}", slow.told()) };
+        let PlanDetails::Commands { commands, .. } = slow.details() else { panic!("{:?}", slow.details()) };
         let start = commands[0].t;
         for pair in commands.windows(2) {
             let reached = slow.at(pair[1].t - start - 1e-9);
@@ -477,8 +495,8 @@ fn what_is_told_of_a_slowed_move_is_slowed() {
         }
     }
     let all = all();
-    let rockwell = all.iter().find(|plan| matches!(plan.told(), Told::Rockwell { .. })).unwrap();
-    let Told::Rockwell { acceleration, .. } = rockwell.told() else { panic!("{:?}", rockwell.told()) };
+    let rockwell = all.iter().find(|plan| matches!(plan.details(), PlanDetails::Rockwell { .. })).unwrap();
+    let PlanDetails::Rockwell { acceleration, .. } = rockwell.details() else { panic!("{:?}", rockwell.details()) };
     let operands = Move {
         distance: -0.1,
         speed: 0.2,
@@ -486,8 +504,9 @@ fn what_is_told_of_a_slowed_move_is_slowed() {
         deceleration: 20.0,
         shape: Shape::SCurve { acceleration: Jerk::PercentOfTime(25.0), deceleration: Jerk::PercentOfTime(60.0) },
     };
-    let way = Way::Rockwell(Rockwell { operands, maximum: MaximumJerk { acceleration: 1e4, deceleration: 1e4 } });
-    let slow = Request { duration: Some(2.0 * rockwell.duration()), ..Request::new(way) }.plan().unwrap();
-    let Told::Rockwell { acceleration: slowed, .. } = slow.told() else { panic!("{:?}", slow.told()) };
+    let generator =
+        Generator::Rockwell(Rockwell { operands, maximum: MaximumJerk { acceleration: 1e4, deceleration: 1e4 } });
+    let slow = Request { duration: Some(2.0 * rockwell.duration()), ..Request::new(generator) }.plan().unwrap();
+    let PlanDetails::Rockwell { acceleration: slowed, .. } = slow.details() else { panic!("{:?}", slow.details()) };
     assert!((8.0 * slowed / acceleration - 1.0).abs() < 1e-12, "{slowed} {acceleration}");
 }

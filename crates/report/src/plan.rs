@@ -16,7 +16,7 @@ mod words;
 use servobench_base::Setpoint;
 use servobench_motion::sampled::Shortest;
 use servobench_motion::{PlanError, Profile};
-use servobench_planner::{Plan, Request, Told};
+use servobench_planner::{Plan, PlanDetails, Request};
 use unit::Unit;
 
 /// Names of position and its derivatives.
@@ -84,16 +84,16 @@ impl PlannedMove {
 
     /// The profile from rest to rest as it was planned, where nothing filters it.
     fn profile(&self) -> Option<&Profile> {
-        match self.plan.told() {
-            Told::Profile(profile) if self.plan.filter_length() == 0.0 => Some(profile),
+        match self.plan.details() {
+            PlanDetails::Profile(profile) if self.plan.filter_length() == 0.0 => Some(profile),
             _ => None,
         }
     }
 
     /// The sampled move of the fewest samples, where that is what was planned and nothing filters it.
     fn shortest(&self) -> Option<&Shortest> {
-        match self.plan.told() {
-            Told::Shortest(shortest) if self.plan.filter_length() == 0.0 => Some(shortest),
+        match self.plan.details() {
+            PlanDetails::Shortest(shortest) if self.plan.filter_length() == 0.0 => Some(shortest),
             _ => None,
         }
     }
@@ -146,15 +146,16 @@ const fn derivatives(setpoint: &Setpoint) -> [f64; 5] {
 #[cfg(test)]
 mod moves {
     use super::*;
+    use servobench_motion::sampled::Execution;
     use servobench_motion::{Limits, Order};
-    use servobench_planner::{Execution, Grid, Method, PointToPoint, Sampling, Way};
+    use servobench_planner::{Generator, Grid, Method, PointToPoint, Sampling};
 
     pub(super) const LAMBRECHTS: Limits = Limits { velocity: 1.0, acceleration: 5.0, jerk: 50.0, snap: 1000.0 };
 
     /// A move over `distance` (m) under `limits`.
     pub(super) fn published(order: Order, distance: f64, limits: Limits) -> PlannedMove {
-        let way = PointToPoint { distance, order, limits, method: Method::Published, grid: None };
-        of(Way::PointToPoint(way))
+        let asked = PointToPoint { distance, order, limits, method: Method::Published, grid: None };
+        of(Generator::PointToPoint(asked))
     }
 
     /// 1 m under the limits of Lambrechts: 1.35 s at order 4, t_d = t_j = t_a = 0.05 s, t_v = 0.65 s.
@@ -164,16 +165,16 @@ mod moves {
 
     /// The same with samples of `time` (s).
     pub(super) fn sampled(time: f64) -> PlannedMove {
-        executed(time, Execution::Hold)
+        executed(time, Execution::ExactHold)
     }
 
     pub(super) fn executed(sample_time: f64, execution: Execution) -> PlannedMove {
         let grid = Some(Grid { sample_time, sampling: Sampling::Published, execution });
         let (order, method) = (Order::Fourth, Method::Published);
-        of(Way::PointToPoint(PointToPoint { distance: 1.0, order, limits: LAMBRECHTS, method, grid }))
+        of(Generator::PointToPoint(PointToPoint { distance: 1.0, order, limits: LAMBRECHTS, method, grid }))
     }
 
-    pub(super) fn of(way: Way) -> PlannedMove {
-        PlannedMove::new(Request::new(way), "m").unwrap()
+    pub(super) fn of(generator: Generator) -> PlannedMove {
+        PlannedMove::new(Request::new(generator), "m").unwrap()
     }
 }

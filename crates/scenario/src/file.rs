@@ -21,7 +21,7 @@ pub(crate) use motor::{Encoder, Motor, MotorKind};
 pub(crate) use plc::{Call, Condition, Plc, Update};
 pub(crate) use program::{Disturbance, ProgramStep};
 pub(crate) use requirements::{Expect, RequirementTable};
-pub(crate) use setpoint::{FollowRule, Rockwell, Setpoint, Shaper, ShaperName, TableOfPoints, VelocityRule};
+pub(crate) use setpoint::{Rockwell, Setpoint, Shaper, TableOfPoints};
 
 use crate::format::FORMAT;
 use crate::limit_table::LimitTable;

@@ -45,11 +45,9 @@ pub use points::{
 };
 pub use scenario::{
     Actuator, Axis, AxisMechanics, BodySignal, Bus, BusFault, BusFaultKind, BusMode, CoSimulation, Counter,
-    CouplingMethod, Disturbance, DisturbedBody, Drive, DriveInterpolation, DriveUnits, EngineName, Execution, Feedback,
-    Filter, Fmu, Follow, Goal, Grid, Initial, InputSource, Interpolation, InterpolationMode, Isolation, LONGEST_RUN,
-    LoopSignal, Method, MoveStep, ObjectWrite, OnlineMove, PlanEffort, Plc, Record, Requirements, RestMove,
-    RockwellJerk, RockwellMove, RockwellShape, Sampling, Scenario, Sequencing, Shaper, ShaperKind, StartValue, Step,
-    TableMove, Target, TrajectoryBuffer, Velocities, Way,
+    CouplingMethod, Disturbance, DisturbedBody, Drive, DriveInterpolation, DriveUnits, EngineName, Feedback, Fmu,
+    Initial, InputSource, Interpolation, Isolation, LONGEST_RUN, LoopSignal, MoveStep, ObjectWrite, Plc, Record,
+    Requirements, Scenario, Sequencing, StartValue, Step, TrajectoryBuffer,
 };
 pub use schema::json_schema;
 pub use source::{SourceId, Sources};

@@ -8,7 +8,6 @@ mod axis;
 mod bus;
 mod disturbance;
 mod drive;
-mod filter;
 mod fmu;
 mod plc;
 mod program;
@@ -22,13 +21,9 @@ pub use bus::{
 };
 pub use disturbance::{Disturbance, DisturbedBody, Initial};
 pub use drive::{Drive, Feedback};
-pub use filter::{Filter, Interpolation, InterpolationMode, Shaper, ShaperKind};
 pub use fmu::{BodySignal, CoSimulation, CouplingMethod, Fmu, InputSource, Isolation, LoopSignal, StartValue};
 pub use plc::Plc;
-pub use program::{
-    Execution, Follow, Goal, Grid, Method, MoveStep, OnlineMove, PlanEffort, RestMove, RockwellJerk, RockwellMove,
-    RockwellShape, Sampling, Step, TableMove, Target, Velocities, Way,
-};
+pub use program::{Interpolation, MoveStep, Step};
 pub use requirements::Requirements;
 
 use crate::parameters::Parameter;

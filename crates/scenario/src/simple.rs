@@ -8,6 +8,7 @@ use serde_json::{Value as Json, json};
 use servobench_base::Rate;
 use servobench_config::Choice;
 use servobench_config::quantities::FREQUENCY;
+use std::iter;
 use std::ops::RangeInclusive;
 
 /// A task rate in whole hertz.
@@ -91,23 +92,55 @@ pub(crate) struct OneOf;
 
 impl<T: Choice> Field<OneOf> for T {
     fn decode(path: &str, node: &Node, OneOf: &OneOf, report: &mut Report) -> Option<Self> {
-        let names = || Self::ALL.iter().map(|(name, ..)| *name);
-        let Some(text) = node.value.as_text() else {
-            let list = names().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
-            let message = format!("`{}` must be one of {list}, got {}", key(path), written(node));
-            report.error(node.span, message, "");
-            return None;
-        };
-        let found = Self::from_name(text);
-        if found.is_none() {
-            let message = format!("`{}` has no value \"{text}\"", key(path));
-            report.error(node.span, message, suggestion(text, names()));
-        }
-        found
+        one_of(path, node, Self::ALL.iter().map(|(name, value, _)| (*name, *value)), report)
     }
 
     fn schema(OneOf: &OneOf) -> Json {
-        let each = Self::ALL.iter().map(|(name, _, meaning)| json!({ "const": name, "description": meaning }));
-        json!({ "oneOf": each.collect::<Vec<_>>() })
+        schema_of(Self::ALL.iter().map(|(name, _, meaning)| (*name, *meaning)))
     }
+}
+
+/// One of the named values of the type, or "none", with the meaning of that.
+pub(crate) struct OneOfOrNone(pub(crate) &'static str);
+
+const NONE: &str = "none";
+
+impl<T: Choice> Field<OneOfOrNone> for Option<T> {
+    fn decode(path: &str, node: &Node, _: &OneOfOrNone, report: &mut Report) -> Option<Self> {
+        let named = T::ALL.iter().map(|(name, value, _)| (*name, Some(*value)));
+        one_of(path, node, iter::once((NONE, None)).chain(named), report)
+    }
+
+    fn schema(OneOfOrNone(none): &OneOfOrNone) -> Json {
+        let named = T::ALL.iter().map(|(name, _, meaning)| (*name, *meaning));
+        schema_of(iter::once((NONE, *none)).chain(named))
+    }
+}
+
+/// The one of `values` whose name `node` is.
+fn one_of<T>(
+    path: &str,
+    node: &Node,
+    values: impl Iterator<Item = (&'static str, T)> + Clone,
+    report: &mut Report,
+) -> Option<T> {
+    let names = values.clone().map(|(name, _)| name);
+    let Some(text) = node.value.as_text() else {
+        let list = names.map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
+        let message = format!("`{}` must be one of {list}, got {}", key(path), written(node));
+        report.error(node.span, message, "");
+        return None;
+    };
+    let found = values.into_iter().find(|(name, _)| *name == text);
+    if found.is_none() {
+        let message = format!("`{}` has no value \"{text}\"", key(path));
+        report.error(node.span, message, suggestion(text, names));
+    }
+    found.map(|(_, value)| value)
+}
+
+/// The schema of `values`: names and meanings.
+fn schema_of(values: impl Iterator<Item = (&'static str, &'static str)>) -> Json {
+    let each = values.map(|(name, meaning)| json!({ "const": name, "description": meaning }));
+    json!({ "oneOf": each.collect::<Vec<_>>() })
 }

@@ -1,5 +1,6 @@
 //! What `[bus]`, `[drive.objects]` and `[axis.switches]` become.
 use servobench_drive::EffortFeedforward;
+use servobench_motion::interpolate::Mode;
 use servobench_plant::Switches;
 use servobench_scenario::*;
 use std::f64::consts::TAU;
@@ -33,7 +34,7 @@ fn a_bus_that_says_its_cycle_alone() {
         cycle: 16,
         mode: BusMode::CyclicPosition,
         motion_every: 1,
-        interpolation: InterpolationMode::Cubic,
+        interpolation: Mode::Cubic,
         drive_interpolation: DriveInterpolation::Linear,
         trajectory_buffer: TrajectoryBuffer::MoveSegment,
         delay: 1,
@@ -75,7 +76,7 @@ reverse_switches = true
         cycle: 16,
         mode: BusMode::CyclicVelocity,
         motion_every: 4,
-        interpolation: InterpolationMode::Quintic,
+        interpolation: Mode::Quintic,
         drive_interpolation: DriveInterpolation::Linear,
         trajectory_buffer: TrajectoryBuffer::MoveSegment,
         delay: 0,

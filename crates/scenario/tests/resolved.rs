@@ -1,8 +1,18 @@
 //! What a scenario becomes: derived gains, merged bodies, overridden models.
-use servobench_base::{Coordinate, Dq};
+use servobench_base::{Coordinate, Dq, Setpoint};
 use servobench_drive::current::{self, Gains, Tuning};
 use servobench_drive::{Params, Stage, feedforward};
 use servobench_metrics::{Limit, Name};
+use servobench_motion::interpolate::Mode;
+use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target};
+use servobench_motion::pvt::Knot;
+use servobench_motion::rockwell::{Jerk, MaximumJerk, Move, Shape};
+use servobench_motion::shape::Shaper;
+use servobench_motion::{Limits, Order};
+use servobench_planner::{
+    Averages, CommandRate, Filter, Follow, Generator, Grid, Method, PointToPoint, Positioning, Replanning, Rockwell,
+    Shaping, TableMove, Velocities,
+};
 use servobench_plant::{Body, Chain, Encoder, IdealSource, SourceOutput, inverter, pmsm};
 use servobench_scenario::*;
 use std::f64::consts::{PI, TAU};
@@ -39,6 +49,14 @@ fn source(scenario: &Scenario) -> (&IdealSource, f64) {
             Stage::Current { .. } => panic!("a current loop"),
         },
         other => panic!("an ideal source, not {other:?}"),
+    }
+}
+
+/// The samples of a move from rest to rest.
+fn grid(step: &MoveStep) -> Grid {
+    match step.request.generator {
+        Generator::PointToPoint(PointToPoint { grid: Some(grid), .. }) => grid,
+        _ => panic!("{step:?}"),
     }
 }
 
@@ -330,12 +348,8 @@ fn a_sample_time_is_whole_ticks_to_the_bit() {
              [[program]]\nmove_to = \"1 m\"\n"
         );
         let scenario = scenario(&text);
-        let [Step::Move(MoveStep { way: Way::Rest(RestMove { grid: Some(grid), .. }), .. })] =
-            scenario.program.as_slice()
-        else {
-            panic!("{:?}", scenario.program)
-        };
-        let time = grid.sample_time;
+        let [Step::Move(step)] = scenario.program.as_slice() else { panic!("{:?}", scenario.program) };
+        let time = grid(step).sample_time;
         assert_eq!(time.to_bits(), f64::to_bits(ticks / 12e3), "{typed}: {time} s");
     }
 }
@@ -400,13 +414,17 @@ duration = "2 s"
     let [Step::Move(first), Step::Wait(pause), Step::Move(second)] = loaded.scenario.program.as_slice() else {
         panic!()
     };
-    assert_eq!((first.target(), first.order, first.duration), (Some(Target::Absolute(0.25)), 4, None));
-    assert_eq!(first.limits.map(f64::to_bits), [0.5, 5.0, 50.0, 1000.0].map(f64::to_bits));
-    let Way::Rest(RestMove { grid: Some(grid), .. }) = first.way else { panic!("{first:?}") };
-    assert_eq!(grid, Grid { sample_time: 0.001, sampling: Sampling::Published, execution: Execution::Hold });
+    for (step, distance, positioning, order, duration, limits) in [
+        (first, 0.25, Positioning::Absolute, 4, None, [0.5, 5.0, 50.0, 1000.0]),
+        (second, -0.05, Positioning::Relative, 3, Some(2.0), [0.1, 5.0, 50.0, f64::INFINITY]),
+    ] {
+        let generator = &step.request.generator;
+        assert_eq!((generator.distance(), step.positioning), (Some(distance), positioning));
+        assert_eq!((generator.order(), step.request.duration), (order, duration));
+        assert_eq!(generator.limits().map(f64::to_bits), limits.map(f64::to_bits));
+    }
+    assert_eq!(grid(first), Grid::new(0.001));
     assert!(same(*pause, 0.2));
-    assert_eq!((second.target(), second.order, second.duration), (Some(Target::Relative(-0.05)), 3, Some(2.0)));
-    assert_eq!(second.limits.map(f64::to_bits), [0.1, 5.0, 50.0, f64::INFINITY].map(f64::to_bits));
 }
 
 /// Every way of moving, and what the steps take from `[setpoint]`.
@@ -464,7 +482,7 @@ rockwell = { shape = "s-curve", deceleration = "8 m/s2", jerk_of_time = "25 %", 
     );
     let scenario = parse("test.toml", &text, Some(folder.path())).unwrap_or_else(|e| panic!("{e}")).scenario;
     let period = 4e-3;
-    assert_eq!(scenario.interpolation, Some(Interpolation { mode: InterpolationMode::QuinticBSpline, period }));
+    assert_eq!(scenario.interpolation, Some(Interpolation { mode: Mode::QuinticBSpline, period }));
     let moves = scenario.program.iter().filter_map(|step| match step {
         Step::Move(step) => Some(step),
         Step::Wait(_) => None,
@@ -472,35 +490,41 @@ rockwell = { shape = "s-curve", deceleration = "8 m/s2", jerk_of_time = "25 %", 
     let moves: Vec<_> = moves.collect();
     let [rest, passing, turning, home, through, steps, rockwell] = moves.as_slice() else { panic!("{moves:?}") };
 
-    let Way::Rest(RestMove { method: Method::Optimal, grid: None, .. }) = rest.way else { panic!("{rest:?}") };
-    let shaper = Shaper { kind: ShaperKind::Ei(0.05), frequency: 17.5, damping: 0.02 };
-    assert_eq!(rest.filter, Filter { shaper: Some(shaper), averages: vec![0.01, 0.005] });
+    let generator = |step: &MoveStep| step.request.generator.clone();
+    let (order, limits) = (Order::Fourth, Limits { velocity: 0.5, acceleration: 5.0, jerk: 50.0, snap: 1000.0 });
+    let method = Method::Optimal;
+    let expected = PointToPoint { distance: 0.25, order, limits, method, grid: None };
+    assert_eq!(generator(rest), Generator::PointToPoint(expected));
+    let shaper = Shaping { shaper: Shaper::Ei { tolerable: 0.05 }, frequency: 17.5, damping: 0.02 };
+    let averages = Averages { lengths: vec![0.01, 0.005], sample_time: scenario.base_rate.period() };
+    assert_eq!(rest.request.filter, Filter { shaper: Some(shaper), averages: Some(averages) });
     assert_eq!((rest.aborts_after, passing.aborts_after), (None, Some(0.1)));
-    assert_eq!(passing.filter, Filter::default());
-    let online = |goal, effort| Way::Online(OnlineMove { goal, effort, negative: [Some(20.0 / 60.0), None] });
-    let passed = Goal::Position(Target::Absolute(0.05), -5.0 / 60.0);
-    assert_eq!(passing.way, online(passed, PlanEffort::Fast));
-    assert_eq!(turning.way, online(Goal::Velocity(0.1, 0.2), PlanEffort::Refined));
-    assert!(passing.ends_in_motion() && turning.ends_in_motion() && turning.order == 3);
-    // Nothing of its own says so: the move before ends in motion.
-    assert_eq!(home.way, online(Goal::Position(Target::Absolute(0.0), 0.0), PlanEffort::Fast));
-
-    let Way::Table(TableMove {
-        points,
-        is_relative: true,
-        velocities: Velocities::Smooth(5),
-        follow: Follow::Segments,
-    }) = &through.way
-    else {
-        panic!("{through:?}")
+    assert_eq!(passing.request.filter, Filter::NONE);
+    let online = |target, order, effort| {
+        let snap = if order == Order::Fourth { limits.snap } else { f64::INFINITY };
+        let velocity = Sides { above: limits.velocity, below: 20.0 / 60.0 };
+        let limits = DirectionalLimits { velocity, snap, ..limits.into() };
+        Generator::Replanning(Replanning { from: Setpoint::default(), target, order, limits, effort })
     };
-    assert_eq!(*points, [(0.0, 0.0, None), (0.01, 0.005, Some(0.5)), (0.02, 0.015, None)]);
-    let Way::Table(TableMove { follow: Follow::Steps(rate), .. }) = steps.way else { panic!("{steps:?}") };
-    assert!(same(rate, 200.0) && (through.order, steps.order) == (3, 2));
-    let jerks = [RockwellJerk::PartOfTime(0.25), RockwellJerk::PartOfMaximum(0.5)];
-    let (target, shape) = (Target::Relative(0.01), RockwellShape::SCurve);
-    let asked = RockwellMove { target, shape, deceleration: 8.0, jerks, maximum: [400.0; 2] };
-    assert_eq!(rockwell.way, Way::Rockwell(asked));
+    let to = |x, v| online(Target::Position { x, v }, Order::Fourth, Effort::Fast);
+    assert_eq!(generator(passing), to(0.05, -5.0 / 60.0));
+    assert_eq!(generator(turning), online(Target::Velocity(0.1), Order::Third, Effort::Refined));
+    assert_eq!((passing.hold, turning.hold), (0.0, 0.2));
+    assert!([passing, turning].iter().all(|step| step.request.generator.ends_in_motion()));
+    // Nothing of its own says so: the move before ends in motion.
+    assert_eq!(generator(home), to(0.0, 0.0));
+
+    let knots = vec![Knot::new(0.0, 0.0), Knot::moving(0.01, 0.005, 0.5), Knot::new(0.02, 0.015)];
+    let table = |velocities, follow| Generator::Table(TableMove { knots: knots.clone(), velocities, follow });
+    assert_eq!(generator(through), table(Velocities::Smooth { passes: 5 }, Follow::Segments));
+    assert_eq!(generator(steps), table(Velocities::Given, Follow::Steps { rate: CommandRate::Given(200.0) }));
+    assert_eq!([through, steps].map(|step| step.request.generator.order()), [3, 2]);
+    let shape = Shape::SCurve { acceleration: Jerk::PercentOfTime(25.0), deceleration: Jerk::PercentOfMaximum(50.0) };
+    let operands = Move { distance: 0.01, speed: 0.5, acceleration: 5.0, deceleration: 8.0, shape };
+    let maximum = MaximumJerk { acceleration: 400.0, deceleration: 400.0 };
+    assert_eq!(generator(rockwell), Generator::Rockwell(Rockwell { operands, maximum }));
+    let positioning = moves.iter().map(|step| step.positioning == Positioning::Absolute);
+    assert!(positioning.eq([true, true, false, true, false, false, false]));
 }
 
 #[test]

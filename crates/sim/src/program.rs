@@ -1,12 +1,13 @@
 //! The program of moves as a set-point over time.
-pub(crate) mod fine;
-mod request;
+mod fine;
 
 use crate::error::{BuildError, check_length};
 use fine::Fine;
 use servobench_base::Setpoint;
-use servobench_planner::{CommandCycle, Plan, Reader, Told};
-use servobench_scenario::{BusMode, Goal, OnlineMove, Scenario, Step, Way};
+use servobench_motion::online::Effort;
+use servobench_motion::rockwell::Shape;
+use servobench_planner::{CommandCycle, Follow, Generator, Method, Plan, PlanDetails, Reader, Request};
+use servobench_scenario::{BusMode, Scenario, Step};
 use servobench_trace::{Ending, Move};
 
 /// A planned move, and when it starts and ends: later than its plan where a velocity is held, earlier where it is aborted.
@@ -63,7 +64,7 @@ impl Program {
             first: 0.0,
             unit: bus.units.axis / f64::from(bus.units.drive),
         });
-        let mut program = Self::plan(&scenario.program, tick, cycle)?;
+        let mut program = Self::plan(&scenario.program, cycle)?;
         if let Some(interpolation) = &scenario.interpolation {
             let fine = Fine::new(interpolation, scenario.base_rate)?;
             program.end += fine.delay();
@@ -73,8 +74,8 @@ impl Program {
         Ok(program)
     }
 
-    /// Plans every move; a tick lasts `tick` (s), and velocity commands are sent in `cycle`, whose times count from the start.
-    fn plan(steps: &[Step], tick: f64, cycle: Option<CommandCycle>) -> Result<Self, BuildError> {
+    /// Plans every move; velocity commands are sent in `cycle`, whose times count from the start.
+    fn plan(steps: &[Step], cycle: Option<CommandCycle>) -> Result<Self, BuildError> {
         let (mut moves, mut end, mut state) = (Vec::<Planned>::new(), 0.0, Setpoint::default());
         for (index, step) in steps.iter().enumerate() {
             match step {
@@ -84,17 +85,21 @@ impl Program {
                         (end, state) = last.abort(after, index)?;
                     }
                     let cycle = cycle.map(|cycle| CommandCycle { first: cycle.first - end % cycle.period, ..cycle });
-                    let plan = request::request(step, state, tick, cycle).plan();
+                    let request = step.request.begun_in(&state, step.positioning);
+                    let plan = request.and_then(|request| Request { commands: cycle, ..request }.plan());
                     let plan = plan.map_err(|error| BuildError::Plan { index, error })?;
-                    let held = match step.way {
-                        Way::Online(OnlineMove { goal: Goal::Velocity(_, hold), .. }) => hold,
-                        _ => 0.0,
-                    };
-                    let (start, from, length) = (end, state.x, plan.duration() + held);
+                    let (start, from, length) = (end, state.x, plan.duration() + step.hold);
                     end += length;
                     state = plan.at(length);
                     state.x += from;
-                    moves.push(Planned { start, end, from, plan, is_aborted: false, kind: request::kind(step) });
+                    moves.push(Planned {
+                        start,
+                        end,
+                        from,
+                        plan,
+                        is_aborted: false,
+                        kind: kind(&step.request.generator),
+                    });
                 }
             }
             check_length(Some(index), end)?;
@@ -126,12 +131,12 @@ impl Program {
         self.course.moves.iter().map(|planned| planned.end - planned.start)
     }
 
-    /// What the position of each move will differ at most (m or rad), as [`Told::Commands`] announces it; `None` of one that is not sent
+    /// What the position of each move will differ at most (m or rad), as [`PlanDetails::Commands`] announces it; `None` of one that is not sent
     /// as velocity commands.
     #[must_use]
     pub fn announced(&self) -> Vec<Option<f64>> {
-        let error = |planned: &Planned| match planned.plan.told() {
-            Told::Commands { error, .. } => Some(*error),
+        let error = |planned: &Planned| match planned.plan.details() {
+            PlanDetails::Commands { error, .. } => Some(*error),
             _ => None,
         };
         self.course.moves.iter().map(error).collect()
@@ -232,6 +237,29 @@ impl Planned {
     }
 }
 
+/// What a label says of a move besides its order.
+const fn kind(generator: &Generator) -> &'static str {
+    match generator {
+        Generator::PointToPoint(asked) => match asked.method {
+            Method::Published => "",
+            Method::Optimal => " optimal",
+        },
+        Generator::Replanning(asked) => match asked.effort {
+            Effort::Fast => " online",
+            Effort::Refined => " online, refined",
+        },
+        Generator::Rockwell(asked) => match asked.operands.shape {
+            Shape::Trapezoid => " Rockwell trapezoid",
+            Shape::SCurve { .. } => " Rockwell S-curve",
+        },
+        Generator::Table(asked) => match asked.follow {
+            Follow::Segments => " table",
+            Follow::Plateaus { .. } => " position profile, plateaus",
+            Follow::Steps { .. } => " position profile, spline",
+        },
+    }
+}
+
 /// A position (m or rad) to six significant digits and a picounit: a sum of targets shows its rounding otherwise.
 fn six_digits(position: f64) -> f64 {
     let position = libm::round(position * 1e12) / 1e12;
@@ -242,35 +270,31 @@ fn six_digits(position: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use servobench_scenario::{Filter, Method, MoveStep, RestMove, Target};
+    use servobench_motion::{Limits, Order};
+    use servobench_planner::{PointToPoint, Positioning};
+    use servobench_scenario::MoveStep;
 
-    /// A tick of 16 kHz (s).
-    const TICK: f64 = 1.0 / 16e3;
+    const LAMBRECHTS: Limits = Limits { velocity: 1.0, acceleration: 5.0, jerk: 50.0, snap: 1000.0 };
 
-    fn one_metre() -> MoveStep {
-        MoveStep {
-            way: rest(Target::Relative(1.0)),
-            order: 4,
-            limits: [1.0, 5.0, 50.0, 1000.0],
-            filter: Filter::default(),
-            aborts_after: None,
-            duration: None,
-            metric_limits: Vec::new(),
-        }
+    fn step(distance: f64, positioning: Positioning, limits: Limits) -> Step {
+        let (order, method) = (Order::Fourth, Method::Published);
+        let generator = Generator::PointToPoint(PointToPoint { distance, order, limits, method, grid: None });
+        let (request, metric_limits) = (Request::new(generator), Vec::new());
+        Step::Move(MoveStep { request, positioning, hold: 0.0, aborts_after: None, metric_limits })
     }
 
-    fn rest(target: Target) -> Way {
-        Way::Rest(RestMove { target, method: Method::Published, grid: None })
+    fn to(position: f64) -> Step {
+        step(position, Positioning::Absolute, LAMBRECHTS)
     }
 
-    fn to(target: Target) -> Step {
-        Step::Move(MoveStep { way: rest(target), ..one_metre() })
+    fn by(distance: f64) -> Step {
+        step(distance, Positioning::Relative, LAMBRECHTS)
     }
 
     #[test]
     fn moves_follow_each_other_and_pauses_hold_the_target() {
-        let steps = [Step::Wait(0.1), to(Target::Absolute(1.0)), Step::Wait(0.5), to(Target::Relative(-1.0))];
-        let mut program = Program::plan(&steps, TICK, None).unwrap();
+        let steps = [Step::Wait(0.1), to(1.0), Step::Wait(0.5), by(-1.0)];
+        let mut program = Program::plan(&steps, None).unwrap();
         // Lambrechts' move lasts 1.35 s each way.
         assert!((program.end() - (0.1 + 1.35 + 0.5 + 1.35)).abs() < 1e-12);
         assert_eq!(program.at(0.05), Setpoint::at_rest(0.0));
@@ -287,8 +311,8 @@ mod tests {
     #[test]
     fn a_label_shows_no_rounding() {
         let quarter = core::f64::consts::FRAC_PI_2;
-        let steps = [0.1, 0.2, -0.3, quarter].map(|distance| to(Target::Relative(distance)));
-        let labels: Vec<_> = Program::plan(&steps, TICK, None).unwrap().moves("m").map(|made| made.label).collect();
+        let steps = [0.1, 0.2, -0.3, quarter].map(by);
+        let labels: Vec<_> = Program::plan(&steps, None).unwrap().moves("m").map(|made| made.label).collect();
         let ends = [("0", "0.1"), ("0.1", "0.3"), ("0.3", "0"), ("0", "1.5708")];
         assert_eq!(labels, ends.map(|(from, to)| format!("move from {from} m to {to} m, order 4")));
     }
@@ -297,10 +321,9 @@ mod tests {
     /// distance, and queries that skip whole moves.
     #[test]
     fn what_is_kept_from_query_to_query_is_what_a_look_up_finds() {
-        let to = |target| to(Target::Absolute(target));
         let steps = [to(0.3), to(0.3), to(-0.2), Step::Wait(0.05), to(1.0)];
         for skip in [1, 7, 5_000, 12_000] {
-            let mut program = Program::plan(&steps, TICK, None).unwrap();
+            let mut program = Program::plan(&steps, None).unwrap();
             for k in (0..60_000_u32).step_by(skip) {
                 let t = f64::from(k) / 16e3;
                 let made = program.course.moves.iter().take_while(|planned| planned.start <= t).last().unwrap();
@@ -314,7 +337,7 @@ mod tests {
 
     #[test]
     fn without_a_move_the_axis_is_to_stay() {
-        let mut program = Program::plan(&[Step::Wait(0.5)], TICK, None).unwrap();
+        let mut program = Program::plan(&[Step::Wait(0.5)], None).unwrap();
         assert!([0.0, 0.1, 7.0].iter().all(|t| program.at(*t) == Setpoint::at_rest(0.0)));
         assert!((program.end() - 0.5).abs() < 1e-15);
     }
@@ -322,14 +345,14 @@ mod tests {
     /// The moves have no length in the scenario file: what they add up to is known here only.
     #[test]
     fn a_program_that_never_ends_is_refused_at_its_step() {
-        let slow = MoveStep { limits: [1e-9, 5.0, 50.0, 1000.0], ..one_metre() };
+        let slow = step(1.0, Positioning::Relative, Limits { velocity: 1e-9, ..LAMBRECHTS });
         for (steps, end) in [
-            (vec![to(Target::Absolute(1.0)), Step::Move(slow)], "1000000001"),
+            (vec![to(1.0), slow], "1000000001"),
             (vec![Step::Wait(0.5), Step::Wait(1e16)], "1000000000000000"),
             (vec![Step::Wait(0.5), Step::Wait(f64::INFINITY)], "inf"),
             (vec![Step::Wait(0.5), Step::Wait(f64::NAN)], "NaN"),
         ] {
-            let message = Program::plan(&steps, TICK, None).unwrap_err().to_string();
+            let message = Program::plan(&steps, None).unwrap_err().to_string();
             assert!(message.starts_with(&format!("program step 2 would end at {end}")), "{message}");
             assert!(message.contains("a run lasts 1000000 s at most"), "{message}");
         }

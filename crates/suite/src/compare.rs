@@ -141,8 +141,9 @@ pub fn limits_agree(jobs: &[Job]) -> Result<(), CompareError> {
             return Err(CompareError::Moves { one, moves, other, other_moves });
         }
         for (k, (step, other_step)) in moves.iter().zip(other_moves).enumerate() {
-            let both = step.limits.into_iter().zip(other_step.limits).zip(DERIVATIVES);
-            let shared = both.take(usize::from(step.order.min(other_step.order)));
+            let [own, other_own] = [step, &other_step].map(|step| &step.request.generator);
+            let both = own.limits().into_iter().zip(other_own.limits()).zip(DERIVATIVES);
+            let shared = both.take(own.order().min(other_own.order()));
             for ((value, other_value), derivative) in shared {
                 if value.to_bits() != other_value.to_bits() {
                     return Err(CompareError::Limits { number: k + 1, derivative, one, value, other, other_value });

@@ -67,7 +67,7 @@ pub(crate) fn slow_to(scenario: &mut Scenario, durations: &[f64]) {
     });
     for (step, duration) in moves.zip(durations) {
         if *duration > 0.0 {
-            step.duration = Some(*duration);
+            step.request.duration = Some(*duration);
         }
     }
 }

@@ -1,5 +1,11 @@
 //! Arguments of `servobench plan`.
+use super::choice::choice;
 use clap::{Args, ValueEnum};
+use servobench_motion::online::Effort;
+use servobench_motion::rockwell::ShapeKind;
+use servobench_motion::sampled::Execution;
+use servobench_motion::shape::ShaperKind;
+use servobench_planner::{Method, Sampling, VelocitiesKind};
 use std::path::PathBuf;
 
 const POINT_TO_POINT: &str = "From rest to rest (--profile point-to-point)";
@@ -53,22 +59,22 @@ pub(crate) struct PlanArgs {
     #[arg(long, help_heading = POINT_TO_POINT)]
     pub(crate) snap: Option<String>,
     /// Published: the step through boxes. Optimal: the shortest, with --sample-time that of the fewest samples.
-    #[arg(long, value_enum, help_heading = POINT_TO_POINT)]
-    pub(crate) method: Option<PlanMethod>,
+    #[arg(long, value_parser = choice::<Method>(), help_heading = POINT_TO_POINT)]
+    pub(crate) method: Option<Method>,
     /// Make every time a whole number of samples of this length, as "1 ms".
     #[arg(long, value_name = "TIME", help_heading = POINT_TO_POINT)]
     pub(crate) sample_time: Option<String>,
     /// How times of boxes are made whole: as published, or with the fewest samples.
-    #[arg(long, value_enum, help_heading = POINT_TO_POINT)]
-    pub(crate) sampling: Option<PlanSampling>,
+    #[arg(long, value_parser = choice::<Sampling>(), help_heading = POINT_TO_POINT)]
+    pub(crate) sampling: Option<Sampling>,
     /// Exact hold of the highest derivative, without lag; or the forward-Euler cascade, which lags by 1.5 samples at
     /// order 4.
-    #[arg(long, value_enum, help_heading = POINT_TO_POINT)]
-    pub(crate) execution: Option<PlanExecution>,
+    #[arg(long, value_parser = choice::<Execution>(), help_heading = POINT_TO_POINT)]
+    pub(crate) execution: Option<Execution>,
 
     /// Fast: bounded work, for a control cycle. Refined: nearer to the optimum.
-    #[arg(long, value_enum, help_heading = ONLINE)]
-    pub(crate) online: Option<PlanOnline>,
+    #[arg(long, value_parser = choice::<Effort>(), help_heading = ONLINE)]
+    pub(crate) online: Option<Effort>,
     /// Position at the start; the distance is counted from there.
     #[arg(long, allow_hyphen_values = true, help_heading = ONLINE)]
     pub(crate) start_position: Option<String>,
@@ -95,8 +101,8 @@ pub(crate) struct PlanArgs {
     pub(crate) negative_acceleration: Option<String>,
 
     /// Shape of the velocity; an S-curve where a jerk is given.
-    #[arg(long, value_enum, help_heading = ROCKWELL)]
-    pub(crate) shape: Option<PlanShape>,
+    #[arg(long, value_parser = choice::<ShapeKind>(), help_heading = ROCKWELL)]
+    pub(crate) shape: Option<ShapeKind>,
     /// Deceleration, where it is not the acceleration.
     #[arg(long, help_heading = ROCKWELL)]
     pub(crate) deceleration: Option<String>,
@@ -128,8 +134,8 @@ pub(crate) struct PlanArgs {
     #[arg(long, value_name = "FILE", help_heading = TABLE)]
     pub(crate) points: Option<PathBuf>,
     /// PVT: where velocities come from [default: given if the table has some, else average].
-    #[arg(long, value_enum, help_heading = TABLE)]
-    pub(crate) velocities: Option<PlanVelocities>,
+    #[arg(long, value_parser = choice::<VelocitiesKind>(), help_heading = TABLE)]
+    pub(crate) velocities: Option<VelocitiesKind>,
     /// PVT: passes of --velocities smooth [default: 2].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), help_heading = TABLE)]
     pub(crate) passes: Option<u16>,
@@ -148,8 +154,8 @@ pub(crate) struct PlanArgs {
     pub(crate) command_cycle: Option<String>,
 
     /// Input shaper for one vibration.
-    #[arg(long, value_enum, help_heading = FILTER)]
-    pub(crate) shaper: Option<PlanShaper>,
+    #[arg(long, value_parser = choice::<ShaperKind>(), help_heading = FILTER)]
+    pub(crate) shaper: Option<ShaperKind>,
     /// Natural frequency of the vibration, as "12 Hz".
     #[arg(long, value_name = "FREQUENCY", help_heading = FILTER)]
     pub(crate) shaper_frequency: Option<String>,
@@ -192,75 +198,4 @@ pub(crate) enum PlanProfile {
     Pvt,
     /// The same sent as velocity commands.
     Position,
-}
-
-/// Which profile goes from rest to rest.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PlanMethod {
-    /// The step through boxes.
-    Published,
-    /// The shortest.
-    Optimal,
-}
-
-/// How times are made whole numbers of samples.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PlanSampling {
-    /// One after the other.
-    Published,
-    /// With the fewest samples.
-    Fewest,
-}
-
-/// How set-points are made of samples.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PlanExecution {
-    /// The exact polynomial.
-    Hold,
-    /// The forward-Euler cascade.
-    Euler,
-}
-
-/// How much work a plan from a state of motion may be.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PlanOnline {
-    /// Bounded.
-    Fast,
-    /// More.
-    Refined,
-}
-
-/// Rockwell's profiles.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PlanShape {
-    /// With the jerk that the axis is configured for.
-    Trapezoid,
-    /// With a jerk of its own.
-    SCurve,
-}
-
-/// Where the velocities at the points come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PlanVelocities {
-    /// The table; a point without one is approached linearly (PT).
-    Given,
-    /// The mean of the segments before and behind.
-    Average,
-    /// The average rule, then passes of the formulas F2 and F1.
-    Smooth,
-    /// The cubic spline: continuous acceleration.
-    Continuous,
-}
-
-/// Input shapers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PlanShaper {
-    /// Zero vibration.
-    Zv,
-    /// Zero vibration and derivative.
-    Zvd,
-    /// Zero vibration and two derivatives.
-    Zvdd,
-    /// Extra-insensitive.
-    Ei,
 }

@@ -37,10 +37,10 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
 /// The plan, and how far the rows of its table are apart (s) where that is said.
 fn planned(args: &PlanArgs) -> Result<(PlannedMove, Option<f64>), CliError> {
     let mut arguments = Arguments::of(args);
-    let way = match args.profile {
-        PlanProfile::PointToPoint if replanning::is_meant(&arguments) => replanning::way(args, &mut arguments),
-        PlanProfile::PointToPoint => point_to_point::way(args, &mut arguments),
-        PlanProfile::Rockwell => rockwell::way(args, &mut arguments),
+    let generator = match args.profile {
+        PlanProfile::PointToPoint if replanning::is_meant(&arguments) => replanning::generator(args, &mut arguments),
+        PlanProfile::PointToPoint => point_to_point::generator(args, &mut arguments),
+        PlanProfile::Rockwell => rockwell::generator(args, &mut arguments),
         PlanProfile::Pvt => table::pvt(args, &mut arguments),
         PlanProfile::Position => table::position(args, &mut arguments),
     };
@@ -52,12 +52,12 @@ fn planned(args: &PlanArgs) -> Result<(PlannedMove, Option<f64>), CliError> {
     let csv_step = arguments.positive_time("csv-step");
     let filter = filter::filter(args, &mut arguments);
     let (motion, units) = arguments.finish()?;
-    let Some(way) = way else {
+    let Some(generator) = generator else {
         // Whatever is missing has been told.
         return Err(CliError::Input("the move is not described".into()));
     };
     let unit = motion.unwrap_or(Coordinate::Linear).unit();
-    let planned = PlannedMove::new(Request { way, duration, filter, commands }, unit);
+    let planned = PlannedMove::new(Request { generator, duration, filter, commands }, unit);
     let planned = planned.map_err(|error| CliError::Input(by_flags(&error.to_string())))?;
     let planned =
         units.into_iter().fold(planned, |planned, told| planned.as_given(told.derivative, &told.text, told.value));

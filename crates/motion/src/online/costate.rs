@@ -20,7 +20,7 @@ use super::second;
 type Away = [f64; 3];
 
 /// d∫p/da at the start of a way: `away`, for `cruise` at the highest v if that is reached, and `home` from there to `p`.
-pub(crate) fn by_a(away: Away, cruise: Option<f64>, home: &second::Way, p: f64) -> f64 {
+pub(crate) fn by_a(away: Away, cruise: Option<f64>, home: &second::Fastest, p: f64) -> f64 {
     let [up, hold, down] = away;
     // Times before the end: switches at home, and of the way to it.
     let (home_down, home_hold, home_up) = (home.down, home.down + home.hold, home.duration());

@@ -171,7 +171,7 @@ fn through(from: State4, to: State4, limits: &Limits4) -> Option<Path<STRETCHES>
     let near = Near::nothing();
     let home = |turn: State4| third::way(turn.upper(), to.upper(), &upper, &near);
     let beyond = |turn: State4, rate: f64| {
-        let third::Way { path, by_a } = home(turn);
+        let third::Fastest { path, by_a } = home(turn);
         let first = path.stretches().next().map_or(0.0, |first| first.rate());
         (sign * (turn.along(&path).x - to.x), sign * (rate - first) * by_a)
     };

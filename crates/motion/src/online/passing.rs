@@ -290,7 +290,8 @@ impl Search<'_> {
             return self.sign * way.grows(start, to, -self.sign * jerk) < 0.0;
         }
         let (start, to) = (within_jerk(from, self.limits), State3 { p: self.sign * speed, v: 0.0, a: 0.0 });
-        let third::Way { path, by_a } = third::way(start.upper(), to, &limits4(self.limits).upper(), &Near::nothing());
+        let third::Fastest { path, by_a } =
+            third::way(start.upper(), to, &limits4(self.limits).upper(), &Near::nothing());
         let first = path.stretches().next().map_or(0.0, |first| first.rate());
         self.sign * (-self.sign * snap - first) * by_a < 0.0
     }

@@ -55,7 +55,7 @@ impl Sides {
 
 /// The fastest way between two states: one rate, none, and the opposite one.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Way {
+pub(crate) struct Fastest {
     /// The first rate.
     pub(crate) rate: f64,
     /// How long each lasts.
@@ -66,7 +66,7 @@ pub(crate) struct Way {
     peak: f64,
 }
 
-impl Way {
+impl Fastest {
     pub(crate) fn path(&self) -> Path<STRETCHES> {
         let mut path = Path::EMPTY;
         self.add_to(&mut path);
@@ -146,7 +146,7 @@ impl Way {
 /// The times are quotients, not products with 1/j: the rate times such a time is, but for few values, exactly the difference that
 /// it was made of, and nothing of it is left to be integrated over a hold.
 #[inline]
-pub(crate) fn way(from: State2, to: State2, limits: &Limits2) -> Way {
+pub(crate) fn way(from: State2, to: State2, limits: &Limits2) -> Fastest {
     let straight = (to.a + from.a) * (to.a - from.a).abs() / (2.0 * limits.j);
     let gain = to.v - from.v;
     let sign = if gain >= straight { 1.0 } else { -1.0 };
@@ -157,7 +157,13 @@ pub(crate) fn way(from: State2, to: State2, limits: &Limits2) -> Way {
     let limit = limits.a.towards(sign);
     let (peak, hold) =
         if free <= limit { (free, 0.0) } else { (limit, (gain - (limit * limit - squares) / limits.j) / limit) };
-    Way { rate: sign * limits.j, up: (peak - a_0) / limits.j, hold: hold.max(0.0), down: (peak - a_1) / limits.j, peak }
+    Fastest {
+        rate: sign * limits.j,
+        up: (peak - a_0) / limits.j,
+        hold: hold.max(0.0),
+        down: (peak - a_1) / limits.j,
+        peak,
+    }
 }
 
 /// The fastest way from `from`, with `a` within its limits, to `to`.

@@ -97,7 +97,7 @@ impl State3 {
 }
 
 /// A fastest way.
-pub(crate) struct Way {
+pub(crate) struct Fastest {
     pub(crate) path: Path<STRETCHES>,
     /// The change of the integral of `p` over it with `a` where it begins.
     pub(crate) by_a: f64,
@@ -144,13 +144,13 @@ pub(crate) fn fastest(from: State3, to: State3, limits: &Limits3) -> Path<STRETC
 
 /// The same, where τ is `near` the one of the last way.
 #[inline]
-pub(crate) fn way(from: State3, to: State3, limits: &Limits3, near: &Near) -> Way {
-    let mut way = Way { path: Path::EMPTY, by_a: 0.0 };
+pub(crate) fn way(from: State3, to: State3, limits: &Limits3, near: &Near) -> Fastest {
+    let mut way = Fastest { path: Path::EMPTY, by_a: 0.0 };
     way.by_a = find::<true>(from, to, limits, near, &mut way.path);
     way
 }
 
-/// Adds the fastest way to `path`, which is empty, and gives its [`Way::by_a`] if that is wanted.
+/// Adds the fastest way to `path`, which is empty, and gives its [`Fastest::by_a`] if that is wanted.
 fn find<const BY_A: bool>(from: State3, to: State3, limits: &Limits3, near: &Near, path: &mut Path<STRETCHES>) -> f64 {
     let Limits3 { v, a, j } = *limits;
     let upper = Limits2 { a, j };

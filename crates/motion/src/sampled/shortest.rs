@@ -1,7 +1,7 @@
 //! The sampled move of the fewest samples, whatever its shape.
 use super::half::Half;
 use super::reach::{Answer, Cell, Reach};
-use super::way::Way;
+use super::symmetric::SymmetricMove;
 use super::{Execution, Run};
 use crate::request::Request;
 use crate::{Limits, Order, Peaks, Piece, PlanError, Profile};
@@ -37,7 +37,7 @@ pub struct Shortest {
     runs: Vec<Run>,
     peaks: Peaks,
     /// `None` where the move is that of the boxes.
-    way: Option<Way>,
+    symmetric: Option<SymmetricMove>,
 }
 
 /// Samples up to which a move is searched: each is looked at for every number of samples that is tried.
@@ -62,7 +62,7 @@ impl Shortest {
             at_least: samples.min(1),
             runs: boxes.runs().collect(),
             peaks: boxes.peaks(),
-            way: None,
+            symmetric: None,
         };
         let known = samples as f64;
         if samples > 0 && known <= MOST {
@@ -78,11 +78,11 @@ impl Shortest {
             search.between(known);
             plan.at_least = whole(search.at_least);
             if let Some((cells, samples)) = search.best {
-                let way = Way::new(order, boxes.distance(), sample_time, samples, &cells);
+                let symmetric = SymmetricMove::new(order, boxes.distance(), sample_time, samples, &cells);
                 plan.samples = whole(samples);
-                plan.runs = way.runs();
-                plan.peaks = way.peaks(Execution::ForwardEuler, &plan.runs);
-                plan.way = Some(way);
+                plan.runs = symmetric.runs();
+                plan.peaks = symmetric.peaks(Execution::ForwardEuler, &plan.runs);
+                plan.symmetric = Some(symmetric);
             }
         }
         Ok(plan)
@@ -140,7 +140,7 @@ impl Shortest {
     /// Largest magnitudes when executed one way.
     #[must_use]
     pub fn peaks_by(&self, execution: Execution) -> Peaks {
-        self.way.as_ref().map_or(self.peaks, |way| way.peaks(execution, &self.runs))
+        self.symmetric.as_ref().map_or(self.peaks, |own| own.peaks(execution, &self.runs))
     }
 
     /// The set-point of the exact hold `t` seconds after the start, as [`Profile::at`].
@@ -153,7 +153,7 @@ impl Shortest {
     /// The polynomial that [`at`](Self::at) evaluates at `t` (s).
     #[must_use]
     pub fn piece(&self, t: f64) -> Piece {
-        self.way.as_ref().map_or_else(|| self.boxes.piece(t), |way| way.piece(t))
+        self.symmetric.as_ref().map_or_else(|| self.boxes.piece(t), |own| own.piece(t))
     }
 }
 

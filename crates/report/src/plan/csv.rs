@@ -3,7 +3,7 @@ use super::{PlannedMove, STEPS};
 use crate::error::ReportError;
 use servobench_base::Setpoint;
 use servobench_motion::position_profile::Command;
-use servobench_planner::{Reader, Told};
+use servobench_planner::{PlanDetails, Reader};
 use std::io::Write;
 
 /// More rows than this (about 1 GB) are a mistake in the sample time rather than a table.
@@ -55,7 +55,7 @@ impl PlannedMove {
     /// # Errors
     /// [`ReportError::Io`].
     pub fn write_commands(&self, mut out: impl Write) -> Result<bool, ReportError> {
-        let Told::Commands { commands, .. } = self.plan.told() else { return Ok(false) };
+        let PlanDetails::Commands { commands, .. } = self.plan.details() else { return Ok(false) };
         let unit = self.unit;
         writeln!(out, "time_s,velocity_{unit}_s,acceleration_{unit}_s2")?;
         let start = commands.first().map_or(0.0, |command| command.t);
@@ -73,7 +73,7 @@ mod tests {
     use super::*;
     use servobench_motion::pvt::Knot;
     use servobench_motion::{Limits, Order};
-    use servobench_planner::{Follow, TableMove, Velocities, Way};
+    use servobench_planner::{Follow, Generator, TableMove, Velocities};
     use std::io;
 
     fn rows(plan: &PlannedMove) -> Vec<Vec<f64>> {
@@ -137,9 +137,9 @@ mod tests {
     #[test]
     fn commands_have_a_table_of_their_own() {
         let knots = vec![Knot::new(1.0, 0.0), Knot::new(2.0, 1.0)];
-        let way = TableMove { knots, velocities: Velocities::Given, follow: Follow::Plateaus(0.5) };
+        let asked = TableMove { knots, velocities: Velocities::Given, follow: Follow::Plateaus { share: 0.5 } };
         let mut bytes = Vec::new();
-        assert!(moves::of(Way::Table(way)).write_commands(&mut bytes).unwrap());
+        assert!(moves::of(Generator::Table(asked)).write_commands(&mut bytes).unwrap());
         let text = String::from_utf8(bytes).unwrap();
         // A triangle: to 2 m/s within half a second and back.
         assert_eq!(text, "time_s,velocity_m_s,acceleration_m_s2\n0,2,4\n0.5,0,4\n");

@@ -94,8 +94,9 @@ mod tests {
     use super::super::{PlannedMove, moves};
     use servobench_base::Setpoint;
     use servobench_motion::pvt::Knot;
+    use servobench_motion::sampled::Execution;
     use servobench_motion::{Limits, Order};
-    use servobench_planner::{Execution, Follow, Method, PointToPoint, Request, TableMove, Velocities, Way};
+    use servobench_planner::{Follow, Generator, Method, PointToPoint, Request, TableMove, Velocities};
     use std::f64::consts::PI;
 
     /// The path of the line of panel `k`.
@@ -288,8 +289,8 @@ mod tests {
     fn angles_are_drawn_in_their_units() {
         let limits = Limits { velocity: 2.0 * PI, acceleration: 50.0, jerk: f64::INFINITY, snap: f64::INFINITY };
         let (order, method, distance) = (Order::Second, Method::Published, PI / 2.0);
-        let way = PointToPoint { distance, order, limits, method, grid: None };
-        let plan = PlannedMove::new(Request::new(Way::PointToPoint(way)), "rad").unwrap();
+        let asked = PointToPoint { distance, order, limits, method, grid: None };
+        let plan = PlannedMove::new(Request::new(Generator::PointToPoint(asked)), "rad").unwrap();
         let svg = plan.as_given(0, "90 deg", PI / 2.0).as_given(1, "60 rpm", 2.0 * PI).svg();
         for text in [">90 deg in 375.7 ms, order 2<", ">peak 90 deg<", ">limit 60 rpm<", ">rev/s²<"] {
             assert!(svg.contains(text), "{text} in {svg}");
@@ -301,8 +302,8 @@ mod tests {
     #[test]
     fn very_many_polynomials_take_little_room() {
         let knots = (0..100_000).map(|k| Knot::new(f64::from(k), f64::from(k % 3))).collect();
-        let way = TableMove { knots, velocities: Velocities::Average, follow: Follow::Segments };
-        for plan in [moves::executed(1e-3, Execution::Euler), moves::of(Way::Table(way))] {
+        let asked = TableMove { knots, velocities: Velocities::Average, follow: Follow::Segments };
+        for plan in [moves::executed(1e-3, Execution::ForwardEuler), moves::of(Generator::Table(asked))] {
             let svg = plan.svg();
             assert!(svg.len() < 200_000 && svg.contains("class=\"v\""), "{} bytes", svg.len());
         }

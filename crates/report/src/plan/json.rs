@@ -4,9 +4,10 @@ use crate::error::ReportError;
 use crate::ordered::Ordered;
 use serde::Serialize;
 use servobench_base::Setpoint;
+use servobench_config::Choice as _;
 use servobench_motion::Profile;
 use servobench_motion::sampled::Shortest;
-use servobench_planner::{Execution, Sampling, Told};
+use servobench_planner::PlanDetails;
 
 /// Segments, bindings and commands at most, each; of more the number alone is told, and `--csv` has the values.
 const MOST: usize = 100_000;
@@ -138,8 +139,8 @@ impl PlannedMove {
         let names = || NAMES[1..=n].iter().map(|name| (*name).to_owned());
         let limits =
             self.plan.limits().map(|sides| [-sides.below, sides.above].map(|limit| limit.is_finite().then_some(limit)));
-        let (commands, error, rate) = match self.plan.told() {
-            Told::Commands { commands, error, rate } => (Some(commands), Some(*error), *rate),
+        let (commands, error, rate) = match self.plan.details() {
+            PlanDetails::Commands { commands, error, rate } => (Some(commands), Some(*error), *rate),
             _ => (None, None, None),
         };
         let bindings = self.plan.bindings();
@@ -159,12 +160,12 @@ impl PlannedMove {
             extremes: names().zip(self.plan.peaks().map(|peak| [peak.lowest, peak.highest])).collect(),
             limits: names().zip(limits).filter(|(_, limit)| limit.iter().any(Option::is_some)).collect(),
             samples: self.sampled(),
-            excess: match self.plan.told() {
-                Told::Transition { excess, .. } => Some(*excess),
+            excess: match self.plan.details() {
+                PlanDetails::Transition { excess, .. } => Some(*excess),
                 _ => None,
             },
-            jerks: match self.plan.told() {
-                Told::Rockwell { acceleration, deceleration } => {
+            jerks: match self.plan.details() {
+                PlanDetails::Rockwell { acceleration, deceleration } => {
                     Some(Jerks { acceleration: *acceleration, deceleration: *deceleration })
                 }
                 _ => None,
@@ -200,14 +201,8 @@ impl PlannedMove {
     fn sampled(&self) -> Option<Samples> {
         let (sample_time_s, count) = self.samples()?;
         let grid = self.grid();
-        let sampling = grid.filter(|_| self.shortest().is_none()).map(|grid| match grid.sampling {
-            Sampling::Published => "published",
-            Sampling::Fewest => "fewest",
-        });
-        let execution = grid.map(|grid| match grid.execution {
-            Execution::Hold => "hold",
-            Execution::Euler => "euler",
-        });
+        let sampling = grid.filter(|_| self.shortest().is_none()).map(|grid| grid.sampling.name());
+        let execution = grid.map(|grid| grid.execution.name());
         let at_least = self.shortest().map(Shortest::at_least);
         Some(Samples { sample_time_s, count, at_least, sampling, execution })
     }
@@ -241,7 +236,8 @@ mod tests {
     use super::super::{PlannedMove, moves};
     use servobench_motion::Order;
     use servobench_motion::pvt::Knot;
-    use servobench_planner::{Execution, Follow, Method, PointToPoint, TableMove, Velocities, Way};
+    use servobench_motion::sampled::Execution;
+    use servobench_planner::{CommandRate, Follow, Generator, Method, PointToPoint, TableMove, Velocities};
 
     fn json(plan: &PlannedMove) -> serde_json::Value {
         serde_json::from_str(&plan.json().unwrap()).unwrap()
@@ -333,7 +329,7 @@ mod tests {
         let plan = json(&moves::sampled(1e-3));
         assert_eq!((&plan["samples"], &plan["sample_time_s"]), (&1350.into(), &1e-3.into()), "{plan}");
         assert_eq!(plan["segments"].as_array().unwrap().len(), 15);
-        let euler = json(&moves::executed(1e-3, Execution::Euler));
+        let euler = json(&moves::executed(1e-3, Execution::ForwardEuler));
         assert_eq!((&euler["samples"], &euler["execution"]), (&1350.into(), &"euler".into()), "{euler}");
     }
 
@@ -341,8 +337,8 @@ mod tests {
     #[test]
     fn the_gain_is_a_number() {
         let (order, method) = (Order::Fourth, Method::Optimal);
-        let way = PointToPoint { distance: 1e-3, order, limits: moves::LAMBRECHTS, method, grid: None };
-        let plan = json(&moves::of(Way::PointToPoint(way)));
+        let asked = PointToPoint { distance: 1e-3, order, limits: moves::LAMBRECHTS, method, grid: None };
+        let plan = json(&moves::of(Generator::PointToPoint(asked)));
         let near = |name: &str, expected: f64| {
             let found = plan[name].as_f64().unwrap();
             assert!((found - expected).abs() < 1e-9, "{name}: {found}");
@@ -356,8 +352,12 @@ mod tests {
     #[test]
     fn commands_are_listed_with_their_error() {
         let knots = [(0.5, 0.0), (0.6, 0.01), (0.75, 0.04)].map(|(t, x)| Knot::new(t, x)).to_vec();
-        let way = TableMove { knots, velocities: Velocities::Given, follow: Follow::Steps(100.0) };
-        let plan = json(&moves::of(Way::Table(way)));
+        let asked = TableMove {
+            knots,
+            velocities: Velocities::Given,
+            follow: Follow::Steps { rate: CommandRate::Given(100.0) },
+        };
+        let plan = json(&moves::of(Generator::Table(asked)));
         assert_eq!((&plan["command_count"], &plan["command_rate_hz"]), (&25.into(), &100.0.into()), "{plan}");
         assert!(plan["position_error"].as_f64().unwrap() > 0.0 && plan["limits"].as_object().unwrap().is_empty());
         assert_eq!(plan["commands"][0]["time_s"], 0.0);

@@ -4,7 +4,7 @@ use super::{NAMES, PlannedMove, derivatives, without_dust};
 use servobench_base::Setpoint;
 use servobench_motion::Segment;
 use servobench_motion::position_profile::Command;
-use servobench_planner::{Span, Told, Way};
+use servobench_planner::{Generator, PlanDetails, Span};
 use std::collections::VecDeque;
 
 /// `125.663706 ms` fits.
@@ -59,7 +59,7 @@ impl PlannedMove {
     /// The segments, points or commands: heading and rows. None of a plan whose set-points are held: they are samples.
     pub(super) fn rows(&self) -> Vec<String> {
         let n = self.plan.order();
-        if let Told::Commands { commands, .. } = self.plan.told() {
+        if let PlanDetails::Commands { commands, .. } = self.plan.details() {
             let start = commands.first().map_or(0.0, |command| command.t);
             let row = |Command { t, velocity, acceleration }: &Command| {
                 Row::point(t - start, [Some((1, *velocity)), Some((2, *acceleration)), None])
@@ -73,7 +73,7 @@ impl PlannedMove {
             let row = |segment: Segment| Row::segment(segment.start, segment.length, n, segment.value);
             return self.listed("start", joined(profile.segments().map(row)), "segments");
         }
-        if matches!(self.request.way, Way::Table(_)) {
+        if matches!(self.request.generator, Generator::Table(_)) {
             // Where velocity jumps, there is no acceleration to tell.
             let has_acceleration = n > 1;
             let row = |t: f64, Setpoint { x, v, a, .. }: Setpoint| {

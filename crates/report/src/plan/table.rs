@@ -94,11 +94,12 @@ mod tests {
     use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target};
     use servobench_motion::pvt::Knot;
     use servobench_motion::rockwell::{Jerk, MaximumJerk, Move, Shape};
-    use servobench_motion::shape::{Impulses, Vibration};
+    use servobench_motion::sampled::Execution;
+    use servobench_motion::shape::Shaper;
     use servobench_motion::{Limits, Order};
     use servobench_planner::{
-        Averages, Execution, Filter, Follow, Grid, Method, PointToPoint, Replanning, Request, Rockwell, Sampling,
-        TableMove, Velocities, Way,
+        Averages, CommandRate, Filter, Follow, Generator, Grid, Method, PointToPoint, Replanning, Request, Rockwell,
+        Sampling, Shaping, TableMove, Velocities,
     };
     use std::f64::consts::TAU;
 
@@ -114,8 +115,8 @@ mod tests {
     fn units_are_those_of_the_user() {
         let limits = Limits { velocity: TAU, acceleration: 50.0, jerk: f64::INFINITY, snap: f64::INFINITY };
         let (order, method, distance) = (Order::Second, Method::Published, -TAU / 4.0);
-        let way = PointToPoint { distance, order, limits, method, grid: None };
-        let plan = PlannedMove::new(Request::new(Way::PointToPoint(way)), "rad").unwrap();
+        let asked = PointToPoint { distance, order, limits, method, grid: None };
+        let plan = PlannedMove::new(Request::new(Generator::PointToPoint(asked)), "rad").unwrap();
         let plan = plan.as_given(0, "-90 deg", distance).as_given(1, "60 rpm", TAU).as_given(2, "50 rad/s2", 50.0);
         insta::assert_snapshot!(table(&plan), @r#"
         move of -90 deg in 375.663706 ms, order 2
@@ -174,8 +175,8 @@ mod tests {
     #[test]
     fn the_shortest_move_says_what_it_gained() {
         let (order, method) = (Order::Fourth, Method::Optimal);
-        let way = PointToPoint { distance: 1e-3, order, limits: moves::LAMBRECHTS, method, grid: None };
-        insta::assert_snapshot!(table(&moves::of(Way::PointToPoint(way))), @r#"
+        let asked = PointToPoint { distance: 1e-3, order, limits: moves::LAMBRECHTS, method, grid: None };
+        insta::assert_snapshot!(table(&moves::of(Generator::PointToPoint(asked))), @r#"
         move of 1.00 mm in 139.98542 ms, order 4, optimal
         6.94 % shorter than the published profile (150.424 ms)
 
@@ -196,10 +197,10 @@ mod tests {
     /// The example of the generator: 50 samples instead of 56.
     #[test]
     fn the_shortest_sampled_move_says_that_it_is() {
-        let grid = Some(Grid { sample_time: 5e-3, sampling: Sampling::Published, execution: Execution::Hold });
+        let grid = Some(Grid { sample_time: 5e-3, sampling: Sampling::Published, execution: Execution::ExactHold });
         let (order, method) = (Order::Fourth, Method::Optimal);
-        let way = PointToPoint { distance: 0.01, order, limits: moves::LAMBRECHTS, method, grid };
-        insta::assert_snapshot!(table(&moves::of(Way::PointToPoint(way))), @r#"
+        let asked = PointToPoint { distance: 0.01, order, limits: moves::LAMBRECHTS, method, grid };
+        insta::assert_snapshot!(table(&moves::of(Generator::PointToPoint(asked))), @r#"
         move of 10.0 mm in 250 ms, order 4, optimal
         50 samples of 5 ms
         proven: no move of fewer samples reaches the distance
@@ -225,7 +226,7 @@ mod tests {
 
     #[test]
     fn the_cascade_says_how_late_it_is() {
-        let table = table(&moves::executed(1e-3, Execution::Euler));
+        let table = table(&moves::executed(1e-3, Execution::ForwardEuler));
         insta::assert_snapshot!(table.lines().take(4).collect::<Vec<_>>().join("\n"), @r#"
         move of 1.00 m in 1.35 s, order 4
         1350 samples of 1 ms
@@ -241,12 +242,12 @@ mod tests {
             jerk: 50.0,
             snap: 1000.0,
         };
-        let way = |v: f64| {
+        let generator = |v: f64| {
             let from = Setpoint { x: 0.1, v, a: 1.0, j: -5.0, s: 0.0 };
             let (target, order, effort) = (Target::Position { x: -0.5, v: -0.2 }, Order::Fourth, Effort::Refined);
-            Way::Replanning(Replanning { from, target, order, limits, effort })
+            Generator::Replanning(Replanning { from, target, order, limits, effort })
         };
-        insta::assert_snapshot!(table(&moves::of(way(0.4))), @r#"
+        insta::assert_snapshot!(table(&moves::of(generator(0.4))), @r#"
         move of -600 mm in 1.212321295 s, order 4, online refined
         from 100 mm, 400 mm/s, 1.00 m/s², -5.00 m/s³ to -500 mm, -200 mm/s
 
@@ -273,7 +274,7 @@ mod tests {
         1.124960270 s 0.037361025 s  0 m/s⁴
         1.162321295 s 0.050000000 s  1000 m/s⁴
         "#);
-        let beyond = table(&moves::of(way(1.2)));
+        let beyond = table(&moves::of(generator(1.2)));
         assert!(beyond.contains("% beyond its limits: where it starts leaves no other way"), "{beyond}");
     }
 
@@ -288,7 +289,7 @@ mod tests {
             shape: Shape::SCurve { acceleration: Jerk::PercentOfTime(25.0), deceleration: Jerk::PercentOfTime(100.0) },
         };
         let maximum = MaximumJerk { acceleration: f64::INFINITY, deceleration: f64::INFINITY };
-        insta::assert_snapshot!(table(&moves::of(Way::Rockwell(Rockwell { operands, maximum }))), @r#"
+        insta::assert_snapshot!(table(&moves::of(Generator::Rockwell(Rockwell { operands, maximum }))), @r#"
         move of 10.0 mm in 126.785714 ms, Rockwell S-curve
         jerk 1120 m/s³ of the acceleration, 640 m/s³ of the deceleration
 
@@ -314,8 +315,8 @@ mod tests {
 
     #[test]
     fn a_long_table_shows_its_ends() {
-        let way = TableMove { knots: knots(1000), velocities: Velocities::Average, follow: Follow::Segments };
-        insta::assert_snapshot!(table(&moves::of(Way::Table(way))), @r#"
+        let asked = TableMove { knots: knots(1000), velocities: Velocities::Average, follow: Follow::Segments };
+        insta::assert_snapshot!(table(&moves::of(Generator::Table(asked))), @r#"
         move of 4.00 mm through 1000 points in 9.99 s, PVT
         velocities by the average rule
 
@@ -346,8 +347,8 @@ mod tests {
 
     #[test]
     fn a_position_profile_lists_its_commands() {
-        let way = |follow| Way::Table(TableMove { knots: knots(5), velocities: Velocities::Given, follow });
-        insta::assert_snapshot!(table(&moves::of(way(Follow::Plateaus(0.25)))), @r#"
+        let generator = |follow| Generator::Table(TableMove { knots: knots(5), velocities: Velocities::Given, follow });
+        insta::assert_snapshot!(table(&moves::of(generator(Follow::Plateaus { share: 0.25 }))), @r#"
         move of 2.00 mm through 5 points in 40 ms, position profile
         5 velocity commands, α = 0.25: every position is hit
 
@@ -362,7 +363,7 @@ mod tests {
               27.5 ms        19.6 mm/s        55.0 m/s²
               37.5 ms            0 m/s        7.85 m/s²
         "#);
-        let steps = table(&moves::of(way(Follow::Steps(100.0))));
+        let steps = table(&moves::of(generator(Follow::Steps { rate: CommandRate::Given(100.0) })));
         insta::assert_snapshot!(steps.lines().take(3).collect::<Vec<_>>().join("\n"), @r#"
         move of 1.71 mm through 5 points in 40 ms, position profile
         4 velocity commands at 100 Hz: at most 893 µm off the cubic spline
@@ -371,12 +372,12 @@ mod tests {
 
     #[test]
     fn filters_say_what_they_cost() {
-        let shaper = Some(Impulses::zvd(&Vibration::new(TAU * 10.0, 0.0).unwrap()));
+        let shaper = Some(Shaping { shaper: Shaper::Zvd, frequency: 10.0, damping: 0.0 });
         let averages = Some(Averages { lengths: vec![0.01, 0.005], sample_time: 1e-3 });
         let (order, method) = (Order::Third, Method::Published);
-        let way = PointToPoint { distance: 0.3, order, limits: moves::LAMBRECHTS, method, grid: None };
+        let asked = PointToPoint { distance: 0.3, order, limits: moves::LAMBRECHTS, method, grid: None };
         let filter = Filter { shaper, averages };
-        let request = Request { filter, duration: Some(1.0), ..Request::new(Way::PointToPoint(way)) };
+        let request = Request { filter, duration: Some(1.0), ..Request::new(Generator::PointToPoint(asked)) };
         insta::assert_snapshot!(table(&PlannedMove::new(request, "m").unwrap()), @r#"
         move of 300 mm in 1 s, order 3
         1000 samples of 1 ms

@@ -2,10 +2,12 @@
 use super::PlannedMove;
 use super::unit::digits;
 use servobench_base::Setpoint;
+use servobench_config::Choice as _;
 use servobench_metrics::Quantity;
-use servobench_motion::online::{Effort, Target};
+use servobench_motion::online::Target;
 use servobench_motion::rockwell::Shape;
-use servobench_planner::{Execution, Filter, Follow, Grid, Method, Sampling, TableMove, Told, Velocities, Way};
+use servobench_motion::sampled::Execution;
+use servobench_planner::{Filter, Follow, Generator, Grid, Method, PlanDetails, Sampling, TableMove, Velocities};
 
 /// An excess below this part of a limit is rounding.
 const EXCESS: f64 = 1e-9;
@@ -15,45 +17,33 @@ const HIT: f64 = 1e-12;
 impl PlannedMove {
     /// `point-to-point`, `online`, `rockwell`, `pvt` or `position`.
     pub(super) const fn family(&self) -> &'static str {
-        match &self.request.way {
-            Way::PointToPoint(_) => "point-to-point",
-            Way::Replanning(_) => "online",
-            Way::Rockwell(_) => "rockwell",
-            Way::Table(TableMove { follow: Follow::Segments, .. }) => "pvt",
-            Way::Table(_) => "position",
+        match &self.request.generator {
+            Generator::PointToPoint(_) => "point-to-point",
+            Generator::Replanning(_) => "online",
+            Generator::Rockwell(_) => "rockwell",
+            Generator::Table(TableMove { follow: Follow::Segments, .. }) => "pvt",
+            Generator::Table(_) => "position",
         }
     }
 
     /// Which one of its family it is.
-    pub(super) const fn method(&self) -> &'static str {
-        match &self.request.way {
-            Way::PointToPoint(way) => match way.method {
-                Method::Published => "published",
-                Method::Optimal => "optimal",
-            },
-            Way::Replanning(way) => match way.effort {
-                Effort::Fast => "fast",
-                Effort::Refined => "refined",
-            },
-            Way::Rockwell(way) => match way.operands.shape {
-                Shape::Trapezoid => "trapezoid",
-                Shape::SCurve { .. } => "s-curve",
-            },
-            Way::Table(way) => match (way.follow, way.velocities) {
-                (Follow::Segments, Velocities::Given) => "given",
-                (Follow::Segments, Velocities::Average) => "average",
-                (Follow::Segments, Velocities::Smooth(_)) => "smooth",
-                (Follow::Segments, Velocities::Continuous) => "continuous",
-                (Follow::Plateaus(_), _) => "plateaus",
-                (Follow::Steps(_) | Follow::Within(_), _) => "commands",
+    pub(super) fn method(&self) -> &'static str {
+        match &self.request.generator {
+            Generator::PointToPoint(asked) => asked.method.name(),
+            Generator::Replanning(asked) => asked.effort.name(),
+            Generator::Rockwell(asked) => asked.operands.shape.kind().name(),
+            Generator::Table(asked) => match asked.follow {
+                Follow::Segments => asked.velocities.kind().name(),
+                Follow::Plateaus { .. } => asked.follow.kind().name(),
+                Follow::Steps { .. } => "commands",
             },
         }
     }
 
     /// How the samples come about, where there are some.
     pub(super) const fn grid(&self) -> Option<Grid> {
-        match &self.request.way {
-            Way::PointToPoint(way) => way.grid,
+        match &self.request.generator {
+            Generator::PointToPoint(asked) => asked.grid,
             _ => None,
         }
     }
@@ -61,38 +51,38 @@ impl PlannedMove {
     /// Family and method for a person: `order 4, optimal`.
     pub(super) fn kind(&self) -> String {
         let order = self.plan.order();
-        match &self.request.way {
-            Way::PointToPoint(_) => match (self.method(), self.grid()) {
-                ("published", Some(Grid { sampling: Sampling::Fewest, .. })) => {
+        match &self.request.generator {
+            Generator::PointToPoint(asked) => match (asked.method, asked.grid) {
+                (Method::Published, Some(Grid { sampling: Sampling::Fewest, .. })) => {
                     format!("order {order}, fewest samples")
                 }
-                ("published", _) => format!("order {order}"),
-                (method, _) => format!("order {order}, {method}"),
+                (Method::Published, _) => format!("order {order}"),
+                (Method::Optimal, _) => format!("order {order}, {}", asked.method.name()),
             },
-            Way::Replanning(_) => format!("order {order}, online {}", self.method()),
-            Way::Rockwell(way) => match way.operands.shape {
+            Generator::Replanning(_) => format!("order {order}, online {}", self.method()),
+            Generator::Rockwell(asked) => match asked.operands.shape {
                 Shape::Trapezoid => "Rockwell trapezoid".to_owned(),
                 Shape::SCurve { .. } => "Rockwell S-curve".to_owned(),
             },
-            Way::Table(TableMove { follow: Follow::Segments, velocities: Velocities::Given, knots })
+            Generator::Table(TableMove { follow: Follow::Segments, velocities: Velocities::Given, knots })
                 if knots.iter().all(|knot| knot.v.is_none()) =>
             {
                 "PT".to_owned()
             }
-            Way::Table(TableMove { follow: Follow::Segments, .. }) => "PVT".to_owned(),
-            Way::Table(_) => "position profile".to_owned(),
+            Generator::Table(TableMove { follow: Follow::Segments, .. }) => "PVT".to_owned(),
+            Generator::Table(_) => "position profile".to_owned(),
         }
     }
 
     /// What is moved: `move of 1.00 m`.
     pub(super) fn what(&self, distance: &str) -> String {
-        match &self.request.way {
-            Way::Table(way) => format!("{distance} through {} points", way.knots.len()),
-            Way::Replanning(way) => match way.target {
+        match &self.request.generator {
+            Generator::Table(asked) => format!("{distance} through {} points", asked.knots.len()),
+            Generator::Replanning(asked) => match asked.target {
                 Target::Velocity(v) => format!("{distance} to {}", self.show(1, v)),
                 Target::Position { .. } => distance.to_owned(),
             },
-            Way::PointToPoint(_) | Way::Rockwell(_) => distance.to_owned(),
+            Generator::PointToPoint(_) | Generator::Rockwell(_) => distance.to_owned(),
         }
     }
 
@@ -115,7 +105,7 @@ impl PlannedMove {
                 least => format!("not proven to be the fewest samples; below {least} none reach the distance"),
             });
         }
-        if let Some(Grid { execution: Execution::Euler, sample_time, .. }) = self.grid() {
+        if let Some(Grid { execution: Execution::ForwardEuler, sample_time, .. }) = self.grid() {
             let late = 0.5 * (self.plan.order() as f64 - 1.0) * sample_time;
             notes.push(format!("forward-Euler cascade: {} behind the exact hold on the way", time(late)));
         }
@@ -127,7 +117,7 @@ impl PlannedMove {
                 format!("{:.2} % shorter than the published profile ({published})", 100.0 * gain)
             });
         }
-        notes.extend(self.told());
+        notes.extend(self.of_generator());
         notes.extend(self.filters(time));
         if self.request.duration.is_some() {
             notes.push("slowed to the duration that was asked for".to_owned());
@@ -135,15 +125,15 @@ impl PlannedMove {
         notes
     }
 
-    /// What the generator tells.
-    fn told(&self) -> Vec<String> {
-        match (&self.request.way, self.plan.told()) {
-            (Way::Replanning(way), Told::Transition { excess, .. }) => {
-                let Setpoint { x, v, a, j, .. } = way.from;
+    /// What is particular to the generator.
+    fn of_generator(&self) -> Vec<String> {
+        match (&self.request.generator, self.plan.details()) {
+            (Generator::Replanning(asked), PlanDetails::Transition { excess, .. }) => {
+                let Setpoint { x, v, a, j, .. } = asked.from;
                 let mut from = vec![self.show(0, x)];
                 let later = [(1, v), (2, a), (3, if self.plan.order() == 4 { j } else { 0.0 })];
                 from.extend(later.into_iter().filter(|(_, value)| *value != 0.0).map(|(k, value)| self.show(k, value)));
-                let to = match way.target {
+                let to = match asked.target {
                     Target::Position { x, v: 0.0 } => format!("rest at {}", self.show(0, x)),
                     Target::Position { x, v } => format!("{}, {}", self.show(0, x), self.show(1, v)),
                     Target::Velocity(v) => self.show(1, v),
@@ -157,28 +147,30 @@ impl PlannedMove {
                 }
                 told
             }
-            (_, Told::Rockwell { acceleration, deceleration }) => vec![format!(
+            (_, PlanDetails::Rockwell { acceleration, deceleration }) => vec![format!(
                 "jerk {} of the acceleration, {} of the deceleration",
                 self.show(3, *acceleration),
                 self.show(3, *deceleration)
             )],
-            (Way::Table(way), Told::Table { .. }) => vec![velocities(way)],
-            (Way::Table(way), Told::Commands { commands, error, rate }) => vec![match (way.follow, rate) {
-                (_, Some(rate)) => format!(
-                    "{} velocity commands at {rate} Hz: at most {} off the cubic spline",
-                    commands.len(),
-                    self.show_error(*error)
-                ),
-                (Follow::Plateaus(alpha), None) if *error < HIT => {
-                    format!("{} velocity commands, α = {alpha}: every position is hit", commands.len())
-                }
-                (Follow::Plateaus(alpha), None) => format!(
-                    "{} velocity commands, α = {alpha}: at most {} off the positions",
-                    commands.len(),
-                    self.show_error(*error)
-                ),
-                (_, None) => format!("{} velocity commands", commands.len()),
-            }],
+            (Generator::Table(asked), PlanDetails::Table { .. }) => vec![velocities(asked)],
+            (Generator::Table(asked), PlanDetails::Commands { commands, error, rate }) => {
+                vec![match (asked.follow, rate) {
+                    (_, Some(rate)) => format!(
+                        "{} velocity commands at {rate} Hz: at most {} off the cubic spline",
+                        commands.len(),
+                        self.show_error(*error)
+                    ),
+                    (Follow::Plateaus { share: alpha }, None) if *error < HIT => {
+                        format!("{} velocity commands, α = {alpha}: every position is hit", commands.len())
+                    }
+                    (Follow::Plateaus { share: alpha }, None) => format!(
+                        "{} velocity commands, α = {alpha}: at most {} off the positions",
+                        commands.len(),
+                        self.show_error(*error)
+                    ),
+                    (_, None) => format!("{} velocity commands", commands.len()),
+                }]
+            }
             _ => Vec::new(),
         }
     }
@@ -192,7 +184,7 @@ impl PlannedMove {
     fn filters(&self, time: impl Fn(f64) -> String) -> Option<String> {
         let Filter { shaper, averages } = &self.request.filter;
         let shaper = shaper
-            .as_ref()
+            .and_then(|shaping| shaping.impulses().ok())
             .map(|shaper| format!("a shaper of {} impulses over {}", shaper.iter().count(), time(shaper.duration())));
         let averages = averages.as_ref().map(|averages| {
             let lengths: Vec<_> = averages.lengths.iter().map(|length| time(*length)).collect();
@@ -206,13 +198,13 @@ impl PlannedMove {
 }
 
 /// Where the velocities at the points come from.
-fn velocities(way: &TableMove) -> String {
-    match way.velocities {
-        Velocities::Given if way.knots.iter().all(|knot| knot.v.is_none()) => "linear from point to point".to_owned(),
+fn velocities(asked: &TableMove) -> String {
+    match asked.velocities {
+        Velocities::Given if asked.knots.iter().all(|knot| knot.v.is_none()) => "linear from point to point".to_owned(),
         Velocities::Given => "velocities of the table".to_owned(),
         Velocities::Average => "velocities by the average rule".to_owned(),
-        Velocities::Smooth(1) => "velocities by the average rule and 1 pass of F2 and F1".to_owned(),
-        Velocities::Smooth(passes) => format!("velocities by the average rule and {passes} passes of F2 and F1"),
+        Velocities::Smooth { passes: 1 } => "velocities by the average rule and 1 pass of F2 and F1".to_owned(),
+        Velocities::Smooth { passes } => format!("velocities by the average rule and {passes} passes of F2 and F1"),
         Velocities::Continuous => "velocities of the cubic spline: continuous acceleration".to_owned(),
     }
 }

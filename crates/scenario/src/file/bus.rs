@@ -1,6 +1,6 @@
 //! `[bus]`: the fieldbus between the motion task and the drive.
 use crate::list::Many;
-use crate::scenario::{BusMode, DriveInterpolation, InterpolationMode, Sequencing, TrajectoryBuffer};
+use crate::scenario::{BusMode, DriveInterpolation, Sequencing, TrajectoryBuffer};
 use crate::simple::OneOf;
 use crate::table::table;
 use servobench_config::Choice;
@@ -8,6 +8,7 @@ use servobench_config::Kind::{Axis as InAxis, Plain};
 use servobench_config::quantities::{POSITION, POSITION_GAIN, TIME};
 use servobench_config::{not_negative, positive};
 use servobench_drive::EffortFeedforward;
+use servobench_motion::interpolate::Mode as InterpolationMode;
 
 impl Choice for BusMode {
     const ALL: &'static [(&'static str, Self, &'static str)] = &[

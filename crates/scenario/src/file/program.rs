@@ -2,13 +2,16 @@
 use super::setpoint::{Rockwell, Shaper, TableOfPoints};
 use crate::limit_table::LimitTable;
 use crate::list::Many;
-use crate::scenario::{DisturbedBody, Execution, Method, PlanEffort, Sampling};
+use crate::scenario::DisturbedBody;
 use crate::simple::OneOf;
 use crate::table::table;
 use servobench_config::Choice;
 use servobench_config::Kind::{Axis as InAxis, Plain};
 use servobench_config::quantities::{ACCELERATION, FORCE, FREQUENCY, JERK, POSITION, SNAP, TIME, TORQUE, VELOCITY};
 use servobench_config::{any, not_negative, positive};
+use servobench_motion::online::Effort;
+use servobench_motion::sampled::Execution;
+use servobench_planner::{Method, Sampling};
 
 impl Choice for DisturbedBody {
     const ALL: &'static [(&'static str, Self, &'static str)] =
@@ -54,7 +57,7 @@ table! {
         /// How set-points are made of the samples.
         execution: Execution = OneOf,
         /// Plans as if the axis were in motion, with so much work.
-        online: PlanEffort = OneOf,
+        online: Effort = OneOf,
         /// Largest velocity below zero, of a move that is planned in motion.
         negative_velocity: f64 = positive(InAxis(&VELOCITY), "20 m/min"),
         /// Largest acceleration below zero, of a move that is planned in motion.

@@ -1,121 +1,16 @@
 //! `[setpoint]`: what every move respects, and how set-points are generated, filtered and interpolated.
 use crate::list::Many;
-use crate::scenario::{Execution, InterpolationMode, Method, PlanEffort, RockwellShape, Sampling};
-use crate::simple::OneOf;
+use crate::simple::{OneOf, OneOfOrNone};
 use crate::table::table;
-use servobench_config::Choice;
 use servobench_config::Kind::{Axis as InAxis, Plain};
 use servobench_config::quantities::{ACCELERATION, FREQUENCY, JERK, RATIO, SNAP, TIME, VELOCITY};
 use servobench_config::{not_negative, positive};
-
-impl Choice for Method {
-    const ALL: &'static [(&'static str, Self, &'static str)] = &[
-        ("published", Self::Published, "the published step through boxes, 15 segments at order 4"),
-        ("optimal", Self::Optimal, "the shortest: up to 6.94 % less time at order 4 where velocity does not cruise"),
-    ];
-}
-
-impl Choice for Sampling {
-    const ALL: &'static [(&'static str, Self, &'static str)] = &[
-        ("published", Self::Published, "time after time is rounded up, as it is published"),
-        ("fewest", Self::Fewest, "the fewest samples that a step through boxes needs"),
-    ];
-}
-
-impl Choice for Execution {
-    const ALL: &'static [(&'static str, Self, &'static str)] = &[
-        ("hold", Self::Hold, "the exact polynomial, the highest derivative held: N samples, no lag"),
-        (
-            "euler",
-            Self::Euler,
-            "the forward-Euler cascade, each sample held until the next: at rest at the same sample, and 1.5 samples late on the way at order 4",
-        ),
-    ];
-}
-
-impl Choice for PlanEffort {
-    const ALL: &'static [(&'static str, Self, &'static str)] = &[
-        ("fast", Self::Fast, "a bounded amount of work, for a control cycle"),
-        ("refined", Self::Refined, "more work where that makes the move shorter"),
-    ];
-}
-
-impl Choice for RockwellShape {
-    const ALL: &'static [(&'static str, Self, &'static str)] = &[
-        ("trapezoid", Self::Trapezoid, "acceleration as rectangular as `maximum_jerk` allows"),
-        ("s-curve", Self::SCurve, "acceleration with a jerk of its own"),
-    ];
-}
-
-impl Choice for InterpolationMode {
-    const ALL: &'static [(&'static str, Self, &'static str)] = &[
-        ("linear", Self::Linear, "position linear, velocity its slope; one period late"),
-        ("cubic", Self::Cubic, "by positions and velocities; one period late"),
-        ("quintic", Self::Quintic, "by positions, velocities and accelerations; one period late"),
-        ("cubic-b-spline", Self::CubicBSpline, "positions as control points, not passed through; two periods late"),
-        (
-            "quintic-b-spline",
-            Self::QuinticBSpline,
-            "positions as control points, not passed through; three periods late",
-        ),
-        ("all-linear", Self::AllLinear, "position, velocity, acceleration each linear; one period late"),
-        ("all-cubic", Self::AllCubic, "position and velocity each cubic; one period late"),
-    ];
-}
-
-/// Which input shaper a file names.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum ShaperName {
-    None,
-    Zv,
-    Zvd,
-    Zvdd,
-    Ei,
-}
-
-impl Choice for ShaperName {
-    const ALL: &'static [(&'static str, Self, &'static str)] = &[
-        ("none", Self::None, "no shaper, where `[setpoint]` has one"),
-        ("zv", Self::Zv, "zero vibration: half a period longer"),
-        ("zvd", Self::Zvd, "zero vibration and derivative: one period longer"),
-        ("zvdd", Self::Zvdd, "zero vibration and two derivatives: one and a half periods longer"),
-        ("ei", Self::Ei, "extra-insensitive, within `tolerable`: one period longer"),
-    ];
-}
-
-/// Where the velocities at the points of a table come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum VelocityRule {
-    Given,
-    Average,
-    Smooth,
-    Continuous,
-}
-
-impl Choice for VelocityRule {
-    const ALL: &'static [(&'static str, Self, &'static str)] = &[
-        ("given", Self::Given, "the table's own; a point without one is approached linearly"),
-        ("average", Self::Average, "the mean of the segments before and behind"),
-        ("smooth", Self::Smooth, "the average, then `passes` of smoothing"),
-        ("continuous", Self::Continuous, "those with continuous acceleration: the cubic spline"),
-    ];
-}
-
-/// How a table is followed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum FollowRule {
-    Segments,
-    Plateaus,
-    Steps,
-}
-
-impl Choice for FollowRule {
-    const ALL: &'static [(&'static str, Self, &'static str)] = &[
-        ("segments", Self::Segments, "along its cubic and linear segments (PVT, PT)"),
-        ("plateaus", Self::Plateaus, "by profile velocities with a plateau in each segment; hits every position"),
-        ("steps", Self::Steps, "by profile velocities along the cubic spline, sent at `command_rate`"),
-    ];
-}
+use servobench_motion::interpolate::Mode;
+use servobench_motion::online::Effort;
+use servobench_motion::rockwell::ShapeKind;
+use servobench_motion::sampled::Execution;
+use servobench_motion::shape::ShaperKind;
+use servobench_planner::{FollowKind, Method, Sampling, VelocitiesKind};
 
 table! {
     /// What every move respects unless it says otherwise.
@@ -139,7 +34,7 @@ table! {
         /// How set-points are made of the samples; "hold" unless given.
         execution: Execution = OneOf,
         /// Plans every move as one that may start in motion, with so much work; "fast" where a move does and nothing is given.
-        online: PlanEffort = OneOf,
+        online: Effort = OneOf,
         /// Largest velocity below zero, of moves that are planned in motion; as `velocity` unless given.
         negative_velocity: f64 = positive(InAxis(&VELOCITY), "20 m/min"),
         /// Largest acceleration below zero, of moves that are planned in motion; as `acceleration` unless given.
@@ -159,7 +54,7 @@ table! {
     /// Rockwell's axis move: velocity from rest to the speed and back, with jerk as a value (`jerk` of the move) or as a part.
     pub(crate) struct Rockwell requires ["shape"] {
         /// Shape of the velocity.
-        shape: RockwellShape = OneOf,
+        shape: ShapeKind = OneOf,
         /// Largest deceleration; as `acceleration` unless given.
         deceleration: f64 = positive(InAxis(&ACCELERATION), "8 m/s2"),
         /// Jerk as the part of the ramp in which the acceleration changes, above 0 to 100 %.
@@ -184,7 +79,7 @@ table! {
     /// cancel.
     pub(crate) struct Shaper requires ["kind"] {
         /// Which one.
-        kind: ShaperName = OneOf,
+        kind: Option<ShaperKind> = OneOfOrNone("no shaper, where `[setpoint]` has one"),
         /// Natural frequency of the mode.
         frequency: f64 = positive(Plain(&FREQUENCY), "17.5 Hz"),
         /// Damping ratio of the mode; 0 unless given.
@@ -198,7 +93,7 @@ table! {
     /// Between a slow task that commands and the drive.
     pub(crate) struct Interpolation requires ["mode", "period"] {
         /// How values between two commands are found.
-        mode: InterpolationMode = OneOf,
+        mode: Mode = OneOf,
         /// Time between two commands, a whole number of base ticks.
         period: f64 = positive(Plain(&TIME), "4 ms"),
     }
@@ -213,11 +108,11 @@ table! {
         /// Whether the positions count from where the axis is when the move starts.
         relative: bool = (),
         /// Where the velocities come from; "given" unless given.
-        velocities: VelocityRule = OneOf,
+        velocities: VelocitiesKind = OneOf,
         /// How often "smooth" passes over them; 2 unless given.
         passes: u32 = 0..=1_000_000,
         /// How it is followed; "segments" unless given.
-        follow: FollowRule = OneOf,
+        follow: FollowKind = OneOf,
         /// Share of a segment at either end in which the velocity of "plateaus" changes, up to 0.5; 0.25 unless given.
         plateau_share: f64 = positive(Plain(&RATIO), "0.25"),
         /// Commands per second of "steps".

@@ -4,13 +4,12 @@ use crate::field::Slot;
 use crate::file;
 use crate::file::File;
 use crate::resolve::{bus_fault, mode, need, refuse, whole};
-use crate::scenario::{
-    Actuator, Bus, BusMode, Counter, Drive, DriveUnits, Feedback, InterpolationMode, ObjectWrite, Sequencing, Step,
-};
+use crate::scenario::{Actuator, Bus, BusMode, Counter, Drive, DriveUnits, Feedback, ObjectWrite, Sequencing, Step};
 use crate::source::At;
 use servobench_base::{Coordinate, Rate};
 use servobench_drive::EffortFeedforward;
 use servobench_drive::feedforward::Model;
+use servobench_motion::interpolate::Mode as InterpolationMode;
 use std::f64::consts::TAU;
 
 /// The parts that are known by now.

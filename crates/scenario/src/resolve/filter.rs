@@ -1,15 +1,14 @@
 //! Times on the base ticks: sample times, averages, the period of a commanding task; and the input shaper.
 use crate::diagnostic::Report;
 use crate::field::Slot;
-use crate::file::{File, ShaperName};
+use crate::file::File;
 use crate::resolve::keys::{Keys, Said};
 use crate::resolve::whole;
-use crate::scenario::{Filter, Grid, Interpolation, Shaper, ShaperKind};
+use crate::scenario::Interpolation;
 use crate::source::At;
 use servobench_base::Rate;
-
-/// Part of the vibration that an extra-insensitive shaper leaves unless something is said.
-const TOLERABLE: f64 = 0.05;
+use servobench_motion::shape::{Shaper, ShaperKind};
+use servobench_planner::{Averages, Filter, Grid, Shaping};
 
 /// The filter of a move.
 pub(super) fn filter(keys: &Keys<'_>, base_rate: Option<Rate>, said: &mut Said, report: &mut Report) -> Option<Filter> {
@@ -18,16 +17,9 @@ pub(super) fn filter(keys: &Keys<'_>, base_rate: Option<Rate>, said: &mut Said, 
         Some(given) => {
             let kind = *given.kind.given()?;
             let tolerable = given.tolerable.optional().ok()?.copied();
-            if let (Some(_), Some(span), true) = (tolerable, given.tolerable.span(), kind != ShaperName::Ei) {
+            if let (Some(_), Some(span), true) = (tolerable, given.tolerable.span(), kind != Some(ShaperKind::Ei)) {
                 said.once(span, |report| report.error(span, "`tolerable` is for the shaper \"ei\"", ""), report);
             }
-            let kind = match kind {
-                ShaperName::None => None,
-                ShaperName::Zv => Some(ShaperKind::Zv),
-                ShaperName::Zvd => Some(ShaperKind::Zvd),
-                ShaperName::Zvdd => Some(ShaperKind::Zvdd),
-                ShaperName::Ei => Some(ShaperKind::Ei(tolerable.unwrap_or(TOLERABLE))),
-            };
             match kind {
                 None => None,
                 Some(kind) => {
@@ -38,15 +30,20 @@ pub(super) fn filter(keys: &Keys<'_>, base_rate: Option<Rate>, said: &mut Said, 
                         said.once(given.span, say, report);
                     }
                     let damping = given.damping.optional().ok()?.copied().unwrap_or(0.0);
-                    Some(Shaper { kind, frequency: *given.frequency.given()?, damping })
+                    let shaper = Shaper::new(kind, tolerable.unwrap_or(Shaper::TOLERABLE));
+                    Some(Shaping { shaper, frequency: *given.frequency.given()?, damping })
                 }
             }
         }
     };
-    let averages = keys.averages.optional().ok()?.map_or(&[][..], |averages| &averages.0);
-    let averages: Vec<_> =
-        averages.iter().map(|length| whole_ticks("averages", *length, base_rate, said, report)).collect();
-    Some(Filter { shaper, averages: averages.into_iter().collect::<Option<_>>()? })
+    let given = keys.averages.optional().ok()?.map_or(&[][..], |averages| &averages.0);
+    let lengths: Vec<_> =
+        given.iter().map(|length| whole_ticks("averages", *length, base_rate, said, report)).collect();
+    let averages = match lengths.into_iter().collect::<Option<Vec<_>>>()? {
+        lengths if lengths.is_empty() => None,
+        lengths => Some(Averages { lengths, sample_time: base_rate?.period() }),
+    };
+    Some(Filter { shaper, averages })
 }
 
 /// The samples of a move from rest to rest, when it has some.

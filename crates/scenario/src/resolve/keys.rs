@@ -3,8 +3,11 @@ use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
 use crate::list::Many;
-use crate::scenario::{Execution, Method, PlanEffort, Sampling};
 use crate::source::{At, Span};
+use servobench_motion::online::Effort;
+use servobench_motion::sampled::Execution;
+use servobench_motion::{Limits, Order};
+use servobench_planner::{Method, Sampling};
 use std::collections::BTreeSet;
 
 /// Keys of the limits, velocity first.
@@ -19,7 +22,7 @@ pub(super) struct Keys<'a> {
     pub(super) sample_time: &'a Slot<f64>,
     pub(super) sampling: &'a Slot<Sampling>,
     pub(super) execution: &'a Slot<Execution>,
-    pub(super) online: &'a Slot<PlanEffort>,
+    pub(super) online: &'a Slot<Effort>,
     pub(super) negative: [&'a Slot<f64>; 2],
     pub(super) rockwell: &'a Slot<file::Rockwell>,
     pub(super) shaper: &'a Slot<file::Shaper>,
@@ -103,8 +106,9 @@ impl<'a> Keys<'a> {
         header: Span,
         said: &mut Said,
         report: &mut Report,
-    ) -> Option<(u8, [f64; 4])> {
-        let Some(order) = self.order.given().and_then(|order| u8::try_from(*order).ok()) else {
+    ) -> Option<(Order, Limits)> {
+        let order = self.order.given().and_then(|order| Order::from_derivative(u8::try_from(*order).ok()?));
+        let Some(order) = order else {
             if matches!(self.order, Slot::Absent) {
                 said.missing("order", header, "2, 3 or 4", report);
             }
@@ -116,9 +120,10 @@ impl<'a> Keys<'a> {
             }
             return None;
         };
-        let needed = usize::from(order);
-        let limits = self.limits(needed, needed, &format!("a move of order {order}"), header, said, report);
-        Some((order, limits?))
+        let needed = order.derivative();
+        let limits = self.limits(needed, needed, &format!("a move of order {needed}"), header, said, report);
+        let [velocity, acceleration, jerk, snap] = limits?;
+        Some((order, Limits { velocity, acceleration, jerk, snap }))
     }
 
     /// The limits, of which the first `needed` must be there, and the first `used` may; `what` is the move in words.

@@ -1,30 +1,32 @@
 //! A table of points, and how it is followed.
 use crate::diagnostic::{NamedFile, Report};
 use crate::field::Slot;
-use crate::file::{FollowRule, TableOfPoints, VelocityRule};
+use crate::file::TableOfPoints;
 use crate::models::read_beside;
 use crate::points::{PointsError, read_points};
 use crate::resolve::refuse;
-use crate::scenario::{Follow, TableMove, Velocities};
 use crate::source::{At, Sources};
 use servobench_base::Coordinate;
+use servobench_motion::pvt::Knot;
+use servobench_planner::{CommandRate, Follow, FollowKind, Positioning, TableMove, Velocities, VelocitiesKind};
 
-/// Passes of smoothing unless something is said: what the source of the formulas shows.
-const PASSES: u32 = 2;
-/// Share of a segment in which the velocity of plateaus changes, unless something is said.
-pub(super) const PLATEAU_SHARE: f64 = 0.25;
-
-pub(super) fn resolve(table: &At<TableOfPoints>, sources: &Sources, report: &mut Report) -> Option<TableMove> {
+/// The move, and what its positions count from.
+pub(super) fn resolve(
+    table: &At<TableOfPoints>,
+    sources: &Sources,
+    report: &mut Report,
+) -> Option<(TableMove, Positioning)> {
     let own = &table.value;
     let velocities = velocities(own, report);
     let follow = follow(own, report);
     let is_relative = own.relative.optional().ok()?.copied().unwrap_or(false);
-    let points = points(own, sources, report);
-    Some(TableMove { points: points?, is_relative, velocities: velocities?, follow: follow? })
+    let knots = knots(own, sources, report);
+    let positioning = if is_relative { Positioning::Relative } else { Positioning::Absolute };
+    Some((TableMove { knots: knots?, velocities: velocities?, follow: follow? }, positioning))
 }
 
-/// The points of the file: time, position, velocity.
-fn points(own: &TableOfPoints, sources: &Sources, report: &mut Report) -> Option<Vec<(f64, f64, Option<f64>)>> {
+/// The points of the file.
+fn knots(own: &TableOfPoints, sources: &Sources, report: &mut Report) -> Option<Vec<Knot>> {
     let file = own.file.at()?;
     let points = read(file, "positions", sources, report, |text| {
         let points = read_points(text)?;
@@ -32,7 +34,7 @@ fn points(own: &TableOfPoints, sources: &Sources, report: &mut Report) -> Option
     })?;
     let velocity = |i: usize| points.velocities.as_ref().and_then(|all| all[i]);
     let both = points.times.iter().zip(&points.positions).enumerate();
-    Some(both.map(|(i, (t, x))| (*t, *x, velocity(i))).collect())
+    Some(both.map(|(i, (t, x))| Knot { t: *t, x: *x, v: velocity(i) }).collect())
 }
 
 /// What `read` makes of the text of `file`, when it is for an axis of this kind; `values` are its values in words.
@@ -75,28 +77,30 @@ pub(super) fn read<T>(
 }
 
 fn velocities(own: &TableOfPoints, report: &mut Report) -> Option<Velocities> {
-    let rule = own.velocities.optional().ok()?.copied().unwrap_or(VelocityRule::Given);
-    if rule != VelocityRule::Smooth {
+    let kind = own.velocities.optional().ok()?.copied().unwrap_or_default();
+    if kind != VelocitiesKind::Smooth {
         refuse(&[("passes", own.passes.span())], "is for velocities that are \"smooth\"", "", report);
     }
-    Some(match rule {
-        VelocityRule::Given => Velocities::Given,
-        VelocityRule::Average => Velocities::Average,
-        VelocityRule::Smooth => Velocities::Smooth(own.passes.optional().ok()?.copied().unwrap_or(PASSES)),
-        VelocityRule::Continuous => Velocities::Continuous,
+    Some(match kind {
+        VelocitiesKind::Given => Velocities::Given,
+        VelocitiesKind::Average => Velocities::Average,
+        VelocitiesKind::Smooth => {
+            Velocities::Smooth { passes: own.passes.optional().ok()?.copied().unwrap_or(Velocities::PASSES) }
+        }
+        VelocitiesKind::Continuous => Velocities::Continuous,
     })
 }
 
 fn follow(own: &TableOfPoints, report: &mut Report) -> Option<Follow> {
-    let rule = own.follow.optional().ok()?.copied().unwrap_or(FollowRule::Segments);
+    let kind = own.follow.optional().ok()?.copied().unwrap_or_default();
     let (share, rate) = (("plateau_share", own.plateau_share.span()), ("command_rate", own.command_rate.span()));
-    if rule != FollowRule::Plateaus {
+    if kind != FollowKind::Plateaus {
         refuse(&[share], "is for a table that is followed by \"plateaus\"", "", report);
     }
-    if rule != FollowRule::Steps {
+    if kind != FollowKind::Steps {
         refuse(&[rate], "is for a table that is followed by \"steps\"", "", report);
     }
-    if rule != FollowRule::Segments {
+    if kind != FollowKind::Segments {
         let help = "position profiles choose their velocities themselves";
         refuse(
             &[("velocities", own.velocities.span())],
@@ -105,17 +109,18 @@ fn follow(own: &TableOfPoints, report: &mut Report) -> Option<Follow> {
             report,
         );
     }
-    match rule {
-        FollowRule::Segments => Some(Follow::Segments),
-        FollowRule::Plateaus => {
-            Some(Follow::Plateaus(own.plateau_share.optional().ok()?.copied().unwrap_or(PLATEAU_SHARE)))
+    match kind {
+        FollowKind::Segments => Some(Follow::Segments),
+        FollowKind::Plateaus => {
+            let share = own.plateau_share.optional().ok()?.copied().unwrap_or(Follow::PLATEAU_SHARE);
+            Some(Follow::Plateaus { share })
         }
-        FollowRule::Steps => {
+        FollowKind::Steps => {
             if matches!(own.command_rate, Slot::Absent) {
                 let help = "how often a velocity is sent; `servobench plan` finds the lowest for an allowed error";
                 report.missing_with_help("table", "command_rate", own.span, help);
             }
-            Some(Follow::Steps(*own.command_rate.given()?))
+            Some(Follow::Steps { rate: CommandRate::Given(*own.command_rate.given()?) })
         }
     }
 }

@@ -1,10 +1,11 @@
 //! The tables of profile blocks: times from the start of the profile, and positions, velocities or accelerations.
 use crate::diagnostic::Report;
-use crate::file::{FollowRule, TableOfPoints, VelocityRule};
+use crate::file::TableOfPoints;
 use crate::points::{PointsError, Profile, read_accelerations, read_points, read_velocities};
-use crate::resolve::points::{self, PLATEAU_SHARE};
+use crate::resolve::points;
 use crate::resolve::refuse;
 use crate::source::{At, Sources};
+use servobench_planner::{Follow, FollowKind, VelocitiesKind};
 use servobench_plcopen::{Follow as ProfileFollow, Pair};
 
 /// Positions.
@@ -72,19 +73,19 @@ fn pairs(file: &At<String>, times: &[f64], values: &[f64], report: &mut Report) 
 pub(super) fn follow(table: &At<TableOfPoints>, report: &mut Report) -> Option<ProfileFollow> {
     let own = &table.value;
     let way = "it goes along the cubic spline, or by \"plateaus\"";
-    if let Some(at) = own.velocities.at().filter(|at| at.value != VelocityRule::Continuous) {
+    if let Some(at) = own.velocities.at().filter(|at| at.value != VelocitiesKind::Continuous) {
         report.error(at.span, "MC_PositionProfile does not choose its velocities so", way);
     }
     let others = [("passes", own.passes.span()), ("command_rate", own.command_rate.span())];
     refuse(&others, "is not for MC_PositionProfile", way, report);
     match own.follow.optional().ok()?.copied() {
-        Some(FollowRule::Plateaus) => {
+        Some(FollowKind::Plateaus) => {
             refuse(&[("velocities", own.velocities.span())], "is not for \"plateaus\"", "leave it out", report);
-            let share = own.plateau_share.optional().ok()?.copied().unwrap_or(PLATEAU_SHARE);
+            let share = own.plateau_share.optional().ok()?.copied().unwrap_or(Follow::PLATEAU_SHARE);
             Some(ProfileFollow::Plateaus(share))
         }
         rule => {
-            if let (Some(FollowRule::Steps), Some(span)) = (rule, own.follow.span()) {
+            if let (Some(FollowKind::Steps), Some(span)) = (rule, own.follow.span()) {
                 report.error(span, "MC_PositionProfile does not follow its table so", way);
             }
             refuse(&[("plateau_share", own.plateau_share.span())], "is for \"plateaus\"", "", report);

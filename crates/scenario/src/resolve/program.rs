@@ -5,11 +5,11 @@ use crate::file;
 use crate::file::File;
 use crate::resolve::keys::{Keys, LIMITS, Said};
 use crate::resolve::{Way as OneWay, filter, has_window, limits, one_way, points, rockwell};
-use crate::scenario::{
-    Filter, Follow, Goal, LONGEST_RUN, MoveStep, OnlineMove, PlanEffort, RestMove, Step, TableMove, Target, Way,
-};
+use crate::scenario::{LONGEST_RUN, MoveStep, Step};
 use crate::source::{At, Sources, Span};
-use servobench_base::Rate;
+use servobench_base::{Rate, Setpoint};
+use servobench_motion::online::{DirectionalLimits, Sides, Target};
+use servobench_planner::{Filter, Follow, Generator, PointToPoint, Positioning, Replanning, Request, TableMove};
 
 /// What the steps need to know of the rest of the file.
 struct Known<'a> {
@@ -40,7 +40,7 @@ pub(super) fn steps(file: &File, base_rate: Option<Rate>, sources: &Sources, rep
     for step in &program.0 {
         let resolved = self::step(&step.value, defaults.as_ref(), before, &known, &mut said, report);
         before = match &resolved {
-            Some(Step::Move(step)) if step.ends_in_motion() => Before::Motion,
+            Some(Step::Move(step)) if step.request.generator.ends_in_motion() => Before::Motion,
             Some(Step::Wait(_)) => Before::Pause,
             // Where it has not become clear what it is, nothing that follows is to be blamed for it.
             Some(Step::Move(_)) | None => Before::Move,
@@ -71,7 +71,7 @@ fn refuse_endless(program: &[At<file::ProgramStep>], report: &mut Report) {
 
 /// What a step does.
 enum Does {
-    To(Option<Target>),
+    To(Option<f64>, Positioning),
     Velocity(Option<f64>),
     Table,
 }
@@ -98,8 +98,8 @@ fn step(
         return None;
     }
     let does = match one_way(&ways, report) {
-        OneWay::Use(0) => Does::To(step.move_to.given().copied().map(Target::Absolute)),
-        OneWay::Use(1) => Does::To(step.move_by.given().copied().map(Target::Relative)),
+        OneWay::Use(0) => Does::To(step.move_to.given().copied(), Positioning::Absolute),
+        OneWay::Use(1) => Does::To(step.move_by.given().copied(), Positioning::Relative),
         OneWay::Use(2) => Does::Velocity(step.reach_velocity.given().copied()),
         OneWay::Use(3) => Does::Table,
         OneWay::Use(_) => {
@@ -126,14 +126,17 @@ fn step(
     let context = Context { step, own: &own, keys: &keys, before, known };
     let moved = match does {
         Does::Table => context.table(report),
-        Does::To(target) => context.to(target, said, report),
+        Does::To(position, positioning) => {
+            context.to(position, said, report).map(|generator| Moved { generator, positioning, hold: 0.0 })
+        }
         Does::Velocity(velocity) => context.to_velocity(velocity, said, report),
     };
     let filter = filter::filter(&keys, known.base_rate, said, report);
-    let (way, order, limits) = moved?;
+    let Moved { generator, positioning, hold } = moved?;
     let (aborts_after, duration) =
         (step.aborts_after.optional().ok()?.copied(), step.duration.optional().ok()?.copied());
-    let step = MoveStep { way, order, limits, filter: filter?, aborts_after, duration, metric_limits: metric_limits? };
+    let request = Request { duration, filter: filter?, ..Request::new(generator) };
+    let step = MoveStep { request, positioning, hold, aborts_after, metric_limits: metric_limits? };
     context.check_ends(&step, report);
     Some(Step::Move(step))
 }
@@ -170,22 +173,26 @@ struct Context<'a> {
     known: &'a Known<'a>,
 }
 
-/// Way, order and limits of a move.
-type Moved = (Way, u8, [f64; 4]);
+/// A move without what is common to all of them.
+struct Moved {
+    generator: Generator,
+    positioning: Positioning,
+    hold: f64,
+}
 
 impl Context<'_> {
     /// A move to a position.
-    fn to(&self, target: Option<Target>, said: &mut Said, report: &mut Report) -> Option<Moved> {
+    fn to(&self, position: Option<f64>, said: &mut Said, report: &mut Report) -> Option<Generator> {
         no_keys([("hold", self.step.hold.span())], "a move to a position", report);
         if let Some(rockwell) = self.keys.rockwell.at() {
-            return self.rockwell(target, rockwell, said, report);
+            return self.rockwell(position, rockwell, said, report);
         }
         if self.keys.rockwell.span().is_some() {
             return None;
         }
         if self.in_motion().is_some() || self.keys.online.span().is_some() {
             let end_velocity = self.step.end_velocity.optional().ok()?.copied().unwrap_or(0.0);
-            return self.online(target.map(|target| Goal::Position(target, end_velocity)), said, report);
+            return self.online(position.map(|x| Target::Position { x, v: end_velocity }), said, report);
         }
         let unused = self.own.named().filter(|(key, _)| key.starts_with("negative_"));
         no_keys(unused, "a move that is not planned `online`", report);
@@ -193,7 +200,7 @@ impl Context<'_> {
         let grid = filter::grid(self.keys, self.known.base_rate, said, report);
         let (order, limits) = order_and_limits?;
         let method = self.keys.method.optional().ok()?.copied().unwrap_or_default();
-        Some((Way::Rest(RestMove { target: target?, method, grid: grid? }), order, limits))
+        Some(Generator::PointToPoint(PointToPoint { distance: position?, order, limits, method, grid: grid? }))
     }
 
     /// A move to a velocity.
@@ -203,11 +210,12 @@ impl Context<'_> {
             report.error(span, "Rockwell's move goes to a position", "leave `rockwell` out of this step");
         }
         let hold = self.step.hold.optional().ok()?.copied().unwrap_or(0.0);
-        self.online(velocity.map(|velocity| Goal::Velocity(velocity, hold)), said, report)
+        let generator = self.online(velocity.map(Target::Velocity), said, report)?;
+        Some(Moved { generator, positioning: Positioning::Relative, hold })
     }
 
     /// A move from any state of motion.
-    fn online(&self, goal: Option<Goal>, said: &mut Said, report: &mut Report) -> Option<Moved> {
+    fn online(&self, target: Option<Target>, said: &mut Said, report: &mut Report) -> Option<Generator> {
         for (key, span) in self.own.named() {
             let is_of_rest = matches!(key, "method" | "sample_time" | "sampling" | "execution");
             if let (Some(span), true) = (span, is_of_rest) {
@@ -217,27 +225,33 @@ impl Context<'_> {
         }
         let (order, limits) = self.keys.order_and_limits(self.step.span, said, report)?;
         let [velocity, acceleration] = self.keys.negative.map(Slot::optional);
-        let negative = [velocity.ok()?.copied(), acceleration.ok()?.copied()];
-        let effort = self.keys.online.optional().ok()?.copied().unwrap_or(PlanEffort::Fast);
-        let goal = goal?;
-        let (Goal::Position(_, v) | Goal::Velocity(v, _)) = goal;
-        let most = if v < 0.0 { negative[0].unwrap_or(limits[0]) } else { limits[0] };
+        let sides = |above: f64, below: Option<&f64>| Sides { above, below: below.copied().unwrap_or(above) };
+        let limits = DirectionalLimits {
+            velocity: sides(limits.velocity, velocity.ok()?),
+            acceleration: sides(limits.acceleration, acceleration.ok()?),
+            jerk: limits.jerk,
+            snap: limits.snap,
+        };
+        let effort = self.keys.online.optional().ok()?.copied().unwrap_or_default();
+        let target = target?;
+        let (Target::Position { v, .. } | Target::Velocity(v)) = target;
+        let most = if v < 0.0 { limits.velocity.below } else { limits.velocity.above };
         let asked = self.step.end_velocity.span().or(self.step.reach_velocity.span());
         if let (Some(span), true) = (asked, v.abs() > most) {
             report.error(span, format!("beyond the velocity limit, {most} in SI"), "lower it or raise the limit");
             return None;
         }
-        Some((Way::Online(OnlineMove { goal, effort, negative }), order, limits))
+        Some(Generator::Replanning(Replanning { from: Setpoint::default(), target, order, limits, effort }))
     }
 
     /// Rockwell's axis move.
     fn rockwell(
         &self,
-        target: Option<Target>,
+        distance: Option<f64>,
         keys: &At<file::Rockwell>,
         said: &mut Said,
         report: &mut Report,
-    ) -> Option<Moved> {
+    ) -> Option<Generator> {
         if let Some(span) = self.in_motion() {
             let help = "leave `rockwell` out of this step, or let the axis rest";
             report.error(span, "Rockwell's move starts and ends at rest", help);
@@ -249,12 +263,12 @@ impl Context<'_> {
         let limits = self.keys.limits(2, 3, "Rockwell's move", self.step.span, said, report);
         let is_own = self.own.rockwell.span().is_some();
         let operands = rockwell::Operands {
+            limits: limits.map(|[velocity, acceleration, ..]| [velocity, acceleration]),
             acceleration: self.keys.limits[1],
             jerk_beside: if is_own { self.own.limits[2] } else { self.keys.limits[2] },
             jerk: self.keys.limits[2],
         };
-        let rockwell = rockwell::resolve(keys, &operands, target, report);
-        Some((Way::Rockwell(rockwell?), 3, limits?))
+        rockwell::resolve(keys, &operands, distance, report).map(Generator::Rockwell)
     }
 
     /// A move through a table.
@@ -266,9 +280,8 @@ impl Context<'_> {
             report.error(self.step.span, "a table starts at rest", "let the move before end at rest");
             return None;
         }
-        let table: TableMove = points::resolve(self.step.table.at()?, self.known.sources, report)?;
-        let order = if table.follow == Follow::Segments { 3 } else { 2 };
-        Some((Way::Table(table), order, [f64::INFINITY; 4]))
+        let (table, positioning) = points::resolve(self.step.table.at()?, self.known.sources, report)?;
+        Some(Moved { generator: Generator::Table(table), positioning, hold: 0.0 })
     }
 
     /// Where it says that the move starts or ends in motion.
@@ -277,27 +290,27 @@ impl Context<'_> {
         self.step.aborts_after.span().or(self.step.end_velocity.span()).or(starts)
     }
 
-    /// Objects to what does not fit the way in which the move starts and ends.
+    /// Objects to what does not fit how the move starts and ends.
     fn check_ends(&self, step: &MoveStep, report: &mut Report) {
         if let (Before::Pause, Some(span)) = (self.before, self.step.aborts_after.span()) {
             report.error(span, "there is no move to abort", "give the step before a move, or leave `aborts_after` out");
         }
         let starts_in_motion = self.before == Before::Motion || step.aborts_after.is_some();
-        let is_in_motion = starts_in_motion || step.ends_in_motion();
-        let message = match &step.way {
+        let is_in_motion = starts_in_motion || step.request.generator.ends_in_motion();
+        let message = match &step.request.generator {
             _ if is_in_motion => {
                 "a move that starts or ends in motion is not filtered or slowed: its velocity would jump"
             }
-            Way::Table(table) if table.follow != Follow::Segments => {
+            Generator::Table(TableMove { follow: Follow::Plateaus { .. } | Follow::Steps { .. }, .. }) => {
                 "a position profile is not filtered: it sends velocities"
             }
             _ => return,
         };
-        let Filter { shaper, averages } = &step.filter;
-        let is_slowed = is_in_motion && step.duration.is_some();
+        let Filter { shaper, averages } = &step.request.filter;
+        let is_slowed = is_in_motion && step.request.duration.is_some();
         for (is_there, slot, help) in [
             (shaper.is_some(), self.keys.shaper.span(), "write `shaper = { kind = \"none\" }` into this step"),
-            (!averages.is_empty(), self.keys.averages.span(), "write `averages = []` into this step"),
+            (averages.is_some(), self.keys.averages.span(), "write `averages = []` into this step"),
             (is_slowed, self.step.duration.span(), "leave it out: limits say how fast the move is"),
         ] {
             if is_there {

@@ -3,11 +3,14 @@ use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
 use crate::resolve::{Way, one_way, refuse};
-use crate::scenario::{RockwellJerk, RockwellMove, RockwellShape, Target};
 use crate::source::At;
+use servobench_motion::rockwell::{Jerk, MaximumJerk, Move, Shape, ShapeKind};
+use servobench_planner::Rockwell;
 
 /// The limits of a move that Rockwell's takes as operands.
 pub(super) struct Operands<'a> {
+    /// Those of velocity and acceleration (SI), when they are there.
+    pub(super) limits: Option<[f64; 2]>,
     pub(super) acceleration: &'a Slot<f64>,
     /// Jerk in the table that `rockwell` is in, which must not contradict it.
     pub(super) jerk_beside: &'a Slot<f64>,
@@ -15,15 +18,15 @@ pub(super) struct Operands<'a> {
     pub(super) jerk: &'a Slot<f64>,
 }
 
-/// The move with these keys.
+/// The move over `distance` with these keys.
 pub(super) fn resolve(
     keys: &At<file::Rockwell>,
     operands: &Operands<'_>,
-    target: Option<Target>,
+    distance: Option<f64>,
     report: &mut Report,
-) -> Option<RockwellMove> {
+) -> Option<Rockwell> {
     let own = &keys.value;
-    let shape = own.shape.given().copied();
+    let kind = own.shape.given().copied();
     let deceleration = own.deceleration.optional().ok()?.or(operands.acceleration.given()).copied();
     let of_time = [("jerk_of_time", &own.jerk_of_time), ("deceleration_jerk_of_time", &own.deceleration_jerk_of_time)];
     let of_maximum = [
@@ -32,7 +35,7 @@ pub(super) fn resolve(
     ];
     let up = said_jerk([("jerk", operands.jerk_beside), of_time[0], of_maximum[0]], report);
     let down = said_jerk([("deceleration_jerk", &own.deceleration_jerk), of_time[1], of_maximum[1]], report);
-    if shape == Some(RockwellShape::Trapezoid) {
+    if kind == Some(ShapeKind::Trapezoid) {
         let parts = of_time.into_iter().chain(of_maximum).chain([("deceleration_jerk", &own.deceleration_jerk)]);
         let parts: Vec<_> = parts.map(|(key, slot)| (key, slot.span())).collect();
         refuse(&parts, "is for an S-curve", "a trapezoid takes `maximum_jerk`", report);
@@ -40,34 +43,40 @@ pub(super) fn resolve(
     let maximum = own.maximum_jerk.optional().ok()?.copied();
     let maximum_down = own.maximum_deceleration_jerk.optional().ok()?.copied().or(maximum);
     let (up, down) = (up.ok()?, down.ok()?);
-    let shape = shape?;
-    let jerks = match shape {
-        RockwellShape::Trapezoid => [RockwellJerk::PartOfMaximum(1.0); 2],
-        RockwellShape::SCurve => {
-            let Some(up) = up.or(operands.jerk.given().copied().map(RockwellJerk::Value)) else {
+    let shape = match kind? {
+        ShapeKind::Trapezoid => Shape::Trapezoid,
+        ShapeKind::SCurve => {
+            let Some(up) = up.or(operands.jerk.given().copied().map(Jerk::Value)) else {
                 let message = "an S-curve needs the jerk of its acceleration";
                 report.error(keys.span, message, "give `jerk`, `jerk_of_time` or `jerk_of_maximum`");
                 return None;
             };
-            [up, down.unwrap_or(up)]
+            Shape::SCurve { acceleration: up, deceleration: down.unwrap_or(up) }
         }
     };
-    let needs_maximum = jerks.iter().any(|jerk| matches!(jerk, RockwellJerk::PartOfMaximum(_)));
-    if needs_maximum && maximum.is_none() {
-        let what = if shape == RockwellShape::Trapezoid { "a trapezoid" } else { "a part of the maximum" };
+    let needs_maximum = match shape {
+        Shape::Trapezoid => Some("a trapezoid"),
+        Shape::SCurve { acceleration, deceleration } => [acceleration, deceleration]
+            .iter()
+            .any(|jerk| matches!(jerk, Jerk::PercentOfMaximum(_)))
+            .then_some("a part of the maximum"),
+    };
+    if let (Some(what), None) = (needs_maximum, maximum) {
         report.error(keys.span, format!("{what} needs `maximum_jerk`"), "that for which the axis is configured");
         return None;
     }
     // Where nothing asks for it there need not be one.
-    let maximum = [maximum, maximum_down].map(|jerk| jerk.unwrap_or(f64::INFINITY));
-    Some(RockwellMove { target: target?, shape, deceleration: deceleration?, jerks, maximum })
+    let [acceleration, deceleration_jerk] = [maximum, maximum_down].map(|jerk| jerk.unwrap_or(f64::INFINITY));
+    let maximum = MaximumJerk { acceleration, deceleration: deceleration_jerk };
+    let ([speed, acceleration], distance, deceleration) = (operands.limits?, distance?, deceleration?);
+    Some(Rockwell { operands: Move { distance, speed, acceleration, deceleration, shape }, maximum })
 }
 
 /// The jerk as one of three keys says it: value, part of the time, part of the maximum.
 ///
 /// # Errors
 /// When that has been objected to.
-fn said_jerk(keys: [(&'static str, &Slot<f64>); 3], report: &mut Report) -> Result<Option<RockwellJerk>, ()> {
+fn said_jerk(keys: [(&'static str, &Slot<f64>); 3], report: &mut Report) -> Result<Option<Jerk>, ()> {
     let which = match one_way(&keys.map(|(key, slot)| (key, slot.span())), report) {
         Way::Use(which) => which,
         Way::None => return Ok(None),
@@ -75,8 +84,8 @@ fn said_jerk(keys: [(&'static str, &Slot<f64>); 3], report: &mut Report) -> Resu
     };
     let value = *keys[which].1.given().ok_or(())?;
     Ok(Some(match which {
-        0 => RockwellJerk::Value(value),
-        1 => RockwellJerk::PartOfTime(value),
-        _ => RockwellJerk::PartOfMaximum(value),
+        0 => Jerk::Value(value),
+        1 => Jerk::PercentOfTime(100.0 * value),
+        _ => Jerk::PercentOfMaximum(100.0 * value),
     }))
 }

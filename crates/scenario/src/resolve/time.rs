@@ -8,7 +8,9 @@
 //! the rest-to-rest move of second order, which every limit of jerk and snap only lengthens.
 use crate::diagnostic::Report;
 use crate::file::File;
-use crate::scenario::{Goal, MoveStep, OnlineMove, Step, Target, Way};
+use crate::scenario::Step;
+use servobench_motion::Limits;
+use servobench_planner::{Generator, Positioning};
 
 /// Shorter by rounding only.
 const ROUNDING: f64 = 1e-9;
@@ -43,22 +45,22 @@ fn least_program(steps: &[Step]) -> f64 {
             Step::Move(step) => step,
         };
         let from = position;
-        match step.target() {
-            Some(Target::Absolute(target)) => position = target,
-            Some(Target::Relative(distance)) => position += distance,
-            None => {}
+        let generator = &step.request.generator;
+        match (generator.distance(), step.positioning) {
+            (Some(target), Positioning::Absolute) => position = target,
+            (Some(distance), Positioning::Relative) => position += distance,
+            (None, _) => {}
         }
         let aborted_after = match steps.get(k + 1) {
             Some(Step::Move(next)) => next.aborts_after,
             _ => None,
         };
-        end += aborted_after.or(step.duration).unwrap_or_else(|| match &step.way {
-            Way::Rest(_) => least_move(step, position - from),
-            Way::Online(OnlineMove { goal: Goal::Velocity(_, hold), .. }) => *hold,
+        end += aborted_after.or(step.request.duration).unwrap_or_else(|| match generator {
+            Generator::PointToPoint(asked) => least_move(&asked.limits, position - from),
             // What it makes of its start in motion, or of its jerk, is for the planner to say.
-            Way::Online(_) | Way::Rockwell(_) => 0.0,
-            Way::Table(table) => {
-                table.points.last().map_or(0.0, |last| last.0) - table.points.first().map_or(0.0, |first| first.0)
+            Generator::Replanning(_) | Generator::Rockwell(_) => step.hold,
+            Generator::Table(table) => {
+                table.knots.last().map_or(0.0, |last| last.t) - table.knots.first().map_or(0.0, |first| first.t)
             }
         });
     }
@@ -66,8 +68,8 @@ fn least_program(steps: &[Step]) -> f64 {
 }
 
 /// How long a move over `distance` lasts at least (s).
-fn least_move(step: &MoveStep, distance: f64) -> f64 {
-    let ([velocity, acceleration, ..], distance) = (step.limits, distance.abs());
+fn least_move(limits: &Limits, distance: f64) -> f64 {
+    let (Limits { velocity, acceleration, .. }, distance) = (*limits, distance.abs());
     if velocity * velocity <= acceleration * distance {
         distance / velocity + velocity / acceleration
     } else {

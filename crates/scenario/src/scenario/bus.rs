@@ -1,6 +1,6 @@
 //! The fieldbus between the motion task and the drive, and what goes wrong on it.
-use super::filter::InterpolationMode;
 use servobench_drive::EffortFeedforward;
+use servobench_motion::interpolate::Mode as InterpolationMode;
 use std::ops::Range;
 
 /// What is between the motion task and the drive: a master, a bus and the door of the drive (CiA 402).

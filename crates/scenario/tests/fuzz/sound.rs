@@ -1,5 +1,8 @@
 //! What the loop may take for granted of every scenario that was loaded.
-use servobench_base::Rate;
+use servobench_base::{Rate, Setpoint};
+use servobench_motion::online::Target;
+use servobench_motion::shape::Shaper;
+use servobench_planner::{Averages, Generator, Request, Shaping};
 use servobench_plcopen::program::{Condition, Inputs};
 use servobench_plcopen::{Absent, BlockName, Input, InputType, Pair, Value};
 use servobench_scenario::*;
@@ -81,26 +84,32 @@ fn drive(drive: &Drive, base_rate: Rate) {
 fn step(step: &Step) {
     match step {
         Step::Wait(length) => not_negative("wait", *length),
-        Step::Move(MoveStep { way, order, limits, filter, aborts_after, duration, metric_limits }) => {
-            assert!((2..=4).contains(order));
-            let needed = self::way(way, *order);
-            let (limited, free) = limits.split_at(needed);
+        Step::Move(MoveStep { request, positioning: _, hold, aborts_after, metric_limits }) => {
+            let Request { generator, duration, filter, commands } = request;
+            let limits = generator.limits();
+            let (limited, free) = limits.split_at(self::generator(generator));
             for limit in limited {
                 positive("limit of a move", *limit);
             }
-            if !matches!(way, Way::Rockwell(_)) {
+            if !matches!(generator, Generator::Rockwell(_)) {
                 assert!(free.iter().all(|limit| *limit == f64::INFINITY), "{limits:?}");
             }
-            if let Some(Shaper { kind, frequency, damping }) = filter.shaper {
+            if let Some(Shaping { shaper, frequency, damping }) = filter.shaper {
                 positive("frequency of a shaper", frequency);
                 not_negative("damping", damping);
-                if let ShaperKind::Ei(tolerable) = kind {
+                if let Shaper::Ei { tolerable } = shaper {
                     positive("tolerable", tolerable);
                 }
             }
-            for length in &filter.averages {
-                positive("length of an average", *length);
+            if let Some(Averages { lengths, sample_time }) = &filter.averages {
+                assert!(!lengths.is_empty());
+                positive("sample time of averages", *sample_time);
+                for length in lengths {
+                    positive("length of an average", *length);
+                }
             }
+            assert_eq!(*commands, None);
+            not_negative("hold", *hold);
             optional("aborts_after", *aborts_after);
             optional("duration of a move", *duration);
             assert!(metric_limits.iter().all(|limit| limit.min.is_some() || limit.max.is_some()), "{metric_limits:?}");
@@ -108,40 +117,36 @@ fn step(step: &Step) {
     }
 }
 
-/// How many limits the way needs.
-fn way(way: &Way, order: u8) -> usize {
-    let target = |target: Target| {
-        let (Target::Absolute(length) | Target::Relative(length)) = target;
-        finite("target", length);
-    };
-    match way {
-        Way::Rest(asked) => {
-            target(asked.target);
+/// How many limits the generator needs.
+fn generator(generator: &Generator) -> usize {
+    match generator {
+        Generator::PointToPoint(asked) => {
+            finite("target", asked.distance);
             optional("sample_time", asked.grid.map(|grid| grid.sample_time));
-            usize::from(order)
+            generator.order()
         }
-        Way::Online(asked) => {
-            match asked.goal {
-                Goal::Position(to, v) => {
-                    target(to);
+        Generator::Replanning(asked) => {
+            assert_eq!(asked.from, Setpoint::default());
+            match asked.target {
+                Target::Position { x, v } => {
+                    finite("target", x);
                     finite("end_velocity", v);
                 }
-                Goal::Velocity(v, hold) => {
-                    finite("reach_velocity", v);
-                    not_negative("hold", hold);
-                }
+                Target::Velocity(v) => finite("reach_velocity", v),
             }
-            asked.negative.iter().for_each(|limit| optional("negative limit", *limit));
-            usize::from(order)
+            positive("negative velocity", asked.limits.velocity.below);
+            positive("negative acceleration", asked.limits.acceleration.below);
+            generator.order()
         }
-        Way::Rockwell(asked) => {
-            target(asked.target);
-            positive("deceleration", asked.deceleration);
-            asked.maximum.iter().for_each(|jerk| limit("maximum jerk", *jerk));
+        Generator::Rockwell(asked) => {
+            finite("target", asked.operands.distance);
+            positive("deceleration", asked.operands.deceleration);
+            limit("maximum jerk", asked.maximum.acceleration);
+            limit("maximum jerk", asked.maximum.deceleration);
             2
         }
-        Way::Table(asked) => {
-            assert!(asked.points.len() >= 2);
+        Generator::Table(asked) => {
+            assert!(asked.knots.len() >= 2);
             0
         }
     }

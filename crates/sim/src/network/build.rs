@@ -7,7 +7,7 @@ use super::signals::Signals;
 use super::units::{Counted, DriveUnits, units};
 use super::{MotionTask, Network};
 use crate::error::BuildError;
-use crate::program::{Program, fine};
+use crate::program::Program;
 use servobench_base::{Countdown, Divider, ParamError, Setpoint};
 use servobench_cia402::PowerState;
 use servobench_cia402::counter::Counter;
@@ -92,7 +92,7 @@ impl Network {
             base_rate,
             bus_cycle: bus_every,
             motion_cycle,
-            interpolation: fine::mode(bus.interpolation),
+            interpolation: bus.interpolation,
             margin: bus.margin,
             control: control(bus, &dynamics),
             sequencing: match bus.sequencing {

@@ -9,7 +9,7 @@ use super::stream::{Message, Stream};
 use servobench_drive::device;
 use servobench_fieldbus::{AxisCommand, AxisFeedback, Task, Way};
 use servobench_motion::position_profile::Command;
-use servobench_planner::Told;
+use servobench_planner::PlanDetails;
 use servobench_scenario::{Bus, BusMode};
 
 /// How far before its time a cycle may be by rounding (s).
@@ -42,9 +42,10 @@ impl OwnWay {
         let program = moves.program();
         let orders = match bus.mode {
             BusMode::ProfileVelocity => {
-                let told = program.plans().flat_map(|(start, _, plan)| commands_of(start, plan.told(), plan.end().v));
+                let commands =
+                    program.plans().flat_map(|(start, _, plan)| commands_of(start, plan.details(), plan.end().v));
                 let now = Command { t: 0.0, velocity: 0.0, acceleration: 0.0 };
-                Orders::Velocities { commands: told.collect(), next: 0, now }
+                Orders::Velocities { commands: commands.collect(), next: 0, now }
             }
             BusMode::InterpolatedPosition => {
                 let door = Door::new(bus.trajectory_buffer, drive.sub_mode, drive.segment)?;
@@ -88,9 +89,9 @@ impl OwnWay {
 }
 
 /// The velocities of a move that begins at `start` (s) and ends at `end`.
-fn commands_of(start: f64, told: &Told, end: f64) -> Vec<Command> {
-    match told {
-        Told::Commands { commands, .. } => {
+fn commands_of(start: f64, details: &PlanDetails, end: f64) -> Vec<Command> {
+    match details {
+        PlanDetails::Commands { commands, .. } => {
             commands.iter().map(|command| Command { t: start + command.t, ..*command }).collect()
         }
         _ => vec![Command { t: start, velocity: end, acceleration: 0.0 }],

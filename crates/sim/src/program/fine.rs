@@ -1,7 +1,7 @@
 //! Between a slow task that commands and a drive that has a set-point at every tick.
 use servobench_base::{ParamError, Rate, Setpoint, Tick};
-use servobench_motion::interpolate::{Interpolator, Mode, Sample};
-use servobench_scenario::{Interpolation, InterpolationMode};
+use servobench_motion::interpolate::{Interpolator, Sample};
+use servobench_scenario::Interpolation;
 
 /// The commands of a slow task, interpolated. Before the first command the axis rested where that begins.
 #[derive(Debug, Clone)]
@@ -13,19 +13,6 @@ pub(super) struct Fine {
     passed: u64,
 }
 
-/// How a scenario's interpolation is called by its generator.
-pub(crate) const fn mode(mode: InterpolationMode) -> Mode {
-    match mode {
-        InterpolationMode::Linear => Mode::Linear,
-        InterpolationMode::Cubic => Mode::Cubic,
-        InterpolationMode::Quintic => Mode::Quintic,
-        InterpolationMode::CubicBSpline => Mode::CubicBSpline,
-        InterpolationMode::QuinticBSpline => Mode::QuinticBSpline,
-        InterpolationMode::AllLinear => Mode::AllLinear,
-        InterpolationMode::AllCubic => Mode::AllCubic,
-    }
-}
-
 impl Fine {
     pub(super) fn new(interpolation: &Interpolation, base_rate: Rate) -> Result<Self, ParamError> {
         let Tick(every) = base_rate.tick_at(interpolation.period);
@@ -34,7 +21,7 @@ impl Fine {
         if every == 0 {
             return Err(refused);
         }
-        let interpolator = Interpolator::new(mode(interpolation.mode), interpolation.period).map_err(|_| refused)?;
+        let interpolator = Interpolator::new(interpolation.mode, interpolation.period).map_err(|_| refused)?;
         Ok(Self { interpolator, every, passed: 0 })
     }
 

@@ -15,8 +15,8 @@ const PLAN: [(&str, May); 30] = [
     ("base", May::On(&[])),
     ("config", May::On(&["base"])),
     ("cia402", May::On(&["base"])),
-    ("motion", May::On(&["base"])),
-    ("planner", May::On(&["base", "motion"])),
+    ("motion", May::On(&["base", "config"])),
+    ("planner", May::On(&["base", "config", "motion"])),
     ("drive", May::On(&["base", "config", "cia402", "motion"])),
     ("fieldbus", May::On(&["base", "cia402", "motion"])),
     ("plcopen", May::On(&["base", "config", "fieldbus", "motion"])),
@@ -30,7 +30,7 @@ const PLAN: [(&str, May); 30] = [
     ("trace", May::On(&["base"])),
     ("signals", May::On(&["base", "plant", "trace"])),
     ("metrics", May::On(&["base", "config", "signals", "trace"])),
-    ("scenario", May::On(&["base", "config", "drive", "plant", "plcopen", "signals", "metrics"])),
+    ("scenario", May::On(&["base", "config", "motion", "planner", "drive", "plant", "plcopen", "signals", "metrics"])),
     (
         "sim",
         May::On(&[
@@ -73,7 +73,7 @@ const PLAN: [(&str, May); 30] = [
             "metrics",
         ]),
     ),
-    ("report", May::On(&["base", "cia402", "motion", "planner", "fmi", "signals", "trace", "metrics"])),
+    ("report", May::On(&["base", "config", "cia402", "motion", "planner", "fmi", "signals", "trace", "metrics"])),
     ("view", May::On(&["base", "signals", "trace", "metrics"])),
     ("cli", May::OnAll),
     ("tests", May::OnAll),

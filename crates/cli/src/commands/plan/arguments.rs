@@ -222,9 +222,9 @@ impl<'a> Arguments<'a> {
     pub(super) fn finish(mut self) -> Result<(Option<Coordinate>, Vec<Told>), CliError> {
         for (name, _) in self.given.iter().filter(|(name, _)| !self.taken.contains(name)) {
             let elsewhere = ELSEWHERE.iter().find(|(names, _)| names.contains(name));
-            let way_out = elsewhere.map_or("or choose --profile rockwell", |(_, way_out)| way_out);
+            let help = elsewhere.map_or("or choose --profile rockwell", |(_, help)| help);
             self.mistakes
-                .push(format!("--{name} is not used by this move: leave it out; {way_out}").replace("; or", ", or"));
+                .push(format!("--{name} is not used by this move: leave it out; {help}").replace("; or", ", or"));
         }
         if self.mistakes.is_empty() {
             Ok((self.motion, self.units))

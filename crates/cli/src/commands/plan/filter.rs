@@ -1,9 +1,8 @@
 //! What stands between the planner and the drive.
 use super::arguments::Arguments;
-use crate::args::{PlanArgs, PlanProfile, PlanShaper};
-use servobench_motion::shape::{Impulses, Vibration};
-use servobench_planner::{Averages, Filter};
-use std::f64::consts::TAU;
+use crate::args::{PlanArgs, PlanProfile};
+use servobench_motion::shape::{Shaper, ShaperKind};
+use servobench_planner::{Averages, Filter, Shaping};
 
 /// The filters; one that is wrong is left out, and told.
 pub(super) fn filter(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Filter {
@@ -20,10 +19,10 @@ pub(super) fn filter(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Filter {
     Filter { shaper: shaper(args, arguments), averages: averages(arguments) }
 }
 
-fn shaper(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Impulses> {
+fn shaper(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Shaping> {
     arguments.take("shaper");
     let others = ["shaper-frequency", "shaper-damping", "shaper-tolerable"];
-    let Some(shaper) = args.shaper else {
+    let Some(kind) = args.shaper else {
         for name in others {
             if arguments.take(name).is_some() {
                 arguments.mistake(format!("--{name} is that of a --shaper: choose one, or leave it out"));
@@ -36,19 +35,18 @@ fn shaper(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Impulses> {
     }
     let frequency = arguments.frequency("shaper-frequency");
     let damping = if arguments.is_given("shaper-damping") { arguments.ratio("shaper-damping") } else { Some(0.0) };
-    let tolerable =
-        if arguments.is_given("shaper-tolerable") { arguments.ratio("shaper-tolerable") } else { Some(0.05) };
-    if arguments.is_given("shaper-tolerable") && shaper != PlanShaper::Ei {
+    let tolerable = if arguments.is_given("shaper-tolerable") {
+        arguments.ratio("shaper-tolerable")
+    } else {
+        Some(Shaper::TOLERABLE)
+    };
+    if arguments.is_given("shaper-tolerable") && kind != ShaperKind::Ei {
         arguments.mistake("--shaper-tolerable is for --shaper ei: the others leave nothing at the frequency");
     }
     let (frequency, damping, tolerable) = (frequency?, damping?, tolerable?);
-    let shaped = Vibration::new(TAU * frequency, damping).and_then(|vibration| match shaper {
-        PlanShaper::Zv => Ok(Impulses::zv(&vibration)),
-        PlanShaper::Zvd => Ok(Impulses::zvd(&vibration)),
-        PlanShaper::Zvdd => Ok(Impulses::zvdd(&vibration)),
-        PlanShaper::Ei => Impulses::ei(&vibration, tolerable),
-    });
-    shaped.map_err(|error| arguments.mistake(format!("--shaper: {error}"))).ok()
+    let shaping = Shaping { shaper: Shaper::new(kind, tolerable), frequency, damping };
+    shaping.impulses().map_err(|error| arguments.mistake(format!("--shaper: {error}"))).ok()?;
+    Some(shaping)
 }
 
 fn averages(arguments: &mut Arguments<'_>) -> Option<Averages> {

@@ -1,21 +1,18 @@
 //! A move from rest to rest.
 use super::arguments::Arguments;
-use crate::args::{PlanArgs, PlanExecution, PlanMethod, PlanSampling};
+use crate::args::PlanArgs;
 use crate::console::say;
 use servobench_motion::{Limits, Order};
-use servobench_planner::{Execution, Grid, Method, PointToPoint, Sampling, Way};
+use servobench_planner::{Generator, Grid, Method, PointToPoint};
 use servobench_scenario::Derivative;
 
-pub(super) fn way(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Way> {
+pub(super) fn generator(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Generator> {
     let distance = arguments.needed_axis("distance", Derivative::Position, "how far the move goes, as \"1 m\"");
     let (order, limits) = order_and_limits(args, arguments);
     arguments.take("method");
-    let method = match args.method {
-        Some(PlanMethod::Optimal) => Method::Optimal,
-        Some(PlanMethod::Published) | None => Method::Published,
-    };
+    let method = args.method.unwrap_or_default();
     let grid = grid(args, method, arguments);
-    Some(Way::PointToPoint(PointToPoint { distance: distance?, order: order?, limits: limits?, method, grid }))
+    Some(Generator::PointToPoint(PointToPoint { distance: distance?, order: order?, limits: limits?, method, grid }))
 }
 
 /// Order, and the limits that it uses.
@@ -62,13 +59,6 @@ fn grid(args: &PlanArgs, method: Method, arguments: &mut Arguments<'_>) -> Optio
         return None;
     }
     let sample_time = arguments.time("sample-time")?;
-    let sampling = match args.sampling {
-        Some(PlanSampling::Fewest) => Sampling::Fewest,
-        Some(PlanSampling::Published) | None => Sampling::Published,
-    };
-    let execution = match args.execution {
-        Some(PlanExecution::Euler) => Execution::Euler,
-        Some(PlanExecution::Hold) | None => Execution::Hold,
-    };
+    let (sampling, execution) = (args.sampling.unwrap_or_default(), args.execution.unwrap_or_default());
     Some(Grid { sample_time, sampling, execution })
 }

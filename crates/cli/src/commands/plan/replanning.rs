@@ -1,10 +1,10 @@
 //! A move from a state of motion.
 use super::arguments::Arguments;
 use super::point_to_point::order_and_limits;
-use crate::args::{PlanArgs, PlanOnline};
+use crate::args::PlanArgs;
 use servobench_base::Setpoint;
-use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target};
-use servobench_planner::{Replanning, Way};
+use servobench_motion::online::{DirectionalLimits, Sides, Target};
+use servobench_planner::{Generator, Replanning};
 use servobench_scenario::Derivative;
 
 /// What only a move from a state of motion has.
@@ -25,7 +25,7 @@ pub(super) fn is_meant(arguments: &Arguments<'_>) -> bool {
     FLAGS.iter().any(|flag| arguments.is_given(flag))
 }
 
-pub(super) fn way(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Way> {
+pub(super) fn generator(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Generator> {
     let said = FLAGS.into_iter().find(|flag| arguments.is_given(flag)).unwrap_or("online");
     for flag in ["method", "sampling", "execution"] {
         if arguments.take(flag).is_some() {
@@ -61,10 +61,7 @@ pub(super) fn way(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Way>
     let negative_velocity = arguments.magnitude("negative-velocity", Derivative::Velocity);
     let negative_acceleration = arguments.magnitude("negative-acceleration", Derivative::Acceleration);
     arguments.take("online");
-    let effort = match args.online {
-        Some(PlanOnline::Refined) => Effort::Refined,
-        Some(PlanOnline::Fast) | None => Effort::Fast,
-    };
+    let effort = args.online.unwrap_or_default();
     let limits = limits?;
     let sides = |above: f64, below: Option<f64>| Sides { above, below: below.unwrap_or(above) };
     let limits = DirectionalLimits {
@@ -78,5 +75,5 @@ pub(super) fn way(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Way>
         Some(distance) => Target::Position { x: from.x + distance?, v: end_velocity? },
         None => Target::Velocity(velocity?),
     };
-    Some(Way::Replanning(Replanning { from, target, order: order?, limits, effort }))
+    Some(Generator::Replanning(Replanning { from, target, order: order?, limits, effort }))
 }

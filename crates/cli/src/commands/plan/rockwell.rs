@@ -1,8 +1,8 @@
 //! A move by the operands of Rockwell's axis move.
 use super::arguments::Arguments;
-use crate::args::{PlanArgs, PlanShape};
-use servobench_motion::rockwell::{Jerk, MaximumJerk, Move, Shape};
-use servobench_planner::{Rockwell, Way};
+use crate::args::PlanArgs;
+use servobench_motion::rockwell::{Jerk, MaximumJerk, Move, Shape, ShapeKind};
+use servobench_planner::{Generator, Rockwell};
 use servobench_scenario::Derivative;
 
 /// The ways to say the jerk of a ramp: value, percent of time, percent of the maximum.
@@ -10,7 +10,7 @@ const UP: [&str; 3] = ["jerk", "jerk-percent-of-time", "jerk-percent-of-maximum"
 const DOWN: [&str; 3] =
     ["deceleration-jerk", "deceleration-jerk-percent-of-time", "deceleration-jerk-percent-of-maximum"];
 
-pub(super) fn way(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Way> {
+pub(super) fn generator(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Generator> {
     let distance = arguments.needed_axis("distance", Derivative::Position, "how far the move goes, as \"100 mm\"");
     let speed = arguments.needed_axis("velocity", Derivative::Velocity, "the speed of the move, as \"0.2 m/s\"");
     let why = "a Rockwell move needs it, as \"10 m/s2\"";
@@ -22,9 +22,9 @@ pub(super) fn way(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Way>
     };
     let said = UP.iter().chain(&DOWN).find(|flag| arguments.is_given(flag)).copied();
     arguments.take("shape");
-    let shape = args.shape.unwrap_or(if said.is_some() { PlanShape::SCurve } else { PlanShape::Trapezoid });
+    let shape = args.shape.unwrap_or(if said.is_some() { ShapeKind::SCurve } else { ShapeKind::Trapezoid });
     let (shape, needs_maximum) = match shape {
-        PlanShape::Trapezoid => {
+        ShapeKind::Trapezoid => {
             if let Some(said) = said {
                 arguments.mistake(format!(
                     "--{said} is for --shape s-curve: a trapezoid takes all of --maximum-jerk; leave one of them out"
@@ -35,7 +35,7 @@ pub(super) fn way(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Way>
             }
             (Some(Shape::Trapezoid), Some("a trapezoid takes it, as \"1000 m/s3\""))
         }
-        PlanShape::SCurve => {
+        ShapeKind::SCurve => {
             if !UP.iter().any(|flag| arguments.is_given(flag)) {
                 arguments
                     .missing("jerk", "or --jerk-percent-of-time, or --jerk-percent-of-maximum: an S-curve needs one");
@@ -62,7 +62,7 @@ pub(super) fn way(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Way>
         shape: shape?,
     };
     let maximum = MaximumJerk { acceleration: maximum, deceleration: maximum };
-    Some(Way::Rockwell(Rockwell { operands, maximum }))
+    Some(Generator::Rockwell(Rockwell { operands, maximum }))
 }
 
 /// The jerk of a ramp in the way that is given.

@@ -1,9 +1,9 @@
 //! A move through a table of points.
 use super::arguments::Arguments;
-use crate::args::{PlanArgs, PlanVelocities};
+use crate::args::PlanArgs;
 use crate::console::say;
 use servobench_motion::pvt::Knot;
-use servobench_planner::{Follow, TableMove, Velocities, Way};
+use servobench_planner::{CommandRate, Follow, Generator, TableMove, Velocities, VelocitiesKind};
 use servobench_scenario::{Derivative, Points, axis_quantity, read_points};
 use std::fs::File;
 use std::io::{self, Read};
@@ -11,23 +11,22 @@ use std::path::Path;
 
 /// Bytes of a table at most: far more than five million rows need.
 const LARGEST: u64 = 1 << 29;
-const PASSES: u16 = 2;
 
 /// As it is.
-pub(super) fn pvt(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Way> {
+pub(super) fn pvt(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Generator> {
     let points = points(args, arguments)?;
     arguments.take("velocities");
-    let default = if points.velocities.is_some() { PlanVelocities::Given } else { PlanVelocities::Average };
+    let default = if points.velocities.is_some() { VelocitiesKind::Given } else { VelocitiesKind::Average };
     let velocities = match args.velocities.unwrap_or(default) {
-        PlanVelocities::Given => Velocities::Given,
-        PlanVelocities::Average => Velocities::Average,
-        PlanVelocities::Continuous => Velocities::Continuous,
-        PlanVelocities::Smooth => {
+        VelocitiesKind::Given => Velocities::Given,
+        VelocitiesKind::Average => Velocities::Average,
+        VelocitiesKind::Continuous => Velocities::Continuous,
+        VelocitiesKind::Smooth => {
             arguments.take("passes");
-            Velocities::Smooth(usize::from(args.passes.unwrap_or(PASSES)))
+            Velocities::Smooth { passes: args.passes.map_or(Velocities::PASSES, u32::from) }
         }
     };
-    if args.passes.is_some() && arguments.take("passes").is_some() && !matches!(velocities, Velocities::Smooth(_)) {
+    if args.passes.is_some() && arguments.take("passes").is_some() && !matches!(velocities, Velocities::Smooth { .. }) {
         arguments.mistake("--passes are those of --velocities smooth: choose that, or leave them out");
     }
     let has_inner = points.velocities.as_ref().is_some_and(|all| {
@@ -37,22 +36,22 @@ pub(super) fn pvt(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Way>
     if has_inner && velocities != Velocities::Given {
         say("of the velocities of the table only the first and the last are used\n");
     }
-    Some(Way::Table(TableMove { knots: knots(&points), velocities, follow: Follow::Segments }))
+    Some(Generator::Table(TableMove { knots: knots(&points), velocities, follow: Follow::Segments }))
 }
 
 /// Sent as velocity commands.
-pub(super) fn position(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Way> {
+pub(super) fn position(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Generator> {
     arguments.take("commands");
     let points = points(args, arguments)?;
     let follow = if arguments.is_given("plateau") {
-        Follow::Plateaus(arguments.ratio("plateau")?)
+        Follow::Plateaus { share: arguments.ratio("plateau")? }
     } else if arguments.is_given("command-rate") {
-        Follow::Steps(arguments.frequency("command-rate")?)
+        Follow::Steps { rate: CommandRate::Given(arguments.frequency("command-rate")?) }
     } else if arguments.is_given("allowed-error") {
         let text = arguments.take("allowed-error")?;
         // In a unit of its own: positions stay in theirs.
         match axis_quantity(Derivative::Position, arguments.motion(), text) {
-            Ok((error, _)) => Follow::Within(error),
+            Ok((error, _)) => Follow::Steps { rate: CommandRate::LowestWithin(error) },
             Err(error) => {
                 arguments.mistake(format!("--allowed-error {error}"));
                 return None;
@@ -65,7 +64,7 @@ pub(super) fn position(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option
         );
         return None;
     };
-    Some(Way::Table(TableMove { knots: knots(&points), velocities: Velocities::Given, follow }))
+    Some(Generator::Table(TableMove { knots: knots(&points), velocities: Velocities::Given, follow }))
 }
 
 fn knots(points: &Points) -> Vec<Knot> {

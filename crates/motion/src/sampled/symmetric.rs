@@ -8,7 +8,7 @@ use std::vec::Vec;
 
 /// A move that is its own reflection.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Way {
+pub(super) struct SymmetricMove {
     order: Order,
     distance: f64,
     sample_time: f64,
@@ -27,7 +27,7 @@ struct Held {
     state: Setpoint,
 }
 
-impl Way {
+impl SymmetricMove {
     /// The move of `samples` that begins with `cells`.
     pub(super) fn new(order: Order, distance: f64, sample_time: f64, samples: f64, cells: &[Cell]) -> Self {
         let middle = 0.5 * samples;
