@@ -9,12 +9,18 @@ const MOST: usize = 200;
 /// points say that it is safe, bisection elsewhere. It ends where the interval is one of rounding.
 pub(crate) fn increasing(low: f64, high: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (f_low, f_high) = (f(low), f(high));
-    if f_low >= 0.0 {
-        low
-    } else if f_high <= 0.0 {
-        high
+    increasing_from((low, f_low), (high, f_high), f)
+}
+
+/// The same with what `f` is known to be at both bounds.
+#[inline]
+pub(crate) fn increasing_from(low: (f64, f64), high: (f64, f64), f: impl Fn(f64) -> f64) -> f64 {
+    if low.1 >= 0.0 {
+        low.0
+    } else if high.1 <= 0.0 {
+        high.0
     } else {
-        between((low, f_low), (high, f_high), f)
+        between(low, high, f)
     }
 }
 

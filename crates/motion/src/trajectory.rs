@@ -7,6 +7,8 @@ use servobench_base::Setpoint;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Trajectory<const N: usize> {
     order: Order,
+    /// Starts of the segments (s).
+    starts: [f64; N],
     /// Lengths of the segments (s). Differences of their starts would be other numbers: a second that begins after a day is known to
     /// 1e-11 s only.
     lengths: [f64; N],
@@ -29,9 +31,17 @@ impl<const N: usize> Trajectory<N> {
         stretches: impl IntoIterator<Item = Stretch>,
         arrive: impl FnOnce(Setpoint) -> Setpoint,
     ) -> Self {
-        let mut state = from;
-        let mut way =
-            Self { order, lengths: [0.0; N], anchors: [Setpoint::default(); N], count: 0, duration: 0.0, end: from };
+        // Counted beside what is filled: read back from there, the processor would wait for all of it to be written.
+        let (mut state, mut count, mut duration) = (from, 0, 0.0);
+        let mut way = Self {
+            order,
+            starts: [0.0; N],
+            lengths: [0.0; N],
+            anchors: [Setpoint::default(); N],
+            count: 0,
+            duration: 0.0,
+            end: from,
+        };
         for Stretch { value, length, zeros } in stretches.into_iter().filter(|stretch| stretch.length > 0.0) {
             let Setpoint { x, v, .. } = state;
             state = match order.derivative() - usize::from(zeros) {
@@ -40,13 +50,14 @@ impl<const N: usize> Trajectory<N> {
                 2 => Setpoint { v, a: value, ..Setpoint::at_rest(x) },
                 _ => Setpoint { v: value, ..Setpoint::at_rest(x) },
             };
-            way.lengths[way.count] = length;
-            way.anchors[way.count] = state;
-            way.count += 1;
+            way.starts[count] = duration;
+            way.lengths[count] = length;
+            way.anchors[count] = state;
+            count += 1;
             state = state.after(length);
-            way.duration += length;
+            duration += length;
         }
-        way.end = arrive(state);
+        (way.count, way.duration, way.end) = (count, duration, arrive(state));
         way
     }
 
@@ -64,17 +75,13 @@ impl<const N: usize> Trajectory<N> {
         if t >= self.duration || self.count == 0 {
             return Piece::forward(self.end, self.duration, f64::MAX, f64::INFINITY);
         }
-        let (mut i, mut start) = (0, 0.0);
-        let last = self.count - 1;
-        for length in &self.lengths[..last] {
-            let end = start + length;
-            let is_passed = end <= t;
-            if !is_passed {
-                return Piece::forward(self.anchors[i], start, *length, end);
-            }
-            (i, start) = (i + 1, end);
-        }
-        Piece::forward(self.anchors[last], start, self.lengths[last], self.duration)
+        let i = self.starts[1..self.count].iter().take_while(|start| **start <= t).count();
+        Piece::forward(self.anchors[i], self.starts[i], self.lengths[i], self.end_of(i))
+    }
+
+    /// When segment `i` ends (s).
+    fn end_of(&self, i: usize) -> f64 {
+        if i + 1 < self.count { self.starts[i + 1] } else { self.duration }
     }
 
     /// Duration (s).
@@ -98,7 +105,6 @@ impl<const N: usize> Trajectory<N> {
     /// The segments with their highest derivative.
     #[must_use]
     pub fn segments(&self) -> impl ExactSizeIterator<Item = Segment> + '_ {
-        let mut end = 0.0;
         (0..self.count).map(move |i| {
             let anchor = self.anchors[i];
             let value = match self.order {
@@ -106,9 +112,7 @@ impl<const N: usize> Trajectory<N> {
                 Order::Third => anchor.j,
                 Order::Fourth => anchor.s,
             };
-            let (start, length) = (end, self.lengths[i]);
-            end += length;
-            Segment { start, length, value }
+            Segment { start: self.starts[i], length: self.lengths[i], value }
         })
     }
 
@@ -121,10 +125,13 @@ impl<const N: usize> Trajectory<N> {
     ///
     /// More than `N` segments of both are a defect of the caller.
     pub(crate) fn then(mut self, next: &Self) -> Self {
+        let mut start = self.duration;
         for i in 0..next.count {
+            self.starts[self.count] = start;
             self.lengths[self.count] = next.lengths[i];
             self.anchors[self.count] = next.anchors[i];
             self.count += 1;
+            start += next.lengths[i];
         }
         self.duration += next.duration;
         self.end = next.end;

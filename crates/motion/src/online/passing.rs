@@ -32,7 +32,7 @@ use super::trapezoid::Rates;
 use super::watch;
 use super::{DirectionalLimits, Effort};
 use crate::limits::within_range;
-use crate::root::increasing;
+use crate::root::{increasing, increasing_from};
 use crate::{Order, PlanError};
 use servobench_base::{Setpoint, non_negative};
 
@@ -245,20 +245,24 @@ impl Search<'_> {
     #[inline]
     fn by_the_fastest_way(&self, from: &Setpoint, calm: f64) -> Option<f64> {
         let (distance, rounding) = (self.distance(from), self.rounding(from));
-        let beyond = |speed: f64| self.covered(from, speed) - (distance - rounding);
+        let beyond = |covered: f64| covered - (distance - rounding);
+        let beyond_at = |speed: f64| beyond(self.covered(from, speed));
         let calm = calm.max(0.0).min(self.most);
-        let (low, high) = if self.covered(from, calm) <= distance {
-            (calm, self.most)
-        } else if self.covered(from, 0.0) <= distance {
-            (0.0, calm)
+        let by_calm = self.covered(from, calm);
+        let (low, high) = if by_calm <= distance {
+            ((calm, beyond(by_calm)), (self.most, beyond_at(self.most)))
         } else {
-            return None;
+            let by_zero = self.covered(from, 0.0);
+            if by_zero > distance {
+                return None;
+            }
+            ((0.0, beyond(by_zero)), (calm, beyond(by_calm)))
         };
-        let mut highest = increasing(low, high, beyond);
+        let mut highest = increasing_from(low, high, beyond_at);
         // Next to w_c what is covered rises so steeply that the numbers next to the root are too much.
         let mut step = f64::EPSILON * highest;
-        while self.covered(from, highest) > distance && highest > low {
-            (highest, step) = ((highest - step).max(low), 2.0 * step);
+        while self.covered(from, highest) > distance && highest > low.0 {
+            (highest, step) = ((highest - step).max(low.0), 2.0 * step);
         }
         Some(highest)
     }

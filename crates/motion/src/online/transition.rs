@@ -179,14 +179,11 @@ fn within_time<const N: usize>(path: &Path<N>) -> Result<&Path<N>, PlanError> {
 }
 
 fn second_order(from: &Setpoint, target: &Target, velocity: Sides, rates: &Rates) -> Result<Transition, PlanError> {
-    let path = match target {
-        Target::Position { x, v } => trapezoid::fastest(from.v, *v, x - from.x, velocity, rates),
-        Target::Velocity(v) => {
-            let mut path = Path::EMPTY;
-            rates.ramp(from.v, *v, &mut path);
-            path
-        }
-    };
+    let mut path = Path::EMPTY;
+    match target {
+        Target::Position { x, v } => trapezoid::fastest(from.v, *v, x - from.x, velocity, rates, &mut path),
+        Target::Velocity(v) => rates.ramp(from.v, *v, &mut path),
+    }
     // The speed never grows beyond where it begins.
     let excess = Watch::new(velocity, from.v).most;
     Transition::new(Order::Second, Setpoint { a: 0.0, j: 0.0, s: 0.0, ..*from }, &path, target, excess)

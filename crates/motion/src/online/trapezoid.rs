@@ -67,13 +67,11 @@ fn direction(difference: f64) -> f64 {
     if difference >= 0.0 { 1.0 } else { -1.0 }
 }
 
-/// The fastest way from the velocity `from` to the velocity `to` that covers `distance`.
-pub(crate) fn fastest(from: f64, to: f64, distance: f64, limit: Sides, rates: &Rates) -> Path<STRETCHES> {
-    let mut path = Path::EMPTY;
+/// The fastest way from the velocity `from` to the velocity `to` that covers `distance`, behind `path`.
+pub(crate) fn fastest(from: f64, to: f64, distance: f64, limit: Sides, rates: &Rates, path: &mut Path<STRETCHES>) {
     let missing = distance - rates.covered(from, to);
     if missing == 0.0 {
-        rates.ramp(from, to, &mut path);
-        return path;
+        return rates.ramp(from, to, path);
     }
     let sign = direction(missing);
     let (up, down) = (rates.growing.towards(sign), rates.falling.towards(-sign));
@@ -81,14 +79,13 @@ pub(crate) fn fastest(from: f64, to: f64, distance: f64, limit: Sides, rates: &R
     let free = libm::sqrt((2.0 * (sign * distance + squares) * up * down / (up + down)).max(0.0));
     let (highest, limit) = (free.max(sign * from).max(sign * to), limit.towards(sign));
     if highest <= limit {
-        rates.ramp(from, sign * highest, &mut path);
-        rates.ramp(sign * highest, to, &mut path);
+        rates.ramp(from, sign * highest, path);
+        rates.ramp(sign * highest, to, path);
     } else {
         let cruise = sign * limit;
         let ramps = rates.covered(from, cruise) + rates.covered(cruise, to);
-        rates.ramp(from, cruise, &mut path);
+        rates.ramp(from, cruise, path);
         path.hold(1, cruise, (distance - ramps) / cruise);
-        rates.ramp(cruise, to, &mut path);
+        rates.ramp(cruise, to, path);
     }
-    path
 }
