@@ -4,9 +4,9 @@ use thiserror::Error;
 /// A parameter outside its bound.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[error("`{name}` must be {bound}, got {value}")]
-pub struct ParamError {
-    /// Field name as the user writes it.
-    pub name: &'static str,
+pub struct ParamError<N = &'static str> {
+    /// Which parameter: a name, or the identifier of its owner.
+    pub name: N,
     /// Rejected value (SI).
     pub value: f64,
     /// What the value must be, in words: "finite and positive".
@@ -17,7 +17,7 @@ pub struct ParamError {
 ///
 /// # Errors
 /// [`ParamError`] otherwise.
-pub const fn positive(name: &'static str, value: f64) -> Result<f64, ParamError> {
+pub const fn positive<N: Copy>(name: N, value: f64) -> Result<f64, ParamError<N>> {
     if value.is_finite() && value > 0.0 {
         Ok(value)
     } else {
@@ -29,7 +29,7 @@ pub const fn positive(name: &'static str, value: f64) -> Result<f64, ParamError>
 ///
 /// # Errors
 /// [`ParamError`] otherwise.
-pub const fn non_negative(name: &'static str, value: f64) -> Result<f64, ParamError> {
+pub const fn non_negative<N: Copy>(name: N, value: f64) -> Result<f64, ParamError<N>> {
     if value.is_finite() && value >= 0.0 {
         Ok(value)
     } else {
@@ -41,7 +41,7 @@ pub const fn non_negative(name: &'static str, value: f64) -> Result<f64, ParamEr
 ///
 /// # Errors
 /// [`ParamError`] otherwise.
-pub const fn finite(name: &'static str, value: f64) -> Result<f64, ParamError> {
+pub const fn finite<N: Copy>(name: N, value: f64) -> Result<f64, ParamError<N>> {
     if value.is_finite() { Ok(value) } else { Err(ParamError { name, value, bound: "finite" }) }
 }
 
@@ -49,7 +49,7 @@ pub const fn finite(name: &'static str, value: f64) -> Result<f64, ParamError> {
 ///
 /// # Errors
 /// [`ParamError`] otherwise.
-pub const fn limit(name: &'static str, value: f64) -> Result<f64, ParamError> {
+pub const fn limit<N: Copy>(name: N, value: f64) -> Result<f64, ParamError<N>> {
     if value > 0.0 { Ok(value) } else { Err(ParamError { name, value, bound: "positive" }) }
 }
 

@@ -9,7 +9,8 @@
 //! ramp is followed 1/α late, whatever the dead time in the loop. The voltage limit gives the d axis first call.
 //!
 //! The voltage computed at tick k is applied from k+1 to k+2: it is turned ahead by 1.5·h·ω to meet the rotor there.
-use servobench_base::{AlphaBeta, Dq, ParamError, Rotation, limit, positive};
+use crate::{Parameter, ParameterError};
+use servobench_base::{AlphaBeta, Dq, Rotation, limit, positive};
 
 /// The motor as the firmware knows it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -135,28 +136,28 @@ impl Gains {
 
 impl Params {
     /// # Errors
-    /// [`ParamError`] names the first parameter out of its bound, as scenario files call it.
-    pub fn check(&self) -> Result<(), ParamError> {
+    /// [`ParameterError`] names the first parameter out of its bound.
+    pub fn check(&self) -> Result<(), ParameterError> {
         for (name, value) in [
-            ("motor.pole_pairs", self.motor.electrical_ratio),
-            ("drive.estimate.motor.resistance", self.motor.resistance),
-            ("drive.estimate.motor.inductance_d", self.motor.inductance.d),
-            ("drive.estimate.motor.inductance_q", self.motor.inductance.q),
-            ("drive.estimate.motor.flux_linkage", self.motor.flux_linkage),
-            ("drive.current.gain_d", self.gains.k_p.d),
-            ("drive.current.gain_q", self.gains.k_p.q),
-            ("drive.current.integral_time_d", self.gains.k_p.d / self.gains.k_i.d),
-            ("drive.current.integral_time_q", self.gains.k_p.q / self.gains.k_i.q),
+            (Parameter::PolePairs, self.motor.electrical_ratio),
+            (Parameter::Resistance, self.motor.resistance),
+            (Parameter::InductanceD, self.motor.inductance.d),
+            (Parameter::InductanceQ, self.motor.inductance.q),
+            (Parameter::FluxLinkage, self.motor.flux_linkage),
+            (Parameter::CurrentGainD, self.gains.k_p.d),
+            (Parameter::CurrentGainQ, self.gains.k_p.q),
+            (Parameter::CurrentIntegralTimeD, self.gains.k_p.d / self.gains.k_i.d),
+            (Parameter::CurrentIntegralTimeQ, self.gains.k_p.q / self.gains.k_i.q),
         ] {
             positive(name, value)?;
         }
-        limit("motor.max_current", self.max_current)?;
+        limit(Parameter::MaxCurrent, self.max_current)?;
         let is_within = self.d_reference.is_finite() && self.d_reference.abs() < self.max_current;
         if !is_within || self.effort_constant() <= 0.0 {
-            let bound = "below `motor.max_current` and leave the motor some torque";
-            return Err(ParamError { name: "drive.current.d_reference", value: self.d_reference, bound });
+            let bound = "below the largest current and leave the motor some torque";
+            return Err(ParameterError { name: Parameter::CurrentReferenceD, value: self.d_reference, bound });
         }
-        limit("drive.dc_link", self.max_voltage).map(|_| ())
+        limit(Parameter::DcLink, self.max_voltage).map(|_| ())
     }
 
     /// Effort per q-axis current (N·m/A or N/A, peak), as the drive believes.
@@ -313,8 +314,8 @@ mod tests {
         assert!((p.max_effort() - 1.5 * 3.0 * (0.545 + 0.045) * 4.0).abs() < 1e-14, "{}", p.max_effort());
         assert_eq!(p.check(), Ok(()));
         let said = |d_reference| Params { d_reference, ..p }.check().unwrap_err().to_string();
-        let bound = "below `motor.max_current` and leave the motor some torque";
-        assert_eq!(said(-5.0), format!("`drive.current.d_reference` must be {bound}, got -5"), "all of it");
+        let bound = "below the largest current and leave the motor some torque";
+        assert_eq!(said(-5.0), format!("`reference of the current in d` must be {bound}, got -5"), "all of it");
         assert!(said(f64::NAN).ends_with("got NaN"));
         let far = Params { d_reference: 37.0, max_current: 100.0, ..p };
         assert!(far.check().is_err(), "0.545 V·s less 37 A · 15 mH turns the motor round");
@@ -329,10 +330,13 @@ mod tests {
         let weak = MotorEstimate { flux_linkage: 0.0, ..MOTOR };
         assert_eq!(
             said(Params { motor: weak, ..good }),
-            "`drive.estimate.motor.flux_linkage` must be finite and positive, got 0"
+            "`estimate of the flux linkage` must be finite and positive, got 0"
         );
-        assert_eq!(said(Params { max_current: -1.0, ..good }), "`motor.max_current` must be positive, got -1");
-        assert_eq!(said(Params { max_voltage: f64::NAN, ..good }), "`drive.dc_link` must be positive, got NaN");
+        assert_eq!(said(Params { max_current: -1.0, ..good }), "`largest current` must be positive, got -1");
+        assert_eq!(
+            said(Params { max_voltage: f64::NAN, ..good }),
+            "`voltage of the DC link` must be positive, got NaN"
+        );
         assert!(Params { gains: Gains::from_bandwidth(&MOTOR, 0.0), ..good }.check().is_err());
     }
 

@@ -3,7 +3,8 @@
 //! The feedforward effort takes a while to reach the motor; the reference of the loops waits as long, or the position
 //! controller works against the feedforward. Between two samples the set-point is the polynomial of the earlier one
 //! ([`Setpoint::after`]): exact as long as snap switches at sample instants, as a sampled plan does.
-use servobench_base::{ParamError, Setpoint};
+use crate::{Parameter, ParameterError};
+use servobench_base::Setpoint;
 
 /// Longest delay in task periods.
 pub const CAPACITY: usize = 30;
@@ -30,12 +31,12 @@ impl Params {
     /// A delay by `delay` (s) in a task of the period `period` (s).
     ///
     /// # Errors
-    /// [`ParamError`] when the delay is negative or longer than [`CAPACITY`] periods.
-    pub fn new(delay: f64, period: f64) -> Result<Self, ParamError> {
+    /// [`ParameterError`] when the delay is negative or longer than [`CAPACITY`] periods.
+    pub fn new(delay: f64, period: f64) -> Result<Self, ParameterError> {
         let periods = delay / period;
         if !(0.0..=CAPACITY as f64).contains(&periods) {
             let bound = "from 0 s to 30 periods of the position task";
-            return Err(ParamError { name: "drive.feedforward.delay", value: delay, bound });
+            return Err(ParameterError { name: Parameter::ReferenceDelay, value: delay, bound });
         }
         let whole = libm::ceil(periods - 1e-9);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to CAPACITY")]
@@ -139,7 +140,7 @@ mod tests {
         assert_eq!(Params::new(0.0, 1e-3).unwrap(), Params::default(), "no delay");
         // By the key of the scenario file, in the unit of the value.
         let said = Params::new(31e-3, 1e-3).unwrap_err().to_string();
-        assert_eq!(said, "`drive.feedforward.delay` must be from 0 s to 30 periods of the position task, got 0.031");
+        assert_eq!(said, "`delay of the reference` must be from 0 s to 30 periods of the position task, got 0.031");
         assert!(Params::new(-1e-6, 1e-3).is_err() && Params::new(f64::NAN, 1e-3).is_err());
     }
 }

@@ -8,7 +8,8 @@
 //! The set-point `x` is the load's. Loops that measure on the motor must follow the motor's own reference `x_m`: fed
 //! with `x` itself they fight the feedforward. Axis coordinate throughout.
 //! Source: Lambrechts, Boerlage, Steinbuch, *Control Engineering Practice* 13, 2005.
-use servobench_base::{ParamError, Setpoint, non_negative, positive};
+use crate::{Parameter, ParameterError};
+use servobench_base::{Setpoint, finite, non_negative, positive};
 
 /// Model behind the effort feedforward, as the firmware estimates it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,25 +65,29 @@ pub struct MotorReference {
 
 impl Params {
     /// # Errors
-    /// [`ParamError`] names the first parameter out of its bound.
-    pub fn check(&self) -> Result<(), ParamError> {
+    /// [`ParameterError`] names the first parameter out of its bound.
+    pub fn check(&self) -> Result<(), ParameterError> {
         if !(0.0..=1.0).contains(&self.velocity) {
-            return Err(ParamError { name: "drive.feedforward.velocity", value: self.velocity, bound: "from 0 to 1" });
+            return Err(ParameterError {
+                name: Parameter::VelocityFeedforward,
+                value: self.velocity,
+                bound: "from 0 to 1",
+            });
         }
-        non_negative("drive.estimate.coulomb", self.coulomb)?;
-        servobench_base::finite("drive.estimate.bias", self.bias)?;
+        non_negative(Parameter::Coulomb, self.coulomb)?;
+        finite(Parameter::Bias, self.bias)?;
         match self.model {
             Model::Off => Ok(()),
             Model::Rigid { inertia, viscous } => {
-                non_negative("drive.estimate.motor_inertia", inertia)?;
-                non_negative("drive.estimate.motor_viscous", viscous).map(|_| ())
+                non_negative(Parameter::MotorInertia, inertia)?;
+                non_negative(Parameter::MotorViscous, viscous).map(|_| ())
             }
             Model::TwoMass { motor_inertia, load_inertia, stiffness, motor_viscous, load_viscous } => {
-                non_negative("drive.estimate.motor_inertia", motor_inertia)?;
-                non_negative("drive.estimate.load_inertia", load_inertia)?;
-                positive("drive.estimate.stiffness", stiffness)?;
-                non_negative("drive.estimate.motor_viscous", motor_viscous)?;
-                non_negative("drive.estimate.load_viscous", load_viscous).map(|_| ())
+                non_negative(Parameter::MotorInertia, motor_inertia)?;
+                non_negative(Parameter::LoadInertia, load_inertia)?;
+                positive(Parameter::Stiffness, stiffness)?;
+                non_negative(Parameter::MotorViscous, motor_viscous)?;
+                non_negative(Parameter::LoadViscous, load_viscous).map(|_| ())
             }
         }
     }

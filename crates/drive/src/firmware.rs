@@ -7,10 +7,11 @@
 //!
 //! Position and its reference are in the axis coordinate, velocity and effort in the motor's; `transmission` converts.
 use crate::Demand;
+use crate::ParameterError;
 use crate::feedforward::MotorReference;
 use crate::params::{Params, Stage};
 use crate::{current, delay, velocity};
-use servobench_base::{AlphaBeta, Countdown, Dq, ElectricalAngle, ParamError, Setpoint};
+use servobench_base::{AlphaBeta, Countdown, Dq, ElectricalAngle, Setpoint};
 
 /// Which encoder closes the position loop.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -111,8 +112,8 @@ impl State {
     /// At rest on the set-point `start`.
     ///
     /// # Errors
-    /// [`ParamError`] names the first parameter of `p` that is out of its bound.
-    pub fn new(p: &Params, start: Setpoint) -> Result<Self, ParamError> {
+    /// [`ParameterError`] names the first parameter of `p` that is out of its bound.
+    pub fn new(p: &Params, start: Setpoint) -> Result<Self, ParameterError> {
         p.check()?;
         Ok(Self {
             delay: delay::State::new(start),

@@ -12,10 +12,12 @@ mod estimate;
 pub mod feedforward;
 mod firmware;
 pub mod modes;
+mod parameter;
 mod params;
 pub mod velocity;
 
 pub use demand::{Demand, Offsets};
 pub use estimate::{EffortFeedforward, Estimate};
 pub use firmware::{Command, Feedback, Held, Sensors, State, step};
+pub use parameter::{Parameter, ParameterError};
 pub use params::{Params, Stage};

@@ -1,6 +1,7 @@
 //! What the firmware knows and does not change: gains, limits, rates and its own estimates of the axis.
+use crate::{Parameter, ParameterError};
 use crate::{current, delay, feedforward, velocity};
-use servobench_base::{Divider, ParamError, Rate, non_negative, positive};
+use servobench_base::{Divider, Rate, non_negative, positive};
 
 /// What turns the effort reference into effort.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,13 +47,13 @@ pub struct Params {
 
 impl Params {
     /// # Errors
-    /// [`ParamError`] names the first parameter out of its bound, as scenario files call it.
-    pub fn check(&self) -> Result<(), ParamError> {
-        positive("axis.transmission", self.transmission)?;
-        non_negative("drive.position.gain", self.position_gain)?;
-        non_negative("drive.velocity.filter_time", self.velocity_filter_time)?;
+    /// [`ParameterError`] names the first parameter out of its bound.
+    pub fn check(&self) -> Result<(), ParameterError> {
+        positive(Parameter::Transmission, self.transmission)?;
+        non_negative(Parameter::PositionGain, self.position_gain)?;
+        non_negative(Parameter::VelocityFilterTime, self.velocity_filter_time)?;
         match &self.stage {
-            Stage::Direct { gain } => positive("motor.gain", *gain).map(|_| ()),
+            Stage::Direct { gain } => positive(Parameter::DirectGain, *gain).map(|_| ()),
             Stage::Current { params, .. } => params.check(),
         }?;
         self.velocity.check()?;
@@ -62,17 +63,17 @@ impl Params {
 
     /// Turns of a slower loop must coincide with turns of the faster one, or its output would wait for a while that
     /// changes from turn to turn.
-    fn check_rates(&self) -> Result<(), ParamError> {
+    fn check_rates(&self) -> Result<(), ParameterError> {
         let coincides = |name, slower: Divider, faster: Divider, bound| {
             let value = f64::from(self.base_rate.hertz()) / f64::from(slower.ticks());
-            if slower.is_multiple_of(faster) { Ok(()) } else { Err(ParamError { name, value, bound }) }
+            if slower.is_multiple_of(faster) { Ok(()) } else { Err(ParameterError { name, value, bound }) }
         };
         let bound = "a whole fraction of the velocity loop's rate";
-        coincides("drive.position.rate", self.position_every, self.velocity_every, bound)?;
+        coincides(Parameter::PositionRate, self.position_every, self.velocity_every, bound)?;
         match self.stage {
             Stage::Direct { .. } => Ok(()),
             Stage::Current { every, .. } => coincides(
-                "drive.velocity.rate",
+                Parameter::VelocityRate,
                 self.velocity_every,
                 every,
                 "a whole fraction of the current loop's rate",
@@ -195,25 +196,31 @@ pub(crate) mod tests {
         assert_eq!((emps().check(), synchronous().check()), (Ok(()), Ok(())));
         let said = |params: Params| params.check().unwrap_err().to_string();
         let hasty = Params { position_every: every(2_000), ..emps() };
-        assert_eq!(said(hasty), "`drive.position.rate` must be a whole fraction of the velocity loop's rate, got 2000");
+        assert_eq!(
+            said(hasty),
+            "`rate of the position loop` must be a whole fraction of the velocity loop's rate, got 2000"
+        );
         let uneven = Params { position_every: every(3_200), ..synchronous() };
         assert_eq!(
             said(uneven),
-            "`drive.position.rate` must be a whole fraction of the velocity loop's rate, got 3200"
+            "`rate of the position loop` must be a whole fraction of the velocity loop's rate, got 3200"
         );
         let Stage::Current { params, .. } = synchronous().stage else { panic!() };
         let slow = Params { stage: Stage::Current { params, every: every(4_000) }, ..synchronous() };
-        assert_eq!(said(slow), "`drive.velocity.rate` must be a whole fraction of the current loop's rate, got 8000");
+        assert_eq!(
+            said(slow),
+            "`rate of the velocity loop` must be a whole fraction of the current loop's rate, got 8000"
+        );
     }
 
     #[test]
     fn the_parameters_of_every_loop_are_checked() {
         let said = |params: Params| params.check().unwrap_err().to_string();
         let no_gain = Params { stage: Stage::Direct { gain: 0.0 }, ..emps() };
-        assert_eq!(said(no_gain), "`motor.gain` must be finite and positive, got 0");
+        assert_eq!(said(no_gain), "`gain of the direct output` must be finite and positive, got 0");
         let Stage::Current { params, every } = synchronous().stage else { panic!() };
         let no_current = current::Params { max_current: f64::NAN, ..params };
         let starved = Params { stage: Stage::Current { params: no_current, every }, ..synchronous() };
-        assert_eq!(said(starved), "`motor.max_current` must be positive, got NaN");
+        assert_eq!(said(starved), "`largest current` must be positive, got NaN");
     }
 }

@@ -6,7 +6,8 @@
 //! ```
 //! τ_avail is what the loop below can give; knowing it here keeps the integrator from winding up against it.
 //! Source: Åström & Murray, *Feedback Systems*, 2nd ed., §11.4, tracking time T_t = T_i. The motor's coordinate.
-use servobench_base::{ParamError, limit, non_negative, positive};
+use crate::{Parameter, ParameterError};
+use servobench_base::{limit, non_negative, positive};
 
 /// Gains and limits; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,13 +60,13 @@ pub struct Output {
 
 impl Params {
     /// # Errors
-    /// [`ParamError`] names the first parameter out of its bound.
-    pub fn check(&self) -> Result<(), ParamError> {
-        non_negative("drive.velocity.gain", self.k_p)?;
+    /// [`ParameterError`] names the first parameter out of its bound.
+    pub fn check(&self) -> Result<(), ParameterError> {
+        non_negative(Parameter::VelocityGain, self.k_p)?;
         if let Some(integral_time) = self.integral_time {
-            positive("drive.velocity.integral_time", integral_time)?;
+            positive(Parameter::VelocityIntegralTime, integral_time)?;
         }
-        limit("drive.max_effort", self.max_effort).map(|_| ())
+        limit(Parameter::MaxEffort, self.max_effort).map(|_| ())
     }
 }
 
@@ -170,7 +171,7 @@ mod tests {
         let p = Params { k_p: 1.0, integral_time: Some(0.0), max_effort: 1.0 };
         assert_eq!(
             p.check().unwrap_err().to_string(),
-            "`drive.velocity.integral_time` must be finite and positive, got 0"
+            "`integral time of the velocity loop` must be finite and positive, got 0"
         );
         assert!(Params { max_effort: f64::NAN, integral_time: None, ..p }.check().is_err());
     }

@@ -36,41 +36,42 @@ use servobench_base::{Divider, Tick};
 use servobench_cia402::{Actuals, Commands};
 
 /// Something that goes wrong in some cycles.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct BusFault {
     /// What.
     pub kind: BusFaultKind,
-    /// In which cycles, counted from 0.
+    /// In which cycles, the first of the run is 0; to `u64::MAX` where it does not end.
     pub cycles: Range<u64>,
 }
 
-/// What goes wrong.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum BusFaultKind {
-    /// The frame is lost, in both directions.
-    Lost,
-    /// The cycle happens late.
-    Late {
-        /// By how much (base ticks).
-        by: u32,
-    },
-    /// Each cycle happens late, by a random time.
-    Jitter {
-        /// By how much at most (base ticks).
-        by: u32,
-        /// Seed of the random numbers.
-        seed: u32,
-    },
-    /// The motion task does not run.
-    MasterStopped,
-    /// The drive does not answer. It still hears.
-    DriveSilent,
-    /// The external fault signal of the master is set.
-    ExternalFault,
+servobench_config::choices! {
+    /// What goes wrong on the bus. A lost frame is lost in both directions; a silent drive still receives.
+    pub enum BusFaultKind named BusFaultName {
+        /// the frame does not arrive
+        Lost = "lost",
+        /// the frame arrives late
+        Late {
+            /// By how much (base ticks).
+            by: u32,
+        } = "late",
+        /// each frame arrives late by a random time
+        Jitter {
+            /// By how much at most (base ticks).
+            by: u32,
+            /// Seed of the random numbers.
+            seed: u32,
+        } = "jitter",
+        /// the motion task does not run
+        MasterStopped = "master-stopped",
+        /// the drive does not answer
+        DriveSilent = "drive-silent",
+        /// the fault input of the master is set
+        ExternalFault = "external-fault",
+    }
 }
 
 /// A bus, constant during a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Params<'a> {
     cycle: u64,
     delay: usize,

@@ -28,42 +28,43 @@ use core::ops::Range;
 use servobench_base::{Divider, Tick};
 
 /// Something that goes wrong in some cycles of the motion task.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct TaskFault {
     /// What.
     pub kind: TaskFaultKind,
-    /// In which cycles, counted from 0.
+    /// In which cycles, the first of the run is 0; to `u64::MAX` where it does not end.
     pub cycles: Range<u64>,
 }
 
-/// What goes wrong.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum TaskFaultKind {
-    /// The cycle runs late.
-    Late {
-        /// By how much (base ticks).
-        by: u32,
-    },
-    /// Each cycle runs late, by a random time.
-    Jitter {
-        /// By how much at most (base ticks).
-        by: u32,
-        /// Seed of the random numbers.
-        seed: u32,
-    },
-    /// The command of the cycle is lost: nobody reads it.
-    Lost,
-    /// The clock of the task runs fast: the cycle is shorter, down to a base tick.
-    Short {
-        /// By how much (base ticks).
-        by: u32,
-    },
-    /// The link reads while the command is being written.
-    Torn,
+servobench_config::choices! {
+    /// What goes wrong with the motion task. The cycle of a fast clock is a base tick at least.
+    pub enum TaskFaultKind named TaskFaultName {
+        /// the motion task runs late, and with it the cycles that it holds up
+        Late {
+            /// By how much (base ticks).
+            by: u32,
+        } = "task-late",
+        /// each cycle of the motion task runs late by a random time
+        Jitter {
+            /// By how much at most (base ticks).
+            by: u32,
+            /// Seed of the random numbers.
+            seed: u32,
+        } = "task-jitter",
+        /// the command of the motion task is lost
+        Lost = "task-lost",
+        /// the master reads the command while the motion task writes it
+        Torn = "task-torn",
+        /// the clock of the motion task runs fast: its cycles are too short
+        Fast {
+            /// By how much (base ticks).
+            by: u32,
+        } = "task-fast",
+    }
 }
 
 /// A motion task, constant during a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Params<'a> {
     cycle: u64,
     faults: &'a [TaskFault],
@@ -90,14 +91,14 @@ impl<'a> Params<'a> {
         let late = self.faults_of(cycle).map(|kind| match kind {
             TaskFaultKind::Late { by } => u64::from(by),
             TaskFaultKind::Jitter { by, seed } => below(u64::from(by) + 1, seed, cycle),
-            TaskFaultKind::Lost | TaskFaultKind::Short { .. } | TaskFaultKind::Torn => 0,
+            TaskFaultKind::Lost | TaskFaultKind::Fast { .. } | TaskFaultKind::Torn => 0,
         });
         late.sum()
     }
 
     fn length_of(&self, cycle: u64) -> u64 {
         let short = self.faults_of(cycle).map(|kind| match kind {
-            TaskFaultKind::Short { by } => u64::from(by),
+            TaskFaultKind::Fast { by } => u64::from(by),
             _ => 0,
         });
         self.cycle.saturating_sub(short.sum()).max(1)

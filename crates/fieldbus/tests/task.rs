@@ -61,7 +61,7 @@ fn jitter_stays_within_its_bound_and_is_the_same_every_time() {
 
 #[test]
 fn a_fast_clock_gains_for_good() {
-    let short = |by, cycles| times(&[fault(TaskFaultKind::Short { by }, cycles)], 200);
+    let short = |by, cycles| times(&[fault(TaskFaultKind::Fast { by }, cycles)], 200);
     assert_eq!(short(16, 1..3), [(0, 0), (64, 64), (112, 112), (160, 160)]);
     // At least a tick is left.
     assert_eq!(short(64, 0..2), [(0, 0), (1, 1), (2, 2), (66, 66), (130, 130), (194, 194)]);

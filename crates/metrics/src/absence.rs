@@ -33,7 +33,7 @@ pub enum Absence {
         part: &'static str,
     },
     /// The settling time needs a window.
-    #[error("no settling window is given (`measure.window`)")]
+    #[error("no settling window is given")]
     NoWindow,
     /// The load was outside its window when the recording ended, or shortly before.
     #[error(

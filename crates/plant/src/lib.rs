@@ -40,4 +40,4 @@ pub use modes::Mode;
 pub use refusal::{Refusal, RefusedAt};
 pub use sensor::{Encoder, Reading};
 pub use source::{IdealSource, SourceOutput};
-pub use switches::{SwitchReading, Switches};
+pub use switches::{SwitchPoint, SwitchReading, Switches};

@@ -4,6 +4,7 @@
 //! normally closed it opens it then; an input without a switch is open. The index pulse comes once per revolution of the motor and its
 //! position is latched where it comes, between two ticks too: an encoder's hardware does that.
 use core::f64::consts::TAU;
+use core::fmt::{self, Display, Formatter};
 use core::ops::RangeInclusive;
 use servobench_base::{ParamError, finite};
 
@@ -35,19 +36,51 @@ pub struct SwitchReading {
     pub index: Option<f64>,
 }
 
+/// A point of the axis at which a switch, or the index pulse, is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum SwitchPoint {
+    /// [`Switches::negative`].
+    Negative,
+    /// [`Switches::positive`].
+    Positive,
+    /// Start of [`Switches::home`].
+    HomeFrom,
+    /// End of [`Switches::home`].
+    HomeTo,
+    /// [`Switches::index`].
+    Index,
+}
+
+impl SwitchPoint {
+    /// Every point.
+    pub const ALL: [Self; 5] = [Self::Negative, Self::Positive, Self::HomeFrom, Self::HomeTo, Self::Index];
+}
+
+impl Display for SwitchPoint {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Negative => "position of the negative limit switch",
+            Self::Positive => "position of the positive limit switch",
+            Self::HomeFrom => "start of the home switch",
+            Self::HomeTo => "end of the home switch",
+            Self::Index => "angle of the index pulse",
+        })
+    }
+}
+
 impl Switches {
     /// # Errors
     /// [`ParamError`] names the first position that is not finite.
-    pub fn check(&self) -> Result<(), ParamError> {
+    pub fn check(&self) -> Result<(), ParamError<SwitchPoint>> {
         let home = self.home.as_ref();
-        for (name, position) in [
-            ("axis.switches.negative", self.negative),
-            ("axis.switches.positive", self.positive),
-            ("axis.switches.home.from", home.map(|home| *home.start())),
-            ("axis.switches.home.to", home.map(|home| *home.end())),
-            ("axis.switches.index", self.index),
+        for (point, position) in [
+            (SwitchPoint::Negative, self.negative),
+            (SwitchPoint::Positive, self.positive),
+            (SwitchPoint::HomeFrom, home.map(|home| *home.start())),
+            (SwitchPoint::HomeTo, home.map(|home| *home.end())),
+            (SwitchPoint::Index, self.index),
         ] {
-            position.map_or(Ok(0.0), |position| finite(name, position))?;
+            position.map_or(Ok(0.0), |position| finite(point, position))?;
         }
         Ok(())
     }
@@ -130,6 +163,6 @@ mod tests {
     fn a_position_that_is_no_number_is_refused() {
         let switches = Switches { home: Some(0.0..=f64::NAN), ..Switches::default() };
         let refusal = switches.check().unwrap_err().to_string();
-        assert_eq!(refusal, "`axis.switches.home.to` must be finite, got NaN");
+        assert_eq!(refusal, "`end of the home switch` must be finite, got NaN");
     }
 }

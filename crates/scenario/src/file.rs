@@ -14,7 +14,7 @@ mod requirements;
 mod setpoint;
 
 pub(crate) use axis::{Axis, Body, Mjcf};
-pub(crate) use bus::{Bus, BusFault, FaultName};
+pub(crate) use bus::{Bus, BusFault, DriveInterpolation, FaultName};
 pub(crate) use drive::{Current, Drive, Estimate, FeedbackEncoder, Velocity, VelocityKind};
 pub(crate) use fmu::{Coupling, Fmu};
 pub(crate) use motor::{Encoder, Motor, MotorKind};

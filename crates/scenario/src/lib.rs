@@ -20,6 +20,7 @@ mod models;
 mod name_table;
 mod nearest;
 mod object_table;
+mod parameter_key;
 mod parameters;
 mod place;
 mod points;
@@ -39,15 +40,15 @@ pub use argument::{ArgumentError, Derivative, any_quantity, axis_quantity, frequ
 pub use diagnostic::{Diagnostic, Invalid, LoadError, MOST_MISTAKES, NamedFile, Shown, shown};
 pub use load::{Loaded, load, parse};
 pub use models::{embedded_demo, embedded_models};
+pub use parameter_key::{parameter_key, switch_key};
 pub use parameters::{Difference, Parameter, differences};
 pub use points::{
     Column, MOST_POINTS, Points, PointsError, PointsMistake, Profile, read_accelerations, read_points, read_velocities,
 };
 pub use scenario::{
-    Actuator, Axis, AxisMechanics, BodySignal, Bus, BusFault, BusFaultKind, BusMode, CoSimulation, Counter,
-    CouplingMethod, Disturbance, DisturbedBody, Drive, DriveInterpolation, DriveUnits, EngineName, Feedback, Fmu,
-    Initial, InputSource, Interpolation, Isolation, LONGEST_RUN, LoopSignal, MoveStep, ObjectWrite, Plc, Record,
-    Requirements, Scenario, Sequencing, StartValue, Step, TrajectoryBuffer,
+    Actuator, Axis, AxisMechanics, BodySignal, Bus, BusMode, CoSimulation, CouplingMethod, Disturbance, DisturbedBody,
+    Drive, DriveUnits, EngineName, Feedback, Fmu, Initial, InputSource, Interpolation, Isolation, LONGEST_RUN,
+    LoopSignal, MoveStep, ObjectWrite, Plc, Record, Requirements, Scenario, StartValue, Step, TrajectoryBuffer,
 };
 pub use schema::json_schema;
 pub use source::{SourceId, Sources};

@@ -12,6 +12,7 @@ use crate::scenario::ObjectWrite;
 use crate::source::Span;
 use crate::tree::{Entry, Node, Number, Value};
 use serde_json::{Value as Json, json};
+use servobench_cia402::units::Object;
 
 /// Values for objects, in the order of the file.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,7 +79,8 @@ impl ObjectTable {
         let Some(subindex) = subindex else {
             return refuse(entry.key_span, format!("`{}` is no sub-index of an object", entry.key), report);
         };
-        if self.0.iter().any(|written| (written.index, written.subindex) == (index, subindex)) {
+        let object = Object { index, subindex };
+        if self.0.iter().any(|written| written.object == object) {
             let message = format!("{index:04X}h:{subindex:02X}h is written twice");
             report.error(entry.key_span, message, "the master writes each object once");
             return None;
@@ -88,7 +90,7 @@ impl ObjectTable {
             report.error(entry.node.span, message, "values are in the units of the drive");
             return None;
         };
-        self.0.push(ObjectWrite { index, subindex, value, key });
+        self.0.push(ObjectWrite { object, value, key });
         Some(())
     }
 }

@@ -15,10 +15,7 @@ mod requirements;
 
 pub use actuator::Actuator;
 pub use axis::{Axis, AxisMechanics};
-pub use bus::{
-    Bus, BusFault, BusFaultKind, BusMode, Counter, DriveInterpolation, DriveUnits, ObjectWrite, Sequencing,
-    TrajectoryBuffer,
-};
+pub use bus::{Bus, BusMode, DriveUnits, ObjectWrite, TrajectoryBuffer};
 pub use disturbance::{Disturbance, DisturbedBody, Initial};
 pub use drive::{Drive, Feedback};
 pub use fmu::{BodySignal, CoSimulation, CouplingMethod, Fmu, InputSource, Isolation, LoopSignal, StartValue};

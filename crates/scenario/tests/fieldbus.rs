@@ -1,5 +1,9 @@
 //! What `[bus]`, `[drive.objects]` and `[axis.switches]` become.
+use servobench_cia402::counter::Counter;
 use servobench_drive::EffortFeedforward;
+use servobench_fieldbus::bus::{BusFault, BusFaultKind};
+use servobench_fieldbus::link::Sequencing;
+use servobench_fieldbus::task::{TaskFault, TaskFaultKind};
 use servobench_motion::interpolate::Mode;
 use servobench_plant::Switches;
 use servobench_scenario::*;
@@ -35,7 +39,7 @@ fn a_bus_that_says_its_cycle_alone() {
         mode: BusMode::CyclicPosition,
         motion_every: 1,
         interpolation: Mode::Cubic,
-        drive_interpolation: DriveInterpolation::Linear,
+        drive_interpolation: Mode::Linear,
         trajectory_buffer: TrajectoryBuffer::MoveSegment,
         delay: 1,
         velocity_offset: false,
@@ -44,11 +48,12 @@ fn a_bus_that_says_its_cycle_alone() {
         sequencing: Sequencing::Strict,
         drive_timeout: 0.5,
         position_gain: None,
-        counter: Counter { bits: 32, signed: true },
+        counter: Counter::signed(32).unwrap(),
         units: DriveUnits { drive: 1 << 20, axis: 0.01 },
         velocity_from_differences: false,
         reverse_switches: false,
         faults: vec![],
+        task_faults: vec![],
         objects: vec![],
     };
     assert_eq!(bus(""), expected);
@@ -77,7 +82,7 @@ reverse_switches = true
         mode: BusMode::CyclicVelocity,
         motion_every: 4,
         interpolation: Mode::Quintic,
-        drive_interpolation: DriveInterpolation::Linear,
+        drive_interpolation: Mode::Linear,
         trajectory_buffer: TrajectoryBuffer::MoveSegment,
         delay: 0,
         velocity_offset: true,
@@ -86,15 +91,16 @@ reverse_switches = true
         sequencing: Sequencing::Simplified,
         drive_timeout: 0.02,
         position_gain: Some(80.0),
-        counter: Counter { bits: 16, signed: false },
+        counter: Counter::unsigned(16).unwrap(),
         units: DriveUnits { drive: 1000, axis: 0.005 },
         velocity_from_differences: true,
         reverse_switches: true,
         faults: vec![],
+        task_faults: vec![],
         objects: vec![],
     };
     assert_eq!(bus(keys), expected);
-    assert_eq!(bus("drive_interpolation = \"cubic\"\n").drive_interpolation, DriveInterpolation::Cubic);
+    assert_eq!(bus("drive_interpolation = \"cubic\"\n").drive_interpolation, Mode::Cubic);
     for (name, mode) in
         [("pp", BusMode::ProfilePosition), ("pv", BusMode::ProfileVelocity), ("ip", BusMode::InterpolatedPosition)]
     {
@@ -145,7 +151,7 @@ fn units_are_increments_of_the_encoder_that_closes_the_loop() {
 /// Oracle: which multiples of a millisecond lie within the times.
 #[test]
 fn faults_concern_whole_cycles() {
-    let faults = bus(r#"
+    let bus = bus(r#"
 motion_cycle = "4 ms"
 [[bus.fault]]
 kind = "lost"
@@ -186,8 +192,7 @@ kind = "task-torn"
 kind = "task-fast"
 by = "1 ms"
 duration = "20 ms"
-"#)
-    .faults;
+"#);
     let fault = |kind, cycles| BusFault { kind, cycles };
     let expected = [
         fault(BusFaultKind::Lost, 500..501),
@@ -196,20 +201,24 @@ duration = "20 ms"
         fault(BusFaultKind::MasterStopped, 300..320),
         fault(BusFaultKind::DriveSilent, 11..12),
         fault(BusFaultKind::ExternalFault, 0..u64::MAX),
-        // In cycles of the motion task, 4 ms each.
-        fault(BusFaultKind::TaskLate { by: 96 }, 3..4),
-        fault(BusFaultKind::TaskJitter { by: 32, seed: 1 }, 0..u64::MAX),
-        fault(BusFaultKind::TaskLost, 3..5),
-        fault(BusFaultKind::TaskTorn, 0..1),
-        fault(BusFaultKind::TaskFast { by: 16 }, 0..5),
     ];
-    assert_eq!(faults, expected);
+    assert_eq!(bus.faults, expected);
+    // In cycles of the motion task, 4 ms each.
+    let fault = |kind, cycles| TaskFault { kind, cycles };
+    let expected = [
+        fault(TaskFaultKind::Late { by: 96 }, 3..4),
+        fault(TaskFaultKind::Jitter { by: 32, seed: 1 }, 0..u64::MAX),
+        fault(TaskFaultKind::Lost, 3..5),
+        fault(TaskFaultKind::Torn, 0..1),
+        fault(TaskFaultKind::Fast { by: 16 }, 0..5),
+    ];
+    assert_eq!(bus.task_faults, expected);
 }
 
 #[test]
 fn objects_keep_their_order_and_their_keys() {
     let objects = bus("[drive.objects]\n\"6098h\" = 7\n\"6099h.1\" = 50000\n607Dh = { 01h = -5, 2 = 0x10 }\n").objects;
-    let found: Vec<_> = objects.iter().map(|o| (o.index, o.subindex, o.value, o.key.as_str())).collect();
+    let found: Vec<_> = objects.iter().map(|o| (o.object.index, o.object.subindex, o.value, o.key.as_str())).collect();
     let expected = [
         (0x6098, 0, 7, "drive.objects.6098h"),
         (0x6099, 1, 50_000, "drive.objects.6099h.1"),

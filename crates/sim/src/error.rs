@@ -6,7 +6,7 @@ use servobench_cia402::units::UnitError;
 use servobench_drive::device::ObjectsError;
 use servobench_fieldbus::FieldbusError;
 use servobench_motion::PlanError;
-use servobench_plant::{FmuMistake, MechanicsError};
+use servobench_plant::{FmuMistake, MechanicsError, SwitchPoint};
 use servobench_scenario::LONGEST_RUN;
 use servobench_signals::Signal;
 use std::fmt::Display;
@@ -18,6 +18,15 @@ pub enum BuildError {
     /// A parameter is out of its bound.
     #[error(transparent)]
     Parameter(#[from] ParamError),
+    /// A parameter of the drive's firmware is out of its bound.
+    #[error(transparent)]
+    Drive(#[from] servobench_drive::ParameterError),
+    /// A switch is nowhere.
+    #[error(transparent)]
+    Switches(#[from] ParamError<SwitchPoint>),
+    /// The value of a key of the scenario does not fit others; its name is the key.
+    #[error(transparent)]
+    Key(ParamError),
     /// A task rate does not divide the base rate.
     #[error(transparent)]
     Rate(#[from] RateError),

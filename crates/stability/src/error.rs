@@ -8,6 +8,12 @@ pub enum StabilityError {
     /// A parameter is out of its bound.
     #[error(transparent)]
     Parameter(#[from] ParamError),
+    /// A parameter of the drive is out of its bound.
+    #[error(transparent)]
+    Drive(#[from] servobench_drive::ParameterError),
+    /// The source of effort is not one that the drive's output is for.
+    #[error("a current loop is for a synchronous motor, a direct output for an ideal source")]
+    SourceDoesNotFit,
     /// The numbers of one period of the loop exceed what can be computed with.
     #[error(
         "the poles of the loop cannot be computed: over the common period of its loops ({ticks} base ticks) it grows beyond 1e150"

@@ -1,5 +1,6 @@
 //! What is analysed: an axis, the drive that closes its loops, and where it is operated.
-use servobench_base::{Dq, ParamError, finite, positive};
+use crate::StabilityError;
+use servobench_base::{Dq, finite, positive};
 use servobench_drive as drive;
 use servobench_drive::current::Tuning;
 use servobench_plant::{Chain, pmsm};
@@ -68,18 +69,18 @@ pub struct OperatingPoint {
 
 impl Loop {
     /// # Errors
-    /// [`ParamError`] names the first parameter out of its bound.
-    pub fn check(&self) -> Result<(), ParamError> {
+    /// [`StabilityError`] names the first parameter out of its bound.
+    pub fn check(&self) -> Result<(), StabilityError> {
         self.drive.check()?;
         finite("operating point, current d", self.point.current.d)?;
         finite("operating point, current q", self.point.current.q)?;
         match (&self.source, &self.drive.stage) {
-            (Source::Pmsm(motor), drive::Stage::Current { .. }) => motor.check(),
-            (Source::Ideal { gain }, drive::Stage::Direct { .. }) => positive("motor.gain", *gain).map(|_| ()),
-            (Source::Pmsm(_), drive::Stage::Direct { gain })
-            | (Source::Ideal { gain }, drive::Stage::Current { .. }) => {
-                let bound = "with a current loop for a synchronous motor, and direct for an ideal source";
-                Err(ParamError { name: "stage of the drive", value: *gain, bound })
+            (Source::Pmsm(motor), drive::Stage::Current { .. }) => Ok(motor.check()?),
+            (Source::Ideal { gain }, drive::Stage::Direct { .. }) => {
+                Ok(positive("gain of the source", *gain).map(|_| ())?)
+            }
+            (Source::Pmsm(_), drive::Stage::Direct { .. }) | (Source::Ideal { .. }, drive::Stage::Current { .. }) => {
+                Err(StabilityError::SourceDoesNotFit)
             }
         }
     }

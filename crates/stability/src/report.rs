@@ -131,18 +131,6 @@ impl Boundaries {
 }
 
 impl GainName {
-    /// The key of the scenario.
-    #[must_use]
-    pub const fn key(self) -> &'static str {
-        match self {
-            Self::Position => "drive.position.gain",
-            Self::Velocity => "drive.velocity.gain",
-            Self::CurrentBandwidth => "drive.current.bandwidth",
-            Self::CurrentD => "drive.current.gain_d",
-            Self::CurrentQ => "drive.current.gain_q",
-        }
-    }
-
     /// This gain by `factor`, the others as they are.
     pub(crate) const fn factors(self, factor: f64) -> Factors {
         let one = Factors::ONE;

@@ -6,7 +6,7 @@ use crate::panicked::caught;
 use crate::worker::{self, WorkerCommand, WorkerError};
 use serde::{Deserialize, Serialize};
 use servobench_plant::{Engine, FmuEntry, FmuMistake, MechanicsError, Refusal, RefusedAt};
-use servobench_scenario::{AxisMechanics, Scenario};
+use servobench_scenario::{AxisMechanics, Scenario, parameter_key, switch_key};
 use servobench_sim::{Bench, BuildError, ConnectionDelay, Partners, UnusableFmu};
 
 /// Something that keeps a scenario from being built.
@@ -95,8 +95,9 @@ fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
         }
         // The place says which object it is.
         BuildError::Object { key, error } => return vec![Objection::new(key, error.to_string())],
-        // The firmware calls its parameters as the file does.
-        BuildError::Parameter(error) if error.name.contains('.') => error.name.to_owned(),
+        BuildError::Drive(error) => parameter_key(error.name).to_owned(),
+        BuildError::Switches(error) => switch_key(error.name).to_owned(),
+        BuildError::Key(error) => error.name.to_owned(),
         BuildError::Mechanics(_) | BuildError::Parameter(_) => model_key(scenario).to_owned(),
         BuildError::Plan { index, .. }
         | BuildError::NothingToAbort { index, .. }

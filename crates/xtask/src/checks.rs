@@ -1,6 +1,8 @@
-//! What no compiler checks: dependency arrows between our crates, licences of all others, left-overs in the text.
+//! What no compiler checks: dependency arrows between our crates, licences of all others, left-overs in the text, and keys of scenario
+//! files in crates that know nothing of them.
 
 mod arrows;
+mod keys;
 mod licences;
 mod metadata;
 mod text;
@@ -8,6 +10,10 @@ mod text;
 use crate::failure::Failure;
 use crate::workspace::Workspace;
 pub(crate) use metadata::{Metadata, Package};
+use std::path::PathBuf;
+
+/// The JSON Schema of scenario files.
+const SCHEMA: &str = "docs/scenario.schema.json";
 
 /// Runs every check.
 ///
@@ -18,10 +24,15 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     let mut findings = arrows::findings(&metadata);
     findings.extend(licences::findings(&metadata));
     let files = workspace.tracked(&[])?;
+    let key_paths = keys::paths(&schema(workspace)?);
+    let keyless: Vec<_> = keys::below(&metadata).into_iter().map(|package| source_of(package, workspace)).collect();
     for path in &files {
         // What is not UTF-8 (pictures, recordings) has no text to check; a deleted file has none either.
         if let Ok(text) = std::fs::read_to_string(workspace.root.join(path)) {
             findings.extend(text::findings(path, &text));
+            if keyless.iter().any(|source| path.starts_with(source)) {
+                findings.extend(keys::findings(path, &text, &key_paths));
+            }
         }
     }
     if !findings.is_empty() {
@@ -29,4 +40,16 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     }
     println!("nothing found in {} packages and {} files", metadata.count(), files.len());
     Ok(())
+}
+
+fn schema(workspace: &Workspace) -> Result<serde_json::Value, Failure> {
+    let path = workspace.root.join(SCHEMA);
+    let text = std::fs::read_to_string(&path).map_err(Failure::file("read", &path))?;
+    serde_json::from_str(&text).map_err(|error| Failure::File { what: "read", path, source: error.into() })
+}
+
+/// The folder of the package's source, relative to the root of the workspace.
+fn source_of(package: &Package, workspace: &Workspace) -> PathBuf {
+    let folder = package.manifest_path.parent().unwrap_or(&package.manifest_path);
+    folder.strip_prefix(&workspace.root).unwrap_or(folder).join("src")
 }

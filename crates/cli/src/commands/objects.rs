@@ -7,7 +7,6 @@ use crate::output::{print_or_write, spares, write_time};
 use crate::sources;
 use servobench_cia402::PowerState;
 use servobench_cia402::objects::{Dictionary, Eds, FileInfo, Json};
-use servobench_cia402::units::Object;
 use servobench_report::{Style, object_table};
 use std::path::Path;
 
@@ -48,8 +47,7 @@ fn as_written(path: &Path) -> Result<Dictionary, CliError> {
     let mut dictionary = Dictionary::new();
     let mut refused = Vec::new();
     for write in &bus.objects {
-        let object = Object { index: write.index, subindex: write.subindex };
-        if let Err(error) = dictionary.write_number(object, write.value, PowerState::SwitchOnDisabled) {
+        if let Err(error) = dictionary.write_number(write.object, write.value, PowerState::SwitchOnDisabled) {
             let code = error.abort_code();
             let answer = format!("the drive answers with abort code {code}: {}", code.text());
             refused.push(loaded.mistake(&write.key, error.to_string(), answer));

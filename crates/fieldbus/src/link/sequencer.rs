@@ -12,14 +12,14 @@
 //! | fault reset | Fault reset until Fault is left or the time is over | the same, by the fault bit |
 use servobench_cia402::{Command, Controlword, Next, PowerState, StatusBit, Statusword, keeping, towards};
 
-/// How the drive is brought to power.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Sequencing {
-    /// State after state, each awaited.
-    #[default]
-    Strict,
-    /// The last controlword at once; only the fault bit is looked at.
-    Simplified,
+servobench_config::choices! {
+    /// How the master brings the drive to power.
+    pub enum Sequencing default Strict {
+        /// state after state of the power state machine, each awaited
+        Strict = "strict",
+        /// the last controlword at once, only the end awaited
+        Simplified = "simplified",
+    }
 }
 
 /// What is wanted of the drive.

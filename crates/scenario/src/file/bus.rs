@@ -1,6 +1,6 @@
 //! `[bus]`: the fieldbus between the motion task and the drive.
 use crate::list::Many;
-use crate::scenario::{BusMode, DriveInterpolation, Sequencing, TrajectoryBuffer};
+use crate::scenario::{BusMode, TrajectoryBuffer};
 use crate::simple::OneOf;
 use crate::table::table;
 use servobench_config::Choice;
@@ -8,84 +8,47 @@ use servobench_config::Kind::{Axis as InAxis, Plain};
 use servobench_config::quantities::{POSITION, POSITION_GAIN, TIME};
 use servobench_config::{not_negative, positive};
 use servobench_drive::EffortFeedforward;
+use servobench_fieldbus::bus::BusFaultName;
+use servobench_fieldbus::link::Sequencing;
+use servobench_fieldbus::task::TaskFaultName;
 use servobench_motion::interpolate::Mode as InterpolationMode;
 
-impl Choice for BusMode {
-    const ALL: &'static [(&'static str, Self, &'static str)] = &[
-        ("csp", Self::CyclicPosition, "cyclic synchronous position: the master sends a position every cycle"),
-        ("csv", Self::CyclicVelocity, "cyclic synchronous velocity: the master closes the position loop"),
-        ("pp", Self::ProfilePosition, "profile position: the drive plans the way to each target"),
-        ("pv", Self::ProfileVelocity, "profile velocity: the drive ramps to each velocity"),
-        ("ip", Self::InterpolatedPosition, "interpolated position: the drive goes through the points of a buffer"),
-    ];
-}
-
-impl Choice for DriveInterpolation {
-    const ALL: &'static [(&'static str, Self, &'static str)] =
-        &[("linear", Self::Linear, "position linear"), ("cubic", Self::Cubic, "by positions and velocities")];
-}
-
-impl Choice for TrajectoryBuffer {
-    const ALL: &'static [(&'static str, Self, &'static str)] = &[
-        ("2010h", Self::MoveSegment, "move segment command of the drive: eight bytes of a frame"),
-        ("60C1h", Self::DataRecord, "interpolation data record, in the sub-mode (60C0h) of `[drive.objects]`"),
-        (
-            "115h",
-            Self::Serial,
-            "parameter of the serial interface, with trajectory mode 3 (C8h) and the start by op-code 17",
-        ),
-    ];
-}
-
-impl Choice for Sequencing {
-    const ALL: &'static [(&'static str, Self, &'static str)] = &[
-        ("strict", Self::Strict, "state after state of the power state machine, each awaited"),
-        ("simplified", Self::Simplified, "the last controlword at once, only the end awaited"),
-    ];
+servobench_config::choices! {
+    /// How the drive fills the ticks between two frames.
+    pub(crate) enum DriveInterpolation default Linear {
+        /// position linear
+        Linear = "linear",
+        /// by positions and velocities
+        Cubic = "cubic",
+    }
 }
 
 /// What goes wrong, by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum FaultName {
-    Lost,
-    Late,
-    Jitter,
-    MasterStopped,
-    DriveSilent,
-    ExternalFault,
-    TaskLate,
-    TaskJitter,
-    TaskLost,
-    TaskTorn,
-    TaskFast,
+    /// With the bus.
+    Bus(BusFaultName),
+    /// With the motion task.
+    Task(TaskFaultName),
 }
 
 impl Choice for FaultName {
-    const ALL: &'static [(&'static str, Self, &'static str)] = &[
-        ("lost", Self::Lost, "the frame does not arrive"),
-        ("late", Self::Late, "the frame arrives late"),
-        ("jitter", Self::Jitter, "each frame arrives late by a random time"),
-        ("master-stopped", Self::MasterStopped, "the motion task does not run"),
-        ("drive-silent", Self::DriveSilent, "the drive does not answer"),
-        ("external-fault", Self::ExternalFault, "the fault input of the master is set"),
-        ("task-late", Self::TaskLate, "the motion task runs late, and with it the cycles that it holds up"),
-        ("task-jitter", Self::TaskJitter, "each cycle of the motion task runs late by a random time"),
-        ("task-lost", Self::TaskLost, "the command of the motion task is lost"),
-        ("task-torn", Self::TaskTorn, "the master reads the command while the motion task writes it"),
-        ("task-fast", Self::TaskFast, "the clock of the motion task runs fast: its cycles are too short"),
-    ];
-}
-
-impl FaultName {
-    /// Whether it is the motion task that something is wrong with.
-    pub(crate) const fn is_of_task(self) -> bool {
-        match self {
-            Self::TaskLate | Self::TaskJitter | Self::TaskLost | Self::TaskTorn | Self::TaskFast => true,
-            Self::Lost | Self::Late | Self::Jitter | Self::MasterStopped | Self::DriveSilent | Self::ExternalFault => {
-                false
-            }
+    const ALL: &'static [(&'static str, Self, &'static str)] = &{
+        const OF_BUS: usize = BusFaultName::ALL.len();
+        let mut all = [("", Self::Bus(BusFaultName::Lost), ""); OF_BUS + TaskFaultName::ALL.len()];
+        let mut i = 0;
+        while i < all.len() {
+            all[i] = if i < OF_BUS {
+                let (name, value, meaning) = BusFaultName::ALL[i];
+                (name, Self::Bus(value), meaning)
+            } else {
+                let (name, value, meaning) = TaskFaultName::ALL[i - OF_BUS];
+                (name, Self::Task(value), meaning)
+            };
+            i += 1;
         }
-    }
+        all
+    };
 }
 
 table! {

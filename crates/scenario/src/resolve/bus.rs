@@ -2,11 +2,12 @@
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
-use crate::file::File;
+use crate::file::{DriveInterpolation, File};
 use crate::resolve::{bus_fault, mode, need, refuse, whole};
-use crate::scenario::{Actuator, Bus, BusMode, Counter, Drive, DriveUnits, Feedback, ObjectWrite, Sequencing, Step};
+use crate::scenario::{Actuator, Bus, BusMode, Drive, DriveUnits, Feedback, ObjectWrite, Step};
 use crate::source::At;
 use servobench_base::{Coordinate, Rate};
+use servobench_cia402::counter::Counter;
 use servobench_drive::EffortFeedforward;
 use servobench_drive::feedforward::Model;
 use servobench_motion::interpolate::Mode as InterpolationMode;
@@ -24,8 +25,8 @@ pub(super) struct Known<'a> {
 const DELAY: u32 = 1;
 /// How long the master waits for the drive, unless given (s).
 const DRIVE_TIMEOUT: f64 = 0.5;
-/// The counter, unless given: the position actual value (6064h) is an `INTEGER32`.
-const COUNTER: Counter = Counter { bits: 32, signed: true };
+/// Width of the counter, unless given, and whether it has a sign: the position actual value (6064h) is an `INTEGER32`.
+const COUNTER: (u32, bool) = (32, true);
 
 /// What is between the motion task and the drive, when there is something.
 #[expect(clippy::option_option, reason = "a wrong table is not the same as none")]
@@ -62,26 +63,31 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
         Some(Slot::Wrong(_)) => None,
         Some(Slot::Absent) | None => Some(Vec::<ObjectWrite>::new()),
     };
+    let (faults, task_faults) = faults?;
     let flag = |slot: &Slot<bool>| slot.optional().ok().map(|value| value.copied().unwrap_or(false));
     Some(Some(Bus {
         cycle: cycle?,
         mode: mode?,
         motion_every: motion_every?,
         interpolation: given.interpolation.optional().ok()?.copied().unwrap_or(InterpolationMode::Cubic),
-        drive_interpolation: given.drive_interpolation.optional().ok()?.copied().unwrap_or_default(),
+        drive_interpolation: match given.drive_interpolation.optional().ok()?.copied().unwrap_or_default() {
+            DriveInterpolation::Linear => InterpolationMode::Linear,
+            DriveInterpolation::Cubic => InterpolationMode::Cubic,
+        },
         trajectory_buffer: given.trajectory_buffer.optional().ok()?.copied().unwrap_or_default(),
         delay: given.delay.optional().ok()?.copied().unwrap_or(DELAY),
         velocity_offset: flag(&given.velocity_offset)?,
         effort_offset: effort_offset?,
         margin: margin?,
-        sequencing: given.sequencing.optional().ok()?.copied().unwrap_or(Sequencing::Strict),
+        sequencing: given.sequencing.optional().ok()?.copied().unwrap_or_default(),
         drive_timeout: given.drive_timeout.optional().ok()?.copied().unwrap_or(DRIVE_TIMEOUT),
         position_gain: position_gain?,
         counter: counter(given)?,
         units: units?,
         velocity_from_differences: flag(&given.velocity_from_differences)?,
         reverse_switches: flag(&given.reverse_switches)?,
-        faults: faults?,
+        faults,
+        task_faults,
         objects: objects?,
     }))
 }
@@ -220,11 +226,12 @@ fn warn_of_what_is_added_twice(given: &file::Bus, actuator: Option<&Actuator>, r
 }
 
 fn counter(given: &file::Bus) -> Option<Counter> {
-    let Some(given) = given.counter.optional().ok()? else { return Some(COUNTER) };
-    Some(Counter {
-        bits: given.bits.optional().ok()?.copied().unwrap_or(COUNTER.bits),
-        signed: given.signed.optional().ok()?.copied().unwrap_or(COUNTER.signed),
-    })
+    let (bits, signed) = match given.counter.optional().ok()? {
+        Some(given) => (given.bits.optional().ok()?.copied(), given.signed.optional().ok()?.copied()),
+        None => (None, None),
+    };
+    let new = if signed.unwrap_or(COUNTER.1) { Counter::signed } else { Counter::unsigned };
+    new(bits.unwrap_or(COUNTER.0)).ok()
 }
 
 /// The units as given, or the increments of the encoder that closes the position loop.
@@ -275,13 +282,5 @@ pub(super) fn refuse_by_program(file: &File, bus: &Bus, steps: Option<&[Step]>, 
     let (Some(program), Some(steps)) = (file.program.given(), steps) else { return };
     for (written, step) in program.0.iter().zip(steps) {
         mode::refuse_step(bus.mode, step, written.value.span, report);
-    }
-}
-
-impl BusMode {
-    /// Whether the master sends a set-point every cycle.
-    #[must_use]
-    pub const fn is_cyclic(self) -> bool {
-        matches!(self, Self::CyclicPosition | Self::CyclicVelocity)
     }
 }

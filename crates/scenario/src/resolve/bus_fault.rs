@@ -5,48 +5,86 @@ use crate::file;
 use crate::file::FaultName;
 use crate::resolve::bus::Known;
 use crate::resolve::{Way, one_way, whole};
-use crate::scenario::{BusFault, BusFaultKind};
+use servobench_fieldbus::bus::{BusFault, BusFaultKind, BusFaultName};
+use servobench_fieldbus::task::{TaskFault, TaskFaultKind, TaskFaultName};
 use std::ops::Range;
 
 /// Seed of the random numbers, unless given.
 const SEED: u32 = 1;
 
-/// The faults on a bus of `cycles`: base ticks in one of them, and how many there are in one of the motion task's.
+/// A fault of the bus or of the motion task.
+enum Fault {
+    Bus(BusFault),
+    Task(TaskFault),
+}
+
+/// The faults of a bus of `cycles` and of the motion task: base ticks in a cycle of the bus, and how many of them there are in one of
+/// the motion task's.
 pub(super) fn faults(
     given: &file::Bus,
     cycles: Option<(u32, u32)>,
     known: &Known<'_>,
     report: &mut Report,
-) -> Option<Vec<BusFault>> {
-    let Some(all) = given.fault.optional().ok()? else { return Some(Vec::new()) };
+) -> Option<(Vec<BusFault>, Vec<TaskFault>)> {
+    let mut faults = (Vec::new(), Vec::new());
+    let Some(all) = given.fault.optional().ok()? else { return Some(faults) };
     let resolved: Vec<_> = all.0.iter().map(|one| fault(&one.value, cycles, known, report)).collect();
-    resolved.into_iter().collect()
+    for fault in resolved {
+        match fault? {
+            Fault::Bus(fault) => faults.0.push(fault),
+            Fault::Task(fault) => faults.1.push(fault),
+        }
+    }
+    Some(faults)
 }
 
-fn fault(
-    given: &file::BusFault,
-    cycles: Option<(u32, u32)>,
-    known: &Known<'_>,
-    report: &mut Report,
-) -> Option<BusFault> {
+fn fault(given: &file::BusFault, cycles: Option<(u32, u32)>, known: &Known<'_>, report: &mut Report) -> Option<Fault> {
     let task_cycle = cycles.map(|(cycle, every)| cycle.saturating_mul(every));
-    let kind = kind(given, task_cycle, known, report);
-    let is_of_task = given.kind.given()?.is_of_task();
-    let cycle = if is_of_task { task_cycle } else { cycles.map(|(cycle, _)| cycle) };
+    let parameters = parameters(given, task_cycle, known, report);
+    let name = *given.kind.given()?;
+    let cycle = match name {
+        FaultName::Bus(_) => cycles.map(|(cycle, _)| cycle),
+        FaultName::Task(_) => task_cycle,
+    };
     let cycles = concerned(given, cycle, known, report);
-    Some(BusFault { kind: kind?, cycles: cycles? })
+    let ((by, seed), cycles) = (parameters?, cycles?);
+    Some(match name {
+        FaultName::Bus(name) => {
+            let kind = match name {
+                BusFaultName::Lost => BusFaultKind::Lost,
+                BusFaultName::Late => BusFaultKind::Late { by },
+                BusFaultName::Jitter => BusFaultKind::Jitter { by, seed },
+                BusFaultName::MasterStopped => BusFaultKind::MasterStopped,
+                BusFaultName::DriveSilent => BusFaultKind::DriveSilent,
+                BusFaultName::ExternalFault => BusFaultKind::ExternalFault,
+            };
+            Fault::Bus(BusFault { kind, cycles })
+        }
+        FaultName::Task(name) => {
+            let kind = match name {
+                TaskFaultName::Late => TaskFaultKind::Late { by },
+                TaskFaultName::Jitter => TaskFaultKind::Jitter { by, seed },
+                TaskFaultName::Lost => TaskFaultKind::Lost,
+                TaskFaultName::Torn => TaskFaultKind::Torn,
+                TaskFaultName::Fast => TaskFaultKind::Fast { by },
+            };
+            Fault::Task(TaskFault { kind, cycles })
+        }
+    })
 }
 
-fn kind(
+/// Its time (base ticks), 0 where it has none, and its seed.
+fn parameters(
     given: &file::BusFault,
     task_cycle: Option<u32>,
     known: &Known<'_>,
     report: &mut Report,
-) -> Option<BusFaultKind> {
-    let name = given.kind.at()?;
-    let is_random = matches!(name.value, FaultName::Jitter | FaultName::TaskJitter);
-    let is_fast = name.value == FaultName::TaskFast;
-    let needs_time = is_random || is_fast || matches!(name.value, FaultName::Late | FaultName::TaskLate);
+) -> Option<(u32, u32)> {
+    let name = *given.kind.given()?;
+    let is_random = matches!(name, FaultName::Bus(BusFaultName::Jitter) | FaultName::Task(TaskFaultName::Jitter));
+    let is_late = matches!(name, FaultName::Bus(BusFaultName::Late) | FaultName::Task(TaskFaultName::Late));
+    let is_fast = name == FaultName::Task(TaskFaultName::Fast);
+    let needs_time = is_random || is_late || is_fast;
     if let (false, Some(span)) = (needs_time, given.by.span()) {
         report.error(span, "`by` is for what is \"late\", has \"jitter\" or is \"fast\"", "");
     }
@@ -56,12 +94,8 @@ fn kind(
     let by = match &given.by {
         _ if !needs_time => Some(0),
         Slot::Absent => {
-            report.missing_with_help(
-                "bus.fault",
-                "by",
-                given.span,
-                if is_fast { "how much too short a cycle is" } else { "how late it is" },
-            );
+            let why = if is_fast { "how much too short a cycle is" } else { "how late it is" };
+            report.missing_with_help("bus.fault", "by", given.span, why);
             None
         }
         Slot::Wrong(_) => None,
@@ -74,19 +108,8 @@ fn kind(
         }),
     };
     let seed = given.seed.optional().ok().map(|seed| seed.copied().unwrap_or(SEED));
-    Some(match name.value {
-        FaultName::Lost => BusFaultKind::Lost,
-        FaultName::Late => BusFaultKind::Late { by: by? },
-        FaultName::Jitter => BusFaultKind::Jitter { by: by?, seed: seed? },
-        FaultName::MasterStopped => BusFaultKind::MasterStopped,
-        FaultName::DriveSilent => BusFaultKind::DriveSilent,
-        FaultName::ExternalFault => BusFaultKind::ExternalFault,
-        FaultName::TaskLate => BusFaultKind::TaskLate { by: by? },
-        FaultName::TaskJitter => BusFaultKind::TaskJitter { by: by?, seed: seed? },
-        FaultName::TaskLost => BusFaultKind::TaskLost,
-        FaultName::TaskTorn => BusFaultKind::TaskTorn,
-        FaultName::TaskFast => BusFaultKind::TaskFast { by: by? },
-    })
+    // A seed that is wrong matters where there is one.
+    Some((by?, if is_random { seed? } else { SEED }))
 }
 
 /// The cycles that it concerns, each of `cycle` base ticks.
@@ -114,17 +137,14 @@ fn concerned(given: &file::BusFault, cycle: Option<u32>, known: &Known<'_>, repo
             end
         }
         Way::Contradiction => return None,
-        Way::None => match given.kind.given()? {
-            FaultName::Lost | FaultName::Late | FaultName::TaskLate | FaultName::TaskLost | FaultName::TaskTorn => {
-                first.saturating_add(1)
-            }
-            FaultName::Jitter
-            | FaultName::MasterStopped
-            | FaultName::DriveSilent
-            | FaultName::ExternalFault
-            | FaultName::TaskJitter
-            | FaultName::TaskFast => u64::MAX,
-        },
+        Way::None => {
+            let is_once = matches!(
+                given.kind.given()?,
+                FaultName::Bus(BusFaultName::Lost | BusFaultName::Late)
+                    | FaultName::Task(TaskFaultName::Late | TaskFaultName::Lost | TaskFaultName::Torn)
+            );
+            if is_once { first.saturating_add(1) } else { u64::MAX }
+        }
     };
     Some(first..end)
 }

@@ -4,11 +4,12 @@ use crate::field::Slot;
 use crate::file;
 use crate::file::{FeedbackEncoder, File};
 use crate::list::{AutoTime, Share};
+use crate::parameter_key::parameter_key;
 use crate::resolve::estimate::{self, Belief};
 use crate::resolve::motor::{Motor, resolution};
 use crate::resolve::{current, loops, need};
 use crate::scenario::{Actuator, Axis, Drive, Feedback};
-use servobench_base::Rate;
+use servobench_base::{ParamError, Rate};
 use servobench_drive::current::{Gains, q_current, voltage_limit};
 use servobench_drive::{EffortFeedforward, Estimate, Params, Stage, delay, feedforward};
 use servobench_plant::pmsm;
@@ -151,9 +152,10 @@ fn params(drive: &file::Drive, parts: Parts, estimate: &Estimate, report: &mut R
     let path = if is_waited_for { params.effort_path_delay() } else { 0.0 };
     match delay::Params::new(feedforward.delay.unwrap_or(path), params.period(params.position_every)) {
         Ok(delay) => params.reference_delay = delay,
-        Err(why) => {
+        Err(ParamError { name, value, bound }) => {
             let span = drive.feedforward.given().and_then(|feedforward| feedforward.delay.span());
-            report.error(span.unwrap_or(drive.span), why.to_string(), "");
+            let message = format!("`{}` must be {bound}, got {value}", parameter_key(name));
+            report.error(span.unwrap_or(drive.span), message, "");
             return None;
         }
     }

@@ -164,14 +164,16 @@ fn switches(axis: &Axis) {
 
 fn bus(bus: &Bus, scenario: &Scenario) {
     assert!(scenario.actuator.drive().is_some());
-    assert!(bus.cycle >= 1 && bus.motion_every >= 1 && (8..=32).contains(&bus.counter.bits), "{bus:?}");
+    assert!(bus.cycle >= 1 && bus.motion_every >= 1 && (8..=32).contains(&bus.counter.range().ilog2()), "{bus:?}");
     assert_eq!(bus.position_gain.is_some(), bus.mode == BusMode::CyclicVelocity);
     optional("position_gain", bus.position_gain);
     positive("drive_timeout", bus.drive_timeout);
     assert!(bus.units.drive >= 1);
     positive("units.axis", bus.units.axis);
-    assert!(bus.faults.iter().all(|fault| !fault.cycles.is_empty()), "{bus:?}");
-    let mut objects: Vec<_> = bus.objects.iter().map(|object| (object.index, object.subindex)).collect();
+    let mut cycles =
+        bus.faults.iter().map(|fault| &fault.cycles).chain(bus.task_faults.iter().map(|fault| &fault.cycles));
+    assert!(cycles.all(|cycles| !cycles.is_empty()), "{bus:?}");
+    let mut objects: Vec<_> = bus.objects.iter().map(|write| (write.object.index, write.object.subindex)).collect();
     objects.sort_unstable();
     objects.dedup();
     assert_eq!(objects.len(), bus.objects.len());

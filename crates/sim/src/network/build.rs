@@ -10,17 +10,16 @@ use crate::error::BuildError;
 use crate::program::Program;
 use servobench_base::{Countdown, Divider, ParamError, Setpoint};
 use servobench_cia402::PowerState;
-use servobench_cia402::counter::Counter;
 use servobench_cia402::objects::Dictionary;
 use servobench_cia402::units::Object;
 use servobench_drive::modes::interpolated::{SubMode, serial::Port};
 use servobench_drive::{self as drive, Demand, device, feedforward};
-use servobench_fieldbus::bus::{self, BusFault, BusFaultKind};
+use servobench_fieldbus::bus;
 use servobench_fieldbus::link::{self, Mailbox};
-use servobench_fieldbus::task::{self, TaskFault, TaskFaultKind};
+use servobench_fieldbus::task;
 use servobench_motion::Limits;
 use servobench_motion::interpolate::Mode;
-use servobench_scenario::{self as scenario, Actuator, Bus, DriveInterpolation, Feedback, Scenario};
+use servobench_scenario::{self as scenario, Actuator, Bus, Feedback, Scenario};
 use servobench_trace::Recorder;
 
 /// Cycles that the bus lets the drive miss before it gives up.
@@ -72,16 +71,16 @@ impl Network {
         let drive_every = loops.position_every;
         if !bus_every.is_multiple_of(drive_every) {
             let bound = "a whole number of periods of the position loop";
-            return Err(ParamError { name: "bus.cycle", value: f64::from(bus.cycle) * tick, bound }.into());
+            let value = f64::from(bus.cycle) * tick;
+            return Err(BuildError::Key(ParamError { name: "bus.cycle", value, bound }));
         }
         let dynamics = scenario.plc.as_ref().map_or_else(|| dynamics(&program), dynamics_of_calls);
 
         let rated_effort = rated_effort(scenario);
         let counted = counted(scenario, loops)?;
         let units = units(&counted, scenario.axis.motion, bus.units, rated_effort)?;
-        let counter = if bus.counter.signed { Counter::signed } else { Counter::unsigned }(bus.counter.bits)?;
         let device = device_params(bus, loops, units.conversions, bus.cycle / drive_every.ticks(), &dynamics);
-        let device = device::Params { counter, ..device };
+        let device = device::Params { counter: bus.counter, ..device };
         let (device, rated_effort) = with_objects(&device, bus, &units, rated_effort)?;
         let increment = units.increment;
         let drive = (device, device::State::new(&device)?);
@@ -95,10 +94,7 @@ impl Network {
             interpolation: bus.interpolation,
             margin: bus.margin,
             control: control(bus, &dynamics),
-            sequencing: match bus.sequencing {
-                scenario::Sequencing::Strict => link::Sequencing::Strict,
-                scenario::Sequencing::Simplified => link::Sequencing::Simplified,
-            },
+            sequencing: bus.sequencing,
             drive_timeout: base_rate.tick_at(bus.drive_timeout).0,
             round_trip: 2 * bus.delay + 1,
             // What the master hears is of the drive's last step.
@@ -109,7 +105,7 @@ impl Network {
                 axis_units: bus.units.axis,
                 velocity_factor: 1.0,
                 rated_effort,
-                counter,
+                counter: bus.counter,
             },
             velocity_from_differences: bus.velocity_from_differences,
             recovery: Limits {
@@ -150,9 +146,9 @@ impl Network {
             drive,
             serial: Port::default(),
             bus: (bus::Params::new(bus_every, bus.delay, &[])?, bus::State::default()),
-            faults: bus.faults.iter().filter_map(bus_fault).collect(),
+            faults: bus.faults.clone(),
             turns: (task::Params::new(motion_cycle, &[]), task::State::default()),
-            task_faults: bus.faults.iter().filter_map(task_fault).collect(),
+            task_faults: bus.task_faults.clone(),
             drive_every,
             drive_turn: Countdown::default(),
             frame: None,
@@ -171,42 +167,6 @@ impl Network {
     }
 }
 
-/// What goes wrong on the bus.
-fn bus_fault(fault: &scenario::BusFault) -> Option<BusFault> {
-    use scenario::BusFaultKind as Kind;
-    let kind = match fault.kind {
-        Kind::Lost => BusFaultKind::Lost,
-        Kind::Late { by } => BusFaultKind::Late { by },
-        Kind::Jitter { by, seed } => BusFaultKind::Jitter { by, seed },
-        Kind::MasterStopped => BusFaultKind::MasterStopped,
-        Kind::DriveSilent => BusFaultKind::DriveSilent,
-        Kind::ExternalFault => BusFaultKind::ExternalFault,
-        Kind::TaskLate { .. } | Kind::TaskJitter { .. } | Kind::TaskLost | Kind::TaskTorn | Kind::TaskFast { .. } => {
-            return None;
-        }
-    };
-    Some(BusFault { kind, cycles: fault.cycles.clone() })
-}
-
-/// What goes wrong with the motion task.
-fn task_fault(fault: &scenario::BusFault) -> Option<TaskFault> {
-    use scenario::BusFaultKind as Kind;
-    let kind = match fault.kind {
-        Kind::TaskLate { by } => TaskFaultKind::Late { by },
-        Kind::TaskJitter { by, seed } => TaskFaultKind::Jitter { by, seed },
-        Kind::TaskLost => TaskFaultKind::Lost,
-        Kind::TaskTorn => TaskFaultKind::Torn,
-        Kind::TaskFast { by } => TaskFaultKind::Short { by },
-        Kind::Lost
-        | Kind::Late { .. }
-        | Kind::Jitter { .. }
-        | Kind::MasterStopped
-        | Kind::DriveSilent
-        | Kind::ExternalFault => return None,
-    };
-    Some(TaskFault { kind, cycles: fault.cycles.clone() })
-}
-
 /// How long a set-point of `mode` waits for the feedforward (s): in the drive's position loop, which a velocity goes past.
 fn wait(mode: scenario::BusMode, loops: &drive::Params, drive_every: Divider) -> f64 {
     match mode {
@@ -215,8 +175,12 @@ fn wait(mode: scenario::BusMode, loops: &drive::Params, drive_every: Divider) ->
     }
 }
 
-fn divider(name: &'static str, ticks: u32) -> Result<Divider, ParamError> {
-    Divider::new(ticks).ok_or(ParamError { name, value: f64::from(ticks), bound: "a base tick at least" })
+fn divider(key: &'static str, ticks: u32) -> Result<Divider, BuildError> {
+    Divider::new(ticks).ok_or(BuildError::Key(ParamError {
+        name: key,
+        value: f64::from(ticks),
+        bound: "a base tick at least",
+    }))
 }
 
 /// The most of every move, with a jerk where no move has one: the acceleration within 10 ms.
@@ -274,10 +238,7 @@ fn device_params(
     device::Params {
         period: loops.period(loops.position_every),
         cycle: device::CycleParams { steps, shift: 0, bridged: BRIDGED },
-        interpolation: match bus.drive_interpolation {
-            DriveInterpolation::Linear => Mode::Linear,
-            DriveInterpolation::Cubic => Mode::Cubic,
-        },
+        interpolation: bus.drive_interpolation,
         units,
         reverse_switches: bus.reverse_switches,
         profile: device::Profile {
@@ -317,15 +278,15 @@ fn with_objects(
     }
     settings.store_in(&mut objects)?;
     for write in &bus.objects {
-        let object = Object { index: write.index, subindex: write.subindex };
         objects
-            .write_number(object, write.value, PowerState::SwitchOnDisabled)
+            .write_number(write.object, write.value, PowerState::SwitchOnDisabled)
             .map_err(|error| BuildError::Object { key: write.key.clone(), error: Box::new(error) })?;
     }
     let written = settings.with_objects(&objects, units.unit)?;
     if let Some(range) = written.rotary.range {
         let bound = "the whole range: the link counts through the end of its counter";
-        return Err(ParamError { name: "drive.objects.607Bh.2", value: range.max().into(), bound }.into());
+        let name = "drive.objects.607Bh.2";
+        return Err(BuildError::Key(ParamError { name, value: range.max().into(), bound }));
     }
     // How many steps there are between two frames is a matter of the bus.
     let settings = device::Params { cycle: settings.cycle, ..written };

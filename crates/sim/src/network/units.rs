@@ -48,16 +48,17 @@ pub(super) fn units(
         Coordinate::Linear => 1.0,
     };
     let length = unit.axis / f64::from(unit.drive);
-    let feed = fraction("bus.units", counted.transmission * revolution / length)?;
+    let feed = fraction("bus.units", counted.transmission * revolution / length).map_err(BuildError::Key)?;
     let increments = match counted.increment {
         Some(increment) => fraction("encoder", revolution / increment)?,
         // An ideal encoder: finer than the units.
         None => [feed[0].saturating_mul(FINER), feed[1]],
     };
     let [numerator, denominator] = match motion {
-        Coordinate::Linear => fraction("bus.units.axis", unit.axis)?,
-        Coordinate::Rotary => fraction("bus.units.axis", unit.axis / TAU)?,
-    };
+        Coordinate::Linear => fraction("bus.units.axis", unit.axis),
+        Coordinate::Rotary => fraction("bus.units.axis", unit.axis / TAU),
+    }
+    .map_err(BuildError::Key)?;
     let ratio = Ratio::new(numerator.into(), i64::from(denominator) * i64::from(unit.drive))?;
     let unit = match motion {
         Coordinate::Linear => AxisUnit::Metre(ratio),

@@ -1,7 +1,7 @@
 //! What no loop reaches is out of the verdict by structure.
 use crate::axes::{Tuning, body, chain, ideal, report, servo};
 use servobench_base::Dq;
-use servobench_drive as drive;
+use servobench_drive::{self as drive, Parameter};
 use servobench_stability::{Depth, Loop, LoopName, OperatingPoint, StabilityError, VelocitySignal, analyse};
 
 const TUNING: Tuning =
@@ -91,9 +91,9 @@ fn what_cannot_be_analysed_is_said() {
     let mut model = ideal(12_000, 1, 3.0, three_bodies());
     model.drive.position_gain = f64::NAN;
     let error = analyse(&model, Depth::Verdict).unwrap_err();
-    assert!(matches!(error, StabilityError::Parameter(error) if error.name == "drive.position.gain"));
+    assert!(matches!(error, StabilityError::Drive(error) if error.name == Parameter::PositionGain));
     let mixed = Loop { source: servo(TUNING, three_bodies()).source, ..ideal(12_000, 1, 3.0, three_bodies()) };
-    assert!(matches!(analyse(&mixed, Depth::Verdict), Err(StabilityError::Parameter(_))));
+    assert!(matches!(analyse(&mixed, Depth::Verdict), Err(StabilityError::SourceDoesNotFit)));
     // 1e300 N·s/m on 10 g is a pole of −1e298 a tick.
     let model = ideal(12_000, 1, 1e300, chain(vec![body(0.01, 0.0)], &[]));
     let error = analyse(&model, Depth::Verdict).unwrap_err();

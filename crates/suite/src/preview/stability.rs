@@ -1,9 +1,10 @@
 //! Whether the loops are stable, and how far from their boundaries.
 use super::Doubt;
+use servobench_drive::Parameter;
 use servobench_metrics::Quantity;
-use servobench_scenario::Scenario;
+use servobench_scenario::{Scenario, parameter_key};
 use servobench_sim::{Analysis, BuildError, analyse_stability};
-use servobench_stability::{Boundaries, Depth, LEFT_OUT, LoopReport};
+use servobench_stability::{Boundaries, Depth, GainName, LEFT_OUT, LoopReport};
 
 /// What the analysis of the linear loop says of a scenario.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,11 +34,23 @@ impl LoopStability {
         let Analysis::Done { report, .. } = &self.0 else { return Vec::new() };
         let unstable = report.instability.iter().map(|instability| {
             let help = format!("every run of it fails the requirement `stable`; {LEFT_OUT}");
-            Doubt::new(instability.gain_name.key(), instability.to_string(), help)
+            Doubt::new(key_of(instability.gain_name), instability.to_string(), help)
         });
-        let key = |outer| report.loops.iter().find(|one| one.name == outer).map_or("drive", |one| one.gain_name.key());
+        let key =
+            |outer| report.loops.iter().find(|one| one.name == outer).map_or("drive", |one| key_of(one.gain_name));
         let orders = report.warnings.iter().map(|warning| Doubt::new(key(warning.outer), warning.to_string(), ""));
         unstable.chain(orders).collect()
+    }
+}
+
+/// The key that sets `gain`.
+const fn key_of(gain: GainName) -> &'static str {
+    match gain {
+        GainName::Position => parameter_key(Parameter::PositionGain),
+        GainName::Velocity => parameter_key(Parameter::VelocityGain),
+        GainName::CurrentBandwidth => "drive.current.bandwidth",
+        GainName::CurrentD => parameter_key(Parameter::CurrentGainD),
+        GainName::CurrentQ => parameter_key(Parameter::CurrentGainQ),
     }
 }
 

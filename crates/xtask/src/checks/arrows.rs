@@ -18,7 +18,7 @@ const PLAN: [(&str, May); 30] = [
     ("motion", May::On(&["base", "config"])),
     ("planner", May::On(&["base", "config", "motion"])),
     ("drive", May::On(&["base", "config", "cia402", "motion"])),
-    ("fieldbus", May::On(&["base", "cia402", "motion"])),
+    ("fieldbus", May::On(&["base", "config", "cia402", "motion"])),
     ("plcopen", May::On(&["base", "config", "fieldbus", "motion"])),
     ("plant", May::On(&["base"])),
     ("stability", May::On(&["base", "drive", "plant"])),
@@ -30,7 +30,13 @@ const PLAN: [(&str, May); 30] = [
     ("trace", May::On(&["base"])),
     ("signals", May::On(&["base", "plant", "trace"])),
     ("metrics", May::On(&["base", "config", "signals", "trace"])),
-    ("scenario", May::On(&["base", "config", "motion", "planner", "drive", "plant", "plcopen", "signals", "metrics"])),
+    (
+        "scenario",
+        May::On(&[
+            "base", "config", "cia402", "motion", "planner", "drive", "fieldbus", "plant", "plcopen", "signals",
+            "metrics",
+        ]),
+    ),
     (
         "sim",
         May::On(&[
