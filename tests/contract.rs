@@ -2,8 +2,8 @@
 use servobench_base::Coordinate;
 use servobench_base::Setpoint;
 use servobench_plant::{
-    Actuation, Body, BodyState, Chain, Drive, DryFriction, Engine, Input, Link, Mechanics, MechanicsError,
-    MechanicsSetup, Model,
+    Actuation, Body, BodyState, Chain, Drive, DryFriction, Engine, Extrapolation, FmuBody, FmuFile, FmuModel, FmuPort,
+    Input, Isolation, Link, Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Model,
 };
 use servobench_tests::engines;
 use std::f64::consts::TAU;
@@ -162,6 +162,44 @@ fn what_is_not_finite_ends_the_run() {
         ] {
             let mut mechanics = build(engine, &setup(2, Drive::Effort));
             assert!(mechanics.advance(&input).is_err(), "{} went on after {input:?}", engine.name());
+        }
+    }
+}
+
+/// Every kind of model that is not among the engine's capabilities is refused by name, and none that is.
+#[test]
+fn an_engine_simulates_what_its_capabilities_list() {
+    let port = || FmuPort { variable: "x".into(), unit: None };
+    let file = FmuFile { path: "none.fmu".into(), start: Vec::new(), isolation: Isolation::None, event_mode: true };
+    let models = [
+        setup(2, Drive::Effort).model,
+        Model::Mjcf(MjcfModel {
+            xml: "<mujoco/>".into(),
+            path: "none.xml".into(),
+            motor_joint: "motor".into(),
+            load_joint: "load".into(),
+            actuator: "motor".into(),
+            transmission: 1.0,
+            axis: None,
+        }),
+        Model::Fmu(Box::new(FmuModel {
+            file,
+            effort: port(),
+            motor: FmuBody { position: port(), velocity: None },
+            load: None,
+            motor_disturbance: None,
+            load_disturbance: None,
+            transmission: 1.0,
+            ticks: 1,
+            extrapolation: Extrapolation::Linear,
+        })),
+    ];
+    for engine in engines() {
+        for model in &models {
+            let refusal = MechanicsError::not_simulated(engine.name(), model);
+            let built = engine.build(&MechanicsSetup { model: model.clone(), ..setup(2, Drive::Effort) });
+            let is_refused = built.err() == Some(refusal);
+            assert_eq!(is_refused, !engine.name().simulates(model.kind()), "{}: {model:?}", engine.name());
         }
     }
 }

@@ -5,7 +5,8 @@ use crate::open::{Wanted, open};
 use servobench_base::{ParamError, finite, positive};
 use servobench_fmi::Slave;
 use servobench_plant::{
-    Drive, Engine, FmuEntry, FmuMistake, FmuModel, FmuPartner, Mechanics, MechanicsError, MechanicsSetup, Model,
+    Drive, Engine, EngineName, FmuEntry, FmuMistake, FmuModel, FmuPartner, Mechanics, MechanicsError, MechanicsSetup,
+    Model,
 };
 use std::io;
 
@@ -24,11 +25,7 @@ impl Fmu {
     pub fn mechanics(&self, setup: &MechanicsSetup) -> Result<FmuMechanics, MechanicsError> {
         setup.check()?;
         let Model::Fmu(model) = &setup.model else {
-            return Err(MechanicsError::Unsupported {
-                engine: NAME,
-                what: "mechanics that are described by bodies or MJCF".into(),
-                way_out: "choose another engine, or give an FMU".into(),
-            });
+            return Err(MechanicsError::not_simulated(NAME, &setup.model));
         };
         if setup.drive == Drive::Prescribed {
             return Err(MechanicsError::Unsupported {
@@ -69,7 +66,7 @@ impl Fmu {
 }
 
 impl Engine for Fmu {
-    fn name(&self) -> &'static str {
+    fn name(&self) -> EngineName {
         NAME
     }
 

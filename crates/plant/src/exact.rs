@@ -13,12 +13,13 @@
 //! exactly too. A stuck body has its velocity row and column struck out: one pair (Φ, Γ) for each set of stuck bodies.
 //! Source: Åström & Wittenmark, *Computer-Controlled Systems*, 3rd ed., §2.3; Van Loan, IEEE TAC 23(3), 1978.
 use crate::chain::Chain;
+use crate::engine::{Engine, EngineName};
 use crate::friction::Grip;
-use crate::mechanics::{Actuation, BodyState, Drive, Engine, Input, Mechanics, MechanicsError, MechanicsSetup, Model};
+use crate::mechanics::{Actuation, BodyState, Drive, Input, Mechanics, MechanicsError, MechanicsSetup, Model};
 use nalgebra::DMatrix;
 use std::sync::Arc;
 
-const NAME: &str = "exact";
+const NAME: EngineName = EngineName::Exact;
 const MAX_BODIES: usize = Chain::MAX_BODIES;
 /// Most rows: stretches and velocities of the chain, derivatives of a prescribed base, travel.
 const ROWS: usize = 2 * MAX_BODIES - 1 + 4 + 1;
@@ -33,7 +34,7 @@ fn states(chain: &Chain, prescribed: bool) -> usize {
 pub struct Exact;
 
 impl Engine for Exact {
-    fn name(&self) -> &'static str {
+    fn name(&self) -> EngineName {
         NAME
     }
 
@@ -46,12 +47,7 @@ impl Engine for Exact {
                 5..=8 => Box::new(ExactChain::<8>::new(chain.clone(), setup)),
                 _ => Box::new(ExactChain::<ROWS>::new(chain.clone(), setup)),
             }),
-            Model::Mjcf(model) => Err(MechanicsError::Unsupported {
-                engine: NAME,
-                what: format!("MJCF files ({})", model.path.display()),
-                way_out: "choose the engine `mujoco` or `rapier`, or describe the axis by its bodies".into(),
-            }),
-            Model::Fmu(_) => Err(MechanicsError::not_an_fmu_engine(NAME)),
+            other => Err(MechanicsError::not_simulated(NAME, other)),
         }
     }
 }
@@ -232,7 +228,7 @@ impl<const W: usize> Mechanics for ExactChain<W> {
     }
 
     fn rewind(&mut self) -> Result<(), MechanicsError> {
-        let Some((y, bodies)) = &self.marked else { return Err(MechanicsError::no_way_back()) };
+        let Some((y, bodies)) = &self.marked else { return Err(MechanicsError::NoWayBack) };
         self.y = *y;
         self.bodies.clone_from(bodies);
         Ok(())

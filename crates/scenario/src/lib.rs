@@ -45,9 +45,9 @@ pub use points::{
 };
 pub use scenario::{
     Actuator, Axis, AxisMechanics, BodySignal, Bus, BusFault, BusFaultKind, BusMode, CoSimulation, Counter,
-    CouplingMethod, Disturbance, DisturbedBody, Drive, DriveInterpolation, DriveUnits, EngineName, Feedback, Fmu,
-    Initial, InputSource, Interpolation, Isolation, LONGEST_RUN, LoopSignal, MoveStep, ObjectWrite, Plc, Record,
-    Requirements, Scenario, Sequencing, StartValue, Step, TrajectoryBuffer,
+    CouplingMethod, Disturbance, DisturbedBody, Drive, DriveInterpolation, DriveUnits, Feedback, Fmu, Initial,
+    InputSource, Interpolation, Isolation, LONGEST_RUN, LoopSignal, MoveStep, ObjectWrite, Plc, Record, Requirements,
+    Scenario, Sequencing, StartValue, Step, TrajectoryBuffer,
 };
 pub use schema::json_schema;
 pub use source::{SourceId, Sources};

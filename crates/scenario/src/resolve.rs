@@ -31,11 +31,12 @@ use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file::{File, MotorKind, Run};
 use crate::limit_table::LimitTable;
-use crate::scenario::{EngineName, LONGEST_RUN, Record, Scenario};
+use crate::scenario::{LONGEST_RUN, Record, Scenario};
 use crate::simple::MAX_RATE;
 use crate::source::{At, SourceId, Sources, Span};
 use servobench_base::Rate;
 use servobench_metrics::{Limit, Question};
+use servobench_plant::EngineName;
 use std::collections::BTreeSet;
 
 pub(crate) use axis::motor_motion;
@@ -91,7 +92,7 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
     }
 
     let engines = match &file.engine {
-        Slot::Absent => vec![EngineName::Exact],
+        Slot::Absent => vec![EngineName::default()],
         Slot::Wrong(_) => return None,
         Slot::Given(engines) => distinct(&engines.value.0, report),
     };

@@ -29,6 +29,7 @@ pub use requirements::Requirements;
 use crate::parameters::Parameter;
 use servobench_base::Rate;
 use servobench_metrics::{Limit, Question};
+use servobench_plant::EngineName;
 use servobench_signals::Signal;
 use std::path::PathBuf;
 
@@ -82,19 +83,6 @@ pub struct Scenario {
     pub parameters: Vec<Parameter>,
 }
 
-/// Engines a scenario can name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum EngineName {
-    /// Exact zero-order hold of the linear chain.
-    Exact,
-    /// Rapier, in f64.
-    Rapier,
-    /// MuJoCo.
-    Mujoco,
-    /// The FMU of the axis.
-    Fmu,
-}
-
 /// What to record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
@@ -102,20 +90,4 @@ pub struct Record {
     pub rate: Rate,
     /// Signals to keep; empty for all.
     pub channels: Vec<Signal>,
-}
-
-impl EngineName {
-    /// Every engine, in the order in which tables list them.
-    pub const ALL: [Self; 4] = [Self::Exact, Self::Rapier, Self::Mujoco, Self::Fmu];
-
-    /// The name as scenario files write it.
-    #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::Exact => "exact",
-            Self::Rapier => "rapier",
-            Self::Mujoco => "mujoco",
-            Self::Fmu => "fmu",
-        }
-    }
 }

@@ -13,7 +13,7 @@ use servobench_planner::{
     Averages, CommandRate, Filter, Follow, Generator, Grid, Method, PointToPoint, Positioning, Replanning, Rockwell,
     Shaping, TableMove, Velocities,
 };
-use servobench_plant::{Body, Chain, Encoder, IdealSource, SourceOutput, inverter, pmsm};
+use servobench_plant::{Body, Chain, Encoder, EngineName, IdealSource, SourceOutput, inverter, pmsm};
 use servobench_scenario::*;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;

@@ -2,7 +2,8 @@
 use servobench_base::Severity;
 use servobench_fmi::{Capabilities, LogLine, Progress, Slave, SlaveError};
 use servobench_plant::{
-    BodyState, Engine, Exact, FmuMistake, FmuPartner, Input, Mechanics, MechanicsError, MechanicsSetup, Said,
+    BodyState, Engine, EngineName, Exact, FmuMistake, FmuPartner, Input, Mechanics, MechanicsError, MechanicsSetup,
+    Said,
 };
 use servobench_scenario as scenario;
 use servobench_sim::{Bench, NoPartners, Outcome, Partners};
@@ -123,8 +124,8 @@ struct Talks {
 }
 
 impl Engine for Talking {
-    fn name(&self) -> &'static str {
-        "exact"
+    fn name(&self) -> EngineName {
+        EngineName::Exact
     }
 
     fn build(&self, setup: &MechanicsSetup) -> Result<Box<dyn Mechanics>, MechanicsError> {
@@ -142,7 +143,7 @@ impl Mechanics for Talks {
         self.ticks += 1;
         self.said.push(Said { time, severity: Severity::Warning, text: format!("in {}", self.ticks) });
         if self.ticks > 3 {
-            return Err(MechanicsError::Native { engine: "exact", message: "enough".into() });
+            return Err(MechanicsError::Native { engine: EngineName::Exact, message: "enough".into() });
         }
         self.exact.advance(input)
     }

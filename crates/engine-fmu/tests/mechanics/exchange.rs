@@ -1,6 +1,6 @@
 //! What is exchanged with an FMU, and when.
 use super::*;
-use servobench_plant::{BodyState, MechanicsError};
+use servobench_plant::{BodyState, EngineName, MechanicsError};
 use std::sync::{Arc, Mutex};
 
 /// A torque that excites the mode, and a force on the table.
@@ -174,7 +174,7 @@ fn what_goes_wrong_in_a_step_ends_the_run_with_the_reason() {
             "discarded fmi2DoStep at 0 s",
         ),
     ] {
-        assert!(matches!(error, MechanicsError::Native { engine: "fmu", .. }), "{error}");
+        assert!(matches!(error, MechanicsError::Native { engine: EngineName::Fmu, .. }), "{error}");
         assert!(error.to_string().contains(words), "{error}");
     }
     let error = says(|time, _| Err(SlaveError::NotFinite { variable: "x".into(), value: f64::NAN, time }));
@@ -194,7 +194,7 @@ fn a_prescribed_motion_is_refused() {
     let actuation = Actuation::Motion(servobench_base::Setpoint::default());
     let all = Input { actuation, motor_disturbance: 0.0, load_disturbance: 0.0 };
     let result = mechanics(ExactFmu::new(TICK), &model(1, Extrapolation::Linear), &IN_SI).advance(&all);
-    assert!(matches!(result, Err(MechanicsError::Unsupported { engine: "fmu", .. })));
+    assert!(matches!(result, Err(MechanicsError::Unsupported { engine: EngineName::Fmu, .. })));
 }
 
 /// Moves with 3 rad/s.

@@ -4,8 +4,8 @@ mod leaving;
 use servobench_base::Severity;
 use servobench_engine_fmu::{Fmu, FmuMechanics, HostCommand, HostError, host as serve};
 use servobench_plant::{
-    Actuation, Drive, Engine, Extrapolation, FmuBody, FmuFile, FmuModel, FmuPort, FmuStart, FmuValue, Input, Isolation,
-    Mechanics, MechanicsError, MechanicsSetup, Model, Said,
+    Actuation, Drive, Engine, EngineName, Extrapolation, FmuBody, FmuFile, FmuModel, FmuPort, FmuStart, FmuValue,
+    Input, Isolation, Mechanics, MechanicsError, MechanicsSetup, Model, Said,
 };
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -191,7 +191,7 @@ fn what_a_library_does_wrong_is_reported_as_what_it_is() {
         (Mischief::Hoard, "it asked for more memory than the 300 MB that it may have, then signal 11"),
     ] {
         let error = second_step(mischief, patience);
-        assert!(matches!(error, MechanicsError::Native { engine: "fmu", .. }), "{error}");
+        assert!(matches!(error, MechanicsError::Native { engine: EngineName::Fmu, .. }), "{error}");
         assert!(error.to_string().contains(says), "{error}");
     }
     let error = second_step(Mischief::Hang, Duration::from_secs(1));

@@ -5,11 +5,10 @@ use crate::file::{self, File};
 use crate::name_table::Named;
 use crate::nearest::suggestion;
 use crate::resolve::{refuse, whole};
-use crate::scenario::{
-    Actuator, BodySignal, CoSimulation, CouplingMethod, EngineName, Fmu, InputSource, Isolation, LoopSignal,
-};
+use crate::scenario::{Actuator, BodySignal, CoSimulation, CouplingMethod, Fmu, InputSource, Isolation, LoopSignal};
 use crate::source::{At, Place, Sources, Span};
 use servobench_base::Rate;
+use servobench_plant::ModelKind;
 use servobench_signals::Signal;
 use std::path::{Path, PathBuf};
 
@@ -65,9 +64,9 @@ pub(super) struct Known<'a> {
 pub(super) fn mechanics(file: &File, known: Known<'_>, report: &mut Report) -> Option<Option<Fmu<BodySignal>>> {
     let slot = file.axis.given().map_or(&Slot::Absent, |axis| &axis.fmu);
     let engines = file.engine.given().map_or(&[][..], |engines| &engines.0);
-    let asked = engines.iter().find(|engine| engine.value == EngineName::Fmu);
+    let asked = engines.iter().find(|engine| engine.value.simulates(ModelKind::Fmu));
     if let (Some(engine), Slot::Absent) = (asked, slot) {
-        report.error(engine.span, "the engine \"fmu\" has no FMU", "give `[axis.fmu]`");
+        report.error(engine.span, format!("the engine \"{}\" has no FMU", engine.value), "give `[axis.fmu]`");
     }
     let Some(At { value: given, span }) = slot.at() else { return slot.optional().ok().map(|_| None) };
     if asked.is_none() {

@@ -1,5 +1,4 @@
 //! FMUs of a scenario as the plant and the coupling take them.
-use crate::error::BuildError;
 use servobench_base::Coordinate;
 use servobench_plant::{
     Extrapolation, FmuBody, FmuFile, FmuModel, FmuPartner, FmuPort, FmuStart, FmuValue, Isolation, SiUnit,
@@ -9,7 +8,7 @@ use servobench_signals::{Equipment, Signal};
 use std::time::Duration;
 
 /// Which variables of an FMU are the mechanics.
-pub(super) fn mechanics(fmu: &Fmu<BodySignal>, scenario: &Scenario) -> Result<FmuModel, BuildError> {
+pub(super) fn mechanics(fmu: &Fmu<BodySignal>, scenario: &Scenario) -> Option<FmuModel> {
     let axis = &scenario.axis;
     let input = |signal, unit| {
         let given = fmu.inputs.iter().find(|(_, source)| *source == InputSource::Signal(signal));
@@ -23,11 +22,10 @@ pub(super) fn mechanics(fmu: &Fmu<BodySignal>, scenario: &Scenario) -> Result<Fm
         Some(FmuBody { position: output(position, unit.to_owned())?, velocity: output(velocity, format!("{unit}/s")) })
     };
     let (motor_effort, load_effort) = (axis.motor_motion.effort_unit(), axis.motion.effort_unit());
-    Ok(FmuModel {
+    Some(FmuModel {
         file: file(fmu),
-        effort: input(Signal::EffortMotor, motor_effort).ok_or(BuildError::NoFmu)?,
-        motor: body(axis.motor_motion, BodySignal::ShaftPosition, BodySignal::ShaftVelocity)
-            .ok_or(BuildError::NoFmu)?,
+        effort: input(Signal::EffortMotor, motor_effort)?,
+        motor: body(axis.motor_motion, BodySignal::ShaftPosition, BodySignal::ShaftVelocity)?,
         load: body(axis.motion, BodySignal::LoadPosition, BodySignal::LoadVelocity),
         motor_disturbance: input(Signal::DisturbanceMotor, motor_effort),
         load_disturbance: input(Signal::DisturbanceLoad, load_effort),

@@ -201,7 +201,7 @@ impl Block for Part {
         match self {
             Self::Axis(axis) => {
                 let Some((saved, now, external)) = &axis.saved else {
-                    return Err(MechanicsError::no_way_back().into());
+                    return Err(MechanicsError::NoWayBack.into());
                 };
                 axis.recorded.restore(saved)?;
                 (axis.now, axis.external) = (*now, *external);
