@@ -1,9 +1,10 @@
 //! What `Engine` and `Mechanics` promise, held against every engine of the build.
 use servobench_base::Coordinate;
 use servobench_base::Setpoint;
+use servobench_fmi::{FmuFile, Isolation, SiPort};
 use servobench_plant::{
-    Actuation, Body, BodyState, Chain, Drive, DryFriction, Engine, Extrapolation, FmuBody, FmuFile, FmuModel, FmuPort,
-    Input, Isolation, Link, Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Model,
+    Actuation, Body, BodyState, Chain, Drive, DryFriction, Engine, FmuBody, FmuModel, Input, Link, Mechanics,
+    MechanicsError, MechanicsSetup, MjcfModel, Model,
 };
 use servobench_tests::engines;
 use std::f64::consts::TAU;
@@ -169,7 +170,7 @@ fn what_is_not_finite_ends_the_run() {
 /// Every kind of model that is not among the engine's capabilities is refused by name, and none that is.
 #[test]
 fn an_engine_simulates_what_its_capabilities_list() {
-    let port = || FmuPort { variable: "x".into(), unit: None };
+    let port = || SiPort { variable: "x".into(), unit: None };
     let file = FmuFile { path: "none.fmu".into(), start: Vec::new(), isolation: Isolation::None, event_mode: true };
     let models = [
         setup(2, Drive::Effort).model,
@@ -191,7 +192,6 @@ fn an_engine_simulates_what_its_capabilities_list() {
             load_disturbance: None,
             transmission: 1.0,
             ticks: 1,
-            extrapolation: Extrapolation::Linear,
         })),
     ];
     for engine in engines() {

@@ -65,4 +65,4 @@ pub use error::CouplingError;
 pub use master::{Advance, Effort, Master};
 pub use network::{Connection, Flow, InputPort, Member, Network, NetworkError, Port, PowerBond};
 pub use polynomial::{Order, later, mean, value};
-pub use settings::{Acceleration, Iteration, Method, Settings};
+pub use settings::{Acceleration, Iteration, Method, MethodKind, Settings};

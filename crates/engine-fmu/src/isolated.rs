@@ -7,7 +7,7 @@ use crate::memory::in_words;
 use crate::page::{Answered, Asked, Page};
 use crate::protocol::{Command, Message, Status, kept, log_of_lines};
 use serde::Serialize;
-use servobench_fmi::{Capabilities, Feedthrough, LogLine, Progress, Severity, Slave, SlaveError, Unpacked};
+use servobench_fmi::{Bounds, Capabilities, Feedthrough, LogLine, Progress, Severity, Slave, SlaveError, Unpacked};
 use std::sync::atomic::Ordering::Relaxed;
 use std::time::{Duration, Instant};
 
@@ -17,22 +17,6 @@ const GLANCE: Duration = Duration::from_millis(50);
 /// How long a process may take for its end after it has freed its FMU.
 const LEAVE: Duration = Duration::from_secs(1);
 const OVERWRITTEN: &str = "it wrote over the memory through which it is spoken to";
-
-/// What an FMU in a process of its own may take.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Bounds {
-    /// Real time for any one call, loading and initialisation being one.
-    pub patience: Duration,
-    /// Memory that it may have for itself, the program's included (B). Files that it maps do not count.
-    pub memory: u64,
-}
-
-impl Default for Bounds {
-    /// A minute, and 2 GiB.
-    fn default() -> Self {
-        Self { patience: Duration::from_mins(1), memory: 2 << 30 }
-    }
-}
 
 /// How many numbers go in and out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -60,7 +60,7 @@ impl FmuMechanics {
     /// [`MechanicsError`] if its outputs cannot be read.
     pub fn new(slave: Box<dyn Slave>, model: &FmuModel, tick: f64) -> Result<Self, MechanicsError> {
         let period = f64::from(model.ticks) * tick;
-        let motion = Motion::new(model.extrapolation, period);
+        let motion = Motion::new(period);
         let (inputs, bodies) = (model.inputs().count(), model.bodies().count());
         let mut mechanics = Self {
             slave,

@@ -13,6 +13,7 @@ mod feedthrough;
 mod library;
 mod loaded;
 mod log;
+mod request;
 mod setup;
 mod slave;
 
@@ -27,6 +28,7 @@ pub use feedthrough::Feedthrough;
 pub use library::calls::note_calls;
 pub use loaded::Loaded;
 pub use log::hear_at_once;
+pub use request::{Bounds, FmuEntry, FmuFile, FmuMistake, FmuRequest, Isolation, IsolationKind, SiPort, SiUnit};
 pub use servobench_base::Severity;
 pub use setup::{Setup, Value};
 pub use slave::{Capabilities, LogLine, Port, Progress, Slave, SlaveError};

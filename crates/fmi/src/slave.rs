@@ -1,4 +1,5 @@
 //! A co-simulation FMU that is initialised, whichever version it is of, and whether it runs here or in a process of its own.
+use serde::{Deserialize, Serialize};
 use servobench_base::Severity;
 use thiserror::Error;
 
@@ -6,7 +7,7 @@ use thiserror::Error;
 ///
 /// Whatever its type is, it is exchanged as a number: integers and enumerations by value, FALSE and TRUE as 0 and 1. A number
 /// that its type cannot hold is [`SlaveError::Value`].
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Port {
     /// Name in the model description.
     pub variable: String,

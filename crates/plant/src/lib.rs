@@ -25,10 +25,7 @@ mod switches;
 pub use chain::{Body, Chain, Link};
 pub use engine::{Capabilities, Engine, EngineName};
 pub use exact::{Exact, transition};
-pub use fmu::{
-    Extrapolation, FmuBody, FmuEntry, FmuFile, FmuMistake, FmuModel, FmuPartner, FmuPort, FmuStart, FmuValue,
-    Isolation, SiUnit,
-};
+pub use fmu::{FmuBody, FmuModel};
 pub use friction::{DryFriction, Grip};
 pub use integration::{Distortion, Integrator};
 pub use load_coordinate::{LoadCoordinate, PosedJoint};

@@ -1,10 +1,11 @@
 //! Mechanics behind one trait: what the closed loop sees of a simulated axis, whichever engine computes it.
 use crate::chain::Chain;
 use crate::engine::EngineName;
-use crate::fmu::{FmuMistake, FmuModel};
+use crate::fmu::FmuModel;
 use crate::mjcf_axis::MjcfAxis;
 use crate::refusal::{Refusal, in_one_line};
 use servobench_base::{ParamError, Setpoint, Severity, finite, positive};
+use servobench_fmi::FmuMistake;
 use std::path::PathBuf;
 use thiserror::Error;
 

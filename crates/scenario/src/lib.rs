@@ -35,7 +35,7 @@ mod tree;
 mod unit;
 mod when;
 
-pub use argument::{ArgumentError, Derivative, any_quantity, axis_quantity, frequency, ratio, time};
+pub use argument::{ArgumentError, Derivative, axis_quantity, frequency, ratio, si_unit, time};
 pub use diagnostic::{Diagnostic, Invalid, LoadError, MOST_MISTAKES, NamedFile, Shown, shown};
 pub use load::{Loaded, load, parse};
 pub use models::{embedded_demo, embedded_models};
@@ -44,10 +44,9 @@ pub use points::{
     Column, MOST_POINTS, Points, PointsError, PointsMistake, Profile, read_accelerations, read_points, read_velocities,
 };
 pub use scenario::{
-    Actuator, Axis, AxisMechanics, BodySignal, Bus, BusFault, BusFaultKind, BusMode, CoSimulation, Counter,
-    CouplingMethod, Disturbance, DisturbedBody, Drive, DriveInterpolation, DriveUnits, Feedback, Fmu, Initial,
-    InputSource, Interpolation, Isolation, LONGEST_RUN, LoopSignal, MoveStep, ObjectWrite, Plc, Record, Requirements,
-    Scenario, Sequencing, StartValue, Step, TrajectoryBuffer,
+    Actuator, Axis, AxisMechanics, Bus, BusFault, BusFaultKind, BusMode, Counter, Disturbance, DisturbedBody, Drive,
+    DriveInterpolation, DriveUnits, Feedback, Fmu, Initial, InputSource, Interpolation, LONGEST_RUN, LoopSignal,
+    MoveStep, ObjectWrite, Plc, Record, Requirements, Scenario, Sequencing, Step, TrajectoryBuffer,
 };
 pub use schema::json_schema;
 pub use source::{SourceId, Sources};

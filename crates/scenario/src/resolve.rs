@@ -6,6 +6,7 @@ mod block;
 mod bus;
 mod bus_fault;
 mod condition;
+mod coupling;
 mod current;
 mod disturbance;
 mod drive;
@@ -80,8 +81,8 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
     let requirements = requirements::resolve(file, &of_run, report);
     let fixed = is_prescribed.then(|| disturbance::Fixed::of(moved.as_ref()));
     let timing = disturbance::Timing { base_rate, duration };
-    let coupling = fmu::coupling(file, base_rate, report);
-    let fmus = fmu::others(file, coupling, fmu::Known { actuator: actuator.as_ref(), ..files }, report);
+    let coupling = coupling::resolve(file, base_rate, report);
+    let fmus = fmu::others(file, coupling.as_ref(), fmu::Known { actuator: actuator.as_ref(), ..files }, report);
     let disturbances = disturbance::disturbances(file, &timing, fixed, report);
     let initial = disturbance::initial(file, fixed, report);
     let record = record(file, base_rate, report);

@@ -21,7 +21,7 @@ pub use bus::{
 };
 pub use disturbance::{Disturbance, DisturbedBody, Initial};
 pub use drive::{Drive, Feedback};
-pub use fmu::{BodySignal, CoSimulation, CouplingMethod, Fmu, InputSource, Isolation, LoopSignal, StartValue};
+pub use fmu::{Fmu, InputSource, LoopSignal};
 pub use plc::Plc;
 pub use program::{Interpolation, MoveStep, Step};
 pub use requirements::Requirements;
@@ -64,9 +64,9 @@ pub struct Scenario {
     /// The PLC program, which needs a fieldbus; `None` without one.
     pub plc: Option<Plc>,
     /// Parts that FMUs simulate beside the axis.
-    pub fmus: Vec<Fmu<LoopSignal>>,
+    pub fmus: Vec<Fmu>,
     /// How they and the axis exchange what they give.
-    pub coupling: CoSimulation,
+    pub coupling: servobench_coupling::Settings,
     /// External efforts.
     pub disturbances: Vec<Disturbance>,
     /// Deviation from rest at zero at time 0.

@@ -1,10 +1,7 @@
 //! What FMUs say is in the recording at its time, whether they are beside the axis or its mechanics and however the run ends.
 use servobench_base::Severity;
-use servobench_fmi::{Capabilities, LogLine, Progress, Slave, SlaveError};
-use servobench_plant::{
-    BodyState, Engine, EngineName, Exact, FmuMistake, FmuPartner, Input, Mechanics, MechanicsError, MechanicsSetup,
-    Said,
-};
+use servobench_fmi::{Capabilities, FmuMistake, FmuRequest, LogLine, Progress, Slave, SlaveError};
+use servobench_plant::{BodyState, Engine, EngineName, Exact, Input, Mechanics, MechanicsError, MechanicsSetup, Said};
 use servobench_scenario as scenario;
 use servobench_sim::{Bench, NoPartners, Outcome, Partners};
 
@@ -76,7 +73,7 @@ impl Slave for Chatty {
 struct Opens;
 
 impl Partners for Opens {
-    fn open(&self, _: &FmuPartner) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
+    fn open(&self, _: &FmuRequest<'_>) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
         let mut chatty = Chatty::default();
         chatty.say(0.0, Severity::Info, "hello");
         Ok(Box::new(chatty))

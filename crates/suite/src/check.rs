@@ -5,7 +5,8 @@ use crate::job::Job;
 use crate::panicked::caught;
 use crate::worker::{self, WorkerCommand, WorkerError};
 use serde::{Deserialize, Serialize};
-use servobench_plant::{Engine, EngineName, FmuEntry, FmuMistake, MechanicsError, Refusal, RefusedAt};
+use servobench_fmi::{FmuEntry, FmuMistake};
+use servobench_plant::{Engine, EngineName, MechanicsError, Refusal, RefusedAt};
 use servobench_scenario::{AxisMechanics, Scenario};
 use servobench_sim::{Bench, BuildError, ConnectionDelay, Partners, UnusableFmu};
 

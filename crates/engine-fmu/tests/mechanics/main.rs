@@ -5,10 +5,13 @@ mod ports;
 
 use servobench_base::Coordinate;
 use servobench_engine_fmu::{FmuMechanics, InSi, Ports};
-use servobench_fmi::{Capabilities, LogLine, ModelDescription, Progress, Slave, SlaveError};
+use servobench_fmi::{
+    Capabilities, FmuFile, FmuMistake, Isolation, LogLine, ModelDescription, Progress, SiPort, SiUnit, Slave,
+    SlaveError,
+};
 use servobench_plant::{
-    Actuation, Body, Chain, Drive, DryFriction, Engine, Exact, Extrapolation, FmuBody, FmuFile, FmuMistake, FmuModel,
-    FmuPort, Input, Isolation, Link, Mechanics, MechanicsSetup, Model, SiUnit,
+    Actuation, Body, Chain, Drive, DryFriction, Engine, Exact, FmuBody, FmuModel, Input, Link, Mechanics,
+    MechanicsSetup, Model,
 };
 
 /// Base tick (s).
@@ -144,11 +147,11 @@ const METRE: (&str, [i32; 4]) = ("m", [0, 1, 0, 0]);
 const RADIAN_PER_SECOND: (&str, [i32; 4]) = ("rad/s", [0, 0, -1, 0]);
 const METRE_PER_SECOND: (&str, [i32; 4]) = ("m/s", [0, 1, -1, 0]);
 
-fn port(variable: &str, (name, exponents): (&str, [i32; 4])) -> FmuPort {
-    FmuPort { variable: variable.into(), unit: Some(SiUnit { name: name.into(), exponents }) }
+fn port(variable: &str, (name, exponents): (&str, [i32; 4])) -> SiPort {
+    SiPort { variable: variable.into(), unit: Some(SiUnit { name: name.into(), exponents }) }
 }
 
-fn model(ticks: u32, extrapolation: Extrapolation) -> FmuModel {
+fn model(ticks: u32) -> FmuModel {
     FmuModel {
         file: FmuFile { path: "table.fmu".into(), start: Vec::new(), isolation: Isolation::None, event_mode: true },
         effort: port("torque", NEWTON_METRE),
@@ -158,7 +161,6 @@ fn model(ticks: u32, extrapolation: Extrapolation) -> FmuModel {
         load_disturbance: Some(port("force", NEWTON)),
         transmission: 5e-3,
         ticks,
-        extrapolation,
     }
 }
 

@@ -4,8 +4,9 @@ use crate::field::Slot;
 use crate::file;
 use crate::file::MotorKind;
 use crate::models::read_beside;
+use crate::resolve::fmu::Mechanics;
 use crate::resolve::need;
-use crate::scenario::{Axis, AxisMechanics, BodySignal, Fmu};
+use crate::scenario::{Axis, AxisMechanics};
 use crate::source::{Sources, Span};
 use servobench_base::Coordinate;
 use servobench_config::quantities::EFFORT;
@@ -18,7 +19,7 @@ const PRESCRIBED_INERTIA: f64 = 1.0;
 pub(super) fn resolve(
     axis: &file::Axis,
     motor: &file::Motor,
-    fmu: Option<Fmu<BodySignal>>,
+    fmu: Option<Mechanics>,
     sources: &Sources,
     report: &mut Report,
 ) -> Option<Axis> {
@@ -43,15 +44,12 @@ pub(super) fn resolve(
     };
     let switches = switches(axis, motor_motion, report);
     let modulo = axis.modulo.optional().ok().map(Option::<&f64>::copied);
-    Some(Axis {
-        motion: motion?,
-        motor_motion,
-        transmission: transmission?,
-        mechanics: mechanics?,
-        fmu,
-        switches: switches?,
-        modulo: modulo?,
-    })
+    let (motion, transmission) = (motion?, transmission?);
+    let fmu = match fmu {
+        Some(fmu) => Some(fmu.model([motor_motion, motion], transmission)?),
+        None => None,
+    };
+    Some(Axis { motion, motor_motion, transmission, mechanics: mechanics?, fmu, switches: switches?, modulo: modulo? })
 }
 
 /// Coordinate of the motor: what its own keys say, or otherwise what the axis needs. A linear axis without a lead has a

@@ -17,8 +17,7 @@ pub(super) fn mechanics(
         Actuator::Off | Actuator::Pmsm { .. } | Actuator::IdealSource { .. } => plant::Drive::Effort,
     };
     if engine.name().simulates(ModelKind::Fmu) {
-        let model = scenario.axis.fmu.as_ref().and_then(|fmu| super::fmu::mechanics(fmu, scenario));
-        let model = model.ok_or(BuildError::NoFmu { engine: engine.name() })?;
+        let model = scenario.axis.fmu.clone().ok_or(BuildError::NoFmu { engine: engine.name() })?;
         let names = if model.load.is_some() { &["motor", "load"][..] } else { &["motor"] };
         let names = names.iter().map(|name| (*name).to_owned()).collect();
         let model = plant::Model::Fmu(Box::new(model));
