@@ -80,7 +80,7 @@ impl<const W: usize> ExactChain<W> {
         let n = chain.bodies().len();
         let prescribed = setup.drive == Drive::Prescribed;
         let can_stick = chain.bodies().iter().enumerate().fold(0_usize, |set, (i, body)| {
-            if body.dry.is_none() || (prescribed && i == 0) { set } else { set | 1 << i }
+            if body.friction.is_linear() || (prescribed && i == 0) { set } else { set | 1 << i }
         });
         let holds = (0..1_usize << n)
             .map(|stuck| (stuck & !can_stick == 0).then(|| hold(&chain, prescribed, setup.step, stuck)))
@@ -136,7 +136,7 @@ impl<const W: usize> ExactChain<W> {
         for (i, body) in self.chain.bodies().iter().enumerate().skip(usize::from(self.prescribed)) {
             // `passive_effort` holds the bias, and `u` does too.
             let others = self.chain.passive_effort(i, &self.bodies) + u[i] + body.bias;
-            match body.dry.grip(self.bodies[i].velocity, others) {
+            match body.friction.grip(self.bodies[i].velocity, others) {
                 Grip::Held => stuck |= 1 << i,
                 Grip::Force(force) => u[i] += force,
             }
@@ -197,7 +197,7 @@ impl<const W: usize> Mechanics for ExactChain<W> {
                 continue;
             }
             let mut velocity = next[n - 1 + i] * self.per_travel[i];
-            if !(self.prescribed && i == 0) && body.dry.settle(self.bodies[i].velocity, velocity) {
+            if !(self.prescribed && i == 0) && body.friction.settle(self.bodies[i].velocity, velocity) {
                 velocity = 0.0;
                 next[n - 1 + i] = 0.0;
             }
@@ -286,7 +286,7 @@ fn hold<const W: usize>(chain: &Chain, prescribed: bool, h: f64, stuck: usize) -
                 }
             }
         }
-        a[(velocity(i), velocity(i))] -= h * body.viscous / body.inertia;
+        a[(velocity(i), velocity(i))] -= h * body.friction.linear() / body.inertia;
         a[(velocity(i), states + 1 + i)] = h * h * body.transmission / body.inertia;
     }
     if prescribed {

@@ -26,7 +26,7 @@ pub use chain::{Body, Chain, Link};
 pub use engine::{Capabilities, Engine, EngineName};
 pub use exact::{Exact, transition};
 pub use fmu::{FmuBody, FmuModel};
-pub use friction::{DryFriction, Grip};
+pub use friction::{DryFriction, Friction, Grip};
 pub use integration::{Distortion, Integrator};
 pub use load_coordinate::{LoadCoordinate, PosedJoint};
 pub use mechanics::{

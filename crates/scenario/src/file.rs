@@ -13,7 +13,7 @@ mod program;
 mod requirements;
 mod setpoint;
 
-pub(crate) use axis::{Axis, Body, Mjcf};
+pub(crate) use axis::{Axis, Body, FrictionKeys, Mjcf};
 pub(crate) use bus::{Bus, BusFault, FaultName};
 pub(crate) use drive::{Current, Drive, Estimate, FeedbackEncoder, Velocity, VelocityKind};
 pub(crate) use fmu::{Coupling, Fmu};

@@ -13,6 +13,7 @@ mod drive;
 mod estimate;
 mod filter;
 mod fmu;
+mod friction;
 mod inputs;
 mod keys;
 mod loops;

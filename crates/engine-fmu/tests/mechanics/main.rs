@@ -10,24 +10,17 @@ use servobench_fmi::{
     SlaveError,
 };
 use servobench_plant::{
-    Actuation, Body, Chain, Drive, DryFriction, Engine, Exact, FmuBody, FmuModel, Input, Link, Mechanics,
-    MechanicsSetup, Model,
+    Actuation, Body, Chain, Drive, Engine, Exact, FmuBody, FmuModel, Friction, Input, Link, Mechanics, MechanicsSetup,
+    Model,
 };
 
 /// Base tick (s).
 const TICK: f64 = 1.0 / 8_000.0;
 
 fn two_mass() -> Chain {
-    let dry = DryFriction { coulomb: 0.0, breakaway: 0.0, stribeck_velocity: 0.0 };
-    let body = |name, coordinate, inertia, transmission| Body {
-        name,
-        coordinate,
-        inertia,
-        transmission,
-        viscous: 0.01,
-        dry,
-        bias: 0.0,
-    };
+    let friction = Friction { viscous: 0.01, ..Friction::NONE };
+    let body =
+        |name, coordinate, inertia, transmission| Body { name, coordinate, inertia, transmission, friction, bias: 0.0 };
     let bodies = vec![body("motor", Coordinate::Rotary, 1e-3, 5e-3), body("table", Coordinate::Linear, 30.0, 1.0)];
     Chain::new(bodies, vec![Link { stiffness: 2e6, damping: 300.0 }]).unwrap()
 }
