@@ -113,7 +113,7 @@ impl Coupled {
             every: NonZeroU32::MIN,
             block: Part::Axis(Box::new(axis)),
         });
-        let network = Network { members, connections: wiring.connections.clone(), bonds: Vec::new() };
+        let network = Network { members, connections: wiring.connections.clone() };
         let master = Master::new(network, &scenario.coupling).map_err(not_begun)?;
         let delays = master.delays().iter().map(|delay| wiring.described(delay)).collect();
         Ok(Self { master, names, delays })

@@ -3,8 +3,7 @@ use crate::ENGINE;
 use crate::files::Files;
 use servobench_base::{Divider, Rate};
 use servobench_coupling::{
-    Block, Connection, CouplingError, Flow, Input, InputPort, Master, Member, Method, Network, Order, Port, PowerBond,
-    Settings, Step,
+    Block, Connection, CouplingError, Input, InputPort, Master, Member, Method, Network, Order, Port, Settings, Step,
 };
 use servobench_fmi::{FmuFile, FmuRequest, Isolation, Progress, SiPort, Slave, SlaveError, Value};
 use std::num::NonZeroU32;
@@ -37,7 +36,6 @@ impl TwoMasses {
         let network = Network {
             members: vec![mass, spring],
             connections: vec![connect((1, 0), (0, 0)), connect((0, 0), (1, 0)), connect((0, 1), (1, 1))],
-            bonds: vec![PowerBond { effort: 0, flow: 1, kind: Flow::Displacement, opposes: false }],
         };
         Master::new(network, settings)
     }
