@@ -7,6 +7,7 @@
 
 pub mod abi;
 mod archive;
+mod bits;
 mod description;
 mod error;
 mod feedthrough;

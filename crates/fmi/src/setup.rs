@@ -1,11 +1,11 @@
 //! How an FMU is started and wired.
-mod bits;
 mod clocked;
 mod start;
 
 pub(crate) use start::Start;
 
 use crate::archive::Unpacked;
+use crate::bits;
 use crate::description::{Causality, DataType, Dimension, ModelDescription, Named, Values, Variability, Variable};
 use crate::error::FmuError;
 use crate::slave::Port;

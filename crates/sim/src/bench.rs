@@ -32,7 +32,7 @@ pub struct Bench {
     pub(crate) axis: Axis,
 }
 
-/// The axis, and whether it has company.
+/// The axis, alone or with attached FMUs.
 pub(crate) enum Axis {
     Alone(Box<Recorded>),
     Coupled(Box<Coupled>),

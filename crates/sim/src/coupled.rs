@@ -12,7 +12,7 @@ pub(crate) use wiring::replaces_the_drive;
 use crate::error::{BuildError, UnusableFmu};
 use crate::recorded::{LISTEN_EVERY, Recorded};
 use crate::run::{Failure, Outcome, PROGRESS_EVERY, Reason};
-use block::{Axis, Company, Part, PartError};
+use block::{AttachedFmu, Axis, Part, PartError};
 use servobench_base::Tick;
 use servobench_coupling::{Advance, CouplingError, InputPort, Master, Member, Network};
 use servobench_fmi::{FmuEntry, FmuMistake, FmuRequest, Slave};
@@ -94,7 +94,7 @@ impl Coupled {
                 inputs: request.inputs.into_iter().map(|port| InputPort { name: port.variable, held: 0.0 }).collect(),
                 outputs: request.outputs.into_iter().map(|port| port.variable).collect(),
                 every: steps(fmu.every, scenario.coupling.step.ticks()),
-                block: Part::Fmu(Company { slave, end }),
+                block: Part::Fmu(AttachedFmu { slave, end }),
             });
         }
         if !unusable.is_empty() {
@@ -150,7 +150,7 @@ impl Coupled {
     /// Notes what the FMUs have said since the last time. What they say in a step that is repeated they say again.
     fn listen(&mut self) {
         for (index, name) in self.names.iter().enumerate() {
-            let Part::Fmu(Company { slave, .. }) = self.master.block_mut(index) else { continue };
+            let Part::Fmu(AttachedFmu { slave, .. }) = self.master.block_mut(index) else { continue };
             let said = slave.take_log();
             if said.is_empty() {
                 continue;
@@ -165,7 +165,7 @@ impl Coupled {
 
     fn finish(mut self, failure: Option<Failure>) -> Outcome {
         for index in 0..self.names.len() {
-            if let Part::Fmu(Company { slave, .. }) = self.master.block_mut(index) {
+            if let Part::Fmu(AttachedFmu { slave, .. }) = self.master.block_mut(index) {
                 slave.end();
             }
         }
@@ -173,7 +173,7 @@ impl Coupled {
         self.into_axis().recorded_to_the_end(failure.is_none()).finish(failure)
     }
 
-    /// The axis without its company.
+    /// The axis without its FMUs.
     pub(crate) fn alone(self) -> Recorded {
         self.into_axis().recorded
     }

@@ -47,7 +47,12 @@ impl Slave for Chatty {
         self.say(time, Severity::Info, "step");
         if time > END - 1e-9 {
             self.say(time, Severity::Error, "leak");
-            return Err(SlaveError::Failed { call: "fmi3DoStep", time, status: "fmi3Error", message: "leak".into() });
+            return Err(SlaveError::Failed {
+                call: "fmi3DoStep".into(),
+                time,
+                status: "fmi3Error".into(),
+                message: "leak".into(),
+            });
         }
         Ok(Progress::Done)
     }

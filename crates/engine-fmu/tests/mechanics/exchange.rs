@@ -161,11 +161,11 @@ fn what_goes_wrong_in_a_step_ends_the_run_with_the_reason() {
         (says(|time, length| Ok(Progress::Until(time + 1e-6 * length))), "came back early 10000 times"),
         (says(|_, _| Ok(Progress::Terminated(0.0))), "wants the simulation to end at 0 s"),
         (
-            says(|time, _| Err(SlaveError::Crashed { call: "", time, how: "signal 11".into() })),
+            says(|time, _| Err(SlaveError::Crashed { call: "".into(), time, how: "signal 11".into() })),
             "ended at 0 s: signal 11",
         ),
         (
-            says(|time, _| Err(SlaveError::Discarded { call: "fmi2DoStep", time, shortest: None })),
+            says(|time, _| Err(SlaveError::Discarded { call: "fmi2DoStep".into(), time, shortest: None })),
             "discarded fmi2DoStep at 0 s",
         ),
     ] {
