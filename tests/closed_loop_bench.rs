@@ -6,7 +6,7 @@
 //! bus and the drive's state machine with its modes.
 //!
 //! Short rounds of all candidates alternate, so that a busy machine slows all of them; the least of each counts.
-use servobench_plant::{BodyState, Engine, Exact, Input, Mechanics, MechanicsError, MechanicsSetup};
+use servobench_plant::{BodyState, Engine, EngineName, Exact, Input, Mechanics, MechanicsError, MechanicsSetup};
 use servobench_scenario::Scenario;
 use servobench_sim::Bench;
 use servobench_tests::scenario;
@@ -85,7 +85,7 @@ struct Candidate {
 
 /// One engine in the report (ns per tick).
 struct Line {
-    engine: &'static str,
+    engine: EngineName,
     tick: f64,
     /// The bare step, of engines that have one.
     bare: Option<f64>,
@@ -114,7 +114,7 @@ fn main() {
         .into_iter()
         .map(Engine::name)
         .filter_map(|engine| {
-            let tick = of(engine.to_owned())?;
+            let tick = of(engine.to_string())?;
             Some(Line { engine, tick, bare: of(format!("bare {engine}")), in_turn: of(format!("{engine} in turn")) })
         })
         .collect();
@@ -192,7 +192,7 @@ fn candidates() -> Vec<Candidate> {
     ];
     for engine in servobench_tests::engines() {
         let looped = axis.clone();
-        all.push(candidate(engine.name().into(), move || loop_round(&looped, engine)));
+        all.push(candidate(engine.name().to_string(), move || loop_round(&looped, engine)));
         let Some(bare) = bare_step(engine.name()) else { continue };
         let alone = Arc::clone(&motion);
         all.push(candidate(format!("bare {}", engine.name()), move || bare_round(&alone, bare)));
@@ -265,7 +265,7 @@ impl Motion {
 fn setup_of(axis: &Scenario) -> MechanicsSetup {
     struct Listener(Mutex<Option<MechanicsSetup>>);
     impl Engine for Listener {
-        fn name(&self) -> &'static str {
+        fn name(&self) -> EngineName {
             Exact.name()
         }
         fn build(&self, setup: &MechanicsSetup) -> Result<Box<dyn Mechanics>, MechanicsError> {
@@ -292,7 +292,7 @@ struct InTurnMechanics {
 }
 
 impl Engine for InTurn {
-    fn name(&self) -> &'static str {
+    fn name(&self) -> EngineName {
         Exact.name()
     }
 
@@ -318,11 +318,11 @@ type Step = Box<dyn FnMut(usize) + Send>;
 /// Builds a bare engine at tick 0.
 type Bare = fn(&Arc<Motion>) -> Step;
 
-fn bare_step(engine: &str) -> Option<Bare> {
+fn bare_step(engine: EngineName) -> Option<Bare> {
     match engine {
-        "rapier" => Some(bare_rapier),
+        EngineName::Rapier => Some(bare_rapier),
         #[cfg(feature = "mujoco")]
-        "mujoco" => Some(bare_mujoco),
+        EngineName::Mujoco => Some(bare_mujoco),
         _ => None,
     }
 }

@@ -1,9 +1,10 @@
 //! What `Engine` and `Mechanics` promise, held against every engine of the build.
 use servobench_base::Coordinate;
 use servobench_base::Setpoint;
+use servobench_fmi::{FmuFile, Isolation, SiPort};
 use servobench_plant::{
-    Actuation, Body, BodyState, Chain, Drive, DryFriction, Engine, Input, Link, Mechanics, MechanicsError,
-    MechanicsSetup, Model,
+    Actuation, Body, BodyState, Chain, Drive, DryFriction, Engine, FmuBody, FmuModel, Friction, Input, Link, Mechanics,
+    MechanicsError, MechanicsSetup, MjcfModel, Model,
 };
 use servobench_tests::engines;
 use std::f64::consts::TAU;
@@ -14,14 +15,13 @@ const LEAD: f64 = 0.01 / TAU;
 const NAMES: [&str; 4] = ["motor", "table", "load", "tool"];
 
 /// `count` bodies, the first one rotary behind the screw.
-fn chain(count: usize, dry: DryFriction) -> Chain {
+fn chain(count: usize, friction: Friction) -> Chain {
     let bodies = NAMES.into_iter().take(count).enumerate().map(|(i, name)| Body {
         name,
         coordinate: if i == 0 { Coordinate::Rotary } else { Coordinate::Linear },
         inertia: if i == 0 { 2e-4 } else { 10.0 },
         transmission: if i == 0 { LEAD } else { 1.0 },
-        viscous: 0.0,
-        dry,
+        friction,
         bias: 0.0,
     });
     let link = Link { stiffness: 1e7, damping: 100.0 };
@@ -29,7 +29,7 @@ fn chain(count: usize, dry: DryFriction) -> Chain {
 }
 
 fn setup(count: usize, drive: Drive) -> MechanicsSetup {
-    MechanicsSetup { model: Model::Chain(chain(count, DryFriction::NONE)), drive, step: STEP, initial: Vec::new() }
+    MechanicsSetup { model: Model::Chain(chain(count, Friction::NONE)), drive, step: STEP, initial: Vec::new() }
 }
 
 const REST: Input = Input { actuation: Actuation::Effort(0.0), motor_disturbance: 0.0, load_disturbance: 0.0 };
@@ -82,7 +82,7 @@ fn the_load_disturbance_of_a_chain_pushes_all_of_it() {
             for _ in 0..ticks {
                 mechanics.advance(&Input { load_disturbance: 100.0, ..REST }).unwrap();
             }
-            let momentum: f64 = chain(count, DryFriction::NONE)
+            let momentum: f64 = chain(count, Friction::NONE)
                 .bodies()
                 .iter()
                 .zip(mechanics.bodies())
@@ -97,7 +97,7 @@ fn the_load_disturbance_of_a_chain_pushes_all_of_it() {
 #[test]
 fn what_sticks_keeps_its_position_to_the_bit() {
     let dry = DryFriction { coulomb: 0.2, breakaway: 0.4, stribeck_velocity: 0.1 };
-    let model = Model::Chain(chain(1, dry));
+    let model = Model::Chain(chain(1, Friction { dry, ..Friction::NONE }));
     for engine in engines() {
         let initial = vec![BodyState { position: 0.1, velocity: 0.0 }];
         let mut mechanics = build(engine, &MechanicsSetup { model: model.clone(), initial, ..setup(1, Drive::Effort) });
@@ -162,6 +162,43 @@ fn what_is_not_finite_ends_the_run() {
         ] {
             let mut mechanics = build(engine, &setup(2, Drive::Effort));
             assert!(mechanics.advance(&input).is_err(), "{} went on after {input:?}", engine.name());
+        }
+    }
+}
+
+/// Every kind of model that is not among the engine's capabilities is refused by name, and none that is.
+#[test]
+fn an_engine_simulates_what_its_capabilities_list() {
+    let port = || SiPort { variable: "x".into(), unit: None };
+    let file = FmuFile { path: "none.fmu".into(), start: Vec::new(), isolation: Isolation::None, event_mode: true };
+    let models = [
+        setup(2, Drive::Effort).model,
+        Model::Mjcf(MjcfModel {
+            xml: "<mujoco/>".into(),
+            path: "none.xml".into(),
+            motor_joint: "motor".into(),
+            load_joint: "load".into(),
+            actuator: "motor".into(),
+            transmission: 1.0,
+            axis: None,
+        }),
+        Model::Fmu(Box::new(FmuModel {
+            file,
+            effort: port(),
+            motor: FmuBody { position: port(), velocity: None },
+            load: None,
+            motor_disturbance: None,
+            load_disturbance: None,
+            transmission: 1.0,
+            ticks: 1,
+        })),
+    ];
+    for engine in engines() {
+        for model in &models {
+            let refusal = MechanicsError::not_simulated(engine.name(), model);
+            let built = engine.build(&MechanicsSetup { model: model.clone(), ..setup(2, Drive::Effort) });
+            let is_refused = built.err() == Some(refusal);
+            assert_eq!(is_refused, !engine.name().simulates(model.kind()), "{}: {model:?}", engine.name());
         }
     }
 }

@@ -1,5 +1,5 @@
 //! The same scenario twice, and with other scenarios beside it: the same bits.
-use servobench_scenario::EngineName;
+use servobench_plant::EngineName;
 use servobench_suite::jobs;
 use servobench_tests::{engines, measured, run, scenario_file};
 use std::thread;

@@ -1,5 +1,7 @@
 //! Users' own MJCF files on the engines that read them: where the load is.
-use servobench_plant::{Actuation, BodyState, Drive, Engine, Input, Mechanics, MechanicsSetup, MjcfModel, Model};
+use servobench_plant::{
+    Actuation, BodyState, Drive, Engine, EngineName, Input, Mechanics, MechanicsSetup, MjcfModel, Model, ModelKind,
+};
 use servobench_scenario::{Actuator, AxisMechanics, Initial};
 use servobench_tests::{engines, run, scenario_file};
 
@@ -45,7 +47,7 @@ const NESTED: &str = r#"<mujoco><compiler angle="radian"/><option gravity="0 0 0
 
 /// Those of the build that read MJCF.
 fn mjcf_engines() -> impl Iterator<Item = &'static dyn Engine> {
-    engines().into_iter().filter(|engine| engine.name() != "exact")
+    engines().into_iter().filter(|engine| engine.name().simulates(ModelKind::Mjcf))
 }
 
 fn build(engine: &dyn Engine, xml: &str, initial: &[BodyState]) -> Box<dyn Mechanics> {
@@ -154,7 +156,7 @@ fn a_joint_at_the_end_of_its_range_is_an_event() {
     let free = r#"name="carriage" type="slide""#;
     assert!(mjcf.xml.contains(free));
     mjcf.xml = mjcf.xml.replace(free, &format!(r#"{free} limited="true" range="-1 0.37""#));
-    for engine in mjcf_engines().filter(|engine| engine.name() == "mujoco") {
+    for engine in mjcf_engines().filter(|engine| engine.name() == EngineName::Mujoco) {
         let recording = run(&scenario, engine);
         let position = recording.channel("motor.position").unwrap();
         let first = position.iter().position(|position| *position > 0.37).expect("the end is reached");

@@ -6,7 +6,8 @@ pub(crate) use plan::{PlanArgs, PlanProfile};
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use servobench_scenario::EngineName;
+use servobench_config::Choice as _;
+use servobench_plant::EngineName;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -268,9 +269,8 @@ pub(crate) struct WorkerArgs {
 
 /// An engine by the name that scenario files give it.
 fn engine() -> impl TypedValueParser<Value = EngineName> {
-    let named = |name: &String| EngineName::ALL.into_iter().find(|engine| engine.as_str() == name);
-    PossibleValuesParser::new(EngineName::ALL.map(EngineName::as_str))
-        .try_map(move |name| named(&name).ok_or_else(|| format!("there is no engine `{name}`")))
+    PossibleValuesParser::new(EngineName::ALL.iter().map(|(name, ..)| *name))
+        .try_map(|name| EngineName::from_name(&name).ok_or_else(|| format!("there is no engine `{name}`")))
 }
 
 /// A length of time, as "5 min".
@@ -311,10 +311,10 @@ mod tests {
 
     #[test]
     fn every_engine_has_its_name() {
-        for engine in EngineName::ALL {
-            let cli = Cli::try_parse_from(["servobench", "run", "--engine", engine.as_str()]).unwrap();
+        for (name, engine, _) in EngineName::ALL {
+            let cli = Cli::try_parse_from(["servobench", "run", "--engine", name]).unwrap();
             let Command::Run(args) = cli.command else { panic!("run") };
-            assert_eq!(args.engine, [engine]);
+            assert_eq!(args.engine, [*engine]);
         }
     }
 

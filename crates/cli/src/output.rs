@@ -174,7 +174,7 @@ pub(crate) fn identity(job: &Job, written: Written) -> RunIdentity {
     RunIdentity {
         name: scenario.name.clone(),
         file: scenario.path.as_ref().map(|path| path.display().to_string()),
-        engine: job.engine.as_str().to_owned(),
+        engine: job.engine.to_string(),
         recording: written.recording,
         files: written.files,
         parameters: scenario.parameters.iter().map(|one| (one.key.clone(), one.value.clone())).collect(),

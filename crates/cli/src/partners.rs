@@ -1,7 +1,6 @@
 //! FMUs of scenarios: who opens them, and the program that they run in.
 use servobench_engine_fmu::{Fmu, HostCommand};
-use servobench_fmi::Slave;
-use servobench_plant::{FmuMistake, FmuPartner};
+use servobench_fmi::{FmuMistake, FmuRequest, Slave};
 use servobench_sim::Partners;
 use std::io;
 
@@ -20,7 +19,7 @@ fn host() -> io::Result<HostCommand> {
 pub(crate) struct ByEngine;
 
 impl Partners for ByEngine {
-    fn open(&self, partner: &FmuPartner) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
-        ENGINE.partner(partner)
+    fn open(&self, request: &FmuRequest<'_>) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
+        ENGINE.open(request)
     }
 }

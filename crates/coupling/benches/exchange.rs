@@ -4,8 +4,7 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use servobench_base::{Divider, Rate};
 use servobench_coupling::{
-    Block, Connection, Flow, Input, InputPort, Iteration, Master, Member, Method, Network, Order, Port, PowerBond,
-    Settings, Step,
+    Block, Connection, Input, InputPort, Iteration, Master, Member, Method, Network, Order, Port, Settings, Step,
 };
 use std::convert::Infallible;
 use std::num::NonZeroU32;
@@ -81,8 +80,6 @@ fn master(method: Method, order: Order, follows: bool) -> Master<Boxed> {
         is_discrete: false,
     };
     let connections = (0..3).flat_map(|block| (0..2).map(move |port| connection(block, port))).collect();
-    // From the first block to the second, and back.
-    let bonds = vec![PowerBond { effort: 0, flow: 3, kind: Flow::Velocity, opposes: false }];
     let settings = Settings {
         base_rate: Rate::new(16_000).unwrap(),
         step: Divider::new(16).unwrap(),
@@ -91,7 +88,7 @@ fn master(method: Method, order: Order, follows: bool) -> Master<Boxed> {
         algebraic: None,
         watch: true,
     };
-    Master::new(Network { members: (0..3).map(member).collect(), connections, bonds }, &settings).unwrap()
+    Master::new(Network { members: (0..3).map(member).collect(), connections }, &settings).unwrap()
 }
 
 fn steps(bencher: Bencher<'_, '_>, mut master: Master<Boxed>) {

@@ -88,24 +88,4 @@ pub enum CouplingError<E> {
         /// What else may help with this method.
         way_out: &'static str,
     },
-    /// The exchange itself drives an oscillation.
-    #[error(
-        "the coupling `{connection}` is unstable in communication step {step} ({time} s): the energy that swings through it grew {growth:.1}-fold, by {swing} J, while the exchange itself put {injected} J into it; take a smaller step than {length} s or a higher order, or iterate the loop"
-    )]
-    Driven {
-        /// The connection that carries the effort, as `a.x -> b.u`.
-        connection: String,
-        /// Number of the communication step.
-        step: u64,
-        /// When (s).
-        time: f64,
-        /// How much the energy that swings has grown.
-        growth: f64,
-        /// By how much (product of effort and displacement, J in SI units).
-        swing: f64,
-        /// What the exchange put in meanwhile (the same unit).
-        injected: f64,
-        /// The communication step (s).
-        length: f64,
-    },
 }

@@ -43,7 +43,6 @@
 
 mod acceleration;
 mod block;
-mod bond;
 mod cycles;
 mod delay;
 mod error;
@@ -63,6 +62,6 @@ pub use block::{Block, Input, Step};
 pub use delay::Delay;
 pub use error::CouplingError;
 pub use master::{Advance, Effort, Master};
-pub use network::{Connection, Flow, InputPort, Member, Network, NetworkError, Port, PowerBond};
+pub use network::{Connection, InputPort, Member, Network, NetworkError, Port};
 pub use polynomial::{Order, later, mean, value};
-pub use settings::{Acceleration, Iteration, Method, Settings};
+pub use settings::{Acceleration, Iteration, Method, MethodKind, Settings};

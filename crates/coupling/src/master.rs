@@ -1,5 +1,4 @@
 //! The master: builds the run from a network, and leads it from exchange to exchange.
-use crate::bond::BondWatch;
 use crate::cycles::{components, is_cycle};
 use crate::delay::Delay;
 use crate::error::CouplingError;
@@ -53,7 +52,6 @@ pub struct Master<B> {
     pub(crate) interruptions: Vec<u32>,
     events: Vec<u64>,
     watches: Vec<Watched>,
-    bonds: Vec<BondWatch>,
     pub(crate) effort: Effort,
     pub(crate) inputs: Vec<Input>,
     pub(crate) present: Vec<f64>,
@@ -101,8 +99,6 @@ impl<B: Block> Master<B> {
         let plan = Plan::new(&wiring, &blocks, settings.algebraic)?;
         let clock = Clock { rate: settings.base_rate, ticks: u64::from(settings.step.ticks()), now: 0 };
         let length = clock.time(1);
-        let bonds = network.bonds.iter().map(|bond| BondWatch::new(&wiring, &schedule, bond, length));
-        let bonds = bonds.collect::<Result<Vec<_>, _>>()?;
         let most = |ports: fn(&crate::network::Shape) -> usize| wiring.shapes.iter().map(ports).max().unwrap_or(0);
         let mut master = Self {
             signals: Signals::new(&wiring, settings.order, length),
@@ -112,7 +108,6 @@ impl<B: Block> Master<B> {
             interruptions: vec![0; blocks.len()],
             events: vec![0; blocks.len()],
             watches: if settings.watch { watched(&wiring) } else { Vec::new() },
-            bonds: if settings.watch { bonds } else { Vec::new() },
             effort: Effort::default(),
             inputs: vec![[0.0; 3]; most(|shape| shape.inputs)],
             present: vec![0.0; most(|shape| shape.inputs)],
@@ -233,21 +228,6 @@ impl<B: Block> Master<B> {
 
     /// Looks at what has been exchanged.
     fn judge(&mut self, now: u64) -> Result<(), CouplingError<B::Error>> {
-        for bond in &mut self.bonds {
-            if self.reached[bond.block()] == now
-                && let Some(drive) = bond.exchange(&self.signals)
-            {
-                return Err(CouplingError::Driven {
-                    connection: self.wiring.connection_name(bond.effort),
-                    step: now,
-                    time: self.clock.time(now),
-                    growth: drive.growth,
-                    swing: drive.swing,
-                    injected: drive.injected,
-                    length: self.clock.time(1),
-                });
-            }
-        }
         for Watched { block, output, connection, watch } in &mut self.watches {
             if self.reached[*block] == now
                 && let Some(growth) = watch.push(self.signals.newest(*output), self.signals.defect(*output))
@@ -291,14 +271,6 @@ impl<B: Block> Master<B> {
     pub fn value(&self, output: Port) -> Result<f64, NetworkError> {
         let number = self.wiring.output(output)?;
         Ok(self.signals.value(output.block, number, self.clock.now))
-    }
-
-    /// Holds an input that nothing is connected to at `value`, from the next step of its block on.
-    ///
-    /// # Errors
-    /// [`NetworkError`] if there is no such input, if it is connected, or if the value is not finite.
-    pub fn hold(&mut self, input: Port, value: f64) -> Result<(), NetworkError> {
-        self.wiring.hold(input, value)
     }
 
     /// The delay of each connection, in their order.

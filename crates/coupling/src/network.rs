@@ -53,38 +53,13 @@ pub struct Connection {
     pub is_discrete: bool,
 }
 
-/// What the flow of a [`PowerBond`] is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Flow {
-    /// A velocity or a current: effort times flow is a power.
-    Velocity,
-    /// A displacement or a charge: effort times its change is an energy.
-    Displacement,
-}
-
-/// Two connections between two blocks that carry power together: an effort (force, torque, voltage) to a block, and back the
-/// flow of the point where it acts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct PowerBond {
-    /// Index of the connection that carries the effort.
-    pub effort: usize,
-    /// Index of the connection that carries the flow, the other way.
-    pub flow: usize,
-    /// What the flow is.
-    pub kind: Flow,
-    /// Whether a positive effort works against a positive flow at the block that takes the effort (a load torque).
-    pub opposes: bool,
-}
-
-/// Blocks, connections, and which of these carry power.
+/// Blocks and connections.
 #[derive(Debug, Clone)]
 pub struct Network<B> {
     /// The blocks.
     pub members: Vec<Member<B>>,
     /// The connections.
     pub connections: Vec<Connection>,
-    /// Pairs of connections whose energy is watched.
-    pub bonds: Vec<PowerBond>,
 }
 
 /// Why a network cannot be run as it was asked for.
@@ -107,12 +82,6 @@ pub enum NetworkError {
     /// Two connections lead to one input.
     #[error("`{input}` has two connections; one can lead to it: add the signals in a block")]
     Occupied {
-        /// The input.
-        input: String,
-    },
-    /// An input that is to be held has a connection.
-    #[error("`{input}` follows a connection and cannot be held")]
-    Connected {
         /// The input.
         input: String,
     },
@@ -169,18 +138,6 @@ pub enum NetworkError {
     AlgebraicLoop {
         /// The outputs of the loop.
         cycle: String,
-    },
-    /// Two connections that are not a power bond.
-    #[error("connections {effort} and {flow} of {connections} are no power bond: {why}")]
-    NoBond {
-        /// Index of the effort.
-        effort: usize,
-        /// Index of the flow.
-        flow: usize,
-        /// How many connections there are.
-        connections: usize,
-        /// What is wrong.
-        why: &'static str,
     },
 }
 
@@ -330,17 +287,6 @@ impl Wiring {
     /// The outputs as `a.y -> b.y -> a.y`.
     pub(crate) fn cycle_of_outputs(&self, outputs: &[usize]) -> String {
         cycle(outputs.iter().map(|output| self.output_names[*output].as_str()))
-    }
-
-    /// An input is held at another value.
-    pub(crate) fn hold(&mut self, at: Port, value: f64) -> Result<(), NetworkError> {
-        let input = self.input(at)?;
-        if self.wires[input].source.is_some() {
-            return Err(NetworkError::Connected { input: self.input_names[input].clone() });
-        }
-        finite("held", value, || self.input_names[input].clone())?;
-        self.wires[input].offset = value;
-        Ok(())
     }
 }
 

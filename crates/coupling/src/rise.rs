@@ -41,15 +41,4 @@ impl Rise {
         let growth = level / self.first;
         if self.windows < WINDOWS { Risen::On } else { Risen::For { growth, windows: self.windows } }
     }
-
-    /// The level that it began with.
-    pub(crate) fn first(&self) -> f64 {
-        self.first
-    }
-
-    /// A rise begins with the level now.
-    pub(crate) fn restart(&mut self) {
-        self.first = self.last;
-        self.windows = 1;
-    }
 }

@@ -59,7 +59,7 @@ impl Schedule {
     }
 
     /// Whether `to` knows the end of its step from `from`, if both have the same step.
-    pub(crate) fn is_known(&self, from: usize, to: usize) -> bool {
+    fn is_known(&self, from: usize, to: usize) -> bool {
         let together = self.place[from] == self.place[to] && self.repeated[from];
         self.announced && (self.place[from] < self.place[to] || together)
     }

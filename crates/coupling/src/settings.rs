@@ -2,6 +2,7 @@
 use crate::network::NetworkError;
 use crate::polynomial::Order;
 use servobench_base::{Divider, Rate};
+use servobench_config::choices;
 
 /// How the fixed point of an iteration is approached. With the residual r = G(x) − x:
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,6 +52,18 @@ impl Iteration {
         } else {
             Ok(())
         }
+    }
+}
+
+choices! {
+    /// The kinds of [`Method`]s.
+    pub enum MethodKind default GaussSeidel {
+        /// all step at once, with what the others gave at the start of the step
+        Jacobi = "jacobi",
+        /// one after the other, each with what those before it have just given
+        GaussSeidel = "gauss-seidel",
+        /// steps are repeated until inputs and outputs agree
+        Iterated = "iterated",
     }
 }
 

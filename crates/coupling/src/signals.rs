@@ -27,8 +27,6 @@ struct Track {
     at: u64,
     /// How many values there are, at most 3.
     count: u8,
-    /// Degree that the expectation of the newest value was made with.
-    degree: u8,
     /// Communication steps between two values.
     every: u32,
     first: usize,
@@ -40,7 +38,6 @@ impl Signals {
         let track = |shape: &crate::network::Shape| Track {
             at: 0,
             count: 0,
-            degree: 0,
             every: shape.every,
             first: shape.first_output,
             outputs: shape.outputs,
@@ -116,7 +113,7 @@ impl Signals {
                 if self.discrete[output] { y0 } else { through(&self.samples[output], degree, spacing, since)[0] };
             self.samples[output] = [self.expected[output], y0, y1];
         }
-        self.tracks[block] = Track { at, count: (track.count + 1).min(3), degree, ..track };
+        self.tracks[block] = Track { at, count: (track.count + 1).min(3), ..track };
     }
 
     /// Sets the newest values of `block`, for which room has been made. Returns the number of one that is not finite.
@@ -146,19 +143,9 @@ impl Signals {
         self.samples[output][0] = value;
     }
 
-    /// The value before the newest.
-    pub(crate) fn before(&self, output: usize) -> f64 {
-        self.samples[output][1]
-    }
-
     /// Newest value less what it was expected to be.
     pub(crate) fn defect(&self, output: usize) -> f64 {
         self.samples[output][0] - self.expected[output]
-    }
-
-    /// Degree that the newest values of `block` were expected with.
-    pub(crate) fn degree(&self, block: usize) -> u8 {
-        self.tracks[block].degree
     }
 
     /// Greatest magnitude among the last values of an output of `block`.

@@ -1,8 +1,8 @@
 //! A communication step allocates nothing, with any method.
 use servobench_base::{Divider, Rate};
 use servobench_coupling::{
-    Acceleration, Block, Connection, Flow, Input, InputPort, Iteration, Master, Member, Method, Network, Order, Port,
-    PowerBond, Settings, Step, mean,
+    Acceleration, Block, Connection, Input, InputPort, Iteration, Master, Member, Method, Network, Order, Port,
+    Settings, Step, mean,
 };
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -96,10 +96,9 @@ fn master(method: Method, order: Order) -> Master<Lags> {
     };
     let mut connections: Vec<_> =
         (0..3).flat_map(|b| (0..2).map(move |port| connection(b, (b + 1) % 3, port, 0.5))).collect();
-    // A bond between the first two blocks, beside the rings.
+    // A loop of the first two blocks, beside the rings.
     connections[0] = connection(0, 1, 0, 1.0);
     connections[4] = connection(1, 0, 0, -1.0);
-    let bonds = vec![PowerBond { effort: 0, flow: 4, kind: Flow::Velocity, opposes: false }];
     let settings = Settings {
         base_rate: Rate::new(1000).unwrap(),
         step: Divider::new(7).unwrap(),
@@ -108,7 +107,7 @@ fn master(method: Method, order: Order) -> Master<Lags> {
         algebraic: Some(Iteration::default()),
         watch: true,
     };
-    Master::new(Network { members: (0..3).map(member).collect(), connections, bonds }, &settings).unwrap()
+    Master::new(Network { members: (0..3).map(member).collect(), connections }, &settings).unwrap()
 }
 
 #[test]

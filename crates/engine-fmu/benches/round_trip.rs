@@ -2,8 +2,8 @@
 //!
 //! `cargo bench -p servobench-engine-fmu`
 
-use servobench_engine_fmu::{Bounds, HostCommand, Isolated, Wires, serve};
-use servobench_fmi::{Capabilities, LogLine, Progress, Slave, SlaveError};
+use servobench_engine_fmu::{HostCommand, Isolated, Wires, serve};
+use servobench_fmi::{Bounds, Capabilities, LogLine, Progress, Slave, SlaveError};
 use std::hint::black_box;
 use std::io::{Read, Write, stdin, stdout};
 use std::process::{Child, Command, Stdio};

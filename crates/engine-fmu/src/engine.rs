@@ -1,12 +1,10 @@
 //! The engine `fmu`, and FMUs beside an axis.
 use crate::keeper::HostCommand;
 use crate::mechanics::{FmuMechanics, NAME};
-use crate::open::{Wanted, open};
+use crate::open::open;
 use servobench_base::{ParamError, finite, positive};
-use servobench_fmi::Slave;
-use servobench_plant::{
-    Drive, Engine, FmuEntry, FmuMistake, FmuModel, FmuPartner, Mechanics, MechanicsError, MechanicsSetup, Model,
-};
+use servobench_fmi::{FmuEntry, FmuMistake, FmuRequest, Slave};
+use servobench_plant::{Drive, Engine, EngineName, FmuModel, Mechanics, MechanicsError, MechanicsSetup, Model};
 use std::io;
 
 /// The engine `fmu`: the mechanics are an FMU.
@@ -24,11 +22,7 @@ impl Fmu {
     pub fn mechanics(&self, setup: &MechanicsSetup) -> Result<FmuMechanics, MechanicsError> {
         setup.check()?;
         let Model::Fmu(model) = &setup.model else {
-            return Err(MechanicsError::Unsupported {
-                engine: NAME,
-                what: "mechanics that are described by bodies or MJCF".into(),
-                way_out: "choose another engine, or give an FMU".into(),
-            });
+            return Err(MechanicsError::not_simulated(NAME, &setup.model));
         };
         if setup.drive == Drive::Prescribed {
             return Err(MechanicsError::Unsupported {
@@ -38,16 +32,17 @@ impl Fmu {
             });
         }
         check(model)?;
-        let wanted = Wanted {
+        let request = FmuRequest {
+            file: &model.file,
             name: None,
-            inputs: model.inputs().collect(),
-            outputs: model.outputs().collect(),
-            end: None,
+            inputs: model.inputs().cloned().collect(),
+            outputs: model.outputs().cloned().collect(),
             step: f64::from(model.ticks) * setup.step,
+            end: None,
             // Nothing acts before the first tick: its inputs begin as the FMU has them.
             waits: false,
         };
-        let slave = open(&model.file, &wanted, self.host).map_err(|mistakes| refused(model, mistakes))?;
+        let slave = self.open(&request).map_err(|mistakes| refused(model, mistakes))?;
         FmuMechanics::new(slave, model, setup.step)
     }
 
@@ -55,21 +50,13 @@ impl Fmu {
     ///
     /// # Errors
     /// Everything that does not fit the file, or why it cannot be started.
-    pub fn partner(&self, partner: &FmuPartner) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
-        let wanted = Wanted {
-            name: Some(&partner.name),
-            inputs: partner.inputs.iter().collect(),
-            outputs: partner.outputs.iter().collect(),
-            end: Some(partner.end),
-            step: partner.step,
-            waits: true,
-        };
-        open(&partner.file, &wanted, self.host)
+    pub fn open(&self, request: &FmuRequest<'_>) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
+        open(request, self.host)
     }
 }
 
 impl Engine for Fmu {
-    fn name(&self) -> &'static str {
+    fn name(&self) -> EngineName {
         NAME
     }
 

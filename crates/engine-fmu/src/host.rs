@@ -38,7 +38,7 @@ pub(crate) fn say_at_once(line: &LogLine) -> bool {
     let Some(page) = PAGE.get() else { return false };
     let &LogLine { time, severity, ref category, ref message } = line;
     let line = LogLine { time, severity, category: clipped(category.clone()), message: clipped(message.clone()) };
-    if !log_to_line(line).is_some_and(|line| page.add_log(&line)) {
+    if !log_to_line(&line).is_some_and(|line| page.add_log(&line)) {
         page.header().answered.log_dropped.fetch_add(1, Relaxed);
     }
     true
@@ -64,7 +64,7 @@ pub fn serve<S: DeserializeOwned>(load: impl FnOnce(S) -> Result<Box<dyn Slave>,
     let setup = serde_json::from_slice(&page.setup()).map_err(|error| error.to_string());
     match setup.and_then(load) {
         Ok(mut slave) => {
-            host.say(&Message::ready(slave.capabilities()));
+            host.say(&Message::Ready(slave.capabilities()));
             pass_on(&slave.take_log());
             host.answer(Status::Message);
             host.serve(slave);
@@ -150,7 +150,7 @@ impl Host {
                 return;
             }
             let status = work.of(command, slave.as_mut()).unwrap_or_else(|error| {
-                self.say(&Message::Failed(without_flood(error).into()));
+                self.say(&Message::Failed(without_flood(error)));
                 Status::Message
             });
             pass_on(&slave.take_log());

@@ -5,9 +5,10 @@ use crate::error::IsolationError;
 use crate::keeper::{HostCommand, Keeper};
 use crate::memory::in_words;
 use crate::page::{Answered, Asked, Page};
-use crate::protocol::{Command, Message, Status, kept, log_of_lines};
+use crate::protocol::{Command, Message, Status, log_of_lines};
 use serde::Serialize;
-use servobench_fmi::{Capabilities, Feedthrough, LogLine, Progress, Severity, Slave, SlaveError, Unpacked};
+use servobench_fmi::{Bounds, Capabilities, Feedthrough, LogLine, Progress, Severity, Slave, SlaveError, Unpacked};
+use std::borrow::Cow;
 use std::sync::atomic::Ordering::Relaxed;
 use std::time::{Duration, Instant};
 
@@ -17,22 +18,6 @@ const GLANCE: Duration = Duration::from_millis(50);
 /// How long a process may take for its end after it has freed its FMU.
 const LEAVE: Duration = Duration::from_secs(1);
 const OVERWRITTEN: &str = "it wrote over the memory through which it is spoken to";
-
-/// What an FMU in a process of its own may take.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Bounds {
-    /// Real time for any one call, loading and initialisation being one.
-    pub patience: Duration,
-    /// Memory that it may have for itself, the program's included (B). Files that it maps do not count.
-    pub memory: u64,
-}
-
-impl Default for Bounds {
-    /// A minute, and 2 GiB.
-    fn default() -> Self {
-        Self { patience: Duration::from_mins(1), memory: 2 << 30 }
-    }
-}
 
 /// How many numbers go in and out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -128,12 +113,12 @@ impl Isolated {
             _ => return Err(isolated.overwritten().into()),
         }
         match isolated.message()? {
-            Message::Ready { saves_state, interpolates_inputs, variable_step } => {
-                isolated.capabilities = Capabilities { saves_state, interpolates_inputs, variable_step };
+            Message::Ready(capabilities) => {
+                isolated.capabilities = capabilities;
                 Ok(isolated)
             }
             Message::Refused(why) => Err(IsolationError::Refused(why)),
-            Message::Failed(failure) => Err(SlaveError::from(failure).into()),
+            Message::Failed(failure) => Err(failure.into()),
         }
     }
 
@@ -178,13 +163,14 @@ impl Isolated {
         let ended_by_itself = self.keeper.shared.ending().is_some();
         let (time, patience) = (self.time, self.patience.as_secs_f64());
         // What a step is by itself need not be said.
-        let call = kept(self.answered().call());
-        let call = if command == Command::Step && call.ends_with("DoStep") { "" } else { call };
+        let call = self.answered().call();
+        let call: Cow<'static, str> =
+            if command == Command::Step && call.ends_with("DoStep") { "".into() } else { call.into() };
         let intact = self.page().intact();
         let error = match self.keeper.end() {
             Some(ending) if !intact => {
                 let how = format!("{OVERWRITTEN}: {}", ending.how());
-                SlaveError::Crashed { call: "", time, how }
+                SlaveError::Crashed { call: "".into(), time, how }
             }
             Some(ending) if ended_by_itself => SlaveError::Crashed { call, time, how: ending.how() },
             Some(ending) if ending.of_memory() => SlaveError::Crashed {
@@ -193,7 +179,7 @@ impl Isolated {
                 how: Ending { status: None, ..ending.clone() }.how()
                     + &format!("; it did not come back within {patience} s and was ended"),
             },
-            _ if call.is_empty() => SlaveError::Hung { call: command.words(), time, patience },
+            _ if call.is_empty() => SlaveError::Hung { call: command.words().into(), time, patience },
             _ => SlaveError::Hung { call, time, patience },
         };
         self.fail(error)
@@ -202,7 +188,7 @@ impl Isolated {
     /// The answer is none.
     fn overwritten(&mut self) -> SlaveError {
         self.keeper.end();
-        self.fail(SlaveError::Crashed { call: "", time: self.time, how: OVERWRITTEN.into() })
+        self.fail(SlaveError::Crashed { call: "".into(), time: self.time, how: OVERWRITTEN.into() })
     }
 
     /// Notes that it cannot go on.
@@ -218,7 +204,7 @@ impl Isolated {
     /// An answer that is none to a step.
     fn failure(&mut self, status: Status) -> SlaveError {
         let failure = match (status, self.message()) {
-            (Status::Message, Ok(Message::Failed(failure))) => SlaveError::from(failure),
+            (Status::Message, Ok(Message::Failed(failure))) => failure,
             (_, Err(error)) => return error,
             _ => return self.overwritten(),
         };

@@ -48,7 +48,7 @@ pub use engine::Fmu;
 pub use error::{HostError, IsolationError};
 pub use host::serve;
 pub use in_si::InSi;
-pub use isolated::{Bounds, Isolated, Wires};
+pub use isolated::{Isolated, Wires};
 pub use keeper::HostCommand;
 pub use load::{LoadError, Place, host, load};
 pub use mechanics::FmuMechanics;

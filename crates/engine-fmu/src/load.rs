@@ -1,10 +1,10 @@
 //! An FMU, here or in a process of its own.
 use crate::error::{HostError, IsolationError};
 use crate::host::{note_call, say_at_once, serve};
-use crate::isolated::{Bounds, Isolated, Known, Wires};
+use crate::isolated::{Isolated, Known, Wires};
 use crate::keeper::HostCommand;
 use crate::order::Order;
-use servobench_fmi::{Feedthrough, FmuError, Loaded, Setup, Slave, Unpacked, hear_at_once, note_calls};
+use servobench_fmi::{Bounds, Feedthrough, FmuError, Loaded, Setup, Slave, Unpacked, hear_at_once, note_calls};
 use thiserror::Error;
 
 /// Where an FMU runs.

@@ -9,10 +9,10 @@
 //! impulse of the efforts is kept, and the axis sees of the FMU what was so up to n ticks ago: a delay of n/2 ticks in the mean.
 use crate::motion::Motion;
 use servobench_fmi::{LogLine, Progress, Severity, Slave, SlaveError};
-use servobench_plant::{Actuation, BodyState, FmuModel, Input, Mechanics, MechanicsError, Said};
+use servobench_plant::{Actuation, BodyState, EngineName, FmuModel, Input, Mechanics, MechanicsError, Said};
 
-/// Name of the engine.
-pub(crate) const NAME: &str = "fmu";
+/// The engine.
+pub(crate) const NAME: EngineName = EngineName::Fmu;
 /// Part of a step that is left out at its end: the rounding of a time in seconds.
 const ROUNDING: f64 = 1e-9;
 /// Times that an FMU may return early one after the other without having gone on.
@@ -60,7 +60,7 @@ impl FmuMechanics {
     /// [`MechanicsError`] if its outputs cannot be read.
     pub fn new(slave: Box<dyn Slave>, model: &FmuModel, tick: f64) -> Result<Self, MechanicsError> {
         let period = f64::from(model.ticks) * tick;
-        let motion = Motion::new(model.extrapolation, period);
+        let motion = Motion::new(period);
         let (inputs, bodies) = (model.inputs().count(), model.bodies().count());
         let mut mechanics = Self {
             slave,
@@ -217,7 +217,7 @@ impl Mechanics for FmuMechanics {
     }
 
     fn rewind(&mut self) -> Result<(), MechanicsError> {
-        let Some(marked) = &self.marked else { return Err(MechanicsError::no_way_back()) };
+        let Some(marked) = &self.marked else { return Err(MechanicsError::NoWayBack) };
         self.state.clone_from(marked);
         self.ended = None;
         self.slave.restore().map_err(|error| self.wrong(&error))

@@ -1,44 +1,31 @@
 //! From what is said of an FMU to one that runs: everything that does not fit is found first.
 use crate::in_si::InSi;
-use crate::isolated::Bounds;
 use crate::keeper::HostCommand;
 use crate::load::{Place, load};
 use crate::ports::{Ports, mechanical};
-use servobench_fmi::{DataType, FmuError, ModelDescription, Setup, Slave, Unpacked, Value, Variable};
-use servobench_plant::{FmuEntry, FmuFile, FmuMistake, FmuPort, FmuStart, FmuValue, Isolation};
+use servobench_fmi::{
+    DataType, FmuEntry, FmuError, FmuFile, FmuMistake, FmuRequest, Isolation, ModelDescription, Setup, Slave, Unpacked,
+    Value, Variable,
+};
 use std::io;
-
-/// Who it is, and what is exchanged with it.
-pub(crate) struct Wanted<'a> {
-    /// Name of the instance; that of the model unless given.
-    pub(crate) name: Option<&'a str>,
-    pub(crate) inputs: Vec<&'a FmuPort>,
-    pub(crate) outputs: Vec<&'a FmuPort>,
-    /// When its last step ends (s), if that is known.
-    pub(crate) end: Option<f64>,
-    /// How long its steps are (s).
-    pub(crate) step: f64,
-    /// Whether it is to wait in its initialisation for its inputs.
-    pub(crate) waits: bool,
-}
 
 /// The FMU, initialised and wired; its numbers are SI numbers. `host` is the program that runs one in a process of its own.
 pub(crate) fn open(
-    file: &FmuFile,
-    wanted: &Wanted<'_>,
+    request: &FmuRequest<'_>,
     host: fn() -> io::Result<HostCommand>,
 ) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
     let of_file = |error: &dyn std::fmt::Display| vec![FmuMistake::of_file(&error)];
+    let file = request.file;
     let fmu = Unpacked::new(&file.path).map_err(|error| of_file(&error))?;
     let it = fmu.description();
-    let (ports, mut mistakes) = match Ports::new(wanted.inputs.clone(), wanted.outputs.clone(), it) {
+    let (ports, mut mistakes) = match Ports::new(&request.inputs, &request.outputs, it) {
         Ok(ports) => (Some(ports), Vec::new()),
         Err(mistakes) => (None, mistakes),
     };
     let mut start_values = Vec::new();
-    for start in &file.start {
-        match value(start, it) {
-            Ok(value) => start_values.push((start.variable.clone(), value)),
+    for (variable, start) in &file.start {
+        match value(variable, start, it) {
+            Ok(value) => start_values.push((variable.clone(), value)),
             Err(mistake) => mistakes.push(mistake),
         }
     }
@@ -46,17 +33,17 @@ pub(crate) fn open(
         ports.map_or_else(Vec::new, |wires| wires.iter().map(|wire| wire.port.clone()).collect())
     };
     let mut setup = Setup {
-        instance_name: wanted.name.unwrap_or(&it.model_name).to_owned(),
+        instance_name: request.name.unwrap_or(&it.model_name).to_owned(),
         start_values,
         inputs: wires(ports.as_ref().map(|ports| &ports.inputs)),
         outputs: wires(ports.as_ref().map(|ports| &ports.outputs)),
-        stop_time: wanted.end,
-        waits: wanted.waits,
+        stop_time: request.end,
+        waits: request.waits,
         without_event_mode: !file.event_mode,
         ..Setup::default()
     };
     mistakes.extend(misfits(&mut setup, &fmu));
-    mistakes.extend(step_mistake(wanted.step, it));
+    mistakes.extend(step_mistake(request.step, it));
     mistakes.extend(event_mode_mistake(file, it));
     let Some(ports) = ports.filter(|_| mistakes.is_empty()) else { return Err(mistakes) };
     let place = place(file.isolation, host).map_err(|error| of_file(&error))?;
@@ -122,26 +109,32 @@ fn misfits(setup: &mut Setup, fmu: &Unpacked) -> Vec<FmuMistake> {
 fn place(isolation: Isolation, host: fn() -> io::Result<HostCommand>) -> io::Result<Place> {
     Ok(match isolation {
         Isolation::None => Place::Here,
-        Isolation::Process { patience, memory } => {
-            Place::Process { command: host()?, bounds: Bounds { patience, memory } }
-        }
+        Isolation::Process { bounds } => Place::Process { command: host()?, bounds },
     })
 }
 
-/// A start value in the unit of its variable.
-fn value(start: &FmuStart, it: &ModelDescription) -> Result<Value, FmuMistake> {
-    let convert = |value: &FmuValue| match value {
-        FmuValue::Text(text) => match unknown_unit(&start.variable, text, it) {
+/// A start value in the unit of its variable; of a list its elements, in row-major order.
+fn value(name: &str, start: &Value, it: &ModelDescription) -> Result<Value, FmuMistake> {
+    let mut elements = Vec::new();
+    flatten(start, &mut elements);
+    let convert = |value: &Value| match value {
+        Value::Text(text) => match unknown_unit(name, text, it) {
             Some(mistake) => Err(mistake),
             None => Ok(Value::Text(text.clone())),
         },
-        FmuValue::Number(number) => Ok(Value::Number(*number)),
-        FmuValue::Boolean(is) => Ok(Value::Boolean(*is)),
-        FmuValue::Quantity { text, si, exponents } => quantity(&start.variable, text, *si, *exponents, it),
+        Value::Quantity { text, si, exponents } => quantity(name, text, *si, *exponents, it),
+        other => Ok(other.clone()),
     };
-    match &start.values[..] {
+    match &elements[..] {
         [value] => convert(value),
-        values => Ok(Value::List(values.iter().map(convert).collect::<Result<_, _>>()?)),
+        values => Ok(Value::List(values.iter().map(|value| convert(value)).collect::<Result<_, _>>()?)),
+    }
+}
+
+fn flatten<'a>(value: &'a Value, elements: &mut Vec<&'a Value>) {
+    match value {
+        Value::List(values) => values.iter().for_each(|value| flatten(value, elements)),
+        scalar => elements.push(scalar),
     }
 }
 

@@ -1,7 +1,9 @@
 //! What is exchanged with an FMU: its variables, and how their numbers become SI numbers.
 use crate::like::like;
-use servobench_fmi::{BaseUnit, Causality, DataType, Exponents, ModelDescription, Named, Port, Variability, Variable};
-use servobench_plant::{FmuEntry, FmuMistake, FmuPort, SiUnit};
+use servobench_fmi::{
+    BaseUnit, Causality, DataType, Exponents, FmuEntry, FmuMistake, ModelDescription, Named, Port, SiPort, SiUnit,
+    Variability, Variable,
+};
 
 /// Names of SI units that tools write without defining them, with the exponents of kilogram, metre, second and ampere.
 const UNDEFINED: [(&[&str], [i32; 4]); 16] = [
@@ -61,13 +63,13 @@ impl Ports {
     /// # Errors
     /// [`FmuMistake`] for each variable that cannot be what it is to be.
     pub fn new<'a>(
-        inputs: impl IntoIterator<Item = &'a FmuPort>,
-        outputs: impl IntoIterator<Item = &'a FmuPort>,
+        inputs: impl IntoIterator<Item = &'a SiPort>,
+        outputs: impl IntoIterator<Item = &'a SiPort>,
         it: &ModelDescription,
     ) -> Result<Self, Vec<FmuMistake>> {
         let mut mistakes = Vec::new();
-        let mut all = |ports: Vec<&FmuPort>, side: &Side| -> Vec<Wire> {
-            let wire = |port: &FmuPort| match find(it, port, side) {
+        let mut all = |ports: Vec<&SiPort>, side: &Side| -> Vec<Wire> {
+            let wire = |port: &SiPort| match find(it, port, side) {
                 Ok(wire) => Some(wire),
                 Err(what) => {
                     mistakes.push(what.of((side.entry)(port.variable.clone())));
@@ -118,7 +120,7 @@ impl What {
     }
 }
 
-fn find(it: &ModelDescription, wanted: &FmuPort, side: &Side) -> Result<Wire, What> {
+fn find(it: &ModelDescription, wanted: &SiPort, side: &Side) -> Result<Wire, What> {
     let name = &wanted.variable;
     let (variable, element) = element(it, name, side)?;
     if !(side.fits)(variable) {

@@ -7,8 +7,7 @@ use servobench_base::Coordinate;
 use servobench_base::Setpoint;
 use servobench_engine_mujoco::Mujoco;
 use servobench_plant::{
-    Actuation, Body, Chain, Drive, DryFriction, Engine as _, Input, Link, Mechanics, MechanicsSetup, Model,
-    chain_to_mjcf,
+    Actuation, Body, Chain, Drive, Engine as _, Friction, Input, Link, Mechanics, MechanicsSetup, Model, chain_to_mjcf,
 };
 
 const STEP: f64 = 1.0 / 16_000.0;
@@ -25,16 +24,9 @@ fn main() {
 
 /// The motor-load system of Lambrechts (2004), with or without Coulomb friction.
 fn chain(coulomb: f64) -> Chain {
-    let dry = DryFriction { coulomb, breakaway: coulomb, stribeck_velocity: 0.0 };
-    let body = |name, inertia| Body {
-        name,
-        coordinate: Coordinate::Linear,
-        inertia,
-        transmission: 1.0,
-        viscous: 10.0,
-        dry,
-        bias: 0.0,
-    };
+    let friction = Friction { viscous: 10.0, ..Friction::coulomb(coulomb) };
+    let body =
+        |name, inertia| Body { name, coordinate: Coordinate::Linear, inertia, transmission: 1.0, friction, bias: 0.0 };
     Chain::new(vec![body("motor", 20.0), body("load", 10.0)], vec![Link { stiffness: 6e5, damping: 500.0 }]).unwrap()
 }
 

@@ -79,11 +79,11 @@ impl MujocoChain {
         let bodies = external.iter().zip(self.chain.bodies()).enumerate().skip(self.first);
         for ((i, (external, body)), force) in bodies.zip(self.data.qfrc_applied_mut()) {
             *force = external - body.bias;
-            if body.dry.is_none() {
+            if body.friction.is_linear() {
                 continue;
             }
             let others = self.chain.passive_effort(i, &self.bodies) + external;
-            match body.dry.grip(self.bodies[i].velocity, others) {
+            match body.friction.grip(self.bodies[i].velocity, others) {
                 Grip::Held => {
                     // No net effort: the body stays where it is during the step but for what its neighbours' motion
                     // within the tick adds, which `read` takes back.
@@ -99,7 +99,7 @@ impl MujocoChain {
     /// Goes over to the moving base: velocities relative to it, its inertial forces, the first half of the shifts.
     fn mount(&mut self, base: &BaseTick) {
         for (dof, body) in self.chain.bodies()[1..].iter().enumerate() {
-            let (m, b, r) = (body.inertia, body.viscous, body.transmission);
+            let (m, b, r) = (body.inertia, body.friction.linear(), body.transmission);
             self.data.qfrc_applied_mut()[dof] += base.mean_force(m, b, r);
             self.data.qvel_mut()[dof] = self.bodies[dof + 1].velocity - base.start.v / r;
             self.data.qpos_mut()[dof] += base.half_shift(m, b, r);
@@ -112,7 +112,7 @@ impl MujocoChain {
         self.bodies[0] =
             BodyState { position: base.end.x / motor.transmission, velocity: base.end.v / motor.transmission };
         for (body, q) in others.iter().zip(self.data.qpos_mut()) {
-            *q += base.half_shift(body.inertia, body.viscous, body.transmission);
+            *q += base.half_shift(body.inertia, body.friction.linear(), body.transmission);
         }
     }
 
@@ -128,7 +128,7 @@ impl MujocoChain {
             }
             let before = state.velocity;
             *state = BodyState { position: q + end.x / body.transmission, velocity: v + end.v / body.transmission };
-            if body.dry.settle(before, state.velocity) {
+            if body.friction.settle(before, state.velocity) {
                 state.velocity = 0.0;
                 at_rest |= 1 << i;
             }

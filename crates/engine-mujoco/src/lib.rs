@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | chain moved by efforts | RK4, efforts held over the tick | fourth |
 //! | chain behind a prescribed base | the base is the frame of reference (`base.rs`) | fourth without damping, else second |
-//! | dry friction | see [`servobench_plant::DryFriction`]; stuck bodies keep their position to the bit | second between the stops, first at each stop |
+//! | dry friction | see [`servobench_plant::Friction`]; stuck bodies keep their position to the bit | second between the stops, first at each stop |
 //! | a user's MJCF | the integrator of the file | as `MuJoCo` documents it |
 //!
 //! RK4 damps a mode of ω by ζ = (ω·h)⁵/144: below 1e-4 up to ω·h = 0.43, which is 1.1 kHz at 16 kHz. A chain that it
@@ -20,25 +20,26 @@ mod mjcf;
 mod simulation;
 mod stability;
 
-use servobench_plant::{Engine, Mechanics, MechanicsError, MechanicsSetup, Model};
+use servobench_plant::{Engine, EngineName, Mechanics, MechanicsError, MechanicsSetup, Model};
 
-const NAME: &str = "mujoco";
+const NAME: EngineName = EngineName::Mujoco;
 
 /// The engine `mujoco`.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Mujoco;
 
 impl Engine for Mujoco {
-    fn name(&self) -> &'static str {
+    fn name(&self) -> EngineName {
         NAME
     }
 
+    #[expect(clippy::match_wildcard_for_single_variants, reason = "all kinds that it does not list are refused alike")]
     fn build(&self, setup: &MechanicsSetup) -> Result<Box<dyn Mechanics>, MechanicsError> {
         setup.check()?;
         match &setup.model {
             Model::Chain(chain) => Ok(Box::new(chain::MujocoChain::new(chain.clone(), setup)?)),
             Model::Mjcf(model) => Ok(Box::new(mjcf::MujocoMjcf::new(model, setup)?)),
-            Model::Fmu(_) => Err(MechanicsError::not_an_fmu_engine(NAME)),
+            other => Err(MechanicsError::not_simulated(NAME, other)),
         }
     }
 }

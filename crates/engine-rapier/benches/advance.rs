@@ -7,7 +7,7 @@ use rapier3d_f64::prelude::*;
 use servobench_base::Coordinate;
 use servobench_engine_rapier::Rapier;
 use servobench_plant::{
-    Actuation, Body, Chain, Drive, DryFriction, Engine, Input, Link, Mechanics, MechanicsSetup, MjcfModel, Model,
+    Actuation, Body, Chain, Drive, Engine, Friction, Input, Link, Mechanics, MechanicsSetup, MjcfModel, Model,
 };
 use std::hint::black_box;
 
@@ -18,14 +18,13 @@ fn main() {
 }
 
 /// A chain of `bodies` equal masses.
-fn chain(bodies: usize, dry: DryFriction) -> Chain {
+fn chain(bodies: usize, friction: Friction) -> Chain {
     let body = Body {
         name: "body",
         coordinate: Coordinate::Linear,
         inertia: 10.0,
         transmission: 1.0,
-        viscous: 10.0,
-        dry,
+        friction: Friction { viscous: 10.0, ..friction },
         bias: 0.0,
     };
     Chain::new(vec![body; bodies], vec![Link { stiffness: 6e5, damping: 500.0 }; bodies - 1]).unwrap()
@@ -111,7 +110,7 @@ fn a_bare_step(bencher: Bencher, bodies: usize) {
 
 #[divan::bench(args = [1, 2, 3, 4], sample_count = 400, sample_size = 500)]
 fn advance(bencher: Bencher, bodies: usize) {
-    let (mut axis, mut k) = (build(&chain(bodies, DryFriction::NONE)), 0_u32);
+    let (mut axis, mut k) = (build(&chain(bodies, Friction::NONE)), 0_u32);
     bencher.bench_local(|| {
         k = k.wrapping_add(1);
         let actuation = Actuation::Effort(black_box(torque(k)));

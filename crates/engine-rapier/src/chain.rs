@@ -13,7 +13,7 @@ use crate::lumps::{Lumps, Positions};
 use crate::scene::diverged;
 use servobench_base::Setpoint;
 use servobench_plant::{
-    Actuation, BodyState, Chain, Drive, DryFriction, Grip, Input, Mechanics, MechanicsError, MechanicsSetup,
+    Actuation, BodyState, Chain, Drive, Friction, Grip, Input, Mechanics, MechanicsError, MechanicsSetup,
 };
 
 /// A chain in Rapier.
@@ -41,9 +41,9 @@ struct Parameters<const N: usize> {
     /// Of link i, between bodies i and i+1.
     stiffness: [f64; N],
     damping: [f64; N],
-    dry: [DryFriction; N],
-    /// Whether any body has dry friction.
-    any_dry: bool,
+    friction: [Friction; N],
+    /// Whether all friction is linear.
+    is_linear: bool,
 }
 
 impl<const N: usize> LumpChain<N> {
@@ -97,8 +97,8 @@ impl<const N: usize> LumpChain<N> {
     /// Adds dry friction to the efforts and says which bodies it holds; `all` are the efforts of everything else.
     fn grip(&mut self, constant: &mut [f64; N], all: &mut [f64; N]) {
         let mut held = usize::from(self.prescribed);
-        for (i, dry) in self.parameters.dry.iter().enumerate() {
-            match dry.grip(self.velocities[i], all[i]) {
+        for (i, friction) in self.parameters.friction.iter().enumerate() {
+            match friction.grip(self.velocities[i], all[i]) {
                 Grip::Held => {
                     held |= 1 << i;
                     // It can have come to rest by a half kick that Rapier has not seen.
@@ -148,7 +148,7 @@ impl<const N: usize> Mechanics for LumpChain<N> {
 
         let mut efforts = self.with_passive(&constant);
         let before = self.velocities;
-        if self.parameters.any_dry {
+        if !self.parameters.is_linear {
             self.grip(&mut constant, &mut efforts);
         }
         self.half_kick(&efforts);
@@ -160,9 +160,9 @@ impl<const N: usize> Mechanics for LumpChain<N> {
         }
         let efforts = self.with_passive(&constant);
         self.half_kick(&efforts);
-        if self.parameters.any_dry {
-            for (i, dry) in self.parameters.dry.iter().enumerate() {
-                if dry.settle(before[i], self.velocities[i]) {
+        if !self.parameters.is_linear {
+            for (i, friction) in self.parameters.friction.iter().enumerate() {
+                if friction.settle(before[i], self.velocities[i]) {
                     self.velocities[i] = 0.0;
                     self.lumps.stop(i);
                 }
@@ -188,15 +188,15 @@ impl<const N: usize> Parameters<N> {
         let link = |value: fn(&servobench_plant::Link) -> f64| -> [f64; N] {
             std::array::from_fn(|i| chain.links().get(i).map_or(0.0, value))
         };
-        let dry = std::array::from_fn(|i| if i < first { DryFriction::NONE } else { chain.bodies()[i].dry });
+        let friction = std::array::from_fn(|i| if i < first { Friction::NONE } else { chain.bodies()[i].friction });
         Self {
             transmission: body(|body| body.transmission),
-            viscous: body(|body| body.viscous),
+            viscous: body(|body| body.friction.linear()),
             bias: body(|body| body.bias),
             stiffness: link(|link| link.stiffness),
             damping: link(|link| link.damping),
-            any_dry: dry.iter().any(|dry: &DryFriction| !dry.is_none()),
-            dry,
+            is_linear: friction.iter().all(Friction::is_linear),
+            friction,
         }
     }
 }

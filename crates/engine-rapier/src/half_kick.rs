@@ -27,7 +27,7 @@ impl<const N: usize> HalfKick<N> {
     pub(crate) fn new(chain: &Chain, step: f64) -> Self {
         let (mut diagonal, mut off_diagonal) = ([0.0; N], [0.0; N]);
         for (entry, body) in diagonal.iter_mut().zip(chain.bodies()) {
-            *entry = body.inertia + step / 4.0 * body.viscous;
+            *entry = body.inertia + step / 4.0 * body.friction.linear();
         }
         for (i, link) in chain.links().iter().enumerate() {
             let (near, far) = (chain.bodies()[i].transmission, chain.bodies()[i + 1].transmission);
@@ -93,7 +93,7 @@ mod tests {
     use super::*;
     use nalgebra::{Matrix3, Vector3};
     use servobench_base::Coordinate;
-    use servobench_plant::{Body, DryFriction, Link};
+    use servobench_plant::{Body, Friction, Link};
 
     const H: f64 = 1.0 / 16_000.0;
 
@@ -103,8 +103,7 @@ mod tests {
             coordinate: Coordinate::Linear,
             inertia,
             transmission,
-            viscous,
-            dry: DryFriction::NONE,
+            friction: Friction { viscous, ..Friction::NONE },
             bias: 0.0,
         };
         let link = |damping| Link { stiffness: 1.0, damping };

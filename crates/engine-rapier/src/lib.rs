@@ -5,7 +5,7 @@
 //! |---|---|---|
 //! | chain moved by efforts | a sliding body for each lump (`lumps.rs`); half kick – drift – half kick, the drift Rapier's | second, damped or not |
 //! | chain behind a prescribed base | the links see the base at both ends of the tick | second |
-//! | dry friction of a chain | see [`servobench_plant::DryFriction`]; stuck bodies keep their position to the bit | second between the stops, first at each stop |
+//! | dry friction of a chain | see [`servobench_plant::Friction`]; stuck bodies keep their position to the bit | second between the stops, first at each stop |
 //! | a user's MJCF | a multibody of joints (`linkage.rs`), efforts as in a chain | second; Coriolis forces of hinges on hinges first |
 //!
 //! A mode of ω rings too fast by the factor 1 + (ω·h)²/24 (84 Hz at 16 kHz: 5e-5; 1 kHz: 6e-3) and keeps its amplitude:
@@ -50,21 +50,22 @@ mod scene;
 use chain::LumpChain;
 use linkage::{Linkage, LinkageError};
 use mjcf::Mechanism;
-use servobench_plant::{Chain, Drive, Engine, Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Model};
+use servobench_plant::{Chain, Drive, Engine, EngineName, Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Model};
 
 pub use mjcf::MjcfRefusal;
 
-const NAME: &str = "rapier";
+const NAME: EngineName = EngineName::Rapier;
 
 /// The engine `rapier`.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Rapier;
 
 impl Engine for Rapier {
-    fn name(&self) -> &'static str {
+    fn name(&self) -> EngineName {
         NAME
     }
 
+    #[expect(clippy::match_wildcard_for_single_variants, reason = "all kinds that it does not list are refused alike")]
     fn build(&self, setup: &MechanicsSetup) -> Result<Box<dyn Mechanics>, MechanicsError> {
         setup.check()?;
         match &setup.model {
@@ -75,7 +76,7 @@ impl Engine for Rapier {
                 _ => Box::new(LumpChain::<{ Chain::MAX_BODIES }>::new(chain, setup)?),
             }),
             Model::Mjcf(model) => build_mjcf(model, setup),
-            Model::Fmu(_) => Err(MechanicsError::not_an_fmu_engine(NAME)),
+            other => Err(MechanicsError::not_simulated(NAME, other)),
         }
     }
 }

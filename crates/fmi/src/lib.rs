@@ -7,12 +7,14 @@
 
 pub mod abi;
 mod archive;
+mod bits;
 mod description;
 mod error;
 mod feedthrough;
 mod library;
 mod loaded;
 mod log;
+mod request;
 mod setup;
 mod slave;
 
@@ -27,6 +29,7 @@ pub use feedthrough::Feedthrough;
 pub use library::calls::note_calls;
 pub use loaded::Loaded;
 pub use log::hear_at_once;
+pub use request::{Bounds, FmuEntry, FmuFile, FmuMistake, FmuRequest, Isolation, IsolationKind, SiPort, SiUnit};
 pub use servobench_base::Severity;
 pub use setup::{Setup, Value};
 pub use slave::{Capabilities, LogLine, Port, Progress, Slave, SlaveError};

@@ -5,18 +5,30 @@ mod start;
 pub(crate) use start::Start;
 
 use crate::archive::Unpacked;
+use crate::bits;
 use crate::description::{Causality, DataType, Dimension, ModelDescription, Named, Values, Variability, Variable};
 use crate::error::FmuError;
 use crate::slave::Port;
+use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 
-/// A start value, in the unit of the variable.
-#[derive(Debug, Clone, PartialEq)]
+/// A start value.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Value {
-    /// For numbers of any type that can hold it.
-    Number(f64),
+    /// For numbers of any type that can hold it, in the unit of the variable.
+    Number(#[serde(with = "bits::float")] f64),
+    /// For numbers, in a unit of its own; a [`Setup`] takes it once it is converted. It may also be just a text.
+    Quantity {
+        /// As it was written.
+        text: String,
+        /// In SI units.
+        #[serde(with = "bits::float")]
+        si: f64,
+        /// Exponents of kilogram, metre, second and ampere in its unit.
+        exponents: [i32; 4],
+    },
     /// For integers that are too long for a `f64`, and all others.
-    Integer(i128),
+    Integer(#[serde(with = "bits::integer")] i128),
     /// For booleans.
     Boolean(bool),
     /// For texts, and for enumerations by the name of the item.
@@ -28,7 +40,7 @@ pub enum Value {
 }
 
 /// How an FMU is started and wired.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Setup {
     /// What the instance calls itself in its messages.
     pub instance_name: String,
@@ -39,10 +51,13 @@ pub struct Setup {
     /// What is read.
     pub outputs: Vec<Port>,
     /// Time at the start (s).
+    #[serde(with = "bits::float")]
     pub start_time: f64,
     /// Time at the end (s), if it is known.
+    #[serde(with = "bits::optional")]
     pub stop_time: Option<f64>,
     /// Relative tolerance for a solver in the FMU.
+    #[serde(with = "bits::optional")]
     pub tolerance: Option<f64>,
     /// Whether the FMU is to say what it does.
     pub logging: bool,

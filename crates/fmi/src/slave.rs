@@ -1,12 +1,15 @@
 //! A co-simulation FMU that is initialised, whichever version it is of, and whether it runs here or in a process of its own.
+use crate::bits;
+use serde::{Deserialize, Serialize};
 use servobench_base::Severity;
+use std::borrow::Cow;
 use thiserror::Error;
 
 /// A scalar that is exchanged: a variable, or an element of an array.
 ///
 /// Whatever its type is, it is exchanged as a number: integers and enumerations by value, FALSE and TRUE as 0 and 1. A number
 /// that its type cannot hold is [`SlaveError::Value`].
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Port {
     /// Name in the model description.
     pub variable: String,
@@ -26,7 +29,7 @@ pub enum Progress {
 }
 
 /// What an FMU can do beyond stepping.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Capabilities {
     /// Its state can be saved and restored (`canGetAndSetFMUState`).
     pub saves_state: bool,
@@ -37,12 +40,14 @@ pub struct Capabilities {
 }
 
 /// What an FMU said.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LogLine {
     /// Simulation time (s): the start of the step in which it was said; between two steps where it was; before the first one
     /// its start.
+    #[serde(with = "bits::float")]
     pub time: f64,
     /// How much it matters: the status OK informs, warning warns, discard, error and fatal are errors.
+    #[serde(with = "bits::severity")]
     pub severity: Severity,
     /// Category as the FMU names it.
     pub category: String,
@@ -138,27 +143,30 @@ pub trait Slave: Send {
 }
 
 /// Why an FMU did not do what it was asked for.
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Debug, Clone, PartialEq, Error, Serialize, Deserialize)]
 pub enum SlaveError {
     /// It returned the status discard. A step that it can be taken back from was tried in parts as well: it is where these came to.
     #[error("the FMU discarded {call} at {time} s{}", tried(*shortest))]
     Discarded {
         /// Function of the standard.
-        call: &'static str,
+        call: Cow<'static, str>,
         /// Where it is (s).
+        #[serde(with = "bits::float")]
         time: f64,
         /// The shortest step that was tried from there (s), if it can be taken back.
+        #[serde(with = "bits::optional")]
         shortest: Option<f64>,
     },
     /// It returned the status error or fatal.
     #[error("the FMU failed in {call} at {time} s ({status}){}", said(.message))]
     Failed {
         /// Function of the standard.
-        call: &'static str,
+        call: Cow<'static, str>,
         /// When (s).
+        #[serde(with = "bits::float")]
         time: f64,
         /// Status as the standard names it.
-        status: &'static str,
+        status: Cow<'static, str>,
         /// The last that it logged; empty if nothing.
         message: String,
     },
@@ -168,8 +176,10 @@ pub enum SlaveError {
         /// Name of the variable.
         variable: String,
         /// What it is.
+        #[serde(with = "bits::float")]
         value: f64,
         /// When (s).
+        #[serde(with = "bits::float")]
         time: f64,
     },
     /// A variable cannot take the number.
@@ -178,38 +188,44 @@ pub enum SlaveError {
         /// Name of the variable.
         variable: String,
         /// What it takes.
-        bound: &'static str,
+        bound: Cow<'static, str>,
         /// What it should have taken.
+        #[serde(with = "bits::float")]
         value: f64,
         /// When (s).
+        #[serde(with = "bits::float")]
         time: f64,
     },
     /// It does not have what it was asked for.
     #[error("the FMU cannot {what}: its model description does not say `{capability}`")]
     Unable {
         /// What it was asked for.
-        what: &'static str,
+        what: Cow<'static, str>,
         /// Attribute that it lacks.
-        capability: &'static str,
+        capability: Cow<'static, str>,
     },
     /// It came back from a step at a time where it cannot be.
     #[error("the FMU was asked by {call} to go from {from} s to {to} s, and says that it is at {at} s")]
     Astray {
         /// Function of the standard.
-        call: &'static str,
+        call: Cow<'static, str>,
         /// Where the step began (s).
+        #[serde(with = "bits::float")]
         from: f64,
         /// Where it should have ended (s).
+        #[serde(with = "bits::float")]
         to: f64,
         /// Where it says that it is (s).
+        #[serde(with = "bits::float")]
         at: f64,
     },
     /// Its process ended.
     #[error("the FMU's process ended{} at {time} s: {how}", during(call))]
     Crashed {
         /// Function of the standard that it was in; empty if it was in none.
-        call: &'static str,
+        call: Cow<'static, str>,
         /// When (s).
+        #[serde(with = "bits::float")]
         time: f64,
         /// Signal or exit code, and what it left on standard error.
         how: String,
@@ -218,10 +234,12 @@ pub enum SlaveError {
     #[error("the FMU did not come back from {call} at {time} s within {patience} s of real time; it was ended")]
     Hung {
         /// Function of the standard.
-        call: &'static str,
+        call: Cow<'static, str>,
         /// When (s).
+        #[serde(with = "bits::float")]
         time: f64,
         /// How long it was waited for (s).
+        #[serde(with = "bits::float")]
         patience: f64,
     },
 }

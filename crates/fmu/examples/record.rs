@@ -1,7 +1,7 @@
 //! What a run of a scenario records on the engine `exact` at every tick, as CSV with every number to the bit: `record SCENARIO`.
 //! FMUs beside the axis are loaded into this process, with the start values that they have; their numbers are SI numbers.
-use servobench_fmi::{Loaded, Port, Setup, Slave, Unpacked};
-use servobench_plant::{Exact, FmuMistake, FmuPartner, FmuPort};
+use servobench_fmi::{FmuMistake, FmuRequest, Loaded, Port, Setup, SiPort, Slave, Unpacked};
+use servobench_plant::Exact;
 use servobench_scenario::load;
 use servobench_sim::{Bench, Partners};
 use std::error::Error;
@@ -12,21 +12,21 @@ use std::path::Path;
 struct Here;
 
 impl Partners for Here {
-    fn open(&self, partner: &FmuPartner) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
-        if !partner.file.start.is_empty() {
+    fn open(&self, request: &FmuRequest<'_>) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
+        if !request.file.start.is_empty() {
             return Err(vec![FmuMistake::of_file(&"this example sets no parameters")]);
         }
-        let ports = |ports: &[FmuPort]| {
+        let ports = |ports: &[SiPort]| {
             ports.iter().map(|port| Port { variable: port.variable.clone(), element: 0 }).collect::<Vec<_>>()
         };
         let setup = Setup {
-            instance_name: partner.name.clone(),
-            inputs: ports(&partner.inputs),
-            outputs: ports(&partner.outputs),
-            stop_time: Some(partner.end),
+            instance_name: request.name.unwrap_or_default().to_owned(),
+            inputs: ports(&request.inputs),
+            outputs: ports(&request.outputs),
+            stop_time: request.end,
             ..Setup::default()
         };
-        let opened = Unpacked::new(&partner.file.path).and_then(|fmu| Loaded::new(&fmu, &setup));
+        let opened = Unpacked::new(&request.file.path).and_then(|fmu| Loaded::new(&fmu, &setup));
         Ok(Box::new(opened.map_err(|error| vec![FmuMistake::of_file(&error)])?))
     }
 }

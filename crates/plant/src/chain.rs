@@ -6,7 +6,7 @@
 //! ```
 //! `q` is each body's own coordinate, `r·q` the axis coordinate: a rotary motor on a screw of lead `p` has
 //! `r = p/2π` (m/rad), every other body `r = 1`.
-use crate::friction::DryFriction;
+use crate::friction::Friction;
 use crate::mechanics::BodyState;
 use servobench_base::{Coordinate, ParamError, finite, non_negative, positive};
 
@@ -21,10 +21,8 @@ pub struct Body {
     pub inertia: f64,
     /// Axis coordinate per own coordinate, `r` (1, or m/rad).
     pub transmission: f64,
-    /// Viscous friction against the ground, `b` (N·s/m or N·m·s/rad).
-    pub viscous: f64,
-    /// Coulomb and static friction against the ground.
-    pub dry: DryFriction,
+    /// Friction against the ground.
+    pub friction: Friction,
     /// Constant resisting force, `f0`: gravity on a vertical axis, asymmetry of the friction (N or N·m).
     pub bias: f64,
 }
@@ -72,9 +70,8 @@ impl Chain {
         for body in bodies {
             positive("inertia", body.inertia)?;
             positive("transmission", body.transmission)?;
-            non_negative("viscous", body.viscous)?;
+            body.friction.check()?;
             finite("bias", body.bias)?;
-            body.dry.check()?;
         }
         for link in links {
             positive("stiffness", link.stiffness)?;
@@ -107,11 +104,11 @@ impl Chain {
         &mut self.links
     }
 
-    /// Effort on body `i` from its links, viscous friction and bias; neither actuation nor dry friction.
+    /// Effort on body `i` from its links, the linear part of its friction and bias; neither actuation nor the rest of friction.
     #[must_use]
     pub fn passive_effort(&self, i: usize, states: &[BodyState]) -> f64 {
         let body = &self.bodies[i];
-        let mut effort = -body.viscous * states[i].velocity - body.bias;
+        let mut effort = -body.friction.linear() * states[i].velocity - body.bias;
         if i > 0 {
             effort += body.transmission * self.link_force(i - 1, states);
         }
@@ -134,8 +131,8 @@ mod tests {
     use super::*;
 
     fn body(inertia: f64, transmission: f64) -> Body {
-        let (coordinate, dry) = (Coordinate::Linear, DryFriction::NONE);
-        Body { name: "motor", coordinate, inertia, transmission, viscous: 2.0, dry, bias: 0.5 }
+        let (coordinate, friction) = (Coordinate::Linear, Friction { viscous: 2.0, ..Friction::NONE });
+        Body { name: "motor", coordinate, inertia, transmission, friction, bias: 0.5 }
     }
 
     #[test]

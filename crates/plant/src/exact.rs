@@ -13,12 +13,13 @@
 //! exactly too. A stuck body has its velocity row and column struck out: one pair (Φ, Γ) for each set of stuck bodies.
 //! Source: Åström & Wittenmark, *Computer-Controlled Systems*, 3rd ed., §2.3; Van Loan, IEEE TAC 23(3), 1978.
 use crate::chain::Chain;
+use crate::engine::{Engine, EngineName};
 use crate::friction::Grip;
-use crate::mechanics::{Actuation, BodyState, Drive, Engine, Input, Mechanics, MechanicsError, MechanicsSetup, Model};
+use crate::mechanics::{Actuation, BodyState, Drive, Input, Mechanics, MechanicsError, MechanicsSetup, Model};
 use nalgebra::DMatrix;
 use std::sync::Arc;
 
-const NAME: &str = "exact";
+const NAME: EngineName = EngineName::Exact;
 const MAX_BODIES: usize = Chain::MAX_BODIES;
 /// Most rows: stretches and velocities of the chain, derivatives of a prescribed base, travel.
 const ROWS: usize = 2 * MAX_BODIES - 1 + 4 + 1;
@@ -33,7 +34,7 @@ fn states(chain: &Chain, prescribed: bool) -> usize {
 pub struct Exact;
 
 impl Engine for Exact {
-    fn name(&self) -> &'static str {
+    fn name(&self) -> EngineName {
         NAME
     }
 
@@ -46,12 +47,7 @@ impl Engine for Exact {
                 5..=8 => Box::new(ExactChain::<8>::new(chain.clone(), setup)),
                 _ => Box::new(ExactChain::<ROWS>::new(chain.clone(), setup)),
             }),
-            Model::Mjcf(model) => Err(MechanicsError::Unsupported {
-                engine: NAME,
-                what: format!("MJCF files ({})", model.path.display()),
-                way_out: "choose the engine `mujoco` or `rapier`, or describe the axis by its bodies".into(),
-            }),
-            Model::Fmu(_) => Err(MechanicsError::not_an_fmu_engine(NAME)),
+            other => Err(MechanicsError::not_simulated(NAME, other)),
         }
     }
 }
@@ -84,7 +80,7 @@ impl<const W: usize> ExactChain<W> {
         let n = chain.bodies().len();
         let prescribed = setup.drive == Drive::Prescribed;
         let can_stick = chain.bodies().iter().enumerate().fold(0_usize, |set, (i, body)| {
-            if body.dry.is_none() || (prescribed && i == 0) { set } else { set | 1 << i }
+            if body.friction.is_linear() || (prescribed && i == 0) { set } else { set | 1 << i }
         });
         let holds = (0..1_usize << n)
             .map(|stuck| (stuck & !can_stick == 0).then(|| hold(&chain, prescribed, setup.step, stuck)))
@@ -140,7 +136,7 @@ impl<const W: usize> ExactChain<W> {
         for (i, body) in self.chain.bodies().iter().enumerate().skip(usize::from(self.prescribed)) {
             // `passive_effort` holds the bias, and `u` does too.
             let others = self.chain.passive_effort(i, &self.bodies) + u[i] + body.bias;
-            match body.dry.grip(self.bodies[i].velocity, others) {
+            match body.friction.grip(self.bodies[i].velocity, others) {
                 Grip::Held => stuck |= 1 << i,
                 Grip::Force(force) => u[i] += force,
             }
@@ -201,7 +197,7 @@ impl<const W: usize> Mechanics for ExactChain<W> {
                 continue;
             }
             let mut velocity = next[n - 1 + i] * self.per_travel[i];
-            if !(self.prescribed && i == 0) && body.dry.settle(self.bodies[i].velocity, velocity) {
+            if !(self.prescribed && i == 0) && body.friction.settle(self.bodies[i].velocity, velocity) {
                 velocity = 0.0;
                 next[n - 1 + i] = 0.0;
             }
@@ -232,7 +228,7 @@ impl<const W: usize> Mechanics for ExactChain<W> {
     }
 
     fn rewind(&mut self) -> Result<(), MechanicsError> {
-        let Some((y, bodies)) = &self.marked else { return Err(MechanicsError::no_way_back()) };
+        let Some((y, bodies)) = &self.marked else { return Err(MechanicsError::NoWayBack) };
         self.y = *y;
         self.bodies.clone_from(bodies);
         Ok(())
@@ -290,7 +286,7 @@ fn hold<const W: usize>(chain: &Chain, prescribed: bool, h: f64, stuck: usize) -
                 }
             }
         }
-        a[(velocity(i), velocity(i))] -= h * body.viscous / body.inertia;
+        a[(velocity(i), velocity(i))] -= h * body.friction.linear() / body.inertia;
         a[(velocity(i), states + 1 + i)] = h * h * body.transmission / body.inertia;
     }
     if prescribed {

@@ -1,16 +1,26 @@
-//! Dry friction between a body and the ground: Coulomb, static (Stribeck), and sticking that really sticks.
+//! Friction between a body and the ground: viscous, Coulomb, static (Stribeck), and sticking that really sticks.
 //!
 //! ```text
-//! |f|(v) = f_c + (f_s − f_c)·exp(−(v/v_s)²)      sliding, against the motion
+//! f(v) = b·v + sgn(v)·(f_c + (f_s − f_c)·exp(−(v/v_s)²))      sliding, against the motion
 //! stuck while |effort of everything else| ≤ f_s; a stuck body keeps its position to the bit
 //! ```
-//! Source: Armstrong-Hélouvry, Dupont, Canudas de Wit, *Automatica* 30(7), 1994, eq. (4). Viscous friction is linear
-//! and belongs to the mechanics.
+//! Source: Armstrong-Hélouvry, Dupont, Canudas de Wit, *Automatica* 30(7), 1994, eq. (4).
 //!
-//! The engine asks [`DryFriction::grip`] before each tick: a held body is locked for the tick, a sliding one gets a
-//! constant force. After the tick it tells [`DryFriction::settle`] the new velocity; when that reversed, the body
-//! came to rest within the tick and is stopped there. The crossing itself is met to first order in the step.
+//! [`Friction`] is all that engines, previews and estimates know of it. The part that is proportional to the velocity belongs to the
+//! linear chain and is integrated with it ([`Friction::linear`]). For the rest the engine asks [`Friction::grip`] before each tick: a
+//! held body is locked for the tick, a sliding one gets a constant force. After the tick it tells [`Friction::settle`] the new
+//! velocity; when that reversed, the body came to rest within the tick and is stopped there. The crossing itself is met to first
+//! order in the step.
 use servobench_base::{ParamError, non_negative};
+
+/// Friction of a body against the ground, in its own coordinate; constant during a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Friction {
+    /// Viscous friction, `b` (N·s/m or N·m·s/rad).
+    pub viscous: f64,
+    /// Coulomb and static friction.
+    pub dry: DryFriction,
+}
 
 /// Parameters of dry friction; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,45 +42,43 @@ pub enum Grip {
     Force(f64),
 }
 
-impl DryFriction {
-    /// No dry friction.
-    pub const NONE: Self = Self { coulomb: 0.0, breakaway: 0.0, stribeck_velocity: 0.0 };
+impl Friction {
+    /// No friction.
+    pub const NONE: Self = Self { viscous: 0.0, dry: DryFriction::NONE };
+
+    /// Coulomb friction alone (N or N·m).
+    #[must_use]
+    pub const fn coulomb(coulomb: f64) -> Self {
+        Self { dry: DryFriction { coulomb, breakaway: coulomb, stribeck_velocity: 0.0 }, ..Self::NONE }
+    }
 
     /// # Errors
     /// [`ParamError`] names the first parameter out of its bound.
     pub fn check(&self) -> Result<(), ParamError> {
-        non_negative("coulomb", self.coulomb)?;
-        non_negative("stribeck_velocity", self.stribeck_velocity)?;
-        if !(self.breakaway.is_finite() && self.breakaway >= self.coulomb) {
-            return Err(ParamError { name: "static", value: self.breakaway, bound: "finite and at least `coulomb`" });
-        }
-        Ok(())
+        non_negative("viscous", self.viscous)?;
+        self.dry.check()
     }
 
-    /// Whether there is any.
+    /// The part that is proportional to the velocity, per velocity (N·s/m or N·m·s/rad).
     #[must_use]
-    pub fn is_none(&self) -> bool {
-        self.breakaway == 0.0
+    pub const fn linear(&self) -> f64 {
+        self.viscous
     }
 
-    /// Magnitude of the sliding friction at `velocity` (N or N·m).
+    /// Whether there is no more than the linear part: [`grip`](Self::grip) then never does anything.
     #[must_use]
-    pub fn sliding(&self, velocity: f64) -> f64 {
-        if self.stribeck_velocity == 0.0 {
-            return self.coulomb;
-        }
-        let ratio = velocity / self.stribeck_velocity;
-        self.coulomb + (self.breakaway - self.coulomb) * libm::exp(-ratio * ratio)
+    pub fn is_linear(&self) -> bool {
+        self.dry.is_none()
     }
 
-    /// What friction does in the coming tick, given the velocity and the effort of everything else at its start.
+    /// What all but the linear part does in the coming tick, given the velocity and the effort of everything else at its start.
     #[must_use]
     pub fn grip(&self, velocity: f64, effort: f64) -> Grip {
-        if self.is_none() {
+        if self.is_linear() {
             Grip::Force(0.0)
         } else if velocity != 0.0 {
             Grip::Force(-self.sliding(velocity).copysign(velocity))
-        } else if effort.abs() <= self.breakaway {
+        } else if effort.abs() <= self.breakaway() {
             Grip::Held
         } else {
             Grip::Force(-self.sliding(0.0).copysign(effort))
@@ -81,7 +89,88 @@ impl DryFriction {
     /// then to be set to zero.
     #[must_use]
     pub fn settle(&self, before: f64, after: f64) -> bool {
-        !self.is_none() && before * after < 0.0
+        !self.is_linear() && before * after < 0.0
+    }
+
+    /// Magnitude of all but the linear part while the body slides with `velocity` (N or N·m).
+    #[must_use]
+    pub fn sliding(&self, velocity: f64) -> f64 {
+        self.dry.sliding(velocity)
+    }
+
+    /// The effort up to which a body at rest is held (N or N·m).
+    #[must_use]
+    pub const fn breakaway(&self) -> f64 {
+        self.dry.breakaway
+    }
+
+    /// The part of sliding that does not depend on the velocity, which a drive can feed forward (N or N·m).
+    #[must_use]
+    pub const fn constant(&self) -> f64 {
+        self.dry.coulomb
+    }
+
+    /// The same friction as a coordinate feels it that moves this one by `ratio`.
+    #[must_use]
+    pub fn carried(&self, ratio: f64) -> Self {
+        let DryFriction { coulomb, breakaway, stribeck_velocity } = self.dry;
+        Self {
+            viscous: ratio * ratio * self.viscous,
+            dry: DryFriction {
+                coulomb: ratio * coulomb,
+                breakaway: ratio * breakaway,
+                stribeck_velocity: stribeck_velocity / ratio,
+            },
+        }
+    }
+
+    /// The friction of two bodies that are coupled rigidly, in one coordinate; `None` where there is no such sum, because they
+    /// differ in Stribeck velocity: two curves of different width do not add up to a third.
+    #[must_use]
+    pub fn joined(&self, other: &Self) -> Option<Self> {
+        let has_stribeck = |dry: &DryFriction| dry.breakaway > dry.coulomb;
+        let (one, two) = (&self.dry, &other.dry);
+        let widest = one.stribeck_velocity.max(two.stribeck_velocity);
+        let differ = (one.stribeck_velocity - two.stribeck_velocity).abs() > 1e-9 * widest;
+        if has_stribeck(one) && has_stribeck(two) && differ {
+            return None;
+        }
+        let stribeck_velocity = if has_stribeck(two) { two.stribeck_velocity } else { one.stribeck_velocity };
+        Some(Self {
+            viscous: self.viscous + other.viscous,
+            dry: DryFriction {
+                coulomb: one.coulomb + two.coulomb,
+                breakaway: one.breakaway + two.breakaway,
+                stribeck_velocity,
+            },
+        })
+    }
+}
+
+impl DryFriction {
+    /// No dry friction.
+    pub const NONE: Self = Self { coulomb: 0.0, breakaway: 0.0, stribeck_velocity: 0.0 };
+
+    fn check(&self) -> Result<(), ParamError> {
+        non_negative("coulomb", self.coulomb)?;
+        non_negative("stribeck_velocity", self.stribeck_velocity)?;
+        if !(self.breakaway.is_finite() && self.breakaway >= self.coulomb) {
+            return Err(ParamError { name: "static", value: self.breakaway, bound: "finite and at least `coulomb`" });
+        }
+        Ok(())
+    }
+
+    fn is_none(&self) -> bool {
+        self.breakaway == 0.0
+    }
+
+    /// Magnitude of the sliding friction at `velocity` (N or N·m).
+    fn sliding(&self, velocity: f64) -> f64 {
+        if self.stribeck_velocity == 0.0 {
+            return self.coulomb;
+        }
+        let ratio = velocity / self.stribeck_velocity;
+        self.coulomb + (self.breakaway - self.coulomb) * libm::exp(-ratio * ratio)
     }
 }
 
@@ -89,7 +178,8 @@ impl DryFriction {
 mod tests {
     use super::*;
 
-    const DRY: DryFriction = DryFriction { coulomb: 2.0, breakaway: 3.0, stribeck_velocity: 0.1 };
+    const DRY: Friction =
+        Friction { viscous: 0.0, dry: DryFriction { coulomb: 2.0, breakaway: 3.0, stribeck_velocity: 0.1 } };
 
     #[test]
     fn stribeck_curve_runs_from_static_to_coulomb() {
@@ -108,12 +198,34 @@ mod tests {
     fn friction_never_reverses_a_motion() {
         assert!(DRY.settle(0.1, -0.2));
         assert!(!DRY.settle(0.0, 0.2), "a body that broke away goes on");
-        assert!(!DryFriction::NONE.settle(0.1, -0.2));
+        assert!(!Friction::NONE.settle(0.1, -0.2));
     }
 
     #[test]
     fn static_below_coulomb_is_refused() {
-        let e = DryFriction { breakaway: 1.0, ..DRY }.check().unwrap_err();
-        assert_eq!(e.name, "static");
+        let dry = DryFriction { breakaway: 1.0, ..DRY.dry };
+        assert_eq!(Friction { dry, ..DRY }.check().unwrap_err().name, "static");
+        assert_eq!(Friction { viscous: -1.0, ..DRY }.check().unwrap_err().name, "viscous");
+    }
+
+    /// Oracle: power. Behind a ratio the same motion loses the same power, f·v.
+    #[test]
+    fn carried_friction_loses_the_same_power() {
+        let (friction, ratio) = (Friction { viscous: 0.7, ..DRY }, 0.25);
+        let carried = friction.carried(ratio);
+        for velocity in [0.01, 0.1, 3.0] {
+            let lost = |friction: &Friction, v: f64| v * (friction.linear() * v + friction.sliding(v));
+            // The body moves with ratio·v when the coordinate moves with v.
+            let (own, behind) = (lost(&friction, ratio * velocity), lost(&carried, velocity));
+            assert!((own / behind - 1.0).abs() < 1e-15, "{velocity}: {own} {behind}");
+        }
+    }
+
+    #[test]
+    fn two_stribeck_curves_of_different_width_are_no_third() {
+        let wide = Friction { dry: DryFriction { stribeck_velocity: 0.2, ..DRY.dry }, ..DRY };
+        assert_eq!(DRY.joined(&wide), None);
+        let sum = DRY.joined(&Friction { viscous: 0.5, ..Friction::coulomb(4.0) }).unwrap();
+        assert_eq!(sum, Friction { viscous: 0.5, dry: DryFriction { coulomb: 6.0, breakaway: 7.0, ..DRY.dry } });
     }
 }

@@ -5,6 +5,7 @@
 //! their own.
 
 mod chain;
+mod engine;
 mod exact;
 mod fmu;
 mod friction;
@@ -22,17 +23,15 @@ mod source;
 mod switches;
 
 pub use chain::{Body, Chain, Link};
+pub use engine::{Capabilities, Engine, EngineName};
 pub use exact::{Exact, transition};
-pub use fmu::{
-    Extrapolation, FmuBody, FmuEntry, FmuFile, FmuMistake, FmuModel, FmuPartner, FmuPort, FmuStart, FmuValue,
-    Isolation, SiUnit,
-};
-pub use friction::{DryFriction, Grip};
+pub use fmu::{FmuBody, FmuModel};
+pub use friction::{DryFriction, Friction, Grip};
 pub use integration::{Distortion, Integrator};
 pub use load_coordinate::{LoadCoordinate, PosedJoint};
 pub use mechanics::{
-    Actuation, BodyState, Drive, Engine, Input, JointLimit, Mechanics, MechanicsError, MechanicsSetup, MjcfModel,
-    Model, Said,
+    Actuation, BodyState, Drive, Input, JointLimit, Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Model,
+    ModelKind, Said,
 };
 pub use mjcf::chain_to_mjcf;
 pub use mjcf_axis::MjcfAxis;

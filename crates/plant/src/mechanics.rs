@@ -1,9 +1,11 @@
 //! Mechanics behind one trait: what the closed loop sees of a simulated axis, whichever engine computes it.
 use crate::chain::Chain;
-use crate::fmu::{FmuMistake, FmuModel};
+use crate::engine::EngineName;
+use crate::fmu::FmuModel;
 use crate::mjcf_axis::MjcfAxis;
 use crate::refusal::{Refusal, in_one_line};
 use servobench_base::{ParamError, Setpoint, Severity, finite, positive};
+use servobench_fmi::FmuMistake;
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -62,7 +64,7 @@ pub struct Said {
 
 /// A simulated axis.
 ///
-/// `advance` goes from tick k to k+1; before the first call the state is that of tick 0. Neither method allocates memory;
+/// `advance` goes from tick k to k+1; before the first call the state is that of tick 0. Neither `bodies` nor `advance` allocates memory;
 /// what a foreign engine does inside its own step is its own (Rapier allocates in each).
 pub trait Mechanics: Send {
     /// The bodies at the present tick: the motor first, the load last; one body is both.
@@ -89,7 +91,7 @@ pub trait Mechanics: Send {
     /// # Errors
     /// [`MechanicsError`], also where it cannot.
     fn mark(&mut self) -> Result<(), MechanicsError> {
-        Err(MechanicsError::no_way_back())
+        Err(MechanicsError::NoWayBack)
     }
 
     /// Goes back to the mark; it can do so again.
@@ -97,7 +99,7 @@ pub trait Mechanics: Send {
     /// # Errors
     /// [`MechanicsError`], also where there is no mark.
     fn rewind(&mut self) -> Result<(), MechanicsError> {
-        Err(MechanicsError::no_way_back())
+        Err(MechanicsError::NoWayBack)
     }
 
     /// Frees what it holds of somebody else's, after which only its log is taken. What goes wrong with that is in its log.
@@ -133,6 +135,29 @@ pub enum Model {
     Mjcf(MjcfModel),
     /// An FMU.
     Fmu(Box<FmuModel>),
+}
+
+/// Kinds of [`Model`]s.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ModelKind {
+    /// [`Model::Chain`].
+    Chain,
+    /// [`Model::Mjcf`].
+    Mjcf,
+    /// [`Model::Fmu`].
+    Fmu,
+}
+
+impl Model {
+    /// Which kind it is.
+    #[must_use]
+    pub const fn kind(&self) -> ModelKind {
+        match self {
+            Self::Chain(_) => ModelKind::Chain,
+            Self::Mjcf(_) => ModelKind::Mjcf,
+            Self::Fmu(_) => ModelKind::Fmu,
+        }
+    }
 }
 
 /// A user's own MJCF file and which of its parts are the axis.
@@ -171,7 +196,7 @@ pub struct MechanicsSetup {
 }
 
 impl MechanicsSetup {
-    /// Checks what every engine needs; each of them asks for it in [`Engine::build`].
+    /// Checks what every engine needs; each of them asks for it in [`Engine::build`](crate::Engine::build).
     ///
     /// # Errors
     /// [`ParamError`] names the first field that is wrong.
@@ -195,18 +220,6 @@ impl MechanicsSetup {
     }
 }
 
-/// Makes mechanics of one kind.
-pub trait Engine: Sync {
-    /// Name as scenario files write it.
-    fn name(&self) -> &'static str;
-
-    /// Builds the mechanics at tick 0.
-    ///
-    /// # Errors
-    /// [`MechanicsError`] when the model is wrong or needs what the engine does not have.
-    fn build(&self, setup: &MechanicsSetup) -> Result<Box<dyn Mechanics>, MechanicsError>;
-}
-
 /// Why an engine could not be built or could not go on.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum MechanicsError {
@@ -217,7 +230,7 @@ pub enum MechanicsError {
     #[error("engine `{engine}` does not support {what}; {way_out}")]
     Unsupported {
         /// Engine name.
-        engine: &'static str,
+        engine: EngineName,
         /// What was asked for.
         what: String,
         /// What to do instead.
@@ -227,7 +240,7 @@ pub enum MechanicsError {
     #[error("engine `{engine}` refuses {}: {}; {way_out}", path.display(), in_one_line(refusals))]
     Refused {
         /// Engine name.
-        engine: &'static str,
+        engine: EngineName,
         /// The file.
         path: PathBuf,
         /// What is refused, at least one thing.
@@ -239,7 +252,7 @@ pub enum MechanicsError {
     #[error("engine `{engine}` refuses {}: {}", path.display(), in_one_line(mistakes))]
     Fmu {
         /// Engine name.
-        engine: &'static str,
+        engine: EngineName,
         /// The file.
         path: PathBuf,
         /// What is wrong, at least one thing.
@@ -249,7 +262,7 @@ pub enum MechanicsError {
     #[error("engine `{engine}` cannot read the model: {message}")]
     Model {
         /// Engine name.
-        engine: &'static str,
+        engine: EngineName,
         /// The engine's own words.
         message: String,
     },
@@ -257,40 +270,46 @@ pub enum MechanicsError {
     #[error("engine `{engine}` diverged: {message}")]
     Diverged {
         /// Engine name.
-        engine: &'static str,
+        engine: EngineName,
         /// What was seen.
         message: String,
     },
+    /// The mechanics have no mark to go back to, or cannot go back.
+    #[error("engine `mechanics` failed: it cannot go back to where it was")]
+    NoWayBack,
     /// The engine's library failed.
     #[error("engine `{engine}` failed: {message}")]
     Native {
         /// Engine name.
-        engine: &'static str,
+        engine: EngineName,
         /// The library's own words.
         message: String,
     },
 }
 
 impl MechanicsError {
-    /// The model is an FMU, and `engine` simulates by itself.
+    /// `model` is none that `engine` simulates.
     #[must_use]
-    pub fn not_an_fmu_engine(engine: &'static str) -> Self {
-        Self::Unsupported {
-            engine,
-            what: "an FMU as the mechanics".into(),
-            way_out: "choose the engine `fmu`, or describe the axis by its bodies".into(),
-        }
-    }
-
-    /// The mechanics cannot go back to where they were.
-    #[must_use]
-    pub fn no_way_back() -> Self {
-        Self::Native { engine: "mechanics", message: "it cannot go back to where it was".into() }
+    pub fn not_simulated(engine: EngineName, model: &Model) -> Self {
+        let (what, way_out) = match model {
+            _ if engine.simulates(ModelKind::Fmu) => {
+                ("mechanics that are described by bodies or MJCF".into(), "choose another engine, or give an FMU")
+            }
+            Model::Fmu(_) => {
+                ("an FMU as the mechanics".into(), "choose the engine `fmu`, or describe the axis by its bodies")
+            }
+            Model::Mjcf(model) => (
+                format!("MJCF files ({})", model.path.display()),
+                "choose the engine `mujoco` or `rapier`, or describe the axis by its bodies",
+            ),
+            Model::Chain(_) => ("bodies in a row".into(), "choose the engine `exact`"),
+        };
+        Self::Unsupported { engine, what, way_out: way_out.into() }
     }
 
     /// The actuation is not the one that the mechanics of `engine` were built for.
     #[must_use]
-    pub fn wrong_actuation(engine: &'static str) -> Self {
+    pub fn wrong_actuation(engine: EngineName) -> Self {
         Self::Unsupported {
             engine,
             what: "an actuation other than the one it was built for".into(),

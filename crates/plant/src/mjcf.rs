@@ -18,7 +18,7 @@ pub fn chain_to_mjcf(chain: &Chain, drive: Drive, step: f64) -> String {
     let first = usize::from(drive == Drive::Prescribed);
     let mut bodies = String::new();
     for (i, body) in chain.bodies().iter().enumerate().skip(first) {
-        let (name, inertia, viscous) = (body.name, body.inertia, body.viscous);
+        let (name, inertia, viscous) = (body.name, body.inertia, body.friction.linear());
         let rotary = body.coordinate == Coordinate::Rotary;
         let (kind, mass) = if rotary { ("hinge", inertia * 1e3) } else { ("slide", inertia) };
         // A slide does not feel the rotational inertia, a hinge not the mass; both must be positive.
@@ -73,7 +73,7 @@ pub fn chain_to_mjcf(chain: &Chain, drive: Drive, step: f64) -> String {
 mod tests {
     use super::*;
     use crate::chain::{Body, Link};
-    use crate::friction::DryFriction;
+    use crate::friction::Friction;
 
     fn screw_axis() -> Chain {
         let body = |name, coordinate, inertia, transmission| Body {
@@ -81,8 +81,7 @@ mod tests {
             coordinate,
             inertia,
             transmission,
-            viscous: 0.5,
-            dry: DryFriction::NONE,
+            friction: Friction { viscous: 0.5, ..Friction::NONE },
             bias: 0.0,
         };
         Chain::new(

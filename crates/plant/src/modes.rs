@@ -104,7 +104,7 @@ impl Chain {
             let values = DVector::from_iterator(links.len(), links.iter().map(value));
             stretches.transpose() * DMatrix::from_diagonal(&values) * &stretches
         };
-        let to_ground = DVector::from_fn(n, |i, _| own(i).viscous / own(i).inertia);
+        let to_ground = DVector::from_fn(n, |i, _| own(i).friction.linear() / own(i).inertia);
         Matrices {
             stiffness: of_links(|link| link.stiffness),
             damping: of_links(|link| link.damping) + DMatrix::from_diagonal(&to_ground),
@@ -118,13 +118,13 @@ impl Chain {
 mod tests {
     use super::*;
     use crate::chain::{Body, Link};
-    use crate::friction::DryFriction;
+    use crate::friction::Friction;
     use servobench_base::Coordinate;
     use std::f64::consts::TAU;
 
     fn body(inertia: f64, transmission: f64, viscous: f64) -> Body {
-        let (coordinate, dry) = (Coordinate::Linear, DryFriction::NONE);
-        Body { name: "body", coordinate, inertia, transmission, viscous, dry, bias: 0.0 }
+        let (coordinate, friction) = (Coordinate::Linear, Friction { viscous, ..Friction::NONE });
+        Body { name: "body", coordinate, inertia, transmission, friction, bias: 0.0 }
     }
 
     fn hertz(modes: &[Mode]) -> Vec<f64> {

@@ -2,22 +2,14 @@
 use servobench_base::Coordinate;
 use servobench_base::Setpoint;
 use servobench_plant::{
-    Actuation, Body, BodyState, Chain, Drive, DryFriction, Engine, Exact, Input, Link, Mechanics, MechanicsError,
-    MechanicsSetup, MjcfModel, Model, transition,
+    Actuation, Body, BodyState, Chain, Drive, DryFriction, Engine, Exact, Friction, Input, Link, Mechanics,
+    MechanicsError, MechanicsSetup, MjcfModel, Model, transition,
 };
 
 const H: f64 = 1.0 / 16_000.0;
 
 fn body(name: &'static str, inertia: f64) -> Body {
-    Body {
-        name,
-        coordinate: Coordinate::Linear,
-        inertia,
-        transmission: 1.0,
-        viscous: 0.0,
-        dry: DryFriction::NONE,
-        bias: 0.0,
-    }
+    Body { name, coordinate: Coordinate::Linear, inertia, transmission: 1.0, friction: Friction::NONE, bias: 0.0 }
 }
 
 fn build(chain: Chain, drive: Drive, initial: Vec<BodyState>) -> Box<dyn Mechanics> {
@@ -60,7 +52,11 @@ fn free_ring_down_follows_the_closed_form_for_ten_seconds() {
 #[test]
 fn one_body_with_viscous_friction_is_exact() {
     let (m, b, force) = (95.1089, 203.5034, 120.0);
-    let chain = Chain::new(vec![Body { viscous: b, bias: 20.0, ..body("motor", m) }], vec![]).unwrap();
+    let chain = Chain::new(
+        vec![Body { friction: Friction { viscous: b, ..Friction::NONE }, bias: 20.0, ..body("motor", m) }],
+        vec![],
+    )
+    .unwrap();
     let mut axis = build(chain, Drive::Effort, vec![]);
     for _ in 0..16_000 {
         axis.advance(&effort(force)).unwrap();
@@ -115,7 +111,7 @@ fn a_prescribed_base_is_integrated_exactly() {
 fn a_stuck_body_keeps_its_position_to_the_bit_while_its_neighbour_swings() {
     let dry = DryFriction { coulomb: 50.0, breakaway: 80.0, stribeck_velocity: 1e-3 };
     let chain = Chain::new(
-        vec![Body { dry, ..body("motor", 20.0) }, body("load", 10.0)],
+        vec![Body { friction: Friction { dry, ..Friction::NONE }, ..body("motor", 20.0) }, body("load", 10.0)],
         vec![Link { stiffness: 6e5, damping: 0.0 }],
     )
     .unwrap();
@@ -139,7 +135,8 @@ fn a_stuck_body_keeps_its_position_to_the_bit_while_its_neighbour_swings() {
 #[test]
 fn a_sliding_body_stops_where_coulomb_says() {
     let dry = DryFriction { coulomb: 20.0, breakaway: 25.0, stribeck_velocity: 0.0 };
-    let chain = Chain::new(vec![Body { dry, ..body("motor", 4.0) }], vec![]).unwrap();
+    let chain =
+        Chain::new(vec![Body { friction: Friction { dry, ..Friction::NONE }, ..body("motor", 4.0) }], vec![]).unwrap();
     let mut axis = build(chain, Drive::Effort, vec![BodyState { position: 0.0, velocity: 0.5 }]);
     for _ in 0..3_200 {
         axis.advance(&effort(0.0)).unwrap();
@@ -179,7 +176,8 @@ fn an_infinite_effort_ends_the_run() {
 /// Oracle: the engine itself, over a tick with a screw, friction and efforts on the motor.
 #[test]
 fn the_transition_is_what_the_engine_does() {
-    let mut motor = Body { transmission: 0.2, viscous: 0.03, ..body("motor", 4e-3) };
+    let mut motor =
+        Body { transmission: 0.2, friction: Friction { viscous: 0.03, ..Friction::NONE }, ..body("motor", 4e-3) };
     motor.coordinate = Coordinate::Rotary;
     let links = vec![Link { stiffness: 900.0, damping: 0.1 }, Link { stiffness: 300.0, damping: 0.0 }];
     let chain = Chain::new(vec![motor, body("table", 0.2), body("load", 0.3)], links).unwrap();

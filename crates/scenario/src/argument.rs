@@ -4,6 +4,7 @@ use crate::reading::{self, ReadError, names, proposals};
 use servobench_base::Coordinate;
 use servobench_config::quantities::{ACCELERATION, FREQUENCY, JERK, POSITION, RATIO, SNAP, TIME, VELOCITY};
 use servobench_config::{Counterparts, Physical};
+use servobench_fmi::SiUnit;
 use thiserror::Error;
 
 /// A derivative of position with respect to time.
@@ -60,10 +61,16 @@ pub fn axis_quantity(
 
 /// Reads a number with any unit: its value in SI, and the exponents of kilogram, metre, second and ampere; `None` if it is no
 /// such thing.
-#[must_use]
-pub fn any_quantity(text: &str) -> Option<(f64, [i32; 4])> {
+pub(crate) fn any_quantity(text: &str) -> Option<(f64, [i32; 4])> {
     let quantity = quantity::parse(text).ok().filter(|quantity| quantity.has_unit)?;
     Some((quantity.value, quantity.dimension.mechanical()))
+}
+
+/// The SI unit of this name; `None` for what has none.
+#[must_use]
+pub fn si_unit(name: &str) -> Option<SiUnit> {
+    let (_, exponents) = any_quantity(&format!("1 {name}"))?;
+    Some(SiUnit { name: name.to_owned(), exponents })
 }
 
 /// Reads a time (s).
@@ -120,6 +127,26 @@ mod tests {
         assert!((angle - std::f64::consts::PI).abs() < 1e-15 && motion == Coordinate::Rotary);
         assert_eq!(time("1 ms"), Ok(1e-3));
         assert_eq!((frequency("8 kHz"), ratio("2 %"), ratio("0.02")), (Ok(8000.0), Ok(0.02), Ok(0.02)));
+    }
+
+    /// Oracle: the definitions of the units.
+    #[test]
+    fn units_of_signals_are_known() {
+        for (name, exponents) in [
+            ("m", [0, 1, 0, 0]),
+            ("rad", [0; 4]),
+            ("m/s", [0, 1, -1, 0]),
+            ("rad/s²", [0, 0, -2, 0]),
+            ("m/s⁴", [0, 1, -4, 0]),
+            ("N", [1, 1, -2, 0]),
+            ("N m", [1, 2, -2, 0]),
+            ("A", [0, 0, 0, 1]),
+            ("V", [1, 2, -3, -1]),
+            ("s", [0, 0, 1, 0]),
+        ] {
+            assert_eq!(si_unit(name).map(|unit| unit.exponents), Some(exponents), "{name}");
+        }
+        assert_eq!(si_unit(""), None);
     }
 
     #[test]

@@ -13,7 +13,7 @@ mod program;
 mod requirements;
 mod setpoint;
 
-pub(crate) use axis::{Axis, Body, Mjcf};
+pub(crate) use axis::{Axis, Body, FrictionKeys, Mjcf};
 pub(crate) use bus::{Bus, BusFault, DriveInterpolation, FaultName};
 pub(crate) use drive::{Current, Drive, Estimate, FeedbackEncoder, Velocity, VelocityKind};
 pub(crate) use fmu::{Coupling, Fmu};
@@ -26,24 +26,14 @@ pub(crate) use setpoint::{Rockwell, Setpoint, Shaper, TableOfPoints};
 use crate::format::FORMAT;
 use crate::limit_table::LimitTable;
 use crate::list::{Many, OneOrMany};
-use crate::scenario::EngineName;
 use crate::simple::OneOf;
 use crate::table::table;
 use servobench_base::Rate;
-use servobench_config::Choice;
 use servobench_config::Kind::{Axis as InAxis, Plain};
 use servobench_config::quantities::{FREQUENCY, POSITION, TIME, VELOCITY};
 use servobench_config::{any, not_negative, positive};
+use servobench_plant::EngineName;
 use servobench_signals::Signal;
-
-impl Choice for EngineName {
-    const ALL: &'static [(&'static str, Self, &'static str)] = &[
-        ("exact", Self::Exact, "exact zero-order hold of the linear chain"),
-        ("rapier", Self::Rapier, "Rapier, in f64"),
-        ("mujoco", Self::Mujoco, "MuJoCo"),
-        ("fmu", Self::Fmu, "the FMU of `[axis.fmu]`"),
-    ];
-}
 
 table! {
     /// A scenario of servobench: an axis, a program of moves, what to measure and the limits that make it pass or fail.

@@ -36,7 +36,7 @@ mod tree;
 mod unit;
 mod when;
 
-pub use argument::{ArgumentError, Derivative, any_quantity, axis_quantity, frequency, ratio, time};
+pub use argument::{ArgumentError, Derivative, axis_quantity, frequency, ratio, si_unit, time};
 pub use diagnostic::{Diagnostic, Invalid, LoadError, MOST_MISTAKES, NamedFile, Shown, shown};
 pub use load::{Loaded, load, parse};
 pub use models::{embedded_demo, embedded_models};
@@ -46,9 +46,9 @@ pub use points::{
     Column, MOST_POINTS, Points, PointsError, PointsMistake, Profile, read_accelerations, read_points, read_velocities,
 };
 pub use scenario::{
-    Actuator, Axis, AxisMechanics, BodySignal, Bus, BusMode, CoSimulation, CouplingMethod, Disturbance, DisturbedBody,
-    Drive, DriveUnits, EngineName, Feedback, Fmu, Initial, InputSource, Interpolation, Isolation, LONGEST_RUN,
-    LoopSignal, MoveStep, ObjectWrite, Plc, Record, Requirements, Scenario, StartValue, Step, TrajectoryBuffer,
+    Actuator, Axis, AxisMechanics, Bus, BusMode, Disturbance, DisturbedBody, Drive, DriveUnits, Feedback, Fmu, Initial,
+    InputSource, Interpolation, LONGEST_RUN, LoopSignal, MoveStep, ObjectWrite, Plc, Record, Requirements, Scenario,
+    Step, TrajectoryBuffer,
 };
 pub use schema::json_schema;
 pub use source::{SourceId, Sources};

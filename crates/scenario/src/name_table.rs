@@ -1,10 +1,12 @@
 //! Tables whose keys are names that somebody else chose: the variables of an FMU, with what is connected or set.
+use crate::argument::any_quantity;
 use crate::diagnostic::Report;
 use crate::field::{Field, written};
 
 use crate::source::{At, Span};
 use crate::tree::{Entry, Node, Value};
 use serde_json::{Value as Json, json};
+use servobench_fmi::Value as StartValue;
 
 /// A name and what stands behind it.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,19 +23,6 @@ pub(crate) struct SignalTable(pub(crate) Vec<Named<String>>);
 /// Values by the names of variables: `{ mass = "12 kg", stages = 3, label = "left", gains = [1.0, 2.0] }`.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct StartTable(pub(crate) Vec<Named<StartValue>>);
-
-/// A value as a file says it. Which type and unit its variable has, only the FMU knows.
-#[derive(Debug, Clone, PartialEq)]
-pub enum StartValue {
-    /// A bare number, in the unit of the variable.
-    Number(f64),
-    /// TRUE or FALSE.
-    Flag(bool),
-    /// A text: a quantity with a unit, the name of an enumeration's item, or a string.
-    Text(String),
-    /// The elements of an array, in row-major order.
-    List(Vec<Self>),
-}
 
 fn entries<'a>(path: &str, node: &'a Node, report: &mut Report) -> Option<&'a [Entry]> {
     if let Value::Table(table) = &node.value {
@@ -107,11 +96,16 @@ impl Field for StartTable {
     }
 }
 
+/// A value as the file says it: a bare number in the unit of its variable, TRUE or FALSE, a text (a quantity with a unit, the name
+/// of an enumeration's item, or a string), or the elements of an array. Which type and unit the variable has, only the FMU knows.
 fn value(node: &Node, report: &mut Report) -> Option<StartValue> {
     match &node.value {
         Value::Number(number) if number.value.is_finite() => Some(StartValue::Number(number.value)),
-        Value::Bool(flag) => Some(StartValue::Flag(*flag)),
-        Value::Text(text) => Some(StartValue::Text(text.clone())),
+        Value::Bool(flag) => Some(StartValue::Boolean(*flag)),
+        Value::Text(text) => Some(match any_quantity(text) {
+            Some((si, exponents)) => StartValue::Quantity { text: text.clone(), si, exponents },
+            None => StartValue::Text(text.clone()),
+        }),
         Value::Array(items) => {
             let values: Vec<_> = items.iter().map(|item| value(item, report)).collect();
             values.into_iter().collect::<Option<_>>().map(StartValue::List)

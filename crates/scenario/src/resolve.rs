@@ -6,12 +6,14 @@ mod block;
 mod bus;
 mod bus_fault;
 mod condition;
+mod coupling;
 mod current;
 mod disturbance;
 mod drive;
 mod estimate;
 mod filter;
 mod fmu;
+mod friction;
 mod inputs;
 mod keys;
 mod loops;
@@ -31,11 +33,12 @@ use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file::{File, MotorKind, Run};
 use crate::limit_table::LimitTable;
-use crate::scenario::{EngineName, LONGEST_RUN, Record, Scenario};
+use crate::scenario::{LONGEST_RUN, Record, Scenario};
 use crate::simple::MAX_RATE;
 use crate::source::{At, SourceId, Sources, Span};
 use servobench_base::Rate;
 use servobench_metrics::{Limit, Question};
+use servobench_plant::EngineName;
 use std::collections::BTreeSet;
 
 pub(crate) use axis::motor_motion;
@@ -79,8 +82,8 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
     let requirements = requirements::resolve(file, &of_run, report);
     let fixed = is_prescribed.then(|| disturbance::Fixed::of(moved.as_ref()));
     let timing = disturbance::Timing { base_rate, duration };
-    let coupling = fmu::coupling(file, base_rate, report);
-    let fmus = fmu::others(file, coupling, fmu::Known { actuator: actuator.as_ref(), ..files }, report);
+    let coupling = coupling::resolve(file, base_rate, report);
+    let fmus = fmu::others(file, coupling.as_ref(), fmu::Known { actuator: actuator.as_ref(), ..files }, report);
     let disturbances = disturbance::disturbances(file, &timing, fixed, report);
     let initial = disturbance::initial(file, fixed, report);
     let record = record(file, base_rate, report);
@@ -91,7 +94,7 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
     }
 
     let engines = match &file.engine {
-        Slot::Absent => vec![EngineName::Exact],
+        Slot::Absent => vec![EngineName::default()],
         Slot::Wrong(_) => return None,
         Slot::Given(engines) => distinct(&engines.value.0, report),
     };

@@ -18,7 +18,7 @@ pub use axis::{Axis, AxisMechanics};
 pub use bus::{Bus, BusMode, DriveUnits, ObjectWrite, TrajectoryBuffer};
 pub use disturbance::{Disturbance, DisturbedBody, Initial};
 pub use drive::{Drive, Feedback};
-pub use fmu::{BodySignal, CoSimulation, CouplingMethod, Fmu, InputSource, Isolation, LoopSignal, StartValue};
+pub use fmu::{Fmu, InputSource, LoopSignal};
 pub use plc::Plc;
 pub use program::{Interpolation, MoveStep, Step};
 pub use requirements::Requirements;
@@ -26,6 +26,7 @@ pub use requirements::Requirements;
 use crate::parameters::Parameter;
 use servobench_base::Rate;
 use servobench_metrics::{Limit, Question};
+use servobench_plant::EngineName;
 use servobench_signals::Signal;
 use std::path::PathBuf;
 
@@ -60,9 +61,9 @@ pub struct Scenario {
     /// The PLC program, which needs a fieldbus; `None` without one.
     pub plc: Option<Plc>,
     /// Parts that FMUs simulate beside the axis.
-    pub fmus: Vec<Fmu<LoopSignal>>,
+    pub fmus: Vec<Fmu>,
     /// How they and the axis exchange what they give.
-    pub coupling: CoSimulation,
+    pub coupling: servobench_coupling::Settings,
     /// External efforts.
     pub disturbances: Vec<Disturbance>,
     /// Deviation from rest at zero at time 0.
@@ -79,19 +80,6 @@ pub struct Scenario {
     pub parameters: Vec<Parameter>,
 }
 
-/// Engines a scenario can name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum EngineName {
-    /// Exact zero-order hold of the linear chain.
-    Exact,
-    /// Rapier, in f64.
-    Rapier,
-    /// MuJoCo.
-    Mujoco,
-    /// The FMU of the axis.
-    Fmu,
-}
-
 /// What to record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
@@ -99,20 +87,4 @@ pub struct Record {
     pub rate: Rate,
     /// Signals to keep; empty for all.
     pub channels: Vec<Signal>,
-}
-
-impl EngineName {
-    /// Every engine, in the order in which tables list them.
-    pub const ALL: [Self; 4] = [Self::Exact, Self::Rapier, Self::Mujoco, Self::Fmu];
-
-    /// The name as scenario files write it.
-    #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::Exact => "exact",
-            Self::Rapier => "rapier",
-            Self::Mujoco => "mujoco",
-            Self::Fmu => "fmu",
-        }
-    }
 }

@@ -13,7 +13,7 @@ use servobench_planner::{
     Averages, CommandRate, Filter, Follow, Generator, Grid, Method, PointToPoint, Positioning, Replanning, Rockwell,
     Shaping, TableMove, Velocities,
 };
-use servobench_plant::{Body, Chain, Encoder, IdealSource, SourceOutput, inverter, pmsm};
+use servobench_plant::{Body, Chain, Encoder, EngineName, IdealSource, SourceOutput, inverter, pmsm};
 use servobench_scenario::*;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
@@ -113,10 +113,10 @@ fn a_rigid_body_is_reflected_through_the_screw() {
     let [motor, load] = bodies(&scenario) else { panic!("the table is merged") };
     assert_eq!((motor.name, load.name), ("motor", "load"));
     assert!(same(motor.inertia, 1.57e-4 + 1e-4 + r * r * 30.0));
-    assert!(same(motor.viscous, 1e-3 + r * r * 100.0));
-    assert!(same(motor.dry.coulomb, 0.05 + r * 20.0));
-    assert!(same(motor.dry.breakaway, 0.05 + r * 32.0));
-    assert!(same(motor.dry.stribeck_velocity, 0.002 / r));
+    assert!(same(motor.friction.viscous, 1e-3 + r * r * 100.0));
+    assert!(same(motor.friction.dry.coulomb, 0.05 + r * 20.0));
+    assert!(same(motor.friction.dry.breakaway, 0.05 + r * 32.0));
+    assert!(same(motor.friction.dry.stribeck_velocity, 0.002 / r));
     assert!(same(motor.bias, r * 9.81));
     assert_eq!((load.coordinate, motor.transmission.to_bits()), (Coordinate::Linear, r.to_bits()));
     let [link] = chain(&scenario).links() else { panic!("one link") };
@@ -327,9 +327,9 @@ fn the_emps_controller_in_newtons() {
     assert!(same(source.gain, 35.1507) && same(source.limit, 10.0) && same(estimated_gain, 35.1507));
     assert_eq!(source.output, SourceOutput::Voltage);
     let [body] = bodies(&scenario) else { panic!("one body") };
-    assert!(same(body.inertia, 95.1089) && same(body.viscous, 203.5034) && same(body.bias, -3.1648));
+    assert!(same(body.inertia, 95.1089) && same(body.friction.viscous, 203.5034) && same(body.bias, -3.1648));
     assert!(
-        same(body.dry.coulomb, 20.3935) && same(body.dry.breakaway, body.dry.coulomb),
+        same(body.friction.dry.coulomb, 20.3935) && same(body.friction.dry.breakaway, body.friction.dry.coulomb),
         "no static friction: as Coulomb"
     );
     assert_eq!(scenario.engines, [EngineName::Exact, EngineName::Rapier, EngineName::Mujoco]);

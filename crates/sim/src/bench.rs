@@ -32,7 +32,7 @@ pub struct Bench {
     pub(crate) axis: Axis,
 }
 
-/// The axis, and whether it has company.
+/// The axis, alone or with attached FMUs.
 pub(crate) enum Axis {
     Alone(Box<Recorded>),
     Coupled(Box<Coupled>),
@@ -122,7 +122,7 @@ impl Bench {
         let rows = ticks.div_ceil(u64::from(record_every));
         let about = About {
             scenario: scenario.name.clone(),
-            engine: engine.name().into(),
+            engine: engine.name().to_string(),
             axis_unit: equipment.axis.unit().into(),
             bodies,
         };

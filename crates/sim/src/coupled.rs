@@ -12,28 +12,22 @@ pub(crate) use wiring::replaces_the_drive;
 use crate::error::{BuildError, UnusableFmu};
 use crate::recorded::{LISTEN_EVERY, Recorded};
 use crate::run::{Failure, Outcome, PROGRESS_EVERY, Reason};
-use block::{Axis, Company, Part, PartError};
-use servobench_base::{Divider, Tick};
-use servobench_coupling::{
-    Advance, CouplingError, InputPort, Iteration, Master, Member, Method, Network, Order, Settings,
-};
-use servobench_fmi::Slave;
-use servobench_plant::{FmuEntry, FmuMistake, FmuPartner};
-use servobench_scenario::{CoSimulation, CouplingMethod, Scenario};
+use block::{AttachedFmu, Axis, Part, PartError};
+use servobench_base::Tick;
+use servobench_coupling::{Advance, CouplingError, InputPort, Master, Member, Network};
+use servobench_fmi::{FmuEntry, FmuMistake, FmuRequest, Slave};
+use servobench_scenario::Scenario;
 use servobench_signals::{Equipment, Rates};
 use std::num::NonZeroU32;
 use wiring::Wiring;
 
-/// A step of one base tick.
-const TICK: Divider = Divider::new(1).unwrap();
-
 /// Opens the FMUs of a scenario.
 pub trait Partners: Sync {
-    /// An initialised FMU that is wired with the ports of `partner` and exchanges them in SI units.
+    /// The FMU that is asked for.
     ///
     /// # Errors
     /// Everything that does not fit its file, or why it cannot be started.
-    fn open(&self, partner: &FmuPartner) -> Result<Box<dyn Slave>, Vec<FmuMistake>>;
+    fn open(&self, request: &FmuRequest<'_>) -> Result<Box<dyn Slave>, Vec<FmuMistake>>;
 }
 
 /// Nobody: for scenarios without FMUs.
@@ -41,7 +35,7 @@ pub trait Partners: Sync {
 pub struct NoPartners;
 
 impl Partners for NoPartners {
-    fn open(&self, _: &FmuPartner) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
+    fn open(&self, _: &FmuRequest<'_>) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
         Err(vec![FmuMistake::of_file(&"this program opens no FMUs")])
     }
 }
@@ -86,20 +80,21 @@ impl Coupled {
         let end = scenario.base_rate.time(Tick(ticks.saturating_sub(1)));
         let (mut members, mut unusable) = (Vec::new(), Vec::new());
         for (index, fmu) in scenario.fmus.iter().enumerate() {
-            let partner = wiring.partner(index, equipment, ticks);
-            let slave = match partners.open(&partner) {
+            let request = wiring.request(index, equipment, ticks);
+            let name = fmu.name.clone();
+            let slave = match partners.open(&request) {
                 Ok(slave) => slave,
                 Err(mistakes) => {
-                    unusable.push(UnusableFmu { index, name: partner.name, mistakes });
+                    unusable.push(UnusableFmu { index, name, mistakes });
                     continue;
                 }
             };
             members.push(Member {
-                name: partner.name,
-                inputs: partner.inputs.into_iter().map(|port| InputPort { name: port.variable, held: 0.0 }).collect(),
-                outputs: partner.outputs.into_iter().map(|port| port.variable).collect(),
-                every: steps(fmu.every, scenario.coupling.every),
-                block: Part::Fmu(Company { slave, end }),
+                name,
+                inputs: request.inputs.into_iter().map(|port| InputPort { name: port.variable, held: 0.0 }).collect(),
+                outputs: request.outputs.into_iter().map(|port| port.variable).collect(),
+                every: steps(fmu.every, scenario.coupling.step.ticks()),
+                block: Part::Fmu(AttachedFmu { slave, end }),
             });
         }
         if !unusable.is_empty() {
@@ -118,8 +113,8 @@ impl Coupled {
             every: NonZeroU32::MIN,
             block: Part::Axis(Box::new(axis)),
         });
-        let network = Network { members, connections: wiring.connections.clone(), bonds: Vec::new() };
-        let master = Master::new(network, &settings(scenario)).map_err(not_begun)?;
+        let network = Network { members, connections: wiring.connections.clone() };
+        let master = Master::new(network, &scenario.coupling).map_err(not_begun)?;
         let delays = master.delays().iter().map(|delay| wiring.described(delay)).collect();
         Ok(Self { master, names, delays })
     }
@@ -155,7 +150,7 @@ impl Coupled {
     /// Notes what the FMUs have said since the last time. What they say in a step that is repeated they say again.
     fn listen(&mut self) {
         for (index, name) in self.names.iter().enumerate() {
-            let Part::Fmu(Company { slave, .. }) = self.master.block_mut(index) else { continue };
+            let Part::Fmu(AttachedFmu { slave, .. }) = self.master.block_mut(index) else { continue };
             let said = slave.take_log();
             if said.is_empty() {
                 continue;
@@ -170,7 +165,7 @@ impl Coupled {
 
     fn finish(mut self, failure: Option<Failure>) -> Outcome {
         for index in 0..self.names.len() {
-            if let Part::Fmu(Company { slave, .. }) = self.master.block_mut(index) {
+            if let Part::Fmu(AttachedFmu { slave, .. }) = self.master.block_mut(index) {
                 slave.end();
             }
         }
@@ -178,7 +173,7 @@ impl Coupled {
         self.into_axis().recorded_to_the_end(failure.is_none()).finish(failure)
     }
 
-    /// The axis without its company.
+    /// The axis without its FMUs.
     pub(crate) fn alone(self) -> Recorded {
         self.into_axis().recorded
     }
@@ -234,27 +229,5 @@ fn failed(error: CouplingError<PartError>, time: f64) -> Failure {
 
 /// Steps of the coupling in a step of a member; the scenario has seen to it that this is a whole number.
 fn steps(every: u32, of: u32) -> NonZeroU32 {
-    NonZeroU32::new(every / of.max(1)).unwrap_or(NonZeroU32::MIN)
-}
-
-fn settings(scenario: &Scenario) -> Settings {
-    let CoSimulation { every, method, extrapolation, tolerance, iterations } = scenario.coupling;
-    let iteration = Iteration { relative: tolerance, most: iterations, ..Iteration::default() };
-    let order = match extrapolation {
-        0 => Order::Constant,
-        1 => Order::Linear,
-        _ => Order::Quadratic,
-    };
-    Settings {
-        base_rate: scenario.base_rate,
-        step: Divider::new(every).unwrap_or(TICK),
-        method: match method {
-            CouplingMethod::Jacobi => Method::Jacobi,
-            CouplingMethod::GaussSeidel => Method::GaussSeidel((0..=scenario.fmus.len()).collect()),
-            CouplingMethod::Iterated => Method::Iterated(iteration),
-        },
-        order,
-        algebraic: Some(iteration),
-        watch: true,
-    }
+    NonZeroU32::new(every / of).unwrap_or(NonZeroU32::MIN)
 }

@@ -5,8 +5,9 @@ use servobench_cia402::SdoError;
 use servobench_cia402::units::UnitError;
 use servobench_drive::device::ObjectsError;
 use servobench_fieldbus::FieldbusError;
+use servobench_fmi::FmuMistake;
 use servobench_motion::PlanError;
-use servobench_plant::{FmuMistake, MechanicsError, SwitchPoint};
+use servobench_plant::{EngineName, MechanicsError, SwitchPoint};
 use servobench_scenario::LONGEST_RUN;
 use servobench_signals::Signal;
 use std::fmt::Display;
@@ -109,16 +110,19 @@ pub enum BuildError {
     /// What the FMUs are connected with cannot be run so.
     #[error("{0}")]
     Coupling(String),
-    /// The engine `fmu` without an FMU.
-    #[error("the engine `fmu` has no mechanics: give `[axis.fmu]`")]
-    NoFmu,
+    /// An engine that simulates FMUs, and no FMU.
+    #[error("the engine `{engine}` has no mechanics: give `[axis.fmu]`")]
+    NoFmu {
+        /// The engine.
+        engine: EngineName,
+    },
     /// There is nothing that this engine could simulate.
     #[error(
         "the engine `{engine}` needs bodies or an MJCF file, and the axis has an FMU alone: choose the engine `fmu`"
     )]
     OnlyAnFmu {
         /// The engine.
-        engine: &'static str,
+        engine: EngineName,
     },
     /// The engine refuses the mechanics.
     #[error(transparent)]

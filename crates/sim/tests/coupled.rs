@@ -1,6 +1,6 @@
 //! FMUs beside the axis, here written in Rust.
-use servobench_fmi::{Capabilities, LogLine, Progress, Slave, SlaveError};
-use servobench_plant::{Exact, FmuMistake, FmuPartner};
+use servobench_fmi::{Capabilities, FmuMistake, FmuRequest, LogLine, Progress, Slave, SlaveError};
+use servobench_plant::Exact;
 use servobench_scenario as scenario;
 use servobench_sim::{Bench, NoPartners, Outcome, Partners};
 use servobench_trace::Recording;
@@ -132,7 +132,7 @@ struct Relays {
 }
 
 impl Partners for Relays {
-    fn open(&self, _: &FmuPartner) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
+    fn open(&self, _: &FmuRequest<'_>) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
         Ok(Box::new(Relay { feeds_through: self.feeds_through, last: 0.0, readings: Arc::clone(&self.readings) }))
     }
 }
@@ -144,10 +144,10 @@ struct Parts;
 const STIFFNESS: f64 = 40.0 * (TAU * 10.0) * (TAU * 10.0);
 
 impl Partners for Parts {
-    fn open(&self, partner: &FmuPartner) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
-        let start = vec![0.0; partner.outputs.len()];
+    fn open(&self, request: &FmuRequest<'_>) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
+        let start = vec![0.0; request.outputs.len()];
         let state = [0.0; 2];
-        Ok(match partner.name.as_str() {
+        Ok(match request.name.unwrap_or_default() {
             "spring" => {
                 let law = |_: &mut [f64; 2], _: f64, _: f64, u: &[f64]| -STIFFNESS * u[0];
                 Box::new(Part { law, state, saved: state, last: start, saves: true })

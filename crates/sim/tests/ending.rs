@@ -1,5 +1,5 @@
 //! How a run ends: by its length, or by a failure of the engine.
-use servobench_plant::{BodyState, Engine, Exact, Input, Mechanics, MechanicsError, MechanicsSetup};
+use servobench_plant::{BodyState, Engine, EngineName, Exact, Input, Mechanics, MechanicsError, MechanicsSetup};
 use servobench_scenario::{LONGEST_RUN, Scenario};
 use servobench_sim::{Bench, BuildError};
 
@@ -41,8 +41,8 @@ struct Failing {
 }
 
 impl Engine for FailsAt {
-    fn name(&self) -> &'static str {
-        "failing"
+    fn name(&self) -> EngineName {
+        EngineName::Exact
     }
 
     fn build(&self, setup: &MechanicsSetup) -> Result<Box<dyn Mechanics>, MechanicsError> {
@@ -57,7 +57,7 @@ impl Mechanics for Failing {
 
     fn advance(&mut self, input: &Input) -> Result<(), MechanicsError> {
         let Some(left) = self.ticks_left.checked_sub(1) else {
-            return Err(MechanicsError::Native { engine: "failing", message: "as asked".into() });
+            return Err(MechanicsError::Native { engine: EngineName::Exact, message: "as asked".into() });
         };
         self.ticks_left = left;
         self.exact.advance(input)

@@ -1,9 +1,7 @@
 //! What FMUs say is in the recording at its time, whether they are beside the axis or its mechanics and however the run ends.
 use servobench_base::Severity;
-use servobench_fmi::{Capabilities, LogLine, Progress, Slave, SlaveError};
-use servobench_plant::{
-    BodyState, Engine, Exact, FmuMistake, FmuPartner, Input, Mechanics, MechanicsError, MechanicsSetup, Said,
-};
+use servobench_fmi::{Capabilities, FmuMistake, FmuRequest, LogLine, Progress, Slave, SlaveError};
+use servobench_plant::{BodyState, Engine, EngineName, Exact, Input, Mechanics, MechanicsError, MechanicsSetup, Said};
 use servobench_scenario as scenario;
 use servobench_sim::{Bench, NoPartners, Outcome, Partners};
 
@@ -49,7 +47,12 @@ impl Slave for Chatty {
         self.say(time, Severity::Info, "step");
         if time > END - 1e-9 {
             self.say(time, Severity::Error, "leak");
-            return Err(SlaveError::Failed { call: "fmi3DoStep", time, status: "fmi3Error", message: "leak".into() });
+            return Err(SlaveError::Failed {
+                call: "fmi3DoStep".into(),
+                time,
+                status: "fmi3Error".into(),
+                message: "leak".into(),
+            });
         }
         Ok(Progress::Done)
     }
@@ -75,7 +78,7 @@ impl Slave for Chatty {
 struct Opens;
 
 impl Partners for Opens {
-    fn open(&self, _: &FmuPartner) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
+    fn open(&self, _: &FmuRequest<'_>) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
         let mut chatty = Chatty::default();
         chatty.say(0.0, Severity::Info, "hello");
         Ok(Box::new(chatty))
@@ -123,8 +126,8 @@ struct Talks {
 }
 
 impl Engine for Talking {
-    fn name(&self) -> &'static str {
-        "exact"
+    fn name(&self) -> EngineName {
+        EngineName::Exact
     }
 
     fn build(&self, setup: &MechanicsSetup) -> Result<Box<dyn Mechanics>, MechanicsError> {
@@ -142,7 +145,7 @@ impl Mechanics for Talks {
         self.ticks += 1;
         self.said.push(Said { time, severity: Severity::Warning, text: format!("in {}", self.ticks) });
         if self.ticks > 3 {
-            return Err(MechanicsError::Native { engine: "exact", message: "enough".into() });
+            return Err(MechanicsError::Native { engine: EngineName::Exact, message: "enough".into() });
         }
         self.exact.advance(input)
     }

@@ -107,7 +107,7 @@ impl<'a> Tick<'a> {
             Stage::Direct { .. } => false,
         };
         let bodies = self.model.mechanics.bodies();
-        self.closed.shaft && is_open && holds_current && bodies.iter().all(|body| body.viscous == 0.0)
+        self.closed.shaft && is_open && holds_current && bodies.iter().all(|body| body.friction.linear() == 0.0)
     }
 
     /// Speed of the motor (its own coordinate).

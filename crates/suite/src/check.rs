@@ -5,7 +5,8 @@ use crate::job::Job;
 use crate::panicked::caught;
 use crate::worker::{self, WorkerCommand, WorkerError};
 use serde::{Deserialize, Serialize};
-use servobench_plant::{Engine, FmuEntry, FmuMistake, MechanicsError, Refusal, RefusedAt};
+use servobench_fmi::{FmuEntry, FmuMistake};
+use servobench_plant::{Engine, EngineName, MechanicsError, Refusal, RefusedAt};
 use servobench_scenario::{AxisMechanics, Scenario, parameter_key, switch_key};
 use servobench_sim::{Bench, BuildError, ConnectionDelay, Partners, UnusableFmu};
 
@@ -29,9 +30,9 @@ pub struct Objection {
 /// [`RunError`] when nobody can tell: the build lacks the engine, a library does not load, the worker cannot be
 /// spoken to.
 pub fn check(job: &Job, engines: &Engines, worker: &WorkerCommand) -> Result<Vec<Objection>, RunError> {
-    let installed = engines.get(job.engine)?;
-    if !installed.isolated {
-        return caught(|| objections(&job.scenario, installed.engine, engines.partners))?;
+    let engine = engines.get(job.engine)?;
+    if !job.engine.capabilities().may_end_process {
+        return caught(|| objections(&job.scenario, engine, engines.partners))?;
     }
     match worker::ask(worker, job) {
         // What a library cannot bear in a user's own file is the file's fault, as far as anybody can tell.
@@ -47,12 +48,12 @@ pub fn check(job: &Job, engines: &Engines, worker: &WorkerCommand) -> Result<Vec
 /// # Errors
 /// [`RunError`] when it cannot be built after all.
 pub fn delays(job: &Job, engines: &Engines) -> Result<Vec<ConnectionDelay>, RunError> {
-    let installed = engines.get(job.engine)?;
+    let engine = engines.get(job.engine)?;
     // What is exchanged when does not depend on the engine: one that needs a process of its own is not asked.
-    if job.scenario.fmus.is_empty() || installed.isolated {
+    if job.scenario.fmus.is_empty() || job.engine.capabilities().may_end_process {
         return Ok(Vec::new());
     }
-    caught(|| Ok(Bench::with_partners(&job.scenario, installed.engine, engines.partners)?.delays().to_vec()))?
+    caught(|| Ok(Bench::with_partners(&job.scenario, engine, engines.partners)?.delays().to_vec()))?
 }
 
 /// The objections of `engine`, asked in this process.
@@ -75,7 +76,7 @@ pub(crate) fn objections(
 fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
     let key = match error {
         BuildError::Mechanics(MechanicsError::Refused { engine, refusals, way_out, .. }) => {
-            return refusals.iter().map(|refusal| Objection::to(refusal, engine, way_out, scenario)).collect();
+            return refusals.iter().map(|refusal| Objection::to(refusal, *engine, way_out, scenario)).collect();
         }
         BuildError::Mechanics(MechanicsError::Fmu { mistakes, .. }) => {
             return mistakes.iter().map(|mistake| Objection::to_fmu(mistake, "axis.fmu")).collect();
@@ -112,7 +113,7 @@ fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
         BuildError::Link(_) | BuildError::NoDriveOnTheBus => "bus".to_owned(),
         BuildError::Points(_) => "program".to_owned(),
         BuildError::Coupling(_) | BuildError::NotBegun(_) => "fmu".to_owned(),
-        BuildError::OnlyAnFmu { .. } | BuildError::NoFmu => "engine".to_owned(),
+        BuildError::OnlyAnFmu { .. } | BuildError::NoFmu { .. } => "engine".to_owned(),
     };
     vec![Objection::new(&key, error.to_string())]
 }
@@ -123,7 +124,7 @@ impl Objection {
     }
 
     /// What `engine` refuses in the MJCF file of `scenario`.
-    fn to(refusal: &Refusal, engine: &str, way_out: &str, scenario: &Scenario) -> Self {
+    fn to(refusal: &Refusal, engine: EngineName, way_out: &str, scenario: &Scenario) -> Self {
         let (key, line) = match &refusal.place {
             RefusedAt::Line(line) => (model_key(scenario), Some(*line)),
             RefusedAt::Name(name) => (name_key(name, scenario).unwrap_or(model_key(scenario)), None),

@@ -203,7 +203,7 @@ fn durations(job: &Job) -> Result<Vec<f64>, CompareError> {
 mod tests {
     use super::*;
     use crate::job::{Source, jobs};
-    use servobench_scenario::EngineName;
+    use servobench_plant::EngineName;
 
     const ONE: &str = r#"
         [run]

@@ -1,29 +1,14 @@
 //! Which engines this build has.
-use servobench_plant::Engine;
-use servobench_scenario::EngineName;
+use servobench_config::Choice as _;
+use servobench_plant::{Engine, EngineName};
 use servobench_sim::{NoPartners, Partners};
 use thiserror::Error;
 
-/// An engine as this build has it.
-#[derive(Clone, Copy)]
-pub struct Installed {
-    /// The engine.
-    pub engine: &'static dyn Engine,
-    /// Whether it can end the process that it runs in: it then runs in a worker process of its own.
-    pub isolated: bool,
-}
-
-/// The engines of this build; the command line fills it, since it alone has engine features.
+/// The engines of this build; the command line lists them, since it alone has engine features.
 #[derive(Clone, Copy)]
 pub struct Engines {
-    /// `exact`.
-    pub exact: Option<Installed>,
-    /// `rapier`.
-    pub rapier: Option<Installed>,
-    /// `mujoco`.
-    pub mujoco: Option<Installed>,
-    /// `fmu`.
-    pub fmu: Option<Installed>,
+    /// Each at most once.
+    pub installed: &'static [&'static dyn Engine],
     /// Who opens the FMUs beside an axis.
     pub partners: &'static dyn Partners,
 }
@@ -31,9 +16,8 @@ pub struct Engines {
 /// The build lacks an engine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error(
-    "this build has no engine `{}`; build it in with `cargo build --release -p servobench-cli --features {}` (for \
-     `mujoco` after `cargo xtask setup`), or choose one with `--engine`",
-    name.as_str(), name.as_str()
+    "this build has no engine `{name}`; build it in with `cargo build --release -p servobench-cli --features {name}` (for \
+     `mujoco` after `cargo xtask setup`), or choose one with `--engine`"
 )]
 pub struct EngineMissing {
     /// The engine; the feature has its name.
@@ -42,25 +26,19 @@ pub struct EngineMissing {
 
 impl Engines {
     /// A build without engines.
-    pub const NONE: Self = Self { exact: None, rapier: None, mujoco: None, fmu: None, partners: &NoPartners };
+    pub const NONE: Self = Self { installed: &[], partners: &NoPartners };
 
     /// The engine `name`.
     ///
     /// # Errors
     /// [`EngineMissing`] names the feature and the command.
-    pub fn get(&self, name: EngineName) -> Result<Installed, EngineMissing> {
-        let installed = match name {
-            EngineName::Exact => self.exact,
-            EngineName::Rapier => self.rapier,
-            EngineName::Mujoco => self.mujoco,
-            EngineName::Fmu => self.fmu,
-        };
-        installed.ok_or(EngineMissing { name })
+    pub fn get(&self, name: EngineName) -> Result<&'static dyn Engine, EngineMissing> {
+        self.installed.iter().copied().find(|engine| engine.name() == name).ok_or(EngineMissing { name })
     }
 
-    /// Names of the engines that are there.
+    /// Names of the engines that are there, in the order in which tables list them.
     #[must_use]
     pub fn names(&self) -> Vec<EngineName> {
-        EngineName::ALL.into_iter().filter(|name| self.get(*name).is_ok()).collect()
+        EngineName::ALL.iter().map(|(_, name, _)| *name).filter(|name| self.get(*name).is_ok()).collect()
     }
 }

@@ -30,7 +30,9 @@ pub enum RunError {
 pub(crate) const fn is_of_the_run(error: &BuildError) -> bool {
     matches!(
         error,
-        BuildError::Mechanics(MechanicsError::Native { .. }) | BuildError::Broken(_) | BuildError::NotBegun(_)
+        BuildError::Mechanics(MechanicsError::Native { .. } | MechanicsError::NoWayBack)
+            | BuildError::Broken(_)
+            | BuildError::NotBegun(_)
     )
 }
 

@@ -94,11 +94,11 @@ fn recorded(
     worker: &WorkerCommand,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Recorded, RunError> {
-    let installed = engines.get(job.engine)?;
-    if installed.isolated {
+    let engine = engines.get(job.engine)?;
+    if job.engine.capabilities().may_end_process {
         Ok(worker::call(worker, job, progress)?)
     } else {
-        run_here(&job.scenario, (installed.engine, engines.partners), progress)
+        run_here(&job.scenario, (engine, engines.partners), progress)
     }
 }
 

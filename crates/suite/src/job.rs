@@ -1,5 +1,6 @@
 //! One scenario on one engine.
-use servobench_scenario::{EngineName, Scenario, Step};
+use servobench_plant::EngineName;
+use servobench_scenario::{Scenario, Step};
 use servobench_signals::Signal;
 use servobench_sim::Program;
 use std::collections::HashMap;
@@ -89,7 +90,7 @@ pub fn jobs(sources: Vec<Source>, engines: &[EngineName]) -> Vec<Job> {
     for Source { scenario, text } in sources {
         let wanted = if engines.is_empty() { scenario.engines.clone() } else { engines.to_vec() };
         for engine in wanted {
-            let id = format!("{}.{}", file_name(&scenario.name), engine.as_str());
+            let id = format!("{}.{engine}", file_name(&scenario.name));
             let count = taken.entry(id.clone()).or_default();
             *count += 1;
             let id = if *count == 1 { id } else { format!("{id}.{count}") };

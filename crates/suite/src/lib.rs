@@ -15,7 +15,7 @@ pub mod worker;
 
 pub use check::{Objection, check, delays};
 pub use compare::{CompareError, comparable, limits_agree, only_setpoints_differ, to_equal_duration};
-pub use engines::{EngineMissing, Engines, Installed};
+pub use engines::{EngineMissing, Engines};
 pub use error::RunError;
 pub use execute::{Broken, Run, execute};
 pub use job::{Job, Source, jobs};

@@ -1,8 +1,7 @@
 //! What an engine objects to, and the key or line that is to blame.
-use servobench_plant::MjcfModel;
-use servobench_plant::{Engine, Mechanics, MechanicsError, MechanicsSetup, Refusal, RefusedAt};
+use servobench_plant::{Engine, EngineName, Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Refusal, RefusedAt};
 use servobench_scenario::AxisMechanics;
-use servobench_suite::{Engines, Installed, Job, Objection, RunError, Source, WorkerCommand, check, jobs};
+use servobench_suite::{Engines, Job, Objection, RunError, Source, WorkerCommand, check, jobs};
 use std::time::Duration;
 
 const TEXT: &str = r#"
@@ -38,8 +37,8 @@ struct Refuses {
 }
 
 impl Engine for Refuses {
-    fn name(&self) -> &'static str {
-        "rapier"
+    fn name(&self) -> EngineName {
+        EngineName::Rapier
     }
 
     fn build(&self, _: &MechanicsSetup) -> Result<Box<dyn Mechanics>, MechanicsError> {
@@ -51,13 +50,17 @@ impl Engine for Refuses {
             refusal(RefusedAt::Name("tendon's".into()), "no such joint"),
             refusal(RefusedAt::File, "no mass"),
         ];
-        Err(MechanicsError::Refused { engine: "rapier", path: "arm.xml".into(), refusals, way_out: "change it" })
+        Err(MechanicsError::Refused {
+            engine: EngineName::Rapier,
+            path: "arm.xml".into(),
+            refusals,
+            way_out: "change it",
+        })
     }
 }
 
-fn engines(engine: &'static Refuses) -> Engines {
-    Engines { exact: None, rapier: Some(Installed { engine, isolated: false }), ..Engines::NONE }
-}
+const REFUSING: Engines = Engines { installed: &[&Refuses { panics: false }], ..Engines::NONE };
+const PANICKING: Engines = Engines { installed: &[&Refuses { panics: true }], ..Engines::NONE };
 
 /// With an MJCF file whose load joint is `elbow`.
 fn job() -> Job {
@@ -81,7 +84,7 @@ fn nowhere() -> WorkerCommand {
 
 #[test]
 fn each_objection_has_its_place() {
-    let found = check(&job(), &engines(&Refuses { panics: false }), &nowhere()).unwrap();
+    let found = check(&job(), &REFUSING, &nowhere()).unwrap();
     let places: Vec<(&str, Option<u32>)> = found.iter().map(|one| (one.key.as_str(), one.line)).collect();
     let file = "axis.mjcf.file";
     assert_eq!(
@@ -102,6 +105,6 @@ fn each_objection_has_its_place() {
 fn who_cannot_be_asked_is_no_objection() {
     let missing = check(&job(), &Engines::NONE, &nowhere());
     assert!(matches!(missing, Err(RunError::EngineMissing(_))), "{missing:?}");
-    let panicked = check(&job(), &engines(&Refuses { panics: true }), &nowhere());
+    let panicked = check(&job(), &PANICKING, &nowhere());
     assert!(matches!(panicked, Err(RunError::Panicked(_))), "{panicked:?}");
 }

@@ -1,9 +1,7 @@
 //! What goes wrong in one run stays there: a panic, a worker that is killed, hangs or speaks nonsense.
-use servobench_plant::{BodyState, Engine, Input, Mechanics, MechanicsError, MechanicsSetup};
-use servobench_scenario::EngineName;
+use servobench_plant::{BodyState, Engine, EngineName, Input, Mechanics, MechanicsError, MechanicsSetup};
 use servobench_suite::{
-    AtATime, Broken, Engines, Installed, Job, RunError, Source, WorkerCommand, WorkerError, execute, jobs,
-    map_in_parallel,
+    AtATime, Broken, Engines, Job, RunError, Source, WorkerCommand, WorkerError, execute, jobs, map_in_parallel,
 };
 use std::path::Path;
 use std::time::Duration;
@@ -41,11 +39,11 @@ impl Mechanics for Panicking {
     }
 }
 
-struct PanickingEngine;
+struct PanickingEngine(EngineName);
 
 impl Engine for PanickingEngine {
-    fn name(&self) -> &'static str {
-        "rapier"
+    fn name(&self) -> EngineName {
+        self.0
     }
 
     fn build(&self, _: &MechanicsSetup) -> Result<Box<dyn Mechanics>, MechanicsError> {
@@ -55,9 +53,7 @@ impl Engine for PanickingEngine {
 
 /// `exact` works, `rapier` panics, `mujoco` is isolated: what runs there is the worker's program.
 const ENGINES: Engines = Engines {
-    exact: Some(Installed { engine: &servobench_plant::Exact, isolated: false }),
-    rapier: Some(Installed { engine: &PanickingEngine, isolated: false }),
-    mujoco: Some(Installed { engine: &PanickingEngine, isolated: true }),
+    installed: &[&servobench_plant::Exact, &PanickingEngine(EngineName::Rapier), &PanickingEngine(EngineName::Mujoco)],
     ..Engines::NONE
 };
 

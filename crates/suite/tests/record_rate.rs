@@ -1,7 +1,7 @@
 //! What is kept of a recording has no influence on what is measured.
 use servobench_metrics::Name;
-use servobench_scenario::EngineName;
-use servobench_suite::{Engines, Installed, Run, Source, WorkerCommand, execute, jobs};
+use servobench_plant::EngineName;
+use servobench_suite::{Engines, Run, Source, WorkerCommand, execute, jobs};
 use std::time::Duration;
 
 /// A load on a spring behind a base that moves 10 mm exactly: √(k/m)/2π = 84.2 Hz with k = 10 kg·(2π·84.2 Hz)².
@@ -29,8 +29,7 @@ window = "1 mm"
 "#;
 
 fn run(text: &str) -> Run {
-    let exact = Some(Installed { engine: &servobench_plant::Exact, isolated: false });
-    let engines = Engines { exact, ..Engines::NONE };
+    let engines = Engines { installed: &[&servobench_plant::Exact], ..Engines::NONE };
     let scenario = servobench_scenario::parse("rings", text, None).unwrap_or_else(|error| panic!("{error}")).scenario;
     let job = jobs(vec![Source { scenario, text: text.into() }], &[EngineName::Exact]).remove(0);
     let worker = WorkerCommand { program: "none".into(), folder: "none".into(), patience: Duration::from_secs(1) };

@@ -1,11 +1,11 @@
 //! Scenarios whose runs break a requirement, or come close to one, break what their first line says and nothing else.
 use servobench_metrics::Standing;
-use servobench_plant::Exact;
-use servobench_scenario::{EngineName, load};
-use servobench_suite::{Engines, Installed, Source, WorkerCommand, execute, jobs};
+use servobench_plant::{EngineName, Exact};
+use servobench_scenario::load;
+use servobench_suite::{Engines, Source, WorkerCommand, execute, jobs};
 use std::path::{Path, PathBuf};
 
-const ENGINES: Engines = Engines { exact: Some(Installed { engine: &Exact, isolated: false }), ..Engines::NONE };
+const ENGINES: Engines = Engines { installed: &[&Exact], ..Engines::NONE };
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/scenarios/requirements")

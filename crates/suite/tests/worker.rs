@@ -1,13 +1,12 @@
 //! The worker's side, called as a process would call it: what it says is what the same run here says of itself.
 use servobench_metrics::Quantity;
-use servobench_plant::Exact;
-use servobench_scenario::EngineName;
+use servobench_plant::{EngineName, Exact};
 use servobench_suite::worker::{End, Order, serve};
-use servobench_suite::{Engines, Installed, Source, WorkerCommand, execute, jobs};
+use servobench_suite::{Engines, Source, WorkerCommand, execute, jobs};
 use servobench_trace::Recording;
 use std::path::Path;
 
-const ENGINES: Engines = Engines { exact: Some(Installed { engine: &Exact, isolated: false }), ..Engines::NONE };
+const ENGINES: Engines = Engines { installed: &[&Exact], ..Engines::NONE };
 
 /// With a bandwidth of 2 MHz at a rate of 1 kHz the axis leaves the finite numbers. The limit on jerk is not used: a
 /// warning.

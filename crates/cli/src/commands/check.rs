@@ -8,8 +8,10 @@ use crate::interrupt;
 use crate::sources;
 use crate::workers;
 use miette::Severity;
+use servobench_config::Choice as _;
+use servobench_plant::EngineName;
 use servobench_report::{Style, elided, printable};
-use servobench_scenario::{Diagnostic, EngineName, Loaded};
+use servobench_scenario::{Diagnostic, Loaded};
 use servobench_sim::ConnectionDelay;
 use servobench_suite::{
     Doubt, Engines, Job, Preview, RunError, Source, WorkerCommand, check as objections, delays, jobs, preview,
@@ -186,11 +188,8 @@ fn age(delay: &ConnectionDelay) -> String {
 
 /// Which engines had no say.
 fn not_asked(missing: &[EngineName]) -> String {
-    let names: Vec<String> = EngineName::ALL
-        .into_iter()
-        .filter(|engine| missing.contains(engine))
-        .map(|engine| format!("`{}`", engine.as_str()))
-        .collect();
+    let all = EngineName::ALL.iter().filter(|(_, engine, _)| missing.contains(engine));
+    let names: Vec<String> = all.map(|(name, ..)| format!("`{name}`")).collect();
     if names.is_empty() {
         String::new()
     } else {

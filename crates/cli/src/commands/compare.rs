@@ -8,8 +8,9 @@ use crate::output::{self, COMPARISON, Written};
 use crate::progress::Progress;
 use crate::sources;
 use crate::workers;
+use servobench_config::Choice as _;
 use servobench_report::{Compared, Comparison, Outcome, Results, RunResult, elided, printable};
-use servobench_scenario::{Difference, EngineName, differences};
+use servobench_scenario::{Difference, differences};
 use servobench_suite::{
     CompareError, Job, Run, RunError, comparable, execute, jobs, limits_agree, map_in_parallel, only_setpoints_differ,
     to_equal_duration,
@@ -76,7 +77,7 @@ fn wanted_jobs(args: &CompareArgs) -> Result<Vec<Job>, CliError> {
         return Err(CliError::Input("a comparison needs two scenarios at least".into()));
     }
     let engine = args.engine.or_else(|| sources[0].scenario.engines.first().copied());
-    Ok(jobs(sources, &[engine.unwrap_or(EngineName::Exact)]))
+    Ok(jobs(sources, &[engine.unwrap_or_default()]))
 }
 
 /// Runs all of them; without one of them there is no comparison.
@@ -95,7 +96,7 @@ fn carried_out(args: &CompareArgs, jobs: &[Job]) -> Result<Vec<Run>, CliError> {
             Ok(run) => runs.push(run),
             Err(error) => {
                 exit = exit.worse(of_run_error(&error));
-                failures.push(format!("{} on {}: {error}", job.scenario.name, job.engine.as_str()));
+                failures.push(format!("{} on {}: {error}", job.scenario.name, job.engine));
             }
         }
     }
@@ -125,7 +126,7 @@ fn heading(args: &CompareArgs, jobs: &[Job]) -> String {
         Some(Equal::Duration) => "slowed to equal duration",
     };
     let names: Vec<_> = jobs.iter().map(|job| printable(&job.scenario.name)).collect();
-    let engine = jobs.first().map_or("", |job| job.engine.as_str());
+    let engine = jobs.first().map_or("", |job| job.engine.name());
     let mut text = format!("{} on {engine}, {equal}", names.join(" and "));
     let Some((one, others)) = jobs.split_first() else { return text };
     for (other, name) in others.iter().zip(&names[1..]) {

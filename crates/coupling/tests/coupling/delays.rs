@@ -86,7 +86,7 @@ fn the_newest_value_of_a_step_is_as_old_as_is_told() {
                     ];
                     members[0].every = NonZeroU32::new(source).unwrap();
                     members[1].every = NonZeroU32::new(destination).unwrap();
-                    let network = Network { members, connections: vec![connect((0, 0), (1, 0))], bonds: Vec::new() };
+                    let network = Network { members, connections: vec![connect((0, 0), (1, 0))] };
                     let mut master = Master::new(network, &settings(method.clone(), order, TICKS)).unwrap();
                     for _ in 0..120 {
                         master.advance().unwrap();

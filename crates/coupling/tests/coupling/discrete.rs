@@ -68,7 +68,6 @@ fn had(method: Method, order: Order, is_discrete: bool) -> Vec<Input> {
             offset: 0.0,
             is_discrete,
         }],
-        bonds: Vec::new(),
     };
     let (base_rate, step) = (Rate::new(1_000).unwrap(), Divider::new(1).unwrap());
     let settings = Settings { base_rate, step, method, order, algebraic: None, watch: false };
@@ -109,7 +108,7 @@ fn held(method: Method, order: Order, [source, destination]: [u32; 2], source_is
     }
     let (from_port, to_port) = (Port { block: from, port: 0 }, Port { block: to, port: 0 });
     let connection = Connection { from: from_port, to: to_port, gain: 2.0, offset: -1.0, is_discrete: false };
-    let network = Network { members, connections: vec![connection], bonds: Vec::new() };
+    let network = Network { members, connections: vec![connection] };
     let (base_rate, step) = (Rate::new(1_000).unwrap(), Divider::new(1).unwrap());
     let settings = Settings { base_rate, step, method, order, algebraic: None, watch: true };
     let mut master = Master::new(network, &settings).unwrap();

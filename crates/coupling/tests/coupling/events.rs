@@ -77,7 +77,7 @@ impl Block for Scripted {
 fn scripted(says: Vec<Step>) -> Master<Scripted> {
     let source = Scripted { says, ..Scripted::default() };
     let members = vec![member("source", source, 0, 1), member("sink", Scripted::default(), 1, 0)];
-    let network = Network { members, connections: vec![connect((0, 0), (1, 0))], bonds: Vec::new() };
+    let network = Network { members, connections: vec![connect((0, 0), (1, 0))] };
     Master::new(network, &settings(Method::Jacobi, Order::Quadratic, RATE / 8)).unwrap()
 }
 

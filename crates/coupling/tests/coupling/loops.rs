@@ -17,7 +17,7 @@ fn ring(gains: &[(f64, f64)]) -> Network<Linear> {
     let count = gains.len();
     let members = gains.iter().enumerate().map(|(i, (g, _))| member(&format!("g{i}"), gain(*g), 1, 1)).collect();
     let connections = (0..count).map(|i| Connection { offset: gains[i].1, ..connect((i, 0), ((i + 1) % count, 0)) });
-    Network { members, connections: connections.collect(), bonds: Vec::new() }
+    Network { members, connections: connections.collect() }
 }
 
 #[test]
@@ -80,7 +80,6 @@ fn a_block_that_cannot_save_is_in_no_iterated_loop() {
     let mut network = RESOLVED.network();
     network.members[1].block.can_save = false;
     network.connections.remove(0);
-    network.bonds.clear();
     Master::new(network, &settings).unwrap().advance().unwrap();
 }
 
@@ -89,7 +88,6 @@ fn blocks_of_an_iterated_loop_have_one_step() {
     let settings = settings(Method::Iterated(Iteration::default()), Order::Linear, 8);
     let mut network = RESOLVED.network();
     network.members[1].every = NonZeroU32::new(2).unwrap();
-    network.bonds.clear();
     let error = Master::new(network, &settings).err().unwrap();
     assert_eq!(error, CouplingError::Network(NetworkError::MixedSteps { cycle: "first -> second -> first".into() }));
 }
@@ -113,13 +111,6 @@ fn networks_that_are_none_are_refused() {
         refused(&|network| network.connections[0].gain = f64::NAN),
         "`gain` of `second.y0 -> first.u0` must be finite, got NaN"
     );
-    assert_eq!(
-        refused(&|network| network.bonds[0].flow = 0),
-        "connections 0 and 0 of 3 are no power bond: the flow has to go back from the block that takes the effort to the one that gives it"
-    );
-    let mut master = Master::new(RESOLVED.network(), &settings(Method::Jacobi, Order::Constant, 8)).unwrap();
-    let held = master.hold(Port { block: 0, port: 0 }, 1.0).unwrap_err();
-    assert_eq!(held.to_string(), "`first.u0` follows a connection and cannot be held");
     let order = settings(Method::GaussSeidel(vec![0, 0]), Order::Constant, 8);
     let error = Master::new(RESOLVED.network(), &order).err().unwrap();
     assert_eq!(error.to_string(), "the order of blocks must name each of the 2 blocks once, got [0, 0]");

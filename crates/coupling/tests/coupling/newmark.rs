@@ -25,7 +25,6 @@ fn network(theta: f64, holds_mean: bool) -> Network<Linear> {
     Network {
         members: vec![member("mass", mass, 1, 1), member("spring", Linear::new(spring, &[]), 1, 1)],
         connections: vec![connect((1, 0), (0, 0)), connect((0, 0), (1, 0))],
-        bonds: Vec::new(),
     }
 }
 

@@ -98,7 +98,6 @@ fn different_steps_have_the_same_order() {
                 let errors = STEPS.map(|ticks| {
                     let mut network = RESOLVED.network();
                     network.members[slow].every = NonZeroU32::new(2).unwrap();
-                    network.bonds.clear();
                     worst(network, &RESOLVED, &settings(method.clone(), order, ticks / 2))
                 });
                 let slope = (errors[2] / errors[3]).log2();

@@ -8,7 +8,7 @@
 //! The force is a linear system of its own in block 0: a constant and two oscillators.
 use super::linear::{Linear, Matrix, Model, connect, member};
 use servobench_base::{Divider, Rate};
-use servobench_coupling::{Flow, Master, Method, Network, Order, PowerBond, Settings};
+use servobench_coupling::{Master, Method, Network, Order, Settings};
 
 /// Masses (kg), stiffness (N/m), damping (N·s/m).
 #[derive(Debug, Clone, Copy)]
@@ -53,12 +53,11 @@ impl TwoMasses {
         Linear::new(model, &[0.0, 0.0])
     }
 
-    /// Both blocks, the force as connection 0, the displacement as 1, the velocity as 2; the bond of force and displacement.
+    /// Both blocks, the force as connection 0, the displacement as 1, the velocity as 2.
     pub(crate) fn network(&self) -> Network<Linear> {
         Network {
             members: vec![member("first", self.first(), 1, 2), member("second", self.second(), 2, 1)],
             connections: vec![connect((1, 0), (0, 0)), connect((0, 0), (1, 0)), connect((0, 1), (1, 1))],
-            bonds: vec![PowerBond { effort: 0, flow: 1, kind: Flow::Displacement, opposes: false }],
         }
     }
 

@@ -41,7 +41,7 @@ fn network(recipes: &[Recipe], places: &[usize]) -> Network<Linear> {
         member.every = NonZeroU32::new(every).unwrap();
         member
     });
-    Network { members: members.collect(), connections, bonds: Vec::new() }
+    Network { members: members.collect(), connections }
 }
 
 /// Bits of all outputs, by number of the block, through 40 exchanges.

@@ -71,8 +71,7 @@ fn end(every: u32, method: Method, order: Order) -> Result<f64, CouplingError<In
     let mass: Boxed = Box::new(Linear::new(mass, &[0.0, 0.0]));
     let mut members = vec![member("controller", controller, 1, 1), member("mass", mass, 1, 1)];
     members[0].every = NonZeroU32::new(every).unwrap();
-    let network =
-        Network { members, connections: vec![connect((0, 0), (1, 0)), connect((1, 0), (0, 0))], bonds: Vec::new() };
+    let network = Network { members, connections: vec![connect((0, 0), (1, 0)), connect((1, 0), (0, 0))] };
     let mut master = Master::new(network, &settings(method, order, 8))?;
     while master.tick().0 < u64::from(RATE) {
         master.advance()?;

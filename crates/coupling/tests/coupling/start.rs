@@ -102,7 +102,7 @@ fn coupled(
         is_discrete: false,
     };
     let connections = connections.iter().map(connect).collect();
-    let network = Network { members: members.collect(), connections, bonds: Vec::new() };
+    let network = Network { members: members.collect(), connections };
     let (base_rate, step) = (Rate::new(1_000).unwrap(), Divider::new(1).unwrap());
     let settings = Settings { base_rate, step, method: Method::Jacobi, order: Order::Linear, algebraic, watch: true };
     Master::new(network, &settings)

@@ -119,7 +119,8 @@ impl Slave for BadSlave {
     }
 
     fn restore(&mut self) -> Result<(), SlaveError> {
-        let unable = SlaveError::Unable { what: "go back to a state", capability: "canGetAndSetFMUState" };
+        let unable =
+            SlaveError::Unable { what: "go back to a state".into(), capability: "canGetAndSetFMUState".into() };
         (self.x, self.time) = self.saved.ok_or(unable)?;
         Ok(())
     }
@@ -225,10 +226,10 @@ impl BadSlave {
             Bad::Overwrite(byte) => overwrite(byte),
             Bad::Fails => {
                 let message = "x".repeat(100_000);
-                return Err(SlaveError::Failed { call: "fmi3DoStep", time, status: "fmi3Error", message });
+                return Err(failed(time, message));
             }
             Bad::Discards if self.steps.is_multiple_of(2) => {
-                return Err(SlaveError::Discarded { call: "fmi3DoStep", time, shortest: None });
+                return Err(SlaveError::Discarded { call: "fmi3DoStep".into(), time, shortest: None });
             }
             Bad::Early if self.steps == 1 => return Ok(Progress::Until(time + length / 4.0)),
             Bad::Early => return Ok(Progress::Terminated(time + length / 2.0)),
@@ -290,4 +291,8 @@ fn overwrite(byte: u8) {
         // SAFETY: none for whoever uses it; it is mapped and may be written to.
         unsafe { std::ptr::with_exposed_provenance_mut::<u8>(at(from)).write_bytes(byte, at(to) - at(from)) };
     }
+}
+
+fn failed(time: f64, message: String) -> SlaveError {
+    SlaveError::Failed { call: "fmi3DoStep".into(), time, status: "fmi3Error".into(), message }
 }

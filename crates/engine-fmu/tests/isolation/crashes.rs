@@ -52,7 +52,7 @@ fn a_crash_or_a_hang_in_loading_is_one_too() {
 fn one_that_does_not_come_back_is_ended() {
     for bad in [Bad::Loop, Bad::Stop] {
         let error = error_of_step(&bad, impatient());
-        assert_eq!(error, SlaveError::Hung { call: "its step", time: 0.5, patience: 1.0 }, "{bad:?}");
+        assert_eq!(error, SlaveError::Hung { call: "its step".into(), time: 0.5, patience: 1.0 }, "{bad:?}");
     }
 }
 

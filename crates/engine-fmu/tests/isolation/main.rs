@@ -10,8 +10,8 @@ mod floods;
 mod same;
 
 use bad::Bad;
-use servobench_engine_fmu::{Bounds, HostCommand, HostError, Isolated, IsolationError, Wires, serve};
-use servobench_fmi::{Severity, Slave, SlaveError};
+use servobench_engine_fmu::{HostCommand, HostError, Isolated, IsolationError, Wires, serve};
+use servobench_fmi::{Bounds, Severity, Slave, SlaveError};
 use std::time::Duration;
 
 /// Not a test: the process that the others start.

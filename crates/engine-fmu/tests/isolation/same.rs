@@ -51,16 +51,15 @@ fn one_that_discards_a_step_goes_on() {
     for _ in 0..3 {
         assert_eq!(slave.step(0.0, 0.1, &[[0.0; 3]]), Ok(Progress::Done));
         let discarded = slave.step(0.1, 0.1, &[[0.0; 3]]);
-        assert_eq!(discarded, Err(SlaveError::Discarded { call: "fmi3DoStep", time: 0.1, shortest: None }));
+        assert_eq!(discarded, Err(SlaveError::Discarded { call: "fmi3DoStep".into(), time: 0.1, shortest: None }));
     }
 }
 
 #[test]
 fn what_it_fails_with_is_said_and_not_without_end() {
     let error = error_of_step(&Bad::Fails, Bounds::default());
-    let SlaveError::Failed { call: "fmi3DoStep", time: 0.5, status: "fmi3Error", message } = error else {
-        panic!("{error}")
-    };
+    let SlaveError::Failed { call, time: 0.5, status, message } = error else { panic!("{error}") };
+    assert_eq!((&*call, &*status), ("fmi3DoStep", "fmi3Error"));
     assert!(message.ends_with("x … (92000 bytes more)"));
 }
 
@@ -76,7 +75,8 @@ fn an_output_that_is_not_a_number_is_said_when_it_is_read() {
 #[test]
 fn a_state_that_was_not_saved_is_not_restored() {
     let mut slave = start(&Bad::Nothing, Bounds::default()).unwrap();
-    assert!(matches!(slave.restore(), Err(SlaveError::Unable { capability: "canGetAndSetFMUState", .. })));
+    let restored = slave.restore();
+    assert!(matches!(restored, Err(SlaveError::Unable { capability, .. }) if capability == "canGetAndSetFMUState"));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! What is exchanged with an FMU, and when.
 use super::*;
-use servobench_plant::{BodyState, MechanicsError};
+use servobench_plant::{BodyState, EngineName, MechanicsError};
 use std::sync::{Arc, Mutex};
 
 /// A torque that excites the mode, and a force on the table.
@@ -12,7 +12,7 @@ fn efforts(tick: u32) -> (f64, f64) {
 /// To the bit: what the FMU gets and gives is passed on.
 #[test]
 fn with_an_exchange_in_every_tick_it_is_what_the_fmu_is() {
-    let mut fmu = mechanics(ExactFmu::new(TICK), &model(1, Extrapolation::Linear), &IN_SI);
+    let mut fmu = mechanics(ExactFmu::new(TICK), &model(1), &IN_SI);
     let mut here = exact(TICK);
     for tick in 0..1000 {
         assert_eq!(fmu.bodies(), here.bodies(), "tick {tick}");
@@ -30,7 +30,7 @@ fn with_an_exchange_in_every_tick_it_is_what_the_fmu_is() {
 fn between_exchanges_the_fmu_gets_the_mean_of_the_efforts() {
     const N: u32 = 4;
     let step = f64::from(N) * TICK;
-    let mut fmu = mechanics(ExactFmu::new(step), &model(N, Extrapolation::Quadratic), &IN_SI);
+    let mut fmu = mechanics(ExactFmu::new(step), &model(N), &IN_SI);
     let mut here = exact(step);
     for exchange in 0..100 {
         for (body, at) in fmu.bodies().iter().zip(here.bodies()) {
@@ -54,8 +54,8 @@ fn between_exchanges_the_fmu_gets_the_mean_of_the_efforts() {
 }
 
 /// Greatest error of the table's position between exchanges, while it swings freely after 10 ms of torque.
-fn worst(ticks: u32, extrapolation: Extrapolation) -> f64 {
-    let mut fmu = mechanics(ExactFmu::new(f64::from(ticks) * TICK), &model(ticks, extrapolation), &IN_SI);
+fn worst(ticks: u32) -> f64 {
+    let mut fmu = mechanics(ExactFmu::new(f64::from(ticks) * TICK), &model(ticks), &IN_SI);
     let mut here = exact(TICK);
     let mut worst = 0.0_f64;
     for tick in 0..800 {
@@ -70,19 +70,14 @@ fn worst(ticks: u32, extrapolation: Extrapolation) -> f64 {
     worst
 }
 
-/// Oracle: the engine with a step of a tick. The order of each extrapolation is tested where it is made; here that time and
-/// period are right: each is much better than the one before, and half the step makes 2, 4 and 8 times less of it. The mode
-/// has ω·H = 0.05 and 0.1, and its next order a tenth of that: 20 % each way.
+/// Oracle: the engine with a step of a tick. The order of the extrapolation is tested where it is made; here that time and period are
+/// right: half the step makes 4 times less of it. The mode has ω·H = 0.05 and 0.1, and its next order a tenth of that: 20 % each way.
 #[test]
 fn bodies_go_on_between_exchanges() {
-    for (extrapolation, order) in
-        [(Extrapolation::Hold, 1.0), (Extrapolation::Linear, 2.0), (Extrapolation::Quadratic, 3.0)]
-    {
-        // The last tick before an exchange is 7/8 and 3/4 of a step after the last.
-        let (coarse, fine) = (worst(8, extrapolation), worst(4, extrapolation));
-        let observed = (coarse / fine * (0.75 / 0.875_f64).powf(order)).log2();
-        assert!((observed - order).abs() < 0.3, "{extrapolation:?}: {coarse} {fine} {observed}");
-    }
+    // The last tick before an exchange is 7/8 and 3/4 of a step after the last.
+    let (coarse, fine) = (worst(8), worst(4));
+    let observed = (coarse / fine * (0.75 / 0.875_f64).powi(2)).log2();
+    assert!((observed - 2.0).abs() < 0.3, "{coarse} {fine} {observed}");
 }
 
 /// Stands still, answers as it is told and notes what it gets.
@@ -112,7 +107,7 @@ impl Toy for Scripted {
 
 fn single_body(ticks: u32) -> FmuModel {
     let motor = FmuBody { position: port("angle", RADIAN), velocity: None };
-    FmuModel { motor, load: None, load_disturbance: None, ..model(ticks, Extrapolation::Linear) }
+    FmuModel { motor, load: None, load_disturbance: None, ..model(ticks) }
 }
 
 /// What comes of a tick with this answer.
@@ -143,7 +138,7 @@ fn disturbances_of_a_single_body_act_with_the_effort() {
 
 #[test]
 fn a_load_of_its_own_needs_an_input_for_its_disturbance() {
-    let model = FmuModel { load_disturbance: None, ..model(1, Extrapolation::Linear) };
+    let model = FmuModel { load_disturbance: None, ..model(1) };
     let mut fmu = mechanics(ExactFmu::new(TICK), &model, &IN_SI);
     fmu.advance(&input(1.0, 0.0)).unwrap();
     let error = fmu.advance(&input(1.0, 3.0)).unwrap_err();
@@ -166,15 +161,15 @@ fn what_goes_wrong_in_a_step_ends_the_run_with_the_reason() {
         (says(|time, length| Ok(Progress::Until(time + 1e-6 * length))), "came back early 10000 times"),
         (says(|_, _| Ok(Progress::Terminated(0.0))), "wants the simulation to end at 0 s"),
         (
-            says(|time, _| Err(SlaveError::Crashed { call: "", time, how: "signal 11".into() })),
+            says(|time, _| Err(SlaveError::Crashed { call: "".into(), time, how: "signal 11".into() })),
             "ended at 0 s: signal 11",
         ),
         (
-            says(|time, _| Err(SlaveError::Discarded { call: "fmi2DoStep", time, shortest: None })),
+            says(|time, _| Err(SlaveError::Discarded { call: "fmi2DoStep".into(), time, shortest: None })),
             "discarded fmi2DoStep at 0 s",
         ),
     ] {
-        assert!(matches!(error, MechanicsError::Native { engine: "fmu", .. }), "{error}");
+        assert!(matches!(error, MechanicsError::Native { engine: EngineName::Fmu, .. }), "{error}");
         assert!(error.to_string().contains(words), "{error}");
     }
     let error = says(|time, _| Err(SlaveError::NotFinite { variable: "x".into(), value: f64::NAN, time }));
@@ -193,8 +188,8 @@ fn a_position_that_is_not_finite_is_not_passed_on() {
 fn a_prescribed_motion_is_refused() {
     let actuation = Actuation::Motion(servobench_base::Setpoint::default());
     let all = Input { actuation, motor_disturbance: 0.0, load_disturbance: 0.0 };
-    let result = mechanics(ExactFmu::new(TICK), &model(1, Extrapolation::Linear), &IN_SI).advance(&all);
-    assert!(matches!(result, Err(MechanicsError::Unsupported { engine: "fmu", .. })));
+    let result = mechanics(ExactFmu::new(TICK), &model(1), &IN_SI).advance(&all);
+    assert!(matches!(result, Err(MechanicsError::Unsupported { engine: EngineName::Fmu, .. })));
 }
 
 /// Moves with 3 rad/s.

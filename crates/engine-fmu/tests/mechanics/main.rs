@@ -5,26 +5,22 @@ mod ports;
 
 use servobench_base::Coordinate;
 use servobench_engine_fmu::{FmuMechanics, InSi, Ports};
-use servobench_fmi::{Capabilities, LogLine, ModelDescription, Progress, Slave, SlaveError};
+use servobench_fmi::{
+    Capabilities, FmuFile, FmuMistake, Isolation, LogLine, ModelDescription, Progress, SiPort, SiUnit, Slave,
+    SlaveError,
+};
 use servobench_plant::{
-    Actuation, Body, Chain, Drive, DryFriction, Engine, Exact, Extrapolation, FmuBody, FmuFile, FmuMistake, FmuModel,
-    FmuPort, Input, Isolation, Link, Mechanics, MechanicsSetup, Model, SiUnit,
+    Actuation, Body, Chain, Drive, Engine, Exact, FmuBody, FmuModel, Friction, Input, Link, Mechanics, MechanicsSetup,
+    Model,
 };
 
 /// Base tick (s).
 const TICK: f64 = 1.0 / 8_000.0;
 
 fn two_mass() -> Chain {
-    let dry = DryFriction { coulomb: 0.0, breakaway: 0.0, stribeck_velocity: 0.0 };
-    let body = |name, coordinate, inertia, transmission| Body {
-        name,
-        coordinate,
-        inertia,
-        transmission,
-        viscous: 0.01,
-        dry,
-        bias: 0.0,
-    };
+    let friction = Friction { viscous: 0.01, ..Friction::NONE };
+    let body =
+        |name, coordinate, inertia, transmission| Body { name, coordinate, inertia, transmission, friction, bias: 0.0 };
     let bodies = vec![body("motor", Coordinate::Rotary, 1e-3, 5e-3), body("table", Coordinate::Linear, 30.0, 1.0)];
     Chain::new(bodies, vec![Link { stiffness: 2e6, damping: 300.0 }]).unwrap()
 }
@@ -144,11 +140,11 @@ const METRE: (&str, [i32; 4]) = ("m", [0, 1, 0, 0]);
 const RADIAN_PER_SECOND: (&str, [i32; 4]) = ("rad/s", [0, 0, -1, 0]);
 const METRE_PER_SECOND: (&str, [i32; 4]) = ("m/s", [0, 1, -1, 0]);
 
-fn port(variable: &str, (name, exponents): (&str, [i32; 4])) -> FmuPort {
-    FmuPort { variable: variable.into(), unit: Some(SiUnit { name: name.into(), exponents }) }
+fn port(variable: &str, (name, exponents): (&str, [i32; 4])) -> SiPort {
+    SiPort { variable: variable.into(), unit: Some(SiUnit { name: name.into(), exponents }) }
 }
 
-fn model(ticks: u32, extrapolation: Extrapolation) -> FmuModel {
+fn model(ticks: u32) -> FmuModel {
     FmuModel {
         file: FmuFile { path: "table.fmu".into(), start: Vec::new(), isolation: Isolation::None, event_mode: true },
         effort: port("torque", NEWTON_METRE),
@@ -158,7 +154,6 @@ fn model(ticks: u32, extrapolation: Extrapolation) -> FmuModel {
         load_disturbance: Some(port("force", NEWTON)),
         transmission: 5e-3,
         ticks,
-        extrapolation,
     }
 }
 

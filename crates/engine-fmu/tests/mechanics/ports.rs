@@ -1,6 +1,6 @@
 //! Names and units of the variables that are exchanged.
 use super::*;
-use servobench_plant::FmuEntry;
+use servobench_fmi::FmuEntry;
 
 /// Passes on to an FMU in SI units what comes in others, the other way round for what comes out: what a tool does that counts
 /// in them.
@@ -32,7 +32,7 @@ fn units_are_those_of_the_description() {
         ("x", "output", "mm"),
         ("v", "output", "m/min"),
     ];
-    let mut fmu = mechanics(InOtherUnits(ExactFmu::new(TICK)), &model(1, Extrapolation::Linear), &others);
+    let mut fmu = mechanics(InOtherUnits(ExactFmu::new(TICK)), &model(1), &others);
     let mut here = exact(TICK);
     for tick in 0..500 {
         let all = super::input((f64::from(tick) * 0.1).sin(), 50.0);
@@ -60,8 +60,8 @@ fn output(name: &str, what: &str) -> (FmuEntry, String) {
 
 #[test]
 fn ports_are_in_the_order_in_which_they_are_exchanged() {
-    let model = model(1, Extrapolation::Linear);
-    let names = |ports: Vec<&FmuPort>| ports.iter().map(|port| port.variable.clone()).collect::<Vec<_>>();
+    let model = model(1);
+    let names = |ports: Vec<&SiPort>| ports.iter().map(|port| port.variable.clone()).collect::<Vec<_>>();
     assert_eq!(names(model.inputs().collect()), ["torque", "force"]);
     assert_eq!(names(model.outputs().collect()), ["angle", "speed", "x", "v"]);
 }
@@ -77,7 +77,7 @@ fn everything_that_is_wrong_is_said() {
         ("x_1", "output", "m"),
         ("v", "output", ""),
     ];
-    let said = mistakes(&model(1, Extrapolation::Linear), &wrong);
+    let said = mistakes(&model(1), &wrong);
     assert_eq!(
         said,
         [
@@ -101,15 +101,15 @@ fn everything_that_is_wrong_is_said() {
 fn si_units_need_no_definition() {
     let mut variables = IN_SI;
     variables[4].2 = "m";
-    assert_eq!(mistakes(&model(1, Extrapolation::Linear), &variables), []);
+    assert_eq!(mistakes(&model(1), &variables), []);
     variables[2].2 = "m";
     let what = "`angle` of the FMU counts in `m`, which cannot be turned into rad; connect what it is a measure of";
-    assert_eq!(mistakes(&model(1, Extrapolation::Linear), &variables), [output("angle", what)]);
+    assert_eq!(mistakes(&model(1), &variables), [output("angle", what)]);
 }
 
 #[test]
 fn elements_are_counted() {
-    let mut model = model(1, Extrapolation::Linear);
+    let mut model = model(1);
     model.effort.variable = "torque[2]".into();
     let what =
         "`torque[2]`: `torque` has the dimensions []; name an element like `x[2]` or `x[2,1]`; indices count from 1";
@@ -119,7 +119,7 @@ fn elements_are_counted() {
 /// A rotary axis needs a torque where a linear one needs a force.
 #[test]
 fn quantities_are_those_of_the_coordinates() {
-    let mut model = model(1, Extrapolation::Linear);
+    let mut model = model(1);
     model.effort = port("torque", NEWTON);
     let variables = [("torque", "input", "N.mm"), IN_SI[1], IN_SI[2], IN_SI[3], IN_SI[4], IN_SI[5]];
     let what = "`torque` of the FMU counts in `N.mm`, which cannot be turned into N; connect what it is a measure of";

@@ -1,7 +1,7 @@
 //! How the process of an FMU ends.
 use super::{ENGINE, File};
-use servobench_engine_fmu::{Bounds, HostCommand, Place, load};
-use servobench_fmi::{Port, Setup, Unpacked};
+use servobench_engine_fmu::{HostCommand, Place, load};
+use servobench_fmi::{Bounds, Port, Setup, Unpacked};
 
 /// The library stays loaded until the process ends, as Python's does.
 #[test]

@@ -3,9 +3,10 @@ mod leaving;
 
 use servobench_base::Severity;
 use servobench_engine_fmu::{Fmu, FmuMechanics, HostCommand, HostError, host as serve};
+use servobench_fmi::{Bounds, FmuFile, Isolation, SiPort, Value};
 use servobench_plant::{
-    Actuation, Drive, Engine, Extrapolation, FmuBody, FmuFile, FmuModel, FmuPort, FmuStart, FmuValue, Input, Isolation,
-    Mechanics, MechanicsError, MechanicsSetup, Model, Said,
+    Actuation, Drive, Engine, EngineName, FmuBody, FmuModel, Input, Mechanics, MechanicsError, MechanicsSetup, Model,
+    Said,
 };
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -113,20 +114,19 @@ impl File {
 }
 
 fn isolated(patience: Duration) -> Isolation {
-    Isolation::Process { patience, memory: 300_000_000 }
+    Isolation::Process { bounds: Bounds { patience, memory: 300_000_000 } }
 }
 
 fn setup(file: &File, mischief: Mischief, isolation: Isolation) -> MechanicsSetup {
-    let port = |variable: &str| FmuPort { variable: variable.into(), unit: None };
-    let start = |variable: &str, value| FmuStart { variable: variable.into(), values: vec![value] };
+    let port = |variable: &str| SiPort { variable: variable.into(), unit: None };
     let model = FmuModel {
         file: FmuFile {
             event_mode: true,
             path: file.path.clone(),
             start: vec![
-                start("mass", FmuValue::Number(MASS)),
-                start("x", FmuValue::Quantity { text: "0.25 m".into(), si: 0.25, exponents: [0, 1, 0, 0] }),
-                start("mischief", FmuValue::Number(f64::from(mischief as u8))),
+                ("mass".into(), Value::Number(MASS)),
+                ("x".into(), Value::Quantity { text: "0.25 m".into(), si: 0.25, exponents: [0, 1, 0, 0] }),
+                ("mischief".into(), Value::Number(f64::from(mischief as u8))),
             ],
             isolation,
         },
@@ -137,7 +137,6 @@ fn setup(file: &File, mischief: Mischief, isolation: Isolation) -> MechanicsSetu
         load_disturbance: None,
         transmission: 1.0,
         ticks: 1,
-        extrapolation: Extrapolation::Linear,
     };
     MechanicsSetup { model: Model::Fmu(Box::new(model)), drive: Drive::Effort, step: TICK, initial: Vec::new() }
 }
@@ -191,7 +190,7 @@ fn what_a_library_does_wrong_is_reported_as_what_it_is() {
         (Mischief::Hoard, "it asked for more memory than the 300 MB that it may have, then signal 11"),
     ] {
         let error = second_step(mischief, patience);
-        assert!(matches!(error, MechanicsError::Native { engine: "fmu", .. }), "{error}");
+        assert!(matches!(error, MechanicsError::Native { engine: EngineName::Fmu, .. }), "{error}");
         assert!(error.to_string().contains(says), "{error}");
     }
     let error = second_step(Mischief::Hang, Duration::from_secs(1));
@@ -290,8 +289,7 @@ fn what_the_engine_cannot_do_is_refused() {
     assert!(says(&with(FmuModel { ticks: 0, ..FmuModel::clone(model) })).contains("`ticks`"));
     let of = |file: FmuFile| with(FmuModel { file, ..FmuModel::clone(model) });
     assert!(says(&of(FmuFile { path: "none.fmu".into(), ..model.file.clone() })).contains("none.fmu"));
-    let start = |variable: &str, value| FmuStart { variable: variable.into(), values: vec![value] };
-    let starts = vec![start("mas", FmuValue::Number(1.0)), start("mass", FmuValue::Text("heavy".into()))];
+    let starts = vec![("mas".into(), Value::Number(1.0)), ("mass".into(), Value::Text("heavy".into()))];
     let said = says(&of(FmuFile { start: starts, ..model.file.clone() }));
     assert!(said.contains("is it `mass`?") && said.contains("heavy"), "{said}");
     let began = MechanicsSetup { initial: vec![servobench_plant::BodyState::default()], ..good.clone() };

@@ -10,7 +10,7 @@ use files::Files;
 use masses::{Outcome, RATE, TwoMasses, settings, state};
 use servobench_coupling::{Acceleration, CouplingError, Iteration, Method, Order, Settings};
 use servobench_engine_fmu::{Fmu, HostCommand, HostError, host as serve};
-use servobench_plant::Isolation;
+use servobench_fmi::{Bounds, Isolation};
 use std::time::Duration;
 
 /// Not a test: the process that an FMU of these tests lives in.
@@ -30,7 +30,8 @@ const ENGINE: Fmu = Fmu {
         Ok(HostCommand { program: std::env::current_exe()?, args: args.map(Into::into).to_vec(), env: Vec::new() })
     },
 };
-const ISOLATED: Isolation = Isolation::Process { patience: Duration::from_mins(1), memory: 300_000_000 };
+const ISOLATED: Isolation =
+    Isolation::Process { bounds: Bounds { patience: Duration::from_mins(1), memory: 300_000_000 } };
 
 /// ω² = c·(1/m₁ + 1/m₂) = 150 s⁻², ω = 12.2 rad/s; from rest, with a force that sets in smoothly.
 const RESOLVED: TwoMasses = TwoMasses { m1: 1.0, m2: 2.0, c: 100.0, d: 2.0, force: (50.0, 8.0), v1: 0.0 };

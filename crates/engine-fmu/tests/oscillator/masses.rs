@@ -3,11 +3,9 @@ use crate::ENGINE;
 use crate::files::Files;
 use servobench_base::{Divider, Rate};
 use servobench_coupling::{
-    Block, Connection, CouplingError, Flow, Input, InputPort, Master, Member, Method, Network, Order, Port, PowerBond,
-    Settings, Step,
+    Block, Connection, CouplingError, Input, InputPort, Master, Member, Method, Network, Order, Port, Settings, Step,
 };
-use servobench_fmi::{Progress, Slave, SlaveError};
-use servobench_plant::{FmuFile, FmuPartner, FmuPort, FmuStart, FmuValue, Isolation};
+use servobench_fmi::{FmuFile, FmuRequest, Isolation, Progress, SiPort, Slave, SlaveError, Value};
 use std::num::NonZeroU32;
 use std::path::Path;
 
@@ -38,7 +36,6 @@ impl TwoMasses {
         let network = Network {
             members: vec![mass, spring],
             connections: vec![connect((1, 0), (0, 0)), connect((0, 0), (1, 0)), connect((0, 1), (1, 1))],
-            bonds: vec![PowerBond { effort: 0, flow: 1, kind: Flow::Displacement, opposes: false }],
         };
         Master::new(network, settings)
     }
@@ -100,25 +97,23 @@ fn member(
     (inputs, outputs): (&[&str], &[&str]),
     isolation: Isolation,
 ) -> Member<Coupled> {
-    let ports = |names: &[&str]| names.iter().map(|name| FmuPort { variable: (*name).into(), unit: None }).collect();
-    let start = start
-        .iter()
-        .map(|(variable, value)| FmuStart { variable: (*variable).into(), values: vec![FmuValue::Number(*value)] })
-        .collect();
-    let partner = FmuPartner {
-        file: FmuFile { path: path.into(), start, isolation, event_mode: true },
-        name: name.into(),
+    let ports = |names: &[&str]| names.iter().map(|name| SiPort { variable: (*name).into(), unit: None }).collect();
+    let start = start.iter().map(|(variable, value)| ((*variable).into(), Value::Number(*value))).collect();
+    let request = FmuRequest {
+        file: &FmuFile { path: path.into(), start, isolation, event_mode: true },
+        name: Some(name),
         inputs: ports(inputs),
         outputs: ports(outputs),
         step: 1.0 / f64::from(RATE),
-        end: 2.0,
+        end: Some(2.0),
+        waits: true,
     };
     Member {
         name: name.into(),
         inputs: inputs.iter().map(|name| InputPort { name: (*name).into(), held: 0.0 }).collect(),
         outputs: outputs.iter().map(|name| (*name).into()).collect(),
         every: NonZeroU32::MIN,
-        block: Coupled(ENGINE.partner(&partner).unwrap_or_else(|mistakes| panic!("{mistakes:?}"))),
+        block: Coupled(ENGINE.open(&request).unwrap_or_else(|mistakes| panic!("{mistakes:?}"))),
     }
 }
 

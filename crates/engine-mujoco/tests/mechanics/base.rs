@@ -3,7 +3,7 @@ use super::{STEP, body, held_omega, motion, mujoco, order, ticks, two_mass};
 use nalgebra::DMatrix;
 use servobench_base::Coordinate;
 use servobench_base::Setpoint;
-use servobench_plant::{Body, Chain, Drive, Link};
+use servobench_plant::{Body, Chain, Drive, Friction, Link};
 use std::f64::consts::TAU;
 
 /// A base that starts anywhere and has all derivatives.
@@ -51,7 +51,7 @@ fn an_undamped_load_follows_the_closed_form_with_order_four() {
 #[test]
 fn a_damped_load_converges_with_order_two_at_least() {
     let (b, d) = (0.02, 0.3);
-    let load = Body { viscous: b, ..body("load", Coordinate::Rotary, 0.005) };
+    let load = Body { friction: Friction { viscous: b, ..Friction::NONE }, ..body("load", Coordinate::Rotary, 0.005) };
     let link = Link { stiffness: 700.0, damping: d };
     let chain = Chain::new(vec![body("motor", Coordinate::Rotary, 0.005), load], vec![link]).unwrap();
     // State: x, v of the load; x, v, a, j, s of the base.

@@ -3,7 +3,7 @@ use super::{STEP, body, efforts, motion, mujoco, setup, two_mass, unchecked};
 use servobench_base::Coordinate;
 use servobench_base::Setpoint;
 use servobench_engine_mujoco::Mujoco;
-use servobench_plant::{Actuation, Chain, Drive, Engine as _, Input, Link, Mechanics, MechanicsError};
+use servobench_plant::{Actuation, Chain, Drive, Engine as _, EngineName, Input, Link, Mechanics, MechanicsError};
 use std::path::Path;
 use std::process::Command;
 
@@ -19,7 +19,7 @@ fn too_stiff() -> Box<dyn Mechanics> {
 fn divergence_is_an_error_and_not_a_restart() {
     let mut mechanics = too_stiff();
     let error = (0..1000).find_map(|_| mechanics.advance(&efforts(0.0, 0.0)).err());
-    let Some(MechanicsError::Diverged { engine: "mujoco", message }) = error else {
+    let Some(MechanicsError::Diverged { engine: EngineName::Mujoco, message }) = error else {
         panic!("{error:?}");
     };
     assert!(message.contains("QACC") || message.contains("QVEL") || message.contains("QPOS"), "{message}");

@@ -3,12 +3,13 @@ use super::{STEP, body, efforts, motion, mujoco, setup, ticks};
 use servobench_base::Coordinate;
 use servobench_base::Setpoint;
 use servobench_engine_mujoco::Mujoco;
-use servobench_plant::{Body, Chain, Drive, DryFriction, Engine as _, Exact, Input, Link};
+use servobench_plant::{Body, Chain, Drive, DryFriction, Engine as _, Exact, Friction, Input, Link};
 
-const DRY: DryFriction = DryFriction { coulomb: 20.0, breakaway: 30.0, stribeck_velocity: 2e-3 };
+const DRY: Friction =
+    Friction { viscous: 0.0, dry: DryFriction { coulomb: 20.0, breakaway: 30.0, stribeck_velocity: 2e-3 } };
 
 fn slider() -> Body {
-    Body { dry: DRY, ..body("load", Coordinate::Linear, 10.0) }
+    Body { friction: DRY, ..body("load", Coordinate::Linear, 10.0) }
 }
 
 #[test]
@@ -28,8 +29,7 @@ fn below_breakaway_a_body_keeps_its_position_to_the_bit() {
 /// force is exact in RK4, so only rounding is left.
 #[test]
 fn sliding_slows_down_as_coulomb_says_and_stops() {
-    let dry = DryFriction { coulomb: 20.0, breakaway: 20.0, stribeck_velocity: 0.0 };
-    let chain = Chain::new(vec![Body { dry, ..slider() }], vec![]).unwrap();
+    let chain = Chain::new(vec![Body { friction: Friction::coulomb(20.0), ..slider() }], vec![]).unwrap();
     let v0 = 0.25;
     let mut mechanics = mujoco(chain, Drive::Effort, STEP, &[(0.0, v0)]);
     let stop = 10.0 * v0 / 20.0;
@@ -49,9 +49,10 @@ fn sliding_slows_down_as_coulomb_says_and_stops() {
 
 /// A motor with stiction and a spring to a table with stiction. Nothing closed describes it; the engine `exact` does
 /// the same in another way (stuck bodies struck out of the matrix exponential).
-fn stick_slip(motor_friction: DryFriction) -> Chain {
-    let motor = Body { dry: motor_friction, viscous: 15.0, ..body("motor", Coordinate::Linear, 20.0) };
-    let table = Body { bias: 1.5, viscous: 4.0, ..slider() };
+fn stick_slip(motor_friction: Friction) -> Chain {
+    let motor =
+        Body { friction: Friction { viscous: 15.0, ..motor_friction }, ..body("motor", Coordinate::Linear, 20.0) };
+    let table = Body { bias: 1.5, friction: Friction { viscous: 4.0, ..DRY }, ..slider() };
     Chain::new(vec![motor, table], vec![Link { stiffness: 6e5, damping: 500.0 }]).unwrap()
 }
 
@@ -81,14 +82,16 @@ fn assert_agrees(chain: Chain, drive: Drive, seconds: f64, input: impl Fn(f64) -
 #[test]
 fn stick_slip_agrees_with_the_engine_exact() {
     let dry = DryFriction { coulomb: 5.0, breakaway: 6.0, stribeck_velocity: 1e-2 };
-    assert_agrees(stick_slip(dry), Drive::Effort, 2.0, |t| efforts(60.0 * (8.0 * t).sin(), 3.0 * (31.0 * t).cos()));
+    assert_agrees(stick_slip(Friction { dry, ..Friction::NONE }), Drive::Effort, 2.0, |t| {
+        efforts(60.0 * (8.0 * t).sin(), 3.0 * (31.0 * t).cos())
+    });
 }
 
 #[test]
 fn a_load_that_sticks_behind_a_prescribed_base_agrees_with_the_engine_exact() {
     // A sinusoidal base in pieces of constant snap, one per tick.
     let (amplitude, w) = (0.01, 12.0_f64);
-    assert_agrees(stick_slip(DryFriction::NONE), Drive::Prescribed, 2.0, |t| {
+    assert_agrees(stick_slip(Friction::NONE), Drive::Prescribed, 2.0, |t| {
         let (sin, cos) = (w * t).sin_cos();
         motion(Setpoint {
             x: amplitude * (1.0 - cos),

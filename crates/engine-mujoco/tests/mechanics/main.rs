@@ -9,8 +9,8 @@ mod oscillator;
 use servobench_base::Coordinate;
 use servobench_engine_mujoco::Mujoco;
 use servobench_plant::{
-    Actuation, Body, BodyState, Chain, Drive, DryFriction, Engine as _, Input, Link, Mechanics, MechanicsSetup,
-    MjcfModel, Model, chain_to_mjcf,
+    Actuation, Body, BodyState, Chain, Drive, Engine as _, Friction, Input, Link, Mechanics, MechanicsSetup, MjcfModel,
+    Model, chain_to_mjcf,
 };
 use std::f64::consts::TAU;
 
@@ -19,8 +19,8 @@ const STEP: f64 = 1.0 / 16_000.0;
 
 /// A body without friction.
 fn body(name: &'static str, coordinate: Coordinate, inertia: f64) -> Body {
-    let (transmission, viscous, dry, bias) = (1.0, 0.0, DryFriction::NONE, 0.0);
-    Body { name, coordinate, inertia, transmission, viscous, dry, bias }
+    let (transmission, friction, bias) = (1.0, Friction::NONE, 0.0);
+    Body { name, coordinate, inertia, transmission, friction, bias }
 }
 
 /// The two-mass drive of Saarakkala and Hinkkanen: 0.005 kg·m² on each side of 700 N·m/rad, here without damping.

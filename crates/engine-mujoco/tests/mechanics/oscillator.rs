@@ -5,7 +5,7 @@ use servobench_base::Coordinate;
 use servobench_base::Setpoint;
 use servobench_engine_mujoco::Mujoco;
 use servobench_plant::{
-    Body, BodyState, Chain, Distortion, Drive, DryFriction, Engine as _, Input, Integrator, Link, Mechanics,
+    Body, BodyState, Chain, Distortion, Drive, Engine as _, Friction, Input, Integrator, Link, Mechanics,
 };
 use std::f64::consts::TAU;
 
@@ -112,8 +112,7 @@ fn a_damped_screw_axis_follows_the_matrix_exponential() {
         coordinate,
         inertia,
         transmission,
-        viscous,
-        dry: DryFriction::NONE,
+        friction: Friction { viscous, ..Friction::NONE },
         bias,
     };
     let motor = lump("motor", Coordinate::Rotary, 2e-4, r, 1e-3, 0.02);
@@ -193,7 +192,7 @@ fn a_chain_that_rk4_blows_up_is_refused_and_no_other_is() {
 fn a_damper_that_rk4_blows_up_is_refused() {
     for (rate, is_refused) in [(2.7, false), (2.9, true)] {
         let plain = two_mass().bodies()[0].clone();
-        let braked = Body { viscous: rate / STEP * plain.inertia, ..plain };
+        let braked = Body { friction: Friction { viscous: rate / STEP * plain.inertia, ..Friction::NONE }, ..plain };
         let chain = Chain::new(vec![braked], Vec::new()).unwrap();
         let built = Mujoco.build(&setup(chain, Drive::Effort, STEP, &[]));
         assert_eq!(built.is_err(), is_refused, "{rate}");

@@ -6,7 +6,7 @@ use servobench_plant::{Body, Chain, Drive, DryFriction, Mechanics};
 fn sticky() -> Chain {
     let axis = feed_axis();
     let mut bodies: Vec<Body> = axis.bodies().to_vec();
-    bodies[2].dry = DryFriction { coulomb: 60.0, breakaway: 80.0, stribeck_velocity: 1e-3 };
+    bodies[2].friction.dry = DryFriction { coulomb: 60.0, breakaway: 80.0, stribeck_velocity: 1e-3 };
     Chain::new(bodies, axis.links().to_vec()).unwrap()
 }
 

@@ -1,12 +1,15 @@
 //! Dry friction: sticking to the bit, breaking away, stopping.
 use super::{H, body, build, effort, state};
-use servobench_plant::{Body, Chain, Drive, DryFriction, Link};
+use servobench_plant::{Body, Chain, Drive, DryFriction, Friction, Link};
 
 #[test]
 fn a_stuck_body_keeps_its_position_to_the_bit_while_its_neighbour_swings() {
     let dry = DryFriction { coulomb: 50.0, breakaway: 80.0, stribeck_velocity: 1e-3 };
-    let chain =
-        Chain::new(vec![Body { dry, ..body(20.0) }, body(10.0)], vec![Link { stiffness: 6e5, damping: 0.0 }]).unwrap();
+    let chain = Chain::new(
+        vec![Body { friction: Friction { dry, ..Friction::NONE }, ..body(20.0) }, body(10.0)],
+        vec![Link { stiffness: 6e5, damping: 0.0 }],
+    )
+    .unwrap();
     // 1e-4 m of stretch is 60 N: below breakaway.
     let mut axis = build(&chain, Drive::Effort, H, vec![state(0.3, 0.0), state(0.3 + 1e-4, 0.0)]);
     let omega = (6e5_f64 / 10.0).sqrt();
@@ -25,7 +28,7 @@ fn a_stuck_body_keeps_its_position_to_the_bit_while_its_neighbour_swings() {
 #[test]
 fn a_sliding_body_stops_where_coulomb_says() {
     let dry = DryFriction { coulomb: 20.0, breakaway: 25.0, stribeck_velocity: 0.0 };
-    let chain = Chain::new(vec![Body { dry, ..body(4.0) }], vec![]).unwrap();
+    let chain = Chain::new(vec![Body { friction: Friction { dry, ..Friction::NONE }, ..body(4.0) }], vec![]).unwrap();
     let mut axis = build(&chain, Drive::Effort, H, vec![state(0.0, 0.5)]);
     for _ in 0..3_200 {
         axis.advance(&effort(0.0)).unwrap();
@@ -48,8 +51,11 @@ fn a_sliding_body_stops_where_coulomb_says() {
 fn stick_slip_has_the_period_of_the_closed_form() {
     let (mass, stiffness, pull) = (4.0, 1e4, 0.01);
     let dry = DryFriction { coulomb: 10.0, breakaway: 20.0, stribeck_velocity: 0.0 };
-    let chain =
-        Chain::new(vec![body(1.0), Body { dry, ..body(mass) }], vec![Link { stiffness, damping: 0.0 }]).unwrap();
+    let chain = Chain::new(
+        vec![body(1.0), Body { friction: Friction { dry, ..Friction::NONE }, ..body(mass) }],
+        vec![Link { stiffness, damping: 0.0 }],
+    )
+    .unwrap();
     let mut axis = build(&chain, Drive::Prescribed, H, vec![]);
     let (mut was_stuck, mut breakaways, mut stops) = (true, vec![], vec![]);
     for k in 0..24_000 {
@@ -89,7 +95,7 @@ fn stick_slip_has_the_period_of_the_closed_form() {
 #[test]
 fn a_stribeck_curve_is_followed() {
     let dry = DryFriction { coulomb: 5.0, breakaway: 15.0, stribeck_velocity: 0.02 };
-    let chain = Chain::new(vec![Body { dry, ..body(2.0) }], vec![]).unwrap();
+    let chain = Chain::new(vec![Body { friction: Friction { dry, ..Friction::NONE }, ..body(2.0) }], vec![]).unwrap();
     let mut axis = build(&chain, Drive::Effort, H, vec![state(0.0, 0.05)]);
     while axis.bodies()[0].velocity > 0.0 {
         axis.advance(&effort(0.0)).unwrap();

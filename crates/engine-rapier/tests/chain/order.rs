@@ -1,5 +1,5 @@
 //! Observed order of convergence against the matrix exponential.
-use super::{body, build, effort, lambrechts, motion, state};
+use super::{body, build, effort, lambrechts, motion, state, viscous};
 use nalgebra::{DMatrix, DVector};
 use servobench_base::Setpoint;
 use servobench_plant::{Body, BodyState, Chain, Drive, Link};
@@ -16,7 +16,7 @@ fn exact(chain: &Chain, base: Option<Setpoint>, efforts: &[f64], initial: &[Body
     let mut a = DMatrix::<f64>::zeros(one + 1, one + 1);
     for (i, body) in chain.bodies().iter().enumerate() {
         a[(i, n + i)] = 1.0;
-        a[(n + i, n + i)] -= body.viscous / body.inertia;
+        a[(n + i, n + i)] -= body.friction.viscous / body.inertia;
         a[(n + i, one)] = (efforts[i] - body.bias) / body.inertia;
     }
     for (l, link) in chain.links().iter().enumerate() {
@@ -84,8 +84,8 @@ fn undamped() -> Chain {
 /// A rotary motor on a screw, a table, a load; dampers of a tenth of critical and more.
 fn damped() -> Chain {
     let r = 10e-3 / (2.0 * std::f64::consts::PI);
-    let motor = Body { transmission: r, viscous: 1e-3, bias: 0.02, ..body(6e-4) };
-    let table = Body { viscous: 900.0, ..body(40.0) };
+    let motor = Body { transmission: r, friction: viscous(1e-3), bias: 0.02, ..body(6e-4) };
+    let table = Body { friction: viscous(900.0), ..body(40.0) };
     let load = Body { bias: 3.0, ..body(25.0) };
     let link = |stiffness, damping| Link { stiffness, damping };
     Chain::new(vec![motor, table, load], vec![link(4e7, 1.2e4), link(2e6, 3e3)]).unwrap()

@@ -1,5 +1,5 @@
 //! Many revolutions.
-use super::{H, body, build, effort, state};
+use super::{H, body, build, effort, state, viscous};
 use servobench_base::Coordinate;
 use servobench_plant::{Body, Chain, Drive, Link};
 use std::f64::consts::TAU;
@@ -43,7 +43,7 @@ fn a_screw_keeps_its_stretch_over_many_revolutions() {
 #[test]
 fn a_rotary_coordinate_is_as_good_as_a_linear_one() {
     let run = |coordinate| {
-        let chain = Chain::new(vec![Body { coordinate, viscous: 0.3, ..body(0.02) }], vec![]).unwrap();
+        let chain = Chain::new(vec![Body { coordinate, friction: viscous(0.3), ..body(0.02) }], vec![]).unwrap();
         let mut axis = build(&chain, Drive::Effort, H, vec![]);
         for k in 0..2_000 {
             axis.advance(&effort(f64::from(k % 37) - 11.0)).unwrap();

@@ -2,7 +2,7 @@
 use super::{H, MjcfModel, effort, file, try_build};
 use servobench_base::Coordinate;
 use servobench_engine_rapier::Rapier;
-use servobench_plant::{Body, Chain, Drive, DryFriction, Engine, Link, MechanicsSetup, Model, chain_to_mjcf};
+use servobench_plant::{Body, Chain, Drive, Engine, Friction, Link, MechanicsSetup, Model, chain_to_mjcf};
 
 /// A servo motor on a ball screw of 10 mm lead, a table and a flexible load.
 fn feed_axis() -> Chain {
@@ -11,8 +11,7 @@ fn feed_axis() -> Chain {
         coordinate: Coordinate::Linear,
         inertia,
         transmission: 1.0,
-        viscous,
-        dry: DryFriction::NONE,
+        friction: Friction { viscous, ..Friction::NONE },
         bias: 0.0,
     };
     let lead = 10e-3 / (2.0 * std::f64::consts::PI);

@@ -124,14 +124,13 @@ fn what_only_looks_good_or_measures_is_let_in() {
 #[test]
 fn the_mjcf_of_a_chain_is_in_the_subset() {
     use servobench_base::Coordinate;
-    use servobench_plant::{Body, Chain, DryFriction, Link};
+    use servobench_plant::{Body, Chain, Friction, Link};
     let body = Body {
         name: "m",
         coordinate: Coordinate::Rotary,
         inertia: 1e-3,
         transmission: 1.0,
-        viscous: 0.1,
-        dry: DryFriction::NONE,
+        friction: Friction { viscous: 0.1, ..Friction::NONE },
         bias: 0.0,
     };
     let load = Body { name: "load", coordinate: Coordinate::Linear, ..body.clone() };

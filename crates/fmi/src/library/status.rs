@@ -78,7 +78,7 @@ impl Outcome {
     ) -> Result<(), SlaveError> {
         let status = match self {
             Self::Done => return Ok(()),
-            Self::Discarded => return Err(SlaveError::Discarded { call, time, shortest: None }),
+            Self::Discarded => return Err(SlaveError::Discarded { call: call.into(), time, shortest: None }),
             Self::Failed(status) => {
                 *health = Health::Broken;
                 status
@@ -88,6 +88,6 @@ impl Outcome {
                 status
             }
         };
-        Err(SlaveError::Failed { call, time, status, message: message() })
+        Err(SlaveError::Failed { call: call.into(), time, status: status.into(), message: message() })
     }
 }

@@ -60,7 +60,7 @@ pub(super) fn reached(call: &'static str, time: f64, length: f64, at: f64) -> Re
     if at >= time - rounding && at <= to + rounding {
         Ok(at.clamp(time, to))
     } else {
-        Err(SlaveError::Astray { call, from: time, to, at })
+        Err(SlaveError::Astray { call: call.into(), from: time, to, at })
     }
 }
 

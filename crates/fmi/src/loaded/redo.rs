@@ -83,7 +83,9 @@ impl Redo {
         match instance.attempt(time, length, inputs)? {
             Attempt::Came(progress) => Ok(progress),
             Attempt::Discarded { within: Some(reached), .. } => Ok(Progress::Until(reached)),
-            Attempt::Discarded { call, within: None } => Err(SlaveError::Discarded { call, time, shortest: None }),
+            Attempt::Discarded { call, within: None } => {
+                Err(SlaveError::Discarded { call: call.into(), time, shortest: None })
+            }
         }
     }
 
@@ -118,7 +120,7 @@ impl Redo {
                 }
                 Attempt::Discarded { .. } if next > 1 => next /= 2,
                 Attempt::Discarded { call, .. } => {
-                    return Err(SlaveError::Discarded { call, time: from, shortest: Some(part) });
+                    return Err(SlaveError::Discarded { call: call.into(), time: from, shortest: Some(part) });
                 }
             }
         }
@@ -159,7 +161,7 @@ impl Redo {
             match *call {
                 Call::Step { time, length } => {
                     if let Attempt::Discarded { call, .. } = instance.attempt(time, length, inputs)? {
-                        return Err(SlaveError::Discarded { call, time, shortest: None });
+                        return Err(SlaveError::Discarded { call: call.into(), time, shortest: None });
                     }
                 }
                 Call::Read => {

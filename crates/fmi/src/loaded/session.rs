@@ -62,7 +62,7 @@ impl Session {
     /// An input that its variable cannot take.
     pub(super) fn misfit(&self, misfit: Misfit) -> SlaveError {
         let variable = self.inputs[misfit.port].variable.clone();
-        SlaveError::Value { variable, bound: misfit.bound, value: misfit.value, time: self.time }
+        SlaveError::Value { variable, bound: misfit.bound.into(), value: misfit.value, time: self.time }
     }
 
     /// Outputs are numbers.

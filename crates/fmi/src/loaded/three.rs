@@ -76,8 +76,8 @@ impl LoadedThree {
         let structural = starts.iter().take_while(is_structural).count();
         if structural > 0 {
             if !self.instance.has_configuration_mode() {
-                let capability = "fmi3EnterConfigurationMode";
-                return Err(SlaveError::Unable { what: "change the extents of arrays", capability });
+                let (what, capability) = ("change the extents of arrays".into(), "fmi3EnterConfigurationMode".into());
+                return Err(SlaveError::Unable { what, capability });
             }
             let outcome = self.instance.enter_configuration_mode();
             self.check("fmi3EnterConfigurationMode", outcome)?;
@@ -127,7 +127,7 @@ impl LoadedThree {
         }
         self.instance.health = Health::Broken;
         let message = format!("its discrete states did not settle in {MOST_UPDATES} updates");
-        Err(SlaveError::Failed { call, time: self.session.time, status: "fmi3OK", message })
+        Err(SlaveError::Failed { call: call.into(), time: self.session.time, status: "fmi3OK".into(), message })
     }
 
     /// Sets inputs: those that change at any time by `continuous`; all others by `discrete`, at an event if one is new. Another
@@ -180,8 +180,8 @@ impl Instance for LoadedThree {
         self.session.is_initialising = false;
         if self.has_event_mode && self.settle()? {
             let message = "it wants to end at its start".to_owned();
-            let (call, time) = ("fmi3UpdateDiscreteStates", self.session.time);
-            return Err(SlaveError::Failed { call, time, status: "fmi3OK", message });
+            let (call, time) = ("fmi3UpdateDiscreteStates".into(), self.session.time);
+            return Err(SlaveError::Failed { call, time, status: "fmi3OK".into(), message });
         }
         Ok(())
     }
@@ -258,7 +258,7 @@ impl Instance for LoadedThree {
 
     fn save(&mut self, slot: Slot) -> Result<(), SlaveError> {
         let saved = if self.session.capabilities.saves_state { self.instance.save(slot) } else { None };
-        let outcome = saved.ok_or(SlaveError::Unable { what: "save its state", capability: "canGetAndSetFMUState" })?;
+        let outcome = saved.ok_or_else(|| unable("save its state"))?;
         self.check("fmi3GetFMUState", outcome)?;
         self.session.save(slot);
         self.saved_event[slot as usize] = self.event;
@@ -268,9 +268,7 @@ impl Instance for LoadedThree {
 
     fn restore(&mut self, slot: Slot) -> Result<(), SlaveError> {
         let restored = self.instance.restore(slot);
-        let nothing =
-            SlaveError::Unable { what: "go back to a state that was not saved", capability: "canGetAndSetFMUState" };
-        self.check("fmi3SetFMUState", restored.ok_or(nothing)?)?;
+        self.check("fmi3SetFMUState", restored.ok_or_else(|| unable("go back to a state that was not saved"))?)?;
         self.session.restore(slot);
         self.event = self.saved_event[slot as usize];
         self.discrete.iter_mut().for_each(|batch| batch.recall(slot));
@@ -319,4 +317,8 @@ fn set(instance: &Three, variable: &Variable, values: &Values) -> Called {
             _ => integers::<i64>(instance, reference, values),
         },
     }
+}
+
+fn unable(what: &'static str) -> SlaveError {
+    SlaveError::Unable { what: what.into(), capability: "canGetAndSetFMUState".into() }
 }

@@ -182,7 +182,7 @@ impl Instance for LoadedTwo {
 
     fn save(&mut self, slot: Slot) -> Result<(), SlaveError> {
         let saved = if self.session.capabilities.saves_state { self.instance.save(slot) } else { None };
-        let outcome = saved.ok_or(SlaveError::Unable { what: "save its state", capability: "canGetAndSetFMUstate" })?;
+        let outcome = saved.ok_or_else(|| unable("save its state"))?;
         self.check("fmi2GetFMUstate", outcome)?;
         self.session.save(slot);
         Ok(())
@@ -190,9 +190,7 @@ impl Instance for LoadedTwo {
 
     fn restore(&mut self, slot: Slot) -> Result<(), SlaveError> {
         let restored = self.instance.restore(slot);
-        let nothing =
-            SlaveError::Unable { what: "go back to a state that was not saved", capability: "canGetAndSetFMUstate" };
-        self.check("fmi2SetFMUstate", restored.ok_or(nothing)?)?;
+        self.check("fmi2SetFMUstate", restored.ok_or_else(|| unable("go back to a state that was not saved"))?)?;
         self.session.restore(slot);
         Ok(())
     }
@@ -270,4 +268,8 @@ fn set(instance: &Two, reference: u32, values: &Values) -> Called {
         // FMI 2.0 has no such type.
         Values::Binary(_) => ("fmi2SetString", Outcome::Done),
     }
+}
+
+fn unable(what: &'static str) -> SlaveError {
+    SlaveError::Unable { what: what.into(), capability: "canGetAndSetFMUstate".into() }
 }

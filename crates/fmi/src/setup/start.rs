@@ -169,6 +169,7 @@ fn shown(value: &Value) -> String {
         Value::Number(number) => number.to_string(),
         Value::Integer(number) => number.to_string(),
         Value::Boolean(is) => is.to_string(),
+        Value::Quantity { text, .. } => format!("the quantity `{}`", text.escape_debug()),
         Value::Text(text) => format!("the text `{}`", text.escape_debug()),
         Value::Binary(bytes) => format!("{} bytes", bytes.len()),
         Value::List(_) => "a list".to_owned(),

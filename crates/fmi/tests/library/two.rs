@@ -89,7 +89,7 @@ fn what_is_discarded_says_how_far_it_came() {
         let room = Room::new("two", &compiled("two"), description);
         let load = |mode| room.load(&setup(&[("mode", text(mode))], &["u"], &[])).unwrap();
         let step = |mode| load(mode).step(1.0, 0.125, &[[0.0; 3]]);
-        assert_eq!(step("refuse"), Err(SlaveError::Discarded { call: "fmi2DoStep", time: 1.0, shortest }));
+        assert_eq!(step("refuse"), Err(SlaveError::Discarded { call: "fmi2DoStep".into(), time: 1.0, shortest }));
         assert_eq!(step("half"), Ok(Progress::Until(1.0625)));
         assert_eq!(step("end"), Ok(Progress::Terminated(1.03125)));
     }
@@ -138,7 +138,7 @@ fn where_no_part_is_short_enough_it_says_how_far_it_came() {
     let mut slave = room().load(&setup(&start, &["u"], &["y"])).unwrap();
     let (time, shortest) = (614.0 / 1024.0, Some(1.0 / 1024.0));
     let error = slave.step(0.0, 1.0, &[INPUT]).unwrap_err();
-    assert_eq!(error, SlaveError::Discarded { call: "fmi2DoStep", time, shortest });
+    assert_eq!(error, SlaveError::Discarded { call: "fmi2DoStep".into(), time, shortest });
     let said = "the FMU discarded fmi2DoStep at 0.599609375 s, over 0.0009765625 s as over all longer steps";
     assert_eq!(error.to_string(), said);
     let mut read = [0.0];
@@ -193,7 +193,11 @@ fn failures_have_the_status_and_what_was_logged_last() {
     ] {
         let error = loaded(mode, &[]).step(1.0, 0.1, &[[0.0; 3]]).unwrap_err();
         let message = message.to_owned();
-        assert_eq!(error, SlaveError::Failed { call: "fmi2DoStep", time: 1.0, status, message }, "{mode}");
+        assert_eq!(
+            error,
+            SlaveError::Failed { call: "fmi2DoStep".into(), time: 1.0, status: status.into(), message },
+            "{mode}"
+        );
     }
     let room = room();
     let error = room.load(&setup(&[("mode", text("fail early"))], &[], &[])).unwrap_err();
@@ -227,7 +231,7 @@ fn what_is_no_number_is_refused_in_both_directions() {
     );
     let error = loaded("normal", &[]).step(0.0, 0.1, &[[f64::NAN, 0.0, 0.0]]).unwrap_err();
     assert!(
-        matches!(&error, SlaveError::Value { variable, bound: "finite numbers", .. } if variable == "u"),
+        matches!(&error, SlaveError::Value { variable, bound, .. } if variable == "u" && bound == "finite numbers"),
         "{error}"
     );
 }
@@ -327,7 +331,7 @@ fn one_that_waits_is_started_with_its_inputs() {
     unasked.step(0.0, 0.5, &[[5.0, 0.0, 0.0], [0.0; 3]]).unwrap();
     assert!(!unasked.is_initialising());
     let error = load("fail early").start(Some(&[0.0; 2])).unwrap_err();
-    assert!(matches!(error, SlaveError::Failed { call: "fmi2ExitInitializationMode", .. }), "{error}");
+    assert!(matches!(&error, SlaveError::Failed { call, .. } if call == "fmi2ExitInitializationMode"), "{error}");
 }
 
 #[test]
@@ -363,5 +367,5 @@ fn roundings_are_not_beyond_the_stop_time() {
 #[test]
 fn an_end_beyond_the_step_is_none() {
     let error = loaded("beyond", &[]).step(1.0, 0.125, &[[0.0; 3]]).unwrap_err();
-    assert_eq!(error, SlaveError::Astray { call: "fmi2DoStep", from: 1.0, to: 1.125, at: 1.25 });
+    assert_eq!(error, SlaveError::Astray { call: "fmi2DoStep".into(), from: 1.0, to: 1.125, at: 1.25 });
 }

@@ -1,5 +1,6 @@
 //! `[axis]`: the mechanics.
 use super::fmu::Fmu;
+use crate::field::Slot;
 use crate::simple::OneOf;
 use crate::table::table;
 use servobench_base::Coordinate;
@@ -102,6 +103,28 @@ table! {
         stribeck_velocity: f64 = not_negative(InAxis(&VELOCITY), "2 mm/s"),
         /// Constant resisting force or torque: gravity, or friction that differs between the directions.
         bias: f64 = any(InAxis(&EFFORT), "-3.2 N"),
+    }
+}
+
+/// The keys of the friction of a body, in its own coordinate.
+pub(crate) struct FrictionKeys<'a> {
+    pub(crate) viscous: &'a Slot<f64>,
+    pub(crate) coulomb: &'a Slot<f64>,
+    pub(crate) breakaway: &'a Slot<f64>,
+    pub(crate) stribeck_velocity: &'a Slot<f64>,
+}
+
+impl MotorSide {
+    pub(crate) const fn friction(&self) -> FrictionKeys<'_> {
+        let Self { viscous, coulomb, breakaway, stribeck_velocity, .. } = self;
+        FrictionKeys { viscous, coulomb, breakaway, stribeck_velocity }
+    }
+}
+
+impl Body {
+    pub(crate) const fn friction(&self) -> FrictionKeys<'_> {
+        let Self { viscous, coulomb, breakaway, stribeck_velocity, .. } = self;
+        FrictionKeys { viscous, coulomb, breakaway, stribeck_velocity }
     }
 }
 

@@ -1,27 +1,12 @@
 //! `[axis.fmu]`, `[[fmu]]` and `[coupling]`: parts that somebody else simulates.
 use crate::name_table::{SignalTable, StartTable};
-use crate::scenario::{CouplingMethod, Isolation};
 use crate::simple::OneOf;
 use crate::table::table;
-use servobench_config::Choice;
 use servobench_config::Kind::Plain;
 use servobench_config::positive;
 use servobench_config::quantities::{RATIO, TIME};
-
-impl Choice for Isolation {
-    const ALL: &'static [(&'static str, Self, &'static str)] = &[
-        ("process", Self::Process, "it runs in a process of its own: what it does to itself costs this run only"),
-        ("none", Self::None, "it is trusted and runs in the bench's own process, which is faster"),
-    ];
-}
-
-impl Choice for CouplingMethod {
-    const ALL: &'static [(&'static str, Self, &'static str)] = &[
-        ("jacobi", Self::Jacobi, "all step at once, with what the others gave at the start of the step"),
-        ("gauss-seidel", Self::GaussSeidel, "one after the other, each with what those before it have just given"),
-        ("iterated", Self::Iterated, "steps are repeated until inputs and outputs agree"),
-    ];
-}
+use servobench_coupling::MethodKind;
+use servobench_fmi::IsolationKind;
 
 table! {
     /// A Functional Mock-up Unit (FMI 2.0 or 3.0, co-simulation).
@@ -33,7 +18,7 @@ table! {
         /// From exchange to exchange, a whole number of base ticks; one tick, or the step of `[coupling]`, unless given.
         step: f64 = positive(Plain(&TIME), "1 ms"),
         /// Where it runs; "process" unless given.
-        isolation: Isolation = OneOf,
+        isolation: IsolationKind = OneOf,
         /// Whether the event mode of an FMU of FMI 3.0 is used; if it has one, it is unless this is `false`: then the FMU deals with
         /// events by itself.
         event_mode: bool = (),
@@ -60,7 +45,7 @@ table! {
         /// From exchange to exchange, a whole number of base ticks; one tick unless given.
         step: f64 = positive(Plain(&TIME), "0.5 ms"),
         /// Who steps when; "gauss-seidel" in the order of the file, the axis last, unless given.
-        method: CouplingMethod = OneOf,
+        method: MethodKind = OneOf,
         /// Order with which inputs go on within a step; 0 unless given: they are held.
         extrapolation: u32 = 0..=2,
         /// With "iterated": how well inputs and outputs agree, relative to their size; 1e-9 unless given.

@@ -4,12 +4,12 @@ use crate::field::Slot;
 use crate::file;
 use crate::file::MotorKind;
 use crate::models::read_beside;
-use crate::resolve::need;
-use crate::scenario::{Axis, AxisMechanics, BodySignal, Fmu};
+use crate::resolve::fmu::Mechanics;
+use crate::resolve::{friction, need};
+use crate::scenario::{Axis, AxisMechanics};
 use crate::source::{Sources, Span};
 use servobench_base::Coordinate;
-use servobench_config::quantities::EFFORT;
-use servobench_plant::{Body, Chain, DryFriction, Link, MjcfModel, Switches};
+use servobench_plant::{Body, Chain, Friction, Link, MjcfModel, Switches};
 use std::f64::consts::TAU;
 
 /// Inertia of a motor body that follows a prescribed motion: it does not matter, but engines want one.
@@ -18,7 +18,7 @@ const PRESCRIBED_INERTIA: f64 = 1.0;
 pub(super) fn resolve(
     axis: &file::Axis,
     motor: &file::Motor,
-    fmu: Option<Fmu<BodySignal>>,
+    fmu: Option<Mechanics>,
     sources: &Sources,
     report: &mut Report,
 ) -> Option<Axis> {
@@ -43,15 +43,12 @@ pub(super) fn resolve(
     };
     let switches = switches(axis, motor_motion, report);
     let modulo = axis.modulo.optional().ok().map(Option::<&f64>::copied);
-    Some(Axis {
-        motion: motion?,
-        motor_motion,
-        transmission: transmission?,
-        mechanics: mechanics?,
-        fmu,
-        switches: switches?,
-        modulo: modulo?,
-    })
+    let (motion, transmission) = (motion?, transmission?);
+    let fmu = match fmu {
+        Some(fmu) => Some(fmu.model([motor_motion, motion], transmission)?),
+        None => None,
+    };
+    Some(Axis { motion, motor_motion, transmission, mechanics: mechanics?, fmu, switches: switches?, modulo: modulo? })
 }
 
 /// Coordinate of the motor: what its own keys say, or otherwise what the axis needs. A linear axis without a lead has a
@@ -242,9 +239,9 @@ fn motor_side(
         };
     };
     let own = inertia(&side.mass, &side.inertia, coordinate, "motor", report);
-    let dry = dry_friction(&side.coulomb, &side.breakaway, &side.stribeck_velocity, coordinate, report);
-    let (viscous, bias, dry) = (or_zero(&side.viscous)?, or_zero(&side.bias)?, dry?);
-    Some(Body { viscous, bias, dry, ..free(rotor? + own?) })
+    let friction = friction::resolve(&side.friction(), coordinate, report);
+    let (bias, friction) = (or_zero(&side.bias)?, friction?);
+    Some(Body { friction, bias, ..free(rotor? + own?) })
 }
 
 fn body(name: &'static str, body: &file::Body, motion: Option<Coordinate>, report: &mut Report) -> Option<Placed> {
@@ -254,8 +251,7 @@ fn body(name: &'static str, body: &file::Body, motion: Option<Coordinate>, repor
         report.missing(&format!("axis.{name}"), key, body.span);
         return None;
     }
-    let dry =
-        motion.and_then(|motion| dry_friction(&body.coulomb, &body.breakaway, &body.stribeck_velocity, motion, report));
+    let friction = motion.and_then(|motion| friction::resolve(&body.friction(), motion, report));
     if let (Slot::Absent, Some(span)) = (&body.stiffness, body.damping.span()) {
         report.error(
             span,
@@ -268,18 +264,18 @@ fn body(name: &'static str, body: &file::Body, motion: Option<Coordinate>, repor
     let stiffness = body.stiffness.optional().ok()?;
     let link = stiffness.zip(damping).map(|(stiffness, damping)| Link { stiffness: *stiffness, damping });
     damping?;
-    let (viscous, bias, dry) = (or_zero(&body.viscous)?, or_zero(&body.bias)?, dry?);
+    let (bias, friction) = (or_zero(&body.bias)?, friction?);
     let span = body.breakaway.at().map_or(body.span, |at| at.span);
-    Some(Placed { body: Body { viscous, bias, dry, ..free(name, motion?, inertia?) }, link, span })
+    Some(Placed { body: Body { friction, bias, ..free(name, motion?, inertia?) }, link, span })
 }
 
 /// A body without friction, in the axis coordinate.
 const fn free(name: &'static str, coordinate: Coordinate, inertia: f64) -> Body {
-    Body { name, coordinate, inertia, transmission: 1.0, viscous: 0.0, dry: DryFriction::NONE, bias: 0.0 }
+    Body { name, coordinate, inertia, transmission: 1.0, friction: Friction::NONE, bias: 0.0 }
 }
 
 /// Value of a key that is zero unless given.
-fn or_zero(slot: &Slot<f64>) -> Option<f64> {
+pub(super) fn or_zero(slot: &Slot<f64>) -> Option<f64> {
     slot.optional().ok().map(|value| value.copied().unwrap_or_default())
 }
 
@@ -297,54 +293,15 @@ fn inertia(mass: &Slot<f64>, inertia: &Slot<f64>, motion: Coordinate, of: &str, 
     or_zero(fitting)
 }
 
-fn dry_friction(
-    coulomb: &Slot<f64>,
-    breakaway: &Slot<f64>,
-    stribeck_velocity: &Slot<f64>,
-    motion: Coordinate,
-    report: &mut Report,
-) -> Option<DryFriction> {
-    if let (Some(sliding), Some(resting)) = (coulomb.at(), breakaway.at())
-        && resting.value < sliding.value
-    {
-        let unit = if motion == Coordinate::Linear { EFFORT.linear.unit } else { EFFORT.rotary.unit };
-        let [above, below] = [sliding.value, resting.value].map(|effort| format!("{effort} {unit}"));
-        // What the scenario says is in question, not the model that it stands on.
-        let (span, message) = if sliding.span.source < resting.span.source {
-            (sliding.span, format!("`coulomb` is {above}, above `static`, which is {below}"))
-        } else {
-            (resting.span, format!("`static` is {below}, below `coulomb`, which is {above}"))
-        };
-        let both = if sliding.span.source == resting.span.source { "" } else { ": give both here" };
-        report.error(span, message, format!("friction at rest is at least that of sliding{both}"));
-        return None;
-    }
-    if let (Slot::Absent, Some(span)) = (breakaway, stribeck_velocity.span()) {
-        report.warning(span, "`stribeck_velocity` does nothing without `static`", "");
-    }
-    let coulomb = or_zero(coulomb)?;
-    let breakaway = breakaway.optional().ok()?.copied().unwrap_or(coulomb);
-    Some(DryFriction { coulomb, breakaway, stribeck_velocity: or_zero(stribeck_velocity)? })
-}
-
 /// Adds a rigidly coupled body to the one before it, whose coordinate moves the axis by `ratio`.
 fn merge(into: &mut Body, body: &Body, ratio: f64, span: Span, report: &mut Report) {
-    let has_stribeck = |body: &Body| body.dry.breakaway > body.dry.coulomb;
-    let own_velocity = body.dry.stribeck_velocity / ratio;
-    // Two curves of different width do not add up to a third.
-    let differ =
-        (into.dry.stribeck_velocity - own_velocity).abs() > 1e-9 * into.dry.stribeck_velocity.max(own_velocity);
-    if has_stribeck(into) && has_stribeck(body) && differ {
+    if let Some(friction) = into.friction.joined(&body.friction.carried(ratio)) {
+        into.friction = friction;
+    } else {
         let message =
             format!("`{}` and `{}` are coupled rigidly but differ in Stribeck velocity", into.name, body.name);
         report.error(span, message, "give static friction on one of them, or a `stiffness` between them");
     }
-    if has_stribeck(body) {
-        into.dry.stribeck_velocity = own_velocity;
-    }
     into.inertia += ratio * ratio * body.inertia;
-    into.viscous += ratio * ratio * body.viscous;
-    into.dry.coulomb += ratio * body.dry.coulomb;
-    into.dry.breakaway += ratio * body.dry.breakaway;
     into.bias += ratio * body.bias;
 }

@@ -152,8 +152,8 @@ fn two_masses(chain: &Chain, transmission: f64) -> Estimate {
             (&mut estimate.load_inertia, &mut estimate.load_viscous)
         };
         *inertia += body.inertia / (r * r);
-        *viscous += body.viscous / (r * r);
-        estimate.coulomb += body.dry.coulomb / r;
+        *viscous += body.friction.linear() / (r * r);
+        estimate.coulomb += body.friction.constant() / r;
         estimate.bias += body.bias / r;
     }
     estimate

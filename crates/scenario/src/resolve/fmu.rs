@@ -1,56 +1,46 @@
-//! `[axis.fmu]`, `[[fmu]]` and `[coupling]`: which files, what they are connected to, and how often.
+//! `[axis.fmu]` and `[[fmu]]`: which files, what they are connected to, and how often.
+mod mechanics;
+
+pub(super) use mechanics::{Mechanics, mechanics};
+
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file::{self, File};
 use crate::name_table::Named;
 use crate::nearest::suggestion;
 use crate::resolve::{refuse, whole};
-use crate::scenario::{
-    Actuator, BodySignal, CoSimulation, CouplingMethod, EngineName, Fmu, InputSource, Isolation, LoopSignal,
-};
+use crate::scenario::{Actuator, Fmu, InputSource, LoopSignal};
 use crate::source::{At, Place, Sources, Span};
 use servobench_base::Rate;
+use servobench_coupling::Settings;
+use servobench_fmi::{Bounds, FmuFile, Isolation, IsolationKind};
 use servobench_signals::Signal;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// How long a call of an FMU may take, unless given (s).
 const PATIENCE: f64 = 10.0;
 /// Memory of its process, unless given (MB).
 const MEMORY: u32 = 2048;
-/// Agreement of inputs and outputs that are iterated, unless given.
-const TOLERANCE: f64 = 1e-9;
-/// Repetitions of a step, unless given.
-const ITERATIONS: u32 = 50;
 
 /// What the outputs of an FMU can be.
 trait Port: Copy + PartialEq + 'static {
-    const ALL: &'static [Self];
+    /// All of them.
+    fn all() -> impl Iterator<Item = Self> + Clone;
 
     /// The name that files write.
     fn name(self) -> &'static str;
 }
 
-impl Port for BodySignal {
-    const ALL: &'static [Self] = &[Self::ShaftPosition, Self::ShaftVelocity, Self::LoadPosition, Self::LoadVelocity];
-
-    fn name(self) -> &'static str {
-        self.name()
-    }
-}
-
 impl Port for LoopSignal {
-    const ALL: &'static [Self] = Self::ALL;
+    fn all() -> impl Iterator<Item = Self> + Clone {
+        Self::ALL.iter().copied()
+    }
 
     fn name(self) -> &'static str {
         self.signal().name()
     }
 }
-
-/// What acts on mechanics.
-const ON_MECHANICS: [Signal; 3] = [Signal::EffortMotor, Signal::DisturbanceMotor, Signal::DisturbanceLoad];
-/// Position and velocity of the two bodies that mechanics can have; a velocity needs its position.
-const BODIES: [[BodySignal; 2]; 2] =
-    [[BodySignal::ShaftPosition, BodySignal::ShaftVelocity], [BodySignal::LoadPosition, BodySignal::LoadVelocity]];
 
 /// Where files are, and how long a tick is.
 #[derive(Clone, Copy)]
@@ -60,58 +50,13 @@ pub(super) struct Known<'a> {
     pub(super) actuator: Option<&'a Actuator>,
 }
 
-/// The mechanics as an FMU, where there are such.
-#[expect(clippy::option_option, reason = "a wrong table is not the same as none")]
-pub(super) fn mechanics(file: &File, known: Known<'_>, report: &mut Report) -> Option<Option<Fmu<BodySignal>>> {
-    let slot = file.axis.given().map_or(&Slot::Absent, |axis| &axis.fmu);
-    let engines = file.engine.given().map_or(&[][..], |engines| &engines.0);
-    let asked = engines.iter().find(|engine| engine.value == EngineName::Fmu);
-    if let (Some(engine), Slot::Absent) = (asked, slot) {
-        report.error(engine.span, "the engine \"fmu\" has no FMU", "give `[axis.fmu]`");
-    }
-    let Some(At { value: given, span }) = slot.at() else { return slot.optional().ok().map(|_| None) };
-    if asked.is_none() {
-        report.warning(*span, "`fmu` is not used", "add \"fmu\" to `engine`");
-    }
-    let signals = |text: &str| {
-        ON_MECHANICS.iter().find(|signal| signal.name() == text).map(|signal| InputSource::Signal(*signal))
-    };
-    let fmu = fmu(given, 1, known, report, &signals, &ON_MECHANICS.map(Signal::name));
-    if let Some(fmu) = &fmu {
-        let gives = |port: BodySignal| fmu.outputs.iter().any(|(_, to)| *to == port);
-        let at = |port: BodySignal| fmu.outputs.iter().position(|(_, to)| *to == port);
-        let [[shaft, _], [load, load_velocity]] = BODIES;
-        let place = |port| {
-            given.outputs.given().zip(at(port)).and_then(|(table, at)| table.0.get(at)).map(|one| one.value.span)
-        };
-        if !gives(shaft) {
-            let help =
-                "mechanics give the motor's position in its own coordinate, and the load's unless they are one body";
-            report.error(given.outputs.span().unwrap_or(*span), "no output is `shaft.position`", help);
-            return None;
-        }
-        if gives(load_velocity) && !gives(load) {
-            let span = place(load_velocity).unwrap_or(*span);
-            report.error(span, "a load with a velocity has a position", "connect `load.position` too");
-            return None;
-        }
-        let effort = fmu.inputs.iter().any(|(_, signal)| *signal == InputSource::Signal(Signal::EffortMotor));
-        if !effort {
-            let help = "write inputs = { variable = \"effort.motor\" }";
-            report.error(given.inputs.span().unwrap_or(*span), "no input is given `effort.motor`", help);
-            return None;
-        }
-    }
-    fmu.map(Some)
-}
-
 /// The FMUs beside the axis.
 pub(super) fn others(
     file: &File,
-    coupling: Option<CoSimulation>,
+    coupling: Option<&Settings>,
     known: Known<'_>,
     report: &mut Report,
-) -> Option<Vec<Fmu<LoopSignal>>> {
+) -> Option<Vec<Fmu>> {
     let given = match &file.fmu {
         Slot::Absent => return Some(Vec::new()),
         Slot::Wrong(_) => return None,
@@ -122,56 +67,21 @@ pub(super) fn others(
     for (index, one) in given.iter().enumerate() {
         check_name(&names, index, &one.value, report);
         let signals = |text: &str| signal(text, &names);
-        let every = coupling.map_or(1, |coupling| coupling.every);
+        let every = coupling.map_or(1, |coupling| coupling.step.ticks());
         let offered: Vec<&str> = Signal::ALL
             .iter()
             .map(|signal| signal.name())
             .chain(["shaft.position", "shaft.velocity", "time"])
             .collect();
-        all.push(fmu(&one.value, every, known, report, &signals, &offered));
+        let fmu = fmu(&one.value, every, known, report, &signals, &offered);
+        all.push(fmu.map(|(fmu, outputs)| Fmu { outputs, ..fmu }));
     }
     let all: Vec<_> = all.into_iter().collect::<Option<_>>()?;
     check_ports(file, given, &all, known, report);
     Some(all)
 }
 
-/// Exchange of all FMUs with the axis.
-pub(super) fn coupling(file: &File, base_rate: Option<Rate>, report: &mut Report) -> Option<CoSimulation> {
-    let held = CoSimulation {
-        every: 1,
-        method: CouplingMethod::default(),
-        extrapolation: 0,
-        tolerance: TOLERANCE,
-        iterations: ITERATIONS,
-    };
-    let given = match &file.coupling {
-        Slot::Absent => return Some(held),
-        Slot::Wrong(_) => return None,
-        Slot::Given(given) => given,
-    };
-    if matches!(file.fmu, Slot::Absent) {
-        report.error(given.span, "there is nothing to couple", "give `[[fmu]]`; `[axis.fmu]` has a `step` of its own");
-    }
-    let given = &given.value;
-    let every = match &given.step {
-        Slot::Absent => Some(1),
-        Slot::Wrong(_) => None,
-        Slot::Given(at) => whole::ticks("step", *at, base_rate, report),
-    };
-    let method = given.method.optional().ok()?.copied().unwrap_or_default();
-    if method != CouplingMethod::Iterated {
-        let keys = [("tolerance", given.tolerance.span()), ("iterations", given.iterations.span())];
-        refuse(&keys, "is for the method \"iterated\"", "leave it out, or iterate", report);
-    }
-    Some(CoSimulation {
-        every: every?,
-        method,
-        extrapolation: given.extrapolation.optional().ok()?.copied().unwrap_or(held.extrapolation),
-        tolerance: given.tolerance.optional().ok()?.copied().unwrap_or(held.tolerance),
-        iterations: given.iterations.optional().ok()?.copied().unwrap_or(held.iterations),
-    })
-}
-
+/// An FMU without its outputs, and these: what they can be, `P` says.
 fn fmu<P: Port>(
     given: &file::Fmu,
     every: u32,
@@ -179,7 +89,7 @@ fn fmu<P: Port>(
     report: &mut Report,
     signal: &dyn Fn(&str) -> Option<InputSource>,
     signals: &[&str],
-) -> Option<Fmu<P>> {
+) -> Option<(Fmu, Vec<(String, P)>)> {
     let path = path(&given.file, known.sources, report);
     let every = match &given.step {
         Slot::Absent => Some(every),
@@ -194,7 +104,7 @@ fn fmu<P: Port>(
         }),
     };
     let isolation = given.isolation.optional().ok().map(|isolation| isolation.copied().unwrap_or_default());
-    if isolation == Some(Isolation::None) {
+    if isolation == Some(IsolationKind::None) {
         let keys = [("patience", given.patience.span()), ("memory", given.memory.span())];
         refuse(&keys, "is for an FMU in a process of its own", "leave `isolation` out", report);
     }
@@ -206,8 +116,8 @@ fn fmu<P: Port>(
         .and_then(|table| connections(table.map_or(&[][..], |table| &table.0), "no signal", report, read));
     let outputs = given.outputs.optional().ok().and_then(|table| {
         let port = |text: &str| {
-            let found = P::ALL.iter().find(|port| port.name() == text).copied();
-            found.ok_or_else(|| suggestion(text, P::ALL.iter().map(|port| port.name())))
+            let found = P::all().find(|port| port.name() == text);
+            found.ok_or_else(|| suggestion(text, P::all().map(Port::name)))
         };
         connections(table.map_or(&[][..], |table| &table.0), "nothing that an FMU can give here", report, port)
     });
@@ -222,18 +132,23 @@ fn fmu<P: Port>(
             return None;
         }
     }
-    Some(Fmu {
-        name: name(given),
+    let patience = given.patience.optional().ok()?.copied().unwrap_or(PATIENCE);
+    let memory = given.memory.optional().ok()?.copied().unwrap_or(MEMORY);
+    let file = FmuFile {
         path: path?,
-        every: every?,
-        isolation: isolation?,
-        event_mode: given.event_mode.optional().ok()?.copied().unwrap_or(true),
-        patience: given.patience.optional().ok()?.copied().unwrap_or(PATIENCE),
-        memory: given.memory.optional().ok()?.copied().unwrap_or(MEMORY),
         start,
-        inputs: inputs?,
-        outputs,
-    })
+        isolation: match isolation? {
+            IsolationKind::None => Isolation::None,
+            IsolationKind::Process => Isolation::Process {
+                bounds: Bounds {
+                    patience: Duration::try_from_secs_f64(patience).unwrap_or(Duration::MAX),
+                    memory: u64::from(memory) * 1_000_000,
+                },
+            },
+        },
+        event_mode: given.event_mode.optional().ok()?.copied().unwrap_or(true),
+    };
+    Some((Fmu { name: name(given), file, every: every?, inputs: inputs?, outputs: Vec::new() }, outputs))
 }
 
 fn connections<T>(
@@ -322,7 +237,7 @@ fn path(file: &Slot<String>, sources: &Sources, report: &mut Report) -> Option<P
 }
 
 /// What all FMUs together give to the loop.
-fn check_ports(file: &File, given: &[At<file::Fmu>], all: &[Fmu<LoopSignal>], known: Known<'_>, report: &mut Report) {
+fn check_ports(file: &File, given: &[At<file::Fmu>], all: &[Fmu], known: Known<'_>, report: &mut Report) {
     let place = |fmu: usize, output: usize| -> Span {
         let one = &given[fmu];
         let entry = one.value.outputs.given().and_then(|table| table.0.get(output));

@@ -1,7 +1,6 @@
 //! The mechanics: bodies and what couples them.
-use super::fmu::{BodySignal, Fmu};
 use servobench_base::Coordinate;
-use servobench_plant::{Chain, MjcfModel, Switches};
+use servobench_plant::{Chain, FmuModel, MjcfModel, Switches};
 
 /// The mechanics of the axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,7 +14,7 @@ pub struct Axis {
     /// The bodies.
     pub mechanics: AxisMechanics,
     /// The mechanics as an FMU, for the engine `fmu`.
-    pub fmu: Option<Fmu<BodySignal>>,
+    pub fmu: Option<FmuModel>,
     /// What the drive sees of its position besides encoders, wired normally open.
     pub switches: Switches,
     /// Period of a modulo axis; `None` for one with ends.

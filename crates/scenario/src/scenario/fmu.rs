@@ -1,41 +1,20 @@
 //! Parts that somebody else simulates.
-pub use crate::name_table::StartValue;
+use servobench_fmi::FmuFile;
 use servobench_signals::Signal;
-use std::path::PathBuf;
 
-/// A Functional Mock-up Unit and what it is connected to. `To` is what its outputs can be.
+/// A Functional Mock-up Unit beside the axis and what it is connected to.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Fmu<To> {
+pub struct Fmu {
     /// Name of the instance.
     pub name: String,
-    /// The archive.
-    pub path: PathBuf,
+    /// The archive, how it is started and where it runs.
+    pub file: FmuFile,
     /// From exchange to exchange (base ticks).
     pub every: u32,
-    /// Where it runs.
-    pub isolation: Isolation,
-    /// Whether its event mode is used, if it has one.
-    pub event_mode: bool,
-    /// How long one of its calls may take (s, real time).
-    pub patience: f64,
-    /// Memory that its process may take (MB).
-    pub memory: u32,
-    /// Start values by variable, in the order of the file.
-    pub start: Vec<(String, StartValue)>,
     /// Inputs by variable with the signal that each is given.
     pub inputs: Vec<(String, InputSource)>,
     /// Outputs by variable with what each is.
-    pub outputs: Vec<(String, To)>,
-}
-
-/// Where an FMU runs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Isolation {
-    /// In a process of its own.
-    #[default]
-    Process,
-    /// In the bench's own process.
-    None,
+    pub outputs: Vec<(String, LoopSignal)>,
 }
 
 /// What an input of an FMU is given (SI).
@@ -56,32 +35,6 @@ pub enum InputSource {
         /// Name of the output.
         variable: String,
     },
-}
-
-/// What an output of an FMU can be that simulates the mechanics.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum BodySignal {
-    /// `shaft.position`: the motor's position in its own coordinate.
-    ShaftPosition,
-    /// `shaft.velocity`.
-    ShaftVelocity,
-    /// `load.position`: the load's position in the axis coordinate.
-    LoadPosition,
-    /// `load.velocity`.
-    LoadVelocity,
-}
-
-impl BodySignal {
-    /// The name that files write.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::ShaftPosition => "shaft.position",
-            Self::ShaftVelocity => "shaft.velocity",
-            Self::LoadPosition => "load.position",
-            Self::LoadVelocity => "load.velocity",
-        }
-    }
 }
 
 /// What an output of an FMU can be beside the axis (SI).
@@ -132,31 +85,4 @@ impl LoopSignal {
             Self::VoltageQ => Signal::VoltageQ,
         }
     }
-}
-
-/// How FMUs and the axis exchange what they give.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CoSimulation {
-    /// From exchange to exchange (base ticks).
-    pub every: u32,
-    /// Who steps when.
-    pub method: CouplingMethod,
-    /// Order with which inputs go on within a step, 0 to 2.
-    pub extrapolation: u32,
-    /// How well inputs and outputs agree after an iteration, relative to their size.
-    pub tolerance: f64,
-    /// How often a step may be repeated.
-    pub iterations: u32,
-}
-
-/// Who steps when.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum CouplingMethod {
-    /// All at once.
-    Jacobi,
-    /// One after the other in the order of the file, the axis last.
-    #[default]
-    GaussSeidel,
-    /// Repeated until inputs and outputs agree.
-    Iterated,
 }

@@ -3,8 +3,8 @@ use crate::coupled::replaces_the_drive;
 use crate::error::BuildError;
 use crate::power::PowerStage;
 use servobench_base::{Dq, Rotation};
-use servobench_plant::{self as plant, BodyState, Chain, Engine, Mechanics, MechanicsSetup, Switches, pmsm};
-use servobench_scenario::{Actuator, AxisMechanics, EngineName, Scenario};
+use servobench_plant::{self as plant, BodyState, Chain, Engine, Mechanics, MechanicsSetup, ModelKind, Switches, pmsm};
+use servobench_scenario::{Actuator, AxisMechanics, Scenario};
 use std::sync::Arc;
 
 /// The mechanics at tick 0 and the names of its bodies.
@@ -16,9 +16,8 @@ pub(super) fn mechanics(
         Actuator::Prescribed => plant::Drive::Prescribed,
         Actuator::Off | Actuator::Pmsm { .. } | Actuator::IdealSource { .. } => plant::Drive::Effort,
     };
-    if engine.name() == EngineName::Fmu.as_str() {
-        let fmu = scenario.axis.fmu.as_ref().ok_or(BuildError::NoFmu)?;
-        let model = super::fmu::mechanics(fmu, scenario)?;
+    if engine.name().simulates(ModelKind::Fmu) {
+        let model = scenario.axis.fmu.clone().ok_or(BuildError::NoFmu { engine: engine.name() })?;
         let names = if model.load.is_some() { &["motor", "load"][..] } else { &["motor"] };
         let names = names.iter().map(|name| (*name).to_owned()).collect();
         let model = plant::Model::Fmu(Box::new(model));

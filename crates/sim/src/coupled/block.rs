@@ -18,11 +18,11 @@ const ROUNDING: f64 = 1e-9;
 /// One of those that are coupled.
 pub(super) enum Part {
     Axis(Box<Axis>),
-    Fmu(Company),
+    Fmu(AttachedFmu),
 }
 
 /// An FMU beside the axis.
-pub(super) struct Company {
+pub(super) struct AttachedFmu {
     pub(super) slave: Box<dyn Slave>,
     /// When the run ends (s): an FMU that wants to end then, or after it, keeps nobody from anything.
     pub(super) end: f64,
@@ -148,7 +148,7 @@ impl Block for Part {
     fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<Step, PartError> {
         let axis = match self {
             Self::Axis(axis) => axis,
-            Self::Fmu(Company { slave, end }) => {
+            Self::Fmu(AttachedFmu { slave, end }) => {
                 return Ok(match slave.step(time, length, inputs).map_err(PartError::Fmu)? {
                     Progress::Done => Step::Done,
                     Progress::Terminated(time) if time >= *end - ROUNDING * length => Step::Done,
@@ -201,7 +201,7 @@ impl Block for Part {
         match self {
             Self::Axis(axis) => {
                 let Some((saved, now, external)) = &axis.saved else {
-                    return Err(MechanicsError::no_way_back().into());
+                    return Err(MechanicsError::NoWayBack.into());
                 };
                 axis.recorded.restore(saved)?;
                 (axis.now, axis.external) = (*now, *external);

@@ -1,11 +1,11 @@
 //! Who is connected with whom. The axis comes behind the FMUs.
 use super::ConnectionDelay;
 use super::block::OWN;
-use crate::bench::fmu::partner;
+use crate::bench::fmu::request;
 use crate::error::BuildError;
 use servobench_base::Tick;
 use servobench_coupling::{Connection, Delay, Order, Port};
-use servobench_plant::FmuPartner;
+use servobench_fmi::FmuRequest;
 use servobench_scenario::{InputSource, LoopSignal, Scenario};
 use servobench_signals::{Equipment, Rates, Selection};
 
@@ -66,14 +66,14 @@ impl<'a> Wiring<'a> {
     }
 
     /// The FMU number `index` as it is to be opened for a run of `ticks`.
-    pub(super) fn partner(&self, index: usize, equipment: &Equipment, ticks: u64) -> FmuPartner {
+    pub(super) fn request(&self, index: usize, equipment: &Equipment, ticks: u64) -> FmuRequest<'a> {
         let (fmu, motion) = (&self.scenario.fmus[index], self.scenario.axis.motor_motion);
-        let every = (self.scenario.coupling.every, fmu.every);
+        let every = (self.scenario.coupling.step.ticks(), fmu.every);
         let (rate, [before, last]) = (self.scenario.base_rate, last_step(ticks, every));
         let step = rate.time(Tick(last - before));
         // As it is stepped: a sum of times may be a rounding away from the time of the tick.
         let end = rate.time(Tick(last)).max(rate.time(Tick(before)) + step);
-        partner(fmu, &self.outputs[index], (equipment, motion), (step, end))
+        request(fmu, &self.outputs[index], (equipment, motion), (step, end))
     }
 
     /// Names of what the axis gives.
@@ -104,7 +104,7 @@ impl<'a> Wiring<'a> {
 /// Start and end (ticks) of the last step of an FMU in a run of `ticks`, the last of which is only recorded. Exchanges are whole steps
 /// of the `coupling`, and those of the FMU are `every`, a multiple of them: the last one may end after the run.
 fn last_step(ticks: u64, (coupling, every): (u32, u32)) -> [u64; 2] {
-    let (coupling, every) = (u64::from(coupling.max(1)), u64::from(every.max(1)));
+    let (coupling, every) = (u64::from(coupling), u64::from(every.max(1)));
     let exchanged = ticks.saturating_sub(1).next_multiple_of(coupling);
     let last = exchanged.next_multiple_of(every).max(every);
     [last - every, last]

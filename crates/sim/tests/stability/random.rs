@@ -3,7 +3,7 @@ use crate::files::scenario;
 use servobench_base::{Coordinate, Rate};
 use servobench_drive::current::{Gains, Tuning};
 use servobench_drive::{Stage, delay};
-use servobench_plant::{Body, Chain, DryFriction, Encoder, Link};
+use servobench_plant::{Body, Chain, Encoder, Friction, Link};
 use servobench_scenario::{Actuator, AxisMechanics, Feedback, Scenario};
 
 /// SplitMix64 (Steele, Lea, Flood 2014).
@@ -187,8 +187,7 @@ fn chain(random: &mut Random, base: u32, transmission: f64) -> Chain {
             coordinate: Coordinate::Rotary,
             inertia,
             transmission: if is_first { transmission } else { 1.0 },
-            viscous,
-            dry: DryFriction::NONE,
+            friction: Friction { viscous, ..Friction::NONE },
             bias: 0.0,
         });
     }

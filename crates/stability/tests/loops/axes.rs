@@ -2,7 +2,7 @@
 use servobench_base::Coordinate;
 use servobench_base::{Divider, Dq, Rate};
 use servobench_drive::{self as drive, current, feedforward, velocity};
-use servobench_plant::{Body, Chain, DryFriction, Link, pmsm};
+use servobench_plant::{Body, Chain, Friction, Link, pmsm};
 use servobench_stability::{Depth, Loop, OperatingPoint, PositionFeedback, Report, Source, VelocitySignal, analyse};
 
 pub(crate) const TAU: f64 = std::f64::consts::TAU;
@@ -12,8 +12,8 @@ pub(crate) fn ticks(ticks: u32) -> Divider {
 }
 
 pub(crate) fn body(inertia: f64, viscous: f64) -> Body {
-    let (coordinate, dry) = (Coordinate::Linear, DryFriction::NONE);
-    Body { name: "body", coordinate, inertia, transmission: 1.0, viscous, dry, bias: 0.0 }
+    let (coordinate, friction) = (Coordinate::Linear, Friction { viscous, ..Friction::NONE });
+    Body { name: "body", coordinate, inertia, transmission: 1.0, friction, bias: 0.0 }
 }
 
 /// Bodies in a row with links of these stiffnesses and dampings.

@@ -1,8 +1,8 @@
 //! What each engine makes of the fastest mode.
 use super::{Doubt, Modes};
 use servobench_metrics::Quantity;
-use servobench_plant::{Distortion, Integrator, Mode};
-use servobench_scenario::{EngineName, Scenario};
+use servobench_plant::{Distortion, EngineName, Integrator, Mode};
+use servobench_scenario::Scenario;
 use std::f64::consts::TAU;
 
 /// Frequency may be wrong by this share.
@@ -12,13 +12,15 @@ const MOST_OF_DAMPING: f64 = 0.1;
 /// … or take this share of the amplitude over the run, which nobody sees.
 const MOST_LOST: f64 = 0.01;
 
-/// How an engine integrates the fastest mode.
+/// How an engine integrates the fastest mode of a chain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EngineSteps {
     /// The engine.
     pub engine: EngineName,
-    /// The mode; `None` on a rigid axis, and where a file of the user's or an FMU knows it.
-    pub mode: Option<Mode>,
+    /// The mode.
+    pub mode: Mode,
+    /// How the engine goes from tick to tick.
+    pub integrator: Integrator,
     /// Base ticks per period of it.
     pub steps: f64,
     /// What becomes of it; `None` when the engine does not keep it within bounds, which [`check`](crate::check) says.
@@ -26,30 +28,25 @@ pub struct EngineSteps {
 }
 
 impl EngineSteps {
+    /// Of those `engines` that integrate it; none on a rigid axis, and where a file of the user's or an FMU knows the modes.
     pub(super) fn of(scenario: &Scenario, modes: Option<&Modes>, engines: &[EngineName]) -> Vec<Self> {
         let h = scenario.base_rate.period();
-        let mode = modes.and_then(Modes::fastest);
-        let of = |engine: EngineName| {
-            let integrator = match engine {
-                EngineName::Rapier => Integrator::Leapfrog,
-                EngineName::Mujoco => Integrator::Rk4,
-                EngineName::Exact | EngineName::Fmu => Integrator::Exact,
-            };
-            // What an FMU does to its modes it does not say.
-            let mode = mode.filter(|_| engine != EngineName::Fmu);
-            let omega = mode.map_or(0.0, |mode| mode.omega);
-            Self { engine, mode, steps: TAU / (omega * h), distortion: integrator.distortion(omega, h) }
+        let Some(mode) = modes.and_then(Modes::fastest) else { return Vec::new() };
+        let of = |engine: &EngineName| {
+            let integrator = engine.capabilities().integrator?;
+            let (steps, distortion) = (TAU / (mode.omega * h), integrator.distortion(mode.omega, h));
+            Some(Self { engine: *engine, mode, integrator, steps, distortion })
         };
-        engines.iter().copied().map(of).collect()
+        engines.iter().filter_map(of).collect()
     }
 
     /// What is wrong with it in a run of `length` (s).
     pub(super) fn doubt(&self, length: f64) -> Option<Doubt> {
-        let (Mode { omega, damping }, Distortion { damping: added, shift }) = (self.mode?, self.distortion?);
+        let (Mode { omega, damping }, Distortion { damping: added, shift }) = (self.mode, self.distortion?);
         let lost = 1.0 - (-added * omega * length).exp();
         let (frequency, steps) =
             (Quantity::new(omega / TAU, "Hz"), format!("{:.1} base ticks to a period", self.steps));
-        let engine = self.engine.as_str();
+        let engine = self.engine;
         let message = if shift.abs() > MOST_SHIFT {
             let way = if shift > 0.0 { "too fast" } else { "too slowly" };
             format!("on `{engine}` the mode of {frequency} rings {:.1} % {way}: {steps}", 100.0 * shift.abs())

@@ -1,6 +1,7 @@
 //! What a user's own MJCF file asks of an engine that does it in a way nobody expects.
 use super::Doubt;
-use servobench_scenario::{AxisMechanics, EngineName, Scenario};
+use servobench_plant::EngineName;
+use servobench_scenario::{AxisMechanics, Scenario};
 
 /// Dry friction of a joint.
 const FRICTION: &str = "frictionloss";
@@ -8,16 +9,20 @@ const FRICTION: &str = "frictionloss";
 /// Of the file of `scenario` on `engines`.
 pub(super) fn doubts(scenario: &Scenario, engines: &[EngineName]) -> Vec<Doubt> {
     let AxisMechanics::Mjcf(mjcf) = &scenario.axis.mechanics else { return Vec::new() };
-    if !engines.contains(&EngineName::Mujoco) {
-        return Vec::new();
-    }
-    let creeps = |line| {
-        let message = "on `mujoco` a joint with `frictionloss` creeps: the friction is a soft constraint that slides slowly under \
-                       an effort below it (2.1 mm/s at 4 N of 5 N, 2 kg)";
+    let creeping = engines.iter().filter(|engine| engine.capabilities().creeps);
+    creeping.flat_map(|engine| creeps(*engine, &mjcf.xml)).collect()
+}
+
+/// A joint of the file creeps on `engine`.
+fn creeps(engine: EngineName, xml: &str) -> impl Iterator<Item = Doubt> {
+    lines_with(xml, FRICTION).map(move |line| {
+        let message = format!(
+            "on `{engine}` a joint with `frictionloss` creeps: the friction is a soft constraint that slides slowly under an \
+             effort below it (2.1 mm/s at 4 N of 5 N, 2 kg)"
+        );
         let help = "the engine `rapier` holds such a joint; bodies in `[axis]` with `coulomb` are held on every engine";
         Doubt { line: Some(line), ..Doubt::new("axis.mjcf.file", message, help) }
-    };
-    lines_with(&mjcf.xml, FRICTION).map(creeps).collect()
+    })
 }
 
 /// Lines, from 1, on which an attribute has a value above zero, comments apart.

@@ -10,7 +10,7 @@
 use servobench_base::Setpoint;
 use servobench_drive::Estimate;
 use servobench_drive::feedforward::Model;
-use servobench_plant::{Body, Chain, DryFriction};
+use servobench_plant::{Body, Chain, Friction};
 use servobench_scenario::{Actuator, Disturbance, DisturbedBody, Scenario};
 use std::f64::consts::TAU;
 
@@ -25,7 +25,7 @@ pub(super) struct Resistance {
     /// Constant effort.
     bias: f64,
     /// Friction of each body, its own coordinate per axis coordinate, and motor effort per effort of its own.
-    dry: Vec<(DryFriction, f64, f64)>,
+    friction: Vec<(Friction, f64, f64)>,
     disturbances: Vec<Disturbance>,
     /// Axis coordinate per motor coordinate.
     transmission: f64,
@@ -36,14 +36,15 @@ impl Resistance {
     pub(super) fn of_chain(scenario: &Scenario, chain: &Chain) -> Self {
         let r = chain.bodies()[0].transmission;
         let sum = |value: fn(&Body) -> f64| chain.bodies().iter().map(value).sum::<f64>();
-        let dry = chain.bodies().iter().map(|body| (body.dry, 1.0 / body.transmission, r / body.transmission));
+        let friction =
+            chain.bodies().iter().map(|body| (body.friction, 1.0 / body.transmission, r / body.transmission));
         let mut all = Self {
             inertia: r * sum(|body| body.inertia / body.transmission.powi(2)),
-            viscous: r * sum(|body| body.viscous / body.transmission.powi(2)),
+            viscous: r * sum(|body| body.friction.linear() / body.transmission.powi(2)),
             jerk: 0.0,
             snap: 0.0,
             bias: r * sum(|body| body.bias / body.transmission),
-            dry: dry.collect(),
+            friction: friction.collect(),
             disturbances: scenario.disturbances.clone(),
             transmission: r,
         };
@@ -51,8 +52,8 @@ impl Resistance {
             actuator.drive().is_some_and(|drive| matches!(drive.params.feedforward.model, Model::TwoMass { .. }))
         };
         if let ([motor, load], [link], true) = (chain.bodies(), chain.links(), load_follows(&scenario.actuator)) {
-            let [m1, k1] = [motor.inertia, motor.viscous].map(|own| own / (r * r));
-            let (m2, k2, c) = (load.inertia, load.viscous, link.stiffness);
+            let [m1, k1] = [motor.inertia, motor.friction.linear()].map(|own| own / (r * r));
+            let (m2, k2, c) = (load.inertia, load.friction.linear(), link.stiffness);
             all.inertia += r * k1 * k2 / c;
             all.jerk = r * (m1 * k2 + m2 * k1) / c;
             all.snap = r * m1 * m2 / c;
@@ -63,14 +64,13 @@ impl Resistance {
     /// Of what the drive believes, where nobody here knows the bodies; `None` when it knows no inertia.
     pub(super) fn believed(scenario: &Scenario, estimate: &Estimate) -> Option<Self> {
         let (r, inertia) = (scenario.axis.transmission, estimate.motor_inertia + estimate.load_inertia);
-        let coulomb = estimate.coulomb;
         (inertia > 0.0).then(|| Self {
             inertia: r * inertia,
             viscous: r * (estimate.motor_viscous + estimate.load_viscous),
             jerk: 0.0,
             snap: 0.0,
             bias: r * estimate.bias,
-            dry: vec![(DryFriction { coulomb, breakaway: coulomb, stribeck_velocity: 0.0 }, 1.0, r)],
+            friction: vec![(Friction::coulomb(estimate.coulomb), 1.0, r)],
             disturbances: scenario.disturbances.clone(),
             transmission: r,
         })
@@ -82,10 +82,10 @@ impl Resistance {
         let moving = self.inertia * now.a + self.viscous * now.v + self.jerk * now.j + self.snap * now.s;
         let effort = moving + self.bias - disturbed;
         if now.v != 0.0 {
-            let friction: f64 = self.dry.iter().map(|(dry, own, share)| share * dry.sliding(own * now.v)).sum();
+            let friction: f64 = self.friction.iter().map(|(one, own, share)| share * one.sliding(own * now.v)).sum();
             return effort + friction.copysign(now.v);
         }
-        let held: f64 = self.dry.iter().map(|(dry, _, share)| share * dry.breakaway).sum();
+        let held: f64 = self.friction.iter().map(|(one, _, share)| share * one.breakaway()).sum();
         effort.signum() * (effort.abs() - held).max(0.0)
     }
 

@@ -1,8 +1,8 @@
 //! A preview as a person reads it: one screen of 80 columns, or one line.
 use super::{EngineSteps, Inertias, LoopBandwidth, Modes, Preview};
+use servobench_config::Choice as _;
 use servobench_metrics::Quantity;
-use servobench_plant::Mode;
-use servobench_scenario::EngineName;
+use servobench_plant::{Integrator, Mode};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
@@ -26,9 +26,7 @@ impl Preview {
             None => screen.line("modes", &["known to the file of the mechanics only; a run shows them".to_owned()]),
         }
         for engine in &self.engines {
-            if let Some(mode) = engine.mode {
-                screen.line(engine.engine.as_str(), &[steps(engine, mode)]);
-            }
+            screen.line(engine.engine.name(), &[steps(engine)]);
         }
         let loops: Vec<_> = self.loops.iter().map(bandwidth).collect();
         screen.line("loops", &loops);
@@ -124,9 +122,7 @@ impl Preview {
     fn cost_line(&self, screen: &mut Screen) {
         let mut words = vec![format!("memory {}", Quantity::new(self.cost.memory, "B"))];
         for (engine, seconds) in &self.cost.seconds {
-            if let Some(seconds) = seconds {
-                words.push(format!("about {:.1} on {}", Quantity::new(*seconds, "s"), engine.as_str()));
-            }
+            words.push(format!("about {:.1} on {engine}", Quantity::new(*seconds, "s")));
         }
         screen.line("cost", &words);
     }
@@ -222,13 +218,14 @@ fn damping(ratio: f64) -> String {
     if ratio < 1e-9 { "0".into() } else { Quantity::new(ratio, "").to_string() }
 }
 
-fn steps(engine: &EngineSteps, mode: Mode) -> String {
-    let steps = format!("{} ticks to a period of {}", rounded(engine.steps), Quantity::new(mode.omega / TAU, "Hz"));
-    match (engine.engine, engine.distortion) {
-        (EngineName::Exact | EngineName::Fmu, _) => format!("{steps}, no error of its own"),
+fn steps(engine: &EngineSteps) -> String {
+    let steps =
+        format!("{} ticks to a period of {}", rounded(engine.steps), Quantity::new(engine.mode.omega / TAU, "Hz"));
+    match (engine.integrator, engine.distortion) {
+        (Integrator::Exact, _) => format!("{steps}, no error of its own"),
         (_, None) => format!("{steps}: unstable"),
-        (EngineName::Rapier, Some(distortion)) => format!("{steps}, {:.1e} too fast", distortion.shift),
-        (EngineName::Mujoco, Some(distortion)) => format!("{steps}, adds ζ {:.1e}", distortion.damping),
+        (Integrator::Leapfrog, Some(distortion)) => format!("{steps}, {:.1e} too fast", distortion.shift),
+        (Integrator::Rk4, Some(distortion)) => format!("{steps}, adds ζ {:.1e}", distortion.damping),
     }
 }
 

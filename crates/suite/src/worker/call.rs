@@ -5,6 +5,7 @@ use super::{WorkerCommand, WorkerError};
 use crate::check::Objection;
 use crate::execute::{Interruption, Recorded};
 use crate::job::Job;
+use servobench_config::Choice as _;
 use servobench_metrics::EarlyEnd;
 use servobench_trace::Recording;
 use std::io::{self, Write};
@@ -69,7 +70,7 @@ fn converse(
 
 fn start(command: &WorkerCommand, job: &Job, recording: Option<&Path>) -> io::Result<Child> {
     let mut worker = Command::new(&command.program);
-    worker.arg("worker").args(["--engine", job.engine.as_str(), "--name", &job.scenario.name]);
+    worker.arg("worker").args(["--engine", job.engine.name(), "--name", &job.scenario.name]);
     if let Some(recording) = recording {
         worker.arg("--recording").arg(recording);
     }

@@ -7,8 +7,8 @@ use crate::execute::{Interruption, run_here};
 use crate::job::slow_to;
 use crate::panicked::caught;
 use servobench_metrics::EarlyEnd;
-use servobench_plant::Engine;
-use servobench_scenario::{EngineName, LoadError, Scenario};
+use servobench_plant::{Engine, EngineName};
+use servobench_scenario::{LoadError, Scenario};
 use servobench_sim::Partners;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -48,9 +48,9 @@ fn obey(order: &Order, text: &str, engines: &Engines, say: &mut dyn FnMut(&Messa
         Ok(scenario) => scenario,
         Err(error) => return End::Input(error.to_string()),
     };
-    let done = engines.get(order.engine).map_err(RunError::from).and_then(|installed| match &order.recording {
-        Some(path) => run(&scenario, (installed.engine, engines.partners), path, say),
-        None => objections(&scenario, installed.engine, engines.partners).map(|all| {
+    let done = engines.get(order.engine).map_err(RunError::from).and_then(|engine| match &order.recording {
+        Some(path) => run(&scenario, (engine, engines.partners), path, say),
+        None => objections(&scenario, engine, engines.partners).map(|all| {
             say(&Message::Objections(all));
             End::Done
         }),
