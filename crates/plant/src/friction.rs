@@ -61,18 +61,21 @@ impl Friction {
 
     /// The part that is proportional to the velocity, per velocity (N·s/m or N·m·s/rad).
     #[must_use]
+    #[inline]
     pub const fn linear(&self) -> f64 {
         self.viscous
     }
 
     /// Whether there is no more than the linear part: [`grip`](Self::grip) then never does anything.
     #[must_use]
+    #[inline]
     pub fn is_linear(&self) -> bool {
         self.dry.is_none()
     }
 
     /// What all but the linear part does in the coming tick, given the velocity and the effort of everything else at its start.
     #[must_use]
+    #[inline]
     pub fn grip(&self, velocity: f64, effort: f64) -> Grip {
         if self.is_linear() {
             Grip::Force(0.0)
@@ -88,18 +91,21 @@ impl Friction {
     /// Whether a body that slid with `before` and arrived with `after` came to rest within the tick; its velocity is
     /// then to be set to zero.
     #[must_use]
+    #[inline]
     pub fn settle(&self, before: f64, after: f64) -> bool {
         !self.is_linear() && before * after < 0.0
     }
 
     /// Magnitude of all but the linear part while the body slides with `velocity` (N or N·m).
     #[must_use]
+    #[inline]
     pub fn sliding(&self, velocity: f64) -> f64 {
         self.dry.sliding(velocity)
     }
 
     /// The effort up to which a body at rest is held (N or N·m).
     #[must_use]
+    #[inline]
     pub const fn breakaway(&self) -> f64 {
         self.dry.breakaway
     }
@@ -160,11 +166,13 @@ impl DryFriction {
         Ok(())
     }
 
+    #[inline]
     fn is_none(&self) -> bool {
         self.breakaway == 0.0
     }
 
     /// Magnitude of the sliding friction at `velocity` (N or N·m).
+    #[inline]
     fn sliding(&self, velocity: f64) -> f64 {
         if self.stribeck_velocity == 0.0 {
             return self.coulomb;
