@@ -6,16 +6,16 @@ use crate::layout::{Layout, Node, View};
 use crate::legend;
 use crate::planned::PlannedPlot;
 use crate::reached::Reached;
+use crate::rerun::EntityPath;
+use crate::rerun::blueprint::archetypes::{
+    EyeControls3D, LineGrid3D, PlotLegend, ScalarAxis, TextLogColumns, TimeAxis,
+};
+use crate::rerun::blueprint::components::{ContainerKind, LinkAxis};
+use crate::rerun::blueprint::datatypes::{TextLogColumn, TextLogColumnKind, TimelineColumn};
+use crate::rerun::{TimeInt, TimeRange, TimeRangeBoundary};
 use crate::scene::Scene;
 use crate::signals::Lanes;
 use crate::verdict::Head;
-use rerun::EntityPath;
-use rerun::blueprint::components::{ContainerKind, LinkAxis};
-use rerun::datatypes::{TimeInt, TimeRange, TimeRangeBoundary};
-use rerun::external::re_sdk_types::blueprint::archetypes::{
-    EyeControls3D, LineGrid3D, PlotLegend, ScalarAxis, TextLogColumns, TimeAxis,
-};
-use rerun::external::re_sdk_types::blueprint::datatypes::{TextLogColumn, TextLogColumnKind, TimelineColumn};
 use servobench_metrics::round_below;
 
 /// Height of what stands below the tabs in a window of 1400 × 900 points.

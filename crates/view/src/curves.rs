@@ -1,9 +1,9 @@
 //! Logs the lines of the plots, column by column.
 use crate::planned::PlannedPlot;
+use crate::rerun::InterpolationMode;
+use crate::rerun::{RecordingStream, RecordingStreamResult, Scalars, SeriesLines, TimeColumn};
 use crate::scale::Scale;
 use crate::series::{Series, Values};
-use rerun::components::InterpolationMode;
-use rerun::{RecordingStream, RecordingStreamResult, Scalars, SeriesLines, TimeColumn};
 use servobench_trace::envelope;
 
 /// How much later the upper end of an upright line is than the lower (s).

@@ -1,10 +1,10 @@
 //! Moves, disturbances, events and what FMUs say: a log to read, and lanes to see when.
 use crate::curves::TIMELINE;
 use crate::lanes::{Lane, Span};
+use crate::rerun::{EntityPath, RecordingStream, RecordingStreamResult, TextLog, TimeColumn};
 use crate::run::{Run, range};
 use crate::scale::{Scale, shown_unit};
 use crate::style;
-use rerun::{EntityPath, RecordingStream, RecordingStreamResult, TextLog, TimeColumn};
 use servobench_base::Severity;
 use servobench_signals::Signal;
 use servobench_trace::{Call, CallFate};

@@ -1,7 +1,9 @@
 //! Lanes: what is, from when to when, in words and a colour.
 use crate::curves::TIMELINE;
+use crate::rerun::{
+    Color, EntityPath, RecordingStream, RecordingStreamResult, StateChange, StateConfiguration, TimeColumn,
+};
 use crate::style::{self, Rgb};
-use rerun::{EntityPath, RecordingStream, RecordingStreamResult, StateChange, StateConfiguration, TimeColumn};
 use std::borrow::Cow;
 
 /// Something with a start, an end and a text.
@@ -50,8 +52,8 @@ impl Lane<'_> {
                 states.push((&*span.text, span.colour));
             }
         }
-        let (texts, colours): (Vec<&str>, Vec<rerun::Color>) =
-            states.into_iter().map(|(text, [r, g, b])| (text, rerun::Color::from_rgb(r, g, b))).unzip();
+        let (texts, colours): (Vec<&str>, Vec<Color>) =
+            states.into_iter().map(|(text, [r, g, b])| (text, Color::from_rgb(r, g, b))).unzip();
         let configuration = StateConfiguration::new().with_values(texts).with_colors(colours);
         stream.send_columns(path.clone(), [times], columns)?;
         stream.log_static(path.clone(), &configuration)

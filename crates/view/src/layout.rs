@@ -4,14 +4,16 @@
 //! of a 3D view or the time range of a plot, so the few entities of a blueprint are logged here.
 use crate::curves::TIMELINE;
 use crate::error::ViewError;
-use rerun::blueprint::components::{
+use crate::rerun::BlueprintActivationCommand;
+use crate::rerun::Uuid;
+use crate::rerun::blueprint::archetypes as blueprint;
+use crate::rerun::blueprint::components::{
     ContainerKind, IncludedContent, LoopMode, PanelState, PlayState, PlaybackSpeed, QueryExpression, RootContainer,
     TimelineName,
 };
-use rerun::external::re_log_types::BlueprintActivationCommand;
-use rerun::external::re_sdk_types::blueprint::archetypes as blueprint;
-use rerun::external::uuid::Uuid;
-use rerun::{AsComponents, EntityPath, RecordingStream, RecordingStreamBuilder, SerializedComponentBatch};
+use crate::rerun::{
+    AsComponents, EntityPath, RecordingStream, RecordingStreamBuilder, RecordingStreamResult, SerializedComponentBatch,
+};
 
 /// How the viewer arranges a recording. Made by [`Presentation::blueprint`](crate::Presentation::blueprint).
 #[derive(Debug)]
@@ -102,7 +104,7 @@ impl Layout {
         Ok(())
     }
 
-    fn log(&self, stream: &RecordingStream) -> rerun::RecordingStreamResult<()> {
+    fn log(&self, stream: &RecordingStream) -> RecordingStreamResult<()> {
         stream.set_time_sequence("blueprint", 0);
         let root = log_node(stream, &self.root)?;
         let viewport = blueprint::ViewportBlueprint::new()
@@ -124,7 +126,7 @@ impl Layout {
 }
 
 /// Logs `node` as a container (a view gets one of its own) and returns the container's id.
-fn log_node(stream: &RecordingStream, node: &Node) -> rerun::RecordingStreamResult<Uuid> {
+fn log_node(stream: &RecordingStream, node: &Node) -> RecordingStreamResult<Uuid> {
     let view_alone;
     let (container, parts): (&Container, Vec<(f32, &Node)>) = match node {
         Node::Container(container) => (container, container.parts.iter().map(|(share, part)| (*share, part)).collect()),
@@ -155,7 +157,7 @@ fn log_node(stream: &RecordingStream, node: &Node) -> rerun::RecordingStreamResu
     Ok(id)
 }
 
-fn log_view(stream: &RecordingStream, view: &View) -> rerun::RecordingStreamResult<Uuid> {
+fn log_view(stream: &RecordingStream, view: &View) -> RecordingStreamResult<Uuid> {
     let id = Uuid::new_v4();
     let below = if view.recursive { "/**" } else { "" };
     let query = |path: &EntityPath| QueryExpression(format!("+ {path}{below}").into());

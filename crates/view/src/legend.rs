@@ -1,7 +1,7 @@
 //! Where the legend of a plot covers least.
 use crate::planned::PlannedPlot;
+use crate::rerun::blueprint::components::Corner2D;
 use crate::series::Role;
-use rerun::blueprint::components::Corner2D;
 
 /// Part of a plot's width that a legend takes.
 const WIDTH: f64 = 0.18;

@@ -20,6 +20,7 @@ mod plan;
 mod planned;
 mod presentation;
 mod reached;
+mod rerun;
 mod residual;
 mod rotary;
 mod run;

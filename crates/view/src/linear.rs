@@ -3,15 +3,15 @@
 //! All bodies stand on one scale, that of the ruler: a body at 105 mm stands above the mark of 105 mm. Only the deflection
 //! against the motor is enlarged, as the title says; a pointer at the ruler shows where the load is without that.
 use crate::curves::TIMELINE;
+use crate::rerun::Mat3x3;
+use crate::rerun::{
+    Arrows3D, Boxes3D, EntityPath, FillMode, LineStrips3D, Points3D, RecordingStream, RecordingStreamResult,
+    TimeColumn, Transform3D,
+};
 use crate::run::{Run, range};
 use crate::scale::{Scale, short};
 use crate::scene::{Body, NAMED, Poses, Scene};
 use crate::style::{self, Rgb};
-use rerun::datatypes::Mat3x3;
-use rerun::{
-    Arrows3D, Boxes3D, FillMode, LineStrips3D, Points3D, RecordingStream, RecordingStreamResult, TimeColumn,
-    Transform3D,
-};
 use servobench_metrics::round_above;
 
 /// Half the length of a body along the rail, and across it (travels).
@@ -149,12 +149,7 @@ fn log_leaves(
     stream.log_static(path, &leaves)
 }
 
-fn log_body(
-    stream: &RecordingStream,
-    path: rerun::EntityPath,
-    body: &Body,
-    number: usize,
-) -> RecordingStreamResult<()> {
+fn log_body(stream: &RecordingStream, path: EntityPath, body: &Body, number: usize) -> RecordingStreamResult<()> {
     let (bottom, half) = storey(number);
     let shape = Boxes3D::from_centers_and_half_sizes([[0.0, 0.0, bottom + half]], [[HALF_BODY, HALF_WIDTH, half]])
         .with_colors([body.colour])

@@ -1,10 +1,10 @@
 //! A plot that has its curves: its unit, its title, the range of its axis.
 use crate::catalogue::{BOUND, Headline, Page};
+use crate::rerun::{EntityPath, EntityPathPart};
 use crate::scale::{Scale, shown_unit};
 use crate::series::{Role, Series, Values};
 use crate::style::{self, Rgb};
 use crate::ticks::range_with_labels;
-use rerun::{EntityPath, EntityPathPart};
 
 /// A limit is drawn as a line when it is at most this many times the largest value: beyond, it would flatten the curves,
 /// and the title names it instead.

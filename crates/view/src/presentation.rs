@@ -9,11 +9,11 @@ use crate::options::ViewOptions;
 use crate::plan;
 use crate::planned::{ALLOWED, PlannedPlot, WINDOW};
 use crate::reached::{self, Reached};
+use crate::rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 use crate::run::Run;
 use crate::scene::Scene;
 use crate::signals;
 use crate::verdict::Head;
-use rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 use servobench_trace::Recording;
 use std::path::Path;
 

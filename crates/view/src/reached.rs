@@ -1,9 +1,9 @@
 //! Limits of the drive that cut something: a lane for each, so that none covers another.
 use crate::lanes::{Lane, Span};
+use crate::rerun::{EntityPath, RecordingStream, RecordingStreamResult};
 use crate::run::Run;
 use crate::scale::Scale;
 use crate::style::{self, Rgb};
-use rerun::{EntityPath, RecordingStream, RecordingStreamResult};
 use servobench_trace::{Channel, Recording};
 
 /// First part of the name of a channel that says in which share of its ticks a controller was at a limit.

@@ -1,11 +1,11 @@
 //! A rotary axis in 3D: discs on a shaft, a mark on each.
+use crate::rerun::{
+    Angle, Boxes3D, Cylinders3D, EntityPath, FillMode, LineStrips3D, Points3D, RecordingStream, RecordingStreamResult,
+    RotationAxisAngle, Transform3D,
+};
 use crate::run::Run;
 use crate::scene::{NAMED, Poses};
 use crate::style;
-use rerun::{
-    Angle, Boxes3D, Cylinders3D, FillMode, LineStrips3D, Points3D, RecordingStream, RecordingStreamResult,
-    RotationAxisAngle, Transform3D,
-};
 use std::f32::consts::FRAC_PI_2;
 use std::f64::consts::TAU;
 
@@ -96,7 +96,7 @@ fn along_shaft() -> RotationAxisAngle {
 fn turn(
     stream: &RecordingStream,
     poses: &Poses,
-    path: &rerun::EntityPath,
+    path: &EntityPath,
     place: [f32; 3],
     angles: &[f64],
 ) -> RecordingStreamResult<()> {

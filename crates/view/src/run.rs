@@ -1,5 +1,5 @@
 //! One run of a presentation.
-use rerun::{EntityPath, EntityPathPart};
+use crate::rerun::{EntityPath, EntityPathPart};
 use servobench_trace::{Channel, Recording};
 
 /// A recording and the place of its entities.

@@ -2,10 +2,10 @@
 use crate::curves::TIMELINE;
 use crate::linear;
 use crate::options::ViewOptions;
+use crate::rerun::{EntityPath, RecordingStream, RecordingStreamResult, TimeColumn, Transform3D, ViewCoordinates};
 use crate::rotary;
 use crate::run::{Run, range};
 use crate::style::{self, Rgb};
-use rerun::{EntityPath, RecordingStream, RecordingStreamResult, TimeColumn, Transform3D, ViewCoordinates};
 use servobench_metrics::round_below;
 use servobench_signals::Signal;
 

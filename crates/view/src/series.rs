@@ -1,7 +1,7 @@
 //! One line of a plot, in SI.
+use crate::rerun::EntityPath;
 use crate::run::{Run, range};
 use crate::style::Rgb;
-use rerun::EntityPath;
 
 /// One line in a plot.
 #[derive(Debug)]

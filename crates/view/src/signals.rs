@@ -1,9 +1,11 @@
 //! Signals: a lane for each, those of one source together; a lane for what kept a call from its end.
 use crate::curves::TIMELINE;
 use crate::lanes::{Lane, Span};
+use crate::rerun::{
+    Color, EntityPath, RecordingStream, RecordingStreamResult, StateChange, StateConfiguration, TimeColumn,
+};
 use crate::run::Run;
 use crate::style::{self, Rgb};
-use rerun::{Color, EntityPath, RecordingStream, RecordingStreamResult, StateChange, StateConfiguration, TimeColumn};
 use servobench_trace::{Call, CallFate, Signal};
 
 /// Colours of the values of a signal, in the order in which they first appear.

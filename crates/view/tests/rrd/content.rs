@@ -1,10 +1,11 @@
 //! Reads a file back.
-use rerun::blueprint::components::QueryExpression;
-use rerun::components::{LineStrip3D, Name, Range1D, Text, TextLogLevel, Translation3D};
-use rerun::external::re_log_encoding::DecoderApp;
-use rerun::external::re_sdk_types::blueprint::archetypes::{ScalarAxis, ViewBlueprint, ViewContents};
-use rerun::log::{Chunk, LogMsg};
-use rerun::{LineStrips3D, Points3D, Scalars, StateChange, StoreKind, TextDocument, TextLog, Transform3D};
+use re_sdk::StoreKind;
+use re_sdk::external::re_log_encoding::DecoderApp;
+use re_sdk::log::{Chunk, LogMsg};
+use re_sdk_types::archetypes::{LineStrips3D, Points3D, Scalars, StateChange, TextDocument, TextLog, Transform3D};
+use re_sdk_types::blueprint::archetypes::{ScalarAxis, ViewBlueprint, ViewContents};
+use re_sdk_types::blueprint::components::QueryExpression;
+use re_sdk_types::components::{LineStrip3D, Name, Range1D, Text, TextLogLevel, Translation3D};
 use servobench_trace::Recording;
 use servobench_view::{ViewOptions, write_rrd};
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,0 +1,21 @@
+//! What is used of Rerun, under the names that its documentation gives it.
+//!
+//! The package `rerun` would bring its data-platform client, chunk store and analytics along, 45 packages that nothing here calls.
+pub(crate) use re_sdk::external::re_log_types::BlueprintActivationCommand;
+pub(crate) use re_sdk::log::TimeColumn;
+pub(crate) use re_sdk::{
+    AsComponents, EntityPath, EntityPathPart, RecordingStream, RecordingStreamBuilder, RecordingStreamResult,
+    SerializedComponentBatch,
+};
+pub(crate) use re_sdk_types::archetypes::{
+    Arrows3D, Boxes3D, Cylinders3D, LineStrips3D, Points3D, Scalars, SeriesLines, StateChange, StateConfiguration,
+    TextDocument, TextLog, Transform3D, ViewCoordinates,
+};
+pub(crate) use re_sdk_types::components::{Color, FillMode, InterpolationMode};
+pub(crate) use re_sdk_types::datatypes::{Angle, Mat3x3, RotationAxisAngle, TimeInt, TimeRange, TimeRangeBoundary};
+pub(crate) use re_sdk_types::external::uuid::Uuid;
+
+/// How the viewer is arranged.
+pub(crate) mod blueprint {
+    pub(crate) use re_sdk_types::blueprint::{archetypes, components, datatypes};
+}
