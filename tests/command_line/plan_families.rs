@@ -116,7 +116,7 @@ fn a_velocity_may_be_the_target() {
 /// lasts 100/200 s and once that longer, as both ramps cover half of what the speed would in their time.
 #[test]
 fn rockwell_moves_have_the_ramps_of_the_source() {
-    let line = "--profile rockwell --distance 100mm --velocity 200mm/s --acceleration 100m/s2";
+    let line = "rockwell --distance 100mm --velocity 200mm/s --acceleration 100m/s2";
     for (said, jerk, ramp) in [
         ("--jerk-percent-of-time 100", 5e4, 4e-3),
         ("--jerk-percent-of-time 25", 3.5e5, 16e-3 / 7.0),
@@ -148,7 +148,7 @@ fn ten_positions() -> String {
 #[test]
 fn pvt_tables_get_their_velocities() {
     let work = folder(&[("ten.csv", &ten_positions())]);
-    let line = format!("--profile pvt --points {}", work.path().join("ten.csv").display());
+    let line = format!("pvt --points {}", work.path().join("ten.csv").display());
     let average = json_of(&line);
     let segments = average["segments"].as_array().unwrap();
     let printed = [0.0, 7.5, 5.0, 7.5, 2.0, -15.0, -17.0, -2.5, 7.0];
@@ -177,7 +177,7 @@ fn pvt_tables_get_their_velocities() {
 fn a_table_with_velocities_keeps_them() {
     let table = "time [ms],position [mm],velocity [m/s]\n0,0,0\n10,5,.75\n20,15,.75\n30,20,0\n";
     let work = folder(&[("four.csv", table)]);
-    let said = plan(&format!("--profile pvt --points {}", work.path().join("four.csv").display()));
+    let said = plan(&format!("pvt --points {}", work.path().join("four.csv").display()));
     assert!(said.contains("velocities of the table"), "{said}");
     assert!(said.contains("10 ms             5 mm         0.75 m/s"), "{said}");
 }
@@ -186,7 +186,7 @@ fn a_table_with_velocities_keeps_them() {
 fn position_profiles_are_sent_as_commands() {
     let work = folder(&[("ten.csv", &ten_positions())]);
     let (points, commands) = (work.path().join("ten.csv"), work.path().join("commands.csv"));
-    let line = format!("--profile position --points {} --commands {}", points.display(), commands.display());
+    let line = format!("position --points {} --commands {}", points.display(), commands.display());
     let plateaus = json_of(&format!("{line} --plateau 0.25"));
     assert_eq!((&plateaus["command_count"], &plateaus["position_error"]), (&10.into(), &0.0.into()));
     let sent = rows(&commands);
@@ -213,7 +213,7 @@ fn position_profiles_are_sent_as_commands() {
 fn position_profiles_are_sent_in_the_cycle_of_a_bus() {
     let work = folder(&[("ten.csv", &ten_positions())]);
     let (points, commands) = (work.path().join("ten.csv"), work.path().join("commands.csv"));
-    let line = format!("--profile position --points {} --commands {}", points.display(), commands.display());
+    let line = format!("position --points {} --commands {}", points.display(), commands.display());
     let said = plan(&format!("{line} --plateau 0.25 --command-cycle 4ms"));
     assert!(said.contains("velocity commands, α = 0.25: every position is hit"), "{said}");
     for row in rows(&commands) {
@@ -267,8 +267,7 @@ fn a_table_of_a_million_points_is_drawn_small() {
     let rows: Vec<String> = (0..1_000_000).map(|k: u32| format!("{k},{}\n", k * 7 % 13)).collect();
     let work = folder(&[("million.csv", &format!("time [ms],position [um]\n{}", rows.concat()))]);
     let svg = work.path().join("plan.svg");
-    let said =
-        plan(&format!("--profile pvt --points {} --svg {}", work.path().join("million.csv").display(), svg.display()));
+    let said = plan(&format!("pvt --points {} --svg {}", work.path().join("million.csv").display(), svg.display()));
     assert!(said.contains("… 999984 points more"), "{said}");
     assert!(svg.metadata().unwrap().len() < 200_000);
 }

@@ -11,12 +11,12 @@ mod timing;
 mod view;
 mod worker;
 
-pub(crate) use check::check;
+pub(crate) use check::{Findings, check};
 pub(crate) use compare::compare;
 #[cfg(feature = "fmu")]
 pub(crate) use fmu::{fmu, fmu_host};
 pub(crate) use objects::objects;
-pub(crate) use plan::plan;
+pub(crate) use plan::{EXAMPLES as PLAN_EXAMPLES, PlanArgs, PlanMistake, plan};
 pub(crate) use run::run;
 pub(crate) use schema::schema;
 pub(crate) use timing::timing;

@@ -1,5 +1,5 @@
 //! What is said: results on standard output, everything else on standard error.
-use crate::exit::CliError;
+use crate::error::CliError;
 use servobench_report::Style;
 use std::io::{ErrorKind, IsTerminal, Write};
 
@@ -8,9 +8,7 @@ use std::io::{ErrorKind, IsTerminal, Write};
 pub(crate) fn print(text: &str) -> Result<(), CliError> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(CliError::Run(format!("cannot write to standard output: {error}")))
-        }
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(CliError::Print(error)),
         _ => Ok(()),
     }
 }

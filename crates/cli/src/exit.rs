@@ -15,7 +15,6 @@
 use servobench_report::Outcome;
 use servobench_suite::RunError;
 use std::process::ExitCode;
-use thiserror::Error;
 
 /// The exit codes. A run of several scenarios ends with the worst: 2 before 3 before 4 before 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,17 +27,6 @@ pub(crate) enum Exit {
     Run,
     /// A run failed.
     Failed,
-}
-
-/// Why a command could not do what it was asked to.
-#[derive(Debug, Error)]
-pub(crate) enum CliError {
-    /// The input is wrong; the message says where and why.
-    #[error("{0}")]
-    Input(String),
-    /// A run, or something outside the input, failed.
-    #[error("{0}")]
-    Run(String),
 }
 
 impl Exit {
@@ -67,16 +55,6 @@ impl Exit {
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {
         exit.code().into()
-    }
-}
-
-impl CliError {
-    /// What the program ends with.
-    pub(crate) const fn exit(&self) -> Exit {
-        match self {
-            Self::Input(_) => Exit::Input,
-            Self::Run(_) => Exit::Run,
-        }
     }
 }
 

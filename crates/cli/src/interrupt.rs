@@ -43,7 +43,7 @@ pub(crate) use unix::{end_with_parent, watch};
 mod unix {
     use super::{INTERRUPTED, untold};
     use crate::console::say;
-    use crate::exit::CliError;
+    use crate::error::CliError;
     use rustix::process::{Pid, Signal, kill_process, set_parent_process_death_signal};
     use signal_hook::consts::{SIGINT, SIGTERM};
     use signal_hook::iterator::Signals;
@@ -57,8 +57,7 @@ mod unix {
 
     /// From now on an interrupted program removes what it did not finish in `folder`.
     pub(crate) fn watch(folder: &Path) -> Result<(), CliError> {
-        let mut signals = Signals::new([SIGINT, SIGTERM])
-            .map_err(|error| CliError::Run(format!("cannot listen to signals: {error}")))?;
+        let mut signals = Signals::new([SIGINT, SIGTERM]).map_err(CliError::Signals)?;
         let folder = folder.to_owned();
         std::thread::spawn(move || {
             for signal in signals.forever() {
@@ -70,8 +69,7 @@ mod unix {
 
     /// This process ends with the one that started it, whatever ended that.
     pub(crate) fn end_with_parent() -> Result<(), CliError> {
-        set_parent_process_death_signal(Some(Signal::KILL))
-            .map_err(|error| CliError::Run(format!("cannot end with the process that started this one: {error}")))
+        set_parent_process_death_signal(Some(Signal::KILL)).map_err(|error| CliError::EndWithParent(error.into()))
     }
 
     fn end(signal: i32, folder: &Path) {
@@ -136,7 +134,7 @@ mod unix {
 
 #[cfg(not(unix))]
 mod elsewhere {
-    use crate::exit::CliError;
+    use crate::error::CliError;
     use std::path::Path;
 
     pub(crate) fn watch(_: &Path) -> Result<(), CliError> {

@@ -5,6 +5,7 @@ mod commands;
 mod console;
 mod diagnostics;
 mod engines;
+mod error;
 mod exit;
 mod interrupt;
 mod output;
@@ -14,14 +15,13 @@ mod progress;
 mod sources;
 mod workers;
 
-use args::{Cli, Command};
-use clap::Parser;
+use args::Command;
 use exit::Exit;
 use std::panic::catch_unwind;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = args::parse();
     // A panic is a defect of ours; it must not end the program with a code that means something else.
     catch_unwind(|| dispatch(&cli.command)).unwrap_or(Exit::Run).into()
 }

@@ -1,6 +1,6 @@
 //! What a command leaves on the disk: recordings, results, diagrams, reports. Each file is there whole or not at all.
 use crate::console::print;
-use crate::exit::CliError;
+use crate::error::CliError;
 use crate::interrupt;
 use jiff::Timestamp;
 use servobench_metrics::{Metrics, Verdict};
@@ -11,7 +11,6 @@ use servobench_trace::Recording;
 use servobench_view::ViewOptions;
 use std::collections::HashSet;
 use std::ffi::OsStr;
-use std::fmt::Display;
 use std::path::Path;
 
 /// What `run` leaves beside its recordings.
@@ -21,8 +20,7 @@ pub(crate) const COMPARISON: &str = "comparison.json";
 
 /// Makes the folder for everything.
 pub(crate) fn make_folder(folder: &Path) -> Result<(), CliError> {
-    std::fs::create_dir_all(folder)
-        .map_err(|error| CliError::Run(format!("cannot make the folder `{}`: {error}", folder.display())))
+    std::fs::create_dir_all(folder).map_err(|error| CliError::MakeFolder { folder: folder.to_owned(), error })
 }
 
 /// Writes the whole file or nothing, in a folder that is made when there is none.
@@ -35,18 +33,16 @@ pub(crate) fn write_file_anywhere(path: &Path, text: impl AsRef<[u8]>) -> Result
 
 /// Writes the whole file or nothing.
 pub(crate) fn write_file(path: &Path, text: impl AsRef<[u8]>) -> Result<(), CliError> {
-    servobench_trace::write_whole(path, text)
-        .map_err(|error| CliError::Run(format!("cannot write `{}`: {error}", path.display())))
+    servobench_trace::write_whole(path, text).map_err(|error| CliError::Write { path: path.to_owned(), error })
 }
 
 /// Refuses to write over `input`, which the output is made of.
 pub(crate) fn spares(input: &Path, output: Option<&Path>) -> Result<(), CliError> {
     let place = |path: &Path| path.canonicalize().ok();
     match output {
-        Some(output) if place(output).is_some() && place(output) == place(input) => Err(CliError::Input(format!(
-            "-o: `{}` is what is read here and would be lost; name another file",
-            output.display()
-        ))),
+        Some(output) if place(output).is_some() && place(output) == place(input) => {
+            Err(CliError::WouldBeLost(output.to_owned()))
+        }
         _ => Ok(()),
     }
 }
@@ -61,12 +57,8 @@ pub(crate) fn print_or_write(path: Option<&Path>, text: &str) -> Result<(), CliE
 pub(crate) fn write_time() -> Result<Timestamp, CliError> {
     let Some(told) = std::env::var_os("SOURCE_DATE_EPOCH") else { return Ok(Timestamp::now()) };
     let seconds = told.to_str().and_then(|text| text.parse().ok());
-    seconds.and_then(|seconds| Timestamp::from_second(seconds).ok()).ok_or_else(|| {
-        CliError::Input(format!(
-            "the variable SOURCE_DATE_EPOCH is `{}`; it is a number of seconds since 1970, or unset",
-            told.display()
-        ))
-    })
+    let time = seconds.and_then(|seconds| Timestamp::from_second(seconds).ok());
+    time.ok_or(CliError::SourceDateEpoch(told))
 }
 
 /// What a run left in its folder.
@@ -88,10 +80,10 @@ pub(crate) fn write_recording(
     recording: &Recording,
     folder: &Path,
     shown: Option<servobench_view::Verdict>,
-) -> Result<Written, (CliError, Written)> {
+) -> Result<Written, (Box<CliError>, Written)> {
     let mut written = Written::default();
     let done = write_each(job, recording, folder, shown, &mut written);
-    done.map_err(|error| (error, written.clone())).map(|()| written)
+    done.map_err(|error| (Box::new(error), written.clone())).map(|()| written)
 }
 
 fn write_each(
@@ -101,21 +93,20 @@ fn write_each(
     shown: Option<servobench_view::Verdict>,
     written: &mut Written,
 ) -> Result<(), CliError> {
-    let failed = |error: &dyn Display| CliError::Run(error.to_string());
     let name = format!("{}.parquet", job.id);
-    recording.write_parquet(folder.join(&name)).map_err(|error| failed(&error))?;
+    recording.write_parquet(folder.join(&name)).map_err(CliError::WriteRecording)?;
     written.recording = Some(name.clone());
     written.note(folder, name);
     if !recording.signals.is_empty() {
         let name = format!("{}.timing.svg", job.id);
-        let diagram = timing_diagram(recording, &TimingOptions::default()).map_err(|error| failed(&error))?;
+        let diagram = timing_diagram(recording, &TimingOptions::default())?;
         write_file(&folder.join(&name), &diagram)?;
         written.note(folder, name);
     }
     if let Some(verdict) = shown {
         let name = format!("{}.rrd", job.id);
         let options = ViewOptions { verdicts: vec![verdict], ..view_options(&job.scenario) };
-        servobench_view::write_rrd(recording, folder.join(&name), &options).map_err(|error| failed(&error))?;
+        servobench_view::write_rrd(recording, folder.join(&name), &options)?;
         written.note(folder, name);
     }
     Ok(())

@@ -1,11 +1,12 @@
 //! Scenario files: from files, from folders, or the demo that is embedded.
 use crate::console::say;
 use crate::diagnostics::{mistakes, render};
-use crate::exit::CliError;
+use crate::error::CliError;
 use miette::Severity;
 use servobench_scenario::{LoadError, Loaded};
 use servobench_suite::Source;
 use std::ffi::OsStr;
+use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// The scenario files that `paths` name; folders are searched for `.toml` files, sorted by path. Folders called
@@ -17,7 +18,7 @@ pub(crate) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
             let before = files.len();
             search(path, &mut files)?;
             if files.len() == before {
-                return Err(CliError::Input(format!("there is no scenario (`*.toml`) in `{}`", path.display())));
+                return Err(CliError::NoScenario { folder: path.clone() });
             }
         } else {
             files.push(path.clone());
@@ -27,7 +28,7 @@ pub(crate) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
 }
 
 fn search(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), CliError> {
-    let wrong = |error: std::io::Error| CliError::Input(format!("cannot read `{}`: {error}", folder.display()));
+    let wrong = |error| CliError::Read { path: folder.to_owned(), error };
     let mut entries = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(wrong)? {
         entries.push(entry.map_err(wrong)?.path());
@@ -50,10 +51,10 @@ pub(crate) fn load(paths: &[PathBuf]) -> Result<Vec<Source>, CliError> {
     for found in each(paths)? {
         match found {
             Ok(source) => sources.push(source),
-            Err(unusable) => mistakes.push(unusable.shown),
+            Err(unusable) => mistakes.push(unusable),
         }
     }
-    if mistakes.is_empty() { Ok(sources) } else { Err(CliError::Input(mistakes.join("\n"))) }
+    if mistakes.is_empty() { Ok(sources) } else { Err(CliError::Scenarios(mistakes)) }
 }
 
 /// A file that cannot be used, and why.
@@ -61,10 +62,25 @@ pub(crate) fn load(paths: &[PathBuf]) -> Result<Vec<Source>, CliError> {
 pub(crate) struct Unusable {
     /// The file.
     pub(crate) path: PathBuf,
-    /// Everything that is wrong with it, as a person reads it.
-    pub(crate) shown: String,
-    /// The same a line each.
-    pub(crate) reasons: Vec<String>,
+    error: LoadError,
+}
+
+impl Unusable {
+    /// What is wrong with it, a line each.
+    pub(crate) fn reasons(&self) -> Vec<String> {
+        match &self.error {
+            LoadError::Invalid(invalid) => invalid.lines(),
+            error @ LoadError::Read { .. } => vec![error.to_string()],
+        }
+    }
+}
+
+/// Everything that is wrong with it, as a person reads it, with an empty line before whatever follows.
+impl fmt::Display for Unusable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let end = if matches!(self.error, LoadError::Read { .. }) { "\n" } else { "" };
+        write!(f, "{}{end}", told(&self.error))
+    }
 }
 
 /// Every file by itself: one that cannot be used does not keep the others from being used.
@@ -72,14 +88,7 @@ pub(crate) fn each(paths: &[PathBuf]) -> Result<Vec<Result<Source, Unusable>>, C
     let files = files(paths)?;
     let each = files.into_iter().map(|path| match servobench_scenario::load(&path) {
         Ok(loaded) => Ok(source(loaded)),
-        Err(LoadError::Invalid(invalid)) => {
-            let reasons = invalid.lines();
-            Err(Unusable { path, shown: mistakes(&invalid.diagnostics, &invalid.sources), reasons })
-        }
-        Err(error @ LoadError::Read { .. }) => {
-            let reasons = vec![error.to_string()];
-            Err(Unusable { path, shown: error.to_string() + "\n", reasons })
-        }
+        Err(error) => Err(Unusable { path, error }),
     });
     Ok(each.collect())
 }
@@ -92,14 +101,14 @@ fn source(loaded: Loaded) -> Source {
 }
 
 /// Loads one file.
-pub(crate) fn read(path: &Path) -> Result<Loaded, CliError> {
-    shown(servobench_scenario::load(path)).inspect(warn)
+pub(crate) fn read(path: &Path) -> Result<Loaded, LoadError> {
+    servobench_scenario::load(path).inspect(warn)
 }
 
 /// The embedded demo.
-pub(crate) fn demo() -> Result<Vec<Source>, CliError> {
+pub(crate) fn demo() -> Result<Vec<Source>, LoadError> {
     let demo = servobench_scenario::embedded_demo().into_iter();
-    demo.map(|(name, text)| shown(servobench_scenario::parse(name, text, None)).map(source)).collect()
+    demo.map(|(name, text)| servobench_scenario::parse(name, text, None).map(source)).collect()
 }
 
 fn warn(loaded: &Loaded) {
@@ -108,11 +117,10 @@ fn warn(loaded: &Loaded) {
     }
 }
 
-/// Renders the mistakes.
-fn shown(loaded: Result<Loaded, LoadError>) -> Result<Loaded, CliError> {
-    match loaded {
-        Ok(loaded) => Ok(loaded),
-        Err(LoadError::Invalid(invalid)) => Err(CliError::Input(mistakes(&invalid.diagnostics, &invalid.sources))),
-        Err(error @ LoadError::Read { .. }) => Err(CliError::Input(error.to_string())),
+/// Why a scenario could not be loaded, as a person reads it.
+pub(crate) fn told(error: &LoadError) -> String {
+    match error {
+        LoadError::Invalid(invalid) => mistakes(&invalid.diagnostics, &invalid.sources),
+        LoadError::Read { .. } => error.to_string(),
     }
 }

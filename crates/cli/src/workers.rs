@@ -1,5 +1,5 @@
 //! How much runs at a time, and where.
-use crate::exit::CliError;
+use crate::error::CliError;
 use servobench_suite::{AtATime, WorkerCommand};
 use std::num::NonZero;
 use std::path::Path;
@@ -8,7 +8,7 @@ use std::time::Duration;
 
 /// How worker processes are started: this program again. Their recordings pass through `folder`.
 pub(crate) fn command(folder: &Path, patience: Duration) -> Result<WorkerCommand, CliError> {
-    let program = std::env::current_exe().map_err(|error| CliError::Run(format!("cannot find myself: {error}")))?;
+    let program = std::env::current_exe().map_err(CliError::OwnProgram)?;
     Ok(WorkerCommand { program, folder: folder.to_owned(), patience })
 }
 

@@ -16,6 +16,7 @@ mod name;
 mod power;
 mod quantity;
 mod requirement;
+mod residual_ratios;
 mod round;
 mod rounding;
 mod settling;
@@ -37,6 +38,7 @@ pub use requirement::{
     Driven, EarlyEnd, Expectation, Expected, JUDGED_BY, LinearLoop, Requirement, Rules, Standing, arrival_window,
     judge_requirements,
 };
+pub use residual_ratios::ResidualRatios;
 pub use round::{round_above, round_below};
 pub use undamped::undamped_residual;
 pub use verdict::{Limit, Miss, Verdict};

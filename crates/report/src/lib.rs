@@ -33,6 +33,6 @@ pub use object_table::object_table;
 pub use plan::PlannedMove;
 pub use results::{LimitPlace, Outcome, Results, RunIdentity, RunResult};
 pub use style::Style;
-pub use text::{elided, printable};
+pub use text::{elided, printable, wrapped};
 pub use timing::{TimingOptions, timing_diagram};
 pub use verdict_table::{brief, verdict_table};

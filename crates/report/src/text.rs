@@ -35,7 +35,8 @@ pub(crate) fn printable_lines(text: &str) -> String {
 
 /// `text` broken between words into lines of at most `width` characters. A longer word stays whole, and a number keeps
 /// its unit: no line ends in a digit or in `×`.
-pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
+#[must_use]
+pub fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     let mut words = text.split_whitespace();
     while let Some(first) = words.next() {

@@ -1,9 +1,10 @@
 //! `servobench check`: validates without running.
 use crate::args::CheckArgs;
 use crate::console::{print, say};
-use crate::diagnostics::{mistakes, render};
+use crate::diagnostics::render;
 use crate::engines;
-use crate::exit::{CliError, Exit};
+use crate::error::CliError;
+use crate::exit::Exit;
 use crate::interrupt;
 use crate::sources;
 use crate::workers;
@@ -16,7 +17,10 @@ use servobench_sim::ConnectionDelay;
 use servobench_suite::{
     Doubt, Engines, Job, Preview, RunError, Source, WorkerCommand, check as objections, delays, jobs, preview,
 };
+use std::fmt;
+use std::path::PathBuf;
 use std::time::Duration;
+use thiserror::Error;
 
 /// How long an isolated engine may take to read a model.
 const PATIENCE: Duration = Duration::from_mins(1);
@@ -27,16 +31,12 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     let (engines, worker) = (engines::installed(), workers::command(&std::env::temp_dir(), PATIENCE)?);
     interrupt::watch(&std::env::temp_dir())?;
     let files = sources::files(&args.scenarios)?;
-    let (mut wrong, mut failed, mut missing, mut shown) = (Vec::new(), Vec::new(), Vec::new(), String::new());
+    let (mut findings, mut missing, mut shown) = (Findings::default(), Vec::new(), String::new());
     let in_full = args.verbose || files.len() == 1;
     for file in &files {
         match sources::read(file) {
             Ok(loaded) => {
                 let asked = Asked::about(&loaded, &engines, &worker);
-                wrong.extend((!asked.mistakes.is_empty()).then(|| mistakes(&asked.mistakes, &loaded.sources)));
-                let in_words = |error: &RunError| format!("{}: {}", file.display(), printable(&error.to_string()));
-                failed.extend(asked.failed.iter().map(in_words));
-                missing.extend(asked.missing);
                 if let Some(preview) = &asked.preview {
                     if !asked.doubts.is_empty() {
                         say(&render(&asked.doubts, &loaded.sources, Severity::Warning));
@@ -44,20 +44,56 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
                     shown.push_str(&previewed(preview, in_full));
                 }
                 shown.push_str(&asked.late);
+                missing.extend(asked.missing);
+                if !asked.mistakes.is_empty() {
+                    let sources = Box::new(loaded.sources);
+                    findings.wrong.push(CliError::Mistakes { diagnostics: asked.mistakes, sources });
+                }
+                let failed = asked.failed.into_iter().map(|error| Unasked { file: file.clone(), error });
+                findings.failed.extend(failed);
             }
-            Err(error) => wrong.push(error.to_string()),
+            Err(error) => findings.wrong.push(error.into()),
         }
     }
-    if !wrong.is_empty() {
-        wrong.append(&mut failed);
-        return Err(CliError::Input(wrong.join("\n")));
-    }
-    if !failed.is_empty() {
-        return Err(CliError::Run(failed.join("\n")));
+    if !(findings.wrong.is_empty() && findings.failed.is_empty()) {
+        return Err(CliError::Check(findings));
     }
     let plural = if files.len() == 1 { "scenario is" } else { "scenarios are" };
     print(&format!("{shown}{} {plural} valid{}\n", files.len(), not_asked(&missing)))?;
     Ok(Exit::Passed)
+}
+
+/// What keeps scenarios from being valid.
+#[derive(Debug, Default)]
+pub(crate) struct Findings {
+    /// What is wrong with them, a file each.
+    wrong: Vec<CliError>,
+    /// Why some could not be checked.
+    failed: Vec<Unasked>,
+}
+
+impl Findings {
+    /// What the program ends with.
+    pub(crate) fn exit(&self) -> Exit {
+        if self.wrong.is_empty() { Exit::Run } else { Exit::Input }
+    }
+}
+
+impl fmt::Display for Findings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let wrong = self.wrong.iter().map(ToString::to_string);
+        f.write_str(&wrong.chain(self.failed.iter().map(ToString::to_string)).collect::<Vec<_>>().join("\n"))
+    }
+}
+
+impl std::error::Error for Findings {}
+
+/// An engine that could not be asked about a scenario.
+#[derive(Debug, Error)]
+#[error("{}: {}", .file.display(), printable(&.error.to_string()))]
+struct Unasked {
+    file: PathBuf,
+    error: RunError,
 }
 
 /// What the engines of a scenario say of it.

@@ -2,7 +2,8 @@
 use crate::args::{CompareArgs, Equal};
 use crate::console::{print, program, say, style};
 use crate::engines;
-use crate::exit::{CliError, Exit, of_outcome, of_run_error};
+use crate::error::{CliError, FailedRun};
+use crate::exit::{Exit, of_outcome};
 use crate::interrupt;
 use crate::output::{self, COMPARISON, Written};
 use crate::progress::Progress;
@@ -12,7 +13,7 @@ use servobench_config::Choice as _;
 use servobench_report::{Compared, Comparison, Outcome, Results, RunResult, elided, printable};
 use servobench_scenario::{Difference, differences};
 use servobench_suite::{
-    CompareError, Job, Run, RunError, comparable, execute, jobs, limits_agree, map_in_parallel, only_setpoints_differ,
+    Job, Run, RunError, comparable, execute, jobs, limits_agree, map_in_parallel, only_setpoints_differ,
     to_equal_duration,
 };
 use servobench_trace::Recording;
@@ -27,13 +28,12 @@ const LONGEST: usize = 30;
 /// recording of them all.
 pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
     let mut jobs = wanted_jobs(args)?;
-    let wrong = |error: CompareError| CliError::Input(error.to_string());
-    comparable(&jobs).map_err(wrong)?;
+    comparable(&jobs)?;
     let is_of_set_points = only_setpoints_differ(&jobs);
     match args.equal {
         None => {}
-        Some(Equal::Limits) => limits_agree(&jobs).map_err(wrong)?,
-        Some(Equal::Duration) => to_equal_duration(&mut jobs).map_err(wrong)?,
+        Some(Equal::Limits) => limits_agree(&jobs)?,
+        Some(Equal::Duration) => to_equal_duration(&mut jobs)?,
     }
     let labels = labels(&jobs.iter().map(|job| job.scenario.name.as_str()).collect::<Vec<_>>());
     output::make_folder(&args.out)?;
@@ -60,11 +60,11 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
     let comparison = if is_of_set_points { comparison } else { comparison.of_more_than_set_points() };
     let has_something = comparison.has_something_to_compare();
     let text = text_of(args, &jobs, &comparison, &recording);
-    let json = Results::new(results).to_json().map_err(|error| CliError::Run(error.to_string()))?;
+    let json = Results::new(results).to_json()?;
     output::write_file(&args.out.join(COMPARISON), &json)?;
     interrupt::told();
     if !has_something {
-        return Err(CliError::Input("nothing was measured of two of these runs: there is nothing to compare".into()));
+        return Err(CliError::NothingToCompare);
     }
     print(&text)?;
     Ok(exit)
@@ -74,7 +74,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
 fn wanted_jobs(args: &CompareArgs) -> Result<Vec<Job>, CliError> {
     let sources = sources::load(&args.scenarios)?;
     if sources.len() < 2 {
-        return Err(CliError::Input("a comparison needs two scenarios at least".into()));
+        return Err(CliError::TooFewScenarios);
     }
     let engine = args.engine.or_else(|| sources[0].scenario.engines.first().copied());
     Ok(jobs(sources, &[engine.unwrap_or_default()]))
@@ -90,21 +90,14 @@ fn carried_out(args: &CompareArgs, jobs: &[Job]) -> Result<Vec<Run>, CliError> {
         ended
     });
     progress.finish();
-    let (mut runs, mut failures, mut exit) = (Vec::new(), Vec::new(), Exit::Passed);
+    let (mut runs, mut failed) = (Vec::new(), Vec::new());
     for (job, ended) in jobs.iter().zip(ended) {
         match ended.map_err(RunError::from).flatten() {
             Ok(run) => runs.push(run),
-            Err(error) => {
-                exit = exit.worse(of_run_error(&error));
-                failures.push(format!("{} on {}: {error}", job.scenario.name, job.engine));
-            }
+            Err(error) => failed.push(FailedRun::new(job, error)),
         }
     }
-    match exit {
-        Exit::Passed => Ok(runs),
-        Exit::Input => Err(CliError::Input(failures.join("\n"))),
-        Exit::Run | Exit::Failed => Err(CliError::Run(failures.join("\n"))),
-    }
+    if failed.is_empty() { Ok(runs) } else { Err(CliError::Runs(failed)) }
 }
 
 fn text_of(args: &CompareArgs, jobs: &[Job], comparison: &Comparison<'_>, recording: &str) -> String {
@@ -176,8 +169,7 @@ fn write_recording(args: &CompareArgs, jobs: &[Job], labels: &[String], runs: &[
     let name = labels.join("-against-");
     let name: String = name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect();
     let name = format!("{name}.rrd");
-    servobench_view::write_comparison_rrd(&labelled, args.out.join(&name), &options)
-        .map_err(|error| CliError::Run(error.to_string()))?;
+    servobench_view::write_comparison_rrd(&labelled, args.out.join(&name), &options)?;
     interrupt::written(&args.out.join(&name));
     Ok(name)
 }

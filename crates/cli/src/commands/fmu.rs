@@ -1,12 +1,13 @@
 //! `servobench fmu`: what is in an FMU, and an axis as an FMU.
 use crate::args::{FmuCommand, FmuExportArgs, FmuInfoArgs, FmuVersion};
 use crate::console::{print, say, style};
-use crate::exit::{CliError, Exit};
+use crate::error::CliError;
+use crate::exit::Exit;
 use crate::output::{spares, write_file};
 use crate::sources;
 use servobench_fmi::{Archive, Limits, Version};
 use servobench_fmu::{Part, export, library};
-use servobench_report::{fmu_table, printable};
+use servobench_report::fmu_table;
 use std::path::PathBuf;
 
 /// Info or export.
@@ -19,15 +20,14 @@ pub(crate) fn fmu(command: &FmuCommand) -> Result<Exit, CliError> {
 
 /// Hosts an FMU for another process of this program.
 pub(crate) fn fmu_host() -> Result<Exit, CliError> {
-    servobench_engine_fmu::host().map_err(|error| CliError::Run(error.to_string()))?;
+    servobench_engine_fmu::host()?;
     Ok(Exit::Passed)
 }
 
 /// Nothing of the FMU is executed for it.
 fn info(args: &FmuInfoArgs) -> Result<Exit, CliError> {
-    let mistake = |error: servobench_fmi::FmuError| CliError::Input(printable(&error.to_string()));
-    let mut archive = Archive::open(&args.file, &Limits::default()).map_err(mistake)?;
-    let description = archive.description().map_err(mistake)?;
+    let mut archive = Archive::open(&args.file, &Limits::default()).map_err(CliError::Fmu)?;
+    let description = archive.description().map_err(CliError::Fmu)?;
     let files: Vec<String> = archive.files().map(str::to_owned).collect();
     print(&fmu_table(&description, &files, style()))?;
     Ok(Exit::Passed)
@@ -35,14 +35,14 @@ fn info(args: &FmuInfoArgs) -> Result<Exit, CliError> {
 
 fn write(args: &FmuExportArgs) -> Result<Exit, CliError> {
     let loaded = sources::read(&args.scenario)?;
-    let program = std::env::current_exe().map_err(|error| CliError::Run(format!("cannot find myself: {error}")))?;
-    let library = library(&program).map_err(|error| CliError::Run(error.to_string()))?;
+    let program = std::env::current_exe().map_err(CliError::OwnProgram)?;
+    let library = library(&program).map_err(|error| CliError::Library(Box::new(error)))?;
     let version = match args.fmi {
         FmuVersion::Two => Version::Two,
         FmuVersion::Three => Version::Three,
     };
     let part = Part::from_name(args.part.name()).unwrap_or(Part::Axis);
-    let bytes = export(&loaded, version, part, &library).map_err(|error| CliError::Input(error.to_string()))?;
+    let bytes = export(&loaded, version, part, &library).map_err(|error| CliError::Export(Box::new(error)))?;
     let output = args.output.clone().unwrap_or_else(|| PathBuf::from(format!("{}.fmu", loaded.scenario.name)));
     spares(&args.scenario, Some(&output))?;
     write_file(&output, &bytes)?;

@@ -1,8 +1,8 @@
 //! `servobench objects`: the object dictionary of the drive.
 use crate::args::{ObjectsArgs, ObjectsFormat};
 use crate::console::style;
-use crate::diagnostics::mistakes;
-use crate::exit::{CliError, Exit};
+use crate::error::CliError;
+use crate::exit::Exit;
 use crate::output::{print_or_write, spares, write_time};
 use crate::sources;
 use servobench_cia402::PowerState;
@@ -38,11 +38,7 @@ pub(crate) fn objects(args: &ObjectsArgs) -> Result<Exit, CliError> {
 fn as_written(path: &Path) -> Result<Dictionary, CliError> {
     let loaded = sources::read(path)?;
     let Some(bus) = &loaded.scenario.bus else {
-        return Err(CliError::Input(format!(
-            "`{}` has no `[bus]`, over which objects are written: add one, or leave the scenario out for the values after \
-             power-on",
-            path.display()
-        )));
+        return Err(CliError::NoBus { scenario: path.to_owned() });
     };
     let mut dictionary = Dictionary::new();
     let mut refused = Vec::new();
@@ -53,7 +49,11 @@ fn as_written(path: &Path) -> Result<Dictionary, CliError> {
             refused.push(loaded.mistake(&write.key, error.to_string(), answer));
         }
     }
-    if refused.is_empty() { Ok(dictionary) } else { Err(CliError::Input(mistakes(&refused, &loaded.sources))) }
+    if refused.is_empty() {
+        Ok(dictionary)
+    } else {
+        Err(CliError::Mistakes { diagnostics: refused, sources: Box::new(loaded.sources) })
+    }
 }
 
 /// What a data sheet calls itself: its file, if CiA 306 allows that name.

@@ -1,122 +1,109 @@
-//! `servobench plan`: one move of any family on paper.
-mod arguments;
+//! `servobench plan`: one move of any family without an axis.
+//!
+//! Each profile is a file with its options and the move that they describe; an option is added there.
 mod filter;
+mod mistake;
 mod point_to_point;
+mod profile;
+mod quantity;
 mod replanning;
 mod rockwell;
 mod table;
 
-use crate::args::{PlanArgs, PlanProfile};
+pub(crate) use mistake::PlanMistake;
+
 use crate::console::print;
-use crate::exit::{CliError, Exit};
+use crate::error::CliError;
+use crate::exit::Exit;
 use crate::output::write_file;
-use arguments::Arguments;
+use clap::Args;
+use filter::FILTER;
+use profile::Profile;
+use quantity::{positive_time, time};
 use servobench_base::Coordinate;
-use servobench_planner::{CommandCycle, Request};
 use servobench_report::{PlannedMove, ReportError};
-use std::path::Path;
+use std::convert::Infallible;
+use std::path::{Path, PathBuf};
+
+pub(crate) const EXAMPLES: &str = "\
+Examples:
+  servobench plan --order 4 --distance \"1 m\" --velocity \"1 m/s\"
+      --acceleration \"5 m/s2\" --jerk \"50 m/s3\" --snap \"1000 m/s4\"
+      --method optimal --svg plan.svg
+  servobench plan --order 4 … --start-velocity \"0.4 m/s\" --online refined
+  servobench plan rockwell --help";
+
+#[derive(Debug, Args)]
+pub(crate) struct PlanArgs {
+    #[command(flatten)]
+    profile: Profile,
+    /// Slow the move down to this duration, as "2 s"; every derivative is lowered.
+    #[arg(long, value_name = "TIME", value_parser = time, global = true, help_heading = FILTER)]
+    duration: Option<f64>,
+    #[command(flatten)]
+    output: OutputArgs,
+    /// What profiles were chosen by before they were commands.
+    #[arg(long = "profile", value_name = "PROFILE", hide = true, value_parser = former_profile)]
+    former_profile: Option<Infallible>,
+}
+
+/// What every profile has.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Output")]
+struct OutputArgs {
+    /// Print JSON.
+    #[arg(long, global = true)]
+    json: bool,
+    /// Write time, position, velocity, acceleration, jerk, snap (SI): a row for each sample of a sampled plan, 1001 rows
+    /// at equal steps of another.
+    #[arg(long, value_name = "FILE", global = true)]
+    csv: Option<PathBuf>,
+    /// Write a row of the table every so often instead, as "1 ms".
+    #[arg(long, value_name = "TIME", value_parser = positive_time, requires = "csv", global = true)]
+    csv_step: Option<f64>,
+    /// Draw position and its derivatives with their limits, and where they bind.
+    #[arg(long, value_name = "FILE", global = true)]
+    svg: Option<PathBuf>,
+}
+
+/// What is written today for a profile that was chosen by `--profile`.
+fn former_profile(name: &str) -> Result<Infallible, String> {
+    Err(match name {
+        "point-to-point" => "leave --profile out: servobench plan --order … --distance …".into(),
+        name => format!("each profile is a command now: servobench plan {name} …"),
+    })
+}
 
 /// Plans the move and prints, tabulates or draws it.
 pub(crate) fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
-    let (planned, csv_step) = planned(args)?;
-    if let Some(path) = &args.csv {
-        write_csv(&planned, csv_step, path)?;
+    let OutputArgs { json, csv, csv_step, svg } = &args.output;
+    let planned = planned(&args.profile, args.duration).map_err(CliError::Plan)?;
+    if let Some(path) = csv {
+        write_csv(&planned, *csv_step, path)?;
     }
-    if let Some(path) = &args.commands {
+    if let Some(path) = args.profile.commands() {
         servobench_trace::stream_whole(path, |file| planned.write_commands(file).map(drop))
-            .map_err(|error| cannot_write(path, &error))?;
+            .map_err(|error| CliError::WritePlan { path: path.to_owned(), error })?;
     }
-    if let Some(path) = &args.svg {
+    if let Some(path) = svg {
         write_file(path, planned.svg())?;
     }
-    let json = || planned.json().map_err(|error| CliError::Run(error.to_string()));
-    print(&if args.json { json()? } else { planned.table() })?;
+    print(&if *json { planned.json()? } else { planned.table() })?;
     Ok(Exit::Passed)
 }
 
-/// The plan, and how far the rows of its table are apart (s) where that is said.
-fn planned(args: &PlanArgs) -> Result<(PlannedMove, Option<f64>), CliError> {
-    let mut arguments = Arguments::of(args);
-    let generator = match args.profile {
-        PlanProfile::PointToPoint if replanning::is_meant(&arguments) => replanning::generator(args, &mut arguments),
-        PlanProfile::PointToPoint => point_to_point::generator(args, &mut arguments),
-        PlanProfile::Rockwell => rockwell::generator(args, &mut arguments),
-        PlanProfile::Pvt => table::pvt(args, &mut arguments),
-        PlanProfile::Position => table::position(args, &mut arguments),
-    };
-    let duration = arguments.time("duration");
-    // A bus whose units are finer than what matters, at its first instant when the move begins.
-    let is_sent = matches!(args.profile, PlanProfile::Position);
-    let cycle = is_sent.then(|| arguments.positive_time("command-cycle")).flatten();
-    let commands = cycle.map(|period| CommandCycle { period, first: 0.0, unit: 0.0 });
-    let csv_step = arguments.positive_time("csv-step");
-    let filter = filter::filter(args, &mut arguments);
-    let (motion, units) = arguments.finish()?;
-    let Some(generator) = generator else {
-        // Whatever is missing has been told.
-        return Err(CliError::Input("the move is not described".into()));
-    };
-    let unit = motion.unwrap_or(Coordinate::Linear).unit();
-    let planned = PlannedMove::new(Request { generator, duration, filter, commands }, unit);
-    let planned = planned.map_err(|error| CliError::Input(by_flags(&error.to_string())))?;
-    let planned =
-        units.into_iter().fold(planned, |planned, told| planned.as_given(told.derivative, &told.text, told.value));
-    Ok((planned, csv_step))
-}
-
-/// Fields of a request whose flags have other names.
-const FIELDS: [(&str, &str); 14] = [
-    ("alpha", "plateau"),
-    ("rate", "command-rate"),
-    ("allowed", "allowed-error"),
-    ("speed", "velocity"),
-    ("target.x", "distance"),
-    ("target.v", "end-velocity"),
-    ("from.x", "start-position"),
-    ("from.v", "start-velocity"),
-    ("from.a", "start-acceleration"),
-    ("from.j", "start-jerk"),
-    ("velocity.above", "velocity"),
-    ("velocity.below", "negative-velocity"),
-    ("acceleration.above", "acceleration"),
-    ("acceleration.below", "negative-acceleration"),
-];
-
-/// What a planner says of its request, with flags for its fields.
-fn by_flags(message: &str) -> String {
-    let mut parts = message.split('`');
-    let mut text = parts.next().unwrap_or_default().to_owned();
-    for (i, part) in parts.enumerate() {
-        if i % 2 == 0 {
-            let flag = FIELDS.iter().find(|(field, _)| *field == part).map_or(part, |(_, flag)| flag);
-            text.push_str("--");
-            text.push_str(&flag.replace('_', "-"));
-        } else {
-            text.push_str(part);
-        }
-    }
-    text
+/// The plan, told in the units in which it was asked for.
+fn planned(profile: &Profile, duration: Option<f64>) -> Result<PlannedMove, Vec<PlanMistake>> {
+    let (request, axis) = profile.request(duration)?;
+    let unit = axis.motion.unwrap_or(Coordinate::Linear).unit();
+    let planned = PlannedMove::new(request, unit).map_err(|error| vec![PlanMistake::Refused(error)])?;
+    let units = axis.units.into_iter();
+    Ok(units.fold(planned, |planned, given| planned.as_given(given.derivative, &given.text, given.value)))
 }
 
 fn write_csv(planned: &PlannedMove, step: Option<f64>, path: &Path) -> Result<(), CliError> {
     servobench_trace::stream_whole(path, |file| planned.write_csv(step, file)).map_err(|error| match error {
-        ReportError::TooManyRows { .. } => CliError::Input(format!("--csv would write {error}")),
-        error => cannot_write(path, &error),
+        error @ ReportError::TooManyRows { .. } => CliError::Plan(vec![PlanMistake::TooManyRows(error)]),
+        error => CliError::WritePlan { path: path.to_owned(), error },
     })
-}
-
-fn cannot_write(path: &Path, error: &ReportError) -> CliError {
-    CliError::Run(format!("cannot write `{}`: {error}", path.display()))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_planner_speaks_of_flags() {
-        assert_eq!(by_flags("`alpha` must be above 0, got 2"), "--plateau must be above 0, got 2");
-        assert_eq!(by_flags("about `sample_time` = 1 s and `x`"), "about --sample-time = 1 s and --x");
-        assert_eq!(by_flags("nothing"), "nothing");
-    }
 }

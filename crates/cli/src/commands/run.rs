@@ -4,7 +4,8 @@ mod wanted;
 use crate::args::RunArgs;
 use crate::console::{print, program, say, style};
 use crate::engines;
-use crate::exit::{CliError, Exit, of_outcome, of_run_error};
+use crate::error::CliError;
+use crate::exit::{Exit, of_outcome, of_run_error};
 use crate::interrupt;
 use crate::output::{self, RESULTS, Written};
 use crate::progress::Progress;
@@ -68,7 +69,6 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
 
 /// Every file is wrong: the mistakes are what is said, and nothing of earlier runs is touched.
 fn nothing_to_run(args: &RunArgs, wanted: Wanted) -> Result<Exit, CliError> {
-    let shown = wanted.mistakes();
     let ended: Vec<Timed> = wanted.in_order(Vec::new());
     let (runs, times): (Vec<_>, Vec<_>) = ended.into_iter().unzip();
     let results = Results::new(runs);
@@ -78,7 +78,7 @@ fn nothing_to_run(args: &RunArgs, wanted: Wanted) -> Result<Exit, CliError> {
         say(&format!("servobench: {error}\n"));
     }
     if !args.quiet {
-        return Err(CliError::Input(shown));
+        return Err(CliError::Scenarios(wanted.into_unusable()));
     }
     print(&brief(&results))?;
     Ok(Exit::Input)
@@ -150,14 +150,14 @@ fn one(
 }
 
 fn write_results(results: &Results, out: &Path) -> Result<(), CliError> {
-    let text = results.to_json().map_err(|error| CliError::Run(error.to_string()))?;
+    let text = results.to_json()?;
     output::write_file(&out.join(RESULTS), &text)?;
     interrupt::told();
     Ok(())
 }
 
 fn write_junit(results: &Results, times: &[Duration], path: &Path) -> Result<(), CliError> {
-    let text = junit(results, times).map_err(|error| CliError::Run(error.to_string()))?;
+    let text = junit(results, times)?;
     output::write_file_anywhere(path, &text)
 }
 

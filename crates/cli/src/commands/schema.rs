@@ -1,11 +1,11 @@
 //! `servobench schema`
 use crate::console::print;
-use crate::exit::{CliError, Exit};
+use crate::error::CliError;
+use crate::exit::Exit;
 
 /// Prints the JSON Schema of a scenario file.
 pub(crate) fn schema() -> Result<Exit, CliError> {
-    let text = serde_json::to_string_pretty(&servobench_scenario::json_schema())
-        .map_err(|error| CliError::Run(error.to_string()))?;
+    let text = serde_json::to_string_pretty(&servobench_scenario::json_schema()).map_err(CliError::Schema)?;
     print(&(text + "\n"))?;
     Ok(Exit::Passed)
 }

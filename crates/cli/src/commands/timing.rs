@@ -1,14 +1,15 @@
 //! `servobench timing`: the timing diagram of a stored recording.
 use crate::args::TimingArgs;
-use crate::exit::{CliError, Exit};
+use crate::error::CliError;
+use crate::exit::Exit;
 use crate::output::{print_or_write, spares};
-use servobench_report::{ReportError, TimingOptions, timing_diagram};
+use servobench_report::{TimingOptions, timing_diagram};
 use servobench_trace::Recording;
 
 /// Draws the diagram.
 pub(crate) fn timing(args: &TimingArgs) -> Result<Exit, CliError> {
     spares(&args.recording, args.output.as_deref())?;
-    let recording = Recording::read_parquet(&args.recording).map_err(|error| CliError::Input(error.to_string()))?;
+    let recording = Recording::read_parquet(&args.recording).map_err(CliError::ReadRecording)?;
     let default = TimingOptions::default();
     let options = TimingOptions {
         from: args.from,
@@ -17,20 +18,8 @@ pub(crate) fn timing(args: &TimingArgs) -> Result<Exit, CliError> {
         sources: args.source.clone(),
         with_idle: args.idle,
     };
-    let diagram = timing_diagram(&recording, &options).map_err(|error| {
-        let flags = flags(&error);
-        CliError::Input(format!("`{}`: {flags}{error}", args.recording.display()))
-    })?;
+    let diagram = timing_diagram(&recording, &options)
+        .map_err(|error| CliError::Timing { recording: args.recording.clone(), error })?;
     print_or_write(args.output.as_deref(), &diagram)?;
     Ok(Exit::Passed)
-}
-
-/// The arguments that `error` is about, before it.
-const fn flags(error: &ReportError) -> &'static str {
-    match error {
-        ReportError::Width { .. } => "--width: ",
-        ReportError::UnknownSource { .. } => "--source: ",
-        ReportError::NoSuchTime { .. } => "--from, --to: ",
-        _ => "",
-    }
 }

@@ -1,29 +1,24 @@
 //! `servobench view`: opens a recording in the Rerun viewer.
 use crate::args::ViewArgs;
-use crate::exit::{CliError, Exit};
+use crate::error::CliError;
+use crate::exit::Exit;
 use crate::output::{self, COMPARISON, RESULTS};
 use servobench_report::{Results, RunResult};
 use servobench_trace::Recording;
 use servobench_view::{ViewOptions, write_rrd};
 use std::ffi::OsStr;
-use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::SystemTime;
 
-const HOW_TO_GET_IT: &str = "there is no Rerun viewer: `cargo xtask viewer` fetches one, and so does \
-                             `pip install rerun-sdk==0.36.3`";
-
 /// Opens a recording in the viewer that is installed, or that `cargo xtask viewer` fetched.
 pub(crate) fn view(args: &ViewArgs) -> Result<Exit, CliError> {
     let recordings = recordings(&args.recording)?;
-    let viewer = viewer().ok_or_else(|| CliError::Run(HOW_TO_GET_IT.into()))?;
-    let status = Command::new(&viewer)
-        .args(&recordings)
-        .status()
-        .map_err(|error| CliError::Run(format!("cannot start {}: {error}; {HOW_TO_GET_IT}", viewer.display())))?;
-    if status.success() { Ok(Exit::Passed) } else { Err(CliError::Run(format!("the viewer ended with {status}"))) }
+    let viewer = viewer().ok_or(CliError::NoViewer)?;
+    let status = Command::new(&viewer).args(&recordings).status();
+    let status = status.map_err(|error| CliError::StartViewer { viewer, error })?;
+    if status.success() { Ok(Exit::Passed) } else { Err(CliError::ViewerEnded(status)) }
 }
 
 /// The `.rrd` files behind `path`: a recording, or those that the results in a folder name.
@@ -32,14 +27,13 @@ fn recordings(path: &Path) -> Result<Vec<PathBuf>, CliError> {
         return Ok(vec![as_rrd(path)?]);
     }
     let results = latest_results(path)?;
-    let wrong = |error: &dyn Display| CliError::Input(format!("cannot read `{}`: {error}", results.display()));
-    let text = std::fs::read_to_string(&results).map_err(|error| wrong(&error))?;
-    let results = Results::from_json(&text).map_err(|error| wrong(&error))?;
+    let text = std::fs::read_to_string(&results).map_err(|error| CliError::Read { path: results.clone(), error })?;
+    let results = Results::from_json(&text).map_err(|error| CliError::ReadResults { path: results, error })?;
     let mut names: Vec<String> = results.scenarios.into_iter().filter_map(|run| run.recording).collect();
     // All runs of a comparison lie in one recording.
     names.dedup();
     if names.is_empty() {
-        return Err(CliError::Input(format!("no run in `{}` left a recording", path.display())));
+        return Err(CliError::NoRecording { folder: path.to_owned() });
     }
     names.iter().map(|name| as_rrd(&path.join(name))).collect()
 }
@@ -48,28 +42,22 @@ fn recordings(path: &Path) -> Result<Vec<PathBuf>, CliError> {
 fn latest_results(folder: &Path) -> Result<PathBuf, CliError> {
     let files = [RESULTS, COMPARISON].map(|name| folder.join(name));
     let written = files.into_iter().filter_map(|file| Some((modified(&file).ok()?, file)));
-    written.max_by_key(|(when, _)| *when).map(|(_, file)| file).ok_or_else(|| {
-        CliError::Input(format!(
-            "there is no `{RESULTS}` and no `{COMPARISON}` in `{}`; name a recording, or a folder that `run` or \
-             `compare` wrote",
-            folder.display()
-        ))
-    })
+    let latest = written.max_by_key(|(when, _)| *when).map(|(_, file)| file);
+    latest.ok_or_else(|| CliError::NoResults { folder: folder.to_owned() })
 }
 
 /// The recording for the viewer: beside a Parquet file the `.rrd` that was made of it, or a new one when that is older.
 fn as_rrd(path: &Path) -> Result<PathBuf, CliError> {
-    let written =
-        modified(path).map_err(|error| CliError::Input(format!("cannot read `{}`: {error}", path.display())))?;
+    let written = modified(path).map_err(|error| CliError::Read { path: path.to_owned(), error })?;
     if path.extension() != Some(OsStr::new("parquet")) {
         return Ok(path.to_owned());
     }
     let rrd = path.with_extension("rrd");
     if !modified(&rrd).is_ok_and(|made| made >= written) {
-        let recording = Recording::read_parquet(path).map_err(|error| CliError::Input(error.to_string()))?;
+        let recording = Recording::read_parquet(path).map_err(CliError::ReadRecording)?;
         let verdicts = verdict_beside(path, &recording).into_iter().collect();
         let options = ViewOptions { verdicts, ..ViewOptions::default() };
-        write_rrd(&recording, &rrd, &options).map_err(|error| CliError::Run(error.to_string()))?;
+        write_rrd(&recording, &rrd, &options)?;
     }
     Ok(rrd)
 }

@@ -1,7 +1,8 @@
 //! `servobench worker`: one scenario in a process of its own.
 use crate::args::WorkerArgs;
 use crate::engines;
-use crate::exit::{CliError, Exit};
+use crate::error::CliError;
+use crate::exit::Exit;
 use crate::interrupt;
 use servobench_suite::worker::{End, Order, serve};
 use std::io::Read;
@@ -12,7 +13,7 @@ pub(crate) fn worker(args: &WorkerArgs) -> Result<Exit, CliError> {
     // Ctrl-C reaches it as well: what it has unpacked goes with it.
     interrupt::watch(&std::env::temp_dir())?;
     let mut text = String::new();
-    std::io::stdin().read_to_string(&mut text).map_err(|error| CliError::Run(format!("standard input: {error}")))?;
+    std::io::stdin().read_to_string(&mut text).map_err(CliError::Listen)?;
     let order = Order {
         name: args.name.clone(),
         path: args.path.clone(),

@@ -1,9 +1,8 @@
 //! What the table says, in words.
-use super::closed_form::{AROUND, Ratios};
 use super::relation::{Relation, percent};
 use super::{Compared, Comparison, Value, force_or_torque, in_words, vibration_of};
 use crate::text::wrapped;
-use servobench_metrics::{Name, Quantity};
+use servobench_metrics::{Name, Quantity, ResidualRatios};
 
 impl Comparison<'_> {
     /// What the table says, in sentences of lines that fit `width`.
@@ -17,6 +16,9 @@ impl Comparison<'_> {
         wrapped(&sentences.join(" "), width).join("\n") + "\n"
     }
 }
+
+/// Frequencies on either side of a mode that are looked at, relative.
+const AROUND: f64 = 0.1;
 
 /// Names of the derivatives that have limits, and their powers of the second.
 const DERIVATIVES: [(&str, &str); 4] = [("velocity", ""), ("acceleration", "²"), ("jerk", "³"), ("snap", "⁴")];
@@ -117,7 +119,7 @@ impl<'a> Pair<'a> {
             return None;
         }
         let (frequency, _) = mode(self.other)?;
-        let Ratios { low, high } = Ratios::of(self.this.moves, self.other.moves, frequency, AROUND)?;
+        let ResidualRatios { low, high } = ResidualRatios::of(self.this.moves, self.other.moves, frequency, AROUND)?;
         Some(format!(
             "Of undamped modes within ±{:.0} % of that frequency the set-points alone would make, by their closed form, \
              four in five ring from {} to {}.",

@@ -1,77 +1,121 @@
 //! A move by the operands of Rockwell's axis move.
-use super::arguments::Arguments;
-use crate::args::PlanArgs;
+use super::filter::SampledFilterArgs;
+use super::mistake::PlanMistake;
+use super::quantity::{ACCELERATION, Axis, AxisQuantity, JERK, POSITION, VELOCITY, percent};
+use crate::args::choice;
+use clap::Args;
 use servobench_motion::rockwell::{Jerk, MaximumJerk, Move, Shape, ShapeKind};
-use servobench_planner::{Generator, Rockwell};
-use servobench_scenario::Derivative;
+use servobench_planner::{Filter, Rockwell};
 
-/// The ways to say the jerk of a ramp: value, percent of time, percent of the maximum.
-const UP: [&str; 3] = ["jerk", "jerk-percent-of-time", "jerk-percent-of-maximum"];
-const DOWN: [&str; 3] =
-    ["deceleration-jerk", "deceleration-jerk-percent-of-time", "deceleration-jerk-percent-of-maximum"];
+#[derive(Debug, Args)]
+pub(crate) struct RockwellArgs {
+    /// Distance, as "100 mm" or "90 deg"; its sign is the direction.
+    #[arg(long, value_parser = POSITION, allow_hyphen_values = true)]
+    distance: AxisQuantity,
+    /// Speed of the move, as "0.2 m/s".
+    #[arg(long, value_parser = VELOCITY)]
+    velocity: AxisQuantity,
+    /// Acceleration, as "10 m/s2".
+    #[arg(long, value_parser = ACCELERATION)]
+    acceleration: AxisQuantity,
+    /// Deceleration, where it is not the acceleration.
+    #[arg(long, value_parser = ACCELERATION)]
+    deceleration: Option<AxisQuantity>,
+    /// Shape of the velocity; an S-curve where a jerk is given.
+    #[arg(long, value_parser = choice::<ShapeKind>())]
+    shape: Option<ShapeKind>,
+    /// Jerk, as "1000 m/s3".
+    #[arg(long, value_parser = JERK)]
+    jerk: Option<AxisQuantity>,
+    /// Part of the ramp in which the acceleration changes, 0 to 100.
+    #[arg(
+        long,
+        value_name = "PERCENT",
+        value_parser = percent,
+        conflicts_with_all = ["jerk", "jerk_percent_of_maximum"]
+    )]
+    jerk_percent_of_time: Option<f64>,
+    /// Part of --maximum-jerk, 0 to 100.
+    #[arg(long, value_name = "PERCENT", value_parser = percent, conflicts_with = "jerk")]
+    jerk_percent_of_maximum: Option<f64>,
+    /// Jerk of the deceleration, where it is not said as that of the acceleration.
+    #[arg(long, value_name = "JERK", value_parser = JERK)]
+    deceleration_jerk: Option<AxisQuantity>,
+    /// The same as a part of the ramp.
+    #[arg(
+        long,
+        value_name = "PERCENT",
+        value_parser = percent,
+        conflicts_with_all = ["deceleration_jerk", "deceleration_jerk_percent_of_maximum"]
+    )]
+    deceleration_jerk_percent_of_time: Option<f64>,
+    /// The same as a part of --maximum-jerk.
+    #[arg(long, value_name = "PERCENT", value_parser = percent, conflicts_with = "deceleration_jerk")]
+    deceleration_jerk_percent_of_maximum: Option<f64>,
+    /// Jerk that the axis is configured for, as "1000 m/s3"; a trapezoid takes all of it.
+    #[arg(long, value_name = "JERK", value_parser = JERK)]
+    maximum_jerk: Option<AxisQuantity>,
+    #[command(flatten)]
+    filter: SampledFilterArgs,
+}
 
-pub(super) fn generator(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Generator> {
-    let distance = arguments.needed_axis("distance", Derivative::Position, "how far the move goes, as \"100 mm\"");
-    let speed = arguments.needed_axis("velocity", Derivative::Velocity, "the speed of the move, as \"0.2 m/s\"");
-    let why = "a Rockwell move needs it, as \"10 m/s2\"";
-    let acceleration = arguments.needed_axis("acceleration", Derivative::Acceleration, why);
-    let deceleration = if arguments.is_given("deceleration") {
-        arguments.axis("deceleration", Derivative::Acceleration)
-    } else {
-        acceleration
-    };
-    let said = UP.iter().chain(&DOWN).find(|flag| arguments.is_given(flag)).copied();
-    arguments.take("shape");
-    let shape = args.shape.unwrap_or(if said.is_some() { ShapeKind::SCurve } else { ShapeKind::Trapezoid });
-    let (shape, needs_maximum) = match shape {
-        ShapeKind::Trapezoid => {
-            if let Some(said) = said {
-                arguments.mistake(format!(
-                    "--{said} is for --shape s-curve: a trapezoid takes all of --maximum-jerk; leave one of them out"
-                ));
+impl RockwellArgs {
+    pub(super) fn generator(&self, axis: &mut Axis) -> Result<Rockwell, PlanMistake> {
+        let distance = axis.si(&self.distance);
+        let speed = axis.si(&self.velocity);
+        let acceleration = axis.si(&self.acceleration);
+        let deceleration = axis.optional(self.deceleration.as_ref()).unwrap_or(acceleration);
+        let shape = self.shape(axis)?;
+        let maximum = self.maximum_jerk(shape, axis)?;
+        let operands = Move { distance, speed, acceleration, deceleration, shape };
+        Ok(Rockwell { operands, maximum: MaximumJerk { acceleration: maximum, deceleration: maximum } })
+    }
+
+    pub(super) fn filter(&self) -> Result<Filter, PlanMistake> {
+        self.filter.filter()
+    }
+
+    /// The shape with its jerks: an S-curve where one is given.
+    fn shape(&self, axis: &mut Axis) -> Result<Shape, PlanMistake> {
+        let up = jerk(axis, self.jerk.as_ref(), self.jerk_percent_of_time, self.jerk_percent_of_maximum);
+        let down = jerk(
+            axis,
+            self.deceleration_jerk.as_ref(),
+            self.deceleration_jerk_percent_of_time,
+            self.deceleration_jerk_percent_of_maximum,
+        );
+        let has_jerk = up.is_some() || down.is_some();
+        match self.shape.unwrap_or(if has_jerk { ShapeKind::SCurve } else { ShapeKind::Trapezoid }) {
+            ShapeKind::Trapezoid if has_jerk => Err(PlanMistake::JerkOfTrapezoid),
+            ShapeKind::Trapezoid => Ok(Shape::Trapezoid),
+            ShapeKind::SCurve => {
+                let acceleration = up.ok_or(PlanMistake::NoJerk)?;
+                Ok(Shape::SCurve { acceleration, deceleration: down.unwrap_or(acceleration) })
             }
-            for flag in UP.into_iter().chain(DOWN) {
-                arguments.take(flag);
-            }
-            (Some(Shape::Trapezoid), Some("a trapezoid takes it, as \"1000 m/s3\""))
         }
-        ShapeKind::SCurve => {
-            if !UP.iter().any(|flag| arguments.is_given(flag)) {
-                arguments
-                    .missing("jerk", "or --jerk-percent-of-time, or --jerk-percent-of-maximum: an S-curve needs one");
+    }
+
+    /// The jerk that the axis is configured for (SI), where `shape` depends on it.
+    fn maximum_jerk(&self, shape: Shape, axis: &mut Axis) -> Result<f64, PlanMistake> {
+        let is_part = |jerk| matches!(jerk, Jerk::PercentOfMaximum(_));
+        let needed_for = match shape {
+            Shape::Trapezoid => Some("a trapezoid takes it"),
+            Shape::SCurve { acceleration, deceleration } if is_part(acceleration) || is_part(deceleration) => {
+                Some("a percentage of it is asked for")
             }
-            let acceleration = jerk(UP, arguments);
-            let has_own = DOWN.iter().any(|flag| arguments.is_given(flag));
-            let deceleration = if has_own { jerk(DOWN, arguments) } else { acceleration };
-            let is_part = |jerk| matches!(jerk, Some(Jerk::PercentOfMaximum(_)));
-            let needs_maximum = (is_part(acceleration) || is_part(deceleration))
-                .then_some("a percentage of it is asked for; give it as \"1000 m/s3\"");
-            let both = || Some(Shape::SCurve { acceleration: acceleration?, deceleration: deceleration? });
-            (both(), needs_maximum)
+            Shape::SCurve { .. } => None,
+        };
+        match (needed_for, axis.optional(self.maximum_jerk.as_ref())) {
+            (Some(_), Some(maximum)) => Ok(maximum),
+            (Some(why), None) => Err(PlanMistake::NoMaximumJerk { why }),
+            (None, Some(_)) => Err(PlanMistake::UnusedMaximumJerk),
+            (None, None) => Ok(f64::INFINITY),
         }
-    };
-    let maximum = match needs_maximum {
-        Some(why) => arguments.needed_axis("maximum-jerk", Derivative::Jerk, why),
-        None => Some(f64::INFINITY),
-    }?;
-    let operands = Move {
-        distance: distance?,
-        speed: speed?,
-        acceleration: acceleration?,
-        deceleration: deceleration?,
-        shape: shape?,
-    };
-    let maximum = MaximumJerk { acceleration: maximum, deceleration: maximum };
-    Some(Generator::Rockwell(Rockwell { operands, maximum }))
+    }
 }
 
 /// The jerk of a ramp in the way that is given.
-fn jerk([value, of_time, of_maximum]: [&'static str; 3], arguments: &mut Arguments<'_>) -> Option<Jerk> {
-    if arguments.is_given(value) {
-        arguments.axis(value, Derivative::Jerk).map(Jerk::Value)
-    } else if arguments.is_given(of_time) {
-        arguments.percent(of_time).map(Jerk::PercentOfTime)
-    } else {
-        arguments.percent(of_maximum).map(Jerk::PercentOfMaximum)
-    }
+fn jerk(axis: &mut Axis, value: Option<&AxisQuantity>, of_time: Option<f64>, of_maximum: Option<f64>) -> Option<Jerk> {
+    let value = axis.optional(value).map(Jerk::Value);
+    value.or(of_time.map(Jerk::PercentOfTime)).or(of_maximum.map(Jerk::PercentOfMaximum))
 }

@@ -1,70 +1,119 @@
 //! A move through a table of points.
-use super::arguments::Arguments;
-use crate::args::PlanArgs;
+use super::filter::SampledFilterArgs;
+use super::mistake::PlanMistake;
+use super::quantity::{Axis, AxisQuantity, POSITION, frequency, positive_time, ratio};
+use crate::args::choice;
 use crate::console::say;
+use clap::Args;
 use servobench_motion::pvt::Knot;
-use servobench_planner::{CommandRate, Follow, Generator, TableMove, Velocities, VelocitiesKind};
+use servobench_planner::{CommandCycle, CommandRate, Filter, Follow, Generator, TableMove, Velocities, VelocitiesKind};
 use servobench_scenario::{Derivative, Points, axis_quantity, read_points};
 use std::fs::File;
 use std::io::{self, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Bytes of a table at most: far more than five million rows need.
 const LARGEST: u64 = 1 << 29;
 
-/// As it is.
-pub(super) fn pvt(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Generator> {
-    let points = points(args, arguments)?;
-    arguments.take("velocities");
-    let default = if points.velocities.is_some() { VelocitiesKind::Given } else { VelocitiesKind::Average };
-    let velocities = match args.velocities.unwrap_or(default) {
-        VelocitiesKind::Given => Velocities::Given,
-        VelocitiesKind::Average => Velocities::Average,
-        VelocitiesKind::Continuous => Velocities::Continuous,
-        VelocitiesKind::Smooth => {
-            arguments.take("passes");
-            Velocities::Smooth { passes: args.passes.map_or(Velocities::PASSES, u32::from) }
-        }
-    };
-    if args.passes.is_some() && arguments.take("passes").is_some() && !matches!(velocities, Velocities::Smooth { .. }) {
-        arguments.mistake("--passes are those of --velocities smooth: choose that, or leave them out");
-    }
-    let has_inner = points.velocities.as_ref().is_some_and(|all| {
-        let inner = all.get(1..all.len().saturating_sub(1)).unwrap_or_default();
-        inner.iter().any(Option::is_some)
-    });
-    if has_inner && velocities != Velocities::Given {
-        say("of the velocities of the table only the first and the last are used\n");
-    }
-    Some(Generator::Table(TableMove { knots: knots(&points), velocities, follow: Follow::Segments }))
+/// A table that is followed as it is.
+#[derive(Debug, Args)]
+pub(crate) struct PvtArgs {
+    #[command(flatten)]
+    table: TableArgs,
+    /// Where velocities come from [default: given if the table has some, else average].
+    #[arg(long, value_parser = choice::<VelocitiesKind>())]
+    velocities: Option<VelocitiesKind>,
+    /// Passes of --velocities smooth [default: 2].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    passes: Option<u16>,
+    #[command(flatten)]
+    filter: SampledFilterArgs,
 }
 
-/// Sent as velocity commands.
-pub(super) fn position(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Generator> {
-    arguments.take("commands");
-    let points = points(args, arguments)?;
-    let follow = if arguments.is_given("plateau") {
-        Follow::Plateaus { share: arguments.ratio("plateau")? }
-    } else if arguments.is_given("command-rate") {
-        Follow::Steps { rate: CommandRate::Given(arguments.frequency("command-rate")?) }
-    } else if arguments.is_given("allowed-error") {
-        let text = arguments.take("allowed-error")?;
-        // In a unit of its own: positions stay in theirs.
-        match axis_quantity(Derivative::Position, arguments.motion(), text) {
-            Ok((error, _)) => Follow::Steps { rate: CommandRate::LowestWithin(error) },
-            Err(error) => {
-                arguments.mistake(format!("--allowed-error {error}"));
-                return None;
+/// A table that is sent as velocity commands.
+#[derive(Debug, Args)]
+pub(crate) struct PositionArgs {
+    #[command(flatten)]
+    table: TableArgs,
+    #[command(flatten)]
+    sent: SentArgs,
+    /// Commands at whole multiples of this cycle alone, as a bus sends them, "1 ms".
+    #[arg(long, value_name = "TIME", value_parser = positive_time)]
+    command_cycle: Option<f64>,
+    /// Write the velocity commands (SI).
+    #[arg(long, value_name = "FILE")]
+    pub(super) commands: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+struct TableArgs {
+    /// Table of points: time, position and, if known, velocity, with their units in the heading.
+    #[arg(long, value_name = "FILE")]
+    points: PathBuf,
+}
+
+/// The ways to make velocity commands of positions: one of them.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+struct SentArgs {
+    /// Option 1: share of a segment at either end in which velocity changes, above 0 to 0.5.
+    #[arg(long, value_name = "ALPHA", value_parser = ratio)]
+    plateau: Option<f64>,
+    /// Option 2: velocity commands along the spline, as "100 Hz".
+    #[arg(long, value_name = "RATE", value_parser = frequency)]
+    command_rate: Option<f64>,
+    /// The same at the lowest rate that stays so near to the spline, as "10 um".
+    #[arg(long, value_name = "DISTANCE", value_parser = POSITION)]
+    allowed_error: Option<AxisQuantity>,
+}
+
+impl PvtArgs {
+    pub(super) fn generator(&self, axis: &mut Axis) -> Result<Generator, PlanMistake> {
+        let points = self.table.points(axis)?;
+        let default = if points.velocities.is_some() { VelocitiesKind::Given } else { VelocitiesKind::Average };
+        let velocities = match (self.velocities.unwrap_or(default), self.passes) {
+            (VelocitiesKind::Smooth, passes) => {
+                Velocities::Smooth { passes: passes.map_or(Velocities::PASSES, u32::from) }
             }
+            (_, Some(_)) => return Err(PlanMistake::PassesOfOthers),
+            (VelocitiesKind::Given, None) => Velocities::Given,
+            (VelocitiesKind::Average, None) => Velocities::Average,
+            (VelocitiesKind::Continuous, None) => Velocities::Continuous,
+        };
+        let has_inner = points.velocities.as_ref().is_some_and(|all| {
+            let inner = all.get(1..all.len().saturating_sub(1)).unwrap_or_default();
+            inner.iter().any(Option::is_some)
+        });
+        if has_inner && velocities != Velocities::Given {
+            say("of the velocities of the table only the first and the last are used\n");
         }
-    } else {
-        arguments.missing(
-            "plateau",
-            "or --command-rate, or --allowed-error: a position profile is sent in one of these ways",
-        );
-        return None;
-    };
-    Some(Generator::Table(TableMove { knots: knots(&points), velocities: Velocities::Given, follow }))
+        Ok(Generator::Table(TableMove { knots: knots(&points), velocities, follow: Follow::Segments }))
+    }
+
+    pub(super) fn filter(&self) -> Result<Filter, PlanMistake> {
+        self.filter.filter()
+    }
+}
+
+impl PositionArgs {
+    pub(super) fn generator(&self, axis: &mut Axis) -> Result<Generator, PlanMistake> {
+        let points = self.table.points(axis)?;
+        let follow = match &self.sent {
+            SentArgs { plateau: Some(share), .. } => Follow::Plateaus { share: *share },
+            SentArgs { command_rate: Some(rate), .. } => Follow::Steps { rate: CommandRate::Given(*rate) },
+            SentArgs { allowed_error, .. } => {
+                // In a unit of its own: positions stay in theirs.
+                let error = allowed_error.as_ref().map_or(0.0, |error| axis.value(error));
+                Follow::Steps { rate: CommandRate::LowestWithin(error) }
+            }
+        };
+        Ok(Generator::Table(TableMove { knots: knots(&points), velocities: Velocities::Given, follow }))
+    }
+
+    /// The cycle of a bus whose units are finer than what matters, at whose first instant the move begins.
+    pub(super) fn cycle(&self) -> Option<CommandCycle> {
+        self.command_cycle.map(|period| CommandCycle { period, first: 0.0, unit: 0.0 })
+    }
 }
 
 fn knots(points: &Points) -> Vec<Knot> {
@@ -73,38 +122,24 @@ fn knots(points: &Points) -> Vec<Knot> {
     pairs.map(|(i, (t, x))| Knot { t: *t, x: *x, v: velocity(i) }).collect()
 }
 
-/// The table, its units noted.
-fn points(args: &PlanArgs, arguments: &mut Arguments<'_>) -> Option<Points> {
-    arguments.take("points");
-    let Some(path) = &args.points else {
-        arguments.missing("points", "a CSV file with the heading `time [ms],position [mm],velocity [mm/s]`");
-        return None;
-    };
-    let text = match read(path) {
-        Ok(text) => text,
-        Err(error) => {
-            arguments.mistake(format!("--points: cannot read `{}`: {error}", path.display()));
-            return None;
+impl TableArgs {
+    /// The table, its units noted.
+    fn points(&self, axis: &mut Axis) -> Result<Points, PlanMistake> {
+        let file = || self.points.clone();
+        let text = read(&self.points).map_err(|error| PlanMistake::Unreadable { file: file(), error })?;
+        let points = read_points(&text).map_err(|error| PlanMistake::Points { file: file(), error })?;
+        axis.motion = Some(points.motion);
+        let [_, position, velocity] = &points.units;
+        for (derivative, unit) in [(Derivative::Position, position), (Derivative::Velocity, velocity)] {
+            let text = unit.as_ref().map(|unit| format!("1 {unit}"));
+            if let Some((text, (value, _))) =
+                text.and_then(|text| Some((text.clone(), axis_quantity(derivative, Some(points.motion), &text).ok()?)))
+            {
+                axis.tell_in(derivative, &text, value);
+            }
         }
-    };
-    let points = match read_points(&text) {
-        Ok(points) => points,
-        Err(error) => {
-            arguments.mistake(format!("{}:{error}", path.display()));
-            return None;
-        }
-    };
-    arguments.set_motion(points.motion);
-    let [_, position, velocity] = &points.units;
-    for (derivative, unit) in [(Derivative::Position, position), (Derivative::Velocity, velocity)] {
-        let text = unit.as_ref().map(|unit| format!("1 {unit}"));
-        if let Some((text, (value, _))) =
-            text.and_then(|text| Some((text.clone(), axis_quantity(derivative, Some(points.motion), &text).ok()?)))
-        {
-            arguments.tell_in(derivative, &text, value);
-        }
+        Ok(points)
     }
-    Some(points)
 }
 
 fn read(path: &Path) -> io::Result<String> {

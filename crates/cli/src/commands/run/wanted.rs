@@ -1,7 +1,7 @@
 //! What is to be run: jobs, and files that cannot be used, in the order of the files.
 use super::Timed;
 use crate::args::RunArgs;
-use crate::exit::CliError;
+use crate::error::CliError;
 use crate::sources::{self, Unusable};
 use servobench_report::{RunIdentity, RunResult};
 use servobench_suite::{Engines, Job, jobs};
@@ -51,9 +51,15 @@ impl Wanted {
         self.files.iter().filter_map(|file| if let File::Unusable(unusable) = file { Some(unusable) } else { None })
     }
 
-    /// What is wrong with files that cannot be used.
-    pub(super) fn mistakes(&self) -> String {
-        self.unusable().map(|unusable| unusable.shown.as_str()).collect::<Vec<_>>().join("\n")
+    /// The files that cannot be used.
+    pub(super) fn into_unusable(self) -> Vec<Unusable> {
+        let files = self.files.into_iter();
+        files.filter_map(|file| if let File::Unusable(unusable) = file { Some(unusable) } else { None }).collect()
+    }
+
+    /// What is wrong with them.
+    fn mistakes(&self) -> String {
+        self.unusable().map(ToString::to_string).collect::<Vec<_>>().join("\n")
     }
 
     /// The same before the others run, nothing where nothing is wrong.
@@ -69,12 +75,12 @@ impl Wanted {
     }
 
     /// What the jobs came to, and what is invalid, in the order of the files.
-    pub(super) fn in_order(self, ended: Vec<Timed>) -> Vec<Timed> {
+    pub(super) fn in_order(&self, ended: Vec<Timed>) -> Vec<Timed> {
         let mut ended = ended.into_iter();
         let mut all = Vec::new();
-        for file in self.files {
+        for file in &self.files {
             match file {
-                File::Jobs(count) => all.extend(ended.by_ref().take(count)),
+                File::Jobs(count) => all.extend(ended.by_ref().take(*count)),
                 File::Unusable(unusable) => all.push((invalid(unusable), Duration::ZERO)),
             }
         }
@@ -82,9 +88,9 @@ impl Wanted {
     }
 }
 
-fn invalid(unusable: Unusable) -> RunResult {
-    let Unusable { path, reasons, .. } = unusable;
+fn invalid(unusable: &Unusable) -> RunResult {
+    let path = &unusable.path;
     let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
     let file = Some(path.display().to_string());
-    RunResult::invalid(RunIdentity { name, file, ..RunIdentity::default() }, reasons)
+    RunResult::invalid(RunIdentity { name, file, ..RunIdentity::default() }, unusable.reasons())
 }

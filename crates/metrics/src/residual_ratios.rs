@@ -1,10 +1,8 @@
-//! What the set-points alone make of a mode, by closed form.
-use servobench_metrics::undamped_residual;
+//! What the set-points alone make of modes around a frequency, by closed form.
+use crate::undamped::undamped_residual;
 use servobench_trace::Move;
 use std::f64::consts::TAU;
 
-/// Frequencies on either side of a mode that are looked at, relative.
-pub(super) const AROUND: f64 = 0.1;
 /// Frequencies at which the ratio is computed. A lobe of the spectrum is 1/T wide, T the duration of the move: even of
 /// a hundred lobes each gets twenty.
 const STEPS: u32 = 2000;
@@ -18,17 +16,18 @@ const LEFT_OUT: u32 = 10;
 /// How the vibration that one set-point leaves stands to that of another, for most modes around a frequency: reference
 /// over size, above 1 for less.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Ratios {
+pub struct ResidualRatios {
     /// One mode in ten has a smaller one.
-    pub(super) low: f64,
+    pub low: f64,
     /// One mode in ten has a larger one.
-    pub(super) high: f64,
+    pub high: f64,
 }
 
-impl Ratios {
+impl ResidualRatios {
     /// Of `this` to `other`, for undamped modes within `around` (relative) of `frequency` (Hz); `None` unless both make one
     /// move of bounded order.
-    pub(super) fn of(this: &[Move], other: &[Move], frequency: f64, around: f64) -> Option<Self> {
+    #[must_use]
+    pub fn of(this: &[Move], other: &[Move], frequency: f64, around: f64) -> Option<Self> {
         let ([this], [other]) = (this, other) else { return None };
         let (mut boxes, mut other_boxes) = (boxes(this)?, boxes(other)?);
         // What both have is no difference, and its zeros are none of the ratio.
@@ -60,7 +59,24 @@ fn boxes(made: &Move) -> Option<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::lambrechts_move;
+    use servobench_trace::Ending;
+
+    /// By 1 m at 1 m/s, 5 m/s², 50 m/s³ and, of order 4, 1000 m/s⁴.
+    fn lambrechts_move(order: usize) -> Move {
+        let mut peaks = [1.0, 5.0, 50.0, 1000.0];
+        peaks[order..].fill(f64::INFINITY);
+        Move {
+            label: String::new(),
+            start: 0.0,
+            end: 1.35,
+            from: 0.0,
+            to: 1.0,
+            peaks,
+            limits: [None; 4],
+            cruise: (0.35, 0.65),
+            ending: Ending::AtRest,
+        }
+    }
 
     /// The two moves of Lambrechts share the boxes 1 s, 0.2 s and 0.1 s; the fourth, 0.05 s, is the whole ratio:
     /// x/|sin x| with x = 0.05·π·f. Up to its pole at 40 Hz it grows; within 1 % of 38.985 Hz it goes from 28 to 63, and
@@ -68,23 +84,24 @@ mod tests {
     #[test]
     fn the_ratio_is_that_of_the_box_that_only_one_has() {
         let (jerk, snap) = ([lambrechts_move(3)], [lambrechts_move(4)]);
-        let (near, wide) = (Ratios::of(&snap, &jerk, 38.985, 0.01), Ratios::of(&snap, &jerk, 38.985, 0.1));
+        let (near, wide) =
+            (ResidualRatios::of(&snap, &jerk, 38.985, 0.01), ResidualRatios::of(&snap, &jerk, 38.985, 0.1));
         let is_near = |found: f64, expected: f64| (found - expected).abs() < 1e-3 * expected;
         let near = near.unwrap();
         assert!(is_near(near.low, 29.3580) && is_near(near.high, 56.0031), "{near:?}");
         // Sorted over the frequencies, computed outside.
         let wide = wide.unwrap();
         assert!(is_near(wide.low, 9.31742) && is_near(wide.high, 102.331), "{wide:?}");
-        let back = Ratios::of(&jerk, &snap, 38.985, 0.01).unwrap();
+        let back = ResidualRatios::of(&jerk, &snap, 38.985, 0.01).unwrap();
         assert!(is_near(back.low, 1.0 / near.high) && is_near(back.high, 1.0 / near.low), "{back:?}");
     }
 
     #[test]
     fn what_has_no_closed_form_has_no_ratio() {
         let (jerk, snap) = ([lambrechts_move(3)], [lambrechts_move(4)]);
-        assert_eq!(Ratios::of(&[lambrechts_move(4), lambrechts_move(4)], &jerk, 30.0, AROUND), None);
-        assert_eq!(Ratios::of(&[], &jerk, 30.0, AROUND), None);
+        assert_eq!(ResidualRatios::of(&[lambrechts_move(4), lambrechts_move(4)], &jerk, 30.0, 0.1), None);
+        assert_eq!(ResidualRatios::of(&[], &jerk, 30.0, 0.1), None);
         let nowhere = Move { to: 0.0, ..lambrechts_move(3) };
-        assert_eq!(Ratios::of(&snap, &[nowhere], 30.0, AROUND), None);
+        assert_eq!(ResidualRatios::of(&snap, &[nowhere], 30.0, 0.1), None);
     }
 }

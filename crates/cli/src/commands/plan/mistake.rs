@@ -1,0 +1,117 @@
+//! What is wrong with a move that was asked for, as far as the parser of the command line cannot know it.
+use servobench_motion::PlanError;
+use servobench_report::ReportError;
+use servobench_scenario::{ArgumentError, PointsError};
+use std::fmt;
+use std::io;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// A mistake, with the option that it is made in and the way out.
+#[derive(Debug, Error)]
+pub(crate) enum PlanMistake {
+    /// Of a linear axis where that is rotary, or the other way round.
+    #[error("--{option} {error}")]
+    OtherAxis { option: String, error: ArgumentError },
+    /// At the start a derivative that the order lets jump.
+    #[error(
+        "--{option} is not used by a move of order {order}, whose {quantity} may jump: leave it out, or choose --order \
+         {lowest}"
+    )]
+    Jumps { option: &'static str, quantity: &'static str, order: usize, lowest: usize },
+    /// A move from a state of motion has no samples.
+    #[error(
+        "--sample-time is not used by a move from a state of motion: leave it out; --csv-step says how far the rows of a \
+         table are apart"
+    )]
+    NotSampled,
+    #[error("--sampling is for --method published: the shortest move has the fewest samples of all; leave it out")]
+    SamplingOfTheShortest,
+    #[error("--shape trapezoid takes all of --maximum-jerk: choose s-curve, or leave the other jerks out")]
+    JerkOfTrapezoid,
+    #[error("--jerk is missing: or --jerk-percent-of-time, or --jerk-percent-of-maximum: an S-curve needs one")]
+    NoJerk,
+    #[error("--maximum-jerk is missing: {why}, as \"1000 m/s3\"")]
+    NoMaximumJerk { why: &'static str },
+    #[error("--maximum-jerk is not used: no jerk of this S-curve is a part of it; leave it out")]
+    UnusedMaximumJerk,
+    #[error("--passes are those of --velocities smooth: choose that, or leave them out")]
+    PassesOfOthers,
+    #[error("--shaper-tolerable is for --shaper ei: the others leave nothing at the frequency")]
+    TolerableOfOthers,
+    #[error("--shaper: {0}")]
+    Shaper(PlanError),
+    #[error("--points: cannot read `{}`: {error}", .file.display())]
+    Unreadable { file: PathBuf, error: io::Error },
+    #[error("{}:{error}", .file.display())]
+    Points { file: PathBuf, error: PointsError },
+    /// Of the planner.
+    #[error("{}", ByOptions(.0))]
+    Refused(PlanError),
+    #[error("--csv would write {0}")]
+    TooManyRows(ReportError),
+}
+
+/// What a planner says of its request, with options for its fields.
+struct ByOptions<'a>(&'a PlanError);
+
+impl fmt::Display for ByOptions<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            PlanError::Parameter(error) => {
+                write!(f, "{} must be {}, got {}", option(error.name), error.bound, error.value)
+            }
+            PlanError::OutOfRange { name, value, lowest, highest, remedy } => {
+                let name = option(name);
+                write!(f, "{name} must be between {lowest:e} and {highest:e} (SI), got {value:e}: {remedy}")
+            }
+            PlanError::TooShort { duration, shortest } => write!(
+                f,
+                "--duration must be at least {shortest} s, got {duration} s: stretch to a longer time or raise the limits"
+            ),
+            other => other.fmt(f),
+        }
+    }
+}
+
+/// Fields of a request whose options have other names.
+const FIELDS: [(&str, &str); 14] = [
+    ("alpha", "plateau"),
+    ("rate", "command-rate"),
+    ("allowed", "allowed-error"),
+    ("speed", "velocity"),
+    ("target.x", "distance"),
+    ("target.v", "end-velocity"),
+    ("from.x", "start-position"),
+    ("from.v", "start-velocity"),
+    ("from.a", "start-acceleration"),
+    ("from.j", "start-jerk"),
+    ("velocity.above", "velocity"),
+    ("velocity.below", "negative-velocity"),
+    ("acceleration.above", "acceleration"),
+    ("acceleration.below", "negative-acceleration"),
+];
+
+/// The option of a field of a request.
+fn option(field: &str) -> String {
+    let named = FIELDS.iter().find(|(other, _)| *other == field);
+    format!("--{}", named.map_or_else(|| field.replace('_', "-"), |(_, option)| (*option).to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use servobench_base::ParamError;
+
+    #[test]
+    fn a_planner_speaks_of_options() {
+        let refused = |name| {
+            let error = ParamError { name, value: 2.0, bound: "above 0" };
+            PlanMistake::Refused(error.into()).to_string()
+        };
+        assert_eq!(refused("alpha"), "--plateau must be above 0, got 2");
+        assert_eq!(refused("sample_time"), "--sample-time must be above 0, got 2");
+        let other = PlanError::TooFewPoints { points: 1 };
+        assert_eq!(PlanMistake::Refused(other).to_string(), other.to_string());
+    }
+}

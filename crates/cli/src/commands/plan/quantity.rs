@@ -1,0 +1,143 @@
+//! Quantities on the command line of a plan. The parser of the command line reads each by itself; [`Axis`] is what they say together:
+//! whether the axis is linear or rotary, and the units in which a plan is told.
+use super::mistake::PlanMistake;
+use clap::builder::TypedValueParser;
+use clap::{Arg, Command};
+use servobench_base::Coordinate;
+use servobench_scenario::{Derivative, axis_quantity};
+use std::ffi::OsStr;
+
+/// A position or one of its derivatives, and the option that it is the value of.
+#[derive(Debug, Clone)]
+pub(crate) struct AxisQuantity {
+    option: String,
+    text: String,
+    derivative: Derivative,
+    /// In SI.
+    value: f64,
+    motion: Coordinate,
+}
+
+/// Reads a position or one of its derivatives, of an axis that is linear or rotary.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct AxisParser {
+    derivative: Derivative,
+    is_magnitude: bool,
+}
+
+pub(super) const POSITION: AxisParser = AxisParser::of(Derivative::Position);
+pub(super) const VELOCITY: AxisParser = AxisParser::of(Derivative::Velocity);
+pub(super) const ACCELERATION: AxisParser = AxisParser::of(Derivative::Acceleration);
+pub(super) const JERK: AxisParser = AxisParser::of(Derivative::Jerk);
+pub(super) const SNAP: AxisParser = AxisParser::of(Derivative::Snap);
+
+impl AxisParser {
+    const fn of(derivative: Derivative) -> Self {
+        Self { derivative, is_magnitude: false }
+    }
+
+    /// The same, not below zero.
+    pub(super) const fn magnitude(self) -> Self {
+        Self { is_magnitude: true, ..self }
+    }
+}
+
+impl TypedValueParser for AxisParser {
+    type Value = AxisQuantity;
+
+    fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<AxisQuantity, clap::Error> {
+        let Self { derivative, is_magnitude } = *self;
+        let option = arg.and_then(Arg::get_long).unwrap_or_default().to_owned();
+        let read = move |text: &str| {
+            let (value, motion) = axis_quantity(derivative, None, text).map_err(|error| error.message)?;
+            if is_magnitude && value < 0.0 {
+                return Err("it is a magnitude: write it without a sign".to_owned());
+            }
+            Ok(AxisQuantity { option: option.clone(), text: text.to_owned(), derivative, value, motion })
+        };
+        read.parse_ref(command, arg, value)
+    }
+}
+
+/// A time (s), as "1 ms".
+pub(super) fn time(text: &str) -> Result<f64, String> {
+    servobench_scenario::time(text.trim()).map_err(|error| error.message)
+}
+
+/// A time above zero (s).
+pub(super) fn positive_time(text: &str) -> Result<f64, String> {
+    let value = time(text)?;
+    if value > 0.0 { Ok(value) } else { Err("it must be greater than 0, as \"1 ms\"".into()) }
+}
+
+/// A frequency (Hz), as "12 Hz".
+pub(super) fn frequency(text: &str) -> Result<f64, String> {
+    servobench_scenario::frequency(text).map_err(|error| error.message)
+}
+
+/// A pure number, as "0.02" or "2 %".
+pub(super) fn ratio(text: &str) -> Result<f64, String> {
+    servobench_scenario::ratio(text).map_err(|error| error.message)
+}
+
+/// A number of percent, with its sign or without.
+pub(super) fn percent(text: &str) -> Result<f64, String> {
+    let number = text.trim().trim_end_matches('%').trim_end().parse().ok();
+    number.filter(|number: &f64| number.is_finite()).ok_or_else(|| "write a number of percent, as 25".into())
+}
+
+/// The axis of a plan, as its quantities describe it, and what is wrong with them.
+#[derive(Debug, Default)]
+pub(super) struct Axis {
+    /// As the first quantity says.
+    pub(super) motion: Option<Coordinate>,
+    pub(super) units: Vec<GivenUnit>,
+    pub(super) mistakes: Vec<PlanMistake>,
+}
+
+/// A quantity in whose unit a derivative of position is told.
+#[derive(Debug)]
+pub(super) struct GivenUnit {
+    /// 0 for position.
+    pub(super) derivative: usize,
+    /// As it is written.
+    pub(super) text: String,
+    /// The same in SI.
+    pub(super) value: f64,
+}
+
+impl Axis {
+    /// The value (SI) of `quantity`, in whose unit its derivative is told unless an earlier one has said another.
+    pub(super) fn si(&mut self, quantity: &AxisQuantity) -> f64 {
+        self.tell_in(quantity.derivative, &quantity.text, quantity.value);
+        self.value(quantity)
+    }
+
+    /// The same of one that may be left out.
+    pub(super) fn optional(&mut self, quantity: Option<&AxisQuantity>) -> Option<f64> {
+        quantity.map(|quantity| self.si(quantity))
+    }
+
+    /// The value (SI) of `quantity`, whose unit is its own.
+    pub(super) fn value(&mut self, quantity: &AxisQuantity) -> f64 {
+        let motion = *self.motion.get_or_insert(quantity.motion);
+        if let Err(error) = axis_quantity(quantity.derivative, Some(motion), &quantity.text) {
+            self.mistakes.push(PlanMistake::OtherAxis { option: quantity.option.clone(), error });
+        }
+        quantity.value
+    }
+
+    /// Tells quantities of `derivative` in the unit of `text`, whose value is `value` (SI), unless they have one.
+    pub(super) fn tell_in(&mut self, derivative: Derivative, text: &str, value: f64) {
+        let derivative = match derivative {
+            Derivative::Position => 0,
+            Derivative::Velocity => 1,
+            Derivative::Acceleration => 2,
+            Derivative::Jerk => 3,
+            Derivative::Snap => 4,
+        };
+        if value != 0.0 && self.units.iter().all(|other| other.derivative != derivative) {
+            self.units.push(GivenUnit { derivative, text: text.to_owned(), value });
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! Why a command could not do what it was asked to: one type, each variant with the error of the crate that it comes from, and one
+//! match from it to the exit code.
+use crate::commands::{Findings, PlanMistake};
+use crate::diagnostics::mistakes;
+use crate::exit::{Exit, of_run_error};
+use crate::output::{COMPARISON, RESULTS};
+use crate::sources::{Unusable, told};
+use servobench_config::Choice as _;
+use servobench_report::ReportError;
+use servobench_scenario::{Diagnostic, LoadError, Sources};
+use servobench_suite::{CompareError, Job, RunError};
+use servobench_trace::TraceError;
+use servobench_view::ViewError;
+use std::ffi::OsString;
+use std::fmt::Display;
+use std::io;
+use std::path::PathBuf;
+use std::process::ExitStatus;
+use thiserror::Error;
+
+/// How to get the viewer.
+const GET_VIEWER: &str = "there is no Rerun viewer: `cargo xtask viewer` fetches one, and so does \
+                          `pip install rerun-sdk==0.36.3`";
+
+/// Why a command could not do what it was asked to.
+#[derive(Debug, Error)]
+pub(crate) enum CliError {
+    // Invalid input.
+    #[error("{}", told(.0))]
+    Scenario(#[from] LoadError),
+    #[error("{}", lines(.0))]
+    Scenarios(Vec<Unusable>),
+    /// What is wrong in a scenario beyond its own mistakes.
+    #[error("{}", mistakes(.diagnostics, .sources))]
+    Mistakes { diagnostics: Vec<Diagnostic>, sources: Box<Sources> },
+    #[error("there is no scenario (`*.toml`) in `{}`", .folder.display())]
+    NoScenario { folder: PathBuf },
+    #[error("`{}` has no `[bus]`, over which objects are written: add one, or leave the scenario out for the values after \
+             power-on", .scenario.display())]
+    NoBus { scenario: PathBuf },
+    #[error("cannot read `{}`: {error}", .path.display())]
+    Read { path: PathBuf, error: io::Error },
+    #[error("cannot read `{}`: {error}", .path.display())]
+    ReadResults { path: PathBuf, error: ReportError },
+    #[error("there is no `{RESULTS}` and no `{COMPARISON}` in `{}`; name a recording, or a folder that `run` or `compare` \
+             wrote", .folder.display())]
+    NoResults { folder: PathBuf },
+    #[error("no run in `{}` left a recording", .folder.display())]
+    NoRecording { folder: PathBuf },
+    #[error(transparent)]
+    ReadRecording(TraceError),
+    #[error("`{}`: {}{error}", .recording.display(), options(.error))]
+    Timing { recording: PathBuf, error: ReportError },
+    #[error("-o: `{}` is what is read here and would be lost; name another file", .0.display())]
+    WouldBeLost(PathBuf),
+    #[error("the variable SOURCE_DATE_EPOCH is `{}`; it is a number of seconds since 1970, or unset", .0.display())]
+    SourceDateEpoch(OsString),
+    #[error("{}", lines(.0))]
+    Plan(Vec<PlanMistake>),
+    #[error("a comparison needs two scenarios at least")]
+    TooFewScenarios,
+    #[error(transparent)]
+    Compare(Box<CompareError>),
+    #[error("nothing was measured of two of these runs: there is nothing to compare")]
+    NothingToCompare,
+    #[cfg(feature = "fmu")]
+    #[error("{}", servobench_report::printable(&.0.to_string()))]
+    Fmu(servobench_fmi::FmuError),
+    #[cfg(feature = "fmu")]
+    #[error(transparent)]
+    Export(Box<servobench_fmu::FmuError>),
+
+    // Invalid input, or what could not be carried out.
+    #[error("{}", lines(.0))]
+    Runs(Vec<FailedRun>),
+    #[error(transparent)]
+    Check(Findings),
+
+    // What could not be carried out.
+    #[error("cannot make the folder `{}`: {error}", .folder.display())]
+    MakeFolder { folder: PathBuf, error: io::Error },
+    #[error("cannot write `{}`: {error}", .path.display())]
+    Write { path: PathBuf, error: io::Error },
+    #[error("cannot write `{}`: {error}", .path.display())]
+    WritePlan { path: PathBuf, error: ReportError },
+    #[error("cannot write to standard output: {0}")]
+    Print(io::Error),
+    #[error("standard input: {0}")]
+    Listen(io::Error),
+    #[error(transparent)]
+    WriteRecording(TraceError),
+    #[error(transparent)]
+    View(#[from] ViewError),
+    #[error(transparent)]
+    Report(#[from] ReportError),
+    #[error(transparent)]
+    Schema(serde_json::Error),
+    #[error("cannot find myself: {0}")]
+    OwnProgram(io::Error),
+    #[error("cannot listen to signals: {0}")]
+    Signals(io::Error),
+    #[error("cannot end with the process that started this one: {0}")]
+    EndWithParent(io::Error),
+    #[error("{GET_VIEWER}")]
+    NoViewer,
+    #[error("cannot start {}: {error}; {GET_VIEWER}", .viewer.display())]
+    StartViewer { viewer: PathBuf, error: io::Error },
+    #[error("the viewer ended with {0}")]
+    ViewerEnded(ExitStatus),
+    #[cfg(feature = "fmu")]
+    #[error(transparent)]
+    Library(Box<servobench_fmu::FmuError>),
+    #[cfg(feature = "fmu")]
+    #[error(transparent)]
+    Host(#[from] servobench_engine_fmu::HostError),
+}
+
+impl From<CompareError> for CliError {
+    fn from(error: CompareError) -> Self {
+        Self::Compare(Box::new(error))
+    }
+}
+
+/// A run of a comparison that could not be carried out.
+#[derive(Debug, Error)]
+#[error("{scenario} on {engine}: {error}")]
+pub(crate) struct FailedRun {
+    scenario: String,
+    engine: &'static str,
+    error: RunError,
+}
+
+impl FailedRun {
+    pub(crate) fn new(job: &Job, error: RunError) -> Self {
+        Self { scenario: job.scenario.name.clone(), engine: job.engine.name(), error }
+    }
+}
+
+impl CliError {
+    /// What the program ends with.
+    pub(crate) fn exit(&self) -> Exit {
+        match self {
+            Self::Scenario(_)
+            | Self::Scenarios(_)
+            | Self::Mistakes { .. }
+            | Self::NoScenario { .. }
+            | Self::NoBus { .. }
+            | Self::Read { .. }
+            | Self::ReadResults { .. }
+            | Self::NoResults { .. }
+            | Self::NoRecording { .. }
+            | Self::ReadRecording(_)
+            | Self::Timing { .. }
+            | Self::WouldBeLost(_)
+            | Self::SourceDateEpoch(_)
+            | Self::Plan(_)
+            | Self::TooFewScenarios
+            | Self::Compare(_)
+            | Self::NothingToCompare => Exit::Input,
+            #[cfg(feature = "fmu")]
+            Self::Fmu(_) | Self::Export(_) => Exit::Input,
+            Self::Runs(failed) => {
+                failed.iter().fold(Exit::Run, |worst, failed| worst.worse(of_run_error(&failed.error)))
+            }
+            Self::Check(findings) => findings.exit(),
+            Self::MakeFolder { .. }
+            | Self::Write { .. }
+            | Self::WritePlan { .. }
+            | Self::Print(_)
+            | Self::Listen(_)
+            | Self::WriteRecording(_)
+            | Self::View(_)
+            | Self::Report(_)
+            | Self::Schema(_)
+            | Self::OwnProgram(_)
+            | Self::Signals(_)
+            | Self::EndWithParent(_)
+            | Self::NoViewer
+            | Self::StartViewer { .. }
+            | Self::ViewerEnded(_) => Exit::Run,
+            #[cfg(feature = "fmu")]
+            Self::Library(_) | Self::Host(_) => Exit::Run,
+        }
+    }
+}
+
+/// A line each.
+fn lines(all: &[impl Display]) -> String {
+    all.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+}
+
+/// The options that a diagram was refused for, before the reason.
+const fn options(error: &ReportError) -> &'static str {
+    match error {
+        ReportError::Width { .. } => "--width: ",
+        ReportError::UnknownSource { .. } => "--source: ",
+        ReportError::NoSuchTime { .. } => "--from, --to: ",
+        _ => "",
+    }
+}
