@@ -29,12 +29,12 @@ pub enum Task {
         position: f64,
     },
     /// Leaves the way to the drive.
-    Drive(Way),
+    Drive(ProfileCommand),
 }
 
-/// A way that the drive makes itself, in a mode of its own. Velocities and accelerations that are zero are left to the drive.
+/// A profile that the drive generates itself, in a mode of its own. Velocities and accelerations that are zero are left to the drive.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Way {
+pub enum ProfileCommand {
     /// To a position, at rest (pp). Another number is another set-point; it begins where the last one ends.
     Position {
         /// Number of the set-point, from 1.
@@ -91,7 +91,7 @@ pub struct AxisFeedback {
     /// How far homing is.
     pub homing: Homing,
     /// How far the drive is on a way of its own.
-    pub way: WayFeedback,
+    pub profile: ProfileFeedback,
     /// The switches, inverted where they are wired so.
     pub switches: Switches,
 }
@@ -106,7 +106,7 @@ impl AxisFeedback {
 
 /// How far the drive is on a way of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct WayFeedback {
+pub struct ProfileFeedback {
     /// Number of the last set-point that it has acknowledged.
     pub acknowledged: u32,
     /// Whether it says that the target is reached (bit 10).

@@ -60,7 +60,9 @@ mod interpolation;
 pub mod link;
 pub mod task;
 
-pub use axis::{AxisCommand, AxisFeedback, Homing, Power, Switches, Task, TrajectoryPoint, Way, WayFeedback};
+pub use axis::{
+    AxisCommand, AxisFeedback, Homing, Power, ProfileCommand, ProfileFeedback, Switches, Task, TrajectoryPoint,
+};
 pub use error::FieldbusError;
 pub use fault::{Fault, LinkFault};
 pub use interpolation::Interpolation;

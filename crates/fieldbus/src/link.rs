@@ -37,12 +37,12 @@
 //! without a position loop the actual position, so that nothing jumps when the drive follows again.
 mod buffer;
 mod course;
+mod drive_profile;
 mod ears;
 mod effort;
 mod frame;
 mod homing;
 mod mailbox;
-mod own_way;
 mod params;
 mod position;
 mod position_loop;
@@ -57,9 +57,9 @@ pub use sequencer::Sequencing;
 pub use units::Units;
 
 use crate::{AxisCommand, AxisFeedback, Fault, Interpolation, LinkFault, Power, Switches, Task};
+use drive_profile::DriveProfile;
 use effort::Ramp;
 use homing::Procedure;
-use own_way::OwnWay;
 use position::Position;
 use position_loop::PositionLoop;
 use sequencer::{Sequencer, Wanted};
@@ -100,7 +100,7 @@ pub struct State {
     stream: Stream,
     ramp: Ramp,
     homing: Procedure,
-    own_way: OwnWay,
+    drive_profile: DriveProfile,
     commands: Commands,
     /// Since when the mode that is asked for has been (base ticks).
     mode_since: u64,
@@ -127,7 +127,7 @@ impl Default for State {
             stream: Stream::OFF,
             ramp: Ramp::OFF,
             homing: Procedure::Idle,
-            own_way: OwnWay::default(),
+            drive_profile: DriveProfile::default(),
             commands: Commands::default(),
             mode_since: 0,
             in_mode_or_off: 0,
@@ -169,7 +169,7 @@ impl State {
     const fn asks_to_start(&self) -> bool {
         match self.command.task {
             Task::Home { .. } => self.homing.is_started(),
-            Task::Drive(_) => self.own_way.asks_to_start(),
+            Task::Drive(_) => self.drive_profile.asks_to_start(),
             Task::Follow(_) | Task::Effort(_) => false,
         }
     }
@@ -193,7 +193,7 @@ impl State {
             fault: self.fault(),
             interpolation: self.interpolation(),
             homing: self.homing.feedback(matches!(self.command.task, Task::Home { .. })),
-            way: self.own_way.feedback(&self.actuals),
+            profile: self.drive_profile.feedback(&self.actuals),
             switches: self.switches(params),
         }
     }

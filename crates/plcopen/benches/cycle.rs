@@ -24,7 +24,7 @@ const FEEDBACK: AxisFeedback = AxisFeedback {
     fault: None,
     interpolation: servobench_fieldbus::Interpolation::Off,
     homing: servobench_fieldbus::Homing::Idle,
-    way: servobench_fieldbus::WayFeedback {
+    profile: servobench_fieldbus::ProfileFeedback {
         acknowledged: 0,
         target_reached: false,
         is_active: false,

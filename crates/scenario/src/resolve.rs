@@ -227,8 +227,8 @@ const fn greatest_divisor(a: u64, b: u64) -> u64 {
     if b == 0 { a } else { greatest_divisor(b, a % b) }
 }
 
-/// Which of several ways to say one thing a file uses.
-enum Way {
+/// Which of several keys that say the same thing a file uses.
+enum Alternative {
     /// None.
     None,
     /// The one with this index.
@@ -239,17 +239,17 @@ enum Way {
 
 /// Picks among keys that say the same thing. What the scenario says displaces what a model says; within one file only
 /// one may be there.
-fn one_way(keys: &[(&str, Option<Span>)], report: &mut Report) -> Way {
+fn one_of(keys: &[(&str, Option<Span>)], report: &mut Report) -> Alternative {
     let there = || keys.iter().enumerate().filter_map(|(i, (key, span))| Some((i, *key, (*span)?)));
-    let Some(first_source) = there().map(|(.., span)| span.source).min() else { return Way::None };
+    let Some(first_source) = there().map(|(.., span)| span.source).min() else { return Alternative::None };
     let mut ours = there().filter(|(.., span)| span.source == first_source);
     match (ours.next(), ours.next()) {
         (Some((_, first, _)), Some((_, second, span))) => {
             report.error(span, format!("`{first}` and `{second}` say the same thing"), "give one of them");
-            Way::Contradiction
+            Alternative::Contradiction
         }
-        (Some((i, ..)), None) => Way::Use(i),
-        (None, _) => Way::None,
+        (Some((i, ..)), None) => Alternative::Use(i),
+        (None, _) => Alternative::None,
     }
 }
 

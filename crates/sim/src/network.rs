@@ -10,7 +10,7 @@
 //! turns, when it is due, and the link makes the next frame; then the drive steps, when its position loop turns, with the frame
 //! that has arrived. Either way takes the delay of the bus.
 mod build;
-mod own_way;
+mod drive_profile;
 mod plc;
 mod points;
 mod program_cursor;
@@ -22,7 +22,7 @@ mod units;
 pub use points::Unsendable;
 
 use crate::stepper::States;
-use own_way::OwnWay;
+use drive_profile::DriveProfile;
 use plc::Plc;
 use program_cursor::ProgramCursor;
 use reference::DelayedReference;
@@ -84,7 +84,7 @@ enum MotionTask {
     /// The moves of `[[program]]`.
     Moves(Box<ProgramCursor>),
     /// The same, left to the drive.
-    OwnWay(Box<OwnWay>),
+    DriveProfile(Box<DriveProfile>),
     /// The calls of `[[call]]`.
     Plc(Box<Plc>),
 }
@@ -140,7 +140,7 @@ impl MotionTask {
                 let command = AxisCommand { power: true, reset: false, task: Task::Follow(sample(setpoint)) };
                 Ok(Step { command, setpoint: Some(setpoint) })
             }
-            Self::OwnWay(way) => Ok(way.cycle(feedback)),
+            Self::DriveProfile(way) => Ok(way.cycle(feedback)),
             Self::Plc(plc) => plc.cycle(t, feedback, origin, recorder, sample),
         }
     }
@@ -224,7 +224,7 @@ impl Network {
                 let torque = self.transmission * self.model.effort(setpoint);
                 Sample { x: motor.position, v: motor.velocity, a: setpoint.a, torque }
             });
-            if let MotionTask::OwnWay(way) = &mut self.task
+            if let MotionTask::DriveProfile(way) = &mut self.task
                 && let Some(message) = way.message()
                 && let Err(error) = message.arrive(&mut self.serial, self.drive.1.trajectory_buffer())
             {
@@ -313,7 +313,7 @@ impl Network {
             link_fault: link.fault(),
             axis: match &self.task {
                 MotionTask::Plc(plc) => Some(plc.state()),
-                MotionTask::Moves(_) | MotionTask::OwnWay(_) => None,
+                MotionTask::Moves(_) | MotionTask::DriveProfile(_) => None,
             },
         }
     }
@@ -332,7 +332,7 @@ impl Network {
     pub(crate) fn finish(&mut self, t: f64, unit: &str, delay: f64, recorder: &mut Recorder) {
         match &mut self.task {
             MotionTask::Moves(moves) => moves.moves(unit, delay).for_each(|made| recorder.note_move(made)),
-            MotionTask::OwnWay(way) => way.moves().moves(unit, delay).for_each(|made| recorder.note_move(made)),
+            MotionTask::DriveProfile(way) => way.moves().moves(unit, delay).for_each(|made| recorder.note_move(made)),
             MotionTask::Plc(plc) => plc.finish(t, delay, recorder),
         }
     }

@@ -37,7 +37,7 @@ impl Recovery {
 
 /// A transition that is under way.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Way {
+pub(crate) struct ProfileCommand {
     transition: Transition,
     /// Torque at its start, zero at its end (N·m or N).
     torque: f64,
@@ -47,7 +47,7 @@ pub(crate) struct Way {
     length: f64,
 }
 
-impl Way {
+impl ProfileCommand {
     fn plan(from: Command, target: Target, recovery: &Recovery, now: u64) -> Option<Self> {
         let Recovery { limits, cycle, tick, .. } = recovery;
         let transition = Transition::plan(Order::Third, &from.setpoint, &target, limits, Effort::Fast).ok()?;
@@ -72,17 +72,17 @@ pub(crate) enum Course {
     /// At rest at a position.
     Rest(f64),
     /// To standstill.
-    Stop(Way),
+    Stop(ProfileCommand),
     /// What is read.
     Read,
     /// What is read and what the output differs by.
-    Join(Way),
+    Join(ProfileCommand),
 }
 
 impl Course {
     /// From `output` to standstill; at once where no stop can be planned.
     pub(crate) fn stop(output: Command, recovery: &Recovery, now: u64) -> Self {
-        match Way::plan(output, Target::Velocity(0.0), recovery, now) {
+        match ProfileCommand::plan(output, Target::Velocity(0.0), recovery, now) {
             Some(way) => Self::Stop(way),
             None => Self::Rest(output.setpoint.x),
         }
@@ -96,7 +96,8 @@ impl Course {
         if !recovery.matters(&e) && torque == 0.0 {
             return Some(Self::Read);
         }
-        Way::plan(Command { setpoint: e, torque }, Target::Position { x: 0.0, v: 0.0 }, recovery, now).map(Self::Join)
+        ProfileCommand::plan(Command { setpoint: e, torque }, Target::Position { x: 0.0, v: 0.0 }, recovery, now)
+            .map(Self::Join)
     }
 
     /// The output at `now`, with what is read then.

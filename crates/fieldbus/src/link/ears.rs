@@ -23,20 +23,20 @@ impl State {
 
     /// Reads the command, and the sample in it where there is a new one.
     pub(super) fn open(&mut self, p: &Params, mailbox: &Mailbox, now: u64) -> Post {
-        self.own_way.has_news = false;
+        self.drive_profile.has_news = false;
         let Some(Letter { number, tick, command }) = mailbox.read() else { return Post::Torn };
         if number == self.read {
             return Post::Nothing;
         }
         let missed = number.wrapping_sub(self.read).saturating_sub(1);
         self.read = number;
-        self.own_way.has_news = true;
+        self.drive_profile.has_news = true;
         if command.reset && !self.command.reset {
             self.reset(p);
         }
         if core::mem::discriminant(&command.task) != core::mem::discriminant(&self.command.task) {
             self.homing.leave(now);
-            self.own_way.restart();
+            self.drive_profile.restart();
         }
         let (before, sample) = (self.command, command.task);
         self.command = command;

@@ -2,8 +2,8 @@
 //!
 //! Torques are whole thousandths of the rated one (6071h, 60B2h), often coarser than what a model of the axis feeds forward. What
 //! is rounded off one goes into the next, so that their mean is exact: the axis integrates them twice and hardly sees the steps.
+use super::drive_profile;
 use super::effort::Ramp;
-use super::own_way;
 use super::position::Position;
 use super::stream::Post;
 use super::{Control, Params, Sequencing, State};
@@ -21,7 +21,7 @@ impl State {
             (Task::Follow(_), Control::Velocity { .. }) => Mode::CyclicSynchronousVelocity,
             (Task::Effort(_), _) => Mode::CyclicSynchronousTorque,
             (Task::Home { .. }, _) => Mode::Homing,
-            (Task::Drive(way), _) => own_way::mode(way),
+            (Task::Drive(way), _) => drive_profile::mode(way),
         };
         if self.commands.mode != mode.code() {
             (self.commands.mode, self.mode_since) = (mode.code(), now);

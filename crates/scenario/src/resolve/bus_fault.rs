@@ -4,7 +4,7 @@ use crate::field::Slot;
 use crate::file;
 use crate::file::FaultName;
 use crate::resolve::bus::Known;
-use crate::resolve::{Way, one_way, whole};
+use crate::resolve::{Alternative, one_of, whole};
 use servobench_fieldbus::bus::{BusFault, BusFaultKind, BusFaultName};
 use servobench_fieldbus::task::{TaskFault, TaskFaultKind, TaskFaultName};
 use std::ops::Range;
@@ -120,12 +120,12 @@ fn concerned(given: &file::BusFault, cycle: Option<u32>, known: &Known<'_>, repo
     {
         report.error(at.span, format!("the run is over by then: it lasts {duration} s"), "");
     }
-    let length = one_way(&[("cycles", given.cycles.span()), ("duration", given.duration.span())], report);
+    let length = one_of(&[("cycles", given.cycles.span()), ("duration", given.duration.span())], report);
     let per_second = f64::from(known.base_rate?.hertz()) / f64::from(cycle?);
     let first = first_from(start * per_second);
     let end = match length {
-        Way::Use(0) => first.saturating_add(u64::from(*given.cycles.given()?)),
-        Way::Use(_) => {
+        Alternative::Use(0) => first.saturating_add(u64::from(*given.cycles.given()?)),
+        Alternative::Use(_) => {
             let duration = given.duration.at()?;
             let end = first_from((start + duration.value) * per_second);
             if end == first {
@@ -136,8 +136,8 @@ fn concerned(given: &file::BusFault, cycle: Option<u32>, known: &Known<'_>, repo
             }
             end
         }
-        Way::Contradiction => return None,
-        Way::None => {
+        Alternative::Contradiction => return None,
+        Alternative::None => {
             let is_once = matches!(
                 given.kind.given()?,
                 FaultName::Bus(BusFaultName::Lost | BusFaultName::Late)

@@ -4,7 +4,7 @@ use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
 use crate::nearest::suggestion;
-use crate::resolve::{Way, one_way};
+use crate::resolve::{Alternative, one_of};
 use crate::source::{At, Span};
 use crate::when::When;
 use servobench_plcopen::program::Condition;
@@ -51,13 +51,13 @@ impl Context<'_> {
             report.error(span, format!("`{first}` and `{second}` in one condition"), "give one of them");
             return None;
         }
-        let way = one_way(&ways, report);
+        let way = one_of(&ways, report);
         if let (Slot::Absent, Some(span)) = (&given.after, given.delay.span()) {
             report.error(span, "`delay` is for `after`", "");
         }
         match way {
-            Way::Use(0) => self.in_time(&given.at, report).map(Condition::At),
-            Way::Use(1) => {
+            Alternative::Use(0) => self.in_time(&given.at, report).map(Condition::At),
+            Alternative::Use(1) => {
                 let delay = match given.delay {
                     Slot::Absent => Some(0.0),
                     _ => self.in_time(&given.delay, report),
@@ -65,10 +65,10 @@ impl Context<'_> {
                 let (call, output) = self.output(given.after.at()?, report)?;
                 Some(Condition::After { call, output, delay: delay? })
             }
-            Way::Use(2) => given.above.given().copied().map(Condition::Above),
-            Way::Use(_) => given.below.given().copied().map(Condition::Below),
-            Way::Contradiction => None,
-            Way::None => {
+            Alternative::Use(2) => given.above.given().copied().map(Condition::Above),
+            Alternative::Use(_) => given.below.given().copied().map(Condition::Below),
+            Alternative::Contradiction => None,
+            Alternative::None => {
                 report.error(given.span, "this says nothing of when", "give `at`, `after`, `above` or `below`");
                 None
             }

@@ -5,7 +5,7 @@ use crate::field::{Reported, Slot};
 use crate::file;
 use crate::resolve::drive::Known;
 use crate::resolve::motor::Motor;
-use crate::resolve::{Way, need, one_way, task_rate};
+use crate::resolve::{Alternative, need, one_of, task_rate};
 use crate::source::Span;
 use servobench_base::{Dq, Rate};
 use servobench_drive::current::Tuning;
@@ -82,13 +82,13 @@ fn d_reference(slot: &Slot<f64>, known: &Known<'_>, report: &mut Report) -> Resu
 
 fn tuning(given: &file::Current, path: &str, report: &mut Report) -> Result<Tuning, Reported> {
     let by_gain = given.gain_d.span().or(given.gain_q.span());
-    match one_way(&[("bandwidth", given.bandwidth.span()), ("gain_d", by_gain)], report) {
-        Way::Use(0) => given.bandwidth.given().copied().map(Tuning::Bandwidth).ok_or(Reported),
-        Way::Use(_) => {
+    match one_of(&[("bandwidth", given.bandwidth.span()), ("gain_d", by_gain)], report) {
+        Alternative::Use(0) => given.bandwidth.given().copied().map(Tuning::Bandwidth).ok_or(Reported),
+        Alternative::Use(_) => {
             pair(("gain_d", &given.gain_d), ("gain_q", &given.gain_q), path, given.span, report).map(Tuning::Gains)
         }
-        Way::Contradiction => Err(Reported),
-        Way::None => {
+        Alternative::Contradiction => Err(Reported),
+        Alternative::None => {
             report.missing_with_help(path, "bandwidth", given.span, "or `gain_d` and `gain_q`");
             Err(Reported)
         }

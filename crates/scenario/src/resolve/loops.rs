@@ -6,7 +6,7 @@ use crate::file;
 use crate::file::VelocityKind;
 use crate::resolve::estimate::Belief;
 use crate::resolve::motor::Motor;
-use crate::resolve::{Way, need, one_way, task_rate};
+use crate::resolve::{Alternative, need, one_of, task_rate};
 use servobench_base::{Rate, RateError};
 use servobench_drive::velocity;
 
@@ -55,8 +55,8 @@ pub(super) fn velocity(
     // Inertia as the drive believes that the motor feels it, τ/α = r²·M.
     let known_inertia = known.belief.filter(|belief| belief.knows_inertia);
     let inertia = known_inertia.map(|belief| belief.estimate.inertia_at_the_motor());
-    let gain = match one_way(&[("bandwidth", given.bandwidth.span()), ("gain", given.gain.span())], report) {
-        Way::Use(0) => {
+    let gain = match one_of(&[("bandwidth", given.bandwidth.span()), ("gain", given.gain.span())], report) {
+        Alternative::Use(0) => {
             if known.belief.is_some() && inertia.is_none() {
                 let span = given.bandwidth.span().unwrap_or(given.span);
                 let help = "give `motor_inertia` in `[drive.estimate]`, or `gain` here";
@@ -64,9 +64,9 @@ pub(super) fn velocity(
             }
             given.bandwidth.given().zip(inertia).map(|(omega, inertia)| omega * inertia)
         }
-        Way::Use(_) => velocity_gain(&given.gain, known, report),
-        Way::Contradiction => None,
-        Way::None => {
+        Alternative::Use(_) => velocity_gain(&given.gain, known, report),
+        Alternative::Contradiction => None,
+        Alternative::None => {
             report.missing_with_help(path, "bandwidth", given.span, "or `gain`");
             None
         }
@@ -131,11 +131,11 @@ pub(super) fn position(
     let path = "drive.position";
     need(&given.rate, path, "rate", given.span, report);
     let rate = outer_rate(&given.rate, base_rate, velocity.map(|rate| ("velocity", rate)), report);
-    let gain = match one_way(&[("bandwidth", given.bandwidth.span()), ("gain", given.gain.span())], report) {
-        Way::Use(0) => given.bandwidth.given().copied(),
-        Way::Use(_) => given.gain.given().copied(),
-        Way::Contradiction => None,
-        Way::None => {
+    let gain = match one_of(&[("bandwidth", given.bandwidth.span()), ("gain", given.gain.span())], report) {
+        Alternative::Use(0) => given.bandwidth.given().copied(),
+        Alternative::Use(_) => given.gain.given().copied(),
+        Alternative::Contradiction => None,
+        Alternative::None => {
             report.missing_with_help(path, "bandwidth", given.span, "or `gain`");
             None
         }

@@ -6,7 +6,7 @@ use servobench_plant::{Encoder, IdealSource, SourceOutput, pmsm};
 
 use crate::file;
 use crate::file::MotorKind;
-use crate::resolve::{Way, need, one_way, refuse};
+use crate::resolve::{Alternative, need, one_of, refuse};
 use crate::source::Span;
 use std::f64::consts::{PI, TAU};
 
@@ -110,15 +110,15 @@ fn electrical_ratio(motor: &file::Motor, report: &mut Report) -> Option<f64> {
 
 fn inductances(motor: &file::Motor, report: &mut Report) -> Option<Dq> {
     let per_axis = motor.inductance_d.span().or(motor.inductance_q.span());
-    match one_way(&[("inductance", motor.inductance.span()), ("inductance_d", per_axis)], report) {
-        Way::Use(0) => motor.inductance.given().map(|both| Dq { d: *both, q: *both }),
-        Way::Contradiction => None,
-        Way::Use(_) => {
+    match one_of(&[("inductance", motor.inductance.span()), ("inductance_d", per_axis)], report) {
+        Alternative::Use(0) => motor.inductance.given().map(|both| Dq { d: *both, q: *both }),
+        Alternative::Contradiction => None,
+        Alternative::Use(_) => {
             let d = need(&motor.inductance_d, "motor", "inductance_d", motor.span, report);
             let q = need(&motor.inductance_q, "motor", "inductance_q", motor.span, report);
             d.zip(q).map(|(d, q)| Dq { d, q })
         }
-        Way::None => {
+        Alternative::None => {
             let help = "or `inductance_d` and `inductance_q`";
             report.missing_with_help("motor", "inductance", motor.span, help);
             None
@@ -138,12 +138,12 @@ fn flux_linkage(motor: &file::Motor, electrical_ratio: Option<f64>, report: &mut
         (constant.0, constant.1.span()),
         ("back_emf", motor.back_emf.span()),
     ];
-    match one_way(&ways, report) {
-        Way::Use(0) => motor.flux_linkage.given().copied(),
-        Way::Use(1) => Some(constant.1.given()? / (1.5 * electrical_ratio?)),
-        Way::Use(_) => Some(motor.back_emf.given()? / (SQRT_3 * electrical_ratio?)),
-        Way::Contradiction => None,
-        Way::None => {
+    match one_of(&ways, report) {
+        Alternative::Use(0) => motor.flux_linkage.given().copied(),
+        Alternative::Use(1) => Some(constant.1.given()? / (1.5 * electrical_ratio?)),
+        Alternative::Use(_) => Some(motor.back_emf.given()? / (SQRT_3 * electrical_ratio?)),
+        Alternative::Contradiction => None,
+        Alternative::None => {
             let help = format!("or `{}`, or `back_emf`", constant.0);
             report.missing_with_help("motor", "flux_linkage", motor.span, &help);
             None
@@ -182,11 +182,11 @@ pub(super) fn resolution(
     report: &mut Report,
 ) -> Option<Encoder> {
     let ways = [("step", step.span()), ("counts_per_rev", counts_per_rev.span())];
-    let increment = match one_way(&ways, report) {
-        Way::None => None,
-        Way::Contradiction => return None,
-        Way::Use(0) => Some(*step.given()?),
-        Way::Use(_) => {
+    let increment = match one_of(&ways, report) {
+        Alternative::None => None,
+        Alternative::Contradiction => return None,
+        Alternative::Use(0) => Some(*step.given()?),
+        Alternative::Use(_) => {
             let counts = counts_per_rev.at()?;
             if motion == Some(Coordinate::Linear) {
                 report.error(counts.span, "what moves along a line has no `counts_per_rev`", "give one `step`");

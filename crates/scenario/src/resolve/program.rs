@@ -4,7 +4,7 @@ use crate::field::Slot;
 use crate::file;
 use crate::file::File;
 use crate::resolve::keys::{Keys, LIMITS, Said};
-use crate::resolve::{Way as OneWay, filter, has_window, limits, one_way, points, rockwell};
+use crate::resolve::{Alternative, filter, has_window, limits, one_of, points, rockwell};
 use crate::scenario::{LONGEST_RUN, MoveStep, Step};
 use crate::source::{At, Sources, Span};
 use servobench_base::{Rate, Setpoint};
@@ -97,12 +97,12 @@ fn step(
         report.error(*span, format!("`{first}` and `{second}` in one step"), "write two steps");
         return None;
     }
-    let does = match one_way(&ways, report) {
-        OneWay::Use(0) => Does::To(step.move_to.given().copied(), Positioning::Absolute),
-        OneWay::Use(1) => Does::To(step.move_by.given().copied(), Positioning::Relative),
-        OneWay::Use(2) => Does::Velocity(step.reach_velocity.given().copied()),
-        OneWay::Use(3) => Does::Table,
-        OneWay::Use(_) => {
+    let does = match one_of(&ways, report) {
+        Alternative::Use(0) => Does::To(step.move_to.given().copied(), Positioning::Absolute),
+        Alternative::Use(1) => Does::To(step.move_by.given().copied(), Positioning::Relative),
+        Alternative::Use(2) => Does::Velocity(step.reach_velocity.given().copied()),
+        Alternative::Use(3) => Does::Table,
+        Alternative::Use(_) => {
             no_keys(own.named().chain(of_moves(step)), "a pause", report);
             if before == Before::Motion {
                 report.error(
@@ -113,8 +113,8 @@ fn step(
             }
             return step.wait.given().copied().map(Step::Wait);
         }
-        OneWay::Contradiction => return None,
-        OneWay::None => {
+        Alternative::Contradiction => return None,
+        Alternative::None => {
             let help = "give `move_to`, `move_by`, `reach_velocity`, `table` or `wait`";
             report.lacking("program", step.span, "this step does nothing", help);
             return None;

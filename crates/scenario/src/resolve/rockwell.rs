@@ -2,7 +2,7 @@
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
-use crate::resolve::{Way, one_way, refuse};
+use crate::resolve::{Alternative, one_of, refuse};
 use crate::source::At;
 use servobench_motion::rockwell::{Jerk, MaximumJerk, Move, Shape, ShapeKind};
 use servobench_planner::Rockwell;
@@ -77,10 +77,10 @@ pub(super) fn resolve(
 /// # Errors
 /// When that has been objected to.
 fn said_jerk(keys: [(&'static str, &Slot<f64>); 3], report: &mut Report) -> Result<Option<Jerk>, ()> {
-    let which = match one_way(&keys.map(|(key, slot)| (key, slot.span())), report) {
-        Way::Use(which) => which,
-        Way::None => return Ok(None),
-        Way::Contradiction => return Err(()),
+    let which = match one_of(&keys.map(|(key, slot)| (key, slot.span())), report) {
+        Alternative::Use(which) => which,
+        Alternative::None => return Ok(None),
+        Alternative::Contradiction => return Err(()),
     };
     let value = *keys[which].1.given().ok_or(())?;
     Ok(Some(match which {

@@ -1,5 +1,5 @@
 //! From a scenario to the network.
-use super::own_way::OwnWay;
+use super::drive_profile::DriveProfile;
 use super::plc::{self, Plc};
 use super::program_cursor::ProgramCursor;
 use super::reference::DelayedReference;
@@ -133,7 +133,7 @@ impl Network {
             Some(plc) => MotionTask::Plc(Box::new(Plc::new(plc, scenario.axis.modulo, period, recorder)?)),
             None if !bus.mode.is_cyclic() => {
                 let moves = ProgramCursor::new(program, period);
-                MotionTask::OwnWay(Box::new(OwnWay::new(moves, bus, &device)?))
+                MotionTask::DriveProfile(Box::new(DriveProfile::new(moves, bus, &device)?))
             }
             None => MotionTask::Moves(Box::new(ProgramCursor::new(program, period))),
         };

@@ -11,7 +11,7 @@ use super::points::Door;
 use servobench_cia402::InterpolationData;
 use servobench_drive::modes::interpolated::serial::{self, PVT, Port, SerialError, TRAJECTORY_BUFFER, TRAJECTORY_MODE};
 use servobench_drive::modes::interpolated::{Buffer, CAPACITY, Point, SegmentCommand, SubMode};
-use servobench_fieldbus::{TrajectoryPoint, Way, WayFeedback};
+use servobench_fieldbus::{ProfileCommand, ProfileFeedback, TrajectoryPoint};
 
 /// Points that stay free in the buffer: those under way between a frame and the answer that knows of it.
 const RESERVE: u16 = 6;
@@ -99,7 +99,7 @@ impl Stream {
     }
 
     /// What is sent at `now` (s).
-    pub(super) fn way(&mut self, now: f64, drive: &WayFeedback) -> Way {
+    pub(super) fn way(&mut self, now: f64, drive: &ProfileFeedback) -> ProfileCommand {
         let point = match self.tables.get(self.table) {
             Some((start, points)) if *start <= now => {
                 let length = points.len();
@@ -108,11 +108,11 @@ impl Stream {
             _ => None,
         };
         let follow = matches!(self.stage, Stage::Following { .. }) && self.door != Door::Serial;
-        Way::Points { point, follow }
+        ProfileCommand::Points { point, follow }
     }
 
     /// A cycle of a table of so many points.
-    fn turn(&mut self, now: f64, drive: &WayFeedback, length: usize) -> Option<TrajectoryPoint> {
+    fn turn(&mut self, now: f64, drive: &ProfileFeedback, length: usize) -> Option<TrajectoryPoint> {
         let is_endless = self.door.constant_time().is_some();
         match self.stage {
             Stage::Setting => {
@@ -177,7 +177,7 @@ impl Stream {
 
     /// Points of this table that have left the buffer, by the answer of the drive. Where some were lost on their way, they have
     /// to come first.
-    fn passed(&mut self, drive: &WayFeedback) -> usize {
+    fn passed(&mut self, drive: &ProfileFeedback) -> usize {
         let [low, high, ..] = drive.buffer_status.to_le_bytes();
         let number = u16::from_le_bytes([low, high]);
         self.arrived += i64::from(number.wrapping_sub(self.seen).cast_signed());
@@ -187,7 +187,7 @@ impl Stream {
     }
 
     /// The next point, when it is time for it and the buffer has room.
-    fn next(&mut self, now: f64, drive: &WayFeedback) -> Option<TrajectoryPoint> {
+    fn next(&mut self, now: f64, drive: &ProfileFeedback) -> Option<TrajectoryPoint> {
         let (_, points) = self.tables.get(self.table)?;
         let point = match (points.get(self.sent), self.door.constant_time()) {
             (Some(point), _) => *point,

@@ -7,7 +7,7 @@ use super::points::{Door, Unsendable, points};
 use super::program_cursor::ProgramCursor;
 use super::stream::{Message, Stream};
 use servobench_drive::device;
-use servobench_fieldbus::{AxisCommand, AxisFeedback, Task, Way};
+use servobench_fieldbus::{AxisCommand, AxisFeedback, ProfileCommand, Task};
 use servobench_motion::position_profile::Command;
 use servobench_planner::PlanDetails;
 use servobench_scenario::{Bus, BusMode};
@@ -17,7 +17,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// A program of ways under way.
 #[derive(Debug, Clone)]
-pub(super) struct OwnWay {
+pub(super) struct DriveProfile {
     moves: ProgramCursor,
     orders: Orders,
 }
@@ -33,7 +33,7 @@ enum Orders {
     Tables(Stream),
 }
 
-impl OwnWay {
+impl DriveProfile {
     /// The way of `moves` over `bus`, made by `drive`.
     ///
     /// # Errors
@@ -100,11 +100,11 @@ fn commands_of(start: f64, details: &PlanDetails, end: f64) -> Vec<Command> {
 
 impl Orders {
     /// What is sent at `now` (s).
-    fn way(&mut self, now: f64, feedback: &AxisFeedback) -> Way {
+    fn way(&mut self, now: f64, feedback: &AxisFeedback) -> ProfileCommand {
         match self {
             Self::Positions { set_points, sent } => {
                 // The next one is asked for when its time has come and the drive has taken the last.
-                let taken = feedback.way.acknowledged as usize == *sent;
+                let taken = feedback.profile.acknowledged as usize == *sent;
                 if taken && set_points.get(*sent).is_some_and(|(start, _)| *start <= now) {
                     *sent += 1;
                 }
@@ -112,7 +112,7 @@ impl Orders {
                 let [position, velocity, acceleration] =
                     asked.map_or([feedback.position, 0.0, 0.0], |(_, set_point)| *set_point);
                 #[expect(clippy::cast_possible_truncation, reason = "a program has fewer steps")]
-                Way::Position { number: *sent as u32, position, velocity, acceleration }
+                ProfileCommand::Position { number: *sent as u32, position, velocity, acceleration }
             }
             Self::Velocities { commands, next, now: present } => {
                 while let Some(command) = commands.get(*next).filter(|command| command.t <= now) {
@@ -120,9 +120,9 @@ impl Orders {
                     *next += 1;
                 }
                 let Command { velocity, acceleration, .. } = *present;
-                Way::Velocity { velocity, acceleration }
+                ProfileCommand::Velocity { velocity, acceleration }
             }
-            Self::Tables(stream) => stream.way(now, &feedback.way),
+            Self::Tables(stream) => stream.way(now, &feedback.profile),
         }
     }
 }

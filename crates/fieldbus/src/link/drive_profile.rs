@@ -1,14 +1,14 @@
-//! A way that the drive makes itself: what its modes need to be told.
+//! A profile that the drive generates itself: what its modes need to be told.
 //!
 //! In profile position a set-point is handed over by bit 4 of the controlword and bit 12 of the statusword (IEC 61800-7-201,
 //! profile position mode): bit 4 rises with the target, bit 12 answers, both fall, and the next one can come.
 use super::{Params, State};
-use crate::{TrajectoryPoint, Way, WayFeedback};
+use crate::{ProfileCommand, ProfileFeedback, TrajectoryPoint};
 use servobench_cia402::{Actuals, Mode, StatusBit};
 
 /// What a link remembers of it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct OwnWay {
+pub(super) struct DriveProfile {
     /// Whether the command is one that was not there at the last step.
     pub(super) has_news: bool,
     /// Number of the set-point that the drive has taken.
@@ -16,7 +16,7 @@ pub(super) struct OwnWay {
     starts: bool,
 }
 
-impl OwnWay {
+impl DriveProfile {
     /// Another task has begun.
     pub(super) const fn restart(&mut self) {
         (self.acknowledged, self.starts) = (0, false);
@@ -26,8 +26,8 @@ impl OwnWay {
         self.starts
     }
 
-    pub(super) const fn feedback(self, actuals: &Actuals) -> WayFeedback {
-        WayFeedback {
+    pub(super) const fn feedback(self, actuals: &Actuals) -> ProfileFeedback {
+        ProfileFeedback {
             acknowledged: self.acknowledged,
             target_reached: actuals.statusword.has(StatusBit::TargetReached),
             is_active: actuals.statusword.has(StatusBit::ModeSpecific12),
@@ -47,41 +47,41 @@ impl OwnWay {
 }
 
 /// The mode that makes the way.
-pub(super) const fn mode(way: &Way) -> Mode {
+pub(super) const fn mode(way: &ProfileCommand) -> Mode {
     match way {
-        Way::Position { .. } => Mode::ProfilePosition,
-        Way::Velocity { .. } => Mode::ProfileVelocity,
-        Way::Points { .. } => Mode::InterpolatedPosition,
+        ProfileCommand::Position { .. } => Mode::ProfilePosition,
+        ProfileCommand::Velocity { .. } => Mode::ProfileVelocity,
+        ProfileCommand::Points { .. } => Mode::InterpolatedPosition,
     }
 }
 
 impl State {
     /// Leaves `way` to the drive.
-    pub(super) fn leave(&mut self, p: &Params, way: &Way, follows: bool) {
+    pub(super) fn leave(&mut self, p: &Params, way: &ProfileCommand, follows: bool) {
         (self.commands.trajectory_point, self.commands.interpolation_data) = (None, None);
         if !follows {
-            self.own_way.starts = false;
+            self.drive_profile.starts = false;
             return;
         }
         let rate = |rate: f64| p.scale.rate(rate);
         match *way {
-            Way::Position { number, position, velocity, acceleration } => {
+            ProfileCommand::Position { number, position, velocity, acceleration } => {
                 let acknowledges = self.actuals.statusword.has(StatusBit::ModeSpecific12);
-                self.own_way.hand_over(number, acknowledges);
+                self.drive_profile.hand_over(number, acknowledges);
                 if let Some(counts) = p.scale.counts(position) {
                     self.commands.target_position = p.scale.target(counts);
                 }
                 self.commands.profile_velocity = rate(velocity);
                 self.set_acceleration(rate(acceleration));
             }
-            Way::Velocity { velocity, acceleration } => {
-                self.own_way.starts = false;
+            ProfileCommand::Velocity { velocity, acceleration } => {
+                self.drive_profile.starts = false;
                 self.commands.target_velocity = p.scale.drive_velocity(velocity).unwrap_or(0);
                 self.set_acceleration(rate(acceleration));
             }
-            Way::Points { point, follow } => {
-                self.own_way.starts = follow;
-                match point.filter(|_| self.own_way.has_news) {
+            ProfileCommand::Points { point, follow } => {
+                self.drive_profile.starts = follow;
+                match point.filter(|_| self.drive_profile.has_news) {
                     Some(TrajectoryPoint::MoveSegment(bytes)) => self.commands.trajectory_point = Some(bytes),
                     Some(TrajectoryPoint::DataRecord(data)) => self.commands.interpolation_data = Some(data),
                     None => {}
