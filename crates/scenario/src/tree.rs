@@ -1,8 +1,11 @@
 //! TOML as a tree in which every key and value knows its file and its bytes.
+mod syntax_error;
+
 use crate::diagnostic::Report;
 use crate::source::{SourceId, Span};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
+use syntax_error::{Kind, SyntaxError};
 use toml::de::{DeTable, DeValue};
 
 /// A value.
@@ -247,42 +250,6 @@ fn end_of_table(text: &str, from: usize) -> usize {
     text.len()
 }
 
-#[derive(Debug, Clone, PartialEq)]
-struct SyntaxError {
-    span: Range<usize>,
-    kind: Kind,
-    message: String,
-}
-
-/// The errors that are more than their message here.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    /// A key or table is there already.
-    Duplicate,
-    /// The parser gives up at a key without a value.
-    KeyWithoutValue,
-    /// A text without quotes.
-    Unquoted,
-    /// A list or an inline table without its closing bracket.
-    Unclosed,
-    Other,
-}
-
-impl Kind {
-    /// The crate `toml` has one type of error for everything, whose message is all that tells them apart: this is the one place that
-    /// reads it, and tests here fail when a release words it otherwise.
-    fn of(message: &str) -> Self {
-        const KINDS: [(&str, Kind); 5] = [
-            ("duplicate key", Kind::Duplicate),
-            ("key with no value", Kind::KeyWithoutValue),
-            ("string values must be quoted", Kind::Unquoted),
-            ("unclosed array,", Kind::Unclosed),
-            ("unclosed inline table", Kind::Unclosed),
-        ];
-        KINDS.iter().find(|(start, _)| message.starts_with(start)).map_or(Self::Other, |(_, kind)| *kind)
-    }
-}
-
 /// The parser gives up at a key without a value; it is then shown the text without that line.
 const MAX_GIVEN_UP: usize = 64;
 
@@ -292,13 +259,7 @@ fn parse_to_the_end(source: SourceId, text: &str) -> (Table, Vec<SyntaxError>) {
     loop {
         let (root, errors) = DeTable::parse_recoverable(&text);
         let table = table(source, root.get_ref());
-        let mut errors: Vec<SyntaxError> = errors
-            .iter()
-            .map(|error| {
-                let message = error.message().to_owned();
-                SyntaxError { span: error.span().unwrap_or_default(), kind: Kind::of(&message), message }
-            })
-            .collect();
+        let mut errors: Vec<SyntaxError> = errors.iter().map(SyntaxError::of).collect();
         errors.sort_by_key(|error| error.span.start);
         let stop = errors.iter().find(|error| error.kind == Kind::KeyWithoutValue).cloned();
         let line = stop.as_ref().map(|stop| lines_around(&text, &stop.span));
