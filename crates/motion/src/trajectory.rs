@@ -7,7 +7,7 @@ use servobench_base::Setpoint;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Trajectory<const N: usize> {
     order: Order,
-    /// Starts of the segments (s).
+    /// Starts of the segments (s): sums of the lengths, which looking a set-point up needs at once.
     starts: [f64; N],
     /// Lengths of the segments (s). Differences of their starts would be other numbers: a second that begins after a day is known to
     /// 1e-11 s only.

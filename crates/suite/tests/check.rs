@@ -1,6 +1,8 @@
 //! What an engine objects to, and the key or line that is to blame.
-use servobench_plant::{Engine, EngineName, Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Refusal, RefusedAt};
-use servobench_scenario::AxisMechanics;
+use servobench_plant::{
+    Engine, EngineName, Exact, Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Refusal, RefusedAt,
+};
+use servobench_scenario::{Actuator, AxisMechanics, Scenario};
 use servobench_suite::{Engines, Job, Objection, RunError, Source, WorkerCommand, check, jobs};
 use std::time::Duration;
 
@@ -99,6 +101,32 @@ fn each_objection_has_its_place() {
         way_out: "change it".into(),
     };
     assert_eq!((&found[1], &found[4]), (&refused(Some(3), "no mesh"), &refused(None, "no mass")));
+}
+
+/// Values that no file can have, since its keys have bounds.
+#[test]
+fn parameters_of_drive_and_switches_are_shown_at_their_keys() {
+    const EXACT: Engines = Engines { installed: &[&Exact], ..Engines::NONE };
+    type Spoil = fn(&mut Scenario);
+    fn drive(scenario: &mut Scenario) -> &mut servobench_drive::Params {
+        let Actuator::IdealSource { drive, .. } = &mut scenario.actuator else { panic!("an ideal source") };
+        &mut drive.params
+    }
+    let text = TEXT.replace("\"rapier\"", "\"exact\"").replace("duration = \"1 ms\"", "");
+    let cases: [(&str, &str, Spoil); 5] = [
+        ("drive.velocity.gain", "`gain of the velocity loop` must be", |it| drive(it).velocity.k_p = f64::NAN),
+        ("drive.position.gain", "got -1", |it| drive(it).position_gain = -1.0),
+        ("drive.estimate.coulomb", "got inf", |it| drive(it).feedforward.coulomb = f64::INFINITY),
+        ("axis", "`transmission` must be", |it| drive(it).transmission = 0.0),
+        ("axis.switches.negative", "must be finite", |it| it.axis.switches.negative = Some(f64::NEG_INFINITY)),
+    ];
+    for (key, words, spoil) in cases {
+        let mut scenario = servobench_scenario::parse("test", &text, None).unwrap_or_else(|e| panic!("{e}")).scenario;
+        spoil(&mut scenario);
+        let job = jobs(vec![Source { scenario, text: text.clone() }], &[]).remove(0);
+        let found = check(&job, &EXACT, &nowhere()).unwrap();
+        assert!(found.iter().any(|one| one.key == key && one.message.contains(words)), "{key}: {found:?}");
+    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! What is used of Rerun, under the names that its documentation gives it.
 //!
-//! The package `rerun` would bring its data-platform client, chunk store and analytics along, 45 packages that nothing here calls.
+//! The package `rerun` would bring its data-platform client, chunk store and analytics along, 47 packages that nothing here calls.
 pub(crate) use re_sdk::external::re_log_types::BlueprintActivationCommand;
 pub(crate) use re_sdk::log::TimeColumn;
 pub(crate) use re_sdk::{

@@ -57,6 +57,7 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
     warn_of_what_is_added_twice(given, known.actuator, report);
     let margin = margin(given, cycle.zip(motion_every), known, report);
     let units = units(file, given, known.actuator, report);
+    let counter = counter(given, report);
     let faults = bus_fault::faults(given, cycle.zip(motion_every), known, report);
     let objects = match objects {
         Some(Slot::Given(objects)) => Some(objects.value.0.clone()),
@@ -82,7 +83,7 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
         sequencing: given.sequencing.optional().ok()?.copied().unwrap_or_default(),
         drive_timeout: given.drive_timeout.optional().ok()?.copied().unwrap_or(DRIVE_TIMEOUT),
         position_gain: position_gain?,
-        counter: counter(given)?,
+        counter: counter?,
         units: units?,
         velocity_from_differences: flag(&given.velocity_from_differences)?,
         reverse_switches: flag(&given.reverse_switches)?,
@@ -225,13 +226,15 @@ fn warn_of_what_is_added_twice(given: &file::Bus, actuator: Option<&Actuator>, r
     }
 }
 
-fn counter(given: &file::Bus) -> Option<Counter> {
+fn counter(given: &file::Bus, report: &mut Report) -> Option<Counter> {
     let (bits, signed) = match given.counter.optional().ok()? {
         Some(given) => (given.bits.optional().ok()?.copied(), given.signed.optional().ok()?.copied()),
         None => (None, None),
     };
     let new = if signed.unwrap_or(COUNTER.1) { Counter::signed } else { Counter::unsigned };
-    new(bits.unwrap_or(COUNTER.0)).ok()
+    new(bits.unwrap_or(COUNTER.0))
+        .map_err(|error| report.error(given.counter.span().unwrap_or(given.span), error.to_string(), ""))
+        .ok()
 }
 
 /// The units as given, or the increments of the encoder that closes the position loop.
