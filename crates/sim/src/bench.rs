@@ -4,15 +4,14 @@ pub(crate) mod fmu;
 mod objections;
 pub(crate) mod plant;
 
+use crate::axis::Axis;
 use crate::closed_loop::{ClosedLoop, Control, Shaft, Source, State};
 use crate::coupled::{self, ConnectionDelay, Coupled, NoPartners, Partners};
 use crate::disturbance::Disturbances;
 use crate::error::{BuildError, check_length};
-use crate::joint_watch::JointWatch;
-use crate::limit_watch::LimitWatch;
+use crate::machine::Machine;
 use crate::network::Network;
 use crate::program::Program;
-use crate::recorded::Recorded;
 use servobench_base::{Rate, Setpoint, Tick};
 use servobench_fieldbus::LinkFault;
 use servobench_metrics::JUDGED_BY;
@@ -29,12 +28,12 @@ const RECORDING_LIMIT: f64 = 4.0;
 /// A closed loop at tick 0, and what is recorded of it.
 pub struct Bench {
     pub(crate) ticks: u64,
-    pub(crate) axis: Axis,
+    pub(crate) closed_loop: Loop,
 }
 
 /// The axis, alone or with attached FMUs.
-pub(crate) enum Axis {
-    Alone(Box<Recorded>),
+pub(crate) enum Loop {
+    Alone(Box<Machine<[Axis; 1]>>),
     Coupled(Box<Coupled>),
 }
 
@@ -74,9 +73,9 @@ impl Bench {
     /// How late what axis and FMUs exchange is; nothing where there are none.
     #[must_use]
     pub fn delays(&self) -> &[ConnectionDelay] {
-        match &self.axis {
-            Axis::Alone(_) => &[],
-            Axis::Coupled(coupled) => coupled.delays(),
+        match &self.closed_loop {
+            Loop::Alone(_) => &[],
+            Loop::Coupled(coupled) => coupled.delays(),
         }
     }
 
@@ -161,15 +160,13 @@ impl Bench {
             disturbances,
             switches: plant::switches(scenario)?,
         };
-        let (watch, joints) = (LimitWatch::default(), JointWatch::default());
-        let recorded =
-            Recorded { closed_loop, wanted, recorder, record_every, ticks_to_row: 0, watch, joints, tick: 0 };
-        let axis = if scenario.fmus.is_empty() {
-            Axis::Alone(Box::new(recorded))
+        let machine = Machine::new([Axis::new(closed_loop, wanted, recorder, record_every)], base_rate);
+        let closed_loop = if scenario.fmus.is_empty() {
+            Loop::Alone(Box::new(machine))
         } else {
-            Axis::Coupled(Box::new(Coupled::new(scenario, recorded, ticks, (&equipment, &rates), partners)?))
+            Loop::Coupled(Box::new(Coupled::new(scenario, machine, ticks, (&equipment, &rates), partners)?))
         };
-        Ok(Self { ticks, axis })
+        Ok(Self { ticks, closed_loop })
     }
 }
 

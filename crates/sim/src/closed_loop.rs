@@ -1,10 +1,10 @@
 //! The closed loop, in execution order.
 use crate::disturbance::Disturbances;
+use crate::external::{Controller, External};
 use crate::network::{Measurement, Network, Request};
 use crate::power::PowerStage;
 use crate::program::Program;
 use crate::run::Reason;
-use crate::stepper::{Controller, External};
 use servobench_base::{Rate, Setpoint, Tick};
 use servobench_drive::velocity::Cut;
 use servobench_drive::{self as drive, Command, Demand, Feedback, Sensors};
@@ -214,12 +214,15 @@ impl ClosedLoop {
         self.state.upcoming
     }
 
-    /// Integrates the mechanics to the next tick.
+    /// Integrates the mechanics to the next tick; where motor and load are measured outside there is nothing to integrate.
     ///
     /// # Errors
     /// [`Reason`] why the loop cannot go on.
-    pub(crate) fn integrate(&mut self, now: &Instant) -> Result<(), Reason> {
+    pub(crate) fn integrate(&mut self, external: &External, now: &Instant) -> Result<(), Reason> {
         self.check()?;
+        if external.measured.is_some() {
+            return Ok(());
+        }
         let actuation = if self.prescribed { Actuation::Motion(now.setpoint) } else { Actuation::Effort(now.effort) };
         self.mechanics.advance(&Input {
             actuation,
@@ -233,7 +236,7 @@ impl ClosedLoop {
     ///
     /// # Errors
     /// [`Reason::Program`] why it gave up.
-    pub(crate) fn check(&mut self) -> Result<(), Reason> {
+    fn check(&mut self) -> Result<(), Reason> {
         match &mut self.state.source {
             Source::Network(network, _) => network.failure().map_or(Ok(()), |reason| Err(Reason::Program(reason))),
             Source::Program(_) => Ok(()),

@@ -9,10 +9,11 @@ mod wiring;
 
 pub(crate) use wiring::replaces_the_drive;
 
+use crate::axis::Axis;
 use crate::error::{BuildError, UnusableFmu};
-use crate::recorded::{LISTEN_EVERY, Recorded};
-use crate::run::{Failure, Outcome, PROGRESS_EVERY, Reason};
-use block::{AttachedFmu, Axis, Part, PartError};
+use crate::machine::{LOG_EVERY, Machine, PROGRESS_EVERY};
+use crate::run::{Failure, Outcome, Reason};
+use block::{AttachedFmu, AxisBlock, Part, PartError};
 use servobench_base::Tick;
 use servobench_coupling::{Advance, CouplingError, InputPort, Master, Member, Network};
 use servobench_fmi::{FmuEntry, FmuMistake, FmuRequest, Slave};
@@ -71,7 +72,7 @@ impl Coupled {
     /// [`BuildError`] names the FMU or the connection.
     pub(crate) fn new(
         scenario: &Scenario,
-        recorded: Recorded,
+        machine: Machine<[Axis; 1]>,
         ticks: u64,
         (equipment, rates): (&Equipment, &Rates),
         partners: &dyn Partners,
@@ -101,7 +102,7 @@ impl Coupled {
             return Err(refused(unusable));
         }
         let names = members.iter().map(|member| member.name.clone()).collect();
-        let axis = Axis::new(recorded, ticks, wiring.takes.clone(), wiring.gives.clone());
+        let axis = AxisBlock::new(machine, ticks, wiring.takes.clone(), wiring.gives.clone());
         members.push(Member {
             name: "axis".into(),
             inputs: wiring
@@ -121,7 +122,7 @@ impl Coupled {
 
     /// Runs to the end.
     pub(crate) fn run(mut self, ticks: u64, progress: &mut dyn FnMut(f64)) -> Outcome {
-        self.listen();
+        self.note_logs();
         let (last, mut told, mut failure) = (ticks - 1, 0, None);
         let mut exchanges = 0_u64;
         while failure.is_none() && self.master.tick().0 < last {
@@ -135,8 +136,8 @@ impl Coupled {
                 Err(error) => failure = Some(failed(error, self.master.time())),
             }
             exchanges += 1;
-            if exchanges.is_multiple_of(LISTEN_EVERY) {
-                self.listen();
+            if exchanges.is_multiple_of(LOG_EVERY) {
+                self.note_logs();
             }
             if self.master.tick().0 >= told {
                 told = self.master.tick().0 + PROGRESS_EVERY;
@@ -147,18 +148,19 @@ impl Coupled {
         self.finish(failure)
     }
 
-    /// Notes what the FMUs have said since the last time. What they say in a step that is repeated they say again.
-    fn listen(&mut self) {
+    /// Notes the new log lines of the FMUs. Those of a step that is repeated come again.
+    fn note_logs(&mut self) {
         for (index, name) in self.names.iter().enumerate() {
             let Part::Fmu(AttachedFmu { slave, .. }) = self.master.block_mut(index) else { continue };
-            let said = slave.take_log();
-            if said.is_empty() {
+            let lines = slave.take_log();
+            if lines.is_empty() {
                 continue;
             }
-            let Part::Axis(axis) = self.master.block_mut(self.names.len()) else { continue };
-            let source = format!("FMU {name}");
-            for line in said {
-                axis.recorded.note_said(&source, line.severity, line.time, &line.words());
+            let Part::Axis(block) = self.master.block_mut(self.names.len()) else { continue };
+            let (source, now) = (format!("FMU {name}"), block.machine.time());
+            let [axis] = &mut block.machine.axes;
+            for line in lines {
+                axis.note_log_line(now, &source, (line.severity, line.time), &line.words());
             }
         }
     }
@@ -169,22 +171,22 @@ impl Coupled {
                 slave.end();
             }
         }
-        self.listen();
-        self.into_axis().recorded_to_the_end(failure.is_none()).finish(failure)
+        self.note_logs();
+        let mut machine = self.alone();
+        if failure.is_none() {
+            machine.observe();
+        }
+        Outcome::of(machine, failure)
     }
 
     /// The axis without its FMUs.
-    pub(crate) fn alone(self) -> Recorded {
-        self.into_axis().recorded
-    }
-
-    fn into_axis(self) -> Axis {
-        let axis = self.master.into_blocks().into_iter().find_map(|part| match part {
-            Part::Axis(axis) => Some(*axis),
+    pub(crate) fn alone(self) -> Machine<[Axis; 1]> {
+        let machine = self.master.into_blocks().into_iter().find_map(|part| match part {
+            Part::Axis(block) => Some(block.machine),
             Part::Fmu(_) => None,
         });
-        let Some(axis) = axis else { unreachable!("the axis is a block of every coupling") };
-        axis
+        let Some(machine) = machine else { unreachable!("the axis is a block of every coupling") };
+        machine
     }
 
     /// Every connection with how late it is.

@@ -1,18 +1,22 @@
 //! The closed loop: builds it from a scenario and an engine, and runs it.
 //!
-//! [`Bench::run`] is the whole loop in one function, in execution order.
+//! `machine::Machine::tick` is the whole loop in one function, in execution order, whoever steps it: a run, a co-simulation, or an
+//! external simulation through a [`Stepper`].
 
+mod axis;
 mod bench;
 mod closed_loop;
 mod coupled;
 mod disturbance;
 mod error;
+mod external;
 mod joint_watch;
 mod limit_watch;
+mod machine;
+mod multi_axis;
 mod network;
 mod power;
 mod program;
-mod recorded;
 mod run;
 mod stability;
 mod stepper;
@@ -21,9 +25,11 @@ mod thinning;
 pub use bench::Bench;
 pub use coupled::{ConnectionDelay, NoPartners, Partners};
 pub use error::{BuildError, UnusableFmu};
+pub use external::{Controller, External};
+pub use multi_axis::{MultiAxisBench, MultiAxisOutcome, NotAtOneTime};
 pub use network::Unsendable;
 pub use program::Program;
-pub use run::{Failure, Outcome, Reason};
+pub use run::{AxisFailure, Failure, Outcome, Reason};
 pub use stability::{Analysis, NotAnalysed, analyse_stability};
-pub use stepper::{Binding, Controller, External, Snapshot, States, Stepper};
+pub use stepper::{Snapshot, States, Stepper};
 pub use thinning::{selected, thinned};

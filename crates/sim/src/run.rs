@@ -1,8 +1,8 @@
 //! A run from the first tick to the last, and what it leaves behind.
-use crate::bench::{Axis, Bench};
-use crate::stepper::External;
+use crate::axis::Axis;
+use crate::bench::{Bench, Loop};
+use crate::machine::Machine;
 use servobench_plant::MechanicsError;
-use servobench_signals::Instant;
 use servobench_trace::Recording;
 
 /// What a run leaves behind.
@@ -39,37 +39,41 @@ pub enum Reason {
     Program(String),
 }
 
-/// How often a run reports its progress, in ticks.
-pub(crate) const PROGRESS_EVERY: u64 = 1 << 14;
+/// An axis of several that ended the run of all.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("axis {}: {failure}", axis + 1)]
+pub struct AxisFailure {
+    /// Which one, from 0.
+    pub axis: usize,
+    /// Why.
+    pub failure: Failure,
+}
+
+impl From<AxisFailure> for Failure {
+    /// Of the only axis.
+    fn from(of: AxisFailure) -> Self {
+        of.failure
+    }
+}
 
 impl Bench {
-    /// Runs to the end; `progress` hears the share that is done, from 0 to 1.
-    ///
-    /// ```text
-    /// tick k:  sample → set-point → control → power stage → record → integrate to k+1
-    /// ```
+    /// Runs to the end; `progress` is told the share that is done, from 0 to 1.
     #[must_use]
     pub fn run(self, progress: &mut dyn FnMut(f64)) -> Outcome {
-        let Self { axis, ticks } = self;
-        let mut recorded = match axis {
-            Axis::Coupled(coupled) => return coupled.run(ticks, progress),
-            Axis::Alone(recorded) => *recorded,
-        };
-        let (external, mut now, mut failure) = (External::default(), Instant::default(), None);
-        loop {
-            recorded.observe(&external, &mut now);
-            if recorded.tick.is_multiple_of(PROGRESS_EVERY) {
-                progress(recorded.tick as f64 / ticks as f64);
-            }
-            if recorded.tick + 1 == ticks {
-                break;
-            }
-            if let Err(why) = recorded.go_on(&now) {
-                failure = Some(why);
-                break;
+        match self.closed_loop {
+            Loop::Coupled(coupled) => coupled.run(self.ticks, progress),
+            Loop::Alone(mut machine) => {
+                let failure = machine.run(self.ticks, progress).err().map(Failure::from);
+                Outcome::of(*machine, failure)
             }
         }
-        progress(1.0);
-        recorded.finish(failure)
+    }
+}
+
+impl Outcome {
+    pub(crate) fn of(machine: Machine<[Axis; 1]>, failure: Option<Failure>) -> Self {
+        let (present, end) = machine.ends(failure.as_ref());
+        let [axis] = machine.axes;
+        Self { recording: axis.finish(present, end), failure }
     }
 }

@@ -73,6 +73,9 @@ impl Recorder {
     /// Appends the row that `write` fills in where it is kept.
     #[inline]
     pub fn push_with(&mut self, write: impl FnOnce(&mut [f64])) {
+        if self.is_silent {
+            return;
+        }
         let from = self.rows * self.width;
         write(&mut self.block[from..from + self.width]);
         self.rows += 1;

@@ -1,13 +1,14 @@
 //! Axis and FMUs as blocks of a coupling.
-use crate::recorded::{Recorded, Saved};
+use crate::axis::{Axis, Saved};
+use crate::external::{Controller, External};
+use crate::machine::Machine;
 use crate::run::Failure;
-use crate::stepper::{Controller, External};
 use servobench_base::{Dq, Setpoint, Tick};
 use servobench_coupling::{Block, Input, Step, later, mean, value};
 use servobench_fmi::{Progress, Slave, SlaveError};
 use servobench_plant::MechanicsError;
 use servobench_scenario::LoopSignal;
-use servobench_signals::{Instant, Selection};
+use servobench_signals::Selection;
 
 /// What the axis gives before channels of the recording.
 pub(super) const OWN: [&str; 3] = ["time", "shaft.position", "shaft.velocity"];
@@ -17,7 +18,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// One of those that are coupled.
 pub(super) enum Part {
-    Axis(Box<Axis>),
+    Axis(Box<AxisBlock>),
     Fmu(AttachedFmu),
 }
 
@@ -40,23 +41,19 @@ pub(super) enum PartError {
 }
 
 /// The axis as a block.
-pub(super) struct Axis {
-    pub(super) recorded: Recorded,
-    /// Ticks of the run: the last one is recorded at the end.
+pub(super) struct AxisBlock {
+    pub(super) machine: Machine<[Axis; 1]>,
+    /// Ticks of the run: the last one is observed at the end.
     ticks: u64,
     takes: Vec<LoopSignal>,
     /// What others are given behind [`OWN`].
     gives: Selection,
-    now: Instant,
-    external: External,
-    saved: Option<(Saved, Instant, External)>,
+    saved: Option<(Tick, Saved)>,
 }
 
-impl Axis {
-    pub(super) fn new(recorded: Recorded, ticks: u64, takes: Vec<LoopSignal>, gives: Selection) -> Self {
-        let mut now = Instant::default();
-        recorded.closed_loop.sample(&External::default(), &mut now);
-        Self { recorded, ticks, takes, gives, now, external: External::default(), saved: None }
+impl AxisBlock {
+    pub(super) const fn new(machine: Machine<[Axis; 1]>, ticks: u64, takes: Vec<LoopSignal>, gives: Selection) -> Self {
+        Self { machine, ticks, takes, gives, saved: None }
     }
 
     /// What acts over a tick that begins `since` a step's start (s).
@@ -82,21 +79,62 @@ impl Axis {
         external
     }
 
-    /// The bodies and the set-point of the tick that comes.
-    fn look(&mut self) {
-        self.recorded.closed_loop.sample(&External::default(), &mut self.now);
-        if let Some(setpoint) = self.recorded.closed_loop.look_ahead(self.recorded.tick) {
-            self.now.setpoint = setpoint;
+    /// The steps of the machine within `length` (s), over which `inputs` act.
+    fn step(&mut self, length: f64, inputs: &[Input]) -> Result<(), Failure> {
+        let rate = self.machine.base_rate();
+        for tick in 0..rate.tick_at(length).0 {
+            if self.machine.next().0 + 1 == self.ticks {
+                break;
+            }
+            let external = self.external(inputs, rate.time(Tick(tick)), rate.period());
+            let [axis] = &mut self.machine.axes;
+            axis.external = external;
+            self.machine.tick()?;
+        }
+        self.look_ahead();
+        Ok(())
+    }
+
+    /// Brings the bodies and the set-point of the tick that comes next to what is given.
+    fn look_ahead(&mut self) {
+        let next = self.machine.next();
+        let [axis] = &mut self.machine.axes;
+        axis.sample();
+        if let Some(setpoint) = axis.closed_loop.look_ahead(next.0) {
+            axis.now.setpoint = setpoint;
         }
     }
 
-    /// The loop with its last tick recorded.
-    pub(super) fn recorded_to_the_end(self, is_complete: bool) -> Recorded {
-        let Self { mut recorded, external, mut now, .. } = self;
-        if is_complete {
-            recorded.observe(&external, &mut now);
+    fn read(&mut self, outputs: &mut [f64]) {
+        self.look_ahead();
+        let time = self.machine.time();
+        let [axis] = &self.machine.axes;
+        let (own, channels) = outputs.split_at_mut(OWN.len());
+        let shaft = axis.closed_loop.mechanics.bodies()[0];
+        own.copy_from_slice(&[time, shaft.position, shaft.velocity]);
+        if !channels.is_empty() {
+            channels.copy_from_slice(self.gives.values(&axis.now));
         }
-        recorded
+    }
+
+    fn save(&mut self) -> Result<(), MechanicsError> {
+        let (next, time) = (self.machine.next(), self.machine.time());
+        let [axis] = &mut self.machine.axes;
+        self.saved = Some((next, axis.save(time)?));
+        Ok(())
+    }
+
+    fn restore(&mut self) -> Result<(), MechanicsError> {
+        let Some((tick, saved)) = &self.saved else { return Err(MechanicsError::NoWayBack) };
+        let [axis] = &mut self.machine.axes;
+        axis.restore(saved)?;
+        self.machine.go_back(*tick);
+        Ok(())
+    }
+
+    fn saves_state(&self) -> bool {
+        let [axis] = &self.machine.axes;
+        axis.closed_loop.mechanics.marks()
     }
 }
 
@@ -105,7 +143,7 @@ impl Block for Part {
 
     fn saves_state(&self) -> bool {
         match self {
-            Self::Axis(axis) => axis.recorded.closed_loop.mechanics.marks(),
+            Self::Axis(axis) => axis.saves_state(),
             Self::Fmu(fmu) => fmu.slave.capabilities().saves_state,
         }
     }
@@ -146,40 +184,23 @@ impl Block for Part {
     }
 
     fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<Step, PartError> {
-        let axis = match self {
-            Self::Axis(axis) => axis,
+        match self {
+            Self::Axis(axis) => axis.step(length, inputs).map(|()| Step::Done).map_err(PartError::Axis),
             Self::Fmu(AttachedFmu { slave, end }) => {
-                return Ok(match slave.step(time, length, inputs).map_err(PartError::Fmu)? {
+                Ok(match slave.step(time, length, inputs).map_err(PartError::Fmu)? {
                     Progress::Done => Step::Done,
                     Progress::Terminated(time) if time >= *end - ROUNDING * length => Step::Done,
                     Progress::Until(time) => Step::Until(time),
                     Progress::Terminated(time) => Step::Terminated(time),
-                });
+                })
             }
-        };
-        let rate = axis.recorded.closed_loop.base_rate;
-        for tick in 0..rate.tick_at(length).0 {
-            if axis.recorded.tick + 1 == axis.ticks {
-                break;
-            }
-            axis.external = axis.external(inputs, rate.time(Tick(tick)), rate.period());
-            axis.recorded.observe(&axis.external, &mut axis.now);
-            axis.recorded.go_on(&axis.now).map_err(PartError::Axis)?;
         }
-        axis.look();
-        Ok(Step::Done)
     }
 
     fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), PartError> {
         match self {
             Self::Axis(axis) => {
-                axis.look();
-                let (own, channels) = outputs.split_at_mut(OWN.len());
-                let shaft = axis.recorded.closed_loop.mechanics.bodies()[0];
-                own.copy_from_slice(&[axis.recorded.time(), shaft.position, shaft.velocity]);
-                if !channels.is_empty() {
-                    channels.copy_from_slice(axis.gives.values(&axis.now));
-                }
+                axis.read(outputs);
                 Ok(())
             }
             Self::Fmu(fmu) => fmu.slave.read(inputs, outputs).map_err(PartError::Fmu),
@@ -188,25 +209,14 @@ impl Block for Part {
 
     fn save(&mut self) -> Result<(), PartError> {
         match self {
-            Self::Axis(axis) => {
-                let saved = axis.recorded.save()?;
-                axis.saved = Some((saved, axis.now, axis.external));
-                Ok(())
-            }
+            Self::Axis(axis) => Ok(axis.save()?),
             Self::Fmu(fmu) => fmu.slave.save().map_err(PartError::Fmu),
         }
     }
 
     fn restore(&mut self) -> Result<(), PartError> {
         match self {
-            Self::Axis(axis) => {
-                let Some((saved, now, external)) = &axis.saved else {
-                    return Err(MechanicsError::NoWayBack.into());
-                };
-                axis.recorded.restore(saved)?;
-                (axis.now, axis.external) = (*now, *external);
-                Ok(())
-            }
+            Self::Axis(axis) => Ok(axis.restore()?),
             Self::Fmu(fmu) => fmu.slave.restore().map_err(PartError::Fmu),
         }
     }

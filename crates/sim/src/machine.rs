@@ -1,0 +1,108 @@
+//! Axes at one time, and the one tick that moves them.
+use crate::axis::Axis;
+use crate::run::{AxisFailure, Failure};
+use servobench_base::{Rate, Tick};
+
+/// Ticks, or exchanges, after which log lines of FMUs are fetched. Each line has its own time; fetching costs system calls.
+pub(crate) const LOG_EVERY: u64 = 64;
+
+/// Axes that share one time: `[Axis; 1]` where there is exactly one, `Vec<Axis>` where there may be several.
+pub(crate) struct Machine<Axes> {
+    pub(crate) axes: Axes,
+    base_rate: Rate,
+    /// The tick that comes next.
+    tick: u64,
+}
+
+impl<Axes: AsMut<[Axis]>> Machine<Axes> {
+    /// `axes` at tick 0, all of them built for `base_rate`.
+    pub(crate) const fn new(axes: Axes, base_rate: Rate) -> Self {
+        Self { axes, base_rate, tick: 0 }
+    }
+
+    /// One tick of every axis, whoever steps it:
+    ///
+    /// ```text
+    /// tick k:  sample → set-point → control → power stage → record → integrate to k+1
+    /// ```
+    ///
+    /// All axes are controlled before the first one moves.
+    ///
+    /// # Errors
+    /// [`AxisFailure`] says which axis cannot go on, and why.
+    pub(crate) fn tick(&mut self) -> Result<(), AxisFailure> {
+        self.observe();
+        self.integrate()
+    }
+
+    /// Tick k but for the mechanics: all of the last tick of a run.
+    pub(crate) fn observe(&mut self) {
+        let (k, time) = (self.tick, self.time());
+        for axis in self.axes.as_mut() {
+            axis.observe(k, time);
+        }
+    }
+
+    fn integrate(&mut self) -> Result<(), AxisFailure> {
+        let time = self.time();
+        for (index, axis) in self.axes.as_mut().iter_mut().enumerate() {
+            axis.integrate().map_err(|reason| AxisFailure { axis: index, failure: Failure { time, reason } })?;
+        }
+        self.tick += 1;
+        if self.tick.is_multiple_of(LOG_EVERY) {
+            let time = self.time();
+            self.axes.as_mut().iter_mut().for_each(|axis| axis.note_log(time));
+        }
+        Ok(())
+    }
+
+    /// Runs `ticks` ticks, the last of which is observed only; `progress` is told the share that is done, from 0 to 1.
+    ///
+    /// # Errors
+    /// [`AxisFailure`] says which axis cannot go on, and why.
+    pub(crate) fn run(&mut self, ticks: u64, progress: &mut dyn FnMut(f64)) -> Result<(), AxisFailure> {
+        let mut done = Ok(());
+        while done.is_ok() && self.tick + 1 < ticks {
+            if self.tick.is_multiple_of(PROGRESS_EVERY) {
+                progress(self.tick as f64 / ticks as f64);
+            }
+            done = self.tick();
+        }
+        if done.is_ok() {
+            self.observe();
+        }
+        progress(1.0);
+        done
+    }
+}
+
+impl<Axes> Machine<Axes> {
+    /// Ticks per second.
+    pub(crate) const fn base_rate(&self) -> Rate {
+        self.base_rate
+    }
+
+    /// The tick that comes next.
+    pub(crate) const fn next(&self) -> Tick {
+        Tick(self.tick)
+    }
+
+    /// Its time (s).
+    pub(crate) fn time(&self) -> f64 {
+        self.base_rate.time(self.next())
+    }
+
+    /// The present, and when the recordings end: then, or when there was a failure (s).
+    pub(crate) fn ends(&self, failure: Option<&Failure>) -> (f64, f64) {
+        let present = self.time();
+        (present, failure.map_or(present, |failure| failure.time))
+    }
+
+    /// Goes to `tick`, to which the axes have gone back.
+    pub(crate) const fn go_back(&mut self, Tick(tick): Tick) {
+        self.tick = tick;
+    }
+}
+
+/// How often a run reports its progress, in ticks.
+pub(crate) const PROGRESS_EVERY: u64 = 1 << 14;
