@@ -4,15 +4,19 @@
 #![cfg_attr(not(test), no_std)]
 
 mod coordinate;
+mod ending;
 mod frames;
 mod parameter;
 mod setpoint;
 mod severity;
+mod step_end;
 mod time;
 
 pub use coordinate::Coordinate;
+pub use ending::Ending;
 pub use frames::{AlphaBeta, Dq, ElectricalAngle, Rotation};
 pub use parameter::{ParamError, finite, limit, non_negative, positive};
 pub use setpoint::Setpoint;
 pub use severity::Severity;
+pub use step_end::StepEnd;
 pub use time::{Countdown, Divider, Rate, RateError, Tick};

@@ -10,6 +10,7 @@ pub struct Tick(pub u64);
 
 /// A rate in whole hertz, at least 1 Hz.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(transparent))]
 pub struct Rate(NonZeroU32);
 
 /// How many base ticks one period of a task lasts; at least 1.

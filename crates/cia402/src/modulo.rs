@@ -35,11 +35,6 @@ pub enum Direction {
     Negative,
     /// The shorter way, with increasing position if both are equal.
     Shortest,
-    /// As the axis moves or last moved.
-    Current {
-        /// Whether that is with decreasing position.
-        negative: bool,
-    },
 }
 
 /// The rotary axis direction option of the positioning option code.
@@ -165,8 +160,8 @@ impl PositionRange {
         let positive = if difference < 0 { difference + self.length() } else { difference };
         let negative = if positive == 0 { 0 } else { positive - self.length() };
         match direction {
-            Direction::Positive | Direction::Current { negative: false } => positive,
-            Direction::Negative | Direction::Current { negative: true } => negative,
+            Direction::Positive => positive,
+            Direction::Negative => negative,
             Direction::Shortest => {
                 if positive <= -negative {
                     positive
@@ -174,15 +169,6 @@ impl PositionRange {
                     negative
                 }
             }
-        }
-    }
-
-    /// The distance of a move by the positioning option code (60F2h).
-    #[must_use]
-    pub const fn way_by_option(self, from: i32, to: i32, option: RotaryAxisOption) -> i64 {
-        match option.direction() {
-            None => to as i64 - from as i64,
-            Some(direction) => self.way(from as i64, to as i64, direction),
         }
     }
 }

@@ -31,8 +31,6 @@ fn ways_are_those_of_a_walk() {
                 let (up, down) = (steps(range, from, to, 1), steps(range, from, to, -1));
                 let way = |direction| range.way(from.into(), to.into(), direction);
                 assert_eq!((way(Direction::Positive), way(Direction::Negative)), (up, down), "{from} to {to}");
-                assert_eq!(way(Direction::Current { negative: false }), up);
-                assert_eq!(way(Direction::Current { negative: true }), down);
                 assert_eq!(way(Direction::Shortest), if up <= -down { up } else { down }, "{from} to {to}");
             }
         }
@@ -76,8 +74,8 @@ fn positions_outside_are_wrapped_first() {
 #[test]
 fn the_option_code_chooses_by_bits_7_and_6() {
     let turn = PositionRange::new(0, 359).unwrap();
-    let way = |code| turn.way_by_option(350, 730, RotaryAxisOption::of_code(code));
-    assert_eq!([way(0x00), way(0x40), way(0x80), way(0xC0)], [380, -340, 20, 20]);
+    let way = |code| RotaryAxisOption::of_code(code).direction().map(|direction| turn.way(350, 730, direction));
+    assert_eq!([way(0x00), way(0x40), way(0x80), way(0xC0)], [None, Some(-340), Some(20), Some(20)]);
     assert_eq!(RotaryAxisOption::of_code(0xFF3F), RotaryAxisOption::Linear);
     for code in [0x00, 0x40, 0x80, 0xC0] {
         assert_eq!(RotaryAxisOption::of_code(code).code(), code);

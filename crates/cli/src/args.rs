@@ -9,6 +9,10 @@ use crate::commands::{PLAN_EXAMPLES, PlanArgs};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use servobench_config::Choice as _;
+#[cfg(feature = "fmu")]
+use servobench_fmi::Version;
+#[cfg(feature = "fmu")]
+use servobench_fmu::Part;
 use servobench_plant::EngineName;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -86,51 +90,15 @@ pub(crate) struct FmuInfoArgs {
 pub(crate) struct FmuExportArgs {
     /// The scenario.
     pub(crate) scenario: PathBuf,
-    /// Version of the standard.
-    #[arg(long, value_enum, default_value = "3")]
-    pub(crate) fmi: FmuVersion,
+    /// Version of the Functional Mock-up Interface.
+    #[arg(long, value_parser = choice::<Version>(), default_value = Version::default().name())]
+    pub(crate) fmi: Version,
     /// What is inside.
-    #[arg(long, value_enum, default_value = "axis")]
-    pub(crate) part: FmuPart,
+    #[arg(long, value_parser = choice::<Part>(), default_value = Part::default().name())]
+    pub(crate) part: Part,
     /// The file [default: the scenario's name with .fmu].
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-}
-
-/// Version of the Functional Mock-up Interface.
-#[cfg(feature = "fmu")]
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum FmuVersion {
-    /// FMI 2.0.
-    #[value(name = "2")]
-    Two,
-    /// FMI 3.0.
-    #[value(name = "3")]
-    Three,
-}
-
-/// Part of an axis.
-#[cfg(feature = "fmu")]
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum FmuPart {
-    /// Program, drive, motor and mechanics: set-points or targets in, motion out.
-    Axis,
-    /// Program, drive and motor: measurements in, effort out.
-    Drive,
-    /// The mechanics: effort in, motion out.
-    Mechanics,
-}
-
-#[cfg(feature = "fmu")]
-impl FmuPart {
-    /// The name that it has in the FMU.
-    pub(crate) const fn name(self) -> &'static str {
-        match self {
-            Self::Axis => "axis",
-            Self::Drive => "drive",
-            Self::Mechanics => "mechanics",
-        }
-    }
 }
 
 #[derive(Debug, Args)]

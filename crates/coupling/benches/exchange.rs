@@ -4,7 +4,7 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use servobench_base::{Divider, Rate};
 use servobench_coupling::{
-    Block, Connection, Input, InputPort, Iteration, Master, Member, Method, Network, Order, Port, Settings, Step,
+    Block, Connection, Input, InputPort, Iteration, Master, Member, Method, Network, Order, Port, Settings, StepEnd,
 };
 use std::convert::Infallible;
 use std::num::NonZeroU32;
@@ -37,11 +37,11 @@ impl Block for Idle {
         self.follows
     }
 
-    fn step(&mut self, _: f64, _: f64, inputs: &[Input]) -> Result<Step, Infallible> {
+    fn step(&mut self, _: f64, _: f64, inputs: &[Input]) -> Result<StepEnd, Infallible> {
         black_box(inputs);
         let [x, y] = self.x;
         self.x = [TURN[0] * x - TURN[1] * y, TURN[1] * x + TURN[0] * y];
-        Ok(Step::Done)
+        Ok(StepEnd::Done)
     }
 
     fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), Infallible> {

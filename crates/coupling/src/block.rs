@@ -1,18 +1,8 @@
 //! What is coupled.
+use servobench_base::StepEnd;
 
 /// An input over a step: its value at the start and its first two derivatives to the time there.
 pub type Input = [f64; 3];
-
-/// How far a step has come.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Step {
-    /// To its end.
-    Done,
-    /// To this time (s) before its end; the rest is to be asked for.
-    Until(f64),
-    /// To this time (s), where the block wants the simulation to end.
-    Terminated(f64),
-}
 
 /// A part of a simulation that is stepped for itself: an FMU, or the axis.
 pub trait Block {
@@ -54,7 +44,7 @@ pub trait Block {
     ///
     /// # Errors
     /// The block's own; the simulation ends.
-    fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<Step, Self::Error>;
+    fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<StepEnd, Self::Error>;
 
     /// Reads all outputs. `inputs`, if given, are the present ones, for outputs that follow them without a step (direct
     /// feedthrough).
@@ -103,7 +93,7 @@ impl<B: Block + ?Sized> Block for Box<B> {
         (**self).start(inputs)
     }
 
-    fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<Step, Self::Error> {
+    fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<StepEnd, Self::Error> {
         (**self).step(time, length, inputs)
     }
 

@@ -58,10 +58,11 @@ mod signals;
 mod stepping;
 mod watch;
 
-pub use block::{Block, Input, Step};
+pub use block::{Block, Input};
 pub use delay::Delay;
 pub use error::CouplingError;
 pub use master::{Advance, Effort, Master};
 pub use network::{Connection, InputPort, Member, Network, NetworkError, Port};
 pub use polynomial::{Order, later, mean, value};
+pub use servobench_base::StepEnd;
 pub use settings::{Acceleration, Iteration, Method, MethodKind, Settings};

@@ -3,7 +3,7 @@ use crate::error::CouplingError;
 use crate::fixed_point::{Disagreement, FixedPoint};
 use crate::master::{Advance, Master};
 use crate::polynomial::later;
-use crate::{Block, Step};
+use crate::{Block, StepEnd};
 
 /// Part of a step that is left out at its end: the rounding of a time in seconds.
 const ROUNDING: f64 = 1e-9;
@@ -26,9 +26,9 @@ impl<B: Block> Master<B> {
         loop {
             let step = self.blocks[block].step(time, length, inputs);
             let at = match step.map_err(|source| failed(&self.wiring, block, time, source))? {
-                Step::Done => break,
-                Step::Terminated(time) => return Ok(Some(Advance::Terminated { block, time })),
-                Step::Until(at) => at,
+                StepEnd::Done => break,
+                StepEnd::Terminated(time) => return Ok(Some(Advance::Terminated { block, time })),
+                StepEnd::Until(at) => at,
             };
             parts += 1;
             if !(at >= time && at <= end + ROUNDING * whole) || parts > MOST_PARTS {

@@ -2,7 +2,7 @@
 use servobench_base::{Divider, Rate};
 use servobench_coupling::{
     Acceleration, Block, Connection, Input, InputPort, Iteration, Master, Member, Method, Network, Order, Port,
-    Settings, Step, mean,
+    Settings, StepEnd, mean,
 };
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -51,14 +51,14 @@ impl Block for Lags {
         (output, input) == (1, 1)
     }
 
-    fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<Step, Infallible> {
+    fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<StepEnd, Infallible> {
         for (x, input) in self.x.iter_mut().zip(inputs) {
             *x += length * (mean(input, length) - *x);
         }
         self.u = inputs[1][0];
         // Each tenth of a second has an event, in a step or between two.
         let event = (time * 10.0).floor() / 10.0 + 0.1;
-        Ok(if event > time && event < time + length { Step::Until(event) } else { Step::Done })
+        Ok(if event > time && event < time + length { StepEnd::Until(event) } else { StepEnd::Done })
     }
 
     fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), Infallible> {

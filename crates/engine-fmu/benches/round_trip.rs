@@ -3,7 +3,7 @@
 //! `cargo bench -p servobench-engine-fmu`
 
 use servobench_engine_fmu::{HostCommand, Isolated, Wires, serve};
-use servobench_fmi::{Bounds, Capabilities, LogLine, Progress, Slave, SlaveError};
+use servobench_fmi::{Bounds, Capabilities, LogLine, Slave, SlaveError, StepEnd};
 use std::hint::black_box;
 use std::io::{Read, Write, stdin, stdout};
 use std::process::{Child, Command, Stdio};
@@ -38,10 +38,10 @@ impl Slave for Mass {
         Capabilities::default()
     }
 
-    fn step(&mut self, _: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+    fn step(&mut self, _: f64, length: f64, inputs: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
         self.v += length * inputs[0][0];
         self.x += length * self.v;
-        Ok(Progress::Done)
+        Ok(StepEnd::Done)
     }
 
     fn read(&mut self, _: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {

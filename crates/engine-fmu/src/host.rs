@@ -7,7 +7,7 @@ use crate::page::Page;
 use crate::protocol::{Command, Message, Status, log_to_line};
 use rustix::process::{Pid, Resource, Rlimit, Signal, getppid, getrlimit, set_parent_process_death_signal, setrlimit};
 use serde::de::DeserializeOwned;
-use servobench_fmi::{LogLine, Progress, Slave, SlaveError};
+use servobench_fmi::{LogLine, Slave, SlaveError, StepEnd};
 use std::fs::File;
 use std::io;
 use std::os::fd::AsFd;
@@ -197,9 +197,9 @@ impl Work {
         let (time, length) = (number(&header.asked.time), number(&header.asked.length));
         header.answered.fresh.store(0, Relaxed);
         let (status, reached) = match slave.step(time, length, &self.inputs)? {
-            Progress::Done => (Status::Done, time + length),
-            Progress::Until(reached) => (Status::Until, reached),
-            Progress::Terminated(reached) => (Status::Terminated, reached),
+            StepEnd::Done => (Status::Done, time + length),
+            StepEnd::Until(reached) => (Status::Until, reached),
+            StepEnd::Terminated(reached) => (Status::Terminated, reached),
         };
         header.answered.reached.store(reached.to_bits(), Relaxed);
         match self.read(slave) {

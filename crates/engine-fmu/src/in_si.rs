@@ -1,6 +1,6 @@
 //! A slave whose numbers are SI numbers.
 use crate::ports::Ports;
-use servobench_fmi::{Capabilities, LogLine, Progress, Severity, Slave, SlaveError};
+use servobench_fmi::{Capabilities, LogLine, Severity, Slave, SlaveError, StepEnd};
 
 /// A slave that was wired with ports, whose numbers are in SI units here and in its own there.
 pub struct InSi {
@@ -72,7 +72,7 @@ impl Slave for InSi {
         self.slave.end();
     }
 
-    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
         for ((own, wire), si) in self.moving.iter_mut().zip(&self.ports.inputs).zip(inputs) {
             *own = wire.of_si_in_motion(*si);
         }

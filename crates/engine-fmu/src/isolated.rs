@@ -7,7 +7,7 @@ use crate::memory::in_words;
 use crate::page::{Answered, Asked, Page};
 use crate::protocol::{Command, Message, Status, log_of_lines};
 use serde::Serialize;
-use servobench_fmi::{Bounds, Capabilities, Feedthrough, LogLine, Progress, Severity, Slave, SlaveError, Unpacked};
+use servobench_fmi::{Bounds, Capabilities, Feedthrough, LogLine, Severity, Slave, SlaveError, StepEnd, Unpacked};
 use std::borrow::Cow;
 use std::sync::atomic::Ordering::Relaxed;
 use std::time::{Duration, Instant};
@@ -261,7 +261,7 @@ impl Slave for Isolated {
         }
     }
 
-    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
         let words = self.page().inputs();
         assert_eq!(3 * inputs.len(), words.len(), "inputs are those that the FMU was wired with");
         words.iter().zip(inputs.as_flattened()).for_each(|(word, value)| word.store(value.to_bits(), Relaxed));
@@ -276,9 +276,9 @@ impl Slave for Isolated {
             self.reached = reached;
         }
         match status {
-            Status::Done => Ok(Progress::Done),
-            Status::Until => Ok(Progress::Until(reached)),
-            Status::Terminated => Ok(Progress::Terminated(reached)),
+            Status::Done => Ok(StepEnd::Done),
+            Status::Until => Ok(StepEnd::Until(reached)),
+            Status::Terminated => Ok(StepEnd::Terminated(reached)),
             Status::Message => Err(self.failure(status)),
         }
     }

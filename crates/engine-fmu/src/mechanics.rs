@@ -8,7 +8,7 @@
 //! With n = 1 nothing is extrapolated, and the effort of a tick is held over it: what an engine of our own gets. With n > 1 the
 //! impulse of the efforts is kept, and the axis sees of the FMU what was so up to n ticks ago: a delay of n/2 ticks in the mean.
 use crate::motion::Motion;
-use servobench_fmi::{LogLine, Progress, Severity, Slave, SlaveError};
+use servobench_fmi::{LogLine, Severity, Slave, SlaveError, StepEnd};
 use servobench_plant::{Actuation, BodyState, EngineName, FmuModel, Input, Mechanics, MechanicsError, Said};
 
 /// The engine.
@@ -140,22 +140,22 @@ impl FmuMechanics {
         }
         for _ in 0..MOST_PARTS {
             match self.slave.step(time, length, &self.inputs).map_err(|error| self.wrong(&error))? {
-                Progress::Done => return self.read(),
+                StepEnd::Done => return self.read(),
                 // An event at the very start is one too, but not without end.
-                Progress::Until(reached) if reached >= time && stalls < MOST_STALLS && reached < end - rounding => {
+                StepEnd::Until(reached) if reached >= time && stalls < MOST_STALLS && reached < end - rounding => {
                     stalls = if reached > time { 0 } else { stalls + 1 };
                     time = reached;
                     length = end - reached;
                 }
-                Progress::Until(reached) if (reached - end).abs() <= rounding => return self.read(),
-                Progress::Until(reached) => {
+                StepEnd::Until(reached) if (reached - end).abs() <= rounding => return self.read(),
+                StepEnd::Until(reached) => {
                     return Err(native(format!("the FMU came back from a step from {time} s at {reached} s")));
                 }
-                Progress::Terminated(reached) if (reached - end).abs() <= rounding => {
+                StepEnd::Terminated(reached) if (reached - end).abs() <= rounding => {
                     self.ended = Some(reached);
                     return self.read();
                 }
-                Progress::Terminated(reached) => {
+                StepEnd::Terminated(reached) => {
                     return Err(native(format!("the FMU wants the simulation to end at {reached} s")));
                 }
             }

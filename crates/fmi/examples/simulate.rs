@@ -10,7 +10,7 @@
 //! rows are those of an FMU that has never done so.
 use serde::Deserialize;
 use serde_json::json;
-use servobench_fmi::{Loaded, ModelDescription, Named, Port, Progress, Setup, Slave, Unpacked, Value};
+use servobench_fmi::{Loaded, ModelDescription, Named, Port, Setup, Slave, StepEnd, Unpacked, Value};
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::io::Write;
@@ -159,16 +159,16 @@ impl Run<'_> {
         let inputs = row.map_or(&[][..], |row| &row[..]);
         loop {
             match slave.step(now, end - now, inputs)? {
-                Progress::Done => {
+                StepEnd::Done => {
                     self.read(slave, end)?;
                     return Ok(true);
                 }
-                Progress::Until(reached) if reached > now => {
+                StepEnd::Until(reached) if reached > now => {
                     now = reached;
                     self.read(slave, reached)?;
                 }
-                Progress::Until(reached) => return Err(format!("no progress at {reached} s").into()),
-                Progress::Terminated(reached) => {
+                StepEnd::Until(reached) => return Err(format!("no progress at {reached} s").into()),
+                StepEnd::Terminated(reached) => {
                     self.read(slave, reached)?;
                     return Ok(false);
                 }

@@ -40,13 +40,14 @@ use std::collections::HashMap;
 use units::Units;
 use variables::Variables;
 
-/// Version of the standard.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Version {
-    /// FMI 2.0.
-    Two,
-    /// FMI 3.0.
-    Three,
+servobench_config::choices! {
+    /// Version of the standard.
+    pub enum Version default Three {
+        /// FMI 2.0
+        Two = "2",
+        /// FMI 3.0
+        Three = "3",
+    }
 }
 
 /// What an FMU is.

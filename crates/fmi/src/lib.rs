@@ -32,4 +32,4 @@ pub use log::hear_at_once;
 pub use request::{Bounds, FmuEntry, FmuFile, FmuMistake, FmuRequest, Isolation, IsolationKind, SiPort, SiUnit};
 pub use servobench_base::Severity;
 pub use setup::{Setup, Value};
-pub use slave::{Capabilities, LogLine, Port, Progress, Slave, SlaveError};
+pub use slave::{Capabilities, LogLine, Port, Slave, SlaveError, StepEnd};

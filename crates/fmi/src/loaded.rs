@@ -12,7 +12,7 @@ use crate::description::Version;
 use crate::error::FmuError;
 use crate::feedthrough::Feedthrough;
 use crate::setup::Setup;
-use crate::slave::{Capabilities, LogLine, Progress, Slave, SlaveError};
+use crate::slave::{Capabilities, LogLine, Slave, SlaveError, StepEnd};
 pub(crate) use instance::Slot;
 
 use instance::Instance;
@@ -91,7 +91,7 @@ impl Slave for Loaded {
         self.instance.end();
     }
 
-    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
         self.started()?;
         self.redo.step(self.instance.as_mut(), time, length, inputs)
     }

@@ -2,6 +2,7 @@
 use crate::bits;
 use serde::{Deserialize, Serialize};
 use servobench_base::Severity;
+pub use servobench_base::StepEnd;
 use std::borrow::Cow;
 use thiserror::Error;
 
@@ -15,17 +16,6 @@ pub struct Port {
     pub variable: String,
     /// Position in the array in row-major order, from 0; 0 for a scalar.
     pub element: usize,
-}
-
-/// How far a step has come.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Progress {
-    /// To its end.
-    Done,
-    /// To this time (s) before its end: an event was met, or the FMU returned early. The rest is to be asked for.
-    Until(f64),
-    /// To this time (s), where the FMU wants the simulation to end.
-    Terminated(f64),
 }
 
 /// What an FMU can do beyond stepping.
@@ -117,7 +107,7 @@ pub trait Slave: Send {
     ///
     /// # Errors
     /// [`SlaveError`]
-    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError>;
+    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<StepEnd, SlaveError>;
 
     /// Reads all outputs. With `inputs`, which an FMU between two steps may answer without one (direct feedthrough), these are
     /// set before.

@@ -1,4 +1,5 @@
 //! Writes an FMU: `export_fmu SCENARIO 2|3 axis|drive|mechanics LIBRARY FMU`.
+use servobench_config::Choice as _;
 use servobench_fmi::Version;
 use servobench_fmu::{Part, export};
 use servobench_scenario::load;

@@ -61,6 +61,7 @@ mod tests {
     use super::*;
     use crate::instance::{Asked, Instance};
     use crate::interface::Kind;
+    use servobench_config::Choice as _;
     use servobench_fmi::{Archive, Causality, DataType, Limits, ModelDescription, Variable};
     use servobench_scenario::{embedded_demo, parse};
     use servobench_sim::Program;
@@ -84,7 +85,7 @@ mod tests {
     fn what_is_written_is_read_without_a_remark() {
         let loaded = demo();
         for version in [Version::Two, Version::Three] {
-            for part in Part::ALL {
+            for &(_, part, _) in Part::ALL {
                 let model = Model::new(part, &loaded.scenario).unwrap();
                 let text = describe(&model, version, "{token}", IDENTIFIER).unwrap().write();
                 let read =
@@ -106,7 +107,7 @@ mod tests {
     fn the_bounds_that_are_written_are_those_that_are_kept() {
         let asked = Asked { name: "Float64", takes: |kind| kind == Kind::Real, name_of: |_| "another type" };
         let mut bounded = 0;
-        for part in Part::ALL {
+        for &(_, part, _) in Part::ALL {
             let model = Arc::new(Model::new(part, &demo().scenario).unwrap());
             let written = describe(&model, Version::Three, "{token}", IDENTIFIER).unwrap();
             let written = ModelDescription::read(&written.write(), "modelDescription.xml").unwrap();
@@ -140,7 +141,7 @@ mod tests {
             let loaded = parse("slow", &text, None).unwrap_or_else(|error| panic!("{error}"));
             let end = Program::new(&loaded.scenario).unwrap().end();
             assert!(end > least, "{end}");
-            for part in Part::ALL {
+            for &(_, part, _) in Part::ALL {
                 let model = Model::new(part, &loaded.scenario).unwrap();
                 let written = describe(&model, Version::Two, "{token}", IDENTIFIER).unwrap().default_experiment;
                 let (stop, step) = (written.stop_time.unwrap(), written.step_size.unwrap());

@@ -1,37 +1,19 @@
 //! Which part of an axis an FMU is.
 use servobench_scenario::{Actuator, AxisMechanics, Scenario};
 
-/// Which part of an axis an FMU is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Part {
-    /// Program, drive, motor and mechanics.
-    Axis,
-    /// Program, drive and motor: measurements in, effort out.
-    Drive,
-    /// The mechanics: effort in, motion out.
-    Mechanics,
+servobench_config::choices! {
+    /// Which part of an axis an FMU is.
+    pub enum Part default Axis {
+        /// program, drive, motor and mechanics: set-points or targets in, motion out
+        Axis = "axis",
+        /// program, drive and motor: measurements in, effort out
+        Drive = "drive",
+        /// the mechanics: effort in, motion out
+        Mechanics = "mechanics",
+    }
 }
 
 impl Part {
-    /// All parts.
-    pub const ALL: [Self; 3] = [Self::Axis, Self::Drive, Self::Mechanics];
-
-    /// Its name on the command line and in the FMU.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Axis => "axis",
-            Self::Drive => "drive",
-            Self::Mechanics => "mechanics",
-        }
-    }
-
-    /// The part of this name.
-    #[must_use]
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|part| part.name() == name)
-    }
-
     /// What of `scenario` this part is, with every channel.
     pub(crate) fn of(self, scenario: &Scenario) -> Scenario {
         let mut own = scenario.clone();

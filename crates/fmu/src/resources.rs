@@ -8,6 +8,7 @@
 use crate::error::FmuError;
 use crate::machine::Model;
 use crate::part::Part;
+use servobench_config::Choice as _;
 use servobench_scenario::{Loaded, load};
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;

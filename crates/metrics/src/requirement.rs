@@ -15,6 +15,7 @@ pub use arrival::arrival_window;
 pub use judge::judge_requirements;
 pub use rules::{Driven, EarlyEnd, LinearLoop, Rules};
 
+use serde::{Deserialize, Serialize};
 use servobench_signals::Signal;
 use std::fmt;
 use std::str::FromStr;
@@ -83,16 +84,26 @@ impl FromStr for Requirement {
 }
 
 /// How a run stands to a requirement.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Standing {
     /// It is met.
     Met,
-    /// It is not: why, at least one reason, each in a sentence.
-    Broken(Vec<String>),
-    /// The scenario lifts it; what would have broken it, if anything.
-    Lifted(Vec<String>),
+    /// It is not, for at least one reason.
+    Broken,
+    /// The scenario lifts it; the reasons are what would have broken it, if anything.
+    Lifted,
     /// It has no meaning in this run: a program without calls, an axis without a drive.
     NotAsked,
+}
+
+/// How a run stands to a requirement, and why.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RequirementResult {
+    /// How the run stands to it.
+    pub standing: Standing,
+    /// Why it is broken, or would be if it were not lifted: each reason in a sentence.
+    pub reasons: Vec<String>,
 }
 
 /// A fault that the scenario expects.
@@ -189,11 +200,12 @@ mod tests {
         let recording = Build::new(1000, 11).channel(Signal::LoadPosition, "m", |_| 0.0).finish();
         let linear_loop = LinearLoop::Unstable("the loop is unstable".into());
         let strict = judge_requirements(&recording, &Rules { linear_loop: linear_loop.clone(), ..rules() });
-        let broken = Standing::Broken(vec!["the loop is unstable".into()]);
+        let result = |standing| RequirementResult { standing, reasons: vec!["the loop is unstable".into()] };
+        let broken = result(Standing::Broken);
         assert!(!strict.passed() && strict.requirements.contains(&(Requirement::Stable, broken)), "{strict:?}");
         assert_eq!(strict.reasons().collect::<Vec<_>>(), ["stable: the loop is unstable"]);
         let lifted = judge_requirements(&recording, &Rules { linear_loop, lifted: &[Requirement::Stable], ..rules() });
-        let standing = Standing::Lifted(vec!["the loop is unstable".into()]);
+        let standing = result(Standing::Lifted);
         assert!(lifted.passed() && lifted.requirements.contains(&(Requirement::Stable, standing)), "{lifted:?}");
     }
 

@@ -2,7 +2,7 @@
 use crate::absence::Absence;
 use crate::name::Name;
 use crate::quantity::Quantity;
-use crate::requirement::{Expected, Requirement, Standing};
+use crate::requirement::{Expected, Requirement, RequirementResult, Standing};
 use std::fmt;
 
 /// Bounds of a metric (SI, inclusive).
@@ -37,7 +37,7 @@ pub struct Verdict {
     /// The limits that were missed, in the order in which they were given.
     pub misses: Vec<Miss>,
     /// How the run stands to each requirement, in the order of [`Requirement::ALL`]; empty where only limits were judged.
-    pub requirements: Vec<(Requirement, Standing)>,
+    pub requirements: Vec<(Requirement, RequirementResult)>,
     /// The faults that were expected, in the order of the file.
     pub expected: Vec<Expected>,
     /// What breaks no requirement and should be known: in words.
@@ -86,17 +86,14 @@ impl Verdict {
     pub fn passed(&self) -> bool {
         self.misses.is_empty()
             && self.expected.iter().all(|expected| expected.met.is_some())
-            && !self.requirements.iter().any(|(_, standing)| matches!(standing, Standing::Broken(_)))
+            && !self.requirements.iter().any(|(_, result)| result.standing == Standing::Broken)
     }
 
     /// What fails, in words: missed limits, broken requirements, expected faults that did not come.
     pub fn reasons(&self) -> impl Iterator<Item = String> {
         let misses = self.misses.iter().map(ToString::to_string);
-        let broken = self.requirements.iter().filter_map(|(requirement, standing)| match standing {
-            Standing::Broken(reasons) => Some((requirement, reasons)),
-            Standing::Met | Standing::Lifted(_) | Standing::NotAsked => None,
-        });
-        let broken = broken.flat_map(|(name, reasons)| reasons.iter().map(move |why| format!("{name}: {why}")));
+        let broken = self.requirements.iter().filter(|(_, result)| result.standing == Standing::Broken);
+        let broken = broken.flat_map(|(name, result)| result.reasons.iter().map(move |why| format!("{name}: {why}")));
         let missing = self.expected.iter().filter(|expected| expected.met.is_none());
         let missing = missing.map(|expected| format!("expected, but did not come: {}", expected.expectation));
         misses.chain(broken).chain(missing)

@@ -10,7 +10,7 @@ mod running;
 
 pub use condition::Condition;
 pub use executor::{Executor, Listener};
-pub use motion_tracker::{Motion, MotionEnd};
+pub use motion_tracker::Motion;
 pub use running::{Fate, Overdue};
 
 pub(crate) use instance::{Instance, New, called};

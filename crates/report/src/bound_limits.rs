@@ -1,14 +1,7 @@
 //! Limits of the machine that bound during a run, in words.
-use crate::results::{EventResult, RunResult};
+use crate::results::RunResult;
 use servobench_metrics::Quantity;
-
-/// How an event says that a limit bound.
-const BINDS: &str = " binds";
-
-/// Whether `event` says that a limit bound.
-pub(crate) fn is_bound(event: &EventResult) -> bool {
-    event.message.contains(BINDS)
-}
+use servobench_trace::Event;
 
 /// One line for each limit that bound, unless a reason of the verdict says it: `voltage limit bound for 636 ms`.
 pub(crate) fn bound_limits(run: &RunResult) -> Vec<String> {
@@ -16,19 +9,18 @@ pub(crate) fn bound_limits(run: &RunResult) -> Vec<String> {
     words(&run.events).into_iter().filter(|words| !is_said(words)).collect()
 }
 
-fn words(events: &[EventResult]) -> Vec<String> {
+fn words(events: &[Event]) -> Vec<String> {
     let mut limits: Vec<Bound<'_>> = Vec::new();
     for event in events {
-        let Some((limit, rest)) = event.message.split_once(BINDS) else { continue };
-        let index = limits.iter().position(|bound| bound.limit == limit).unwrap_or_else(|| {
-            limits.push(Bound { limit, times: 0, seconds: 0.0, is_all: true });
+        let Some(limit) = &event.limit else { continue };
+        let index = limits.iter().position(|bound| bound.limit == limit.name).unwrap_or_else(|| {
+            limits.push(Bound { limit: &limit.name, times: 0, seconds: 0.0, is_all: true });
             limits.len() - 1
         });
         let bound = &mut limits[index];
         bound.times += 1;
         bound.seconds += event.end - event.start;
-        // Later ones are not listed.
-        bound.is_all &= rest.is_empty();
+        bound.is_all &= !limit.is_last_noted;
     }
     limits.iter().map(Bound::words).collect()
 }
@@ -56,20 +48,17 @@ impl Bound<'_> {
 mod tests {
     use super::*;
 
-    fn event(start: f64, end: f64, message: &str) -> EventResult {
-        EventResult { start, end, source: "loop".into(), message: message.into() }
-    }
-
     #[test]
     fn times_are_summed_for_each_limit() {
+        let bound = |start, end, limit| Event::bound(start, end, "loop", limit, false);
         let events = [
-            event(0.1, 0.2, "voltage limit binds"),
-            event(0.3, 0.7, "effort limit binds"),
-            event(0.5, 0.5, "something else"),
-            event(0.8, 1.0, "voltage limit binds"),
+            bound(0.1, 0.2, "voltage limit"),
+            bound(0.3, 0.7, "effort limit"),
+            Event::new(0.5, 0.5, "loop", "what binds is something else"),
+            bound(0.8, 1.0, "voltage limit"),
         ];
         assert_eq!(words(&events), ["voltage limit bound 2 times, for 300 ms in all", "effort limit bound for 400 ms"]);
-        let cut = [event(0.0, 0.5, "effort limit binds; later ones are not listed")];
+        let cut = [Event::bound(0.0, 0.5, "loop", "effort limit", true)];
         assert_eq!(words(&cut), ["effort limit bound more than 1 times, for more than 500 ms in all"]);
     }
 }

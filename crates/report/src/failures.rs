@@ -1,7 +1,7 @@
 //! What made a run fail, part by part: which limit is missed by how much, what requirement is broken, which fault is missing.
 use crate::ordered::Ordered;
-use crate::results::{MetricResult, RunResult, StandingResult};
-use servobench_metrics::{Name, Quantity};
+use crate::results::{MetricResult, RunResult};
+use servobench_metrics::{Name, Quantity, Standing};
 
 /// A limit that is missed.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,7 +50,7 @@ fn missed_limit<'a>(
 
 /// What failed beside limits: broken requirements and expected faults that did not come.
 pub(crate) fn other_failures(run: &RunResult) -> Vec<String> {
-    let broken = run.requirements_that_are(StandingResult::Broken).flat_map(|(name, reasons)| {
+    let broken = run.requirements_that_are(Standing::Broken).flat_map(|(name, reasons)| {
         let more = reasons.len().saturating_sub(MOST);
         let more = (more > 0).then(|| format!("{name}: and {more} more"));
         reasons.iter().take(MOST).map(move |why| format!("{name}: {why}")).chain(more)
@@ -61,7 +61,7 @@ pub(crate) fn other_failures(run: &RunResult) -> Vec<String> {
 
 /// Requirements that the scenario lifts: in one sentence those that would hold, and each that would not with the reason.
 pub(crate) fn lifted(run: &RunResult) -> Vec<String> {
-    let all = || run.requirements_that_are(StandingResult::Lifted);
+    let all = || run.requirements_that_are(Standing::Lifted);
     let kept: Vec<&str> = all().filter(|(_, reasons)| reasons.is_empty()).map(|(name, _)| name).collect();
     let kept = (!kept.is_empty()).then(|| format!("lifted: {}", kept.join(", ")));
     let broken = all().filter_map(|(name, reasons)| {
@@ -142,7 +142,7 @@ mod tests {
     fn of_many_reasons_five_are_told() {
         let reasons = (0..8).map(|k| format!("reason {k}")).collect();
         let mut run = samples::short();
-        run.requirements = samples::requirements([("executed", StandingResult::Broken, reasons)]);
+        run.requirements = samples::requirements([("executed", Standing::Broken, reasons)]);
         let told = other_failures(&run);
         assert_eq!(told.len(), 6 + 1, "five, how many more, and the fault that is missing: {told:#?}");
         assert_eq!((told[4].as_str(), told[5].as_str()), ("executed: reason 4", "executed: and 3 more"));
@@ -152,9 +152,9 @@ mod tests {
     fn lifted_requirements_are_told_with_what_would_have_broken_them() {
         let mut run = samples::kept();
         run.requirements = samples::requirements([
-            ("arrives", StandingResult::Lifted, vec![]),
-            ("stable", StandingResult::Lifted, vec!["the loop has a pole outside".into(), "it rings".into()]),
-            ("bounded", StandingResult::Lifted, vec![]),
+            ("arrives", Standing::Lifted, vec![]),
+            ("stable", Standing::Lifted, vec!["the loop has a pole outside".into(), "it rings".into()]),
+            ("bounded", Standing::Lifted, vec![]),
         ]);
         assert_eq!(
             lifted(&run),

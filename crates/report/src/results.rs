@@ -2,9 +2,9 @@
 mod entry;
 mod run;
 
-pub(crate) use entry::{EventResult, LogResult, MetricResult, StandingResult};
+pub(crate) use entry::MetricResult;
 #[cfg(test)]
-pub(crate) use entry::{ExpectedResult, MoveResult, RequirementResult};
+pub(crate) use entry::{ExpectedResult, MoveResult};
 pub use run::{LimitPlace, RunIdentity, RunResult};
 
 use crate::error::ReportError;
@@ -128,7 +128,9 @@ mod tests {
     use crate::samples;
     use serde_json::{Value, json};
     use servobench_base::{Rate, Severity};
-    use servobench_metrics::{Expectation, Expected, Limit, Name, Question, Requirement, Standing, measure};
+    use servobench_metrics::{
+        Expectation, Expected, Limit, Name, Question, Requirement, RequirementResult, Standing, measure,
+    };
     use servobench_trace::{About, Channel, ChannelSpec, Ending, Event, LogEntry, Move, Recording};
 
     /// What is wrong, and how to make it so.
@@ -167,7 +169,7 @@ mod tests {
                 cruise: (0.2, 0.0),
                 ending: Ending::AtRest,
             }],
-            events: vec![Event { start: 0.1, end: 0.1, source: "test".into(), message: "an event".into() }],
+            events: vec![Event::new(0.1, 0.1, "test", "an event")],
             signals: vec![],
             calls: vec![],
             limit_reversals: vec![],
@@ -263,11 +265,17 @@ mod tests {
     }
 
     /// Verdicts of a run with these standings, and with or without limits.
-    fn verdict_of(standing: Standing, limits: &[Limit], expected: Vec<Expected>) -> RunResult {
+    fn verdict_of(
+        (standing, reasons): (Standing, Vec<String>),
+        limits: &[Limit],
+        expected: Vec<Expected>,
+    ) -> RunResult {
         let recording = recording();
         let mut metrics = measure(&recording, &Question::default());
         let mut verdict = metrics.judge(limits);
-        verdict.requirements = vec![(Requirement::Arrives, standing), (Requirement::Executed, Standing::NotAsked)];
+        let arrives = RequirementResult { standing, reasons };
+        let executed = RequirementResult { standing: Standing::NotAsked, reasons: vec![] };
+        verdict.requirements = vec![(Requirement::Arrives, arrives), (Requirement::Executed, executed)];
         verdict.expected = expected;
         verdict.warnings = vec!["`jog` was refused".into()];
         RunResult::judged(RunIdentity::default(), &recording, &metrics, &verdict)
@@ -276,12 +284,12 @@ mod tests {
     #[test]
     fn a_broken_requirement_fails_without_any_limit() {
         let why = "the load ended 200 mm short of 200 mm".to_owned();
-        let broken = verdict_of(Standing::Broken(vec![why.clone()]), &[], vec![]);
+        let broken = verdict_of((Standing::Broken, vec![why.clone()]), &[], vec![]);
         assert_eq!((broken.verdict, broken.reasons.as_slice()), (Outcome::Failed, &[format!("arrives: {why}")][..]));
-        let lifted = verdict_of(Standing::Lifted(vec![why]), &[], vec![]);
+        let lifted = verdict_of((Standing::Lifted, vec![why]), &[], vec![]);
         assert_eq!((lifted.verdict, lifted.reasons.len()), (Outcome::Unjudged, 0));
         let limit = [Limit::at_most(Name::FollowingErrorPeakLoad, 1.0)];
-        assert_eq!(verdict_of(Standing::Met, &limit, vec![]).verdict, Outcome::Passed);
+        assert_eq!(verdict_of((Standing::Met, vec![]), &limit, vec![]).verdict, Outcome::Passed);
         let json = value(&Results::new(vec![broken, lifted]));
         assert_eq!(json["scenarios"][0]["requirements"]["arrives"]["standing"], "broken");
         assert_eq!(json["scenarios"][0]["requirements"]["executed"]["standing"], "not_asked");
@@ -292,7 +300,8 @@ mod tests {
     #[test]
     fn an_expected_fault_judges_a_run() {
         let expectation = Expectation { fault: "8611h".into(), who: "drive".into(), from: 0.5, to: f64::INFINITY };
-        let of = |met| verdict_of(Standing::Met, &[], vec![Expected { expectation: expectation.clone(), met }]);
+        let of =
+            |met| verdict_of((Standing::Met, vec![]), &[], vec![Expected { expectation: expectation.clone(), met }]);
         let (missing, came) = (of(None), of(Some(0.75)));
         assert_eq!((missing.verdict, came.verdict), (Outcome::Failed, Outcome::Passed));
         assert_eq!(missing.reasons, ["expected, but did not come: 8611h of `drive` from 0.5 s on"]);

@@ -1,10 +1,11 @@
 //! What stands below the row of a run: what failed, what is lifted, and a handful of warnings and events.
-use crate::bound_limits::{bound_limits, is_bound};
+use crate::bound_limits::bound_limits;
 use crate::failures::{lifted, missed_limits, other_failures};
-use crate::results::{EventResult, Outcome, RunResult};
+use crate::results::{Outcome, RunResult};
 use crate::said::{last_words, warnings};
 use crate::style::{Ink, Style};
 use crate::text::{printable, widest, wrapped};
+use servobench_trace::Event;
 
 /// Warnings and events that are shown of a run, and reasons of one that was not carried out; the others are counted.
 const MOST: usize = 5;
@@ -41,15 +42,15 @@ fn remarkable(run: &RunResult) -> Vec<String> {
         all.extend(warnings(run));
     }
     // A reason or a warning may be of what an event tells.
-    let is_told = |event: &EventResult| run.reasons.iter().chain(&run.warnings).any(|one| one.contains(&event.message));
-    all.extend(run.events.iter().filter(|event| !is_bound(event) && !is_told(event)).map(happened));
+    let is_told = |event: &Event| run.reasons.iter().chain(&run.warnings).any(|one| one.contains(&event.message));
+    all.extend(run.events.iter().filter(|event| event.limit.is_none() && !is_told(event)).map(happened));
     all.extend(bound_limits(run));
     all
 }
 
 /// `at 0.5000 s axis: the command is refused`
-fn happened(event: &EventResult) -> String {
-    let EventResult { start, source, message, .. } = event;
+fn happened(event: &Event) -> String {
+    let Event { start, source, message, .. } = event;
     format!("at {start:.4} s {source}: {message}")
 }
 
@@ -126,11 +127,9 @@ mod tests {
         let mut run = samples::kept();
         run.warnings = vec!["`jog` was refused: the axis is not homed".into()];
         run.events = (0..9)
-            .map(|k| EventResult {
-                start: f64::from(k),
-                end: f64::from(k),
-                source: "jog".into(),
-                message: if k == 0 { "the axis is not homed".into() } else { format!("refused {k}") },
+            .map(|k| {
+                let message = if k == 0 { "the axis is not homed".into() } else { format!("refused {k}") };
+                Event::new(f64::from(k), f64::from(k), "jog", message)
             })
             .collect();
         let notes = row_notes(&run, 3, Style::default());

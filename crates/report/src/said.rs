@@ -1,7 +1,8 @@
 //! What FMUs said, below the row of their run: all at the end of a run that broke off, how much of it warns of any other.
-use crate::results::{LogResult, RunResult};
+use crate::results::RunResult;
 use crate::text::{elided, wrapped};
 use servobench_base::Severity;
+use servobench_trace::LogEntry;
 
 /// Lines of one source that are shown of a run that broke off: the last ones.
 const SHOWN: usize = 8;
@@ -57,7 +58,7 @@ pub(crate) fn warnings(run: &RunResult) -> Vec<String> {
 }
 
 /// By source in the order in which they spoke first.
-fn voices(log: &[LogResult]) -> Vec<Voice<'_>> {
+fn voices(log: &[LogEntry]) -> Vec<Voice<'_>> {
     let mut voices: Vec<Voice<'_>> = Vec::new();
     for entry in log {
         let index = voices.iter().position(|voice| voice.source == entry.source).unwrap_or_else(|| {
@@ -65,13 +66,13 @@ fn voices(log: &[LogResult]) -> Vec<Voice<'_>> {
             voices.len() - 1
         });
         let lines = &mut voices[index].lines;
-        let severity = entry.severity.into();
+        let severity = entry.severity;
         if let Some(line) = lines.iter_mut().find(|line| line.severity == severity && line.text == entry.text) {
             line.start = line.start.min(entry.start);
             line.end = line.end.max(entry.end);
             line.times = line.times.saturating_add(entry.times);
         } else {
-            let LogResult { start, end, times, ref text, .. } = *entry;
+            let LogEntry { start, end, times, ref text, .. } = *entry;
             lines.push(Line { severity, text, start, end, times });
         }
     }
@@ -123,11 +124,11 @@ mod tests {
     use super::*;
     use crate::samples;
 
-    fn entry(severity: Severity, start: f64, end: f64, times: u64, text: &str) -> LogResult {
-        LogResult { source: "FMU load".into(), severity: severity.into(), start, end, times, text: text.into() }
+    fn entry(severity: Severity, start: f64, end: f64, times: u64, text: &str) -> LogEntry {
+        LogEntry { source: "FMU load".into(), severity, start, end, times, text: text.into() }
     }
 
-    fn run(log: Vec<LogResult>) -> RunResult {
+    fn run(log: Vec<LogEntry>) -> RunResult {
         RunResult { log, ..samples::broken() }
     }
 

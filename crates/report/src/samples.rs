@@ -1,12 +1,9 @@
 //! Results for the tests: the move of Lambrechts under two limits, a run that missed limits, one that broke off.
 use crate::ordered::Ordered;
-use crate::results::{
-    EventResult, ExpectedResult, LogResult, MetricResult, Outcome, RequirementResult, Results, RunResult,
-    StandingResult,
-};
+use crate::results::{ExpectedResult, MetricResult, Outcome, Results, RunResult};
 use servobench_base::Severity;
-use servobench_metrics::Name;
-use servobench_trace::{Ending, Move};
+use servobench_metrics::{Name, RequirementResult, Standing};
+use servobench_trace::{Ending, Event, LogEntry, Move};
 
 /// A metric without a limit.
 fn free(name: Name, value: f64, unit: &str) -> (String, MetricResult) {
@@ -30,7 +27,7 @@ pub(crate) fn run(name: &str, engine: &str, metrics: impl IntoIterator<Item = (S
         verdict: Outcome::Unjudged,
         duration: 2.0,
         reasons: vec![],
-        requirements: requirements([("arrives", StandingResult::Met, vec![])]),
+        requirements: requirements([("arrives", Standing::Met, vec![])]),
         expected: vec![],
         warnings: vec![],
         parameters: [("drive.velocity.bandwidth".to_owned(), "30 Hz".to_owned())].into_iter().collect(),
@@ -47,9 +44,7 @@ pub(crate) fn run(name: &str, engine: &str, metrics: impl IntoIterator<Item = (S
 }
 
 /// Requirements with their standings and reasons.
-pub(crate) fn requirements<const N: usize>(
-    all: [(&str, StandingResult, Vec<String>); N],
-) -> Ordered<RequirementResult> {
+pub(crate) fn requirements<const N: usize>(all: [(&str, Standing, Vec<String>); N]) -> Ordered<RequirementResult> {
     let all = all.into_iter();
     all.map(|(name, standing, reasons)| (name.to_owned(), RequirementResult { standing, reasons })).collect()
 }
@@ -126,12 +121,7 @@ pub(crate) fn missed() -> RunResult {
         "residual_vibration_pp 8.30 µm, limit 2.00 µm".into(),
         "current_peak could not be measured: `current.d` is not recorded; only a PMSM has a current".into(),
     ];
-    run.events = vec![EventResult {
-        start: 0.1,
-        end: 0.2,
-        source: "velocity loop".into(),
-        message: "effort limit binds".into(),
-    }];
+    run.events = vec![Event::bound(0.1, 0.2, "velocity loop", "effort limit", false)];
     run
 }
 
@@ -140,19 +130,14 @@ pub(crate) fn kept() -> RunResult {
     let mut run = run("kept", "exact", [limited(Name::MoveTime, Some(1.0), "s", 2.0)]);
     run.verdict = Outcome::Passed;
     run.requirements = requirements([
-        ("arrives", StandingResult::Met, vec![]),
-        ("executed", StandingResult::NotAsked, vec![]),
-        ("bounded", StandingResult::Lifted, vec![]),
+        ("arrives", Standing::Met, vec![]),
+        ("executed", Standing::NotAsked, vec![]),
+        ("bounded", Standing::Lifted, vec![]),
     ]);
-    run.events = vec![EventResult {
-        start: 0.1,
-        end: 0.6,
-        source: "current loop".into(),
-        message: "voltage limit binds".into(),
-    }];
-    run.log = vec![LogResult {
+    run.events = vec![Event::bound(0.1, 0.6, "current loop", "voltage limit", false)];
+    run.log = vec![LogEntry {
         source: "FMU load".into(),
-        severity: Severity::Warning.into(),
+        severity: Severity::Warning,
         start: 0.2,
         end: 0.2,
         times: 1,
@@ -168,9 +153,9 @@ pub(crate) fn short() -> RunResult {
     let short = "the load ended 200 mm short of 200 mm (window ±5 µm); effort limit bound for 1.99 s";
     let jog = "`jog` was never executed: `home.Done` did not come";
     run.requirements = requirements([
-        ("arrives", StandingResult::Broken, vec![short.into()]),
-        ("executed", StandingResult::Broken, vec![jog.into()]),
-        ("stable", StandingResult::Lifted, vec!["the velocity loop has a pole outside the unit circle".into()]),
+        ("arrives", Standing::Broken, vec![short.into()]),
+        ("executed", Standing::Broken, vec![jog.into()]),
+        ("stable", Standing::Lifted, vec!["the velocity loop has a pole outside the unit circle".into()]),
     ]);
     run.expected =
         vec![ExpectedResult { fault: "8611h".into(), who: "drive".into(), from: 0.5, to: None, met_at: None }];
@@ -180,13 +165,8 @@ pub(crate) fn short() -> RunResult {
         "expected, but did not come: 8611h of `drive` from 0.5 s on".into(),
     ];
     run.warnings = vec!["two frames were lost".into()];
-    let event = |start, end, source: &str, message: &str| EventResult {
-        start,
-        end,
-        source: source.into(),
-        message: message.into(),
-    };
-    run.events = vec![event(0.01, 2.0, "velocity loop", "effort limit binds"), event(2.0, 2.0, "PLC", jog)];
+    run.events =
+        vec![Event::bound(0.01, 2.0, "velocity loop", "effort limit", false), Event::new(2.0, 2.0, "PLC", jog)];
     run
 }
 
@@ -209,9 +189,9 @@ pub(crate) fn broken() -> RunResult {
             .into(),
     ];
     run.absent = [].into_iter().collect();
-    let said = |severity: Severity, time: f64, times: u64, text: &str| LogResult {
+    let said = |severity: Severity, time: f64, times: u64, text: &str| LogEntry {
         source: "FMU load".into(),
-        severity: severity.into(),
+        severity,
         start: 0.001,
         end: time,
         times,

@@ -64,3 +64,8 @@ pub struct PerLimit<T> {
     /// Effort limit of the velocity loop.
     pub effort: T,
 }
+
+impl PerLimit<&'static str> {
+    /// Name of each limit in recordings and reports.
+    pub const NAMES: Self = Self { voltage: "voltage limit", current: "current limit", effort: "effort limit" };
+}

@@ -299,7 +299,7 @@ fn thinned_event(rate: Rate, duration: f64) -> Event {
          folded; name fewer `record.channels` to measure at every tick",
         rate.hertz()
     );
-    Event { start: 0.0, end: duration, source: "recorder".into(), message }
+    Event::new(0.0, duration, "recorder", message)
 }
 
 #[cfg(test)]

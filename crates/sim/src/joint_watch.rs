@@ -1,7 +1,7 @@
 //! Watches the ends of the joints' ranges in a user's own model: what binds there is an event.
 use crate::limit_watch::Watch;
 use servobench_plant::JointLimit;
-use servobench_trace::Recorder;
+use servobench_trace::{Event, Recorder};
 
 /// Who says that a joint is at its end.
 const MECHANICS: &str = "mechanics";
@@ -34,7 +34,9 @@ impl JointWatch {
     fn note(&mut self, t: f64, limits: &[JointLimit], goes_on: bool, recorder: &mut Recorder) {
         self.watches.resize_with(limits.len(), Watch::default);
         for (watch, limit) in self.watches.iter_mut().zip(limits) {
-            watch.tick(t, (goes_on && limit.binds).then_some(0.0), (MECHANICS, &limit.text), recorder);
+            watch.tick(t, (goes_on && limit.binds).then_some(0.0), recorder, |start, end, is_last| {
+                Event::new(start, end, MECHANICS, format!("{}{}", limit.text, Event::noted(is_last)))
+            });
         }
     }
 }

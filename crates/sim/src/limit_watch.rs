@@ -26,9 +26,11 @@ pub(crate) struct LimitWatch {
     ticks: u32,
 }
 
-const VOLTAGE: (&str, &str) = ("inverter", "voltage limit binds");
-const CURRENT: (&str, &str) = ("velocity loop", "current limit binds");
-const EFFORT: (&str, &str) = ("velocity loop", "effort limit binds");
+/// Who keeps to a limit, and its name.
+type Limit = (&'static str, &'static str);
+const VOLTAGE: Limit = ("inverter", PerLimit::NAMES.voltage);
+const CURRENT: Limit = ("velocity loop", PerLimit::NAMES.current);
+const EFFORT: Limit = ("velocity loop", PerLimit::NAMES.effort);
 
 impl LimitWatch {
     /// Takes which limits bind at tick `t` (s), and what each of them cuts, of which the sign counts.
@@ -55,7 +57,7 @@ impl LimitWatch {
     pub(crate) fn finish(&mut self, t: f64, recorder: &mut Recorder) {
         self.note(t, PerLimit::default(), PerLimit::default(), recorder);
         let PerLimit { voltage, current, effort } = &mut self.watches;
-        for (watch, limit) in [(voltage, "voltage limit"), (current, "current limit"), (effort, "effort limit")] {
+        for (watch, (_, limit)) in [(voltage, VOLTAGE), (current, CURRENT), (effort, EFFORT)] {
             let times = std::mem::take(&mut watch.reversals);
             if !times.is_empty() {
                 recorder.note_limit_reversals(LimitReversals { limit: limit.into(), times });
@@ -66,15 +68,24 @@ impl LimitWatch {
     #[cold]
     fn note(&mut self, t: f64, binds: PerLimit<bool>, cut: PerLimit<f64>, recorder: &mut Recorder) {
         let PerLimit { voltage, current, effort } = &mut self.watches;
-        voltage.tick(t, binds.voltage.then_some(cut.voltage), VOLTAGE, recorder);
-        current.tick(t, binds.current.then_some(cut.current), CURRENT, recorder);
-        effort.tick(t, binds.effort.then_some(cut.effort), EFFORT, recorder);
+        let event =
+            |(source, limit): Limit| move |start, end, is_last| Event::bound(start, end, source, limit, is_last);
+        voltage.tick(t, binds.voltage.then_some(cut.voltage), recorder, event(VOLTAGE));
+        current.tick(t, binds.current.then_some(cut.current), recorder, event(CURRENT));
+        effort.tick(t, binds.effort.then_some(cut.effort), recorder, event(EFFORT));
     }
 }
 
 impl Watch {
-    /// Takes what the limit cuts at `t` (s), if it binds; who says so, and in which words.
-    pub(crate) fn tick(&mut self, t: f64, cut: Option<f64>, (source, message): (&str, &str), recorder: &mut Recorder) {
+    /// Takes what the limit cuts at `t` (s), if it binds. `event` makes the event of the time from start to end (s), which may be the
+    /// last that is noted.
+    pub(crate) fn tick(
+        &mut self,
+        t: f64,
+        cut: Option<f64>,
+        recorder: &mut Recorder,
+        event: impl FnOnce(f64, f64, bool) -> Event,
+    ) {
         let binds = cut.is_some();
         self.bound_ticks += u32::from(binds);
         if let Some(cut) = cut {
@@ -90,10 +101,8 @@ impl Watch {
             (Some(start), false) => {
                 self.since = None;
                 self.events += 1;
-                let more = if self.events == MOST_EVENTS { "; later ones are not listed" } else { "" };
                 if self.events <= MOST_EVENTS {
-                    let (source, message) = (source.to_owned(), format!("{message}{more}"));
-                    recorder.note_event(Event { start, end: t, source, message });
+                    recorder.note_event(event(start, t, self.events == MOST_EVENTS));
                 }
             }
             (None, false) | (Some(_), true) => {}

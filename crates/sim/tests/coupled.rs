@@ -1,5 +1,5 @@
 //! FMUs beside the axis, here written in Rust.
-use servobench_fmi::{Capabilities, FmuMistake, FmuRequest, LogLine, Progress, Slave, SlaveError};
+use servobench_fmi::{Capabilities, FmuMistake, FmuRequest, LogLine, Slave, SlaveError, StepEnd};
 use servobench_plant::Exact;
 use servobench_scenario as scenario;
 use servobench_sim::{Bench, NoPartners, Outcome, Partners};
@@ -54,11 +54,11 @@ impl<F: FnMut(&mut [f64; 2], f64, f64, &[f64]) -> f64 + Send> Slave for Part<F> 
         Capabilities { saves_state: self.saves, ..Capabilities::default() }
     }
 
-    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
         let mean: Vec<f64> =
             inputs.iter().map(|[u, d, dd]| u + d * length / 2.0 + dd * length * length / 6.0).collect();
         self.last = vec![(self.law)(&mut self.state, time, length, &mean)];
-        Ok(Progress::Done)
+        Ok(StepEnd::Done)
     }
 
     /// A part with an input follows it without a step.
@@ -101,9 +101,9 @@ impl Slave for Relay {
         self.feeds_through
     }
 
-    fn step(&mut self, _: f64, _: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+    fn step(&mut self, _: f64, _: f64, inputs: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
         self.last = inputs[0][0];
-        Ok(Progress::Done)
+        Ok(StepEnd::Done)
     }
 
     fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {

@@ -1,6 +1,6 @@
 //! What FMUs say is in the recording at its time, whether they are beside the axis or its mechanics and however the run ends.
 use servobench_base::Severity;
-use servobench_fmi::{Capabilities, FmuMistake, FmuRequest, LogLine, Progress, Slave, SlaveError};
+use servobench_fmi::{Capabilities, FmuMistake, FmuRequest, LogLine, Slave, SlaveError, StepEnd};
 use servobench_plant::{BodyState, Engine, EngineName, Exact, Input, Mechanics, MechanicsError, MechanicsSetup, Said};
 use servobench_scenario as scenario;
 use servobench_sim::{Bench, NoPartners, Outcome, Partners};
@@ -43,7 +43,7 @@ impl Slave for Chatty {
         Capabilities { saves_state: true, ..Capabilities::default() }
     }
 
-    fn step(&mut self, time: f64, _: f64, _: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+    fn step(&mut self, time: f64, _: f64, _: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
         self.say(time, Severity::Info, "step");
         if time > END - 1e-9 {
             self.say(time, Severity::Error, "leak");
@@ -54,7 +54,7 @@ impl Slave for Chatty {
                 message: "leak".into(),
             });
         }
-        Ok(Progress::Done)
+        Ok(StepEnd::Done)
     }
 
     fn read(&mut self, _: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {

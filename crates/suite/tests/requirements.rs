@@ -27,9 +27,12 @@ fn broken_of(path: &Path, channels: &[&str]) -> (Vec<&'static str>, Vec<String>)
     let job = jobs(vec![source], &[EngineName::Exact]).remove(0);
     let nowhere = WorkerCommand { program: "none".into(), folder: "none".into(), patience: std::time::Duration::ZERO };
     let run = execute(&job, &ENGINES, &nowhere, &mut |_| {}).unwrap_or_else(|broken| panic!("{}", broken.error));
-    let is_broken = |standing: &Standing| matches!(standing, Standing::Broken(_));
-    let names =
-        run.verdict.requirements.iter().filter(|(_, standing)| is_broken(standing)).map(|(name, _)| name.as_str());
+    let names = run
+        .verdict
+        .requirements
+        .iter()
+        .filter(|(_, result)| result.standing == Standing::Broken)
+        .map(|(name, _)| name.as_str());
     (names.collect(), run.verdict.reasons().collect())
 }
 

@@ -1,8 +1,10 @@
 //! One recorded quantity.
+use serde::{Deserialize, Serialize};
 use servobench_base::Rate;
 
 /// What a channel is, before it has values.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ChannelSpec {
     /// Name with its group in front: `load.position`, `current.q`.
     pub name: String,

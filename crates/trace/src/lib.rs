@@ -10,6 +10,7 @@ mod envelope;
 mod error;
 mod header;
 mod log;
+mod number;
 mod read;
 mod recorder;
 mod recording;
@@ -22,7 +23,8 @@ pub use envelope::envelope;
 pub use error::TraceError;
 pub use log::LogEntry;
 pub use recorder::{Mark, Recorder, SignalId};
-pub use recording::{About, Call, CallFate, Ending, Event, LimitReversals, Move, Recording, Signal};
+pub use recording::{About, BoundLimit, Call, CallFate, Event, LimitReversals, Move, Recording, Signal};
+pub use servobench_base::Ending;
 pub use whole_file::{stream_whole, write_whole};
 
 /// Column of a recording file that holds the instants (s).

@@ -1,4 +1,6 @@
 //! What the parts of a run say of themselves, kept within limits: a line that is said at every step would fill the memory.
+use crate::number;
+use serde::{Deserialize, Serialize};
 use servobench_base::Severity;
 use std::collections::{BTreeMap, VecDeque};
 
@@ -14,15 +16,18 @@ const DIFFERENT: usize = 1_000;
 const LONGEST: usize = 2_000;
 
 /// What a part of a run said, in its own words: a line, or how often it was said again.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct LogEntry {
     /// Who said it: `FMU load`.
     pub source: String,
     /// How much it matters.
     pub severity: Severity,
     /// When it was said (s), for the first time if it was more than once.
+    #[serde(with = "number")]
     pub start: f64,
     /// When it was said for the last time (s).
+    #[serde(with = "number")]
     pub end: f64,
     /// How often it was said between `start` and `end`.
     pub times: u64,

@@ -60,8 +60,7 @@ fn decode(file: File, path: &Path, is_sealed: bool) -> Result<Recording, TraceEr
         return Err(missing_key(seal::KEY, path));
     }
     let instants = header.instants;
-    let recording = header.into_recording();
-    let mut recording = recording.ok_or_else(|| damaged(path, format!("a rate in `{RECORDING_KEY}` is 0 Hz")))?;
+    let mut recording = header.into_recording();
     for (channel, index) in recording.channels.iter_mut().zip(indices) {
         channel.values = values(&reader, index, instants)
             .map_err(|error| damaged(path, format!("column `{}`: {error}", channel.spec.name)))?;

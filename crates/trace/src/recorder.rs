@@ -227,7 +227,7 @@ mod tests {
                 recorder.push(&[sign * k, -sign * k]);
                 recorder.note_value(signal, k, if (k / 5.0) % 2.0 < 1.0 { "A" } else { "B" });
                 let message = format!("{k}");
-                recorder.note_event(Event { start: k, end: k, source: "test".into(), message });
+                recorder.note_event(Event::new(k, k, "test", message));
             };
             for k in 0..kept {
                 note(&mut with, one, k, 1.0);

@@ -1,7 +1,9 @@
 //! A finished recording.
 use crate::channel::Channel;
 use crate::log::LogEntry;
-use servobench_base::{Rate, Tick};
+use crate::number;
+use serde::{Deserialize, Serialize};
+use servobench_base::{Ending, Rate, Tick};
 
 /// What a recording is of.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -17,56 +19,61 @@ pub struct About {
 }
 
 /// One move of the program, as planned.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Move {
     /// What it is, in words: `move to 1 m, order 4`.
     pub label: String,
     /// Start of the profile (s).
+    #[serde(with = "number")]
     pub start: f64,
     /// End of the profile (s).
+    #[serde(with = "number")]
     pub end: f64,
     /// Position at the start (axis unit).
+    #[serde(with = "number")]
     pub from: f64,
     /// Target (axis unit).
+    #[serde(with = "number")]
     pub to: f64,
     /// Largest |velocity|, |acceleration|, |jerk|, |snap| of the profile, analytic (axis unit and s). Snap is infinite
     /// in a jerk-limited profile, jerk too in an acceleration-limited one.
+    #[serde(with = "number")]
     pub peaks: [f64; 4],
     /// The limits it was planned with; `None` where the order has none.
+    #[serde(with = "number")]
     pub limits: [Option<f64>; 4],
     /// Start and length (s) of the part at constant velocity; length 0 without one.
+    #[serde(with = "number")]
     pub cruise: (f64, f64),
     /// How it ends.
+    #[serde(default, skip_serializing_if = "is_at_rest")]
     pub ending: Ending,
 }
 
-/// How a move ends, which says whether the axis is to arrive at its target.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Ending {
-    /// At rest at its target.
-    #[default]
-    AtRest,
-    /// Another move takes over before its end.
-    Aborted,
-    /// In motion: its target is passed, or the axis goes on at a velocity.
-    InMotion,
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks by reference")]
+fn is_at_rest(ending: &Ending) -> bool {
+    *ending == Ending::AtRest
 }
 
 /// A call of a function block, and what became of it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Call {
     /// Name of the instance.
     pub name: String,
     /// Name of the block in the standard: `MC_MoveAbsolute`.
     pub block: String,
     /// Whether the run may do without it: it is marked so, or waits in vain for an error or abortion of another call.
+    #[serde(default, rename = "optional", skip_serializing_if = "std::ops::Not::not")]
     pub is_optional: bool,
     /// What became of it by the end of the run.
     pub fate: CallFate,
 }
 
 /// What became of a call by the end of the run.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum CallFate {
     /// It was never executed: what it waited for, in words.
     NeverExecuted(String),
@@ -77,6 +84,7 @@ pub enum CallFate {
     /// It ended in `Error`.
     Failed {
         /// When (s).
+        #[serde(with = "number")]
         time: f64,
         /// `ErrorID`.
         id: u32,
@@ -86,12 +94,14 @@ pub enum CallFate {
 }
 
 /// How a limited quantity went from one of its limits to the other one and back: the mark of a loop that oscillates.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct LimitReversals {
     /// The limit: `effort limit`.
     pub limit: String,
     /// The times (s) at which the quantity was cut at the limit opposite to the one that cut it last; the first
     /// [`MOST`](Self::MOST) of them.
+    #[serde(with = "number")]
     pub times: Vec<f64>,
 }
 
@@ -101,26 +111,66 @@ impl LimitReversals {
 }
 
 /// Something that happened, for the user to know.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Event {
     /// When it began (s).
+    #[serde(with = "number")]
     pub start: f64,
     /// When it ended (s); equal to `start` for an instant.
+    #[serde(with = "number")]
     pub end: f64,
     /// Stage of the loop that saw it.
     pub source: String,
     /// What it was, in words.
     pub message: String,
+    /// The limit that bound from `start` to `end`, where that is what happened.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limit: Option<BoundLimit>,
+}
+
+/// A limit of the machine that bound.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BoundLimit {
+    /// The limit: `effort limit`.
+    pub name: String,
+    /// Whether it may have bound again, of which nothing is noted.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_last_noted: bool,
+}
+
+impl Event {
+    /// Something that happened from `start` to `end` (s).
+    #[must_use]
+    pub fn new(start: f64, end: f64, source: impl Into<String>, message: impl Into<String>) -> Self {
+        Self { start, end, source: source.into(), message: message.into(), limit: None }
+    }
+
+    /// The limit `name` bound from `start` to `end` (s).
+    #[must_use]
+    pub fn bound(start: f64, end: f64, source: impl Into<String>, name: &str, is_last_noted: bool) -> Self {
+        let limit = Some(BoundLimit { name: name.into(), is_last_noted });
+        Self { limit, ..Self::new(start, end, source, format!("{name} binds{}", Self::noted(is_last_noted))) }
+    }
+
+    /// What the message of the last event of its kind that is noted ends with.
+    #[must_use]
+    pub const fn noted(is_last: bool) -> &'static str {
+        if is_last { "; later ones are not listed" } else { "" }
+    }
 }
 
 /// Something that has one value out of a few and changes now and then: a state, an output of a function block.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Signal {
     /// Whose it is: `drive`, `axis`, the name of a function block.
     pub source: String,
     /// What it is: `state`, `Done`.
     pub name: String,
     /// Since when (s) it has which value, in order of time; no two neighbours are equal.
+    #[serde(with = "number")]
     pub changes: Vec<(f64, String)>,
 }
 

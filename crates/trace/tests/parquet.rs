@@ -38,12 +38,12 @@ fn one_move() -> impl Strategy<Value = Move> {
 }
 
 fn event() -> impl Strategy<Value = Event> {
-    (number(), number(), any::<String>(), any::<String>()).prop_map(|(start, end, source, message)| Event {
-        start,
-        end,
-        source,
-        message,
-    })
+    (number(), number(), any::<String>(), any::<String>(), any::<Option<bool>>()).prop_map(
+        |(start, end, source, message, limit)| match limit {
+            None => Event::new(start, end, source, message),
+            Some(is_last_noted) => Event::bound(start, end, source, &message, is_last_noted),
+        },
+    )
 }
 
 fn signal() -> impl Strategy<Value = Signal> {
@@ -155,7 +155,7 @@ fn small(instants: u32) -> Recording {
             cruise: (0.3, 0.7),
             ending: Ending::AtRest,
         }],
-        events: vec![Event { start: 0.25, end: 0.5, source: "drive".into(), message: "current limit".into() }],
+        events: vec![Event::bound(0.25, 0.5, "drive", "current limit", true)],
         signals: vec![Signal { source: "axis".into(), name: "state".into(), changes: vec![(0.0, "Disabled".into())] }],
         calls: vec![],
         limit_reversals: vec![],

@@ -1,10 +1,11 @@
 //! What no compiler checks: dependency arrows between our crates, licences of all others, left-overs in the text, and keys of scenario
-//! files in crates that know nothing of them.
+//! files in crates that know nothing of them, and concepts that have two types.
 
 mod arrows;
 mod keys;
 mod licences;
 mod metadata;
+mod representations;
 mod text;
 
 use crate::failure::Failure;
@@ -26,15 +27,18 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     let files = workspace.tracked(&[])?;
     let key_paths = keys::paths(&schema(workspace)?);
     let keyless: Vec<_> = keys::below(&metadata).into_iter().map(|package| source_of(package, workspace)).collect();
+    let mut types = Vec::new();
     for path in &files {
         // What is not UTF-8 (pictures, recordings) has no text to check; a deleted file has none either.
         if let Ok(text) = std::fs::read_to_string(workspace.root.join(path)) {
             findings.extend(text::findings(path, &text));
+            types.extend(representations::declared(path, &text));
             if keyless.iter().any(|source| path.starts_with(source)) {
                 findings.extend(keys::findings(path, &text, &key_paths));
             }
         }
     }
+    findings.extend(representations::findings(&types));
     if !findings.is_empty() {
         return Err(Failure::Findings { findings });
     }

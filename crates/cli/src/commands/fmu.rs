@@ -1,12 +1,13 @@
 //! `servobench fmu`: what is in an FMU, and an axis as an FMU.
-use crate::args::{FmuCommand, FmuExportArgs, FmuInfoArgs, FmuVersion};
+use crate::args::{FmuCommand, FmuExportArgs, FmuInfoArgs};
 use crate::console::{print, say, style};
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::output::{spares, write_file};
 use crate::sources;
-use servobench_fmi::{Archive, Limits, Version};
-use servobench_fmu::{Part, export, library};
+use servobench_config::Choice as _;
+use servobench_fmi::{Archive, Limits};
+use servobench_fmu::{export, library};
 use servobench_report::fmu_table;
 use std::path::PathBuf;
 
@@ -37,11 +38,7 @@ fn write(args: &FmuExportArgs) -> Result<Exit, CliError> {
     let loaded = sources::read(&args.scenario)?;
     let program = std::env::current_exe().map_err(CliError::OwnProgram)?;
     let library = library(&program).map_err(|error| CliError::Library(Box::new(error)))?;
-    let version = match args.fmi {
-        FmuVersion::Two => Version::Two,
-        FmuVersion::Three => Version::Three,
-    };
-    let part = Part::from_name(args.part.name()).unwrap_or(Part::Axis);
+    let (version, part) = (args.fmi, args.part);
     let bytes = export(&loaded, version, part, &library).map_err(|error| CliError::Export(Box::new(error)))?;
     let output = args.output.clone().unwrap_or_else(|| PathBuf::from(format!("{}.fmu", loaded.scenario.name)));
     spares(&args.scenario, Some(&output))?;
@@ -49,7 +46,7 @@ fn write(args: &FmuExportArgs) -> Result<Exit, CliError> {
     say(&format!(
         "{}: {} of {}, {:.1} MB\n",
         output.display(),
-        args.part.name(),
+        part.name(),
         loaded.scenario.name,
         bytes.len() as f64 * 1e-6
     ));

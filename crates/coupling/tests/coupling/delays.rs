@@ -2,7 +2,7 @@
 use super::linear::{connect, member};
 use super::oscillator::{RATE, settings};
 use servobench_base::Rate;
-use servobench_coupling::{Block, Input, Iteration, Master, Method, Network, Order, Step, value};
+use servobench_coupling::{Block, Input, Iteration, Master, Method, Network, Order, StepEnd, value};
 use std::convert::Infallible;
 use std::num::NonZeroU32;
 
@@ -31,7 +31,7 @@ impl Block for Probe {
         false
     }
 
-    fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<Step, Infallible> {
+    fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<StepEnd, Infallible> {
         let rate = Rate::new(RATE).unwrap();
         let (start, end) = (rate.tick_at(time).0, rate.tick_at(time + length).0);
         match self {
@@ -49,7 +49,7 @@ impl Block for Probe {
                 *oldest = (*oldest).max(end.saturating_sub(newest));
             }
         }
-        Ok(Step::Done)
+        Ok(StepEnd::Done)
     }
 
     fn read(&mut self, _: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), Infallible> {

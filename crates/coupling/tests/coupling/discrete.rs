@@ -1,7 +1,7 @@
 //! Signals that change at exchanges only.
 use servobench_base::{Divider, Rate};
 use servobench_coupling::{
-    Block, Connection, Input, InputPort, Master, Member, Method, Network, Order, Port, Settings, Step,
+    Block, Connection, Input, InputPort, Master, Member, Method, Network, Order, Port, Settings, StepEnd,
 };
 use std::convert::Infallible;
 use std::num::NonZeroU32;
@@ -30,10 +30,10 @@ impl Block for Counting {
         self.is_discrete
     }
 
-    fn step(&mut self, _time: f64, _length: f64, inputs: &[Input]) -> Result<Step, Infallible> {
+    fn step(&mut self, _time: f64, _length: f64, inputs: &[Input]) -> Result<StepEnd, Infallible> {
         self.steps += 1;
         self.had.extend(inputs);
-        Ok(Step::Done)
+        Ok(StepEnd::Done)
     }
 
     fn read(&mut self, _inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), Infallible> {

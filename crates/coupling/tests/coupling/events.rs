@@ -1,7 +1,7 @@
 //! Steps that end early, and simulations that do.
 use super::linear::{connect, member};
 use super::oscillator::{RATE, RESOLVED, settings, state};
-use servobench_coupling::{Advance, Block, CouplingError, Input, Iteration, Master, Method, Network, Order, Step};
+use servobench_coupling::{Advance, Block, CouplingError, Input, Iteration, Master, Method, Network, Order, StepEnd};
 use std::convert::Infallible;
 
 /// Oracle: with polynomials as inputs, an exact block that is stepped in two parts comes to where one is that is stepped in one. Order
@@ -33,7 +33,7 @@ fn the_rest_of_a_step_is_asked_for() {
 #[derive(Default)]
 struct Scripted {
     /// What the steps say, in their order; done after that.
-    says: Vec<Step>,
+    says: Vec<StepEnd>,
     steps: usize,
     output: f64,
     slopes: Vec<[f64; 2]>,
@@ -51,12 +51,12 @@ impl Block for Scripted {
         false
     }
 
-    fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<Step, Infallible> {
+    fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<StepEnd, Infallible> {
         self.slopes.extend(inputs.iter().map(|input| [input[1], input[2]]));
         self.parts.push([time, length]);
         self.steps += 1;
         self.output = (self.steps * self.steps) as f64;
-        Ok(self.says.get(self.steps - 1).copied().unwrap_or(Step::Done))
+        Ok(self.says.get(self.steps - 1).copied().unwrap_or(StepEnd::Done))
     }
 
     fn read(&mut self, _: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), Infallible> {
@@ -74,7 +74,7 @@ impl Block for Scripted {
 }
 
 /// A source that goes by `says`, and what follows it, with steps of 1/8 s.
-fn scripted(says: Vec<Step>) -> Master<Scripted> {
+fn scripted(says: Vec<StepEnd>) -> Master<Scripted> {
     let source = Scripted { says, ..Scripted::default() };
     let members = vec![member("source", source, 0, 1), member("sink", Scripted::default(), 1, 0)];
     let network = Network { members, connections: vec![connect((0, 0), (1, 0))] };
@@ -83,7 +83,7 @@ fn scripted(says: Vec<Step>) -> Master<Scripted> {
 
 #[test]
 fn extrapolation_begins_again_after_an_event() {
-    let mut master = scripted(vec![Step::Done, Step::Done, Step::Done, Step::Until(0.4)]);
+    let mut master = scripted(vec![StepEnd::Done, StepEnd::Done, StepEnd::Done, StepEnd::Until(0.4)]);
     for _ in 0..7 {
         master.advance().unwrap();
     }
@@ -98,7 +98,7 @@ fn extrapolation_begins_again_after_an_event() {
 
 #[test]
 fn a_block_ends_the_simulation() {
-    let mut master = scripted(vec![Step::Done, Step::Terminated(0.2)]);
+    let mut master = scripted(vec![StepEnd::Done, StepEnd::Terminated(0.2)]);
     assert_eq!(master.advance().unwrap(), Advance::Done);
     let ended = Advance::Terminated { block: 0, time: 0.2 };
     assert_eq!([master.advance().unwrap(), master.advance().unwrap()], [ended; 2]);
@@ -108,12 +108,12 @@ fn a_block_ends_the_simulation() {
 #[test]
 fn a_block_that_does_not_get_on_is_an_error() {
     for at in [-0.1, 0.2, f64::NAN] {
-        match scripted(vec![Step::Until(at)]).advance() {
+        match scripted(vec![StepEnd::Until(at)]).advance() {
             Err(CouplingError::Astray { block, parts: 1, .. }) => assert_eq!(block, "source"),
             other => panic!("{at}: {other:?}"),
         }
     }
-    match scripted(vec![Step::Until(0.0625); 2000]).advance() {
+    match scripted(vec![StepEnd::Until(0.0625); 2000]).advance() {
         Err(CouplingError::Astray { parts: 1001, .. }) => {}
         other => panic!("{other:?}"),
     }

@@ -2,7 +2,7 @@
 //!
 //! ẋ = A·x + B·u, y = C·x + D·u. With u a parabola over the step, [x, u, u', u''] is one linear system, whose matrix exponential is a
 //! Taylor series after halving the step until its norm is below 1/2 (20 terms: 0.5²⁰/20! < 1e-24).
-use servobench_coupling::{Block, Connection, Input, InputPort, Member, Port, Step, later, mean};
+use servobench_coupling::{Block, Connection, Input, InputPort, Member, Port, StepEnd, later, mean};
 use std::convert::Infallible;
 use std::num::NonZeroU32;
 
@@ -138,13 +138,13 @@ impl Block for Linear {
         self.model.d[output][input] != 0.0
     }
 
-    fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<Step, Infallible> {
+    fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<StepEnd, Infallible> {
         if let Some(event) = self.event.filter(|event| *event > time && *event < time + length) {
             self.go(event - time, inputs);
-            return Ok(Step::Until(event));
+            return Ok(StepEnd::Until(event));
         }
         self.go(length, inputs);
-        Ok(Step::Done)
+        Ok(StepEnd::Done)
     }
 
     fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), Infallible> {

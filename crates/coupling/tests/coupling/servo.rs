@@ -1,7 +1,7 @@
 //! A position loop with a sampled controller and an encoder: what a servo axis exchanges is let be.
 use super::linear::{Linear, Model, connect, member};
 use super::oscillator::{RATE, settings};
-use servobench_coupling::{Block, CouplingError, Input, Master, Method, Network, Order, Step, value};
+use servobench_coupling::{Block, CouplingError, Input, Master, Method, Network, Order, StepEnd, value};
 use std::convert::Infallible;
 use std::num::NonZeroU32;
 
@@ -34,12 +34,12 @@ impl Block for Controller {
         false
     }
 
-    fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<Step, Infallible> {
+    fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<StepEnd, Infallible> {
         let x = (value(&inputs[0], 0.0) / COUNT).floor() * COUNT;
         let [r, v] = reference(time);
         self.force = BANDWIDTH * BANDWIDTH * (r - x) + 2.0 * BANDWIDTH * (v - (x - self.before) / length);
         self.before = x;
-        Ok(Step::Done)
+        Ok(StepEnd::Done)
     }
 
     fn read(&mut self, _: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), Infallible> {

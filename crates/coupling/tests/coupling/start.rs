@@ -2,7 +2,7 @@
 use servobench_base::{Divider, Rate};
 use servobench_coupling::{
     Block, Connection, CouplingError, Input, InputPort, Iteration, Master, Member, Method, Network, NetworkError,
-    Order, Port, Settings, Step,
+    Order, Port, Settings, StepEnd,
 };
 use std::convert::Infallible;
 use std::num::NonZeroU32;
@@ -57,9 +57,9 @@ impl Block for State {
         Ok(())
     }
 
-    fn step(&mut self, _time: f64, _length: f64, _inputs: &[Input]) -> Result<Step, Infallible> {
+    fn step(&mut self, _time: f64, _length: f64, _inputs: &[Input]) -> Result<StepEnd, Infallible> {
         assert_eq!(self.started.len(), 1, "a step before the start, or a second start");
-        Ok(Step::Done)
+        Ok(StepEnd::Done)
     }
 
     fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), Infallible> {

@@ -1,7 +1,7 @@
 #![expect(unsafe_code, reason = "real crashes need what Rust does not let happen")]
 //! Slaves that do what native code does by mistake.
 use serde::{Deserialize, Serialize};
-use servobench_fmi::{Capabilities, LogLine, Progress, Severity, Slave, SlaveError};
+use servobench_fmi::{Capabilities, LogLine, Severity, Slave, SlaveError, StepEnd};
 use std::hint::black_box;
 use std::io::{Read, Write};
 use std::time::Duration;
@@ -97,7 +97,7 @@ impl Slave for BadSlave {
         Capabilities { saves_state: true, interpolates_inputs: false, variable_step: true }
     }
 
-    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
         self.steps += 1;
         self.time = time + length;
         self.x += length * inputs[0].iter().sum::<f64>();
@@ -131,7 +131,7 @@ impl Slave for BadSlave {
 }
 
 impl BadSlave {
-    fn misbehave(&mut self, time: f64, length: f64) -> Result<Progress, SlaveError> {
+    fn misbehave(&mut self, time: f64, length: f64) -> Result<StepEnd, SlaveError> {
         match self.bad {
             Bad::StackOverflow => {
                 black_box(deeper(1));
@@ -231,11 +231,11 @@ impl BadSlave {
             Bad::Discards if self.steps.is_multiple_of(2) => {
                 return Err(SlaveError::Discarded { call: "fmi3DoStep".into(), time, shortest: None });
             }
-            Bad::Early if self.steps == 1 => return Ok(Progress::Until(time + length / 4.0)),
-            Bad::Early => return Ok(Progress::Terminated(time + length / 2.0)),
+            Bad::Early if self.steps == 1 => return Ok(StepEnd::Until(time + length / 4.0)),
+            Bad::Early => return Ok(StepEnd::Terminated(time + length / 2.0)),
             _ => {}
         }
-        Ok(Progress::Done)
+        Ok(StepEnd::Done)
     }
 }
 

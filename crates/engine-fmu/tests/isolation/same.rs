@@ -1,6 +1,6 @@
 //! One that does nothing wrong does the same as without isolation.
 use super::*;
-use servobench_fmi::{LogLine, Progress, Severity};
+use servobench_fmi::{LogLine, Severity, StepEnd};
 
 /// What comes of the same calls.
 fn life(slave: &mut dyn Slave) -> Vec<f64> {
@@ -10,7 +10,7 @@ fn life(slave: &mut dyn Slave) -> Vec<f64> {
     note(&outputs);
     for k in 0..20 {
         let time = f64::from(k) * 0.1;
-        assert_eq!(slave.step(time, 0.1, &[[0.3 * time, 0.01, -0.0]]), Ok(Progress::Done));
+        assert_eq!(slave.step(time, 0.1, &[[0.3 * time, 0.01, -0.0]]), Ok(StepEnd::Done));
         slave.read(None, &mut outputs).unwrap();
         note(&outputs);
         slave.read(Some(&[0.7]), &mut outputs).unwrap();
@@ -41,15 +41,15 @@ fn every_number_is_the_same_as_in_one_process() {
 #[test]
 fn a_step_that_ends_early_says_where() {
     let mut slave = start(&Bad::Early, Bounds::default()).unwrap();
-    assert_eq!(slave.step(1.0, 0.2, &[[0.0; 3]]), Ok(Progress::Until(1.0 + 0.2 / 4.0)));
-    assert_eq!(slave.step(1.05, 0.15, &[[0.0; 3]]), Ok(Progress::Terminated(1.05 + 0.15 / 2.0)));
+    assert_eq!(slave.step(1.0, 0.2, &[[0.0; 3]]), Ok(StepEnd::Until(1.0 + 0.2 / 4.0)));
+    assert_eq!(slave.step(1.05, 0.15, &[[0.0; 3]]), Ok(StepEnd::Terminated(1.05 + 0.15 / 2.0)));
 }
 
 #[test]
 fn one_that_discards_a_step_goes_on() {
     let mut slave = start(&Bad::Discards, Bounds::default()).unwrap();
     for _ in 0..3 {
-        assert_eq!(slave.step(0.0, 0.1, &[[0.0; 3]]), Ok(Progress::Done));
+        assert_eq!(slave.step(0.0, 0.1, &[[0.0; 3]]), Ok(StepEnd::Done));
         let discarded = slave.step(0.1, 0.1, &[[0.0; 3]]);
         assert_eq!(discarded, Err(SlaveError::Discarded { call: "fmi3DoStep".into(), time: 0.1, shortest: None }));
     }
@@ -67,7 +67,7 @@ fn what_it_fails_with_is_said_and_not_without_end() {
 #[test]
 fn an_output_that_is_not_a_number_is_said_when_it_is_read() {
     let mut slave = start(&Bad::NaN, Bounds::default()).unwrap();
-    assert_eq!(slave.step(0.0, 0.1, &[[0.0; 3]]), Ok(Progress::Done));
+    assert_eq!(slave.step(0.0, 0.1, &[[0.0; 3]]), Ok(StepEnd::Done));
     let error = slave.read(None, &mut [0.0; 2]).unwrap_err();
     assert_eq!(error.to_string(), "the FMU's output `x` is NaN at 0.1 s");
 }

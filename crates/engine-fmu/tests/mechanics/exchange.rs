@@ -82,20 +82,20 @@ fn bodies_go_on_between_exchanges() {
 
 /// Stands still, answers as it is told and notes what it gets.
 struct Scripted {
-    answer: fn(f64, f64) -> Result<Progress, SlaveError>,
+    answer: fn(f64, f64) -> Result<StepEnd, SlaveError>,
     position: f64,
     /// Time, length and effort of each step.
     steps: Arc<Mutex<Vec<(f64, f64, f64)>>>,
 }
 
 impl Scripted {
-    fn new(answer: fn(f64, f64) -> Result<Progress, SlaveError>) -> Self {
+    fn new(answer: fn(f64, f64) -> Result<StepEnd, SlaveError>) -> Self {
         Self { answer, position: 0.5, steps: Arc::default() }
     }
 }
 
 impl Toy for Scripted {
-    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
         self.steps.lock().unwrap().push((time, length, inputs[0][0]));
         (self.answer)(time, length)
     }
@@ -111,13 +111,13 @@ fn single_body(ticks: u32) -> FmuModel {
 }
 
 /// What comes of a tick with this answer.
-fn tick(answer: fn(f64, f64) -> Result<Progress, SlaveError>) -> Result<(), MechanicsError> {
+fn tick(answer: fn(f64, f64) -> Result<StepEnd, SlaveError>) -> Result<(), MechanicsError> {
     mechanics(Scripted::new(answer), &single_body(1), &IN_SI).advance(&input(1.0, 0.0))
 }
 
 #[test]
 fn times_are_counted_not_summed() {
-    let toy = Scripted::new(|_, _| Ok(Progress::Done));
+    let toy = Scripted::new(|_, _| Ok(StepEnd::Done));
     let steps = Arc::clone(&toy.steps);
     let mut fmu = mechanics(toy, &single_body(3), &IN_SI);
     (0..3_000).for_each(|_| fmu.advance(&input(1.0, 0.0)).unwrap());
@@ -130,7 +130,7 @@ fn times_are_counted_not_summed() {
 #[test]
 fn disturbances_of_a_single_body_act_with_the_effort() {
     let all = Input { motor_disturbance: 0.5, ..input(2.0, 100.0) };
-    let toy = Scripted::new(|_, _| Ok(Progress::Done));
+    let toy = Scripted::new(|_, _| Ok(StepEnd::Done));
     let steps = Arc::clone(&toy.steps);
     mechanics(toy, &single_body(1), &IN_SI).advance(&all).unwrap();
     assert_eq!(*steps.lock().unwrap(), [(0.0, TICK, 2.0 + 0.5 + 100.0 * 5e-3)]);
@@ -148,18 +148,18 @@ fn a_load_of_its_own_needs_an_input_for_its_disturbance() {
 #[test]
 fn a_step_that_ends_early_goes_on_to_its_end() {
     let early = |time: f64, length: f64| {
-        if length > 0.9 * TICK { Ok(Progress::Until(time + 0.25 * length)) } else { Ok(Progress::Done) }
+        if length > 0.9 * TICK { Ok(StepEnd::Until(time + 0.25 * length)) } else { Ok(StepEnd::Done) }
     };
     assert_eq!(tick(early), Ok(()));
 }
 
 #[test]
 fn what_goes_wrong_in_a_step_ends_the_run_with_the_reason() {
-    let says = |answer: fn(f64, f64) -> Result<Progress, SlaveError>| tick(answer).unwrap_err();
+    let says = |answer: fn(f64, f64) -> Result<StepEnd, SlaveError>| tick(answer).unwrap_err();
     for (error, words) in [
-        (says(|time, _| Ok(Progress::Until(time))), "came back from a step from 0 s at 0 s"),
-        (says(|time, length| Ok(Progress::Until(time + 1e-6 * length))), "came back early 10000 times"),
-        (says(|_, _| Ok(Progress::Terminated(0.0))), "wants the simulation to end at 0 s"),
+        (says(|time, _| Ok(StepEnd::Until(time))), "came back from a step from 0 s at 0 s"),
+        (says(|time, length| Ok(StepEnd::Until(time + 1e-6 * length))), "came back early 10000 times"),
+        (says(|_, _| Ok(StepEnd::Terminated(0.0))), "wants the simulation to end at 0 s"),
         (
             says(|time, _| Err(SlaveError::Crashed { call: "".into(), time, how: "signal 11".into() })),
             "ended at 0 s: signal 11",
@@ -178,7 +178,7 @@ fn what_goes_wrong_in_a_step_ends_the_run_with_the_reason() {
 
 #[test]
 fn a_position_that_is_not_finite_is_not_passed_on() {
-    let toy = Scripted { position: f64::INFINITY, ..Scripted::new(|_, _| Ok(Progress::Done)) };
+    let toy = Scripted { position: f64::INFINITY, ..Scripted::new(|_, _| Ok(StepEnd::Done)) };
     let built = FmuMechanics::new(Box::new(Fmu(toy)), &single_body(1), TICK);
     let error = built.err().unwrap();
     assert_eq!(error.to_string(), "engine `fmu` failed: the FMU's output `angle` is inf");
@@ -196,9 +196,9 @@ fn a_prescribed_motion_is_refused() {
 struct Ramp(f64);
 
 impl Toy for Ramp {
-    fn step(&mut self, time: f64, length: f64, _: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+    fn step(&mut self, time: f64, length: f64, _: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
         self.0 = 3.0 * (time + length);
-        Ok(Progress::Done)
+        Ok(StepEnd::Done)
     }
 
     fn read(&mut self, outputs: &mut [f64]) {

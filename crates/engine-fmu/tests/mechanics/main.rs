@@ -6,8 +6,7 @@ mod ports;
 use servobench_base::Coordinate;
 use servobench_engine_fmu::{FmuMechanics, InSi, Ports};
 use servobench_fmi::{
-    Capabilities, FmuFile, FmuMistake, Isolation, LogLine, ModelDescription, Progress, SiPort, SiUnit, Slave,
-    SlaveError,
+    Capabilities, FmuFile, FmuMistake, Isolation, LogLine, ModelDescription, SiPort, SiUnit, Slave, SlaveError, StepEnd,
 };
 use servobench_plant::{
     Actuation, Body, Chain, Drive, Engine, Exact, FmuBody, FmuModel, Friction, Input, Link, Mechanics, MechanicsSetup,
@@ -33,7 +32,7 @@ fn exact(step: f64) -> Box<dyn Mechanics> {
 
 /// An FMU that can do what these tests need.
 trait Toy: Send {
-    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError>;
+    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<StepEnd, SlaveError>;
     fn read(&mut self, outputs: &mut [f64]);
 }
 
@@ -44,7 +43,7 @@ impl<T: Toy> Slave for Fmu<T> {
         Capabilities::default()
     }
 
-    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
         self.0.step(time, length, inputs)
     }
 
@@ -76,10 +75,10 @@ impl ExactFmu {
 }
 
 impl Toy for ExactFmu {
-    fn step(&mut self, _: f64, _: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+    fn step(&mut self, _: f64, _: f64, inputs: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
         let force = inputs.get(1).map_or(0.0, |force| force[0]);
         self.0.advance(&input(inputs[0][0], force)).unwrap();
-        Ok(Progress::Done)
+        Ok(StepEnd::Done)
     }
 
     fn read(&mut self, outputs: &mut [f64]) {

@@ -7,7 +7,7 @@ use servobench_fmi::FmuEntry;
 struct InOtherUnits(ExactFmu);
 
 impl Toy for InOtherUnits {
-    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<Progress, SlaveError> {
+    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
         // 1 N·m is 1000 N·mm, 1 kN is 1000 N.
         self.0.step(time, length, &[inputs[0].map(|torque| torque / 1000.0), inputs[1].map(|force| force * 1000.0)])
     }

@@ -3,9 +3,9 @@ use crate::ENGINE;
 use crate::files::Files;
 use servobench_base::{Divider, Rate};
 use servobench_coupling::{
-    Block, Connection, CouplingError, Input, InputPort, Master, Member, Method, Network, Order, Port, Settings, Step,
+    Block, Connection, CouplingError, Input, InputPort, Master, Member, Method, Network, Order, Port, Settings, StepEnd,
 };
-use servobench_fmi::{FmuFile, FmuRequest, Isolation, Progress, SiPort, Slave, SlaveError, Value};
+use servobench_fmi::{FmuFile, FmuRequest, Isolation, SiPort, Slave, SlaveError, Value};
 use std::num::NonZeroU32;
 use std::path::Path;
 
@@ -148,12 +148,8 @@ impl Block for Coupled {
         self.0.start(Some(inputs))
     }
 
-    fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<Step, SlaveError> {
-        Ok(match self.0.step(time, length, inputs)? {
-            Progress::Done => Step::Done,
-            Progress::Until(time) => Step::Until(time),
-            Progress::Terminated(time) => Step::Terminated(time),
-        })
+    fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<StepEnd, SlaveError> {
+        self.0.step(time, length, inputs)
     }
 
     fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {

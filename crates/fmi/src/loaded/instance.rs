@@ -1,5 +1,5 @@
 //! What the instances of both versions can do.
-use crate::slave::{Capabilities, LogLine, Progress, SlaveError};
+use crate::slave::{Capabilities, LogLine, SlaveError, StepEnd};
 
 /// Where a state is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -17,7 +17,7 @@ impl Slot {
 /// What a step has come to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Attempt {
-    Came(Progress),
+    Came(StepEnd),
     /// The FMU discarded it, and is nowhere that a step can begin from. It may say to what time (s) within the step it would have
     /// come.
     Discarded {

@@ -5,7 +5,7 @@
 //! steps do, so that is done once in many steps, and what was asked for since then is asked for again after going back. Where an
 //! FMU cannot be taken back, the step goes on from where it says that it has come; if it says nothing, the step cannot be taken.
 use super::instance::{Attempt, Instance, Slot};
-use crate::slave::{Progress, SlaveError};
+use crate::slave::{SlaveError, StepEnd};
 
 /// Into how many parts a step is divided at most, by ten halvings.
 const MOST_PARTS: u32 = 1 << 10;
@@ -76,13 +76,13 @@ impl Redo {
         time: f64,
         length: f64,
         inputs: &[[f64; 3]],
-    ) -> Result<Progress, SlaveError> {
+    ) -> Result<StepEnd, SlaveError> {
         if self.is_able {
             return self.step_in_parts(instance, time, length, inputs);
         }
         match instance.attempt(time, length, inputs)? {
             Attempt::Came(progress) => Ok(progress),
-            Attempt::Discarded { within: Some(reached), .. } => Ok(Progress::Until(reached)),
+            Attempt::Discarded { within: Some(reached), .. } => Ok(StepEnd::Until(reached)),
             Attempt::Discarded { call, within: None } => {
                 Err(SlaveError::Discarded { call: call.into(), time, shortest: None })
             }
@@ -96,7 +96,7 @@ impl Redo {
         time: f64,
         length: f64,
         inputs: &[[f64; 3]],
-    ) -> Result<Progress, SlaveError> {
+    ) -> Result<StepEnd, SlaveError> {
         // Both in parts of the step.
         let (mut done, mut next) = (0, MOST_PARTS);
         while done < MOST_PARTS {
@@ -104,7 +104,7 @@ impl Redo {
             let (from, part) = (time + since, length * f64::from(next) / f64::from(MOST_PARTS));
             self.inputs.iter_mut().zip(inputs).for_each(|(later, input)| *later = after(*input, since));
             match self.step_or_back(instance, from, part)? {
-                Attempt::Came(Progress::Done) => {
+                Attempt::Came(StepEnd::Done) => {
                     done += next;
                     // The other half of what was halved.
                     next = 1 << done.trailing_zeros();
@@ -112,7 +112,7 @@ impl Redo {
                 Attempt::Came(early) => return Ok(early),
                 Attempt::Discarded { within: Some(reached), .. } if next > 1 => {
                     match self.step_or_back(instance, from, reached - from)? {
-                        Attempt::Came(Progress::Done) => return Ok(Progress::Until(reached)),
+                        Attempt::Came(StepEnd::Done) => return Ok(StepEnd::Until(reached)),
                         Attempt::Came(early) => return Ok(early),
                         // It is not as it said.
                         Attempt::Discarded { .. } => next /= 2,
@@ -124,7 +124,7 @@ impl Redo {
                 }
             }
         }
-        Ok(Progress::Done)
+        Ok(StepEnd::Done)
     }
 
     /// Tries a step with the inputs that are there; back from one that is discarded.

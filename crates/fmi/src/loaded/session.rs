@@ -5,7 +5,7 @@ use crate::description::ModelDescription;
 use crate::error::{FmuError, LibraryProblem};
 use crate::log::Clock;
 use crate::setup::Setup;
-use crate::slave::{Capabilities, Port, Progress, SlaveError};
+use crate::slave::{Capabilities, Port, SlaveError, StepEnd};
 use std::ffi::CString;
 
 /// Part of a step that is a rounding of the times that it is made of.
@@ -81,8 +81,8 @@ impl Session {
     /// Notes how far a step has come.
     pub(super) fn reach(&mut self, time: f64, length: f64, attempt: Attempt) {
         self.go_to(match attempt {
-            Attempt::Came(Progress::Done) => time + length,
-            Attempt::Came(Progress::Until(reached) | Progress::Terminated(reached)) => reached,
+            Attempt::Came(StepEnd::Done) => time + length,
+            Attempt::Came(StepEnd::Until(reached) | StepEnd::Terminated(reached)) => reached,
             Attempt::Discarded { within, .. } => within.unwrap_or(time),
         });
     }

@@ -11,7 +11,7 @@ use crate::library::three::{Flag, Three};
 use crate::library::{Access, Called};
 use crate::log::Clock;
 use crate::setup::{Setup, Start};
-use crate::slave::{Capabilities, LogLine, Progress, SlaveError};
+use crate::slave::{Capabilities, LogLine, SlaveError, StepEnd};
 use std::ffi::CString;
 
 /// Updates of discrete states at one event. An FMU that wants more goes in a circle.
@@ -196,7 +196,7 @@ impl Instance for LoadedThree {
         let leg = self.event.leg(time, length);
         let mean = |port: usize| Session::mean(inputs[port], leg.length);
         if self.set_inputs(&mean, &|port| inputs[port][0])? {
-            return Ok(Attempt::Came(Progress::Terminated(time)));
+            return Ok(Attempt::Came(StepEnd::Terminated(time)));
         }
         // An event at the start may have changed when the next one is.
         let before = leg;
@@ -217,13 +217,13 @@ impl Instance for LoadedThree {
         let is_early = stepped.early_return || stepped.terminate_simulation;
         let at = if is_early { reached("fmi3DoStep", time, leg.length, stepped.last_successful_time)? } else { end };
         let mut progress = if stepped.terminate_simulation {
-            Progress::Terminated(at)
+            StepEnd::Terminated(at)
         } else if at < end {
-            Progress::Until(at)
+            StepEnd::Until(at)
         } else if leg.is_cut {
-            Progress::Until(end)
+            StepEnd::Until(end)
         } else {
-            Progress::Done
+            StepEnd::Done
         };
         self.session.reach(time, length, Attempt::Came(progress));
         let is_event = stepped.event_handling_needed || self.event.is_due(self.session.time);
@@ -231,7 +231,7 @@ impl Instance for LoadedThree {
             let outcome = self.instance.enter_event_mode();
             self.check("fmi3EnterEventMode", outcome)?;
             if self.settle()? {
-                progress = Progress::Terminated(self.session.time);
+                progress = StepEnd::Terminated(self.session.time);
             }
         }
         Ok(Attempt::Came(progress))

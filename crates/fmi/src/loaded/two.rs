@@ -10,7 +10,7 @@ use crate::library::two::{Flag, Two};
 use crate::library::{Access, Called};
 use crate::log::Clock;
 use crate::setup::{Plan, Setup, Start};
-use crate::slave::{Capabilities, LogLine, Progress, SlaveError};
+use crate::slave::{Capabilities, LogLine, SlaveError, StepEnd};
 use std::ffi::CString;
 
 /// An FMU of version 2.0.
@@ -109,7 +109,7 @@ impl LoadedTwo {
         let (call, at) = ("fmi2DoStep", self.instance.last_successful_time());
         if self.instance.wants_to_end() {
             let at = reached(call, time, length, at.unwrap_or(time))?;
-            return Ok(Attempt::Came(Progress::Terminated(at)));
+            return Ok(Attempt::Came(StepEnd::Terminated(at)));
         }
         Ok(Attempt::Discarded { call, within: within(at, time, length) })
     }
@@ -151,7 +151,7 @@ impl Instance for LoadedTwo {
             Outcome::Discarded => self.discarded(time, length)?,
             outcome => {
                 self.check("fmi2DoStep", outcome)?;
-                Attempt::Came(Progress::Done)
+                Attempt::Came(StepEnd::Done)
             }
         };
         self.session.reach(time, length, attempt);

@@ -1,6 +1,6 @@
 //! FMI 3.0. `three.c` refuses what comes in the wrong mode and arrays of the wrong length.
 use super::{Room, compiled, messages, port, setup, text};
-use servobench_fmi::{Loaded, Progress, Setup, Slave, SlaveError, Value};
+use servobench_fmi::{Loaded, Setup, Slave, SlaveError, StepEnd, Value};
 use std::fs;
 
 const DESCRIPTION: &str = include_str!("three.xml");
@@ -52,18 +52,18 @@ fn an_event_within_a_step_ends_it_early() {
     let mut slave = loaded(0, &["u"], &["y", "events"]);
     let mut read = [0.0; 2];
     slave.take_log();
-    assert_eq!(slave.step(0.0, 1.0, &[[2.0, 0.0, 0.0]]), Ok(Progress::Until(0.25)));
+    assert_eq!(slave.step(0.0, 1.0, &[[2.0, 0.0, 0.0]]), Ok(StepEnd::Until(0.25)));
     let said = slave.take_log();
     let calls: Vec<_> = said.iter().map(|line| line.message.as_str()).collect();
     assert_eq!(calls, ["enter event", "update", "update", "enter step"]);
     assert!(said.iter().all(|line| line.time == 0.25), "said where the event was: {said:?}");
     slave.read(None, &mut read).unwrap();
     assert_eq!(read, [0.5, 3.0], "of the two updates of the event and the one at the start");
-    assert_eq!(slave.step(0.25, 0.75, &[[2.0, 0.0, 0.0]]), Ok(Progress::Done));
+    assert_eq!(slave.step(0.25, 0.75, &[[2.0, 0.0, 0.0]]), Ok(StepEnd::Done));
     slave.read(None, &mut read).unwrap();
     assert_eq!(read, [2.0, 3.0]);
     let mut on_the_event = loaded(0, &["u"], &["events"]);
-    assert_eq!(on_the_event.step(0.0, 0.25, &[[0.0; 3]]), Ok(Progress::Done), "at the end of a step nothing is early");
+    assert_eq!(on_the_event.step(0.0, 0.25, &[[0.0; 3]]), Ok(StepEnd::Done), "at the end of a step nothing is early");
     on_the_event.read(None, &mut read[..1]).unwrap();
     assert_eq!(read[0], 3.0);
 }
@@ -80,7 +80,7 @@ fn driven(slave: &mut Loaded, length: f64, end: u32) -> (Vec<f64>, f64) {
     for step in 0..end {
         let (mut time, until) = (f64::from(step) * length, f64::from(step + 1) * length);
         let mut rest = length;
-        while let Progress::Until(reached) = slave.step(time, rest, &[[0.0; 3]; 2]).unwrap() {
+        while let StepEnd::Until(reached) = slave.step(time, rest, &[[0.0; 3]; 2]).unwrap() {
             stops.push(reached);
             (time, rest) = (reached, until - reached);
         }
@@ -128,11 +128,11 @@ fn where_steps_have_one_length_events_are_at_communication_points() {
 #[test]
 fn an_event_stays_announced_over_others_and_comes_back_with_a_state() {
     let mut slave = timed(DESCRIPTION, 0.375, 0.375);
-    assert_eq!(slave.step(0.0, 0.25, &[[0.0; 3], [1.0, 0.0, 0.0]]), Ok(Progress::Done));
+    assert_eq!(slave.step(0.0, 0.25, &[[0.0; 3], [1.0, 0.0, 0.0]]), Ok(StepEnd::Done));
     slave.save().unwrap();
     for _ in 0..2 {
-        assert_eq!(slave.step(0.25, 0.25, &[[0.0; 3], [1.0, 0.0, 0.0]]), Ok(Progress::Until(0.375)));
-        assert_eq!(slave.step(0.375, 0.125, &[[0.0; 3], [1.0, 0.0, 0.0]]), Ok(Progress::Done));
+        assert_eq!(slave.step(0.25, 0.25, &[[0.0; 3], [1.0, 0.0, 0.0]]), Ok(StepEnd::Until(0.375)));
+        assert_eq!(slave.step(0.375, 0.125, &[[0.0; 3], [1.0, 0.0, 0.0]]), Ok(StepEnd::Done));
         slave.restore().unwrap();
     }
 }
@@ -186,7 +186,7 @@ fn other_types_go_both_ways() {
 #[test]
 fn ends_and_failures() {
     let step = |mode| loaded(mode, &[], &[]).step(0.3, 0.5, &[]);
-    assert_eq!(step(1), Ok(Progress::Terminated(0.5)));
+    assert_eq!(step(1), Ok(StepEnd::Terminated(0.5)));
     let failed = |status: &'static str, message: &str| {
         let (call, status) = ("fmi3DoStep".into(), status.into());
         Err(SlaveError::Failed { call, time: 0.3, status, message: message.into() })
@@ -217,8 +217,8 @@ fn a_step_in_parts_has_its_discrete_inputs() {
     for _ in 0..2 {
         slave.read(Some(&[5.0]), &mut read).unwrap();
         assert_eq!(read, [0.25, 5.0]);
-        assert_eq!(slave.step(0.25, 1.0, &[[7.0, 0.0, 0.0]]), Ok(Progress::Done));
-        assert_eq!(slave.step(1.25, 1.0, &[[7.0, 0.0, 0.0]]), Ok(Progress::Done));
+        assert_eq!(slave.step(0.25, 1.0, &[[7.0, 0.0, 0.0]]), Ok(StepEnd::Done));
+        assert_eq!(slave.step(1.25, 1.0, &[[7.0, 0.0, 0.0]]), Ok(StepEnd::Done));
         slave.read(None, &mut read).unwrap();
         assert_eq!(read, [14.25, 7.0]);
         slave.restore().unwrap();
@@ -252,8 +252,8 @@ fn an_early_return_is_within_its_step() {
             other => panic!("{mode}: {other:?}"),
         }
     }
-    assert_eq!(step(11), Ok(Progress::Done), "at the end of the step it is not early");
-    assert_eq!(step(12), Ok(Progress::Until(1.0)));
+    assert_eq!(step(11), Ok(StepEnd::Done), "at the end of the step it is not early");
+    assert_eq!(step(12), Ok(StepEnd::Until(1.0)));
 }
 
 /// The library counts, and returns an error for an event mode that was not agreed on.
@@ -263,9 +263,9 @@ fn without_the_event_mode_no_event_is_dealt_with() {
     let mut slave = room().load(&setup).unwrap();
     assert_eq!(messages(&mut slave), ["instantiate", "enter initialization 0 0 0 1 2", "exit initialization"]);
     let inputs = |d| [[2.0, 0.0, 0.0], [d, 0.0, 0.0]];
-    assert_eq!(slave.step(0.0, 0.125, &inputs(7.0)), Ok(Progress::Done), "a new discrete input");
-    assert_eq!(slave.step(0.125, 1.0, &inputs(8.0)), Ok(Progress::Until(0.25)), "it still may return early");
-    assert_eq!(slave.step(0.25, 0.75, &inputs(8.0)), Ok(Progress::Done));
+    assert_eq!(slave.step(0.0, 0.125, &inputs(7.0)), Ok(StepEnd::Done), "a new discrete input");
+    assert_eq!(slave.step(0.125, 1.0, &inputs(8.0)), Ok(StepEnd::Until(0.25)), "it still may return early");
+    assert_eq!(slave.step(0.25, 0.75, &inputs(8.0)), Ok(StepEnd::Done));
     let mut read = [0.0; 2];
     slave.read(None, &mut read).unwrap();
     assert_eq!((read, messages(&mut slave)), ([2.0, 0.0], vec![]));
@@ -293,6 +293,6 @@ fn no_event_leads_beyond_the_stop_time() {
     let setup = Setup { stop_time: Some(0.5), ..setup(&start, &["u"], &["y"]) };
     let mut slave = room().load(&setup).unwrap();
     slave.take_log();
-    assert_eq!(slave.step(0.0, 0.5, &[[0.0; 3]]), Ok(Progress::Done));
+    assert_eq!(slave.step(0.0, 0.5, &[[0.0; 3]]), Ok(StepEnd::Done));
     assert_eq!(messages(&mut slave), [""; 0]);
 }

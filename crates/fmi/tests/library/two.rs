@@ -1,6 +1,6 @@
 //! FMI 2.0. The answer of `two.c` is y' = u with the derivatives that it is given.
 use super::{Room, compiled, messages, port, setup, text};
-use servobench_fmi::{Loaded, Progress, Setup, Severity, Slave, SlaveError, Value};
+use servobench_fmi::{Loaded, Setup, Severity, Slave, SlaveError, StepEnd, Value};
 use std::fs;
 
 const DESCRIPTION: &str = include_str!("two.xml");
@@ -55,7 +55,7 @@ fn inputs_over_a_step_have_the_right_integral() {
         let room = Room::new("two", &compiled("two"), &description);
         let mut slave = room.load(&setup(&[], &["u"], &["y", "u", "du", "ddu"])).unwrap();
         assert_eq!(slave.capabilities().interpolates_inputs, takes_derivatives);
-        assert_eq!(slave.step(0.0, h, &[input]).unwrap(), Progress::Done);
+        assert_eq!(slave.step(0.0, h, &[input]).unwrap(), StepEnd::Done);
         let mut read = [0.0; 4];
         slave.read(None, &mut read).unwrap();
         // Some roundings of numbers below 1.
@@ -90,8 +90,8 @@ fn what_is_discarded_says_how_far_it_came() {
         let load = |mode| room.load(&setup(&[("mode", text(mode))], &["u"], &[])).unwrap();
         let step = |mode| load(mode).step(1.0, 0.125, &[[0.0; 3]]);
         assert_eq!(step("refuse"), Err(SlaveError::Discarded { call: "fmi2DoStep".into(), time: 1.0, shortest }));
-        assert_eq!(step("half"), Ok(Progress::Until(1.0625)));
-        assert_eq!(step("end"), Ok(Progress::Terminated(1.03125)));
+        assert_eq!(step("half"), Ok(StepEnd::Until(1.0625)));
+        assert_eq!(step("end"), Ok(StepEnd::Terminated(1.03125)));
     }
     let mut slave = loaded("refuse", &["steps"]);
     slave.step(1.0, 0.1, &[[0.0; 3]]).unwrap_err();
@@ -114,7 +114,7 @@ fn integral(t: f64) -> f64 {
 fn a_step_that_is_discarded_is_taken_in_halves() {
     let mut slave = discarding("coarse", &["y", "steps"]);
     let mut read = [0.0; 2];
-    assert_eq!(slave.step(0.0, 1.0, &[INPUT]), Ok(Progress::Done));
+    assert_eq!(slave.step(0.0, 1.0, &[INPUT]), Ok(StepEnd::Done));
     slave.read(None, &mut read).unwrap();
     assert_eq!(read[1], 4.0, "quarters");
     // The mean over each part is that of the parabola; four additions of numbers below 8.
@@ -125,7 +125,7 @@ fn a_step_that_is_discarded_is_taken_in_halves() {
 fn a_step_goes_to_where_the_fmu_says_that_it_comes() {
     let mut slave = discarding("telling", &["y", "steps"]);
     let mut read = [0.0; 2];
-    assert_eq!(slave.step(0.0, 1.0, &[INPUT]), Ok(Progress::Until(0.3)));
+    assert_eq!(slave.step(0.0, 1.0, &[INPUT]), Ok(StepEnd::Until(0.3)));
     slave.read(None, &mut read).unwrap();
     assert_eq!(read[1], 1.0);
     assert!((read[0] - integral(0.3)).abs() < 1e-15, "{read:?}");
@@ -157,13 +157,13 @@ fn what_came_before_a_step_that_is_discarded_comes_again() {
         slave.read(Some(&[-input]), &mut read).unwrap();
         assert_eq!(read[1], -input);
     }
-    assert_eq!(slave.step(25.0, 1.0, &[[100.0, 0.0, 0.0]]), Ok(Progress::Done));
+    assert_eq!(slave.step(25.0, 1.0, &[[100.0, 0.0, 0.0]]), Ok(StepEnd::Done));
     slave.read(None, &mut read).unwrap();
     assert_eq!(read, [0.25 * 99.0 * 50.0 + 100.0, 100.0, 104.0]);
     for reading in 0..200 {
         slave.read(Some(&[f64::from(reading)]), &mut read).unwrap();
     }
-    assert_eq!(slave.step(26.0, 1.0, &[[1.0, 0.0, 0.0]]), Ok(Progress::Done), "more calls than are kept");
+    assert_eq!(slave.step(26.0, 1.0, &[[1.0, 0.0, 0.0]]), Ok(StepEnd::Done), "more calls than are kept");
 }
 
 #[test]
@@ -357,7 +357,7 @@ fn what_is_no_real_number_is_discrete() {
 fn roundings_are_not_beyond_the_stop_time() {
     let setup = Setup { stop_time: Some(0.3), ..setup(&[("mode", text("strict"))], &["u"], &["y"]) };
     let mut slave = room().load(&setup).unwrap();
-    assert_eq!(slave.step(0.2, 0.1, &[[1.0, 0.0, 0.0]]), Ok(Progress::Done));
+    assert_eq!(slave.step(0.2, 0.1, &[[1.0, 0.0, 0.0]]), Ok(StepEnd::Done));
     let mut read = [0.0];
     slave.read(None, &mut read).unwrap();
     assert!((read[0] - 0.1).abs() < 1e-15, "{read:?}");

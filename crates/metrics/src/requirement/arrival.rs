@@ -7,7 +7,7 @@ use super::Rules;
 use super::rules::Driven;
 use crate::quantity::Quantity;
 use crate::span::{Phase, phases};
-use servobench_signals::Signal;
+use servobench_signals::{PerLimit, Signal};
 use servobench_trace::{Ending, Recording};
 
 /// The default window is the distance of the move by this.
@@ -102,9 +102,11 @@ fn nearest(error: f64, modulo: Option<f64>) -> f64 {
 
 /// Which limit of the drive bound for the longest time from `start` to `end` (s), as the end of a sentence.
 fn bound_time(recording: &Recording, start: f64, end: f64) -> String {
-    let limits = ["effort limit", "current limit", "voltage limit"];
+    let PerLimit { voltage, current, effort } = PerLimit::NAMES;
+    let limits = [effort, current, voltage];
     let bound = limits.map(|limit| {
-        let binding = recording.events.iter().filter(|event| event.message.starts_with(limit));
+        let binding =
+            recording.events.iter().filter(|event| event.limit.as_ref().is_some_and(|bound| bound.name == limit));
         let time: f64 = binding.map(|event| (event.end.min(end) - event.start.max(start)).max(0.0)).sum();
         (limit, time)
     });
@@ -135,8 +137,7 @@ mod tests {
     fn a_load_that_stops_short_says_by_how_much_and_what_held_it() {
         let mut recording = one_move(|_| 0.15);
         for (start, end) in [(0.1, 0.3), (0.9, 5.0)] {
-            let message = "effort limit binds".to_owned();
-            recording.events.push(Event { start, end, source: "velocity loop".into(), message });
+            recording.events.push(Event::bound(start, end, "velocity loop", "effort limit", false));
         }
         let rules = rules();
         let broken = broken(&recording, &rules).unwrap();

@@ -142,7 +142,7 @@ mod tests {
             ("axis", "state", &[(0.0, "Standstill"), (0.302, "ErrorStop"), (0.603, "Standstill")]),
         ]);
         let message = "the drive has a fault".to_owned();
-        recording.events.push(Event { start: 0.302, end: 0.302, source: "axis".into(), message });
+        recording.events.push(Event::new(0.302, 0.302, "axis", message));
         recording
     }
 

@@ -1,5 +1,7 @@
 //! A recording against every requirement.
-use super::{Expected, Requirement, Rules, Standing, arrival, bounds, execution, fault, oscillation};
+use super::{
+    Expected, Requirement, RequirementResult, Rules, Standing, arrival, bounds, execution, fault, oscillation,
+};
 use crate::verdict::Verdict;
 use servobench_trace::Recording;
 
@@ -28,16 +30,20 @@ pub fn judge_requirements(recording: &Recording, rules: &Rules<'_>) -> Verdict {
             Requirement::Bounded => (Some(bounds::broken(recording, rules)), !rules.has_diverged()),
         };
         let is_lifted = may_be_lifted && rules.lifted.contains(&requirement);
-        match broken.map(listed) {
-            None => Standing::NotAsked,
-            Some(reasons) if is_lifted => Standing::Lifted(reasons),
-            Some(reasons) if reasons.is_empty() => Standing::Met,
-            Some(reasons) => Standing::Broken(reasons),
-        }
+        let is_asked = broken.is_some();
+        let reasons = listed(broken.unwrap_or_default());
+        let standing = match (is_asked, reasons.is_empty()) {
+            (false, _) => Standing::NotAsked,
+            (true, _) if is_lifted => Standing::Lifted,
+            (true, true) => Standing::Met,
+            (true, false) => Standing::Broken,
+        };
+        RequirementResult { standing, reasons }
     };
-    let requirements: Vec<(Requirement, Standing)> =
+    let requirements: Vec<(Requirement, RequirementResult)> =
         Requirement::ALL.iter().map(|requirement| (*requirement, standing(*requirement))).collect();
-    let is_met = requirements.contains(&(Requirement::Stable, Standing::Met));
+    let is_met =
+        requirements.iter().any(|(name, result)| *name == Requirement::Stable && result.standing == Standing::Met);
     let not_analysed = rules.not_analysed.iter().filter(|_| is_met);
     let warnings = not_analysed.map(|why| format!("{}: {why}", Requirement::Stable)).collect();
     Verdict { requirements, expected, warnings, ..Verdict::default() }

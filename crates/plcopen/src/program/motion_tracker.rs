@@ -1,5 +1,5 @@
 //! The motions that blocks have the axis make.
-use servobench_base::Setpoint;
+use servobench_base::{Ending, Setpoint};
 
 /// A motion that a block had the axis make.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,18 +17,7 @@ pub struct Motion {
     /// Largest |velocity|, |acceleration|, |jerk|, |snap| of its set-points.
     pub peaks: [f64; 4],
     /// How it ended.
-    pub ending: MotionEnd,
-}
-
-/// How a motion ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum MotionEnd {
-    /// As commanded, at rest.
-    AtRest,
-    /// As commanded, and it goes on.
-    InMotion,
-    /// It was broken off.
-    Aborted,
+    pub ending: Ending,
 }
 
 /// A motion that is being made.
@@ -55,7 +44,7 @@ impl MotionTracker {
     }
 
     /// Ends at `t` (s); `None` where nothing moved.
-    pub(super) fn end(self, call: usize, t: f64, commanded: Setpoint, ending: MotionEnd) -> Option<Motion> {
+    pub(super) fn end(self, call: usize, t: f64, commanded: Setpoint, ending: Ending) -> Option<Motion> {
         let Self { start, from, peaks } = self;
         let is_motion = peaks[0] > 0.0 && t > start;
         is_motion.then_some(Motion { call, start, end: t, from, to: commanded.x, peaks, ending })

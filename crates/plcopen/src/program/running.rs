@@ -2,7 +2,7 @@
 use super::condition::{Condition, Situation};
 use super::executor::Listener;
 use super::instance::Instance;
-use super::motion_tracker::{Motion, MotionEnd, MotionTracker};
+use super::motion_tracker::{Motion, MotionTracker};
 use super::{Call, Update};
 use crate::axis::Axis;
 use crate::blocks::{BlockName, Output};
@@ -12,7 +12,7 @@ use alloc::collections::VecDeque;
 use alloc::string::{String, ToString as _};
 use alloc::vec::Vec;
 use alloc::{format, vec};
-use servobench_base::Setpoint;
+use servobench_base::{Ending, Setpoint};
 use thiserror::Error;
 
 /// The outputs that say that a block came to what it is for; of a block that has several, the first of these.
@@ -214,9 +214,9 @@ impl RunningCall {
             // A motion that ends as commanded ends in Done, and at rest: any other one is broken off, or goes on.
             let is_aborted = self.is(Output::CommandAborted) || self.is(Output::Error);
             let ending = match (is_aborted, commanded.v == 0.0) {
-                (true, _) => MotionEnd::Aborted,
-                (false, true) => MotionEnd::AtRest,
-                (false, false) => MotionEnd::InMotion,
+                (true, _) => Ending::Aborted,
+                (false, true) => Ending::AtRest,
+                (false, false) => Ending::InMotion,
             };
             motions.extend(motion.end(self.index, t, commanded, ending));
         }

@@ -1,9 +1,7 @@
 //! The parts of a run's result.
 use crate::ordered::Ordered;
 use serde::{Deserialize, Serialize};
-use servobench_base::Severity;
-use servobench_metrics::{Expectation, Expected, Limit, Metric, MetricSet, MoveMetrics, Quantity, Standing};
-use servobench_trace::{Event, LogEntry};
+use servobench_metrics::{Expectation, Expected, Limit, Metric, MetricSet, MoveMetrics, Quantity};
 
 /// A metric.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -37,25 +35,6 @@ pub(crate) struct MoveResult {
     pub(crate) metrics: Ordered<MetricResult>,
 }
 
-/// How the run stands to a requirement.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum StandingResult {
-    Met,
-    Broken,
-    Lifted,
-    NotAsked,
-}
-
-/// A requirement.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct RequirementResult {
-    /// How the run stands to it.
-    pub(crate) standing: StandingResult,
-    /// Why it is broken, or would be if it were not lifted, in words.
-    pub(crate) reasons: Vec<String>,
-}
-
 /// A fault that was expected.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ExpectedResult {
@@ -69,45 +48,6 @@ pub(crate) struct ExpectedResult {
     pub(crate) to: Option<f64>,
     /// When it came (s); `null`: it did not.
     pub(crate) met_at: Option<f64>,
-}
-
-/// Something that happened.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct EventResult {
-    /// When it began (s).
-    pub(crate) start: f64,
-    /// When it ended (s).
-    pub(crate) end: f64,
-    /// Stage of the loop that saw it.
-    pub(crate) source: String,
-    /// What it was, in words.
-    pub(crate) message: String,
-}
-
-/// What an FMU said, or how often it said it again.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct LogResult {
-    /// Who said it.
-    pub(crate) source: String,
-    /// How much it matters.
-    pub(crate) severity: SeverityResult,
-    /// When it was said (s), for the first time if it was more than once.
-    pub(crate) start: f64,
-    /// When it was said for the last time (s).
-    pub(crate) end: f64,
-    /// How often it was said between these.
-    pub(crate) times: u64,
-    /// The line.
-    pub(crate) text: String,
-}
-
-/// How much a line matters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum SeverityResult {
-    Info,
-    Warning,
-    Error,
 }
 
 impl MetricResult {
@@ -124,18 +64,6 @@ impl MetricResult {
 
     pub(crate) fn missing(limit: &Limit) -> Self {
         Self { value: None, unit: String::new(), limit: limit.max, limit_min: limit.min, pass: Some(false), line: None }
-    }
-}
-
-impl From<&Standing> for RequirementResult {
-    fn from(standing: &Standing) -> Self {
-        let (standing, reasons) = match standing {
-            Standing::Met => (StandingResult::Met, Vec::new()),
-            Standing::Broken(reasons) => (StandingResult::Broken, reasons.clone()),
-            Standing::Lifted(reasons) => (StandingResult::Lifted, reasons.clone()),
-            Standing::NotAsked => (StandingResult::NotAsked, Vec::new()),
-        };
-        Self { standing, reasons }
     }
 }
 
@@ -170,39 +98,6 @@ impl From<&Metric> for MetricResult {
 impl From<&MoveMetrics> for MoveResult {
     fn from(made: &MoveMetrics) -> Self {
         Self { label: made.label.clone(), start: made.start, end: made.end, metrics: of_set(&made.metrics) }
-    }
-}
-
-impl From<&Event> for EventResult {
-    fn from(event: &Event) -> Self {
-        Self { start: event.start, end: event.end, source: event.source.clone(), message: event.message.clone() }
-    }
-}
-
-impl From<&LogEntry> for LogResult {
-    fn from(entry: &LogEntry) -> Self {
-        let LogEntry { source, severity, start, end, times, text } = entry.clone();
-        Self { source, severity: severity.into(), start, end, times, text }
-    }
-}
-
-impl From<Severity> for SeverityResult {
-    fn from(severity: Severity) -> Self {
-        match severity {
-            Severity::Info => Self::Info,
-            Severity::Warning => Self::Warning,
-            Severity::Error => Self::Error,
-        }
-    }
-}
-
-impl From<SeverityResult> for Severity {
-    fn from(severity: SeverityResult) -> Self {
-        match severity {
-            SeverityResult::Info => Self::Info,
-            SeverityResult::Warning => Self::Warning,
-            SeverityResult::Error => Self::Error,
-        }
     }
 }
 

@@ -1,13 +1,11 @@
 //! What came of one run.
 use super::Outcome;
-use super::entry::{
-    EventResult, ExpectedResult, LogResult, MetricResult, MoveResult, RequirementResult, StandingResult, of_set,
-};
+use super::entry::{ExpectedResult, MetricResult, MoveResult, of_set};
 use crate::ordered::Ordered;
 use crate::text::printable_lines;
 use serde::{Deserialize, Serialize};
-use servobench_metrics::{Metrics, Name, Verdict};
-use servobench_trace::Recording;
+use servobench_metrics::{Metrics, Name, RequirementResult, Standing, Verdict};
+use servobench_trace::{Event, LogEntry, Recording};
 
 /// Which run it is.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -73,10 +71,10 @@ pub struct RunResult {
     /// The moves.
     pub(crate) moves: Vec<MoveResult>,
     /// What happened: limits that bound, warnings.
-    pub(crate) events: Vec<EventResult>,
+    pub(crate) events: Vec<Event>,
     /// What FMUs said; left out where they said nothing.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(crate) log: Vec<LogResult>,
+    pub(crate) log: Vec<LogEntry>,
     /// File of the recording, beside the results; `null` when none was written.
     pub recording: Option<String>,
     /// Every file that the run left beside the results, by name.
@@ -112,7 +110,7 @@ impl RunResult {
             }
         }
         let standings = verdict.requirements.iter();
-        result.requirements = standings.map(|(name, standing)| (name.to_string(), standing.into())).collect();
+        result.requirements = standings.map(|(name, result)| (name.to_string(), result.clone())).collect();
         result.expected = verdict.expected.iter().map(ExpectedResult::from).collect();
         result.warnings.clone_from(&verdict.warnings);
         let is_judged = result.all_metrics().any(|(_, metric)| metric.pass.is_some()) || !result.expected.is_empty();
@@ -153,7 +151,7 @@ impl RunResult {
     }
 
     /// Requirements with this standing, and the reasons.
-    pub(crate) fn requirements_that_are(&self, standing: StandingResult) -> impl Iterator<Item = (&str, &[String])> {
+    pub(crate) fn requirements_that_are(&self, standing: Standing) -> impl Iterator<Item = (&str, &[String])> {
         let all = self.requirements.iter().filter(move |(_, requirement)| requirement.standing == standing);
         all.map(|(name, requirement)| (name, requirement.reasons.as_slice()))
     }
@@ -176,8 +174,8 @@ impl RunResult {
             metrics: of_set(&metrics.run),
             absent: metrics.run.absences().map(|(name, why)| (name.to_string(), why.to_string())).collect(),
             moves: metrics.moves.iter().map(MoveResult::from).collect(),
-            events: events.iter().map(EventResult::from).collect(),
-            log: log.iter().map(LogResult::from).collect(),
+            events: events.to_vec(),
+            log: log.to_vec(),
             recording: run.recording,
             files: run.files,
         }

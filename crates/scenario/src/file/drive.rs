@@ -5,41 +5,32 @@ use crate::object_table::ObjectTable;
 use crate::simple::OneOf;
 use crate::table::table;
 use servobench_base::Rate;
-use servobench_config::Choice;
 use servobench_config::Kind::{Axis as InAxis, Motor as InMotor, Plain};
 use servobench_config::quantities::{
     BANDWIDTH, CURRENT, CURRENT_GAIN, EFFORT, FLUX_LINKAGE, FORCE, INDUCTANCE, INERTIAL, LEAD, POSITION, POSITION_GAIN,
     RATIO, RESISTANCE, SOURCE_GAIN, STIFFNESS, TIME, TORQUE, VISCOUS, VOLT_GAIN, VOLTAGE,
 };
-use servobench_config::{any, not_negative, positive};
+use servobench_config::{any, choices, not_negative, positive};
 use servobench_drive::EffortFeedforward;
 
-/// Which encoder closes the position loop.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum FeedbackEncoder {
-    /// The motor's.
-    Motor,
-    /// The load's.
-    Load,
+choices! {
+    /// Which encoder closes the position loop.
+    pub(crate) enum FeedbackEncoder {
+        /// the encoder on the motor
+        Motor = "motor",
+        /// the encoder on the load
+        Load = "load",
+    }
 }
 
-impl Choice for FeedbackEncoder {
-    const ALL: &'static [(&'static str, Self, &'static str)] =
-        &[("motor", Self::Motor, "the encoder on the motor"), ("load", Self::Load, "the encoder on the load")];
-}
-
-/// P or PI.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum VelocityKind {
-    /// Proportional.
-    P,
-    /// Proportional and integral.
-    Pi,
-}
-
-impl Choice for VelocityKind {
-    const ALL: &'static [(&'static str, Self, &'static str)] =
-        &[("p", Self::P, "proportional"), ("pi", Self::Pi, "proportional and integral")];
+choices! {
+    /// P or PI.
+    pub(crate) enum VelocityKind {
+        /// proportional
+        P = "p",
+        /// proportional and integral
+        Pi = "pi",
+    }
 }
 
 table! {

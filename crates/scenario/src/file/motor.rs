@@ -2,31 +2,23 @@
 use crate::field::{Either, EitherMeasure};
 use crate::simple::OneOf;
 use crate::table::table;
-use servobench_config::Choice;
 use servobench_config::Kind::{Motor as InMotor, Plain};
-use servobench_config::positive;
 use servobench_config::quantities::{
     BACK_EMF, CURRENT, EFFORT, FLUX_LINKAGE, FORCE_CONSTANT, INDUCTANCE, INERTIA, MASS, POSITION, RESISTANCE,
     SOURCE_GAIN, TORQUE_CONSTANT, VOLTAGE,
 };
+use servobench_config::{choices, positive};
 
-/// What kind of motor it is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum MotorKind {
-    /// Synchronous motor on an inverter.
-    Pmsm,
-    /// Ideal force or torque source.
-    IdealSource,
-    /// Follows the set-point.
-    Prescribed,
-}
-
-impl Choice for MotorKind {
-    const ALL: &'static [(&'static str, Self, &'static str)] = &[
-        ("pmsm", Self::Pmsm, "a permanent-magnet synchronous motor, turning or linear, on an averaged inverter"),
-        ("ideal-source", Self::IdealSource, "effort = gain × output, the output saturating at `limit`"),
-        ("prescribed", Self::Prescribed, "the motor side follows the set-point exactly"),
-    ];
+choices! {
+    /// What kind of motor it is.
+    pub(crate) enum MotorKind {
+        /// a permanent-magnet synchronous motor, turning or linear, on an averaged inverter
+        Pmsm = "pmsm",
+        /// effort = gain × output, the output saturating at `limit`
+        IdealSource = "ideal-source",
+        /// the motor side follows the set-point exactly
+        Prescribed = "prescribed",
+    }
 }
 
 table! {

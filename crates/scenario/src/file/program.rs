@@ -5,18 +5,12 @@ use crate::list::Many;
 use crate::scenario::DisturbedBody;
 use crate::simple::OneOf;
 use crate::table::table;
-use servobench_config::Choice;
 use servobench_config::Kind::{Axis as InAxis, Plain};
 use servobench_config::quantities::{ACCELERATION, FORCE, FREQUENCY, JERK, POSITION, SNAP, TIME, TORQUE, VELOCITY};
 use servobench_config::{any, not_negative, positive};
 use servobench_motion::online::Effort;
 use servobench_motion::sampled::Execution;
 use servobench_planner::{Method, Sampling};
-
-impl Choice for DisturbedBody {
-    const ALL: &'static [(&'static str, Self, &'static str)] =
-        &[("motor", Self::Motor, "the motor side"), ("load", Self::Load, "the last body")];
-}
 
 table! {
     /// A move or a pause: give one of `move_to`, `move_by`, `reach_velocity`, `table` and `wait`. The other keys override

@@ -15,13 +15,14 @@ pub struct Disturbance {
     pub frequency: Option<f64>,
 }
 
-/// Body a disturbance acts on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum DisturbedBody {
-    /// The motor (motor coordinate).
-    Motor,
-    /// The load (axis coordinate).
-    Load,
+servobench_config::choices! {
+    /// Body that a disturbance acts on, in the coordinate of that body.
+    pub enum DisturbedBody {
+        /// the motor side
+        Motor = "motor",
+        /// the last body
+        Load = "load",
+    }
 }
 
 /// Initial deviation of the load from rest at zero (axis coordinate).

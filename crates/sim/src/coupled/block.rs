@@ -4,8 +4,8 @@ use crate::external::{Controller, External};
 use crate::machine::Machine;
 use crate::run::Failure;
 use servobench_base::{Dq, Setpoint, Tick};
-use servobench_coupling::{Block, Input, Step, later, mean, value};
-use servobench_fmi::{Progress, Slave, SlaveError};
+use servobench_coupling::{Block, Input, StepEnd, later, mean, value};
+use servobench_fmi::{Slave, SlaveError};
 use servobench_plant::MechanicsError;
 use servobench_scenario::LoopSignal;
 use servobench_signals::Selection;
@@ -183,15 +183,13 @@ impl Block for Part {
         }
     }
 
-    fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<Step, PartError> {
+    fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<StepEnd, PartError> {
         match self {
-            Self::Axis(axis) => axis.step(length, inputs).map(|()| Step::Done).map_err(PartError::Axis),
+            Self::Axis(axis) => axis.step(length, inputs).map(|()| StepEnd::Done).map_err(PartError::Axis),
             Self::Fmu(AttachedFmu { slave, end }) => {
                 Ok(match slave.step(time, length, inputs).map_err(PartError::Fmu)? {
-                    Progress::Done => Step::Done,
-                    Progress::Terminated(time) if time >= *end - ROUNDING * length => Step::Done,
-                    Progress::Until(time) => Step::Until(time),
-                    Progress::Terminated(time) => Step::Terminated(time),
+                    StepEnd::Terminated(time) if time >= *end - ROUNDING * length => StepEnd::Done,
+                    other => other,
                 })
             }
         }

@@ -3,7 +3,7 @@
 //! What the drive is sent stands in the plans of the moves: their targets, the commands of a position profile, or the points of
 //! a table. Times count from the cycle in which the axis is powered.
 use super::Step;
-use super::points::{Door, Unsendable, points};
+use super::points::{PointEncoding, Unsendable, points};
 use super::program_cursor::ProgramCursor;
 use super::stream::{Message, Stream};
 use servobench_drive::device;
@@ -48,10 +48,10 @@ impl DriveProfile {
                 Orders::Velocities { commands: commands.collect(), next: 0, now }
             }
             BusMode::InterpolatedPosition => {
-                let door = Door::new(bus.trajectory_buffer, drive.sub_mode, drive.segment)?;
+                let encoding = PointEncoding::new(bus.trajectory_buffer, drive.sub_mode, drive.segment)?;
                 let tables =
-                    program.plans().map(|(start, from, plan)| Ok((start, points(plan, from, bus.units, door)?)));
-                Orders::Tables(Stream::new(door, tables.collect::<Result<_, _>>()?))
+                    program.plans().map(|(start, from, plan)| Ok((start, points(plan, from, bus.units, encoding)?)));
+                Orders::Tables(Stream::new(encoding, tables.collect::<Result<_, _>>()?))
             }
             BusMode::ProfilePosition | BusMode::CyclicPosition | BusMode::CyclicVelocity => {
                 let set_points = program.plans().map(|(start, from, plan)| {

@@ -6,10 +6,10 @@ use servobench_base::Setpoint;
 use servobench_fieldbus::{AxisFeedback, Task};
 use servobench_motion::Limits;
 use servobench_motion::interpolate::Sample;
-use servobench_plcopen::program::{self, Executor, Fate, Listener, Motion, MotionEnd};
+use servobench_plcopen::program::{self, Executor, Fate, Listener, Motion};
 use servobench_plcopen::{AxisParams, AxisState, BlockName, MOST_BUFFERED, Output};
 use servobench_scenario as scenario;
-use servobench_trace::{self as trace, CallFate, Ending, Event, Move, Recorder, SignalId};
+use servobench_trace::{self as trace, CallFate, Event, Move, Recorder, SignalId};
 
 /// A program of function blocks and the axis that they command.
 #[derive(Debug, Clone)]
@@ -107,7 +107,7 @@ impl Plc {
         let state = axis.state();
         let is_other = self.state.note(t, state, recorder, |state| state.name().into());
         if let (true, AxisState::ErrorStop, Some(error)) = (is_other, state, axis.error()) {
-            recorder.note_event(Event { start: t, end: t, source: "axis".into(), message: error.to_string() });
+            recorder.note_event(Event::new(t, t, "axis", error.to_string()));
         }
         self.homed.note(t, axis.is_homed(), recorder, word);
     }
@@ -125,7 +125,7 @@ impl Plc {
         }
         for (fate, _) in fates {
             if let Fate::NeverExecuted(message) = fate {
-                recorder.note_event(Event { start: t, end: t, source: "PLC".into(), message });
+                recorder.note_event(Event::new(t, t, "PLC", message));
             }
         }
     }
@@ -152,8 +152,7 @@ impl Listener for Notes<'_> {
     }
 
     fn on_error(&mut self, t: f64, call: usize, message: &str) {
-        let (source, message) = (self.calls[call].name.clone(), message.to_owned());
-        self.recorder.note_event(Event { start: t, end: t, source, message });
+        self.recorder.note_event(Event::new(t, t, self.calls[call].name.clone(), message));
     }
 }
 
@@ -169,11 +168,7 @@ fn made(motion: &Motion, call: &Call, delay: f64) -> Move {
         peaks,
         limits: [None; 4],
         cruise: (end, 0.0),
-        ending: match ending {
-            MotionEnd::AtRest => Ending::AtRest,
-            MotionEnd::InMotion => Ending::InMotion,
-            MotionEnd::Aborted => Ending::Aborted,
-        },
+        ending,
     }
 }
 

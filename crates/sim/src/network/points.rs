@@ -52,7 +52,7 @@ pub enum Unsendable {
 
 /// How points get into the buffer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Door {
+pub(super) enum PointEncoding {
     /// The move segment command (2010h).
     MoveSegment,
     /// The interpolation data record (60C1h).
@@ -66,7 +66,7 @@ pub(super) enum Door {
     Serial,
 }
 
-impl Door {
+impl PointEncoding {
     /// What `buffer` is of a drive in `sub_mode`.
     ///
     /// # Errors
@@ -76,15 +76,15 @@ impl Door {
         sub_mode: SubMode,
         period: TimePeriod,
     ) -> Result<Self, Unsendable> {
-        let door = match buffer {
+        let encoding = match buffer {
             TrajectoryBuffer::DataRecord => return Ok(Self::DataRecord { sub_mode, period }),
             TrajectoryBuffer::MoveSegment => Self::MoveSegment,
             TrajectoryBuffer::Serial => Self::Serial,
         };
         if sub_mode.has_constant_time() {
-            return Err(Unsendable::SubMode { by: door.name(), code: sub_mode.code() });
+            return Err(Unsendable::SubMode { by: encoding.name(), code: sub_mode.code() });
         }
-        Ok(door)
+        Ok(encoding)
     }
 
     const fn name(self) -> &'static str {
@@ -123,7 +123,12 @@ struct Exact {
 }
 
 /// The points of `plan`, which begins at `from` (m or rad).
-pub(super) fn points(plan: &Plan, from: f64, units: DriveUnits, door: Door) -> Result<Vec<Point>, Unsendable> {
+pub(super) fn points(
+    plan: &Plan,
+    from: f64,
+    units: DriveUnits,
+    encoding: PointEncoding,
+) -> Result<Vec<Point>, Unsendable> {
     let count = f64::from(units.drive) / units.axis;
     let tenths = |v: f64| 10.0 * v * count;
     let spans: Vec<Span> = plan.spans().collect();
@@ -136,18 +141,18 @@ pub(super) fn points(plan: &Plan, from: f64, units: DriveUnits, door: Door) -> R
             let Setpoint { x, v, .. } = state;
             let position = libm::round((from + x) * count);
             let way = position - core::mem::replace(&mut before, position);
-            point(index + 1, door, &Exact { time, position, way, velocity: tenths(v), line })
+            point(index + 1, encoding, &Exact { time, position, way, velocity: tenths(v), line })
         });
     points.collect()
 }
 
-fn point(number: usize, door: Door, exact: &Exact) -> Result<Point, Unsendable> {
+fn point(number: usize, encoding: PointEncoding, exact: &Exact) -> Result<Point, Unsendable> {
     let refuse = |what, value, bound, way_out| {
-        Err(Unsendable::Point { point: number, what, value, by: door.name(), bound, way_out })
+        Err(Unsendable::Point { point: number, what, value, by: encoding.name(), bound, way_out })
     };
     let &Exact { time, position, way, velocity, line } = exact;
     let whole = libm::round(1e6 * time);
-    if let Some(constant) = door.constant_time() {
+    if let Some(constant) = encoding.constant_time() {
         if time > 0.0 && (1e6 * time - f64::from(constant)).abs() > 1e-3 {
             let way_out = "write the time between the points to 60C2h, or -2 to 60C0h";
             return refuse("a time to the next of", time, "that of 60C2h only", way_out);
@@ -156,15 +161,15 @@ fn point(number: usize, door: Door, exact: &Exact) -> Result<Point, Unsendable> 
         return refuse("a time to the next of", time, "whole milliseconds up to 255", "choose other times");
     }
     let coarser = "choose a coarser unit (`bus.units`)";
-    let is_relative = !matches!(door, Door::DataRecord { .. });
+    let is_relative = !matches!(encoding, PointEncoding::DataRecord { .. });
     let place = if is_relative { way } else { position };
     let bits_32 = f64::from(i32::MAX);
-    let is_line = match door {
-        Door::DataRecord { sub_mode: SubMode::Cubic, .. } => false,
-        Door::DataRecord { .. } => true,
-        Door::MoveSegment | Door::Serial => line.is_some(),
+    let is_line = match encoding {
+        PointEncoding::DataRecord { sub_mode: SubMode::Cubic, .. } => false,
+        PointEncoding::DataRecord { .. } => true,
+        PointEncoding::MoveSegment | PointEncoding::Serial => line.is_some(),
     };
-    if door == Door::MoveSegment && !is_line && place.abs() > FINE {
+    if encoding == PointEncoding::MoveSegment && !is_line && place.abs() > FINE {
         return refuse("a way in counts of", place, "±8388607", "choose a coarser unit (`bus.units`), or more points");
     }
     if place.abs() > bits_32 {
@@ -174,10 +179,13 @@ fn point(number: usize, door: Door, exact: &Exact) -> Result<Point, Unsendable> 
     let sent = if is_line {
         None
     } else {
-        let unit = if door == Door::MoveSegment && velocity.abs() > FINE { COARSE } else { 1.0 };
+        let unit = if encoding == PointEncoding::MoveSegment && velocity.abs() > FINE { COARSE } else { 1.0 };
         let sent = unit * libm::round(velocity / unit);
-        let (most, bound) =
-            if door == Door::MoveSegment { (COARSE * FINE, "±838860700") } else { (bits_32, "±2147483647") };
+        let (most, bound) = if encoding == PointEncoding::MoveSegment {
+            (COARSE * FINE, "±838860700")
+        } else {
+            (bits_32, "±2147483647")
+        };
         if sent.abs() > most {
             return refuse("a velocity in 0.1 counts/s of", sent, bound, coarser);
         }
@@ -200,14 +208,14 @@ mod tests {
 
     const EXACT: Exact = Exact { time: 0.01, position: 7.0, way: 1.0, velocity: 0.0, line: None };
 
-    fn record(sub_mode: SubMode) -> Door {
-        Door::DataRecord { sub_mode, period: TimePeriod::new(10, -3).unwrap() }
+    fn record(sub_mode: SubMode) -> PointEncoding {
+        PointEncoding::DataRecord { sub_mode, period: TimePeriod::new(10, -3).unwrap() }
     }
 
     #[test]
     fn what_does_not_fit_is_named_with_its_bound() {
-        let message = |door, exact| point(3, door, &exact).unwrap_err().to_string();
-        let by_segment = |exact| message(Door::MoveSegment, exact);
+        let message = |encoding, exact| point(3, encoding, &exact).unwrap_err().to_string();
+        let by_segment = |exact| message(PointEncoding::MoveSegment, exact);
         assert_eq!(
             by_segment(Exact { time: 0.0105, ..EXACT }),
             "point 3 of the table: a time to the next of 0.0105 cannot be sent in a point of the trajectory buffer (2010h), \
@@ -215,14 +223,17 @@ mod tests {
         );
         assert!(by_segment(Exact { way: 1e7, ..EXACT }).contains("±8388607"));
         assert!(by_segment(Exact { velocity: 1e9, ..EXACT }).contains("0.1 counts/s of 1000000000"));
-        let coarse = point(1, Door::MoveSegment, &Exact { way: -5.0, velocity: 8_388_650.0, ..EXACT }).unwrap();
+        let coarse =
+            point(1, PointEncoding::MoveSegment, &Exact { way: -5.0, velocity: 8_388_650.0, ..EXACT }).unwrap();
         let expected = Point { position: -5, is_relative: true, velocity: Some(8_388_700), time: 10_000 };
         assert_eq!(coarse, expected);
         assert!(SegmentCommand::Point { counter: 1, point: coarse }.encode().is_some());
         // What 24 bits do not hold, 32 do.
-        let fine = point(1, Door::Serial, &Exact { way: 1e7, velocity: 8_388_651.0, ..EXACT }).unwrap();
+        let fine = point(1, PointEncoding::Serial, &Exact { way: 1e7, velocity: 8_388_651.0, ..EXACT }).unwrap();
         assert_eq!((fine.position, fine.velocity), (10_000_000, Some(8_388_651)));
-        assert!(message(Door::Serial, Exact { way: 3e9, ..EXACT }).contains("(115h), which holds ±2147483647"));
+        assert!(
+            message(PointEncoding::Serial, Exact { way: 3e9, ..EXACT }).contains("(115h), which holds ±2147483647")
+        );
         assert!(
             message(record(SubMode::LinearTimed), Exact { position: 3e9, ..EXACT }).contains("a position in counts")
         );
@@ -238,9 +249,9 @@ mod tests {
     #[test]
     fn lines_have_no_velocity_where_the_object_can_say_so() {
         let line = Exact { line: Some(100.0), ..EXACT };
-        for door in [Door::MoveSegment, Door::Serial] {
-            assert_eq!(point(2, door, &line).unwrap().velocity, None);
-            assert_eq!(point(2, door, &EXACT).unwrap().velocity, Some(0));
+        for encoding in [PointEncoding::MoveSegment, PointEncoding::Serial] {
+            assert_eq!(point(2, encoding, &line).unwrap().velocity, None);
+            assert_eq!(point(2, encoding, &EXACT).unwrap().velocity, Some(0));
         }
         for sub_mode in [SubMode::LinearAdapted, SubMode::Linear, SubMode::LinearTimed] {
             let sent = point(2, record(sub_mode), &EXACT).unwrap();
@@ -254,7 +265,7 @@ mod tests {
         for buffer in [TrajectoryBuffer::MoveSegment, TrajectoryBuffer::Serial, TrajectoryBuffer::DataRecord] {
             for sub_mode in SubMode::ALL {
                 let refused = buffer != TrajectoryBuffer::DataRecord && sub_mode.has_constant_time();
-                assert_eq!(Door::new(buffer, sub_mode, period).is_err(), refused, "{buffer:?} {sub_mode:?}");
+                assert_eq!(PointEncoding::new(buffer, sub_mode, period).is_err(), refused, "{buffer:?} {sub_mode:?}");
             }
         }
     }

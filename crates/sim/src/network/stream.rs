@@ -7,7 +7,7 @@
 //! when the drive is on the way from one of them to the next, it is told to stop, and its buffer is emptied (2010h, 80h). In
 //! sub-mode 0 the drive is told to go first, since it forgets the points that came before; then they come by the clock of the
 //! master, one in each period (60C2h).
-use super::points::Door;
+use super::points::PointEncoding;
 use servobench_cia402::InterpolationData;
 use servobench_drive::modes::interpolated::serial::{self, PVT, Port, SerialError, TRAJECTORY_BUFFER, TRAJECTORY_MODE};
 use servobench_drive::modes::interpolated::{Buffer, CAPACITY, Point, SegmentCommand, SubMode};
@@ -54,7 +54,7 @@ impl Message {
 /// Tables, and how far they are.
 #[derive(Debug, Clone)]
 pub(super) struct Stream {
-    door: Door,
+    encoding: PointEncoding,
     /// When each begins (s), and its points.
     tables: Vec<(f64, Vec<Point>)>,
     table: usize,
@@ -88,9 +88,9 @@ enum Stage {
 }
 
 impl Stream {
-    pub(super) const fn new(door: Door, tables: Vec<(f64, Vec<Point>)>) -> Self {
-        let stage = if matches!(door, Door::Serial) { Stage::Setting } else { Stage::Filling };
-        Self { door, tables, table: 0, number: 0, arrived: 0, seen: 0, sent: 0, due: 0.0, stage, message: None }
+    pub(super) const fn new(encoding: PointEncoding, tables: Vec<(f64, Vec<Point>)>) -> Self {
+        let stage = if matches!(encoding, PointEncoding::Serial) { Stage::Setting } else { Stage::Filling };
+        Self { encoding, tables, table: 0, number: 0, arrived: 0, seen: 0, sent: 0, due: 0.0, stage, message: None }
     }
 
     /// What goes over the serial interface in this cycle.
@@ -107,13 +107,13 @@ impl Stream {
             }
             _ => None,
         };
-        let follow = matches!(self.stage, Stage::Following { .. }) && self.door != Door::Serial;
+        let follow = matches!(self.stage, Stage::Following { .. }) && self.encoding != PointEncoding::Serial;
         ProfileCommand::Points { point, follow }
     }
 
     /// A cycle of a table of so many points.
     fn turn(&mut self, now: f64, drive: &ProfileFeedback, length: usize) -> Option<TrajectoryPoint> {
-        let is_endless = self.door.constant_time().is_some();
+        let is_endless = self.encoding.constant_time().is_some();
         match self.stage {
             Stage::Setting => {
                 self.message = Some(Message::SetMode);
@@ -121,17 +121,17 @@ impl Stream {
                 None
             }
             Stage::Filling => {
-                if matches!(self.door, Door::DataRecord { sub_mode: SubMode::LinearAdapted, .. }) {
+                if matches!(self.encoding, PointEncoding::DataRecord { sub_mode: SubMode::LinearAdapted, .. }) {
                     self.follow(now);
                     return None;
                 }
-                if self.door == Door::Serial && self.is_ready(length) {
+                if self.encoding == PointEncoding::Serial && self.is_ready(length) {
                     self.message = Some(Message::Start);
                     self.follow(now);
                     return None;
                 }
                 let point = self.next(now, drive);
-                if self.door != Door::Serial && self.is_ready(length) {
+                if self.encoding != PointEncoding::Serial && self.is_ready(length) {
                     self.follow(now);
                 }
                 point
@@ -189,7 +189,7 @@ impl Stream {
     /// The next point, when it is time for it and the buffer has room.
     fn next(&mut self, now: f64, drive: &ProfileFeedback) -> Option<TrajectoryPoint> {
         let (_, points) = self.tables.get(self.table)?;
-        let point = match (points.get(self.sent), self.door.constant_time()) {
+        let point = match (points.get(self.sent), self.encoding.constant_time()) {
             (Some(point), _) => *point,
             (None, Some(_)) => *points.last()?,
             (None, None) => return None,
@@ -197,7 +197,7 @@ impl Stream {
         if drive.buffer_free <= RESERVE {
             return None;
         }
-        if let Door::DataRecord { sub_mode: SubMode::LinearAdapted, period } = self.door {
+        if let PointEncoding::DataRecord { sub_mode: SubMode::LinearAdapted, period } = self.encoding {
             if now < self.due - ROUNDING {
                 return None;
             }
@@ -206,17 +206,17 @@ impl Stream {
         let number = self.number;
         self.number = number.wrapping_add(1);
         self.sent += 1;
-        match self.door {
-            Door::MoveSegment => {
+        match self.encoding {
+            PointEncoding::MoveSegment => {
                 let counter = number.to_le_bytes()[0] & 7;
                 SegmentCommand::Point { counter, point }.encode().map(TrajectoryPoint::MoveSegment)
             }
-            Door::DataRecord { sub_mode, .. } => {
+            PointEncoding::DataRecord { sub_mode, .. } => {
                 let time = (!sub_mode.has_constant_time()).then(|| milliseconds(point.time));
                 let data = InterpolationData { position: point.position, time, velocity: point.velocity };
                 Some(TrajectoryPoint::DataRecord(data))
             }
-            Door::Serial => {
+            PointEncoding::Serial => {
                 self.message = Some(Message::Add(point));
                 None
             }

@@ -46,7 +46,7 @@ fn recording(instants: u32, channels: u32, path: &Path) -> (Recording, Vec<u8>) 
             cruise: (0.3, 0.7),
             ending: Ending::AtRest,
         }],
-        events: vec![Event { start: 0.25, end: 0.5, source: "drive".into(), message: "current limit".into() }],
+        events: vec![Event::bound(0.25, 0.5, "drive", "current limit", true)],
         signals: vec![Signal { source: "axis".into(), name: "state".into(), changes: vec![(0.0, "Disabled".into())] }],
         calls: vec![Call {
             name: "pick".into(),

@@ -149,11 +149,6 @@ pub(crate) fn run(case: Case) -> Recording {
         cruise: (end - 1.0, 0.65),
         ending: Ending::AtRest,
     });
-    recorder.note_event(Event {
-        start: 0.1,
-        end: 0.1,
-        source: "drive".into(),
-        message: "an event of the example, at an instant".into(),
-    });
+    recorder.note_event(Event::new(0.1, 0.1, "drive", "an event of the example, at an instant"));
     recorder.finish()
 }

@@ -122,7 +122,7 @@ fn calls_that_did_not_come_to_their_end_say_why() {
         call("fourth", false, CallFate::Failed { time: 0.25, id: 7, message: "out of range".into() }),
     ];
     let message = "`first.Done` did not become TRUE".to_owned();
-    recording.events.push(Event { start: 1.0, end: 1.0, source: "PLC".into(), message });
+    recording.events.push(Event::new(1.0, 1.0, "PLC", message));
     let content = written(&recording, &options());
     let of_second = content.log.iter().filter(|(_, line)| line.contains("`first.Done`")).count();
     assert_eq!(of_second, 1, "said of the call, and not again as an event: {:?}", content.log);

@@ -60,7 +60,8 @@ const PLAN: [(&str, May); 29] = [
     (
         "fmu",
         May::On(&[
-            "base", "cia402", "motion", "planner", "plcopen", "drive", "plant", "fmi", "signals", "scenario", "sim",
+            "base", "config", "cia402", "motion", "planner", "plcopen", "drive", "plant", "fmi", "signals", "scenario",
+            "sim",
         ]),
     ),
     (
