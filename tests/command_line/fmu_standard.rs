@@ -263,10 +263,10 @@ fn mischief(name: &str, mischief: &str, place: &str, keys: &str) -> String {
     format!("{SLIDE}{}", fmu(name, &format!("{parameters}\n{outputs}\n{keys}")))
 }
 
-const PATIENT: &str = "patience = \"2 min\"";
+const PATIENT: &str = "call_timeout = \"2 min\"";
 /// For what hangs for good.
-const IMPATIENT: &str = "patience = \"3 s\"";
-const SMALL: &str = "patience = \"2 min\"\nmemory = 300";
+const IMPATIENT: &str = "call_timeout = \"3 s\"";
+const SMALL: &str = "call_timeout = \"2 min\"\nmemory = 300";
 
 /// Nobody's input is wrong where an FMU crashes, hangs or takes all memory before the first tick: such a run was not carried out, and
 /// the call is named. What an FMU refuses by a status is.
@@ -368,7 +368,7 @@ fn what_an_fmu_says_is_clean_wherever_it_is_shown() {
 #[cfg(unix)]
 #[test]
 fn an_interrupted_program_leaves_nothing_unpacked() {
-    let patient = "patience = \"10 min\"";
+    let patient = "call_timeout = \"10 min\"";
     let folder =
         work(&[("step", mischief("m", "hang", "step", patient)), ("enter", mischief("m", "hang", "enter", patient))]);
     for (program, scenario, signal) in
@@ -385,9 +385,9 @@ fn an_interrupted_program_leaves_nothing_unpacked() {
             let all = fs::read_dir(temporary.path()).unwrap().map(|entry| entry.unwrap().path());
             all.filter(|path| path.join("binaries/linux64/strict.so").is_file()).count()
         };
-        let patience = std::time::Instant::now() + std::time::Duration::from_mins(1);
+        let call_timeout = std::time::Instant::now() + std::time::Duration::from_mins(1);
         while unpacked() == 0 {
-            assert!(std::time::Instant::now() < patience, "nothing is unpacked");
+            assert!(std::time::Instant::now() < call_timeout, "nothing is unpacked");
             std::thread::sleep(std::time::Duration::from_millis(5));
         }
         let sent = Command::new("kill").args([&format!("-{signal}"), &child.id().to_string()]).status().unwrap();

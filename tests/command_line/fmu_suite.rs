@@ -63,13 +63,13 @@ fn make_fmu(folder: &Path) {
     fs::remove_file(library).unwrap();
 }
 
-/// The slide with a mass on a spring that hangs on it. The patience is real time: long, so that no slow machine fails.
+/// The slide with a mass on a spring that hangs on it. The call_timeout is real time: long, so that no slow machine fails.
 fn beside(mischief: &str, keys: &str) -> String {
     format!(
         r#"{SLIDE}{LIMIT}
 [[fmu]]
 file = "attached.fmu"
-patience = "2 min"
+call_timeout = "2 min"
 parameters = {{ mischief = "{mischief}" }}
 inputs = {{ x = "load.position", v = "load.velocity" }}
 outputs = {{ force = "disturbance.load" }}
@@ -85,7 +85,7 @@ fn mechanics(mischief: &str) -> String {
 {SLIDE}{LIMIT}
 [axis.fmu]
 file = "attached.fmu"
-patience = "2 min"
+call_timeout = "2 min"
 parameters = {{ mischief = "{mischief}", mass = "20 kg" }}
 inputs = {{ effort = "effort.motor" }}
 outputs = {{ position = "shaft.position", velocity = "shaft.velocity" }}

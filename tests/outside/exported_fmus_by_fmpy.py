@@ -32,7 +32,7 @@ BODIES = ("motor.", "table.", "load.")
 MISFITS = (0.3, 0.5, 1.5, 2.01)
 ERROR = 3
 # Real time for a simulation of some steps (s).
-PATIENCE = 60
+CALL_TIMEOUT = 60
 
 
 def simulated(fmu: str, rate: int, ticks: int) -> numpy.ndarray:
@@ -141,7 +141,7 @@ def check_misfits(name: str, fmu: str, rate: int) -> None:
     """Steps that never fit: each is an error, and none goes on for ever."""
     for ticks in MISFITS:
         step = ticks / rate
-        signal.alarm(PATIENCE)
+        signal.alarm(CALL_TIMEOUT)
         try:
             fmpy.simulate_fmu(fmu, stop_time=100 / rate, step_size=step, output_interval=step)
         except FMICallException as refused:

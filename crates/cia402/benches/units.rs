@@ -4,7 +4,6 @@
 //! one whose reduced fraction is so large that a product needs more than 64 bits.
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use servobench_cia402::difference::Difference;
 use servobench_cia402::modulo::{Direction, PositionRange};
 use servobench_cia402::units::{AxisUnit, FactorGroup, Ratio, Scaling};
 
@@ -78,24 +77,6 @@ fn metres_wide(bencher: Bencher<'_, '_>) {
 #[divan::bench]
 fn increments_at_metres_wide(bencher: Bencher<'_, '_>) {
     conversions(bencher, WIDE, |scaling, count| scaling.increments_at(count as f64 * 1e-7).map_or(0, low));
-}
-
-#[divan::bench]
-fn velocity_by_differences(bencher: Bencher<'_, '_>) {
-    let Ok(mut difference) = Difference::<4>::new(250_000, 0) else { return };
-    let Some(scaling) = scaling(GEAR) else { return };
-    bencher.counter(ItemsCount::new(CONVERSIONS)).bench_local(|| {
-        let velocity = |k| scaling.velocity_of(difference.follow(i128::from(k) * 1_237)).map_or(0, low);
-        (0..CONVERSIONS).map(velocity).fold(0, i64::wrapping_add)
-    });
-}
-
-#[divan::bench]
-fn carried_step(bencher: Bencher<'_, '_>) {
-    let Some(mut carry) = scaling(GEAR).map(|scaling| scaling.position_carry()) else { return };
-    bencher
-        .counter(ItemsCount::new(CONVERSIONS))
-        .bench_local(|| (0..CONVERSIONS).map(|k| carry.step(i128::from(k)).map_or(0, low)).fold(0, i64::wrapping_add));
 }
 
 #[divan::bench]

@@ -8,7 +8,7 @@
 //!
 //! so no count is lost over any number of turns as long as every true step is shorter than half the range. A step of
 //! half the range has two directions and is refused. A longer one looks like a shorter one the other way and cannot be
-//! seen, unless the axis is known to be slower: [`Unwrapped::with_largest_step`] refuses whatever it cannot have done.
+//! seen.
 //!
 //! ```
 //! use servobench_cia402::counter::{Counter, Unwrapped};
@@ -103,7 +103,6 @@ impl Counter {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Unwrapped {
     counter: Counter,
-    largest_step: i128,
     reading: i128,
     position: i128,
 }
@@ -115,25 +114,13 @@ impl Unwrapped {
     /// [`UnitError::OutsideCounter`] if the counter cannot show the reading.
     pub fn new(counter: Counter, reading: impl Into<i128>) -> Result<Self, UnitError> {
         let reading = counter.reading(reading.into())?;
-        Ok(Self { counter, largest_step: counter.range() / 2 - 1, reading, position: reading })
+        Ok(Self { counter, reading, position: reading })
     }
 
     /// The same at another position (counts), known from homing or from before.
     #[must_use]
     pub fn at(self, position: i64) -> Self {
         Self { position: position.into(), ..self }
-    }
-
-    /// The same with a bound on the counts between two readings: what the axis can do at its highest velocity.
-    ///
-    /// # Errors
-    /// [`UnitError::StepBound`] unless the bound is at least 1 and shorter than half the range.
-    pub const fn with_largest_step(self, largest_step: i128) -> Result<Self, UnitError> {
-        let highest = self.counter.range() / 2 - 1;
-        if largest_step < 1 || largest_step > highest {
-            return Err(UnitError::StepBound { largest_step, highest });
-        }
-        Ok(Self { largest_step, ..self })
     }
 
     /// The position (counts) at the next reading.
@@ -144,8 +131,9 @@ impl Unwrapped {
     pub fn follow(&mut self, reading: impl Into<i128>) -> Result<i128, UnitError> {
         let reading = self.counter.reading(reading.into())?;
         let step = self.counter.way(self.reading, reading);
-        if step.abs() > self.largest_step {
-            let (from, largest_step) = (self.reading, self.largest_step);
+        let largest_step = self.counter.range() / 2 - 1;
+        if step.abs() > largest_step {
+            let from = self.reading;
             return Err(UnitError::StepTooLong { from, to: reading, step, largest_step });
         }
         self.reading = reading;

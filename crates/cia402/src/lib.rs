@@ -24,7 +24,6 @@
 
 mod controlword;
 pub mod counter;
-pub mod difference;
 mod error_code;
 mod machine;
 mod mode;

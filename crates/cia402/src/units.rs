@@ -13,8 +13,7 @@
 //! sides of zero.
 //!
 //! A position that is converted is always less than one count off. Increments of a position that are converted one
-//! after the other would add their roundings up; [`Carry`] hands the remainder on to the next, so that their sum is the
-//! conversion of the sum.
+//! after the other add their roundings up.
 //!
 //! ```
 //! use servobench_cia402::units::{AxisUnit, FactorGroup, Ratio};
@@ -31,14 +30,12 @@
 //! # Ok::<(), servobench_cia402::units::UnitError>(())
 //! ```
 
-mod carry;
 mod divisor;
 mod error;
 mod factor_group;
 mod ratio;
 mod scaling;
 
-pub use carry::Carry;
 pub use error::{Object, UnitError};
 pub use factor_group::{AxisUnit, FactorGroup, POLARITY_BITS, POLARITY_POSITION, POLARITY_TORQUE, POLARITY_VELOCITY};
 pub use ratio::Ratio;

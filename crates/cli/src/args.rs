@@ -25,7 +25,7 @@ pub(crate) struct Cli {
     pub(crate) command: Command,
 }
 
-const AFTER_HELP: &str = "Exit codes: 0 passed, or unjudged for want of limits; 2 invalid input; 3 error: a run could not \
+const AFTER_HELP: &str = "Exit codes: 0 passed, or unjudged because there are no limits; 2 invalid input; 3 error: a run could not \
                           be carried out or its results not be written; 4 failed: a limit is missed, a requirement broken, \
                           an expected fault missing; 130 and 143 interrupted. Of several, 2 comes before 3 before 4.";
 
@@ -117,13 +117,13 @@ pub(crate) struct RunArgs {
     /// Write a JUnit report.
     #[arg(long, value_name = "FILE")]
     pub(crate) junit: Option<PathBuf>,
-    /// Scenarios at a time [default: one for each core].
+    /// Scenarios to run at once [default: one for each core].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub(crate) jobs: Option<u16>,
     /// End the process of an isolated engine that makes no progress for this long.
     #[arg(long, value_name = "TIME", value_parser = time, default_value = "5 min")]
     pub(crate) worker_timeout: Duration,
-    /// Say only what did not pass, a line each, and the count.
+    /// Print failures only, a line each, and the count.
     #[arg(long, short)]
     pub(crate) quiet: bool,
     /// Show all metrics of every run, as of a single one.
@@ -248,7 +248,7 @@ fn time(text: &str) -> Result<Duration, String> {
     let seconds = servobench_scenario::time(text).map_err(|error| error.message)?;
     match Duration::try_from_secs_f64(seconds) {
         Ok(time) if !time.is_zero() => Ok(time),
-        _ => Err("it must be longer than nothing and shorter than an age".into()),
+        _ => Err("it must be greater than 0 and at most 1.8e19 s".into()),
     }
 }
 

@@ -1,6 +1,6 @@
 //! The engines that this build has: the only place that knows of engine features.
 use servobench_plant::Engine;
-use servobench_sim::Partners;
+use servobench_sim::FmuOpener;
 use servobench_suite::Engines;
 
 const INSTALLED: &[&dyn Engine] = &[
@@ -11,15 +11,15 @@ const INSTALLED: &[&dyn Engine] = &[
     #[cfg(feature = "mujoco")]
     &servobench_engine_mujoco::Mujoco,
     #[cfg(feature = "fmu")]
-    &crate::partners::ENGINE,
+    &crate::fmu_opener::ENGINE,
 ];
 
 #[cfg(feature = "fmu")]
-const PARTNERS: &dyn Partners = &crate::partners::ByEngine;
+const PARTNERS: &dyn FmuOpener = &crate::fmu_opener::ByEngine;
 #[cfg(not(feature = "fmu"))]
-const PARTNERS: &dyn Partners = &servobench_sim::NoPartners;
+const PARTNERS: &dyn FmuOpener = &servobench_sim::NoFmus;
 
 /// Every engine of this build.
 pub(crate) const fn installed() -> Engines {
-    Engines { installed: INSTALLED, partners: PARTNERS }
+    Engines { installed: INSTALLED, fmu_opener: PARTNERS }
 }

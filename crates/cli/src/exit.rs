@@ -2,7 +2,7 @@
 //!
 //! | code | meaning |
 //! |---|---|
-//! | 0 | every run passed, or is unjudged for want of limits |
+//! | 0 | every run passed, or is unjudged because there are no limits |
 //! | 2 | invalid input: usage, scenario, model |
 //! | 3 | error: a run could not be carried out (engine missing, native failure), or what it gave could not be written |
 //! | 4 | failed: a limit is missed, a requirement broken, an expected fault missing |

@@ -7,10 +7,10 @@ mod diagnostics;
 mod engines;
 mod error;
 mod exit;
+#[cfg(feature = "fmu")]
+mod fmu_opener;
 mod interrupt;
 mod output;
-#[cfg(feature = "fmu")]
-mod partners;
 mod progress;
 mod sources;
 mod workers;

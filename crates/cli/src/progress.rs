@@ -34,7 +34,7 @@ impl Progress {
         Self { bar, lines: !quiet && !terminal, done: AtomicU64::new(0), runs, start: Instant::now() }
     }
 
-    /// A listener for the run `id`: hears the share that is done, from 0 to 1.
+    /// A listener for the run `id`: is told the share that is done, from 0 to 1.
     pub(crate) fn of_run(&self, id: &str) -> impl FnMut(f64) {
         self.bar.set_message(id.to_owned());
         let mut shown = 0.0;

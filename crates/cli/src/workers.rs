@@ -7,9 +7,9 @@ use std::thread::available_parallelism;
 use std::time::Duration;
 
 /// How worker processes are started: this program again. Their recordings pass through `folder`.
-pub(crate) fn command(folder: &Path, patience: Duration) -> Result<WorkerCommand, CliError> {
+pub(crate) fn command(folder: &Path, timeout: Duration) -> Result<WorkerCommand, CliError> {
     let program = std::env::current_exe().map_err(CliError::OwnProgram)?;
-    Ok(WorkerCommand { program, folder: folder.to_owned(), patience })
+    Ok(WorkerCommand { program, folder: folder.to_owned(), timeout })
 }
 
 /// `jobs` at a time, or one for each core.

@@ -7,10 +7,14 @@
 mod bound;
 mod choice;
 mod dimension;
+mod parameter;
 mod physical;
 pub mod quantities;
 
 pub use bound::{Bound, Measure, any, not_negative, positive};
 pub use choice::Choice;
 pub use dimension::Dimension;
+pub use parameter::Description;
 pub use physical::{Counterparts, Kind, Physical};
+#[doc(hidden)]
+pub use servobench_base::ParamError;

@@ -70,7 +70,7 @@ pub enum CouplingError<E> {
     },
     /// A signal of a loop grows, and faster than its exchange can follow.
     #[error(
-        "the coupling `{connection}` is unstable in communication step {step} ({time} s): what the exchange did not expect grew {growth:.0}-fold in {exchanges} exchanges, to more than half of the signal; take a smaller step than {length} s, {way_out}"
+        "the coupling `{connection}` is unstable in communication step {step} ({time} s): what the exchange did not expect grew {growth:.0}-fold in {exchanges} exchanges, to more than half of the signal; take a smaller step than {length} s, {help}"
     )]
     Unstable {
         /// The connection, as `a.x -> b.u`.
@@ -86,6 +86,6 @@ pub enum CouplingError<E> {
         /// The communication step (s).
         length: f64,
         /// What else may help with this method.
-        way_out: &'static str,
+        help: &'static str,
     },
 }

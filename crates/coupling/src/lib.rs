@@ -37,7 +37,7 @@
 //!
 //! # Time
 //!
-//! Exchanges are whole base ticks; seconds exist only at [`Block::step`], which gets the same length each time to the bit. A block that has
+//! Exchanges are whole base ticks; seconds exist only at [`Block::step`], which gets the same length each time bit for bit. A block that has
 //! a step of n·H goes through it at the beginning, and its end is known to faster blocks at once, except by [`Method::Jacobi`], where it
 //! counts when it is reached. [`Master::delays`] says what that means for each connection.
 

@@ -58,7 +58,7 @@ pub struct Master<B> {
     pub(crate) outputs: Vec<f64>,
     ended: Option<Advance>,
     /// What may help an unstable coupling.
-    way_out: &'static str,
+    help: &'static str,
 }
 
 /// An output of a loop.
@@ -113,7 +113,7 @@ impl<B: Block> Master<B> {
             present: vec![0.0; most(|shape| shape.inputs)],
             outputs: vec![0.0; most(|shape| shape.outputs)],
             ended: None,
-            way_out: way_out(settings),
+            help: help(settings),
             blocks,
             wiring,
             schedule,
@@ -239,7 +239,7 @@ impl<B: Block> Master<B> {
                     growth: growth.factor,
                     exchanges: growth.exchanges,
                     length: self.clock.time(1),
-                    way_out: self.way_out,
+                    help: self.help,
                 });
             }
         }
@@ -311,7 +311,7 @@ impl<B: Block> Master<B> {
 }
 
 /// What may help an unstable coupling, beside a smaller step.
-fn way_out(settings: &Settings) -> &'static str {
+fn help(settings: &Settings) -> &'static str {
     match (&settings.method, settings.order) {
         (Method::Iterated(_), Order::Quadratic) => "a lower order, or cut the loop elsewhere",
         (Method::Iterated(_), _) => "or cut the loop elsewhere",

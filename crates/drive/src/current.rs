@@ -10,7 +10,7 @@
 //!
 //! The voltage computed at tick k is applied from k+1 to k+2: it is turned ahead by 1.5·h·ω to meet the rotor there.
 use crate::{Parameter, ParameterError};
-use servobench_base::{AlphaBeta, Dq, Rotation, limit, positive};
+use servobench_base::{AlphaBeta, Dq, Rotation, limit};
 
 /// The motor as the firmware knows it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -149,7 +149,7 @@ impl Params {
             (Parameter::CurrentIntegralTimeD, self.gains.k_p.d / self.gains.k_i.d),
             (Parameter::CurrentIntegralTimeQ, self.gains.k_p.q / self.gains.k_i.q),
         ] {
-            positive(name, value)?;
+            name.check(value)?;
         }
         limit(Parameter::MaxCurrent, self.max_current)?;
         let is_within = self.d_reference.is_finite() && self.d_reference.abs() < self.max_current;

@@ -44,7 +44,7 @@ mod supervision;
 mod units;
 mod window;
 
-pub use cycle::{Beat, Params as CycleParams};
+pub use cycle::{CycleEvent, Params as CycleParams};
 pub use fault::Fault;
 pub use objects::ObjectsError;
 pub use params::{Limits, Params, Profile};
@@ -227,8 +227,8 @@ pub fn step(p: &Params, x: &mut State, u: &Inputs) -> Outputs {
         x.take(p, frame);
     }
     x.now.targets.is_new = u.frame.is_some();
-    let beat = cycle::step(&p.cycle, &mut x.cycle, u.frame.is_some());
-    let found = x.find_fault(p, u, beat);
+    let event = cycle::step(&p.cycle, &mut x.cycle, u.frame.is_some());
+    let found = x.find_fault(p, u, event);
     let standstill = x.stands_still(p);
     let inputs = PowerInputs {
         initialised: true,
@@ -244,7 +244,7 @@ pub fn step(p: &Params, x: &mut State, u: &Inputs) -> Outputs {
     let fault = x.remember(found, power.transition);
     let mut answer = match power.drive {
         DriveFunction::Disabled => x.idle(),
-        DriveFunction::Follow => x.follow(p, beat),
+        DriveFunction::Follow => x.follow(p, event),
         DriveFunction::Brake(how) => x.brake(p, how, standstill),
     };
     if !u.main_voltage {
@@ -313,7 +313,7 @@ impl State {
         }
     }
 
-    fn follow(&mut self, p: &Params, beat: Beat) -> Answer {
+    fn follow(&mut self, p: &Params, event: CycleEvent) -> Answer {
         self.switch_mode();
         let Some(mode) = self.mode else {
             // None yet: the axis is held where it is.
@@ -331,7 +331,7 @@ impl State {
             running.resume(p, &self.now);
         }
         let running = self.running.get_or_insert_with(|| Running::begin(p, mode, &self.now));
-        let mut answer = running.step(p, &self.now, beat, &mut self.buffer, &mut self.shift);
+        let mut answer = running.step(p, &self.now, event, &mut self.buffer, &mut self.shift);
         if running.looks_for_ends() {
             self.guard = guard::State::default();
         } else {

@@ -9,7 +9,7 @@
 //! with `x` itself they fight the feedforward. Axis coordinate throughout.
 //! Source: Lambrechts, Boerlage, Steinbuch, *Control Engineering Practice* 13, 2005.
 use crate::{Parameter, ParameterError};
-use servobench_base::{Setpoint, finite, non_negative, positive};
+use servobench_base::{Setpoint, finite};
 
 /// Model behind the effort feedforward, as the firmware estimates it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,20 +74,20 @@ impl Params {
                 bound: "from 0 to 1",
             });
         }
-        non_negative(Parameter::Coulomb, self.coulomb)?;
+        Parameter::Coulomb.check(self.coulomb)?;
         finite(Parameter::Bias, self.bias)?;
         match self.model {
             Model::Off => Ok(()),
             Model::Rigid { inertia, viscous } => {
-                non_negative(Parameter::MotorInertia, inertia)?;
-                non_negative(Parameter::MotorViscous, viscous).map(|_| ())
+                Parameter::MotorInertia.check(inertia)?;
+                Parameter::MotorViscous.check(viscous).map(|_| ())
             }
             Model::TwoMass { motor_inertia, load_inertia, stiffness, motor_viscous, load_viscous } => {
-                non_negative(Parameter::MotorInertia, motor_inertia)?;
-                non_negative(Parameter::LoadInertia, load_inertia)?;
-                positive(Parameter::Stiffness, stiffness)?;
-                non_negative(Parameter::MotorViscous, motor_viscous)?;
-                non_negative(Parameter::LoadViscous, load_viscous).map(|_| ())
+                Parameter::MotorInertia.check(motor_inertia)?;
+                Parameter::LoadInertia.check(load_inertia)?;
+                Parameter::Stiffness.check(stiffness)?;
+                Parameter::MotorViscous.check(motor_viscous)?;
+                Parameter::LoadViscous.check(load_viscous).map(|_| ())
             }
         }
     }

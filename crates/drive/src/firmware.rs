@@ -153,7 +153,7 @@ impl State {
         &self.held
     }
 
-    /// The references at the present tick: between two turns of the position loop the held set-point goes on along its
+    /// The references at the present tick: between two cycles of the position loop the held set-point goes on along its
     /// own polynomial. This is what following errors are measured against; a reference that stands still while the
     /// axis moves on would add an error of velocity × period.
     #[inline]
@@ -169,7 +169,7 @@ impl State {
 }
 
 /// One base tick: runs the loops that are due and returns what goes to the power stage from now on. The demand is taken
-/// at the turns of the position loop.
+/// at the cycles of the position loop.
 pub fn step(p: &Params, x: &mut State, demand: &Demand, sensors: &Sensors) -> Command {
     if x.position_turn.is_due(p.position_every) {
         take(p, x, demand, sensors);

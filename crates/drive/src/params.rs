@@ -1,7 +1,7 @@
 //! What the firmware knows and does not change: gains, limits, rates and its own estimates of the axis.
 use crate::{Parameter, ParameterError};
 use crate::{current, delay, feedforward, velocity};
-use servobench_base::{Divider, Rate, non_negative, positive};
+use servobench_base::{Divider, Rate};
 
 /// What turns the effort reference into effort.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,11 +49,11 @@ impl Params {
     /// # Errors
     /// [`ParameterError`] names the first parameter out of its bound.
     pub fn check(&self) -> Result<(), ParameterError> {
-        positive(Parameter::Transmission, self.transmission)?;
-        non_negative(Parameter::PositionGain, self.position_gain)?;
-        non_negative(Parameter::VelocityFilterTime, self.velocity_filter_time)?;
+        Parameter::Transmission.check(self.transmission)?;
+        Parameter::PositionGain.check(self.position_gain)?;
+        Parameter::VelocityFilterTime.check(self.velocity_filter_time)?;
         match &self.stage {
-            Stage::Direct { gain } => positive(Parameter::DirectGain, *gain).map(|_| ()),
+            Stage::Direct { gain } => Parameter::DirectGain.check(*gain).map(|_| ()),
             Stage::Current { params, .. } => params.check(),
         }?;
         self.velocity.check()?;

@@ -7,7 +7,7 @@
 //! τ_avail is what the loop below can give; knowing it here keeps the integrator from winding up against it.
 //! Source: Åström & Murray, *Feedback Systems*, 2nd ed., §11.4, tracking time T_t = T_i. The motor's coordinate.
 use crate::{Parameter, ParameterError};
-use servobench_base::{limit, non_negative, positive};
+use servobench_base::limit;
 
 /// Gains and limits; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,9 +62,9 @@ impl Params {
     /// # Errors
     /// [`ParameterError`] names the first parameter out of its bound.
     pub fn check(&self) -> Result<(), ParameterError> {
-        non_negative(Parameter::VelocityGain, self.k_p)?;
+        Parameter::VelocityGain.check(self.k_p)?;
         if let Some(integral_time) = self.integral_time {
-            positive(Parameter::VelocityIntegralTime, integral_time)?;
+            Parameter::VelocityIntegralTime.check(integral_time)?;
         }
         limit(Parameter::MaxEffort, self.max_effort).map(|_| ())
     }

@@ -127,7 +127,7 @@ fn what_is_stored_is_read_again() {
     let again = default.with_objects(&objects, micrometre()).unwrap();
     let mut stored = Dictionary::new();
     again.store_in(&mut stored).unwrap();
-    // A setting that its object shows is kept to the bit.
+    // A setting that its object shows is kept bit for bit.
     for index in 0x6000..=0x60FF {
         for subindex in 0..=2 {
             let object = Object { index, subindex };
@@ -155,7 +155,7 @@ fn what_does_not_go_together_is_refused_in_words() {
 }
 
 /// An axis in nanometres: 1 mm/s are a million units, which 16 bits do not hold; the velocities of 100 mm/s are held. What
-/// the master does not write stays as it is, to the bit.
+/// the master does not write stays as it is, bit for bit.
 #[test]
 fn an_object_that_cannot_hold_its_setting_shows_its_end_and_the_setting_stays() {
     let nanometre = AxisUnit::Metre(Ratio::new(1, 1_000_000_000).unwrap());

@@ -1,7 +1,7 @@
 //! The engine `fmu`, and FMUs beside an axis.
-use crate::keeper::HostCommand;
 use crate::mechanics::{FmuMechanics, NAME};
 use crate::open::open;
+use crate::supervisor::HostCommand;
 use servobench_base::{ParamError, finite, positive};
 use servobench_fmi::{FmuEntry, FmuMistake, FmuRequest, Slave};
 use servobench_plant::{Drive, Engine, EngineName, FmuModel, Mechanics, MechanicsError, MechanicsSetup, Model};
@@ -28,7 +28,7 @@ impl Fmu {
             return Err(MechanicsError::Unsupported {
                 engine: NAME,
                 what: "a prescribed motion".into(),
-                way_out: "drive the FMU by efforts, or describe the axis by its bodies".into(),
+                help: "drive the FMU by efforts, or describe the axis by its bodies".into(),
             });
         }
         check(model)?;

@@ -1,6 +1,6 @@
 //! The FMU's side: a process that loads one and does what it is asked for.
-use crate::bell::Listener;
 use crate::crash;
+use crate::doorbell::Listener;
 use crate::error::HostError;
 use crate::leave::leave;
 use crate::page::Page;

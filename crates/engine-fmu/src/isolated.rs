@@ -1,11 +1,11 @@
 //! The simulation's side of an FMU in a process of its own.
-use crate::bell::Listener;
+use crate::doorbell::Listener;
 use crate::ending::Ending;
 use crate::error::IsolationError;
-use crate::keeper::{HostCommand, Keeper};
 use crate::memory::in_words;
 use crate::page::{Answered, Asked, Page};
 use crate::protocol::{Command, Message, Status, log_of_lines};
+use crate::supervisor::{HostCommand, Supervisor};
 use serde::Serialize;
 use servobench_fmi::{Bounds, Capabilities, Feedthrough, LogLine, Severity, Slave, SlaveError, StepEnd, Unpacked};
 use std::borrow::Cow;
@@ -34,9 +34,9 @@ pub struct Wires {
 /// before it was looked for: it says neither when it was written nor how much it matters.
 #[derive(Debug)]
 pub struct Isolated {
-    keeper: Keeper,
+    supervisor: Supervisor,
     capabilities: Capabilities,
-    patience: Duration,
+    call_timeout: Duration,
     listener: Listener,
     /// Number of the last order, from 1.
     number: u32,
@@ -91,12 +91,12 @@ impl Isolated {
         let setup = serde_json::to_vec(setup).map_err(IsolationError::Setup)?;
         let (page, file) = Page::new(wires.inputs, wires.outputs, &setup, bounds.memory)
             .map_err(system("make memory that two processes share"))?;
-        let keeper = Keeper::new(command, page, file, bounds.memory)
+        let supervisor = Supervisor::new(command, page, file, bounds.memory)
             .map_err(|source| IsolationError::Start { program: command.program.clone(), source })?;
         let mut isolated = Self {
-            keeper,
+            supervisor,
             capabilities: Capabilities::default(),
-            patience: bounds.patience,
+            call_timeout: bounds.call_timeout,
             listener: Listener::default(),
             number: 0,
             time: 0.0,
@@ -123,7 +123,7 @@ impl Isolated {
     }
 
     fn page(&self) -> &Page {
-        &self.keeper.shared.page
+        &self.supervisor.shared.page
     }
 
     fn asked(&self) -> &Asked {
@@ -140,16 +140,16 @@ impl Isolated {
             return Err(error.clone());
         }
         self.fresh = false;
-        // The highest bit is for a bell that has given up.
+        // The highest bit is for a doorbell that has given up.
         self.number = (self.number + 1) & (u32::MAX >> 1);
-        let shared = &self.keeper.shared;
+        let shared = &self.supervisor.shared;
         let header = shared.page.header();
         header.asked.command.store(command as u32, Relaxed);
         header.order.ring(self.number);
-        let (patience, mut until) = (self.patience, None);
+        let (call_timeout, mut until) = (self.call_timeout, None);
         let heard = self.listener.wait(&header.answer, self.number, GLANCE, || {
             let now = Instant::now();
-            shared.ending().is_none() && now < *until.get_or_insert_with(|| now + patience)
+            shared.ending().is_none() && now < *until.get_or_insert_with(|| now + call_timeout)
         });
         if shared.ending().is_some() || !heard {
             return Err(self.lost(command));
@@ -160,14 +160,14 @@ impl Isolated {
 
     /// It does not answer: why.
     fn lost(&mut self, command: Command) -> SlaveError {
-        let ended_by_itself = self.keeper.shared.ending().is_some();
-        let (time, patience) = (self.time, self.patience.as_secs_f64());
+        let ended_by_itself = self.supervisor.shared.ending().is_some();
+        let (time, call_timeout) = (self.time, self.call_timeout.as_secs_f64());
         // What a step is by itself need not be said.
         let call = self.answered().call();
         let call: Cow<'static, str> =
             if command == Command::Step && call.ends_with("DoStep") { "".into() } else { call.into() };
         let intact = self.page().intact();
-        let error = match self.keeper.end() {
+        let error = match self.supervisor.end() {
             Some(ending) if !intact => {
                 let how = format!("{OVERWRITTEN}: {}", ending.how());
                 SlaveError::Crashed { call: "".into(), time, how }
@@ -177,17 +177,17 @@ impl Isolated {
                 call,
                 time,
                 how: Ending { status: None, ..ending.clone() }.how()
-                    + &format!("; it did not come back within {patience} s and was ended"),
+                    + &format!("; it did not come back within {call_timeout} s and was ended"),
             },
-            _ if call.is_empty() => SlaveError::Hung { call: command.words().into(), time, patience },
-            _ => SlaveError::Hung { call, time, patience },
+            _ if call.is_empty() => SlaveError::Hung { call: command.words().into(), time, call_timeout },
+            _ => SlaveError::Hung { call, time, call_timeout },
         };
         self.fail(error)
     }
 
     /// The answer is none.
     fn overwritten(&mut self) -> SlaveError {
-        self.keeper.end();
+        self.supervisor.end();
         self.fail(SlaveError::Crashed { call: "".into(), time: self.time, how: OVERWRITTEN.into() })
     }
 
@@ -313,7 +313,7 @@ impl Slave for Isolated {
             let time = self.time;
             log.push(LogLine { time, severity: Severity::Warning, category: "isolation".into(), message });
         }
-        let mut output = self.keeper.shared.output();
+        let mut output = self.supervisor.shared.output();
         let written = [("standard output", output.stdout.take()), ("standard error", output.stderr.take())];
         for (category, (text, dropped)) in written.into_iter().filter_map(|(name, some)| Some((name, some?))) {
             let line = |severity, message| LogLine { time: self.time, severity, category: category.into(), message };
@@ -349,8 +349,8 @@ impl Isolated {
             // It answers and ends: whoever is slow to listen finds it gone.
             return if self.has_left() { Ok(()) } else { Err(error) };
         }
-        let leave = Instant::now() + LEAVE.min(self.patience);
-        let shared = &self.keeper.shared;
+        let leave = Instant::now() + LEAVE.min(self.call_timeout);
+        let shared = &self.supervisor.shared;
         // Wakes when the process has ended.
         let over = 1 << 31 | self.number;
         let go_on = || shared.ending().is_none() && Instant::now() < leave;
@@ -365,14 +365,14 @@ impl Isolated {
         let header = self.page().header();
         header.answer.has_rung(self.number)
             && Status::of(header.answered.status.load(Relaxed)) == Some(Status::Done)
-            && self.keeper.shared.ending().is_some_and(Ending::is_orderly)
+            && self.supervisor.shared.ending().is_some_and(Ending::is_orderly)
     }
 }
 
 impl Drop for Isolated {
     fn drop(&mut self) {
         // What cannot go on is ended; so is what does not end as it was asked to: its results are all there.
-        if !self.has_ended && self.keeper.shared.ending().is_none() {
+        if !self.has_ended && self.supervisor.shared.ending().is_none() {
             self.leave().ok();
         }
     }

@@ -6,8 +6,8 @@
 //! its own that costs its run only, and is reported as what it is.
 //!
 //! ```text
-//! simulation: Isolated ── memory that both see, a bell for each direction ── serve: the FMU      (same program, another process)
-//!             keeper   ── standard output and error, its end ─────────────┘
+//! simulation: Isolated ── memory that both see, a doorbell for each direction ── serve: the FMU      (same program, another process)
+//!             supervisor   ── standard output and error, its end ─────────────┘
 //! ```
 //! | what the FMU does | what is said |
 //! |---|---|
@@ -22,15 +22,14 @@
 //!
 //! Linux only: futexes, memfd and pidfd (5.3 or later).
 
-mod bell;
 mod crash;
+mod doorbell;
 mod ending;
 mod engine;
 mod error;
 mod host;
 mod in_si;
 mod isolated;
-mod keeper;
 mod leave;
 mod like;
 mod load;
@@ -43,13 +42,14 @@ mod output;
 mod page;
 mod ports;
 mod protocol;
+mod supervisor;
 
 pub use engine::Fmu;
 pub use error::{HostError, IsolationError};
 pub use host::serve;
 pub use in_si::InSi;
 pub use isolated::{Isolated, Wires};
-pub use keeper::HostCommand;
 pub use load::{LoadError, Place, host, load};
 pub use mechanics::FmuMechanics;
 pub use ports::Ports;
+pub use supervisor::HostCommand;

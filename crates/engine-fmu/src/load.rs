@@ -2,9 +2,9 @@
 use crate::error::{HostError, IsolationError};
 use crate::host::{note_call, say_at_once, serve};
 use crate::isolated::{Isolated, Known, Wires};
-use crate::keeper::HostCommand;
 use crate::order::Order;
-use servobench_fmi::{Bounds, Feedthrough, FmuError, Loaded, Setup, Slave, Unpacked, hear_at_once, note_calls};
+use crate::supervisor::HostCommand;
+use servobench_fmi::{Bounds, Feedthrough, FmuError, Loaded, Setup, Slave, Unpacked, note_calls, send_log_lines_to};
 use thiserror::Error;
 
 /// Where an FMU runs.
@@ -66,7 +66,7 @@ pub fn load(fmu: &Unpacked, setup: &Setup, place: &Place) -> Result<Box<dyn Slav
 /// # Errors
 /// [`HostError`] if nobody has started this process as a host.
 pub fn host() -> Result<(), HostError> {
-    hear_at_once(say_at_once);
+    send_log_lines_to(say_at_once);
     note_calls(note_call);
     serve(|order: Order| order.load().map_err(|error| error.to_string()))
 }

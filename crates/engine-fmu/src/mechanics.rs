@@ -9,7 +9,7 @@
 //! impulse of the efforts is kept, and the axis sees of the FMU what was so up to n ticks ago: a delay of n/2 ticks in the mean.
 use crate::motion::Motion;
 use servobench_fmi::{LogLine, Severity, Slave, SlaveError, StepEnd};
-use servobench_plant::{Actuation, BodyState, EngineName, FmuModel, Input, Mechanics, MechanicsError, Said};
+use servobench_plant::{Actuation, BodyState, EngineName, FmuModel, Input, LogMessage, Mechanics, MechanicsError};
 
 /// The engine.
 pub(crate) const NAME: EngineName = EngineName::Fmu;
@@ -110,7 +110,7 @@ impl FmuMechanics {
                 return Err(MechanicsError::Unsupported {
                     engine: NAME,
                     what: "a disturbance of the load without an input of the FMU for it".into(),
-                    way_out: "name that input with `load_disturbance`".into(),
+                    help: "name that input with `load_disturbance`".into(),
                 });
             }
         }
@@ -231,12 +231,12 @@ impl Mechanics for FmuMechanics {
     }
 
     /// It speaks when it is asked for something: in the ticks between two exchanges nobody looks.
-    fn take_log(&mut self) -> Vec<Said> {
+    fn take_log(&mut self) -> Vec<LogMessage> {
         let mut lines = std::mem::take(&mut self.said);
         if self.state.since == 0 {
             lines.extend(self.slave.take_log());
         }
-        let said = |line: LogLine| Said { time: line.time, severity: line.severity, text: line.words() };
+        let said = |line: LogLine| LogMessage { time: line.time, severity: line.severity, text: line.words() };
         lines.into_iter().map(said).collect()
     }
 }

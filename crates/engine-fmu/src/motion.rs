@@ -64,7 +64,7 @@ mod tests {
         }
     }
 
-    /// What was exchanged is passed on to the bit.
+    /// What was exchanged is passed on bit for bit.
     #[test]
     fn at_an_exchange_the_state_is_what_was_exchanged() {
         let mut motion = Motion::new(0.1);

@@ -1,8 +1,8 @@
 //! From what is said of an FMU to one that runs: everything that does not fit is found first.
 use crate::in_si::InSi;
-use crate::keeper::HostCommand;
 use crate::load::{Place, load};
 use crate::ports::{Ports, mechanical};
+use crate::supervisor::HostCommand;
 use servobench_fmi::{
     DataType, FmuEntry, FmuError, FmuFile, FmuMistake, FmuRequest, Isolation, ModelDescription, Setup, Slave, Unpacked,
     Value, Variable,
@@ -69,15 +69,15 @@ fn step_mistake(step: f64, it: &ModelDescription) -> Option<FmuMistake> {
     let message = format!(
         "the FMU steps by {internal} s inside (`fixedInternalStepSize`), and {step} s is no whole number of that"
     );
-    let way_out = format!("give it a `step` that is a multiple of {internal} s");
-    Some(FmuMistake { at: FmuEntry::Step, message, way_out })
+    let help = format!("give it a `step` that is a multiple of {internal} s");
+    Some(FmuMistake { at: FmuEntry::Step, message, help })
 }
 
 fn event_mode_mistake(file: &FmuFile, it: &ModelDescription) -> Option<FmuMistake> {
     (!file.event_mode && !it.co_simulation.has_event_mode).then(|| FmuMistake {
         at: FmuEntry::EventMode,
         message: "the FMU has no event mode that could be switched off".into(),
-        way_out: "leave `event_mode` out".into(),
+        help: "leave `event_mode` out".into(),
     })
 }
 
@@ -98,7 +98,7 @@ fn misfits(setup: &mut Setup, fmu: &Unpacked) -> Vec<FmuMistake> {
                 FmuEntry::Start(name)
             }
         };
-        mistakes.push(FmuMistake { at, message: problem, way_out: String::new() });
+        mistakes.push(FmuMistake { at, message: problem, help: String::new() });
         if setup.start_values.len() == before {
             break;
         }
@@ -153,7 +153,7 @@ fn unknown_unit(name: &str, text: &str, it: &ModelDescription) -> Option<FmuMist
     Some(FmuMistake {
         at: FmuEntry::Start(name.to_owned()),
         message: format!("\"{text}\": `{unit}` is an unknown unit"),
-        way_out: format!("give a quantity with a unit of SI, or a plain number{of_variable}"),
+        help: format!("give a quantity with a unit of SI, or a plain number{of_variable}"),
     })
 }
 
@@ -163,9 +163,9 @@ fn quantity(name: &str, text: &str, si: f64, exponents: [i32; 4], it: &ModelDesc
         return Ok(Value::Text(text.to_owned()));
     }
     let Some(unit) = it.unit(variable) else { return Ok(Value::Number(si)) };
-    let refuse = |message: String, way_out: &str| {
+    let refuse = |message: String, help: &str| {
         let at = FmuEntry::Start(name.to_owned());
-        Err(FmuMistake { at, message, way_out: way_out.to_owned() })
+        Err(FmuMistake { at, message, help: help.to_owned() })
     };
     match unit.base {
         Some(base) if mechanical(base.exponents) == Some(exponents) => {

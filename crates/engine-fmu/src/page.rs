@@ -2,7 +2,7 @@
 //! The memory that both processes see.
 //!
 //! ```text
-//! header       the bells, the order and the answer, who wrote what: see `Header`
+//! header       the doorbells, the order and the answer, who wrote what: see `Header`
 //! inputs       of each: value, first and second derivative (f64)
 //! outputs      (f64)
 //! message      bytes of an answer that is more than numbers
@@ -11,7 +11,7 @@
 //! ```
 //! Everything in it is an atomic: whatever the FMU does to it, it is only wrong numbers. Lengths are the parent's own; those
 //! that come from the other side are cut to what there is. The file is sealed, so that it cannot shrink under the parent.
-use crate::bell::Bell;
+use crate::doorbell::Doorbell;
 use rustix::fs::{MemfdFlags, SealFlags, fcntl_add_seals, fcntl_get_seals, fstat, ftruncate, memfd_create};
 use rustix::mm::{Advice, MapFlags, ProtFlags, madvise, mmap, munmap};
 use std::os::fd::OwnedFd;
@@ -34,9 +34,9 @@ const LOG: usize = 1 << 18;
 #[derive(Debug)]
 pub(crate) struct Header {
     /// Rings for an order, with its number.
-    pub(crate) order: Bell,
+    pub(crate) order: Doorbell,
     /// Rings for an answer, with the number of the order.
-    pub(crate) answer: Bell,
+    pub(crate) answer: Doorbell,
     pub(crate) told: Told,
     pub(crate) asked: Asked,
     pub(crate) answered: Answered,

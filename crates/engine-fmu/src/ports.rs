@@ -111,12 +111,12 @@ const OUTPUT: Side = Side {
 struct What(String, String);
 
 impl What {
-    fn new(message: String, way_out: &str) -> Self {
-        Self(message, way_out.to_owned())
+    fn new(message: String, help: &str) -> Self {
+        Self(message, help.to_owned())
     }
 
     fn of(self, at: FmuEntry) -> FmuMistake {
-        FmuMistake { at, message: self.0, way_out: self.1 }
+        FmuMistake { at, message: self.0, help: self.1 }
     }
 }
 

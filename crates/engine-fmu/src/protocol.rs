@@ -117,7 +117,7 @@ mod tests {
             SlaveError::Unable { what: "save its state".into(), capability: "canGetAndSetFMUState".into() },
             SlaveError::Crashed { call: call(), time, how: "signal 11".into() },
             SlaveError::Astray { call: call(), from: time, to: 1.0, at: -2.0 },
-            SlaveError::Hung { call: call(), time, patience: 1.5 },
+            SlaveError::Hung { call: call(), time, call_timeout: 1.5 },
         ] {
             let message = Message::Failed(error);
             let sent = serde_json::to_vec(&message).unwrap();

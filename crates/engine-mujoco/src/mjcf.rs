@@ -33,7 +33,7 @@ impl MujocoMjcf {
             return Err(MechanicsError::Unsupported {
                 engine: NAME,
                 what: "a prescribed motion of an MJCF model".into(),
-                way_out: "drive it by efforts, or describe the axis by its bodies".into(),
+                help: "drive it by efforts, or describe the axis by its bodies".into(),
             });
         }
         let model = simulation::compile(&file.xml, &file.path)?;

@@ -33,6 +33,6 @@ pub(crate) fn check(chain: &Chain, setup: &MechanicsSetup) -> Result<(), Mechani
             rate * h
         )
     };
-    let way_out = "raise the base rate, merge the bodies that the stiff link couples, or choose the engine `exact`";
-    Err(MechanicsError::Unsupported { engine: NAME, what, way_out: way_out.into() })
+    let help = "raise the base rate, merge the bodies that the stiff link couples, or choose the engine `exact`";
+    Err(MechanicsError::Unsupported { engine: NAME, what, help: help.into() })
 }

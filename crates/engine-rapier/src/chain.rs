@@ -218,9 +218,8 @@ fn check_stability(chain: &Chain, prescribed: bool, step: f64) -> Result<(), Mec
             return Err(MechanicsError::Unsupported {
                 engine: NAME,
                 what: format!("a mode of body `{}` above {highest:.0} Hz at a tick of {} µs", body.name, step * 1e6),
-                way_out:
-                    "raise the base rate, merge the bodies that the stiff link couples, or choose the engine `exact`"
-                        .into(),
+                help: "raise the base rate, merge the bodies that the stiff link couples, or choose the engine `exact`"
+                    .into(),
             });
         }
         let off_diagonal = bodies.get(i + 1).map_or(0.0, |far| r * far.transmission * after);

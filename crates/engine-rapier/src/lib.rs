@@ -5,7 +5,7 @@
 //! |---|---|---|
 //! | chain moved by efforts | a sliding body for each lump (`lumps.rs`); half kick – drift – half kick, the drift Rapier's | second, damped or not |
 //! | chain behind a prescribed base | the links see the base at both ends of the tick | second |
-//! | dry friction of a chain | see [`servobench_plant::Friction`]; stuck bodies keep their position to the bit | second between the stops, first at each stop |
+//! | dry friction of a chain | see [`servobench_plant::Friction`]; stuck bodies keep their position bit for bit | second between the stops, first at each stop |
 //! | a user's MJCF | a multibody of joints (`linkage.rs`), efforts as in a chain | second; Coriolis forces of hinges on hinges first |
 //!
 //! A mode of ω rings too fast by the factor 1 + (ω·h)²/24 (84 Hz at 16 kHz: 5e-5; 1 kHz: 6e-3) and keeps its amplitude:
@@ -86,7 +86,7 @@ fn build_mjcf(file: &MjcfModel, setup: &MechanicsSetup) -> Result<Box<dyn Mechan
         return Err(MechanicsError::Unsupported {
             engine: NAME,
             what: "a prescribed motion of an MJCF model".into(),
-            way_out: "drive it by efforts, or describe the axis by its bodies".into(),
+            help: "drive it by efforts, or describe the axis by its bodies".into(),
         });
     }
     let refused = |refusals: Vec<MjcfRefusal>| {
@@ -97,7 +97,7 @@ fn build_mjcf(file: &MjcfModel, setup: &MechanicsSetup) -> Result<Box<dyn Mechan
             engine: NAME,
             path: file.path.clone(),
             refusals: refusals.iter().map(Into::into).collect(),
-            way_out: "change the file, choose the engine `mujoco`, or describe the axis by its bodies",
+            help: "change the file, choose the engine `mujoco`, or describe the axis by its bodies",
         }
     };
     let mechanism = Mechanism::read(&file.xml).map_err(refused)?;

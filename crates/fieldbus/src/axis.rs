@@ -71,7 +71,7 @@ pub enum TrajectoryPoint {
     DataRecord(InterpolationData),
 }
 
-/// What the motion task hears of the axis.
+/// What the motion task learns of the axis.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AxisFeedback {
     /// Actual position.

@@ -37,7 +37,7 @@ pub enum FieldbusError {
         /// From a command to the first answer that knows of it (base ticks).
         round_trip: u64,
     },
-    /// A position loop in the master that would hear of the axis too late.
+    /// A position loop in the master that would learn of the axis too late.
     #[error("`round_trip` and `answer_age` must be at most {highest} ticks together, got {delay}: take a longer cycle")]
     OldAnswer {
         /// Rejected sum (base ticks).

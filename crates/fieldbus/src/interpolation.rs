@@ -67,15 +67,15 @@ impl Interpolation {
     pub const fn meaning(self) -> &'static str {
         match self {
             Self::Off => {
-                "no set-points are asked for, or the drive does not follow them: where the drive is by itself is put out"
+                "no set-points are requested, or the drive does not follow them: the output is the drive's own position"
             }
-            Self::Wait => "too few samples yet: the axis waits where it is",
+            Self::Wait => "too few samples yet: the axis holds its position",
             Self::Run1 => "every sample came in time",
-            Self::Run2 => "a sample is late: its interval is made with a predicted one until it comes",
+            Self::Run2 => "a sample is late: a predicted one takes its place until it arrives",
             Self::Run3 => "two steps are predicted",
-            Self::Overflow => "samples come in shorter cycles than they are read: the oldest are thrown away",
-            Self::Underflow => "samples stay away: the axis is brought to rest and starts again with the next ones",
-            Self::Busy => "the sample was being written: what is there is read on",
+            Self::Overflow => "samples arrive faster than they are read: the oldest are discarded",
+            Self::Underflow => "no more samples arrive: the axis brakes to rest and starts again with the next ones",
+            Self::Busy => "the sample was being written: the previous ones are used",
             Self::Slow => "samples were overwritten before they were read: up to two are predicted instead",
         }
     }

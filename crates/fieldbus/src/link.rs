@@ -1,7 +1,7 @@
 //! The link: once per bus cycle from the last answer of the drive to the next frame for it, while the motion task leaves a
 //! command once per its own, slower cycle.
 //!
-//! In the order of a step: hear the drive, open the mailbox, look for faults, tell the drive what is wanted, put out what the
+//! In the order of a step: receive the drive, open the mailbox, look for faults, tell the drive what is wanted, put out what the
 //! task asks for.
 //!
 //! # From samples to set-points
@@ -20,10 +20,10 @@
 //!
 //! # The position loop in the master
 //!
-//! With [`Control::Velocity`] (csv) the link closes the position loop. The position that it hears at t is on its way for as long as
+//! With [`Control::Velocity`] (csv) the link closes the position loop. The position that it receives at t is on its way for as long as
 //! the round trip of the bus and the [age of the answer](Settings::answer_age), together D, and is compared with the set-point
 //! that was put out at t − D. That makes up for the way at any velocity, and leaves the loop as stable as it was:
-//! [`Params::gain_margin`] is about π/(2·K·D). With the velocity of the set-point fed forward the error is, as long as
+//! it begins to oscillate at the gain `2/T·tan(π·T/(4D))`, a little more than π/(2·D). With the velocity of the set-point fed forward the error is, as long as
 //! K·D ≤ 1/e, at most (a·τ + j·T²/12)/K of an axis whose velocity lags by τ, and the units of the bus.
 //!
 //! # What goes wrong
@@ -35,10 +35,10 @@
 //! Each holds until the rising edge of `reset`, and as long as its cause. After a limit switch the axis may move out of it only.
 //! Without power, in each of these, and while the drive is in another mode, what is put out is what the drive follows itself (6062h),
 //! without a position loop the actual position, so that nothing jumps when the drive follows again.
+mod actuals;
 mod buffer;
 mod course;
 mod drive_profile;
-mod ears;
 mod effort;
 mod frame;
 mod homing;
@@ -89,8 +89,8 @@ pub struct State {
     read: u64,
     actuals: Actuals,
     has_begun: bool,
-    /// When the drive was heard last, or the first step (base ticks).
-    heard: u64,
+    /// When the drive was received last, or the first step (base ticks).
+    received_at: u64,
     position: Option<Position>,
     position_loop: PositionLoop,
     sequencer: Sequencer,
@@ -118,7 +118,7 @@ impl Default for State {
             read: 0,
             actuals: Actuals::default(),
             has_begun: false,
-            heard: 0,
+            received_at: 0,
             position: None,
             position_loop: PositionLoop::OPEN,
             sequencer: Sequencer::start(0),
@@ -141,10 +141,10 @@ impl Default for State {
 pub fn step(params: &Params, state: &mut State, input: Input<'_>) -> Commands {
     let now = input.tick.0;
     if !core::mem::replace(&mut state.has_begun, true) {
-        state.heard = now;
+        state.received_at = now;
         state.sequencer = Sequencer::start(now);
     }
-    state.hear(params, input.actuals, now);
+    state.receive(params, input.actuals, now);
     let post = state.open(params, input.mailbox, now);
     state.supervise(params, input.external_fault, now);
     let wanted = state.wanted();
@@ -174,7 +174,7 @@ impl State {
         }
     }
 
-    /// What the motion task hears.
+    /// What the motion task receives.
     #[must_use]
     pub fn feedback(&self, params: &Params) -> AxisFeedback {
         let Params { scale, settings, .. } = params;
@@ -242,7 +242,7 @@ impl State {
 
     /// Whether the drive function is enabled, as far as the drive knows what it is told.
     fn is_enabled(&self, params: &Params) -> bool {
-        self.sequencer.is_enabled(params.settings.sequencing, self.heard.saturating_sub(params.round_trip))
+        self.sequencer.is_enabled(params.settings.sequencing, self.received_at.saturating_sub(params.round_trip))
     }
 
     fn switches(&self, params: &Params) -> Switches {

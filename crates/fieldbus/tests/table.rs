@@ -13,7 +13,7 @@ fn the_page_lists_every_state_and_every_fault() {
         writeln!(states, "| {} | {} | {} |", state.number(), state.name(), state.meaning()).unwrap();
     }
     hold("states", &states);
-    let mut faults = String::from("| code | fault | what the drive is told |\n|---|---|---|\n");
+    let mut faults = String::from("| code | fault | command to the drive |\n|---|---|---|\n");
     for fault in LinkFault::ALL {
         writeln!(faults, "| {:04X}h | {} | {} |", fault.code(), fault.name(), fault.response()).unwrap();
     }

@@ -213,8 +213,8 @@ fn version(root: Element) -> Result<Version, FmuError> {
     let text = root.required("fmiVersion")?;
     let unsupported = |what: &str| {
         let what = format!("{what} (`fmiVersion=\"{}\"`)", text.escape_debug());
-        let way_out = "export the model for FMI 2.0 or 3.0, co-simulation";
-        root.error_at("fmiVersion", DescriptionProblem::Unsupported { what, way_out })
+        let help = "export the model for FMI 2.0 or 3.0, co-simulation";
+        root.error_at("fmiVersion", DescriptionProblem::Unsupported { what, help })
     };
     let is_patch = |rest: &str| rest.strip_prefix('.').is_some_and(|patch| patch.parse::<u32>().is_ok());
     match text.split_at_checked(3) {

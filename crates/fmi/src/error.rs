@@ -253,11 +253,11 @@ pub enum DescriptionProblem {
         allowed: String,
     },
     /// Something that is not supported.
-    #[error("{what} is not supported; {way_out}")]
+    #[error("{what} is not supported; {help}")]
     Unsupported {
         /// What it is.
         what: String,
         /// What to do.
-        way_out: &'static str,
+        help: &'static str,
     },
 }

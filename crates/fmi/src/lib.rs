@@ -28,7 +28,7 @@ pub use error::{ArchiveProblem, DescriptionProblem, FmuError, LibraryProblem};
 pub use feedthrough::Feedthrough;
 pub use library::calls::note_calls;
 pub use loaded::Loaded;
-pub use log::hear_at_once;
+pub use log::send_log_lines_to;
 pub use request::{Bounds, FmuEntry, FmuFile, FmuMistake, FmuRequest, Isolation, IsolationKind, SiPort, SiUnit};
 pub use servobench_base::Severity;
 pub use setup::{Setup, Value};

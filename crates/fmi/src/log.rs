@@ -12,13 +12,13 @@ const MOST_LINES: usize = 10_000;
 const MOST_BYTES: usize = 1 << 20;
 
 /// Who hears everything at once.
-static HEAR: OnceLock<fn(&LogLine) -> bool> = OnceLock::new();
+static SINK: OnceLock<fn(&LogLine) -> bool> = OnceLock::new();
 
-/// Has `hear` called with every line that an FMU in this process says, as soon as it says it, from any thread; what it takes
+/// Has `sink` called with every line that an FMU in this process says, as soon as it says it, from any thread; what it takes
 /// (true) is not kept for [`Slave::take_log`](crate::Slave::take_log). For a process whose FMU may end it at any time. The first
 /// call counts.
-pub fn hear_at_once(hear: fn(&LogLine) -> bool) {
-    HEAR.get_or_init(|| hear);
+pub fn send_log_lines_to(sink: fn(&LogLine) -> bool) {
+    SINK.get_or_init(|| sink);
 }
 
 /// Where an instance is (s). It is stamped on what the FMU says, from whichever thread.
@@ -80,7 +80,7 @@ impl Log {
         message.clone_into(&mut self.kept().last);
         let line =
             LogLine { time: self.clock.time(), severity, category: category.to_owned(), message: message.to_owned() };
-        if HEAR.get().is_some_and(|hear| hear(&line)) {
+        if SINK.get().is_some_and(|sink| sink(&line)) {
             return;
         }
         let mut kept = self.kept();

@@ -35,7 +35,7 @@ choices! {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bounds {
     /// Real time for any one call, loading and initialisation being one.
-    pub patience: Duration,
+    pub call_timeout: Duration,
     /// Memory that it may have for itself, the program's included (B). Files that it maps do not count.
     pub memory: u64,
 }
@@ -43,7 +43,7 @@ pub struct Bounds {
 impl Default for Bounds {
     /// A minute, and 2 GiB.
     fn default() -> Self {
-        Self { patience: Duration::from_mins(1), memory: 2 << 30 }
+        Self { call_timeout: Duration::from_mins(1), memory: 2 << 30 }
     }
 }
 
@@ -93,7 +93,7 @@ pub struct FmuMistake {
     /// What is wrong.
     pub message: String,
     /// What to do; may be empty.
-    pub way_out: String,
+    pub help: String,
 }
 
 /// A part of what is asked of an FMU.
@@ -119,13 +119,13 @@ impl FmuMistake {
     /// Something that is wrong with the file itself.
     #[must_use]
     pub fn of_file(error: &impl Display) -> Self {
-        Self { at: FmuEntry::File, message: error.to_string(), way_out: String::new() }
+        Self { at: FmuEntry::File, message: error.to_string(), help: String::new() }
     }
 }
 
 impl Display for FmuMistake {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         f.write_str(&self.message)?;
-        if self.way_out.is_empty() { Ok(()) } else { write!(f, "; {}", self.way_out) }
+        if self.help.is_empty() { Ok(()) } else { write!(f, "; {}", self.help) }
     }
 }

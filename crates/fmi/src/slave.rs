@@ -221,7 +221,7 @@ pub enum SlaveError {
         how: String,
     },
     /// It did not come back in time.
-    #[error("the FMU did not come back from {call} at {time} s within {patience} s of real time; it was ended")]
+    #[error("the FMU did not come back from {call} at {time} s within {call_timeout} s of real time; it was ended")]
     Hung {
         /// Function of the standard.
         call: Cow<'static, str>,
@@ -230,7 +230,7 @@ pub enum SlaveError {
         time: f64,
         /// How long it was waited for (s).
         #[serde(with = "bits::float")]
-        patience: f64,
+        call_timeout: f64,
     },
 }
 

@@ -1,9 +1,9 @@
-//! What a run of a scenario records on the engine `exact` at every tick, as CSV with every number to the bit: `record SCENARIO`.
+//! What a run of a scenario records on the engine `exact` at every tick, as CSV with every number bit for bit: `record SCENARIO`.
 //! FMUs beside the axis are loaded into this process, with the start values that they have; their numbers are SI numbers.
 use servobench_fmi::{FmuMistake, FmuRequest, Loaded, Port, Setup, SiPort, Slave, Unpacked};
 use servobench_plant::Exact;
 use servobench_scenario::load;
-use servobench_sim::{Bench, Partners};
+use servobench_sim::{Bench, FmuOpener};
 use std::error::Error;
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -11,7 +11,7 @@ use std::path::Path;
 /// Opens FMUs of scenarios.
 struct Here;
 
-impl Partners for Here {
+impl FmuOpener for Here {
     fn open(&self, request: &FmuRequest<'_>) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
         if !request.file.start.is_empty() {
             return Err(vec![FmuMistake::of_file(&"this example sets no parameters")]);
@@ -34,7 +34,7 @@ impl Partners for Here {
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("usage: record SCENARIO")?;
     let scenario = load(Path::new(&path))?.scenario;
-    let outcome = Bench::with_partners(&scenario, &Exact, &Here)?.run(&mut |_| ());
+    let outcome = Bench::with_fmus(&scenario, &Exact, &Here)?.run(&mut |_| ());
     if let Some(failure) = outcome.failure {
         return Err(failure.into());
     }

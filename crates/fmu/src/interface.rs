@@ -40,7 +40,7 @@ impl Choice {
     pub(crate) fn items(self) -> Vec<(&'static str, &'static str)> {
         match self {
             Self::Command => vec![
-                ("program", "the program of the scenario, from the rising edge of `start` on"),
+                ("program", "the program of the scenario, from the first step on at which `start` is true"),
                 ("target", "moves to `target`, one with each rising edge of `execute`"),
                 ("setpoint", "`demand.position`, `demand.velocity` and `demand.acceleration`, new at every step"),
             ],

@@ -175,7 +175,7 @@ pub(crate) const OF_DRIVE: &[Parameter] = &[
 pub(crate) const OF_MECHANICS: &[Parameter] = &[
     Parameter {
         name: "load.inertia",
-        description: "mass or inertia of the load; what the drive believes of it stays",
+        description: "mass or inertia of the load; the drive's estimate of it stays as it is",
         unit: |scenario| if axis(scenario) == "rad" { "kg m²".into() } else { "kg".into() },
         least: Least::Positive,
         get: |scenario| Some(load(scenario)?.inertia),

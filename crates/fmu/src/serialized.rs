@@ -1,5 +1,5 @@
 //! A state of an instance as bytes: parameters, inputs and what the inputs were since tick 0. What it means is simulated again,
-//! which by determinism gives the same state to the bit.
+//! which by determinism gives the same state bit for bit.
 //!
 //! ```text
 //! token of the FMU | phase, start, stop | values | with a run: tick, count of changes, changes (tick, input, value)

@@ -87,11 +87,11 @@ fn velocity_error_peak(recording: &Recording, rows: Range<usize>) -> Result<f64,
     if unit(recording, VELOCITY_REFERENCE) != unit(recording, MOTOR_VELOCITY) {
         return Err(Absence::UnitsDiffer { one: VELOCITY_REFERENCE, two: MOTOR_VELOCITY });
     }
-    // Between two turns of the position loop its output is held: there it says what the motor should have done, not what it
+    // Between two cycles of the position loop its output is held: there it says what the motor should have done, not what it
     // should do.
     let written = written(recording, VELOCITY_REFERENCE);
     let error = rows.filter(|row| written(*row)).map(|row| (reference[row] - actual[row]).abs());
-    largest(error, "at a turn of the position loop")
+    largest(error, "at a cycle of the position loop")
 }
 
 /// Tells the rows at whose instant `signal` was written from those at which it was held.

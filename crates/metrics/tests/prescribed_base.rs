@@ -212,7 +212,7 @@ fn ring_down_without_a_move() {
     assert!(metrics.run.get(Name::ResidualVibrationPp).is_none());
 }
 
-/// A load that stands still does not vibrate, to the bit.
+/// A load that stands still does not vibrate, bit for bit.
 #[test]
 fn a_load_at_rest_has_no_vibration() {
     let mut still = recording(&jerk_limited(), 100.0);

@@ -107,10 +107,4 @@ impl Mode {
     pub const fn delay_samples(self) -> usize {
         self.points() / 2
     }
-
-    /// Whether the position passes through the samples.
-    #[must_use]
-    pub const fn passes_through_samples(self) -> bool {
-        !matches!(self, Self::CubicBSpline | Self::QuinticBSpline)
-    }
 }

@@ -4,7 +4,7 @@ use servobench_base::Setpoint;
 /// The polynomial that holds at one time of a [`Profile`](crate::Profile) and for a while after it.
 ///
 /// Whoever asks for set-points in the order of time keeps it as long as it [`holds`](Self::holds), instead of having
-/// it looked up at each instant by [`Profile::at`](crate::Profile::at); the set-points are the same to the bit.
+/// it looked up at each instant by [`Profile::at`](crate::Profile::at); the set-points are the same bit for bit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Piece {
     pub(crate) anchor: Setpoint,

@@ -48,7 +48,7 @@ impl Reader {
     #[must_use]
     pub fn at(&self, t: f64) -> Setpoint {
         let first = self.first.at(t);
-        // Differences from the first part: at rest all are the same to the bit.
+        // Differences from the first part: at rest all are the same bit for bit.
         self.later.iter().fold(first, |sum, (part, delay, piece)| {
             let Setpoint { x, v, a, j, s } = piece.at(t - delay);
             Setpoint {

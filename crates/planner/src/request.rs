@@ -65,7 +65,7 @@ servobench_config::choices! {
     pub enum Sampling default Published {
         /// time after time is rounded up, as it is published
         Published = "published",
-        /// the fewest samples that a step through boxes needs
+        /// the fewest samples that the published profile needs
         Fewest = "fewest",
     }
 }
@@ -82,7 +82,7 @@ servobench_config::choices! {
     /// Which profile goes from rest to rest: the one of Pietrusewicz et al. 2019, or the shortest, which of a sampled move is that of the
     /// fewest samples, whatever its shape.
     pub enum Method default Published {
-        /// the published step through boxes, 15 segments at order 4
+        /// the published profile, 15 segments at order 4: a step through one moving average for each order
         Published = "published",
         /// the shortest: up to 6.94 % less time at order 4 where velocity does not cruise
         Optimal = "optimal",

@@ -8,7 +8,26 @@
 //! `r = p/2π` (m/rad), every other body `r = 1`.
 use crate::friction::Friction;
 use crate::mechanics::BodyState;
-use servobench_base::{Coordinate, ParamError, finite, non_negative, positive};
+use servobench_base::{Coordinate, ParamError};
+use servobench_config::Kind::{Axis, Plain};
+use servobench_config::quantities::{EFFORT, INERTIAL, RATIO, STIFFNESS, VISCOUS};
+use servobench_config::{any, not_negative, positive};
+
+servobench_config::parameters! {
+    /// A parameter of bodies and the couplings between them, in the axis coordinate; the motor has those of its body in its own.
+    pub enum ChainParameter {
+        /// Mass or moment of inertia
+        Inertia "inertia" = positive(Axis(&INERTIAL), "40 kg");
+        /// Axis coordinate per coordinate of the body
+        Transmission "transmission" = positive(Plain(&RATIO), "1");
+        /// Constant resisting force or torque: gravity, or friction that differs between the directions
+        Bias "bias" = any(Axis(&EFFORT), "-3.2 N");
+        /// Stiffness of the coupling to the body before it
+        Stiffness "stiffness" = positive(Axis(&STIFFNESS), "120 N/um");
+        /// Damping of that coupling
+        Damping "damping" = not_negative(Axis(&VISCOUS), "3000 N s/m");
+    }
+}
 
 /// One lumped body.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,14 +87,14 @@ impl Chain {
             return Err(ParamError { name: "links", value: links.len() as f64, bound: "one fewer than the bodies" });
         }
         for body in bodies {
-            positive("inertia", body.inertia)?;
-            positive("transmission", body.transmission)?;
+            ChainParameter::Inertia.check_in_words(body.inertia)?;
+            ChainParameter::Transmission.check_in_words(body.transmission)?;
             body.friction.check()?;
-            finite("bias", body.bias)?;
+            ChainParameter::Bias.check_in_words(body.bias)?;
         }
         for link in links {
-            positive("stiffness", link.stiffness)?;
-            non_negative("damping", link.damping)?;
+            ChainParameter::Stiffness.check_in_words(link.stiffness)?;
+            ChainParameter::Damping.check_in_words(link.damping)?;
         }
         Ok(())
     }

@@ -7,7 +7,7 @@
 //! y(k+1) = Φ·y(k) + Γ·u(k)                [Φ Γ; 0 I] = exp([A B; 0 0])
 //! ```
 //! Stretches instead of positions: a nanometre of vibration at one metre of travel then keeps all its digits, and
-//! moving the whole axis changes nothing to the bit. Velocities per tick keep the norm of A near (ω·h)².
+//! moving the whole axis changes nothing bit for bit. Velocities per tick keep the norm of A near (ω·h)².
 //!
 //! A prescribed base adds the states (h·v, h²·a, h³·j, h⁴·s) of its own motion, so that its polynomial is integrated
 //! exactly too. A stuck body has its velocity row and column struck out: one pair (Φ, Γ) for each set of stuck bodies.

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! f(v) = b·v + sgn(v)·(f_c + (f_s − f_c)·exp(−(v/v_s)²))      sliding, against the motion
-//! stuck while |effort of everything else| ≤ f_s; a stuck body keeps its position to the bit
+//! stuck while |effort of everything else| ≤ f_s; a stuck body keeps its position bit for bit
 //! ```
 //! Source: Armstrong-Hélouvry, Dupont, Canudas de Wit, *Automatica* 30(7), 1994, eq. (4).
 //!
@@ -11,7 +11,24 @@
 //! held body is locked for the tick, a sliding one gets a constant force. After the tick it tells [`Friction::settle`] the new
 //! velocity; when that reversed, the body came to rest within the tick and is stopped there. The crossing itself is met to first
 //! order in the step.
-use servobench_base::{ParamError, non_negative};
+use servobench_base::ParamError;
+use servobench_config::Kind::Axis;
+use servobench_config::not_negative;
+use servobench_config::quantities::{EFFORT, VELOCITY, VISCOUS};
+
+servobench_config::parameters! {
+    /// A parameter of the friction of a body, in the axis coordinate; the motor has those of its body in its own.
+    pub enum FrictionParameter {
+        /// Viscous friction
+        Viscous "viscous" = not_negative(Axis(&VISCOUS), "200 N s/m");
+        /// Coulomb friction
+        Coulomb "coulomb" = not_negative(Axis(&EFFORT), "20 N");
+        /// Static (breakaway) friction, at least `coulomb`
+        Breakaway "static" = not_negative(Axis(&EFFORT), "35 N");
+        /// Velocity at which friction has mostly fallen from `static` to `coulomb`: exp(−(v/v_s)²)
+        StribeckVelocity "stribeck_velocity" = not_negative(Axis(&VELOCITY), "2 mm/s");
+    }
+}
 
 /// Friction of a body against the ground, in its own coordinate; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,7 +72,7 @@ impl Friction {
     /// # Errors
     /// [`ParamError`] names the first parameter out of its bound.
     pub fn check(&self) -> Result<(), ParamError> {
-        non_negative("viscous", self.viscous)?;
+        FrictionParameter::Viscous.check_in_words(self.viscous)?;
         self.dry.check()
     }
 
@@ -158,10 +175,14 @@ impl DryFriction {
     pub const NONE: Self = Self { coulomb: 0.0, breakaway: 0.0, stribeck_velocity: 0.0 };
 
     fn check(&self) -> Result<(), ParamError> {
-        non_negative("coulomb", self.coulomb)?;
-        non_negative("stribeck_velocity", self.stribeck_velocity)?;
+        FrictionParameter::Coulomb.check_in_words(self.coulomb)?;
+        FrictionParameter::StribeckVelocity.check_in_words(self.stribeck_velocity)?;
         if !(self.breakaway.is_finite() && self.breakaway >= self.coulomb) {
-            return Err(ParamError { name: "static", value: self.breakaway, bound: "finite and at least `coulomb`" });
+            return Err(ParamError {
+                name: FrictionParameter::Breakaway.name(),
+                value: self.breakaway,
+                bound: "finite and at least `coulomb`",
+            });
         }
         Ok(())
     }

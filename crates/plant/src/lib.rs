@@ -22,21 +22,21 @@ mod sensor;
 mod source;
 mod switches;
 
-pub use chain::{Body, Chain, Link};
+pub use chain::{Body, Chain, ChainParameter, Link};
 pub use engine::{Capabilities, Engine, EngineName};
 pub use exact::{Exact, transition};
 pub use fmu::{FmuBody, FmuModel};
-pub use friction::{DryFriction, Friction, Grip};
+pub use friction::{DryFriction, Friction, FrictionParameter, Grip};
 pub use integration::{Distortion, Integrator};
 pub use load_coordinate::{LoadCoordinate, PosedJoint};
 pub use mechanics::{
-    Actuation, BodyState, Drive, Input, JointLimit, Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Model,
-    ModelKind, Said,
+    Actuation, BodyState, Drive, Input, JointLimit, LogMessage, Mechanics, MechanicsError, MechanicsSetup, MjcfModel,
+    Model, ModelKind,
 };
 pub use mjcf::chain_to_mjcf;
 pub use mjcf_axis::MjcfAxis;
 pub use modes::Mode;
 pub use refusal::{Refusal, RefusedAt};
-pub use sensor::{Encoder, Reading};
+pub use sensor::{Encoder, EncoderParameter, Reading};
 pub use source::{IdealSource, SourceOutput};
 pub use switches::{SwitchPoint, SwitchReading, Switches};

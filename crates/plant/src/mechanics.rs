@@ -53,7 +53,7 @@ pub struct Input {
 
 /// What a foreign model says of itself, in its own words.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Said {
+pub struct LogMessage {
     /// Simulation time at which it said it (s).
     pub time: f64,
     /// How much it matters.
@@ -106,7 +106,7 @@ pub trait Mechanics: Send {
     fn end(&mut self) {}
 
     /// What it has said since the last time, also after an error.
-    fn take_log(&mut self) -> Vec<Said> {
+    fn take_log(&mut self) -> Vec<LogMessage> {
         Vec::new()
     }
 
@@ -227,17 +227,17 @@ pub enum MechanicsError {
     #[error(transparent)]
     Parameter(#[from] ParamError),
     /// The engine has no such thing.
-    #[error("engine `{engine}` does not support {what}; {way_out}")]
+    #[error("engine `{engine}` does not support {what}; {help}")]
     Unsupported {
         /// Engine name.
         engine: EngineName,
         /// What was asked for.
         what: String,
         /// What to do instead.
-        way_out: String,
+        help: String,
     },
     /// There is something in a user's own MJCF file that the engine does not simulate: all of it.
-    #[error("engine `{engine}` refuses {}: {}; {way_out}", path.display(), in_one_line(refusals))]
+    #[error("engine `{engine}` refuses {}: {}; {help}", path.display(), in_one_line(refusals))]
     Refused {
         /// Engine name.
         engine: EngineName,
@@ -246,7 +246,7 @@ pub enum MechanicsError {
         /// What is refused, at least one thing.
         refusals: Vec<Refusal>,
         /// What to do instead.
-        way_out: &'static str,
+        help: &'static str,
     },
     /// An FMU is not what it is to be: everything that is wrong with it.
     #[error("engine `{engine}` refuses {}: {}", path.display(), in_one_line(mistakes))]
@@ -291,7 +291,7 @@ impl MechanicsError {
     /// `model` is none that `engine` simulates.
     #[must_use]
     pub fn not_simulated(engine: EngineName, model: &Model) -> Self {
-        let (what, way_out) = match model {
+        let (what, help) = match model {
             _ if engine.simulates(ModelKind::Fmu) => {
                 ("mechanics that are described by bodies or MJCF".into(), "choose another engine, or give an FMU")
             }
@@ -304,7 +304,7 @@ impl MechanicsError {
             ),
             Model::Chain(_) => ("bodies in a row".into(), "choose the engine `exact`"),
         };
-        Self::Unsupported { engine, what, way_out: way_out.into() }
+        Self::Unsupported { engine, what, help: help.into() }
     }
 
     /// The actuation is not the one that the mechanics of `engine` were built for.
@@ -313,7 +313,7 @@ impl MechanicsError {
         Self::Unsupported {
             engine,
             what: "an actuation other than the one it was built for".into(),
-            way_out: "use efforts with `Drive::Effort` and motions with `Drive::Prescribed`".into(),
+            help: "use efforts with `Drive::Effort` and motions with `Drive::Prescribed`".into(),
         }
     }
 }

@@ -22,8 +22,27 @@ mod maps;
 mod table;
 
 use maps::{Forms, Maps};
-use servobench_base::{AlphaBeta, Dq, ParamError, Rotation, positive};
+use servobench_base::{AlphaBeta, Dq, ParamError, Rotation};
+use servobench_config::Kind::Plain;
+use servobench_config::positive;
+use servobench_config::quantities::{FLUX_LINKAGE, INDUCTANCE, RATIO, RESISTANCE};
 use table::{Solution, Tables};
+
+servobench_config::parameters! {
+    /// A parameter of a synchronous motor.
+    pub enum Parameter {
+        /// Electrical angle per motor coordinate
+        ElectricalRatio "electrical_ratio" = positive(Plain(&RATIO), "4");
+        /// Stator resistance, phase to neutral
+        Resistance "resistance" = positive(Plain(&RESISTANCE), "0.36 Ohm");
+        /// Inductance of the d axis, phase to neutral
+        InductanceD "inductance_d" = positive(Plain(&INDUCTANCE), "36 mH");
+        /// Inductance of the q axis, phase to neutral
+        InductanceQ "inductance_q" = positive(Plain(&INDUCTANCE), "51 mH");
+        /// Flux linkage of the magnets, amplitude
+        FluxLinkage "flux_linkage" = positive(Plain(&FLUX_LINKAGE), "0.545 V s");
+    }
+}
 
 /// Parameters of the motor; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,11 +80,11 @@ impl Params {
     /// # Errors
     /// [`ParamError`] names the first parameter that is not finite and positive.
     pub fn check(&self) -> Result<(), ParamError> {
-        positive("electrical_ratio", self.electrical_ratio)?;
-        positive("resistance", self.resistance)?;
-        positive("inductance_d", self.inductance.d)?;
-        positive("inductance_q", self.inductance.q)?;
-        positive("flux_linkage", self.flux_linkage)?;
+        Parameter::ElectricalRatio.check_in_words(self.electrical_ratio)?;
+        Parameter::Resistance.check_in_words(self.resistance)?;
+        Parameter::InductanceD.check_in_words(self.inductance.d)?;
+        Parameter::InductanceQ.check_in_words(self.inductance.q)?;
+        Parameter::FluxLinkage.check_in_words(self.flux_linkage)?;
         Ok(())
     }
 

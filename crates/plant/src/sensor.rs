@@ -1,5 +1,16 @@
 //! Position encoder: ideal, or with a resolution.
-use servobench_base::{ParamError, positive};
+use servobench_base::ParamError;
+use servobench_config::Kind::Axis;
+use servobench_config::positive;
+use servobench_config::quantities::POSITION;
+
+servobench_config::parameters! {
+    /// A parameter of an encoder, on the load in the axis coordinate, on the motor in its own.
+    pub enum EncoderParameter {
+        /// One increment
+        Step "encoder step" = positive(Axis(&POSITION), "0.1 um");
+    }
+}
 
 /// A position encoder.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -21,7 +32,7 @@ impl Encoder {
     /// # Errors
     /// [`ParamError`] when the increment is not finite and positive.
     pub fn check(&self) -> Result<(), ParamError> {
-        self.increment.map_or(Ok(()), |increment| positive("encoder step", increment).map(|_| ()))
+        self.increment.map_or(Ok(()), |increment| EncoderParameter::Step.check_in_words(increment).map(|_| ()))
     }
 
     /// Reads, to the nearest increment, `position` and `velocity` of the body it sits on.

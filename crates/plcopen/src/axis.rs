@@ -6,14 +6,14 @@
 //! Motion is counted in the unit of the drive; MC_SetPosition shifts what the program sees of it.
 mod activity;
 mod blending;
+mod block_setpoints;
 mod bounds;
-mod calming;
+mod brake_pre_trajectory;
 mod commands;
-mod lead;
 mod modulo;
 mod queue;
 mod run;
-mod sharing;
+mod shared_limits;
 mod superimposed;
 mod supervision;
 

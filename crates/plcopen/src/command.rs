@@ -8,7 +8,7 @@ use servobench_motion::Limits;
 servobench_config::choices! {
     /// How a command follows those before it (MC_BUFFER_MODE).
     pub enum BufferMode default Aborting {
-        /// the motion under way is broken off
+        /// the active motion is aborted
         Aborting = "aborting",
         /// the motion under way ends first
         Buffered = "buffered",
@@ -50,7 +50,7 @@ impl BufferMode {
 }
 
 servobench_config::choices! {
-    /// Which way round (MC_DIRECTION).
+    /// Direction of rotation (MC_DIRECTION).
     pub enum Direction default Shortest {
         /// upwards
         Positive = "positive",

@@ -15,7 +15,7 @@ pub enum ErrorId {
     /// No error.
     #[default]
     None = 0,
-    /// An input is no number of the right sign.
+    /// An input is not a number, or has the wrong sign.
     Input = 0x1001,
     /// An input is above a limit of the axis.
     AboveLimit = 0x1002,
@@ -87,13 +87,13 @@ impl ErrorId {
     pub const fn meaning(self) -> &'static str {
         match self {
             Self::None => "no error",
-            Self::Input => "an input is no number of the right sign or range",
+            Self::Input => "an input is not a number, or has the wrong sign or range",
             Self::AboveLimit => "an input is above a limit of the axis",
             Self::SumAboveLimit => "a superimposed motion and the one below are together above a limit of the axis",
             Self::Direction => "the input Direction does not fit the block",
             Self::BufferMode => "the input BufferMode does not fit the block, or the command before it",
             Self::State => "the state of the axis does not allow the block",
-            Self::NotHomed => "an absolute position is asked of an axis without a reference",
+            Self::NotHomed => "an absolute position is commanded to an axis that is not homed",
             Self::BufferFull => "the axis holds no more buffered commands",
             Self::NotPermitted => "MC_Power does not permit motion in this direction",
             Self::Ended => "the motion is over and cannot be changed any more",
@@ -103,8 +103,8 @@ impl ErrorId {
             Self::HomingFailed => "the drive did not find its reference",
             Self::PermissionLost => "MC_Power took the permission for the direction of the running motion away",
             Self::Overspeed => "the axis ran faster than the input Velocity of MC_TorqueControl",
-            Self::Profile => "a profile gave no set-point, or one beyond the limits of the axis",
-            Self::PlanLost => "a move that had been accepted could not be planned when its turn came",
+            Self::Profile => "a profile gave no set-point in a cycle, or one beyond the limits of the axis",
+            Self::PlanLost => "a waiting move that had been accepted could not be planned when it became active",
         }
     }
 }
@@ -112,7 +112,7 @@ impl ErrorId {
 /// A call that is refused, or a command that failed.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum BlockError {
-    /// An input is no number of the right sign.
+    /// An input is not a number, or has the wrong sign.
     #[error("{block}: `{input}` must be {bound}, got {value}: correct the input")]
     Input {
         /// The block.
@@ -174,7 +174,7 @@ pub enum BlockError {
         bound: &'static str,
     },
     /// The state of the axis does not allow the block.
-    #[error("{block}: the state of the axis, {state}, does not allow it: {}", state.way_out())]
+    #[error("{block}: the state of the axis, {state}, does not allow it: {}", state.help())]
     State {
         /// The block.
         block: BlockName,

@@ -42,7 +42,7 @@
 //!
 //! [`Profile4th`](crate::Profile4th) has an axis follow it.
 use servobench_base::{ParamError, Setpoint, non_negative, positive};
-use servobench_motion::sampled::{Cascade, Execution, Run};
+use servobench_motion::sampled::{Cascade, Run};
 use servobench_motion::{Limits, Order, PlanError, Profile};
 
 /// What does not change while the PLC runs.
@@ -51,24 +51,17 @@ pub struct Params {
     sample_time: f64,
     /// `T_set` in samples.
     settling: f64,
-    execution: Execution,
 }
 
 impl Params {
-    /// With the sample time Ts (s), the settling time `T_set` (s) and by the paper's execution, the forward-Euler cascade.
+    /// With the sample time Ts (s), the settling time `T_set` (s). Moves are executed as in the paper, by the forward-Euler cascade.
     ///
     /// # Errors
     /// [`ParamError`] when the sample time is not positive, or the settling time not positive or zero.
     pub fn new(sample_time: f64, settling_time: f64) -> Result<Self, ParamError> {
         let sample_time = positive("sample_time", sample_time)?;
         let settling = non_negative("settling_time", settling_time)? / sample_time;
-        Ok(Self { sample_time, settling, execution: Execution::ForwardEuler })
-    }
-
-    /// With another execution: the exact hold does not lag by 1.5 samples.
-    #[must_use]
-    pub const fn executed_by(self, execution: Execution) -> Self {
-        Self { execution, ..self }
+        Ok(Self { sample_time, settling })
     }
 }
 
@@ -171,7 +164,7 @@ pub fn step(params: &Params, state: &mut State, input: &Input) -> Output {
         // t_exec = −Ts/2.
         Some(course) if state.count == 0 => Setpoint::at_rest(course.base),
         Some(course) => {
-            let set_point = course.next(params, state.count - 1);
+            let set_point = course.next(state.count - 1);
             if state.total.is_some_and(|total| state.count > total) {
                 (state.position, state.course) = (Some(set_point.x), None);
             }
@@ -226,14 +219,11 @@ impl Course {
     }
 
     /// The set-point of `sample`; asked in the order of the samples.
-    fn next(&mut self, params: &Params, sample: u64) -> Setpoint {
+    fn next(&mut self, sample: u64) -> Setpoint {
         if sample >= self.total {
             return Setpoint::at_rest(self.base + self.profile.distance());
         }
-        let from_base = match params.execution {
-            Execution::ForwardEuler => self.cascaded(sample),
-            Execution::ExactHold => self.profile.at(sample as f64 * params.sample_time),
-        };
+        let from_base = self.cascaded(sample);
         Setpoint { x: self.base + from_base.x, ..from_base }
     }
 

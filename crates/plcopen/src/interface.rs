@@ -60,7 +60,7 @@ pub enum Absent {
     Flag(bool),
     /// This way.
     Direction(Direction),
-    /// The motion under way is broken off.
+    /// The active motion is aborted.
     Aborting,
     /// What another input is.
     As(Input),

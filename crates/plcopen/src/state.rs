@@ -49,7 +49,7 @@ impl AxisState {
 
     /// What leads from this state to one in which the axis takes motion commands.
     #[must_use]
-    pub const fn way_out(self) -> &'static str {
+    pub const fn help(self) -> &'static str {
         match self {
             Self::Disabled => "power the axis with MC_Power and wait for its Status",
             Self::Standstill | Self::DiscreteMotion | Self::ContinuousMotion => "call it in a state that allows it",

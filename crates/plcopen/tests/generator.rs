@@ -1,6 +1,5 @@
 //! The generator block against the paper's equations, written down here a second time.
 #![expect(clippy::float_cmp, reason = "what ends on a target ends exactly there")]
-use servobench_motion::sampled::Execution;
 use servobench_motion::{Limits, Order, Profile, Times};
 use servobench_plcopen::generator::{Input, Method, Mounting, Output, Params, State, step};
 
@@ -171,17 +170,6 @@ fn a_motor_mounted_the_other_way_gets_the_mirror_image() {
         assert_eq!(one.set_point.scaled(-1.0), other.set_point);
         assert_eq!(one.added, -other.added);
     }
-}
-
-/// The exact hold lands at the same sample, and leads the cascade by 1.5 samples where the velocity is constant.
-#[test]
-fn the_exact_hold_does_not_lag() {
-    let euler = outputs(&params(), &input(4.0));
-    let hold = outputs(&params().executed_by(Execution::ExactHold), &input(4.0));
-    assert_eq!((euler.len(), euler.last()), (hold.len(), hold.last()));
-    let middle = euler.len() / 2;
-    let lead = hold[middle].set_point.x - euler[middle].set_point.x;
-    assert!((lead - 1.5 * TS * LIMITS.velocity).abs() < 1e-12, "{lead}");
 }
 
 #[test]

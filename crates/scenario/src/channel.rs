@@ -17,7 +17,7 @@ impl Field for Signal {
         };
         let found = text.parse().ok();
         if found.is_none() {
-            let message = format!("`{}` has no value \"{text}\"", key(path));
+            let message = format!("\"{text}\" is not a value of `{}`", key(path));
             report.error(node.span, message, suggestion(text, names()));
         }
         found

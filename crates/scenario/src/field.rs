@@ -6,7 +6,7 @@ use crate::source::{At, Span};
 use crate::tree::{Node, Number, Value};
 use serde_json::{Value as Json, json};
 use servobench_config::quantities::RATIO;
-use servobench_config::{Bound, Kind, Measure, Physical};
+use servobench_config::{Bound, Description, Kind, Measure, Physical};
 use std::ops::Range;
 
 /// A type that keys can have; `Spec` is what one key demands beyond the type: a dimension, a bound.
@@ -16,6 +16,11 @@ pub(crate) trait Field<Spec = ()>: Sized {
 
     /// JSON Schema of what [`Self::decode`] accepts.
     fn schema(spec: &Spec) -> Json;
+
+    /// What the owner of the parameter says that it means; the documentation of the key follows it.
+    fn meaning(_spec: &Spec) -> &'static str {
+        ""
+    }
 }
 
 /// The value of a key, if there is one.
@@ -99,6 +104,21 @@ impl Field<Measure> for f64 {
             Bound::Any => {}
         }
         json!({ "anyOf": [number, { "type": "string", "pattern": "^ *[-+]?[0-9.]+ *%? *$" }] })
+    }
+}
+
+/// A parameter that its owner describes.
+impl Field<Description> for f64 {
+    fn decode(path: &str, node: &Node, spec: &Description, report: &mut Report) -> Option<Self> {
+        <Self as Field<Measure>>::decode(path, node, &spec.measure, report)
+    }
+
+    fn schema(spec: &Description) -> Json {
+        <Self as Field<Measure>>::schema(&spec.measure)
+    }
+
+    fn meaning(spec: &Description) -> &'static str {
+        spec.meaning
     }
 }
 

@@ -37,15 +37,15 @@ use servobench_signals::Signal;
 
 table! {
     /// A scenario of servobench: an axis, a program of moves, what to measure and the limits that make it pass or fail.
-    /// Physical quantities are texts with a unit: "250 mm", "30 m/min", "8 kHz", "4.2 Arms".
+    /// Physical quantities are strings with a unit: "250 mm", "30 m/min", "8 kHz", "4.2 Arms".
     pub(crate) struct File requires ["run", "axis", "motor"] {
-        /// Number of the format that the file is written in; the newest unless given. What each changed: CHANGELOG.md.
+        /// Number of the format that the file is written in; default: the newest. What each changed: CHANGELOG.md.
         format: u32 = 1..=FORMAT,
-        /// Name in tables and results; the file's name unless given.
+        /// Name in tables and results; default: the file's name.
         name: String = (),
         /// What the scenario shows, in a sentence.
         description: String = (),
-        /// Engine or engines to run it on; "exact" unless given.
+        /// Engine or engines to run it on; default: "exact".
         engine: OneOrMany<EngineName> = OneOf,
         /// Time base of the run.
         run: Run = (),
@@ -91,7 +91,7 @@ table! {
     pub(crate) struct Run requires ["base_rate"] {
         /// One tick of mechanics; every task rate divides it.
         base_rate: Rate = "16 kHz",
-        /// Length of the run, 1e6 s at most; the program and half a second unless given.
+        /// Length of the run, 1e6 s at most; default: the program and half a second.
         duration: f64 = positive(Plain(&TIME), "2 s"),
     }
 }
@@ -109,10 +109,10 @@ table! {
 table! {
     /// What to record.
     pub(crate) struct Record {
-        /// Rate of the rows that are kept; the base rate unless given. It divides the base rate. What is measured is every
+        /// Rate of the rows that are kept; default: the base rate. It divides the base rate. What is measured is every
         /// tick.
         rate: Rate = "4 kHz",
-        /// Channels to keep; all that the axis has unless given.
+        /// Channels to keep; default: all that the axis has.
         channels: OneOrMany<Signal> = (),
     }
 }
@@ -122,9 +122,9 @@ table! {
     pub(crate) struct Measures {
         /// Settling window around the target, ± (axis coordinate). Without it there is no settling time.
         window: f64 = positive(InAxis(&POSITION), "10 um"),
-        /// From when on residual vibration is measured; from the end of the last profile unless given.
+        /// From when on residual vibration is measured; default: the end of the last profile.
         from: f64 = not_negative(Plain(&TIME), "0.2 s"),
-        /// Where to look for the residual mode; everywhere unless given.
+        /// Where to look for the residual mode; default: everywhere.
         mode: f64 = positive(Plain(&FREQUENCY), "38.985 Hz"),
     }
 }

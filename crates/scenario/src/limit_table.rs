@@ -49,7 +49,7 @@ impl Field for LimitTable {
             (metric.as_str(), vec![metric.meaning()], schema)
         });
         let keys: Vec<_> = keys.collect();
-        let keys = keys.iter().map(|(name, doc, schema)| (*name, doc.as_slice(), schema.clone())).collect();
+        let keys = keys.iter().map(|(name, doc, schema)| (*name, ("", doc.as_slice()), schema.clone())).collect();
         object_schema(&["Limits by metric."], &[], keys)
     }
 }

@@ -65,7 +65,7 @@ impl Field for SignalTable {
         let signal = |node: &Node, report: &mut Report| {
             let text = node.value.as_text().map(str::to_owned);
             if text.is_none() {
-                let message = format!("a signal is a text, got {}", written(node));
+                let message = format!("a signal is a string, got {}", written(node));
                 report.error(node.span, message, "write variable = \"load.position\"");
             }
             text
@@ -111,8 +111,10 @@ fn value(node: &Node, report: &mut Report) -> Option<StartValue> {
             values.into_iter().collect::<Option<_>>().map(StartValue::List)
         }
         Value::Number(_) | Value::Table(_) | Value::Date => {
-            let message =
-                format!("a start value is a finite number, a quantity, a text or true or false, got {}", written(node));
+            let message = format!(
+                "a start value is a finite number, a quantity, a string or true or false, got {}",
+                written(node)
+            );
             report.error(node.span, message, "");
             None
         }

@@ -100,7 +100,7 @@ pub(crate) fn parse(text: &str) -> Result<Quantity, QuantityError> {
             let help = "write \"N s/m\" or \"N/(m s)\", whichever is meant";
             return wrong(place, "a unit ends with its quotient", help);
         }
-        return shapeless(place, "this is no unit");
+        return shapeless(place, "not a unit");
     }
     evaluate(text, number, &factors)
 }
@@ -123,7 +123,7 @@ impl Scale {
         let mut input = LocatingSlice::new(text);
         match spaced(unit_expression).parse_next(&mut input) {
             Ok(factors) if input.is_empty() => Self::of(&factors),
-            _ => Err(QuantityError::new(0..text.len(), "this is no unit", "")),
+            _ => Err(QuantityError::new(0..text.len(), "not a unit", "")),
         }
     }
 
@@ -334,9 +334,9 @@ mod tests {
             ("8 m10", 2..5, "the power of `m` must be from -9 to 9", ""),
             ("8 m999999999999", 2..15, "the power of `m` must be from -9 to 9", ""),
             ("8 N/m s", 6..7, "a unit ends with its quotient", "write \"N s/m\" or \"N/(m s)\", whichever is meant"),
-            ("8 m; s", 3..4, "this is no unit", ""),
-            ("8 m/s ?", 6..7, "this is no unit", ""),
-            ("8 /s", 2..3, "this is no unit", ""),
+            ("8 m; s", 3..4, "not a unit", ""),
+            ("8 m/s ?", 6..7, "not a unit", ""),
+            ("8 /s", 2..3, "not a unit", ""),
         ] {
             let e = parse(text).unwrap_err();
             assert_eq!((e.at, e.message.as_str(), e.help.as_str()), (at, message, help), "{text}");

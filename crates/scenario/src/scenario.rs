@@ -36,7 +36,7 @@ pub const LONGEST_RUN: f64 = 1e6;
 /// One experiment: an axis, a program of moves, what to measure and the limits that make it pass or fail.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
-    /// Name in tables and results; the file's stem unless given.
+    /// Name in tables and results; default: the file's stem.
     pub name: String,
     /// What it shows, in a sentence.
     pub description: String,

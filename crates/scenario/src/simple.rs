@@ -78,7 +78,7 @@ impl Field for String {
         if let Value::Text(text) = &node.value {
             return Some(text.clone());
         }
-        report.error(node.span, format!("`{}` must be a text, got {}", key(path), written(node)), "");
+        report.error(node.span, format!("`{}` must be a string, got {}", key(path), written(node)), "");
         None
     }
 
@@ -133,7 +133,7 @@ fn one_of<T>(
     };
     let found = values.into_iter().find(|(name, _)| *name == text);
     if found.is_none() {
-        let message = format!("`{}` has no value \"{text}\"", key(path));
+        let message = format!("\"{text}\" is not a value of `{}`", key(path));
         report.error(node.span, message, suggestion(text, names));
     }
     found.map(|(_, value)| value)

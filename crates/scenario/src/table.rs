@@ -14,7 +14,7 @@ use serde_json::{Map, Value as Json, json};
 /// table! {
 ///     /// What it is.
 ///     pub(crate) struct Name requires ["key"] {
-///         /// What the key means.
+///         /// What the key means; of a parameter that its owner describes: what is to be added to its meaning.
 ///         key: Type = specification,
 ///         /// A key that Rust cannot spell.
 ///         field as "static": Type = specification,
@@ -29,7 +29,7 @@ macro_rules! table {
         $(#[doc = $table_doc:literal])+
         pub(crate) struct $table:ident $(requires [$($required:literal),+])? {
             $(
-                $(#[doc = $doc:literal])+
+                $(#[doc = $doc:literal])*
                 $field:ident $(as $name:literal)? : $type:ty = $spec:expr,
             )+
             $(..$group:ident: $group_type:ty = $group_spec:expr)?
@@ -41,7 +41,7 @@ macro_rules! table {
             /// Header of the table.
             pub(crate) span: $crate::source::Span,
             $(
-                $(#[doc = $doc])+
+                $(#[doc = $doc])*
                 pub(crate) $field: $crate::field::Slot<$type>,
             )+
             $(
@@ -73,12 +73,12 @@ macro_rules! table {
                 let required: &[&str] = &[$($($required),+)?];
                 let keys = [$((
                     $crate::table::key_name!($field $(as $name)?),
-                    &[$($doc,)+] as &[&str],
+                    (<$type as $crate::field::Field<_>>::meaning(&$spec), &[$($doc,)*] as &[&str]),
                     <$type as $crate::field::Field<_>>::schema(&$spec),
                 ),)+];
                 $(
                     let group = <$group_type>::schemas($group_spec);
-                    let group = group.iter().map(|(key, doc, schema)| (*key, doc.as_slice(), schema.clone()));
+                    let group = group.iter().map(|(key, doc, schema)| (*key, ("", doc.as_slice()), schema.clone()));
                     let keys = keys.into_iter().chain(group);
                 )?
                 $crate::table::object_schema(&[$($table_doc,)+], required, keys.into_iter().collect())
@@ -171,12 +171,27 @@ fn joined(doc: &[&str]) -> String {
     doc.iter().map(|line| line.trim()).collect::<Vec<_>>().join(" ")
 }
 
-pub(crate) fn object_schema(doc: &[&str], required: &[&str], keys: Vec<(&'static str, &[&str], Json)>) -> Json {
+/// The meaning of a parameter, which its owner gives, and what the key adds to it: a default, or another clause.
+fn of_key((meaning, key): (&str, &[&str])) -> String {
+    let key = joined(key);
+    match (meaning, key.as_str()) {
+        ("", _) => key,
+        (_, "") => format!("{meaning}."),
+        (_, _) if key.starts_with("default: ") => format!("{meaning}; {key}"),
+        (_, _) if key.starts_with(':') => format!("{meaning}{key}"),
+        (_, _) => format!("{meaning} {key}"),
+    }
+}
+
+/// What documents a key: the meaning that the owner of its parameter gives, and the lines of the key.
+pub(crate) type KeyDoc<'a> = (&'a str, &'a [&'a str]);
+
+pub(crate) fn object_schema(doc: &[&str], required: &[&str], keys: Vec<(&'static str, KeyDoc<'_>, Json)>) -> Json {
     let mut properties = Map::new();
     // A JSON object has no order, a description does: `x-order` is for documentation.
     let order: Vec<&str> = keys.iter().map(|(name, ..)| *name).collect();
     for (name, doc, mut schema) in keys {
-        schema["description"] = Json::String(joined(doc));
+        schema["description"] = Json::String(of_key(doc));
         properties.insert(name.to_owned(), schema);
     }
     let mut schema = json!({

@@ -91,7 +91,7 @@ impl Value {
         match self {
             Self::Table(_) => "a table",
             Self::Array(_) => "a list",
-            Self::Text(_) => "a text",
+            Self::Text(_) => "a string",
             Self::Number(_) => "a number",
             Self::Bool(_) => "true or false",
             Self::Date => "a date",
@@ -221,7 +221,7 @@ impl<'a> Places<'a> {
         } else {
             // Keys of one table stand together: the nearest before is the first of two.
             let first = self.keys.range((key, 0)..(key, at)).next_back().map(|(_, first)| line_at(*first));
-            (format!("a second `{key}`"), first)
+            (format!("duplicate key `{key}`"), first)
         };
         (what, first.map_or(String::new(), |first| format!("the first one is on line {first}")))
     }
@@ -396,7 +396,7 @@ mod tests {
             said,
             [
                 (4, "string values must be quoted, expected literal string"),
-                (11, "a second `a`"),
+                (11, "duplicate key `a`"),
                 (23, "invalid exponent, expected digits"),
                 (28, "string values must be quoted, expected literal string"),
             ]
@@ -421,10 +421,10 @@ mod tests {
             "[run]\nrate = 1\n[a]\nrate = 2\nb.c = 1\nrate = 3\nb.c = 2\n[ run ] # again\n[[d]]\nx = 1\nx = 2\n[run]\n";
         let said: Vec<_> = parsed(text).1.errors.into_iter().map(|e| (e.message, e.help.unwrap_or_default())).collect();
         let pairs = [
-            ("a second `rate`", "the first one is on line 4"),
-            ("a second `c`", "the first one is on line 5"),
+            ("duplicate key `rate`", "the first one is on line 4"),
+            ("duplicate key `c`", "the first one is on line 5"),
             ("a second table `[run]`", "the first one is on line 1"),
-            ("a second `x`", "the first one is on line 10"),
+            ("duplicate key `x`", "the first one is on line 10"),
             ("a second table `[run]`", "the first one is on line 1"),
         ];
         assert_eq!(said, pairs.map(|(message, help)| (message.to_owned(), help.to_owned())));

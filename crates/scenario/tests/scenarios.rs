@@ -345,7 +345,7 @@ fn kind(value: &Json) -> String {
         "boolean" => "`true`, `false`".into(),
         "integer" => format!("{} to {}", value["minimum"], value["maximum"]),
         "object" => "`{ min = …, max = … }`".into(),
-        "string" => "text".into(),
+        "string" => "string".into(),
         other => other.to_owned(),
     }
 }

@@ -6,7 +6,7 @@ pub(crate) mod plant;
 
 use crate::axis::Axis;
 use crate::closed_loop::{ClosedLoop, Control, Shaft, Source, State};
-use crate::coupled::{self, ConnectionDelay, Coupled, NoPartners, Partners};
+use crate::coupled::{self, ConnectionDelay, Coupled, FmuOpener, NoFmus};
 use crate::disturbance::Disturbances;
 use crate::error::{BuildError, check_length};
 use crate::machine::Machine;
@@ -43,7 +43,7 @@ impl Bench {
     /// # Errors
     /// [`BuildError`] says which part of the scenario cannot be built.
     pub fn new(scenario: &Scenario, engine: &dyn Engine) -> Result<Self, BuildError> {
-        Self::with_partners(scenario, engine, &NoPartners)
+        Self::with_fmus(scenario, engine, &NoFmus)
     }
 
     /// How long a run of `scenario` has to last to see all of it (s): as long as it says, or half a second longer than its program, and
@@ -83,11 +83,7 @@ impl Bench {
     ///
     /// # Errors
     /// As [`new`](Self::new).
-    pub fn with_partners(
-        scenario: &Scenario,
-        engine: &dyn Engine,
-        partners: &dyn Partners,
-    ) -> Result<Self, BuildError> {
+    pub fn with_fmus(scenario: &Scenario, engine: &dyn Engine, fmu_opener: &dyn FmuOpener) -> Result<Self, BuildError> {
         let base_rate = scenario.base_rate;
         let program = Program::new(scenario)?;
         let duration = scenario.duration.unwrap_or(program.end() + TAIL);
@@ -164,7 +160,7 @@ impl Bench {
         let closed_loop = if scenario.fmus.is_empty() {
             Loop::Alone(Box::new(machine))
         } else {
-            Loop::Coupled(Box::new(Coupled::new(scenario, machine, ticks, (&equipment, &rates), partners)?))
+            Loop::Coupled(Box::new(Coupled::new(scenario, machine, ticks, (&equipment, &rates), fmu_opener)?))
         };
         Ok(Self { ticks, closed_loop })
     }

@@ -23,7 +23,7 @@ use std::num::NonZeroU32;
 use wiring::Wiring;
 
 /// Opens the FMUs of a scenario.
-pub trait Partners: Sync {
+pub trait FmuOpener: Sync {
     /// The FMU that is asked for.
     ///
     /// # Errors
@@ -33,9 +33,9 @@ pub trait Partners: Sync {
 
 /// Nobody: for scenarios without FMUs.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct NoPartners;
+pub struct NoFmus;
 
-impl Partners for NoPartners {
+impl FmuOpener for NoFmus {
     fn open(&self, _: &FmuRequest<'_>) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
         Err(vec![FmuMistake::of_file(&"this program opens no FMUs")])
     }
@@ -75,7 +75,7 @@ impl Coupled {
         machine: Machine<[Axis; 1]>,
         ticks: u64,
         (equipment, rates): (&Equipment, &Rates),
-        partners: &dyn Partners,
+        fmu_opener: &dyn FmuOpener,
     ) -> Result<Self, BuildError> {
         let wiring = Wiring::new(scenario, equipment, rates)?;
         let end = scenario.base_rate.time(Tick(ticks.saturating_sub(1)));
@@ -83,7 +83,7 @@ impl Coupled {
         for (index, fmu) in scenario.fmus.iter().enumerate() {
             let request = wiring.request(index, equipment, ticks);
             let name = fmu.name.clone();
-            let slave = match partners.open(&request) {
+            let slave = match fmu_opener.open(&request) {
                 Ok(slave) => slave,
                 Err(mistakes) => {
                     unusable.push(UnusableFmu { index, name, mistakes });

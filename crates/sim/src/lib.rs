@@ -23,7 +23,7 @@ mod stepper;
 mod thinning;
 
 pub use bench::Bench;
-pub use coupled::{ConnectionDelay, NoPartners, Partners};
+pub use coupled::{ConnectionDelay, FmuOpener, NoFmus};
 pub use error::{BuildError, UnusableFmu};
 pub use external::{Controller, External};
 pub use multi_axis::{MultiAxisBench, MultiAxisOutcome, NotAtOneTime};

@@ -2,7 +2,7 @@
 use servobench_fmi::{Capabilities, FmuMistake, FmuRequest, LogLine, Slave, SlaveError, StepEnd};
 use servobench_plant::Exact;
 use servobench_scenario as scenario;
-use servobench_sim::{Bench, NoPartners, Outcome, Partners};
+use servobench_sim::{Bench, FmuOpener, NoFmus, Outcome};
 use servobench_trace::Recording;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -131,7 +131,7 @@ struct Relays {
     readings: Arc<AtomicUsize>,
 }
 
-impl Partners for Relays {
+impl FmuOpener for Relays {
     fn open(&self, _: &FmuRequest<'_>) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
         Ok(Box::new(Relay { feeds_through: self.feeds_through, last: 0.0, readings: Arc::clone(&self.readings) }))
     }
@@ -143,7 +143,7 @@ struct Parts;
 /// Stiffness of the spring that stands for a load (N/m), with 40 kg a mode of 10 Hz.
 const STIFFNESS: f64 = 40.0 * (TAU * 10.0) * (TAU * 10.0);
 
-impl Partners for Parts {
+impl FmuOpener for Parts {
     fn open(&self, request: &FmuRequest<'_>) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
         let start = vec![0.0; request.outputs.len()];
         let state = [0.0; 2];
@@ -185,7 +185,7 @@ fn run(text: &str) -> Recording {
 }
 
 /// The bench of a scenario beside whose file lie FMUs, whose insides do not matter here.
-fn bench(text: &str, partners: &dyn Partners) -> Result<Bench, String> {
+fn bench(text: &str, fmu_opener: &dyn FmuOpener) -> Result<Bench, String> {
     let folder = tempfile::tempdir().unwrap();
     for name in ["spring", "push", "ramp", "controller", "first", "second"] {
         std::fs::write(folder.path().join(format!("{name}.fmu")), "").unwrap();
@@ -193,7 +193,7 @@ fn bench(text: &str, partners: &dyn Partners) -> Result<Bench, String> {
     let path = folder.path().join("coupled.toml");
     std::fs::write(&path, text).unwrap();
     let loaded = scenario::load(&path).map_err(|error| error.to_string())?;
-    Bench::with_partners(&loaded.scenario, &Exact, partners).map_err(|error| error.to_string())
+    Bench::with_fmus(&loaded.scenario, &Exact, fmu_opener).map_err(|error| error.to_string())
 }
 
 fn fmu(name: &str, keys: &str) -> String {
@@ -304,7 +304,7 @@ fn a_ring_without_feedthrough_is_no_algebraic_loop() {
 #[test]
 fn what_nobody_can_open_or_connect_is_refused() {
     let push = fmu("push", "outputs = { F = \"disturbance.load\" }\n");
-    let refused = bench(&format!("{TABLE}{push}"), &NoPartners).err().unwrap_or_default();
+    let refused = bench(&format!("{TABLE}{push}"), &NoFmus).err().unwrap_or_default();
     assert_eq!(refused, "FMU `push`: this program opens no FMUs");
     let spring = fmu("spring", "inputs = { x = \"table.position\" }\noutputs = { F = \"disturbance.load\" }\n");
     let refused = bench(&format!("{TABLE}{spring}"), &Parts).err().unwrap_or_default();

@@ -162,7 +162,7 @@ fn a_master_that_stops_leaves_an_underflow_and_a_stop() {
     let stop = velocity.iter().rposition(|v| v.abs() > 0.0).map_or(0.0, |row| recording.time_of(row));
     println!("at rest at {stop} s");
     assert!(stop > 2.03 && stop < 2.6, "the points in the buffer, then a ramp: {stop}");
-    // At the turns of the position loop, every fourth tick: between them a set-point goes straight on.
+    // At the cycles of the position loop, every fourth tick: between them a set-point goes straight on.
     let turns: Vec<f64> = velocity.iter().step_by(4).copied().collect();
     let steepest = turns.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
     // The quick stop has twice the largest acceleration of the table.
@@ -233,7 +233,7 @@ const SEGMENT: usize = 40;
 /// A few roundings of 0.1 m.
 const ROUNDING: f64 = 1e-15;
 
-/// Oracle: the door of 2010h. The points are the same, so the motion is, to the bit.
+/// Oracle: the door of 2010h. The points are the same, so the motion is, bit for bit.
 #[test]
 fn points_with_velocities_are_the_same_motion_by_every_door() {
     let file = sine(300);

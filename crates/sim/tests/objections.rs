@@ -2,7 +2,7 @@
 use servobench_plant::{Exact, MechanicsError, MjcfModel};
 use servobench_scenario::{AxisMechanics, Scenario};
 use servobench_signals::Signal;
-use servobench_sim::{Bench, BuildError, NoPartners};
+use servobench_sim::{Bench, BuildError, NoFmus};
 
 fn scenario(program: &str) -> Scenario {
     let text = format!(
@@ -49,7 +49,7 @@ fn program_and_mechanics_are_objected_to_together() {
         transmission: 1.0,
         axis: None,
     });
-    let found = Bench::objections(&scenario, &Exact, &NoPartners);
+    let found = Bench::objections(&scenario, &Exact, &NoFmus);
     let [BuildError::Plan { index: 0, .. }, BuildError::Mechanics(MechanicsError::Unsupported { .. })] = &found[..]
     else {
         panic!("{found:?}");
@@ -59,8 +59,8 @@ fn program_and_mechanics_are_objected_to_together() {
 #[test]
 fn what_stands_on_them_is_objected_to_without_them() {
     let mut scenario = scenario("");
-    let found = Bench::objections(&scenario, &Exact, &NoPartners);
+    let found = Bench::objections(&scenario, &Exact, &NoFmus);
     assert!(matches!(&found[..], [BuildError::UnknownChannel { signal: Signal::TablePosition, .. }]), "{found:?}");
     scenario.record.channels.clear();
-    assert_eq!(Bench::objections(&scenario, &Exact, &NoPartners), []);
+    assert_eq!(Bench::objections(&scenario, &Exact, &NoFmus), []);
 }

@@ -57,7 +57,7 @@ fn a_second_move_ends_at_the_same_position_whether_the_first_was_done_or_not() {
     assert!(state("DiscreteMotion") < executed && executed < state("Standstill"));
     assert!(when(&during, "second", "Done", "TRUE") < when(&after, "second", "Done", "TRUE"), "no stop between");
 
-    // The set-points to the bit; the load, which friction holds somewhere, to less than a nanometre.
+    // The set-points bit for bit; the load, which friction holds somewhere, to less than a nanometre.
     assert_eq!(last(&after, "task.position").to_bits(), last(&during, "task.position").to_bits());
     let [one, other] = [&after, &during].map(|recording| last(recording, "load.position"));
     println!("the load rests at {one} m and {other} m: {:.2e} m apart", (one - other).abs());

@@ -206,7 +206,7 @@ fn rockwells_move_has_its_times() {
     assert!((moves[0].1 - (0.5 + ramp)).abs() < 1e-12, "{moves:?}");
 }
 
-/// Every mode has, its delay later, what the slow task commanded: to the bit at the commands where it passes through them.
+/// Every mode has, its delay later, what the slow task commanded: bit for bit at the commands where it passes through them.
 #[test]
 fn interpolation_is_late_by_what_its_mode_says() {
     let program = "[[program]]\nmove_to = \"0.3 m\"\n";

@@ -1,9 +1,11 @@
 //! What FMUs say is in the recording at its time, whether they are beside the axis or its mechanics and however the run ends.
 use servobench_base::Severity;
 use servobench_fmi::{Capabilities, FmuMistake, FmuRequest, LogLine, Slave, SlaveError, StepEnd};
-use servobench_plant::{BodyState, Engine, EngineName, Exact, Input, Mechanics, MechanicsError, MechanicsSetup, Said};
+use servobench_plant::{
+    BodyState, Engine, EngineName, Exact, Input, LogMessage, Mechanics, MechanicsError, MechanicsSetup,
+};
 use servobench_scenario as scenario;
-use servobench_sim::{Bench, NoPartners, Outcome, Partners};
+use servobench_sim::{Bench, FmuOpener, NoFmus, Outcome};
 
 const TABLE: &str = r#"
 [run]
@@ -77,7 +79,7 @@ impl Slave for Chatty {
 
 struct Opens;
 
-impl Partners for Opens {
+impl FmuOpener for Opens {
     fn open(&self, _: &FmuRequest<'_>) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
         let mut chatty = Chatty::default();
         chatty.say(0.0, Severity::Info, "hello");
@@ -85,13 +87,13 @@ impl Partners for Opens {
     }
 }
 
-fn run(text: &str, engine: &dyn Engine, partners: &dyn Partners) -> Outcome {
+fn run(text: &str, engine: &dyn Engine, fmu_opener: &dyn FmuOpener) -> Outcome {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("tank.fmu"), "").unwrap();
     let path = folder.path().join("said.toml");
     std::fs::write(&path, text).unwrap();
     let loaded = scenario::load(&path).unwrap_or_else(|error| panic!("{error}"));
-    Bench::with_partners(&loaded.scenario, engine, partners).unwrap_or_else(|error| panic!("{error}")).run(&mut |_| {})
+    Bench::with_fmus(&loaded.scenario, engine, fmu_opener).unwrap_or_else(|error| panic!("{error}")).run(&mut |_| {})
 }
 
 fn beside(coupling: &str) -> Outcome {
@@ -122,7 +124,7 @@ struct Talking;
 struct Talks {
     exact: Box<dyn Mechanics>,
     ticks: usize,
-    said: Vec<Said>,
+    said: Vec<LogMessage>,
 }
 
 impl Engine for Talking {
@@ -143,14 +145,14 @@ impl Mechanics for Talks {
     fn advance(&mut self, input: &Input) -> Result<(), MechanicsError> {
         let time = [1e-3, f64::NAN, 1e300].get(self.ticks).copied().unwrap_or(-1.0);
         self.ticks += 1;
-        self.said.push(Said { time, severity: Severity::Warning, text: format!("in {}", self.ticks) });
+        self.said.push(LogMessage { time, severity: Severity::Warning, text: format!("in {}", self.ticks) });
         if self.ticks > 3 {
             return Err(MechanicsError::Native { engine: EngineName::Exact, message: "enough".into() });
         }
         self.exact.advance(input)
     }
 
-    fn take_log(&mut self) -> Vec<Said> {
+    fn take_log(&mut self) -> Vec<LogMessage> {
         std::mem::take(&mut self.said)
     }
 }
@@ -158,7 +160,7 @@ impl Mechanics for Talks {
 /// The fourth tick, which begins at 3 ms, fails. Nothing is said before the start or after the present.
 #[test]
 fn mechanics_are_heard_to_their_failure() {
-    let Outcome { recording, failure } = run(TABLE, &Talking, &NoPartners);
+    let Outcome { recording, failure } = run(TABLE, &Talking, &NoFmus);
     assert!(failure.is_some());
     let said: Vec<(f64, &str)> = recording.log.iter().map(|entry| (entry.start, entry.text.as_str())).collect();
     assert_eq!(said, [(0.0, "in 4"), (1e-3, "in 1"), (3e-3, "in 2"), (3e-3, "in 3")]);

@@ -1,4 +1,4 @@
-//! The loop stepped from outside is the loop that runs, to the bit.
+//! The loop stepped from outside is the loop that runs, bit for bit.
 use servobench_base::Setpoint;
 use servobench_plant::Exact;
 use servobench_scenario as scenario;

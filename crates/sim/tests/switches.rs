@@ -58,7 +58,7 @@ fn is_ever(recording: &Recording, source: &str, name: &str, value: &str) -> bool
 }
 
 /// Oracle: the run with switches that are wired normally open. A switch that is met is the same whichever way it is wired, so that
-/// every value is the same to the bit.
+/// every value is the same bit for bit.
 fn assert_same(open: &Recording, closed: &Recording, what: &str) {
     for name in ["load.position", "motor.position", "setpoint.position", "task.position"] {
         let [one, other] =

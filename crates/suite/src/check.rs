@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use servobench_fmi::{FmuEntry, FmuMistake};
 use servobench_plant::{Engine, EngineName, MechanicsError, Refusal, RefusedAt};
 use servobench_scenario::{AxisMechanics, Scenario, parameter_key, switch_key};
-use servobench_sim::{Bench, BuildError, ConnectionDelay, Partners, UnusableFmu};
+use servobench_sim::{Bench, BuildError, ConnectionDelay, FmuOpener, UnusableFmu};
 
 /// Something that keeps a scenario from being built.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -20,7 +20,7 @@ pub struct Objection {
     /// What is wrong.
     pub message: String,
     /// What to do about it; empty when the message says so.
-    pub way_out: String,
+    pub help: String,
 }
 
 /// Everything that keeps `job` from being built, as far as it can be told at once; nothing when it can be. An isolated
@@ -32,7 +32,7 @@ pub struct Objection {
 pub fn check(job: &Job, engines: &Engines, worker: &WorkerCommand) -> Result<Vec<Objection>, RunError> {
     let engine = engines.get(job.engine)?;
     if !job.engine.capabilities().may_end_process {
-        return caught(|| objections(&job.scenario, engine, engines.partners))?;
+        return caught(|| objections(&job.scenario, engine, engines.fmu_opener))?;
     }
     match worker::ask(worker, job) {
         // What a library cannot bear in a user's own file is the file's fault, as far as anybody can tell.
@@ -53,17 +53,17 @@ pub fn delays(job: &Job, engines: &Engines) -> Result<Vec<ConnectionDelay>, RunE
     if job.scenario.fmus.is_empty() || job.engine.capabilities().may_end_process {
         return Ok(Vec::new());
     }
-    caught(|| Ok(Bench::with_partners(&job.scenario, engine, engines.partners)?.delays().to_vec()))?
+    caught(|| Ok(Bench::with_fmus(&job.scenario, engine, engines.fmu_opener)?.delays().to_vec()))?
 }
 
 /// The objections of `engine`, asked in this process.
 pub(crate) fn objections(
     scenario: &Scenario,
     engine: &dyn Engine,
-    partners: &dyn Partners,
+    fmu_opener: &dyn FmuOpener,
 ) -> Result<Vec<Objection>, RunError> {
     let mut all = Vec::new();
-    for error in Bench::objections(scenario, engine, partners) {
+    for error in Bench::objections(scenario, engine, fmu_opener) {
         if is_of_the_run(&error) {
             return Err(error.into());
         }
@@ -75,8 +75,8 @@ pub(crate) fn objections(
 /// What `error` objects to, each thing at its place.
 fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
     let key = match error {
-        BuildError::Mechanics(MechanicsError::Refused { engine, refusals, way_out, .. }) => {
-            return refusals.iter().map(|refusal| Objection::to(refusal, *engine, way_out, scenario)).collect();
+        BuildError::Mechanics(MechanicsError::Refused { engine, refusals, help, .. }) => {
+            return refusals.iter().map(|refusal| Objection::to(refusal, *engine, help, scenario)).collect();
         }
         BuildError::Mechanics(MechanicsError::Fmu { mistakes, .. }) => {
             return mistakes.iter().map(|mistake| Objection::to_fmu(mistake, "axis.fmu")).collect();
@@ -90,9 +90,9 @@ fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
         }
         BuildError::NoSuchFault { index, .. } => format!("expect.{index}.fault"),
         BuildError::NoSuchSignal { index, variable, .. } => format!("fmu.{index}.inputs.{variable}"),
-        BuildError::Mechanics(MechanicsError::Unsupported { engine, what, way_out }) => {
+        BuildError::Mechanics(MechanicsError::Unsupported { engine, what, help }) => {
             let message = format!("engine `{engine}` does not support {what}");
-            return vec![Objection { way_out: way_out.clone(), ..Objection::new(model_key(scenario), message) }];
+            return vec![Objection { help: help.clone(), ..Objection::new(model_key(scenario), message) }];
         }
         // The place says which object it is.
         BuildError::Object { key, error } => return vec![Objection::new(key, error.to_string())],
@@ -120,11 +120,11 @@ fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
 
 impl Objection {
     fn new(key: &str, message: String) -> Self {
-        Self { key: key.to_owned(), line: None, message, way_out: String::new() }
+        Self { key: key.to_owned(), line: None, message, help: String::new() }
     }
 
     /// What `engine` refuses in the MJCF file of `scenario`.
-    fn to(refusal: &Refusal, engine: EngineName, way_out: &str, scenario: &Scenario) -> Self {
+    fn to(refusal: &Refusal, engine: EngineName, help: &str, scenario: &Scenario) -> Self {
         let (key, line) = match &refusal.place {
             RefusedAt::Line(line) => (model_key(scenario), Some(*line)),
             RefusedAt::Name(name) => (name_key(name, scenario).unwrap_or(model_key(scenario)), None),
@@ -136,7 +136,7 @@ impl Objection {
             }
         };
         let message = format!("engine `{engine}`: {}", refusal.message);
-        Self { key: key.to_owned(), line, message, way_out: way_out.to_owned() }
+        Self { key: key.to_owned(), line, message, help: help.to_owned() }
     }
 
     /// What does not fit the file of the FMU that `table` describes.
@@ -149,7 +149,7 @@ impl Objection {
             FmuEntry::Input(variable) => format!("{table}.inputs.{variable}"),
             FmuEntry::Output(variable) => format!("{table}.outputs.{variable}"),
         };
-        Self { key, line: None, message: mistake.message.clone(), way_out: mistake.way_out.clone() }
+        Self { key, line: None, message: mistake.message.clone(), help: mistake.help.clone() }
     }
 }
 

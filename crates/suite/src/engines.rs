@@ -1,7 +1,7 @@
 //! Which engines this build has.
 use servobench_config::Choice as _;
 use servobench_plant::{Engine, EngineName};
-use servobench_sim::{NoPartners, Partners};
+use servobench_sim::{FmuOpener, NoFmus};
 use thiserror::Error;
 
 /// The engines of this build; the command line lists them, since it alone has engine features.
@@ -10,7 +10,7 @@ pub struct Engines {
     /// Each at most once.
     pub installed: &'static [&'static dyn Engine],
     /// Who opens the FMUs beside an axis.
-    pub partners: &'static dyn Partners,
+    pub fmu_opener: &'static dyn FmuOpener,
 }
 
 /// The build lacks an engine.
@@ -26,7 +26,7 @@ pub struct EngineMissing {
 
 impl Engines {
     /// A build without engines.
-    pub const NONE: Self = Self { installed: &[], partners: &NoPartners };
+    pub const NONE: Self = Self { installed: &[], fmu_opener: &NoFmus };
 
     /// The engine `name`.
     ///

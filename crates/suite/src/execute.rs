@@ -7,7 +7,7 @@ use crate::worker::{self, WorkerCommand};
 use servobench_metrics::{EarlyEnd, Limit, Metrics, Verdict, judge_requirements, measure};
 use servobench_plant::{Engine, MechanicsError};
 use servobench_scenario::{Scenario, Step};
-use servobench_sim::{Bench, Failure, Partners, Reason, selected, thinned};
+use servobench_sim::{Bench, Failure, FmuOpener, Reason, selected, thinned};
 use servobench_trace::Recording;
 
 /// A run that came to its end.
@@ -54,7 +54,7 @@ impl From<Failure> for Interruption {
     }
 }
 
-/// Runs `job` and judges it; `progress` hears the share that is done, from 0 to 1.
+/// Runs `job` and judges it; `progress` is told the share that is done, from 0 to 1.
 ///
 /// A panic of the engine or of the measures goes through: [`map_in_parallel`](crate::map_in_parallel) keeps it from
 /// the other jobs.
@@ -98,17 +98,17 @@ fn recorded(
     if job.engine.capabilities().may_end_process {
         Ok(worker::call(worker, job, progress)?)
     } else {
-        run_here(&job.scenario, (engine, engines.partners), progress)
+        run_here(&job.scenario, (engine, engines.fmu_opener), progress)
     }
 }
 
 /// Runs in this process.
 pub(crate) fn run_here(
     scenario: &Scenario,
-    (engine, partners): (&dyn Engine, &dyn Partners),
+    (engine, fmu_opener): (&dyn Engine, &dyn FmuOpener),
     progress: &mut dyn FnMut(f64),
 ) -> Result<Recorded, RunError> {
-    let outcome = Bench::with_partners(scenario, engine, partners)?.run(progress);
+    let outcome = Bench::with_fmus(scenario, engine, fmu_opener)?.run(progress);
     Ok((outcome.recording, outcome.failure.map(Interruption::from)))
 }
 

@@ -12,7 +12,7 @@
 //!
 //! What the worker says of its end is what the run is reported with, so that a reason does not depend on where a run
 //! happened. An end without a word is that of a native library; it costs this run only, and what the library wrote on
-//! standard error is reported. A worker that says nothing for [`WorkerCommand::patience`] is ended.
+//! standard error is reported. A worker that says nothing for [`WorkerCommand::timeout`] is ended.
 mod call;
 mod listener;
 mod message;
@@ -38,7 +38,7 @@ pub struct WorkerCommand {
     pub folder: PathBuf,
     /// How long a worker may say nothing. It speaks every few thousand ticks, but not while the engine reads the model
     /// nor while it writes the recording.
-    pub patience: Duration,
+    pub timeout: Duration,
 }
 
 /// Why a worker gave no run, or half of one.
@@ -71,11 +71,11 @@ pub enum WorkerError {
     /// The worker said nothing for too long and was ended.
     #[error(
         "the engine's process made no progress for {} s and was ended; allow it longer with `--worker-timeout`",
-        patience.as_secs_f64()
+        timeout.as_secs_f64()
     )]
     Stalled {
         /// How long it was waited for.
-        patience: Duration,
+        timeout: Duration,
     },
     /// The worker was done, but its recording cannot be read.
     #[error("the recording of the worker: {0}")]

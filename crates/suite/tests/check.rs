@@ -52,12 +52,7 @@ impl Engine for Refuses {
             refusal(RefusedAt::Name("tendon's".into()), "no such joint"),
             refusal(RefusedAt::File, "no mass"),
         ];
-        Err(MechanicsError::Refused {
-            engine: EngineName::Rapier,
-            path: "arm.xml".into(),
-            refusals,
-            way_out: "change it",
-        })
+        Err(MechanicsError::Refused { engine: EngineName::Rapier, path: "arm.xml".into(), refusals, help: "change it" })
     }
 }
 
@@ -81,7 +76,7 @@ fn job() -> Job {
 }
 
 fn nowhere() -> WorkerCommand {
-    WorkerCommand { program: "none".into(), folder: "none".into(), patience: Duration::ZERO }
+    WorkerCommand { program: "none".into(), folder: "none".into(), timeout: Duration::ZERO }
 }
 
 #[test]
@@ -98,7 +93,7 @@ fn each_objection_has_its_place() {
         key: file.into(),
         line,
         message: format!("engine `rapier`: {message}"),
-        way_out: "change it".into(),
+        help: "change it".into(),
     };
     assert_eq!((&found[1], &found[4]), (&refused(Some(3), "no mesh"), &refused(None, "no mass")));
 }

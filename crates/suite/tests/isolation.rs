@@ -63,7 +63,7 @@ fn slide(engines: &[EngineName]) -> Vec<Job> {
 }
 
 fn worker(program: &Path, folder: &Path) -> WorkerCommand {
-    WorkerCommand { program: program.to_owned(), folder: folder.to_owned(), patience: Duration::from_mins(1) }
+    WorkerCommand { program: program.to_owned(), folder: folder.to_owned(), timeout: Duration::from_mins(1) }
 }
 
 #[test]
@@ -85,10 +85,10 @@ mod stub {
     use super::*;
 
     /// What comes of a worker that does as this shell script says.
-    fn broken_by(script: &str, patience: Duration) -> Box<Broken> {
+    fn broken_by(script: &str, timeout: Duration) -> Box<Broken> {
         let folder = tempfile::tempdir().unwrap();
         let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/stub/worker.sh");
-        let command = WorkerCommand { patience, ..worker(&program, folder.path()) };
+        let command = WorkerCommand { timeout, ..worker(&program, folder.path()) };
         let mut job = slide(&[EngineName::Mujoco]).remove(0);
         job.text = script.into();
         let broken = execute(&job, &ENGINES, &command, &mut |_| {}).unwrap_err();

@@ -32,7 +32,7 @@ fn run(text: &str) -> Run {
     let engines = Engines { installed: &[&servobench_plant::Exact], ..Engines::NONE };
     let scenario = servobench_scenario::parse("rings", text, None).unwrap_or_else(|error| panic!("{error}")).scenario;
     let job = jobs(vec![Source { scenario, text: text.into() }], &[EngineName::Exact]).remove(0);
-    let worker = WorkerCommand { program: "none".into(), folder: "none".into(), patience: Duration::from_secs(1) };
+    let worker = WorkerCommand { program: "none".into(), folder: "none".into(), timeout: Duration::from_secs(1) };
     execute(&job, &engines, &worker, &mut |_| {}).unwrap()
 }
 

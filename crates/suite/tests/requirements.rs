@@ -25,7 +25,7 @@ fn broken_of(path: &Path, channels: &[&str]) -> (Vec<&'static str>, Vec<String>)
     let text = std::fs::read_to_string(path).unwrap();
     let source = Source { scenario: loaded.scenario, text };
     let job = jobs(vec![source], &[EngineName::Exact]).remove(0);
-    let nowhere = WorkerCommand { program: "none".into(), folder: "none".into(), patience: std::time::Duration::ZERO };
+    let nowhere = WorkerCommand { program: "none".into(), folder: "none".into(), timeout: std::time::Duration::ZERO };
     let run = execute(&job, &ENGINES, &nowhere, &mut |_| {}).unwrap_or_else(|broken| panic!("{}", broken.error));
     let names = run
         .verdict

@@ -70,7 +70,7 @@ fn a_reason_and_a_recording_do_not_depend_on_where_the_run_happened() {
     let scenario =
         servobench_scenario::parse("wild.toml", WILD, None).unwrap_or_else(|error| panic!("{error}")).scenario;
     let job = &jobs(vec![Source { scenario, text: WILD.into() }], &[])[0];
-    let nowhere = WorkerCommand { program: "none".into(), folder: "none".into(), patience: std::time::Duration::ZERO };
+    let nowhere = WorkerCommand { program: "none".into(), folder: "none".into(), timeout: std::time::Duration::ZERO };
     let run = execute(job, &ENGINES, &nowhere, &mut |_| {}).unwrap_or_else(|broken| panic!("{}", broken.error));
     let reasons: Vec<String> = run.verdict.reasons().collect();
 

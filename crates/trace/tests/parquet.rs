@@ -1,4 +1,4 @@
-//! A recording comes back from its file to the bit, or is refused with the reason.
+//! A recording comes back from its file bit for bit, or is refused with the reason.
 use proptest::prelude::*;
 use servobench_base::{Rate, Severity};
 use servobench_trace::{
@@ -118,7 +118,7 @@ fn said(recording: &Recording) -> String {
     format!("{moves:?}{events:?}{signals:?}{calls:?}{limit_reversals:?}{log:?}")
 }
 
-/// Equality to the bit: `==` alone takes -0 for 0.
+/// Equality bit for bit: `==` alone takes -0 for 0.
 fn assert_same(one: &Recording, two: &Recording) {
     assert_eq!(one, two);
     // The shortest text that reads back as the same f64 tells all of them apart, zeros too.

@@ -1,7 +1,6 @@
 //! Which view stands where.
 use crate::catalogue::Page;
 use crate::curves::TIMELINE;
-use crate::happenings::Happenings;
 use crate::layout::{Layout, Node, View};
 use crate::legend;
 use crate::planned::PlannedPlot;
@@ -15,6 +14,7 @@ use crate::rerun::blueprint::datatypes::{TextLogColumn, TextLogColumnKind, Timel
 use crate::rerun::{TimeInt, TimeRange, TimeRangeBoundary};
 use crate::scene::Scene;
 use crate::signals::Lanes;
+use crate::timeline_events::Happenings;
 use crate::verdict::Head;
 use servobench_metrics::round_below;
 
@@ -41,7 +41,7 @@ pub(crate) struct Parts<'p, 'a> {
     /// The 3D view.
     pub(crate) scene: Option<&'p Scene>,
     /// Moves, events and log.
-    pub(crate) happenings: Happenings,
+    pub(crate) timeline_events: Happenings,
     /// Lanes of signals.
     pub(crate) signals: Lanes,
     /// Lanes of limits.
@@ -74,7 +74,7 @@ type Column<'p, 'a> = Vec<(Room, Part<'p, 'a>)>;
 
 /// The layout of `parts`.
 pub(crate) fn layout(parts: Parts<'_, '_>) -> Layout {
-    let Parts { plots, scene, happenings, signals, reached, head, duration } = parts;
+    let Parts { plots, scene, timeline_events, signals, reached, head, duration } = parts;
     let is_first = |name: &str| (name == "Program") == signals.has_program;
     let height = |name: &str| PAGE - head_height(head, ["Axis", "Program"].contains(&name) && is_first(name));
     let on =
@@ -87,12 +87,12 @@ pub(crate) fn layout(parts: Parts<'_, '_>) -> Layout {
     drive.extend(electrical.map(|node| (Room::Share(1.0), Part::View(node))));
     drive.extend(lanes.map(|(points, node)| (Room::Points(points), Part::View(node))));
     let mut pages = [
-        ("Axis", axis(on(Page::Motion).collect(), on(Page::Errors).collect(), scene, &happenings, height("Axis"))),
+        ("Axis", axis(on(Page::Motion).collect(), on(Page::Errors).collect(), scene, &timeline_events, height("Axis"))),
         ("Program", program),
         ("Set-point", in_columns(on(Page::SetPoint).collect(), COLUMN.1, height("Set-point"))),
         ("Drive", stack(drive, height("Drive"))),
         ("Other", in_columns(on(Page::Other).collect(), COLUMN.0, height("Other"))),
-        ("Log", log_view(&happenings)),
+        ("Log", log_view(&timeline_events)),
     ];
     if signals.has_program {
         pages.swap(0, 1);
@@ -109,7 +109,7 @@ fn axis<'p, 'a>(
     motion: Column<'p, 'a>,
     mut right: Column<'p, 'a>,
     scene: Option<&Scene>,
-    happenings: &Happenings,
+    timeline_events: &Happenings,
     height: f64,
 ) -> Option<Node> {
     let is_comparison = scene.is_some_and(|scene| scene.roots.len() > 1);
@@ -118,7 +118,7 @@ fn axis<'p, 'a>(
     left.extend(scene.map(|scene| (Room::Share(share), Part::View(scene_view(scene)))));
     left.extend(motion);
     // The lanes of several runs would leave the 3D view no room.
-    if is_comparison { &mut right } else { &mut left }.extend(lanes_view(happenings));
+    if is_comparison { &mut right } else { &mut left }.extend(lanes_view(timeline_events));
     let columns = [(0.45, left), (0.55, right)];
     let columns = columns.into_iter().filter_map(|(share, parts)| Some((share, stack(parts, height)?)));
     Node::of(ContainerKind::Horizontal, None, columns.collect())
@@ -207,8 +207,8 @@ fn share(plot: &PlannedPlot<'_>) -> Room {
 }
 
 /// Moves and events, as high as it has lanes.
-fn lanes_view<'p, 'a>(happenings: &Happenings) -> Option<(Room, Part<'p, 'a>)> {
-    let lanes = happenings.lanes.clone();
+fn lanes_view<'p, 'a>(timeline_events: &Happenings) -> Option<(Room, Part<'p, 'a>)> {
+    let lanes = timeline_events.lanes.clone();
     let height = Room::Points(lanes_height(lanes.len().min(4)));
     (!lanes.is_empty()).then(|| (height, Part::View(Node::View(View::new("StateTimeline", "Moves and events", lanes)))))
 }
@@ -217,13 +217,13 @@ fn reached_view(reached: Reached) -> Node {
     Node::View(View::new("StateTimeline", reached.title, reached.paths))
 }
 
-fn log_view(happenings: &Happenings) -> Option<Node> {
+fn log_view(timeline_events: &Happenings) -> Option<Node> {
     let columns = [TextLogColumnKind::LogLevel, TextLogColumnKind::Body];
     let columns = columns.map(|kind| TextLogColumn { kind, visible: true.into() });
     // Rerun's own column of times is too narrow for them: each line begins with its time.
     let time = TimelineColumn { visible: false.into(), timeline: TIMELINE.into() };
     let columns = TextLogColumns::new().with_text_log_columns(columns).with_timeline_columns([time]);
-    let logs = happenings.logs.clone();
+    let logs = timeline_events.logs.clone();
     (!logs.is_empty()).then(|| Node::View(View::new("TextLog", "Log", logs).with("TextLogColumns", &columns)))
 }
 

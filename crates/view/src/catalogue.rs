@@ -199,7 +199,7 @@ pub(crate) const PLOTS: &[Plot] = &[
         curves: &[curve(&[Signal::CommandOutput.name()], "output", style::MOTOR, MIDDLE)],
         ..PLAIN
     },
-    // The way of the set-point: from the motion task over the bus to what the motor is to follow, and what the master hears.
+    // The way of the set-point: from the motion task over the bus to what the motor is to follow, and what the master receives.
     Plot {
         title: "Set-point position",
         path: "setpoint_position",

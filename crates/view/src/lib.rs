@@ -10,7 +10,6 @@ mod blueprint;
 mod catalogue;
 mod curves;
 mod error;
-mod happenings;
 mod lanes;
 mod layout;
 mod legend;
@@ -31,6 +30,7 @@ mod settling;
 mod signals;
 mod style;
 mod ticks;
+mod timeline_events;
 mod unlisted;
 mod verdict;
 

@@ -3,7 +3,6 @@ use crate::blueprint::{self, Parts};
 use crate::catalogue::BOUND;
 use crate::curves;
 use crate::error::ViewError;
-use crate::happenings::{self, Happenings};
 use crate::layout::Layout;
 use crate::options::ViewOptions;
 use crate::plan;
@@ -13,6 +12,7 @@ use crate::rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamResul
 use crate::run::Run;
 use crate::scene::Scene;
 use crate::signals;
+use crate::timeline_events::{self, Happenings};
 use crate::verdict::Head;
 use servobench_trace::Recording;
 use std::path::Path;
@@ -85,7 +85,7 @@ impl<'a> Presentation<'a> {
         blueprint::layout(Parts {
             plots: &self.plots,
             scene: self.scene.as_ref(),
-            happenings: Happenings::of(&self.runs),
+            timeline_events: Happenings::of(&self.runs),
             signals: signals::lanes(&self.runs),
             reached: Reached::of(&self.runs),
             head: &self.head,
@@ -112,7 +112,7 @@ impl<'a> Presentation<'a> {
     fn log_all_but_curves(&self, stream: &RecordingStream) -> RecordingStreamResult<()> {
         self.head.log(stream)?;
         self.plots.iter().try_for_each(|plot| curves::log_styles(stream, plot))?;
-        self.runs.iter().enumerate().try_for_each(|(index, run)| happenings::log(stream, run, index))?;
+        self.runs.iter().enumerate().try_for_each(|(index, run)| timeline_events::log(stream, run, index))?;
         self.runs.iter().try_for_each(|run| signals::log(stream, run))?;
         self.runs.iter().try_for_each(|run| reached::log(stream, run))?;
         self.scene.as_ref().map_or(Ok(()), |scene| scene.log(stream, &self.runs))

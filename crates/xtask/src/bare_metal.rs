@@ -54,7 +54,7 @@ fn missing(why: String) -> Failure {
     Failure::Fetch {
         name: format!("the core library for {TARGET}"),
         why,
-        way_out: format!("`rustup target add {TARGET}`, once, with a network"),
+        help: format!("`rustup target add {TARGET}`, once, with a network"),
     }
 }
 

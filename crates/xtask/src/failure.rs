@@ -16,14 +16,14 @@ pub(crate) enum Failure {
         commands: String,
     },
     /// A file that the project does not hold itself could not be fetched.
-    #[error("{name} cannot be fetched ({why}); {way_out}")]
+    #[error("{name} cannot be fetched ({why}); {help}")]
     Fetch {
         /// What it is and which version.
         name: String,
         /// The cause, in short.
         why: String,
         /// What to do.
-        way_out: String,
+        help: String,
     },
     /// A program could not be started.
     #[error("`{program}` cannot be started ({source}); install it or put it on the PATH")]

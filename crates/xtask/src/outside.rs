@@ -125,7 +125,7 @@ impl Environment {
         self.install().map_err(|why| Failure::Fetch {
             name: "what the outside clients need".into(),
             why,
-            way_out: "`cargo xtask test` fetches it with Python 3.11 or later, pip and a package index in reach".into(),
+            help: "`cargo xtask test` fetches it with Python 3.11 or later, pip and a package index in reach".into(),
         })?;
         fs::write(self.stamp(), wanted).map_err(Failure::file("write", self.stamp()))
     }

@@ -193,11 +193,11 @@ impl Wheel {
     }
 
     fn failure(&self, why: String) -> Failure {
-        let way_out = format!(
+        let help = format!(
             "`{}` fetches it with Python 3, pip and a package index in reach, and {}",
             self.command, self.otherwise
         );
-        Failure::Fetch { name: self.name.into(), why, way_out }
+        Failure::Fetch { name: self.name.into(), why, help }
     }
 }
 

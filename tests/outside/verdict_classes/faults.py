@@ -126,11 +126,11 @@ def outside(p: Program) -> Fault | None:
 def silent(p: Program) -> Fault | None:
     """A drive that is silent during a move, for half as long as the master waits or for longer."""
     begun, whole, name = on_its_way(p, 0.3, 0.5)
-    start, patience = round(begun + p.random.uniform(0.1, 0.3) * whole, 3), round(0.2 * whole, 3)
-    lasts = p.random.choice((0.5, p.random.uniform(1.3, 2))) * patience
-    p.machine.tree["bus"] |= {"drive_timeout": f"{patience} s"}
+    start, call_timeout = round(begun + p.random.uniform(0.1, 0.3) * whole, 3), round(0.2 * whole, 3)
+    lasts = p.random.choice((0.5, p.random.uniform(1.3, 2))) * call_timeout
+    p.machine.tree["bus"] |= {"drive_timeout": f"{call_timeout} s"}
     p.machine.tree["bus"]["fault"] = [{"kind": "drive-silent", "start": f"{start} s", "duration": quantity(lasts, "s")}]
-    return Fault("link", "drive time-out", start + patience, name) if lasts > patience else None
+    return Fault("link", "drive time-out", start + call_timeout, name) if lasts > call_timeout else None
 
 
 KINDS = (switch, switch, window, window, lost, outside, silent)

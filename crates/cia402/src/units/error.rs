@@ -78,22 +78,6 @@ pub enum UnitError {
         /// Magnitude at which the counts overflow (SI).
         highest: f64,
     },
-    /// A value that its object cannot hold.
-    #[error(
-        "`{name}` ({object}) must be between {lowest} and {highest}, got {value}: choose a coarser unit (6092h, 6096h)"
-    )]
-    OutsideObject {
-        /// The object.
-        object: Object,
-        /// Its name in the standard.
-        name: &'static str,
-        /// Rejected value, in the unit of the object.
-        value: i128,
-        /// Smallest value.
-        lowest: i128,
-        /// Largest value.
-        highest: i128,
-    },
     /// A counter too narrow or too wide.
     #[error("a position counter must have 8 to 64 bits, got {bits}: take the width of the drive's counter")]
     CounterWidth {
@@ -114,17 +98,6 @@ pub enum UnitError {
         /// Rejected reading.
         reading: i128,
     },
-    /// A bound on the steps that does not tell one direction from the other.
-    #[error(
-        "`largest_step` must be between 1 and {highest} counts, got {largest_step}: half the range of the counter has \
-         two directions"
-    )]
-    StepBound {
-        /// Rejected bound (counts).
-        largest_step: i128,
-        /// Largest bound, one less than half the range (counts).
-        highest: i128,
-    },
     /// Two readings so far apart that the way between them is not known.
     #[error(
         "the counter went from {from} to {to}, {step} counts the nearest way, at most {largest_step} tell the \
@@ -140,7 +113,4 @@ pub enum UnitError {
         /// Largest step accepted (counts).
         largest_step: i128,
     },
-    /// A difference over a cycle without length.
-    #[error("`cycle_time` must be at least 1 ns, got 0: give the time between two readings")]
-    ZeroCycleTime,
 }

@@ -132,13 +132,6 @@ impl Ratio {
         Some((halves + 1) >> 1)
     }
 
-    /// The quotient of a numerator and what it leaves over, in 64 bits.
-    #[inline]
-    pub(super) const fn split(self, numerator: i64) -> (i64, i64) {
-        let whole = self.denominator.floor(numerator);
-        (whole, numerator - whole * self.denominator())
-    }
-
     /// [`of_f64`](Self::of_f64) in `f64`, unless the two roundings of the quotient could lead to another integer.
     #[inline]
     fn of_f64_beyond_doubt(self, x: f64) -> Option<i64> {

@@ -1,9 +1,8 @@
 //! The conversions of a factor group.
 use core::f64::consts::TAU;
 
-use super::ratio::{nearest, product};
-use super::{Carry, Object, Ratio, UnitError};
-use crate::difference::Displacement;
+use super::ratio::product;
+use super::{Ratio, UnitError};
 
 /// The conversions between increments of the encoder and the units of the axis, by
 /// [`FactorGroup::scaling`](super::FactorGroup::scaling).
@@ -35,15 +34,6 @@ impl Scaling {
         self.position_per_increment.of(signed(increments, self.position_inverted)?)
     }
 
-    /// [`position`](Self::position) as the position actual value (6064h), a 32-bit integer.
-    ///
-    /// # Errors
-    /// [`UnitError::OutsideObject`] if it does not fit. A [`Counter`](crate::counter::Counter) of 32 bits wraps
-    /// instead.
-    pub fn position_actual_value(&self, increments: i128) -> Result<i32, UnitError> {
-        integer32(0x6064, "position actual value", self.position(increments)?)
-    }
-
     /// Increments per second at a velocity in user-defined units, such as the target velocity (60FFh).
     ///
     /// # Errors
@@ -58,27 +48,6 @@ impl Scaling {
     /// As [`increments`](Self::increments).
     pub fn velocity(&self, increments_per_second: i128) -> Result<i128, UnitError> {
         self.velocity_per_increment.of(signed(increments_per_second, self.velocity_inverted)?)
-    }
-
-    /// Velocity in user-defined units over a difference of positions: one rounding.
-    ///
-    /// # Errors
-    /// As [`increments`](Self::increments).
-    pub fn velocity_of(&self, displacement: Displacement) -> Result<i128, UnitError> {
-        let ratio = self.velocity_per_increment;
-        let numerator = i128::from(ratio.numerator()) * 1_000_000_000;
-        let increments = signed(displacement.increments(), self.velocity_inverted)?;
-        // Two factors of 63 and 64 bits: no overflow.
-        let denominator = i128::from(ratio.denominator()) * i128::from(displacement.nanoseconds());
-        Ok(nearest(product(increments, numerator)?, denominator))
-    }
-
-    /// [`velocity_of`](Self::velocity_of) as the velocity actual value (606Ch), a 32-bit integer.
-    ///
-    /// # Errors
-    /// [`UnitError::OutsideObject`] if it does not fit.
-    pub fn velocity_actual_value(&self, displacement: Displacement) -> Result<i32, UnitError> {
-        integer32(0x606c, "velocity actual value", self.velocity_of(displacement)?)
     }
 
     /// Position of the axis (m or rad): metres are rounded once, radians once more by the factor 2π.
@@ -109,31 +78,9 @@ impl Scaling {
                 highest: furthest as f64 * circumference * ratio.numerator() as f64 / ratio.denominator() as f64,
             })
     }
-
-    /// Converts steps of a set-point in user-defined units into increments, remainders carried.
-    #[must_use]
-    pub const fn increments_carry(&self) -> Carry {
-        Carry::new(self.position_per_increment.inverse()).inverted(self.position_inverted)
-    }
-
-    /// Converts increments into steps in user-defined units, remainders carried.
-    #[must_use]
-    pub const fn position_carry(&self) -> Carry {
-        Carry::new(self.position_per_increment).inverted(self.position_inverted)
-    }
 }
 
 /// The value with the sign of the polarity.
 fn signed(value: i128, inverted: bool) -> Result<i128, UnitError> {
     if inverted { product(value, -1) } else { Ok(value) }
-}
-
-fn integer32(index: u16, name: &'static str, value: i128) -> Result<i32, UnitError> {
-    i32::try_from(value).map_err(|_| UnitError::OutsideObject {
-        object: Object { index, subindex: 0 },
-        name,
-        value,
-        lowest: i32::MIN.into(),
-        highest: i32::MAX.into(),
-    })
 }

@@ -1,6 +1,5 @@
 //! Every refusal names object, value, bound and the way out.
 use servobench_cia402::counter::{Counter, Unwrapped};
-use servobench_cia402::difference::Difference;
 use servobench_cia402::units::{AxisUnit, FactorGroup, Ratio, Scaling, UnitError};
 
 const UNIT: AxisUnit = AxisUnit::Metre(Ratio::ONE);
@@ -71,11 +70,6 @@ fn counts_that_overflow_are_refused() {
     );
     assert!(message(metres.increments_at(f64::NAN)).contains("got NaN"));
     assert!(message(metres.increments_at(9.3e18)).contains("got 9.3e18"));
-    assert_eq!(
-        message(metres.position_actual_value(1 << 31)),
-        "`position actual value` (6064h:00h) must be between -2147483648 and 2147483647, got 2147483648: choose a \
-         coarser unit (6092h, 6096h)"
-    );
 }
 
 #[test]
@@ -96,13 +90,5 @@ fn readings_that_cannot_be_are_refused() {
         message(axis.follow(32_775)),
         "the counter went from 7 to 32775, -32768 counts the nearest way, at most 32767 tell the direction: read it \
          more often, take a wider counter or start again from a known position"
-    );
-    assert_eq!(
-        message(axis.with_largest_step(32_768)),
-        "`largest_step` must be between 1 and 32767 counts, got 32768: half the range of the counter has two directions"
-    );
-    assert_eq!(
-        message(Difference::<1>::new(0, 0)),
-        "`cycle_time` must be at least 1 ns, got 0: give the time between two readings"
     );
 }

@@ -23,12 +23,12 @@ use std::time::Duration;
 use thiserror::Error;
 
 /// How long an isolated engine may take to read a model.
-const PATIENCE: Duration = Duration::from_mins(1);
+const CALL_TIMEOUT: Duration = Duration::from_mins(1);
 
 /// Reports every mistake of every file in one go: what is wrong in the file, and in a file without such what the engines
 /// that it names object to.
 pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
-    let (engines, worker) = (engines::installed(), workers::command(&std::env::temp_dir(), PATIENCE)?);
+    let (engines, worker) = (engines::installed(), workers::command(&std::env::temp_dir(), CALL_TIMEOUT)?);
     interrupt::watch(&std::env::temp_dir())?;
     let files = sources::files(&args.scenarios)?;
     let (mut findings, mut missing, mut shown) = (Findings::default(), Vec::new(), String::new());
@@ -139,8 +139,8 @@ impl Asked {
                 // It may quote what an FMU or an engine has said.
                 objection.message = printable(&objection.message);
                 let mistake = match objection.line {
-                    Some(line) => loaded.mistake_in_mjcf(line, objection.message, &objection.way_out),
-                    None => loaded.mistake(&objection.key, objection.message, objection.way_out),
+                    Some(line) => loaded.mistake_in_mjcf(line, objection.message, &objection.help),
+                    None => loaded.mistake(&objection.key, objection.message, objection.help),
                 };
                 // What is no engine's own is said by each of them.
                 if !asked.mistakes.contains(&mistake) {

@@ -58,7 +58,7 @@ struct OutputArgs {
     /// at equal steps of another.
     #[arg(long, value_name = "FILE", global = true)]
     csv: Option<PathBuf>,
-    /// Write a row of the table every so often instead, as "1 ms".
+    /// Time from row to row of the table, as "1 ms".
     #[arg(long, value_name = "TIME", value_parser = positive_time, requires = "csv", global = true)]
     csv_step: Option<f64>,
     /// Draw position and its derivatives with their limits, and where they bind.

@@ -69,8 +69,8 @@ fn a_straight_line_is_stable_up_to_newmarks_bound() {
         assert!(x.iter().all(|x| x.abs() < 1.001), "θ = {theta}");
     }
     match displacements(network(1.03 * bound, false), iterated(), Order::Linear, 3000, true) {
-        Err(CouplingError::Unstable { step, way_out, .. }) => {
-            assert!(step < 300 && way_out == "or cut the loop elsewhere", "{step}");
+        Err(CouplingError::Unstable { step, help, .. }) => {
+            assert!(step < 300 && help == "or cut the loop elsewhere", "{step}");
         }
         other => panic!("{:?}", other.map(|x| x.len())),
     }

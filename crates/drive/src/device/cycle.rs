@@ -18,7 +18,7 @@ pub struct Params {
 
 /// What the clock says at a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Beat {
+pub enum CycleEvent {
     /// A cycle begins and the targets of a new frame act.
     Sample,
     /// A cycle begins without a new frame.
@@ -47,32 +47,32 @@ impl State {
 
 /// Counts a step; `came` says whether a frame came since the last one. After more missed cycles than are bridged the clock
 /// waits for another first frame.
-pub(super) fn step(p: &Params, x: &mut State, came: bool) -> Beat {
+pub(super) fn step(p: &Params, x: &mut State, came: bool) -> CycleEvent {
     x.is_waiting |= came;
     if x.left.is_none() && came {
         (x.left, x.missed) = (Some(p.shift), 0);
     }
     match x.left {
-        None => Beat::Between,
+        None => CycleEvent::Between,
         Some(1..) if came && x.missed > 0 => {
             *x = State { left: Some(p.steps - 1), is_waiting: false, missed: 0 };
-            Beat::Late
+            CycleEvent::Late
         }
         Some(0) => {
             x.left = Some(p.steps - 1);
             if core::mem::take(&mut x.is_waiting) {
                 x.missed = 0;
-                return Beat::Sample;
+                return CycleEvent::Sample;
             }
             x.missed += 1;
             if x.missed > p.bridged {
                 x.left = None;
             }
-            Beat::Missed
+            CycleEvent::Missed
         }
         Some(left) => {
             x.left = Some(left - 1);
-            Beat::Between
+            CycleEvent::Between
         }
     }
 }

@@ -1,5 +1,5 @@
 //! The mode that runs, with its state.
-use super::{Beat, Params};
+use super::{CycleEvent, Params};
 use crate::modes::interpolated::Buffer;
 use crate::modes::{Answer, Moment, cyclic, homing, interpolated, profile};
 use servobench_cia402::Mode;
@@ -63,7 +63,7 @@ impl Running {
         &mut self,
         p: &Params,
         now: &Moment,
-        beat: Beat,
+        event: CycleEvent,
         buffer: &mut Buffer,
         shift: &mut Option<f64>,
     ) -> Answer {
@@ -77,9 +77,9 @@ impl Running {
                 answer
             }
             Self::Ip(x) => interpolated::step(&p.interpolated(), x, buffer, now),
-            Self::Csp(x) => cyclic::position::step(&p.cyclic_position(), x, now, beat),
-            Self::Csv(x) => cyclic::velocity::step(&p.cyclic_velocity(), x, now, beat),
-            Self::Cst(x) => cyclic::effort::step(p.cyclic_effort(), x, now, beat),
+            Self::Csp(x) => cyclic::position::step(&p.cyclic_position(), x, now, event),
+            Self::Csv(x) => cyclic::velocity::step(&p.cyclic_velocity(), x, now, event),
+            Self::Cst(x) => cyclic::effort::step(p.cyclic_effort(), x, now, event),
         }
     }
 

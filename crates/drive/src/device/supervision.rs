@@ -1,5 +1,5 @@
 //! What the drive watches: faults and standstill.
-use super::{Beat, Fault, Inputs, Measured, Params, Running, State};
+use super::{CycleEvent, Fault, Inputs, Measured, Params, Running, State};
 use crate::Demand;
 use servobench_cia402::{FaultReactionOption, Mode, PowerParams, PowerState, Transition};
 
@@ -12,12 +12,12 @@ impl Measured {
 
 impl State {
     /// The fault that is present, the gravest first.
-    pub(super) fn find_fault(&mut self, p: &Params, u: &Inputs, beat: Beat) -> Option<Fault> {
+    pub(super) fn find_fault(&mut self, p: &Params, u: &Inputs, event: CycleEvent) -> Option<Fault> {
         let is_enabled = self.power.state().is_drive_function_enabled();
         let follows_position = matches!(self.last, Demand::Position { .. });
         let is_beyond = follows_position && !p.following_error.holds(u.measured.following_error);
         let has_lost_position = self.beyond_following_error.step(is_beyond, p.following_error.time, p.period);
-        let lacks_frames = beat == Beat::Missed
+        let lacks_frames = event == CycleEvent::Missed
             && self.cycle.missed() > p.cycle.bridged
             && self.running.as_ref().is_some_and(Running::follows_master);
         if let Some(code) = u.fault {

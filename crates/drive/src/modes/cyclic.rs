@@ -7,7 +7,7 @@ pub mod effort;
 pub mod position;
 pub mod velocity;
 
-use crate::device::Beat;
+use crate::device::CycleEvent;
 
 /// A value that goes linearly to each of its targets within a cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -44,8 +44,8 @@ struct Progress {
 
 impl Progress {
     /// The fraction at which a late frame breaks the cycle off.
-    fn broken_off(self, beat: Beat, steps: u32) -> Option<f64> {
-        (beat == Beat::Late).then(|| f64::from(self.steps) / f64::from(steps))
+    fn broken_off(self, event: CycleEvent, steps: u32) -> Option<f64> {
+        (event == CycleEvent::Late).then(|| f64::from(self.steps) / f64::from(steps))
     }
 
     /// The fraction that has passed at a step of a cycle of `steps`; counts the step. A cycle that lasts longer than it should

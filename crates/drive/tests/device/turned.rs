@@ -112,7 +112,7 @@ fn moved(polarity: u8, with_force: bool) -> Seen {
     seen
 }
 
-/// Oracle: mass, loops and rounding are odd, so that a turned axis makes the mirrored motion to the bit and the master sees the same.
+/// Oracle: mass, loops and rounding are odd, so that a turned axis makes the mirrored motion bit for bit and the master sees the same.
 /// Turned in position and velocity only, as the standard has it, it is pushed the wrong way: about twice as far off as without any
 /// force in 60B2h.
 #[test]

@@ -22,8 +22,9 @@ fn the_page_lists_every_method() {
 }
 
 fn table() -> String {
-    let mut table =
-        String::from("| no. | switch | it is off | it is on | a limit switch came first |\n|---|---|---|---|---|\n");
+    let mut table = String::from(
+        "| no. | switch | start with the switch off | start with the switch on | a limit switch is met first |\n|---|---|---|---|---|\n",
+    );
     for method in Method::all() {
         let (number, switch) = (method.number(), method.switch().map_or("–", |switch| switch.name()));
         let (off, on) = (legs(&method, Start::Off), legs(&method, Start::On));

@@ -42,7 +42,7 @@ fn a_move_goes_on_until_its_last_point_is_reached() {
 }
 
 /// Points of any times, ways and velocities, and any highest one: it is not passed, nothing jumps, and every move ends at its last
-/// point. A move that is nowhere limited is that of a drive without a limit, to the bit.
+/// point. A move that is nowhere limited is that of a drive without a limit, bit for bit.
 #[test]
 fn no_points_make_the_demand_jump_or_pass_the_highest_velocity() {
     let mut random = Random::seeded(11);

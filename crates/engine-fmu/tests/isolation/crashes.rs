@@ -52,7 +52,7 @@ fn a_crash_or_a_hang_in_loading_is_one_too() {
 fn one_that_does_not_come_back_is_ended() {
     for bad in [Bad::Loop, Bad::Stop] {
         let error = error_of_step(&bad, impatient());
-        assert_eq!(error, SlaveError::Hung { call: "its step".into(), time: 0.5, patience: 1.0 }, "{bad:?}");
+        assert_eq!(error, SlaveError::Hung { call: "its step".into(), time: 0.5, call_timeout: 1.0 }, "{bad:?}");
     }
 }
 
@@ -63,7 +63,7 @@ fn one_that_does_not_end_is_ended() {
     drop(slave);
 }
 
-/// Whatever it writes: nothing is read out of bounds, and nobody waits for a bell that was rung and written over.
+/// Whatever it writes: nothing is read out of bounds, and nobody waits for a doorbell that was rung and written over.
 #[test]
 fn one_that_writes_over_what_is_shared_is_found_out() {
     for byte in [0x00, 0x01, 0x04, 0x7f, 0xff] {

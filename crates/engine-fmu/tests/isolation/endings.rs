@@ -18,9 +18,9 @@ fn children() -> Vec<String> {
 /// Waits until `done`, which comes: how long it takes is not what is tested. Less than the minute after which the harness of a
 /// host complains of its length, and ends because nobody listens.
 fn until(done: impl Fn() -> bool) {
-    let patience = std::time::Instant::now() + Duration::from_secs(30);
+    let call_timeout = std::time::Instant::now() + Duration::from_secs(30);
     while !done() {
-        assert!(std::time::Instant::now() < patience, "it does not come");
+        assert!(std::time::Instant::now() < call_timeout, "it does not come");
         std::thread::sleep(Duration::from_millis(1));
     }
 }
@@ -96,7 +96,7 @@ fn it_ends_with_the_simulation() {
 #[test]
 #[ignore = "the process that another test starts"]
 fn waits() {
-    // Its patience is longer than anybody's: what ends it is the end of this process.
+    // Its call_timeout is longer than anybody's: what ends it is the end of this process.
     let mut slave = start(&Bad::Loop, Bounds::default()).unwrap();
     let [pid] = children().try_into().unwrap();
     println!("host of {pid}");

@@ -17,8 +17,8 @@ fn one_that_hoards_memory_is_reported_as_that() {
     }
     let how = crash_of_step(&Bad::HugeVector, bounded());
     assert!(how.starts_with(said) && how.contains("memory allocation of 1099511627776 bytes failed"), "{how}");
-    let patience = impatient().patience;
-    let how = crash_of_step(&Bad::HoardAndHang, Bounds { patience, memory: BOUND });
+    let call_timeout = impatient().call_timeout;
+    let how = crash_of_step(&Bad::HoardAndHang, Bounds { call_timeout, memory: BOUND });
     assert!(how.starts_with(said) && how.contains("did not come back within 1 s"), "{how}");
 }
 

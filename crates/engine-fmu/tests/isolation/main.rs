@@ -38,7 +38,7 @@ fn start(bad: &Bad, bounds: Bounds) -> Result<Isolated, IsolationError> {
 }
 
 fn impatient() -> Bounds {
-    Bounds { patience: Duration::from_secs(1), ..Bounds::default() }
+    Bounds { call_timeout: Duration::from_secs(1), ..Bounds::default() }
 }
 
 /// What comes of a step from 0.5 s.

@@ -24,7 +24,7 @@ fn with_an_exchange_in_every_tick_it_is_what_the_fmu_is() {
     assert!(here.bodies()[1].position.abs() > 1e-4, "it moves");
 }
 
-/// Oracle: an engine of our own that is stepped n ticks at once, with the mean of the efforts; to the bit at the exchanges,
+/// Oracle: an engine of our own that is stepped n ticks at once, with the mean of the efforts; bit for bit at the exchanges,
 /// but for the rounding of the mean, which a relative 1e-12 covers over 100 steps.
 #[test]
 fn between_exchanges_the_fmu_gets_the_mean_of_the_efforts() {

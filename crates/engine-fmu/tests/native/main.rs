@@ -5,8 +5,8 @@ use servobench_base::Severity;
 use servobench_engine_fmu::{Fmu, FmuMechanics, HostCommand, HostError, host as serve};
 use servobench_fmi::{Bounds, FmuFile, Isolation, SiPort, Value};
 use servobench_plant::{
-    Actuation, Drive, Engine, EngineName, FmuBody, FmuModel, Input, Mechanics, MechanicsError, MechanicsSetup, Model,
-    Said,
+    Actuation, Drive, Engine, EngineName, FmuBody, FmuModel, Input, LogMessage, Mechanics, MechanicsError,
+    MechanicsSetup, Model,
 };
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -113,8 +113,8 @@ impl File {
     }
 }
 
-fn isolated(patience: Duration) -> Isolation {
-    Isolation::Process { bounds: Bounds { patience, memory: 300_000_000 } }
+fn isolated(call_timeout: Duration) -> Isolation {
+    Isolation::Process { bounds: Bounds { call_timeout, memory: 300_000_000 } }
 }
 
 fn setup(file: &File, mischief: Mischief, isolation: Isolation) -> MechanicsSetup {
@@ -166,7 +166,7 @@ fn way(mut mass: FmuMechanics) -> Vec<(f64, f64)> {
 fn a_mass_goes_as_newton_says_here_and_in_a_process_of_its_own() {
     let here = way(build(Mischief::Nothing, Isolation::None));
     let there = way(build(Mischief::Nothing, isolated(Duration::from_mins(1))));
-    assert_eq!(here, there, "to the bit");
+    assert_eq!(here, there, "bit for bit");
     for (k, (x, v)) in here.into_iter().enumerate() {
         let t = k as f64 * TICK;
         assert!((x - 0.25 - FORCE * t * t / (2.0 * MASS)).abs() < 1e-13, "{k}: {x}");
@@ -175,30 +175,30 @@ fn a_mass_goes_as_newton_says_here_and_in_a_process_of_its_own() {
 }
 
 /// What comes of its second step.
-fn second_step(mischief: Mischief, patience: Duration) -> MechanicsError {
-    let mut mass = build(mischief, isolated(patience));
+fn second_step(mischief: Mischief, call_timeout: Duration) -> MechanicsError {
+    let mut mass = build(mischief, isolated(call_timeout));
     mass.advance(&push()).unwrap();
     mass.advance(&push()).unwrap_err()
 }
 
 #[test]
 fn what_a_library_does_wrong_is_reported_as_what_it_is() {
-    let patience = Duration::from_mins(1);
+    let call_timeout = Duration::from_mins(1);
     for (mischief, says) in [
         (Mischief::Crash, "the FMU's process ended at 0.001 s: signal 11 (SIGSEGV"),
         (Mischief::Fail, "the FMU failed in fmi2DoStep at 0.001 s (fmi2Error): the mass is 20 kg"),
         (Mischief::Hoard, "it asked for more memory than the 300 MB that it may have, then signal 11"),
     ] {
-        let error = second_step(mischief, patience);
+        let error = second_step(mischief, call_timeout);
         assert!(matches!(error, MechanicsError::Native { engine: EngineName::Fmu, .. }), "{error}");
         assert!(error.to_string().contains(says), "{error}");
     }
     let error = second_step(Mischief::Hang, Duration::from_secs(1));
     assert!(error.to_string().contains("did not come back from its step at 0.001 s within 1 s"), "{error}");
-    let mut mass = build(Mischief::NanOutput, isolated(patience));
+    let mut mass = build(Mischief::NanOutput, isolated(call_timeout));
     let error = mass.advance(&push()).unwrap_err();
     assert!(matches!(&error, MechanicsError::Native { .. }), "{error}");
-    let error = ENGINE.build(&setup(&File::new(), Mischief::CrashInStart, isolated(patience))).err().unwrap();
+    let error = ENGINE.build(&setup(&File::new(), Mischief::CrashInStart, isolated(call_timeout))).err().unwrap();
     assert!(
         error.to_string().contains("the FMU's process ended in fmi2ExitInitializationMode at 0 s: signal 11"),
         "{error}"
@@ -241,7 +241,7 @@ fn what_it_says_is_the_same_here_and_in_a_process_of_its_own() {
         said.retain(|line| !line.text.starts_with("standard output: "));
         said
     };
-    let line = |time: f64, severity, text: String| Said { time, severity, text };
+    let line = |time: f64, severity, text: String| LogMessage { time, severity, text };
     let steps = [1e-3, 2e-3, 3e-3].map(|time| line(time, Severity::Info, format!("logEvents: at {time} s")));
     let failure = [line(1e-3, Severity::Error, "the mass is 20 kg".into())];
     for isolation in [Isolation::None, isolated(Duration::from_mins(1))] {

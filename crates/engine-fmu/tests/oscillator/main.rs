@@ -31,7 +31,7 @@ const ENGINE: Fmu = Fmu {
     },
 };
 const ISOLATED: Isolation =
-    Isolation::Process { bounds: Bounds { patience: Duration::from_mins(1), memory: 300_000_000 } };
+    Isolation::Process { bounds: Bounds { call_timeout: Duration::from_mins(1), memory: 300_000_000 } };
 
 /// ω² = c·(1/m₁ + 1/m₂) = 150 s⁻², ω = 12.2 rad/s; from rest, with a force that sets in smoothly.
 const RESOLVED: TwoMasses = TwoMasses { m1: 1.0, m2: 2.0, c: 100.0, d: 2.0, force: (50.0, 8.0), v1: 0.0 };

@@ -72,8 +72,8 @@ impl Parts {
 }
 
 fn refused(file: &MjcfModel, refusals: Vec<Refusal>) -> MechanicsError {
-    let way_out = "change the file or the names of its parts";
-    MechanicsError::Refused { engine: NAME, path: file.path.clone(), refusals, way_out }
+    let help = "change the file or the names of its parts";
+    MechanicsError::Refused { engine: NAME, path: file.path.clone(), refusals, help }
 }
 
 impl Motor {
@@ -87,7 +87,7 @@ impl Motor {
         Err(MechanicsError::Unsupported {
             engine: NAME,
             what: format!("an effort of {effort} on actuator `{name}`, which the model limits to {low} … {high}"),
-            way_out: "lower the limit of the drive, or widen the range in the model".into(),
+            help: "lower the limit of the drive, or widen the range in the model".into(),
         })
     }
 }

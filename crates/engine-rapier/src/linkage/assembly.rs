@@ -9,7 +9,7 @@ use rapier3d_f64::prelude::{
 };
 use servobench_plant::MechanicsError;
 
-/// Stiffness of what stops a joint by dry friction: so stiff that a joint at rest stays where it is to the bit.
+/// Stiffness of what stops a joint by dry friction: so stiff that a joint at rest stays where it is bit for bit.
 const STOP: SpringCoefficients<f64> = SpringCoefficients { natural_frequency: 1e15, damping_ratio: 1.0 };
 
 /// The scene, the multibody that holds all links, and the joints in order.

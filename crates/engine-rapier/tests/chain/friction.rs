@@ -1,4 +1,4 @@
-//! Dry friction: sticking to the bit, breaking away, stopping.
+//! Dry friction: sticking bit for bit, breaking away, stopping.
 use super::{H, body, build, effort, state};
 use servobench_plant::{Body, Chain, Drive, DryFriction, Friction, Link};
 

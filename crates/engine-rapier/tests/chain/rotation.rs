@@ -39,7 +39,7 @@ fn a_screw_keeps_its_stretch_over_many_revolutions() {
     }
 }
 
-/// A rotor and a slide of the same number are the same to the bit: Rapier sees two slides.
+/// A rotor and a slide of the same number are the same bit for bit: Rapier sees two slides.
 #[test]
 fn a_rotary_coordinate_is_as_good_as_a_linear_one() {
     let run = |coordinate| {

@@ -77,7 +77,7 @@ fn the_scheme_adds_no_damping() {
     assert!(damping.abs() < 1e-7, "damping ratio {damping:e}");
 }
 
-/// Oracle: a frictional joint at rest stays where it is to the bit, and yields above its bound with (F − f)/m.
+/// Oracle: a frictional joint at rest stays where it is bit for bit, and yields above its bound with (F − f)/m.
 #[test]
 fn dry_friction_sticks_and_slips() {
     let xml = world(

@@ -37,7 +37,7 @@ impl State {
     /// Whether the drive shows the mode that it is asked for, and knows that it is; the simplified sequence does not ask.
     fn is_in_mode(&self, p: &Params) -> bool {
         p.settings.sequencing == Sequencing::Simplified
-            || self.actuals.mode == self.commands.mode && self.mode_since + p.round_trip <= self.heard
+            || self.actuals.mode == self.commands.mode && self.mode_since + p.round_trip <= self.received_at
     }
 
     /// Whether the drive does what the task asks for.
@@ -110,9 +110,9 @@ impl State {
             return 0.0;
         }
         self.position_loop.put_out(now, setpoint);
-        if self.heard == now {
+        if self.received_at == now {
             let then = now.saturating_sub(p.reference_delay);
-            self.position_loop.hear(self.position(p), then, p.stream.timing.tick);
+            self.position_loop.receive(self.position(p), then, p.stream.timing.tick);
         }
         self.position_loop.error()
     }
@@ -152,8 +152,8 @@ impl State {
         if !follows {
             return self.homing.fail();
         }
-        // What was heard now answers what was told a round trip ago.
-        if self.homing.step(self.actuals.statusword, self.heard.saturating_sub(p.round_trip), now) {
+        // What was received now answers what was told a round trip ago.
+        if self.homing.step(self.actuals.statusword, self.received_at.saturating_sub(p.round_trip), now) {
             self.count_from_reference(p);
         }
     }
@@ -164,7 +164,7 @@ impl State {
             if self.homing.is_interrupted() && !self.was_on {
                 self.homing.fail();
             }
-        } else if self.homing.end(self.actuals.statusword, self.heard.saturating_sub(p.round_trip)) {
+        } else if self.homing.end(self.actuals.statusword, self.received_at.saturating_sub(p.round_trip)) {
             self.count_from_reference(p);
         }
     }
@@ -172,7 +172,7 @@ impl State {
     /// The reference was found: the position is the one of all readings that is nearest to it.
     fn count_from_reference(&mut self, p: &Params) {
         let reference = self.commands.home_offset;
-        match Position::near(&p.scale, reference.into(), self.actuals.position, self.heard) {
+        match Position::near(&p.scale, reference.into(), self.actuals.position, self.received_at) {
             Ok(position) => self.position = Some(position),
             Err(_) => self.fault = self.fault.or(Some(LinkFault::PositionLost)),
         }

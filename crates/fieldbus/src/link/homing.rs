@@ -14,7 +14,7 @@
 //! What the drive says before it can know of the start belongs to an earlier homing and is not looked at.
 //!
 //! A motion task that asks for something else meanwhile takes bit 4 back. The mode stays until the drive is known to rest: it may find
-//! its reference before it hears of the change, and its positions then count from another zero than those it would be sent.
+//! its reference before it learns of the change, and its positions then count from another zero than those it would be sent.
 use crate::Homing;
 use servobench_cia402::{StatusBit, Statusword};
 
@@ -78,7 +78,7 @@ impl Procedure {
     }
 
     /// The drive has said `word` while it is interrupted, the answer to what was told at `known` and before. Whether the reference
-    /// was found before it heard of that.
+    /// was found before it received of that.
     pub(crate) const fn end(&mut self, word: Statusword, known: u64) -> bool {
         match *self {
             Self::Interrupted(since) if since <= known && word.has(StatusBit::TargetReached) => {

@@ -86,7 +86,7 @@ pub struct Params {
     pub(crate) cycle: f64,
     /// From a command to the first answer that knows of it (base ticks).
     pub(crate) round_trip: u64,
-    /// How much earlier than it is heard an actual position was to follow what was put out (base ticks).
+    /// How much earlier than it is received an actual position was to follow what was put out (base ticks).
     pub(crate) reference_delay: u64,
 }
 
@@ -141,19 +141,6 @@ impl Params {
     #[must_use]
     pub const fn delay(&self) -> u64 {
         self.stream.timing.delay()
-    }
-
-    /// How many times as large the gain of the position loop in the master (csv) may be until it oscillates, on an axis that
-    /// takes the velocities as it is told: `2/(K·T)·tan(π·T/(4D))`, a little more than π/(2·K·D). Infinite without a gain, `None`
-    /// where the drive closes that loop.
-    #[must_use]
-    pub fn gain_margin(&self) -> Option<f64> {
-        let Control::Velocity { gain, .. } = self.settings.control else { return None };
-        let tick = self.stream.timing.tick;
-        let cycle = self.stream.bus_cycle as f64 * tick;
-        // The drive takes a cycle to get there.
-        let delay = (self.reference_delay as f64 * tick).max(cycle);
-        Some(position_loop::ultimate_gain(cycle, delay) / gain)
     }
 }
 

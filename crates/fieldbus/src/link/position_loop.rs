@@ -3,8 +3,8 @@
 //! # The delayed reference
 //!
 //! A velocity that is put out at kT is reached by the axis when the drive's interpolation ends, a cycle after the frame is
-//! there. The first answer that knows of it is gathered then, of positions that are [`Settings::answer_age`] old, and is heard
-//! at (k + round trip)·T. So where set-points s(t) are put out, the position x that is heard at t is that of an axis which
+//! there. The first answer that knows of it is gathered then, of positions that are [`Settings::answer_age`] old, and is received
+//! at (k + round trip)·T. So where set-points s(t) are put out, the position x that is received at t is that of an axis which
 //! should be at
 //!
 //! ```text
@@ -19,7 +19,7 @@
 //!
 //! # Stability
 //!
-//! Linear from one velocity to the next, the axis covers T·(v(k) + v(k−1))/2 in a cycle, and what is heard is D old. Without age,
+//! Linear from one velocity to the next, the axis covers T·(v(k) + v(k−1))/2 in a cycle, and what is received is D old. Without age,
 //! D = rT, the characteristic equation is
 //!
 //! ```text
@@ -54,11 +54,6 @@ const KEPT: usize = 34;
 
 /// How old what is compared is (bus cycles), at most.
 pub(crate) const LONGEST: u64 = KEPT as u64 - 1;
-
-/// Largest gain (1/s) with which a loop over cycles of `cycle` (s) is stable, whose position is `delay` (s) old.
-pub(crate) fn ultimate_gain(cycle: f64, delay: f64) -> f64 {
-    2.0 / cycle * libm::tan(core::f64::consts::FRAC_PI_4 * cycle / delay)
-}
 
 /// A set-point that was put out.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -95,7 +90,7 @@ impl PositionLoop {
     }
 
     /// Takes the position of an axis that should be where the set-point of `tick` was.
-    pub(crate) fn hear(&mut self, position: f64, tick: u64, seconds_per_tick: f64) {
+    pub(crate) fn receive(&mut self, position: f64, tick: u64, seconds_per_tick: f64) {
         self.error = self.at(tick, seconds_per_tick).map_or(0.0, |reference| reference - position);
     }
 
@@ -137,6 +132,11 @@ mod tests {
 
     const TICK: f64 = 1.0 / 16e3;
 
+    /// Largest gain (1/s) with which a loop over cycles of `cycle` (s) is stable, whose position is `delay` (s) old.
+    fn ultimate_gain(cycle: f64, delay: f64) -> f64 {
+        2.0 / cycle * libm::tan(core::f64::consts::FRAC_PI_4 * cycle / delay)
+    }
+
     /// Oracle: a cubic, which is its own interpolation.
     #[test]
     fn the_set_point_of_any_tick_that_is_kept_is_found() {
@@ -146,7 +146,7 @@ mod tests {
             position_loop.put_out(16 * cycle, &motion(16 * cycle));
             let oldest = 16 * cycle.saturating_sub(LONGEST);
             for tick in oldest..=16 * cycle {
-                position_loop.hear(1.0, tick, TICK);
+                position_loop.receive(1.0, tick, TICK);
                 let error = position_loop.error() - (motion(tick).x - 1.0);
                 assert!(error.abs() < 4e-15, "a few roundings at 3 m: {error} at {tick} of {cycle}");
             }
@@ -156,13 +156,13 @@ mod tests {
     #[test]
     fn before_the_first_set_point_the_axis_is_where_that_is() {
         let mut position_loop = PositionLoop::OPEN;
-        position_loop.hear(0.3, 40, TICK);
+        position_loop.receive(0.3, 40, TICK);
         assert_eq!(position_loop.error().to_bits(), 0.0_f64.to_bits(), "nothing is followed");
         position_loop.put_out(100, &Setpoint { v: 0.1, ..Setpoint::at_rest(0.5) });
-        position_loop.hear(0.25, 40, TICK);
+        position_loop.receive(0.25, 40, TICK);
         assert_eq!(position_loop.error().to_bits(), 0.25_f64.to_bits());
         position_loop.open();
-        position_loop.hear(0.3, 200, TICK);
+        position_loop.receive(0.3, 200, TICK);
         assert_eq!(position_loop.error().to_bits(), 0.0_f64.to_bits());
     }
 

@@ -45,7 +45,7 @@ pub(crate) struct Sequencer {
 }
 
 impl Sequencer {
-    /// Of a drive that was not heard yet.
+    /// Of a drive that was not received yet.
     pub(crate) const fn start(now: u64) -> Self {
         Self {
             state: PowerState::NotReadyToSwitchOn,
@@ -61,7 +61,7 @@ impl Sequencer {
         self.word
     }
 
-    /// Whether the drive function may be used: of what was told up to `known` the drive has heard.
+    /// Whether the drive function may be used: of what was told up to `known` the drive has received.
     pub(crate) fn is_enabled(&self, sequencing: Sequencing, known: u64) -> bool {
         let is_told = self.word.gives(Command::EnableOperation);
         match sequencing {
@@ -88,7 +88,7 @@ impl Sequencer {
     }
 
     /// The drive has answered.
-    pub(crate) fn hear(&mut self, statusword: Statusword, now: u64) {
+    pub(crate) fn receive(&mut self, statusword: Statusword, now: u64) {
         let state = statusword.state().unwrap_or(self.state);
         if state != self.state {
             (self.state, self.since) = (state, now);

@@ -7,7 +7,7 @@ impl State {
     /// Looks for what the axis must be stopped for.
     pub(super) fn supervise(&mut self, p: &Params, external_fault: bool, now: u64) {
         let enabled = self.is_enabled(p);
-        let silent = self.command.power && now.saturating_sub(self.heard) > p.settings.drive_timeout;
+        let silent = self.command.power && now.saturating_sub(self.received_at) > p.settings.drive_timeout;
         let found = if external_fault {
             Some(LinkFault::External)
         } else if silent {

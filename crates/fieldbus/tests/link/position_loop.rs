@@ -215,9 +215,11 @@ fn answers_that_are_lost_at_constant_velocity_change_nothing() {
 #[test]
 fn the_gain_margin_is_where_the_loop_begins_to_swing() {
     for delay in [0, 1, 3, 15] {
-        let margin = Loop::new(delay, GAIN, 1.0, Between::Line).params.gain_margin().unwrap();
+        let cycle = BUS as f64 / RATE;
         let dead_time = (f64::from(2 * delay + 1) * BUS as f64 + STEP as f64) / RATE;
-        assert!(margin >= core::f64::consts::FRAC_PI_2 / (GAIN * dead_time), "{margin}");
+        // The drive takes a cycle to get there.
+        let ultimate_gain = 2.0 / cycle * (core::f64::consts::FRAC_PI_4 * cycle / dead_time.max(cycle)).tan();
+        let margin = ultimate_gain / GAIN;
         // At an age of a quarter of a cycle the formula is 2.8 % too high for a round trip of one cycle.
         for (share, comes_back) in [(0.96, true), (1.04, false)] {
             let mut axis = Loop::new(delay, share * margin * GAIN, 1.0, Between::Line);
@@ -235,5 +237,4 @@ fn the_gain_margin_is_where_the_loop_begins_to_swing() {
             assert_eq!(last < 1e-3, comes_back, "delay {delay}, {share} of {margin}: {last}");
         }
     }
-    assert_eq!(Params::new(settings()).unwrap().gain_margin(), None);
 }

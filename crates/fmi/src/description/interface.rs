@@ -88,7 +88,7 @@ pub(super) fn co_simulation(root: Element) -> Result<CoSimulation, FmuError> {
     {
         if let Some(element) = root.child(name) {
             let what = format!("an FMU for {what} (`<{name}>`)");
-            return Err(element.error(DescriptionProblem::Unsupported { what, way_out: export }));
+            return Err(element.error(DescriptionProblem::Unsupported { what, help: export }));
         }
     }
     let parent = root.name().to_owned();

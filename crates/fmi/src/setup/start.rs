@@ -146,11 +146,26 @@ fn flatten<'a>(value: &'a Value, flat: &mut Vec<&'a Value>) -> Result<(), String
     if flat.is_empty() { Err("a list without elements starts nothing".into()) } else { Ok(()) }
 }
 
+/// A number in as few digits as tell it.
+fn in_few_digits(number: f64) -> String {
+    let size = number.abs();
+    if size != 0.0 && size.is_finite() && !(1e-3..1e7).contains(&size) {
+        format!("{number:e}")
+    } else {
+        number.to_string()
+    }
+}
+
 /// `value`, whose number is within the bounds of the variable.
 fn within<T>(variable: &Variable, number: f64, value: T) -> Result<T, String> {
     let (min, max) = (variable.min.unwrap_or(f64::NEG_INFINITY), variable.max.unwrap_or(f64::INFINITY));
     if number < min || number > max {
-        return Err(format!("it takes {min} to {max}, got {number}"));
+        return Err(format!(
+            "it takes {} to {}, got {}",
+            in_few_digits(min),
+            in_few_digits(max),
+            in_few_digits(number)
+        ));
     }
     Ok(value)
 }

@@ -18,7 +18,7 @@ fn said(clock: &str) -> String {
 #[test]
 fn a_clock_that_is_to_be_ticked_by_time_is_refused() {
     let refused = "clock `c` of the FMU `/three.fmu`: it has to be ticked from outside, ";
-    let way_out =
+    let help =
         ", which is not supported; export the model without input clocks by time, with events that it announces itself";
     for (clock, when) in [
         ("intervalVariability=\"constant\" intervalDecimal=\"0.01\"", "every 0.01 s"),
@@ -29,7 +29,7 @@ fn a_clock_that_is_to_be_ticked_by_time_is_refused() {
         ("intervalVariability=\"fixed\"", "at times that it says itself (`fixed`)"),
         ("intervalVariability=\"countdown\"", "at times that it says itself (`countdown`)"),
     ] {
-        assert_eq!(said(clock), format!("{refused}{when}{way_out}"));
+        assert_eq!(said(clock), format!("{refused}{when}{help}"));
     }
 }
 

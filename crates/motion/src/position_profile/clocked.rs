@@ -197,7 +197,7 @@ impl Iterator for ClockedSteps<'_> {
         }
         self.next += 1.0;
         let (t, until) = (clock.time(from), clock.time(to));
-        // The end velocity to the bit.
+        // The end velocity bit for bit.
         let end = self.way.table.knots().last().and_then(|last| last.v).filter(|_| to >= cycles);
         let velocity = end.unwrap_or_else(|| self.cursor.at(until).v);
         let acceleration = (velocity - self.velocity).abs() / (until - t);

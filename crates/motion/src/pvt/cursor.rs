@@ -25,7 +25,7 @@ pub(super) fn segment_at(knots: &[Knot], t: f64) -> usize {
 ///
 /// As long as times increase, it only ever steps from one point to the next, so that a whole table of N points and M
 /// samples takes N + M steps; a time before the last one makes it look the point up again, in log N steps. The
-/// set-points are to the bit those of the way itself.
+/// set-points are bit for bit those of the way itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cursor<W> {
     way: W,

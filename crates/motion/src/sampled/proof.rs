@@ -1,6 +1,6 @@
 //! Why no move gets farther: a bound in plain sums.
 //!
-//! Let λ_r be any price for limit r, y any price for the condition of rest. With the slopes
+//! Let λ_r be any dual variable for limit r, y any dual variable for the condition of rest. With the slopes
 //!
 //! ```text
 //! s_i = c_i − y·e_i − Σ_r λ_r·w_r,i      what a unit of u_i adds to the distance, c_i, beyond what it costs
@@ -8,13 +8,13 @@
 //! ```
 //!
 //! for every move that is at rest at the end, |u_i| ≤ 1 and |w_r·u| ≤ B_r. Nothing has to be solved to check that. With the
-//! prices of a program that has a cell for each sample and all limits it is the optimum itself.
+//! dual variables of a program that has a cell for each sample and all limits it is the optimum itself.
 //!
 //! # Stretches at a limit
 //!
 //! A program of few cells pays only at the ends of a stretch in which the move rests at a limit, where the optimum pays at
-//! every sample in it. What prices λ_k of the m-th integral take off the slope at i, `h_i = Σ_k λ_k·C(k − 1 − i, m − 1)`, is
-//! turned round by an m-th difference, `λ_(i+m) = Σ_b (−1)^b·C(m, b)·h_(i+b)`: every h has its prices, also the one that
+//! every sample in it. What dual variables λ_k of the m-th integral take off the slope at i, `h_i = Σ_k λ_k·C(k − 1 − i, m − 1)`, is
+//! turned round by an m-th difference, `λ_(i+m) = Σ_b (−1)^b·C(m, b)·h_(i+b)`: every h has its dual variables, also the one that
 //! leaves all slopes before the stretch what they are and those in it zero. Before the stretch it is a polynomial of degree
 //! m − 1, whose m-th difference is zero.
 use super::half::{At, Half, after};
@@ -23,7 +23,7 @@ use std::vec::Vec;
 
 /// Prices, and the slopes that they leave.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Prices {
+pub(super) struct Duals {
     /// λ.
     limits: Vec<(At, f64)>,
     /// y.
@@ -49,15 +49,15 @@ impl Stretch {
 /// Part of its limit from which on an integral counts as at it.
 const AT_LIMIT: f64 = 1.0 - 1e-6;
 
-/// Part of all prices of a stretch below which one is rounding.
-const NO_PRICE: f64 = 1e-9;
+/// Part of all dual variables of a stretch below which one is rounding.
+const NO_DUAL: f64 = 1e-9;
 
-impl Prices {
-    /// The better of the prices of the program, the condition of rest first, and of those spread over the stretches at a
+impl Duals {
+    /// The better of the dual variables of the program, the condition of rest first, and of those spread over the stretches at a
     /// limit, with what no move exceeds by them.
-    pub(super) fn of(reach: &Reach, cells: &[Cell], limits: &[At], prices: &[f64]) -> (Self, f64) {
-        let limits = limits.iter().copied().zip(prices[1..].iter().copied()).filter(|(_, price)| *price != 0.0);
-        let mut plain = Self { limits: limits.collect(), rest: prices[0], slopes: Vec::new(), stretches: Vec::new() };
+    pub(super) fn of(reach: &Reach, cells: &[Cell], limits: &[At], duals: &[f64]) -> (Self, f64) {
+        let limits = limits.iter().copied().zip(duals[1..].iter().copied()).filter(|(_, dual)| *dual != 0.0);
+        let mut plain = Self { limits: limits.collect(), rest: duals[0], slopes: Vec::new(), stretches: Vec::new() };
         plain.look(&reach.half);
         let at_most = plain.at_most(reach.bounds);
         let mut spread = plain.clone();
@@ -71,7 +71,7 @@ impl Prices {
 
     /// What no move exceeds.
     pub(super) fn at_most(&self, bounds: &[f64]) -> f64 {
-        let paid: f64 = self.limits.iter().map(|(at, price)| bounds[at.m - 1] * price.abs()).sum();
+        let paid: f64 = self.limits.iter().map(|(at, dual)| bounds[at.m - 1] * dual.abs()).sum();
         paid + self.slopes.iter().map(|slope| slope.abs()).sum::<f64>()
     }
 
@@ -80,7 +80,7 @@ impl Prices {
         self.slopes.clear();
         let mut i = 0.0;
         while i < half.free() {
-            let costs: f64 = self.limits.iter().map(|(at, price)| price * at.weight(i, i + 1.0)).sum();
+            let costs: f64 = self.limits.iter().map(|(at, dual)| dual * at.weight(i, i + 1.0)).sum();
             self.slopes.push(half.gain(i, i + 1.0) - self.rest * half.rest(i, i + 1.0) - costs);
             i += 1.0;
         }
@@ -103,21 +103,21 @@ impl Prices {
         let mut h: Vec<f64> = Vec::new();
         let mut i = start - depth;
         while i <= last - depth {
-            let known: f64 = ends.iter().map(|(at, price)| price * at.weight(i, i + 1.0)).sum();
+            let known: f64 = ends.iter().map(|(at, dual)| dual * at.weight(i, i + 1.0)).sum();
             let gained = if i >= start && i < end { slope(i) } else { 0.0 };
             h.push(known + gained - rest * half.rest(i, i + 1.0));
             i += 1.0;
         }
         for (at, _) in h.iter().enumerate() {
-            let price = SIGNED[m].iter().zip(&h[at..]).map(|(sign, h)| sign * h).sum();
-            self.limits.push((At { m, k: start + at as f64 }, price));
+            let dual = SIGNED[m].iter().zip(&h[at..]).map(|(sign, h)| sign * h).sum();
+            self.limits.push((At { m, k: start + at as f64 }, dual));
         }
         self.rest += rest;
         self.stretches.push(stretch);
     }
 
     /// Where the cells are to be cut: about the samples between which a slope changes its sign, outside the stretches; and in
-    /// them where a price has the wrong one, as the move should have left the limit there.
+    /// them where a dual variable has the wrong one, as the move should have left the limit there.
     pub(super) fn cuts(&self) -> Vec<f64> {
         let mut cuts = Vec::new();
         let settled = |i: f64| self.stretches.iter().any(|stretch| i >= stretch.start && i < stretch.end);
@@ -129,8 +129,8 @@ impl Prices {
         }
         for stretch in &self.stretches {
             let paid = self.limits.iter().filter(|(at, _)| stretch.pays(*at));
-            let all: f64 = paid.clone().map(|(_, price)| price).sum();
-            let wrong = paid.filter(|(_, price)| price * all < 0.0 && price.abs() > NO_PRICE * all.abs());
+            let all: f64 = paid.clone().map(|(_, dual)| dual).sum();
+            let wrong = paid.filter(|(_, dual)| dual * all < 0.0 && dual.abs() > NO_DUAL * all.abs());
             cuts.extend(wrong.flat_map(|(at, _)| [at.k - 1.0, at.k, at.k + 1.0]));
         }
         cuts
@@ -157,7 +157,7 @@ fn stretches(reach: &Reach, cells: &[Cell]) -> Vec<Stretch> {
 }
 
 #[cfg(test)]
-impl Prices {
+impl Duals {
     /// λ.
     pub(super) fn limits(&self) -> impl Iterator<Item = (At, f64)> + '_ {
         self.limits.iter().copied()

@@ -1,14 +1,14 @@
 //! Whether N samples reach a distance: a linear program that grows until the answer is known.
 //!
 //! The half ([`half`](super::half)) is cut into a few cells of equal u, first about where the continuous optimum switches, and few limits
-//! are looked at. What the solution exceeds is added ([`Reach::exceeded`]); when nothing is, cells are cut where the prices
+//! are looked at. What the solution exceeds is added ([`Reach::exceeded`]); when nothing is, cells are cut where the dual variables
 //! want another sign of u ([`proof`](super::proof)). That ends with one of two answers, each of which stands without the
 //! program:
 //!
 //! - a move that keeps every limit at every sample, and gets as far as the distance;
 //! - a bound on what any move can reach, below the distance.
 use super::half::{At, Half, after};
-use super::proof::Prices;
+use super::proof::Duals;
 use super::simplex::Program;
 use std::vec::Vec;
 
@@ -16,14 +16,14 @@ use std::vec::Vec;
 /// program.
 pub(super) const ROUNDING: f64 = 1e-11;
 
-/// Excess (a part of the limit) below which cells are cut: prices far from a move are no advice.
+/// Excess (a part of the limit) below which cells are cut: dual variables far from a move are no advice.
 const NEAR: f64 = 1e-3;
 
 /// Cells and rounds up to which the program grows; up to 300 samples random requests need fewer.
 const CELLS: usize = 60;
 const ROUNDS: usize = 100;
 
-/// Samples up to which a bound is proven: it is a sum over all samples and prices.
+/// Samples up to which a bound is proven: it is a sum over all samples and dual variables.
 const PROVABLE: f64 = 2048.0;
 
 /// The question.
@@ -48,8 +48,8 @@ pub(super) struct Cell {
 pub(super) enum Answer {
     /// The distance is reached, by this first half.
     Reached(Vec<Cell>),
-    /// No move reaches it, by these prices.
-    Beyond(#[cfg_attr(not(test), expect(dead_code, reason = "what a test adds up again"))] Prices),
+    /// No move reaches it, by these dual variables.
+    Beyond(#[cfg_attr(not(test), expect(dead_code, reason = "what a test adds up again"))] Duals),
     /// Neither has been found.
     Unknown,
 }
@@ -64,7 +64,7 @@ impl Reach<'_> {
     pub(super) fn answer(&self, switches: impl Iterator<Item = f64>) -> Answer {
         let free = self.half.free();
         if free == 0.0 {
-            return Answer::Beyond(Prices::default());
+            return Answer::Beyond(Duals::default());
         }
         let mut cuts = Vec::from([0.0, free]);
         let mut limits: Vec<At> = Vec::new();
@@ -91,12 +91,12 @@ impl Reach<'_> {
                 }
             }
             if self.half.samples <= PROVABLE {
-                let (prices, at_most) = Prices::of(self, &cells, &limits[..rounds_limits], &solution.prices);
+                let (duals, at_most) = Duals::of(self, &cells, &limits[..rounds_limits], &solution.duals);
                 if at_most < distance * (1.0 - ROUNDING) {
-                    return Answer::Beyond(prices);
+                    return Answer::Beyond(duals);
                 }
                 if excess < NEAR {
-                    cuts.extend(prices.cuts());
+                    cuts.extend(duals.cuts());
                     tidy(&mut cuts, free);
                 }
             }
@@ -211,20 +211,20 @@ mod tests {
         usize::try_from(whole(k)).unwrap()
     }
 
-    /// What no move of N samples exceeds by `prices`, from the chain itself: the whole move instead of its half, costs added
+    /// What no move of N samples exceeds by `duals`, from the chain itself: the whole move instead of its half, costs added
     /// up backwards integrator by integrator instead of by binomial coefficients.
-    fn at_most(prices: &Prices, bounds: &[f64], total: usize) -> f64 {
+    fn at_most(duals: &Duals, bounds: &[f64], total: usize) -> f64 {
         let n = bounds.len();
         // Costs of the m-th integral at each time, half of them at the time of the reflection.
         let mut costs = vec![vec![0.0; total + n]; n + 1];
         let mut paid = 0.0;
-        for (At { m, k }, price) in prices.limits() {
+        for (At { m, k }, dual) in duals.limits() {
             let k = index(k);
             let mirrored = total + m - 1 - k;
             let sign = if m.is_multiple_of(2) == n.is_multiple_of(2) { -1.0 } else { 1.0 };
-            costs[m][k] += 0.5 * price;
-            costs[m][mirrored] += 0.5 * sign * price;
-            paid += price.abs() * bounds[m - 1];
+            costs[m][k] += 0.5 * dual;
+            costs[m][mirrored] += 0.5 * sign * dual;
+            paid += dual.abs() * bounds[m - 1];
         }
         // What a unit at sample i makes of x, and what it costs.
         let (mut worth, mut cost) = (vec![0.0; total], vec![0.0; total]);
@@ -248,7 +248,7 @@ mod tests {
             let (at, sign) =
                 if i <= mirrored { (i, 1.0) } else { (mirrored, if n.is_multiple_of(2) { -1.0 } else { 1.0 }) };
             let is_middle = i == mirrored && n.is_multiple_of(2);
-            if is_middle { 0.0 } else { sign * prices.slope(at) * if i == mirrored { 1.0 } else { 0.5 } }
+            if is_middle { 0.0 } else { sign * duals.slope(at) * if i == mirrored { 1.0 } else { 0.5 } }
         };
         let off: Vec<f64> = (0..total).map(|i| worth[i] - cost[i] - slope(i)).collect();
         let size = worth[0];
@@ -285,12 +285,12 @@ mod tests {
             let half = Half { order: n, samples };
             let pace = samples / continuous.duration();
             let reach = Reach { half, bounds: &bounds };
-            let Answer::Beyond(prices) = reach.answer(continuous.segments().map(|segment| segment.start * pace)) else {
+            let Answer::Beyond(duals) = reach.answer(continuous.segments().map(|segment| segment.start * pace)) else {
                 return Err(TestCaseError::fail("no proof"));
             };
-            let most = at_most(&prices, &bounds, index(samples));
+            let most = at_most(&duals, &bounds, index(samples));
             prop_assert!(most < bounds[n - 1], "{most} {}", bounds[n - 1]);
-            prop_assert!((most / prices.at_most(&bounds) - 1.0).abs() < 1e-9, "the half says the same");
+            prop_assert!((most / duals.at_most(&bounds) - 1.0).abs() < 1e-9, "the half says the same");
         }
     }
 }

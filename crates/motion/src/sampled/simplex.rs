@@ -22,13 +22,13 @@ pub(super) struct Program {
     row_bounds: Vec<f64>,
 }
 
-/// The largest value is taken at `x`, and `prices` prove it.
+/// The largest value is taken at `x`, and `duals` prove it.
 #[derive(Debug, Clone)]
 pub(super) struct Solution {
     pub(super) x: Vec<f64>,
     /// λ_r, by how much the value grows with what row r is bound by: c·x ≤ Σ_j d_j·|c_j − Σ_r λ_r·a_rj| + Σ_r b_r·|λ_r| for
     /// every x that keeps the bounds, whatever λ; with this one it is an equation at the largest.
-    pub(super) prices: Vec<f64>,
+    pub(super) duals: Vec<f64>,
 }
 
 /// Part of the largest entry below which an entry is rounding.
@@ -270,13 +270,13 @@ impl Tableau {
 
     fn solution(&self, program: &Program) -> Solution {
         let x = (0..self.columns).map(|j| self.values[j] * program.column_bounds[j]).collect();
-        let mut prices = [0.0].repeat(self.basic.len());
+        let mut duals = [0.0].repeat(self.basic.len());
         for (slope, variable) in self.objective.iter().zip(&self.others) {
             if let Some(r) = variable.checked_sub(self.columns) {
-                prices[r] = slope * self.unit / self.scales[*variable];
+                duals[r] = slope * self.unit / self.scales[*variable];
             }
         }
-        Solution { x, prices }
+        Solution { x, duals }
     }
 }
 
@@ -286,9 +286,9 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Oracle: duality. The solution keeps all bounds, and what its prices say that nothing exceeds is what it reaches.
+        /// Oracle: duality. The solution keeps all bounds, and what its dual variables say that nothing exceeds is what it reaches.
         #[test]
-        fn the_prices_prove_the_largest_value(
+        fn the_duals_prove_the_largest_value(
             objective in prop::collection::vec(-1.0..1.0_f64, 1..9),
             rows in prop::collection::vec((prop::collection::vec(-1.0..1.0_f64, 9), 0..4_u8, 0.01..1.0_f64), 0..12),
         ) {
@@ -300,19 +300,19 @@ mod tests {
             for (row, bound) in &rows {
                 program.bound(row[..columns].iter().copied(), *bound);
             }
-            let Solution { x, prices } = program.solve().unwrap();
+            let Solution { x, duals } = program.solve().unwrap();
             let dot = |row: &[f64]| row.iter().zip(&x).map(|(a, x)| a * x).sum::<f64>();
             for (x, bound) in x.iter().zip(&bounds) {
                 prop_assert!(x.abs() <= bound * (1.0 + 1e-9));
             }
             let mut at_most = 0.0;
-            for ((row, bound), price) in rows.iter().zip(&prices) {
+            for ((row, bound), dual) in rows.iter().zip(&duals) {
                 // A few dozen steps, each of which divides by an entry; random rows are rarely near dependence.
                 prop_assert!(dot(row).abs() <= bound + 1e-7, "{} {bound}", dot(row));
-                at_most += bound * price.abs();
+                at_most += bound * dual.abs();
             }
             for j in 0..columns {
-                let cost: f64 = rows.iter().zip(&prices).map(|((row, _), price)| row[j] * price).sum();
+                let cost: f64 = rows.iter().zip(&duals).map(|((row, _), dual)| row[j] * dual).sum();
                 at_most += bounds[j] * (objective[j] - cost).abs();
             }
             let value = dot(&objective);

@@ -1,6 +1,5 @@
 //! Moving averages in continuous time, one after the other.
 use super::Vibration;
-use super::difference::plus;
 use crate::PlanError;
 use crate::limits::in_range;
 use servobench_base::{Setpoint, finite, positive};
@@ -45,22 +44,6 @@ impl<const N: usize> MovingAverages<N> {
     #[must_use]
     pub fn delay(&self) -> f64 {
         0.5 * self.duration()
-    }
-
-    /// The averaged set-point at `t` (s) of an input whose `N`-fold integral, from any beginning, is `integral` with its
-    /// derivatives.
-    ///
-    /// Exact but for rounding, that of the integral divided by ∏T.
-    #[must_use]
-    pub fn of_integral(&self, t: f64, integral: impl Fn(f64) -> Setpoint) -> Setpoint {
-        let mut sum = Setpoint::default();
-        for subset in 0..1_u32 << N {
-            let selected = self.lengths.iter().enumerate().filter(|(bit, _)| subset >> bit & 1 == 1);
-            let shift: f64 = selected.map(|(_, length)| length).sum();
-            let sign = if subset.count_ones().is_multiple_of(2) { 1.0 } else { -1.0 };
-            sum = plus(sum, integral(t - shift).scaled(sign));
-        }
-        self.lengths.iter().fold(sum, |sum, length| sum.scaled(1.0 / length))
     }
 
     /// The set-point at `t` (s) of a step of `distance` (m or rad) at t = 0: a move of order `N`, at exactly `distance` from

@@ -44,7 +44,6 @@ fn met(mode: Mode) -> usize {
 fn samples_are_met_by_the_modes_that_promise_it() {
     let samples = random_samples(&mut Random::seeded(1), 2000);
     for mode in Mode::ALL {
-        assert_eq!(mode.passes_through_samples(), met(mode) > 0);
         for (start, interval) in intervals(mode, &samples) {
             for (sample, fraction) in [(samples[start], 0.0), (samples[start + 1], 1.0)] {
                 let command = interval.at(fraction).unwrap();

@@ -45,7 +45,8 @@ fn intervals() {
                     Err(error) => refused(error, 0),
                 }
             }
-            if let (Ok(start), true, [.., one, _]) = (axis.at(0.0), mode.passes_through_samples(), &taken[..]) {
+            let passes_through = !matches!(mode, Mode::CubicBSpline | Mode::QuinticBSpline);
+            if let (Ok(start), true, [.., one, _]) = (axis.at(0.0), passes_through, &taken[..]) {
                 assert_eq!((start.setpoint.x + 0.0).to_bits(), (one.x + 0.0).to_bits(), "{axis:?}");
             }
         }

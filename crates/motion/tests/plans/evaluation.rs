@@ -47,7 +47,7 @@ fn every_derivative_is_the_slope_of_the_one_below() {
     }
 }
 
-/// Whoever keeps a piece as long as it holds gets the set-points of whoever looks it up at every instant, to the bit: at
+/// Whoever keeps a piece as long as it holds gets the set-points of whoever looks it up at every instant, bit for bit: at
 /// every switching instant, at the floats beside it, within the tolerance of it and anywhere; and no piece ends early.
 #[test]
 fn a_piece_holds_exactly_as_long_as_it_is_the_one() {

@@ -273,7 +273,7 @@ fn every_way_to_execute_it_lands() {
     }
 }
 
-/// Whoever keeps a piece as long as it holds gets the set-points of whoever looks it up at every instant, to the bit, and looks
+/// Whoever keeps a piece as long as it holds gets the set-points of whoever looks it up at every instant, bit for bit, and looks
 /// up one for each run at most, and two more: where the middle of the move cuts a run in two, and the rest at the end.
 #[test]
 fn a_piece_holds_exactly_as_long_as_it_is_the_one() {

@@ -52,7 +52,7 @@ fn the_drive_hits_every_position() {
     }
 }
 
-/// The set-points are the way of the drive, and at the points of the table they are its positions to the bit.
+/// The set-points are the way of the drive, and at the points of the table they are its positions bit for bit.
 #[test]
 fn set_points_are_what_the_drive_does() {
     for (mut knots, start, end, alpha) in cases() {

@@ -9,7 +9,7 @@
 //! rise takes; where there is not so much, it rises at once.
 use super::Axis;
 use super::bounds::Bounds;
-use super::calming::{is_fit_for, planned};
+use super::brake_pre_trajectory::{is_fit_for, planned};
 use super::queue::Queue;
 use super::run::Run;
 use crate::command::Goal;

@@ -3,7 +3,7 @@ use super::Axis;
 use super::activity::{Activity, EffortRamp, HomingWait, Leaving, Led, Moving};
 use super::blending::blended;
 use super::bounds::{Bounds, Override};
-use super::calming::{planned, settled};
+use super::brake_pre_trajectory::{planned, settled};
 use super::modulo;
 use super::queue::Queue;
 use super::run::Run;

@@ -2,7 +2,7 @@
 use super::Axis;
 use super::activity::Activity;
 use super::bounds::Bounds;
-use super::calming::planned;
+use super::brake_pre_trajectory::planned;
 use super::run::Run;
 use crate::arrows::{Cause, arrow};
 use crate::command::{Command, finite_input};

@@ -280,7 +280,7 @@ impl<K: Memory<Knot>, S: Memory<f64>> Course for Way<K, S> {
             return self.piece.at(t);
         }
         if self.end_velocity == 0.0 {
-            // The end to the bit.
+            // The end bit for bit.
             return Setpoint::at_rest(self.points()[self.count - 1].x);
         }
         Setpoint { a: 0.0, j: 0.0, ..self.piece.at(t) }

@@ -10,7 +10,7 @@ pub(crate) fn running(velocity: f64) -> MoveVelocityInputs {
     MoveVelocityInputs { execute: true, velocity, ..MoveVelocityInputs::within(&LIMITS) }
 }
 
-/// The axis is commanded to be at `x`, to the bit.
+/// The axis is commanded to be at `x`, bit for bit.
 pub(crate) fn at(bench: &Bench, x: f64) {
     assert_eq!(bench.axis.commanded().x.to_bits(), x.to_bits(), "{} {x}", bench.axis.commanded().x);
 }

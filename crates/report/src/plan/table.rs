@@ -275,7 +275,7 @@ mod tests {
         1.162321295 s 0.050000000 s  1000 m/s⁴
         "#);
         let beyond = table(&moves::of(generator(1.2)));
-        assert!(beyond.contains("% beyond its limits: where it starts leaves no other way"), "{beyond}");
+        assert!(beyond.contains("% beyond its limits: its initial state cannot be left within them"), "{beyond}");
     }
 
     /// A²/V·(200/% − 1): 160·7 m/s³ and 640·1 m/s³.

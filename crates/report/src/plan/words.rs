@@ -141,7 +141,7 @@ impl PlannedMove {
                 let mut told = vec![format!("from {} to {to}", from.join(", "))];
                 if *excess > EXCESS {
                     told.push(format!(
-                        "goes {:.3} % beyond its limits: where it starts leaves no other way",
+                        "goes {:.3} % beyond its limits: its initial state cannot be left within them",
                         100.0 * excess
                     ));
                 }

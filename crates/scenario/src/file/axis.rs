@@ -4,9 +4,10 @@ use crate::field::Slot;
 use crate::simple::OneOf;
 use crate::table::table;
 use servobench_base::Coordinate;
-use servobench_config::Kind::{Axis as InAxis, Motor as InMotor, Plain};
-use servobench_config::quantities::{EFFORT, INERTIA, LEAD, MASS, POSITION, RATIO, STIFFNESS, VELOCITY, VISCOUS};
-use servobench_config::{any, not_negative, positive};
+use servobench_config::Kind::{Axis as InAxis, Plain};
+use servobench_config::quantities::{INERTIA, LEAD, MASS, POSITION, RATIO};
+use servobench_config::{any, positive};
+use servobench_plant::{ChainParameter, FrictionParameter};
 
 table! {
     /// The mechanics: up to three bodies in a row, `motor_side` – `table` – `load`, or a user's own MJCF file.
@@ -19,7 +20,7 @@ table! {
         motion: Coordinate = OneOf,
         /// Travel per revolution of a screw, pinion or pulley. Without it a linear axis has a linear motor.
         lead: f64 = positive(Plain(&LEAD), "10 mm"),
-        /// Revolutions of the motor per revolution behind the gear; 1 unless given.
+        /// Revolutions of the motor per revolution behind the gear; default: 1.
         gear_ratio: f64 = positive(Plain(&RATIO), "5"),
         /// What moves with the rotor, in the motor coordinate. The rotor's own inertia is added to it.
         motor_side: MotorSide = (),
@@ -31,7 +32,7 @@ table! {
         mjcf: Mjcf = (),
         /// The mechanics as an FMU, for the engine "fmu"; bodies beside it are for the other engines.
         fmu: Fmu = (),
-        /// Period of a modulo axis, one that turns on and on; it has ends unless given. Function blocks use it.
+        /// Period of a modulo axis, one that turns on and on; default: none, the axis has ends. Function blocks use it.
         modulo: f64 = positive(InAxis(&POSITION), "360 deg"),
         /// Switches along the axis, which a drive on a fieldbus sees.
         switches: Switches = (),
@@ -41,13 +42,13 @@ table! {
 table! {
     /// Switches along the axis and the index pulse of its motor, which a drive on a fieldbus sees.
     pub(crate) struct Switches {
-        /// Switch of the negative end: active here and below; there is none unless given.
+        /// Switch of the negative end: active here and below; default: none.
         negative: f64 = any(InAxis(&POSITION), "-20 mm"),
-        /// Switch of the positive end: active here and above; there is none unless given.
+        /// Switch of the positive end: active here and above; default: none.
         positive: f64 = any(InAxis(&POSITION), "520 mm"),
-        /// Home switch; there is none unless given.
+        /// Home switch; default: none.
         home: HomeSwitch = (),
-        /// Where in each revolution of the motor the index pulse comes; 0 unless given. A linear motor has none.
+        /// Where in each revolution of the motor the index pulse comes; default: 0. A linear motor has none.
         index: f64 = any(Plain(&POSITION.rotary), "90 deg"),
     }
 }
@@ -69,16 +70,13 @@ table! {
         inertia: f64 = positive(Plain(&INERTIA), "0.00018 kg m2"),
         /// Mass, for a linear motor.
         mass: f64 = positive(Plain(&MASS), "20 kg"),
-        /// Viscous friction.
-        viscous: f64 = not_negative(InMotor(&VISCOUS), "0.001 Nm s/rad"),
-        /// Coulomb friction.
-        coulomb: f64 = not_negative(InMotor(&EFFORT), "0.05 Nm"),
-        /// Static (breakaway) friction, at least `coulomb`; equal to it unless given.
-        breakaway as "static": f64 = not_negative(InMotor(&EFFORT), "0.08 Nm"),
-        /// Velocity at which friction has mostly fallen from `static` to `coulomb`: exp(−(v/v_s)²). At once unless given.
-        stribeck_velocity: f64 = not_negative(InMotor(&VELOCITY), "10 rpm"),
-        /// Constant resisting force or torque: gravity, or friction that differs between the directions.
-        bias: f64 = any(InMotor(&EFFORT), "0.1 Nm"),
+        viscous: f64 = FrictionParameter::Viscous.description().of_motor("0.001 Nm s/rad"),
+        coulomb: f64 = FrictionParameter::Coulomb.description().of_motor("0.05 Nm"),
+        /// default: equal to it.
+        breakaway as "static": f64 = FrictionParameter::Breakaway.description().of_motor("0.08 Nm"),
+        /// default: at once.
+        stribeck_velocity: f64 = FrictionParameter::StribeckVelocity.description().of_motor("10 rpm"),
+        bias: f64 = ChainParameter::Bias.description().of_motor("0.1 Nm"),
     }
 }
 
@@ -89,20 +87,18 @@ table! {
         mass: f64 = positive(Plain(&MASS), "40 kg"),
         /// Moment of inertia, on a rotary axis.
         inertia: f64 = positive(Plain(&INERTIA), "0.005 kg m2"),
-        /// Stiffness of the coupling to the body before it; rigid unless given.
-        stiffness: f64 = positive(InAxis(&STIFFNESS), "120 N/um"),
-        /// Damping of that coupling.
-        damping: f64 = not_negative(InAxis(&VISCOUS), "3000 N s/m"),
-        /// Viscous friction against the ground.
-        viscous: f64 = not_negative(InAxis(&VISCOUS), "200 N s/m"),
-        /// Coulomb friction against the ground.
-        coulomb: f64 = not_negative(InAxis(&EFFORT), "20 N"),
-        /// Static (breakaway) friction, at least `coulomb`; equal to it unless given.
-        breakaway as "static": f64 = not_negative(InAxis(&EFFORT), "35 N"),
-        /// Velocity at which friction has mostly fallen from `static` to `coulomb`: exp(−(v/v_s)²). At once unless given.
-        stribeck_velocity: f64 = not_negative(InAxis(&VELOCITY), "2 mm/s"),
-        /// Constant resisting force or torque: gravity, or friction that differs between the directions.
-        bias: f64 = any(InAxis(&EFFORT), "-3.2 N"),
+        /// default: rigid.
+        stiffness: f64 = ChainParameter::Stiffness.description(),
+        damping: f64 = ChainParameter::Damping.description(),
+        /// against the ground.
+        viscous: f64 = FrictionParameter::Viscous.description(),
+        /// against the ground.
+        coulomb: f64 = FrictionParameter::Coulomb.description(),
+        /// default: equal to it.
+        breakaway as "static": f64 = FrictionParameter::Breakaway.description(),
+        /// default: at once.
+        stribeck_velocity: f64 = FrictionParameter::StribeckVelocity.description(),
+        bias: f64 = ChainParameter::Bias.description(),
     }
 }
 

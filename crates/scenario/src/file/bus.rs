@@ -56,39 +56,41 @@ table! {
     pub(crate) struct Bus requires ["cycle"] {
         /// Cycle of the bus, a whole number of base ticks.
         cycle: f64 = positive(Plain(&TIME), "1 ms"),
-        /// Mode of operation in which the axis moves; "csp" unless given.
+        /// Mode of operation in which the axis moves; default: "csp".
         mode: BusMode = OneOf,
-        /// Cycle of the motion task, with `[[call]]` of the PLC, a whole number of bus cycles; one unless given.
+        /// Cycle of the motion task, with `[[call]]` of the PLC, a whole number of bus cycles; default: one.
         motion_cycle: f64 = positive(Plain(&TIME), "4 ms"),
-        /// How the master fills the bus cycles between two of the motion task's; "cubic" unless given.
+        /// How the master fills the bus cycles between two of the motion task's; default: "cubic".
         interpolation: InterpolationMode = OneOf,
-        /// How the drive fills the ticks between two frames; "linear" unless given.
+        /// How the drive fills the ticks between two frames; default: "linear".
         drive_interpolation: DriveInterpolation = OneOf,
-        /// How points get into the buffer of the drive, with the mode "ip"; "2010h" unless given.
+        /// How points get into the buffer of the drive, with the mode "ip"; default: "2010h".
         trajectory_buffer: TrajectoryBuffer = OneOf,
-        /// Bus cycles from the sampling of a frame to its effect; 1 unless given.
+        /// Bus cycles from the sampling of a frame to its effect; default: 1.
         delay: u32 = 0..=15,
-        /// Whether the velocity offset (60B1h) carries the velocity of the set-point; it does not unless given.
+        /// Whether the velocity offset (60B1h) carries the velocity of the set-point; default: false.
         velocity_offset: bool = (),
-        /// Model of the torque or force that the torque offset (60B2h) carries, by the drive's `estimate`; "off" unless given.
+        /// Model of the torque or force that the torque offset (60B2h) carries, by the drive's `estimate`; default:
+        /// "off".
         effort_offset: EffortFeedforward = OneOf,
-        /// How late a command of the motion task may come without being predicted, a whole number of base ticks and two of the
-        /// task's cycles at most; it makes the way to the drive longer. None unless given.
+        /// How late a command of the motion task may come without being predicted, a whole number of base ticks and two
+        /// of the task's cycles at most; it makes the way to the drive longer; default: none.
         margin: f64 = positive(Plain(&TIME), "1 ms"),
-        /// How the master brings the drive to power; "strict" unless given.
+        /// How the master brings the drive to power; default: "strict".
         sequencing: Sequencing = OneOf,
-        /// How long the master waits for the drive; 0.5 s unless given.
+        /// How long the master waits for the drive; default: 0.5 s.
         drive_timeout: f64 = positive(Plain(&TIME), "0.5 s"),
         /// Proportional gain of the master's position loop, with "csv".
         position_gain: f64 = positive(Plain(&POSITION_GAIN), "100 1/s"),
         /// Counter of the positions on the bus: it wraps.
         counter: Counter = (),
-        /// Units of the positions on the bus; increments of the encoder that closes the position loop unless given.
+        /// Units of the positions on the bus; default: increments of the encoder that closes the position loop.
         units: DriveUnits = (),
-        /// Whether the master makes the actual velocity of differences of positions; the drive sends it unless given.
+        /// Whether the master makes the actual velocity of differences of positions; default: false, the drive sends
+        /// it.
         velocity_from_differences: bool = (),
-        /// Whether the switches are wired normally closed and drive and master invert their inputs, of which one without a switch
-        /// then reads as met; they are wired normally open unless given.
+        /// Whether the switches are wired normally closed and drive and master invert their inputs, of which one
+        /// without a switch then reads as met; default: false, they are wired normally open.
         reverse_switches: bool = (),
         /// What goes wrong; `[[bus.fault]]` for each.
         fault: Many<BusFault> = (),
@@ -98,9 +100,9 @@ table! {
 table! {
     /// Counter of the positions on the bus: it wraps.
     pub(crate) struct Counter {
-        /// Its width; 32 unless given.
+        /// Its width; default: 32.
         bits: u32 = 8..=32,
-        /// Whether it counts from −2^(bits−1); it does unless given.
+        /// Whether it counts from −2^(bits−1); default: true.
         signed: bool = (),
     }
 }
@@ -122,7 +124,7 @@ table! {
     pub(crate) struct BusFault requires ["kind"] {
         /// What goes wrong.
         kind: FaultName = OneOf,
-        /// Start: from the first cycle that is not before it; 0 unless given.
+        /// Start: from the first cycle that is not before it; default: 0.
         start: f64 = not_negative(Plain(&TIME), "0.5 s"),
         /// How many cycles it concerns.
         cycles: u32 = 1..=u32::MAX,
@@ -131,7 +133,7 @@ table! {
         /// How late what is "late" is, what has "jitter" at most, or how much too short a cycle is with "task-fast"; a whole
         /// number of base ticks.
         by: f64 = positive(Plain(&TIME), "250 us"),
-        /// Seed of the random numbers of "jitter" and "task-jitter"; 1 unless given.
+        /// Seed of the random numbers of "jitter" and "task-jitter"; default: 1.
         seed: u32 = 0..=u32::MAX,
     }
 }

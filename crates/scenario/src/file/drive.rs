@@ -7,11 +7,11 @@ use crate::table::table;
 use servobench_base::Rate;
 use servobench_config::Kind::{Axis as InAxis, Motor as InMotor, Plain};
 use servobench_config::quantities::{
-    BANDWIDTH, CURRENT, CURRENT_GAIN, EFFORT, FLUX_LINKAGE, FORCE, INDUCTANCE, INERTIAL, LEAD, POSITION, POSITION_GAIN,
-    RATIO, RESISTANCE, SOURCE_GAIN, STIFFNESS, TIME, TORQUE, VISCOUS, VOLT_GAIN, VOLTAGE,
+    BANDWIDTH, FORCE, INERTIAL, LEAD, POSITION_GAIN, RATIO, TORQUE, VISCOUS, VOLT_GAIN,
 };
-use servobench_config::{any, choices, not_negative, positive};
-use servobench_drive::EffortFeedforward;
+use servobench_config::{choices, positive};
+use servobench_drive::{EffortFeedforward, Parameter};
+use servobench_plant::EncoderParameter;
 
 choices! {
     /// Which encoder closes the position loop.
@@ -41,16 +41,15 @@ table! {
         model: String = (),
         /// Where the values come from.
         source: String = (),
-        /// Whether the power stage is on; it is unless given. Off: no current, no force, and the axis is free.
+        /// Whether the power stage is on; default: true. Off: no current, no force, and the axis is free.
         enabled: bool = (),
-        /// Voltage of the DC link.
-        dc_link: f64 = positive(Plain(&VOLTAGE), "540 V"),
+        dc_link: f64 = Parameter::DcLink.description(),
         /// Largest torque that the drive asks for, besides what the current limit of the motor or the `limit` of an ideal
         /// source allows.
         max_torque: f64 = positive(Plain(&TORQUE), "12 Nm"),
         /// Largest force that the drive asks for, with a linear motor.
         max_force: f64 = positive(Plain(&FORCE), "300 N"),
-        /// Encoder that closes the position loop; the motor's unless given.
+        /// Encoder that closes the position loop; default: the motor's.
         position_feedback: FeedbackEncoder = OneOf,
         /// Current loop of a synchronous motor.
         current: Current = (),
@@ -58,11 +57,11 @@ table! {
         velocity: Velocity = (),
         /// Position loop.
         position: Position = (),
-        /// Feedforward; none unless given.
+        /// Feedforward; default: none.
         feedforward: Feedforward = (),
-        /// What the firmware believes of the axis; the truth unless given.
+        /// What the firmware believes of the axis; default: the truth.
         estimate: Estimate = (),
-        /// Encoder on the load; there is none unless given.
+        /// Encoder on the load; default: none.
         load_encoder: LoadEncoder = (),
         /// What the master writes into the drive's objects (CiA 402) before the first cycle of `[bus]`: whole numbers by index and
         /// sub-index.
@@ -77,17 +76,17 @@ table! {
         rate: Rate = "16 kHz",
         /// Closed-loop bandwidth α, from which the gains follow: k_p = α·L, T_i = L/R.
         bandwidth: f64 = positive(Plain(&BANDWIDTH), "1 kHz"),
-        /// Proportional gain of the d axis instead of the bandwidth.
-        gain_d: f64 = positive(Plain(&CURRENT_GAIN), "12 V/A"),
-        /// Proportional gain of the q axis instead of the bandwidth.
-        gain_q: f64 = positive(Plain(&CURRENT_GAIN), "12 V/A"),
-        /// Integral time of the d axis; L/R of the estimated motor unless given.
-        integral_time_d: f64 = positive(Plain(&TIME), "5 ms"),
-        /// Integral time of the q axis; L/R of the estimated motor unless given.
-        integral_time_q: f64 = positive(Plain(&TIME), "5 ms"),
-        /// Reference of the d-axis current; 0 unless given. The torque or force per q-axis current is then that of
-        /// 1.5·p·(ψ + (L_d − L_q)·i_d) of the estimated motor, and `max_current` bounds the vector of both.
-        d_reference: f64 = any(Plain(&CURRENT), "-20 Arms"),
+        /// instead of the bandwidth.
+        gain_d: f64 = Parameter::CurrentGainD.description(),
+        /// instead of the bandwidth.
+        gain_q: f64 = Parameter::CurrentGainQ.description(),
+        /// default: L/R of the estimated motor.
+        integral_time_d: f64 = Parameter::CurrentIntegralTimeD.description(),
+        /// default: L/R of the estimated motor.
+        integral_time_q: f64 = Parameter::CurrentIntegralTimeQ.description(),
+        /// default: 0. The torque or force per q-axis current is then that of 1.5·p·(ψ + (L_d − L_q)·i_d) of the
+        /// estimated motor, and `max_current` bounds the vector of both.
+        d_reference: f64 = Parameter::CurrentReferenceD.description(),
     }
 }
 
@@ -96,17 +95,17 @@ table! {
     pub(crate) struct Velocity {
         /// Task rate; it divides the rate of the current loop, or the base rate where there is none.
         rate: Rate = "8 kHz",
-        /// P or PI; PI unless given.
+        /// P or PI; default: PI.
         kind: VelocityKind = OneOf,
         /// Closed-loop bandwidth ω, from which the gain follows: the estimated inertia times ω.
         bandwidth: f64 = positive(Plain(&BANDWIDTH), "100 Hz"),
         /// Proportional gain instead of the bandwidth: torque or force per velocity, or volts per velocity of an ideal
         /// source.
         gain: Either = EitherMeasure { first: InMotor(&VISCOUS), second: InMotor(&VOLT_GAIN), example: "243.45 V s/m" },
-        /// Integral time of a PI; 4/ω unless given.
-        integral_time: f64 = positive(Plain(&TIME), "6 ms"),
-        /// Time constant of the low-pass on the measured velocity; none unless given.
-        filter_time: f64 = not_negative(Plain(&TIME), "0.1 ms"),
+        /// default: 4/ω.
+        integral_time: f64 = Parameter::VelocityIntegralTime.description(),
+        /// default: none.
+        filter_time: f64 = Parameter::VelocityFilterTime.description(),
     }
 }
 
@@ -125,22 +124,22 @@ table! {
 table! {
     /// Feedforward from the set-point.
     pub(crate) struct Feedforward {
-        /// Share of the reference velocity that is added to the velocity command; `true` is all of it. None unless given.
+        /// Share of the reference velocity that is added to the velocity command; `true` is all of it; default: none.
         velocity: Share = (),
-        /// Whether that velocity goes on along the set-point between two cycles of a slower position loop, one value for each
-        /// cycle of the velocity loop; it does unless given. `false`: a staircase, which costs torque ripple.
+        /// Whether that velocity goes on along the set-point between two cycles of a slower position loop, one value
+        /// for each cycle of the velocity loop; default: true. `false`: a staircase, which costs torque ripple.
         interpolate: bool = (),
-        /// Model of the force or torque that is added; "off" unless given.
+        /// Model of the force or torque that is added; default: "off".
         effort: EffortFeedforward = OneOf,
-        /// Whether estimated Coulomb friction and bias are added too; they are not unless given.
+        /// Whether estimated Coulomb friction and bias are added too; default: false.
         friction: bool = (),
-        /// How long the reference waits for the feedforward path; "auto", as long as that path takes, unless given.
+        /// How long the reference waits for the feedforward path; default: "auto", as long as that path takes.
         delay: AutoTime = (),
     }
 }
 
 table! {
-    /// What the firmware believes of the axis, in the axis coordinate. Each value is the plant's own unless given.
+    /// What the firmware believes of the axis, in the axis coordinate; default: each value is the plant's own.
     pub(crate) struct Estimate {
         /// Travel per revolution of the screw, pinion or pulley.
         lead: f64 = positive(Plain(&LEAD), "10 mm"),
@@ -148,22 +147,14 @@ table! {
         gear_ratio: f64 = positive(Plain(&RATIO), "5"),
         /// Mass or inertia on the motor's side of the softest spring, rotor included.
         motor_inertia: f64 = positive(InAxis(&INERTIAL), "20 kg"),
-        /// Mass or inertia beyond that spring.
-        load_inertia: f64 = not_negative(InAxis(&INERTIAL), "10 kg"),
-        /// Stiffness of that spring.
-        stiffness: f64 = positive(InAxis(&STIFFNESS), "0.6 N/um"),
-        /// Viscous friction on the motor's side.
-        motor_viscous: f64 = not_negative(InAxis(&VISCOUS), "10 N s/m"),
-        /// Viscous friction on the load.
-        load_viscous: f64 = not_negative(InAxis(&VISCOUS), "10 N s/m"),
-        /// Coulomb friction of all bodies.
-        coulomb: f64 = not_negative(InAxis(&EFFORT), "20 N"),
-        /// Constant resisting force or torque on all bodies.
-        bias: f64 = any(InAxis(&EFFORT), "-3 N"),
-        /// Force or torque per volt of an ideal source.
-        gain: f64 = positive(InMotor(&SOURCE_GAIN), "35.1507 N/V"),
-        /// Voltage of the DC link.
-        dc_link: f64 = positive(Plain(&VOLTAGE), "540 V"),
+        load_inertia: f64 = Parameter::LoadInertia.description(),
+        stiffness: f64 = Parameter::Stiffness.description(),
+        motor_viscous: f64 = Parameter::MotorViscous.description(),
+        load_viscous: f64 = Parameter::LoadViscous.description(),
+        coulomb: f64 = Parameter::Coulomb.description(),
+        bias: f64 = Parameter::Bias.description(),
+        gain: f64 = Parameter::DirectGain.description(),
+        dc_link: f64 = Parameter::DcLink.description(),
         /// The synchronous motor.
         motor: EstimatedMotor = (),
     }
@@ -172,14 +163,10 @@ table! {
 table! {
     /// What the firmware believes of the synchronous motor, phase to neutral.
     pub(crate) struct EstimatedMotor {
-        /// Stator resistance.
-        resistance: f64 = positive(Plain(&RESISTANCE), "0.36 Ohm"),
-        /// Inductance of the d axis.
-        inductance_d: f64 = positive(Plain(&INDUCTANCE), "36 mH"),
-        /// Inductance of the q axis.
-        inductance_q: f64 = positive(Plain(&INDUCTANCE), "51 mH"),
-        /// Flux linkage, amplitude.
-        flux_linkage: f64 = positive(Plain(&FLUX_LINKAGE), "0.545 V s"),
+        resistance: f64 = Parameter::Resistance.description(),
+        inductance_d: f64 = Parameter::InductanceD.description(),
+        inductance_q: f64 = Parameter::InductanceQ.description(),
+        flux_linkage: f64 = Parameter::FluxLinkage.description(),
     }
 }
 
@@ -188,7 +175,6 @@ table! {
     pub(crate) struct LoadEncoder {
         /// Increments per revolution, on a rotary axis.
         counts_per_rev: u32 = 1..=u32::MAX,
-        /// One increment.
-        step: f64 = positive(InAxis(&POSITION), "0.1 um"),
+        step: f64 = EncoderParameter::Step.description(),
     }
 }

@@ -11,20 +11,20 @@ use servobench_fmi::IsolationKind;
 table! {
     /// A Functional Mock-up Unit (FMI 2.0 or 3.0, co-simulation).
     pub(crate) struct Fmu requires ["file"] {
-        /// Name of the instance; the file's name without its ending unless given.
+        /// Name of the instance; default: the file's name without its ending.
         name: String = (),
         /// The file, relative to the file that names it.
         file: String = (),
-        /// From exchange to exchange, a whole number of base ticks; one tick, or the step of `[coupling]`, unless given.
+        /// From exchange to exchange, a whole number of base ticks; default: one tick, or the step of `[coupling]`.
         step: f64 = positive(Plain(&TIME), "1 ms"),
-        /// Where it runs; "process" unless given.
+        /// Where it runs; default: "process".
         isolation: IsolationKind = OneOf,
         /// Whether the event mode of an FMU of FMI 3.0 is used; if it has one, it is unless this is `false`: then the FMU deals with
         /// events by itself.
         event_mode: bool = (),
-        /// How long one of its calls may take (real time); 10 s unless given.
-        patience: f64 = positive(Plain(&TIME), "10 s"),
-        /// Megabytes of memory that its process may take; 2048 unless given.
+        /// How long one of its calls may take (real time); default: 10 s.
+        call_timeout: f64 = positive(Plain(&TIME), "10 s"),
+        /// Megabytes of memory that its process may take; default: 2048.
         memory: u32 = 64..=1_048_576,
         /// Start values of its parameters and variables, in units that it can convert.
         parameters: StartTable = (),
@@ -42,15 +42,15 @@ table! {
 table! {
     /// How FMUs and the axis exchange what they give.
     pub(crate) struct Coupling {
-        /// From exchange to exchange, a whole number of base ticks; one tick unless given.
+        /// From exchange to exchange, a whole number of base ticks; default: one tick.
         step: f64 = positive(Plain(&TIME), "0.5 ms"),
-        /// Who steps when; "gauss-seidel" in the order of the file, the axis last, unless given.
+        /// Who steps when; default: "gauss-seidel" in the order of the file, the axis last.
         method: MethodKind = OneOf,
-        /// Order with which inputs go on within a step; 0 unless given: they are held.
+        /// Order with which inputs go on within a step; default: 0: they are held.
         extrapolation: u32 = 0..=2,
-        /// With "iterated": how well inputs and outputs agree, relative to their size; 1e-9 unless given.
+        /// With "iterated": how well inputs and outputs agree, relative to their size; default: 1e-9.
         tolerance: f64 = positive(Plain(&RATIO), "1e-9"),
-        /// With "iterated": how often a step may be repeated; 50 unless given.
+        /// With "iterated": how often a step may be repeated; default: 50.
         iterations: u32 = 1..=1000,
     }
 }

@@ -4,10 +4,11 @@ use crate::simple::OneOf;
 use crate::table::table;
 use servobench_config::Kind::{Motor as InMotor, Plain};
 use servobench_config::quantities::{
-    BACK_EMF, CURRENT, EFFORT, FLUX_LINKAGE, FORCE_CONSTANT, INDUCTANCE, INERTIA, MASS, POSITION, RESISTANCE,
-    SOURCE_GAIN, TORQUE_CONSTANT, VOLTAGE,
+    BACK_EMF, EFFORT, FORCE_CONSTANT, INDUCTANCE, INERTIA, MASS, POSITION, SOURCE_GAIN, TORQUE_CONSTANT, VOLTAGE,
 };
 use servobench_config::{choices, positive};
+use servobench_drive as drive;
+use servobench_plant::{EncoderParameter, pmsm};
 
 choices! {
     /// What kind of motor it is.
@@ -36,16 +37,12 @@ table! {
         /// Distance τ_p from a north pole to the next south pole of a linear motor, half an electrical period. Catalogues
         /// that give the pitch from north to north give twice that.
         pole_pitch: f64 = positive(Plain(&POSITION.linear), "16 mm"),
-        /// Stator resistance, phase to neutral.
-        resistance: f64 = positive(Plain(&RESISTANCE), "0.36 Ohm"),
+        resistance: f64 = pmsm::Parameter::Resistance.description(),
         /// Inductance of both axes, phase to neutral.
         inductance: f64 = positive(Plain(&INDUCTANCE), "0.2 mH"),
-        /// Inductance of the d axis, phase to neutral.
-        inductance_d: f64 = positive(Plain(&INDUCTANCE), "36 mH"),
-        /// Inductance of the q axis, phase to neutral.
-        inductance_q: f64 = positive(Plain(&INDUCTANCE), "51 mH"),
-        /// Flux linkage of the magnets, amplitude.
-        flux_linkage: f64 = positive(Plain(&FLUX_LINKAGE), "0.545 V s"),
+        inductance_d: f64 = pmsm::Parameter::InductanceD.description(),
+        inductance_q: f64 = pmsm::Parameter::InductanceQ.description(),
+        flux_linkage: f64 = pmsm::Parameter::FluxLinkage.description(),
         /// Torque per current instead of the flux linkage: 1.5·p·ψ in Nm/Apk.
         torque_constant: f64 = positive(Plain(&TORQUE_CONSTANT), "0.3 Nm/Arms"),
         /// Force per current of a linear motor instead of the flux linkage: 1.5·(π/τ_p)·ψ in N/Apk.
@@ -57,13 +54,13 @@ table! {
         inertia: f64 = positive(Plain(&INERTIA), "0.00018 kg m2"),
         /// Mass of the moving part of a linear motor.
         mass: f64 = positive(Plain(&MASS), "3 kg"),
-        /// Largest phase current; the drive asks for no more.
-        max_current: f64 = positive(Plain(&CURRENT), "10 Arms"),
+        /// : the drive asks for no more.
+        max_current: f64 = drive::Parameter::MaxCurrent.description(),
         /// Force or torque per volt of an ideal source; without it the output is the force or torque itself.
         gain: f64 = positive(InMotor(&SOURCE_GAIN), "35.1507 N/V"),
-        /// Largest output of an ideal source, in volts or as force or torque; unlimited unless given.
+        /// Largest output of an ideal source, in volts or as force or torque; default: unlimited.
         limit: Either = EitherMeasure { first: Plain(&VOLTAGE), second: InMotor(&EFFORT), example: "10 V" },
-        /// Encoder on the motor; ideal unless given.
+        /// Encoder on the motor; default: ideal.
         encoder: Encoder = (),
     }
 }
@@ -73,7 +70,7 @@ table! {
     pub(crate) struct Encoder {
         /// Increments per revolution: 1048576 for 20 bits.
         counts_per_rev: u32 = 1..=u32::MAX,
-        /// One increment: an angle of a motor that turns, with a `lead` too, a length of a linear motor ("0.1 um").
-        step: f64 = positive(InMotor(&POSITION), "0.01 deg"),
+        /// : an angle of a motor that turns, with a `lead` too, a length of a linear motor ("0.1 um").
+        step: f64 = EncoderParameter::Step.description().of_motor("0.01 deg"),
     }
 }

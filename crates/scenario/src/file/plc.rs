@@ -11,25 +11,25 @@ use servobench_plcopen::BlockName;
 table! {
     /// What holds for all `[[call]]`s.
     pub(crate) struct Plc {
-        /// Whether absolute moves of an axis that was not homed are refused; they are unless given.
+        /// Whether absolute moves of an axis that was not homed are refused; default: true.
         homing_required: bool = (),
     }
 }
 
 table! {
-    /// A call of a function block (PLCopen Motion Control, part 1, version 2.0), with an instance of its own. The PLC executes
-    /// the calls once per cycle in the order of the file. Inputs have the standard's names; "Blocks" says which block has
-    /// which. Velocity, acceleration, jerk and snap are those of `[setpoint]` unless given.
+    /// A call of a function block (PLCopen Motion Control, part 1, version 2.0), with an instance of its own. The PLC
+    /// executes the calls once per cycle in the order of the file. Inputs have the standard's names; "Blocks" says
+    /// which block has which; default: velocity, acceleration, jerk and snap are those of `[setpoint]`.
     pub(crate) struct Call requires ["block"] {
         /// The function block.
         block: BlockName = (),
-        /// Name of the instance; that of the block with a number from 0 unless given ("MC_MoveAbsolute_0").
+        /// Name of the instance; default: that of the block with a number from 0 ("MC_MoveAbsolute_0").
         name: String = (),
-        /// When `Execute` or `Enable` becomes TRUE; in the first cycle unless given.
+        /// When `Execute` or `Enable` becomes TRUE; default: in the first cycle.
         start: When = (),
         /// When it becomes FALSE. Unless given, `Execute` falls a cycle after the block has ended, and `Enable` stays.
         stop: When = (),
-        /// Fails the run when `start` has not come by then, with the reason; the end of the run unless given.
+        /// Fails the run when `start` has not come by then, with the reason; default: the end of the run.
         timeout: f64 = positive(Plain(&TIME), "2 s"),
         /// Whether the requirement `executed` does without it. A call that waits in vain on `Error` or `CommandAborted` of
         /// another one is optional anyway.
@@ -57,7 +57,7 @@ table! {
         at: f64 = not_negative(Plain(&TIME), "0.2 s"),
         /// When an output of another call has become TRUE ("first.Done").
         after: String = (),
-        /// How long after that; at once unless given.
+        /// How long after that; default: at once.
         delay: f64 = not_negative(Plain(&TIME), "50 ms"),
         /// When the actual position passes this one upwards, or is above it already.
         above: f64 = any(InAxis(&POSITION), "50 mm"),

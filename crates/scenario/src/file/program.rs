@@ -28,7 +28,7 @@ table! {
         wait: f64 = not_negative(Plain(&TIME), "0.2 s"),
         /// Passes the target of `move_to` or `move_by` at this velocity; the next move takes over in motion.
         end_velocity: f64 = any(InAxis(&VELOCITY), "5 m/min"),
-        /// How long `reach_velocity` holds its velocity; not at all unless given.
+        /// How long `reach_velocity` holds its velocity; default: not at all.
         hold: f64 = not_negative(Plain(&TIME), "0.5 s"),
         /// Breaks the move before off, so long after its start, and takes over from the state of motion that it has then.
         aborts_after: f64 = positive(Plain(&TIME), "0.3 s"),
@@ -62,7 +62,7 @@ table! {
         shaper: Shaper = (),
         /// Lengths of moving averages behind the generator; `[]` for none.
         averages: Many<f64> = positive(Plain(&TIME), "10 ms"),
-        /// Slows the move to last this long, every derivative in proportion; as fast as the limits allow unless given.
+        /// Slows the move to last this long, every derivative in proportion; default: as fast as the limits allow.
         duration: f64 = positive(Plain(&TIME), "1.5 s"),
         /// Limits that this move's own metrics must keep, beside those of the run.
         limits: LimitTable = (),
@@ -74,9 +74,9 @@ table! {
     pub(crate) struct Disturbance requires ["on"] {
         /// Body it acts on.
         on: DisturbedBody = OneOf,
-        /// Start: it acts from the first tick that is not before it; 0 unless given.
+        /// Start: it acts from the first tick that is not before it; default: 0.
         start: f64 = not_negative(Plain(&TIME), "0.5 s"),
-        /// How long it lasts: it acts up to the last tick before its end; to the end of the run unless given.
+        /// How long it lasts: it acts up to the last tick before its end; default: the end of the run.
         duration: f64 = positive(Plain(&TIME), "0.2 s"),
         /// Amplitude, where the body moves along a line.
         force: f64 = any(Plain(&FORCE), "200 N"),

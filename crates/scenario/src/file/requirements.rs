@@ -41,7 +41,7 @@ impl Field for RequirementTable {
             .iter()
             .map(|requirement| (requirement.as_str(), vec![requirement.meaning()], json!({ "type": "boolean" })));
         let keys: Vec<_> = keys.collect();
-        let keys = keys.iter().map(|(name, doc, schema)| (*name, doc.as_slice(), schema.clone())).collect();
+        let keys = keys.iter().map(|(name, doc, schema)| (*name, ("", doc.as_slice()), schema.clone())).collect();
         object_schema(&["Whether the run is held to each requirement."], &[], keys)
     }
 }
@@ -56,9 +56,9 @@ table! {
         fault: String = (),
         /// Whose fault: "axis", "drive", "link", or the name of a call.
         who: String = (),
-        /// From when on it may come; from the beginning unless given.
+        /// From when on it may come; default: the beginning.
         from: f64 = not_negative(Plain(&TIME), "0.2 s"),
-        /// Until when it must have come; by the end of the run unless given.
+        /// Until when it must have come; default: the end of the run.
         to: f64 = positive(Plain(&TIME), "0.6 s"),
     }
 }

@@ -25,19 +25,19 @@ table! {
         jerk: f64 = positive(InAxis(&JERK), "50 m/s3"),
         /// Largest snap.
         snap: f64 = positive(InAxis(&SNAP), "1000 m/s4"),
-        /// Which profile goes from rest to rest; "published" unless given.
+        /// Which profile goes from rest to rest; default: "published".
         method: Method = OneOf,
-        /// Sample time of moves from rest to rest, a whole number of base ticks; continuous unless given.
+        /// Sample time of moves from rest to rest, a whole number of base ticks; default: continuous.
         sample_time: f64 = positive(Plain(&TIME), "1 ms"),
-        /// How the times are made whole numbers of samples; "published" unless given.
+        /// How the times are made whole numbers of samples; default: "published".
         sampling: Sampling = OneOf,
-        /// How set-points are made of the samples; "hold" unless given.
+        /// How set-points are made of the samples; default: "hold".
         execution: Execution = OneOf,
         /// Plans every move as one that may start in motion, with so much work; "fast" where a move does and nothing is given.
         online: Effort = OneOf,
-        /// Largest velocity below zero, of moves that are planned in motion; as `velocity` unless given.
+        /// Largest velocity below zero, of moves that are planned in motion; default: as `velocity`.
         negative_velocity: f64 = positive(InAxis(&VELOCITY), "20 m/min"),
-        /// Largest acceleration below zero, of moves that are planned in motion; as `acceleration` unless given.
+        /// Largest acceleration below zero, of moves that are planned in motion; default: as `acceleration`.
         negative_acceleration: f64 = positive(InAxis(&ACCELERATION), "4 m/s2"),
         /// Moves by the operands of Rockwell's axis move.
         rockwell: Rockwell = (),
@@ -45,7 +45,7 @@ table! {
         shaper: Shaper = (),
         /// Lengths of moving averages behind the generator, one after the other, whole numbers of base ticks.
         averages: Many<f64> = positive(Plain(&TIME), "10 ms"),
-        /// Between a slow task that commands and the drive; the drive has a new set-point at every tick unless given.
+        /// Between a slow task that commands and the drive; default: the drive has a new set-point at every tick.
         interpolation: Interpolation = (),
     }
 }
@@ -55,7 +55,7 @@ table! {
     pub(crate) struct Rockwell requires ["shape"] {
         /// Shape of the velocity.
         shape: ShapeKind = OneOf,
-        /// Largest deceleration; as `acceleration` unless given.
+        /// Largest deceleration; default: as `acceleration`.
         deceleration: f64 = positive(InAxis(&ACCELERATION), "8 m/s2"),
         /// Jerk as the part of the ramp in which the acceleration changes, above 0 to 100 %.
         jerk_of_time: f64 = positive(Plain(&RATIO), "25 %"),
@@ -69,7 +69,7 @@ table! {
         deceleration_jerk_of_maximum: f64 = positive(Plain(&RATIO), "60 %"),
         /// Largest jerk of accelerations that the axis is configured for: that of a trapezoid.
         maximum_jerk: f64 = positive(InAxis(&JERK), "500 m/s3"),
-        /// Largest jerk of decelerations; as `maximum_jerk` unless given.
+        /// Largest jerk of decelerations; default: as `maximum_jerk`.
         maximum_deceleration_jerk: f64 = positive(InAxis(&JERK), "500 m/s3"),
     }
 }
@@ -82,9 +82,9 @@ table! {
         kind: Option<ShaperKind> = OneOfOrNone("no shaper, where `[setpoint]` has one"),
         /// Natural frequency of the mode.
         frequency: f64 = positive(Plain(&FREQUENCY), "17.5 Hz"),
-        /// Damping ratio of the mode; 0 unless given.
+        /// Damping ratio of the mode; default: 0.
         damping: f64 = not_negative(Plain(&RATIO), "0.02"),
-        /// Part of the vibration that "ei" may leave; 0.05 unless given.
+        /// Part of the vibration that "ei" may leave; default: 0.05.
         tolerable: f64 = positive(Plain(&RATIO), "5 %"),
     }
 }
@@ -107,13 +107,13 @@ table! {
         file: String = (),
         /// Whether the positions count from where the axis is when the move starts.
         relative: bool = (),
-        /// Where the velocities come from; "given" unless given.
+        /// Where the velocities come from; default: "given".
         velocities: VelocitiesKind = OneOf,
-        /// How often "smooth" passes over them; 2 unless given.
+        /// How often "smooth" passes over them; default: 2.
         passes: u32 = 0..=1_000_000,
-        /// How it is followed; "segments" unless given.
+        /// How it is followed; default: "segments".
         follow: FollowKind = OneOf,
-        /// Share of a segment at either end in which the velocity of "plateaus" changes, up to 0.5; 0.25 unless given.
+        /// Share of a segment at either end in which the velocity of "plateaus" changes, up to 0.5; default: 0.25.
         plateau_share: f64 = positive(Plain(&RATIO), "0.25"),
         /// Commands per second of "steps".
         command_rate: f64 = positive(Plain(&FREQUENCY), "100 Hz"),

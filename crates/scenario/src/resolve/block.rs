@@ -2,7 +2,7 @@
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::resolve::inputs::{Defaults, Inputs};
-use crate::resolve::keys::Said;
+use crate::resolve::keys::Reported;
 use crate::resolve::profile;
 use crate::source::{At, Sources};
 use servobench_plcopen::{
@@ -22,7 +22,7 @@ impl Context<'_> {
         &self,
         block: BlockName,
         inputs: &Inputs<'_>,
-        said: &mut Said,
+        said: &mut Reported,
         report: &mut Report,
     ) -> Option<program::Inputs> {
         let mut reading = Reading { context: self, block, inputs, said, report };
@@ -48,7 +48,7 @@ struct Reading<'a, 'r> {
     context: &'a Context<'a>,
     block: BlockName,
     inputs: &'a Inputs<'a>,
-    said: &'r mut Said,
+    said: &'r mut Reported,
     report: &'r mut Report,
 }
 

@@ -2,7 +2,7 @@
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file::File;
-use crate::resolve::keys::{Keys, Said};
+use crate::resolve::keys::{Keys, Reported};
 use crate::resolve::whole;
 use crate::scenario::Interpolation;
 use crate::source::At;
@@ -11,7 +11,12 @@ use servobench_motion::shape::{Shaper, ShaperKind};
 use servobench_planner::{Averages, Filter, Grid, Shaping};
 
 /// The filter of a move.
-pub(super) fn filter(keys: &Keys<'_>, base_rate: Option<Rate>, said: &mut Said, report: &mut Report) -> Option<Filter> {
+pub(super) fn filter(
+    keys: &Keys<'_>,
+    base_rate: Option<Rate>,
+    said: &mut Reported,
+    report: &mut Report,
+) -> Option<Filter> {
     let shaper = match keys.shaper.optional().ok()? {
         None => None,
         Some(given) => {
@@ -51,7 +56,7 @@ pub(super) fn filter(keys: &Keys<'_>, base_rate: Option<Rate>, said: &mut Said, 
 pub(super) fn grid(
     keys: &Keys<'_>,
     base_rate: Option<Rate>,
-    said: &mut Said,
+    said: &mut Reported,
     report: &mut Report,
 ) -> Option<Option<Grid>> {
     let sample_time = match keys.sample_time {
@@ -81,12 +86,18 @@ pub(super) fn interpolation(
 ) -> Option<Option<Interpolation>> {
     let Some(setpoint) = file.setpoint.given() else { return Some(None) };
     let Some(given) = setpoint.interpolation.optional().ok()? else { return Some(None) };
-    let period = whole_ticks("period", *given.period.at()?, base_rate, &mut Said::default(), report)?;
+    let period = whole_ticks("period", *given.period.at()?, base_rate, &mut Reported::default(), report)?;
     Some(Some(Interpolation { mode: *given.mode.given()?, period }))
 }
 
 /// A time that must be a whole number of base ticks.
-fn whole_ticks(key: &str, time: At<f64>, base_rate: Option<Rate>, said: &mut Said, report: &mut Report) -> Option<f64> {
+fn whole_ticks(
+    key: &str,
+    time: At<f64>,
+    base_rate: Option<Rate>,
+    said: &mut Reported,
+    report: &mut Report,
+) -> Option<f64> {
     let hertz = f64::from(base_rate?.hertz());
     match whole::number(key, time.value, hertz, "base ticks") {
         // Not as typed: what 83.33333333 us lacks of a tick at 12 kHz would add up over the samples of a move.

@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// How long a call of an FMU may take, unless given (s).
-const PATIENCE: f64 = 10.0;
+const CALL_TIMEOUT: f64 = 10.0;
 /// Memory of its process, unless given (MB).
 const MEMORY: u32 = 2048;
 
@@ -105,7 +105,7 @@ fn fmu<P: Port>(
     };
     let isolation = given.isolation.optional().ok().map(|isolation| isolation.copied().unwrap_or_default());
     if isolation == Some(IsolationKind::None) {
-        let keys = [("patience", given.patience.span()), ("memory", given.memory.span())];
+        let keys = [("call_timeout", given.call_timeout.span()), ("memory", given.memory.span())];
         refuse(&keys, "is for an FMU in a process of its own", "leave `isolation` out", report);
     }
     let read = |text: &str| signal(text).ok_or_else(|| suggestion(text, signals.iter().copied()));
@@ -132,7 +132,7 @@ fn fmu<P: Port>(
             return None;
         }
     }
-    let patience = given.patience.optional().ok()?.copied().unwrap_or(PATIENCE);
+    let call_timeout = given.call_timeout.optional().ok()?.copied().unwrap_or(CALL_TIMEOUT);
     let memory = given.memory.optional().ok()?.copied().unwrap_or(MEMORY);
     let file = FmuFile {
         path: path?,
@@ -141,7 +141,7 @@ fn fmu<P: Port>(
             IsolationKind::None => Isolation::None,
             IsolationKind::Process => Isolation::Process {
                 bounds: Bounds {
-                    patience: Duration::try_from_secs_f64(patience).unwrap_or(Duration::MAX),
+                    call_timeout: Duration::try_from_secs_f64(call_timeout).unwrap_or(Duration::MAX),
                     memory: u64::from(memory) * 1_000_000,
                 },
             },

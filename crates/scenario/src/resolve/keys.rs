@@ -31,7 +31,7 @@ pub(super) struct Keys<'a> {
 
 /// What has been said of `[setpoint]` already: once is enough for all moves.
 #[derive(Default)]
-pub(super) struct Said {
+pub(super) struct Reported {
     missing: Vec<&'static str>,
     places: BTreeSet<Span>,
 }
@@ -104,7 +104,7 @@ impl<'a> Keys<'a> {
     pub(super) fn order_and_limits(
         &self,
         header: Span,
-        said: &mut Said,
+        said: &mut Reported,
         report: &mut Report,
     ) -> Option<(Order, Limits)> {
         let order = self.order.given().and_then(|order| Order::from_derivative(u8::try_from(*order).ok()?));
@@ -133,7 +133,7 @@ impl<'a> Keys<'a> {
         used: usize,
         what: &str,
         header: Span,
-        said: &mut Said,
+        said: &mut Reported,
         report: &mut Report,
     ) -> Option<[f64; 4]> {
         let mut limits = [f64::INFINITY; 4];
@@ -162,7 +162,7 @@ fn either<'a, T>(own: &'a Slot<T>, default: &'a Slot<T>) -> &'a Slot<T> {
     if matches!(own, Slot::Absent) { default } else { own }
 }
 
-impl Said {
+impl Reported {
     pub(super) fn missing(&mut self, key: &'static str, header: Span, why: &str, report: &mut Report) {
         if !self.missing.contains(&key) {
             self.missing.push(key);

@@ -5,7 +5,7 @@ use crate::file;
 use crate::file::File;
 use crate::resolve::condition::{self, Instance};
 use crate::resolve::inputs::{Defaults, Inputs};
-use crate::resolve::keys::{Keys, Said};
+use crate::resolve::keys::{Keys, Reported};
 use crate::resolve::{block, refuse};
 use crate::scenario::Plc;
 use crate::source::{At, Sources, Span};
@@ -40,7 +40,7 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
         None => true,
     };
     warn_of_refusals(calls, homing_required, report);
-    let mut said = Said::default();
+    let mut said = Reported::default();
     let defaults = Defaults::of(file.setpoint.given());
     let reading = block::Context { defaults: &defaults, is_modulo: known.is_modulo, sources: known.sources };
     let conditions = condition::Context { instances: &instances, duration: known.duration };
@@ -152,7 +152,7 @@ fn call(
     name: &str,
     reading: &block::Context<'_>,
     conditions: &condition::Context<'_>,
-    said: &mut Said,
+    said: &mut Reported,
     report: &mut Report,
 ) -> (Option<Condition>, Option<Call>) {
     let start = match &given.start {
@@ -208,7 +208,7 @@ fn updates(
     inputs: &Inputs<'_>,
     reading: &block::Context<'_>,
     conditions: &condition::Context<'_>,
-    said: &mut Said,
+    said: &mut Reported,
     report: &mut Report,
 ) -> Option<Vec<Update>> {
     let Some(all) = given.updates.optional().ok()? else { return Some(Vec::new()) };

@@ -3,7 +3,7 @@ use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
 use crate::file::File;
-use crate::resolve::keys::{Keys, LIMITS, Said};
+use crate::resolve::keys::{Keys, LIMITS, Reported};
 use crate::resolve::{Alternative, filter, has_window, limits, one_of, points, rockwell};
 use crate::scenario::{LONGEST_RUN, MoveStep, Step};
 use crate::source::{At, Sources, Span};
@@ -33,7 +33,7 @@ enum Before {
 pub(super) fn steps(file: &File, base_rate: Option<Rate>, sources: &Sources, report: &mut Report) -> Option<Vec<Step>> {
     let Some(program) = file.program.optional().ok()? else { return Some(Vec::new()) };
     refuse_endless(&program.0, report);
-    let mut said = Said::default();
+    let mut said = Reported::default();
     let known = Known { base_rate, has_window: has_window(file), sources };
     let defaults = file.setpoint.given().map(Keys::of_setpoint);
     let (mut steps, mut before) = (Vec::new(), Before::Pause);
@@ -81,7 +81,7 @@ fn step(
     defaults: Option<&Keys<'_>>,
     before: Before,
     known: &Known<'_>,
-    said: &mut Said,
+    said: &mut Reported,
     report: &mut Report,
 ) -> Option<Step> {
     let own = Keys::of_step(step);
@@ -182,7 +182,7 @@ struct Moved {
 
 impl Context<'_> {
     /// A move to a position.
-    fn to(&self, position: Option<f64>, said: &mut Said, report: &mut Report) -> Option<Generator> {
+    fn to(&self, position: Option<f64>, said: &mut Reported, report: &mut Report) -> Option<Generator> {
         no_keys([("hold", self.step.hold.span())], "a move to a position", report);
         if let Some(rockwell) = self.keys.rockwell.at() {
             return self.rockwell(position, rockwell, said, report);
@@ -204,7 +204,7 @@ impl Context<'_> {
     }
 
     /// A move to a velocity.
-    fn to_velocity(&self, velocity: Option<f64>, said: &mut Said, report: &mut Report) -> Option<Moved> {
+    fn to_velocity(&self, velocity: Option<f64>, said: &mut Reported, report: &mut Report) -> Option<Moved> {
         no_keys([("end_velocity", self.step.end_velocity.span())], "a move to a velocity", report);
         if let Some(span) = self.own.rockwell.span() {
             report.error(span, "Rockwell's move goes to a position", "leave `rockwell` out of this step");
@@ -215,7 +215,7 @@ impl Context<'_> {
     }
 
     /// A move from any state of motion.
-    fn online(&self, target: Option<Target>, said: &mut Said, report: &mut Report) -> Option<Generator> {
+    fn online(&self, target: Option<Target>, said: &mut Reported, report: &mut Report) -> Option<Generator> {
         for (key, span) in self.own.named() {
             let is_of_rest = matches!(key, "method" | "sample_time" | "sampling" | "execution");
             if let (Some(span), true) = (span, is_of_rest) {
@@ -249,7 +249,7 @@ impl Context<'_> {
         &self,
         distance: Option<f64>,
         keys: &At<file::Rockwell>,
-        said: &mut Said,
+        said: &mut Reported,
         report: &mut Report,
     ) -> Option<Generator> {
         if let Some(span) = self.in_motion() {

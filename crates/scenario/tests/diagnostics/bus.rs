@@ -115,9 +115,9 @@ fn keys_belong_to_modes() {
         ),
         (
             &bus("trajectory_buffer = \"60C2h\"\nmode = \"ip\"\n"),
-            &["4:21: `trajectory_buffer` has no value \"60C2h\"; did you mean `60C1h`?"],
+            &["4:21: \"60C2h\" is not a value of `trajectory_buffer`; did you mean `60C1h`?"],
         ),
-        (&bus("mode = \"cst\"\n"), &["4:8: `mode` has no value \"cst\"; did you mean `csp`?"]),
+        (&bus("mode = \"cst\"\n"), &["4:8: \"cst\" is not a value of `mode`; did you mean `csp`?"]),
         (&bus("delay = 16\n"), &["4:9: `delay` must be a whole number from 0 to 15, got 16"]),
         (&bus("counter = { bits = 33 }\n"), &["4:20: `bits` must be a whole number from 8 to 32, got 33"]),
     ]);

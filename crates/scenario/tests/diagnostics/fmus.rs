@@ -88,7 +88,7 @@ fn files_names_and_signals_are_there() {
         ),
         (
             "[[fmu]]\nfile = \"a.fmu\"\ninputs = { x = 3 }\n",
-            &["3:16: a signal is a text, got 3; write variable = \"load.position\""],
+            &["3:16: a signal is a string, got 3; write variable = \"load.position\""],
         ),
         (
             "[[fmu]]\nfile = \"a.fmu\"\noutputs = { x = \"disturbance.load\", y = \"disturbance.load\" }\n",
@@ -114,8 +114,8 @@ fn steps_fit_and_keys_belong_to_their_methods() {
             &["6:14: `iterations` is for the method \"iterated\"; leave it out, or iterate"],
         ),
         (
-            &format!("{LOAD}isolation = \"none\"\npatience = \"1 s\"\n"),
-            &["6:12: `patience` is for an FMU in a process of its own; leave `isolation` out"],
+            &format!("{LOAD}isolation = \"none\"\ncall_timeout = \"1 s\"\n"),
+            &["6:16: `call_timeout` is for an FMU in a process of its own; leave `isolation` out"],
         ),
     ]);
 }

@@ -14,11 +14,15 @@ fn unknown_keys_get_the_nearest_valid_name() {
             "setling_time = ",
             "50:1: there is no metric `setling_time`; did you mean `settling_time`?",
         ),
-        ("engine = \"exact\"", "engine = \"exakt\"", "2:10: `engine` has no value \"exakt\"; did you mean `exact`?"),
+        (
+            "engine = \"exact\"",
+            "engine = \"exakt\"",
+            "2:10: \"exakt\" is not a value of `engine`; did you mean `exact`?",
+        ),
         (
             "kind = \"pmsm\"",
             "kind = \"dc\"",
-            "16:8: `kind` has no value \"dc\"; known here: `pmsm`, `ideal-source`, `prescribed`",
+            "16:8: \"dc\" is not a value of `kind`; known here: `pmsm`, `ideal-source`, `prescribed`",
         ),
     ];
     for (old, new, said) in cases {
@@ -38,7 +42,7 @@ fn names_of_models_and_channels() {
     let path = after("[motor]\nkind = \"pmsm\"", "[motor]\nmodel = \"../x\"\nkind = \"pmsm\"");
     assert_eq!(path, ["16:9: `../x` is no name of a model; letters, digits, `-`, `_` and `.` make a name"]);
     let channel = after("[measure]", "[record]\nchannels = [\"load.position\", \"load.veloctiy\"]\n[measure]");
-    assert_eq!(channel, ["48:30: `channels` has no value \"load.veloctiy\"; did you mean `load.velocity`?"]);
+    assert_eq!(channel, ["48:30: \"load.veloctiy\" is not a value of `channels`; did you mean `load.velocity`?"]);
 }
 
 /// What a table lacks may be in the model that was not found.
@@ -73,7 +77,7 @@ fn wrong_types() {
         (
             "description = \"an elastic axis\"",
             "description = 1979-05-27",
-            "1:15: `description` must be a text, got a date",
+            "1:15: `description` must be a string, got a date",
         ),
         (
             "[drive.current]\nrate = \"16 kHz\"\nbandwidth = \"1 kHz\"",

@@ -108,7 +108,7 @@ fn what_is_no_quantity_is_pointed_at_inside_the_text() {
             "damping = \"1659 N/m s\"",
             "11:21: `damping`: a unit ends with its quotient; write \"N s/m\" or \"N/(m s)\", whichever is meant",
         ),
-        ("mass = \"40 kg\"", "mass = \"40 kg\\u0020?\"", "9:8: `mass`: this is no unit; write \"1 kg\""),
+        ("mass = \"40 kg\"", "mass = \"40 kg\\u0020?\"", "9:8: `mass`: not a unit; write \"1 kg\""),
     ];
     for (old, new, said) in cases {
         assert_eq!(after(old, new), [said], "{new}");

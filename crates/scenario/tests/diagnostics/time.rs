@@ -41,14 +41,13 @@ fn prescribed(load: &str) -> String {
 #[test]
 fn what_cannot_move_by_itself_cannot_be_disturbed() {
     let (rigid, elastic) = ("[axis.load]\nmass = \"1 kg\"", "[axis.load]\nmass = \"1 kg\"\nstiffness = \"1 N/um\"");
-    let way_out = "give `stiffness` in `[axis.load]`, or a motor that is not prescribed";
+    let help = "give `stiffness` in `[axis.load]`, or a motor that is not prescribed";
     let pushed = |load: &str, on: &str| {
         mistakes(&prescribed(&format!("{load}\n[[disturbance]]\nforce = \"1 N\"\non = \"{on}\"")))
     };
     let motor = "the motor follows the set-point exactly and feels no disturbance";
-    let load = format!(
-        "the load is rigid with a motor that follows the set-point exactly and feels no disturbance; {way_out}"
-    );
+    let load =
+        format!("the load is rigid with a motor that follows the set-point exactly and feels no disturbance; {help}");
     assert_eq!(pushed(elastic, "motor"), [format!("12:6: {motor}")]);
     assert_eq!(pushed(rigid, "motor"), [format!("11:6: {motor}")]);
     assert_eq!(pushed(rigid, "load"), [format!("11:6: {load}")]);
@@ -57,7 +56,7 @@ fn what_cannot_move_by_itself_cannot_be_disturbed() {
     let starts = |load: &str| {
         mistakes(&prescribed(&format!("{load}\n[initial]\nload_position = \"1 mm\"\nload_velocity = \"1 mm/s\"")))
     };
-    let said = format!("the load is rigid with a motor that follows the set-point exactly, from zero; {way_out}");
+    let said = format!("the load is rigid with a motor that follows the set-point exactly, from zero; {help}");
     assert_eq!(starts(rigid), [format!("10:17: {said}"), format!("11:17: {said}")]);
     assert_eq!(starts(elastic), [""; 0]);
 }

@@ -97,7 +97,7 @@ impl Network {
             sequencing: bus.sequencing,
             drive_timeout: base_rate.tick_at(bus.drive_timeout).0,
             round_trip: 2 * bus.delay + 1,
-            // What the master hears is of the drive's last step.
+            // What the master is told is of the drive's last step.
             answer_age: drive_every.ticks(),
             reverse_switches: bus.reverse_switches,
             units: link::Units {

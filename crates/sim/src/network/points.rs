@@ -21,7 +21,7 @@ pub enum Unsendable {
     /// A point that the object does not hold.
     #[error(
         "point {point} of the table: {what} {value} cannot be sent in a point of the trajectory buffer ({by}), which holds \
-         {bound}; {way_out}"
+         {bound}; {help}"
     )]
     Point {
         /// Number of the point, from 1.
@@ -35,7 +35,7 @@ pub enum Unsendable {
         /// What there is room for.
         bound: &'static str,
         /// What to do.
-        way_out: &'static str,
+        help: &'static str,
     },
     /// A sub-mode in which points have no times of their own, for points that have.
     #[error(
@@ -147,15 +147,15 @@ pub(super) fn points(
 }
 
 fn point(number: usize, encoding: PointEncoding, exact: &Exact) -> Result<Point, Unsendable> {
-    let refuse = |what, value, bound, way_out| {
-        Err(Unsendable::Point { point: number, what, value, by: encoding.name(), bound, way_out })
+    let refuse = |what, value, bound, help| {
+        Err(Unsendable::Point { point: number, what, value, by: encoding.name(), bound, help })
     };
     let &Exact { time, position, way, velocity, line } = exact;
     let whole = libm::round(1e6 * time);
     if let Some(constant) = encoding.constant_time() {
         if time > 0.0 && (1e6 * time - f64::from(constant)).abs() > 1e-3 {
-            let way_out = "write the time between the points to 60C2h, or -2 to 60C0h";
-            return refuse("a time to the next of", time, "that of 60C2h only", way_out);
+            let help = "write the time between the points to 60C2h, or -2 to 60C0h";
+            return refuse("a time to the next of", time, "that of 60C2h only", help);
         }
     } else if (1e6 * time - whole).abs() > 1e-3 || whole % 1000.0 != 0.0 || !(0.0..=255_000.0).contains(&whole) {
         return refuse("a time to the next of", time, "whole milliseconds up to 255", "choose other times");
@@ -191,8 +191,8 @@ fn point(number: usize, encoding: PointEncoding, exact: &Exact) -> Result<Point,
         }
         // A cubic between the velocities of a line is that line, unless it ends with another one.
         if line.is_some_and(|line| (line - velocity).abs() > 1.0) {
-            let way_out = "write -2 to 60C0h, or give the table velocities";
-            return refuse("a jump of velocity in 0.1 counts/s to", sent, "no linear ways in sub-mode -3", way_out);
+            let help = "write -2 to 60C0h, or give the table velocities";
+            return refuse("a jump of velocity in 0.1 counts/s to", sent, "no linear ways in sub-mode -3", help);
         }
         Some(sent)
     };

@@ -150,7 +150,7 @@ impl Demand {
             && peak > available * (1.0 + ROUNDING)
         {
             let [needed, given] = [peak, available].map(|effort| show(effort, self.effort_unit));
-            let by = if is_believed { ", as the drive believes," } else { "" };
+            let by = if is_believed { ", by the drive's estimate," } else { "" };
             let message = format!(
                 "to follow its set-point the axis needs {needed}{by} at {}; the drive gives {given} at most",
                 show(at, "s")

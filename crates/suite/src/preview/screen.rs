@@ -23,7 +23,8 @@ impl Preview {
         }
         match &self.modes {
             Some(modes) => mode_lines(modes, &mut screen),
-            None => screen.line("modes", &["known to the file of the mechanics only; a run shows them".to_owned()]),
+            None => screen
+                .line("modes", &["not known without a run: a file of the user's describes the mechanics".to_owned()]),
         }
         for engine in &self.engines {
             screen.line(engine.engine.name(), &[steps(engine)]);
@@ -97,7 +98,7 @@ impl Preview {
             }
             words.push(format!("RMS {}", show(effort.rms, demand.effort_unit)));
             if effort.is_believed {
-                words.push("as the drive believes of the axis".into());
+                words.push("by the drive's estimate of the axis".into());
             }
             screen.line("effort", &words);
         }
@@ -175,7 +176,7 @@ impl Screen {
 /// How much of `available` is left, in words.
 fn left(peak: f64, available: f64) -> String {
     let percent = 100.0 * (1.0 - peak / available);
-    if percent < 0.0 { format!("{:.0} % too little", -percent) } else { format!("{percent:.0} % left") }
+    if percent < 0.0 { format!("{:.0} % above it", -percent) } else { format!("{percent:.0} % left") }
 }
 
 fn share(peak: f64, available: f64) -> String {
@@ -222,7 +223,7 @@ fn steps(engine: &EngineSteps) -> String {
     let steps =
         format!("{} ticks to a period of {}", rounded(engine.steps), Quantity::new(engine.mode.omega / TAU, "Hz"));
     match (engine.integrator, engine.distortion) {
-        (Integrator::Exact, _) => format!("{steps}, no error of its own"),
+        (Integrator::Exact, _) => format!("{steps}, no discretisation error"),
         (_, None) => format!("{steps}: unstable"),
         (Integrator::Leapfrog, Some(distortion)) => format!("{steps}, {:.1e} too fast", distortion.shift),
         (Integrator::Rk4, Some(distortion)) => format!("{steps}, adds ζ {:.1e}", distortion.damping),

@@ -23,7 +23,7 @@ impl LoopStability {
         };
         let mut words: Vec<String> = report.loops.iter().filter_map(margins).collect();
         if !report.is_stable() {
-            words.insert(0, "unstable as it is".to_owned());
+            words.insert(0, "unstable".to_owned());
         }
         words.extend(without.as_ref().map(ToString::to_string));
         words

@@ -46,26 +46,26 @@ pub(crate) fn ask(command: &WorkerCommand, job: &Job) -> Result<Vec<Objection>, 
     Ok(all)
 }
 
-/// Starts the worker, feeds it and listens to it to its end; `hear` gets all but its last word, which says whether the run ended
+/// Starts the worker, feeds it and listens to it to its end; `on_message` gets all but its last word, which says whether the run ended
 /// early.
 fn converse(
     command: &WorkerCommand,
     job: &Job,
     recording: Option<&Path>,
-    hear: &mut dyn FnMut(Message),
+    on_message: &mut dyn FnMut(Message),
 ) -> Result<Option<EarlyEnd>, WorkerError> {
     let cannot = |action| {
         let program = command.program.clone();
         move |source| WorkerError::Process { action, program, source }
     };
     let mut child = start(command, job, recording).map_err(cannot("start"))?;
-    let heard = listen(&mut child, command, job, hear);
-    if let Err(WorkerError::Stalled { .. }) = heard {
+    let end = listen(&mut child, command, job, on_message);
+    if let Err(WorkerError::Stalled { .. }) = end {
         // One that ended in the meantime cannot be ended, which is as good.
         child.kill().ok();
         child.wait().map_err(cannot("wait for"))?;
     }
-    heard
+    end
 }
 
 fn start(command: &WorkerCommand, job: &Job, recording: Option<&Path>) -> io::Result<Child> {
@@ -90,10 +90,10 @@ fn listen(
     child: &mut Child,
     command: &WorkerCommand,
     job: &Job,
-    hear: &mut dyn FnMut(Message),
+    on_message: &mut dyn FnMut(Message),
 ) -> Result<Option<EarlyEnd>, WorkerError> {
     let cannot = |action, source| WorkerError::Process { action, program: command.program.clone(), source };
-    let stalled = |Silence| WorkerError::Stalled { patience: command.patience };
+    let stalled = |Silence| WorkerError::Stalled { timeout: command.timeout };
     let (Some(mut stdin), Some(stdout), Some(stderr)) = (child.stdin.take(), child.stdout.take(), child.stderr.take())
     else {
         return Err(cannot("speak to", io::ErrorKind::BrokenPipe.into()));
@@ -103,19 +103,19 @@ fn listen(
     // A worker that ends before it has read everything reports itself; one that reads nothing must not hold us up.
     thread::spawn(move || stdin.write_all(text.as_bytes()).ok());
     let mut last = None;
-    while let Some(message) = listener.next(command.patience).map_err(stalled)? {
+    while let Some(message) = listener.next(command.timeout).map_err(stalled)? {
         match message {
             Message::End(end) => last = Some(end),
-            other => hear(other),
+            other => on_message(other),
         }
     }
-    let status = end(child, command.patience).map_err(|error| cannot("wait for", error))?.map_err(stalled)?;
+    let status = end(child, command.timeout).map_err(|error| cannot("wait for", error))?.map_err(stalled)?;
     match last {
         Some(End::Done) => Ok(None),
         Some(End::Diverged { time, reason }) => Ok(Some(EarlyEnd::Diverged { time, reason })),
         Some(End::GaveUp(why)) => Ok(Some(EarlyEnd::GaveUp(why))),
         Some(End::Input(why)) => Err(WorkerError::Input(why)),
         Some(End::Failed(why)) => Err(WorkerError::Failed(why)),
-        None => Err(WorkerError::Ended { status, last_words: listener.last_words(command.patience) }),
+        None => Err(WorkerError::Ended { status, last_words: listener.last_words(command.timeout) }),
     }
 }

@@ -34,9 +34,9 @@ impl Listener {
         Self { messages, last_words }
     }
 
-    /// The next message, at most `patience` later; `None` when there will be none.
-    pub(super) fn next(&self, patience: Duration) -> Result<Option<Message>, Silence> {
-        match self.messages.recv_timeout(patience) {
+    /// The next message, at most `timeout` later; `None` when there will be none.
+    pub(super) fn next(&self, timeout: Duration) -> Result<Option<Message>, Silence> {
+        match self.messages.recv_timeout(timeout) {
             Ok(message) => Ok(Some(message)),
             Err(RecvTimeoutError::Disconnected) => Ok(None),
             Err(RecvTimeoutError::Timeout) => Err(Silence),
@@ -44,19 +44,19 @@ impl Listener {
     }
 
     /// The end of what it wrote on standard error. Something that it started may hold the pipe open: nobody waits longer
-    /// than `patience` for that.
-    pub(super) fn last_words(&self, patience: Duration) -> String {
-        self.last_words.recv_timeout(patience).unwrap_or_default().trim().to_owned()
+    /// than `timeout` for that.
+    pub(super) fn last_words(&self, timeout: Duration) -> String {
+        self.last_words.recv_timeout(timeout).unwrap_or_default().trim().to_owned()
     }
 }
 
-/// Waits for the end of `child`, at most `patience`.
-pub(super) fn end(child: &mut Child, patience: Duration) -> std::io::Result<Result<ExitStatus, Silence>> {
+/// Waits for the end of `child`, at most `timeout`.
+pub(super) fn end(child: &mut Child, timeout: Duration) -> std::io::Result<Result<ExitStatus, Silence>> {
     let start = Instant::now();
     loop {
         match child.try_wait()? {
             Some(status) => return Ok(Ok(status)),
-            None if start.elapsed() > patience => return Ok(Err(Silence)),
+            None if start.elapsed() > timeout => return Ok(Err(Silence)),
             None => thread::sleep(GLANCE),
         }
     }

@@ -53,13 +53,13 @@ mod tests {
 
     #[test]
     fn every_message_is_one_line_that_reads_back() {
-        let objection = Objection { key: "axis".into(), line: Some(2), message: "no".into(), way_out: String::new() };
+        let objection = Objection { key: "axis".into(), line: Some(2), message: "no".into(), help: String::new() };
         let why = "engine `mujoco`: \"half\n a µm\" too far".to_owned();
         for (message, line) in [
             (Message::Progress(0.25), "{\"progress\":0.25}\n"),
             (
                 Message::Objections(vec![objection]),
-                "{\"objections\":[{\"key\":\"axis\",\"line\":2,\"message\":\"no\",\"way_out\":\"\"}]}\n",
+                "{\"objections\":[{\"key\":\"axis\",\"line\":2,\"message\":\"no\",\"help\":\"\"}]}\n",
             ),
             (Message::End(End::Done), "{\"end\":\"done\"}\n"),
             (Message::End(End::Input("no".into())), "{\"end\":{\"input\":\"no\"}}\n"),

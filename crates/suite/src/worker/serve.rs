@@ -9,7 +9,7 @@ use crate::panicked::caught;
 use servobench_metrics::EarlyEnd;
 use servobench_plant::{Engine, EngineName};
 use servobench_scenario::{LoadError, Scenario};
-use servobench_sim::Partners;
+use servobench_sim::FmuOpener;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -49,8 +49,8 @@ fn obey(order: &Order, text: &str, engines: &Engines, say: &mut dyn FnMut(&Messa
         Err(error) => return End::Input(error.to_string()),
     };
     let done = engines.get(order.engine).map_err(RunError::from).and_then(|engine| match &order.recording {
-        Some(path) => run(&scenario, (engine, engines.partners), path, say),
-        None => objections(&scenario, engine, engines.partners).map(|all| {
+        Some(path) => run(&scenario, (engine, engines.fmu_opener), path, say),
+        None => objections(&scenario, engine, engines.fmu_opener).map(|all| {
             say(&Message::Objections(all));
             End::Done
         }),
@@ -64,7 +64,7 @@ fn obey(order: &Order, text: &str, engines: &Engines, say: &mut dyn FnMut(&Messa
 
 fn run(
     scenario: &Scenario,
-    loop_of: (&dyn Engine, &dyn Partners),
+    loop_of: (&dyn Engine, &dyn FmuOpener),
     path: &Path,
     say: &mut dyn FnMut(&Message),
 ) -> Result<End, RunError> {

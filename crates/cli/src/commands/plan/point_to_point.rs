@@ -46,10 +46,10 @@ pub(crate) struct PointToPointArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "From rest to rest")]
 struct FromRestArgs {
-    /// Published: the step through boxes. Optimal: the shortest, with --sample-time that of the fewest samples.
+    /// Published or shortest profile; with --sample-time the shortest in whole samples.
     #[arg(long, value_parser = choice::<Method>(), conflicts_with = "InMotionArgs")]
     method: Option<Method>,
-    /// How times of boxes are made whole: as published, or with the fewest samples.
+    /// How segment times become whole samples.
     #[arg(long, value_parser = choice::<Sampling>(), requires = "sample_time", conflicts_with = "InMotionArgs")]
     sampling: Option<Sampling>,
     /// Exact hold of the highest derivative, without lag; or the forward-Euler cascade, which lags by 1.5 samples at

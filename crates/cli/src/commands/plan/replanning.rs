@@ -39,10 +39,10 @@ pub(crate) struct InMotionArgs {
         conflicts_with_all = ["distance", "end_velocity"]
     )]
     to_velocity: Option<AxisQuantity>,
-    /// Velocity limit below zero, a magnitude, where it is another.
+    /// Velocity limit below zero, a magnitude [default: as --velocity].
     #[arg(long, value_name = "VELOCITY", value_parser = VELOCITY.magnitude(), allow_hyphen_values = true)]
     negative_velocity: Option<AxisQuantity>,
-    /// Acceleration limit below zero, a magnitude, where it is another.
+    /// Acceleration limit below zero, a magnitude [default: as --acceleration].
     #[arg(long, value_name = "ACCELERATION", value_parser = ACCELERATION.magnitude(), allow_hyphen_values = true)]
     negative_acceleration: Option<AxisQuantity>,
 }

@@ -18,7 +18,7 @@ pub(crate) struct RockwellArgs {
     /// Acceleration, as "10 m/s2".
     #[arg(long, value_parser = ACCELERATION)]
     acceleration: AxisQuantity,
-    /// Deceleration, where it is not the acceleration.
+    /// Deceleration [default: as --acceleration].
     #[arg(long, value_parser = ACCELERATION)]
     deceleration: Option<AxisQuantity>,
     /// Shape of the velocity; an S-curve where a jerk is given.
@@ -38,7 +38,7 @@ pub(crate) struct RockwellArgs {
     /// Part of --maximum-jerk, 0 to 100.
     #[arg(long, value_name = "PERCENT", value_parser = percent, conflicts_with = "jerk")]
     jerk_percent_of_maximum: Option<f64>,
-    /// Jerk of the deceleration, where it is not said as that of the acceleration.
+    /// Jerk of the deceleration [default: as for the acceleration].
     #[arg(long, value_name = "JERK", value_parser = JERK)]
     deceleration_jerk: Option<AxisQuantity>,
     /// The same as a part of the ramp.

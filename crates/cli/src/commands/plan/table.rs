@@ -62,7 +62,7 @@ struct SentArgs {
     /// Option 2: velocity commands along the spline, as "100 Hz".
     #[arg(long, value_name = "RATE", value_parser = frequency)]
     command_rate: Option<f64>,
-    /// The same at the lowest rate that stays so near to the spline, as "10 um".
+    /// Option 2 at the lowest rate that keeps this distance to the spline, as "10 um".
     #[arg(long, value_name = "DISTANCE", value_parser = POSITION)]
     allowed_error: Option<AxisQuantity>,
 }

@@ -1,7 +1,7 @@
 //! Cyclic synchronous torque (cst): the effort goes linearly to the sum of target (6071h) and offset (60B2h) within a cycle.
 use super::{Linear, Progress};
 use crate::Demand;
-use crate::device::Beat;
+use crate::device::CycleEvent;
 use crate::modes::{Answer, Moment};
 
 /// How the drive interpolates.
@@ -28,12 +28,12 @@ impl State {
 
 /// The demand of a step.
 #[inline]
-pub fn step(p: Params, x: &mut State, now: &Moment, beat: Beat) -> Answer {
-    if beat != Beat::Between {
-        let broken_off = x.progress.broken_off(beat, p.steps);
+pub fn step(p: Params, x: &mut State, now: &Moment, event: CycleEvent) -> Answer {
+    if event != CycleEvent::Between {
+        let broken_off = x.progress.broken_off(event, p.steps);
         x.progress = Progress::default();
         let asked = now.targets.effort + now.targets.effort_offset;
-        x.effort.go_to(if beat == Beat::Missed { x.effort.to } else { asked }, broken_off);
+        x.effort.go_to(if event == CycleEvent::Missed { x.effort.to } else { asked }, broken_off);
     }
     let demand = Demand::Effort(x.effort.at(x.progress.next(p.steps)));
     Answer { demand, target_reached: false, bit_12: true, bit_13: false }

@@ -15,7 +15,7 @@
 //! last target is a cycle ahead of it. What rounding makes of a velocity just at the limit is not beyond it.
 use super::{Linear, Progress};
 use crate::Demand;
-use crate::device::Beat;
+use crate::device::CycleEvent;
 use crate::modes::reach::Reach;
 use crate::modes::{Answer, Moment};
 use servobench_base::{ParamError, Setpoint, limit};
@@ -126,21 +126,21 @@ impl State {
 
 /// The demand of a step.
 #[inline]
-pub fn step(p: &Params, x: &mut State, now: &Moment, beat: Beat) -> Answer {
+pub fn step(p: &Params, x: &mut State, now: &Moment, event: CycleEvent) -> Answer {
     let cycle = f64::from(p.steps) * now.period;
-    let broken_off = x.progress.broken_off(beat, p.steps);
-    if beat == Beat::Late || beat != Beat::Between && !x.has_begun {
+    let broken_off = x.progress.broken_off(event, p.steps);
+    if event == CycleEvent::Late || event != CycleEvent::Between && !x.has_begun {
         x.lay(cycle, now.demanded, p.interpolation);
     }
-    match beat {
-        Beat::Between => {}
-        Beat::Sample | Beat::Late => {
+    match event {
+        CycleEvent::Between => {}
+        CycleEvent::Sample | CycleEvent::Late => {
             let targets = &now.targets;
             x.go_to(p, cycle, Sample { x: targets.position, v: targets.velocity_offset, ..Sample::default() });
             x.velocity_offset.go_to(targets.velocity_offset.clamp(-p.velocity, p.velocity), broken_off);
             x.effort_offset.go_to(targets.effort_offset, broken_off);
         }
-        Beat::Missed => {
+        CycleEvent::Missed => {
             let [.., before, last] = x.points;
             x.go_to(p, cycle, Sample { x: last.x + (last.x - before.x), ..last });
             x.velocity_offset.go_to(x.velocity_offset.to, None);

@@ -2,7 +2,7 @@
 //! cycle. Its slope is there for the feedforward.
 use super::{Linear, Progress};
 use crate::Demand;
-use crate::device::Beat;
+use crate::device::CycleEvent;
 use crate::modes::{Answer, Moment};
 use servobench_base::Setpoint;
 
@@ -45,12 +45,12 @@ impl State {
 
 /// The demand of a step.
 #[inline]
-pub fn step(p: &Params, x: &mut State, now: &Moment, beat: Beat) -> Answer {
+pub fn step(p: &Params, x: &mut State, now: &Moment, event: CycleEvent) -> Answer {
     let targets = &now.targets;
-    if beat != Beat::Between {
-        let broken_off = x.progress.broken_off(beat, p.steps);
+    if event != CycleEvent::Between {
+        let broken_off = x.progress.broken_off(event, p.steps);
         x.progress = Progress::default();
-        let (velocity, effort_offset) = if beat == Beat::Missed {
+        let (velocity, effort_offset) = if event == CycleEvent::Missed {
             (x.velocity.to, x.effort_offset.to)
         } else {
             (targets.velocity + targets.velocity_offset, targets.effort_offset)

@@ -132,7 +132,7 @@ fn is_of_a_body(name: &str) -> bool {
     ["motor.", "table.", "load."].iter().any(|body| name.starts_with(body))
 }
 
-/// Oracle: the recording of `servobench run`, to the bit. Two instances in turns, in steps of a tick and of 16.
+/// Oracle: the recording of `servobench run`, bit for bit. Two instances in turns, in steps of a tick and of 16.
 #[test]
 fn what_it_computes_is_what_a_run_records() {
     const TICKS: u32 = 4_000;

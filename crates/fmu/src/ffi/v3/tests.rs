@@ -83,7 +83,7 @@ impl Fmu<'_> {
     }
 }
 
-/// Oracle: the recording of `servobench run`, to the bit.
+/// Oracle: the recording of `servobench run`, bit for bit.
 #[test]
 fn what_it_computes_is_what_a_run_records() {
     let (room, expected) = (Room::new(Part::Axis), recording(2_000));

@@ -15,7 +15,7 @@ pub struct Turn {
 impl Turn {
     /// Where the axis has to go from `from`, which counts on without end, to be at the position `asked` of the range (m or rad).
     ///
-    /// Both are whole units, or taken as the nearest one: the target is one of those that show `asked`, to the bit.
+    /// Both are whole units, or taken as the nearest one: the target is one of those that show `asked`, bit for bit.
     pub(super) fn target(&self, from: f64, asked: f64) -> f64 {
         let [from, asked] = [from, asked].map(|position| whole(position / self.unit));
         // As long as the range is, or for a linear way as far as 32 bits go.

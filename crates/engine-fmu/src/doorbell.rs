@@ -20,13 +20,13 @@ const PAUSE: u32 = 256;
 /// A word in memory that both see.
 #[repr(C, align(64))]
 #[derive(Debug, Default)]
-pub(crate) struct Bell {
+pub(crate) struct Doorbell {
     number: AtomicU32,
     /// Not zero: somebody sleeps until it rings.
     asleep: AtomicU32,
 }
 
-impl Bell {
+impl Doorbell {
     /// Rings with `number`. What was written before is seen by who hears it.
     pub(crate) fn ring(&self, number: u32) {
         self.number.store(number, SeqCst);
@@ -66,7 +66,7 @@ impl Bell {
     }
 }
 
-/// One that waits for a bell, and learns whether looking pays.
+/// One that waits for a doorbell, and learns whether looking pays.
 #[derive(Debug, Default)]
 pub(crate) struct Listener {
     /// Turns until it looks again.
@@ -74,37 +74,43 @@ pub(crate) struct Listener {
 }
 
 impl Listener {
-    /// Waits until `bell` rings with `number`. Meanwhile `go_on` is asked at least every `glance`, and before each sleep;
+    /// Waits until `doorbell` rings with `number`. Meanwhile `go_on` is asked at least every `glance`, and before each sleep;
     /// `false` when it said so first.
-    pub(crate) fn wait(&mut self, bell: &Bell, number: u32, glance: Duration, mut go_on: impl FnMut() -> bool) -> bool {
-        if self.look(bell, number) {
+    pub(crate) fn wait(
+        &mut self,
+        doorbell: &Doorbell,
+        number: u32,
+        glance: Duration,
+        mut go_on: impl FnMut() -> bool,
+    ) -> bool {
+        if self.look(doorbell, number) {
             return true;
         }
-        bell.asleep.store(1, SeqCst);
+        doorbell.asleep.store(1, SeqCst);
         let rung = loop {
             // Read before `go_on` is asked: what happens after that changes it, and nobody falls asleep over it.
-            let present = bell.number.load(SeqCst);
+            let present = doorbell.number.load(SeqCst);
             if present == number {
                 break true;
             }
             if !go_on() {
                 break false;
             }
-            bell.sleep(present, glance);
+            doorbell.sleep(present, glance);
         };
-        bell.asleep.store(0, SeqCst);
+        doorbell.asleep.store(0, SeqCst);
         rung
     }
 
-    fn look(&mut self, bell: &Bell, number: u32) -> bool {
+    fn look(&mut self, doorbell: &Doorbell, number: u32) -> bool {
         if self.pause > 0 {
             self.pause -= 1;
-            return bell.rings(number);
+            return doorbell.rings(number);
         }
         let start = Instant::now();
         loop {
             for _ in 0..GLANCES {
-                if bell.rings(number) {
+                if doorbell.rings(number) {
                     return true;
                 }
                 spin_loop();
@@ -128,7 +134,7 @@ mod tests {
     #[test]
     fn no_ring_is_lost() {
         const TURNS: u32 = 20_000;
-        let (there, back) = (Bell::default(), Bell::default());
+        let (there, back) = (Doorbell::default(), Doorbell::default());
         thread::scope(|scope| {
             scope.spawn(|| {
                 let mut listener = Listener::default();
@@ -148,21 +154,21 @@ mod tests {
     /// Who looks late finds both: that it has rung, and that it will not again.
     #[test]
     fn what_has_rung_is_known_after_it_has_given_up() {
-        let bell = Bell::default();
-        bell.ring(7);
-        bell.give_up();
-        assert!(bell.has_rung(7) && !bell.rings(7));
-        assert!(!bell.has_rung(6));
+        let doorbell = Doorbell::default();
+        doorbell.ring(7);
+        doorbell.give_up();
+        assert!(doorbell.has_rung(7) && !doorbell.rings(7));
+        assert!(!doorbell.has_rung(6));
     }
 
     #[test]
     fn one_that_gives_up_wakes_who_waits() {
-        let bell = Bell::default();
+        let doorbell = Doorbell::default();
         let over = std::sync::atomic::AtomicBool::new(false);
         thread::scope(|scope| {
-            let waits = scope.spawn(|| Listener::default().wait(&bell, 7, GLANCE, || !over.load(SeqCst)));
+            let waits = scope.spawn(|| Listener::default().wait(&doorbell, 7, GLANCE, || !over.load(SeqCst)));
             over.store(true, SeqCst);
-            bell.give_up();
+            doorbell.give_up();
             assert!(!waits.join().unwrap());
         });
     }
@@ -174,7 +180,7 @@ mod tests {
             left -= 1;
             left > 0
         };
-        assert!(!Listener::default().wait(&Bell::default(), 7, Duration::from_micros(1), go_on));
+        assert!(!Listener::default().wait(&Doorbell::default(), 7, Duration::from_micros(1), go_on));
         assert_eq!(left, 0);
     }
 }

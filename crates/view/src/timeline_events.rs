@@ -27,17 +27,17 @@ const DISTURBANCES: [(&str, &str, &str); 2] = [
 impl Happenings {
     /// Entities that [`log`] would write for `runs`.
     pub(crate) fn of(runs: &[Run<'_>]) -> Self {
-        let mut happenings = Self::default();
+        let mut timeline_events = Self::default();
         for run in runs {
             let recording = run.recording;
             let lanes = lanes(run, 0);
             let says = [recording.events.is_empty(), recording.log.is_empty(), calls(run).is_empty()].contains(&false);
             if !lanes.is_empty() || says {
-                happenings.logs.push(run.path(&["log"]));
+                timeline_events.logs.push(run.path(&["log"]));
             }
-            happenings.lanes.extend(lanes.into_iter().map(|lane| lane.path));
+            timeline_events.lanes.extend(lanes.into_iter().map(|lane| lane.path));
         }
-        happenings
+        timeline_events
     }
 }
 

@@ -66,14 +66,14 @@ impl Shared {
     }
 }
 
-/// A process that is there until its keeper is dropped, or ends before.
+/// A process that is there until its supervisor is dropped, or ends before.
 #[derive(Debug)]
-pub(crate) struct Keeper {
+pub(crate) struct Supervisor {
     pub(crate) shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
 }
 
-impl Keeper {
+impl Supervisor {
     /// Starts the process, with the file of `page` as its standard input.
     pub(crate) fn new(command: &HostCommand, page: Page, file: OwnedFd, memory: u64) -> io::Result<Self> {
         let (stdout, for_stdout) = io::pipe()?;
@@ -89,7 +89,7 @@ impl Keeper {
         let (told, started) = channel();
         let for_thread = Arc::clone(&shared);
         let thread = thread::Builder::new()
-            .name("keeper of an FMU".into())
+            .name("supervisor of an FMU".into())
             .spawn(move || start_and_keep(process, &watched, &for_thread, &told))?;
         started.recv().unwrap_or_else(|_| Err(io::ErrorKind::Other.into()))?;
         Ok(Self { shared, thread: Some(thread) })
@@ -107,7 +107,7 @@ impl Keeper {
     }
 }
 
-impl Drop for Keeper {
+impl Drop for Supervisor {
     fn drop(&mut self) {
         self.end();
     }

@@ -1,7 +1,7 @@
 //! FMUs of scenarios: who opens them, and the program that they run in.
 use servobench_engine_fmu::{Fmu, HostCommand};
 use servobench_fmi::{FmuMistake, FmuRequest, Slave};
-use servobench_sim::Partners;
+use servobench_sim::FmuOpener;
 use std::io;
 
 /// The command with which this program hosts an FMU.
@@ -18,7 +18,7 @@ fn host() -> io::Result<HostCommand> {
 /// Opens FMUs by the engine `fmu`.
 pub(crate) struct ByEngine;
 
-impl Partners for ByEngine {
+impl FmuOpener for ByEngine {
     fn open(&self, request: &FmuRequest<'_>) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
         ENGINE.open(request)
     }

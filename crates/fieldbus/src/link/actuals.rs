@@ -8,10 +8,10 @@ use servobench_cia402::Actuals;
 use servobench_motion::interpolate::Sample;
 
 impl State {
-    pub(super) fn hear(&mut self, p: &Params, actuals: Option<Actuals>, now: u64) {
+    pub(super) fn receive(&mut self, p: &Params, actuals: Option<Actuals>, now: u64) {
         let Some(actuals) = actuals else { return };
-        (self.actuals, self.heard) = (actuals, now);
-        self.sequencer.hear(actuals.statusword, now);
+        (self.actuals, self.received_at) = (actuals, now);
+        self.sequencer.receive(actuals.statusword, now);
         let followed = match &mut self.position {
             Some(position) => position.follow(&p.scale, actuals.position, now),
             none => Position::start(&p.scale, actuals.position, now).map(|position| *none = Some(position)),
@@ -58,7 +58,7 @@ impl State {
     pub(super) fn reset(&mut self, p: &Params) {
         self.sequencer.reset();
         if self.fault == Some(LinkFault::PositionLost) {
-            self.position = Position::start(&p.scale, self.actuals.position, self.heard).ok();
+            self.position = Position::start(&p.scale, self.actuals.position, self.received_at).ok();
         }
         self.fault = None;
     }
