@@ -71,12 +71,13 @@ impl Choice for Coordinate {
 macro_rules! choices {
     (
         $(#[doc = $doc:literal])+
+        $(#[derive($($derived:ident),+)])?
         $visibility:vis enum $type:ident $(default $default:ident)? {
             $( $(#[doc = $meaning:literal])+ $variant:ident = $name:literal, )+
         }
     ) => {
         $(#[doc = $doc])+
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash $($(, $derived)+)?)]
         $visibility enum $type {
             $( $(#[doc = $meaning])+ $variant, )+
         }

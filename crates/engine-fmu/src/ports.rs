@@ -1,7 +1,7 @@
 //! What is exchanged with an FMU: its variables, and how their numbers become SI numbers.
 use crate::like::like;
 use servobench_fmi::{
-    BaseUnit, Causality, DataType, Exponents, FmuEntry, FmuMistake, ModelDescription, Named, Port, SiPort, SiUnit,
+    BaseUnit, Causality, Choice, DataType, Exponents, FmuEntry, FmuMistake, ModelDescription, Port, SiPort, SiUnit,
     Variability, Variable,
 };
 

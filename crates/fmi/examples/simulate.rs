@@ -10,7 +10,7 @@
 //! rows are those of an FMU that has never done so.
 use serde::Deserialize;
 use serde_json::json;
-use servobench_fmi::{Loaded, ModelDescription, Named, Port, Setup, Slave, StepEnd, Unpacked, Value};
+use servobench_fmi::{Choice, Loaded, ModelDescription, Port, Setup, Slave, StepEnd, Unpacked, Value};
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::io::Write;
@@ -118,7 +118,7 @@ fn variables(it: &ModelDescription) -> Vec<serde_json::Value> {
             "type": variable.data_type.name(),
             "causality": variable.causality.name(),
             "variability": variable.variability.name(),
-            "initial": variable.initial.map(Named::name),
+            "initial": variable.initial.map(Choice::name),
             "shape": it.shape(variable),
             "unit": it.unit(variable).map(|unit| &unit.name),
             "min": variable.min,

@@ -27,7 +27,6 @@ pub(crate) use bounds::MOST_BYTES;
 pub use clock::{IntervalVariability, Ticks};
 pub use declared::{Enumeration, Item};
 pub use interface::{CoSimulation, DefaultExperiment, LogCategory};
-pub use named::Named;
 pub use structure::{DependencyKind, ModelStructure, Unknown};
 pub use unit::{BaseUnit, DisplayUnit, Exponents, Unit};
 pub use variable::{Alias, Causality, DataType, Dimension, Initial, Values, Variability, Variable};

@@ -21,8 +21,8 @@ mod slave;
 pub use archive::{Archive, Limits, Unpacked, remove_unpacked};
 pub use description::{
     Alias, BaseUnit, Causality, CoSimulation, DataType, DefaultExperiment, DependencyKind, Dimension, DisplayUnit,
-    Enumeration, Exponents, Initial, IntervalVariability, Item, LogCategory, ModelDescription, ModelStructure, Named,
-    Ticks, Unit, Unknown, Values, Variability, Variable, Version,
+    Enumeration, Exponents, Initial, IntervalVariability, Item, LogCategory, ModelDescription, ModelStructure, Ticks,
+    Unit, Unknown, Values, Variability, Variable, Version,
 };
 pub use error::{ArchiveProblem, DescriptionProblem, FmuError, LibraryProblem};
 pub use feedthrough::Feedthrough;
@@ -31,5 +31,6 @@ pub use loaded::Loaded;
 pub use log::send_log_lines_to;
 pub use request::{Bounds, FmuEntry, FmuFile, FmuMistake, FmuRequest, Isolation, IsolationKind, SiPort, SiUnit};
 pub use servobench_base::Severity;
+pub use servobench_config::Choice;
 pub use setup::{Setup, Value};
 pub use slave::{Capabilities, LogLine, Port, Slave, SlaveError, StepEnd};

@@ -6,10 +6,11 @@ pub(crate) use start::Start;
 
 use crate::archive::Unpacked;
 use crate::bits;
-use crate::description::{Causality, DataType, Dimension, ModelDescription, Named, Values, Variability, Variable};
+use crate::description::{Causality, DataType, Dimension, ModelDescription, Values, Variability, Variable};
 use crate::error::FmuError;
 use crate::slave::Port;
 use serde::{Deserialize, Serialize};
+use servobench_config::Choice as _;
 use std::collections::HashSet;
 
 /// A start value.

@@ -105,7 +105,7 @@ mod trajectory;
 
 pub use course::Course;
 pub use error::PlanError;
-pub use limits::{Limits, Order};
+pub use limits::{LimitParameter, Limits, Order};
 pub use piece::Piece;
 pub use profile::{Peaks, Profile, Samples, Times};
 pub use segment::{Segment, Segments};

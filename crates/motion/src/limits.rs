@@ -1,6 +1,8 @@
 //! What a move may not exceed, and the order of the profile that respects it.
 use crate::PlanError;
 use servobench_base::{ParamError, positive};
+use servobench_config::Kind::Axis;
+use servobench_config::quantities::{ACCELERATION, JERK, SNAP, VELOCITY};
 
 /// Order of a rest-to-rest profile: the derivative of position that is piecewise constant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -36,6 +38,24 @@ impl Order {
     }
 }
 
+servobench_config::parameters! {
+    /// A limit of moves, a magnitude.
+    pub enum LimitParameter {
+        /// Largest velocity
+        Velocity "velocity" = servobench_config::positive(Axis(&VELOCITY), "30 m/min");
+        /// Largest acceleration
+        Acceleration "acceleration" = servobench_config::positive(Axis(&ACCELERATION), "5 m/s2");
+        /// Largest jerk
+        Jerk "jerk" = servobench_config::positive(Axis(&JERK), "50 m/s3");
+        /// Largest snap
+        Snap "snap" = servobench_config::positive(Axis(&SNAP), "1000 m/s4");
+        /// Largest velocity below zero, of moves that are planned in motion
+        NegativeVelocity "negative velocity" = servobench_config::positive(Axis(&VELOCITY), "20 m/min");
+        /// Largest acceleration below zero, of moves that are planned in motion
+        NegativeAcceleration "negative acceleration" = servobench_config::positive(Axis(&ACCELERATION), "4 m/s2");
+    }
+}
+
 /// Limits of a move as magnitudes, in the axis unit (m or rad).
 ///
 /// A profile of order n uses the first n of them and ignores the others. `f64::INFINITY` means "no limit" for all but
@@ -68,10 +88,10 @@ impl Limits {
     pub(crate) fn descending(&self, order: Order) -> Result<[f64; 4], PlanError> {
         let n = order.derivative();
         let named = [
-            ("velocity", self.velocity),
-            ("acceleration", self.acceleration),
-            ("jerk", self.jerk),
-            ("snap", self.snap),
+            (LimitParameter::Velocity.name(), self.velocity),
+            (LimitParameter::Acceleration.name(), self.acceleration),
+            (LimitParameter::Jerk.name(), self.jerk),
+            (LimitParameter::Snap.name(), self.snap),
         ];
         let mut bounds = [f64::INFINITY; 4];
         for (k, (name, value)) in named.into_iter().enumerate().take(n) {

@@ -1,35 +1,24 @@
 //! When clocks tick (FMI 3.0.2, §2.2.8 and §2.4.7.5).
 use super::element::Element;
-use super::named::Named;
 use super::variable::Causality;
 use crate::error::FmuError;
 
-/// What is known of the time from one tick of a clock to the next.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum IntervalVariability {
-    /// It is always the same and in the description.
-    Constant,
-    /// It is always the same from the initialisation on.
-    Fixed,
-    /// It changes with tunable parameters.
-    Tunable,
-    /// The FMU says it at each tick.
-    Changing,
-    /// The FMU says it at any event.
-    Countdown,
-    /// There is none: the clock ticks when something happens.
-    Triggered,
-}
-
-impl Named for IntervalVariability {
-    const ALL: &'static [(Self, &'static str)] = &[
-        (Self::Constant, "constant"),
-        (Self::Fixed, "fixed"),
-        (Self::Tunable, "tunable"),
-        (Self::Changing, "changing"),
-        (Self::Countdown, "countdown"),
-        (Self::Triggered, "triggered"),
-    ];
+servobench_config::choices! {
+    /// What is known of the time from one tick of a clock to the next.
+    pub enum IntervalVariability {
+        /// it is always the same and in the description
+        Constant = "constant",
+        /// it is always the same from the initialisation on
+        Fixed = "fixed",
+        /// it changes with tunable parameters
+        Tunable = "tunable",
+        /// the FMU says it at each tick
+        Changing = "changing",
+        /// the FMU says it at any event
+        Countdown = "countdown",
+        /// there is none: the clock ticks when something happens
+        Triggered = "triggered",
+    }
 }
 
 /// When a clock ticks.

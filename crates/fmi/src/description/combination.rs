@@ -33,7 +33,7 @@ pub(super) fn initials(causality: Causality, variability: Variability) -> &'stat
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::description::named::Named;
+    use servobench_config::Choice as _;
 
     /// The table of FMI 3.0.2 row by row as printed: `-` not allowed, else the initial values, the default in capitals.
     const PRINTED: &str = "

@@ -1,10 +1,11 @@
 //! `<TypeDefinitions>`.
 use super::element::Element;
-use super::named::{Named, one_of};
+use super::named::one_of;
 use super::numeric::Numeric;
 use super::units::Units;
 use super::{DataType, Version};
 use crate::error::{DescriptionProblem, FmuError};
+use servobench_config::Choice;
 use std::collections::HashMap;
 
 /// An enumeration.
@@ -98,7 +99,7 @@ pub(super) fn type_of_two(element: Element) -> Result<(Element, DataType), FmuEr
 /// In FMI 3.0 the name of the element is that of the type with "Type" behind it.
 fn type_of_three(element: Element) -> Result<DataType, FmuError> {
     element.name().strip_suffix("Type").and_then(DataType::from_name).ok_or_else(|| {
-        let expected = format!("{} with `Type` behind it", one_of(DataType::ALL.iter().map(|(_, name)| *name)));
+        let expected = format!("{} with `Type` behind it", one_of(DataType::ALL.iter().map(|(name, ..)| *name)));
         element.error(DescriptionProblem::Element { found: element.name().to_owned(), expected })
     })
 }

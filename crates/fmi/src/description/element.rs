@@ -1,7 +1,8 @@
 //! Elements and attributes of a parsed model description, with their places.
-use super::named::{Named, one_of};
+use super::named::one_of;
 use crate::error::{DescriptionProblem, FmuError};
 use roxmltree::{Document, Node};
+use servobench_config::Choice;
 
 /// An element.
 #[derive(Debug, Clone, Copy)]
@@ -78,9 +79,9 @@ impl<'a> Element<'a> {
         self.read(attribute, "a whole number of 32 bits without a sign", |text| text.parse().ok())
     }
 
-    pub(super) fn named<T: Named>(self, attribute: &'static str) -> Result<Option<T>, FmuError> {
+    pub(super) fn named<T: Choice + PartialEq>(self, attribute: &'static str) -> Result<Option<T>, FmuError> {
         let Some(text) = self.text(attribute) else { return Ok(None) };
-        let expected = || one_of(T::ALL.iter().map(|(_, name)| *name));
+        let expected = || one_of(T::ALL.iter().map(|(name, ..)| *name));
         T::from_name(text.trim()).map(Some).ok_or_else(|| self.wrong(attribute, expected()))
     }
 

@@ -1,33 +1,24 @@
 //! What depends on what.
 use super::element::Element;
-use super::named::Named;
 use super::{Version, variable::Variable};
 use crate::error::{DescriptionProblem, FmuError};
+use servobench_config::Choice as _;
 use std::collections::HashMap;
 
-/// How an unknown depends on a variable.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum DependencyKind {
-    /// Somehow.
-    Dependent,
-    /// Linearly, by a constant factor.
-    Constant,
-    /// Linearly, by a factor of fixed parameters.
-    Fixed,
-    /// Linearly, by a factor of tunable parameters.
-    Tunable,
-    /// Linearly, by a factor that changes at events.
-    Discrete,
-}
-
-impl Named for DependencyKind {
-    const ALL: &'static [(Self, &'static str)] = &[
-        (Self::Dependent, "dependent"),
-        (Self::Constant, "constant"),
-        (Self::Fixed, "fixed"),
-        (Self::Tunable, "tunable"),
-        (Self::Discrete, "discrete"),
-    ];
+servobench_config::choices! {
+    /// How an unknown depends on a variable.
+    pub enum DependencyKind {
+        /// somehow
+        Dependent = "dependent",
+        /// linearly, by a constant factor
+        Constant = "constant",
+        /// linearly, by a factor of fixed parameters
+        Fixed = "fixed",
+        /// linearly, by a factor of tunable parameters
+        Tunable = "tunable",
+        /// linearly, by a factor that changes at events
+        Discrete = "discrete",
+    }
 }
 
 /// What an unknown depends on. Variables are known by their position in [`crate::ModelDescription::variables`].

@@ -1,132 +1,89 @@
 //! Variables.
 use super::clock::Ticks;
-use super::named::Named;
 
-/// Who gives a variable its value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Causality {
-    /// The importer, before initialisation; a dimension of arrays (FMI 3.0).
-    StructuralParameter,
-    /// The importer, before or during initialisation.
-    Parameter,
-    /// The FMU, from parameters.
-    CalculatedParameter,
-    /// The importer, at every communication point.
-    Input,
-    /// The FMU; others may use it.
-    Output,
-    /// The FMU; for looking at only.
-    Local,
-    /// The independent variable, time.
-    Independent,
+servobench_config::choices! {
+    /// Who gives a variable its value.
+    pub enum Causality {
+        /// the importer, before initialisation; a dimension of arrays (FMI 3.0)
+        StructuralParameter = "structuralParameter",
+        /// the importer, before or during initialisation
+        Parameter = "parameter",
+        /// the FMU, from parameters
+        CalculatedParameter = "calculatedParameter",
+        /// the importer, at every communication point
+        Input = "input",
+        /// the FMU; others may use it
+        Output = "output",
+        /// the FMU; for looking at only
+        Local = "local",
+        /// the independent variable, time
+        Independent = "independent",
+    }
 }
 
-impl Named for Causality {
-    const ALL: &'static [(Self, &'static str)] = &[
-        (Self::StructuralParameter, "structuralParameter"),
-        (Self::Parameter, "parameter"),
-        (Self::CalculatedParameter, "calculatedParameter"),
-        (Self::Input, "input"),
-        (Self::Output, "output"),
-        (Self::Local, "local"),
-        (Self::Independent, "independent"),
-    ];
+servobench_config::choices! {
+    /// When a variable changes.
+    pub enum Variability {
+        /// never
+        Constant = "constant",
+        /// not after initialisation
+        Fixed = "fixed",
+        /// when a tunable parameter does
+        Tunable = "tunable",
+        /// at events
+        Discrete = "discrete",
+        /// at any time
+        Continuous = "continuous",
+    }
 }
 
-/// When a variable changes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Variability {
-    /// Never.
-    Constant,
-    /// Not after initialisation.
-    Fixed,
-    /// When a tunable parameter does.
-    Tunable,
-    /// At events.
-    Discrete,
-    /// At any time.
-    Continuous,
+servobench_config::choices! {
+    /// How a variable is initialised.
+    pub enum Initial {
+        /// with its start value
+        Exact = "exact",
+        /// by an iteration that begins with its start value
+        Approx = "approx",
+        /// from other variables
+        Calculated = "calculated",
+    }
 }
 
-impl Named for Variability {
-    const ALL: &'static [(Self, &'static str)] = &[
-        (Self::Constant, "constant"),
-        (Self::Fixed, "fixed"),
-        (Self::Tunable, "tunable"),
-        (Self::Discrete, "discrete"),
-        (Self::Continuous, "continuous"),
-    ];
-}
-
-/// How a variable is initialised.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Initial {
-    /// With its start value.
-    Exact,
-    /// By an iteration that begins with its start value.
-    Approx,
-    /// From other variables.
-    Calculated,
-}
-
-impl Named for Initial {
-    const ALL: &'static [(Self, &'static str)] =
-        &[(Self::Exact, "exact"), (Self::Approx, "approx"), (Self::Calculated, "calculated")];
-}
-
-/// Type of a variable. `Real` of FMI 2.0 is `Float64`, its `Integer` is `Int32`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum DataType {
-    /// Single precision.
-    Float32,
-    /// Double precision.
-    Float64,
-    /// Signed, 8 bits.
-    Int8,
-    /// Unsigned, 8 bits.
-    UInt8,
-    /// Signed, 16 bits.
-    Int16,
-    /// Unsigned, 16 bits.
-    UInt16,
-    /// Signed, 32 bits.
-    Int32,
-    /// Unsigned, 32 bits.
-    UInt32,
-    /// Signed, 64 bits.
-    Int64,
-    /// Unsigned, 64 bits.
-    UInt64,
-    /// TRUE or FALSE.
-    Boolean,
-    /// Text.
-    String,
-    /// Bytes.
-    Binary,
-    /// An item of an enumeration: signed, 64 bits in FMI 3.0, 32 in FMI 2.0.
-    Enumeration,
-    /// A clock: no value, it ticks.
-    Clock,
-}
-
-impl Named for DataType {
-    const ALL: &'static [(Self, &'static str)] = &[
-        (Self::Float32, "Float32"),
-        (Self::Float64, "Float64"),
-        (Self::Int8, "Int8"),
-        (Self::UInt8, "UInt8"),
-        (Self::Int16, "Int16"),
-        (Self::UInt16, "UInt16"),
-        (Self::Int32, "Int32"),
-        (Self::UInt32, "UInt32"),
-        (Self::Int64, "Int64"),
-        (Self::UInt64, "UInt64"),
-        (Self::Boolean, "Boolean"),
-        (Self::String, "String"),
-        (Self::Binary, "Binary"),
-        (Self::Enumeration, "Enumeration"),
-        (Self::Clock, "Clock"),
-    ];
+servobench_config::choices! {
+    /// Type of a variable. `Real` of FMI 2.0 is `Float64`, its `Integer` is `Int32`.
+    #[derive(PartialOrd, Ord)]
+    pub enum DataType {
+        /// single precision
+        Float32 = "Float32",
+        /// double precision
+        Float64 = "Float64",
+        /// signed, 8 bits
+        Int8 = "Int8",
+        /// unsigned, 8 bits
+        UInt8 = "UInt8",
+        /// signed, 16 bits
+        Int16 = "Int16",
+        /// unsigned, 16 bits
+        UInt16 = "UInt16",
+        /// signed, 32 bits
+        Int32 = "Int32",
+        /// unsigned, 32 bits
+        UInt32 = "UInt32",
+        /// signed, 64 bits
+        Int64 = "Int64",
+        /// unsigned, 64 bits
+        UInt64 = "UInt64",
+        /// TRUE or FALSE
+        Boolean = "Boolean",
+        /// text
+        String = "String",
+        /// bytes
+        Binary = "Binary",
+        /// an item of an enumeration: signed, 64 bits in FMI 3.0, 32 in FMI 2.0
+        Enumeration = "Enumeration",
+        /// A clock: no value, it ticks
+        Clock = "Clock",
+    }
 }
 
 impl DataType {

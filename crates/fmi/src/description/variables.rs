@@ -4,12 +4,13 @@ use super::clock::Ticks;
 use super::combination::{initials, variabilities};
 use super::declared::{Declared, DeclaredType, type_of_two};
 use super::element::Element;
-use super::named::{Named, one_of};
+use super::named::one_of;
 use super::numeric::Numeric;
 use super::start::{MOST_ELEMENTS, start};
 use super::units::Units;
 use super::variable::{Alias, Causality, DataType, Dimension, Initial, Values, Variability, Variable};
 use crate::error::{DescriptionProblem, FmuError};
+use servobench_config::Choice;
 use std::collections::HashMap;
 
 /// The variables and where each name is.
@@ -165,7 +166,7 @@ impl<'a> Reading<'a> {
             Version::Three if element.name() == "Annotations" => Ok(None),
             Version::Three => match DataType::from_name(element.name()) {
                 Some(data_type) => Ok(Some((element, data_type))),
-                None => Err(unknown(element, one_of(DataType::ALL.iter().map(|(_, name)| *name)))),
+                None => Err(unknown(element, one_of(DataType::ALL.iter().map(|(name, ..)| *name)))),
             },
             Version::Two => Err(unknown(element, "`<ScalarVariable>`".into())),
         }
@@ -240,7 +241,7 @@ impl<'a> Reading<'a> {
             variability.name(),
             data_type.name()
         );
-        let names = allowed.iter().copied().filter(|one| fits(*one)).map(Named::name);
+        let names = allowed.iter().copied().filter(|one| fits(*one)).map(Choice::name);
         let allowed = format!("{} for this causality and type", one_of(names));
         let variable = element.text_or_empty("name");
         let attribute = if given.is_some() { "variability" } else { "causality" };
@@ -264,7 +265,7 @@ impl<'a> Reading<'a> {
             return Ok(Some(given));
         }
         let (variable, found) = (name.to_owned(), format!("initial `{}`", given.name()));
-        let names = one_of(allowed.iter().copied().map(Named::name));
+        let names = one_of(allowed.iter().copied().map(Choice::name));
         let allowed = format!("{names} for causality `{}`, variability `{}`", causality.name(), variability.name());
         Err(element.error_at("initial", DescriptionProblem::Combination { variable, found, allowed }))
     }

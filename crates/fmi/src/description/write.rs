@@ -4,8 +4,9 @@
 use super::xml::{Element, Number, Xml};
 use super::{
     Causality, CoSimulation, DataType, DefaultExperiment, DependencyKind, Dimension, Enumeration, ModelDescription,
-    ModelStructure, Named, Unit, Unknown, Values, Variable, Version,
+    ModelStructure, Unit, Unknown, Values, Variable, Version,
 };
+use servobench_config::Choice;
 use std::fmt::{Display, Write as _};
 
 impl ModelDescription {
@@ -134,7 +135,7 @@ impl ModelDescription {
         element.set("causality", variable.causality.name()).set("variability", variable.variability.name());
         // Inputs have a start value and nothing else to choose.
         let initial = variable.initial.filter(|_| variable.causality != Causality::Input);
-        element.set_some("initial", initial.map(Named::name));
+        element.set_some("initial", initial.map(Choice::name));
     }
 
     /// What a variable counts in.

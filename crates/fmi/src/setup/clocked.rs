@@ -1,5 +1,6 @@
 //! Clocks of FMI 3.0. None is ticked: what would wait for one without end is refused.
-use crate::description::{Causality, ModelDescription, Named, Ticks};
+use crate::description::{Causality, ModelDescription, Ticks};
+use servobench_config::Choice as _;
 
 /// No clock has to be ticked from outside at times of its own; else which one, and what to do.
 ///

@@ -1,10 +1,9 @@
 //! Start values, turned into what the variables hold.
 use super::{Value, counts, position, setup};
 use crate::archive::Unpacked;
-use crate::description::{
-    Causality, DataType, Initial, ModelDescription, Named, Values, Variability, Variable, Version,
-};
+use crate::description::{Causality, DataType, Initial, ModelDescription, Values, Variability, Variable, Version};
 use crate::error::FmuError;
+use servobench_config::Choice as _;
 use std::collections::HashSet;
 
 /// A variable and its start value, one for each element.

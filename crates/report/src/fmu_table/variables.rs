@@ -3,7 +3,7 @@ use super::value::{range, start};
 use super::{MOST, fitted, others, plain};
 use crate::style::{Ink, Style};
 use crate::text::widest;
-use servobench_fmi::{Causality, DataType, Dimension, ModelDescription, Named, Variability, Variable, Version};
+use servobench_fmi::{Causality, Choice, DataType, Dimension, ModelDescription, Variability, Variable, Version};
 use std::collections::HashMap;
 
 const GROUPS: [(Causality, &str); 7] = [

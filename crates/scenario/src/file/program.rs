@@ -6,8 +6,9 @@ use crate::scenario::DisturbedBody;
 use crate::simple::OneOf;
 use crate::table::table;
 use servobench_config::Kind::{Axis as InAxis, Plain};
-use servobench_config::quantities::{ACCELERATION, FORCE, FREQUENCY, JERK, POSITION, SNAP, TIME, TORQUE, VELOCITY};
+use servobench_config::quantities::{FORCE, FREQUENCY, POSITION, TIME, TORQUE, VELOCITY};
 use servobench_config::{any, not_negative, positive};
+use servobench_motion::LimitParameter;
 use servobench_motion::online::Effort;
 use servobench_motion::sampled::Execution;
 use servobench_planner::{Method, Sampling};
@@ -34,14 +35,10 @@ table! {
         aborts_after: f64 = positive(Plain(&TIME), "0.3 s"),
         /// Order of the profile.
         order: u32 = 2..=4,
-        /// Largest velocity.
-        velocity: f64 = positive(InAxis(&VELOCITY), "30 m/min"),
-        /// Largest acceleration.
-        acceleration: f64 = positive(InAxis(&ACCELERATION), "5 m/s2"),
-        /// Largest jerk.
-        jerk: f64 = positive(InAxis(&JERK), "50 m/s3"),
-        /// Largest snap.
-        snap: f64 = positive(InAxis(&SNAP), "1000 m/s4"),
+        velocity: f64 = LimitParameter::Velocity.description(),
+        acceleration: f64 = LimitParameter::Acceleration.description(),
+        jerk: f64 = LimitParameter::Jerk.description(),
+        snap: f64 = LimitParameter::Snap.description(),
         /// Which profile goes from rest to rest.
         method: Method = OneOf,
         /// Sample time of the plan, a whole number of base ticks.
@@ -52,10 +49,8 @@ table! {
         execution: Execution = OneOf,
         /// Plans as if the axis were in motion, with so much work.
         online: Effort = OneOf,
-        /// Largest velocity below zero, of a move that is planned in motion.
-        negative_velocity: f64 = positive(InAxis(&VELOCITY), "20 m/min"),
-        /// Largest acceleration below zero, of a move that is planned in motion.
-        negative_acceleration: f64 = positive(InAxis(&ACCELERATION), "4 m/s2"),
+        negative_velocity: f64 = LimitParameter::NegativeVelocity.description(),
+        negative_acceleration: f64 = LimitParameter::NegativeAcceleration.description(),
         /// Moves by the operands of Rockwell's axis move.
         rockwell: Rockwell = (),
         /// Input shaper.

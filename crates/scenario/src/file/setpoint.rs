@@ -3,8 +3,9 @@ use crate::list::Many;
 use crate::simple::{OneOf, OneOfOrNone};
 use crate::table::table;
 use servobench_config::Kind::{Axis as InAxis, Plain};
-use servobench_config::quantities::{ACCELERATION, FREQUENCY, JERK, RATIO, SNAP, TIME, VELOCITY};
+use servobench_config::quantities::{ACCELERATION, FREQUENCY, JERK, RATIO, TIME};
 use servobench_config::{not_negative, positive};
+use servobench_motion::LimitParameter;
 use servobench_motion::interpolate::Mode;
 use servobench_motion::online::Effort;
 use servobench_motion::rockwell::ShapeKind;
@@ -17,14 +18,10 @@ table! {
     pub(crate) struct Setpoint {
         /// Order of the profile: 2 limits velocity and acceleration, 3 jerk too, 4 snap too.
         order: u32 = 2..=4,
-        /// Largest velocity.
-        velocity: f64 = positive(InAxis(&VELOCITY), "30 m/min"),
-        /// Largest acceleration.
-        acceleration: f64 = positive(InAxis(&ACCELERATION), "5 m/s2"),
-        /// Largest jerk.
-        jerk: f64 = positive(InAxis(&JERK), "50 m/s3"),
-        /// Largest snap.
-        snap: f64 = positive(InAxis(&SNAP), "1000 m/s4"),
+        velocity: f64 = LimitParameter::Velocity.description(),
+        acceleration: f64 = LimitParameter::Acceleration.description(),
+        jerk: f64 = LimitParameter::Jerk.description(),
+        snap: f64 = LimitParameter::Snap.description(),
         /// Which profile goes from rest to rest; default: "published".
         method: Method = OneOf,
         /// Sample time of moves from rest to rest, a whole number of base ticks; default: continuous.
@@ -35,10 +32,10 @@ table! {
         execution: Execution = OneOf,
         /// Plans every move as one that may start in motion, with so much work; "fast" where a move does and nothing is given.
         online: Effort = OneOf,
-        /// Largest velocity below zero, of moves that are planned in motion; default: as `velocity`.
-        negative_velocity: f64 = positive(InAxis(&VELOCITY), "20 m/min"),
-        /// Largest acceleration below zero, of moves that are planned in motion; default: as `acceleration`.
-        negative_acceleration: f64 = positive(InAxis(&ACCELERATION), "4 m/s2"),
+        /// default: as `velocity`.
+        negative_velocity: f64 = LimitParameter::NegativeVelocity.description(),
+        /// default: as `acceleration`.
+        negative_acceleration: f64 = LimitParameter::NegativeAcceleration.description(),
         /// Moves by the operands of Rockwell's axis move.
         rockwell: Rockwell = (),
         /// Input shaper, against one mode of the axis.
