@@ -11,7 +11,7 @@ use crate::ParameterError;
 use crate::feedforward::MotorReference;
 use crate::params::{Params, Stage};
 use crate::{current, delay, velocity};
-use servobench_base::{AlphaBeta, Countdown, Dq, ElectricalAngle, Setpoint};
+use servobench_base::{AlphaBeta, Countdown, Dq, ElectricalAngle, PowerCommand, Setpoint};
 
 /// Which encoder closes the position loop.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -45,17 +45,6 @@ impl Sensors {
             Feedback::Load(position) => position,
         }
     }
-}
-
-/// What goes to the power stage from tick k on.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Command {
-    /// Stator voltage (V, peak).
-    Voltage(AlphaBeta),
-    /// Output of an ideal amplifier (V, or the effort itself).
-    Output(f64),
-    /// The power stage is off: the motor carries no current.
-    Off,
 }
 
 /// Which of the loops are closed.
@@ -170,7 +159,7 @@ impl State {
 
 /// One base tick: runs the loops that are due and returns what goes to the power stage from now on. The demand is taken
 /// at the cycles of the position loop.
-pub fn step(p: &Params, x: &mut State, demand: &Demand, sensors: &Sensors) -> Command {
+pub fn step(p: &Params, x: &mut State, demand: &Demand, sensors: &Sensors) -> PowerCommand {
     if x.position_turn.is_due(p.position_every) {
         take(p, x, demand, sensors);
         x.velocity_command = x.held.velocity_reference;
@@ -182,15 +171,15 @@ pub fn step(p: &Params, x: &mut State, demand: &Demand, sensors: &Sensors) -> Co
         Stage::Current { params, every } => {
             let is_due = x.current_turn.is_due(*every);
             if x.closed == Closed::None {
-                return Command::Off;
+                return PowerCommand::Off;
             }
             if is_due {
                 current_loop(params, x, sensors, p.period(*every));
             }
-            Command::Voltage(x.held.current.voltage)
+            PowerCommand::Voltage(x.held.current.voltage)
         }
-        Stage::Direct { .. } if x.closed == Closed::None => Command::Off,
-        Stage::Direct { gain } => Command::Output(x.held.effort.effort / gain),
+        Stage::Direct { .. } if x.closed == Closed::None => PowerCommand::Off,
+        Stage::Direct { gain } => PowerCommand::Output(x.held.effort.effort / gain),
     }
 }
 
@@ -329,7 +318,7 @@ mod tests {
         let law = |x: f64| 243.45 * (160.18 * (8e-4 - x) - 0.02);
         for k in 0..32 {
             let position = |k: i32| 5e-4 + 1e-6 * f64::from(k);
-            let Command::Output(u) = step(&p, &mut x, &Demand::position(setpoint), &at(position(k))) else {
+            let PowerCommand::Output(u) = step(&p, &mut x, &Demand::position(setpoint), &at(position(k))) else {
                 panic!("an ideal amplifier")
             };
             assert!((u - law(position(k / 16 * 16))).abs() < 1e-11, "tick {k}: {u}");
@@ -343,7 +332,7 @@ mod tests {
         for k in 0..=32 {
             let position = 0.02 * f64::from(k) / 16_000.0;
             let sensors = Sensors { motor_position: position, ..Sensors::default() };
-            if let Command::Output(u) = step(&p, &mut x, &REST, &sensors) {
+            if let PowerCommand::Output(u) = step(&p, &mut x, &REST, &sensors) {
                 last = u;
             }
         }
@@ -457,7 +446,7 @@ mod tests {
         assert!((effort.effort - (35.1507 * 243.45 * (0.03 / 0.5 - 0.02) + 7.0)).abs() < 1e-10, "{effort:?}");
         assert_eq!(answer(Demand::Effort(-12.0)).2, velocity::Output { effort: -12.0, cut: None });
         assert_eq!(answer(Demand::Effort(1e3)).2, velocity::Output { effort: 351.507, cut: Some(Cut::Effort) });
-        assert_eq!(answer(Demand::Off).0, Command::Off);
+        assert_eq!(answer(Demand::Off).0, PowerCommand::Off);
     }
 
     /// Oracle: a drive that was never off. What the loops had gathered before is gone, and so is the old reference.

@@ -18,6 +18,6 @@ pub mod velocity;
 
 pub use demand::{Demand, Offsets};
 pub use estimate::{EffortFeedforward, Estimate};
-pub use firmware::{Command, Feedback, Held, Sensors, State, step};
+pub use firmware::{Feedback, Held, Sensors, State, step};
 pub use parameter::{Parameter, ParameterError};
 pub use params::{Params, Stage};

@@ -17,6 +17,7 @@ mod mjcf;
 mod mjcf_axis;
 mod modes;
 pub mod pmsm;
+mod power_stage;
 mod refusal;
 mod sensor;
 mod source;
@@ -36,6 +37,7 @@ pub use mechanics::{
 pub use mjcf::chain_to_mjcf;
 pub use mjcf_axis::MjcfAxis;
 pub use modes::Mode;
+pub use power_stage::PowerStage;
 pub use refusal::{Refusal, RefusedAt};
 pub use sensor::{Encoder, EncoderParameter, Reading};
 pub use source::{IdealSource, SourceOutput};

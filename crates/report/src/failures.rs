@@ -1,6 +1,6 @@
 //! What made a run fail, part by part: which limit is missed by how much, what requirement is broken, which fault is missing.
-use crate::ordered::Ordered;
 use crate::results::{MetricResult, RunResult};
+use indexmap::IndexMap;
 use servobench_metrics::{Name, Quantity, Standing};
 
 /// A limit that is missed.
@@ -36,7 +36,7 @@ fn missed_limit<'a>(
     of_move: Option<(usize, &'a str)>,
     name: &'a str,
     metric: &MetricResult,
-    absent: &Ordered<String>,
+    absent: &IndexMap<String, String>,
 ) -> MissedLimit<'a> {
     let (value, words) = if let Some(value) = metric.value {
         let digits = metric.digits(value);

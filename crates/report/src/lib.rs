@@ -13,7 +13,6 @@ mod fmu_table;
 mod junit;
 mod metric_table;
 mod object_table;
-mod ordered;
 mod plan;
 mod results;
 mod row_notes;

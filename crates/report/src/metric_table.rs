@@ -10,7 +10,7 @@ const USED: usize = 6;
 /// All metrics of a run with their limits and how much of these is used, then those of single moves that have limits of
 /// their own, then what could not be measured and why.
 pub(crate) fn metric_table(run: &RunResult, style: Style) -> String {
-    let name = widest(run.metrics.iter().map(|(name, _)| name)).max("METRIC".len());
+    let name = widest(run.metrics.keys().map(String::as_str)).max("METRIC".len());
     let heading = format!("{:name$}  {:>VALUE$}  {:>VALUE$}  {:>USED$}", "METRIC", "VALUE", "LIMIT", "USED");
     let mut table = style.paint(Ink::Heading, &heading) + "\n";
     for (metric_name, metric) in run.metrics.iter() {

@@ -1,6 +1,6 @@
 //! Results for the tests: the move of Lambrechts under two limits, a run that missed limits, one that broke off.
-use crate::ordered::Ordered;
 use crate::results::{ExpectedResult, MetricResult, Outcome, Results, RunResult};
+use indexmap::IndexMap;
 use servobench_base::Severity;
 use servobench_metrics::{Name, RequirementResult, Standing};
 use servobench_trace::{Ending, Event, LogEntry, Move};
@@ -44,7 +44,9 @@ pub(crate) fn run(name: &str, engine: &str, metrics: impl IntoIterator<Item = (S
 }
 
 /// Requirements with their standings and reasons.
-pub(crate) fn requirements<const N: usize>(all: [(&str, Standing, Vec<String>); N]) -> Ordered<RequirementResult> {
+pub(crate) fn requirements<const N: usize>(
+    all: [(&str, Standing, Vec<String>); N],
+) -> IndexMap<String, RequirementResult> {
     let all = all.into_iter();
     all.map(|(name, standing, reasons)| (name.to_owned(), RequirementResult { standing, reasons })).collect()
 }
@@ -175,7 +177,7 @@ pub(crate) fn wrong() -> RunResult {
     let mut run = broken();
     run.verdict = Outcome::Invalid;
     run.log.clear();
-    run.requirements = Ordered::default();
+    run.requirements = IndexMap::new();
     run.reasons = vec!["`axis.mjcf.file`: there is no `arm.xml`".into()];
     run
 }

@@ -2,13 +2,12 @@
 use crate::disturbance::Disturbances;
 use crate::external::{Controller, External};
 use crate::network::{Measurement, Network, Request};
-use crate::power::PowerStage;
 use crate::program::Program;
 use crate::run::Reason;
-use servobench_base::{Rate, Setpoint, Tick};
+use servobench_base::{PowerCommand, Rate, Setpoint, Tick};
 use servobench_drive::velocity::Cut;
-use servobench_drive::{self as drive, Command, Demand, Feedback, Sensors};
-use servobench_plant::{Actuation, BodyState, Encoder, Input, Mechanics, MechanicsError, Switches};
+use servobench_drive::{self as drive, Demand, Feedback, Sensors};
+use servobench_plant::{Actuation, BodyState, Encoder, Input, Mechanics, MechanicsError, PowerStage, Switches};
 use servobench_scenario::DisturbedBody;
 use servobench_signals::Instant;
 use servobench_signals::PerLimit;
@@ -92,7 +91,7 @@ impl ClosedLoop {
         let mut command = self.control(k, external, motor, now, recorder);
         if let Some(Controller::Voltage(voltage)) = external.controller {
             now.voltage_reference = voltage;
-            command = Command::Voltage(self.state.power.in_the_stator(voltage, motor));
+            command = PowerCommand::Voltage(self.state.power.in_the_stator(voltage, motor));
         }
         // The mean effort over the coming tick belongs into the row of this one; the current is the one at k.
         now.current = self.state.power.current();
@@ -137,7 +136,7 @@ impl ClosedLoop {
         motor: BodyState,
         now: &mut Instant,
         recorder: &mut Recorder,
-    ) -> Command {
+    ) -> PowerCommand {
         // Until the program begins it stays at its beginning.
         let since = self.base_rate.time(Tick(k - self.state.begun.unwrap_or(k)));
         let upcoming = self.state.upcoming.take();
@@ -147,7 +146,7 @@ impl ClosedLoop {
             }
             now.reference = now.setpoint.x;
             now.motor_reference = now.setpoint.x;
-            return Command::Output(0.0);
+            return PowerCommand::Output(0.0);
         };
         let reading = control.motor_encoder.read(motor.position, motor.velocity);
         let sensors = Sensors {

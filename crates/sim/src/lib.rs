@@ -15,7 +15,6 @@ mod limit_watch;
 mod machine;
 mod multi_axis;
 mod network;
-mod power;
 mod program;
 mod run;
 mod stability;

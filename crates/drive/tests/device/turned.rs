@@ -1,9 +1,9 @@
 //! An axis that the polarity (607Eh) turns round: the same frames, the mirrored motion, under the drive's own loops.
-use servobench_base::{Rate, Setpoint};
+use servobench_base::{PowerCommand, Rate, Setpoint};
 use servobench_cia402::units::{AxisUnit, FactorGroup, Ratio};
 use servobench_cia402::{Command as Word, Commands, Controlword, Mode};
 use servobench_drive::device::{self, Inputs, Measured, Units};
-use servobench_drive::{self as drive, Command, Demand, Sensors, Stage, delay, feedforward, velocity};
+use servobench_drive::{self as drive, Demand, Sensors, Stage, delay, feedforward, velocity};
 use servobench_motion::interpolate;
 use std::f64::consts::TAU;
 
@@ -101,9 +101,9 @@ fn moved(polarity: u8, with_force: bool) -> Seen {
             seen.peak = seen.peak.max(following_error.abs());
         }
         force = match drive::step(&loops, &mut firmware, &demand, &sensors) {
-            Command::Output(force) => force,
-            Command::Off => 0.0,
-            Command::Voltage(_) => panic!("a direct stage"),
+            PowerCommand::Output(force) => force,
+            PowerCommand::Off => 0.0,
+            PowerCommand::Voltage(_) => panic!("a direct stage"),
         };
         x += tick * (v + 0.5 * tick * force / MASS);
         v += tick * force / MASS;

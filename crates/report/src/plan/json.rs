@@ -1,7 +1,7 @@
 //! A plan for a program.
 use super::{NAMES, PlannedMove, derivatives};
 use crate::error::ReportError;
-use crate::ordered::Ordered;
+use indexmap::IndexMap;
 use serde::Serialize;
 use servobench_base::Setpoint;
 use servobench_config::Choice as _;
@@ -29,16 +29,16 @@ struct Plan {
     compared: Option<Compared>,
     /// `t_d` … `t_v` (s).
     #[serde(flatten)]
-    dwells: Ordered<f64>,
+    dwells: IndexMap<String, f64>,
     /// What the pulses of the highest derivative reach, signed: `snap_effective` at order 4.
     #[serde(flatten)]
-    effective: Ordered<f64>,
+    effective: IndexMap<String, f64>,
     /// Largest magnitudes.
-    peaks: Ordered<f64>,
+    peaks: IndexMap<String, f64>,
     /// Lowest and highest values.
-    extremes: Ordered<[f64; 2]>,
+    extremes: IndexMap<String, [f64; 2]>,
     /// Lowest and highest values allowed, where there is a limit.
-    limits: Ordered<[Option<f64>; 2]>,
+    limits: IndexMap<String, [Option<f64>; 2]>,
     #[serde(flatten)]
     samples: Option<Samples>,
     /// How far a transition goes beyond its limits, as a part of them.

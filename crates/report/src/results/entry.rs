@@ -1,5 +1,5 @@
 //! The parts of a run's result.
-use crate::ordered::Ordered;
+use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use servobench_metrics::{Expectation, Expected, Limit, Metric, MetricSet, MoveMetrics, Quantity};
 
@@ -32,7 +32,7 @@ pub(crate) struct MoveResult {
     /// End of the profile (s).
     pub(crate) end: f64,
     /// Its metrics by name.
-    pub(crate) metrics: Ordered<MetricResult>,
+    pub(crate) metrics: IndexMap<String, MetricResult>,
 }
 
 /// A fault that was expected.
@@ -101,6 +101,6 @@ impl From<&MoveMetrics> for MoveResult {
     }
 }
 
-pub(crate) fn of_set(set: &MetricSet) -> Ordered<MetricResult> {
+pub(crate) fn of_set(set: &MetricSet) -> IndexMap<String, MetricResult> {
     set.iter().map(|(name, metric)| (name.to_string(), metric.into())).collect()
 }

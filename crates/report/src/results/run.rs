@@ -1,8 +1,8 @@
 //! What came of one run.
 use super::Outcome;
 use super::entry::{ExpectedResult, MetricResult, MoveResult, of_set};
-use crate::ordered::Ordered;
 use crate::text::printable_lines;
+use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use servobench_metrics::{Metrics, Name, RequirementResult, Standing, Verdict};
 use servobench_trace::{Event, LogEntry, Recording};
@@ -54,7 +54,7 @@ pub struct RunResult {
     pub reasons: Vec<String>,
     /// How the run stands to each requirement.
     #[serde(default)]
-    pub(crate) requirements: Ordered<RequirementResult>,
+    pub(crate) requirements: IndexMap<String, RequirementResult>,
     /// The faults that were expected.
     #[serde(default)]
     pub(crate) expected: Vec<ExpectedResult>,
@@ -63,11 +63,11 @@ pub struct RunResult {
     pub warnings: Vec<String>,
     /// What the scenario file says, models merged in, by key.
     #[serde(default)]
-    pub(crate) parameters: Ordered<String>,
+    pub(crate) parameters: IndexMap<String, String>,
     /// Metrics by name; with those that have a limit but could not be measured.
-    pub(crate) metrics: Ordered<MetricResult>,
+    pub(crate) metrics: IndexMap<String, MetricResult>,
     /// Metrics that could not be measured, and why.
-    pub(crate) absent: Ordered<String>,
+    pub(crate) absent: IndexMap<String, String>,
     /// The moves.
     pub(crate) moves: Vec<MoveResult>,
     /// What happened: limits that bound, warnings.
@@ -138,7 +138,7 @@ impl RunResult {
     }
 
     /// Metrics of the run, or of a move.
-    fn metrics_of(&mut self, in_move: Option<usize>) -> Option<&mut Ordered<MetricResult>> {
+    fn metrics_of(&mut self, in_move: Option<usize>) -> Option<&mut IndexMap<String, MetricResult>> {
         match in_move {
             None => Some(&mut self.metrics),
             Some(index) => self.moves.get_mut(index).map(|made| &mut made.metrics),
@@ -147,13 +147,14 @@ impl RunResult {
 
     /// Every metric by name, those of the run before those of its moves.
     pub(crate) fn all_metrics(&self) -> impl Iterator<Item = (&str, &MetricResult)> {
-        self.metrics.iter().chain(self.moves.iter().flat_map(|made| made.metrics.iter()))
+        let all = self.metrics.iter().chain(self.moves.iter().flat_map(|made| made.metrics.iter()));
+        all.map(|(name, metric)| (name.as_str(), metric))
     }
 
     /// Requirements with this standing, and the reasons.
     pub(crate) fn requirements_that_are(&self, standing: Standing) -> impl Iterator<Item = (&str, &[String])> {
         let all = self.requirements.iter().filter(move |(_, requirement)| requirement.standing == standing);
-        all.map(|(name, requirement)| (name, requirement.reasons.as_slice()))
+        all.map(|(name, requirement)| (name.as_str(), requirement.reasons.as_slice()))
     }
 
     fn of(run: RunIdentity, recording: Option<&Recording>, metrics: &Metrics) -> Self {
@@ -167,7 +168,7 @@ impl RunResult {
             // N + 1 instants from tick 0 to tick N.
             duration: recording.map_or(0.0, |recording| recording.time_of(recording.len().saturating_sub(1))),
             reasons: Vec::new(),
-            requirements: Ordered::default(),
+            requirements: IndexMap::new(),
             expected: Vec::new(),
             warnings: Vec::new(),
             parameters: run.parameters.into_iter().collect(),

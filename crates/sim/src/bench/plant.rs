@@ -1,11 +1,10 @@
 //! The plant of a scenario: mechanics, power stage and sensors. Nothing here knows of the firmware.
 use crate::coupled::replaces_the_drive;
 use crate::error::BuildError;
-use crate::power::PowerStage;
-use servobench_base::{Dq, Rotation};
-use servobench_plant::{self as plant, BodyState, Chain, Engine, Mechanics, MechanicsSetup, ModelKind, Switches, pmsm};
+use servobench_plant::{
+    self as plant, BodyState, Chain, Engine, Mechanics, MechanicsSetup, ModelKind, PowerStage, Switches,
+};
 use servobench_scenario::{Actuator, AxisMechanics, Scenario};
-use std::sync::Arc;
 
 /// The mechanics at tick 0 and the names of its bodies.
 pub(super) fn mechanics(
@@ -75,21 +74,9 @@ pub(super) fn switches(scenario: &Scenario) -> Result<Switches, BuildError> {
 /// What turns the drive's command into effort, with the motor at `speed` (its own coordinate, per second), in
 /// ticks of `h` (s).
 pub(super) fn power_stage(actuator: &Actuator, speed: f64, h: f64) -> Result<PowerStage, BuildError> {
-    match actuator {
-        Actuator::Prescribed | Actuator::Off => Ok(PowerStage::Off),
-        Actuator::IdealSource { source, .. } => Ok(PowerStage::Ideal { gain: source.gain, limit: source.limit }),
-        Actuator::Pmsm { motor, dc_link, .. } => {
-            motor.check()?;
-            Ok(PowerStage::Pmsm {
-                motor: Arc::new(pmsm::Ticks::new(*motor, h)),
-                state: pmsm::State::default(),
-                u_dc: *dc_link,
-                last_speed: speed,
-                rotor: Rotation::default(),
-                shortens: false,
-                voltage: Dq::default(),
-                power: Some(pmsm::Power::default()),
-            })
-        }
-    }
+    Ok(match actuator {
+        Actuator::Prescribed | Actuator::Off => PowerStage::OFF,
+        Actuator::IdealSource { source, .. } => PowerStage::ideal(source),
+        Actuator::Pmsm { motor, dc_link, .. } => PowerStage::pmsm(*motor, *dc_link, speed, h)?,
+    })
 }

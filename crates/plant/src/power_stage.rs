@@ -1,12 +1,16 @@
 //! Power stage: from the drive's command to the effort on the motor body.
-use servobench_base::{AlphaBeta, Dq, ElectricalAngle, Rotation};
-use servobench_drive::Command;
-use servobench_plant::{BodyState, inverter, pmsm};
+use crate::mechanics::BodyState;
+use crate::source::IdealSource;
+use crate::{inverter, pmsm};
+use servobench_base::{AlphaBeta, Dq, ElectricalAngle, ParamError, PowerCommand, Rotation};
 use std::sync::Arc;
 
-/// What stands between the drive and the mechanics.
+/// What stands between the drive and the mechanics: an inverter with a synchronous motor, an ideal source, or nothing.
 #[derive(Debug, Clone)]
-pub(crate) enum PowerStage {
+pub struct PowerStage(Stage);
+
+#[derive(Debug, Clone)]
+enum Stage {
     /// Inverter and synchronous motor.
     Pmsm {
         motor: Arc<pmsm::Ticks>,
@@ -31,78 +35,121 @@ pub(crate) enum PowerStage {
 }
 
 impl PowerStage {
+    /// No power stage, or one whose motor follows its set-point: no effort.
+    pub const OFF: Self = Self(Stage::Off);
+
+    /// An ideal source.
+    #[must_use]
+    pub const fn ideal(source: &IdealSource) -> Self {
+        Self(Stage::Ideal { gain: source.gain, limit: source.limit })
+    }
+
+    /// An inverter on `dc_link` (V) and a motor without current that turns at `speed` (its own coordinate, per second), in ticks of `h`
+    /// (s).
+    ///
+    /// # Errors
+    /// [`ParamError`] names the parameter of the motor that is out of its bound.
+    pub fn pmsm(motor: pmsm::Params, dc_link: f64, speed: f64, h: f64) -> Result<Self, ParamError> {
+        motor.check()?;
+        Ok(Self(Stage::Pmsm {
+            motor: Arc::new(pmsm::Ticks::new(motor, h)),
+            state: pmsm::State::default(),
+            u_dc: dc_link,
+            last_speed: speed,
+            rotor: Rotation::default(),
+            shortens: false,
+            voltage: Dq::default(),
+            power: Some(pmsm::Power::default()),
+        }))
+    }
+
     /// Stator current as the drive's sensors see it with the motor at `motor` (A, peak).
-    pub(crate) fn measured_current(&mut self, motor: BodyState) -> AlphaBeta {
-        match self {
-            Self::Pmsm { motor: synchronous, state, rotor, .. } => {
+    #[inline]
+    pub fn measured_current(&mut self, motor: BodyState) -> AlphaBeta {
+        match &mut self.0 {
+            Stage::Pmsm { motor: synchronous, state, rotor, .. } => {
                 let ratio = synchronous.params().electrical_ratio;
                 *rotor = ElectricalAngle::from_mechanical(motor.position, ratio).rotation();
                 state.current.to_alpha_beta(*rotor)
             }
-            Self::Ideal { .. } | Self::Off => AlphaBeta::default(),
+            Stage::Ideal { .. } | Stage::Off => AlphaBeta::default(),
         }
     }
 
     /// A voltage in the rotor's frame (V, peak) in the stator's, with the motor at `motor`.
-    pub(crate) fn in_the_stator(&mut self, voltage: Dq, motor: BodyState) -> AlphaBeta {
+    #[inline]
+    #[must_use]
+    pub fn in_the_stator(&mut self, voltage: Dq, motor: BodyState) -> AlphaBeta {
         self.measured_current(motor);
-        match self {
-            Self::Pmsm { rotor, .. } => voltage.to_alpha_beta(*rotor),
-            Self::Ideal { .. } | Self::Off => AlphaBeta::default(),
+        match &mut self.0 {
+            Stage::Pmsm { rotor, .. } => voltage.to_alpha_beta(*rotor),
+            Stage::Ideal { .. } | Stage::Off => AlphaBeta::default(),
         }
     }
 
     /// Stator current in the rotor frame (A, peak).
-    pub(crate) fn current(&self) -> Dq {
-        match self {
-            Self::Pmsm { state, .. } => state.current,
-            Self::Ideal { .. } | Self::Off => Dq::default(),
+    #[inline]
+    #[must_use]
+    pub fn current(&self) -> Dq {
+        match &self.0 {
+            Stage::Pmsm { state, .. } => state.current,
+            Stage::Ideal { .. } | Stage::Off => Dq::default(),
         }
     }
 
     /// Output of an ideal source after its limit; 0 for others.
-    pub(crate) fn output(&self, command: Command) -> f64 {
-        match (self, command) {
-            (Self::Ideal { limit, .. }, Command::Output(output)) => output.clamp(-limit, *limit),
+    #[inline]
+    #[must_use]
+    pub fn output(&self, command: PowerCommand) -> f64 {
+        match (&self.0, command) {
+            (Stage::Ideal { limit, .. }, PowerCommand::Output(output)) => output.clamp(-limit, *limit),
             _ => 0.0,
         }
     }
 
     /// Whether the inverter gave less voltage than it was asked for at the last tick.
-    pub(crate) fn shortens_voltage(&self) -> bool {
-        matches!(self, Self::Pmsm { shortens: true, .. })
+    #[inline]
+    #[must_use]
+    pub fn shortens_voltage(&self) -> bool {
+        matches!(self.0, Stage::Pmsm { shortens: true, .. })
     }
 
     /// What the inverter gives over the last tick that was advanced, as the rotor meets it in the middle of that tick (V).
-    pub(crate) fn voltage(&self) -> Dq {
-        match self {
-            Self::Pmsm { voltage, .. } => *voltage,
-            Self::Ideal { .. } | Self::Off => Dq::default(),
+    #[inline]
+    #[must_use]
+    pub fn voltage(&self) -> Dq {
+        match &self.0 {
+            Stage::Pmsm { voltage, .. } => *voltage,
+            Stage::Ideal { .. } | Stage::Off => Dq::default(),
         }
     }
 
     /// Mean powers of the motor over that tick (W); zero where nobody wants them.
-    pub(crate) fn power(&self) -> pmsm::Power {
-        match self {
-            Self::Pmsm { power, .. } => power.unwrap_or_default(),
-            Self::Ideal { .. } | Self::Off => pmsm::Power::default(),
+    #[inline]
+    #[must_use]
+    pub fn power(&self) -> pmsm::Power {
+        match &self.0 {
+            Stage::Pmsm { power, .. } => power.unwrap_or_default(),
+            Stage::Ideal { .. } | Stage::Off => pmsm::Power::default(),
         }
     }
 
     /// Leaves the powers of the motor out from now on.
-    pub(crate) fn leave_power_out(&mut self) {
-        if let Self::Pmsm { power, .. } = self {
+    #[inline]
+    pub fn leave_power_out(&mut self) {
+        if let Stage::Pmsm { power, .. } = &mut self.0 {
             *power = None;
         }
     }
 
     /// Goes from tick k to k+1 (`h` s) and returns the mean effort over it (N·m or N).
-    pub(crate) fn advance(&mut self, command: Command, motor: BodyState, h: f64) -> f64 {
+    #[inline]
+    pub fn advance(&mut self, command: PowerCommand, motor: BodyState, h: f64) -> f64 {
         let output = self.output(command);
-        match (self, command) {
+        match (&mut self.0, command) {
             (
-                Self::Pmsm { motor: ticks, state, u_dc, last_speed, rotor, shortens, voltage, power },
-                Command::Voltage(wanted),
+                Stage::Pmsm { motor: ticks, state, u_dc, last_speed, rotor, shortens, voltage, power },
+                PowerCommand::Voltage(wanted),
             ) => {
                 // Straight on from the last two ticks: second order.
                 let mean_speed = motor.velocity + (motor.velocity - *last_speed) / 2.0;
@@ -126,14 +173,14 @@ impl PowerStage {
             }
             // The current is gone within the tick, which takes a real inverter some milliseconds, and its energy back in
             // the DC link; no current flows back as long as the back-EMF is below the DC link.
-            (Self::Pmsm { motor: ticks, state, last_speed, shortens, voltage, power, .. }, Command::Off) => {
+            (Stage::Pmsm { motor: ticks, state, last_speed, shortens, voltage, power, .. }, PowerCommand::Off) => {
                 let returned = -ticks.params().stored_energy(state.current) / h;
                 *power = power.map(|_| pmsm::Power { electrical: returned, stored: returned, ..Default::default() });
                 *state = pmsm::State::default();
                 (*last_speed, *shortens, *voltage) = (motor.velocity, false, Dq::default());
                 0.0
             }
-            (Self::Ideal { gain, .. }, Command::Output(_)) => *gain * output,
+            (Stage::Ideal { gain, .. }, PowerCommand::Output(_)) => *gain * output,
             _ => 0.0,
         }
     }
@@ -160,17 +207,7 @@ mod tests {
 
     /// On 540 V, a tick after it turned at `last_speed` (rad/s).
     fn stage(last_speed: f64) -> PowerStage {
-        let (state, rotor) = (pmsm::State::default(), Rotation::default());
-        PowerStage::Pmsm {
-            motor: Arc::new(pmsm::Ticks::new(MOTOR, H)),
-            state,
-            u_dc: 540.0,
-            last_speed,
-            rotor,
-            shortens: false,
-            voltage: Dq::default(),
-            power: Some(pmsm::Power::default()),
-        }
+        PowerStage::pmsm(MOTOR, 540.0, last_speed, H).unwrap()
     }
 
     /// Oracle: in the stator frame the back-EMF of a motor at constant speed, ψ·ω_e·[−sin θ, cos θ], averaged over the
@@ -186,7 +223,7 @@ mod tests {
             let voltage =
                 AlphaBeta { alpha: scale * (next.cos() - theta.cos()), beta: scale * (next.sin() - theta.sin()) };
             stage.measured_current(motor);
-            let effort = stage.advance(Command::Voltage(voltage), motor, H);
+            let effort = stage.advance(PowerCommand::Voltage(voltage), motor, H);
             // Within a tick the held voltage and the turning back-EMF differ, by 163 V·ω_e·h/2 = 1.5 V at its ends; the
             // current of that drops over the resistance and makes 0.7 µN·m more at each tick. A first tick at half the speed too much
             // would make 250 mN·m.
@@ -203,7 +240,7 @@ mod tests {
         let voltage = AlphaBeta { alpha: 20.0, beta: 90.0 };
         let mut stage = stage(velocity(0.0));
         stage.measured_current(motor);
-        let effort = stage.advance(Command::Voltage(voltage), motor, H);
+        let effort = stage.advance(PowerCommand::Voltage(voltage), motor, H);
 
         let (rotor, omega_e) = (Rotation::default(), 3.0 * velocity(1.5));
         let mut state = pmsm::State::default();
@@ -216,7 +253,7 @@ mod tests {
     #[test]
     fn the_measured_current_is_in_the_stator_frame() {
         let mut stage = stage(0.0);
-        let PowerStage::Pmsm { state, .. } = &mut stage else { panic!("a motor") };
+        let Stage::Pmsm { state, .. } = &mut stage.0 else { panic!("a motor") };
         state.current = Dq { d: 0.0, q: 2.0 };
         // A sixth of a turn times three pole pairs: half a turn electrical, q against β.
         let motor = BodyState { position: std::f64::consts::PI / 3.0, velocity: 0.0 };
@@ -231,7 +268,7 @@ mod tests {
         let mut stage = stage(0.0);
         for (length, shortened) in [(0.9, false), (1.0 + 4e-16, false), (1.001, true), (0.5, false)] {
             let (alpha, beta) = (0.6 * limit * length, -0.8 * limit * length);
-            stage.advance(Command::Voltage(AlphaBeta { alpha, beta }), BodyState::default(), H);
+            stage.advance(PowerCommand::Voltage(AlphaBeta { alpha, beta }), BodyState::default(), H);
             assert_eq!(stage.shortens_voltage(), shortened, "{length}");
         }
     }
@@ -239,9 +276,9 @@ mod tests {
     /// EMPS: 35.15 N/V, ±10 V.
     #[test]
     fn an_ideal_source_saturates_its_output() {
-        let mut stage = PowerStage::Ideal { gain: 35.15, limit: 10.0 };
+        let mut stage = PowerStage(Stage::Ideal { gain: 35.15, limit: 10.0 });
         for (asked, output) in [(4.0, 4.0), (12.0, 10.0), (-1e9, -10.0)] {
-            let command = Command::Output(asked);
+            let command = PowerCommand::Output(asked);
             assert!((stage.output(command) - output).abs() < 1e-15, "{asked}");
             assert!((stage.advance(command, BodyState::default(), H) - 35.15 * output).abs() < 1e-12, "{asked}");
         }
@@ -250,8 +287,8 @@ mod tests {
 
     #[test]
     fn off_is_off() {
-        let (mut stage, motor) = (PowerStage::Off, BodyState { position: 1.0, velocity: 10.0 });
-        for command in [Command::Output(5.0), Command::Voltage(AlphaBeta { alpha: 5.0, beta: 5.0 })] {
+        let (mut stage, motor) = (PowerStage::OFF, BodyState { position: 1.0, velocity: 10.0 });
+        for command in [PowerCommand::Output(5.0), PowerCommand::Voltage(AlphaBeta { alpha: 5.0, beta: 5.0 })] {
             assert_eq!(stage.advance(command, motor, H).to_bits(), 0.0_f64.to_bits());
             assert_eq!(stage.output(command).to_bits(), 0.0_f64.to_bits());
         }
