@@ -1,7 +1,7 @@
 //! Modes of operation (CiA 402): from what the master sends to what the loops are to do.
 //!
 //! A mode sees a [`Moment`] and gives an [`Answer`], once per period of the position loop. Positions and velocities are in
-//! the axis unit (m or rad), efforts in the motor's (N·m or N): drive units end at the door.
+//! the axis unit (m or rad), efforts in the motor's (N·m or N): drive units end at the bus interface.
 pub mod cyclic;
 pub mod homing;
 pub mod interpolated;

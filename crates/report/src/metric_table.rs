@@ -13,7 +13,7 @@ pub(crate) fn metric_table(run: &RunResult, style: Style) -> String {
     let name = widest(run.metrics.keys().map(String::as_str)).max("METRIC".len());
     let heading = format!("{:name$}  {:>VALUE$}  {:>VALUE$}  {:>USED$}", "METRIC", "VALUE", "LIMIT", "USED");
     let mut table = style.paint(Ink::Heading, &heading) + "\n";
-    for (metric_name, metric) in run.metrics.iter() {
+    for (metric_name, metric) in &run.metrics {
         row(&mut table, &format!("{metric_name:name$}"), metric, style);
     }
     for (k, made) in run.moves.iter().enumerate() {
@@ -55,7 +55,7 @@ fn row(table: &mut String, name: &str, metric: &MetricResult, style: Style) {
 /// What could not be measured: each reason once, with the metrics that it keeps from being measured.
 fn by_reason(run: &RunResult) -> Vec<(&str, Vec<&str>)> {
     let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
-    for (name, why) in run.absent.iter() {
+    for (name, why) in &run.absent {
         match reasons.iter_mut().find(|(reason, _)| reason == why) {
             Some((_, names)) => names.push(name),
             None => reasons.push((why, vec![name])),

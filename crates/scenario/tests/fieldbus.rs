@@ -110,12 +110,12 @@ reverse_switches = true
 
 #[test]
 fn points_go_to_the_buffer_by_the_door_that_is_named() {
-    for (name, door) in [
+    for (name, object) in [
         ("2010h", TrajectoryBuffer::MoveSegment),
         ("60C1h", TrajectoryBuffer::DataRecord),
         ("115h", TrajectoryBuffer::Serial),
     ] {
-        assert_eq!(bus(&format!("mode = \"ip\"\ntrajectory_buffer = \"{name}\"\n")).trajectory_buffer, door);
+        assert_eq!(bus(&format!("mode = \"ip\"\ntrajectory_buffer = \"{name}\"\n")).trajectory_buffer, object);
     }
     assert_eq!(bus("mode = \"ip\"\n").trajectory_buffer, TrajectoryBuffer::MoveSegment);
 }

@@ -1,4 +1,4 @@
-//! A motion task, a fieldbus and the door of a drive (CiA 402) in front of the loops.
+//! A motion task, a fieldbus and the bus interface of a drive (CiA 402) in front of the loops.
 //!
 //! ```text
 //! motion task → mailbox → link → frame → bus → drive → demand for the loops
@@ -39,7 +39,7 @@ use servobench_plant::SwitchReading;
 use servobench_trace::Recorder;
 use signals::Signals;
 
-/// From the motion task to the door of the drive.
+/// From the motion task to the bus interface of the drive.
 #[derive(Debug, Clone)]
 pub(crate) struct Network {
     task: MotionTask,

@@ -196,10 +196,10 @@ fn moves_in_profile_position_are_the_drives_own() {
     assert!(peak(&recording, "following_error.motor") < 1e-3);
 }
 
-/// A program of `steps` in interpolated position, its points by `door` in units of a micrometre, with `objects` of the drive.
-fn by_door(door: &str, objects: &str, steps: &str, faults: &str) -> String {
+/// A program of `steps` in interpolated position, its points by `object` in units of a micrometre, with `objects` of the drive.
+fn by_object(object: &str, objects: &str, steps: &str, faults: &str) -> String {
     format!(
-        "{AXIS}[drive.objects]\n{objects}[bus]\ncycle = \"1 ms\"\nmode = \"ip\"\ntrajectory_buffer = \"{door}\"\n\
+        "{AXIS}[drive.objects]\n{objects}[bus]\ncycle = \"1 ms\"\nmode = \"ip\"\ntrajectory_buffer = \"{object}\"\n\
          units = {{ drive = 1000, axis = \"1 mm\" }}\n{faults}{steps}"
     )
 }
@@ -233,21 +233,21 @@ const SEGMENT: usize = 40;
 /// A few roundings of 0.1 m.
 const ROUNDING: f64 = 1e-15;
 
-/// Oracle: the door of 2010h. The points are the same, so the motion is, bit for bit.
+/// Oracle: points by 2010h. The points are the same, so the motion is, bit for bit.
 #[test]
 fn points_with_velocities_are_the_same_motion_by_every_door() {
     let file = sine(300);
-    let run_by = |door, objects: &str| run(&by_door(door, objects, &table(&file), ""));
+    let run_by = |object, objects: &str| run(&by_object(object, objects, &table(&file), ""));
     let segments = run_by("2010h", "");
     let expected = turns(&segments);
     assert!(peak(&segments, "setpoint.position") > 0.0999);
-    for (door, objects) in [("60C1h", sub_mode(-3)), ("60C1h", String::new()), ("115h", String::new())] {
-        let recording = run_by(door, &objects);
-        assert_eq!(buffer(&recording), ["none"], "{door}");
+    for (object, objects) in [("60C1h", sub_mode(-3)), ("60C1h", String::new()), ("115h", String::new())] {
+        let recording = run_by(object, &objects);
+        assert_eq!(buffer(&recording), ["none"], "{object}");
         let found = turns(&recording);
         let moving = SEGMENT * 299;
         let same = found.iter().zip(&expected).take(moving).filter(|(one, other)| one.to_bits() == other.to_bits());
-        assert_eq!(same.count(), moving, "{door} {objects}");
+        assert_eq!(same.count(), moving, "{object} {objects}");
         assert!((found[moving..].iter().fold(0.0_f64, |far, x| far.max((x - expected[moving]).abs()))) < ROUNDING);
     }
 }
@@ -258,7 +258,7 @@ fn sub_modes_in_lines_go_straight_from_point_to_point() {
     let file = sine(300);
     let points = micrometres(300);
     for code in [-2, -1] {
-        let recording = run(&by_door("60C1h", &sub_mode(code), &table(&file), ""));
+        let recording = run(&by_object("60C1h", &sub_mode(code), &table(&file), ""));
         assert_eq!(buffer(&recording), ["none"], "sub-mode {code}");
         let found = turns(&recording);
         let mut worst = 0.0_f64;
@@ -284,7 +284,7 @@ fn sub_mode_0_goes_through_every_point_and_adapts_the_time() {
     // A master that stops for 15 ms, 60 turns, sends every point that much later from then on.
     let stopped = "[[bus.fault]]\nkind = \"master-stopped\"\nstart = \"1 s\"\nduration = \"15 ms\"\n";
     for (faults, lost) in [("", 0), (stopped, 60)] {
-        let recording = run(&by_door("60C1h", &sub_mode(0), &table(&file), faults));
+        let recording = run(&by_object("60C1h", &sub_mode(0), &table(&file), faults));
         assert_eq!(buffer(&recording), ["none"]);
         let found = turns(&recording);
         // Where each segment may begin: on a line between equal points every length is possible.
@@ -320,37 +320,37 @@ fn tables_follow_each_other_by_every_door() {
     let file = sine(211);
     let steps = format!("{}[[program]]\nwait = \"0.3 s\"\n{}", table(&file), table(&file));
     let segments: Vec<f64> = micrometres(211);
-    for (door, code) in [("2010h", -3), ("60C1h", -3), ("60C1h", -2), ("60C1h", -1), ("60C1h", 0), ("115h", -3)] {
-        let recording = run(&by_door(door, &sub_mode(code), &steps, ""));
-        assert_eq!(buffer(&recording), ["none"], "{door} {code}");
+    for (object, code) in [("2010h", -3), ("60C1h", -3), ("60C1h", -2), ("60C1h", -1), ("60C1h", 0), ("115h", -3)] {
+        let recording = run(&by_object(object, &sub_mode(code), &steps, ""));
+        assert_eq!(buffer(&recording), ["none"], "{object} {code}");
         let velocity = values(&recording, "setpoint.velocity");
         let moving: Vec<usize> = (0..velocity.len()).filter(|row| velocity[*row].abs() > 0.0).collect();
         // The sine stands still for a tick in its turning points; 0.1 s are not one of those.
         let ways: Vec<_> = moving.chunk_by(|row, next| next - row < 1600).collect();
-        assert_eq!(ways.len(), 2, "{door} {code}");
+        assert_eq!(ways.len(), 2, "{object} {code}");
         for way in ways {
             let length = way.len() as f64 * recording.rate.period();
-            assert!((length - 2.1).abs() < 0.02, "{door} {code}: {length} s");
+            assert!((length - 2.1).abs() < 0.02, "{object} {code}: {length} s");
         }
         let last = values(&recording, "setpoint.position").last().copied().unwrap_or_default();
-        assert!((last - 2.0 * segments[210]).abs() < 1.1e-6, "{door} {code}: {last}");
-        assert!(peak(&recording, "following_error.motor") < 1e-3, "{door} {code}");
+        assert!((last - 2.0 * segments[210]).abs() < 1.1e-6, "{object} {code}: {last}");
+        assert!(peak(&recording, "following_error.motor") < 1e-3, "{object} {code}");
     }
 }
 
 #[test]
 fn points_that_the_door_cannot_take_are_refused() {
     let file = sine(30);
-    let refused = |door, objects: &str| {
-        let text = by_door(door, objects, &table(&file), "");
+    let refused = |object, objects: &str| {
+        let text = by_object(object, objects, &table(&file), "");
         let loaded = scenario::parse("test", &text, Some(Path::new("."))).unwrap_or_else(|error| panic!("{error}"));
         Bench::new(&loaded.scenario, &Exact).err().map(|error| error.to_string()).unwrap_or_default()
     };
-    for door in ["2010h", "115h"] {
+    for object in ["2010h", "115h"] {
         assert_eq!(
-            refused(door, "\"60C0h\" = 0\n"),
+            refused(object, "\"60C0h\" = 0\n"),
             format!(
-                "points by {door} have times of their own: the interpolation sub-mode (60C0h) must be -2 or -3, got 0: \
+                "points by {object} have times of their own: the interpolation sub-mode (60C0h) must be -2 or -3, got 0: \
                  write `trajectory_buffer = \"60C1h\"` in `[bus]`, or another sub-mode"
             )
         );

@@ -1,4 +1,4 @@
-//! The door between the bus and the drive: frames to targets, measurements to frames.
+//! The bus interface of the drive: frames to targets, measurements to frames.
 //!
 //! What a frame asks for beyond the limits is cut, and the drive says so (bit 11): targets of csp and pp to the software limits
 //! (607Dh), profile velocities to the highest one (607Fh, 6080h), accelerations to theirs (60C5h, 60C6h). A profile velocity, acceleration or deceleration of zero, which moves nothing, stands for one that the

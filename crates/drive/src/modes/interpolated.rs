@@ -1,6 +1,6 @@
 //! Interpolated position (ip, mode 7): the drive follows points that the master keeps sending to a [`Buffer`].
 //!
-//! Points come through three doors, in counts, 0.1 counts/s and milliseconds; all lead to the same buffer:
+//! Points come in three ways, in counts, 0.1 counts/s and milliseconds, to the same buffer:
 //!
 //! - [`SegmentCommand`]: the eight bytes of 2010h,
 //! - [`DataRecord`]: the standard's 60C1h, in the sub-modes of 60C0h, mapped to a frame or not,

@@ -1,4 +1,4 @@
-//! Drive units at the door: factor group, polarity, counters that wrap.
+//! Drive units at the bus interface: factor group, polarity, counters that wrap.
 use crate::axis::{Axis, setpoint};
 use servobench_cia402::Mode;
 use servobench_cia402::counter::Counter;

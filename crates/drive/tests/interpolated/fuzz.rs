@@ -1,4 +1,4 @@
-//! Random words and bytes into every door, and a controlword gone mad.
+//! Random words and bytes into every object and parameter that takes points, and a controlword gone mad.
 use crate::axis::Axis;
 use servobench_cia402::Controlword;
 use servobench_drive::modes::interpolated::serial::Port;
@@ -39,7 +39,7 @@ fn act((kind, bytes, values, word): Raw) -> Act {
 }
 
 #[test]
-fn doors() {
+fn trajectory_buffer() {
     let requests = (0..4_usize, 1..=255_u8, -6..=-3_i8, acts());
     fuzz(check!(), 2_000, requests, |(sub_mode, units, index, acts)| {
         let (sub_mode, period) = (SubMode::ALL[*sub_mode], TimePeriod::new(*units, *index).unwrap());

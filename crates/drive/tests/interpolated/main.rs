@@ -7,7 +7,7 @@ mod axis;
 mod broken_off;
 mod buffer;
 mod commands;
-mod doors;
+mod encodings;
 mod fuzz;
 mod limited;
 mod starts;

@@ -252,7 +252,7 @@ impl Buffer {
     }
 
     fn build(&mut self, timing: &Timing) {
-        // Samples are checked at the door, and so is the period: an interval is refused for nothing else.
+        // Samples are checked when they are pushed, and so is the period: an interval is refused for nothing else.
         self.interval = Interval::new(timing.mode, timing.period(), &self.window).ok();
     }
 }

@@ -7,7 +7,7 @@ use servobench_fieldbus::link::Sequencing;
 use servobench_fieldbus::task::TaskFault;
 use servobench_motion::interpolate::Mode as InterpolationMode;
 
-/// What is between the motion task and the drive: a master, a bus and the door of the drive (CiA 402).
+/// What is between the motion task and the drive: a master, a bus and the bus interface of the drive (CiA 402).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bus {
     /// Cycle of the bus (base ticks).

@@ -1,4 +1,4 @@
-//! The door of the binary serial interface: parameters 115h and C8h, and the start move command.
+//! Points by the binary serial interface: parameters 115h and C8h, and the start move command.
 //!
 //! | | |
 //! |---|---|
