@@ -15,11 +15,11 @@ const INSTALLED: &[&dyn Engine] = &[
 ];
 
 #[cfg(feature = "fmu")]
-const PARTNERS: &dyn FmuOpener = &crate::fmu_opener::ByEngine;
+const FMU_OPENER: &dyn FmuOpener = &crate::fmu_opener::ByEngine;
 #[cfg(not(feature = "fmu"))]
-const PARTNERS: &dyn FmuOpener = &servobench_sim::NoFmus;
+const FMU_OPENER: &dyn FmuOpener = &servobench_sim::NoFmus;
 
 /// Every engine of this build.
 pub(crate) const fn installed() -> Engines {
-    Engines { installed: INSTALLED, fmu_opener: PARTNERS }
+    Engines { installed: INSTALLED, fmu_opener: FMU_OPENER }
 }

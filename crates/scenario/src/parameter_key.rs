@@ -54,7 +54,34 @@ pub const fn switch_key(point: SwitchPoint) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::reading::{names, read};
     use serde_json::Value;
+    use servobench_config::Description;
+    use servobench_motion::LimitParameter;
+    use servobench_plant::{ChainParameter, EncoderParameter, FrictionParameter, pmsm};
+
+    /// The reference shows the example of a parameter as a value of its key.
+    #[test]
+    fn every_example_is_a_value_of_its_parameter() {
+        let drive = Parameter::ALL.iter().map(|one| (one.name(), one.description()));
+        let chain = ChainParameter::ALL.iter().map(|one| (one.name(), one.description()));
+        let friction = FrictionParameter::ALL.iter().map(|one| (one.name(), one.description()));
+        let motor = pmsm::Parameter::ALL.iter().map(|one| (one.name(), one.description()));
+        let encoder = EncoderParameter::ALL.iter().map(|one| (one.name(), one.description()));
+        let limits = LimitParameter::ALL.iter().map(|one| (one.name(), one.description()));
+        let all: Vec<_> = drive.chain(chain).chain(friction).chain(motor).chain(encoder).chain(limits).collect();
+        assert!(all.len() > 40, "{}", all.len());
+        for (name, Description { meaning, measure }) in all {
+            let candidates: Vec<_> = measure.kind.candidates(None, None).collect();
+            let value = match (read(measure.example, &candidates), measure.example.parse()) {
+                (Ok((_, value)), _) => value,
+                (Err(_), Ok(ratio)) if measure.is_ratio() => ratio,
+                (Err(_), _) => panic!("{name}: `{}` is not {}", measure.example, names(&candidates)),
+            };
+            assert!(measure.bound.holds(value) && measure.bound.check(name, value).is_ok(), "{name}: {value}");
+            assert!(!meaning.ends_with('.') && meaning.starts_with(char::is_uppercase), "{name}: {meaning}");
+        }
+    }
 
     /// The schema is made of the tables that read the files.
     #[test]

@@ -1,7 +1,7 @@
 //! External efforts on the axis, in whole ticks.
 use crate::error::BuildError;
 use servobench_base::{Rate, Tick};
-use servobench_scenario::{Disturbance, DisturbedBody};
+use servobench_scenario::{Disturbance, DisturbedBody, LONGEST_RUN};
 use std::f64::consts::TAU;
 use std::ops::Range;
 
@@ -31,9 +31,8 @@ impl Disturbances {
     /// [`BuildError::IdleDisturbance`] for one that acts on no tick.
     pub(crate) fn new(all: &[Disturbance], base_rate: Rate, ticks: u64) -> Result<Self, BuildError> {
         let mut placed = Self { base_rate, on_motor: Vec::new(), on_load: Vec::new() };
-        // Times beyond the end, infinity too, are those of the end: there are no ticks for them.
-        let end_of_run = base_rate.time(Tick(ticks));
-        let tick_at = |time: f64| base_rate.tick_at(time.min(end_of_run)).0;
+        // What lasts to the end of the run lasts on where the axis runs longer than its program: stepped, or beside another axis.
+        let tick_at = |time: f64| if time < LONGEST_RUN { base_rate.tick_at(time).0 } else { u64::MAX };
         for (index, one) in all.iter().enumerate() {
             let acting = tick_at(one.start)..tick_at(one.start + one.duration);
             // The last tick is the end of the run: nothing moves after it.

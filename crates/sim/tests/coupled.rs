@@ -2,7 +2,7 @@
 use servobench_fmi::{Capabilities, FmuMistake, FmuRequest, LogLine, Slave, SlaveError, StepEnd};
 use servobench_plant::Exact;
 use servobench_scenario as scenario;
-use servobench_sim::{Bench, FmuOpener, NoFmus, Outcome};
+use servobench_sim::{Bench, FmuOpener, MultiAxisBench, NoFmus, NotAtOneTime, Outcome};
 use servobench_trace::Recording;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -202,6 +202,13 @@ fn fmu(name: &str, keys: &str) -> String {
 
 fn values<'a>(recording: &'a Recording, name: &str) -> &'a [f64] {
     recording.channel(name).unwrap_or_else(|| panic!("no channel {name}"))
+}
+
+#[test]
+fn an_axis_with_fmus_does_not_run_beside_another_one() {
+    let with = |keys: &str| bench(&format!("{TABLE}{keys}"), &Parts).unwrap_or_else(|error| panic!("{error}"));
+    let axes = vec![with(""), with(&fmu("push", "outputs = { F = \"disturbance.load\" }\n"))];
+    assert_eq!(MultiAxisBench::new(axes).map(|_| ()), Err(NotAtOneTime::Fmus { axis: 1 }));
 }
 
 /// Oracle: a force of 20 N as a disturbance of the scenario. What is exchanged is a line between two values, so that the force

@@ -1,39 +1,21 @@
 //! Axes at one time do not see each other: each of them is the run of its scenario alone, bit for bit.
+mod ball_screw;
+
+use ball_screw::{AXIS, BLOCKS, BUS, MOVE};
 use servobench_plant::Exact;
 use servobench_sim::{Bench, MultiAxisBench, MultiAxisOutcome, NotAtOneTime, Outcome};
 use servobench_trace::Recording;
 
-/// A stiff axis with a position move, and a belt that is pushed while function blocks move it over a fieldbus.
-const X: &str = r#"
-[run]
-base_rate = "16 kHz"
-duration = "0.31 s"
-[axis]
-model = "ball-screw"
-[motor]
-model = "wittenstein-premo-1f"
-encoder = { counts_per_rev = 1048576 }
-[drive]
-model = "servo-16khz"
-dc_link = "320 V"
-max_torque = "6.09 Nm"
-[setpoint]
-order = 4
-velocity = "30 m/min"
-acceleration = "5 m/s2"
-jerk = "100 m/s3"
-snap = "5000 m/s4"
-[[program]]
-move_to = "50 mm"
-"#;
+const PUSH: &str = "[[disturbance]]\non = \"load\"\nstart = \"50 ms\"\nduration = \"100 ms\"\nforce = \"40 N\"\n";
 
+/// A move, for 0.31 s.
+fn x() -> String {
+    format!("{AXIS}{MOVE}").replace("0.3 s", "0.31 s")
+}
+
+/// The same axis, pushed while function blocks move it over a fieldbus, for 0.27 s.
 fn y() -> String {
-    let push = "[[disturbance]]\non = \"load\"\nstart = \"50 ms\"\nduration = \"100 ms\"\nforce = \"40 N\"\n";
-    let blocks = "[bus]\ncycle = \"1 ms\"\nvelocity_offset = true\n[plc]\nhoming_required = false\n\
-                  [[call]]\nblock = \"MC_Power\"\nname = \"power\"\n\
-                  [[call]]\nblock = \"MC_MoveAbsolute\"\nname = \"move\"\nstart = \"power.Status\"\nposition = \"33 mm\"\n";
-    let text = X.replace("[[program]]\nmove_to = \"50 mm\"\n", "").replace("0.31 s", "0.27 s");
-    format!("{text}{push}{blocks}")
+    format!("{AXIS}{PUSH}{BUS}{BLOCKS}").replace("0.3 s", "0.27 s").replace("50 mm", "33 mm")
 }
 
 fn bench(text: &str) -> Bench {
@@ -49,7 +31,7 @@ fn alone(text: &str) -> Recording {
 
 #[test]
 fn two_axes_at_one_time_are_two_runs_alone_bit_for_bit() {
-    for texts in [[X.to_owned(), y()], [y(), X.to_owned()]] {
+    for texts in [[x(), y()], [y(), x()]] {
         // The shorter run goes on to the end of the longer one.
         let texts = texts.map(|text| text.replace("0.27 s", "0.31 s"));
         let axes = texts.iter().map(|text| bench(text)).collect();
@@ -68,7 +50,7 @@ fn two_axes_at_one_time_are_two_runs_alone_bit_for_bit() {
 
 #[test]
 fn a_run_lasts_as_long_as_its_longest_axis() {
-    let together = MultiAxisBench::new(vec![bench(&y()), bench(X)]).unwrap_or_else(|error| panic!("{error}"));
+    let together = MultiAxisBench::new(vec![bench(&y()), bench(&x())]).unwrap_or_else(|error| panic!("{error}"));
     let recordings = together.run(&mut |_| {}).recordings;
     let short = alone(&y());
     for (channel, expected) in recordings[0].channels.iter().zip(&short.channels) {
@@ -77,13 +59,24 @@ fn a_run_lasts_as_long_as_its_longest_axis() {
     }
 }
 
+/// Oracle: the same disturbance in a scenario that lasts as long.
+#[test]
+fn what_lasts_to_the_end_lasts_to_that_of_the_longest_axis() {
+    let endless = |text: &str| text.replace("duration = \"100 ms\"\nforce", "force");
+    let short = endless(&y());
+    assert_ne!(short, y());
+    let together = MultiAxisBench::new(vec![bench(&short), bench(&x())]).unwrap_or_else(|error| panic!("{error}"));
+    let recordings = together.run(&mut |_| {}).recordings;
+    assert_eq!(recordings[0].channels, alone(&short.replace("0.27 s", "0.31 s")).channels);
+}
+
 #[test]
 fn axes_that_do_not_fit_are_named() {
     let refusal = |axes: Vec<Bench>| MultiAxisBench::new(axes).map(|_| ()).unwrap_err().to_string();
     assert_eq!(MultiAxisBench::new(vec![]).map(|_| ()), Err(NotAtOneTime::NoAxis));
-    let faster = X.replace("16 kHz", "32 kHz");
+    let faster = x().replace("16 kHz", "32 kHz");
     assert_eq!(
-        refusal(vec![bench(X), bench(&faster)]),
+        refusal(vec![bench(&x()), bench(&faster)]),
         "axis 2 has a base rate of 32000 Hz, axis 1 one of 16000 Hz; give all axes the same `run.base_rate`"
     );
 }

@@ -1,34 +1,12 @@
 //! The loop stepped from outside is the loop that runs, bit for bit.
+mod ball_screw;
+
+use ball_screw::{AXIS, BLOCKS, BUS, MOVE};
 use servobench_base::Setpoint;
 use servobench_plant::Exact;
 use servobench_scenario as scenario;
 use servobench_sim::{Bench, External, Outcome, Program, Stepper};
 use servobench_trace::Recording;
-
-const AXIS: &str = r#"
-[run]
-base_rate = "16 kHz"
-duration = "0.3 s"
-[axis]
-model = "ball-screw"
-[motor]
-model = "wittenstein-premo-1f"
-encoder = { counts_per_rev = 1048576 }
-[drive]
-model = "servo-16khz"
-dc_link = "320 V"
-max_torque = "6.09 Nm"
-[setpoint]
-order = 4
-velocity = "30 m/min"
-acceleration = "5 m/s2"
-jerk = "100 m/s3"
-snap = "5000 m/s4"
-"#;
-const MOVE: &str = "[[program]]\nmove_to = \"50 mm\"\n";
-const BUS: &str = "[bus]\ncycle = \"1 ms\"\nvelocity_offset = true\n";
-const BLOCKS: &str = "[plc]\nhoming_required = false\n[[call]]\nblock = \"MC_Power\"\nname = \"power\"\n\
-                      [[call]]\nblock = \"MC_MoveAbsolute\"\nname = \"move\"\nstart = \"power.Status\"\nposition = \"50 mm\"\n";
 
 fn bench(text: &str) -> Bench {
     let parsed = scenario::parse("stepper", text, None).unwrap_or_else(|error| panic!("{error}"));

@@ -23,12 +23,12 @@ use std::time::Duration;
 use thiserror::Error;
 
 /// How long an isolated engine may take to read a model.
-const CALL_TIMEOUT: Duration = Duration::from_mins(1);
+const WORKER_TIMEOUT: Duration = Duration::from_mins(1);
 
 /// Reports every mistake of every file in one go: what is wrong in the file, and in a file without such what the engines
 /// that it names object to.
 pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
-    let (engines, worker) = (engines::installed(), workers::command(&std::env::temp_dir(), CALL_TIMEOUT)?);
+    let (engines, worker) = (engines::installed(), workers::command(&std::env::temp_dir(), WORKER_TIMEOUT)?);
     interrupt::watch(&std::env::temp_dir())?;
     let files = sources::files(&args.scenarios)?;
     let (mut findings, mut missing, mut shown) = (Findings::default(), Vec::new(), String::new());

@@ -1,0 +1,149 @@
+//! Bodies, the drive's estimate of them, and the loops.
+use super::*;
+
+/// Oracle: by hand. r = 10 mm/2π; J = rotor + motor side + r²·table.
+#[test]
+fn a_rigid_body_is_reflected_through_the_screw() {
+    let scenario = scenario(SCREW);
+    let r = 0.01 / TAU;
+    assert!(same(scenario.axis.transmission, r));
+    assert_eq!((scenario.axis.motion, scenario.axis.motor_motion), (Coordinate::Linear, Coordinate::Rotary));
+    let [motor, load] = bodies(&scenario) else { panic!("the table is merged") };
+    assert_eq!((motor.name, load.name), ("motor", "load"));
+    assert!(same(motor.inertia, 1.57e-4 + 1e-4 + r * r * 30.0));
+    assert!(same(motor.friction.viscous, 1e-3 + r * r * 100.0));
+    assert!(same(motor.friction.dry.coulomb, 0.05 + r * 20.0));
+    assert!(same(motor.friction.dry.breakaway, 0.05 + r * 32.0));
+    assert!(same(motor.friction.dry.stribeck_velocity, 0.002 / r));
+    assert!(same(motor.bias, r * 9.81));
+    assert_eq!((load.coordinate, motor.transmission.to_bits()), (Coordinate::Linear, r.to_bits()));
+    let [link] = chain(&scenario).links() else { panic!("one link") };
+    assert!(same(link.stiffness, 2e6) && same(link.damping, 50.0));
+}
+
+/// Oracle: by hand, in the axis coordinate: J/r², τ/r.
+#[test]
+fn the_estimate_is_the_plant_as_two_masses() {
+    let scenario = scenario(SCREW);
+    let (r, estimate) = (0.01 / TAU, &drive(&scenario).estimate);
+    assert!(same(estimate.transmission, r));
+    assert!(same(estimate.motor_inertia, (1.57e-4 + 1e-4) / (r * r) + 30.0));
+    assert!(same(estimate.motor_viscous, 1e-3 / (r * r) + 100.0));
+    assert!(same(estimate.coulomb, 0.05 / r + 20.0));
+    assert!(same(estimate.bias, 9.81));
+    assert!(same(estimate.load_inertia, 10.0) && same(estimate.stiffness, 2e6));
+    assert!(estimate.load_viscous == 0.0);
+    let (motor, dc_link, current) = motor(&scenario);
+    assert!(same(current.motor.resistance, motor.resistance) && same(current.motor.flux_linkage, motor.flux_linkage));
+    assert!(same(current.max_voltage, inverter::voltage_limit(dc_link)));
+}
+
+#[test]
+fn three_bodies_are_split_at_the_softest_coupling() {
+    let stiff_table = SCREW.replace("viscous = \"100", "stiffness = \"43 N/um\"\nviscous = \"100");
+    let first = scenario(&stiff_table);
+    assert_eq!(bodies(&first).len(), 3);
+    let estimate = &drive(&first).estimate;
+    assert!(same(estimate.load_inertia, 10.0) && same(estimate.stiffness, 2e6));
+    let soft_table = SCREW.replace("viscous = \"100", "stiffness = \"1 N/um\"\nviscous = \"100");
+    let second = scenario(&soft_table);
+    let estimate = &drive(&second).estimate;
+    assert!(same(estimate.load_inertia, 40.0) && same(estimate.stiffness, 1e6));
+}
+
+/// Oracle: the rules of `docs/scenario.md` by hand: J·ω at the motor, 4/ω, K_v = ω.
+#[test]
+fn gains_follow_from_bandwidths() {
+    let scenario = scenario(SCREW);
+    let r = 0.01 / TAU;
+    let inertia = 1.57e-4 + 1e-4 + r * r * 40.0;
+    let params = params(&scenario);
+    let velocity = &params.velocity;
+    assert!(same(velocity.k_p, inertia * TAU * 60.0), "{}", velocity.k_p);
+    assert!(same(velocity.integral_time.unwrap(), 4.0 / (TAU * 60.0)));
+    assert!(same(params.position_gain, TAU * 12.0));
+    assert_eq!((params.velocity_rate().hertz(), params.position_rate().hertz()), (8_000, 4_000));
+    let (motor, _, current) = motor(&scenario);
+    let tuning = drive(&scenario).current_tuning;
+    assert!(matches!(tuning, Some(Tuning::Bandwidth(alpha)) if same(alpha, TAU * 1200.0)), "{tuning:?}");
+    assert!(same(current.gains.k_p.q, TAU * 1200.0 * motor.inductance.q));
+    assert!(same(current.gains.k_i.q, TAU * 1200.0 * motor.resistance), "the integral time is L/R");
+}
+
+/// A wrong belief of the inertia reaches the gain: the firmware knows its estimate only.
+#[test]
+fn an_estimate_overrides_single_values() {
+    let right = scenario(SCREW);
+    let wrong = scenario(&format!("{SCREW}[drive.estimate]\nload_inertia = \"20 kg\"\nmotor.resistance = \"2 Ohm\"\n"));
+    let r = 0.01 / TAU;
+    // The difference of two nearly equal gains loses a digit or two.
+    let difference = params(&wrong).velocity.k_p - params(&right).velocity.k_p;
+    assert!((difference / (r * r * 10.0 * TAU * 60.0) - 1.0).abs() < 1e-12, "{difference}");
+    assert!(same(drive(&wrong).estimate.motor_inertia, drive(&right).estimate.motor_inertia));
+    let (plant, _, current) = motor(&wrong);
+    assert!(same(current.motor.resistance, 2.0) && same(plant.resistance, 1.615), "the motor itself is what it is");
+    assert!(same(current.motor.flux_linkage, plant.flux_linkage));
+}
+
+/// Oracle: by hand. A drive that believes in half the lead sees twice the revolutions per millimetre; the inertia at the
+/// shaft of the motor is what it is.
+#[test]
+fn what_the_drive_believes_does_not_change_the_plant() {
+    let text = format!("{SCREW}[drive.estimate]\nlead = \"5 mm\"\ngear_ratio = 3\ndc_link = \"600 V\"\n");
+    let wrong = scenario(&text);
+    assert!(same(wrong.axis.transmission, 0.01 / TAU));
+    let (estimate, r) = (&drive(&wrong).estimate, 0.005 / TAU / 3.0);
+    assert!(same(estimate.transmission, r));
+    let shaft = 1.57e-4 + 1e-4 + (0.01 / TAU) * (0.01 / TAU) * 30.0;
+    assert!(same(estimate.motor_inertia * r * r, shaft), "{estimate:?}");
+    assert!(same(params(&wrong).velocity.k_p, (shaft + r * r * 10.0) * TAU * 60.0));
+    let (_, dc_link, current) = motor(&wrong);
+    assert!(same(dc_link, 560.0) && same(current.max_voltage, inverter::voltage_limit(600.0)));
+}
+
+/// Oracle: by hand. Gains in volts are volts whatever the drive believes a volt to be; the limit of the output becomes one
+/// of the effort that it believes in.
+#[test]
+fn an_ideal_source_has_a_gain_that_the_drive_believes() {
+    let text =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/emps.toml")).unwrap();
+    let wrong = scenario(&format!("{text}[drive.estimate]\ngain = \"20 N/V\"\n"));
+    let (source, estimated_gain) = source(&wrong);
+    assert!(same(source.gain, 35.1507) && same(estimated_gain, 20.0));
+    assert!(same(params(&wrong).velocity.k_p, 20.0 * 243.45) && same(params(&wrong).velocity.max_effort, 200.0));
+}
+
+#[test]
+fn gains_of_the_current_loop_are_those_of_the_file() {
+    let with = |current: &str| scenario(&SCREW.replace("load_encoder = {", &format!("{current}\nload_encoder = {{")));
+    let given = with("current.gain_d = \"12 V/A\"\ncurrent.gain_q = \"15 V/A\"");
+    let (motor_of_file, _, current) = motor(&given);
+    assert_eq!(drive(&given).current_tuning, Some(Tuning::Gains(Dq { d: 12.0, q: 15.0 })));
+    let l_over_r = motor_of_file.inductance.q / motor_of_file.resistance;
+    assert!(same(current.gains.k_p.d, 12.0) && same(current.gains.k_p.q / current.gains.k_i.q, l_over_r));
+    let given = with("current.integral_time_d = \"2 ms\"\ncurrent.integral_time_q = \"4 ms\"");
+    let (.., current) = motor(&given);
+    let Gains { k_p, k_i } = current.gains;
+    assert!(same(k_p.d / k_i.d, 0.002) && same(k_p.q / k_i.q, 0.004));
+    let tuning = drive(&given).current_tuning;
+    assert!(matches!(tuning, Some(Tuning::Bandwidth(_))), "the bandwidth of the model stays");
+}
+
+#[test]
+fn limits_of_the_motor_and_its_encoder() {
+    let scenario = scenario(SCREW);
+    let (motor, dc_link, current) = motor(&scenario);
+    assert!(same(current.max_current, 13.3 * 2_f64.sqrt()), "effective becomes peak");
+    assert!(
+        params(&scenario).velocity.max_effort.is_infinite(),
+        "the current is the only limit unless another is given"
+    );
+    assert!(same(scenario.actuator.max_effort(), motor.effort_constant(0.0) * current.max_current));
+    let Actuator::Pmsm { encoder: Encoder { increment: Some(increment) }, .. } = scenario.actuator else {
+        panic!("an encoder with increments")
+    };
+    assert!(same(increment, TAU / 1_048_576.0));
+    let Feedback::Load(encoder) = drive(&scenario).position_feedback else { panic!("the load's") };
+    assert!(same(encoder.increment.unwrap(), 1e-7));
+    assert!(same(dc_link, 560.0));
+}
