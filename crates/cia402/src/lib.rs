@@ -25,6 +25,7 @@
 mod controlword;
 pub mod counter;
 mod error_code;
+pub mod interpolated;
 mod machine;
 mod mode;
 pub mod modulo;

@@ -3,8 +3,9 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use servobench_base::Setpoint;
 use servobench_cia402::Controlword;
+use servobench_cia402::interpolated::{Point, SubMode, TimePeriod};
 use servobench_drive::Demand;
-use servobench_drive::modes::interpolated::{Buffer, Point, SubMode, TimePeriod};
+use servobench_drive::modes::interpolated::Buffer;
 use servobench_drive::modes::{Actual, Answer, Moment, Steepness, Targets, homing, interpolated};
 
 fn main() {

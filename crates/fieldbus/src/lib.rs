@@ -4,8 +4,9 @@
 //! - [`link`]: from one to the process data of a drive (CiA 402) and back, once per cycle of the bus.
 //! - [`bus`]: the wire to the drive, and what goes wrong on it.
 //! - [`task`]: when the motion task runs, and what goes wrong with it.
+//! - `trajectory` (feature `trajectory`, with a heap): tables on their way into the buffer of a drive.
 //!
-//! `no_std`, no heap.
+//! `no_std`, and no heap without that feature.
 //!
 //! ```
 //! use servobench_base::{Rate, Tick};
@@ -51,6 +52,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 #![cfg_attr(not(test), no_std)]
+#[cfg(feature = "trajectory")]
+extern crate alloc;
 
 mod axis;
 pub mod bus;
@@ -59,6 +62,8 @@ mod fault;
 mod interpolation;
 pub mod link;
 pub mod task;
+#[cfg(feature = "trajectory")]
+pub mod trajectory;
 
 pub use axis::{
     AxisCommand, AxisFeedback, Homing, Power, ProfileCommand, ProfileFeedback, Switches, Task, TrajectoryPoint,

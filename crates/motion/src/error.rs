@@ -71,16 +71,6 @@ pub enum PlanError {
         /// Number of points.
         points: usize,
     },
-    /// A word for a drive's trajectory buffer with a meaning that is not defined.
-    #[error("point {point}: bits {bits:#06x} of the word {word:#06x} are reserved: send them as zero")]
-    ReservedBits {
-        /// Number of the point.
-        point: usize,
-        /// The word as received.
-        word: u16,
-        /// The reserved bits that are set.
-        bits: u16,
-    },
     /// A sample of the slow task with a value that cannot be used.
     #[error(
         "sample {index}: `{name}` must be finite and at most {highest:e} in magnitude (SI), got {value:e}: correct it or \

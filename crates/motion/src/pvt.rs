@@ -46,18 +46,14 @@
 //! - [`continuous`]: that solution, a tridiagonal system solved in one sweep forth and back.
 //!
 //! Source: Copley Controls, *PVT Trajectory Calculations*, rev. 00 (2020), sections "Cubic Polynomial Interpolation",
-//! "Calculating velocity for continuous accelerations" and "Using PVT points to generate S-curve moves"; the words of
-//! the drive in "PVT moves via binary serial".
+//! "Calculating velocity for continuous accelerations" and "Using PVT points to generate S-curve moves".
 
-mod counts;
 mod cursor;
 mod knot;
 mod s_curve;
 mod table;
 mod velocities;
-mod word;
 
-pub use counts::{to_knots, to_points};
 pub use cursor::{Cursor, Knotted};
 pub use knot::Knot;
 pub(crate) use knot::{checked, scratch_for};
@@ -65,4 +61,3 @@ pub use s_curve::{s_curve, s_curve_segment_time};
 pub use table::Table;
 pub(crate) use velocities::set_ends;
 pub use velocities::{average, continuous, smooth};
-pub use word::{Point, Record, Words};

@@ -48,7 +48,7 @@ pub use points::{
 pub use scenario::{
     Actuator, Axis, AxisMechanics, Bus, BusMode, Disturbance, DisturbedBody, Drive, DriveUnits, Feedback, Fmu, Initial,
     InputSource, Interpolation, LONGEST_RUN, LoopSignal, MoveStep, ObjectWrite, Plc, Record, Requirements, Scenario,
-    Step, TrajectoryBuffer,
+    Step,
 };
 pub use schema::json_schema;
 pub use source::{SourceId, Sources};

@@ -15,7 +15,7 @@ mod requirements;
 
 pub use actuator::Actuator;
 pub use axis::{Axis, AxisMechanics};
-pub use bus::{Bus, BusMode, DriveUnits, ObjectWrite, TrajectoryBuffer};
+pub use bus::{Bus, BusMode, DriveUnits, ObjectWrite};
 pub use disturbance::{Disturbance, DisturbedBody, Initial};
 pub use drive::{Drive, Feedback};
 pub use fmu::{Fmu, InputSource, LoopSignal};

@@ -4,6 +4,7 @@ use servobench_drive::EffortFeedforward;
 use servobench_fieldbus::bus::{BusFault, BusFaultKind};
 use servobench_fieldbus::link::Sequencing;
 use servobench_fieldbus::task::{TaskFault, TaskFaultKind};
+use servobench_fieldbus::trajectory::PointTransfer;
 use servobench_motion::interpolate::Mode;
 use servobench_plant::Switches;
 use servobench_scenario::*;
@@ -40,7 +41,7 @@ fn a_bus_that_says_its_cycle_alone() {
         motion_every: 1,
         interpolation: Mode::Cubic,
         drive_interpolation: Mode::Linear,
-        trajectory_buffer: TrajectoryBuffer::MoveSegment,
+        point_transfer: PointTransfer::MoveSegment,
         delay: 1,
         velocity_offset: false,
         effort_offset: EffortFeedforward::Off,
@@ -83,7 +84,7 @@ reverse_switches = true
         motion_every: 4,
         interpolation: Mode::Quintic,
         drive_interpolation: Mode::Linear,
-        trajectory_buffer: TrajectoryBuffer::MoveSegment,
+        point_transfer: PointTransfer::MoveSegment,
         delay: 0,
         velocity_offset: true,
         effort_offset: EffortFeedforward::Rigid,
@@ -110,14 +111,12 @@ reverse_switches = true
 
 #[test]
 fn points_go_to_the_buffer_by_the_door_that_is_named() {
-    for (name, object) in [
-        ("2010h", TrajectoryBuffer::MoveSegment),
-        ("60C1h", TrajectoryBuffer::DataRecord),
-        ("115h", TrajectoryBuffer::Serial),
-    ] {
-        assert_eq!(bus(&format!("mode = \"ip\"\ntrajectory_buffer = \"{name}\"\n")).trajectory_buffer, object);
+    for (name, object) in
+        [("2010h", PointTransfer::MoveSegment), ("60C1h", PointTransfer::DataRecord), ("115h", PointTransfer::Serial)]
+    {
+        assert_eq!(bus(&format!("mode = \"ip\"\ntrajectory_buffer = \"{name}\"\n")).point_transfer, object);
     }
-    assert_eq!(bus("mode = \"ip\"\n").trajectory_buffer, TrajectoryBuffer::MoveSegment);
+    assert_eq!(bus("mode = \"ip\"\n").point_transfer, PointTransfer::MoveSegment);
 }
 
 /// Oracle: the travel per increment by hand, from lead and gear.

@@ -1,10 +1,10 @@
 //! Why a run could not be built.
-use crate::network::Unsendable;
 use servobench_base::{ParamError, RateError};
 use servobench_cia402::SdoError;
 use servobench_cia402::units::UnitError;
 use servobench_drive::device::ObjectsError;
 use servobench_fieldbus::FieldbusError;
+use servobench_fieldbus::trajectory::{Help, Unsendable};
 use servobench_fmi::FmuMistake;
 use servobench_motion::PlanError;
 use servobench_plant::{EngineName, MechanicsError, SwitchPoint};
@@ -65,7 +65,7 @@ pub enum BuildError {
     #[error(transparent)]
     Objects(Box<ObjectsError>),
     /// A table that cannot be sent to the buffer of the drive.
-    #[error(transparent)]
+    #[error("{_0}{}", key_of(_0))]
     Points(#[from] Unsendable),
     /// A fault of the link is expected that it does not have.
     #[error("the link has no fault \"{fault}\"; it has {}", available.join(", "))]
@@ -222,5 +222,14 @@ impl From<ObjectsError> for BuildError {
 impl From<SdoError> for BuildError {
     fn from(error: SdoError) -> Self {
         ObjectsError::Refused(error).into()
+    }
+}
+
+/// The key that helps, behind the message.
+const fn key_of(unsendable: &Unsendable) -> &'static str {
+    match unsendable {
+        Unsendable::Point { help: Help::CoarserUnit | Help::MorePoints, .. } => " (`bus.units`)",
+        Unsendable::SubMode { .. } => " (`bus.trajectory_buffer`, `drive.objects.60C0h`)",
+        Unsendable::Point { .. } => "",
     }
 }

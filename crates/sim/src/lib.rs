@@ -26,7 +26,6 @@ pub use coupled::{ConnectionDelay, FmuOpener, NoFmus};
 pub use error::{BuildError, UnusableFmu};
 pub use external::{Controller, External};
 pub use multi_axis::{MultiAxisBench, MultiAxisOutcome, NotAtOneTime};
-pub use network::Unsendable;
 pub use program::Program;
 pub use run::{AxisFailure, Failure, Outcome, Reason};
 pub use stability::{Analysis, NotAnalysed, analyse_stability};

@@ -12,14 +12,10 @@
 mod build;
 mod drive_profile;
 mod plc;
-mod points;
 mod program_cursor;
 mod reference;
 mod signals;
-mod stream;
 mod units;
-
-pub use points::Unsendable;
 
 use crate::stepper::States;
 use drive_profile::DriveProfile;
@@ -226,7 +222,7 @@ impl Network {
             });
             if let MotionTask::DriveProfile(way) = &mut self.task
                 && let Some(message) = way.message()
-                && let Err(error) = message.arrive(&mut self.serial, self.drive.1.trajectory_buffer())
+                && let Err(error) = self.serial.receive(self.drive.1.trajectory_buffer(), &message)
             {
                 self.failure = Some(format!("the serial interface of the drive: {error}"));
             }

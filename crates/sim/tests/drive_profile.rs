@@ -339,7 +339,7 @@ fn tables_follow_each_other_by_every_door() {
 }
 
 #[test]
-fn points_that_the_door_cannot_take_are_refused() {
+fn points_that_the_object_does_not_hold_are_refused() {
     let file = sine(30);
     let refused = |object, objects: &str| {
         let text = by_object(object, objects, &table(&file), "");
@@ -351,7 +351,7 @@ fn points_that_the_door_cannot_take_are_refused() {
             refused(object, "\"60C0h\" = 0\n"),
             format!(
                 "points by {object} have times of their own: the interpolation sub-mode (60C0h) must be -2 or -3, got 0: \
-                 write `trajectory_buffer = \"60C1h\"` in `[bus]`, or another sub-mode"
+                 send the points by 60C1h, or write another sub-mode (`bus.trajectory_buffer`, `drive.objects.60C0h`)"
             )
         );
     }

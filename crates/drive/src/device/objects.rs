@@ -9,10 +9,10 @@
 //! unit of an object changes what nobody wrote.
 use super::{Params, Rotary, Units, cycle};
 use crate::modes::homing;
-use crate::modes::interpolated::{RecordError, SubMode, TimePeriod};
 use crate::modes::profile::Ramp;
 use servobench_base::ParamError;
 use servobench_cia402::SdoError;
+use servobench_cia402::interpolated::{SettingError, SubMode, TimePeriod};
 use servobench_cia402::modulo::{PositionRange, RotaryAxisOption};
 use servobench_cia402::objects::{Dictionary, Value, entry_of, parameter as p};
 use servobench_cia402::units::{AxisUnit, Object, UnitError};
@@ -32,7 +32,7 @@ pub enum ObjectsError {
     Homing(#[from] homing::UnknownMethod),
     /// A sub-mode or a time that the interpolated position does not have.
     #[error(transparent)]
-    Interpolation(#[from] RecordError),
+    Interpolation(#[from] SettingError),
     /// A value that its object does not take.
     #[error(transparent)]
     Refused(#[from] SdoError),

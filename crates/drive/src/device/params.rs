@@ -1,12 +1,12 @@
 //! What the drive is set to: the objects that do not come with every frame, in SI.
 use super::{Rotary, Units, Window, cycle};
-use crate::modes::interpolated::{SubMode, TimePeriod};
 use crate::modes::profile::Ramp;
 use crate::modes::{Moment, Steepness, cyclic, homing, interpolated, profile};
 use core::cmp::Ordering;
 use servobench_base::{ParamError, limit, positive};
 use servobench_cia402::PowerParams;
 use servobench_cia402::counter::Counter;
+use servobench_cia402::interpolated::{SubMode, TimePeriod};
 use servobench_cia402::units::{AxisUnit, FactorGroup, Ratio};
 use servobench_motion::interpolate;
 

@@ -5,8 +5,9 @@
 //! frame does not carry: that of the settings.
 use super::{Fault, Params, State};
 use crate::Demand;
-use crate::modes::interpolated::{RecordError, SegmentCommand};
+use crate::modes::interpolated::RecordError;
 use crate::modes::{Actual, Targets};
+use servobench_cia402::interpolated::SegmentCommand;
 use servobench_cia402::{Actuals, Commands, InterpolationData, Mode};
 
 impl State {
@@ -49,7 +50,7 @@ impl State {
         if let Some(bytes) = frame.trajectory_point {
             // What the buffer itself refuses is latched in its status (2012h).
             self.has_refused_point = match SegmentCommand::decode(bytes) {
-                Ok(command) => command.apply(&mut self.buffer).is_err(),
+                Ok(command) => self.buffer.apply(command).is_err(),
                 Err(_) => true,
             };
         }

@@ -1,10 +1,7 @@
 //! Interpolated position (ip, mode 7): the drive follows points that the master keeps sending to a [`Buffer`].
 //!
-//! Points come in three ways, in counts, 0.1 counts/s and milliseconds, to the same buffer:
-//!
-//! - [`SegmentCommand`]: the eight bytes of 2010h,
-//! - [`DataRecord`]: the standard's 60C1h, in the sub-modes of 60C0h, mapped to a frame or not,
-//! - [`serial`]: parameter 115h.
+//! How points are written there is [`interpolated`](servobench_cia402::interpolated) of the drive profile; this mode reads them
+//! from the frame (2010h), from the [`DataRecord`] and from the serial interface ([`serial::Port`]).
 //!
 //! # A move
 //!
@@ -40,7 +37,6 @@
 mod buffer;
 mod course;
 mod data_record;
-mod segment_command;
 pub mod serial;
 
 use super::ramp::{Ramp, Steepness};
@@ -49,11 +45,11 @@ use crate::Demand;
 use course::{Course, HELD, Pace, Step, next_knot};
 use servobench_base::{ParamError, Setpoint, limit};
 use servobench_cia402::ControlBit;
+use servobench_cia402::interpolated::{BufferError, SubMode, TimePeriod};
 use thiserror::Error;
 
-pub use buffer::{Buffer, BufferError, CAPACITY, Point, Refusal};
-pub use data_record::{DataRecord, RecordError, SubMode, TimePeriod};
-pub use segment_command::{SegmentCommand, SegmentError};
+pub use buffer::{Buffer, Refusal};
+pub use data_record::{DataRecord, RecordError};
 
 /// How the drive follows the points; constant while the mode runs.
 #[derive(Debug, Clone, Copy, PartialEq)]

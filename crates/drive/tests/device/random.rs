@@ -2,11 +2,11 @@
 use crate::axis::Axis;
 use crate::shared::Random;
 use servobench_base::Setpoint;
+use servobench_cia402::interpolated::{Point, SegmentCommand, SubMode};
 use servobench_cia402::{Command, Commands, Controlword, Mode, PowerState};
 use servobench_drive::Demand;
 use servobench_drive::device::{Limits, Params, Window};
 use servobench_drive::modes::homing::Method;
-use servobench_drive::modes::interpolated::{Point, SegmentCommand, SubMode};
 use servobench_drive::modes::profile::Ramp;
 use servobench_motion::interpolate;
 

@@ -1,8 +1,9 @@
 //! The mode over loops that do what they are asked, with a master that writes to the buffer between two steps.
 use servobench_base::Setpoint;
+use servobench_cia402::interpolated::{Point, SubMode, TimePeriod};
 use servobench_cia402::{Command, ControlBit, Controlword};
 use servobench_drive::Demand;
-use servobench_drive::modes::interpolated::{Buffer, Params, Point, State, SubMode, TimePeriod, step};
+use servobench_drive::modes::interpolated::{Buffer, Params, State, step};
 use servobench_drive::modes::{Actual, Answer, Moment, Steepness, Targets};
 
 pub(crate) const PERIOD: f64 = 250e-6;

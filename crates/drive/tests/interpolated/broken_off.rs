@@ -1,8 +1,9 @@
 //! Moves that are broken off: by a master that stops sending, by clearing the buffer, by bit 4 and by halt.
 use crate::axis::{Axis, PERIOD, STOP, assert_near, cubic, idle, linear, run, whole};
 use servobench_base::Setpoint;
+use servobench_cia402::interpolated::{BufferError, Point, SubMode};
 use servobench_cia402::{ControlBit, Controlword};
-use servobench_drive::modes::interpolated::{BufferError, Point, StartRefused, SubMode};
+use servobench_drive::modes::interpolated::StartRefused;
 
 /// An accelerating move of whose points the last is missing: 10 ms each, 4 m/s² on average.
 fn start() -> Axis {

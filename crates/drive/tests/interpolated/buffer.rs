@@ -1,16 +1,17 @@
 //! The buffer and its two words.
 use crate::axis::{Axis, cubic, idle, linear, run};
-use servobench_drive::modes::interpolated::{Buffer, BufferError, CAPACITY, Point, Refusal, SegmentCommand, SubMode};
+use servobench_cia402::interpolated::{BufferError, CAPACITY, Point, SegmentCommand, SubMode};
+use servobench_drive::modes::interpolated::{Buffer, Refusal};
 
 #[test]
 fn the_words_are_those_of_the_manual() {
     let mut buffer = Buffer::default();
     assert_eq!((CAPACITY, buffer.free(), buffer.status()), (32, 32, 0x8020_0000));
     buffer.add(cubic(1, 2, 3)).unwrap();
-    assert_eq!((buffer.free(), buffer.status(), buffer.next_segment()), (31, 0x001F_0001, 1));
+    assert_eq!((buffer.free(), buffer.status()), (31, 0x001F_0001));
     buffer.remove(1);
     assert_eq!(buffer.status(), 0x8020_0001);
-    buffer.reset_segment();
+    buffer.apply(SegmentCommand::ResetSegment).unwrap();
     assert_eq!(buffer.status(), 0x8020_0000);
 }
 
@@ -56,17 +57,18 @@ fn a_running_move_that_lost_a_point_ends_in_underflow_not_in_a_gap() {
 #[test]
 fn points_are_counted_and_one_that_is_missing_is_noticed() {
     let mut buffer = Buffer::default();
-    let mut send = |counter: u8| SegmentCommand::Point { counter, point: cubic(0, 0, 1) }.apply(&mut buffer);
+    let point = |counter: u8| SegmentCommand::Point { counter, point: cubic(0, 0, 1) };
+    let mut send = |counter: u8| buffer.apply(point(counter));
     for k in 0..10 {
         assert_eq!(send(k & 7), Ok(()));
     }
     assert_eq!(send(4), Err(Refusal::OutOfSequence { expected: 2, got: 4 }));
     assert_eq!(send(2), Err(Refusal::Latched { errors: 1 }));
     assert_eq!(buffer.status(), 0x0116_000A, "it tells which one is expected: 10");
-    SegmentCommand::ClearErrors(1).apply(&mut buffer).unwrap();
-    assert_eq!(SegmentCommand::Point { counter: 2, point: cubic(0, 0, 1) }.apply(&mut buffer), Ok(()));
-    SegmentCommand::ResetSegment.apply(&mut buffer).unwrap();
-    assert_eq!(SegmentCommand::Point { counter: 0, point: cubic(0, 0, 1) }.apply(&mut buffer), Ok(()));
+    buffer.apply(SegmentCommand::ClearErrors(1)).unwrap();
+    assert_eq!(buffer.apply(point(2)), Ok(()));
+    buffer.apply(SegmentCommand::ResetSegment).unwrap();
+    assert_eq!(buffer.apply(point(0)), Ok(()));
 }
 
 #[test]

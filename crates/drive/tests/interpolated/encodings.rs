@@ -1,9 +1,8 @@
-//! The standard's objects and the serial interface.
+//! The data record and the serial interface.
 use crate::axis::{Axis, COUNT, cubic, idle, linear, run};
+use servobench_cia402::interpolated::{CAPACITY, Point, SubMode, TimePeriod};
 use servobench_drive::modes::interpolated::serial::{Port, SerialError};
-use servobench_drive::modes::interpolated::{
-    Buffer, CAPACITY, DataRecord, Point, RecordError, StartRefused, SubMode, TimePeriod,
-};
+use servobench_drive::modes::interpolated::{Buffer, DataRecord, RecordError, StartRefused};
 
 /// What lies in the buffer, by moving an axis through it.
 fn positions(buffer: &Buffer, sub_mode: SubMode) -> Vec<f64> {
@@ -37,22 +36,7 @@ fn the_write_that_the_sub_mode_names_adds_the_point() {
 }
 
 #[test]
-fn objects_refuse_what_is_out_of_range_and_say_what_is_not() {
-    for code in i16::MIN..=i16::MAX {
-        assert_eq!(SubMode::from_code(code).map(SubMode::code).ok(), (-3..=0).contains(&code).then_some(code));
-    }
-    assert_eq!(
-        SubMode::from_code(1).unwrap_err().to_string(),
-        "interpolation sub-mode (60C0h) must be 0, -1, -2 or -3, got 1"
-    );
-    for index in i8::MIN..=i8::MAX {
-        let expected = (-6..=-3).contains(&index).then(|| 15 * 10_u32.pow(u32::from((index + 6).unsigned_abs())));
-        assert_eq!(TimePeriod::new(15, index).map(TimePeriod::microseconds).ok(), expected);
-    }
-    assert_eq!(
-        TimePeriod::new(0, -3).unwrap_err().to_string(),
-        "interpolation time period (60C2h) must be 1 to 255 units of 10^-3 to 10^-6 s, got 0 units of 10^-3 s"
-    );
+fn the_data_record_refuses_what_is_out_of_range_and_says_what_is_not() {
     let (mut record, mut buffer) = (DataRecord::default(), Buffer::default());
     let period = TimePeriod::new(1, -3).unwrap();
     let mut write = |sub_mode, sub_index, value| {
@@ -91,8 +75,7 @@ fn a_move_through_the_serial_interface() {
         let word = if k == 4 { 0 } else { 100 };
         port.write(&mut axis.buffer, 0x115, word, &[positions[k], velocities[k]]).unwrap();
     }
-    assert_eq!(port.read(&axis.buffer, 0x115), Ok([27, 0, 0]));
-    assert_eq!(port.read(&axis.buffer, 0xC8), Ok([3, 0, 0]));
+    assert_eq!(axis.buffer.free(), 27);
     port.command(&mut axis.buffer, 17).unwrap();
     // Bit 4 plays no part in it, nor does the sub-mode.
     let mut setpoints = vec![];
@@ -148,7 +131,6 @@ fn serial_messages_that_are_malformed_say_which_word_and_what_is_allowed() {
         port.command(&mut buffer, 18).unwrap_err().to_string(),
         "op-code 18 is not known here: 17, start move, is"
     );
-    assert!(port.read(&buffer, 1).is_err());
     assert_eq!(buffer, Buffer::default(), "nothing of it came through");
     port.write(&mut buffer, 0x115, 5, &[7]).unwrap();
     port.write(&mut buffer, 0x115, 0x1000, &[-7]).unwrap();

@@ -1,8 +1,9 @@
 //! Random words and bytes into every object and parameter that takes points, and a controlword gone mad.
 use crate::axis::Axis;
 use servobench_cia402::Controlword;
+use servobench_cia402::interpolated::{CAPACITY, SegmentCommand, SubMode, TimePeriod};
+use servobench_drive::modes::interpolated::DataRecord;
 use servobench_drive::modes::interpolated::serial::Port;
-use servobench_drive::modes::interpolated::{CAPACITY, DataRecord, SegmentCommand, SubMode, TimePeriod};
 use servobench_fuzz::{ValueGenerator, check, fuzz, produce};
 
 /// What a master may do between two steps.
@@ -50,7 +51,7 @@ fn trajectory_buffer() {
         for act in acts {
             let refused = match act {
                 Act::Segment(bytes) => match SegmentCommand::decode(*bytes) {
-                    Ok(command) => command.apply(&mut axis.buffer).err().map(|error| error.to_string()),
+                    Ok(command) => axis.buffer.apply(command).err().map(|error| error.to_string()),
                     Err(error) => Some(error.to_string()),
                 },
                 Act::Record(sub_index, value) => {

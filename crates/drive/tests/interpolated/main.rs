@@ -6,7 +6,6 @@ mod adapted;
 mod axis;
 mod broken_off;
 mod buffer;
-mod commands;
 mod encodings;
 mod fuzz;
 mod limited;

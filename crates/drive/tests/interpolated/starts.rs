@@ -1,6 +1,7 @@
 //! Where a move begins, by sub-mode.
 use crate::axis::{Axis, COUNT, PERIOD, assert_near, cubic, idle, linear, run};
-use servobench_drive::modes::interpolated::{Point, SegmentCommand, StartRefused, SubMode, TimePeriod};
+use servobench_cia402::interpolated::{Point, SegmentCommand, SubMode, TimePeriod};
+use servobench_drive::modes::interpolated::StartRefused;
 
 #[test]
 fn a_move_begins_where_the_axis_is_or_not_at_all() {
@@ -37,9 +38,9 @@ fn a_relative_first_point_counts_from_the_commanded_position_or_from_a_base() {
 
     // As a master begins beyond 24 bits: the base, then relative points.
     axis.step(idle());
-    axis.buffer.reset_segment();
+    axis.buffer.apply(SegmentCommand::ResetSegment).unwrap();
     let base = SegmentCommand::Base { counter: 0, position: 20_000_000 }.encode().unwrap();
-    SegmentCommand::decode(base).unwrap().apply(&mut axis.buffer).unwrap();
+    axis.buffer.apply(SegmentCommand::decode(base).unwrap()).unwrap();
     axis.add(&[relative(250, 10), relative(-250, 0)]);
     axis.until_rest(run());
     assert_eq!((axis.last.x, axis.state.refused()), (20.0, None));

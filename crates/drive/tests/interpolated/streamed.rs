@@ -1,13 +1,25 @@
 //! A long move, streamed by a master that comes when it can.
-use crate::axis::{Axis, COUNT, PERIOD, assert_near, idle, run, whole};
+use crate::axis::{Axis, COUNT, PERIOD, assert_near, cubic, idle, linear, run, whole};
 use crate::random::Random;
-use servobench_drive::modes::interpolated::{BufferError, Point, SegmentCommand, SubMode};
-use servobench_motion::pvt::{self, Knot, Table, to_knots};
+use servobench_cia402::interpolated::{BufferError, Point, SegmentCommand, SubMode};
+use servobench_motion::pvt::{Knot, Table};
 
 const POINTS: usize = 10_000;
 
+/// The points in SI, as a table counts them: from the position at which the move is started, in absolute times.
+fn knots(points: &[Point], origin: i32) -> Vec<Knot> {
+    let (mut position, mut time) = (origin, 0_u32);
+    let knot = |point: &Point| {
+        position = if point.is_relative { position + point.position } else { point.position };
+        let t = f64::from(time / 1000) / 1e3;
+        time += point.time;
+        Knot { t, x: f64::from(position) * COUNT, v: point.velocity.map(|v| f64::from(v) * 0.1 * COUNT) }
+    };
+    points.iter().map(knot).collect()
+}
+
 /// Points on a sum of sines, 5 to 20 ms apart, from rest to rest. Every position and velocity fits into 24 bits.
-fn move_along_sines(random: &mut Random) -> Vec<pvt::Point> {
+fn move_along_sines(random: &mut Random) -> Vec<Point> {
     let along = |t: f64| {
         let rise = (t / 5.0).min(1.0);
         let waves = [(0.9e6, 0.31), (0.4e6, 0.73), (0.1e6, 1.9)];
@@ -16,24 +28,23 @@ fn move_along_sines(random: &mut Random) -> Vec<pvt::Point> {
         (rise * x, rise * v)
     };
     let mut t = 0.0;
-    let mut points: Vec<pvt::Point> = (0..POINTS)
+    let mut points: Vec<Point> = (0..POINTS)
         .map(|_| {
             let (x, v) = along(t);
-            let time_ms = 5 + u8::try_from(random.next() % 16).unwrap();
-            t += f64::from(time_ms) / 1e3;
-            let (position, velocity) = (whole(x), Some(whole(v / 0.1)));
-            pvt::Point { position, velocity, time_ms, relative: false }
+            let ms = 5 + u32::try_from(random.next() % 16).unwrap();
+            t += f64::from(ms) / 1e3;
+            cubic(whole(x), whole(v / 0.1), ms)
         })
         .collect();
     points[0].velocity = Some(0);
     let last = points.len() - 1;
-    (points[last].velocity, points[last].time_ms) = (Some(0), 0);
+    (points[last].velocity, points[last].time) = (Some(0), 0);
     points
 }
 
 /// A master that wakes every 20 ms and up to 100 ms late, and sends no more than there is room for.
 struct Master<'a> {
-    points: &'a [pvt::Point],
+    points: &'a [Point],
     sent: usize,
     wakes: f64,
     random: Random,
@@ -49,8 +60,8 @@ impl Master<'_> {
         let free = usize::try_from(axis.buffer.status() >> 16 & 0xFF).unwrap();
         for point in self.points.iter().skip(self.sent).take(free) {
             let counter = axis.buffer.status().to_le_bytes()[0] & 7;
-            let bytes = SegmentCommand::Point { counter, point: Point::from(*point) }.encode().unwrap();
-            SegmentCommand::decode(bytes).unwrap().apply(&mut axis.buffer).unwrap();
+            let bytes = SegmentCommand::Point { counter, point: *point }.encode().unwrap();
+            axis.buffer.apply(SegmentCommand::decode(bytes).unwrap()).unwrap();
             self.sent += 1;
         }
     }
@@ -60,8 +71,8 @@ impl Master<'_> {
 fn a_master_that_comes_late_keeps_ten_thousand_points_flowing() {
     let mut random = Random::seeded(4);
     let points = move_along_sines(&mut random);
-    let mut knots = vec![Knot::default(); points.len()];
-    let table = Table::new(to_knots(&points, 0, COUNT, &mut knots).unwrap()).unwrap();
+    let knots = knots(&points, 0);
+    let table = Table::new(&knots).unwrap();
     let mut cursor = table.cursor();
 
     let mut axis = Axis::at(0, SubMode::Cubic);
@@ -107,18 +118,20 @@ fn linear_points_and_cubic_ones_mix_as_in_a_table() {
 }
 
 fn follows_the_table(first: Option<i32>, second: Option<i32>) {
+    let either = |point: Point, velocity: Option<i32>| Point { velocity, ..point };
+    let relative = |point: Point| Point { is_relative: true, ..point };
     let points = [
-        pvt::Point { position: 1000, velocity: first, time_ms: 10, relative: false },
-        pvt::Point { position: 3000, velocity: second, time_ms: 20, relative: false },
-        pvt::Point { position: -500, velocity: Some(-300_000), time_ms: 7, relative: true },
-        pvt::Point { position: 9000, velocity: Some(200_000), time_ms: 30, relative: false },
-        pvt::Point { position: -2000, velocity: None, time_ms: 10, relative: true },
-        pvt::Point { position: 7000, velocity: Some(0), time_ms: 0, relative: false },
+        either(linear(1000, 10), first),
+        either(linear(3000, 20), second),
+        relative(cubic(-500, -300_000, 7)),
+        cubic(9000, 200_000, 30),
+        relative(linear(-2000, 10)),
+        cubic(7000, 0, 0),
     ];
-    let mut knots = [Knot::default(); 6];
-    let table = Table::new(to_knots(&points, 1000, COUNT, &mut knots).unwrap()).unwrap();
+    let knots = knots(&points, 1000);
+    let table = Table::new(&knots).unwrap();
     let mut axis = Axis::at(1000, SubMode::Cubic);
-    axis.add(&points.map(Point::from));
+    axis.add(&points);
     for k in 0..308 {
         let setpoint = axis.step(run());
         assert!(axis.answer.bit_12, "{k}");

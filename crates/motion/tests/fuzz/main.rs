@@ -10,7 +10,6 @@ mod shapers;
 mod shortest;
 mod tables;
 mod transitions;
-mod words;
 
 use servobench_base::Setpoint;
 use servobench_motion::{Order, PlanError};

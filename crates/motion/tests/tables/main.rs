@@ -7,5 +7,4 @@ mod plateaus;
 mod random;
 mod stepped;
 mod velocities;
-mod words;
 mod worked;

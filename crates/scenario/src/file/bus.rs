@@ -1,6 +1,6 @@
 //! `[bus]`: the fieldbus between the motion task and the drive.
 use crate::list::Many;
-use crate::scenario::{BusMode, TrajectoryBuffer};
+use crate::scenario::BusMode;
 use crate::simple::OneOf;
 use crate::table::table;
 use servobench_config::Choice;
@@ -11,6 +11,7 @@ use servobench_drive::EffortFeedforward;
 use servobench_fieldbus::bus::BusFaultName;
 use servobench_fieldbus::link::Sequencing;
 use servobench_fieldbus::task::TaskFaultName;
+use servobench_fieldbus::trajectory::PointTransfer;
 use servobench_motion::interpolate::Mode as InterpolationMode;
 
 servobench_config::choices! {
@@ -65,7 +66,7 @@ table! {
         /// How the drive fills the ticks between two frames; default: "linear".
         drive_interpolation: DriveInterpolation = OneOf,
         /// How points get into the buffer of the drive, with the mode "ip"; default: "2010h".
-        trajectory_buffer: TrajectoryBuffer = OneOf,
+        trajectory_buffer: PointTransfer = OneOf,
         /// Bus cycles from the sampling of a frame to its effect; default: 1.
         delay: u32 = 0..=15,
         /// Whether the velocity offset (60B1h) carries the velocity of the set-point; default: false.

@@ -75,7 +75,7 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
             DriveInterpolation::Linear => InterpolationMode::Linear,
             DriveInterpolation::Cubic => InterpolationMode::Cubic,
         },
-        trajectory_buffer: given.trajectory_buffer.optional().ok()?.copied().unwrap_or_default(),
+        point_transfer: given.trajectory_buffer.optional().ok()?.copied().unwrap_or_default(),
         delay: given.delay.optional().ok()?.copied().unwrap_or(DELAY),
         velocity_offset: flag(&given.velocity_offset)?,
         effort_offset: effort_offset?,

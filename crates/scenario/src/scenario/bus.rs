@@ -5,6 +5,7 @@ use servobench_drive::EffortFeedforward;
 use servobench_fieldbus::bus::BusFault;
 use servobench_fieldbus::link::Sequencing;
 use servobench_fieldbus::task::TaskFault;
+use servobench_fieldbus::trajectory::PointTransfer;
 use servobench_motion::interpolate::Mode as InterpolationMode;
 
 /// What is between the motion task and the drive: a master, a bus and the bus interface of the drive (CiA 402).
@@ -43,7 +44,7 @@ pub struct Bus {
     /// Whether the switches are wired normally closed: what the drive reports of them is inverted by the master.
     pub reverse_switches: bool,
     /// How the points of a table get into the buffer of the drive, with interpolated position.
-    pub trajectory_buffer: TrajectoryBuffer,
+    pub point_transfer: PointTransfer,
     /// What goes wrong on the bus, in the order of the file.
     pub faults: Vec<BusFault>,
     /// What goes wrong with the motion task, in the order of the file.
@@ -73,18 +74,6 @@ impl BusMode {
     #[must_use]
     pub const fn is_cyclic(self) -> bool {
         matches!(self, Self::CyclicPosition | Self::CyclicVelocity)
-    }
-}
-
-servobench_config::choices! {
-    /// How the points of a table get into the buffer of the drive.
-    pub enum TrajectoryBuffer default MoveSegment {
-        /// move segment command of the drive: eight bytes of a frame
-        MoveSegment = "2010h",
-        /// interpolation data record, in the sub-mode (60C0h) of `[drive.objects]`
-        DataRecord = "60C1h",
-        /// parameter of the serial interface, with trajectory mode 3 (C8h) and the start by op-code 17
-        Serial = "115h",
     }
 }
 

@@ -3,10 +3,10 @@
 //! What the drive is sent stands in the plans of the moves: their targets, the commands of a position profile, or the points of
 //! a table. Times count from the cycle in which the axis is powered.
 use super::Step;
-use super::points::{PointEncoding, Unsendable, points};
 use super::program_cursor::ProgramCursor;
-use super::stream::{Message, Stream};
+use servobench_cia402::interpolated::serial::Message;
 use servobench_drive::device;
+use servobench_fieldbus::trajectory::{PointEncoding, Stream, Unsendable, points};
 use servobench_fieldbus::{AxisCommand, AxisFeedback, ProfileCommand, Task};
 use servobench_motion::position_profile::Command;
 use servobench_planner::PlanDetails;
@@ -48,9 +48,12 @@ impl DriveProfile {
                 Orders::Velocities { commands: commands.collect(), next: 0, now }
             }
             BusMode::InterpolatedPosition => {
-                let encoding = PointEncoding::new(bus.trajectory_buffer, drive.sub_mode, drive.segment)?;
-                let tables =
-                    program.plans().map(|(start, from, plan)| Ok((start, points(plan, from, bus.units, encoding)?)));
+                let encoding = PointEncoding::new(bus.point_transfer, drive.sub_mode, drive.segment)?;
+                let counts = f64::from(bus.units.drive) / bus.units.axis;
+                let tables = program.plans().map(|(start, from, plan)| {
+                    let polynomials: Vec<_> = plan.spans().map(|span| (span.length, span.state)).collect();
+                    Ok((start, points(polynomials, plan.end(), from, counts, encoding)?))
+                });
                 Orders::Tables(Stream::new(encoding, tables.collect::<Result<_, _>>()?))
             }
             BusMode::ProfilePosition | BusMode::CyclicPosition | BusMode::CyclicVelocity => {
@@ -122,7 +125,7 @@ impl Orders {
                 let Command { velocity, acceleration, .. } = *present;
                 ProfileCommand::Velocity { velocity, acceleration }
             }
-            Self::Tables(stream) => stream.way(now, &feedback.profile),
+            Self::Tables(stream) => stream.cycle(now, &feedback.profile),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! States of drive and link, noted when they change.
+use servobench_cia402::interpolated::BufferError;
 use servobench_cia402::{Mode, PowerState};
 use servobench_drive::device;
-use servobench_drive::modes::interpolated::BufferError;
 use servobench_fieldbus::link;
 use servobench_fieldbus::{Fault, Interpolation};
 use servobench_trace::{Recorder, SignalId};

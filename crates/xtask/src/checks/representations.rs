@@ -35,7 +35,6 @@ const APART: &[([&str; 2], &str)] = &[
     (["motion::RampLimits", "plcopen::Dynamics"], "inputs of a block may be left to the axis"),
     (["motion::SymmetricMove", "planner::Sampled"], "a plan, and what is asked of it"),
     (["plcopen::Fate", "trace::CallFate"], "a recording stands for itself: outputs and errors in words"),
-    (["scenario::TrajectoryBuffer", "sim::PointEncoding"], "the buffer, with what the drive's objects make of it"),
 ];
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,40 +1,12 @@
 //! The trajectory buffer: 32 points, what went wrong with them, and the two words in which a master reads that.
+use servobench_cia402::interpolated::{BufferError, CAPACITY, Point, SegmentCommand};
 use thiserror::Error;
-
-/// Points that the buffer holds.
-pub const CAPACITY: usize = 32;
-
-/// A point of a move in the units of the drive.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Point {
-    /// Position (counts), or with `is_relative` the way from the point before; for the first point of a move from the position
-    /// at which it is started.
-    pub position: i32,
-    /// Whether the position is relative.
-    pub is_relative: bool,
-    /// Velocity (0.1 counts/s); without it the way to this point is linear.
-    pub velocity: Option<i32>,
-    /// Time to the next point (µs); 0 at the end of the move.
-    pub time: u32,
-}
 
 /// A point on its way out of the buffer, or a place from which the next relative one counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Entry {
     Point(Point),
     Base(i32),
-}
-
-/// An error that the buffer latches, by its bit in the highest byte of the status.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[repr(u8)]
-pub enum BufferError {
-    /// A point came with another integrity counter than that of the next one.
-    Sequence = 1,
-    /// A point came when there was no room.
-    Overflow = 2,
-    /// The move needed a point that was not there.
-    Underflow = 4,
 }
 
 /// Why nothing was added to the buffer.
@@ -98,7 +70,24 @@ impl Buffer {
         self.push(Entry::Point(point))
     }
 
-    pub(super) fn push(&mut self, entry: Entry) -> Result<(), Refusal> {
+    /// Does what a move segment command (2010h) says.
+    ///
+    /// # Errors
+    /// [`Refusal`] of a point.
+    pub fn apply(&mut self, command: SegmentCommand) -> Result<(), Refusal> {
+        match command {
+            SegmentCommand::Point { counter, point } => return self.push_numbered(counter, Entry::Point(point)),
+            SegmentCommand::Base { counter, position } => return self.push_numbered(counter, Entry::Base(position)),
+            SegmentCommand::Clear => self.clear(),
+            SegmentCommand::Remove(number) => self.remove(number),
+            SegmentCommand::ClearErrors(mask) => self.clear_errors(mask),
+            SegmentCommand::ResetSegment => self.next_segment = 0,
+            SegmentCommand::NoOperation => {}
+        }
+        Ok(())
+    }
+
+    fn push(&mut self, entry: Entry) -> Result<(), Refusal> {
         if self.has(BufferError::Sequence) || self.has(BufferError::Overflow) {
             return Err(Refusal::Latched { errors: self.errors });
         }
@@ -113,7 +102,7 @@ impl Buffer {
     }
 
     /// Adds an entry that says which one it is by the lowest three bits of its number.
-    pub(super) fn push_numbered(&mut self, counter: u8, entry: Entry) -> Result<(), Refusal> {
+    fn push_numbered(&mut self, counter: u8, entry: Entry) -> Result<(), Refusal> {
         let expected = self.next_segment.to_le_bytes()[0] & 7;
         if counter != expected && self.errors & BufferError::Overflow as u8 == 0 {
             self.latch(BufferError::Sequence);
@@ -136,11 +125,6 @@ impl Buffer {
     /// Clears the latched errors whose bits are set in `mask`, as in the highest byte of 2012h.
     pub const fn clear_errors(&mut self, mask: u8) {
         self.errors &= !mask;
-    }
-
-    /// Numbers the next segment 0.
-    pub const fn reset_segment(&mut self) {
-        self.next_segment = 0;
     }
 
     /// Free places (2011h).

@@ -11,9 +11,10 @@
 //! No segment is faster than the highest velocity: one that is too long ends before its point, and the next one makes up for it as
 //! far as it can, behind the last point a line that leads there; a cubic that would be too fast between its ends is a line.
 use super::Params;
-use super::buffer::{Buffer, Entry, Point};
+use super::buffer::{Buffer, Entry};
 use crate::modes::reach::Reach;
 use servobench_base::Setpoint;
+use servobench_cia402::interpolated::Point;
 
 /// Unit of a drive's velocity (counts/s).
 const VELOCITY_UNIT: f64 = 0.1;

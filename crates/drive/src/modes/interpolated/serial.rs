@@ -1,27 +1,12 @@
-//! Points by the binary serial interface: parameters 115h and C8h, and the start move command.
+//! The serial interface as the drive has it: parameters 115h and C8h, and the start move command.
 //!
-//! | | |
-//! |---|---|
-//! | write C8h | trajectory mode; 3, PVT, is the one that there is |
-//! | write 115h | a word and up to two values: a point, or a command to the buffer ([`Record`]) |
-//! | read 115h | free places of the buffer, and two reserved words |
-//! | op-code 17 | starts the move |
-//!
-//! The interface has no other way to clear latched errors than to clear the buffer. Source: Copley Controls, *PVT Trajectory
-//! Calculations*, rev. 00 (2020), "PVT moves via binary serial".
-use super::buffer::{Buffer, Point, Refusal};
-use servobench_motion::PlanError;
-use servobench_motion::pvt::Record;
+//! Trajectory mode 3 (C8h), PVT, is the one that there is. The interface has no other way to clear latched errors than to clear
+//! the buffer.
+use super::buffer::{Buffer, Refusal};
+use servobench_cia402::interpolated::serial::{
+    Message, PVT, Record, RecordError, START_MOVE, TRAJECTORY_BUFFER, TRAJECTORY_MODE,
+};
 use thiserror::Error;
-
-/// The trajectory buffer's parameter.
-pub const TRAJECTORY_BUFFER: u16 = 0x115;
-/// The trajectory mode's parameter.
-pub const TRAJECTORY_MODE: u16 = 0xC8;
-/// Trajectory mode PVT.
-pub const PVT: u16 = 3;
-/// Start move command.
-pub const START_MOVE: u8 = 17;
 
 /// Why a message was refused.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
@@ -50,8 +35,13 @@ pub enum SerialError {
     #[error("start move (op-code {START_MOVE}): write {PVT}, PVT, to the trajectory mode (C8h) first")]
     NoMode,
     /// What was written to 115h is malformed.
-    #[error(transparent)]
-    Record(#[from] PlanError),
+    #[error("point {record}: {error}")]
+    Record {
+        /// Number of the record, from 0.
+        record: usize,
+        /// What is wrong with it.
+        error: RecordError,
+    },
     /// The buffer did not take the point.
     #[error(transparent)]
     Refused(#[from] Refusal),
@@ -66,6 +56,17 @@ pub struct Port {
 }
 
 impl Port {
+    /// Does what a message says.
+    ///
+    /// # Errors
+    /// [`SerialError`], as [`write`](Self::write) and [`command`](Self::command).
+    pub fn receive(&mut self, buffer: &mut Buffer, message: &Message) -> Result<(), SerialError> {
+        match message {
+            Message::Write { parameter, words } => self.write(buffer, *parameter, words.word(), words.values()),
+            Message::Command { op_code } => self.command(buffer, *op_code),
+        }
+    }
+
     /// Writes a parameter: its first word, and the values behind it.
     ///
     /// # Errors
@@ -75,10 +76,11 @@ impl Port {
             TRAJECTORY_MODE if word == PVT && values.is_empty() => self.is_pvt = true,
             TRAJECTORY_MODE => return Err(SerialError::Mode { word, values: values.len() }),
             TRAJECTORY_BUFFER => {
-                let record = Record::decode(self.records, word, values)?;
+                let record = Record::decode(word, values)
+                    .map_err(|error| SerialError::Record { record: self.records, error })?;
                 self.records = self.records.wrapping_add(1);
                 match record {
-                    Record::Point(point) => buffer.add(point.into())?,
+                    Record::Point(point) => buffer.add(point)?,
                     Record::Clear => {
                         buffer.clear();
                         buffer.clear_errors(u8::MAX);
@@ -89,18 +91,6 @@ impl Port {
             _ => return Err(SerialError::Parameter { parameter }),
         }
         Ok(())
-    }
-
-    /// Reads a parameter.
-    ///
-    /// # Errors
-    /// [`SerialError::Parameter`] for one that is not known.
-    pub fn read(&self, buffer: &Buffer, parameter: u16) -> Result<[u16; 3], SerialError> {
-        match parameter {
-            TRAJECTORY_BUFFER => Ok([u16::try_from(buffer.free()).unwrap_or(u16::MAX), 0, 0]),
-            TRAJECTORY_MODE => Ok([if self.is_pvt { PVT } else { 0 }, 0, 0]),
-            _ => Err(SerialError::Parameter { parameter }),
-        }
     }
 
     /// Does what an op-code says.
@@ -116,12 +106,5 @@ impl Port {
             START_MOVE => Err(SerialError::NoMode),
             _ => Err(SerialError::OpCode { op_code }),
         }
-    }
-}
-
-impl From<servobench_motion::pvt::Point> for Point {
-    fn from(point: servobench_motion::pvt::Point) -> Self {
-        let servobench_motion::pvt::Point { position, velocity, time_ms, relative } = point;
-        Self { position, is_relative: relative, velocity, time: u32::from(time_ms) * 1000 }
     }
 }

@@ -17,7 +17,7 @@
 //! The integrity counter is that of the next segment's number, its lowest three bits. Source: Copley Controls, *CANopen
 //! Programmer's Manual*, 95-00271-000 rev. 7 (2012), pp. 214–215, "IP move segment command"; format 6 and command 84h from later
 //! editions.
-use super::buffer::{Buffer, Entry, Point, Refusal};
+use super::Point;
 use thiserror::Error;
 
 /// What 2010h says.
@@ -107,23 +107,6 @@ impl SegmentCommand {
         Ok(Self::Point { counter, point: Point { position, is_relative, velocity, time } })
     }
 
-    /// Does it.
-    ///
-    /// # Errors
-    /// [`Refusal`] of a point.
-    pub fn apply(self, buffer: &mut Buffer) -> Result<(), Refusal> {
-        match self {
-            Self::Point { counter, point } => return buffer.push_numbered(counter, Entry::Point(point)),
-            Self::Base { counter, position } => return buffer.push_numbered(counter, Entry::Base(position)),
-            Self::Clear => buffer.clear(),
-            Self::Remove(number) => buffer.remove(number),
-            Self::ClearErrors(mask) => buffer.clear_errors(mask),
-            Self::ResetSegment => buffer.reset_segment(),
-            Self::NoOperation => {}
-        }
-        Ok(())
-    }
-
     /// The eight bytes; `None` for a point that none of the formats can hold: its time is not 0 to 255 whole milliseconds, or
     /// its position or velocity, with a point that has one, does not fit into 24 bits.
     #[must_use]
@@ -139,8 +122,9 @@ impl SegmentCommand {
                 let [a, b, c, d] = position.to_le_bytes();
                 Some([counter & 7 | 4 << 3, a, b, c, d, 0, 0, 0])
             }
-            Self::Point { counter, point: Point { position, is_relative, velocity, time } } => {
-                let time = u8::try_from(time / 1000).ok().filter(|_| time % 1000 == 0)?;
+            Self::Point { counter, point } => {
+                let Point { position, is_relative, velocity, .. } = point;
+                let time = point.milliseconds()?;
                 let byte = |format: u8| counter & 7 | format << 3;
                 let Some(velocity) = velocity else {
                     let [a, b, c, d] = position.to_le_bytes();

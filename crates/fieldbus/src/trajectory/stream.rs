@@ -1,4 +1,4 @@
-//! Tables on their way into the buffer of a drive, point by point, one in a cycle of the motion task.
+//! Tables on their way, point by point.
 //!
 //! Points with times of their own are sent until the buffer is nearly full, and followed from then on, or when all are there; the
 //! last one ends the move. By the serial interface the mode is set first (C8h), and op-code 17 starts the move.
@@ -7,11 +7,12 @@
 //! when the drive is on the way from one of them to the next, it is told to stop, and its buffer is emptied (2010h, 80h). In
 //! sub-mode 0 the drive is told to go first, since it forgets the points that came before; then they come by the clock of the
 //! master, one in each period (60C2h).
-use super::points::PointEncoding;
+use super::points::{PointEncoding, PointTransfer};
+use crate::{ProfileCommand, ProfileFeedback, TrajectoryPoint};
+use alloc::vec::Vec;
 use servobench_cia402::InterpolationData;
-use servobench_drive::modes::interpolated::serial::{self, PVT, Port, SerialError, TRAJECTORY_BUFFER, TRAJECTORY_MODE};
-use servobench_drive::modes::interpolated::{Buffer, CAPACITY, Point, SegmentCommand, SubMode};
-use servobench_fieldbus::{ProfileCommand, ProfileFeedback, TrajectoryPoint};
+use servobench_cia402::interpolated::serial::{Message, Record};
+use servobench_cia402::interpolated::{CAPACITY, Point, SegmentCommand};
 
 /// Points that stay free in the buffer: those under way between a frame and the answer that knows of it.
 const RESERVE: u16 = 6;
@@ -19,41 +20,9 @@ const RESERVE: u16 = 6;
 const AHEAD: usize = 16;
 /// For the rounding of times (s).
 const ROUNDING: f64 = 1e-9;
-/// Bit of 115h's word: the position is relative.
-const RELATIVE: u16 = 1 << 12;
-
-/// A message by the serial interface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Message {
-    /// The trajectory mode, PVT.
-    SetMode,
-    /// A point for the buffer.
-    Add(Point),
-    /// The start move command.
-    Start,
-}
-
-impl Message {
-    /// What it does to the drive.
-    ///
-    /// # Errors
-    /// What the drive answers.
-    pub(super) fn arrive(self, port: &mut Port, buffer: &mut Buffer) -> Result<(), SerialError> {
-        match self {
-            Self::SetMode => port.write(buffer, TRAJECTORY_MODE, PVT, &[]),
-            Self::Start => port.command(buffer, serial::START_MOVE),
-            Self::Add(Point { position, is_relative, velocity, time }) => {
-                let word = u16::from(milliseconds(time)) | if is_relative { RELATIVE } else { 0 };
-                let values = [position, velocity.unwrap_or(0)];
-                port.write(buffer, TRAJECTORY_BUFFER, word, &values[..if velocity.is_some() { 2 } else { 1 }])
-            }
-        }
-    }
-}
-
 /// Tables, and how far they are.
 #[derive(Debug, Clone)]
-pub(super) struct Stream {
+pub struct Stream {
     encoding: PointEncoding,
     /// When each begins (s), and its points.
     tables: Vec<(f64, Vec<Point>)>,
@@ -88,18 +57,21 @@ enum Stage {
 }
 
 impl Stream {
-    pub(super) const fn new(encoding: PointEncoding, tables: Vec<(f64, Vec<Point>)>) -> Self {
-        let stage = if matches!(encoding, PointEncoding::Serial) { Stage::Setting } else { Stage::Filling };
+    /// Tables, each by the time at which it begins (s) and its points, in this order.
+    #[must_use]
+    pub const fn new(encoding: PointEncoding, tables: Vec<(f64, Vec<Point>)>) -> Self {
+        let is_serial = matches!(encoding.transfer(), PointTransfer::Serial);
+        let stage = if is_serial { Stage::Setting } else { Stage::Filling };
         Self { encoding, tables, table: 0, number: 0, arrived: 0, seen: 0, sent: 0, due: 0.0, stage, message: None }
     }
 
-    /// What goes over the serial interface in this cycle.
-    pub(super) const fn message(&mut self) -> Option<Message> {
+    /// What goes over the serial interface in this cycle, once.
+    pub const fn message(&mut self) -> Option<Message> {
         self.message.take()
     }
 
-    /// What is sent at `now` (s).
-    pub(super) fn way(&mut self, now: f64, drive: &ProfileFeedback) -> ProfileCommand {
+    /// The command of a cycle at `now` (s) to a drive that has answered `drive`.
+    pub fn cycle(&mut self, now: f64, drive: &ProfileFeedback) -> ProfileCommand {
         let point = match self.tables.get(self.table) {
             Some((start, points)) if *start <= now => {
                 let length = points.len();
@@ -107,7 +79,7 @@ impl Stream {
             }
             _ => None,
         };
-        let follow = matches!(self.stage, Stage::Following { .. }) && self.encoding != PointEncoding::Serial;
+        let follow = matches!(self.stage, Stage::Following { .. }) && !self.is_serial();
         ProfileCommand::Points { point, follow }
     }
 
@@ -116,22 +88,22 @@ impl Stream {
         let is_endless = self.encoding.constant_time().is_some();
         match self.stage {
             Stage::Setting => {
-                self.message = Some(Message::SetMode);
+                self.message = Some(Message::SELECT_PVT);
                 self.stage = Stage::Filling;
                 None
             }
             Stage::Filling => {
-                if matches!(self.encoding, PointEncoding::DataRecord { sub_mode: SubMode::LinearAdapted, .. }) {
+                if self.encoding.adapted_time().is_some() {
                     self.follow(now);
                     return None;
                 }
-                if self.encoding == PointEncoding::Serial && self.is_ready(length) {
-                    self.message = Some(Message::Start);
+                if self.is_serial() && self.is_ready(length) {
+                    self.message = Some(Message::START_MOVE);
                     self.follow(now);
                     return None;
                 }
                 let point = self.next(now, drive);
-                if self.encoding != PointEncoding::Serial && self.is_ready(length) {
+                if !self.is_serial() && self.is_ready(length) {
                     self.follow(now);
                 }
                 point
@@ -197,34 +169,33 @@ impl Stream {
         if drive.buffer_free <= RESERVE {
             return None;
         }
-        if let PointEncoding::DataRecord { sub_mode: SubMode::LinearAdapted, period } = self.encoding {
+        if let Some(period) = self.encoding.adapted_time() {
             if now < self.due - ROUNDING {
                 return None;
             }
-            self.due += f64::from(period.microseconds()) * 1e-6;
+            self.due += f64::from(period) * 1e-6;
         }
         let number = self.number;
         self.number = number.wrapping_add(1);
         self.sent += 1;
-        match self.encoding {
-            PointEncoding::MoveSegment => {
+        match self.encoding.transfer() {
+            PointTransfer::MoveSegment => {
                 let counter = number.to_le_bytes()[0] & 7;
                 SegmentCommand::Point { counter, point }.encode().map(TrajectoryPoint::MoveSegment)
             }
-            PointEncoding::DataRecord { sub_mode, .. } => {
-                let time = (!sub_mode.has_constant_time()).then(|| milliseconds(point.time));
+            PointTransfer::DataRecord => {
+                let time = point.milliseconds().filter(|_| self.encoding.constant_time().is_none());
                 let data = InterpolationData { position: point.position, time, velocity: point.velocity };
                 Some(TrajectoryPoint::DataRecord(data))
             }
-            PointEncoding::Serial => {
-                self.message = Some(Message::Add(point));
+            PointTransfer::Serial => {
+                self.message = Message::of(Record::Point(point));
                 None
             }
         }
     }
-}
 
-/// Whole milliseconds, 255 at most: points with others are not sent.
-fn milliseconds(microseconds: u32) -> u8 {
-    u8::try_from(microseconds / 1000).unwrap_or(u8::MAX)
+    fn is_serial(&self) -> bool {
+        self.encoding.transfer() == PointTransfer::Serial
+    }
 }

@@ -1,10 +1,6 @@
 //! The eight bytes of 2010h.
-use crate::axis::{cubic, linear};
-use servobench_drive::modes::interpolated::{Point, SegmentCommand, SegmentError};
-
-fn relative(point: Point) -> Point {
-    Point { is_relative: true, ..point }
-}
+use crate::{cubic, linear, relative};
+use servobench_cia402::interpolated::{Point, SegmentCommand, SegmentError};
 
 /// Bytes put together by hand from the tables of the programmer's manual.
 #[test]
