@@ -14,7 +14,5 @@ pub mod quantities;
 pub use bound::{Bound, Measure, any, not_negative, positive};
 pub use choice::Choice;
 pub use dimension::Dimension;
-pub use parameter::Description;
+pub use parameter::{Parameter, ParameterError};
 pub use physical::{Counterparts, Kind, Physical};
-#[doc(hidden)]
-pub use servobench_base::ParamError;

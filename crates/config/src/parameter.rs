@@ -1,26 +1,54 @@
 //! Parameters that are physical quantities, as the crate that owns them declares them.
 use crate::bound::{Bound, Measure};
 use crate::physical::Kind;
+use core::fmt;
 use servobench_base::{ParamError, finite, non_negative, positive};
 
-/// What a parameter means and what it must be.
+/// A parameter that is a physical quantity: its name, what it means and what it must be. Errors name a parameter by this.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Description {
+pub struct Parameter {
+    /// Its name in words, its own among the parameters of its crate.
+    pub name: &'static str,
     /// What it means: a clause that begins a sentence, to which a file's reference adds its default.
     pub meaning: &'static str,
     /// What it measures, its bound and an example.
     pub measure: Measure,
 }
 
-impl Description {
+/// A parameter that is out of its bound.
+pub type ParameterError = ParamError<&'static Parameter>;
+
+impl Parameter {
+    /// `value` (SI), when it is within the bound.
+    ///
+    /// # Errors
+    /// [`ParameterError`] otherwise, also for what is not finite.
+    pub const fn check(&'static self, value: f64) -> Result<f64, ParameterError> {
+        self.measure.bound.check(self, value)
+    }
+
+    /// The same with an error that has the parameter's name only.
+    ///
+    /// # Errors
+    /// [`ParamError`] otherwise, also for what is not finite.
+    pub const fn check_in_words(&self, value: f64) -> Result<f64, ParamError> {
+        self.measure.bound.check(self.name, value)
+    }
+
     /// The same of the motor, in its own coordinate, with an example of its own.
     #[must_use]
-    pub const fn of_motor(self, example: &'static str) -> Self {
+    pub const fn of_motor(&self, example: &'static str) -> Self {
         let kind = match self.measure.kind {
             Kind::Axis(counterparts) => Kind::Motor(counterparts),
             kind => kind,
         };
-        Self { measure: Measure { kind, example, ..self.measure }, ..self }
+        Self { measure: Measure { kind, example, ..self.measure }, ..*self }
+    }
+}
+
+impl fmt::Display for Parameter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name)
     }
 }
 
@@ -45,7 +73,8 @@ impl Bound {
     }
 }
 
-/// Declares the parameters of a crate, by which its errors name them; the doc comment of one is its meaning, without a full stop.
+/// Declares parameters beside what they belong to, each a `&'static` [`Parameter`]; the doc comment of one is its meaning, without a
+/// full stop.
 ///
 /// ```
 /// use servobench_config::{Kind::Plain, positive, quantities::RESISTANCE};
@@ -53,12 +82,12 @@ impl Bound {
 ///     /// A parameter of the motor.
 ///     pub enum Parameter {
 ///         /// Stator resistance
-///         Resistance "resistance" = positive(Plain(&RESISTANCE), "0.36 Ohm");
+///         RESISTANCE "resistance" = positive(Plain(&RESISTANCE), "0.36 Ohm");
 ///     }
 /// }
-/// assert_eq!(Parameter::Resistance.description().meaning, "Stator resistance");
-/// assert_eq!(Parameter::Resistance.check(0.36), Ok(0.36));
-/// let message = Parameter::Resistance.check(-1.0).unwrap_err().to_string();
+/// assert_eq!(Parameter::RESISTANCE.meaning, "Stator resistance");
+/// assert_eq!(Parameter::RESISTANCE.check(0.36), Ok(0.36));
+/// let message = Parameter::RESISTANCE.check(-1.0).unwrap_err().to_string();
 /// assert_eq!(message, "`resistance` must be finite and positive, got -1");
 /// ```
 #[macro_export]
@@ -70,55 +99,21 @@ macro_rules! parameters {
         }
     ) => {
         $(#[doc = $doc])+
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-        $visibility enum $type {
-            $( $(#[doc = $meaning])+ $parameter, )+
-        }
+        #[derive(Debug, Clone, Copy)]
+        $visibility enum $type {}
 
         impl $type {
-            /// Every parameter.
-            pub const ALL: &'static [Self] = &[$(Self::$parameter),+];
+            $(
+                $(#[doc = $meaning])+
+                pub const $parameter: &'static $crate::Parameter = &$crate::Parameter {
+                    name: $name,
+                    meaning: concat!($($meaning),+).trim_ascii(),
+                    measure: $measure,
+                };
+            )+
 
-            /// Its name in words.
-            #[must_use]
-            pub const fn name(self) -> &'static str {
-                match self {
-                    $( Self::$parameter => $name, )+
-                }
-            }
-
-            /// What it means and what it must be.
-            #[must_use]
-            pub const fn description(self) -> $crate::Description {
-                match self {
-                    $( Self::$parameter => $crate::Description {
-                        meaning: concat!($($meaning),+).trim_ascii(),
-                        measure: $measure,
-                    }, )+
-                }
-            }
-
-            /// `value` (SI), when it is within the bound of this parameter.
-            ///
-            /// # Errors
-            #[doc = concat!("An error that names the ", stringify!($type), ", the value and the bound.")]
-            pub const fn check(self, value: f64) -> Result<f64, $crate::ParamError<Self>> {
-                self.description().measure.bound.check(self, value)
-            }
-
-            /// The same with an error that has the parameter's name in words.
-            ///
-            /// # Errors
-            /// An error that names the parameter, the value and the bound.
-            pub const fn check_in_words(self, value: f64) -> Result<f64, $crate::ParamError> {
-                self.description().measure.bound.check(self.name(), value)
-            }
-        }
-
-        impl core::fmt::Display for $type {
-            fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-                f.write_str(self.name())
-            }
+            /// Every one of them.
+            pub const ALL: &'static [&'static $crate::Parameter] = &[$(Self::$parameter),+];
         }
     };
 }

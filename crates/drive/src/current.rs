@@ -9,8 +9,42 @@
 //! ramp is followed 1/α late, whatever the dead time in the loop. The voltage limit gives the d axis first call.
 //!
 //! The voltage computed at tick k is applied from k+1 to k+2: it is turned ahead by 1.5·h·ω to meet the rotor there.
-use crate::{Parameter, ParameterError};
 use servobench_base::{AlphaBeta, Dq, Rotation, limit};
+use servobench_config::Kind::Plain;
+use servobench_config::quantities::{
+    CURRENT, CURRENT_GAIN, FLUX_LINKAGE, INDUCTANCE, RATIO, RESISTANCE, TIME, VOLTAGE,
+};
+use servobench_config::{ParameterError, any, positive};
+
+servobench_config::parameters! {
+    /// A parameter of the current loop.
+    pub enum Parameter {
+        /// Proportional gain of the d axis
+        GAIN_D "gain of the current loop, d axis" = positive(Plain(&CURRENT_GAIN), "12 V/A");
+        /// Proportional gain of the q axis
+        GAIN_Q "gain of the current loop, q axis" = positive(Plain(&CURRENT_GAIN), "12 V/A");
+        /// Integral time of the d axis
+        INTEGRAL_TIME_D "integral time of the current loop, d axis" = positive(Plain(&TIME), "5 ms");
+        /// Integral time of the q axis
+        INTEGRAL_TIME_Q "integral time of the current loop, q axis" = positive(Plain(&TIME), "5 ms");
+        /// Reference of the d-axis current
+        D_REFERENCE "reference of the current in d" = any(Plain(&CURRENT), "-20 Arms");
+        /// Largest phase current
+        MAX_CURRENT "largest current" = positive(Plain(&CURRENT), "20 Arms");
+        /// Voltage of the DC link
+        DC_LINK "voltage of the DC link" = positive(Plain(&VOLTAGE), "540 V");
+        /// Pole pairs
+        POLE_PAIRS "pole pairs" = positive(Plain(&RATIO), "4");
+        /// Stator resistance
+        RESISTANCE "estimate of the resistance" = positive(Plain(&RESISTANCE), "0.36 Ohm");
+        /// Inductance of the d axis
+        INDUCTANCE_D "estimate of the inductance, d axis" = positive(Plain(&INDUCTANCE), "36 mH");
+        /// Inductance of the q axis
+        INDUCTANCE_Q "estimate of the inductance, q axis" = positive(Plain(&INDUCTANCE), "51 mH");
+        /// Flux linkage, amplitude
+        FLUX_LINKAGE "estimate of the flux linkage" = positive(Plain(&FLUX_LINKAGE), "0.545 V s");
+    }
+}
 
 /// The motor as the firmware knows it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -139,25 +173,25 @@ impl Params {
     /// [`ParameterError`] names the first parameter out of its bound.
     pub fn check(&self) -> Result<(), ParameterError> {
         for (name, value) in [
-            (Parameter::PolePairs, self.motor.electrical_ratio),
-            (Parameter::Resistance, self.motor.resistance),
-            (Parameter::InductanceD, self.motor.inductance.d),
-            (Parameter::InductanceQ, self.motor.inductance.q),
-            (Parameter::FluxLinkage, self.motor.flux_linkage),
-            (Parameter::CurrentGainD, self.gains.k_p.d),
-            (Parameter::CurrentGainQ, self.gains.k_p.q),
-            (Parameter::CurrentIntegralTimeD, self.gains.k_p.d / self.gains.k_i.d),
-            (Parameter::CurrentIntegralTimeQ, self.gains.k_p.q / self.gains.k_i.q),
+            (Parameter::POLE_PAIRS, self.motor.electrical_ratio),
+            (Parameter::RESISTANCE, self.motor.resistance),
+            (Parameter::INDUCTANCE_D, self.motor.inductance.d),
+            (Parameter::INDUCTANCE_Q, self.motor.inductance.q),
+            (Parameter::FLUX_LINKAGE, self.motor.flux_linkage),
+            (Parameter::GAIN_D, self.gains.k_p.d),
+            (Parameter::GAIN_Q, self.gains.k_p.q),
+            (Parameter::INTEGRAL_TIME_D, self.gains.k_p.d / self.gains.k_i.d),
+            (Parameter::INTEGRAL_TIME_Q, self.gains.k_p.q / self.gains.k_i.q),
         ] {
             name.check(value)?;
         }
-        limit(Parameter::MaxCurrent, self.max_current)?;
+        limit(Parameter::MAX_CURRENT, self.max_current)?;
         let is_within = self.d_reference.is_finite() && self.d_reference.abs() < self.max_current;
         if !is_within || self.effort_constant() <= 0.0 {
             let bound = "below the largest current and leave the motor some torque";
-            return Err(ParameterError { name: Parameter::CurrentReferenceD, value: self.d_reference, bound });
+            return Err(ParameterError { name: Parameter::D_REFERENCE, value: self.d_reference, bound });
         }
-        limit(Parameter::DcLink, self.max_voltage).map(|_| ())
+        limit(Parameter::DC_LINK, self.max_voltage).map(|_| ())
     }
 
     /// Effort per q-axis current (N·m/A or N/A, peak), as the drive believes.

@@ -3,8 +3,18 @@
 //! The feedforward effort takes a while to reach the motor; the reference of the loops waits as long, or the position
 //! controller works against the feedforward. Between two samples the set-point is the polynomial of the earlier one
 //! ([`Setpoint::after`]): exact as long as snap switches at sample instants, as a sampled plan does.
-use crate::{Parameter, ParameterError};
 use servobench_base::Setpoint;
+use servobench_config::Kind::Plain;
+use servobench_config::quantities::TIME;
+use servobench_config::{ParameterError, not_negative};
+
+servobench_config::parameters! {
+    /// A parameter of the delay.
+    pub enum Parameter {
+        /// How long the reference waits for the feedforward path
+        DELAY "delay of the reference" = not_negative(Plain(&TIME), "0.2 ms");
+    }
+}
 
 /// Longest delay in task periods.
 pub const CAPACITY: usize = 30;
@@ -36,7 +46,7 @@ impl Params {
         let periods = delay / period;
         if !(0.0..=CAPACITY as f64).contains(&periods) {
             let bound = "from 0 s to 30 periods of the position task";
-            return Err(ParameterError { name: Parameter::ReferenceDelay, value: delay, bound });
+            return Err(ParameterError { name: Parameter::DELAY, value: delay, bound });
         }
         let whole = libm::ceil(periods - 1e-9);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to CAPACITY")]

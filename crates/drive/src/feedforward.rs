@@ -8,8 +8,32 @@
 //! The set-point `x` is the load's. Loops that measure on the motor must follow the motor's own reference `x_m`: fed
 //! with `x` itself they fight the feedforward. Axis coordinate throughout.
 //! Source: Lambrechts, Boerlage, Steinbuch, *Control Engineering Practice* 13, 2005.
-use crate::{Parameter, ParameterError};
 use servobench_base::{Setpoint, finite};
+use servobench_config::Kind::{Axis, Plain};
+use servobench_config::quantities::{EFFORT, INERTIAL, RATIO, STIFFNESS, VISCOUS};
+use servobench_config::{ParameterError, any, not_negative, positive};
+
+servobench_config::parameters! {
+    /// A parameter of the feedforward.
+    pub enum Parameter {
+        /// Share of the reference velocity that is added to the velocity command
+        VELOCITY "share of the velocity that is fed forward" = any(Plain(&RATIO), "1");
+        /// Coulomb friction of all bodies
+        COULOMB "estimate of the Coulomb friction" = not_negative(Axis(&EFFORT), "20 N");
+        /// Constant resisting force or torque on all bodies
+        BIAS "estimate of the constant effort" = any(Axis(&EFFORT), "-3 N");
+        /// Mass or inertia on the motor's side of the softest spring, rotor included
+        MOTOR_INERTIA "estimate of the motor's inertia" = not_negative(Axis(&INERTIAL), "20 kg");
+        /// Mass or inertia beyond that spring
+        LOAD_INERTIA "estimate of the load's inertia" = not_negative(Axis(&INERTIAL), "10 kg");
+        /// Stiffness of that spring
+        STIFFNESS "estimate of the stiffness" = positive(Axis(&STIFFNESS), "0.6 N/um");
+        /// Viscous friction on the motor's side
+        MOTOR_VISCOUS "estimate of the motor's viscous friction" = not_negative(Axis(&VISCOUS), "10 N s/m");
+        /// Viscous friction on the load
+        LOAD_VISCOUS "estimate of the load's viscous friction" = not_negative(Axis(&VISCOUS), "10 N s/m");
+    }
+}
 
 /// Model behind the effort feedforward, as the firmware estimates it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,26 +92,22 @@ impl Params {
     /// [`ParameterError`] names the first parameter out of its bound.
     pub fn check(&self) -> Result<(), ParameterError> {
         if !(0.0..=1.0).contains(&self.velocity) {
-            return Err(ParameterError {
-                name: Parameter::VelocityFeedforward,
-                value: self.velocity,
-                bound: "from 0 to 1",
-            });
+            return Err(ParameterError { name: Parameter::VELOCITY, value: self.velocity, bound: "from 0 to 1" });
         }
-        Parameter::Coulomb.check(self.coulomb)?;
-        finite(Parameter::Bias, self.bias)?;
+        Parameter::COULOMB.check(self.coulomb)?;
+        finite(Parameter::BIAS, self.bias)?;
         match self.model {
             Model::Off => Ok(()),
             Model::Rigid { inertia, viscous } => {
-                Parameter::MotorInertia.check(inertia)?;
-                Parameter::MotorViscous.check(viscous).map(|_| ())
+                Parameter::MOTOR_INERTIA.check(inertia)?;
+                Parameter::MOTOR_VISCOUS.check(viscous).map(|_| ())
             }
             Model::TwoMass { motor_inertia, load_inertia, stiffness, motor_viscous, load_viscous } => {
-                Parameter::MotorInertia.check(motor_inertia)?;
-                Parameter::LoadInertia.check(load_inertia)?;
-                Parameter::Stiffness.check(stiffness)?;
-                Parameter::MotorViscous.check(motor_viscous)?;
-                Parameter::LoadViscous.check(load_viscous).map(|_| ())
+                Parameter::MOTOR_INERTIA.check(motor_inertia)?;
+                Parameter::LOAD_INERTIA.check(load_inertia)?;
+                Parameter::STIFFNESS.check(stiffness)?;
+                Parameter::MOTOR_VISCOUS.check(motor_viscous)?;
+                Parameter::LOAD_VISCOUS.check(load_viscous).map(|_| ())
             }
         }
     }

@@ -7,11 +7,11 @@
 //!
 //! Position and its reference are in the axis coordinate, velocity and effort in the motor's; `transmission` converts.
 use crate::Demand;
-use crate::ParameterError;
 use crate::feedforward::MotorReference;
 use crate::params::{Params, Stage};
 use crate::{current, delay, velocity};
 use servobench_base::{AlphaBeta, Countdown, Dq, ElectricalAngle, PowerCommand, Setpoint};
+use servobench_config::ParameterError;
 
 /// Which encoder closes the position loop.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

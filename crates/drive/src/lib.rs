@@ -12,12 +12,11 @@ mod estimate;
 pub mod feedforward;
 mod firmware;
 pub mod modes;
-mod parameter;
 mod params;
 pub mod velocity;
 
 pub use demand::{Demand, Offsets};
 pub use estimate::{EffortFeedforward, Estimate};
 pub use firmware::{Feedback, Held, Sensors, State, step};
-pub use parameter::{Parameter, ParameterError};
-pub use params::{Params, Stage};
+pub use params::{Parameter, Params, Stage};
+pub use servobench_config::ParameterError;

@@ -1,7 +1,27 @@
 //! What the firmware knows and does not change: gains, limits, rates and its own estimates of the axis.
-use crate::{Parameter, ParameterError};
 use crate::{current, delay, feedforward, velocity};
 use servobench_base::{Divider, Rate};
+use servobench_config::Kind::{Motor, Plain};
+use servobench_config::quantities::{FREQUENCY, POSITION_GAIN, RATIO, SOURCE_GAIN, TIME};
+use servobench_config::{ParameterError, not_negative, positive};
+
+servobench_config::parameters! {
+    /// A parameter of the firmware that belongs to no loop alone.
+    pub enum Parameter {
+        /// Axis coordinate per motor coordinate
+        TRANSMISSION "transmission" = positive(Plain(&RATIO), "0.0016");
+        /// Proportional gain K_v of the position loop
+        POSITION_GAIN "gain of the position loop" = not_negative(Plain(&POSITION_GAIN), "160 1/s");
+        /// Rate of the position loop
+        POSITION_RATE "rate of the position loop" = positive(Plain(&FREQUENCY), "4 kHz");
+        /// Rate of the velocity loop
+        VELOCITY_RATE "rate of the velocity loop" = positive(Plain(&FREQUENCY), "8 kHz");
+        /// Time constant of the low-pass on the measured velocity
+        VELOCITY_FILTER_TIME "time constant of the velocity filter" = not_negative(Plain(&TIME), "0.1 ms");
+        /// Force or torque per volt of an ideal source
+        DIRECT_GAIN "gain of the direct output" = positive(Motor(&SOURCE_GAIN), "35.1507 N/V");
+    }
+}
 
 /// What turns the effort reference into effort.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,11 +69,11 @@ impl Params {
     /// # Errors
     /// [`ParameterError`] names the first parameter out of its bound.
     pub fn check(&self) -> Result<(), ParameterError> {
-        Parameter::Transmission.check(self.transmission)?;
-        Parameter::PositionGain.check(self.position_gain)?;
-        Parameter::VelocityFilterTime.check(self.velocity_filter_time)?;
+        Parameter::TRANSMISSION.check(self.transmission)?;
+        Parameter::POSITION_GAIN.check(self.position_gain)?;
+        Parameter::VELOCITY_FILTER_TIME.check(self.velocity_filter_time)?;
         match &self.stage {
-            Stage::Direct { gain } => Parameter::DirectGain.check(*gain).map(|_| ()),
+            Stage::Direct { gain } => Parameter::DIRECT_GAIN.check(*gain).map(|_| ()),
             Stage::Current { params, .. } => params.check(),
         }?;
         self.velocity.check()?;
@@ -69,11 +89,11 @@ impl Params {
             if slower.is_multiple_of(faster) { Ok(()) } else { Err(ParameterError { name, value, bound }) }
         };
         let bound = "a whole fraction of the velocity loop's rate";
-        coincides(Parameter::PositionRate, self.position_every, self.velocity_every, bound)?;
+        coincides(Parameter::POSITION_RATE, self.position_every, self.velocity_every, bound)?;
         match self.stage {
             Stage::Direct { .. } => Ok(()),
             Stage::Current { every, .. } => coincides(
-                Parameter::VelocityRate,
+                Parameter::VELOCITY_RATE,
                 self.velocity_every,
                 every,
                 "a whole fraction of the current loop's rate",

@@ -6,8 +6,22 @@
 //! ```
 //! τ_avail is what the loop below can give; knowing it here keeps the integrator from winding up against it.
 //! Source: Åström & Murray, *Feedback Systems*, 2nd ed., §11.4, tracking time T_t = T_i. The motor's coordinate.
-use crate::{Parameter, ParameterError};
 use servobench_base::limit;
+use servobench_config::Kind::{Motor, Plain};
+use servobench_config::quantities::{EFFORT, TIME, VISCOUS};
+use servobench_config::{ParameterError, not_negative, positive};
+
+servobench_config::parameters! {
+    /// A parameter of the velocity loop.
+    pub enum Parameter {
+        /// Proportional gain of the velocity loop
+        GAIN "gain of the velocity loop" = not_negative(Motor(&VISCOUS), "243.45 N s/m");
+        /// Integral time of a PI
+        INTEGRAL_TIME "integral time of the velocity loop" = positive(Plain(&TIME), "6 ms");
+        /// Largest torque or force that the drive asks for
+        MAX_EFFORT "largest effort" = positive(Motor(&EFFORT), "12 Nm");
+    }
+}
 
 /// Gains and limits; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,11 +76,11 @@ impl Params {
     /// # Errors
     /// [`ParameterError`] names the first parameter out of its bound.
     pub fn check(&self) -> Result<(), ParameterError> {
-        Parameter::VelocityGain.check(self.k_p)?;
+        Parameter::GAIN.check(self.k_p)?;
         if let Some(integral_time) = self.integral_time {
-            Parameter::VelocityIntegralTime.check(integral_time)?;
+            Parameter::INTEGRAL_TIME.check(integral_time)?;
         }
-        limit(Parameter::MaxEffort, self.max_effort).map(|_| ())
+        limit(Parameter::MAX_EFFORT, self.max_effort).map(|_| ())
     }
 }
 

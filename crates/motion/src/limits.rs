@@ -42,17 +42,17 @@ servobench_config::parameters! {
     /// A limit of moves, a magnitude.
     pub enum LimitParameter {
         /// Largest velocity
-        Velocity "velocity" = servobench_config::positive(Axis(&VELOCITY), "30 m/min");
+        VELOCITY "velocity" = servobench_config::positive(Axis(&VELOCITY), "30 m/min");
         /// Largest acceleration
-        Acceleration "acceleration" = servobench_config::positive(Axis(&ACCELERATION), "5 m/s2");
+        ACCELERATION "acceleration" = servobench_config::positive(Axis(&ACCELERATION), "5 m/s2");
         /// Largest jerk
-        Jerk "jerk" = servobench_config::positive(Axis(&JERK), "50 m/s3");
+        JERK "jerk" = servobench_config::positive(Axis(&JERK), "50 m/s3");
         /// Largest snap
-        Snap "snap" = servobench_config::positive(Axis(&SNAP), "1000 m/s4");
+        SNAP "snap" = servobench_config::positive(Axis(&SNAP), "1000 m/s4");
         /// Largest velocity below zero, of moves that are planned in motion
-        NegativeVelocity "negative velocity" = servobench_config::positive(Axis(&VELOCITY), "20 m/min");
+        NEGATIVE_VELOCITY "negative velocity" = servobench_config::positive(Axis(&VELOCITY), "20 m/min");
         /// Largest acceleration below zero, of moves that are planned in motion
-        NegativeAcceleration "negative acceleration" = servobench_config::positive(Axis(&ACCELERATION), "4 m/s2");
+        NEGATIVE_ACCELERATION "negative acceleration" = servobench_config::positive(Axis(&ACCELERATION), "4 m/s2");
     }
 }
 
@@ -88,10 +88,10 @@ impl Limits {
     pub(crate) fn descending(&self, order: Order) -> Result<[f64; 4], PlanError> {
         let n = order.derivative();
         let named = [
-            (LimitParameter::Velocity.name(), self.velocity),
-            (LimitParameter::Acceleration.name(), self.acceleration),
-            (LimitParameter::Jerk.name(), self.jerk),
-            (LimitParameter::Snap.name(), self.snap),
+            (LimitParameter::VELOCITY.name, self.velocity),
+            (LimitParameter::ACCELERATION.name, self.acceleration),
+            (LimitParameter::JERK.name, self.jerk),
+            (LimitParameter::SNAP.name, self.snap),
         ];
         let mut bounds = [f64::INFINITY; 4];
         for (k, (name, value)) in named.into_iter().enumerate().take(n) {

@@ -17,15 +17,15 @@ servobench_config::parameters! {
     /// A parameter of bodies and the couplings between them, in the axis coordinate; the motor has those of its body in its own.
     pub enum ChainParameter {
         /// Mass or moment of inertia
-        Inertia "inertia" = positive(Axis(&INERTIAL), "40 kg");
+        INERTIA "inertia" = positive(Axis(&INERTIAL), "40 kg");
         /// Axis coordinate per coordinate of the body
-        Transmission "transmission" = positive(Plain(&RATIO), "1");
+        TRANSMISSION "transmission" = positive(Plain(&RATIO), "1");
         /// Constant resisting force or torque: gravity, or friction that differs between the directions
-        Bias "bias" = any(Axis(&EFFORT), "-3.2 N");
+        BIAS "bias" = any(Axis(&EFFORT), "-3.2 N");
         /// Stiffness of the coupling to the body before it
-        Stiffness "stiffness" = positive(Axis(&STIFFNESS), "120 N/um");
+        STIFFNESS "stiffness" = positive(Axis(&STIFFNESS), "120 N/um");
         /// Damping of that coupling
-        Damping "damping" = not_negative(Axis(&VISCOUS), "3000 N s/m");
+        DAMPING "damping" = not_negative(Axis(&VISCOUS), "3000 N s/m");
     }
 }
 
@@ -87,14 +87,14 @@ impl Chain {
             return Err(ParamError { name: "links", value: links.len() as f64, bound: "one fewer than the bodies" });
         }
         for body in bodies {
-            ChainParameter::Inertia.check_in_words(body.inertia)?;
-            ChainParameter::Transmission.check_in_words(body.transmission)?;
+            ChainParameter::INERTIA.check_in_words(body.inertia)?;
+            ChainParameter::TRANSMISSION.check_in_words(body.transmission)?;
             body.friction.check()?;
-            ChainParameter::Bias.check_in_words(body.bias)?;
+            ChainParameter::BIAS.check_in_words(body.bias)?;
         }
         for link in links {
-            ChainParameter::Stiffness.check_in_words(link.stiffness)?;
-            ChainParameter::Damping.check_in_words(link.damping)?;
+            ChainParameter::STIFFNESS.check_in_words(link.stiffness)?;
+            ChainParameter::DAMPING.check_in_words(link.damping)?;
         }
         Ok(())
     }

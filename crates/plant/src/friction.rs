@@ -20,13 +20,13 @@ servobench_config::parameters! {
     /// A parameter of the friction of a body, in the axis coordinate; the motor has those of its body in its own.
     pub enum FrictionParameter {
         /// Viscous friction
-        Viscous "viscous" = not_negative(Axis(&VISCOUS), "200 N s/m");
+        VISCOUS "viscous" = not_negative(Axis(&VISCOUS), "200 N s/m");
         /// Coulomb friction
-        Coulomb "coulomb" = not_negative(Axis(&EFFORT), "20 N");
+        COULOMB "coulomb" = not_negative(Axis(&EFFORT), "20 N");
         /// Static (breakaway) friction, at least `coulomb`
-        Breakaway "static" = not_negative(Axis(&EFFORT), "35 N");
+        BREAKAWAY "static" = not_negative(Axis(&EFFORT), "35 N");
         /// Velocity at which friction has mostly fallen from `static` to `coulomb`: exp(−(v/v_s)²)
-        StribeckVelocity "stribeck_velocity" = not_negative(Axis(&VELOCITY), "2 mm/s");
+        STRIBECK_VELOCITY "Stribeck velocity" = not_negative(Axis(&VELOCITY), "2 mm/s");
     }
 }
 
@@ -72,7 +72,7 @@ impl Friction {
     /// # Errors
     /// [`ParamError`] names the first parameter out of its bound.
     pub fn check(&self) -> Result<(), ParamError> {
-        FrictionParameter::Viscous.check_in_words(self.viscous)?;
+        FrictionParameter::VISCOUS.check_in_words(self.viscous)?;
         self.dry.check()
     }
 
@@ -175,11 +175,11 @@ impl DryFriction {
     pub const NONE: Self = Self { coulomb: 0.0, breakaway: 0.0, stribeck_velocity: 0.0 };
 
     fn check(&self) -> Result<(), ParamError> {
-        FrictionParameter::Coulomb.check_in_words(self.coulomb)?;
-        FrictionParameter::StribeckVelocity.check_in_words(self.stribeck_velocity)?;
+        FrictionParameter::COULOMB.check_in_words(self.coulomb)?;
+        FrictionParameter::STRIBECK_VELOCITY.check_in_words(self.stribeck_velocity)?;
         if !(self.breakaway.is_finite() && self.breakaway >= self.coulomb) {
             return Err(ParamError {
-                name: FrictionParameter::Breakaway.name(),
+                name: FrictionParameter::BREAKAWAY.name,
                 value: self.breakaway,
                 bound: "finite and at least `coulomb`",
             });

@@ -32,15 +32,15 @@ servobench_config::parameters! {
     /// A parameter of a synchronous motor.
     pub enum Parameter {
         /// Electrical angle per motor coordinate
-        ElectricalRatio "electrical_ratio" = positive(Plain(&RATIO), "4");
+        ELECTRICAL_RATIO "electrical ratio" = positive(Plain(&RATIO), "4");
         /// Stator resistance, phase to neutral
-        Resistance "resistance" = positive(Plain(&RESISTANCE), "0.36 Ohm");
+        RESISTANCE "resistance" = positive(Plain(&RESISTANCE), "0.36 Ohm");
         /// Inductance of the d axis, phase to neutral
-        InductanceD "inductance_d" = positive(Plain(&INDUCTANCE), "36 mH");
+        INDUCTANCE_D "inductance, d axis" = positive(Plain(&INDUCTANCE), "36 mH");
         /// Inductance of the q axis, phase to neutral
-        InductanceQ "inductance_q" = positive(Plain(&INDUCTANCE), "51 mH");
+        INDUCTANCE_Q "inductance, q axis" = positive(Plain(&INDUCTANCE), "51 mH");
         /// Flux linkage of the magnets, amplitude
-        FluxLinkage "flux_linkage" = positive(Plain(&FLUX_LINKAGE), "0.545 V s");
+        FLUX_LINKAGE "flux linkage" = positive(Plain(&FLUX_LINKAGE), "0.545 V s");
     }
 }
 
@@ -80,11 +80,11 @@ impl Params {
     /// # Errors
     /// [`ParamError`] names the first parameter that is not finite and positive.
     pub fn check(&self) -> Result<(), ParamError> {
-        Parameter::ElectricalRatio.check_in_words(self.electrical_ratio)?;
-        Parameter::Resistance.check_in_words(self.resistance)?;
-        Parameter::InductanceD.check_in_words(self.inductance.d)?;
-        Parameter::InductanceQ.check_in_words(self.inductance.q)?;
-        Parameter::FluxLinkage.check_in_words(self.flux_linkage)?;
+        Parameter::ELECTRICAL_RATIO.check_in_words(self.electrical_ratio)?;
+        Parameter::RESISTANCE.check_in_words(self.resistance)?;
+        Parameter::INDUCTANCE_D.check_in_words(self.inductance.d)?;
+        Parameter::INDUCTANCE_Q.check_in_words(self.inductance.q)?;
+        Parameter::FLUX_LINKAGE.check_in_words(self.flux_linkage)?;
         Ok(())
     }
 

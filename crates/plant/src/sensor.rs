@@ -8,7 +8,7 @@ servobench_config::parameters! {
     /// A parameter of an encoder, on the load in the axis coordinate, on the motor in its own.
     pub enum EncoderParameter {
         /// One increment
-        Step "encoder step" = positive(Axis(&POSITION), "0.1 um");
+        STEP "encoder step" = positive(Axis(&POSITION), "0.1 um");
     }
 }
 
@@ -32,7 +32,7 @@ impl Encoder {
     /// # Errors
     /// [`ParamError`] when the increment is not finite and positive.
     pub fn check(&self) -> Result<(), ParamError> {
-        self.increment.map_or(Ok(()), |increment| EncoderParameter::Step.check_in_words(increment).map(|_| ()))
+        self.increment.map_or(Ok(()), |increment| EncoderParameter::STEP.check_in_words(increment).map(|_| ()))
     }
 
     /// Reads, to the nearest increment, `position` and `velocity` of the body it sits on.

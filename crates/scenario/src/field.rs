@@ -6,7 +6,7 @@ use crate::source::{At, Span};
 use crate::tree::{Node, Number, Value};
 use serde_json::{Value as Json, json};
 use servobench_config::quantities::RATIO;
-use servobench_config::{Bound, Description, Kind, Measure, Physical};
+use servobench_config::{Bound, Kind, Measure, Parameter, Physical};
 use std::ops::Range;
 
 /// A type that keys can have; `Spec` is what one key demands beyond the type: a dimension, a bound.
@@ -107,17 +107,33 @@ impl Field<Measure> for f64 {
     }
 }
 
-/// A parameter that its owner describes.
-impl Field<Description> for f64 {
-    fn decode(path: &str, node: &Node, spec: &Description, report: &mut Report) -> Option<Self> {
+/// A parameter that its owner describes; the `title` is the name by which errors call it.
+impl Field<Parameter> for f64 {
+    fn decode(path: &str, node: &Node, spec: &Parameter, report: &mut Report) -> Option<Self> {
         <Self as Field<Measure>>::decode(path, node, &spec.measure, report)
     }
 
-    fn schema(spec: &Description) -> Json {
-        <Self as Field<Measure>>::schema(&spec.measure)
+    fn schema(spec: &Parameter) -> Json {
+        let mut schema = <Self as Field<Measure>>::schema(&spec.measure);
+        schema["title"] = spec.name.into();
+        schema
     }
 
-    fn meaning(spec: &Description) -> &'static str {
+    fn meaning(spec: &Parameter) -> &'static str {
+        spec.meaning
+    }
+}
+
+impl Field<&'static Parameter> for f64 {
+    fn decode(path: &str, node: &Node, spec: &&'static Parameter, report: &mut Report) -> Option<Self> {
+        <Self as Field<Parameter>>::decode(path, node, spec, report)
+    }
+
+    fn schema(spec: &&'static Parameter) -> Json {
+        <Self as Field<Parameter>>::schema(spec)
+    }
+
+    fn meaning(spec: &&'static Parameter) -> &'static str {
         spec.meaning
     }
 }

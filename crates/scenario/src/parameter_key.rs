@@ -1,42 +1,51 @@
 //! Where the parameters of drive and switches stand in a scenario file.
-use servobench_drive::Parameter;
+use crate::schema::json_schema;
+use serde_json::Value;
+use servobench_config::Parameter;
+use servobench_drive::{self as drive, current, delay, feedforward, velocity};
 use servobench_plant::SwitchPoint;
+use std::collections::VecDeque;
+use std::sync::LazyLock;
+
+/// Parameters of the firmware whose key says them in another way – a bandwidth, a rate, a share –, and the table where several keys
+/// decide on one.
+const SAID_OTHERWISE: [(&Parameter, &str); 10] = [
+    (drive::Parameter::TRANSMISSION, "axis"),
+    (drive::Parameter::POSITION_GAIN, "drive.position.gain"),
+    (drive::Parameter::POSITION_RATE, "drive.position.rate"),
+    (drive::Parameter::VELOCITY_RATE, "drive.velocity.rate"),
+    (velocity::Parameter::GAIN, "drive.velocity.gain"),
+    (velocity::Parameter::MAX_EFFORT, "drive"),
+    (current::Parameter::POLE_PAIRS, "motor.pole_pairs"),
+    (feedforward::Parameter::VELOCITY, "drive.feedforward.velocity"),
+    (feedforward::Parameter::MOTOR_INERTIA, "drive.estimate.motor_inertia"),
+    (delay::Parameter::DELAY, "drive.feedforward.delay"),
+];
+
+/// The keys of the file that hold a parameter as its owner declares it: the names of the parameters and the keys, those nearest to
+/// the root first.
+static KEYS: LazyLock<Vec<(String, String)>> = LazyLock::new(|| {
+    let schema = json_schema();
+    let mut tables = VecDeque::from([(String::new(), &schema)]);
+    let mut keys = Vec::new();
+    while let Some((path, table)) = tables.pop_front() {
+        if let Some(title) = table["title"].as_str().filter(|_| !path.is_empty()) {
+            keys.push((title.to_owned(), path.clone()));
+        }
+        for key in table["x-order"].as_array().into_iter().flatten().filter_map(Value::as_str) {
+            let path = if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
+            tables.push_back((path, &table["properties"][key]));
+        }
+    }
+    keys
+});
 
 /// Key from which a parameter of the drive's firmware follows, or the table where several keys decide on it.
 #[must_use]
-pub const fn parameter_key(parameter: Parameter) -> &'static str {
-    match parameter {
-        Parameter::Transmission => "axis",
-        Parameter::PositionGain => "drive.position.gain",
-        Parameter::PositionRate => "drive.position.rate",
-        Parameter::VelocityGain => "drive.velocity.gain",
-        Parameter::VelocityIntegralTime => "drive.velocity.integral_time",
-        Parameter::VelocityFilterTime => "drive.velocity.filter_time",
-        Parameter::VelocityRate => "drive.velocity.rate",
-        Parameter::MaxEffort => "drive",
-        Parameter::CurrentGainD => "drive.current.gain_d",
-        Parameter::CurrentGainQ => "drive.current.gain_q",
-        Parameter::CurrentIntegralTimeD => "drive.current.integral_time_d",
-        Parameter::CurrentIntegralTimeQ => "drive.current.integral_time_q",
-        Parameter::CurrentReferenceD => "drive.current.d_reference",
-        Parameter::MaxCurrent => "motor.max_current",
-        Parameter::DcLink => "drive.dc_link",
-        Parameter::DirectGain => "motor.gain",
-        Parameter::PolePairs => "motor.pole_pairs",
-        Parameter::Resistance => "drive.estimate.motor.resistance",
-        Parameter::InductanceD => "drive.estimate.motor.inductance_d",
-        Parameter::InductanceQ => "drive.estimate.motor.inductance_q",
-        Parameter::FluxLinkage => "drive.estimate.motor.flux_linkage",
-        Parameter::VelocityFeedforward => "drive.feedforward.velocity",
-        Parameter::ReferenceDelay => "drive.feedforward.delay",
-        Parameter::Coulomb => "drive.estimate.coulomb",
-        Parameter::Bias => "drive.estimate.bias",
-        Parameter::MotorInertia => "drive.estimate.motor_inertia",
-        Parameter::LoadInertia => "drive.estimate.load_inertia",
-        Parameter::Stiffness => "drive.estimate.stiffness",
-        Parameter::MotorViscous => "drive.estimate.motor_viscous",
-        Parameter::LoadViscous => "drive.estimate.load_viscous",
-    }
+pub fn parameter_key(parameter: &Parameter) -> &'static str {
+    let otherwise = SAID_OTHERWISE.iter().find(|(known, _)| known.name == parameter.name).map(|(_, key)| *key);
+    let key = || KEYS.iter().find(|(name, _)| name == parameter.name).map(|(_, key)| key.as_str());
+    otherwise.or_else(key).unwrap_or("drive")
 }
 
 /// Key of a point of the switches.
@@ -55,23 +64,33 @@ pub const fn switch_key(point: SwitchPoint) -> &'static str {
 mod tests {
     use super::*;
     use crate::reading::{names, read};
-    use serde_json::Value;
-    use servobench_config::Description;
     use servobench_motion::LimitParameter;
     use servobench_plant::{ChainParameter, EncoderParameter, FrictionParameter, pmsm};
+
+    fn of_the_drive() -> impl Iterator<Item = &'static Parameter> {
+        let all = [
+            drive::Parameter::ALL,
+            velocity::Parameter::ALL,
+            current::Parameter::ALL,
+            feedforward::Parameter::ALL,
+            delay::Parameter::ALL,
+        ];
+        all.into_iter().flatten().copied()
+    }
 
     /// The reference shows the example of a parameter as a value of its key.
     #[test]
     fn every_example_is_a_value_of_its_parameter() {
-        let drive = Parameter::ALL.iter().map(|one| (one.name(), one.description()));
-        let chain = ChainParameter::ALL.iter().map(|one| (one.name(), one.description()));
-        let friction = FrictionParameter::ALL.iter().map(|one| (one.name(), one.description()));
-        let motor = pmsm::Parameter::ALL.iter().map(|one| (one.name(), one.description()));
-        let encoder = EncoderParameter::ALL.iter().map(|one| (one.name(), one.description()));
-        let limits = LimitParameter::ALL.iter().map(|one| (one.name(), one.description()));
-        let all: Vec<_> = drive.chain(chain).chain(friction).chain(motor).chain(encoder).chain(limits).collect();
+        let others = [
+            ChainParameter::ALL,
+            FrictionParameter::ALL,
+            pmsm::Parameter::ALL,
+            EncoderParameter::ALL,
+            LimitParameter::ALL,
+        ];
+        let all: Vec<_> = of_the_drive().chain(others.into_iter().flatten().copied()).collect();
         assert!(all.len() > 40, "{}", all.len());
-        for (name, Description { meaning, measure }) in all {
+        for Parameter { name, meaning, measure } in all {
             let candidates: Vec<_> = measure.kind.candidates(None, None).collect();
             let value = match (read(measure.example, &candidates), measure.example.parse()) {
                 (Ok((_, value)), _) => value,
@@ -83,17 +102,31 @@ mod tests {
         }
     }
 
-    /// The schema is made of the tables that read the files.
+    /// The schema is made of the tables that read the files. By its name a parameter is found, so no two have the same.
     #[test]
-    fn every_key_is_one_of_the_file() {
-        let schema = crate::json_schema();
-        let keys = Parameter::ALL.iter().map(|parameter| parameter_key(*parameter));
-        for key in keys.chain(SwitchPoint::ALL.map(switch_key)) {
-            let mut table = &schema;
-            for part in key.split('.') {
-                table = &table["properties"][part];
-                assert_ne!(table, &Value::Null, "{key}");
-            }
+    fn every_parameter_has_its_own_name_and_a_key_of_the_file() {
+        let schema = json_schema();
+        let of_drive: Vec<_> = of_the_drive().collect();
+        for (index, parameter) in of_drive.iter().enumerate() {
+            assert!(of_drive[..index].iter().all(|other| other.name != parameter.name), "{parameter}");
+            let is_said_otherwise = SAID_OTHERWISE.iter().any(|(known, _)| known == parameter);
+            assert_ne!(is_said_otherwise, KEYS.iter().any(|(name, _)| name == parameter.name), "{parameter}");
         }
+        let at = |key: &str| -> &Value {
+            let found = key.split('.').fold(&schema, |table, part| &table["properties"][part]);
+            assert_ne!(found, &Value::Null, "{key}");
+            found
+        };
+        for parameter in of_drive {
+            // A parameter of another crate may have the name as long as no key does.
+            let found = at(parameter_key(parameter));
+            let meaning = found["description"].as_str().unwrap();
+            assert!(found["title"].is_null() || meaning.starts_with(parameter.meaning), "{parameter}: {meaning}");
+        }
+        for point in SwitchPoint::ALL {
+            at(switch_key(point));
+        }
+        assert_eq!(parameter_key(current::Parameter::DC_LINK), "drive.dc_link", "not that of the estimate");
+        assert_eq!(parameter_key(current::Parameter::RESISTANCE), "drive.estimate.motor.resistance");
     }
 }

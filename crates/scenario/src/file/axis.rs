@@ -70,13 +70,13 @@ table! {
         inertia: f64 = positive(Plain(&INERTIA), "0.00018 kg m2"),
         /// Mass, for a linear motor.
         mass: f64 = positive(Plain(&MASS), "20 kg"),
-        viscous: f64 = FrictionParameter::Viscous.description().of_motor("0.001 Nm s/rad"),
-        coulomb: f64 = FrictionParameter::Coulomb.description().of_motor("0.05 Nm"),
+        viscous: f64 = FrictionParameter::VISCOUS.of_motor("0.001 Nm s/rad"),
+        coulomb: f64 = FrictionParameter::COULOMB.of_motor("0.05 Nm"),
         /// default: equal to it.
-        breakaway as "static": f64 = FrictionParameter::Breakaway.description().of_motor("0.08 Nm"),
+        breakaway as "static": f64 = FrictionParameter::BREAKAWAY.of_motor("0.08 Nm"),
         /// default: at once.
-        stribeck_velocity: f64 = FrictionParameter::StribeckVelocity.description().of_motor("10 rpm"),
-        bias: f64 = ChainParameter::Bias.description().of_motor("0.1 Nm"),
+        stribeck_velocity: f64 = FrictionParameter::STRIBECK_VELOCITY.of_motor("10 rpm"),
+        bias: f64 = ChainParameter::BIAS.of_motor("0.1 Nm"),
     }
 }
 
@@ -88,17 +88,17 @@ table! {
         /// Moment of inertia, on a rotary axis.
         inertia: f64 = positive(Plain(&INERTIA), "0.005 kg m2"),
         /// default: rigid.
-        stiffness: f64 = ChainParameter::Stiffness.description(),
-        damping: f64 = ChainParameter::Damping.description(),
+        stiffness: f64 = ChainParameter::STIFFNESS,
+        damping: f64 = ChainParameter::DAMPING,
         /// against the ground.
-        viscous: f64 = FrictionParameter::Viscous.description(),
+        viscous: f64 = FrictionParameter::VISCOUS,
         /// against the ground.
-        coulomb: f64 = FrictionParameter::Coulomb.description(),
+        coulomb: f64 = FrictionParameter::COULOMB,
         /// default: equal to it.
-        breakaway as "static": f64 = FrictionParameter::Breakaway.description(),
+        breakaway as "static": f64 = FrictionParameter::BREAKAWAY,
         /// default: at once.
-        stribeck_velocity: f64 = FrictionParameter::StribeckVelocity.description(),
-        bias: f64 = ChainParameter::Bias.description(),
+        stribeck_velocity: f64 = FrictionParameter::STRIBECK_VELOCITY,
+        bias: f64 = ChainParameter::BIAS,
     }
 }
 

@@ -10,7 +10,7 @@ use servobench_config::quantities::{
     BANDWIDTH, FORCE, INERTIAL, LEAD, POSITION_GAIN, RATIO, TORQUE, VISCOUS, VOLT_GAIN,
 };
 use servobench_config::{choices, positive};
-use servobench_drive::{EffortFeedforward, Parameter};
+use servobench_drive::{self as drive, EffortFeedforward, current, feedforward, velocity};
 use servobench_plant::EncoderParameter;
 
 choices! {
@@ -43,7 +43,7 @@ table! {
         source: String = (),
         /// Whether the power stage is on; default: true. Off: no current, no force, and the axis is free.
         enabled: bool = (),
-        dc_link: f64 = Parameter::DcLink.description(),
+        dc_link: f64 = current::Parameter::DC_LINK,
         /// Largest torque that the drive asks for, besides what the current limit of the motor or the `limit` of an ideal
         /// source allows.
         max_torque: f64 = positive(Plain(&TORQUE), "12 Nm"),
@@ -77,16 +77,16 @@ table! {
         /// Closed-loop bandwidth α, from which the gains follow: k_p = α·L, T_i = L/R.
         bandwidth: f64 = positive(Plain(&BANDWIDTH), "1 kHz"),
         /// instead of the bandwidth.
-        gain_d: f64 = Parameter::CurrentGainD.description(),
+        gain_d: f64 = current::Parameter::GAIN_D,
         /// instead of the bandwidth.
-        gain_q: f64 = Parameter::CurrentGainQ.description(),
+        gain_q: f64 = current::Parameter::GAIN_Q,
         /// default: L/R of the estimated motor.
-        integral_time_d: f64 = Parameter::CurrentIntegralTimeD.description(),
+        integral_time_d: f64 = current::Parameter::INTEGRAL_TIME_D,
         /// default: L/R of the estimated motor.
-        integral_time_q: f64 = Parameter::CurrentIntegralTimeQ.description(),
+        integral_time_q: f64 = current::Parameter::INTEGRAL_TIME_Q,
         /// default: 0. The torque or force per q-axis current is then that of 1.5·p·(ψ + (L_d − L_q)·i_d) of the
         /// estimated motor, and `max_current` bounds the vector of both.
-        d_reference: f64 = Parameter::CurrentReferenceD.description(),
+        d_reference: f64 = current::Parameter::D_REFERENCE,
     }
 }
 
@@ -103,9 +103,9 @@ table! {
         /// source.
         gain: Either = EitherMeasure { first: InMotor(&VISCOUS), second: InMotor(&VOLT_GAIN), example: "243.45 V s/m" },
         /// default: 4/ω.
-        integral_time: f64 = Parameter::VelocityIntegralTime.description(),
+        integral_time: f64 = velocity::Parameter::INTEGRAL_TIME,
         /// default: none.
-        filter_time: f64 = Parameter::VelocityFilterTime.description(),
+        filter_time: f64 = drive::Parameter::VELOCITY_FILTER_TIME,
     }
 }
 
@@ -147,14 +147,14 @@ table! {
         gear_ratio: f64 = positive(Plain(&RATIO), "5"),
         /// Mass or inertia on the motor's side of the softest spring, rotor included.
         motor_inertia: f64 = positive(InAxis(&INERTIAL), "20 kg"),
-        load_inertia: f64 = Parameter::LoadInertia.description(),
-        stiffness: f64 = Parameter::Stiffness.description(),
-        motor_viscous: f64 = Parameter::MotorViscous.description(),
-        load_viscous: f64 = Parameter::LoadViscous.description(),
-        coulomb: f64 = Parameter::Coulomb.description(),
-        bias: f64 = Parameter::Bias.description(),
-        gain: f64 = Parameter::DirectGain.description(),
-        dc_link: f64 = Parameter::DcLink.description(),
+        load_inertia: f64 = feedforward::Parameter::LOAD_INERTIA,
+        stiffness: f64 = feedforward::Parameter::STIFFNESS,
+        motor_viscous: f64 = feedforward::Parameter::MOTOR_VISCOUS,
+        load_viscous: f64 = feedforward::Parameter::LOAD_VISCOUS,
+        coulomb: f64 = feedforward::Parameter::COULOMB,
+        bias: f64 = feedforward::Parameter::BIAS,
+        gain: f64 = drive::Parameter::DIRECT_GAIN,
+        dc_link: f64 = current::Parameter::DC_LINK,
         /// The synchronous motor.
         motor: EstimatedMotor = (),
     }
@@ -163,10 +163,10 @@ table! {
 table! {
     /// What the firmware believes of the synchronous motor, phase to neutral.
     pub(crate) struct EstimatedMotor {
-        resistance: f64 = Parameter::Resistance.description(),
-        inductance_d: f64 = Parameter::InductanceD.description(),
-        inductance_q: f64 = Parameter::InductanceQ.description(),
-        flux_linkage: f64 = Parameter::FluxLinkage.description(),
+        resistance: f64 = current::Parameter::RESISTANCE,
+        inductance_d: f64 = current::Parameter::INDUCTANCE_D,
+        inductance_q: f64 = current::Parameter::INDUCTANCE_Q,
+        flux_linkage: f64 = current::Parameter::FLUX_LINKAGE,
     }
 }
 
@@ -175,6 +175,6 @@ table! {
     pub(crate) struct LoadEncoder {
         /// Increments per revolution, on a rotary axis.
         counts_per_rev: u32 = 1..=u32::MAX,
-        step: f64 = EncoderParameter::Step.description(),
+        step: f64 = EncoderParameter::STEP,
     }
 }

@@ -7,7 +7,7 @@ use servobench_config::quantities::{
     BACK_EMF, EFFORT, FORCE_CONSTANT, INDUCTANCE, INERTIA, MASS, POSITION, SOURCE_GAIN, TORQUE_CONSTANT, VOLTAGE,
 };
 use servobench_config::{choices, positive};
-use servobench_drive as drive;
+use servobench_drive::current;
 use servobench_plant::{EncoderParameter, pmsm};
 
 choices! {
@@ -37,12 +37,12 @@ table! {
         /// Distance τ_p from a north pole to the next south pole of a linear motor, half an electrical period. Catalogues
         /// that give the pitch from north to north give twice that.
         pole_pitch: f64 = positive(Plain(&POSITION.linear), "16 mm"),
-        resistance: f64 = pmsm::Parameter::Resistance.description(),
+        resistance: f64 = pmsm::Parameter::RESISTANCE,
         /// Inductance of both axes, phase to neutral.
         inductance: f64 = positive(Plain(&INDUCTANCE), "0.2 mH"),
-        inductance_d: f64 = pmsm::Parameter::InductanceD.description(),
-        inductance_q: f64 = pmsm::Parameter::InductanceQ.description(),
-        flux_linkage: f64 = pmsm::Parameter::FluxLinkage.description(),
+        inductance_d: f64 = pmsm::Parameter::INDUCTANCE_D,
+        inductance_q: f64 = pmsm::Parameter::INDUCTANCE_Q,
+        flux_linkage: f64 = pmsm::Parameter::FLUX_LINKAGE,
         /// Torque per current instead of the flux linkage: 1.5·p·ψ in Nm/Apk.
         torque_constant: f64 = positive(Plain(&TORQUE_CONSTANT), "0.3 Nm/Arms"),
         /// Force per current of a linear motor instead of the flux linkage: 1.5·(π/τ_p)·ψ in N/Apk.
@@ -55,7 +55,7 @@ table! {
         /// Mass of the moving part of a linear motor.
         mass: f64 = positive(Plain(&MASS), "3 kg"),
         /// : the drive asks for no more.
-        max_current: f64 = drive::Parameter::MaxCurrent.description(),
+        max_current: f64 = current::Parameter::MAX_CURRENT,
         /// Force or torque per volt of an ideal source; without it the output is the force or torque itself.
         gain: f64 = positive(InMotor(&SOURCE_GAIN), "35.1507 N/V"),
         /// Largest output of an ideal source, in volts or as force or torque; default: unlimited.
@@ -71,6 +71,6 @@ table! {
         /// Increments per revolution: 1048576 for 20 bits.
         counts_per_rev: u32 = 1..=u32::MAX,
         /// : an angle of a motor that turns, with a `lead` too, a length of a linear motor ("0.1 um").
-        step: f64 = EncoderParameter::Step.description().of_motor("0.01 deg"),
+        step: f64 = EncoderParameter::STEP.of_motor("0.01 deg"),
     }
 }

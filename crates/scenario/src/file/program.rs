@@ -35,10 +35,10 @@ table! {
         aborts_after: f64 = positive(Plain(&TIME), "0.3 s"),
         /// Order of the profile.
         order: u32 = 2..=4,
-        velocity: f64 = LimitParameter::Velocity.description(),
-        acceleration: f64 = LimitParameter::Acceleration.description(),
-        jerk: f64 = LimitParameter::Jerk.description(),
-        snap: f64 = LimitParameter::Snap.description(),
+        velocity: f64 = LimitParameter::VELOCITY,
+        acceleration: f64 = LimitParameter::ACCELERATION,
+        jerk: f64 = LimitParameter::JERK,
+        snap: f64 = LimitParameter::SNAP,
         /// Which profile goes from rest to rest.
         method: Method = OneOf,
         /// Sample time of the plan, a whole number of base ticks.
@@ -49,8 +49,8 @@ table! {
         execution: Execution = OneOf,
         /// Plans as if the axis were in motion, with so much work.
         online: Effort = OneOf,
-        negative_velocity: f64 = LimitParameter::NegativeVelocity.description(),
-        negative_acceleration: f64 = LimitParameter::NegativeAcceleration.description(),
+        negative_velocity: f64 = LimitParameter::NEGATIVE_VELOCITY,
+        negative_acceleration: f64 = LimitParameter::NEGATIVE_ACCELERATION,
         /// Moves by the operands of Rockwell's axis move.
         rockwell: Rockwell = (),
         /// Input shaper.

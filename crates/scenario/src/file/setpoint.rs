@@ -18,10 +18,10 @@ table! {
     pub(crate) struct Setpoint {
         /// Order of the profile: 2 limits velocity and acceleration, 3 jerk too, 4 snap too.
         order: u32 = 2..=4,
-        velocity: f64 = LimitParameter::Velocity.description(),
-        acceleration: f64 = LimitParameter::Acceleration.description(),
-        jerk: f64 = LimitParameter::Jerk.description(),
-        snap: f64 = LimitParameter::Snap.description(),
+        velocity: f64 = LimitParameter::VELOCITY,
+        acceleration: f64 = LimitParameter::ACCELERATION,
+        jerk: f64 = LimitParameter::JERK,
+        snap: f64 = LimitParameter::SNAP,
         /// Which profile goes from rest to rest; default: "published".
         method: Method = OneOf,
         /// Sample time of moves from rest to rest, a whole number of base ticks; default: continuous.
@@ -33,9 +33,9 @@ table! {
         /// Plans every move as one that may start in motion, with so much work; "fast" where a move does and nothing is given.
         online: Effort = OneOf,
         /// default: as `velocity`.
-        negative_velocity: f64 = LimitParameter::NegativeVelocity.description(),
+        negative_velocity: f64 = LimitParameter::NEGATIVE_VELOCITY,
         /// default: as `acceleration`.
-        negative_acceleration: f64 = LimitParameter::NegativeAcceleration.description(),
+        negative_acceleration: f64 = LimitParameter::NEGATIVE_ACCELERATION,
         /// Moves by the operands of Rockwell's axis move.
         rockwell: Rockwell = (),
         /// Input shaper, against one mode of the axis.

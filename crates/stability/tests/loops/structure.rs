@@ -91,7 +91,7 @@ fn what_cannot_be_analysed_is_said() {
     let mut model = ideal(12_000, 1, 3.0, three_bodies());
     model.drive.position_gain = f64::NAN;
     let error = analyse(&model, Depth::Verdict).unwrap_err();
-    assert!(matches!(error, StabilityError::Drive(error) if error.name == Parameter::PositionGain));
+    assert!(matches!(error, StabilityError::Drive(error) if error.name == Parameter::POSITION_GAIN));
     let mixed = Loop { source: servo(TUNING, three_bodies()).source, ..ideal(12_000, 1, 3.0, three_bodies()) };
     assert!(matches!(analyse(&mixed, Depth::Verdict), Err(StabilityError::SourceDoesNotFit)));
     // 1e300 N·s/m on 10 g is a pole of −1e298 a tick.

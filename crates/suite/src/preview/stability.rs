@@ -1,6 +1,6 @@
 //! Whether the loops are stable, and how far from their boundaries.
 use super::Doubt;
-use servobench_drive::Parameter;
+use servobench_drive::{self as drive, current, velocity};
 use servobench_metrics::Quantity;
 use servobench_scenario::{Scenario, parameter_key};
 use servobench_sim::{Analysis, BuildError, analyse_stability};
@@ -44,13 +44,13 @@ impl LoopStability {
 }
 
 /// The key that sets `gain`.
-const fn key_of(gain: GainName) -> &'static str {
+fn key_of(gain: GainName) -> &'static str {
     match gain {
-        GainName::Position => parameter_key(Parameter::PositionGain),
-        GainName::Velocity => parameter_key(Parameter::VelocityGain),
+        GainName::Position => parameter_key(drive::Parameter::POSITION_GAIN),
+        GainName::Velocity => parameter_key(velocity::Parameter::GAIN),
         GainName::CurrentBandwidth => "drive.current.bandwidth",
-        GainName::CurrentD => parameter_key(Parameter::CurrentGainD),
-        GainName::CurrentQ => parameter_key(Parameter::CurrentGainQ),
+        GainName::CurrentD => parameter_key(current::Parameter::GAIN_D),
+        GainName::CurrentQ => parameter_key(current::Parameter::GAIN_Q),
     }
 }
 
