@@ -1,11 +1,13 @@
 //! Limits of the machine that bound during a run, in words.
+use crate::failures::lifted;
 use crate::results::RunResult;
 use servobench_metrics::Quantity;
 use servobench_trace::Event;
 
-/// One line for each limit that bound, unless a reason of the verdict says it: `voltage limit bound for 636 ms`.
+/// One line for each limit that bound, unless a reason of the verdict or what is lifted says it: `voltage limit bound for 636 ms`.
 pub(crate) fn bound_limits(run: &RunResult) -> Vec<String> {
-    let is_said = |words: &String| run.reasons.iter().any(|reason| reason.contains(words.as_str()));
+    let lifted = lifted(run);
+    let is_said = |words: &String| run.reasons.iter().chain(&lifted).any(|said| said.contains(words.as_str()));
     words(&run.events).into_iter().filter(|words| !is_said(words)).collect()
 }
 
@@ -47,6 +49,8 @@ impl Bound<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::samples;
+    use servobench_metrics::Standing;
 
     #[test]
     fn times_are_summed_for_each_limit() {
@@ -60,5 +64,19 @@ mod tests {
         assert_eq!(words(&events), ["voltage limit bound 2 times, for 300 ms in all", "effort limit bound for 400 ms"]);
         let cut = [Event::bound(0.0, 0.5, "loop", "effort limit", true)];
         assert_eq!(words(&cut), ["effort limit bound more than 1 times, for more than 500 ms in all"]);
+    }
+
+    /// A requirement says it, broken or lifted.
+    #[test]
+    fn what_is_said_already_is_not_said_again() {
+        let why = || vec!["the load ended 50.0 mm short of 200 mm; effort limit bound for 400 ms".to_owned()];
+        let mut run = samples::kept();
+        run.events = vec![Event::bound(0.3, 0.7, "loop", "effort limit", false)];
+        assert_eq!(bound_limits(&run), ["effort limit bound for 400 ms"]);
+        run.requirements = samples::requirements([("arrives", Standing::Lifted, why())]);
+        assert_eq!(bound_limits(&run), [""; 0]);
+        run.requirements = samples::requirements([]);
+        run.reasons = why();
+        assert_eq!(bound_limits(&run), [""; 0]);
     }
 }

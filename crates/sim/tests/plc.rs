@@ -97,11 +97,17 @@ fn a_homed_axis_moves_from_its_reference() {
 fn waiting_in_vain_ends_with_the_reason() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/plc/figure-3a.toml");
     let text = std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{error}"));
-    let text = text.replace("start = \"first.Done\"", "start = \"first.CommandAborted\"\ntimeout = \"1 s\"");
-    let loaded = scenario::parse("test", &text, None).unwrap_or_else(|error| panic!("{error}"));
-    let failure = outcome(&loaded).failure.map(|failure| failure.to_string()).unwrap_or_default();
-    assert!(failure.starts_with("at 1.00"), "{failure}");
-    assert!(failure.ends_with("`first.CommandAborted` did not become TRUE within 1 s"), "{failure}");
+    for (start, reason) in [
+        ("\"first.CommandAborted\"", "`first.CommandAborted` did not become TRUE within 1 s"),
+        ("{ above = \"90 m\" }", "the axis did not pass 90 m upwards within 1 s"),
+        ("{ below = \"-90 m\" }", "the axis did not pass -90 m downwards within 1 s"),
+    ] {
+        let text = text.replace("start = \"first.Done\"", &format!("start = {start}\ntimeout = \"1 s\""));
+        let loaded = scenario::parse("test", &text, None).unwrap_or_else(|error| panic!("{error}"));
+        let failure = outcome(&loaded).failure.map(|failure| failure.to_string()).unwrap_or_default();
+        assert!(failure.starts_with("at 1.00"), "{failure}");
+        assert!(failure.ends_with(reason), "{failure}");
+    }
 }
 
 /// The recording of a program of `scenarios/plc` with something else in the place of what it says.

@@ -8,7 +8,7 @@ use crate::params::AxisParams;
 use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
-use servobench_base::{ParamError, Setpoint};
+use servobench_base::{Coordinate, ParamError, Setpoint};
 use servobench_fieldbus::{AxisCommand, AxisFeedback};
 
 /// Hears what happens in a program; calls and outputs are named by their indices.
@@ -34,15 +34,15 @@ pub struct Executor {
 }
 
 impl Executor {
-    /// The program `calls` on an axis that is disabled.
+    /// The program `calls` on an axis that is disabled; `motion` says what its positions are, for messages.
     ///
     /// # Errors
     /// [`ParamError`] names the first parameter of the axis outside its bound.
-    pub fn new(params: AxisParams, calls: &[Call]) -> Result<Self, ParamError> {
+    pub fn new(params: AxisParams, motion: Coordinate, calls: &[Call]) -> Result<Self, ParamError> {
         let rises = |call: &Call| call.block.outputs().iter().map(|output| (*output, None)).collect();
         Ok(Self {
             axis: Axis::new(params)?,
-            calls: calls.iter().enumerate().map(|(index, call)| RunningCall::new(index, call)).collect(),
+            calls: calls.iter().enumerate().map(|(index, call)| RunningCall::new(index, call, motion.unit())).collect(),
             names: calls.iter().map(|call| call.name.clone()).collect(),
             situation: Situation { t: 0.0, position: 0.0, rises: calls.iter().map(rises).collect() },
             motions: Vec::new(),

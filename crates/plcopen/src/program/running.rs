@@ -64,6 +64,8 @@ pub(super) struct RunningCall {
     /// Where it stands in the program.
     index: usize,
     pub(super) name: String,
+    /// Unit of positions, for messages.
+    unit: &'static str,
     block: BlockName,
     instance: Box<dyn Instance>,
     start: Condition,
@@ -88,11 +90,12 @@ pub(super) struct RunningCall {
 }
 
 impl RunningCall {
-    pub(super) fn new(index: usize, call: &Call) -> Self {
+    pub(super) fn new(index: usize, call: &Call, unit: &'static str) -> Self {
         let outputs = call.block.outputs().len();
         Self {
             index,
             name: call.name.clone(),
+            unit,
             block: call.block,
             instance: call.block.instance(&call.inputs),
             start: call.start,
@@ -260,7 +263,7 @@ impl RunningCall {
     }
 
     fn waiting(&self, names: &[String]) -> String {
-        let name = &self.name;
+        let Self { name, unit, .. } = self;
         match self.start {
             Condition::AtOnce => format!("`{name}` was not executed"),
             Condition::At(time) => format!("`{name}` was not executed: it waits for {time} s"),
@@ -268,8 +271,8 @@ impl RunningCall {
                 let other = names.get(call).map_or("another call", String::as_str);
                 format!("`{name}` was not executed: `{other}.{}` did not become TRUE", output.name())
             }
-            Condition::Above(x) => format!("`{name}` was not executed: the axis did not pass {x} upwards"),
-            Condition::Below(x) => format!("`{name}` was not executed: the axis did not pass {x} downwards"),
+            Condition::Above(x) => format!("`{name}` was not executed: the axis did not pass {x} {unit} upwards"),
+            Condition::Below(x) => format!("`{name}` was not executed: the axis did not pass {x} {unit} downwards"),
         }
     }
 }

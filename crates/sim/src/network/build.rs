@@ -131,7 +131,7 @@ impl Network {
         let period = f64::from(motion_cycle.ticks()) * tick;
         let delay = delays.sum() as f64 * tick + wait(bus.mode, loops, drive_every);
         let task = match &scenario.plc {
-            Some(plc) => MotionTask::Plc(Box::new(Plc::new(plc, scenario.axis.modulo, period, recorder)?)),
+            Some(plc) => MotionTask::Plc(Box::new(Plc::new(plc, &scenario.axis, period, recorder)?)),
             None if !bus.mode.is_cyclic() => {
                 let moves = ProgramCursor::new(program, period);
                 MotionTask::DriveProfile(Box::new(DriveProfile::new(moves, bus, &device)?))

@@ -51,17 +51,17 @@ impl Plc {
     /// [`BuildError`] when the limits are none that an axis can have.
     pub(super) fn new(
         plc: &scenario::Plc,
-        modulo: Option<f64>,
+        axis: &scenario::Axis,
         cycle: f64,
         recorder: &mut Recorder,
     ) -> Result<Self, BuildError> {
         let params = AxisParams {
             needs_homing: plc.homing_required,
-            modulo,
+            modulo: axis.modulo,
             buffered_commands: MOST_BUFFERED,
             ..AxisParams::new(cycle, limits(plc))
         };
-        let executor = Executor::new(params, &plc.calls)?;
+        let executor = Executor::new(params, axis.motion, &plc.calls)?;
         let state = Watched::new("axis", "state", recorder);
         let homed = Watched::new("axis", "homed", recorder);
         let calls = plc.calls.iter().map(|call| Call::new(call, recorder)).collect();
