@@ -61,7 +61,7 @@ mod watch;
 pub use block::{Block, Input};
 pub use delay::Delay;
 pub use error::CouplingError;
-pub use master::{Advance, Effort, Master};
+pub use master::{Advance, Master};
 pub use network::{Connection, InputPort, Member, Network, NetworkError, Port};
 pub use polynomial::{Order, later, mean, value};
 pub use servobench_base::StepEnd;

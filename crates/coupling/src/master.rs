@@ -26,15 +26,6 @@ pub enum Advance {
     },
 }
 
-/// What a run has taken so far.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Effort {
-    /// Evaluations of iterated loops, one at least for each loop and step.
-    pub evaluations: u64,
-    /// The most that a step has taken.
-    pub most: u32,
-}
-
 /// A coupled simulation under way.
 pub struct Master<B> {
     pub(crate) blocks: Vec<B>,
@@ -48,11 +39,9 @@ pub struct Master<B> {
     pub(crate) reached: Vec<u64>,
     /// By block: whether its outputs have been read since its step.
     pub(crate) fresh: Vec<bool>,
-    /// By block: how often it came back early in its last step, and before that.
-    pub(crate) interruptions: Vec<u32>,
-    events: Vec<u64>,
+    /// By block: whether it came back early in its last step.
+    pub(crate) is_interrupted: Vec<bool>,
     watches: Vec<Watched>,
-    pub(crate) effort: Effort,
     pub(crate) inputs: Vec<Input>,
     pub(crate) present: Vec<f64>,
     pub(crate) outputs: Vec<f64>,
@@ -105,10 +94,8 @@ impl<B: Block> Master<B> {
             delays: schedule.delays(&wiring, settings),
             reached: vec![0; blocks.len()],
             fresh: vec![false; blocks.len()],
-            interruptions: vec![0; blocks.len()],
-            events: vec![0; blocks.len()],
+            is_interrupted: vec![false; blocks.len()],
             watches: if settings.watch { watched(&wiring) } else { Vec::new() },
-            effort: Effort::default(),
             inputs: vec![[0.0; 3]; most(|shape| shape.inputs)],
             present: vec![0.0; most(|shape| shape.inputs)],
             outputs: vec![0.0; most(|shape| shape.outputs)],
@@ -244,8 +231,7 @@ impl<B: Block> Master<B> {
             }
         }
         for block in 0..self.blocks.len() {
-            if self.reached[block] == now && self.interruptions[block] > 0 {
-                self.events[block] += u64::from(std::mem::take(&mut self.interruptions[block]));
+            if self.reached[block] == now && std::mem::take(&mut self.is_interrupted[block]) {
                 self.signals.restart(block);
             }
         }
@@ -277,18 +263,6 @@ impl<B: Block> Master<B> {
     #[must_use]
     pub fn delays(&self) -> &[Delay] {
         &self.delays
-    }
-
-    /// How often a block has come back before the end of a step that counted, up to the last exchange.
-    #[must_use]
-    pub fn events(&self, block: usize) -> u64 {
-        self.events[block]
-    }
-
-    /// What iterations have taken.
-    #[must_use]
-    pub fn effort(&self) -> Effort {
-        self.effort
     }
 
     /// A block.

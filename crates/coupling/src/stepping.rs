@@ -46,7 +46,7 @@ impl<B: Block> Master<B> {
         }
         self.reached[block] = until;
         self.fresh[block] = false;
-        self.interruptions[block] = parts;
+        self.is_interrupted[block] = parts > 0;
         Ok(None)
     }
 
@@ -131,8 +131,6 @@ impl<B: Block> Master<B> {
                     .map_err(|e| diverged(e, fixed_point, evaluation, &self.clock))?;
             }
             let Some(disagreement) = fixed_point.disagreement(&self.signals) else {
-                self.effort.evaluations += u64::from(evaluation);
-                self.effort.most = self.effort.most.max(evaluation);
                 return Ok(None);
             };
             if evaluation == fixed_point.iteration.most {

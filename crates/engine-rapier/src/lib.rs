@@ -24,7 +24,7 @@
 //!
 //! # The subset of MJCF
 //!
-//! Everything else is refused by its name ([`check_mjcf`]).
+//! Everything else is refused by its name, all of it in one go.
 //!
 //! | element | what of it |
 //! |---|---|
@@ -49,10 +49,8 @@ mod scene;
 
 use chain::LumpChain;
 use linkage::{Linkage, LinkageError};
-use mjcf::Mechanism;
+use mjcf::{Mechanism, MjcfRefusal};
 use servobench_plant::{Chain, Drive, Engine, EngineName, Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Model};
-
-pub use mjcf::MjcfRefusal;
 
 const NAME: EngineName = EngineName::Rapier;
 
@@ -110,12 +108,4 @@ fn build_mjcf(file: &MjcfModel, setup: &MechanicsSetup) -> Result<Box<dyn Mechan
         Err(LinkageError::Refused(refusals)) => Err(refused(refusals)),
         Err(LinkageError::Engine(error)) => Err(error),
     }
-}
-
-/// Says all that this engine refuses in the text of an MJCF file, whatever of it is the axis.
-///
-/// # Errors
-/// Every [`MjcfRefusal`] that can be found in one go.
-pub fn check_mjcf(xml: &str) -> Result<(), Vec<MjcfRefusal>> {
-    linkage::check(&Mechanism::read(xml)?)
 }

@@ -7,4 +7,4 @@ mod refusal;
 mod scan;
 
 pub(crate) use mechanism::{Axis, Freedom, Joint, Mechanism, Tendon};
-pub use refusal::MjcfRefusal;
+pub(crate) use refusal::MjcfRefusal;

@@ -17,11 +17,12 @@ fn the_rest_of_a_step_is_asked_for() {
             while master.tick().0 < u64::from(RATE) {
                 assert_eq!(master.advance().unwrap(), Advance::Done);
             }
-            (state(&master), master.events(0), master.events(1))
+            (state(&master), master.block(0).events, master.block(1).events)
         };
         let (whole, parts) = (run(None), run(Some(0.3)));
         assert_eq!((whole.1, whole.2, parts.2), (0, 0, 0));
-        assert_eq!(parts.1, 1, "{method:?}");
+        // Once, and once again in each repetition of that step.
+        assert!(parts.1 == 1 || matches!(method, Method::Iterated(_)) && parts.1 > 1, "{method:?}: {}", parts.1);
         for (whole, parts) in whole.0.iter().zip(parts.0) {
             // The iteration's tolerance, 1e-9 of a force of 50 N, over 256 steps of 4 ms.
             assert!((whole - parts).abs() < 1e-7, "{method:?}: {whole} and {parts}");
@@ -93,7 +94,6 @@ fn extrapolation_begins_again_after_an_event() {
     assert_eq!(known, [none, slope, both, both, none, slope, both]);
     // Parts of the fourth step, in seconds of times that are exact in binary but for 0.4.
     assert_eq!(master.block(0).parts[3..5], [[0.375, 0.125], [0.4, 0.5 - 0.4]]);
-    assert_eq!((master.events(0), master.events(1)), (1, 0));
 }
 
 #[test]

@@ -78,6 +78,10 @@ pub(crate) struct Linear {
     /// Inputs at the end of the last step, as the block knows them.
     u: Vec<f64>,
     saved: Option<(Vec<f64>, Vec<f64>)>,
+    /// How often it came back early, in steps that were repeated, too; evaluations of this step, and the most of any.
+    pub(crate) events: u32,
+    evaluations: u32,
+    pub(crate) most_evaluations: u32,
     /// The transition over a step, for its length.
     transition: (f64, Matrix),
     /// Takes no derivatives: holds the mean.
@@ -95,7 +99,20 @@ impl Linear {
         let scratch = [vec![0.0; size], vec![0.0; size]];
         let transition = (0.0, Matrix::zeros(size));
         let (x, u) = (x.to_vec(), vec![0.0; m]);
-        Self { model, x, u, saved: None, transition, holds_mean: false, can_save: true, event: None, scratch }
+        Self {
+            model,
+            x,
+            u,
+            saved: None,
+            events: 0,
+            evaluations: 0,
+            most_evaluations: 0,
+            transition,
+            holds_mean: false,
+            can_save: true,
+            event: None,
+            scratch,
+        }
     }
 
     fn prepare(&mut self, length: f64) {
@@ -141,9 +158,12 @@ impl Block for Linear {
     fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<StepEnd, Infallible> {
         if let Some(event) = self.event.filter(|event| *event > time && *event < time + length) {
             self.go(event - time, inputs);
+            self.events += 1;
             return Ok(StepEnd::Until(event));
         }
         self.go(length, inputs);
+        self.evaluations += 1;
+        self.most_evaluations = self.most_evaluations.max(self.evaluations);
         Ok(StepEnd::Done)
     }
 
@@ -160,6 +180,7 @@ impl Block for Linear {
         let (x, u) = self.saved.get_or_insert_with(|| (self.x.clone(), self.u.clone()));
         x.copy_from_slice(&self.x);
         u.copy_from_slice(&self.u);
+        self.evaluations = 0;
         Ok(())
     }
 

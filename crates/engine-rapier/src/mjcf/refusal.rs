@@ -5,7 +5,7 @@ use thiserror::Error;
 /// One thing in an MJCF file that the engine `rapier` does not simulate, by its name.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[non_exhaustive]
-pub enum MjcfRefusal {
+pub(crate) enum MjcfRefusal {
     /// The text is no XML, or no MJCF.
     #[error("{message}")]
     Unreadable {

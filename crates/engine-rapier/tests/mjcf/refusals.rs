@@ -1,23 +1,26 @@
 //! Everything that is refused, by its name, and all of it in one go.
 use super::{H, effort, file, state, try_build, world};
 use servobench_base::Setpoint;
-use servobench_engine_rapier::{MjcfRefusal, Rapier, check_mjcf};
+use servobench_engine_rapier::Rapier;
 use servobench_plant::{Actuation, Drive, Engine, Input, MechanicsError, MechanicsSetup, Model, Refusal, RefusedAt};
 
 /// A slide with 1 kg.
 const BODY: &str = r#"<body name="b"><joint name="m" type="slide" axis="1 0 0"/>
 <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body>"#;
 
-/// What the file is refused for.
-fn refusals(xml: &str) -> Vec<MjcfRefusal> {
-    check_mjcf(xml).expect_err(xml)
+/// What the file is refused for, beside the axis that it is to have.
+fn refusals(xml: &str) -> Vec<String> {
+    match try_build(file(xml, "m"), H, vec![]).err() {
+        Some(MechanicsError::Refused { refusals, .. }) => refusals.into_iter().map(|one| one.message).collect(),
+        other => panic!("{other:?}: {xml}"),
+    }
 }
 
 /// The only refusal of the file, as text.
 fn refusal(xml: &str) -> String {
     let all = refusals(xml);
     assert_eq!(all.len(), 1, "{xml}: {all:?}");
-    all[0].to_string()
+    all[0].clone()
 }
 
 /// `<mujoco>` with this element beside its world.
@@ -182,7 +185,7 @@ fn geoms_that_could_touch_are_refused_with_three_ways_out() {
 #[test]
 fn every_mistake_is_found_in_one_go_with_its_line() {
     let xml = "<mujoco>\n<equality/>\n<worldbody><body>\n<joint type='ball' range='0 1'/></body></worldbody></mujoco>";
-    let all: Vec<String> = refusals(xml).iter().map(ToString::to_string).collect();
+    let all = refusals(xml);
     assert_eq!(all.len(), 3, "{all:?}");
     assert!(all[0].starts_with("line 2: `<equality>` in `<mujoco>`"), "{all:?}");
     assert!(all[1].starts_with("line 4: `type=\"ball\"`"), "{all:?}");
@@ -191,8 +194,12 @@ fn every_mistake_is_found_in_one_go_with_its_line() {
 
 #[test]
 fn what_is_no_mjcf_is_refused() {
-    assert!(matches!(refusals("<mujoco>")[..], [MjcfRefusal::Unreadable { .. }]));
-    assert!(refusal("<robot/>").contains("<robot>"));
+    for (xml, said) in [("<mujoco>", "axis.xml: "), ("<robot/>", "the root element is <robot>")] {
+        match try_build(file(xml, "m"), H, vec![]).err() {
+            Some(MechanicsError::Model { message, .. }) => assert!(message.contains(said), "{message}"),
+            other => panic!("{other:?}: {xml}"),
+        }
+    }
 }
 
 #[test]

@@ -1,7 +1,11 @@
 //! What files may say, and that it means what MuJoCo says it means.
 use super::{H, build, effort, file, state, try_build, world};
-use servobench_engine_rapier::check_mjcf;
-use servobench_plant::{BodyState, Drive, chain_to_mjcf};
+use servobench_plant::{BodyState, Drive, MechanicsError, MjcfModel, chain_to_mjcf};
+
+/// An axis of joint `m` alone.
+fn built(xml: &str) -> Result<(), MechanicsError> {
+    try_build(file(xml, "m"), H, vec![]).map(drop)
+}
 
 fn run(xml: &str, initial: Vec<BodyState>, ticks: u32) -> BodyState {
     let mut axis = build(xml, "m", H, initial);
@@ -87,22 +91,22 @@ fn a_tendon_is_a_spring_between_joints() {
 fn geoms_that_cannot_touch_are_let_in() {
     let moving = r#"<body name="b"><joint name="m" type="slide" axis="1 0 0"/><geom name="g" size="0.1"/></body>"#;
     let floor = r#"<geom name="floor" type="plane" size="1 1 1"/>"#;
-    assert!(check_mjcf(&world(&format!("{floor}{moving}"))).is_err(), "floor and body could touch");
+    assert!(built(&world(&format!("{floor}{moving}"))).is_err(), "floor and body could touch");
     let masked = floor.replace("/>", r#" contype="0" conaffinity="0"/>"#) + &moving.replace("/>", r#" contype="0"/>"#);
     // contype 0 on an attribute of every element of the body is too much of it: only the geom has one.
     let masked = masked.replace(r#"axis="1 0 0" contype="0""#, r#"axis="1 0 0""#);
-    assert_eq!(check_mjcf(&world(&masked)), Ok(()));
+    built(&world(&masked)).unwrap();
     let off = world(&format!("{floor}{moving}"))
         .replace(r#"<option gravity="0 0 0"/>"#, r#"<option><flag contact="disable"/></option>"#);
-    assert_eq!(check_mjcf(&off), Ok(()));
+    built(&off).unwrap();
     let welded = r#"<body name="b"><joint name="m" type="slide" axis="1 0 0"/><geom size="0.1"/><body><geom size="0.1"/></body></body>"#;
-    assert_eq!(check_mjcf(&world(welded)), Ok(()));
+    built(&world(welded)).unwrap();
     let child = moving.replace("</body>", r#"<body><joint axis="0 0 1"/><geom size="0.1"/></body></body>"#);
-    assert_eq!(check_mjcf(&world(&child)), Ok(()));
+    built(&world(&child)).unwrap();
     let other = format!(r#"{moving}<body name="c"><joint axis="0 0 1"/><geom size="0.1"/></body>"#);
-    assert!(check_mjcf(&world(&other)).is_err(), "two bodies of the world could touch");
+    assert!(built(&world(&other)).is_err(), "two bodies of the world could touch");
     let excluded = world(&other).replace("</mujoco>", r#"<contact><exclude body1="c" body2="b"/></contact></mujoco>"#);
-    assert_eq!(check_mjcf(&excluded), Ok(()));
+    built(&excluded).unwrap();
 }
 
 #[test]
@@ -135,7 +139,8 @@ fn the_mjcf_of_a_chain_is_in_the_subset() {
     };
     let load = Body { name: "load", coordinate: Coordinate::Linear, ..body.clone() };
     let chain = Chain::new(vec![body, load], vec![Link { stiffness: 1e3, damping: 1.0 }]).unwrap();
-    assert_eq!(check_mjcf(&chain_to_mjcf(&chain, Drive::Effort, H)), Ok(()));
+    let model = MjcfModel { actuator: "motor_effort".into(), ..file(&chain_to_mjcf(&chain, Drive::Effort, H), "load") };
+    try_build(model, H, vec![]).unwrap();
 }
 
 /// The state at tick 0 is the one asked for, of each joint in its own coordinate.
