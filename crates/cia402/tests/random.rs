@@ -3,6 +3,7 @@ use servobench_cia402::{
     Controlword, DisableOperationOption, DriveFunction, FaultReactionOption, HaltOption, PowerInputs, PowerMemory,
     PowerParams, QuickStopOption, ShutdownOption, TRANSITIONS, step,
 };
+use servobench_testkit::Random;
 
 /// Words that lead somewhere: of random words alone hardly one in a thousand sequences gets to Operation enabled.
 const SENSIBLE: [u16; 7] = [0x0000, 0x0002, 0x0006, 0x0007, 0x000F, 0x0080, 0x010F];
@@ -12,7 +13,7 @@ const LIFE: u64 = 1_000;
 
 #[test]
 fn no_controlword_leads_out_of_the_diagram_or_powers_an_axis_that_is_not_enabled() {
-    let mut random = SplitMix(402);
+    let mut random = Random::seeded(402);
     let (mut params, mut memory, mut drive) = start(&mut random);
     let mut taken = [0_u64; TRANSITIONS.len()];
     for cycle in 0..CYCLES {
@@ -20,7 +21,8 @@ fn no_controlword_leads_out_of_the_diagram_or_powers_an_axis_that_is_not_enabled
             (params, memory, drive) = start(&mut random);
         }
         let (before, powered) = (memory.state(), drive != DriveFunction::Disabled);
-        let outputs = step(&params, &mut memory, random.controlword(), random.inputs());
+        let (word, inputs) = (controlword(&mut random), inputs(&mut random));
+        let outputs = step(&params, &mut memory, word, inputs);
         let after = memory.state();
         assert_eq!(outputs.statusword.state(), Some(after), "cycle {cycle}");
         let number = outputs.transition.map(|transition| {
@@ -38,7 +40,7 @@ fn no_controlword_leads_out_of_the_diagram_or_powers_an_axis_that_is_not_enabled
     assert!(taken[1..].iter().all(|times| *times > 100), "{taken:?}");
 }
 
-fn start(random: &mut SplitMix) -> (PowerParams, PowerMemory, DriveFunction) {
+fn start(random: &mut Random) -> (PowerParams, PowerMemory, DriveFunction) {
     let params = PowerParams {
         quick_stop: QuickStopOption::try_from(random.one_of(QuickStopOption::CODES)).unwrap(),
         shutdown: ShutdownOption::try_from(random.one_of(ShutdownOption::CODES)).unwrap(),
@@ -49,41 +51,20 @@ fn start(random: &mut SplitMix) -> (PowerParams, PowerMemory, DriveFunction) {
     (params, PowerMemory::default(), DriveFunction::Disabled)
 }
 
-/// SplitMix64 (Steele, Lea and Flood 2014).
-struct SplitMix(u64);
+fn controlword(random: &mut Random) -> Controlword {
+    let any = u16::try_from(random.next() >> 48).unwrap();
+    Controlword::from_bits(if random.once_in(2) { any } else { random.one_of(&SENSIBLE) })
+}
 
-impl SplitMix {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        mixed ^ (mixed >> 31)
-    }
-
-    fn one_of<T: Copy>(&mut self, choices: &[T]) -> T {
-        choices[usize::try_from(self.next() % choices.len() as u64).unwrap()]
-    }
-
-    /// True once in `times`.
-    fn once_in(&mut self, times: u64) -> bool {
-        self.next().is_multiple_of(times)
-    }
-
-    fn controlword(&mut self) -> Controlword {
-        let any = u16::try_from(self.next() >> 48).unwrap();
-        Controlword::from_bits(if self.once_in(2) { any } else { self.one_of(&SENSIBLE) })
-    }
-
-    fn inputs(&mut self) -> PowerInputs {
-        PowerInputs {
-            initialised: self.once_in(4),
-            fault: self.once_in(32),
-            standstill: self.once_in(4),
-            remote: !self.once_in(8),
-            main_voltage: self.once_in(2),
-            warning: self.once_in(2),
-            target_reached: self.once_in(2),
-            internal_limit: self.once_in(2),
-        }
+fn inputs(random: &mut Random) -> PowerInputs {
+    PowerInputs {
+        initialised: random.once_in(4),
+        fault: random.once_in(32),
+        standstill: random.once_in(4),
+        remote: !random.once_in(8),
+        main_voltage: random.once_in(2),
+        warning: random.once_in(2),
+        target_reached: random.once_in(2),
+        internal_limit: random.once_in(2),
     }
 }

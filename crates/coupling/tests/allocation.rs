@@ -4,34 +4,12 @@ use servobench_coupling::{
     Acceleration, Block, Connection, Input, InputPort, Iteration, Master, Member, Method, Network, Order, Port,
     Settings, StepEnd, mean,
 };
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+use servobench_testkit::CountingAllocator;
 use std::convert::Infallible;
 use std::num::NonZeroU32;
 
-thread_local! {
-    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
-}
-
-/// Counts the calling thread's allocations; growing a block is one too.
-struct Counting;
-
-#[expect(unsafe_code, reason = "an allocator is unsafe by contract; this one only counts and passes on")]
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.with(|count| count.set(count.get() + 1));
-        // SAFETY: the caller's promises are passed on unchanged.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
-        // SAFETY: as above.
-        unsafe { System.dealloc(memory, layout) }
-    }
-}
-
 #[global_allocator]
-static COUNTING: Counting = Counting;
+static ALLOCATOR: CountingAllocator = CountingAllocator;
 
 /// Two lags, of which the second output follows the second input at once: y₀ = x₀, y₁ = x₁ + 0.1·u₁.
 struct Lags {
@@ -126,11 +104,11 @@ fn steps_allocate_nothing() {
     ] {
         for order in Order::ALL {
             let mut master = master(method.clone(), order);
-            let before = ALLOCATIONS.get();
+            let before = CountingAllocator::count();
             for _ in 0..1000 {
                 master.advance().unwrap();
             }
-            assert_eq!(ALLOCATIONS.get() - before, 0, "{method:?}, {order:?}");
+            assert_eq!(CountingAllocator::count() - before, 0, "{method:?}, {order:?}");
             assert!(master.block(0).events > 10);
         }
     }

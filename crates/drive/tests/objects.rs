@@ -6,6 +6,7 @@ use servobench_cia402::units::{AxisUnit, FactorGroup, Object, Ratio, UnitError};
 use servobench_drive::device::{ObjectsError, Params, Rotary, Units, Window};
 use servobench_drive::modes::homing::Method;
 use servobench_drive::modes::profile::Ramp;
+use servobench_testkit::Random;
 
 fn write(objects: &mut Dictionary, index: u16, subindex: u8, value: impl Into<Value>) {
     objects.write(Object { index, subindex }, value.into(), PowerState::SwitchOnDisabled).unwrap();
@@ -191,7 +192,7 @@ fn an_object_that_cannot_hold_its_setting_shows_its_end_and_the_setting_stays() 
 /// A dictionary that a master filled at random is one that the drive follows, but for times that its clock does not count.
 #[test]
 fn what_the_dictionary_takes_the_drive_takes() {
-    let mut random = Random(7);
+    let mut random = Random::seeded(7);
     let mut followed = 0;
     for _ in 0..sweep(2_000) {
         let mut objects = Dictionary::new();
@@ -220,16 +221,4 @@ fn what_the_dictionary_takes_the_drive_takes() {
 
 fn sweep(usual: u64) -> u64 {
     std::env::var("SERVOBENCH_SWEEP").map_or(usual, |size| size.parse().unwrap())
-}
-
-/// SplitMix64 (Steele, Lea and Flood 2014).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        mixed ^ (mixed >> 31)
-    }
 }

@@ -1,6 +1,7 @@
 //! The modal fit against oscillations whose parameters are known.
 use core::f64::consts::PI;
 use servobench_metrics::{Absence, Mode, Signal, fit_mode};
+use servobench_testkit::Random;
 
 /// `amplitude·e^{−ζωt}·cos(ω_d·t + phase)`.
 #[derive(Debug, Clone, Copy)]
@@ -28,27 +29,6 @@ fn record(offset: f64, rate: f64, seconds: f64, y: impl Fn(f64) -> f64) -> Vec<f
 
 fn fit(values: &[f64], offset: f64, rate: f64, near: Option<f64>) -> Result<Mode, Absence> {
     fit_mode(&Signal { values, start: 0.0, step: 1.0 / rate, resolution: 8.0 * f64::EPSILON * offset }, near)
-}
-
-/// splitmix64: a seeded stream for sweeps.
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (z ^ (z >> 31)) as f64 / u64::MAX as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    fn decades(&mut self, low: f64, high: f64) -> f64 {
-        low * (high / low).powf(self.unit())
-    }
 }
 
 /// Relative error of frequency and amplitude, absolute error of damping.
@@ -85,15 +65,15 @@ fn nanometres_beside_a_metre() {
 #[test]
 fn random_modes_with_offsets_and_tails() {
     let cases = std::env::var("SERVOBENCH_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(200);
-    let mut random = Random(1);
+    let mut random = Random::seeded(1);
     for _ in 0..cases {
-        let seconds = random.decades(0.1, 4.0);
-        let frequency = random.decades(3.0 / seconds, 1500.0);
-        let damping = if random.unit() < 0.2 { 0.0 } else { random.decades(1e-4, 0.2) };
-        let (amplitude, phase) = (random.decades(6e-9, 1e-3), random.between(-3.0, 3.0));
+        let seconds = random.logarithmic(0.1, 4.0);
+        let frequency = random.logarithmic(3.0 / seconds, 1500.0);
+        let damping = if random.unit() < 0.2 { 0.0 } else { random.logarithmic(1e-4, 0.2) };
+        let (amplitude, phase) = (random.logarithmic(6e-9, 1e-3), random.between(-3.0, 3.0));
         let known = Known { amplitude, frequency, damping, phase };
-        let tail = if random.unit() < 0.5 { amplitude * random.decades(0.1, 100.0) } else { 0.0 };
-        let (tau, offset) = (random.decades(0.02, 0.5), amplitude * random.between(-3.0, 3.0));
+        let tail = if random.unit() < 0.5 { amplitude * random.logarithmic(0.1, 100.0) } else { 0.0 };
+        let (tau, offset) = (random.logarithmic(0.02, 0.5), amplitude * random.between(-3.0, 3.0));
         let values = record(1.0, 8000.0, seconds, |t| offset + known.at(t) + tail * (-t / tau).exp());
         assert_promise(fit(&values, 1.0, 8000.0, None), &known);
     }
@@ -174,7 +154,7 @@ fn modes_that_cancel_are_not_reported() {
 #[test]
 fn noise_costs_what_theory_says() {
     let known = Known { amplitude: 1e-6, frequency: 38.985, damping: 0.0, phase: 0.7 };
-    let mut random = Random(7);
+    let mut random = Random::seeded(7);
     let mut noise = || (0..12).map(|_| random.unit()).sum::<f64>() - 6.0;
     let values: Vec<f64> = record(0.0, 8000.0, 1.0, |t| known.at(t)).iter().map(|y| y + 1e-7 * noise()).collect();
     let mode = fit(&values, 0.0, 8000.0, None).unwrap();
@@ -189,7 +169,7 @@ fn noise_costs_what_theory_says() {
 
 #[test]
 fn noise_alone_is_no_mode() {
-    let mut random = Random(3);
+    let mut random = Random::seeded(3);
     let values: Vec<f64> = (0..4000).map(|_| random.unit() - 0.5).collect();
     let found = fit(&values, 0.0, 8000.0, None);
     assert!(matches!(found, Err(Absence::NotModal { .. })), "{found:?}");
@@ -245,10 +225,10 @@ fn the_same_record_gives_the_same_bits() {
 /// Whatever the record holds, the answer is a reason or a mode of finite numbers.
 #[test]
 fn never_a_nan() {
-    let mut random = Random(11);
+    let mut random = Random::seeded(11);
     for case in 0..60 {
         let count = [16, 17, 40, 300, 2000][case % 5];
-        let scale = random.decades(1e-300, 1e300);
+        let scale = random.logarithmic(1e-300, 1e300);
         let values: Vec<f64> = match case % 4 {
             0 => (0..count).map(|_| scale * random.unit()).collect(),
             1 => (0..count).map(|k| if k == count / 2 { scale } else { 0.0 }).collect(),

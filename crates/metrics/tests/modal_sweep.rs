@@ -1,31 +1,11 @@
 //! The modal fit over a range of decays with noise, steps of an encoder and short records; and what is no vibration.
 use core::f64::consts::PI;
 use servobench_metrics::{Mode, Signal, fit_mode};
+use servobench_testkit::Random;
 
-/// splitmix64: a seeded stream.
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (z ^ (z >> 31)) as f64 / u64::MAX as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    fn decades(&mut self, low: f64, high: f64) -> f64 {
-        low * (high / low).powf(self.unit())
-    }
-
-    /// Of standard deviation 1, nearly normal: the sum of twelve.
-    fn normal(&mut self) -> f64 {
-        (0..12).map(|_| self.unit()).sum::<f64>() - 6.0
-    }
+/// Of standard deviation 1, nearly normal: the sum of twelve.
+fn normal(random: &mut Random) -> f64 {
+    (0..12).map(|_| random.unit()).sum::<f64>() - 6.0
 }
 
 /// From 0 to 1 while its argument goes from 0 to 1.
@@ -136,20 +116,20 @@ fn fit(values: &[f64], rate: f64, resolution: f64) -> Result<Mode, servobench_me
 /// least squares on overlapping means, which are not weighted, and for a tail that a short record may take along.
 #[test]
 fn noisy_decays_are_found_as_well_as_anybody_could() {
-    let mut random = Random(5);
+    let mut random = Random::seeded(5);
     for case in 0..cases(150) {
-        let (frequency, periods) = (random.decades(2.0, 400.0), random.decades(2.5, 60.0));
-        let damping = if random.unit() < 0.2 { 0.0 } else { random.decades(1e-4, 0.1) };
+        let (frequency, periods) = (random.logarithmic(2.0, 400.0), random.logarithmic(2.5, 60.0));
+        let damping = if random.unit() < 0.2 { 0.0 } else { random.logarithmic(1e-4, 0.1) };
         let known = Decay {
-            amplitude: random.decades(1e-8, 1e-3),
+            amplitude: random.logarithmic(1e-8, 1e-3),
             frequency,
             damping,
             phase: random.between(-3.0, 3.0),
             rate: 16_000.0_f64.min(400.0 * frequency),
             seconds: periods / frequency,
         };
-        let noise = known.amplitude * random.decades(1e-4, 0.03);
-        let values: Vec<f64> = known.times().map(|t| known.at(t) + noise * random.normal()).collect();
+        let noise = known.amplitude * random.logarithmic(1e-4, 0.03);
+        let values: Vec<f64> = known.times().map(|t| known.at(t) + noise * normal(&mut random)).collect();
         let mode = fit(&values, known.rate, 0.0).unwrap_or_else(|why| panic!("{case} {known:?} noise {noise}: {why}"));
         let errors = [(mode.frequency / frequency - 1.0).abs(), (mode.damping - damping).abs()];
         for (error, least) in errors.into_iter().zip(known.least_deviations(noise)) {
@@ -163,10 +143,10 @@ fn noisy_decays_are_found_as_well_as_anybody_could() {
 /// and the same share of the envelope.
 #[test]
 fn decays_in_steps_of_an_encoder() {
-    let mut random = Random(9);
+    let mut random = Random::seeded(9);
     for case in 0..cases(100) {
-        let (frequency, periods) = (random.decades(5.0, 200.0), random.between(4.0, 30.0));
-        let damping = random.decades(1e-4, 0.3 / periods);
+        let (frequency, periods) = (random.logarithmic(5.0, 200.0), random.between(4.0, 30.0));
+        let damping = random.logarithmic(1e-4, 0.3 / periods);
         let known = Decay {
             amplitude: 1e-6,
             frequency,
@@ -175,7 +155,7 @@ fn decays_in_steps_of_an_encoder() {
             rate: 16_000.0,
             seconds: periods / frequency,
         };
-        let step = known.amplitude / random.decades(10.0, 1000.0);
+        let step = known.amplitude / random.logarithmic(10.0, 1000.0);
         let values: Vec<f64> = known.times().map(|t| (known.at(t) / step).round() * step).collect();
         let mode = fit(&values, known.rate, step).unwrap_or_else(|why| panic!("{case} {known:?} step {step}: {why}"));
         let bound = 0.5 * step / known.amplitude / (2.0 * PI * periods);
@@ -194,12 +174,12 @@ fn creep_between_two_holds_is_no_mode() {
         ("cubic", |u| u * u * (3.0 - 2.0 * u)),
         ("exponential", |u| (1.0 - (-4.0 * u).exp()) / (1.0 - (-4.0_f64).exp())),
     ];
-    let mut random = Random(13);
+    let mut random = Random::seeded(13);
     for case in 0..cases(100) {
         let (what, way) = ways[case % 4];
         let seconds = random.between(0.2, 1.0);
         let (begin, length) = (seconds * random.between(0.0, 0.6), seconds * random.between(0.05, 0.4));
-        let height = random.decades(1e-8, 1e-5);
+        let height = random.logarithmic(1e-8, 1e-5);
         let values: Vec<f64> = (0..8000)
             .map(|k| f64::from(k) / 8000.0)
             .take_while(|t| *t < seconds)

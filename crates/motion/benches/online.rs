@@ -4,14 +4,12 @@
 //! A control cycle must bear the slow plans too: the table has percentiles of single calls. Each is timed in several passes over
 //! all requests, of which the shortest counts: the others have in them what the operating system did in between. Calls shorter than
 //! 1 µs are timed many in a row, because the clock of some machines has steps of 10 ns and more.
-#[path = "../tests/shared/random.rs"]
-mod shared;
 
 use rsruckig::prelude::{InputParameter, Ruckig, ThrowErrorHandler, Trajectory};
 use servobench_base::Setpoint;
 use servobench_motion::online::{DirectionalLimits, Effort, RampLimits, Sides, Target, Transition, passing_velocity};
 use servobench_motion::{Limits, Order, PlanError, Profile};
-use shared::Random;
+use servobench_testkit::Random;
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -45,16 +43,6 @@ impl Request {
     fn plan(&self, order: Order, effort: Effort) -> Result<Transition, PlanError> {
         let target = Target::Position { x: self.x, v: self.v };
         Transition::plan(order, &self.from, &target, &DirectionalLimits::from(self.limits), effort)
-    }
-}
-
-impl Random {
-    fn signed(&mut self) -> f64 {
-        2.0 * self.unit() - 1.0
-    }
-
-    fn decades(&mut self, low: f64, high: f64) -> f64 {
-        10.0_f64.powf(low + (high - low) * self.unit())
     }
 }
 

@@ -3,13 +3,11 @@
 //! A table of percentiles over random requests follows, beside `rsruckig` (order 3) on the same ones.
 #[path = "shared/percentiles.rs"]
 mod percentiles;
-#[path = "../tests/shared/random.rs"]
-mod random;
 
 use divan::{Bencher, black_box};
-use random::Random;
 use rsruckig::prelude::{InputParameter, Ruckig, ThrowErrorHandler, Trajectory};
 use servobench_motion::{Limits, Order, Profile};
+use servobench_testkit::Random;
 
 fn main() {
     divan::main();

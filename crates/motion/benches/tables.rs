@@ -1,13 +1,11 @@
 //! Cost of tables: velocities for a million points, the set-point at a time, commands of a position profile:
 //! `cargo bench -p servobench-motion --bench tables`.
-#[path = "../tests/shared/random.rs"]
-mod random;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use random::Random;
 use servobench_motion::position_profile::{Plateaus, Spline};
 use servobench_motion::pvt::{Knot, Table, average, continuous, smooth};
+use servobench_testkit::Random;
 
 fn main() {
     divan::main();

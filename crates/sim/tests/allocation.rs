@@ -2,33 +2,11 @@
 use servobench_plant::Exact;
 use servobench_scenario::Scenario;
 use servobench_sim::Bench;
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+use servobench_testkit::CountingAllocator;
 use std::path::Path;
 
-thread_local! {
-    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
-}
-
-/// Counts the calling thread's allocations; growing a block is one too.
-struct Counting;
-
-#[expect(unsafe_code, reason = "an allocator is unsafe by contract; this one only counts and passes on")]
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.with(|count| count.set(count.get() + 1));
-        // SAFETY: the caller's promises are passed on unchanged.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
-        // SAFETY: as above.
-        unsafe { System.dealloc(memory, layout) }
-    }
-}
-
 #[global_allocator]
-static COUNTING: Counting = Counting;
+static ALLOCATOR: CountingAllocator = CountingAllocator;
 
 /// The scenario `file` with the last `calls` of its blocks left out.
 fn scenario_without(calls: usize, file: &str) -> Scenario {
@@ -43,9 +21,9 @@ fn scenario_without(calls: usize, file: &str) -> Scenario {
 /// Allocations and rows of a run of `scenario` that lasts `duration` (s), once it is built.
 fn allocations(scenario: &Scenario, duration: f64) -> (u64, usize) {
     let bench = Bench::new(&Scenario { duration: Some(duration), ..scenario.clone() }, &Exact).unwrap();
-    let before = ALLOCATIONS.get();
+    let before = CountingAllocator::count();
     let outcome = bench.run(&mut |_| {});
-    let count = ALLOCATIONS.get() - before;
+    let count = CountingAllocator::count() - before;
     assert!(outcome.failure.is_none() && outcome.recording.events.is_empty(), "an event has words of its own");
     (count, outcome.recording.len())
 }

@@ -1,18 +1,13 @@
 //! Seeded random counts.
-#[path = "../../../motion/tests/shared/random.rs"]
-mod shared;
+pub(crate) use servobench_testkit::Random;
 
-pub(crate) use shared::Random;
+/// A positive number of 1 to `bits` bits, every width alike.
+pub(crate) fn magnitude(random: &mut Random, bits: u32) -> i64 {
+    let width = 1 + random.next() % u64::from(bits);
+    i64::try_from(random.next() >> (64 - width)).unwrap().max(1)
+}
 
-impl Random {
-    /// A positive number of 1 to `bits` bits, every width alike.
-    pub(crate) fn magnitude(&mut self, bits: u32) -> i64 {
-        let width = 1 + self.next() % u64::from(bits);
-        i64::try_from(self.next() >> (64 - width)).unwrap().max(1)
-    }
-
-    /// 1 or −1.
-    pub(crate) fn sign(&mut self) -> i128 {
-        if self.unit() < 0.5 { 1 } else { -1 }
-    }
+/// 1 or −1.
+pub(crate) fn sign(random: &mut Random) -> i128 {
+    if random.unit() < 0.5 { 1 } else { -1 }
 }

@@ -1,7 +1,7 @@
 //! Ratios: the oracles compare cross products of integers and never divide.
 use servobench_cia402::units::Ratio;
 
-use crate::random::Random;
+use crate::random::{Random, magnitude, sign};
 
 /// Whether `whole` is `numerator/denominator` to the nearest, a half upwards: −1/2 < whole − numerator/denominator ≤
 /// 1/2.
@@ -25,8 +25,8 @@ fn counts_are_rounded_to_the_nearest_and_halves_upwards() {
     assert_eq!(rounded, [-1, -1, 0, 0, 1, 1, 2]);
     let mut random = Random::seeded(1);
     for _ in 0..20_000 {
-        let ratio = Ratio::new(random.magnitude(62), random.magnitude(62)).unwrap();
-        let count = random.sign() * i128::from(random.magnitude(62));
+        let ratio = Ratio::new(magnitude(&mut random, 62), magnitude(&mut random, 62)).unwrap();
+        let count = sign(&mut random) * i128::from(magnitude(&mut random, 62));
         let (n, d) = (i128::from(ratio.numerator()), i128::from(ratio.denominator()));
         assert!(is_nearest(ratio.of(count).unwrap(), count * n, d), "{count}·{ratio:?}");
     }
@@ -37,8 +37,8 @@ fn numbers_are_rounded_to_the_nearest() {
     let mut random = Random::seeded(2);
     for _ in 0..20_000 {
         // x = m/2^20: with 53 and 60 bits its product with the ratio is an exact fraction of integers.
-        let mantissa = random.sign() * i128::from(random.magnitude(53));
-        let ratio = Ratio::new(random.magnitude(60), random.magnitude(60)).unwrap();
+        let mantissa = sign(&mut random) * i128::from(magnitude(&mut random, 53));
+        let ratio = Ratio::new(magnitude(&mut random, 60), magnitude(&mut random, 60)).unwrap();
         let x = mantissa as f64 / f64::from(1 << 20);
         let (n, d) = (i128::from(ratio.numerator()), i128::from(ratio.denominator()));
         let whole = ratio.of_f64(x).unwrap();
@@ -62,9 +62,9 @@ fn numbers_beside_a_half_are_rounded_to_the_nearest() {
     let mut random = Random::seeded(7);
     let mut halves = 0;
     for _ in 0..5_000 {
-        let ratio = Ratio::new(random.magnitude(20), random.magnitude(20)).unwrap();
+        let ratio = Ratio::new(magnitude(&mut random, 20), magnitude(&mut random, 20)).unwrap();
         let (n, d) = (i128::from(ratio.numerator()), i128::from(ratio.denominator()));
-        let half = random.sign() as f64 * (random.magnitude(20) as f64 - 0.5);
+        let half = sign(&mut random) as f64 * (magnitude(&mut random, 20) as f64 - 0.5);
         let nearly = half * ratio.denominator() as f64 / ratio.numerator() as f64;
         for x in [nearly.next_down(), nearly, nearly.next_up()] {
             // x = mantissa/2^shift, of 53 bits: the products below take at most 53 + 20 and 20 + 20 + 73 bits.
@@ -97,8 +97,8 @@ fn no_other_f64_is_nearer() {
     let mut random = Random::seeded(3);
     for _ in 0..20_000 {
         // Numbers of 1 to 2^22 with a denominator of 40 bits: x and its neighbours are m/2^52 exactly.
-        let denominator = i128::from(random.magnitude(40));
-        let count = denominator + i128::from(random.magnitude(62)) % (denominator << 21);
+        let denominator = i128::from(magnitude(&mut random, 40));
+        let count = denominator + i128::from(magnitude(&mut random, 62)) % (denominator << 21);
         let ratio = Ratio::new(1, i64::try_from(denominator).unwrap()).unwrap();
         let x = ratio.of_as_f64(count).unwrap();
         let off = |x: f64| {

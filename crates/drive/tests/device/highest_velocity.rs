@@ -1,10 +1,10 @@
 //! The highest velocity (6080h) in cyclic synchronous and interpolated position: just at it, above it, on any grid.
 use crate::axis::{Axis, setpoint};
-use crate::shared::Random;
 use servobench_cia402::interpolated::{Point, SubMode};
 use servobench_cia402::{ControlBit, Mode, StatusBit};
 use servobench_drive::device::{CycleParams, Limits, Params};
 use servobench_motion::interpolate;
+use servobench_testkit::Random;
 
 const MICROMETRE: f64 = 1e-6;
 const WAYS: [interpolate::Mode; 3] =

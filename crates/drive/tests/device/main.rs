@@ -13,8 +13,6 @@ mod profile_position;
 mod profile_velocity;
 mod random;
 mod settings;
-#[path = "../../../motion/tests/shared/random.rs"]
-mod shared;
 mod supervision;
 mod turned;
 mod units;

@@ -1,6 +1,5 @@
 //! Masters that send anything.
 use crate::axis::Axis;
-use crate::shared::Random;
 use servobench_base::Setpoint;
 use servobench_cia402::interpolated::{Point, SegmentCommand, SubMode};
 use servobench_cia402::{Command, Commands, Controlword, Mode, PowerState};
@@ -9,6 +8,7 @@ use servobench_drive::device::{Limits, Params, Window};
 use servobench_drive::modes::homing::Method;
 use servobench_drive::modes::profile::Ramp;
 use servobench_motion::interpolate;
+use servobench_testkit::Random;
 
 const VELOCITY: f64 = 0.5;
 const ACCELERATION: f64 = 3.0;

@@ -1,8 +1,8 @@
 //! Sub-mode 0: a master whose clock is not the drive's.
 use crate::axis::{Axis, PERIOD, assert_near, run};
-use crate::random::Random;
 use servobench_cia402::interpolated::{SubMode, TimePeriod};
 use servobench_drive::modes::interpolated::DataRecord;
+use servobench_testkit::Random;
 
 const POINTS: i32 = 10_000;
 const STEP: i32 = 100;

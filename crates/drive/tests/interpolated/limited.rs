@@ -1,8 +1,8 @@
 //! The highest velocity (6080h): points that ask for more are reached later.
 use crate::axis::{Axis, COUNT, PERIOD, assert_near, cubic, linear, run, whole};
-use crate::random::Random;
 use servobench_cia402::interpolated::{Point, SubMode};
 use servobench_drive::modes::interpolated::Params;
+use servobench_testkit::Random;
 
 fn limited(counts: i32, sub_mode: SubMode, velocity: f64) -> Axis {
     let mut axis = Axis::at(counts, sub_mode);

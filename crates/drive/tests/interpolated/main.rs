@@ -1,6 +1,4 @@
 //! Interpolated position: moves through the trajectory buffer, and what goes wrong with it.
-#[path = "../../../motion/tests/shared/random.rs"]
-mod random;
 
 mod adapted;
 mod axis;

@@ -1,8 +1,8 @@
 //! A long move, streamed by a master that comes when it can.
 use crate::axis::{Axis, COUNT, PERIOD, assert_near, cubic, idle, linear, run, whole};
-use crate::random::Random;
 use servobench_cia402::interpolated::{BufferError, Point, SegmentCommand, SubMode};
 use servobench_motion::pvt::{Knot, Table};
+use servobench_testkit::Random;
 
 const POINTS: usize = 10_000;
 

@@ -3,39 +3,17 @@ use super::{H, build, effort, feed_axis, two_mass};
 use rapier3d_f64::prelude::{GenericJointBuilder, JointAxesMask, PhysicsWorld, RigidBodyBuilder};
 use servobench_engine_rapier::Rapier;
 use servobench_plant::{Drive, Engine, Mechanics, MechanicsSetup, MjcfModel, Model};
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
-
-thread_local! {
-    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
-}
-
-/// Counts the calling thread's allocations.
-struct Counting;
-
-#[expect(unsafe_code, reason = "an allocator is unsafe by contract; this one only counts and passes on")]
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.with(|count| count.set(count.get() + 1));
-        // SAFETY: the caller's promises are passed on unchanged.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
-        // SAFETY: as above.
-        unsafe { System.dealloc(memory, layout) }
-    }
-}
+use servobench_testkit::CountingAllocator;
 
 #[global_allocator]
-static COUNTING: Counting = Counting;
+static ALLOCATOR: CountingAllocator = CountingAllocator;
 
 /// Allocations per call once everything has its size.
 fn per_call(mut call: impl FnMut(u32)) -> f64 {
     (0..100).for_each(&mut call);
-    let before = ALLOCATIONS.get();
+    let before = CountingAllocator::count();
     (0..1_000).for_each(&mut call);
-    (ALLOCATIONS.get() - before) as f64 / 1_000.0
+    (CountingAllocator::count() - before) as f64 / 1_000.0
 }
 
 fn per_tick(axis: &mut dyn Mechanics) -> f64 {

@@ -1,7 +1,4 @@
 //! Motion tasks, buses and drives gone mad, and sane ones over a bad bus.
-#[path = "../../../motion/tests/shared/random.rs"]
-mod shared;
-
 use crate::rig::{BUS, MOTION, RATE, Rig, follow, sample, settings};
 use servobench_base::{Setpoint, Tick};
 use servobench_fieldbus::bus::{self, BusFault, BusFaultKind};
@@ -9,29 +6,32 @@ use servobench_fieldbus::link::{self, Control, Input, Sequencing, Settings};
 use servobench_fieldbus::{AxisCommand, Interpolation, Task};
 use servobench_motion::interpolate::{Mode, Sample};
 use servobench_motion::{Limits, Order, Profile};
-use shared::Random;
+use servobench_testkit::Random;
 
 /// Size of a sweep: `SERVOBENCH_SWEEP`, or `usual`.
 fn sweep_size(usual: u64) -> u64 {
     std::env::var("SERVOBENCH_SWEEP").map_or(usual, |size| size.parse().expect("SERVOBENCH_SWEEP is a whole number"))
 }
 
-impl Random {
-    fn below(&mut self, bound: u64) -> u64 {
-        self.next() % bound
-    }
-
-    fn once_in(&mut self, times: u64) -> bool {
-        self.below(times) == 0
-    }
-
+/// What a program gone mad asks for.
+trait Mad {
     /// Of either sign, over `decades` below and above one.
+    fn magnitude(&mut self, decades: f64) -> f64;
+
+    /// Mostly something that could be meant.
+    fn value(&mut self) -> f64;
+
+    fn task(&mut self) -> Task;
+
+    fn settings(&mut self) -> Settings;
+}
+
+impl Mad for Random {
     fn magnitude(&mut self, decades: f64) -> f64 {
         let sign = if self.once_in(2) { 1.0 } else { -1.0 };
         sign * 10.0_f64.powf(decades * (2.0 * self.unit() - 1.0))
     }
 
-    /// Mostly something that could be meant.
     fn value(&mut self) -> f64 {
         match self.below(40) {
             0 => f64::NAN,

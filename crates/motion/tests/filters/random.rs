@@ -1,21 +1,6 @@
 //! Seeded random numbers.
-#[path = "../shared/random.rs"]
-mod shared;
-
 use proptest::prelude::*;
-pub(crate) use shared::Random;
-
-impl Random {
-    /// Uniform in [−1, 1).
-    pub(crate) fn signed(&mut self) -> f64 {
-        2.0 * self.unit() - 1.0
-    }
-
-    /// Uniform in [low, high).
-    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-}
+pub(crate) use servobench_testkit::Random;
 
 /// Any `f64`, with the patterns that break arithmetic more often than chance would bring them.
 pub(crate) fn any_number() -> impl Strategy<Value = f64> {

@@ -1,5 +1,5 @@
 //! Targets that are passed at a velocity are met to rounding.
-use crate::random::{Random, sweep_size};
+use crate::random::{Random, limits, sweep_size};
 use crate::request::{Request, jump};
 use servobench_base::Setpoint;
 use servobench_motion::Order;
@@ -22,7 +22,7 @@ fn missed(request: &Request, planned: &Transition) -> f64 {
 /// A state on the way of a move, and the limits of that.
 fn situation(random: &mut Random, order: Order) -> (Setpoint, f64, DirectionalLimits) {
     let t = random.decades(-1.0, 1.0);
-    let limits = random.limits(1.0, t);
+    let limits = limits(random, 1.0, t);
     let target = Target::Position { x: random.signed() * t.powi(4) * random.decades(-2.0, 1.0), v: 0.0 };
     let way = Transition::plan(order, &Setpoint::default(), &target, &limits, Effort::Fast).unwrap();
     (Setpoint { x: 0.0, ..way.at(random.unit() * way.duration()) }, t, limits)

@@ -1,5 +1,5 @@
 //! Moves aborted by moves: at any instant, with new targets and now and then with new limits.
-use crate::random::{Random, sweep_size};
+use crate::random::{Random, limits, sweep_size};
 use servobench_base::Setpoint;
 use servobench_motion::Order;
 use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target, Transition};
@@ -21,7 +21,7 @@ impl Chain {
     fn new(seed: u64) -> Self {
         let mut random = Random::seeded(seed);
         let (d, t) = (random.decades(-6.0, 9.0), random.decades(-3.0, 1.0));
-        let limits = random.limits(d, t);
+        let limits = limits(&mut random, d, t);
         Self { random, usual: limits, limits, is_changed: false, length: d * t * t * t * t, state: Setpoint::default() }
     }
 

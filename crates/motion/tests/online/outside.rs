@@ -1,5 +1,5 @@
 //! States beyond the limits are led back.
-use crate::random::{Random, sweep_size};
+use crate::random::{Random, limits, sweep_size};
 use servobench_base::Setpoint;
 use servobench_motion::Order;
 use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target, Transition};
@@ -20,7 +20,7 @@ fn they_come_back_and_it_is_said() {
     for k in 0..sweep_size(100_000) / 2 {
         let order = [Order::Fourth, Order::Third, Order::Second][k % 3];
         let (d, t) = (random.decades(-3.0, 6.0), random.decades(-2.0, 1.0));
-        let limits = random.limits(d, t);
+        let limits = limits(&mut random, d, t);
         let DirectionalLimits { velocity, acceleration, jerk, .. } = limits;
         let mut from = Setpoint { v: 2.0 * velocity.above * random.signed(), ..Setpoint::default() };
         let is_calm = k % 2 == 0;

@@ -1,5 +1,5 @@
 //! The velocity at which a target is passed, against what the transition that passes it does.
-use crate::random::{Random, sweep_size};
+use crate::random::{Random, limits, sweep_size};
 use servobench_base::Setpoint;
 use servobench_motion::Order;
 use servobench_motion::online::{
@@ -22,7 +22,7 @@ fn lowest(order: Order, from: &Setpoint, x: f64, speed: f64, limits: &Directiona
 /// A state on the way of a move, and a position in front of it.
 fn situation(random: &mut Random, order: Order) -> (Setpoint, f64, DirectionalLimits) {
     let t = random.decades(-1.0, 1.0);
-    let limits = random.limits(1.0, t);
+    let limits = limits(random, 1.0, t);
     let length = t.powi(4) * random.decades(-2.0, 1.0);
     let target = Target::Position { x: length * random.signed(), v: 0.0 };
     let planned = Transition::plan(order, &Setpoint::default(), &target, &limits, Effort::Fast).unwrap();
@@ -81,7 +81,7 @@ fn the_next_move_can_just_be_braked() {
     for k in 0..sweep_size(30_000) {
         let order = ORDERS[k % 3];
         let t = random.decades(-1.0, 1.0);
-        let limits = random.limits(1.0, t);
+        let limits = limits(&mut random, 1.0, t);
         let distance = random.signed() * t.powi(4) * random.decades(-3.0, 1.0);
         let speed = braking_velocity(order, distance, &limits).unwrap();
         let limit = if distance > 0.0 { limits.velocity.above } else { limits.velocity.below };

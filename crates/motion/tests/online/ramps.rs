@@ -1,5 +1,5 @@
 //! One acceleration to speed up with and another one to brake with.
-use crate::random::{Random, sweep_size};
+use crate::random::{Random, limits, sweep_size};
 use servobench_base::Setpoint;
 use servobench_motion::Order;
 use servobench_motion::online::{DirectionalLimits, Effort, RampLimits, Sides, Target, Transition};
@@ -8,7 +8,7 @@ const ORDERS: [Order; 3] = [Order::Second, Order::Third, Order::Fourth];
 
 fn ramps(random: &mut Random) -> RampLimits {
     let t = random.decades(-2.0, 1.0);
-    let DirectionalLimits { velocity, acceleration, jerk, snap } = random.limits(1.0, t);
+    let DirectionalLimits { velocity, acceleration, jerk, snap } = limits(random, 1.0, t);
     let deceleration = acceleration.above * random.decades(-0.7, 0.7);
     RampLimits { velocity, acceleration: acceleration.above, deceleration, jerk, snap }
 }

@@ -1,5 +1,5 @@
 //! From rest to rest, an online plan is the offline one.
-use crate::random::{Random, sweep_size};
+use crate::random::{Random, limits, sweep_size};
 use servobench_base::Setpoint;
 use servobench_motion::online::{Effort, Target, Transition};
 use servobench_motion::{Limits, Order, Profile};
@@ -10,7 +10,7 @@ fn from_rest_to_rest_it_takes_as_long_as_the_offline_plan() {
     let mut random = Random::seeded(1);
     for _ in 0..sweep_size(100_000) / 2 {
         let (d, t) = (random.decades(-6.0, 9.0), random.decades(-3.0, 1.0));
-        let sides = random.limits(d, t);
+        let sides = limits(&mut random, d, t);
         let (velocity, acceleration) = (sides.velocity.above, sides.acceleration.above);
         let limits = Limits { velocity, acceleration, jerk: sides.jerk, snap: sides.snap };
         let x = random.signed() * d * t.powi(4) * random.decades(-2.0, 1.0);

@@ -1,5 +1,5 @@
 //! Order 2 against a jerk that is no limit, and against worked numbers.
-use crate::random::{Random, sweep_size};
+use crate::random::{Random, limits, sweep_size};
 use servobench_base::Setpoint;
 use servobench_motion::Order;
 use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target, Transition};
@@ -12,7 +12,7 @@ fn order_2_is_order_3_without_a_limit_of_jerk() {
     let mut random = Random::seeded(5);
     for _ in 0..sweep_size(100_000) {
         let t = random.decades(-2.0, 1.0);
-        let limits = random.limits(1.0, t);
+        let limits = limits(&mut random, 1.0, t);
         let DirectionalLimits { velocity, acceleration, .. } = limits;
         let speed = velocity.above.max(velocity.below);
         let slow = acceleration.above.min(acceleration.below);

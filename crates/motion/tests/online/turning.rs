@@ -1,5 +1,5 @@
 //! An axis that turns round with one acceleration to speed up and another one to brake, under limits that change in mid-move.
-use crate::random::{Random, sweep_size};
+use crate::random::{Random, limits, sweep_size};
 use crate::request::jump;
 use rsruckig::prelude::*;
 use servobench_base::Setpoint;
@@ -19,7 +19,7 @@ impl Chain {
     fn new(seed: u64) -> Self {
         let mut random = Random::seeded(seed);
         let (d, t) = (random.decades(-6.0, 9.0), random.decades(-3.0, 1.0));
-        let DirectionalLimits { velocity, acceleration, jerk, snap } = random.limits(d, t);
+        let DirectionalLimits { velocity, acceleration, jerk, snap } = limits(&mut random, d, t);
         let deceleration = acceleration.above * random.decades(-0.7, 0.7);
         let limits = RampLimits { velocity, acceleration: acceleration.above, deceleration, jerk, snap };
         Self { random, limits, length: d * t * t * t * t, state: Setpoint::default() }

@@ -1,5 +1,5 @@
 //! The forward-Euler cascade, against the four sums written out and against the exact hold.
-use crate::requests::{Random, sweep_size};
+use crate::requests::{Random, request, sweep_size};
 use servobench_base::Setpoint;
 use servobench_motion::sampled::{Cascade, Run};
 use servobench_motion::{Limits, Order, PlanError, Profile};
@@ -79,7 +79,7 @@ fn every_sampled_plan_lands() {
     let mut random = Random::seeded(72);
     let mut tried = 0;
     while tried < sweep_size() / 20 {
-        let request = random.request();
+        let request = request(&mut random);
         let plans = [Profile::plan_sampled, Profile::plan_fewest]
             .map(|plan| plan(request.order, request.distance, &request.limits, request.sample_time));
         for plan in plans.into_iter().flatten().filter(|plan| plan.samples().unwrap().total() < 3000) {

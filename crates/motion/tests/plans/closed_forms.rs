@@ -1,5 +1,5 @@
 //! Published numbers and textbook formulas.
-use crate::requests::{Random, sweep_size};
+use crate::requests::{Random, request, sweep_size};
 use servobench_base::Setpoint;
 use servobench_motion::{Limits, Order, Profile, Times};
 
@@ -70,7 +70,7 @@ fn double_s(x: f64, limits: &Limits) -> f64 {
 fn order_three_is_time_optimal() {
     let mut random = Random::seeded(3);
     for _ in 0..sweep_size() {
-        let request = random.request();
+        let request = request(&mut random);
         let t = Profile::plan(Order::Third, request.distance, &request.limits).unwrap().duration();
         let optimal = double_s(request.distance.abs(), &request.limits);
         // A handful of roundings, and dwells below 1e-12 that the plan drops.
@@ -101,7 +101,7 @@ fn rockwell_jerk_by_percent_of_time() {
 fn the_way_back_is_the_mirror_image_to_the_bit() {
     let mut random = Random::seeded(8);
     for _ in 0..2_000 {
-        let request = random.request();
+        let request = request(&mut random);
         let plan = |sign: f64| Profile::plan(request.order, sign * request.distance, &request.limits).unwrap();
         let (there, back) = (plan(1.0), plan(-1.0));
         assert_eq!(there.duration().to_bits(), back.duration().to_bits());
@@ -134,7 +134,7 @@ fn zero_distance_is_a_move_of_no_time() {
 fn dwells_of_rounding_noise_are_dropped_and_no_others() {
     let mut random = Random::seeded(10);
     for _ in 0..1_000 {
-        let request = random.request();
+        let request = request(&mut random);
         let x = request.distance;
         let snap_only = Limits { snap: request.limits.snap, ..Limits::UNLIMITED };
         assert_eq!(Profile::plan(Order::Fourth, x, &snap_only).unwrap().segments().count(), 8);

@@ -1,5 +1,5 @@
 //! The set-point at any time, against the segments that the plan publishes.
-use crate::requests::{Random, sweep_size};
+use crate::requests::{Random, request, sweep_size};
 use servobench_base::Setpoint;
 use servobench_motion::{Limits, Order, Peaks, Profile};
 
@@ -16,7 +16,7 @@ fn peaks(plan: &Profile) -> [f64; 5] {
 
 fn sampled_plans(seed: u64) -> impl Iterator<Item = Profile> {
     let mut random = Random::seeded(seed);
-    std::iter::repeat_with(move || random.request())
+    std::iter::repeat_with(move || request(&mut random))
         .filter_map(|r| Profile::plan_sampled(r.order, r.distance, &r.limits, r.sample_time).ok())
 }
 

@@ -1,5 +1,5 @@
 //! The fewest samples of the boxes, against brute force and against the sequential rounding.
-use crate::requests::{Random, Request, sweep_size};
+use crate::requests::{Random, Request, request, sweep_size};
 use servobench_motion::{Limits, Order, Profile};
 
 /// What the boxes have to reach: X/V, X/A, X/J, X/D in samples, by the number of boxes counted from the last.
@@ -54,7 +54,7 @@ fn no_boxes_of_fewer_samples_reach_the_distance() {
     let mut random = Random::seeded(29);
     let (mut tried, mut saved) = ([0_usize; 3], 0);
     while tried.iter().sum::<usize>() < sweep_size() / 50 {
-        let request = random.request();
+        let request = request(&mut random);
         let Request { order, distance, limits, sample_time } = request;
         let Ok(plan) = Profile::plan_fewest(order, distance, &limits, sample_time) else { continue };
         let samples = plan.samples().unwrap();
@@ -78,7 +78,7 @@ fn never_more_samples_than_the_sequential_rounding_and_within_the_limits() {
     let mut random = Random::seeded(30);
     let mut saved = [0_u64; 3];
     for _ in 0..sweep_size() / 5 {
-        let request = random.request();
+        let request = request(&mut random);
         let Request { order, distance, limits, sample_time } = request;
         let fewest = Profile::plan_fewest(order, distance, &limits, sample_time);
         let Ok(published) = Profile::plan_sampled(order, distance, &limits, sample_time) else {

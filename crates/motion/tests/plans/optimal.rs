@@ -1,5 +1,5 @@
 //! The shortest move of order 4.
-use crate::requests::{Random, sweep_size};
+use crate::requests::{Random, request, sweep_size};
 use servobench_base::Setpoint;
 use servobench_motion::{Limits, Order, Profile};
 
@@ -24,7 +24,7 @@ fn it_is_never_longer_and_keeps_the_limits() {
     let mut random = Random::seeded(4);
     let (mut gained, mut cruising) = (0.0_f64, 0);
     for _ in 0..sweep_size() {
-        let request = random.request();
+        let request = request(&mut random);
         let (distance, limits) = (request.distance, request.limits);
         let Ok(published) = Profile::plan(Order::Fourth, distance, &limits) else { continue };
         let optimal = Profile::plan_optimal(Order::Fourth, distance, &limits).unwrap();
@@ -76,7 +76,7 @@ fn moves_that_touch_the_velocity_limit_are_found_again() {
     for _ in 0..20_000 {
         let (peak, jerk) = (10.0_f64.powf(2.0 * random.unit() - 1.0), 10.0_f64.powf(2.0 * random.unit() - 1.0));
         let end = random.unit() * jerk.min((2.0 * peak).sqrt());
-        let hold = if random.below(2) == 0 { 0.0 } else { peak.sqrt() * random.unit() };
+        let hold = if random.index(2) == 0 { 0.0 } else { peak.sqrt() * random.unit() };
         let acceleration = if hold > 0.0 { peak } else { peak * (1.0 + random.unit()) };
         // Up to the jerk `most`, held for `held`, and down to zero: most·(most + held) is what the acceleration gains.
         let swell = |gained: f64| {

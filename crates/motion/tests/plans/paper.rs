@@ -2,7 +2,7 @@
 //!
 //! Pietrusewicz, Waszczuk & Kubicki, Applied Sciences 9 (2019). Names as printed; misprints corrected as noted. The one
 //! deliberate difference: (3) rounds up with a tolerance, since `ceil` of a rounded whole number is one too many.
-use crate::requests::{Random, sweep_size};
+use crate::requests::{Random, request, sweep_size};
 use servobench_motion::{Limits, Order, Profile, Times};
 
 /// A request whose rounding is decided beyond the precision of the printed formulas.
@@ -101,7 +101,7 @@ fn the_sampled_plan_is_that_of_the_printed_equations() {
     let mut random = Random::seeded(49);
     let (mut compared, mut undecided) = (0, 0);
     while compared < sweep_size() / 5 {
-        let request = random.request();
+        let request = request(&mut random);
         let Ok(plan) = Profile::plan_sampled(Order::Fourth, request.distance, &request.limits, request.sample_time)
         else {
             continue;
@@ -128,7 +128,7 @@ fn the_sampled_plan_is_that_of_the_printed_equations() {
 fn the_continuous_plan_is_that_of_the_printed_equations() {
     let mut random = Random::seeded(490);
     for _ in 0..sweep_size() / 5 {
-        let request = random.request();
+        let request = request(&mut random);
         let plan = Profile::plan(Order::Fourth, request.distance, &request.limits).unwrap();
         let Ok((expected, _)) = paper(request.distance.abs(), &request.limits, 0.0) else { unreachable!() };
         let duration = 8.0 * expected[0] + 4.0 * expected[1] + 2.0 * expected[2] + expected[3];

@@ -1,5 +1,5 @@
 //! Rockwell's Motion Axis Move.
-use crate::requests::{Random, sweep_size};
+use crate::requests::{Random, request, sweep_size};
 use servobench_motion::rockwell::{Jerk, MaximumJerk, Move, Shape};
 use servobench_motion::{Limits, Order, Profile};
 
@@ -42,7 +42,7 @@ fn the_printed_examples() {
 fn a_symmetric_move_is_the_profile_of_order_3() {
     let mut random = Random::seeded(46);
     for _ in 0..sweep_size() / 4 {
-        let request = random.request();
+        let request = request(&mut random);
         let Limits { velocity, acceleration, jerk, .. } = request.limits;
         let Ok(profile) = Profile::plan(Order::Third, request.distance, &request.limits) else { continue };
         let maximum = MaximumJerk { acceleration: jerk, deceleration: jerk };
@@ -64,8 +64,8 @@ fn a_symmetric_move_is_the_profile_of_order_3() {
 fn it_ends_where_it_is_to_end_and_keeps_its_operands() {
     let mut random = Random::seeded(47);
     for _ in 0..sweep_size() / 4 {
-        let (up, down) = (random.request(), random.request());
-        let shape = match random.below(3) {
+        let (up, down) = (request(&mut random), request(&mut random));
+        let shape = match random.index(3) {
             0 => Shape::Trapezoid,
             1 => s_curve(Jerk::PercentOfTime(1.0 + 99.0 * random.unit())),
             _ => Shape::SCurve {

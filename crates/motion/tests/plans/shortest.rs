@@ -1,6 +1,6 @@
 //! The shortest sampled move: as few samples as the corners of all moves allow, within its limits, at its end.
 use crate::double_double::Dd;
-use crate::requests::{Random, sweep_size};
+use crate::requests::{Random, request, sweep_size};
 use servobench_base::Setpoint;
 use servobench_motion::sampled::{Cascade, Execution, Shortest};
 use servobench_motion::{Limits, Order, PlanError, Profile};
@@ -25,9 +25,9 @@ impl Request {
             snap: decades(0.0, 3.0),
         };
         let distance = decades(-2.0, 1.5);
-        let order = ORDERS[random.below(3)];
+        let order = ORDERS[random.index(3)];
         let sample_time = Profile::plan_optimal(order, distance, &limits).unwrap().duration() / samples;
-        let distance = if random.below(2) == 0 { distance } else { -distance };
+        let distance = if random.index(2) == 0 { distance } else { -distance };
         Self { order, distance, limits, sample_time }
     }
 
@@ -346,7 +346,7 @@ fn requests_of_any_size_are_proven() {
     let mut random = Random::seeded(65);
     let (mut tried, mut proven, mut excess) = (0, 0, 0.0_f64);
     while tried < sweep_size() / 100 {
-        let crate::requests::Request { order, distance, limits, sample_time } = random.request();
+        let crate::requests::Request { order, distance, limits, sample_time } = request(&mut random);
         let Ok(boxes) = Profile::plan_fewest(order, distance, &limits, sample_time) else { continue };
         if boxes.samples().unwrap().total() > 300 {
             continue;

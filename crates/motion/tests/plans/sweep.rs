@@ -2,7 +2,7 @@
 //!
 //! The oracle integrates the published segments in 106-bit arithmetic, in the order of time, knowing nothing of boxes.
 use crate::double_double::Dd;
-use crate::requests::{Random, Request, sweep_size};
+use crate::requests::{Random, Request, request, sweep_size};
 use servobench_motion::{Limits, Order, PlanError, Profile};
 
 /// Position and derivatives, with the one that the order holds constant last.
@@ -109,7 +109,7 @@ fn sampled_plans_land_keep_their_limits_and_waste_nothing() {
     let mut random = Random::seeded(4);
     let (mut worst, mut refused) = (0.0_f64, 0);
     for _ in 0..sweep_size() {
-        let request = random.request();
+        let request = request(&mut random);
         let Request { order, distance, limits, sample_time } = request;
         let continuous = Profile::plan(order, distance, &limits).unwrap();
         let plan = match Profile::plan_sampled(order, distance, &limits, sample_time) {
@@ -143,7 +143,7 @@ fn continuous_plans_land_and_keep_their_limits() {
     let mut random = Random::seeded(40);
     let mut worst = 0.0_f64;
     for _ in 0..sweep_size() {
-        let request = random.request();
+        let request = request(&mut random);
         let plan = Profile::plan(request.order, request.distance, &request.limits).unwrap();
         worst = worst.max(integrate(&plan, &request.limits, &request));
         assert!(plan.samples().is_none());
@@ -166,7 +166,7 @@ fn slowed(limits: Limits, k: f64) -> Limits {
 fn a_stretched_plan_is_the_same_move_in_the_given_time() {
     let mut random = Random::seeded(400);
     for _ in 0..sweep_size() / 10 {
-        let request = random.request();
+        let request = request(&mut random);
         let Request { order, distance, limits, sample_time } = request;
         let factor = 1.0 + 3.0 * random.unit();
         let continuous = Profile::plan(order, distance, &limits).unwrap();

@@ -1,5 +1,5 @@
 //! Set-points of a table: what holds in each segment, the order of reading, a million points.
-use crate::random::Random;
+use crate::random::{Random, walk};
 use servobench_base::Setpoint;
 use servobench_motion::pvt::{Knot, Table, average, continuous, smooth};
 
@@ -18,7 +18,7 @@ fn hermite(p: &[Knot], t: f64) -> (f64, f64) {
 #[test]
 fn cubic_segments_are_hermite_polynomials_and_meet_the_points() {
     let mut random = Random::seeded(5);
-    let mut knots = random.knots(200);
+    let mut knots = walk(&mut random, 200);
     for knot in &mut knots {
         knot.v = Some(random.between(-20.0, 20.0));
     }
@@ -41,7 +41,7 @@ fn cubic_segments_are_hermite_polynomials_and_meet_the_points() {
 #[test]
 fn derivatives_belong_together() {
     let mut random = Random::seeded(6);
-    let mut knots = random.knots(20);
+    let mut knots = walk(&mut random, 20);
     continuous(&mut knots, 0.0, 0.0, &mut [0.0; 20]).unwrap();
     let table = Table::new(&knots).unwrap();
     let d = 1e-4;
@@ -80,7 +80,7 @@ fn linear_segments() {
 #[test]
 fn a_cursor_reads_the_same_in_any_order() {
     let mut random = Random::seeded(7);
-    let mut knots = random.knots(300);
+    let mut knots = walk(&mut random, 300);
     average(&mut knots, 0.0, 1.0).unwrap();
     (3..300).step_by(7).for_each(|i| knots[i].v = None);
     let table = Table::new(&knots).unwrap();

@@ -1,6 +1,6 @@
 //! Option 1 of the position profile: an ideal drive that obeys the commands hits every position.
 use crate::drive::follow;
-use crate::random::Random;
+use crate::random::{Random, walk};
 use servobench_motion::position_profile::Plateaus;
 use servobench_motion::pvt::Knot;
 
@@ -28,7 +28,7 @@ fn two_segments_by_hand() {
 fn cases() -> impl Iterator<Item = (Vec<Knot>, f64, f64, f64)> {
     let mut random = Random::seeded(8);
     (0..300).map(move |k| {
-        let knots = random.knots(2 + k % 40);
+        let knots = walk(&mut random, 2 + k % 40);
         let alpha = if k % 10 == 0 { 0.5 } else { random.between(0.01, 0.5) };
         (knots, random.between(-5.0, 5.0), random.between(-5.0, 5.0), alpha)
     })
@@ -75,7 +75,7 @@ fn set_points_are_what_the_drive_does() {
 /// Velocity is constant from α·dT to (1 − α)·dT of every segment, as the source asks.
 #[test]
 fn plateaus_are_where_they_belong() {
-    let mut knots = Random::seeded(9).knots(12);
+    let mut knots = walk(&mut Random::seeded(9), 12);
     let way = Plateaus::solve(&mut knots, 0.0, 0.0, 0.2, &mut [0.0; 12]).unwrap();
     for (i, p) in way.knots().windows(2).enumerate() {
         let h = p[1].t - p[0].t;

@@ -1,6 +1,6 @@
 //! Option 2 of the position profile: an ideal drive that obeys the commands errs as announced.
 use crate::drive::follow;
-use crate::random::Random;
+use crate::random::{Random, walk};
 use servobench_motion::PlanError;
 use servobench_motion::position_profile::{Spline, Stepped};
 use servobench_motion::pvt::Knot;
@@ -47,7 +47,7 @@ fn velocities_of_the_source(knots: &[Knot], start: f64, end: f64) -> Vec<f64> {
 fn the_spline_is_that_of_the_source() {
     let mut random = Random::seeded(10);
     for count in [2, 3, 4, 12, 60] {
-        let mut knots = random.knots(count);
+        let mut knots = walk(&mut random, count);
         let expected = velocities_of_the_source(&knots, 1.5, -2.5);
         for (knot, v) in solve(&mut knots, 1.5, -2.5).table().knots().iter().zip(expected) {
             // Slopes up to 200/s, conditioning of a diagonally dominant system: some dozen roundings.
@@ -81,7 +81,7 @@ fn the_drive_errs_as_announced() {
     let mut random = Random::seeded(11);
     let mut tightest = f64::INFINITY;
     for k in 0..400 {
-        let mut knots = random.knots(2 + k % 30);
+        let mut knots = walk(&mut random, 2 + k % 30);
         let spline = solve(&mut knots, random.between(-5.0, 5.0), random.between(-5.0, 5.0));
         let rate = 10.0_f64.powf(random.between(-0.5, 3.5));
         let way = spline.stepped(rate).unwrap();
@@ -143,7 +143,7 @@ fn the_lowest_rate_by_hand() {
 fn the_lowest_rate_is_enough_and_one_less_is_not() {
     let mut random = Random::seeded(12);
     for k in 0..60 {
-        let mut knots = random.knots(2 + k);
+        let mut knots = walk(&mut random, 2 + k);
         let spline = solve(&mut knots, 0.0, 0.0);
         let allowed = 10.0_f64.powf(random.between(-8.0, -1.0));
         let rate = spline.lowest_rate(allowed).unwrap();
@@ -157,7 +157,7 @@ fn the_lowest_rate_is_enough_and_one_less_is_not() {
 /// Halving the interval quarters the error: the trapezoidal rule is of order 2.
 #[test]
 fn the_error_is_of_order_two() {
-    let mut knots = Random::seeded(13).knots(10);
+    let mut knots = walk(&mut Random::seeded(13), 10);
     let spline = solve(&mut knots, 0.0, 0.0);
     let error = |rate| spline.stepped(rate).unwrap().largest_error();
     let order = (error(1000.0) / error(2000.0)).log2();
@@ -166,7 +166,7 @@ fn the_error_is_of_order_two() {
 
 #[test]
 fn refusals() {
-    let mut knots = Random::seeded(14).knots(5);
+    let mut knots = walk(&mut Random::seeded(14), 5);
     let spline = solve(&mut knots, 0.0, 0.0);
     for rate in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e31] {
         assert!(spline.stepped(rate).is_err());

@@ -1,5 +1,5 @@
 //! Chosen velocities against a dense solution and against each other, at unequal times.
-use crate::random::Random;
+use crate::random::{Random, walk};
 use servobench_motion::pvt::{Knot, Table, average, continuous, smooth};
 
 /// The velocities that make acceleration continuous, by Gaussian elimination with pivoting of the full system in the
@@ -56,7 +56,7 @@ fn the_tridiagonal_solution_is_the_dense_one() {
     let mut random = Random::seeded(1);
     for count in [2, 3, 4, 5, 9, 17] {
         for _ in 0..20 {
-            let mut knots = random.knots(count);
+            let mut knots = walk(&mut random, count);
             let (start, end) = (random.between(-9.0, 9.0), random.between(-9.0, 9.0));
             continuous(&mut knots, start, end, &mut vec![0.0; count]).unwrap();
             for (knot, v) in knots.iter().zip(dense(&knots, start, end)) {
@@ -70,7 +70,7 @@ fn the_tridiagonal_solution_is_the_dense_one() {
 #[test]
 fn acceleration_is_continuous_to_rounding() {
     let mut random = Random::seeded(2);
-    let mut knots = random.knots(1000);
+    let mut knots = walk(&mut random, 1000);
     continuous(&mut knots, 0.5, -0.5, &mut [0.0; 1000]).unwrap();
     let table = Table::new(&knots).unwrap();
     for p in knots.windows(3) {
@@ -90,7 +90,7 @@ fn passes_converge_to_the_tridiagonal_solution() {
     let mut random = Random::seeded(3);
     for (equal, factor) in [(false, 1.0 / 2.0), (true, 1.0 / 3.0)] {
         for count in [3, 4, 5, 30, 300] {
-            let mut knots = random.knots(count);
+            let mut knots = walk(&mut random, count);
             if equal {
                 (0..).zip(&mut knots).for_each(|(k, knot)| knot.t = f64::from(k) / 64.0);
             }
@@ -115,7 +115,7 @@ fn passes_converge_to_the_tridiagonal_solution() {
 fn one_pass_solves_four_points() {
     let mut random = Random::seeded(4);
     for _ in 0..100 {
-        let mut knots = random.knots(4);
+        let mut knots = walk(&mut random, 4);
         let mut solution = knots.clone();
         continuous(&mut solution, 3.0, 4.0, &mut [0.0; 4]).unwrap();
         for knot in &mut knots {

@@ -1,34 +1,28 @@
 //! What happens by chance.
 use servobench_motion::Limits;
+use servobench_testkit::Random;
 
 /// Part of the limits that a block may use so that two of them may on top of each other.
 const PART: f64 = 0.5;
 
-/// SplitMix64 (Steele, Lea & Flood 2014).
-pub(crate) struct Chance(u64);
+/// Random inputs of blocks.
+pub(crate) struct Chance(Random);
 
 impl Chance {
     pub(crate) const fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        mixed ^ (mixed >> 31)
+        Self(Random::seeded(seed))
     }
 
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * ((self.next() >> 11) as f64 / 9_007_199_254_740_992.0)
+        self.0.between(low, high)
     }
 
     pub(crate) fn once_in(&mut self, times: u64) -> bool {
-        self.next().is_multiple_of(times)
+        self.0.once_in(times)
     }
 
     pub(crate) fn one_of<T: Copy>(&mut self, choices: &[T]) -> T {
-        choices[usize::try_from(self.next() % choices.len() as u64).unwrap()]
+        self.0.one_of(choices)
     }
 
     /// `value`, or now and then something that no program should give.

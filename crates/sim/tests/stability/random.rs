@@ -5,39 +5,7 @@ use servobench_drive::current::{Gains, Tuning};
 use servobench_drive::{Stage, delay};
 use servobench_plant::{Body, Chain, Encoder, Friction, Link};
 use servobench_scenario::{Actuator, AxisMechanics, Feedback, Scenario};
-
-/// SplitMix64 (Steele, Lea, Flood 2014).
-pub(crate) struct Random(pub(crate) u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ z >> 31
-    }
-
-    /// From 0 to below 1.
-    fn share(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// From `low` to `high`, evenly in the logarithm.
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low * (high / low).powf(self.share())
-    }
-
-    pub(crate) fn pick<T: Copy>(&mut self, from: &[T]) -> T {
-        #[expect(clippy::cast_possible_truncation, reason = "a small count")]
-        let index = (self.next() % from.len() as u64) as usize;
-        from[index]
-    }
-
-    fn chance(&mut self, share: f64) -> bool {
-        self.share() < share
-    }
-}
+use servobench_testkit::Random;
 
 const PMSM: &str = r#"
 [run]
@@ -91,20 +59,20 @@ load_velocity = "1e-9 rad/s"
 
 /// A loop without friction, limits and quantisation.
 pub(crate) fn random_loop(random: &mut Random) -> Scenario {
-    let is_pmsm = random.chance(0.6);
+    let is_pmsm = random.unit() < 0.6;
     let mut scenario = scenario(if is_pmsm { PMSM } else { IDEAL });
-    let base = random.pick(&[12_000, 16_000, 20_000, 24_000]);
-    let current_every = if is_pmsm { random.pick(&[1, 1, 2]) } else { 1 };
-    let velocity_every = current_every * random.pick(&[1, 2, 4]);
-    let position_every = velocity_every * random.pick(&[1, 2, 3, 4]);
+    let base = random.one_of(&[12_000, 16_000, 20_000, 24_000]);
+    let current_every = if is_pmsm { random.one_of(&[1, 1, 2]) } else { 1 };
+    let velocity_every = current_every * random.one_of(&[1, 2, 4]);
+    let position_every = velocity_every * random.one_of(&[1, 2, 3, 4]);
     let rate = |every: u32| Rate::new(base / every).unwrap();
     // A rate must divide the base rate; 24 and its like do all of these.
     let position_every = if base.is_multiple_of(position_every) { position_every } else { velocity_every };
     scenario.base_rate = rate(1);
     scenario.record.rate = rate(1);
 
-    let is_screw = random.chance(0.3);
-    let transmission = if is_screw { random.between(1e-3, 5e-3) } else { 1.0 };
+    let is_screw = random.unit() < 0.3;
+    let transmission = if is_screw { random.logarithmic(1e-3, 5e-3) } else { 1.0 };
     if is_screw {
         scenario.axis.motion = Coordinate::Linear;
     }
@@ -116,8 +84,8 @@ pub(crate) fn random_loop(random: &mut Random) -> Scenario {
     scenario.axis.mechanics = AxisMechanics::Bodies(chain);
 
     let velocity_period = f64::from(velocity_every) / f64::from(base);
-    let omega = random.between(0.01, 0.3) / velocity_period;
-    let (gain, off) = (inertia * omega, random.between(0.9, 1.1));
+    let omega = random.logarithmic(0.01, 0.3) / velocity_period;
+    let (gain, off) = (inertia * omega, random.logarithmic(0.9, 1.1));
     let every = |every: u32| rate(1).divider(rate(every)).unwrap();
     let drive = match &mut scenario.actuator {
         Actuator::Pmsm { drive, .. } => {
@@ -125,23 +93,23 @@ pub(crate) fn random_loop(random: &mut Random) -> Scenario {
                 panic!("a current loop")
             };
             *of_current = every(current_every);
-            let tuning = Tuning::Bandwidth(random.between(0.1, 0.7) * f64::from(base / current_every));
+            let tuning = Tuning::Bandwidth(random.logarithmic(0.1, 0.7) * f64::from(base / current_every));
             params.max_current = f64::INFINITY;
             let motor = &mut params.motor;
-            motor.resistance *= random.between(0.6, 1.6);
-            let inductance = random.between(0.7, 1.3);
+            motor.resistance *= random.logarithmic(0.6, 1.6);
+            let inductance = random.logarithmic(0.7, 1.3);
             // A deviation of the bodies does not reach the d axis, which must not be the first at the circle.
             motor.inductance.d *= 0.7 * inductance;
             motor.inductance.q *= inductance;
-            motor.flux_linkage *= random.between(0.8, 1.25);
+            motor.flux_linkage *= random.logarithmic(0.8, 1.25);
             params.gains = Gains::tuned(motor, tuning, None);
             drive.current_tuning = Some(tuning);
             drive
         }
         Actuator::IdealSource { source, drive, .. } => {
-            source.gain = random.between(0.5, 40.0);
+            source.gain = random.logarithmic(0.5, 40.0);
             source.limit = f64::INFINITY;
-            drive.params.stage = Stage::Direct { gain: source.gain * random.between(0.7, 1.4) };
+            drive.params.stage = Stage::Direct { gain: source.gain * random.logarithmic(0.7, 1.4) };
             drive
         }
         Actuator::Prescribed | Actuator::Off => panic!("neither is asked for"),
@@ -151,13 +119,14 @@ pub(crate) fn random_loop(random: &mut Random) -> Scenario {
     params.velocity.max_effort = f64::INFINITY;
     params.velocity_every = every(velocity_every);
     params.velocity.k_p = gain;
-    params.velocity.integral_time = random.chance(0.6).then(|| random.between(2.0, 12.0) / omega);
-    params.velocity_filter_time = if random.chance(0.5) { random.between(0.2, 3.0) * velocity_period } else { 0.0 };
+    params.velocity.integral_time = (random.unit() < 0.6).then(|| random.logarithmic(2.0, 12.0) / omega);
+    params.velocity_filter_time =
+        if random.unit() < 0.5 { random.logarithmic(0.2, 3.0) * velocity_period } else { 0.0 };
     params.position_every = every(position_every);
-    params.position_gain = if random.chance(0.1) { 0.0 } else { random.between(0.03, 0.3) * omega };
+    params.position_gain = if random.unit() < 0.1 { 0.0 } else { random.logarithmic(0.03, 0.3) * omega };
     params.reference_delay = delay::Params::default();
     params.transmission = transmission * off;
-    if random.chance(0.3) {
+    if random.unit() < 0.3 {
         drive.position_feedback = Feedback::Load(Encoder::default());
     }
     drive.estimate.transmission = transmission * off;
@@ -166,22 +135,22 @@ pub(crate) fn random_loop(random: &mut Random) -> Scenario {
 
 /// One to four bodies in a row.
 fn chain(random: &mut Random, base: u32, transmission: f64) -> Chain {
-    let count = random.pick(&[1, 2, 2, 3, 4]);
-    let damped = random.chance(0.7);
-    let viscous = random.chance(0.4);
+    let count = random.one_of(&[1, 2, 2, 3, 4]);
+    let damped = random.unit() < 0.7;
+    let viscous = random.unit() < 0.4;
     let (mut bodies, mut links): (Vec<Body>, Vec<Link>) = (Vec::new(), Vec::new());
     for name in ["motor", "table", "load", "tool"].into_iter().take(count) {
         let is_first = bodies.is_empty();
         let own = if is_first { 1.0 } else { transmission };
-        let inertia = random.between(1e-3, 1e-2) / (own * own);
+        let inertia = random.logarithmic(1e-3, 1e-2) / (own * own);
         if let Some(last) = bodies.last() {
             let before = if bodies.len() == 1 { last.inertia / (transmission * transmission) } else { last.inertia };
             let reduced = before * inertia / (before + inertia);
-            let omega = std::f64::consts::TAU * random.between(15.0, 0.3 * f64::from(base));
-            let damping = if damped { 2.0 * random.between(1e-3, 3e-2) * reduced * omega } else { 0.0 };
+            let omega = std::f64::consts::TAU * random.logarithmic(15.0, 0.3 * f64::from(base));
+            let damping = if damped { 2.0 * random.logarithmic(1e-3, 3e-2) * reduced * omega } else { 0.0 };
             links.push(Link { stiffness: reduced * omega * omega, damping });
         }
-        let viscous = if viscous { random.between(0.1, 3.0) * inertia } else { 0.0 };
+        let viscous = if viscous { random.logarithmic(0.1, 3.0) * inertia } else { 0.0 };
         bodies.push(Body {
             name,
             coordinate: Coordinate::Rotary,

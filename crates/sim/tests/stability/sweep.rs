@@ -6,11 +6,12 @@
 //! is printed: loops with a mode on the circle but for rounding.
 use crate::deviation::{NotTold, growth};
 use crate::files::report;
-use crate::random::{Random, random_loop};
+use crate::random::random_loop;
 use servobench_drive::Stage;
 use servobench_drive::current::{Gains, Tuning};
 use servobench_scenario::{Actuator, Scenario};
 use servobench_stability::{Depth, GainName};
+use servobench_testkit::Random;
 use std::time::Instant;
 
 const SEED: u64 = 20_261_122;
@@ -99,7 +100,7 @@ fn draw(random: &mut Random, slowest: &mut [f64; 2]) -> Option<Case> {
     if all.is_empty() {
         return None;
     }
-    let (name, factor) = random.pick(&all);
+    let (name, factor) = random.one_of(&all);
     Some(Case { scenario, name, factor, is_unstable: !verdict })
 }
 
@@ -108,7 +109,7 @@ fn boundaries_are_where_runs_change_from_decay_to_growth() {
     let asked: Option<usize> = std::env::var("SERVOBENCH_SWEEP").ok().and_then(|count| count.parse().ok());
     let count = asked.unwrap_or(12);
     let seed = std::env::var("SERVOBENCH_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(SEED);
-    let mut random = Random(seed);
+    let mut random = Random::seeded(seed);
     let (mut done, mut drawn, mut undecided, mut kinds) = (0, 0, 0, [0; 3]);
     let (mut slowest, mut misses, mut within, mut worst) = ([0.0_f64; 2], Vec::new(), [0_usize; 4], 0.0_f64);
     while done < count {

@@ -1,6 +1,5 @@
 //! Fuzz targets: whatever is in a recording file, it is read as it was written or refused, without a panic and within
 //! the memory that the file's size justifies. `docs/testing.md` says how to run more of them.
-mod allocation;
 mod seal;
 
 use parquet::basic::{Repetition, Type as PhysicalType};
@@ -11,6 +10,7 @@ use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 use servobench_base::{Rate, Severity};
 use servobench_fuzz::{Splice, check, fuzz};
+use servobench_testkit::CountingAllocator;
 use servobench_trace::{
     About, Call, CallFate, Channel, ChannelSpec, Ending, Event, LimitReversals, LogEntry, Move, Recording, Signal,
     TraceError,
@@ -18,6 +18,9 @@ use servobench_trace::{
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
+
+#[global_allocator]
+static ALLOCATOR: CountingAllocator = CountingAllocator;
 
 /// A recording of so many instants with so many channels, and its file.
 fn recording(instants: u32, channels: u32, path: &Path) -> (Recording, Vec<u8>) {
@@ -95,7 +98,7 @@ const BYTES: &[&[u8]] = &[
 /// The recording in the file at `path`; nothing that reading it takes may be much larger than the file.
 fn read(path: &Path) -> Result<Recording, TraceError> {
     let size = usize::try_from(fs::metadata(path).unwrap().len()).unwrap();
-    let (outcome, largest) = allocation::largest(|| Recording::read_parquet(path));
+    let (outcome, largest) = CountingAllocator::largest_of(|| Recording::read_parquet(path));
     assert!(largest <= (1 << 20) + 16 * size, "{largest} bytes at once for a file of {size}");
     if let Ok(recording) = &outcome {
         let lengths = || recording.channels.iter().map(|channel| channel.values.len());

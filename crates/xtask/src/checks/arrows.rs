@@ -12,7 +12,7 @@ enum May {
 
 /// The floor plan, lower floors first; `engine-*` is every engine that has no line of its own. Dev-dependencies are free: the oracle
 /// of a test may come from anywhere.
-const PLAN: [(&str, May); 29] = [
+const PLAN: [(&str, May); 30] = [
     ("base", May::On(&[])),
     ("config", May::On(&["base"])),
     ("cia402", May::On(&["base"])),
@@ -88,6 +88,7 @@ const PLAN: [(&str, May); 29] = [
     ("bare-metal", May::On(&["base", "cia402", "motion", "fieldbus", "plcopen"])),
     ("features", May::On(&[])),
     ("fuzz", May::On(&[])),
+    ("testkit", May::On(&[])),
     ("xtask", May::On(&[])),
 ];
 
