@@ -38,7 +38,8 @@ fn table() -> String {
 
 /// The legs, the one that finds the reference in bold.
 fn legs(method: &Method, start: Start) -> String {
-    let mut legs: Vec<String> = method.legs(start).map(|leg| leg.to_string()).collect();
+    let mut legs: Vec<String> =
+        (0..).map_while(|number| method.leg(start, number)).map(|leg| leg.to_string()).collect();
     let Some(last) = legs.last_mut() else { return "here".into() };
     *last = format!("**{last}**");
     legs.join(", ")

@@ -20,7 +20,8 @@ const RESERVE: u16 = 6;
 const AHEAD: usize = 16;
 /// For the rounding of times (s).
 const ROUNDING: f64 = 1e-9;
-/// Tables, and how far they are.
+
+/// Sends tables to the buffer of a drive, one after the other.
 #[derive(Debug, Clone)]
 pub struct Stream {
     encoding: PointEncoding,

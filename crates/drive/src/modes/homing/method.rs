@@ -87,13 +87,8 @@ impl Method {
         self.turns_at_limit
     }
 
-    /// The legs from `start`. The event that ends the last one is the reference; without a leg the axis is there.
-    pub fn legs(&self, start: Start) -> impl Iterator<Item = Leg> + use<> {
-        let method = *self;
-        (0..).map_while(move |number| method.leg(start, number))
-    }
-
-    /// Leg `number` from `start`, counted from 0; `None` behind the last.
+    /// Leg `number` from `start`, counted from 0; `None` behind the last. The event that ends the last one is the reference; without a
+    /// leg the axis is there.
     #[must_use]
     pub fn leg(&self, start: Start, number: usize) -> Option<Leg> {
         let stages = match start {
