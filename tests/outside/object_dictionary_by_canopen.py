@@ -5,7 +5,9 @@
 - a slave that `canopen` makes of the data sheet and the drive give the same bytes or the same abort code for every read of
   every index around the areas of the drive, and for writes of every entry: what it holds, one byte more and one less;
 - the ends of every range that `canopen` read are taken, what is beyond is refused as too high or too low;
-- `canopen` finds the process data objects in the data sheet by itself, and reads the values in a frame by their names.
+- `canopen` finds the process data objects in the data sheet by itself, and reads the values in a frame by their names;
+- a slave that `canopen` makes of the data sheet serves a master of `canopen` by SDO, its strings too, and its emergency messages
+  reach that master: the objects of CiA 301 that they need are there.
 """
 
 import json
@@ -21,7 +23,7 @@ from canopen.objectdictionary import ODArray, ODVariable, datatypes
 
 ROOT = Path(__file__).resolve().parents[2]
 PDO_AREAS = (range(0x1400, 0x1408), range(0x1600, 0x1608), range(0x1800, 0x1808), range(0x1A00, 0x1A08))
-AREAS = (range(0x1000, 0x1020), *PDO_AREAS, range(0x2000, 0x2020), range(0x6030, 0x6120), range(0x64F0, 0x6510))
+AREAS = (range(0x1000, 0x1020), range(0x1200, 0x1202), *PDO_AREAS, range(0x2000, 0x2020), range(0x6030, 0x6120), range(0x64F0, 0x6510))
 SUBINDICES = range(0, 6)
 TYPES = {
     "INTEGER8": datatypes.INTEGER8,
@@ -31,6 +33,7 @@ TYPES = {
     "UNSIGNED16": datatypes.UNSIGNED16,
     "UNSIGNED32": datatypes.UNSIGNED32,
     "UNSIGNED64": datatypes.UNSIGNED64,
+    "VISIBLE_STRING": datatypes.VISIBLE_STRING,
 }
 # What CiA 402 maps by default: identifier of node 1, and the objects by name.
 PROCESS_DATA = {
@@ -203,6 +206,47 @@ def process_data(dictionary: canopen.ObjectDictionary) -> list[str]:
     return wrong
 
 
+class Wire(canopen.Network):
+    """A network whose frames reach another one at once."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.other: canopen.Network | None = None
+
+    def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:
+        """Hands the frame to the other network."""
+        assert self.other is not None
+        self.other.notify(can_id, bytearray(data), 0.0)
+
+
+def conversation(dictionary: canopen.ObjectDictionary, table: Sequence[dict[str, Any]]) -> list[str]:
+    """What a master and a slave of `canopen` do not get through to each other."""
+    ours, theirs = Wire(), Wire()
+    ours.other, theirs.other = theirs, ours
+    slave, master = canopen.LocalNode(1, dictionary), canopen.RemoteNode(1, dictionary)
+    theirs.add_node(slave)
+    ours.add_node(master)
+    wrong = []
+    for entry in table:
+        index, subindex, access = entry["index"], entry["subindex"], entry["access"]
+        if access == "wo":
+            continue
+        variable = dictionary[index] if isinstance(dictionary[index], ODVariable) else dictionary[index][subindex]
+        value = variable.decode_raw(master.sdo.upload(index, subindex))
+        if value != entry["default"]:
+            wrong.append(f"{index:04X}h:{subindex:02X}h read over the bus is {value}, in the table {entry['default']}")
+    master.sdo[0x6065].raw = 2000
+    if slave.sdo[0x6065].raw != 2000:
+        wrong.append("a following error window written over the bus does not arrive")
+    slave.emcy.send(0x8611, 0x20)
+    if [error.code for error in master.emcy.log] != [0x8611]:
+        wrong.append(f"emergency messages {master.emcy.log}")
+    # The heartbeat itself needs a CAN interface; its time is where the slave looks for it.
+    if slave.sdo[0x1017].raw != 0:
+        wrong.append("the producer heartbeat time is not 0")
+    return wrong
+
+
 def main() -> None:
     """Compares the tables, the accesses, the ranges and the process data objects."""
     dictionary, table = read_data_sheet(), json.loads(example("json"))
@@ -215,6 +259,8 @@ def main() -> None:
     answers = ask([access for access, _ in ends])
     wrong += [f"{access} is answered by `{is_}`, not `{due}`" for (access, due), is_ in zip(ends, answers, strict=True) if is_ != due]
     print(f"{len(ends)} writes at and beyond the ends of ranges")
+    wrong += conversation(dictionary, table)
+    print("a slave of canopen made of the data sheet serves a master of canopen")
     wrong += process_data(dictionary)
     print(f"{sum(map(len, PROCESS_DATA.values()))} process data objects found by canopen")
     if wrong:

@@ -66,7 +66,7 @@ impl Request {
 
     fn answer(&self, dictionary: &mut Dictionary) -> Result<Vec<u8>, SdoError> {
         let Some(bytes) = &self.bytes else {
-            return dictionary.upload(self.object).map(|(bytes, length)| bytes[..length].to_vec());
+            return dictionary.upload(self.object).map(|bytes| bytes.as_ref().to_vec());
         };
         dictionary.download(self.object, bytes, PowerState::SwitchOnDisabled).map(|()| vec![])
     }

@@ -36,6 +36,7 @@ mod sdo;
 mod sequence;
 mod state;
 mod statusword;
+pub mod touch_probe;
 mod transitions;
 pub mod units;
 

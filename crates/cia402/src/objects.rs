@@ -35,7 +35,7 @@ mod place;
 mod table;
 mod value;
 
-pub use dictionary::Dictionary;
+pub use dictionary::{Bytes, Dictionary};
 pub use eds::{Eds, FileInfo};
 pub use entry::{Access, Admitted, Contents, Entry, Mapping, ObjectDescription};
 pub use json::Json;

@@ -35,6 +35,10 @@ pub struct Commands {
     pub trajectory_point: Option<[u8; 8]>,
     /// What is written to the interpolation data record (60C1h); sent when there is something.
     pub interpolation_data: Option<InterpolationData>,
+    /// Touch probe function (60B8h).
+    pub touch_probe_function: u16,
+    /// Digital outputs (60FEh:1).
+    pub digital_outputs: u32,
 }
 
 /// A point in the interpolation data record (60C1h). What the sub-mode (60C0h) does not use is not mapped and not written.
@@ -73,4 +77,8 @@ pub struct Actuals {
     pub buffer_free: u16,
     /// State of the trajectory buffer (2012h).
     pub buffer_status: u32,
+    /// Touch probe status (60B9h).
+    pub touch_probe_status: u16,
+    /// Positions of touch probe 1 at the positive and the negative edge (60BAh, 60BBh).
+    pub touch_probe_positions: [i32; 2],
 }

@@ -86,6 +86,14 @@ pub enum SdoError {
         /// Its name.
         name: &'static str,
     },
+    /// A string that is read as a number.
+    #[error("`{name}` ({object}) is a string, not a number: upload its bytes")]
+    NoNumber {
+        /// The object.
+        object: Object,
+        /// Its name.
+        name: &'static str,
+    },
     /// A write of what is only read.
     #[error("`{name}` ({object}) is read only: it tells what the drive does")]
     ReadOnly {
@@ -248,7 +256,7 @@ impl SdoError {
             Self::TooLow { .. } => AbortCode::TooLow,
             Self::NotListed { .. } | Self::ReservedBits { .. } => AbortCode::OutOfRange,
             Self::CrossedBounds { .. } => AbortCode::MaximumBelowMinimum,
-            Self::FactorGroup { .. } => AbortCode::Incompatible,
+            Self::NoNumber { .. } | Self::FactorGroup { .. } => AbortCode::Incompatible,
             Self::State { .. } | Self::UnderWay { .. } => AbortCode::DeviceState,
         }
     }

@@ -1,5 +1,5 @@
 //! Pages of `docs/` with tables made of the source. `SERVOBENCH_WRITE_DOCS=1 cargo test -p servobench-cia402` writes them.
-use servobench_cia402::objects::{Access, Admitted, Entry, NODE_ID, OBJECTS, ObjectDescription};
+use servobench_cia402::objects::{Access, Admitted, Contents, Entry, NODE_ID, OBJECTS, ObjectDescription};
 use servobench_cia402::{AbortCode, ErrorCode, Source, TRANSITIONS};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -95,6 +95,11 @@ fn objects() -> String {
     table += "|---|---|---|---|---|---|---|---|\n";
     let is_of_pdo = |object: &&ObjectDescription| (0x1400..0x1C00).contains(&object.index);
     for object in OBJECTS.iter().filter(|object| !is_of_pdo(object)) {
+        if let Contents::Text(text) = object.contents {
+            let (index, name) = (object.index, object.name);
+            writeln!(table, "| {index:04X}h | {name} | VISIBLE_STRING | const | – | {text} | – | – |").unwrap();
+            continue;
+        }
         let is_list_of_constants = object.entries().iter().all(|entry| entry.access == Access::Constant);
         if is_list_of_constants && object.entries().len() > 4 {
             let values: Vec<String> = object.entries().iter().map(|entry| number(entry.default)).collect();

@@ -41,6 +41,7 @@ mod process_data;
 mod rotary;
 mod running;
 mod supervision;
+mod touch_probe;
 mod units;
 mod window;
 
@@ -126,6 +127,10 @@ pub struct State {
     data_record: DataRecord,
     /// Whether the last point of the master could not be read.
     has_refused_point: bool,
+    probe: touch_probe::State,
+    /// What the master asks of the probe (60B8h), and of the digital outputs (60FEh).
+    probe_function: u16,
+    digital_outputs: u32,
     now: Moment,
     /// What the loops were asked at the last step, in the axis' coordinate.
     last: Demand,
@@ -163,6 +168,9 @@ impl State {
             buffer: Buffer::default(),
             data_record: DataRecord::default(),
             has_refused_point: false,
+            probe: touch_probe::State::default(),
+            probe_function: 0,
+            digital_outputs: 0,
             now: Moment {
                 targets: Targets::default(),
                 actual: Actual::default(),
@@ -207,6 +215,12 @@ impl State {
         self.fault
     }
 
+    /// Bits of the digital outputs (60FEh:1), which nothing is connected to.
+    #[must_use]
+    pub const fn digital_outputs(&self) -> u32 {
+        self.digital_outputs
+    }
+
     /// State of the trajectory buffer (2012h).
     #[must_use]
     pub fn buffer_status(&self) -> u32 {
@@ -227,6 +241,7 @@ pub fn step(p: &Params, x: &mut State, u: &Inputs) -> Outputs {
         x.take(p, frame);
     }
     x.now.targets.is_new = u.frame.is_some();
+    x.probe(p, &u.measured);
     let event = cycle::step(&p.cycle, &mut x.cycle, u.frame.is_some());
     let found = x.find_fault(p, u, event);
     let standstill = x.stands_still(p);
@@ -291,6 +306,18 @@ impl State {
             Demand::Effort(_) | Demand::Off => Setpoint { v: actual.velocity, ..Setpoint::at_rest(actual.position) },
         };
         self.now.actual = actual;
+    }
+
+    /// Looks at what the touch probe is asked for.
+    fn probe(&mut self, p: &Params, measured: &Measured) {
+        let position = |increments: i64| p.units.position(increments.wrapping_sub(self.origin));
+        let input = touch_probe::Input {
+            function: self.probe_function,
+            is_active: measured.home != p.reverse_switches,
+            position: position(measured.increments),
+            index: measured.index.map(position),
+        };
+        self.probe.step(&input);
     }
 
     /// Adds to every position, as far as whole increments go.

@@ -79,7 +79,7 @@ impl Axis {
             let phase = core::f64::consts::TAU * (tick % TICKS) as f64 / RATE;
             let (x, v) = (0.01 * phase.sin(), 0.01 * core::f64::consts::TAU * phase.cos());
             let task = Task::Follow(Sample { x, v, a: 0.0, torque: 0.1 });
-            self.mailbox.write(Tick(tick), AxisCommand { power: true, reset: false, task });
+            self.mailbox.write(Tick(tick), AxisCommand::of(task));
         }
         if tick.is_multiple_of(BUS) {
             let input = Input {

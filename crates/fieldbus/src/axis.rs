@@ -1,7 +1,7 @@
 //! What a motion task and an axis tell each other, once per cycle of that task.
 //!
 //! Positions and velocities are in the axis unit (m or rad), efforts in the motor's (N·m or N).
-use crate::{Fault, Interpolation};
+use crate::{Fault, Interpolation, ProbeFeedback, TouchProbe};
 use servobench_cia402::InterpolationData;
 use servobench_motion::interpolate::Sample;
 
@@ -14,6 +14,18 @@ pub struct AxisCommand {
     pub reset: bool,
     /// What the axis does while it is powered.
     pub task: Task,
+    /// Bits of the drive's digital outputs (60FEh).
+    pub digital_outputs: u32,
+    /// What the drive's touch probe is asked for.
+    pub touch_probe: Option<TouchProbe>,
+}
+
+impl AxisCommand {
+    /// A powered axis that does `task`, and nothing else.
+    #[must_use]
+    pub const fn of(task: Task) -> Self {
+        Self { power: true, reset: false, task, digital_outputs: 0, touch_probe: None }
+    }
 }
 
 /// What a powered axis does.
@@ -84,6 +96,8 @@ pub struct AxisFeedback {
     pub effort: f64,
     /// How far the power is.
     pub power: Power,
+    /// Whether the drive warns (bit 7 of its statusword).
+    pub has_warning: bool,
     /// Fault of the drive or of the link to it; `None` without one.
     pub fault: Option<Fault>,
     /// How the set-points of the motion task arrive.
@@ -94,6 +108,10 @@ pub struct AxisFeedback {
     pub profile: ProfileFeedback,
     /// The switches, inverted where they are wired so.
     pub switches: Switches,
+    /// Bits of the drive's digital inputs (60FDh), as they are wired.
+    pub digital_inputs: u32,
+    /// What the touch probe has found.
+    pub touch_probe: ProbeFeedback,
 }
 
 impl AxisFeedback {

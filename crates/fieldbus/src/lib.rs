@@ -45,7 +45,7 @@
 //! assert_eq!(params.delay(), 320 + 16);
 //!
 //! let (mut state, mut mailbox) = (link::State::default(), Mailbox::default());
-//! mailbox.write(Tick(0), AxisCommand { power: true, reset: false, task: Task::Follow(Sample::default()) });
+//! mailbox.write(Tick(0), AxisCommand::of(Task::Follow(Sample::default())));
 //! let input = Input { tick: Tick(0), mailbox: &mailbox, actuals: None, external_fault: false };
 //! let commands: Commands = link::step(&params, &mut state, input);
 //! assert_eq!(commands.mode, 8);
@@ -61,6 +61,7 @@ mod error;
 mod fault;
 mod interpolation;
 pub mod link;
+mod probe;
 pub mod task;
 #[cfg(feature = "trajectory")]
 pub mod trajectory;
@@ -71,3 +72,4 @@ pub use axis::{
 pub use error::FieldbusError;
 pub use fault::{Fault, LinkFault};
 pub use interpolation::Interpolation;
+pub use probe::{ProbeFeedback, ProbeTrigger, TouchProbe};

@@ -49,6 +49,7 @@ mod position_loop;
 mod sequencer;
 mod stream;
 mod supervision;
+mod touch_probe;
 mod units;
 
 pub use mailbox::Mailbox;
@@ -64,9 +65,10 @@ use position::Position;
 use position_loop::PositionLoop;
 use sequencer::{Sequencer, Wanted};
 use servobench_base::{Setpoint, Tick};
-use servobench_cia402::{Actuals, Commands, ControlBit};
+use servobench_cia402::{Actuals, Commands, ControlBit, StatusBit};
 use servobench_motion::interpolate::Sample;
 use stream::Stream;
+use touch_probe::Probe;
 
 /// What a link sees at a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -101,6 +103,7 @@ pub struct State {
     ramp: Ramp,
     homing: Procedure,
     drive_profile: DriveProfile,
+    probe: Probe,
     commands: Commands,
     /// Since when the mode that is asked for has been (base ticks).
     mode_since: u64,
@@ -114,7 +117,7 @@ pub struct State {
 impl Default for State {
     fn default() -> Self {
         Self {
-            command: AxisCommand { power: false, reset: false, task: Task::Follow(Sample::default()) },
+            command: AxisCommand { power: false, ..AxisCommand::of(Task::Follow(Sample::default())) },
             read: 0,
             actuals: Actuals::default(),
             has_begun: false,
@@ -128,6 +131,7 @@ impl Default for State {
             ramp: Ramp::OFF,
             homing: Procedure::Idle,
             drive_profile: DriveProfile::default(),
+            probe: Probe::default(),
             commands: Commands::default(),
             mode_since: 0,
             in_mode_or_off: 0,
@@ -156,6 +160,10 @@ pub fn step(params: &Params, state: &mut State, input: Input<'_>) -> Commands {
     state.was_on = wanted == Wanted::On && state.is_enabled(params);
     state.ask_for_the_mode(params, now);
     state.put_out(params, post, now);
+    state.commands.digital_outputs = state.command.digital_outputs;
+    let received = (&state.actuals, state.position.as_ref());
+    state.commands.touch_probe_function =
+        state.probe.step(params, state.command.touch_probe, received, (state.received_at, now));
     state.commands.controlword = state
         .sequencer
         .word()
@@ -190,11 +198,14 @@ impl State {
             velocity,
             effort: scale.effort(self.actuals.torque),
             power: self.power(params),
+            has_warning: self.actuals.statusword.has(StatusBit::Warning),
             fault: self.fault(),
             interpolation: self.interpolation(),
             homing: self.homing.feedback(matches!(self.command.task, Task::Home { .. })),
             profile: self.drive_profile.feedback(&self.actuals),
             switches: self.switches(params),
+            digital_inputs: self.actuals.digital_inputs,
+            touch_probe: self.probe.feedback(params),
         }
     }
 

@@ -3,7 +3,7 @@
 //! An ordinary cycle is one in which nothing is planned: `begin`, MC_Power, the calls of a program, `end`.
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use servobench_fieldbus::{AxisFeedback, Power as DrivePower};
+use servobench_fieldbus::{AxisFeedback, Power as DrivePower, ProbeFeedback};
 use servobench_motion::Limits;
 use servobench_plcopen::{
     Axis, AxisParams, BufferMode, FunctionBlock, MoveAbsolute, MoveAbsoluteInputs, MoveVelocity, MoveVelocityInputs,
@@ -32,6 +32,9 @@ const FEEDBACK: AxisFeedback = AxisFeedback {
         buffer_status: 0,
     },
     switches: servobench_fieldbus::Switches { negative_limit: false, home: false, positive_limit: false },
+    has_warning: false,
+    digital_inputs: 0,
+    touch_probe: ProbeFeedback { number: 0, position: None },
 };
 const CYCLES: usize = 1000;
 

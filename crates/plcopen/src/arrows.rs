@@ -83,7 +83,16 @@ pub const ARROWS: [Arrow; 15] = [
     Arrow { number: 4, from: &[ErrorStop], to: Standstill, causes: &[Cause::ResetPowered] },
     Arrow { number: 5, from: &[Disabled], to: Standstill, causes: &[Cause::Powered] },
     Arrow { number: 6, from: &[Stopping], to: Standstill, causes: &[Cause::StopReleased] },
-    Arrow { number: 7, from: &[Standstill], to: Homing, causes: &[Cause::Block(BlockName::Home)] },
+    Arrow {
+        number: 7,
+        from: &[Standstill],
+        to: Homing,
+        causes: &[
+            Cause::Block(BlockName::Home),
+            Cause::Block(BlockName::HomeDirect),
+            Cause::Block(BlockName::HomeAbsolute),
+        ],
+    },
     Arrow { number: 8, from: &[Homing, DiscreteMotion], to: Standstill, causes: &[Cause::Done] },
     Arrow {
         number: 9,
@@ -122,6 +131,7 @@ pub const ARROWS: [Arrow; 15] = [
         causes: &[
             Cause::Block(BlockName::MoveVelocity),
             Cause::Block(BlockName::MoveContinuousAbsolute),
+            Cause::Block(BlockName::MoveContinuousRelative),
             Cause::Block(BlockName::TorqueControl),
             Cause::Block(BlockName::VelocityProfile),
             Cause::Block(BlockName::AccelerationProfile),
@@ -130,6 +140,14 @@ pub const ARROWS: [Arrow; 15] = [
     Arrow { number: 14, from: &[Standstill], to: DiscreteMotion, causes: &[Cause::Block(BlockName::Profile4th)] },
     Arrow { number: 15, from: &[DiscreteMotion], to: ContinuousMotion, causes: &[Cause::DoneMoving] },
 ];
+
+impl BlockName {
+    /// Whether it gives the axis its reference.
+    #[must_use]
+    pub fn homes(self) -> bool {
+        ARROWS.iter().any(|arrow| arrow.to == Homing && arrow.causes.contains(&Cause::Block(self)))
+    }
+}
 
 /// The arrow that `cause` sets off in `state`.
 pub(crate) fn arrow(state: AxisState, cause: Cause) -> Option<&'static Arrow> {

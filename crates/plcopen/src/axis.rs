@@ -10,7 +10,9 @@ mod block_setpoints;
 mod bounds;
 mod brake_pre_trajectory;
 mod commands;
+mod inputs_outputs;
 mod modulo;
+mod parameters;
 mod queue;
 mod run;
 mod shared_limits;
@@ -18,26 +20,34 @@ mod superimposed;
 mod supervision;
 
 use crate::blocks::BlockName;
+use crate::command::Reference;
 use crate::error::AxisError;
 use crate::ledger::{CommandId, Ledger, Progress};
 use crate::params::AxisParams;
 use crate::state::AxisState;
-use activity::Activity;
+use activity::{Activity, HomingWait};
+use parameters::Supervision;
 use queue::Queue;
 use servobench_base::{ParamError, Setpoint};
-use servobench_fieldbus::{AxisCommand, AxisFeedback, Power, Task};
+use servobench_fieldbus::{AxisCommand, AxisFeedback, Power, Task, TouchProbe};
+use servobench_motion::Limits;
 use servobench_motion::interpolate::Sample;
 use superimposed::Superimposed;
 use supervision::Reset;
 
 pub(crate) use bounds::Override;
+pub(crate) use inputs_outputs::Probed;
 pub use queue::MOST_BUFFERED;
 pub(crate) use supervision::PowerRequest;
 
 /// An axis with its parameters, its state and its commands.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
+    /// The limits as the program has set them.
     params: AxisParams,
+    /// The limits as the axis was built.
+    system_limits: Limits,
+    supervision: Supervision,
     state: AxisState,
     feedback: AxisFeedback,
     /// Position that the program sees, less that of the drive.
@@ -63,6 +73,11 @@ pub struct Axis {
     queue: Queue,
     ledger: Ledger,
     error: Option<AxisError>,
+    /// Bits of the drive's digital outputs.
+    digital_outputs: u32,
+    /// What the drive's touch probe is asked for, and how often it has been.
+    probe: Option<TouchProbe>,
+    probes: u32,
 }
 
 impl Axis {
@@ -73,7 +88,9 @@ impl Axis {
     pub fn new(params: AxisParams) -> Result<Self, ParamError> {
         params.check()?;
         Ok(Self {
+            system_limits: params.limits,
             params,
+            supervision: Supervision::NONE,
             state: AxisState::Disabled,
             feedback: AxisFeedback::default(),
             offset: 0.0,
@@ -92,6 +109,9 @@ impl Axis {
             queue: Queue::EMPTY,
             ledger: Ledger::new(),
             error: None,
+            digital_outputs: 0,
+            probe: None,
+            probes: 0,
         })
     }
 
@@ -105,20 +125,30 @@ impl Axis {
         self.is_beginning = false;
         self.add_up();
         self.watch_permission();
+        self.watch_software_limits();
+        self.watch_lag();
     }
 
     /// Ends a cycle: what the axis is to do until the next one.
     pub fn end(&mut self) -> AxisCommand {
         self.watch_leading();
         let task = match &self.activity {
-            Activity::Homing(homing) => Task::Home { position: homing.position },
+            Activity::Homing(HomingWait { reference: Reference::Search(position), .. }) => {
+                Task::Home { position: *position }
+            }
             Activity::Effort(effort) => Task::Effort(effort.present),
-            Activity::Rest | Activity::Moving(_) | Activity::Leaving(_) | Activity::Led(_) => {
+            Activity::Rest | Activity::Moving(_) | Activity::Homing(_) | Activity::Leaving(_) | Activity::Led(_) => {
                 let Setpoint { x, v, a, .. } = self.setpoint;
                 Task::Follow(Sample { x, v, a, torque: 0.0 })
             }
         };
-        AxisCommand { power: self.power.enable, reset: self.reset.signal(), task }
+        AxisCommand {
+            power: self.power.enable,
+            reset: self.reset.signal(),
+            task,
+            digital_outputs: self.digital_outputs,
+            touch_probe: self.probe,
+        }
     }
 
     /// Parameters.
@@ -142,9 +172,13 @@ impl Axis {
     /// What the axis says of itself, the position as the program sees it.
     #[must_use]
     pub fn actual(&self) -> AxisFeedback {
-        let position = self.feedback.position + self.offset;
-        let position = self.params.modulo.map_or(position, |period| modulo::within(position, period));
-        AxisFeedback { position, ..self.feedback }
+        AxisFeedback { position: self.actual_position(self.feedback.position), ..self.feedback }
+    }
+
+    /// A position of the drive as the program sees it.
+    fn actual_position(&self, position: f64) -> f64 {
+        let position = position + self.offset;
+        self.params.modulo.map_or(position, |period| modulo::within(position, period))
     }
 
     /// Whether MC_Home has found the reference.
@@ -164,6 +198,17 @@ impl Axis {
     #[must_use]
     pub fn commanded_by(&self) -> Option<BlockName> {
         self.activity.command().map(|(_, command)| command.block)
+    }
+
+    /// Whether the drive follows set-points of the axis, rather than an effort or a search of its own.
+    #[must_use]
+    pub(crate) const fn follows_set_points(&self) -> bool {
+        !matches!(
+            self.activity,
+            Activity::Effort(_)
+                | Activity::Homing(HomingWait { reference: Reference::Search(_), .. })
+                | Activity::Leaving(_)
+        )
     }
 
     /// What became of a command.

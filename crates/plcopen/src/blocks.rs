@@ -23,48 +23,67 @@
 //! call it, scenario files have its keys, recordings its outputs, and the references in `docs/` list it from there on
 //! (`SERVOBENCH_WRITE_DOCS=1 cargo test -p servobench-plcopen -p servobench-scenario` writes them). One that commands the axis also
 //! needs its place in the state diagram, `ARROWS`.
+mod digital;
 mod execution;
+mod halt_superimposed;
 mod home;
 mod motion;
 mod move_absolute;
 mod move_additive;
 mod move_continuous_absolute;
+mod move_continuous_relative;
 mod move_relative;
 mod move_superimposed;
 mod move_velocity;
 mod outputs;
+mod parameters;
 mod position_profile;
 mod power;
 mod profile;
 mod profile_4th;
 mod read;
+mod read_axis_info;
+mod read_motion_state;
 mod reset;
 mod set_override;
 mod set_position;
 mod stop;
 mod time_profile;
 mod torque_control;
+mod touch_probe;
 
-use crate::interface::{BlockInput, BlockInputs, InputType, OutputType, Trigger};
+use crate::interface::{BlockInput, BlockInputs, InputType, OutputType, Trigger, names};
 use crate::list::{list_blocks, list_inputs, list_outputs};
+use crate::parameter::{AxisBoolParameter, AxisParameter};
 use core::fmt;
 use servobench_config::Kind::{Axis, Motor, Plain};
 use servobench_config::quantities::{ACCELERATION, EFFORT, EFFORT_RATE, JERK, POSITION, RATIO, SNAP, TIME, VELOCITY};
-use servobench_config::{any, not_negative, positive};
+use servobench_config::{Choice as _, any, not_negative, positive};
+use servobench_fieldbus::ProbeTrigger;
 use servobench_motion::pvt::Knot;
 
+pub use digital::{
+    ReadDigitalInput, ReadDigitalInputInputs, ReadDigitalOutput, ReadDigitalOutputInputs, WriteDigitalOutput,
+    WriteDigitalOutputInputs,
+};
 pub use execution::Report;
-pub use home::{Home, HomeInputs};
+pub use halt_superimposed::{HaltSuperimposed, HaltSuperimposedInputs};
+pub use home::{Home, HomeAbsolute, HomeAbsoluteInputs, HomeDirect, HomeDirectInputs, HomeInputs};
 pub use motion::{MotionBlock, MotionInputs};
 pub use move_absolute::{MoveAbsolute, MoveAbsoluteInputs};
 pub use move_additive::{MoveAdditive, MoveAdditiveInputs};
 pub use move_continuous_absolute::{
     MoveContinuousAbsolute, MoveContinuousAbsoluteInputs, MoveContinuousAbsoluteOutputs,
 };
+pub use move_continuous_relative::{MoveContinuousRelative, MoveContinuousRelativeInputs};
 pub use move_relative::{MoveRelative, MoveRelativeInputs};
 pub use move_superimposed::{MoveSuperimposed, MoveSuperimposedInputs, MoveSuperimposedOutputs};
 pub use move_velocity::{MoveVelocity, MoveVelocityInputs, MoveVelocityOutputs};
 pub use outputs::{DoneOutputs, FunctionBlock, MotionOutputs, Outputs};
+pub use parameters::{
+    ReadBoolOutputs, ReadBoolParameter, ReadBoolParameterInputs, ReadParameter, ReadParameterInputs,
+    ReadParameterOutputs, WriteBoolParameter, WriteBoolParameterInputs, WriteParameter, WriteParameterInputs,
+};
 pub use position_profile::{Follow, PositionProfile, PositionProfileInputs, TimePosition, VelocityCommands};
 pub use power::{Power, PowerInputs, PowerOutputs};
 pub use profile::{Memory, Pair};
@@ -73,6 +92,8 @@ pub use read::{
     ReadActualPosition, ReadActualTorque, ReadActualVelocity, ReadAxisError, ReadAxisErrorOutputs, ReadInputs,
     ReadStatus, ReadStatusOutputs, ReadValueOutputs, ReadsValue,
 };
+pub use read_axis_info::{ReadAxisInfo, ReadAxisInfoOutputs};
+pub use read_motion_state::{ReadMotionState, ReadMotionStateOutputs};
 pub use reset::{Reset, ResetInputs};
 pub use set_override::{SetOverride, SetOverrideInputs, SetOverrideOutputs};
 pub use set_position::{SetPosition, SetPositionInputs};
@@ -81,10 +102,11 @@ pub use time_profile::{
     AccelerationProfile, AccelerationProfileInputs, ProfileOutputs, VelocityProfile, VelocityProfileInputs,
 };
 pub use torque_control::{TorqueControl, TorqueControlInputs, TorqueControlOutputs};
+pub use touch_probe::{AbortTrigger, AbortTriggerInputs, TouchProbe, TouchProbeInputs, TouchProbeOutputs};
 
 list_inputs! {
     Position "position" changes InputType::Quantity(any(Axis(&POSITION), "250 mm")),
-        "Target position" + ", of MC_Home and MC_SetPosition the position that the axis is given";
+        "Target position" + ", of MC_Home, MC_HomeDirect and MC_SetPosition the position that the axis is given";
     Distance "distance" changes InputType::Quantity(any(Axis(&POSITION), "-250 mm")), "Distance";
     Velocity "velocity" changes InputType::Quantity(any(Axis(&VELOCITY), "30 m/min")),
         "Velocity; of MC_MoveVelocity it may be negative";
@@ -138,6 +160,21 @@ list_inputs! {
         "What is then added to the velocities of a table" + "; nothing unless given";
     AccelerationOffset "acceleration_offset" stays InputType::Quantity(any(Axis(&ACCELERATION), "1 m/s2")),
         "What is then added to the accelerations of a table" + "; nothing unless given";
+    Parameter "parameter" stays InputType::Choice(&const { names::<AxisParameter, { AxisParameter::ALL.len() }>() }),
+        "Parameter of the axis that is a number";
+    BoolParameter "bool_parameter" stays InputType::Choice(&const { names::<AxisBoolParameter, { AxisBoolParameter::ALL.len() }>() }),
+        "Parameter of the axis that is TRUE or FALSE";
+    Value "value" stays InputType::ParameterValue, "What is written to `parameter`";
+    BoolValue "bool_value" stays InputType::Flag, "What is written to `bool_parameter` or to the digital output";
+    InputNumber "input_number" stays InputType::Whole(0, 31),
+        "Bit of the digital inputs of the drive (60FDh)" + ": 0 negative and 1 positive limit switch, 2 home switch";
+    OutputNumber "output_number" stays InputType::Whole(0, 31), "Bit of the digital outputs of the drive (60FEh)";
+    TriggerInput "trigger_input" stays InputType::Choice(&const { names::<ProbeTrigger, { ProbeTrigger::ALL.len() }>() }),
+        "What has the drive record the position of the axis";
+    FirstPosition "first_position" stays InputType::Quantity(any(Axis(&POSITION), "90 mm")),
+        "Beginning of the window in which a trigger counts" + "; everywhere unless given";
+    LastPosition "last_position" stays InputType::Quantity(any(Axis(&POSITION), "110 mm")),
+        "End of the window in which a trigger counts" + "; everywhere unless given";
 }
 
 list_outputs! {
@@ -169,6 +206,23 @@ list_outputs! {
     Position "Position" Number "the actual position";
     Velocity "Velocity" Number "the actual velocity";
     Torque "Torque" Number "the actual effort";
+    ConstantVelocity "ConstantVelocity" Flag "the velocity is constant";
+    Accelerating "Accelerating" Flag "the speed rises";
+    Decelerating "Decelerating" Flag "the speed falls";
+    DirectionPositive "DirectionPositive" Flag "the position increases";
+    DirectionNegative "DirectionNegative" Flag "the position decreases";
+    HomeAbsSwitch "HomeAbsSwitch" Flag "the home switch is met";
+    LimitSwitchPos "LimitSwitchPos" Flag "the switch of the positive end is met";
+    LimitSwitchNeg "LimitSwitchNeg" Flag "the switch of the negative end is met";
+    Simulation "Simulation" Never "the axis has no drive";
+    CommunicationReady "CommunicationReady" Flag "the drive answers";
+    ReadyForPowerOn "ReadyForPowerOn" Flag "neither drive nor link has a fault";
+    PowerOn "PowerOn" Flag "the motor is powered";
+    IsHomed "IsHomed" Flag "the position counts from the reference";
+    AxisWarning "AxisWarning" Flag "the drive warns";
+    Value "Value" Number "the value of the parameter";
+    BoolValue "Value" Flag "the value of the parameter, input or output";
+    RecordedPosition "RecordedPosition" Number "where the axis was when the trigger came";
 }
 
 /// Memory of a table: in a program as long as it has to be.
@@ -180,6 +234,8 @@ type Rows<T> = [T; 0];
 list_blocks! {
     Power: Power, "MC_Power", "powers the axis as long as it is enabled";
     Home: Home, "MC_Home" command, "homes by the method of the drive (6098h)";
+    HomeDirect: HomeDirect, "MC_HomeDirect" command, "gives the axis its reference where it stands";
+    HomeAbsolute: HomeAbsolute, "MC_HomeAbsolute" command, "takes the reference of an absolute encoder";
     Stop: Stop, "MC_Stop" command, "brakes to rest and lets no other motion begin while `Execute` is TRUE";
     Halt: Halt, "MC_Halt" command, "brakes to rest; another motion may take over";
     Reset: Reset, "MC_Reset", "leaves ErrorStop";
@@ -188,9 +244,13 @@ list_blocks! {
     MoveAdditive: MoveAdditive, "MC_MoveAdditive" command, "moves by a distance from the target of the move before";
     MoveSuperimposed: MoveSuperimposed, "MC_MoveSuperimposed" command,
         "moves by a distance on top of the motion under way";
+    HaltSuperimposed: HaltSuperimposed, "MC_HaltSuperimposed",
+        "brakes the motion on top, and leaves the one below alone";
     MoveVelocity: MoveVelocity, "MC_MoveVelocity" command, "goes over to a velocity and keeps it";
     MoveContinuousAbsolute: MoveContinuousAbsolute, "MC_MoveContinuousAbsolute" command,
         "passes a position at a velocity and keeps that";
+    MoveContinuousRelative: MoveContinuousRelative, "MC_MoveContinuousRelative" command,
+        "moves by a distance, passes its end at a velocity and keeps that";
     PositionProfile: PositionProfile<Rows<Knot>, Rows<f64>>, "MC_PositionProfile" command,
         "moves through a table of positions";
     VelocityProfile: VelocityProfile<Rows<Pair>>, "MC_VelocityProfile" command, "moves by a table of velocities";
@@ -201,6 +261,17 @@ list_blocks! {
         "scales velocities, accelerations and jerks as long as it is enabled";
     TorqueControl: TorqueControl, "MC_TorqueControl" command, "goes over to a torque or force and keeps it";
     ReadStatus: ReadStatus, "MC_ReadStatus", "tells the state of the axis";
+    ReadMotionState: ReadMotionState, "MC_ReadMotionState", "tells whether the axis speeds up or slows down, and which way";
+    ReadAxisInfo: ReadAxisInfo, "MC_ReadAxisInfo", "tells switches, power, reference and warnings of the axis";
+    ReadDigitalInput: ReadDigitalInput, "MC_ReadDigitalInput", "tells a digital input of the drive";
+    ReadDigitalOutput: ReadDigitalOutput, "MC_ReadDigitalOutput", "tells a digital output of the drive";
+    WriteDigitalOutput: WriteDigitalOutput, "MC_WriteDigitalOutput", "sets a digital output of the drive";
+    TouchProbe: TouchProbe, "MC_TouchProbe", "records where the axis is when a trigger comes";
+    AbortTrigger: AbortTrigger, "MC_AbortTrigger", "waits for the trigger no more";
+    ReadParameter: ReadParameter, "MC_ReadParameter", "tells a parameter of the axis that is a number";
+    ReadBoolParameter: ReadBoolParameter, "MC_ReadBoolParameter", "tells a parameter of the axis that is TRUE or FALSE";
+    WriteParameter: WriteParameter, "MC_WriteParameter", "sets a parameter of the axis that is a number";
+    WriteBoolParameter: WriteBoolParameter, "MC_WriteBoolParameter", "sets a parameter of the axis that is TRUE or FALSE";
     ReadAxisError: ReadAxisError, "MC_ReadAxisError", "tells the error of the axis";
     ReadActualPosition: ReadActualPosition, "MC_ReadActualPosition", "tells the actual position";
     ReadActualVelocity: ReadActualVelocity, "MC_ReadActualVelocity", "tells the actual velocity";

@@ -137,7 +137,12 @@ pub enum Goal {
         end_velocity: Option<f64>,
     },
     /// By a distance from where the motion begins.
-    Relative(f64),
+    Relative {
+        /// Distance (m or rad).
+        distance: f64,
+        /// As of a position.
+        end_velocity: Option<f64>,
+    },
     /// By a distance from where the command before leads.
     Additive(f64),
     /// To a velocity, kept from then on; its sign counts in the direction.
@@ -149,8 +154,8 @@ pub enum Goal {
     },
     /// To rest.
     Rest,
-    /// To the reference that the drive looks for, which has this position (m or rad).
-    Reference(f64),
+    /// To a reference: the position counts from it.
+    Reference(Reference),
     /// To an effort, kept from then on.
     Effort {
         /// Effort (N·m or N).
@@ -162,6 +167,17 @@ pub enum Goal {
     },
     /// Along a course that the block itself gives, a set-point per cycle: see [`Axis::lead`](crate::Axis::lead).
     Led(Ending),
+}
+
+/// What the position counts from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Reference {
+    /// From what the drive looks for, which has this position (m or rad).
+    Search(f64),
+    /// From where the axis stands, which has this position (m or rad).
+    Here(f64),
+    /// From the zero of the drive's encoder.
+    Encoder,
 }
 
 /// What a course that a block gives leads to.
@@ -196,13 +212,7 @@ impl Command {
         match self.goal {
             Goal::Absolute { position, end_velocity, .. } => {
                 finite_input(block, "Position", position)?;
-                if let Some(value) = end_velocity {
-                    finite_input(block, "EndVelocity", value)?;
-                    if self.dynamics.velocity.is_some_and(|velocity| value.abs() > velocity) {
-                        let bound = "at most Velocity in magnitude";
-                        return Err(BlockError::Input { block, input: "EndVelocity", value, bound });
-                    }
-                }
+                self.check_end_velocity(end_velocity)?;
                 if let Some(period) = params.modulo
                     && !(0.0..period).contains(&position)
                 {
@@ -210,7 +220,11 @@ impl Command {
                     return Err(BlockError::Input { block, input: "Position", value: position, bound });
                 }
             }
-            Goal::Relative(distance) | Goal::Additive(distance) => finite_input(block, "Distance", distance)?,
+            Goal::Relative { distance, end_velocity } => {
+                finite_input(block, "Distance", distance)?;
+                self.check_end_velocity(end_velocity)?;
+            }
+            Goal::Additive(distance) => finite_input(block, "Distance", distance)?,
             Goal::Velocity { velocity, direction } => {
                 finite_input(block, "Velocity", velocity)?;
                 if velocity.abs() > params.limits.velocity {
@@ -229,13 +243,25 @@ impl Command {
                     check_input(block, "Velocity", velocity, params.limits.velocity)?;
                 }
             }
-            Goal::Reference(position) => {
-                finite_input(block, "Position", position)?;
+            Goal::Reference(reference) => {
+                if let Reference::Search(position) | Reference::Here(position) = reference {
+                    finite_input(block, "Position", position)?;
+                }
                 if !matches!(self.buffer_mode, BufferMode::Aborting | BufferMode::Buffered) {
                     return Err(self.wrong_buffer_mode("mcAborting or mcBuffered, as homing begins at Standstill"));
                 }
             }
             Goal::Rest | Goal::Led(_) => {}
+        }
+        Ok(())
+    }
+
+    fn check_end_velocity(&self, end_velocity: Option<f64>) -> Result<(), BlockError> {
+        let (block, Some(value)) = (self.block, end_velocity) else { return Ok(()) };
+        finite_input(block, "EndVelocity", value)?;
+        if self.dynamics.velocity.is_some_and(|velocity| value.abs() > velocity) {
+            let bound = "at most Velocity in magnitude";
+            return Err(BlockError::Input { block, input: "EndVelocity", value, bound });
         }
         Ok(())
     }
@@ -248,9 +274,12 @@ impl Command {
     /// Whether it keeps what it has reached until another one takes the axis from it.
     pub(crate) const fn is_endless(&self) -> bool {
         match self.goal {
-            Goal::Absolute { end_velocity: Some(_), .. } | Goal::Velocity { .. } | Goal::Effort { .. } => true,
+            Goal::Absolute { end_velocity: Some(_), .. }
+            | Goal::Relative { end_velocity: Some(_), .. }
+            | Goal::Velocity { .. }
+            | Goal::Effort { .. } => true,
             Goal::Absolute { end_velocity: None, .. }
-            | Goal::Relative(_)
+            | Goal::Relative { end_velocity: None, .. }
             | Goal::Additive(_)
             | Goal::Rest
             | Goal::Reference(_)

@@ -3,7 +3,9 @@
 //! The standard leaves the numbers of ErrorID to the supplier. Here the thousands are the class: 1 an input, 2 the state of the
 //! axis, 3 the plan of a move, 4 the axis itself.
 use crate::blocks::BlockName;
+use crate::parameter::AxisParameter;
 use crate::state::AxisState;
+use servobench_config::Choice as _;
 use servobench_fieldbus::Fault;
 use servobench_motion::PlanError;
 use thiserror::Error;
@@ -25,6 +27,10 @@ pub enum ErrorId {
     Direction = 0x1004,
     /// The input BufferMode does not fit the block, or the command before it.
     BufferMode = 0x1005,
+    /// The parameter of the axis is read-only.
+    ReadOnly = 0x1006,
+    /// The target is beyond a software limit.
+    SoftwareLimit = 0x1007,
     /// The state of the axis does not allow the block.
     State = 0x2001,
     /// The axis has no reference.
@@ -51,16 +57,22 @@ pub enum ErrorId {
     Profile = 0x4006,
     /// A move that had been accepted could not be planned when its turn came.
     PlanLost = 0x4007,
+    /// The axis was about to pass a software limit.
+    SoftwareLimitPassed = 0x4008,
+    /// The following error was too large.
+    PositionLag = 0x4009,
 }
 
 impl ErrorId {
     /// Every number but that of no error.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 22] = [
         Self::Input,
         Self::AboveLimit,
         Self::SumAboveLimit,
         Self::Direction,
         Self::BufferMode,
+        Self::ReadOnly,
+        Self::SoftwareLimit,
         Self::State,
         Self::NotHomed,
         Self::BufferFull,
@@ -74,6 +86,8 @@ impl ErrorId {
         Self::Overspeed,
         Self::Profile,
         Self::PlanLost,
+        Self::SoftwareLimitPassed,
+        Self::PositionLag,
     ];
 
     /// The number on the output.
@@ -92,6 +106,8 @@ impl ErrorId {
             Self::SumAboveLimit => "a superimposed motion and the one below are together above a limit of the axis",
             Self::Direction => "the input Direction does not fit the block",
             Self::BufferMode => "the input BufferMode does not fit the block, or the command before it",
+            Self::ReadOnly => "the parameter of the axis is read-only",
+            Self::SoftwareLimit => "the target is beyond a software limit of the axis",
             Self::State => "the state of the axis does not allow the block",
             Self::NotHomed => "an absolute position is commanded to an axis that is not homed",
             Self::BufferFull => "the axis holds no more buffered commands",
@@ -105,6 +121,8 @@ impl ErrorId {
             Self::Overspeed => "the axis ran faster than the input Velocity of MC_TorqueControl",
             Self::Profile => "a profile gave no set-point in a cycle, or one beyond the limits of the axis",
             Self::PlanLost => "a waiting move that had been accepted could not be planned when it became active",
+            Self::SoftwareLimitPassed => "the axis was about to pass a software limit",
+            Self::PositionLag => "the following error was larger than MaxPositionLag",
         }
     }
 }
@@ -173,6 +191,27 @@ pub enum BlockError {
         /// What it must be, in words.
         bound: &'static str,
     },
+    /// The parameter of the axis is read-only.
+    #[error("{block}: `ParameterNumber` \"{}\" is read-only: write one that is not", parameter.name())]
+    ReadOnly {
+        /// The block.
+        block: BlockName,
+        /// The parameter.
+        parameter: AxisParameter,
+    },
+    /// The target is beyond a software limit.
+    #[error(
+        "{block}: leads to {value}, beyond the software limit {limit} of the axis: correct the target or write the \
+         parameter SWLimitPos or SWLimitNeg"
+    )]
+    SoftwareLimit {
+        /// The block.
+        block: BlockName,
+        /// Position where it leads to (SI).
+        value: f64,
+        /// The limit (SI).
+        limit: f64,
+    },
     /// The state of the axis does not allow the block.
     #[error("{block}: the state of the axis, {state}, does not allow it: {}", state.help())]
     State {
@@ -239,6 +278,8 @@ impl BlockError {
             Self::SumAboveLimit { .. } => ErrorId::SumAboveLimit,
             Self::Direction { .. } => ErrorId::Direction,
             Self::BufferMode { .. } => ErrorId::BufferMode,
+            Self::ReadOnly { .. } => ErrorId::ReadOnly,
+            Self::SoftwareLimit { .. } => ErrorId::SoftwareLimit,
             Self::State { .. } => ErrorId::State,
             Self::NotHomed { .. } => ErrorId::NotHomed,
             Self::BufferFull { .. } => ErrorId::BufferFull,
@@ -310,6 +351,22 @@ pub enum AxisError {
         /// Why.
         error: PlanError,
     },
+    /// The axis was about to pass a software limit.
+    #[error("the axis was about to pass its software limit {limit}: end the motion before")]
+    SoftwareLimit {
+        /// The limit (SI).
+        limit: f64,
+    },
+    /// The following error was too large.
+    #[error(
+        "the following error {lag} is larger than MaxPositionLag, {limit}: see what holds the axis, or raise the parameter"
+    )]
+    PositionLag {
+        /// Following error (SI).
+        lag: f64,
+        /// Largest magnitude (SI).
+        limit: f64,
+    },
 }
 
 impl AxisError {
@@ -324,6 +381,8 @@ impl AxisError {
             Self::Overspeed { .. } => ErrorId::Overspeed,
             Self::Profile { .. } | Self::NotLed { .. } => ErrorId::Profile,
             Self::PlanLost { .. } => ErrorId::PlanLost,
+            Self::SoftwareLimit { .. } => ErrorId::SoftwareLimitPassed,
+            Self::PositionLag { .. } => ErrorId::PositionLag,
         }
     }
 }

@@ -1,7 +1,9 @@
 //! How a block is called by its name: what its inputs are, what counts where one is not given, and what its outputs are.
 use crate::blocks::{Follow, Input, Pair};
 use crate::command::{BufferMode, Direction};
-use servobench_config::{Bound, Measure};
+use crate::parameter::{AxisBoolParameter, AxisParameter};
+use servobench_config::{Bound, Choice, Measure};
+use servobench_fieldbus::ProbeTrigger;
 
 /// What starts and ends a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -28,6 +30,8 @@ impl Trigger {
 pub enum InputType {
     /// A number.
     Quantity(Measure),
+    /// A whole number, from the first to the second one.
+    Whole(u32, u32),
     /// TRUE or FALSE.
     Flag,
     /// Which way the axis goes.
@@ -36,6 +40,10 @@ pub enum InputType {
     BufferMode,
     /// The rows of a profile.
     Table,
+    /// One of these: their names and meanings.
+    Choice(&'static [(&'static str, &'static str)]),
+    /// A value of the parameter that [`Input::Parameter`] says.
+    ParameterValue,
 }
 
 /// An input as a block has it.
@@ -62,6 +70,8 @@ pub enum Absent {
     Direction(Direction),
     /// The active motion is aborted.
     Aborting,
+    /// The block does without.
+    Nothing,
     /// What another input is.
     As(Input),
     /// The limit of the axis for this input; the axis must have one.
@@ -121,6 +131,11 @@ pub(crate) const fn limit_if_any(input: Input) -> BlockInput {
     BlockInput::new(input, Absent::LimitIfAny(input))
 }
 
+/// A number that the block can do without.
+pub(crate) const fn optional(input: Input) -> BlockInput {
+    BlockInput::new(input, Absent::Nothing)
+}
+
 /// What `other` is unless given.
 pub(crate) const fn like(input: Input, other: Input) -> BlockInput {
     BlockInput::new(input, Absent::As(other))
@@ -144,6 +159,8 @@ pub enum Value<T> {
     BufferMode(BufferMode),
     /// The rows of a profile.
     Table(T),
+    /// The name of an alternative.
+    Choice(&'static str),
 }
 
 /// The rows of a profile, which are kept as `P`, and how they are meant.
@@ -220,6 +237,14 @@ impl FromValues for f64 {
     }
 }
 
+/// A number of a few: a bit.
+impl FromValues for u32 {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole, and within its range")]
+    fn read<T>(values: &Values<T>, own: &BlockInput) -> Self {
+        values.number(own.input).unwrap_or(0.0) as Self
+    }
+}
+
 /// A number that may be left to the axis.
 impl FromValues for Option<f64> {
     fn read<T>(values: &Values<T>, own: &BlockInput) -> Self {
@@ -251,6 +276,32 @@ impl FromValues for BufferMode {
         if let Some(Value::BufferMode(mode)) = values.get(own.input) { *mode } else { Self::default() }
     }
 }
+
+/// Names and meanings of the alternatives of `T`, as many as there are.
+pub(crate) const fn names<T: Choice, const N: usize>() -> [(&'static str, &'static str); N] {
+    let mut names = [("", ""); N];
+    let mut at = 0;
+    while at < N {
+        let (name, _, meaning) = T::ALL[at];
+        names[at] = (name, meaning);
+        at += 1;
+    }
+    names
+}
+
+/// Types whose alternatives are inputs by name; where none is given, the first one counts.
+macro_rules! read_by_name {
+    ($($type:ty),+) => { $(
+        impl FromValues for $type {
+            fn read<T>(values: &Values<T>, own: &BlockInput) -> Self {
+                let given = if let Some(Value::Choice(name)) = values.get(own.input) { Self::from_name(name) } else { None };
+                given.unwrap_or(Self::ALL[0].1)
+            }
+        }
+    )+ };
+}
+
+read_by_name! { AxisParameter, AxisBoolParameter, ProbeTrigger }
 
 /// A type that an output can have.
 pub(crate) trait Recorded {

@@ -34,6 +34,19 @@ pub fn object_table(dictionary: &Dictionary, style: Style) -> String {
     let mut is_marked = false;
     for object in &OBJECTS {
         let index = object.index;
+        if let Contents::Text(text) = object.contents {
+            for (k, part) in wrapped(object.name, name).iter().enumerate() {
+                let line = if k == 0 {
+                    let index = format!("{index:04X}h");
+                    format!("{index:INDEX$} {part:name$} {:TYPE$} {:ACCESS$} {text}", "STRING", "const")
+                } else {
+                    format!("{:INDEX$} {part}", "")
+                };
+                table += &line;
+                table += "\n";
+            }
+            continue;
+        }
         let is_variable = matches!(object.contents, Contents::Variable(_));
         if !is_variable {
             let over_its_values = format!("{:INDEX$} {}\n", format!("{index:04X}h"), object.name);

@@ -3,12 +3,14 @@ use crate::diagnostic::Report;
 use crate::field::{Field, Slot, key, written};
 use crate::file::TableOfPoints;
 use crate::nearest::suggestion;
-use crate::simple::OneOf;
+use crate::simple::{Name, OneOf};
 use crate::source::At;
 use crate::table::OpenTable;
 use crate::tree::Node;
 use serde_json::{Value as Json, json};
-use servobench_plcopen::{BlockName, BufferMode, Direction, Input, InputType, Output, Value};
+use servobench_config::quantities::VELOCITY;
+use servobench_config::{Choice as _, Kind::Axis, Measure, positive};
+use servobench_plcopen::{AxisParameter, BlockName, BufferMode, Direction, Input, InputType, Output, Value};
 
 impl Field for BlockName {
     fn decode(path: &str, node: &Node, (): &(), report: &mut Report) -> Option<Self> {
@@ -87,6 +89,14 @@ impl BlockInputs {
                 InputType::Direction => open.field(key, &OneOf).map(|at| Value::Direction(at.value)),
                 InputType::BufferMode => open.field(key, &OneOf).map(|at| Value::BufferMode(at.value)),
                 InputType::Table => open.field(key, &()).map(|at| Value::Table(Box::new(at))),
+                InputType::Whole(lowest, highest) => {
+                    open.field(key, &(lowest..=highest)).map(|at: At<u32>| Value::Number(at.value.into()))
+                }
+                InputType::Choice(names) => open.field(key, &names).map(|at: At<Name>| Value::Choice(at.value.0)),
+                InputType::ParameterValue => {
+                    let measure = parameter_value(&slots[Input::Parameter as usize]);
+                    open.field(key, &measure).map(|at| Value::Number(at.value))
+                }
             };
         }
         Self(slots)
@@ -105,6 +115,9 @@ impl BlockInputs {
                 InputType::Direction => Direction::schema(&OneOf),
                 InputType::BufferMode => BufferMode::schema(&OneOf),
                 InputType::Table => TableOfPoints::schema(&()),
+                InputType::Whole(lowest, highest) => u32::schema(&(lowest..=highest)),
+                InputType::Choice(names) => Name::schema(&names),
+                InputType::ParameterValue => f64::schema(&parameter_value(&Slot::Absent)),
             };
             (input.key(), [meaning], schema)
         };
@@ -114,6 +127,15 @@ impl BlockInputs {
     pub(crate) fn slot(&self, input: Input) -> &Slot<Given> {
         &self.0[input as usize]
     }
+}
+
+/// What is written to the parameter of `slot`: a velocity where that is none, as most are.
+fn parameter_value(slot: &Slot<Given>) -> Measure {
+    let measure = match slot.given() {
+        Some(Value::Choice(name)) => AxisParameter::from_name(name).and_then(AxisParameter::written_as),
+        _ => None,
+    };
+    measure.unwrap_or(positive(Axis(&VELOCITY), "0.5 m/s"))
 }
 
 impl<T> Slot<T> {

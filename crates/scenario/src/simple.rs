@@ -100,6 +100,22 @@ impl<T: Choice> Field<OneOf> for T {
     }
 }
 
+/// One of a few names.
+pub(crate) struct Name(pub(crate) &'static str);
+
+/// Names and meanings.
+type Names = &'static [(&'static str, &'static str)];
+
+impl Field<Names> for Name {
+    fn decode(path: &str, node: &Node, names: &Names, report: &mut Report) -> Option<Self> {
+        one_of(path, node, names.iter().map(|(name, _)| (*name, Self(name))), report)
+    }
+
+    fn schema(names: &Names) -> Json {
+        schema_of(names.iter().copied())
+    }
+}
+
 /// One of the named values of the type, or "none", with the meaning of that.
 pub(crate) struct OneOfOrNone(pub(crate) &'static str);
 

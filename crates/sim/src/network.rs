@@ -125,7 +125,7 @@ impl MotionTask {
         let t = match now {
             Now::Program(t) => t,
             Now::Follow(setpoint) => {
-                let command = AxisCommand { power: true, reset: false, task: Task::Follow(sample(setpoint)) };
+                let command = AxisCommand::of(Task::Follow(sample(setpoint)));
                 return Ok(Step { command, setpoint: Some(setpoint) });
             }
         };
@@ -133,7 +133,7 @@ impl MotionTask {
             Self::Moves(moves) => {
                 let now = moves.cycle(feedback).unwrap_or(0.0);
                 let setpoint = moves.at(now);
-                let command = AxisCommand { power: true, reset: false, task: Task::Follow(sample(setpoint)) };
+                let command = AxisCommand::of(Task::Follow(sample(setpoint)));
                 Ok(Step { command, setpoint: Some(setpoint) })
             }
             Self::DriveProfile(way) => Ok(way.cycle(feedback)),

@@ -6,8 +6,19 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 /// Outputs that a condition of a scenario cannot name: numbers, and a state that an axis alone never has.
-const NOT_IN_CONDITIONS: [&str; 8] =
-    ["ErrorID", "AxisErrorID", "DriveCode", "CoveredDistance", "Position", "Velocity", "Torque", "SynchronizedMotion"];
+const NOT_IN_CONDITIONS: [&str; 11] = [
+    "ErrorID",
+    "AxisErrorID",
+    "DriveCode",
+    "CoveredDistance",
+    "Position",
+    "Velocity",
+    "Torque",
+    "SynchronizedMotion",
+    "Simulation",
+    "Value",
+    "RecordedPosition",
+];
 
 const BENCH: &str = r#"
 [run]
@@ -34,8 +45,8 @@ snap = "100000 m/s4"
 /// Something to say for an input of `block`.
 fn said(block: &str, input: &str) -> String {
     let value = match input {
-        "position" | "distance" | "position_offset" => "\"10 mm\"",
-        "velocity" | "velocity_difference" | "velocity_offset" => "\"0.1 m/s\"",
+        "position" | "distance" | "position_offset" | "first_position" => "\"10 mm\"",
+        "velocity" | "velocity_difference" | "velocity_offset" | "value" => "\"0.1 m/s\"",
         "end_velocity" => "\"0.05 m/s\"",
         "acceleration" | "deceleration" | "acceleration_offset" => "\"2 m/s2\"",
         "jerk" => "\"100 m/s3\"",
@@ -45,8 +56,13 @@ fn said(block: &str, input: &str) -> String {
         "torque" => "\"0.1 Nm\"",
         "torque_ramp" => "\"1 Nm/s\"",
         "velocity_factor" | "acceleration_factor" | "jerk_factor" | "time_scale" | "value_scale" => "0.5",
-        "continuous_update" | "relative" | "reversed" | "enable_positive" | "enable_negative" => "true",
+        "continuous_update" | "relative" | "reversed" | "enable_positive" | "enable_negative" | "bool_value" => "true",
         "settling_time" => "\"50 ms\"",
+        "parameter" => "\"max-velocity-appl\"",
+        "bool_parameter" => "\"enable-limit-pos\"",
+        "input_number" | "output_number" => "2",
+        "trigger_input" => "\"index-pulse\"",
+        "last_position" => "\"20 mm\"",
         "table" => return format!("table = {{ file = \"{block}.csv\" }}\n"),
         other => panic!("{block}.{other} is an input that nobody knows here"),
     };

@@ -54,12 +54,13 @@ impl Dictionary {
     /// What the master reads.
     ///
     /// # Errors
-    /// [`SdoError`] if there is no such object or it is write only.
+    /// [`SdoError`] if there is no such object, it is write only or a string, of which [`upload`](Self::upload) has the bytes.
     pub fn read(&self, object: Object) -> Result<Value, SdoError> {
         match find(object)? {
             Found::HighestSubindex(highest) => Ok(Value::Unsigned8(highest)),
             Found::Entry(entry, place) if entry.access.is_read() => Ok(entry.data_type.value(self.bits[place])),
             Found::Entry(Entry { name, .. }, _) => Err(SdoError::WriteOnly { object, name }),
+            Found::Text(known) => Err(SdoError::NoNumber { object, name: known.name }),
         }
     }
 
@@ -76,12 +77,15 @@ impl Dictionary {
         self.store(object, entry, place, value, state)
     }
 
-    /// [`read`](Self::read) as bytes, the lowest first, and how many of them belong to the value.
+    /// The bytes of a number, the lowest first, or of a string.
     ///
     /// # Errors
-    /// As [`read`](Self::read).
-    pub fn upload(&self, object: Object) -> Result<([u8; 8], usize), SdoError> {
-        self.read(object).map(|value| (value.bytes(), value.data_type().size()))
+    /// [`SdoError`] if there is no such object or it is write only.
+    pub fn upload(&self, object: Object) -> Result<Bytes, SdoError> {
+        if let Found::Text(known) = find(object)? {
+            return Ok(Bytes::of(known.text().unwrap_or_default().as_bytes()));
+        }
+        self.read(object).map(|value| Bytes::of(&value.bytes()[..value.data_type().size()]))
     }
 
     /// [`write`](Self::write) of bytes, the lowest first.
@@ -250,6 +254,12 @@ impl Dictionary {
         self.set(signal::DIGITAL_INPUTS, actuals.digital_inputs);
         self.set(signal::TRAJECTORY_BUFFER_FREE_COUNT, actuals.buffer_free);
         self.set(signal::TRAJECTORY_BUFFER_STATUS, actuals.buffer_status);
+        self.bits[p::TOUCH_PROBE_FUNCTION.place] = Value::from(commands.touch_probe_function).bits();
+        self.bits[p::DIGITAL_OUTPUTS.place] = Value::from(commands.digital_outputs).bits();
+        let [positive, negative] = actuals.touch_probe_positions;
+        self.set(signal::TOUCH_PROBE_STATUS, actuals.touch_probe_status);
+        self.set(signal::TOUCH_PROBE_POSITIVE_EDGE, positive);
+        self.set(signal::TOUCH_PROBE_NEGATIVE_EDGE, negative);
     }
 
     /// The option codes (605Ah to 605Eh).
@@ -296,12 +306,38 @@ impl Dictionary {
     }
 }
 
+/// What a master reads, as it goes over the bus.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Bytes {
+    bytes: [u8; LONGEST],
+    length: usize,
+}
+
+/// Longest string of the table (bytes); longer ones would be cut.
+const LONGEST: usize = 32;
+
+impl Bytes {
+    fn of(bytes: &[u8]) -> Self {
+        let length = bytes.len().min(LONGEST);
+        let mut own = [0; LONGEST];
+        own[..length].copy_from_slice(&bytes[..length]);
+        Self { bytes: own, length }
+    }
+}
+
+impl AsRef<[u8]> for Bytes {
+    fn as_ref(&self) -> &[u8] {
+        &self.bytes[..self.length]
+    }
+}
+
 /// The entry that a master may write.
 fn writable(object: Object) -> Result<(&'static Entry, usize), SdoError> {
     match find(object)? {
         Found::Entry(entry, place) if entry.access.is_written() => Ok((entry, place)),
         Found::Entry(Entry { name, .. }, _) => Err(SdoError::ReadOnly { object, name }),
         Found::HighestSubindex(_) => Err(SdoError::ReadOnly { object, name: super::entry::HIGHEST_SUBINDEX }),
+        Found::Text(known) => Err(SdoError::ReadOnly { object, name: known.name }),
     }
 }
 

@@ -66,6 +66,9 @@ impl Display for Eds<'_> {
     }
 }
 
+/// Data type of a string (CiA 301, table 44).
+const VISIBLE_STRING: u16 = 9;
+
 /// Whether the index is in the manufacturer-specific profile area.
 fn is_manufacturers(index: u16) -> bool {
     (0x2000..0x6000).contains(&index)
@@ -89,6 +92,10 @@ impl Eds<'_> {
             Contents::Variable(entry) => {
                 writeln!(f, "[{index:04X}]")?;
                 return self.variable(f, Object { index, subindex: 0 }, &entry, None);
+            }
+            Contents::Text(text) => {
+                writeln!(f, "[{index:04X}]\nParameterName={name}\nObjectType=0x7\nDataType=0x{VISIBLE_STRING:04X}")?;
+                return writeln!(f, "AccessType=const\nDefaultValue={text}\nPDOMapping=0\n");
             }
             Contents::Array(entries) => (8, entries),
             Contents::Record(entries) => (9, entries),

@@ -67,6 +67,8 @@ pub struct Entry {
 pub enum Contents {
     /// One, at sub-index 00h.
     Variable(Entry),
+    /// A string that never changes (VISIBLE_STRING), at sub-index 00h.
+    Text(&'static str),
     /// Several of one kind, from sub-index 01h on; 00h tells how many.
     Array(&'static [Entry]),
     /// Several of different kinds, from sub-index 01h on; 00h tells how many.
@@ -88,26 +90,33 @@ pub struct ObjectDescription {
 pub(super) const HIGHEST_SUBINDEX: &str = "Highest sub-index supported";
 
 impl ObjectDescription {
-    /// Its values: one at sub-index 00h, or several from 01h on.
+    /// Its numbers: one at sub-index 00h, or several from 01h on; none of a string.
     #[must_use]
     pub const fn entries(&self) -> &[Entry] {
         match &self.contents {
             Contents::Variable(entry) => core::slice::from_ref(entry),
+            Contents::Text(_) => &[],
             Contents::Array(entries) | Contents::Record(entries) => entries,
         }
+    }
+
+    /// Its string, if it is one.
+    #[must_use]
+    pub const fn text(&self) -> Option<&'static str> {
+        if let Contents::Text(text) = self.contents { Some(text) } else { None }
     }
 
     /// Sub-index of the first of [`entries`](Self::entries).
     #[must_use]
     pub const fn first_subindex(&self) -> u8 {
-        if matches!(self.contents, Contents::Variable(_)) { 0 } else { 1 }
+        if matches!(self.contents, Contents::Variable(_) | Contents::Text(_)) { 0 } else { 1 }
     }
 
     /// Number of sub-indices above 00h.
     #[must_use]
     pub fn highest_subindex(&self) -> u8 {
         match self.contents {
-            Contents::Variable(_) => 0,
+            Contents::Variable(_) | Contents::Text(_) => 0,
             // An index has 255 sub-indices, and the table fewer.
             Contents::Array(entries) | Contents::Record(entries) => u8::try_from(entries.len()).unwrap_or(u8::MAX),
         }

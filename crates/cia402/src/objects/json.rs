@@ -1,6 +1,6 @@
 //! The object dictionary as JSON: the table and the present values.
 use super::dictionary::Dictionary;
-use super::entry::{Admitted, Entry};
+use super::entry::{Admitted, Contents, Entry};
 use super::table::OBJECTS;
 use crate::units::Object;
 use core::fmt::{self, Display, Formatter};
@@ -16,6 +16,16 @@ impl Display for Json<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let mut before = "[\n  ";
         for object in &OBJECTS {
+            if let Contents::Text(text) = object.contents {
+                let (index, name) = (object.index, object.name);
+                write!(
+                    f,
+                    "{before}{{\"index\": {index}, \"subindex\": 0, \"object\": \"{name}\", \"name\": \"{name}\""
+                )?;
+                f.write_str(", \"type\": \"VISIBLE_STRING\", \"access\": \"const\", \"pdo\": \"\", \"unit\": \"\"")?;
+                write!(f, ", \"disabled_only\": false, \"default\": \"{text}\", \"value\": \"{text}\"}}")?;
+                before = ",\n  ";
+            }
             for (subindex, entry) in (object.first_subindex()..).zip(object.entries()) {
                 f.write_str(before)?;
                 before = ",\n  ";
@@ -32,7 +42,7 @@ impl Display for Json<'_> {
     }
 }
 
-/// What the table says of an entry. No name and no unit has a character that JSON escapes.
+/// What the table says of an entry. No name, no unit and no string has a character that JSON escapes.
 fn description(f: &mut Formatter<'_>, entry: &Entry) -> fmt::Result {
     let Entry { name, data_type, access, mapping, unit, disabled_only, .. } = *entry;
     let (data_type, access, mapping) = (data_type.name(), access.abbreviation(), mapping.abbreviation());

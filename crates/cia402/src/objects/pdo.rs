@@ -62,7 +62,8 @@ pdos! { "TPDO", TPDO_PARAMETERS at 0x1800, TPDO_MAPPINGS at 0x1A00;
     5: NO_REMOTE_FRAME | NOT_VALID, [0x6041 Unsigned16, 0x6077 Integer16];
 }
 
-const fn identifier(base: i64) -> i64 {
+/// Identifier of the predefined connection set.
+pub(super) const fn identifier(base: i64) -> i64 {
     base + NODE_ID as i64
 }
 
@@ -73,9 +74,12 @@ const fn mapped(index: i64, data_type: DataType) -> Entry {
     constant(Unsigned32, (index << 16) | bits).named("Application object")
 }
 
-/// What a data sheet adds to the node-ID of a device for the identifier of a PDO, where `index` and `subindex` are one and `value`
-/// has a node-ID.
+/// What a data sheet adds to the node-ID of a device for the identifier of a PDO, of EMCY or of SDO, where `index` and `subindex` are
+/// one and `value` has a node-ID.
 pub(super) const fn without_node_id(index: u16, subindex: u8, value: i64) -> Option<i64> {
-    let is_identifier = matches!(index, 0x1400..=0x15FF | 0x1800..=0x19FF) && subindex == 1;
+    let is_identifier = matches!(
+        (index, subindex),
+        (0x1014, 0) | (0x1200, 1 | 2) | (0x1400..=0x15FF | 0x1800..=0x19FF, 1)
+    );
     if is_identifier && value & NOT_VALID == 0 { Some(value - NODE_ID as i64) } else { None }
 }

@@ -1,5 +1,5 @@
 //! Where the values of the entries are: places that the drive's side knows by name, found at compile time.
-use super::entry::{Access, Admitted, Entry};
+use super::entry::{Access, Admitted, Entry, ObjectDescription};
 use super::table::OBJECTS;
 use super::value::Stored;
 use crate::SdoError;
@@ -27,6 +27,8 @@ pub(super) enum Found {
     HighestSubindex(u8),
     /// An entry, and its place.
     Entry(&'static Entry, usize),
+    /// A string.
+    Text(&'static ObjectDescription),
 }
 
 /// Looks an object up, as its master names it.
@@ -35,6 +37,9 @@ pub(super) fn find(object: Object) -> Result<Found, SdoError> {
         .binary_search_by_key(&object.index, |known| known.index)
         .map_err(|_| SdoError::NoObject { index: object.index })?;
     let known = &OBJECTS[at];
+    if known.text().is_some() && object.subindex == 0 {
+        return Ok(Found::Text(known));
+    }
     let first = known.first_subindex();
     let Some(number) = object.subindex.checked_sub(first) else {
         return Ok(Found::HighestSubindex(known.highest_subindex()));
@@ -177,6 +182,7 @@ pub mod parameter {
         POSITIVE_TORQUE_LIMIT: u16 = 0x60E0;
         NEGATIVE_TORQUE_LIMIT: u16 = 0x60E1;
         POSITIONING_OPTION_CODE: u16 = 0x60F2;
+        TOUCH_PROBE_FUNCTION: u16 = 0x60B8;
         DIGITAL_OUTPUTS: u32 = 0x60FE: 1;
         DIGITAL_OUTPUT_MASK: u32 = 0x60FE: 2;
     }
@@ -209,6 +215,9 @@ pub mod signal {
         POSITION_OFFSET: i32 = 0x60B0;
         VELOCITY_OFFSET: i32 = 0x60B1;
         TORQUE_OFFSET: i16 = 0x60B2;
+        TOUCH_PROBE_STATUS: u16 = 0x60B9;
+        TOUCH_PROBE_POSITIVE_EDGE: i32 = 0x60BA;
+        TOUCH_PROBE_NEGATIVE_EDGE: i32 = 0x60BB;
         FOLLOWING_ERROR_ACTUAL_VALUE: i32 = 0x60F4;
         POSITION_DEMAND_INTERNAL_VALUE: i32 = 0x60FC;
         DIGITAL_INPUTS: u32 = 0x60FD;

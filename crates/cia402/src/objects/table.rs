@@ -1,6 +1,6 @@
 //! The table of the objects.
 use super::entry::{Access, Admitted, Contents, Entry, Mapping, ObjectDescription};
-use super::pdo::{RPDO_MAPPINGS, RPDO_PARAMETERS, TPDO_MAPPINGS, TPDO_PARAMETERS};
+use super::pdo::{RPDO_MAPPINGS, RPDO_PARAMETERS, TPDO_MAPPINGS, TPDO_PARAMETERS, identifier};
 use super::value::DataType::{self, Integer8, Integer16, Integer32, Unsigned8, Unsigned16, Unsigned32, Unsigned64};
 use crate::Mode;
 use crate::modulo::POSITIONING_OPTION_BITS;
@@ -61,10 +61,16 @@ const SUPPORTED_METHODS: [Entry; HOMING_METHODS.len()] = {
 };
 
 /// Every object, by index.
-pub static OBJECTS: [ObjectDescription; 100] = [
+pub static OBJECTS: [ObjectDescription; 111] = [
     // Communication profile (CiA 301).
     variable(0x1000, "Device type", constant(Unsigned32, DEVICE_TYPE)),
     variable(0x1001, "Error register", actual(Unsigned8)),
+    variable(0x1005, "COB-ID SYNC message", parameter(Unsigned32, 0x80)),
+    text(0x1008, "Manufacturer device name", "servobench servo drive"),
+    text(0x1009, "Manufacturer hardware version", "simulated"),
+    text(0x100A, "Manufacturer software version", env!("CARGO_PKG_VERSION")),
+    variable(0x1014, "COB-ID EMCY", parameter(Unsigned32, identifier(0x80))),
+    variable(0x1017, "Producer heartbeat time", parameter(Unsigned16, 0).unit(MILLISECOND)),
     record(
         0x1018,
         "Identity object",
@@ -73,6 +79,14 @@ pub static OBJECTS: [ObjectDescription; 100] = [
             constant(Unsigned32, 0).named("Product code"),
             constant(Unsigned32, 0).named("Revision number"),
             constant(Unsigned32, 0).named("Serial number"),
+        ],
+    ),
+    record(
+        0x1200,
+        "SDO server parameter",
+        &[
+            constant(Unsigned32, identifier(0x600)).named("COB-ID client to server"),
+            constant(Unsigned32, identifier(0x580)).named("COB-ID server to client"),
         ],
     ),
     // Process data objects.
@@ -214,6 +228,11 @@ pub static OBJECTS: [ObjectDescription; 100] = [
     variable(0x60B0, "Position offset", parameter(Integer32, 0).unit(POSITION).received()),
     variable(0x60B1, "Velocity offset", parameter(Integer32, 0).unit(VELOCITY).received()),
     variable(0x60B2, "Torque offset", parameter(Integer16, 0).unit(TORQUE).received()),
+    // Touch probe.
+    variable(0x60B8, "Touch probe function", parameter(Unsigned16, 0).received()),
+    variable(0x60B9, "Touch probe status", actual(Unsigned16)),
+    variable(0x60BA, "Touch probe 1 positive edge", actual(Integer32).unit(POSITION)),
+    variable(0x60BB, "Touch probe 1 negative edge", actual(Integer32).unit(POSITION)),
     // Interpolated position; sub-modes and the additional records are those of Copley's drives.
     variable(
         0x60C0,
@@ -268,6 +287,10 @@ pub static OBJECTS: [ObjectDescription; 100] = [
 
 const fn variable(index: u16, name: &'static str, entry: Entry) -> ObjectDescription {
     ObjectDescription { index, name, contents: Contents::Variable(entry.named(name)) }
+}
+
+const fn text(index: u16, name: &'static str, text: &'static str) -> ObjectDescription {
+    ObjectDescription { index, name, contents: Contents::Text(text) }
 }
 
 const fn array(index: u16, name: &'static str, entries: &'static [Entry]) -> ObjectDescription {

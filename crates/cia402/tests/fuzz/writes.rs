@@ -40,7 +40,7 @@ fn writes() {
                 Ok(()) => {
                     assert_ne!(dictionary.generation(), before.generation());
                     match dictionary.upload(*object) {
-                        Ok((read, length)) => assert_eq!(&read[..length], bytes.as_slice()),
+                        Ok(read) => assert_eq!(read.as_ref(), bytes.as_slice()),
                         Err(refused) => assert_eq!(refused.abort_code(), AbortCode::WriteOnly),
                     }
                 }

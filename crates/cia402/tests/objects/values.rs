@@ -1,11 +1,12 @@
 //! What is written is read, by whatever way.
 use crate::object;
 use servobench_cia402::objects::{
-    Access, DataType, Dictionary, OBJECTS, ObjectDescription, Value, entry_of, parameter, signal,
+    Access, Contents, DataType, Dictionary, OBJECTS, ObjectDescription, Value, entry_of, parameter, signal,
 };
 use servobench_cia402::units::{FactorGroup, Object};
 use servobench_cia402::{
-    Actuals, Commands, Controlword, HaltOption, Mode, PowerParams, PowerState, QuickStopOption, StatusBit, Statusword,
+    AbortCode, Actuals, Commands, Controlword, HaltOption, Mode, PowerParams, PowerState, QuickStopOption, StatusBit,
+    Statusword,
 };
 
 const DISABLED: PowerState = PowerState::SwitchedOn;
@@ -63,16 +64,32 @@ fn each_value_has_its_own_place() {
     }
 }
 
+/// A string has bytes, all of them, is no number and is not written.
+#[test]
+fn a_string_is_read_as_bytes() {
+    let mut dictionary = Dictionary::new();
+    let name = object(0x1008, 0);
+    assert_eq!(dictionary.upload(name).unwrap().as_ref(), b"servobench servo drive");
+    let message = dictionary.read(name).unwrap_err().to_string();
+    assert_eq!(message, "`Manufacturer device name` (1008h:00h) is a string, not a number: upload its bytes");
+    assert_eq!(dictionary.download(name, b"other", DISABLED).unwrap_err().abort_code(), AbortCode::ReadOnly);
+    assert_eq!(dictionary.upload(object(0x1008, 1)).unwrap_err().abort_code(), AbortCode::NoSubindex);
+    for known in &OBJECTS {
+        if let Contents::Text(text) = known.contents {
+            let read = dictionary.upload(object(known.index, 0)).unwrap();
+            assert!(read.as_ref() == text.as_bytes() && text.is_ascii() && !text.contains('"'), "{text}");
+        }
+    }
+}
+
 #[test]
 fn bytes_and_values_are_one() {
     let mut dictionary = Dictionary::new();
     dictionary.download(object(0x607A, 0), &[0xFE, 0xFF, 0xFF, 0xFF], DISABLED).unwrap();
     assert_eq!(dictionary.signal(signal::TARGET_POSITION), -2);
     assert_eq!(dictionary.read(object(0x607A, 0)), Ok(Value::Integer32(-2)));
-    let (bytes, length) = dictionary.upload(object(0x607A, 0)).unwrap();
-    assert_eq!(bytes[..length], [0xFE, 0xFF, 0xFF, 0xFF]);
-    let (bytes, length) = dictionary.upload(object(0x6091, 0)).unwrap();
-    assert_eq!(bytes[..length], [2]);
+    assert_eq!(dictionary.upload(object(0x607A, 0)).unwrap().as_ref(), [0xFE, 0xFF, 0xFF, 0xFF]);
+    assert_eq!(dictionary.upload(object(0x6091, 0)).unwrap().as_ref(), [2]);
     dictionary.download(object(0x2010, 0), &[1, 2, 3, 4, 5, 6, 7, 0x80], DISABLED).unwrap();
     assert_eq!(dictionary.signal(signal::IP_MOVE_SEGMENT_COMMAND).to_le_bytes(), [1, 2, 3, 4, 5, 6, 7, 0x80]);
 }
@@ -142,6 +159,8 @@ fn process_data_are_read_by_sdo_too() {
         position_offset: -2,
         velocity_offset: 4,
         torque_offset: -5,
+        touch_probe_function: 0x0011,
+        digital_outputs: 0x8000_0001,
         ..Commands::default()
     };
     let actuals = Actuals {
@@ -156,6 +175,8 @@ fn process_data_are_read_by_sdo_too() {
         digital_inputs: 5,
         buffer_free: 32,
         buffer_status: 0x8000_0000,
+        touch_probe_status: 3,
+        touch_probe_positions: [-11, 12],
     };
     dictionary.mirror(&commands, &actuals);
     let expected = [
@@ -179,10 +200,15 @@ fn process_data_are_read_by_sdo_too() {
         (0x60FD, 5),
         (0x2011, 32),
         (0x2012, 0x8000_0000),
+        (0x60B8, 0x0011),
+        (0x60B9, 3),
+        (0x60BA, -11),
+        (0x60BB, 12),
     ];
     for (index, number) in expected {
         assert_eq!(dictionary.read(object(index, 0)).unwrap().number(), number, "{index:04X}h");
     }
+    assert_eq!(dictionary.read(object(0x60FE, 1)).unwrap().number(), 0x8000_0001);
     // A mode that the drive does not have is not one it was asked for.
     dictionary.mirror(&Commands { mode: 2, ..commands }, &actuals);
     assert_eq!(dictionary.read(object(0x6060, 0)).unwrap(), Value::Integer8(9));

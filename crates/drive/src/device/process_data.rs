@@ -36,6 +36,8 @@ impl State {
             digital_inputs: closed(negative_limit, 0) | closed(positive_limit, 1) | closed(home, 2),
             buffer_free: u16::try_from(self.buffer.free()).unwrap_or(u16::MAX),
             buffer_status: self.buffer.status(),
+            touch_probe_status: self.probe.status(),
+            touch_probe_positions: self.probe.positions(p),
         }
     }
 
@@ -47,6 +49,7 @@ impl State {
     /// Converts a frame.
     pub(super) fn take(&mut self, p: &Params, frame: &Commands) {
         self.wanted = Mode::from_code(frame.mode);
+        (self.probe_function, self.digital_outputs) = (frame.touch_probe_function, frame.digital_outputs);
         if let Some(bytes) = frame.trajectory_point {
             // What the buffer itself refuses is latched in its status (2012h).
             self.has_refused_point = match SegmentCommand::decode(bytes) {

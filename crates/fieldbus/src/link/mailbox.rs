@@ -8,7 +8,7 @@
 //! use servobench_fieldbus::link::Mailbox;
 //! use servobench_fieldbus::{AxisCommand, Task};
 //! let mut mailbox = Mailbox::default();
-//! mailbox.write(Tick(320), AxisCommand { power: true, reset: false, task: Task::Effort(0.5) });
+//! mailbox.write(Tick(320), AxisCommand::of(Task::Effort(0.5)));
 //! assert_eq!(mailbox.written(), 1);
 //! ```
 use crate::{AxisCommand, Task};
@@ -30,7 +30,7 @@ impl Default for Mailbox {
     /// Nothing written: the axis is not powered.
     fn default() -> Self {
         let task = Task::Follow(Sample::default());
-        Self { begun: 0, written: 0, tick: Tick(0), command: AxisCommand { power: false, reset: false, task } }
+        Self { begun: 0, written: 0, tick: Tick(0), command: AxisCommand { power: false, ..AxisCommand::of(task) } }
     }
 }
 

@@ -26,7 +26,7 @@ fn motion(tick: u64) -> Setpoint {
 
 fn follow(setpoint: Setpoint) -> AxisCommand {
     let Setpoint { x, v, a, .. } = setpoint;
-    AxisCommand { power: true, reset: false, task: Task::Follow(Sample { x, v, a, torque: 0.0 }) }
+    AxisCommand::of(Task::Follow(Sample { x, v, a, torque: 0.0 }))
 }
 
 fn moving(tick: u64) -> AxisCommand {
@@ -59,7 +59,7 @@ fn the_axis_is_where_the_samples_were_a_constant_time_ago() {
 fn homing_and_a_move_from_there() {
     let mut rig = Rig::new();
     rig.run(START, resting(0.0));
-    let home = |_| AxisCommand { power: true, reset: false, task: Task::Home { position: 0.25 } };
+    let home = |_| AxisCommand::of(Task::Home { position: 0.25 });
     rig.run(5 * MOTION, home);
     assert_eq!((rig.feedback().homing, rig.feedback().fault), (Homing::Attained, None));
     assert!((rig.feedback().position - 0.25).abs() < 1e-12);
@@ -86,7 +86,7 @@ fn a_homing_that_is_taken_back_as_it_ends_moves_nothing() {
         while rig.tick < taken_back + 12 * MOTION {
             rig.measured.home = rig.axis.x >= *switch;
             let heard = rig.feedback().demanded();
-            let home = AxisCommand { power: true, reset: false, task: Task::Home { position: 0.7374 } };
+            let home = AxisCommand::of(Task::Home { position: 0.7374 });
             rig.run(1, |tick| if tick < taken_back { home } else { resting(heard)(tick) });
         }
         assert_eq!((rig.feedback().fault, rig.feedback().homing), (None, Homing::Idle));
@@ -188,7 +188,7 @@ fn homing_hands_over_what_the_drive_follows() {
         let mut rig = Rig::new();
         rig.run(START, resting(0.0));
         rig.behind = behind;
-        let home = |_| AxisCommand { power: true, reset: false, task: Task::Home { position: -0.125 } };
+        let home = |_| AxisCommand::of(Task::Home { position: -0.125 });
         rig.run(5 * MOTION + 7, home);
         let feedback = rig.feedback();
         assert_eq!((feedback.homing, feedback.fault), (Homing::Attained, None));

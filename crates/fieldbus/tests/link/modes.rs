@@ -7,7 +7,7 @@ use servobench_fieldbus::link::{Control, Settings, Units};
 use servobench_fieldbus::{AxisCommand, Fault, Homing, Interpolation, LinkFault, Power, Task};
 use servobench_motion::interpolate::Sample;
 
-const REST: AxisCommand = AxisCommand { power: true, reset: false, task: REST_TASK };
+const REST: AxisCommand = AxisCommand::of(REST_TASK);
 const REST_TASK: Task = Task::Follow(Sample { x: 0.0, v: 0.0, a: 0.0, torque: 0.0 });
 
 /// Ten turns of the counter to one side, back, and ten to the other; the oracle is what the drive counts in 127 bits.
@@ -89,7 +89,7 @@ fn the_position_loop_of_the_master_lags_by_velocity_over_gain() {
 
 #[test]
 fn efforts_are_reached_in_a_line_and_let_go_when_none_comes() {
-    let effort = |value| AxisCommand { power: true, reset: false, task: Task::Effort(value) };
+    let effort = |value| AxisCommand::of(Task::Effort(value));
     let mut rig = Rig::new(settings());
     rig.run(5, |_| effort(0.0));
     assert_eq!((rig.commands.mode, rig.feedback().interpolation), (10, Interpolation::Run1));
@@ -112,7 +112,7 @@ fn efforts_are_reached_in_a_line_and_let_go_when_none_comes() {
 
 #[test]
 fn an_effort_from_before_a_fault_is_forgotten() {
-    let effort = AxisCommand { power: true, reset: false, task: Task::Effort(5.0) };
+    let effort = AxisCommand::of(Task::Effort(5.0));
     let mut rig = Rig::new(settings());
     rig.run(5, |_| effort);
     assert_eq!(rig.commands.target_torque, 500);
@@ -131,7 +131,7 @@ fn an_effort_from_before_a_fault_is_forgotten() {
 #[test]
 fn an_effort_within_the_margin_is_in_time() {
     let mut rig = Rig::new(Settings { margin: 64, ..settings() });
-    let effort = AxisCommand { power: true, reset: false, task: Task::Effort(1.0) };
+    let effort = AxisCommand::of(Task::Effort(1.0));
     rig.run(3, |_| effort);
     for late in [0, 1, 4, 2, 3, 0] {
         for cycle in 0..MOTION / BUS {
@@ -166,7 +166,7 @@ fn a_torque_does_not_jump() {
 
 #[test]
 fn homing_is_started_by_bit_4_and_gives_the_position() {
-    let home = AxisCommand { power: true, reset: false, task: Task::Home { position: 0.25 } };
+    let home = AxisCommand::of(Task::Home { position: 0.25 });
     let mut rig = Rig::new(settings());
     rig.run(5, |_| REST);
     // Twice: the second time the drive still shows that it was attained. Its answers are two cycles old, and the first one of
@@ -204,7 +204,7 @@ fn homing_is_started_by_bit_4_and_gives_the_position() {
 
 #[test]
 fn homing_that_fails_says_so() {
-    let home = |position| AxisCommand { power: true, reset: false, task: Task::Home { position } };
+    let home = |position| AxisCommand::of(Task::Home { position });
     let homing = || {
         let mut rig = Rig::new(settings());
         rig.run(5, |_| REST);
@@ -253,7 +253,7 @@ fn homing_anchors_a_counter_that_cannot_show_the_position() {
     let mut rig = Rig::new(Settings { units, ..settings() });
     rig.run(5, |_| REST);
     // 250 000 counts are 3.8 turns of the counter.
-    rig.run(5, |_| AxisCommand { power: true, reset: false, task: Task::Home { position: 0.25 } });
+    rig.run(5, |_| AxisCommand::of(Task::Home { position: 0.25 }));
     assert_eq!(rig.feedback().homing, Homing::Attained);
     assert!((rig.feedback().position - 0.25).abs() < 1e-12);
 }

@@ -10,7 +10,7 @@ fn at(x: f64, v: f64) -> AxisCommand {
     follow(Sample { x, v, a: 0.0, torque: 0.0 })
 }
 
-const REST: AxisCommand = AxisCommand { power: true, reset: false, task: REST_TASK };
+const REST: AxisCommand = AxisCommand::of(REST_TASK);
 const REST_TASK: servobench_fieldbus::Task =
     servobench_fieldbus::Task::Follow(Sample { x: 0.0, v: 0.0, a: 0.0, torque: 0.0 });
 const OFF: AxisCommand = AxisCommand { power: false, ..REST };

@@ -103,7 +103,7 @@ fn no_command_makes_the_output_jump_or_end_in_no_number() {
                     furthest = x.abs().max(furthest);
                 }
                 for _ in 0..=u8::from(random.once_in(30)) {
-                    rig.write(stamp, AxisCommand { power, reset: random.once_in(2), task });
+                    rig.write(stamp, AxisCommand { power, reset: random.once_in(2), ..AxisCommand::of(task) });
                 }
             }
             if random.once_in(100) {

@@ -215,7 +215,7 @@ impl Rig {
 
 /// Powered, following a sample.
 pub(crate) fn follow(sample: Sample) -> AxisCommand {
-    AxisCommand { power: true, reset: false, task: Task::Follow(sample) }
+    AxisCommand::of(Task::Follow(sample))
 }
 
 /// A sample of a set-point.

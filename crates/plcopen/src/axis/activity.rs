@@ -3,7 +3,7 @@ use super::Axis;
 use super::queue::Queue;
 use super::run::Run;
 use crate::arrows::{Cause, arrow};
-use crate::command::{BufferMode, Command};
+use crate::command::{BufferMode, Command, Reference};
 use crate::error::{AxisError, BlockError};
 use crate::ledger::{CommandId, Progress};
 use crate::state::AxisState;
@@ -59,7 +59,7 @@ pub(super) struct EffortRamp {
 pub(super) struct HomingWait {
     pub(super) id: CommandId,
     pub(super) command: Command,
-    pub(super) position: f64,
+    pub(super) reference: Reference,
     /// Whether the drive has been seen without the result of an earlier run.
     pub(super) has_begun: bool,
 }
@@ -145,17 +145,21 @@ impl Axis {
                     self.go_on(id, from);
                 }
             }
+            Activity::Homing(HomingWait { id, reference: Reference::Here(position), .. }) => {
+                let (id, offset) = (*id, *position - self.feedback.position);
+                self.found_reference(id, offset);
+            }
+            Activity::Homing(HomingWait { id, reference: Reference::Encoder, .. }) => {
+                let id = *id;
+                self.found_reference(id, 0.0);
+            }
             Activity::Homing(homing) => {
                 // Where the drive has stopped what it follows, the axis is still on its way to.
                 self.base = Setpoint { v: self.feedback.velocity, ..Setpoint::at_rest(self.feedback.demanded()) };
                 let id = homing.id;
                 match self.feedback.homing {
                     Homing::Idle | Homing::Busy => homing.has_begun = true,
-                    Homing::Attained if homing.has_begun => {
-                        (self.is_homed, self.offset) = (true, 0.0);
-                        self.ledger.set(id, Progress::Done);
-                        self.rest();
-                    }
+                    Homing::Attained if homing.has_begun => self.found_reference(id, 0.0),
                     Homing::Failed if homing.has_begun => self.fail(AxisError::HomingFailed),
                     Homing::Attained | Homing::Failed => {}
                 }
@@ -176,6 +180,13 @@ impl Axis {
                 led.is_fresh = false;
             }
         }
+    }
+
+    /// From now on the position counts from a reference: what the program sees is that of the drive and `offset`.
+    fn found_reference(&mut self, id: CommandId, offset: f64) {
+        (self.is_homed, self.offset) = (true, offset);
+        self.ledger.set(id, Progress::Done);
+        self.rest();
     }
 
     /// The way of the active command is over.

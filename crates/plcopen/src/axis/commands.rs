@@ -128,11 +128,16 @@ impl Axis {
                 let origin = moving.origin;
                 let target = match (command.goal, moving.target) {
                     // The position is behind; what goes on is the velocity.
-                    (Goal::Absolute { end_velocity: Some(v), .. }, Target::Velocity(_)) => Target::Velocity(v),
-                    (Goal::Relative(distance), _) => Target::Position { x: origin + distance, v: 0.0 },
+                    (
+                        Goal::Absolute { end_velocity: Some(v), .. } | Goal::Relative { end_velocity: Some(v), .. },
+                        Target::Velocity(_),
+                    ) => Target::Velocity(v),
+                    (Goal::Relative { distance, end_velocity }, _) => {
+                        Target::Position { x: origin + distance, v: end_velocity.unwrap_or(0.0) }
+                    }
                     _ => self.target(&command, &from, origin)?,
                 };
-                self.check_permission(command.block, &from, &target)?;
+                self.check_target(command.block, &from, &target)?;
                 let (run, is_paused) = self.run(&command, &target, &from, &self.beside(), 0.0, &self.queue)?;
                 self.activity = Activity::Moving(Moving { id, command, target, origin, is_paused, run });
             }
@@ -157,7 +162,8 @@ impl Axis {
         let running = self.activity.clone();
         let done = self.rejoin(&self.half_beside()).and_then(|()| {
             let Some(superimposed) = &self.superimposed else { return Ok(()) };
-            let planned = self.superimposed_run(&superimposed.command, &superimposed.now, superimposed.distance)?;
+            let Some(end) = superimposed.end else { return Ok(()) };
+            let planned = self.superimposed_run(&superimposed.command, &superimposed.now, end)?;
             if let Some(superimposed) = &mut self.superimposed {
                 (superimposed.run, superimposed.is_paused) = planned;
             }
@@ -266,13 +272,13 @@ impl Axis {
                 let (step, present) = (ramp * self.params.cycle_time, self.feedback.effort);
                 Ok(Activity::Effort(EffortRamp { id, command, target, step, present }))
             }
-            Goal::Reference(position) => Ok(Activity::Homing(HomingWait { id, command, position, has_begun: false })),
+            Goal::Reference(reference) => Ok(Activity::Homing(HomingWait { id, command, reference, has_begun: false })),
             Goal::Led(_) => Ok(Activity::Led(Led { id, command, offset: self.offset, is_fresh: true, cycles: 0 })),
             _ => {
                 let is_aborting = command.buffer_mode == BufferMode::Aborting;
                 let origin = if is_aborting { self.last_target().unwrap_or(from.x) } else { from.x };
                 let target = self.target(&command, &from, origin)?;
-                self.check_permission(block, &from, &target)?;
+                self.check_target(block, &from, &target)?;
                 // An aborting command has the axis for itself.
                 let axis = if is_aborting { Bounds::of_axis(&self.params.limits) } else { self.beside() };
                 let (run, is_paused) = self.run(&command, &target, &from, &axis, lead, behind)?;
@@ -282,10 +288,13 @@ impl Axis {
         }
     }
 
-    /// MC_Power permits the direction in which a way to `target` leads.
-    fn check_permission(&self, block: BlockName, from: &Setpoint, target: &Target) -> Result<(), BlockError> {
+    /// MC_Power permits the direction in which a way to `target` leads, and a position is within the software limits.
+    fn check_target(&self, block: BlockName, from: &Setpoint, target: &Target) -> Result<(), BlockError> {
         let direction = match target {
-            Target::Position { x, .. } => x - from.x,
+            Target::Position { x, .. } => {
+                self.check_software_limits(block, *x)?;
+                x - from.x
+            }
             Target::Velocity(v) => *v,
         };
         match self.forbidden(direction) {
@@ -324,7 +333,9 @@ impl Axis {
                 };
                 Target::Position { x, v: end_velocity.unwrap_or(0.0) }
             }
-            Goal::Relative(distance) => Target::Position { x: from.x + distance, v: 0.0 },
+            Goal::Relative { distance, end_velocity } => {
+                Target::Position { x: from.x + distance, v: end_velocity.unwrap_or(0.0) }
+            }
             Goal::Additive(distance) => Target::Position { x: additive_origin + distance, v: 0.0 },
             Goal::Velocity { velocity, direction } => Target::Velocity(self.directed(velocity, direction)),
             Goal::Rest | Goal::Reference(_) | Goal::Effort { .. } | Goal::Led(_) => Target::Velocity(0.0),

@@ -14,7 +14,7 @@ fn demand(command: &Command, limits: &Limits) -> [f64; 4] {
     let dynamics = &command.dynamics;
     let velocity = match command.goal {
         Goal::Velocity { velocity, .. } => velocity.abs(),
-        Goal::Rest => 0.0,
+        Goal::Rest => dynamics.velocity.unwrap_or(0.0),
         _ => dynamics.velocity.unwrap_or(limits.velocity),
     };
     [

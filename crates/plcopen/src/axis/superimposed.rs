@@ -5,9 +5,10 @@ use super::bounds::Bounds;
 use super::brake_pre_trajectory::planned;
 use super::run::Run;
 use crate::arrows::{Cause, arrow};
-use crate::command::{Command, finite_input};
+use crate::command::{Command, Dynamics, finite_input};
 use crate::error::{AxisError, BlockError};
 use crate::ledger::{CommandId, Progress};
+use crate::state::AxisState;
 use servobench_base::Setpoint;
 use servobench_motion::online::Target;
 
@@ -18,7 +19,8 @@ pub(super) struct Superimposed {
     pub(super) command: Command,
     /// Where the one before had come to that this one replaced.
     pub(super) origin: f64,
-    pub(super) distance: f64,
+    /// Where it leads; `None`: to rest.
+    pub(super) end: Option<f64>,
     pub(super) is_paused: bool,
     pub(super) run: Run,
     pub(super) now: Setpoint,
@@ -58,11 +60,37 @@ impl Axis {
         if let Some(before) = &self.superimposed {
             self.ledger.set(before.id, Progress::Aborted);
         }
-        let (origin, distance) = (from.x, from.x + distance);
-        self.superimposed = Some(Superimposed { id, command: *command, origin, distance, is_paused, run, now: from });
+        let (origin, end) = (from.x, Some(from.x + distance));
+        self.superimposed = Some(Superimposed { id, command: *command, origin, end, is_paused, run, now: from });
         self.ledger.set(id, Progress::Active);
         self.state = arrow.to;
         Ok(id)
+    }
+
+    /// MC_HaltSuperimposed; `None` where nothing is on top.
+    pub(crate) fn halt_superimposed(&mut self, command: &Command) -> Result<Option<CommandId>, BlockError> {
+        let block = command.block;
+        if !matches!(self.state, AxisState::Standstill | AxisState::DiscreteMotion | AxisState::ContinuousMotion) {
+            return Err(BlockError::State { block, state: self.state });
+        }
+        command.dynamics.check(block, &self.params.limits)?;
+        let Some(&Superimposed { id: before, now: from, command: halted, .. }) = self.superimposed.as_ref() else {
+            return Ok(None);
+        };
+        // Until it rests it may be as fast as what it halts.
+        let dynamics = Dynamics { velocity: halted.dynamics.velocity, ..command.dynamics };
+        let command = &Command { dynamics, ..*command };
+        self.below().try_for_each(|below| self.check_sum(block, command, below))?;
+        let bounds = Bounds::of(&command.dynamics, &self.params.limits, &super::Override::NONE);
+        let run = planned(&from, &Target::Velocity(0.0), &bounds, &self.on_top(), 0.0)
+            .map_err(|error| BlockError::Plan { block, error })?;
+        let id = self.ledger.issue(block);
+        self.ledger.set(before, Progress::Aborted);
+        let origin = from.x;
+        self.superimposed =
+            Some(Superimposed { id, command: *command, origin, end: None, is_paused: false, run, now: from });
+        self.ledger.set(id, Progress::Active);
+        Ok(Some(id))
     }
 
     /// Changes the inputs of a superimposed motion that runs.
@@ -79,7 +107,7 @@ impl Axis {
         let target = running.origin + distance;
         let (run, is_paused) = self.superimposed_run(command, &running.now, target)?;
         if let Some(running) = &mut self.superimposed {
-            (running.command, running.distance, running.run, running.is_paused) = (*command, target, run, is_paused);
+            (running.command, running.end, running.run, running.is_paused) = (*command, Some(target), run, is_paused);
         }
         Ok(())
     }
@@ -112,7 +140,7 @@ impl Axis {
             Err(error) => return self.fail(AxisError::PlanLost { error }),
         }
         if superimposed.run.is_over() && !superimposed.is_paused {
-            self.shift += superimposed.distance;
+            self.shift += superimposed.end.unwrap_or(superimposed.now.x);
             self.ledger.set(superimposed.id, Progress::Done);
             self.superimposed = None;
             if matches!(self.activity, Activity::Rest) {

@@ -90,6 +90,22 @@ impl Execution {
         self.report(axis)
     }
 
+    /// One call of a block that does at a rising edge all it has to do.
+    pub(crate) fn at_once(
+        &mut self,
+        axis: &mut Axis,
+        execute: bool,
+        act: impl FnOnce(&mut Axis) -> Result<(), BlockError>,
+    ) -> Report {
+        let mut is_done = false;
+        let report = self.step(axis, execute, |axis| {
+            act(axis)?;
+            is_done = true;
+            Ok(None)
+        });
+        if is_done { self.complete() } else { report }
+    }
+
     fn report(&mut self, axis: &Axis) -> Report {
         let id = match self.phase {
             Phase::Idle => return Report::Idle,
@@ -116,6 +132,12 @@ impl Execution {
     pub(crate) fn complete(&mut self) -> Report {
         self.phase = Phase::Over(Report::Done);
         Report::Done
+    }
+
+    /// What was waited for will not come.
+    pub(crate) fn abort(&mut self) -> Report {
+        self.phase = Phase::Over(Report::Aborted);
+        Report::Aborted
     }
 
     /// The command, or what was waited for, failed.

@@ -1,15 +1,28 @@
-//! `MC_Home`: the reference.
+//! `MC_Home`, and of part 5 `MC_HomeDirect` and `MC_HomeAbsolute`: what the position counts from.
 use super::execution::Execution;
 use super::outputs::{FunctionBlock, MotionOutputs};
 use crate::axis::Axis;
 use crate::blocks::{BlockName, Input};
-use crate::command::{BufferMode, Command, Dynamics, Goal};
+use crate::command::{BufferMode, Command, Dynamics, Goal, Reference};
 use crate::error::BlockError;
 use crate::interface::{buffer_mode, inputs, or};
 
 /// Has the drive look for its reference, by the method that it is set to.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Home {
+    execution: Execution,
+}
+
+/// Gives the position at which the axis stands, without a motion: its reference from then on.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct HomeDirect {
+    execution: Execution,
+}
+
+/// Takes the position of the drive's encoder, which is an absolute one, for that of the axis: without a motion, and without what
+/// MC_SetPosition or MC_HomeDirect added to it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct HomeAbsolute {
     execution: Execution,
 }
 
@@ -24,6 +37,62 @@ inputs! {
     }
 }
 
+inputs! {
+    /// Inputs of [`HomeDirect`].
+    #[derive(Default)]
+    pub struct HomeDirectInputs on execute {
+        /// SetPosition: the position where the axis stands (m or rad).
+        position: f64 = or(Input::Position, 0.0),
+        /// BufferMode, as of [`Home`].
+        buffer_mode: BufferMode = buffer_mode(),
+    }
+}
+
+inputs! {
+    /// Inputs of [`HomeAbsolute`].
+    #[derive(Default)]
+    pub struct HomeAbsoluteInputs on execute {
+        /// BufferMode, as of [`Home`].
+        buffer_mode: BufferMode = buffer_mode(),
+    }
+}
+
+/// The command of `block`, for which nothing is planned.
+const fn command(block: BlockName, reference: Reference, buffer_mode: BufferMode) -> Command {
+    Command { block, goal: Goal::Reference(reference), dynamics: Dynamics::NONE, buffer_mode }
+}
+
+impl FunctionBlock for HomeDirect {
+    const NAME: BlockName = BlockName::HomeDirect;
+    type Inputs<'i> = HomeDirectInputs;
+    type Outputs = MotionOutputs;
+
+    fn step(&mut self, axis: &mut Axis, inputs: &HomeDirectInputs) -> MotionOutputs {
+        let HomeDirectInputs { execute, position, buffer_mode } = *inputs;
+        let command = command(Self::NAME, Reference::Here(position), buffer_mode);
+        self.execution.step(axis, execute, |axis| axis.submit(command).map(Some)).into()
+    }
+
+    fn error(&self) -> Option<&BlockError> {
+        self.execution.error()
+    }
+}
+
+impl FunctionBlock for HomeAbsolute {
+    const NAME: BlockName = BlockName::HomeAbsolute;
+    type Inputs<'i> = HomeAbsoluteInputs;
+    type Outputs = MotionOutputs;
+
+    fn step(&mut self, axis: &mut Axis, inputs: &HomeAbsoluteInputs) -> MotionOutputs {
+        let command = command(Self::NAME, Reference::Encoder, inputs.buffer_mode);
+        self.execution.step(axis, inputs.execute, |axis| axis.submit(command).map(Some)).into()
+    }
+
+    fn error(&self) -> Option<&BlockError> {
+        self.execution.error()
+    }
+}
+
 impl FunctionBlock for Home {
     const NAME: BlockName = BlockName::Home;
     type Inputs<'i> = HomeInputs;
@@ -31,8 +100,7 @@ impl FunctionBlock for Home {
 
     fn step(&mut self, axis: &mut Axis, inputs: &HomeInputs) -> MotionOutputs {
         let HomeInputs { execute, position, buffer_mode } = *inputs;
-        let (goal, dynamics) = (Goal::Reference(position), Dynamics::NONE);
-        let command = Command { block: Self::NAME, goal, dynamics, buffer_mode };
+        let command = command(Self::NAME, Reference::Search(position), buffer_mode);
         self.execution.step(axis, execute, |axis| axis.submit(command).map(Some)).into()
     }
 

@@ -14,5 +14,5 @@ moves! {
         /// Distance (m or rad).
         distance: f64 = required(Input::Distance),
     } {}
-    |inputs| Goal::Relative(inputs.distance)
+    |inputs| Goal::Relative { distance: inputs.distance, end_velocity: None }
 }

@@ -60,7 +60,7 @@ impl MoveSuperimposedInputs {
         let Self { velocity_diff, acceleration, deceleration, jerk, snap, .. } = *self;
         Command {
             block: BlockName::MoveSuperimposed,
-            goal: Goal::Relative(self.distance),
+            goal: Goal::Relative { distance: self.distance, end_velocity: None },
             dynamics: Dynamics { velocity: Some(velocity_diff), acceleration, deceleration, jerk, snap },
             buffer_mode: BufferMode::Aborting,
         }

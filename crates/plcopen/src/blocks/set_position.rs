@@ -30,13 +30,8 @@ impl FunctionBlock for SetPosition {
     type Outputs = DoneOutputs;
 
     fn step(&mut self, axis: &mut Axis, inputs: &SetPositionInputs) -> DoneOutputs {
-        let mut is_set = false;
-        let report = self.execution.step(axis, inputs.execute, |axis| {
-            axis.set_position(inputs.position, inputs.relative)?;
-            is_set = true;
-            Ok(None)
-        });
-        if is_set { self.execution.complete() } else { report }.into()
+        let SetPositionInputs { execute, position, relative } = *inputs;
+        self.execution.at_once(axis, execute, |axis| axis.set_position(position, relative)).into()
     }
 
     fn error(&self) -> Option<&BlockError> {

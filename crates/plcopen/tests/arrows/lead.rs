@@ -4,8 +4,9 @@ use servobench_fieldbus::Fault;
 use servobench_motion::pvt::Knot;
 use servobench_plcopen::{
     AccelerationProfile, AccelerationProfileInputs, AxisState, BlockName, ErrorId, FunctionBlock, Halt, HaltInputs,
-    Home, HomeInputs, MoveAbsolute, MoveAbsoluteInputs, MoveAdditive, MoveAdditiveInputs, MoveContinuousAbsolute,
-    MoveContinuousAbsoluteInputs, MoveRelative, MoveRelativeInputs, MoveSuperimposed, MoveSuperimposedInputs,
+    Home, HomeAbsolute, HomeAbsoluteInputs, HomeDirect, HomeDirectInputs, HomeInputs, MoveAbsolute, MoveAbsoluteInputs,
+    MoveAdditive, MoveAdditiveInputs, MoveContinuousAbsolute, MoveContinuousAbsoluteInputs, MoveContinuousRelative,
+    MoveContinuousRelativeInputs, MoveRelative, MoveRelativeInputs, MoveSuperimposed, MoveSuperimposedInputs,
     MoveVelocity, MoveVelocityInputs, Output, Outputs, Pair, PositionProfile, PositionProfileInputs, Profile4th,
     Profile4thInputs, Reset, ResetInputs, Stop, StopInputs, TimePosition, TorqueControl, TorqueControlInputs,
     VelocityProfile, VelocityProfileInputs,
@@ -72,6 +73,17 @@ pub(crate) fn execute(bench: &mut Bench, block: BlockName) -> Result<(), ErrorId
             let inputs = MoveContinuousAbsoluteInputs::within(&limits);
             let inputs = MoveContinuousAbsoluteInputs { execute, position: 0.6, end_velocity: 0.1, ..inputs };
             call::<MoveContinuousAbsolute>(bench, &inputs)
+        }
+        BlockName::MoveContinuousRelative => {
+            let inputs = MoveContinuousRelativeInputs::within(&limits);
+            let inputs = MoveContinuousRelativeInputs { execute, distance: 0.4, end_velocity: 0.1, ..inputs };
+            call::<MoveContinuousRelative>(bench, &inputs)
+        }
+        BlockName::HomeDirect => {
+            call::<HomeDirect>(bench, &HomeDirectInputs { execute, position: 1.5, ..HomeDirectInputs::default() })
+        }
+        BlockName::HomeAbsolute => {
+            call::<HomeAbsolute>(bench, &HomeAbsoluteInputs { execute, ..HomeAbsoluteInputs::default() })
         }
         BlockName::TorqueControl => call::<TorqueControl>(
             bench,

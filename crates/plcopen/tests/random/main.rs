@@ -24,7 +24,7 @@ const LIMITS: Limits = Limits { velocity: 2.0, acceleration: 10.0, jerk: 200.0, 
 const LIFE: usize = 5_000;
 
 fn cycles() -> usize {
-    std::env::var("SERVOBENCH_SWEEP").ok().and_then(|count| count.parse().ok()).unwrap_or(100_000)
+    std::env::var("SERVOBENCH_SWEEP").ok().and_then(|count| count.parse().ok()).unwrap_or(200_000)
 }
 
 #[test]

@@ -28,7 +28,7 @@ pub(crate) fn call<B: FunctionBlock>(block: &mut B, axis: &mut Axis, inputs: &B:
             Output::CommandAborted => flags.aborted = is_true,
             Output::Error => flags.error = is_true,
             Output::ErrorId => flags.error_id = value.to_bits(),
-            Output::CoveredDistance | Output::Ready => assert!(value.is_finite()),
+            Output::CoveredDistance | Output::Ready | Output::RecordedPosition => assert!(value.is_finite()),
             other => unreachable!("{other:?}"),
         }
     });

@@ -3,21 +3,23 @@ use super::LIMITS;
 use super::chance::Chance;
 use super::outputs::{Flags, call};
 use super::setpoints::Setpoints;
-use servobench_fieldbus::{AxisCommand, AxisFeedback};
+use servobench_fieldbus::{AxisCommand, AxisFeedback, ProbeTrigger};
 use servobench_motion::Limits;
 use servobench_motion::pvt::Knot;
 use servobench_plcopen::{
     ARROWS, AccelerationProfile, AccelerationProfileInputs, Axis, AxisParams, AxisState, BlockName, BufferMode, Cause,
-    Direction, Follow, FunctionBlock, Halt, HaltInputs, Home, HomeInputs, MoveAbsolute, MoveAbsoluteInputs,
-    MoveAdditive, MoveAdditiveInputs, MoveContinuousAbsolute, MoveContinuousAbsoluteInputs, MoveRelative,
-    MoveRelativeInputs, MoveSuperimposed, MoveSuperimposedInputs, MoveVelocity, MoveVelocityInputs, Pair,
-    PositionProfile, PositionProfileInputs, Power, PowerInputs, Profile4th, Profile4thInputs, Reset, ResetInputs,
-    SetOverride, SetOverrideInputs, SetPosition, SetPositionInputs, Stop, StopInputs, TimePosition, TorqueControl,
-    TorqueControlInputs, VelocityProfile, VelocityProfileInputs,
+    Direction, Follow, FunctionBlock, Halt, HaltInputs, HaltSuperimposed, HaltSuperimposedInputs, Home, HomeAbsolute,
+    HomeAbsoluteInputs, HomeDirect, HomeDirectInputs, HomeInputs, MoveAbsolute, MoveAbsoluteInputs, MoveAdditive,
+    MoveAdditiveInputs, MoveContinuousAbsolute, MoveContinuousAbsoluteInputs, MoveContinuousRelative,
+    MoveContinuousRelativeInputs, MoveRelative, MoveRelativeInputs, MoveSuperimposed, MoveSuperimposedInputs,
+    MoveVelocity, MoveVelocityInputs, Pair, PositionProfile, PositionProfileInputs, Power, PowerInputs, Profile4th,
+    Profile4thInputs, Reset, ResetInputs, SetOverride, SetOverrideInputs, SetPosition, SetPositionInputs, Stop,
+    StopInputs, TimePosition, TorqueControl, TorqueControlInputs, TouchProbe, TouchProbeInputs, VelocityProfile,
+    VelocityProfileInputs,
 };
 
 /// Blocks with Execute.
-const BLOCKS: usize = 17;
+const BLOCKS: usize = 22;
 
 /// Their names, in the order in which they are called.
 const NAMES: [BlockName; BLOCKS] = [
@@ -38,6 +40,11 @@ const NAMES: [BlockName; BLOCKS] = [
     BlockName::TorqueControl,
     BlockName::Profile4th,
     BlockName::SetPosition,
+    BlockName::MoveContinuousRelative,
+    BlockName::HaltSuperimposed,
+    BlockName::HomeDirect,
+    BlockName::HomeAbsolute,
+    BlockName::TouchProbe,
 ];
 
 /// Most pairs of a table.
@@ -76,6 +83,11 @@ struct Blocks {
     by_accelerations: AccelerationProfile<[Pair; PAIRS]>,
     generator: Profile4th,
     set: SetPosition,
+    continuous_relative: MoveContinuousRelative,
+    halt_on_top: HaltSuperimposed,
+    home_direct: HomeDirect,
+    home_absolute: HomeAbsolute,
+    probe: TouchProbe,
     factors: SetOverride,
 }
 
@@ -99,6 +111,11 @@ impl Program {
             by_accelerations: AccelerationProfile::new([Pair::default(); PAIRS]),
             generator: Profile4th::default(),
             set: SetPosition::default(),
+            continuous_relative: MoveContinuousRelative::default(),
+            halt_on_top: HaltSuperimposed::default(),
+            home_direct: HomeDirect::default(),
+            home_absolute: HomeAbsolute::default(),
+            probe: TouchProbe::default(),
             factors: SetOverride::default(),
         };
         Self {
@@ -179,6 +196,9 @@ impl Program {
             let quick = match name {
                 BlockName::Reset => 10,
                 BlockName::Home => self.patience / 3,
+                BlockName::HomeDirect | BlockName::HomeAbsolute | BlockName::MoveContinuousRelative => {
+                    4 * self.patience
+                }
                 BlockName::TorqueControl | BlockName::Profile4th => 2 * self.patience,
                 _ => self.patience,
             };
@@ -235,7 +255,6 @@ impl Program {
         let (position, distance) = (chance.input(position), chance.between(-0.4, 0.4));
         let distance = chance.input(distance);
         match NAMES[number] {
-            BlockName::Home => call(&mut blocks.home, axis, &HomeInputs { execute, position: 0.5, buffer_mode }),
             BlockName::Stop => call(&mut blocks.stop, axis, &StopInputs { execute, ..StopInputs::within(&limits) }),
             BlockName::Halt => {
                 call(&mut blocks.halt, axis, &HaltInputs { execute, buffer_mode, ..HaltInputs::within(&limits) })
@@ -283,17 +302,72 @@ impl Program {
                 let inputs = Profile4thInputs { enable: execute, ..Profile4thInputs::to(position, limits) };
                 call(&mut blocks.generator, axis, &inputs)
             }
-            BlockName::SetPosition => {
-                let inputs = SetPositionInputs { execute, position: 0.1, relative: true };
-                call(&mut blocks.set, axis, &inputs)
+            BlockName::MoveContinuousRelative => {
+                let end = if chance.once_in(4) { 0.0 } else { chance.between(-1.0, 1.0) * limits.velocity };
+                let inputs = MoveContinuousRelativeInputs { execute, ..MoveContinuousRelativeInputs::within(&limits) };
+                let inputs = MoveContinuousRelativeInputs {
+                    distance,
+                    end_velocity: end,
+                    continuous_update,
+                    buffer_mode,
+                    ..inputs
+                };
+                call(&mut blocks.continuous_relative, axis, &inputs)
             }
-            name => call_profile(name, blocks, axis, execute, buffer_mode, chance),
+            name if name.homes() => call_homing(name, blocks, axis, execute, buffer_mode),
+            BlockName::PositionProfile | BlockName::VelocityProfile | BlockName::AccelerationProfile => {
+                call_profile(NAMES[number], blocks, axis, execute, buffer_mode, chance)
+            }
+            name => call_beside(name, blocks, axis, execute, (&limits, deceleration, position), chance),
         }
     }
 }
 
 fn within(limits: &Limits) -> MoveAbsoluteInputs {
     MoveAbsoluteInputs::within(limits)
+}
+
+/// What gives the axis its reference.
+fn call_homing(name: BlockName, blocks: &mut Blocks, axis: &mut Axis, execute: bool, buffer_mode: BufferMode) -> Flags {
+    match name {
+        BlockName::HomeDirect => {
+            call(&mut blocks.home_direct, axis, &HomeDirectInputs { execute, position: 0.25, buffer_mode })
+        }
+        BlockName::HomeAbsolute => call(&mut blocks.home_absolute, axis, &HomeAbsoluteInputs { execute, buffer_mode }),
+        _ => call(&mut blocks.home, axis, &HomeInputs { execute, position: 0.5, buffer_mode }),
+    }
+}
+
+/// What goes on beside the motion of the axis, or on top of it.
+fn call_beside(
+    name: BlockName,
+    blocks: &mut Blocks,
+    axis: &mut Axis,
+    execute: bool,
+    (limits, deceleration, position): (&Limits, f64, f64),
+    chance: &mut Chance,
+) -> Flags {
+    match name {
+        BlockName::SetPosition => {
+            let inputs = SetPositionInputs { execute, position: 0.1, relative: true };
+            call(&mut blocks.set, axis, &inputs)
+        }
+        BlockName::HaltSuperimposed => {
+            let Limits { jerk, snap, .. } = *limits;
+            let [jerk, snap] = [jerk, snap].map(|limit| Some(limit).filter(|limit| limit.is_finite()));
+            call(&mut blocks.halt_on_top, axis, &HaltSuperimposedInputs { execute, deceleration, jerk, snap })
+        }
+        BlockName::TouchProbe => {
+            let inputs = TouchProbeInputs {
+                execute,
+                trigger: ProbeTrigger::HomeSwitchMet,
+                first_position: chance.once_in(2).then_some(position),
+                last_position: None,
+            };
+            call(&mut blocks.probe, axis, &inputs)
+        }
+        name => unreachable!("{name} is not called"),
+    }
 }
 
 /// A table goes through the block at the edge alone.

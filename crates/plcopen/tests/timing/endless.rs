@@ -3,7 +3,8 @@ use crate::bench::{Bench, LIMITS};
 use crate::calls::{at, running, to};
 use servobench_plcopen::{
     AxisState, BufferMode, FunctionBlock, MoveAbsolute, MoveAbsoluteInputs, MoveContinuousAbsolute,
-    MoveContinuousAbsoluteInputs, MoveSuperimposed, MoveSuperimposedInputs, MoveVelocity, MoveVelocityInputs,
+    MoveContinuousAbsoluteInputs, MoveContinuousRelative, MoveContinuousRelativeInputs, MoveSuperimposed,
+    MoveSuperimposedInputs, MoveVelocity, MoveVelocityInputs,
 };
 
 /// At EndVelocity 0 the axis stands at the position, in Continuous Motion, until another command takes it.
@@ -92,4 +93,63 @@ fn a_block_that_runs_says_so_however_many_others_are_called() {
         assert_eq!(outputs.in_velocity, has_arrived, "{cycle}");
     }
     assert!(has_arrived);
+}
+
+/// By a distance rather than to a position: the same motion, bit for bit.
+#[test]
+fn a_continuous_relative_move_counts_from_where_it_begins() {
+    for (distance, end_velocity) in [(0.31, 0.2), (-0.27, 0.15), (0.18, 0.0)] {
+        let (mut bench, mut other) = (Bench::standstill(), Bench::standstill());
+        let (mut by, mut to_position) = (MoveContinuousRelative::default(), MoveContinuousAbsolute::default());
+        let relative = MoveContinuousRelativeInputs {
+            execute: true,
+            distance,
+            end_velocity,
+            ..MoveContinuousRelativeInputs::within(&LIMITS)
+        };
+        let absolute = MoveContinuousAbsoluteInputs {
+            execute: true,
+            position: distance,
+            end_velocity,
+            ..MoveContinuousAbsoluteInputs::within(&LIMITS)
+        };
+        for cycle in 0..1500 {
+            let one = bench.cycle(|axis| by.step(axis, &relative));
+            let two = other.cycle(|axis| to_position.step(axis, &absolute));
+            assert_eq!((one, bench.axis.commanded()), (two, other.axis.commanded()), "{cycle}");
+            assert!(!one.error, "{:?}", by.error());
+        }
+        assert_eq!(bench.axis.state(), AxisState::ContinuousMotion);
+        assert!((bench.axis.commanded().v - end_velocity).abs() < 1e-9);
+    }
+}
+
+/// Behind another move it counts from the end of that, and a longer distance while it runs still counts from there.
+#[test]
+fn a_continuous_relative_move_may_wait_and_change() {
+    let (mut bench, mut go, mut by) = (Bench::standstill(), MoveAbsolute::default(), MoveContinuousRelative::default());
+    let inputs = MoveContinuousRelativeInputs {
+        execute: true,
+        distance: 0.2,
+        end_velocity: 0.1,
+        buffer_mode: BufferMode::Buffered,
+        continuous_update: true,
+        ..MoveContinuousRelativeInputs::within(&LIMITS)
+    };
+    let mut passed_at = None;
+    for _ in 0..4000 {
+        let is_running = bench.axis.commanded().x > 0.3;
+        let inputs = MoveContinuousRelativeInputs { distance: if is_running { 0.35 } else { 0.2 }, ..inputs };
+        let outputs = bench.cycle(|axis| {
+            go.step(axis, &to(0.25));
+            by.step(axis, &inputs)
+        });
+        assert!(!outputs.error, "{:?}", by.error());
+        if outputs.in_end_velocity && passed_at.is_none() {
+            passed_at = Some(bench.axis.commanded().x);
+        }
+    }
+    // At most a cycle behind the position that is passed, 0.25 m + 0.35 m.
+    let passed_at = passed_at.unwrap();
+    assert!((0.0..=0.1 * 1e-3 + 1e-12).contains(&(passed_at - 0.6)), "{passed_at}");
 }

@@ -3,9 +3,10 @@ use crate::bench::{Bench, LIMITS};
 use crate::calls::{at, running, to};
 use servobench_fieldbus::{Homing, Task};
 use servobench_plcopen::{
-    AxisParams, AxisState, BufferMode, ErrorId, FunctionBlock, Home, HomeInputs, MoveAbsolute, MoveAbsoluteInputs,
-    MoveContinuousAbsolute, MoveContinuousAbsoluteInputs, MoveSuperimposed, MoveSuperimposedInputs, MoveVelocity,
-    MoveVelocityInputs, Stop, StopInputs,
+    AxisParams, AxisState, BufferMode, ErrorId, FunctionBlock, Home, HomeAbsolute, HomeAbsoluteInputs, HomeDirect,
+    HomeDirectInputs, HomeInputs, MoveAbsolute, MoveAbsoluteInputs, MoveContinuousAbsolute,
+    MoveContinuousAbsoluteInputs, MoveSuperimposed, MoveSuperimposedInputs, MoveVelocity, MoveVelocityInputs, Stop,
+    StopInputs,
 };
 
 const BLENDING: [BufferMode; 4] =
@@ -150,4 +151,61 @@ fn a_stop_takes_homing_away_that_waits() {
         assert!(!is_home(&bench));
     }
     assert_eq!(bench.axis.state(), AxisState::Standstill);
+}
+
+/// Without a motion and without the drive: the axis stands where it stood, and counts from there.
+#[test]
+fn a_reference_may_be_given_where_the_axis_stands() {
+    let mut bench = Bench::powered(AxisParams { needs_homing: true, ..Bench::params() });
+    bench.feedback.position = 0.123;
+    let (mut home, mut go) = (HomeDirect::default(), MoveAbsolute::default());
+    let inputs = HomeDirectInputs { execute: true, position: 0.7, buffer_mode: BufferMode::Aborting };
+    let before = bench.axis.commanded().x;
+    let first = bench.cycle(|axis| home.step(axis, &inputs));
+    assert!(first.busy && first.active && !first.error, "{:?}", home.error());
+    assert_eq!(bench.axis.state(), AxisState::Homing);
+    assert!(matches!(bench.command.unwrap().task, Task::Follow(_)));
+    let measured = bench.feedback.position;
+    assert!(bench.cycle(|axis| home.step(axis, &inputs)).done);
+    assert_eq!((bench.axis.state(), bench.axis.is_homed()), (AxisState::Standstill, true));
+    // The set-point of the drive is where it was.
+    let Task::Follow(sample) = bench.command.unwrap().task else { panic!("follows") };
+    assert_eq!(sample.x.to_bits(), before.to_bits());
+    assert_eq!((bench.axis.commanded().x - before).to_bits(), (0.7 - measured).to_bits());
+    bench.cycle(|axis| go.step(axis, &to(0.9)));
+    bench.until(AxisState::Standstill);
+    at(&bench, 0.9);
+}
+
+#[test]
+fn the_encoder_may_be_the_reference() {
+    let mut bench = Bench::powered(AxisParams { needs_homing: true, ..Bench::params() });
+    let (mut direct, mut absolute) = (HomeDirect::default(), HomeAbsolute::default());
+    let given = HomeDirectInputs { execute: true, position: 5.0, buffer_mode: BufferMode::Aborting };
+    let taken = HomeAbsoluteInputs { execute: true, buffer_mode: BufferMode::Aborting };
+    while !bench.cycle(|axis| direct.step(axis, &given)).done {}
+    at(&bench, 5.0);
+    while !bench.cycle(|axis| absolute.step(axis, &taken)).done {}
+    at(&bench, 0.0);
+    assert!(bench.axis.is_homed());
+}
+
+/// As MC_Home: not in motion, behind a move that ends, and never blended.
+#[test]
+fn a_reference_is_given_at_standstill() {
+    let (mut bench, mut run, mut home) = (Bench::standstill(), MoveVelocity::default(), HomeDirect::default());
+    let inputs = HomeDirectInputs { execute: true, position: 0.5, buffer_mode: BufferMode::Aborting };
+    bench.cycle(|axis| run.step(axis, &running(0.5)));
+    assert_eq!(bench.cycle(|axis| home.step(axis, &inputs)).error_id, ErrorId::State);
+    let (mut bench, mut go, mut home) = (Bench::standstill(), MoveAbsolute::default(), HomeDirect::default());
+    let inputs = HomeDirectInputs { buffer_mode: BufferMode::Buffered, ..inputs };
+    let mut done = false;
+    for _ in 0..1000 {
+        done |= bench.cycle(|axis| (go.step(axis, &to(0.25)), home.step(axis, &inputs))).1.done;
+    }
+    assert!(done);
+    at(&bench, 0.5);
+    let blended = HomeDirectInputs { buffer_mode: BufferMode::BlendingLow, ..inputs };
+    let outputs = bench.cycle(|axis| HomeDirect::default().step(axis, &blended));
+    assert_eq!(outputs.error_id, ErrorId::BufferMode);
 }

@@ -1,10 +1,13 @@
 //! Inputs that are no numbers, or no numbers of use: refused at the edge, and the axis stays where it is.
 use crate::bench::{Bench, LIMITS};
+use servobench_fieldbus::ProbeTrigger;
 use servobench_plcopen::{
-    Axis, AxisState, BlockError, FunctionBlock, Halt, HaltInputs, Home, HomeInputs, MoveAbsolute, MoveAbsoluteInputs,
-    MoveAdditive, MoveAdditiveInputs, MoveContinuousAbsolute, MoveContinuousAbsoluteInputs, MoveRelative,
-    MoveRelativeInputs, MoveSuperimposed, MoveSuperimposedInputs, MoveVelocity, MoveVelocityInputs, SetOverride,
-    SetOverrideInputs, SetPosition, SetPositionInputs, Stop, StopInputs, TorqueControl, TorqueControlInputs,
+    Axis, AxisParameter, AxisState, BlockError, FunctionBlock, Halt, HaltInputs, HaltSuperimposed,
+    HaltSuperimposedInputs, Home, HomeDirect, HomeDirectInputs, HomeInputs, MoveAbsolute, MoveAbsoluteInputs,
+    MoveAdditive, MoveAdditiveInputs, MoveContinuousAbsolute, MoveContinuousAbsoluteInputs, MoveContinuousRelative,
+    MoveContinuousRelativeInputs, MoveRelative, MoveRelativeInputs, MoveSuperimposed, MoveSuperimposedInputs,
+    MoveVelocity, MoveVelocityInputs, SetOverride, SetOverrideInputs, SetPosition, SetPositionInputs, Stop, StopInputs,
+    TorqueControl, TorqueControlInputs, TouchProbe, TouchProbeInputs, WriteParameter, WriteParameterInputs,
 };
 
 /// What a block of the type `B` says to `inputs`.
@@ -48,6 +51,17 @@ fn what_is_no_number_is_refused() {
             MoveContinuousAbsolute, MoveContinuousAbsoluteInputs {
                 execute, position: 0.2, end_velocity: 0.1, ..MoveContinuousAbsoluteInputs::within(&LIMITS)
             } => position end_velocity velocity acceleration deceleration jerk snap;
+            MoveContinuousRelative, MoveContinuousRelativeInputs {
+                execute, distance: 0.2, end_velocity: 0.1, ..MoveContinuousRelativeInputs::within(&LIMITS)
+            } => distance end_velocity velocity acceleration deceleration jerk snap;
+            HaltSuperimposed, HaltSuperimposedInputs { execute, deceleration: 1.0, jerk: None, snap: None } =>
+                deceleration jerk snap;
+            HomeDirect, HomeDirectInputs { execute, ..HomeDirectInputs::default() } => position;
+            WriteParameter, WriteParameterInputs { execute, parameter: AxisParameter::MaxVelocity, value: 0.5 } => value;
+            WriteParameter, WriteParameterInputs { execute, parameter: AxisParameter::PositiveLimit, value: 0.5 } => value;
+            TouchProbe, TouchProbeInputs {
+                execute, trigger: ProbeTrigger::IndexPulse, first_position: None, last_position: None
+            } => first_position last_position;
             TorqueControl, TorqueControlInputs { execute, torque: 0.2, ..TorqueControlInputs::within(&LIMITS) } => torque velocity;
             Halt, HaltInputs { execute, ..HaltInputs::within(&LIMITS) } => deceleration jerk snap;
             Stop, StopInputs { execute, ..StopInputs::within(&LIMITS) } => deceleration jerk snap;

@@ -65,7 +65,7 @@ impl Reading<'_, '_> {
             Absent::Direction(_) => self.refuse_shortest(),
             Absent::Limit(limit) => return self.needed_limit(own, limit).map(Value::Number).map(Some).ok_or(Wrong),
             Absent::LimitIfAny(limit) => return self.free_limit(input, limit).map(|limit| limit.map(Value::Number)),
-            Absent::Number(_) | Absent::Flag(_) | Absent::Aborting | Absent::As(_) => {}
+            Absent::Number(_) | Absent::Flag(_) | Absent::Aborting | Absent::Nothing | Absent::As(_) => {}
         }
         if input == Input::ValueScale {
             self.refuse_zero(input);
@@ -75,6 +75,7 @@ impl Reading<'_, '_> {
             Slot::Given(At { value: Value::Flag(flag), .. }) => Ok(Some(Value::Flag(*flag))),
             Slot::Given(At { value: Value::Direction(direction), .. }) => Ok(Some(Value::Direction(*direction))),
             Slot::Given(At { value: Value::BufferMode(mode), .. }) => Ok(Some(Value::BufferMode(*mode))),
+            Slot::Given(At { value: Value::Choice(name), .. }) => Ok(Some(Value::Choice(name))),
             Slot::Absent if !matches!(own.absent, Absent::Refused(_)) => Ok(None),
             Slot::Absent | Slot::Wrong(_) | Slot::Given(At { value: Value::Table(_), .. }) => Err(Wrong),
         }

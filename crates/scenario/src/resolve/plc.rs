@@ -128,19 +128,20 @@ fn warn_of_refusals(calls: &[At<file::Call>], homing_required: bool, report: &mu
     let is_blended = |call: &&At<file::Call>| {
         let modes = [BufferMode::Aborting, BufferMode::Buffered];
         let mode = call.value.inputs.slot(Input::BufferMode).given();
-        call.value.block.given() == Some(&BlockName::Home)
+        call.value.block.given().is_some_and(|block| block.homes())
             && matches!(mode, Some(Value::BufferMode(mode)) if !modes.contains(mode))
     };
     for home in calls.iter().filter(is_blended) {
         let help = "write \"buffered\", or leave it out";
         let span = home.value.inputs.slot(Input::BufferMode).span().unwrap_or(home.value.span);
-        report.warning(span, "homing begins at Standstill and blends with nothing: MC_Home will refuse it", help);
+        report.warning(span, "homing begins at Standstill and blends with nothing: the block will refuse it", help);
     }
     let is_absolute = |call: &&At<file::Call>| {
         let block = call.value.block.given();
         matches!(block, Some(BlockName::MoveAbsolute | BlockName::MoveContinuousAbsolute))
     };
-    if let (true, false, Some(absolute)) = (homing_required, has(BlockName::Home), calls.iter().find(is_absolute)) {
+    let is_homed = calls.iter().any(|call| call.value.block.given().is_some_and(|block| block.homes()));
+    if let (true, false, Some(absolute)) = (homing_required, is_homed, calls.iter().find(is_absolute)) {
         let help = "call \"MC_Home\" before, or write `homing_required = false` in `[plc]`";
         report.warning(absolute.value.span, "the axis is never homed: this move will be refused", help);
     }

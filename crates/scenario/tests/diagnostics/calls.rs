@@ -470,7 +470,7 @@ fn what_will_be_refused_is_doubtful() {
     let homed = format!("{to}{}", call("MC_Home", ""));
     assert_eq!(said_of(&axis, &format!("{bus}{POWER}"), &homed), [strings(&[]), strings(&[])]);
     let blended = call("MC_Home", "buffer_mode = \"blending-low\"");
-    let refused = "3:15: homing begins at Standstill and blends with nothing: MC_Home will refuse it; write \"buffered\", or \
+    let refused = "3:15: homing begins at Standstill and blends with nothing: the block will refuse it; write \"buffered\", or \
                    leave it out";
     assert_eq!(said_of(&axis, &format!("{bus}{POWER}"), &blended), [strings(&[]), strings(&[refused])]);
     let unpowered = "1:1: nothing powers the axis; call \"MC_Power\", and let the others wait for its `Status`";

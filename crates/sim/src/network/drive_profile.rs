@@ -87,7 +87,7 @@ impl DriveProfile {
         // In profile velocity the drive knows no position: the plan says where the axis is to be. In the other modes the drive's
         // own set-point does.
         let setpoint = matches!(self.orders, Orders::Velocities { .. }).then(|| self.moves.at(now.unwrap_or(0.0)));
-        Step { command: AxisCommand { power: true, reset: false, task: Task::Drive(way) }, setpoint }
+        Step { command: AxisCommand::of(Task::Drive(way)), setpoint }
     }
 }
 

@@ -7,7 +7,7 @@ use servobench_fieldbus::{AxisFeedback, Task};
 use servobench_motion::Limits;
 use servobench_motion::interpolate::Sample;
 use servobench_plcopen::program::{self, Executor, Fate, Listener, Motion};
-use servobench_plcopen::{AxisParams, AxisState, BlockName, MOST_BUFFERED, Output};
+use servobench_plcopen::{AxisParams, AxisState, BlockName, MOST_BUFFERED, OutputType};
 use servobench_scenario as scenario;
 use servobench_trace::{self as trace, CallFate, Event, Move, Recorder, SignalId};
 
@@ -144,9 +144,9 @@ impl Listener for Notes<'_> {
 
     fn on_output(&mut self, t: f64, call: usize, output: usize, value: f64) {
         let call = &self.calls[call];
-        let text = match call.block.outputs()[output] {
-            Output::ErrorId | Output::AxisErrorId => value.to_string(),
-            _ => word(value > 0.0),
+        let text = match call.block.outputs()[output].value_type() {
+            OutputType::Number => value.to_string(),
+            OutputType::Flag | OutputType::Never => word(value > 0.0),
         };
         self.recorder.note_value(call.outputs[output], t, &text);
     }

@@ -1,0 +1,107 @@
+//! Digital inputs and outputs, and the touch probe.
+use crate::bench::Bench;
+use servobench_fieldbus::{ProbeFeedback, ProbeTrigger};
+use servobench_plcopen::{
+    AbortTrigger, AbortTriggerInputs, Axis, ErrorId, FunctionBlock, ReadDigitalInput, ReadDigitalInputInputs,
+    ReadDigitalOutput, ReadDigitalOutputInputs, SetPosition, SetPositionInputs, TouchProbe, TouchProbeInputs,
+    TouchProbeOutputs, WriteDigitalOutput, WriteDigitalOutputInputs,
+};
+
+#[test]
+fn bits_are_read_and_written_one_by_one() {
+    let mut bench = Bench::standstill();
+    bench.feedback.digital_inputs = 0b101;
+    let input = |axis: &mut Axis, input_number| {
+        ReadDigitalInput.step(axis, &ReadDigitalInputInputs { enable: true, input_number })
+    };
+    let read = bench.cycle(|axis| [0, 1, 2, 31].map(|bit| input(axis, bit).value));
+    assert_eq!(read, [true, false, true, false]);
+    let wrong = bench.cycle(|axis| input(axis, 32));
+    assert_eq!((wrong.valid, wrong.error, wrong.error_id), (false, true, ErrorId::Input));
+    let write = |axis: &mut Axis, output_number, value| {
+        let inputs = WriteDigitalOutputInputs { execute: true, output_number, value };
+        WriteDigitalOutput::default().step(axis, &inputs).done
+    };
+    assert!(bench.cycle(|axis| write(axis, 3, true) && write(axis, 31, true) && !write(axis, 32, true)));
+    assert_eq!(bench.command.unwrap().digital_outputs, 1 << 3 | 1 << 31);
+    let read = bench.cycle(|axis| {
+        assert!(write(axis, 3, false));
+        [3, 31].map(|output_number| {
+            ReadDigitalOutput.step(axis, &ReadDigitalOutputInputs { enable: true, output_number }).value
+        })
+    });
+    assert_eq!((read, bench.command.unwrap().digital_outputs), ([false, true], 1 << 31));
+}
+
+const MET: TouchProbeInputs =
+    TouchProbeInputs { execute: true, trigger: ProbeTrigger::HomeSwitchMet, first_position: None, last_position: None };
+
+/// A cycle in which the drive answers what it was asked for before with `position`.
+fn answered(
+    bench: &mut Bench,
+    probe: &mut TouchProbe,
+    inputs: &TouchProbeInputs,
+    position: Option<f64>,
+) -> TouchProbeOutputs {
+    let asked = bench.command.and_then(|command| command.touch_probe);
+    bench.feedback.touch_probe = ProbeFeedback { number: asked.map_or(0, |asked| asked.number), position };
+    bench.cycle(|axis| probe.step(axis, inputs))
+}
+
+#[test]
+fn a_position_is_recorded_as_the_program_counts() {
+    let (mut bench, mut probe) = (Bench::standstill(), TouchProbe::default());
+    let shift = SetPositionInputs { execute: true, position: 0.5, relative: true };
+    bench.cycle(|axis| SetPosition::default().step(axis, &shift));
+    assert!(bench.cycle(|axis| probe.step(axis, &MET)).busy);
+    assert_eq!(bench.command.unwrap().touch_probe.unwrap().trigger, ProbeTrigger::HomeSwitchMet);
+    assert!(answered(&mut bench, &mut probe, &MET, None).busy);
+    let outputs = answered(&mut bench, &mut probe, &MET, Some(0.1234));
+    assert!(outputs.done && !outputs.busy);
+    assert_eq!(outputs.recorded_position.to_bits(), (0.1234_f64 + 0.5).to_bits());
+    assert_eq!(bench.command.unwrap().touch_probe, None, "the drive is asked no more");
+    assert!(answered(&mut bench, &mut probe, &MET, None).done, "as long as Execute is TRUE");
+}
+
+/// An answer to an earlier question is none to this one.
+#[test]
+fn an_earlier_answer_does_not_count() {
+    let (mut bench, mut probe) = (Bench::standstill(), TouchProbe::default());
+    bench.feedback.touch_probe = ProbeFeedback { number: 7, position: Some(0.3) };
+    for _ in 0..3 {
+        assert!(bench.cycle(|axis| probe.step(axis, &MET)).busy);
+    }
+}
+
+#[test]
+fn what_comes_outside_the_window_is_asked_for_again() {
+    let (mut bench, mut probe) = (Bench::standstill(), TouchProbe::default());
+    let inputs = TouchProbeInputs { first_position: Some(0.2), last_position: Some(0.3), ..MET };
+    bench.cycle(|axis| probe.step(axis, &inputs));
+    for outside in [0.199_999, 0.300_001, -4.0] {
+        assert!(answered(&mut bench, &mut probe, &inputs, Some(outside)).busy, "{outside}");
+    }
+    let outputs = answered(&mut bench, &mut probe, &inputs, Some(0.3));
+    assert_eq!((outputs.done, outputs.recorded_position.to_bits()), (true, 0.3_f64.to_bits()));
+    let crossed = TouchProbeInputs { first_position: Some(0.3), last_position: Some(0.2), ..MET };
+    let mut probe = TouchProbe::default();
+    assert_eq!(bench.cycle(|axis| probe.step(axis, &crossed)).error_id, ErrorId::Input);
+    assert_eq!(
+        probe.error().unwrap().to_string(),
+        "MC_TouchProbe: `LastPosition` must be at FirstPosition or beyond it, got 0.2: correct the input"
+    );
+}
+
+#[test]
+fn a_probe_is_aborted_by_its_block_and_by_another_probe() {
+    let (mut bench, mut one, mut two) = (Bench::standstill(), TouchProbe::default(), TouchProbe::default());
+    bench.cycle(|axis| one.step(axis, &MET));
+    let (first, second) = bench.cycle(|axis| {
+        let second = two.step(axis, &TouchProbeInputs { trigger: ProbeTrigger::IndexPulse, ..MET });
+        (one.step(axis, &MET), second)
+    });
+    assert!(first.command_aborted && second.busy);
+    bench.cycle(|axis| assert!(AbortTrigger::default().step(axis, &AbortTriggerInputs { execute: true }).done));
+    assert_eq!(bench.command.unwrap().touch_probe, None);
+    assert!(bench.cycle(|axis| two.step(axis, &MET)).command_aborted);
+}
