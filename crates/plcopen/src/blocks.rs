@@ -175,6 +175,8 @@ list_inputs! {
         "Beginning of the window in which a trigger counts" + "; everywhere unless given";
     LastPosition "last_position" stays InputType::Quantity(any(Axis(&POSITION), "110 mm")),
         "End of the window in which a trigger counts" + "; everywhere unless given";
+    Order "order" stays InputType::Quantity(positive(Plain(&RATIO), "3")),
+        "Which derivative of the position Profile4th switches: 2 the acceleration, 3 the jerk, 4 the snap" + "; 4 unless given";
 }
 
 list_outputs! {
@@ -223,6 +225,10 @@ list_outputs! {
     Value "Value" Number "the value of the parameter";
     BoolValue "Value" Flag "the value of the parameter, input or output";
     RecordedPosition "RecordedPosition" Number "where the axis was when the trigger came";
+    Acceleration "Acceleration" Number "the acceleration of the set-point";
+    Added "pref_add" Number "what the move adds to the position";
+    Jerk "Jerk" Number "the jerk of the set-point";
+    Snap "dJerk" Number "the snap of the set-point";
 }
 
 /// Memory of a table: in a program as long as it has to be.

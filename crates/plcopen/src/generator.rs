@@ -1,4 +1,4 @@
-//! The generator of order 4 as a function block for a PLC.
+//! The generator of order 4 as a function block for a PLC, and by the same procedure those of order 3 and 2.
 //!
 //! Pietrusewicz, Waszczuk & Kubicki, *`MC_MoveAbsolute()` 4th Order Real-Time Trajectory Generation Function Algorithm and
 //! Implementation*, Applied Sciences 9 (2019), sections 4.1–4.4 and the interface `Profile4thFB` of figure 8. The plan, (1)–(49),
@@ -39,6 +39,11 @@
 //! ([`Method`]); `ActRefPos` and `pref_add`, which are taken for the two ends of "increment from an actual position to the new one"
 //! (section 3): the move goes from `ActRefPos`, as it is at the start, by `pref_add = ±(pref − ActRefPos)`; and `CmdDone`, taken for
 //! the end of what (65) waits for. Its flags are of type LREAL, and BOOL here.
+//!
+//! # Lower orders
+//!
+//! "The algorithm itself is scalable" (section 6): with [`Input::order`] 3 the jerk is what is switched, with 2 the acceleration, over 7
+//! and 3 segments in place of 15, and what is switched is added up by the rows of (72)–(75) below it.
 //!
 //! [`Profile4th`](crate::Profile4th) has an axis follow it.
 use servobench_base::{ParamError, Setpoint, non_negative, positive};
@@ -99,9 +104,11 @@ impl Mounting {
 pub struct Input {
     /// `ssMethodType`.
     pub method: Method,
+    /// Which derivative is switched; taken over with the start.
+    pub order: Order,
     /// `pref`: where to.
     pub reference: f64,
-    /// `vel_bnd`, `acc_bnd`, `jerk_bnd` and `djerk_bnd`.
+    /// `vel_bnd`, `acc_bnd`, `jerk_bnd` and `djerk_bnd`, of which those up to the order count.
     pub limits: Limits,
     /// `TriggerEnable`.
     pub enable: bool,
@@ -179,7 +186,7 @@ impl State {
     fn start(&mut self, params: &Params, input: &Input) {
         let distance = input.mounting.sign() * (input.reference - input.actual_reference);
         (self.count, self.error) = (0, None);
-        match Course::new(params, input.actual_reference, distance, &input.limits) {
+        match Course::new(params, input, distance) {
             Ok(course) => (self.total, self.added, self.course) = (Some(course.total), distance, Some(course)),
             Err(error) => (self.total, self.added, self.error) = (None, 0.0, Some(error)),
         }
@@ -211,10 +218,11 @@ struct Course {
 }
 
 impl Course {
-    fn new(params: &Params, base: f64, distance: f64, limits: &Limits) -> Result<Self, PlanError> {
-        let profile = Profile::plan_sampled(Order::Fourth, distance, limits, params.sample_time)?;
+    fn new(params: &Params, input: &Input, distance: f64) -> Result<Self, PlanError> {
+        let &Input { order, limits, actual_reference: base, .. } = input;
+        let profile = Profile::plan_sampled(order, distance, &limits, params.sample_time)?;
         let total = profile.samples().map_or(0, |samples| samples.total());
-        let cascade = Cascade::at_rest(Order::Fourth, 0.0, params.sample_time)?;
+        let cascade = Cascade::at_rest(order, 0.0, params.sample_time)?;
         Ok(Self { profile, base, total, cascade, run: Run { value: 0.0, count: 0 }, began: 0, next: 0 })
     }
 

@@ -14,6 +14,7 @@ fn params() -> Params {
 fn input(reference: f64) -> Input {
     Input {
         method: Method::Step,
+        order: Order::Fourth,
         reference,
         limits: LIMITS,
         enable: false,
@@ -198,4 +199,36 @@ fn times_are_checked() {
     let refused = Params::new(0.0, 0.1).unwrap_err();
     assert_eq!(refused.to_string(), "`sample_time` must be finite and positive, got 0");
     assert!(Params::new(1e-3, -0.1).is_err());
+}
+
+/// Oracle: (72)–(75) from the derivative that is switched downwards, added up; the plan of the order. Rounding as above.
+#[test]
+fn lower_orders_switch_a_lower_derivative_and_land_too() {
+    for (order, last) in [(Order::Second, 2), (Order::Third, 3)] {
+        for distance in DISTANCES {
+            let unused = Limits { snap: f64::NAN, jerk: if last == 2 { -1.0 } else { LIMITS.jerk }, ..LIMITS };
+            let outputs = outputs(&params(), &Input { order, limits: unused, ..input(distance) });
+            let plan = Profile::plan_sampled(order, distance, &LIMITS, TS).unwrap();
+            let samples = usize::try_from(plan.samples().unwrap().total()).unwrap();
+            assert_eq!(outputs.len(), samples + 2 + 21, "{distance} m, order {last}");
+            let mut sums = [0.0; 4];
+            for output in &outputs {
+                let is = output.set_point;
+                let [x, v, a, j] = [is.x, is.v, is.a, is.j];
+                assert!(is.s == 0.0 && (last == 3 || j == 0.0));
+                // What is switched is sent, what is below it is its sum.
+                sums[last] = [x, v, a, j][last];
+                for (k, found) in [x, v, a].into_iter().enumerate().take(last) {
+                    let bound = [5.0, 1.0, 5.0][k];
+                    assert!((found - sums[k]).abs() < 1e-11 * bound, "{distance} m, order {last}: {found} {}", sums[k]);
+                }
+                assert!(v.abs() <= LIMITS.velocity * (1.0 + 1e-12) && a.abs() <= LIMITS.acceleration * (1.0 + 1e-12));
+                assert!(last == 2 || j.abs() <= LIMITS.jerk * (1.0 + 1e-12));
+                for k in 0..last {
+                    sums[k] += TS * sums[k + 1];
+                }
+            }
+            assert_eq!(outputs.last().unwrap().set_point.x, distance);
+        }
+    }
 }

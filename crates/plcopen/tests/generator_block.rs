@@ -1,4 +1,5 @@
 //! The generator of order 4 as what an axis follows.
+#![expect(clippy::float_cmp, reason = "what is shown is what is followed")]
 #[path = "shared/bench.rs"]
 mod bench;
 
@@ -58,6 +59,46 @@ fn a_move_ends_on_its_target_and_the_block_is_ready_when_it_has_settled() {
         assert!(outputs.done && outputs.ready && !outputs.busy);
         assert_eq!(bench.axis.state(), AxisState::Standstill);
     }
+}
+
+/// Oracle: the plan of the order. What the order does not use may be anything.
+#[test]
+fn a_lower_order_switches_a_lower_derivative() {
+    for (number, order) in [(2.0, Order::Second), (3.0, Order::Third)] {
+        let (mut bench, mut block) = (Bench::standstill(), Profile4th::default());
+        let mut inputs = Profile4thInputs { order: number, ..to(0.3) };
+        inputs.limits.snap = f64::NAN;
+        let way = moved(&mut bench, &mut block, inputs);
+        let plan = Profile::plan_sampled(order, 0.3, &LIMITS, CYCLE_TIME).unwrap();
+        let samples = usize::try_from(plan.samples().unwrap().total()).unwrap();
+        assert_eq!(way.iter().filter(|(outputs, _)| outputs.active).count(), samples + 2, "{order:?}");
+        let largest =
+            |of: fn(&Profile4thOutputs) -> f64| way.iter().map(|(outputs, _)| of(outputs).abs()).fold(0.0, f64::max);
+        assert!((largest(|outputs| outputs.acceleration) / plan.peaks().acceleration - 1.0).abs() < 1e-9);
+        assert_eq!(largest(|outputs| outputs.snap).to_bits(), 0.0_f64.to_bits());
+        assert_eq!(largest(|outputs| outputs.jerk) > 0.0, order == Order::Third);
+        assert!((way.last().unwrap().1 - 0.3).abs() < 1e-15);
+    }
+    for wrong in [1.0, 2.5, 5.0, f64::NAN] {
+        let (mut bench, mut block) = (Bench::standstill(), Profile4th::default());
+        let outputs = bench.cycle(|axis| block.step(axis, &Profile4thInputs { order: wrong, ..to(0.3) }));
+        assert!(outputs.error && !outputs.active);
+        let message = block.error().unwrap().to_string();
+        assert_eq!(message, format!("Profile4th: `ProfileOrder` must be 2, 3 or 4, got {wrong}: correct the input"));
+    }
+}
+
+/// The set-points that the block shows are those that the axis gets, in the cycle in which it gets them.
+#[test]
+fn the_block_shows_what_the_axis_follows() {
+    let (mut bench, mut block) = (Bench::standstill(), Profile4th::default());
+    let way = moved(&mut bench, &mut block, to(0.3));
+    for (outputs, position) in way.iter().filter(|(outputs, _)| outputs.active) {
+        assert_eq!(outputs.position.to_bits(), position.to_bits());
+    }
+    assert!(way.iter().any(|(outputs, _)| outputs.velocity > 0.0 && outputs.snap != 0.0 && outputs.added == 0.3));
+    let (last, _) = way.last().unwrap();
+    assert_eq!([last.velocity, last.acceleration, last.jerk, last.snap], [0.0; 4]);
 }
 
 #[test]

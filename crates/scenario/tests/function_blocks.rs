@@ -239,6 +239,11 @@ fn every_block_with_inputs_of_its_own() {
         "position = \"1 mm\"\nsettling_time = \"50 ms\"\nreversed = true",
         Profile4thInputs { settling_time: 0.05, mounting: Mounting::Opposite, ..Profile4thInputs::to(0.001, LIMITS) },
     );
+    check(
+        "Profile4th",
+        "position = \"1 mm\"\nsettling_time = \"50 ms\"\norder = 3",
+        Profile4thInputs { settling_time: 0.05, order: 3.0, ..Profile4thInputs::to(0.001, LIMITS) },
+    );
     for (name, buffer_mode) in [
         ("aborting", BufferMode::Aborting),
         ("blending-low", BufferMode::BlendingLow),

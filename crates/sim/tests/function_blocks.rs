@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 /// Outputs that a condition of a scenario cannot name: numbers, and a state that an axis alone never has.
-const NOT_IN_CONDITIONS: [&str; 11] = [
+const NOT_IN_CONDITIONS: [&str; 15] = [
     "ErrorID",
     "AxisErrorID",
     "DriveCode",
@@ -18,6 +18,10 @@ const NOT_IN_CONDITIONS: [&str; 11] = [
     "Simulation",
     "Value",
     "RecordedPosition",
+    "Acceleration",
+    "pref_add",
+    "Jerk",
+    "dJerk",
 ];
 
 const BENCH: &str = r#"
@@ -63,6 +67,7 @@ fn said(block: &str, input: &str) -> String {
         "input_number" | "output_number" => "2",
         "trigger_input" => "\"index-pulse\"",
         "last_position" => "\"20 mm\"",
+        "order" => "3",
         "table" => return format!("table = {{ file = \"{block}.csv\" }}\n"),
         other => panic!("{block}.{other} is an input that nobody knows here"),
     };

@@ -13,6 +13,9 @@
 //! | Active | the axis follows the generator |
 //! | CommandAborted, Error | until Enable is FALSE, and a cycle at least |
 //!
+//! Position, Velocity, Acceleration, `pref_add`, Jerk and `dJerk` are those of the generator; the axis follows them while Active is
+//! TRUE.
+//!
 //! As at the generator, a falling Enable does not end the move, and one that stays TRUE starts again as soon as the block is
 //! ready: here, when `pref` is another than that of the last start.
 use super::outputs::FunctionBlock;
@@ -22,11 +25,11 @@ use crate::command::{BufferMode, Command, Dynamics, Ending, Goal};
 use crate::error::{BlockError, ErrorId};
 use crate::generator::{self, Method, Mounting};
 use crate::interface::{
-    BlockInput, BlockInputs, FromValues as _, Table, Trigger, Values, flag, limit, outputs, required, required_for,
+    BlockInput, BlockInputs, FromValues as _, Table, Trigger, Values, flag, limit, or, outputs, required, required_for,
 };
 use crate::ledger::{CommandId, Progress};
 use servobench_base::Setpoint;
-use servobench_motion::Limits;
+use servobench_motion::{Limits, Order};
 
 /// Follows the generator of order 4.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -46,17 +49,19 @@ pub struct Profile4thInputs {
     pub enable: bool,
     /// `pref`: where to (m or rad).
     pub position: f64,
-    /// `vel_bnd`, `acc_bnd`, `jerk_bnd` and `djerk_bnd`.
+    /// `vel_bnd`, `acc_bnd`, `jerk_bnd` and `djerk_bnd`, of which those up to the order count.
     pub limits: Limits,
     /// `T_set`: from the end of a move until the block is ready for the next (s).
     pub settling_time: f64,
     /// Whether the axis goes the opposite way.
     pub mounting: Mounting,
+    /// Which derivative is switched: 2, 3 or 4. The block refuses others.
+    pub order: f64,
 }
 
 outputs! {
     /// Outputs of [`Profile4th`].
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    #[derive(Debug, Clone, Copy, PartialEq, Default)]
     pub struct Profile4thOutputs {
         /// `Ready`.
         ready: bool = Ready,
@@ -72,20 +77,33 @@ outputs! {
         error: bool = Error,
         /// ErrorID.
         error_id: ErrorId = ErrorId,
+        /// `Position` of the generator (m or rad).
+        position: f64 = Position,
+        /// `Velocity`.
+        velocity: f64 = Velocity,
+        /// `Acceleration`.
+        acceleration: f64 = Acceleration,
+        /// `pref_add`: what the move adds to the position.
+        added: f64 = Added,
+        /// `Jerk`.
+        jerk: f64 = Jerk,
+        /// `dJerk`.
+        snap: f64 = Snap,
     }
 }
 
 impl Profile4thInputs {
-    /// To `position` by `limits`, ready as soon as it is there; not enabled.
+    /// To `position` by `limits` at order 4, ready as soon as it is there; not enabled.
     #[must_use]
     pub const fn to(position: f64, limits: Limits) -> Self {
-        Self { enable: false, position, limits, settling_time: 0.0, mounting: Mounting::Same }
+        Self { enable: false, position, limits, settling_time: 0.0, mounting: Mounting::Same, order: 4.0 }
     }
 }
 
 impl BlockInputs<'_> for Profile4thInputs {
     const TRIGGER: Trigger = Trigger::Enable;
-    const INPUTS: &'static [BlockInput] = &[POSITION, VELOCITY, ACCELERATION, JERK, SNAP, SETTLING_TIME, REVERSED];
+    const INPUTS: &'static [BlockInput] =
+        &[POSITION, VELOCITY, ACCELERATION, JERK, SNAP, SETTLING_TIME, REVERSED, ORDER];
     /// A start takes them over.
     const ARE_FOLLOWED: bool = false;
 
@@ -101,6 +119,7 @@ impl BlockInputs<'_> for Profile4thInputs {
             },
             settling_time: f64::read(values, &SETTLING_TIME),
             mounting: if bool::read(values, &REVERSED) { Mounting::Opposite } else { Mounting::Same },
+            order: f64::read(values, &ORDER),
         }
     }
 }
@@ -113,6 +132,7 @@ const SNAP: BlockInput = limit(Input::Snap);
 const SETTLING_TIME: BlockInput =
     required_for(Input::SettlingTime, "from the end of a profile until the block is ready for the next");
 const REVERSED: BlockInput = flag(Input::Reversed, false);
+const ORDER: BlockInput = or(Input::Order, 4.0);
 
 impl FunctionBlock for Profile4th {
     const NAME: BlockName = BlockName::Profile4th;
@@ -125,12 +145,12 @@ impl FunctionBlock for Profile4th {
         }
         self.watch(axis);
         if self.is_aborted || self.error.is_some() {
-            return self.outputs(&generator::Output::default());
+            return self.outputs(&at_rest(axis));
         }
         let generated = self.generate(axis, inputs).unwrap_or_else(|error| {
             self.release(axis);
             self.error = Some(error);
-            generator::Output::default()
+            at_rest(axis)
         });
         self.outputs(&generated)
     }
@@ -154,7 +174,8 @@ impl Profile4th {
 
     /// One sample of the generator, and the axis led to it.
     fn generate(&mut self, axis: &mut Axis, inputs: &Profile4thInputs) -> Result<generator::Output, BlockError> {
-        let &Profile4thInputs { enable, position, limits, settling_time, mounting } = inputs;
+        let &Profile4thInputs { enable, position, limits, settling_time, mounting, order } = inputs;
+        let order = order_of(order)?;
         let params = generator::Params::new(axis.params().cycle_time, settling_time).map_err(|_| {
             let (input, bound) = ("T_set", "zero or more");
             BlockError::Input { block: Self::NAME, input, value: settling_time, bound }
@@ -162,6 +183,7 @@ impl Profile4th {
         let stands = axis.commanded().x;
         let input = generator::Input {
             method: Method::Step,
+            order,
             reference: self.reference.unwrap_or(position),
             limits,
             enable: enable && self.reference != Some(position),
@@ -171,7 +193,7 @@ impl Profile4th {
         let generated = generator::step(&params, &mut self.generator, &input);
         match self.id {
             None if self.generator.is_moving() => {
-                self.id = Some(begin(axis, &limits, position)?);
+                self.id = Some(begin(axis, order, &limits, position)?);
                 self.reference = Some(position);
             }
             None => {}
@@ -213,12 +235,34 @@ impl Profile4th {
             command_aborted: self.is_aborted,
             error: self.error.is_some(),
             error_id: self.error.as_ref().map_or(ErrorId::None, BlockError::id),
+            position: generated.set_point.x,
+            velocity: generated.set_point.v,
+            acceleration: generated.set_point.a,
+            added: generated.added,
+            jerk: generated.set_point.j,
+            snap: generated.set_point.s,
         }
     }
 }
 
+/// What a generator shows that was set back: it would begin where the axis is.
+fn at_rest(axis: &Axis) -> generator::Output {
+    generator::Output { set_point: Setpoint::at_rest(axis.commanded().x), ..generator::Output::default() }
+}
+
+/// The order by its number.
+fn order_of(number: f64) -> Result<Order, BlockError> {
+    let of_number = |order: &Order| (order.derivative() as f64).to_bits() == number.to_bits();
+    [Order::Second, Order::Third, Order::Fourth].into_iter().find(of_number).ok_or(BlockError::Input {
+        block: Profile4th::NAME,
+        input: "ProfileOrder",
+        value: number,
+        bound: "2, 3 or 4",
+    })
+}
+
 /// Has the axis follow.
-fn begin(axis: &mut Axis, limits: &Limits, position: f64) -> Result<CommandId, BlockError> {
+fn begin(axis: &mut Axis, order: Order, limits: &Limits, position: f64) -> Result<CommandId, BlockError> {
     let block = BlockName::Profile4th;
     if !axis.has_reference(BufferMode::Aborting) {
         return Err(BlockError::NotHomed { block, value: position });
@@ -228,8 +272,8 @@ fn begin(axis: &mut Axis, limits: &Limits, position: f64) -> Result<CommandId, B
         velocity: Some(velocity),
         acceleration,
         deceleration: acceleration,
-        jerk: Some(jerk),
-        snap: Some(snap),
+        jerk: (order >= Order::Third).then_some(jerk),
+        snap: (order >= Order::Fourth).then_some(snap),
     };
     axis.submit(Command { block, goal: Goal::Led(Ending::AtRest), dynamics, buffer_mode: BufferMode::Aborting })
 }

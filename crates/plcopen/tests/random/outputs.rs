@@ -29,6 +29,14 @@ pub(crate) fn call<B: FunctionBlock>(block: &mut B, axis: &mut Axis, inputs: &B:
             Output::Error => flags.error = is_true,
             Output::ErrorId => flags.error_id = value.to_bits(),
             Output::CoveredDistance | Output::Ready | Output::RecordedPosition => assert!(value.is_finite()),
+            Output::Position
+            | Output::Velocity
+            | Output::Acceleration
+            | Output::Jerk
+            | Output::Snap
+            | Output::Added => {
+                assert!(value.is_finite());
+            }
             other => unreachable!("{other:?}"),
         }
     });

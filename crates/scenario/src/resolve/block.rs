@@ -59,7 +59,11 @@ impl Reading<'_, '_> {
         if input == Input::Table {
             return self.table(own).map(|table| Some(Value::Table(table)));
         }
+        if input == Input::Order {
+            self.refuse_no_order(input);
+        }
         match own.absent {
+            Absent::Limit(limit) if self.is_left_to_the_order(input, limit) => return Ok(None),
             Absent::Refused(why) => self.require(input, why),
             Absent::Direction(Direction::Shortest) => self.warn_without_modulo(),
             Absent::Direction(_) => self.refuse_shortest(),
@@ -175,6 +179,25 @@ impl Reading<'_, '_> {
             let message = format!("`{}` must not be 0", input.key());
             self.report.error(zero.span, message, "leave it out, or give a factor");
         }
+    }
+
+    fn refuse_no_order(&mut self, input: Input) {
+        if let Some(order) = self.inputs.number(input).at().filter(|order| ![2.0, 3.0, 4.0].contains(&order.value)) {
+            let message = format!("`{}` must be 2, 3 or 4", input.key());
+            self.report.error(order.span, message, "leave it out for 4");
+        }
+    }
+
+    /// Whether a limit that nobody gives is one that the order of the profile does not use.
+    fn is_left_to_the_order(&self, input: Input, limit: Input) -> bool {
+        let derivative = match limit {
+            Input::Jerk => 3.0,
+            Input::Snap => 4.0,
+            _ => return false,
+        };
+        self.block.input(Input::Order).is_some()
+            && matches!(self.limit(input, limit), Slot::Absent)
+            && self.inputs.number(Input::Order).given().is_some_and(|order| *order < derivative)
     }
 
     /// The velocity at a target is one that the block may have.

@@ -156,6 +156,12 @@ fn a_block_has_its_inputs_and_no_others() {
                 "1:1: missing `settling_time` in `call`; from the end of a profile until the block is ready for the next",
             ],
         ),
+        // An order that does not use the snap does not need it; `[setpoint]` here is of order 3.
+        (&call("Profile4th", "position = \"1 mm\"\nsettling_time = \"50 ms\"\norder = 3"), &[]),
+        (
+            &call("Profile4th", "position = \"1 mm\"\nsettling_time = \"50 ms\"\nsnap = \"1e4 m/s4\"\norder = 2.5"),
+            &["6:9: `order` must be 2, 3 or 4; leave it out for 4"],
+        ),
         (
             &call("MC_MoveAbsolute", "position = \"1 mm\"\nvelocity = \"0 m/s\""),
             &["4:12: `velocity` of MC_MoveAbsolute must be above zero; the target says in which direction"],
