@@ -10,6 +10,7 @@ mod output;
 mod plan;
 mod plan_families;
 mod plan_mistakes;
+mod plc;
 mod run;
 mod timing;
 #[cfg(unix)]

@@ -14,6 +14,7 @@ use servobench_fmi::Version;
 #[cfg(feature = "fmu")]
 use servobench_fmu::Part;
 use servobench_plant::EngineName;
+use servobench_structured_text::{Dialect, Format};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -55,6 +56,9 @@ pub(crate) enum Command {
     Timing(TimingArgs),
     /// Show the object dictionary of the drive (CiA 402): as a table, an electronic data sheet or JSON.
     Objects(ObjectsArgs),
+    /// Write the generator of fourth order as code for a PLC (IEC 61131-3).
+    #[command(subcommand)]
+    Plc(PlcCommand),
     /// Show what is in an FMU, or write an axis as one (Functional Mock-up Interface 2.0 and 3.0).
     #[cfg(feature = "fmu")]
     #[command(subcommand)]
@@ -66,6 +70,51 @@ pub(crate) enum Command {
     /// Run one scenario in a process of its own (started by `run` and `compare`).
     #[command(hide = true)]
     Worker(WorkerArgs),
+}
+
+/// What to do for a PLC.
+#[derive(Debug, Subcommand)]
+pub(crate) enum PlcCommand {
+    /// Write the function blocks Profile4th and MC_MoveAbsolute as Structured Text or PLCopen XML.
+    #[command(after_help = AFTER_PLC_EXPORT)]
+    Export(PlcExportArgs),
+}
+
+const AFTER_PLC_EXPORT: &str = "Profile4th makes the set-points of a move from standstill to standstill, sample by sample: \
+                                position, velocity, acceleration, jerk and snap, bounded up to the snap (or the jerk, or \
+                                the acceleration: ProfileOrder). MC_MoveAbsolute starts such a move by Execute and tells \
+                                Busy, Done and Error; it has no axis, whose set-point its outputs become.\n\n\
+                                A call in every period of the task:\n\n  \
+                                Move(Execute := Go, Position := 0.25, Velocity := 0.5,\n       \
+                                Acceleration := 5.0, Jerk := 100.0, Snap := 5000.0,\n       \
+                                CommandedPosition := AxisSetPosition);\n  \
+                                IF Move.Active THEN AxisSetPosition := Move.SetPosition; END_IF;\n\n\
+                                The head of the file says what each error number means, the memory of an instance, and on \
+                                which compiler the file was tried. Logix controllers of Rockwell are not among the \
+                                dialects: they import Add-On Instructions as L5X, have no functions of the user and no \
+                                LINT to LREAL conversion that all of them share.\n\n\
+                                Examples:\n  \
+                                servobench plc export --sample-time \"1 ms\" -o profile4th.st\n  \
+                                servobench plc export --dialect codesys --format xml -o profile4th.xml\n  \
+                                servobench plc export --dialect scl -o profile4th.scl";
+
+#[derive(Debug, Args)]
+pub(crate) struct PlcExportArgs {
+    /// What the file is.
+    #[arg(long, value_parser = choice::<Format>(), default_value = Format::default().name())]
+    pub(crate) format: Format,
+    /// Whose language it is written in.
+    #[arg(long, value_parser = choice::<Dialect>(), default_value = Dialect::default().name())]
+    pub(crate) dialect: Dialect,
+    /// Initial value of the input Ts: the period of the task, as "1 ms".
+    #[arg(long, value_name = "TIME", value_parser = instant, default_value = "1 ms")]
+    pub(crate) sample_time: f64,
+    /// Initial value of the input T_set: from the end of a move until Ready, as "50 ms".
+    #[arg(long, value_name = "TIME", value_parser = instant, default_value = "0 s")]
+    pub(crate) settling_time: f64,
+    /// Write to this file [default: standard output].
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
 }
 
 /// What to do with FMUs.
@@ -252,7 +301,7 @@ fn time(text: &str) -> Result<Duration, String> {
     }
 }
 
-/// An instant of a recording (s), as "1.5 s".
+/// A time (s), as "1.5 s".
 fn instant(text: &str) -> Result<f64, String> {
     servobench_scenario::time(text).map_err(|error| error.message)
 }

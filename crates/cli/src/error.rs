@@ -8,6 +8,7 @@ use crate::sources::{Unusable, told};
 use servobench_config::Choice as _;
 use servobench_report::ReportError;
 use servobench_scenario::{Diagnostic, LoadError, Sources};
+use servobench_structured_text::ExportError;
 use servobench_suite::{CompareError, Job, RunError};
 use servobench_trace::TraceError;
 use servobench_view::ViewError;
@@ -63,6 +64,8 @@ pub(crate) enum CliError {
     Compare(Box<CompareError>),
     #[error("nothing was measured of two of these runs: there is nothing to compare")]
     NothingToCompare,
+    #[error(transparent)]
+    Plc(#[from] ExportError),
     #[cfg(feature = "fmu")]
     #[error("{}", servobench_report::printable(&.0.to_string()))]
     Fmu(servobench_fmi::FmuError),
@@ -156,6 +159,7 @@ impl CliError {
             | Self::Plan(_)
             | Self::TooFewScenarios
             | Self::Compare(_)
+            | Self::Plc(_)
             | Self::NothingToCompare => Exit::Input,
             #[cfg(feature = "fmu")]
             Self::Fmu(_) | Self::Export(_) => Exit::Input,

@@ -36,6 +36,7 @@ fn dispatch(command: &Command) -> Exit {
         Command::View(args) => commands::view(args),
         Command::Timing(args) => commands::timing(args),
         Command::Objects(args) => commands::objects(args),
+        Command::Plc(command) => commands::plc(command),
         #[cfg(feature = "fmu")]
         Command::Fmu(command) => commands::fmu(command),
         #[cfg(feature = "fmu")]

@@ -45,7 +45,8 @@
 //! "The algorithm itself is scalable" (section 6): with [`Input::order`] 3 the jerk is what is switched, with 2 the acceleration, over 7
 //! and 3 segments in place of 15, and what is switched is added up by the rows of (72)–(75) below it.
 //!
-//! [`Profile4th`](crate::Profile4th) has an axis follow it.
+//! [`Profile4th`](crate::Profile4th) has an axis follow it. The crate `structured-text` has the block as code for a PLC, which computes
+//! the same to the last bit: a change here is one there.
 use servobench_base::{ParamError, Setpoint, non_negative, positive};
 use servobench_motion::sampled::{Cascade, Run};
 use servobench_motion::{Limits, Order, PlanError, Profile};

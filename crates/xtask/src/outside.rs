@@ -18,15 +18,19 @@ struct Group {
     environment: &'static str,
     /// What is installed there.
     requirements: &'static [&'static str],
+    /// Packages whose source is fetched, into its folder `sources`, and not installed.
+    sources: Option<&'static str>,
     /// The programs.
     clients: &'static [&'static str],
 }
 
-/// All programs. CoFMPy asks for another FMPy than the one that the others hold the project against.
-const GROUPS: [Group; 2] = [
+/// All programs. CoFMPy asks for another FMPy than the one that the others hold the project against. Of pyplcopen the C++ is wanted,
+/// which only its source has; what is installed beside it is what pip reads the name and version of a source package with.
+const GROUPS: [Group; 3] = [
     Group {
         environment: "python",
         requirements: &["requirements.txt", "files.txt"],
+        sources: None,
         clients: &[
             "exported_fmus_by_fmpy.py",
             "fmus_by_fmpy.py",
@@ -37,7 +41,18 @@ const GROUPS: [Group; 2] = [
             "verdicts.py",
         ],
     },
-    Group { environment: "python-cofmupy", requirements: &["cofmupy.txt"], clients: &["exported_fmus_by_cofmupy.py"] },
+    Group {
+        environment: "python-cofmupy",
+        requirements: &["cofmupy.txt"],
+        sources: None,
+        clients: &["exported_fmus_by_cofmupy.py"],
+    },
+    Group {
+        environment: "python-pyplcopen",
+        requirements: &["pyplcopen.txt"],
+        sources: Some("pyplcopen-source.txt"),
+        clients: &["profile_4th_by_pyplcopen.py"],
+    },
 ];
 
 /// The programs that can be run here, and why others cannot.
@@ -92,6 +107,7 @@ const FOLDER: &str = "tests/outside";
 struct Environment {
     folder: PathBuf,
     requirements: Vec<PathBuf>,
+    sources: Option<PathBuf>,
 }
 
 impl Environment {
@@ -99,7 +115,8 @@ impl Environment {
         let file = |name| workspace.root.join(FOLDER).join(name);
         Self {
             folder: workspace.target.join(group.environment),
-            requirements: group.requirements.iter().map(file).collect(),
+            requirements: group.requirements.iter().copied().map(file).collect(),
+            sources: group.sources.map(file),
         }
     }
 
@@ -133,7 +150,7 @@ impl Environment {
     /// What the stamp has to be.
     fn wanted(&self) -> Result<String, Failure> {
         let sum = |path: &PathBuf| sha256(path).map_err(Failure::file("read", path));
-        Ok(self.requirements.iter().map(sum).collect::<Result<Vec<_>, _>>()?.join("\n"))
+        Ok(self.requirements.iter().chain(&self.sources).map(sum).collect::<Result<Vec<_>, _>>()?.join("\n"))
     }
 
     /// # Errors
@@ -143,15 +160,33 @@ impl Environment {
         let mut create = Command::new("python3");
         create.args(["-m", "venv", "--clear", "--without-pip"]).arg(&self.folder);
         python::run("venv", &mut create)?;
-        let mut install = Command::new("python3");
-        install.args(["-m", "pip", "--python"]).arg(self.python());
-        install.args(["install", "--quiet", "--disable-pip-version-check", "--retries", "1"]);
-        // All that is required is listed.
-        install.args(["--only-binary=:all:", "--require-hashes", "--no-deps"]);
+        let mut install = self.pip("install");
+        install.arg("--only-binary=:all:");
         for requirements in &self.requirements {
             install.arg("--requirement").arg(requirements);
         }
-        python::run("pip", &mut install)
+        python::run("pip", &mut install)?;
+        let Some(sources) = &self.sources else { return Ok(()) };
+        let mut fetch = self.pip("download");
+        // It asks the package for its name, with what is installed here.
+        fetch.args(["--no-binary=:all:", "--no-build-isolation", "--dest"]).arg(self.folder.join("sources"));
+        python::run("pip", fetch.arg("--requirement").arg(sources))
+    }
+
+    /// A command of pip for this environment, in which all that is required is listed.
+    fn pip(&self, command: &str) -> Command {
+        let mut pip = Command::new("python3");
+        pip.args(["-m", "pip", "--python"]).arg(self.python());
+        pip.args([
+            command,
+            "--quiet",
+            "--disable-pip-version-check",
+            "--retries",
+            "1",
+            "--require-hashes",
+            "--no-deps",
+        ]);
+        pip
     }
 
     /// Whether its Python is still there: it is a link to the one that made it.
@@ -170,7 +205,7 @@ mod tests {
     fn environment(room: &Path) -> Environment {
         let requirements = room.join("requirements.txt");
         fs::write(&requirements, "nobody @ file:///nowhere.whl").unwrap();
-        Environment { folder: room.join("python"), requirements: vec![requirements] }
+        Environment { folder: room.join("python"), requirements: vec![requirements], sources: None }
     }
 
     #[test]

@@ -12,7 +12,7 @@ enum May {
 
 /// The floor plan, lower floors first; `engine-*` is every engine that has no line of its own. Dev-dependencies are free: the oracle
 /// of a test may come from anywhere.
-const PLAN: [(&str, May); 30] = [
+const PLAN: [(&str, May); 31] = [
     ("base", May::On(&[])),
     ("config", May::On(&["base"])),
     ("cia402", May::On(&["base"])),
@@ -21,6 +21,7 @@ const PLAN: [(&str, May); 30] = [
     ("drive", May::On(&["base", "config", "cia402", "motion"])),
     ("fieldbus", May::On(&["base", "config", "cia402", "motion"])),
     ("plcopen", May::On(&["base", "config", "fieldbus", "motion"])),
+    ("structured-text", May::On(&["base", "config"])),
     ("fmi", May::On(&["base", "config"])),
     ("plant", May::On(&["base", "config", "fmi"])),
     ("stability", May::On(&["base", "drive", "plant"])),

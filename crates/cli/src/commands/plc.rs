@@ -1,0 +1,28 @@
+//! `servobench plc`: the generator of fourth order as code for a PLC.
+use crate::args::{PlcCommand, PlcExportArgs};
+use crate::console::say;
+use crate::error::CliError;
+use crate::exit::Exit;
+use crate::output::{print_or_write, write_time};
+use servobench_structured_text::{Export, Times, instances};
+
+/// Export is all there is.
+pub(crate) fn plc(command: &PlcCommand) -> Result<Exit, CliError> {
+    match command {
+        PlcCommand::Export(args) => export(args),
+    }
+}
+
+/// Writes the file; how much memory its blocks take is in its head, and said where the file is written beside it.
+fn export(args: &PlcExportArgs) -> Result<Exit, CliError> {
+    let &PlcExportArgs { format, dialect, sample_time, settling_time, .. } = args;
+    let written = write_time()?.strftime("%Y-%m-%dT%H:%M:%SZ").to_string();
+    let times = Times { sample: sample_time, settling: settling_time };
+    let text = Export { dialect, format, times }.text(&written)?;
+    print_or_write(args.output.as_deref(), &text)?;
+    if let Some(output) = &args.output {
+        let memory = instances().map(|(name, bytes)| format!("{bytes} bytes for an instance of {name}"));
+        say(&format!("{}: {} lines, {}\n", output.display(), text.lines().count(), memory.join(", ")));
+    }
+    Ok(Exit::Passed)
+}

@@ -1,0 +1,179 @@
+//! The generator of fourth order as code for a PLC: the function block `Profile4th` in Structured Text (IEC 61131-3), and
+//! `MC_MoveAbsolute` on top of it.
+//!
+//! The text, `profile_4th.st`, is written by hand and computes what `servobench_plcopen::generator` computes with the plan of
+//! `servobench_motion::Profile::plan_sampled`: the same operations on LREAL in the same order, but for the roots that a length is
+//! guessed by. A guess only has to be near: the length is the smallest whole number for which a product reaches a bound, and that is
+//! decided by the same operations on both sides. Whoever changes one side changes the other; `tests/outside/profile_4th_by_pyplcopen.py`
+//! compares them bit for bit.
+//!
+//! # How the text is written
+//!
+//! - One declaration a line, its meaning as a comment before the semicolon: [`Export`] reads them for memory, interface and dialects.
+//! - Every loop is a FOR between constants: a call takes a bounded time.
+//! - No array, no function beyond SQRT, ABS, MOD and the conversions between LREAL and LINT, which controllers with LREAL have. What
+//!   a conversion rounds to is only a first try, so that it may round to either side.
+//! - No division by zero, no conversion of a number that LINT does not hold.
+//! - No input of a function or block is called as a variable of its caller, no variable as one of another unit: there are front ends that
+//!   put names in place of each other in the whole text of a call.
+//! - Comments in bodies are without words of statements, quotes and semicolons, and none stands before a statement that calls a
+//!   function from within: there are front ends that part a body at its words before they take the comments out.
+mod memory;
+#[cfg(test)]
+mod page;
+mod pou;
+mod scl;
+mod xml;
+
+use servobench_base::{ParamError, non_negative, positive};
+use servobench_config::Choice as _;
+use thiserror::Error;
+
+servobench_config::choices! {
+    /// Whose language it is written in.
+    pub enum Dialect default Iec {
+        /// IEC 61131-3 as it stands, for MATIEC, OpenPLC, Beremiz and others; XML of TC6 2.01
+        Iec = "iec",
+        /// CODESYS V3 and TwinCAT 3: the same text, XML of TC6 2.0 as they import it
+        Codesys = "codesys",
+        /// Siemens S7-1500: an external source (.scl) for TIA Portal, no XML
+        Scl = "scl",
+    }
+}
+
+servobench_config::choices! {
+    /// What the file is.
+    pub enum Format default St {
+        /// Structured Text: functions and function blocks one after the other
+        St = "st",
+        /// PLCopen XML: the same with the interface of each as elements
+        Xml = "xml",
+    }
+}
+
+/// What is written.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Export {
+    /// Whose language.
+    pub dialect: Dialect,
+    /// Text or XML.
+    pub format: Format,
+    /// Initial values of inputs.
+    pub times: Times,
+}
+
+/// Times that a call need not give.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Times {
+    /// Of `Ts`: the period of the task (s).
+    pub sample: f64,
+    /// Of `T_set`: from the end of a move until the block is ready (s).
+    pub settling: f64,
+}
+
+/// Why nothing can be written.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum ExportError {
+    /// A time that is none.
+    #[error(transparent)]
+    Parameter(#[from] ParamError),
+    /// A time that the block would refuse.
+    #[error("`{name}` must be within {lowest:e} and {highest:e} s, got {value:e}: the block refuses other values")]
+    OutOfRange {
+        /// Field name.
+        name: &'static str,
+        /// Rejected value (s).
+        value: f64,
+        /// Smallest value that the block takes (s).
+        lowest: f64,
+        /// Largest (s).
+        highest: f64,
+    },
+    /// TIA Portal reads no PLCopen XML.
+    #[error("the dialect `{}` has no PLCopen XML, which TIA Portal does not import: take the format `{}`", .dialect.name(), Format::St.name())]
+    NoXml {
+        /// Which dialect.
+        dialect: Dialect,
+    },
+}
+
+/// The function blocks of the text.
+const BLOCKS: [&str; 2] = ["Profile4th", "MC_MoveAbsolute"];
+/// Smallest and largest sample time that the block takes (s).
+const SAMPLE_TIMES: (f64, f64) = (1e-30, 1e30);
+/// Longest settling time that it takes (s).
+const LONGEST_SETTLING: f64 = 1e30;
+
+impl Export {
+    /// The file; `written` is the time that XML has to name, as an `xs:dateTime`.
+    ///
+    /// # Errors
+    /// [`ExportError`] when a time is not positive (a settling time: not positive or zero) or out of the range that the block takes,
+    /// and for XML of a dialect that has none.
+    pub fn text(&self, written: &str) -> Result<String, ExportError> {
+        let source = self.source()?;
+        let pous = pou::read(&source);
+        let head = format!("(*\n{}*)\n", self.head());
+        Ok(match (self.format, self.dialect) {
+            (Format::St, Dialect::Iec | Dialect::Codesys) => format!("{head}\n{source}"),
+            (Format::St, Dialect::Scl) => format!("{head}\n{}", scl::text(&pous)),
+            (Format::Xml, Dialect::Iec) => xml::text(&pous, &head, xml::STANDARD, written),
+            (Format::Xml, Dialect::Codesys) => xml::text(&pous, &head, xml::CODESYS, written),
+            (Format::Xml, Dialect::Scl) => return Err(ExportError::NoXml { dialect: self.dialect }),
+        })
+    }
+
+    /// The text of the standard with the times in it.
+    fn source(&self) -> Result<String, ExportError> {
+        let sample_time = positive("sample_time", self.times.sample)?;
+        within("sample_time", sample_time, SAMPLE_TIMES)?;
+        let settling_time = non_negative("settling_time", self.times.settling)?;
+        within("settling_time", settling_time, (0.0, LONGEST_SETTLING))?;
+        let text = include_str!("profile_4th.st");
+        Ok(text.replace("{sample_time}", &literal(sample_time)).replace("{settling_time}", &literal(settling_time)))
+    }
+
+    /// What a reader of the file has to know.
+    fn head(&self) -> String {
+        let tried = match (self.dialect, self.format) {
+            (Dialect::Iec, Format::St) => "Compiled and run by pyplcopen 0.21. Not tried on any other compiler.",
+            _ => {
+                "Not tried on a compiler of the vendor. The statements are those that pyplcopen 0.21 compiled and ran."
+            }
+        };
+        let memory = instances().map(|(name, bytes)| format!("    {name:<15} {bytes:>5} bytes"));
+        include_str!("head.txt")
+            .replace("{version}", env!("CARGO_PKG_VERSION"))
+            .replace("{dialect}", self.dialect.name())
+            .replace("{tried}", tried)
+            .replace("{memory}", &memory.join("\n"))
+    }
+}
+
+/// Each function block with the memory of an instance in bytes: inputs, outputs and kept variables by their declarations, with natural
+/// alignment.
+#[must_use]
+pub fn instances() -> [(&'static str, usize); BLOCKS.len()] {
+    let pous = pou::read(include_str!("profile_4th.st"));
+    BLOCKS.map(|name| (name, memory::instance(&pous, name)))
+}
+
+fn within(name: &'static str, value: f64, (lowest, highest): (f64, f64)) -> Result<(), ExportError> {
+    if (lowest..=highest).contains(&value) {
+        Ok(())
+    } else {
+        Err(ExportError::OutOfRange { name, value, lowest, highest })
+    }
+}
+
+/// A number as a literal of LREAL: the shortest that reads back to the same bits, with the point that it needs.
+fn literal(number: f64) -> String {
+    let text = format!("{number:?}").to_uppercase();
+    match text.split_once('E') {
+        Some((digits, exponent)) if !digits.contains('.') => format!("{digits}.0E{exponent}"),
+        _ => text,
+    }
+}
+
+#[cfg(test)]
+mod tests;
