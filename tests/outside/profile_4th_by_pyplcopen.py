@@ -12,6 +12,7 @@ The program is `SERVOBENCH`, or the one in the folder of cargo's builds. Size: 1
 """
 
 import hashlib
+import itertools
 import json
 import os
 import re
@@ -84,6 +85,44 @@ outS := unit.SetSnap;
 outDone := unit.Done;
 outReady := NOT unit.Active;
 outError := unit.Error;
+END_PROGRAM
+"""
+# A script of its own: a move by a pulse, one that begins where the axis was put meanwhile and is asked for another during it, and
+# one that cannot be planned. outS is the status: Done 1, Busy 2, Active 4, Error 8, and 16 times the ErrorID.
+SCRIPT = f"""
+PROGRAM Bench
+VAR{VARIABLES}    unit : MC_MoveAbsolute;
+    tick : INT;
+    pressed : BOOL;
+END_VAR
+tick := tick + 1;
+pressed := tick = 3 OR tick = 503 OR tick = 603 OR (tick >= 1503 AND tick <= 1505);
+unit(Execute := pressed, Position := 0.05 + inReference, Velocity := inVelocity, Acceleration := 5.0, Jerk := 50.0, Snap := 1000.0,
+    CommandedPosition := inReference, SampleTime := 0.001, Order := 4);
+inReference := 0.0;
+inVelocity := 1.0;
+IF tick >= 400 THEN
+    inReference := 2.0;
+END_IF;
+IF tick >= 1400 THEN
+    inVelocity := -1.0;
+END_IF;
+outX := unit.SetPosition;
+outV := unit.SetVelocity;
+outS := 0.0;
+IF unit.Done THEN
+    outS := 1.0;
+END_IF;
+IF unit.Busy THEN
+    outS := outS + 2.0;
+END_IF;
+IF unit.Active THEN
+    outS := outS + 4.0;
+END_IF;
+IF unit.Error THEN
+    outS := outS + 8.0 + 16.0 * INT_TO_LREAL(unit.ErrorID);
+END_IF;
+outDone := tick >= 1600;
 END_PROGRAM
 """
 
@@ -174,6 +213,25 @@ def export(*options: str) -> str:
     return subprocess.run([program, "plc", "export", *options], stdout=subprocess.PIPE, text=True, check=True).stdout
 
 
+def check_script(rows: list[str]) -> None:
+    """What MC_MoveAbsolute says, in runs of calls with the same status; a move of 50 mm has some 350 samples."""
+    calls = [[float(word) for word in row.split()] for row in rows]
+    status = [(int(value), len(list(group))) for value, group in itertools.groupby(call[4] for call in calls)]
+    length = status[2][1]
+    expected = [(0, 2), (2, 1), (6, length), (1, 1), (0, 498 - length), (2, 1), (6, 99), (12 + 160, 1), (4, length - 100)]
+    expected += [(0, 999 - length), (2, 1), (8 + 32, 2), (0, len(calls) - 1505)]
+    if status != expected:
+        raise SystemExit(f"MC_MoveAbsolute says {status}, not {expected}")
+    # It never jumps: between two calls it goes as far as its velocity says, but where the axis is put elsewhere at rest.
+    for before, after in itertools.pairwise(calls):
+        if int(before[4]) & 4 and abs(after[0] - before[0] - 0.001 * before[1]) > 1e-12:
+            raise SystemExit(f"MC_MoveAbsolute jumps from {before} to {after}")
+    places = [calls[k][0] for k in (1, 499, 502, 1400)]
+    if places != [0.0, 0.05, 2.0, 2.05]:
+        raise SystemExit(f"MC_MoveAbsolute is at {places}")
+    print("MC_MoveAbsolute: Done, Busy, Active, Error and ErrorID as they have to be")
+
+
 def check_memory(exported: str, laid_out: list[str]) -> None:
     """Compares the bytes of instances as the compiler lays them out: those of a block are without those inside it."""
     said = {name: int(number) for name, number in re.findall(r"^ +(\w+) +(\d+) bytes$", exported, re.MULTILINE)}
@@ -231,9 +289,10 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         vm = build()
         exported = export()
-        programs = {name: Path(folder) / f"{name}.st" for name in ("generator", "absolute")}
+        programs = {name: Path(folder) / f"{name}.st" for name in ("generator", "absolute", "script")}
         programs["generator"].write_text(exported + GENERATOR)
         programs["absolute"].write_text(exported + ABSOLUTE)
+        programs["script"].write_text(exported + SCRIPT)
 
         def by_vm(program: str, requests: list[str], *arguments: str) -> list[str]:
             return answers([str(vm), str(programs[program]), *arguments], requests)
@@ -251,10 +310,13 @@ def main() -> None:
         targets = [random.uniform(-0.5, 0.5) for _ in range(50)]
         line = " ".join(["4 0.001 0.0 1.0 5.0 50.0 1000.0 0 0.25", *map(repr, targets)])
         ours, theirs = by_rust([line], "trace"), by_vm("absolute", [line], "trace")
-        motion = [[row[:5] for row in map(numbers, rows)] for rows in (ours, theirs)]
+        # Done is a call after the last set-point, which the axis has to get before.
+        moving = [row for row in theirs if int(row.split()[6]) & 1 == 0]
+        motion = [[row[:5] for row in map(numbers, rows)] for rows in (ours, moving)]
         print(f"MC_MoveAbsolute: {len(targets)} moves, {len(theirs)} samples")
         if motion[0] != motion[1]:
             raise SystemExit(f"MC_MoveAbsolute: {first_difference(ours, theirs)}")
+        check_script(by_vm("script", ["4 0.001 0 1 5 50 1000 0 0 1"], "trace"))
         check_memory(exported, answers([str(vm), str(programs["absolute"]), "memory"], []))
     check_xml()
 
