@@ -175,7 +175,7 @@ list_inputs! {
         "Beginning of the window in which a trigger counts" + "; everywhere unless given";
     LastPosition "last_position" stays InputType::Quantity(any(Axis(&POSITION), "110 mm")),
         "End of the window in which a trigger counts" + "; everywhere unless given";
-    Order "order" stays InputType::Quantity(positive(Plain(&RATIO), "3")),
+    Order "order" stays InputType::Whole(2, 4),
         "Which derivative of the position Profile4th switches: 2 the acceleration, 3 the jerk, 4 the snap" + "; 4 unless given";
 }
 

@@ -59,9 +59,6 @@ impl Reading<'_, '_> {
         if input == Input::Table {
             return self.table(own).map(|table| Some(Value::Table(table)));
         }
-        if input == Input::Order {
-            self.refuse_no_order(input);
-        }
         match own.absent {
             Absent::Limit(limit) if self.is_left_to_the_order(input, limit) => return Ok(None),
             Absent::Refused(why) => self.require(input, why),
@@ -178,13 +175,6 @@ impl Reading<'_, '_> {
         if let Some(zero) = self.inputs.number(input).at().filter(|scale| scale.value == 0.0) {
             let message = format!("`{}` must not be 0", input.key());
             self.report.error(zero.span, message, "leave it out, or give a factor");
-        }
-    }
-
-    fn refuse_no_order(&mut self, input: Input) {
-        if let Some(order) = self.inputs.number(input).at().filter(|order| ![2.0, 3.0, 4.0].contains(&order.value)) {
-            let message = format!("`{}` must be 2, 3 or 4", input.key());
-            self.report.error(order.span, message, "leave it out for 4");
         }
     }
 
