@@ -66,7 +66,7 @@ use position_loop::PositionLoop;
 use sequencer::{Sequencer, Wanted};
 use servobench_base::{Setpoint, Tick};
 use servobench_cia402::{Actuals, Commands, ControlBit, StatusBit};
-use servobench_motion::interpolate::Sample;
+use servobench_motion::interpolate::{Command, Sample};
 use stream::Stream;
 use touch_probe::Probe;
 
@@ -214,6 +214,20 @@ impl State {
     #[must_use]
     pub fn setpoint(&self, params: &Params, tick: Tick) -> Setpoint {
         self.stream.at(&params.stream, tick.0).setpoint
+    }
+
+    /// What was put out at the last step, in units of the axis: position, velocity and acceleration, the effort beside them, 0 where none
+    /// is sent, or instead of them; what the axis does where nothing is followed. The frame holds of it what the mode carries, rounded to the
+    /// drive's units.
+    #[must_use]
+    pub fn output(&self, params: &Params) -> Command {
+        let torque = match (self.ramp.state(), self.stream.state()) {
+            (Interpolation::Off, Interpolation::Off) => params.scale.effort(self.actuals.torque),
+            (Interpolation::Off, _) if params.sends_torque() => self.stream.output().torque,
+            (Interpolation::Off, _) => 0.0,
+            _ => self.ramp.at(&params.stream.timing, self.stream.put_out_at()),
+        };
+        Command { torque, ..*self.stream.output() }
     }
 
     /// How the set-points of the motion task arrive.

@@ -94,6 +94,8 @@ pub enum Writer {
     MotionTask,
     /// The fieldbus.
     Fieldbus,
+    /// The master on it, which fills the time between two samples of the motion task.
+    Master,
     /// The generator of set-points, or what interpolates them.
     SetPoint,
     /// The mechanics.
@@ -140,6 +142,7 @@ impl Writer {
         match self {
             Self::MotionTask => "motion task",
             Self::Fieldbus => "fieldbus",
+            Self::Master => "master",
             Self::SetPoint => "set-point",
             Self::Mechanics => "mechanics",
             Self::PositionLoop => "position loop",
@@ -159,7 +162,7 @@ impl Writer {
     pub const fn rate(self, rates: &Rates) -> Rate {
         match self {
             Self::MotionTask => rates.task,
-            Self::Fieldbus => rates.bus,
+            Self::Fieldbus | Self::Master => rates.bus,
             Self::PositionLoop => rates.position,
             Self::VelocityLoop => rates.velocity,
             Self::CurrentLoop | Self::Commander => rates.current,

@@ -10,6 +10,10 @@ pub struct Instant {
     pub task: Setpoint,
     /// Actual position as the master reads it.
     pub bus_position: f64,
+    /// What the master puts out, in units of the axis.
+    pub put_out: Setpoint,
+    /// The effort beside it (motor coordinate).
+    pub put_out_effort: f64,
     /// The set-point.
     pub setpoint: Setpoint,
     /// The motor.

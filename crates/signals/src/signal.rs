@@ -75,6 +75,14 @@ signals! {
         "its velocity";
     BusPosition "bus.position" Axis(0) Fieldbus OnBus |now| now.bus_position;
         "actual position as the master reads it";
+    LinkPosition "link.position" Axis(0) Master OnBus |now| now.put_out.x;
+        "position that the master puts out between the samples of the motion task: held for a cycle of the bus, not yet rounded to units of the drive";
+    LinkVelocity "link.velocity" Axis(1) Master OnBus |now| now.put_out.v;
+        "its velocity";
+    LinkAcceleration "link.acceleration" Axis(2) Master OnBus |now| now.put_out.a;
+        "its acceleration";
+    LinkEffort "link.effort" MotorEffort Master OnBus |now| now.put_out_effort;
+        "torque or force that the master puts out beside it";
     SetpointPosition "setpoint.position" Axis(0) SetPoint Always |now| now.setpoint.x;
         "position of the set-point";
     SetpointVelocity "setpoint.velocity" Axis(1) SetPoint Always |now| now.setpoint.v;

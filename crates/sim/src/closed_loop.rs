@@ -184,7 +184,7 @@ impl ClosedLoop {
                 let demand = network.step(k, &request, switches.index, measure, recorder);
                 let command = drive::step(params, state, demand, &sensors);
                 now.setpoint = network.setpoint(now.motor.position);
-                (now.task, now.bus_position) = network.told();
+                network.tell(now);
                 (now.reference, now.motor_reference) = match network.reference(t) {
                     Some((reference, motor)) => (reference.x, motor.position),
                     None => (now.load.position, now.motor.position),

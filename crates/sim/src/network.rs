@@ -32,6 +32,7 @@ use servobench_fieldbus::task::{self, TaskFault};
 use servobench_fieldbus::{AxisCommand, AxisFeedback, Task};
 use servobench_motion::interpolate::Sample;
 use servobench_plant::SwitchReading;
+use servobench_signals::Instant;
 use servobench_trace::Recorder;
 use signals::Signals;
 
@@ -319,9 +320,13 @@ impl Network {
         self.failure.take()
     }
 
-    /// The set-point of the motion task, and the actual position as the master reads it.
-    pub(crate) const fn told(&self) -> (Setpoint, f64) {
-        (self.asked, self.bus_position)
+    /// Brings what goes over the bus to `now`: the set-point of the motion task, what the master makes of it, and the actual
+    /// position as the master reads it.
+    pub(crate) fn tell(&self, now: &mut Instant) {
+        let (params, state) = &self.link;
+        let put_out = state.output(params);
+        (now.task, now.bus_position) = (self.asked, self.bus_position);
+        (now.put_out, now.put_out_effort) = (put_out.setpoint, put_out.torque);
     }
 
     /// Notes what is known at the end only.

@@ -104,7 +104,9 @@ const PLAIN: Plot = Plot {
 // so that all of them can be seen.
 const WIDEST: f32 = 5.0;
 const WIDE: f32 = 3.5;
+const BROAD: f32 = 2.75;
 const MIDDLE: f32 = 2.0;
+const SLIM: f32 = 1.5;
 const THIN: f32 = 1.0;
 
 /// All plots in the order of the page.
@@ -199,7 +201,8 @@ pub(crate) const PLOTS: &[Plot] = &[
         curves: &[curve(&[Signal::CommandOutput.name()], "output", style::MOTOR, MIDDLE)],
         ..PLAIN
     },
-    // The way of the set-point: from the motion task over the bus to what the motor is to follow, and what the master receives.
+    // The way of the set-point: from the motion task over the bus to what the motor is to follow, and what the master puts out and
+    // receives.
     Plot {
         title: "Set-point position",
         path: "setpoint_position",
@@ -211,6 +214,7 @@ pub(crate) const PLOTS: &[Plot] = &[
             curve(&[Signal::ReferenceMotorPosition.name()], "motor reference", style::MOTOR, MIDDLE),
             curve(&[Signal::TaskPosition.name()], "motion task", style::TABLE, WIDE),
             curve(&[Signal::BusPosition.name()], "master reads", style::AUXILIARY, WIDEST),
+            curve(&[Signal::LinkPosition.name()], "put out by the master", style::LOAD, SLIM),
         ],
         ..PLAIN
     },
@@ -222,6 +226,7 @@ pub(crate) const PLOTS: &[Plot] = &[
         curves: &[
             curve(&[Signal::SetpointVelocity.name()], "set-point", style::REFERENCE, MIDDLE),
             curve(&[Signal::TaskVelocity.name()], "motion task", style::TABLE, WIDE),
+            curve(&[Signal::LinkVelocity.name()], "put out by the master", style::LOAD, BROAD),
         ],
         ..PLAIN
     },
@@ -230,7 +235,10 @@ pub(crate) const PLOTS: &[Plot] = &[
         path: "setpoint_acceleration",
         derivative: Some(1),
         page: Page::SetPoint,
-        curves: &[curve(&[Signal::SetpointAcceleration.name()], "acceleration", style::MOTOR, MIDDLE)],
+        curves: &[
+            curve(&[Signal::SetpointAcceleration.name()], "acceleration", style::MOTOR, MIDDLE),
+            curve(&[Signal::LinkAcceleration.name()], "put out by the master", style::LOAD, THIN),
+        ],
         ..PLAIN
     },
     Plot {
@@ -249,6 +257,16 @@ pub(crate) const PLOTS: &[Plot] = &[
         derivative: Some(3),
         page: Page::SetPoint,
         curves: &[curve(&[Signal::SetpointSnap.name()], "snap", style::AUXILIARY, MIDDLE)],
+        ..PLAIN
+    },
+    Plot {
+        title: "Torque of the master",
+        linear_title: Some("Force of the master"),
+        path: "setpoint_effort",
+        page: Page::SetPoint,
+        needs_a_value: true,
+        held: true,
+        curves: &[curve(&[Signal::LinkEffort.name()], "put out by the master", style::LOAD, MIDDLE)],
         ..PLAIN
     },
     Plot {

@@ -136,6 +136,13 @@ impl Params {
         &self.settings
     }
 
+    /// Whether the torque of samples goes out beside positions or velocities.
+    pub(crate) const fn sends_torque(&self) -> bool {
+        match self.settings.control {
+            Control::Position { torque_offset, .. } | Control::Velocity { torque_offset, .. } => torque_offset,
+        }
+    }
+
     /// By how many base ticks the set-point that is put out lies behind the sample of the motion task, always: what is put out
     /// at tick t is the motion that the samples describe at t − delay.
     #[must_use]

@@ -79,6 +79,11 @@ impl Stream {
         &self.output
     }
 
+    /// When that was put out (base ticks).
+    pub(crate) const fn put_out_at(&self) -> u64 {
+        self.at
+    }
+
     /// Whether that was held back by the velocity limit.
     pub(crate) const fn is_limited(&self) -> bool {
         self.limited

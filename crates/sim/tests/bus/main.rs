@@ -3,4 +3,5 @@ mod bench;
 mod counters;
 mod faults;
 mod modes;
+mod put_out;
 mod task;
