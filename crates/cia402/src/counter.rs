@@ -10,6 +10,11 @@
 //! half the range has two directions and is refused. A longer one looks like a shorter one the other way and cannot be
 //! seen.
 //!
+//! # Over the bus
+//!
+//! The objects of CiA 402 that hold positions have 32 bits. What a wider counter shows takes two words: the lower half in the object,
+//! the upper half in one of the manufacturer ([`Counter::words`]).
+//!
 //! ```
 //! use servobench_cia402::counter::{Counter, Unwrapped};
 //! let mut position = Unwrapped::new(Counter::signed(16)?, 32_767_i16)?;
@@ -74,6 +79,35 @@ impl Counter {
         // The range is a power of two: its low bits are the remainder, of negative positions too.
         let remainder = position & (self.range() - 1);
         if remainder > self.highest() { remainder - self.range() } else { remainder }
+    }
+
+    /// What the counter shows at a position (counts) as words of 32 bits, the lower one first, as an unsigned counter uses them too. The
+    /// upper one of a counter of 32 bits or fewer is 0.
+    ///
+    /// ```
+    /// use servobench_cia402::counter::Counter;
+    /// let wide = Counter::signed(64)?;
+    /// assert_eq!(wide.words(-2), [-2, -1]);
+    /// assert_eq!(wide.reading_of([-2, -1]), -2);
+    /// # Ok::<(), servobench_cia402::units::UnitError>(())
+    /// ```
+    #[must_use]
+    pub const fn words(self, position: i128) -> [i32; 2] {
+        let shown = self.wrap(position);
+        #[expect(clippy::cast_possible_truncation, reason = "the halves of 64 bits, as an unsigned counter uses them")]
+        let [low, high] = [shown as i32, (shown >> 32) as i32];
+        [low, if self.bits > 32 { high } else { 0 }]
+    }
+
+    /// The reading in [`words`](Self::words).
+    #[must_use]
+    pub const fn reading_of(self, [low, high]: [i32; 2]) -> i128 {
+        match (self.bits > 32, self.signed) {
+            (false, true) => low as i128,
+            (false, false) => low.cast_unsigned() as i128,
+            (true, true) => (high as i128) << 32 | low.cast_unsigned() as i128,
+            (true, false) => (high.cast_unsigned() as i128) << 32 | low.cast_unsigned() as i128,
+        }
     }
 
     /// The shortest way from one reading to another, from −2^(N−1) to 2^(N−1) − 1 counts.

@@ -11,8 +11,10 @@ pub struct Commands {
     pub controlword: Controlword,
     /// Mode of operation that is asked for (6060h).
     pub mode: i8,
-    /// 607Ah.
+    /// 607Ah; with a position counter of more than 32 bits its lower half.
     pub target_position: i32,
+    /// Its upper half, in an object of the manufacturer; 0 with 32 bits or fewer.
+    pub target_position_high: i32,
     /// 60FFh.
     pub target_velocity: i32,
     /// 6071h.
@@ -59,10 +61,15 @@ pub struct Actuals {
     pub statusword: Statusword,
     /// Mode of operation that is active (6061h).
     pub mode: i8,
-    /// 6064h.
+    /// 6064h; with a position counter of more than 32 bits its lower half.
     pub position: i32,
-    /// What the position loop follows (6062h); the actual position where there is no position loop.
+    /// Its upper half, in an object of the manufacturer; 0 with 32 bits or fewer.
+    pub position_high: i32,
+    /// What the position loop follows (6062h); the actual position where there is no position loop. With a position counter of
+    /// more than 32 bits its lower half.
     pub position_demand: i32,
+    /// Its upper half, in an object of the manufacturer; 0 with 32 bits or fewer.
+    pub position_demand_high: i32,
     /// 606Ch.
     pub velocity: i32,
     /// 6077h.

@@ -14,7 +14,7 @@
 //! # Positions
 //!
 //! The encoder gives increments, unwrapped, in its own direction. The axis counts from another zero once it is homed; modes see
-//! that position (m or rad), the loops the encoder's. The bus has a counter of user-defined units that wraps, of 32 bits or fewer: an absolute target of
+//! that position (m or rad), the loops the encoder's. The bus has a counter of user-defined units that wraps: an absolute target of
 //! a cyclic mode is the one of all that show the same value which is nearest to the axis, one of a profile lies in the same turn
 //! of the counter as the axis.
 //!

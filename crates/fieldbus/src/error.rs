@@ -12,12 +12,6 @@ pub enum FieldbusError {
     /// A limit that no stop can be planned with.
     #[error(transparent)]
     Plan(#[from] PlanError),
-    /// A position counter that the process data cannot carry.
-    #[error("a position counter of {bits} bits does not fit the 32 bits of 607Ah and 6064h: take one of 8 to 32 bits")]
-    WideCounter {
-        /// Its width (bit).
-        bits: u32,
-    },
     /// More slack for late samples than the buffer holds samples.
     #[error(
         "`margin` must be at most {highest} ticks, two cycles of the motion task, got {margin}: let the samples come \

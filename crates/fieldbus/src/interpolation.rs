@@ -5,7 +5,8 @@
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(i8)]
 pub enum Interpolation {
-    /// Disabled: what is commanded is what the drive follows itself, without a position loop the actual position.
+    /// Disabled: what is put out is what the axis does by itself: the position that the drive follows, without a position loop the
+    /// actual one, its velocity, and the actual effort.
     #[default]
     Off = 0,
     /// Too few samples yet; the axis waits where it is.
@@ -67,7 +68,8 @@ impl Interpolation {
     pub const fn meaning(self) -> &'static str {
         match self {
             Self::Off => {
-                "no set-points are requested, or the drive does not follow them: the output is the drive's own position"
+                "no set-points are requested, or the drive does not follow them: the output is the axis' own position, velocity \
+                 and effort"
             }
             Self::Wait => "too few samples yet: the axis holds its position",
             Self::Run1 => "every sample came in time",

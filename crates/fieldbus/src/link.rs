@@ -33,8 +33,12 @@
 //! does not come back by itself.
 //!
 //! Each holds until the rising edge of `reset`, and as long as its cause. After a limit switch the axis may move out of it only.
-//! Without power, in each of these, and while the drive is in another mode, what is put out is what the drive follows itself (6062h),
-//! without a position loop the actual position, so that nothing jumps when the drive follows again.
+//! Without power, in each of these, and while the drive is in another mode, what is put out is what the axis does by itself, so that
+//! nothing jumps when the drive follows again: the position that the drive follows (6062h), without a position loop the actual one,
+//! at the time when it will be reached, D later; its velocity; the actual effort. The frame holds what its mode carries: the velocity
+//! as target (csv) or offset (csp), the effort as target (cst). As an offset the effort is sent only where it was demanded as such:
+//! what the drive's loops make of a position they go on with themselves. An axis that moves when the drive begins to follow is
+//! brought to rest, and then to what is read, within [`Settings::recovery`].
 mod actuals;
 mod buffer;
 mod course;
@@ -65,7 +69,7 @@ use position::Position;
 use position_loop::PositionLoop;
 use sequencer::{Sequencer, Wanted};
 use servobench_base::{Setpoint, Tick};
-use servobench_cia402::{Actuals, Commands, ControlBit, StatusBit};
+use servobench_cia402::{Actuals, Commands, ControlBit, Mode, StatusBit};
 use servobench_motion::interpolate::{Command, Sample};
 use stream::Stream;
 use touch_probe::Probe;
@@ -104,6 +108,8 @@ pub struct State {
     homing: Procedure,
     drive_profile: DriveProfile,
     probe: Probe,
+    /// The effort that the axis has by itself, as far as it is demanded as such.
+    own_effort: f64,
     commands: Commands,
     /// Since when the mode that is asked for has been (base ticks).
     mode_since: u64,
@@ -128,10 +134,11 @@ impl Default for State {
             was_on: false,
             fault: None,
             stream: Stream::OFF,
-            ramp: Ramp::OFF,
+            ramp: Ramp::off(0.0),
             homing: Procedure::Idle,
             drive_profile: DriveProfile::default(),
             probe: Probe::default(),
+            own_effort: 0.0,
             commands: Commands::default(),
             mode_since: 0,
             in_mode_or_off: 0,
@@ -182,20 +189,54 @@ impl State {
         }
     }
 
-    /// What the motion task receives.
-    #[must_use]
-    pub fn feedback(&self, params: &Params) -> AxisFeedback {
+    /// What the axis does by itself, for the time when what is put out now is reached: the position that the drive follows or else
+    /// the actual one, and its velocity, 0 below a count per cycle of the motion task.
+    fn own_motion(&self, params: &Params) -> Setpoint {
+        let Params { scale, stream, .. } = params;
+        let tick = stream.timing.tick;
+        let followed = self.position.as_ref().and_then(Position::followed_per_tick);
+        let v = match followed {
+            Some(counts_per_tick) => scale.velocity_of(counts_per_tick / tick),
+            None => self.velocity(params),
+        };
+        let v = if v.abs() > stream.creep { v } else { 0.0 };
+        let x = self.position(params) + scale.position(self.following_error(params));
+        Setpoint { v, ..Setpoint::at_rest(x + v * (params.reference_delay as f64 * tick)) }
+    }
+
+    /// The actual effort, where it is one that was demanded as such, and until what is demanded next is followed. What the loops of
+    /// the drive make of a position or a velocity they go on with: sent beside it, it would count twice.
+    fn own_effort(&self, params: &Params, follows: bool) -> f64 {
+        match Mode::from_code(self.actuals.mode) {
+            Some(Mode::CyclicSynchronousTorque | Mode::ProfileTorque) => params.scale.effort(self.actuals.torque),
+            Some(Mode::CyclicSynchronousPosition | Mode::CyclicSynchronousVelocity)
+                if self.was_on && self.fault().is_none() && !follows =>
+            {
+                self.own_effort
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// Actual velocity.
+    fn velocity(&self, params: &Params) -> f64 {
         let Params { scale, settings, .. } = params;
-        let velocity = match &self.position {
+        match &self.position {
             Some(position) if settings.velocity_from_differences => {
                 scale.velocity_of(position.counts_per_tick() / params.stream.timing.tick)
             }
             _ => scale.velocity(self.actuals.velocity),
-        };
+        }
+    }
+
+    /// What the motion task receives.
+    #[must_use]
+    pub fn feedback(&self, params: &Params) -> AxisFeedback {
+        let scale = &params.scale;
         AxisFeedback {
             position: self.position(params),
             following_error: scale.position(self.following_error(params)),
-            velocity,
+            velocity: self.velocity(params),
             effort: scale.effort(self.actuals.torque),
             power: self.power(params),
             has_warning: self.actuals.statusword.has(StatusBit::Warning),
@@ -276,8 +317,8 @@ impl State {
     }
 
     /// By how much what the drive's loops follow is ahead of the actual position (counts).
-    fn following_error(&self, params: &Params) -> i64 {
-        self.position.as_ref().map_or(0, |_| params.scale.between(self.actuals.position, self.actuals.position_demand))
+    fn following_error(&self, params: &Params) -> i128 {
+        self.position.as_ref().map_or(0, |_| params.scale.ahead(&self.actuals))
     }
 
     fn position(&self, params: &Params) -> f64 {

@@ -85,3 +85,24 @@ fn every_step_shorter_than_half_the_range_has_a_direction() {
         }
     }
 }
+
+/// Oracle: the bytes of the integer, in the order of the bus.
+#[test]
+fn words_are_the_halves_of_the_reading() {
+    let mut random = Random::seeded(3201);
+    for bits in 8..=64 {
+        for signed in [true, false] {
+            let counter = counter(bits, signed);
+            let ends = [counter.lowest(), counter.lowest() + 1, -1, 0, 1, counter.highest()];
+            let any = (0..100).map(|_| i128::from(random.next()) - (1 << 62));
+            for position in ends.into_iter().chain(any) {
+                let [low, high] = counter.words(position);
+                assert_eq!(counter.reading_of([low, high]), counter.wrap(position), "{bits} bits, signed: {signed}");
+                let bytes = counter.wrap(position).to_le_bytes();
+                assert_eq!(low.to_le_bytes(), bytes[..4]);
+                let upper = if bits > 32 { &bytes[4..8] } else { &[0; 4] };
+                assert_eq!(high.to_le_bytes(), upper, "{bits} bits, signed: {signed}");
+            }
+        }
+    }
+}

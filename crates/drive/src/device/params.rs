@@ -141,10 +141,6 @@ impl Params {
         positive("period", self.period)?;
         positive("interpolation_time_period", f64::from(self.cycle.steps))?;
         self.units.check()?;
-        let bits = self.counter.range().trailing_zeros();
-        if bits > i32::BITS {
-            return Err(ParamError { name: "counter", value: bits.into(), bound: "at most the 32 bits of its object" });
-        }
         self.check_rotary()?;
         self.cyclic_position().check()?;
         let Limits { velocity, profile_velocity, acceleration, deceleration, effort: [forward, backward], position } =

@@ -19,16 +19,19 @@ impl State {
             Demand::Position { setpoint, .. } => p.units.position_at(setpoint.x),
             Demand::Velocity { .. } | Demand::Effort(_) | Demand::Off => self.position(p),
         };
-        #[expect(clippy::cast_possible_truncation, reason = "32 bits of an object, as an unsigned counter uses them")]
-        let shown = |position: i64| p.shown(position) as i32;
+        let shown = |position: i64| p.counter.words(p.shown(position));
+        let ([position, position_high], [position_demand, position_demand_high]) =
+            (shown(self.position(p)), shown(demand));
         // The inputs as they are: the master has to know how the switches are wired.
         let closed = |is_met: bool, bit: u32| u32::from(is_met != p.reverse_switches) << bit;
         let follows_position = matches!(self.last, Demand::Position { .. });
         Actuals {
             statusword: self.statusword,
             mode: self.mode.map_or(0, Mode::code),
-            position: shown(self.position(p)),
-            position_demand: shown(demand),
+            position,
+            position_high,
+            position_demand,
+            position_demand_high,
             velocity: p.units.velocity(velocity),
             torque: p.units.effort(effort),
             following_error: if follows_position { p.units.distance(self.following_error) } else { 0 },
@@ -65,13 +68,12 @@ impl State {
             Some(Mode::CyclicSynchronousPosition) => frame.position_offset,
             _ => 0,
         };
-        let asked = i64::from(frame.target_position) + i64::from(offset);
+        let asked = p.target(frame) + i128::from(offset);
         let target = match self.wanted {
-            Some(Mode::ProfilePosition) => i128::from(here) - p.shown(here) + p.counter.wrap(asked.into()),
+            Some(Mode::ProfilePosition) => i128::from(here) - p.shown(here) + p.counter.wrap(asked),
             _ => p.nearest(asked, here),
         };
-        #[expect(clippy::cast_possible_truncation, reason = "within a turn of the counter of 64 bits of units")]
-        let position = p.units.from_position(target as i64);
+        let position = p.units.from_position(saturated(target));
         let kept = p.limits.position.map_or(position, |[lowest, highest]| position.clamp(lowest, highest));
         let rate = |units: u32, set: f64| if units == 0 { set } else { p.units.from_rate(units) };
         let velocity = rate(frame.profile_velocity, p.profile.velocity);
@@ -88,7 +90,7 @@ impl State {
         self.now.targets = Targets {
             controlword: frame.controlword,
             position: if self.wanted == Some(Mode::ProfilePosition) { position } else { kept },
-            distance: p.units.from_position(frame.target_position.into()),
+            distance: p.units.from_position(saturated(p.target(frame))),
             velocity: p.units.from_velocity(frame.target_velocity),
             effort: p.units.from_effort(frame.target_torque),
             velocity_offset: p.units.from_velocity(frame.velocity_offset),
@@ -112,4 +114,17 @@ impl State {
         }
         Ok(())
     }
+}
+
+impl Params {
+    /// The target position as a signed integer: of 32 bits, with a wider counter of 64.
+    fn target(&self, frame: &Commands) -> i128 {
+        let (low, high) = (frame.target_position, i128::from(frame.target_position_high));
+        if self.counter.range() > 1 << i32::BITS { high << 32 | i128::from(low.cast_unsigned()) } else { low.into() }
+    }
+}
+
+/// The nearest integer of 64 bits.
+fn saturated(units: i128) -> i64 {
+    i64::try_from(units).unwrap_or(if units < 0 { i64::MIN } else { i64::MAX })
 }

@@ -21,6 +21,11 @@ pub struct Rotary {
 impl Params {
     pub(super) fn check_rotary(&self) -> Result<(), ParamError> {
         let (lowest, highest) = (self.counter.lowest(), self.counter.highest());
+        let bits = self.counter.range().trailing_zeros();
+        if bits > i32::BITS && self.rotary.range.is_none() && self.rotary.direction != RotaryAxisOption::Linear {
+            let bound = "at most 32 bits with a rotary axis direction (60F2h), as a range (607Bh) has";
+            return Err(ParamError { name: "counter", value: bits.into(), bound });
+        }
         match self.rotary.range {
             Some(range) if i128::from(range.min()) < lowest || i128::from(range.max()) > highest => {
                 let bound = "within what the counter of the bus shows";
@@ -40,10 +45,14 @@ impl Params {
     }
 
     /// The position nearest to `here` at which the bus shows the same as at `asked`.
-    pub(super) fn nearest(&self, asked: i64, here: i64) -> i128 {
+    pub(super) fn nearest(&self, asked: i128, here: i64) -> i128 {
         match self.rotary.range {
-            Some(range) => i128::from(here) + i128::from(range.way(here, asked, Direction::Shortest)),
-            None => self.counter.nearest(asked.into(), here.into()),
+            Some(range) => {
+                #[expect(clippy::cast_possible_truncation, reason = "what is beyond 64 bits is not in a range of 32")]
+                let way = range.way(here, asked as i64, Direction::Shortest);
+                i128::from(here) + i128::from(way)
+            }
+            None => self.counter.nearest(asked, here.into()),
         }
     }
 

@@ -25,7 +25,7 @@ impl Running {
             Mode::ProfileVelocity => Self::Pv(profile::velocity::State::begin(now)),
             Mode::ProfileTorque => Self::Tq(profile::effort::State::begin(now)),
             Mode::Homing => Self::Hm(homing::State::begin(now)),
-            Mode::CyclicSynchronousPosition => Self::Csp(cyclic::position::State::begin(now)),
+            Mode::CyclicSynchronousPosition => Self::Csp(cyclic::position::State::begin(&p.cyclic_position(), now)),
             Mode::CyclicSynchronousVelocity => Self::Csv(cyclic::velocity::State::begin(now)),
             Mode::CyclicSynchronousTorque => Self::Cst(cyclic::effort::State::begin(now)),
             Mode::InterpolatedPosition => Self::Ip(interpolated::State::begin(now)),
@@ -40,7 +40,7 @@ impl Running {
             Self::Tq(x) => *x = profile::effort::State::begin(now),
             Self::Hm(x) => x.resume(now),
             Self::Ip(x) => *x = interpolated::State::begin(now),
-            Self::Csp(x) => *x = cyclic::position::State::begin(now),
+            Self::Csp(x) => *x = cyclic::position::State::begin(&p.cyclic_position(), now),
             Self::Csv(x) => *x = cyclic::velocity::State::begin(now),
             Self::Cst(x) => *x = cyclic::effort::State::begin(now),
         }

@@ -136,6 +136,37 @@ fn cyclic_targets_run_through_the_end_of_narrow_counters() {
         assert!((axis.position - target as f64 * 1e-6).abs() < 1e-6, "{bits} {signed}: {}", axis.position);
         assert_eq!(axis.actuals().position, axis.frame.target_position, "{bits} {signed}");
     }
-    let params = Params { counter: Counter::signed(33).unwrap(), ..Params::default() };
+}
+
+/// Counters whose readings take two words. Those of 64 bits end where the drive's own integers do.
+#[test]
+fn cyclic_targets_run_through_the_end_of_wide_counters() {
+    for (bits, signed, cycles) in [(33, true, 30), (40, false, 30), (48, true, 30), (64, true, 1), (64, false, 1)] {
+        let counter = if signed { Counter::signed(bits) } else { Counter::unsigned(bits) }.unwrap();
+        let mut axis = Axis::enabled(&Params { counter, ..Params::default() }, Mode::CyclicSynchronousPosition);
+        let step = counter.range() / 3;
+        let mut target = 0_i128;
+        for n in 0..4 * cycles {
+            // Forwards, back through zero and as far to the other side, and forwards again.
+            target += if (cycles..3 * cycles).contains(&n) { -step } else { step };
+            [axis.frame.target_position, axis.frame.target_position_high] = counter.words(target);
+            axis.cycle();
+            axis.cycle();
+            let what = format!("{bits} bits, signed {signed}, cycle {n}");
+            let expected = target as f64 * 1e-6;
+            assert!((axis.position - expected).abs() <= 1e-6 + 4.0 * f64::EPSILON * expected.abs(), "{what}");
+            let actuals = axis.actuals();
+            let shown = counter.reading_of([actuals.position, actuals.position_high]);
+            // Beyond 2⁵³ increments the simulated encoder itself is a number of 64 bits.
+            let rounding = (target.abs() as f64 * 4.0 * f64::EPSILON) as i128 + 1;
+            assert!((shown - counter.wrap(target)).abs() <= rounding, "{what}: {shown}");
+        }
+    }
+    // A rotary axis has its range in objects of 32 bits.
+    let rotary = servobench_drive::device::Rotary {
+        direction: servobench_cia402::modulo::RotaryAxisOption::Shortest,
+        ..servobench_drive::device::Rotary::default()
+    };
+    let params = Params { counter: Counter::signed(33).unwrap(), rotary, ..Params::default() };
     assert_eq!(params.check().map_err(|error| error.name), Err("counter"));
 }

@@ -13,8 +13,8 @@ impl State {
         (self.actuals, self.received_at) = (actuals, now);
         self.sequencer.receive(actuals.statusword, now);
         let followed = match &mut self.position {
-            Some(position) => position.follow(&p.scale, actuals.position, now),
-            none => Position::start(&p.scale, actuals.position, now).map(|position| *none = Some(position)),
+            Some(position) => position.follow(&p.scale, &actuals, now),
+            none => Position::start(&p.scale, &actuals, now).map(|position| *none = Some(position)),
         };
         if followed.is_err() {
             self.fault = self.fault.or(Some(LinkFault::PositionLost));
@@ -58,7 +58,7 @@ impl State {
     pub(super) fn reset(&mut self, p: &Params) {
         self.sequencer.reset();
         if self.fault == Some(LinkFault::PositionLost) {
-            self.position = Position::start(&p.scale, self.actuals.position, self.received_at).ok();
+            self.position = Position::start(&p.scale, &self.actuals, self.received_at).ok();
         }
         self.fault = None;
     }

@@ -7,7 +7,10 @@
 //! e(t) = output(t) − read(t),     e(now) and its velocity and acceleration as they are,
 //! ```
 //!
-//! is led to zero by a jerk-limited transition with the recovery limits. So the output never jumps, and its acceleration is at
+//! but for an acceleration beyond that of the recovery, twice: it is that of samples which contradict each other, such as positions that
+//! follow a moving axis at velocity zero, and gone with the next interval.
+//!
+//! That difference is led to zero by a jerk-limited transition with the recovery limits. So the output never jumps, and its acceleration is at
 //! most what is read plus that of the recovery. A stop is the same kind of transition, to standstill. What torque differs by
 //! fades linearly over the same time.
 use servobench_base::Setpoint;
@@ -19,6 +22,8 @@ use servobench_motion::online::{DirectionalLimits, Effort, Target, Transition};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Recovery {
     pub(crate) limits: DirectionalLimits,
+    /// The largest acceleration that a difference is taken to have (m/s² or rad/s²).
+    pub(crate) highest_acceleration: f64,
     /// A difference in position that does not matter (m or rad).
     pub(crate) resolution: f64,
     /// Cycle of the motion task (base ticks).
@@ -91,7 +96,8 @@ impl Course {
     /// From `output` to what is read; `None` where that cannot be planned.
     pub(crate) fn join(output: Command, read: Command, recovery: &Recovery, now: u64) -> Option<Self> {
         let (o, r) = (output.setpoint, read.setpoint);
-        let e = Setpoint { x: o.x - r.x, v: o.v - r.v, a: o.a - r.a, j: 0.0, s: 0.0 };
+        let highest = recovery.highest_acceleration;
+        let e = Setpoint { x: o.x - r.x, v: o.v - r.v, a: (o.a - r.a).clamp(-highest, highest), j: 0.0, s: 0.0 };
         let torque = output.torque - read.torque;
         if !recovery.matters(&e) && torque == 0.0 {
             return Some(Self::Read);

@@ -2,6 +2,7 @@
 //!
 //! In profile position a set-point is handed over by bit 4 of the controlword and bit 12 of the statusword (IEC 61800-7-201,
 //! profile position mode): bit 4 rises with the target, bit 12 answers, both fall, and the next one can come.
+use super::frame::set_target;
 use super::{Params, State};
 use crate::{ProfileCommand, ProfileFeedback, TrajectoryPoint};
 use servobench_cia402::{Actuals, Mode, StatusBit};
@@ -69,7 +70,7 @@ impl State {
                 let acknowledges = self.actuals.statusword.has(StatusBit::ModeSpecific12);
                 self.drive_profile.hand_over(number, acknowledges);
                 if let Some(counts) = p.scale.counts(position) {
-                    self.commands.target_position = p.scale.target(counts);
+                    set_target(&mut self.commands, p.scale.counter(), counts.into());
                 }
                 self.commands.profile_velocity = rate(velocity);
                 self.set_acceleration(rate(acceleration));

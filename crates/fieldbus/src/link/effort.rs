@@ -1,6 +1,6 @@
 //! Efforts from one cycle of the motion task to the next: linear, as the source has it for the torque in every mode.
 //!
-//! Held when the next one is late, and led to zero within a cycle when it stays away for as long as set-points would be
+//! It begins with the actual effort. Held when the next one is late, and led to zero within a cycle when it stays away for as long as set-points would be
 //! predicted.
 use super::buffer::{PREDICTED, Timing};
 use crate::Interpolation;
@@ -16,7 +16,10 @@ pub(crate) struct Ramp {
 }
 
 impl Ramp {
-    pub(crate) const OFF: Self = Self { from: 0.0, to: 0.0, start: 0, state: Interpolation::Off };
+    /// Nothing is followed; who begins to follow begins with `effort`.
+    pub(crate) const fn off(effort: f64) -> Self {
+        Self { from: effort, to: effort, start: 0, state: Interpolation::Off }
+    }
 
     pub(crate) const fn state(&self) -> Interpolation {
         self.state

@@ -9,6 +9,7 @@ use super::stream::Post;
 use super::{Control, Params, Sequencing, State};
 use crate::{LinkFault, Task};
 use servobench_base::Setpoint;
+use servobench_cia402::counter::Counter;
 use servobench_cia402::{Commands, Mode};
 use servobench_motion::interpolate;
 
@@ -48,13 +49,14 @@ impl State {
     pub(super) fn put_out(&mut self, p: &Params, post: Post, now: u64) {
         self.end_homing(p);
         let follows = self.follows(p) && !self.homing.is_interrupted();
-        let demanded = self.position(p) + p.scale.position(self.following_error(p));
+        self.own_effort = self.own_effort(p, follows);
         if !(follows && matches!(self.command.task, Task::Follow(_))) {
-            self.stream.switch_off(demanded, now);
+            let own = interpolate::Command { setpoint: self.own_motion(p), torque: self.own_effort };
+            self.stream.switch_off(own, now);
             self.position_loop.open();
         }
         if !(follows && matches!(self.command.task, Task::Effort(_))) {
-            self.ramp = Ramp::OFF;
+            self.ramp = Ramp::off(p.scale.effort(self.actuals.torque));
         }
         self.limited = false;
         match self.command.task {
@@ -80,10 +82,13 @@ impl State {
         let interpolate::Command { setpoint, torque } = *self.stream.output();
         let error = self.error_of_the_axis(p, &setpoint, now);
         let offset = |wanted: bool, value: f64| if wanted { value } else { 0.0 };
-        let target = p.scale.counts(setpoint.x).map(|counts| p.scale.target(counts));
+        let target = p.scale.counts(setpoint.x);
         let rest = &mut self.torque_rest;
         let mut sent = Sent { commands: &mut self.commands, complete: true };
-        sent.set(target, |commands| &mut commands.target_position);
+        match target {
+            Some(counts) => set_target(sent.commands, p.scale.counter(), counts.into()),
+            None => sent.complete = false,
+        }
         match p.settings.control {
             Control::Position { velocity_offset, torque_offset } => {
                 let (v, torque) = (offset(velocity_offset, setpoint.v), offset(torque_offset, torque));
@@ -117,15 +122,33 @@ impl State {
         self.position_loop.error()
     }
 
-    /// Asks for what the axis does anyway: for the position that its drive follows and for neither velocity nor effort.
+    /// Asks for what the axis does anyway, as far as the mode that the task needs carries it: the position that its drive follows,
+    /// its velocity, and the effort that it is commanded.
     pub(super) fn rest(&mut self, p: &Params) {
         let ahead = self.following_error(p);
+        let Setpoint { v, .. } = self.own_motion(p);
+        let velocity = p.scale.nearest_velocity(v);
+        let effort_offset = p.scale.thousandths(self.own_effort).unwrap_or(0);
         let commands = &mut self.commands;
         if let Some(position) = &self.position {
-            commands.target_position = p.scale.target(position.counts() + ahead);
+            let travel = v * (p.reference_delay as f64 * p.stream.timing.tick);
+            let travel = p.scale.counts(travel).unwrap_or(0);
+            set_target(commands, p.scale.counter(), position.counts() + ahead + i128::from(travel));
         }
         (commands.target_velocity, commands.target_torque) = (0, 0);
         (commands.velocity_offset, commands.torque_offset) = (0, 0);
+        match (&self.command.task, p.settings.control) {
+            (Task::Follow(_), Control::Position { velocity_offset, torque_offset }) => {
+                commands.velocity_offset = if velocity_offset { velocity } else { 0 };
+                commands.torque_offset = if torque_offset { effort_offset } else { 0 };
+            }
+            (Task::Follow(_), Control::Velocity { torque_offset, .. }) => {
+                commands.target_velocity = velocity;
+                commands.torque_offset = if torque_offset { effort_offset } else { 0 };
+            }
+            (Task::Effort(_), _) => commands.target_torque = self.actuals.torque,
+            (Task::Home { .. } | Task::Drive(_), _) => {}
+        }
         self.torque_rest = 0.0;
     }
 
@@ -172,11 +195,16 @@ impl State {
     /// The reference was found: the position is the one of all readings that is nearest to it.
     fn count_from_reference(&mut self, p: &Params) {
         let reference = self.commands.home_offset;
-        match Position::near(&p.scale, reference.into(), self.actuals.position, self.received_at) {
+        match Position::near(&p.scale, reference.into(), &self.actuals, self.received_at) {
             Ok(position) => self.position = Some(position),
             Err(_) => self.fault = self.fault.or(Some(LinkFault::PositionLost)),
         }
     }
+}
+
+/// The target position, in as many words as the counter needs.
+pub(super) const fn set_target(commands: &mut Commands, counter: Counter, counts: i128) {
+    [commands.target_position, commands.target_position_high] = counter.words(counts);
 }
 
 /// A frame that is filled.

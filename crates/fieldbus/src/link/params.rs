@@ -123,7 +123,14 @@ impl Params {
         Interval::new(timing.mode, cycle as f64 * tick, &[Sample::default(); 6])?;
         let moving = servobench_base::Setpoint { v: velocity_limit, ..Default::default() };
         Transition::plan(Order::Third, &moving, &Target::Velocity(0.0), &limits, Effort::Fast)?;
-        let recovery = Recovery { limits, resolution: scale.resolution() / 1000.0, cycle: cycle as f64, tick };
+        let highest_acceleration = 2.0 * settings.recovery.acceleration;
+        let recovery = Recovery {
+            limits,
+            highest_acceleration,
+            resolution: scale.resolution() / 1000.0,
+            cycle: cycle as f64,
+            tick,
+        };
         let (highest_step, count) = (velocity_limit * tick, scale.resolution());
         let creep = count / (cycle as f64 * tick);
         let stream = StreamParams { timing, recovery, highest_step, bus_cycle, count, creep };

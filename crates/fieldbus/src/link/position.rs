@@ -1,65 +1,84 @@
 //! Where the axis is, by a counter that wraps.
-use super::units::Scale;
+use super::units::{Scale, reading};
+use servobench_cia402::Actuals;
 use servobench_cia402::counter::Unwrapped;
 use servobench_cia402::units::UnitError;
 
 /// Cycles that a difference spans: the coarser the counter, the longer it should be.
 const SPAN: usize = 4;
 
+/// A reading of the actual position and of what the drive's loops follow (counts).
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Reading {
+    actual: i128,
+    followed: i128,
+    /// When it was received (base ticks).
+    at: u64,
+}
+
 /// Position and velocity from one reading to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Position {
     unwrapped: Unwrapped,
-    counts: i64,
-    /// The last readings with their ticks, the oldest at `oldest`.
-    readings: [(i64, u64); SPAN],
+    counts: i128,
+    /// The last readings, the oldest at `oldest`.
+    readings: [Reading; SPAN],
     oldest: usize,
     counts_per_tick: f64,
+    followed_per_tick: f64,
 }
 
 impl Position {
-    /// At rest where the counter shows.
-    pub(crate) fn start(scale: &Scale, bits: i32, now: u64) -> Result<Self, UnitError> {
-        let unwrapped = Unwrapped::new(scale.counter(), scale.reading(bits))?;
-        Ok(Self::at(unwrapped, now))
+    /// At rest where the counter shows, in `actuals` that were received `now`.
+    pub(crate) fn start(scale: &Scale, actuals: &Actuals, now: u64) -> Result<Self, UnitError> {
+        let unwrapped = Unwrapped::new(scale.counter(), reading(scale.counter(), actuals))?;
+        Ok(Self::at(unwrapped, scale, actuals, now))
     }
 
-    /// At rest near `counts`, where the counter shows `bits`: after homing.
-    pub(crate) fn near(scale: &Scale, counts: i64, bits: i32, now: u64) -> Result<Self, UnitError> {
+    /// At rest near `counts`, where the counter shows so: after homing.
+    pub(crate) fn near(scale: &Scale, counts: i64, actuals: &Actuals, now: u64) -> Result<Self, UnitError> {
         let counter = scale.counter();
         let mut unwrapped = Unwrapped::new(counter, counter.wrap(counts.into()))?.at(counts);
-        unwrapped.follow(scale.reading(bits))?;
-        Ok(Self::at(unwrapped, now))
+        unwrapped.follow(reading(scale.counter(), actuals))?;
+        Ok(Self::at(unwrapped, scale, actuals, now))
     }
 
-    fn at(unwrapped: Unwrapped, now: u64) -> Self {
-        let counts = low_bits(unwrapped.position());
-        Self { unwrapped, counts, readings: [(counts, now); SPAN], oldest: 0, counts_per_tick: 0.0 }
+    fn at(unwrapped: Unwrapped, scale: &Scale, actuals: &Actuals, now: u64) -> Self {
+        let counts = unwrapped.position();
+        let followed = counts + scale.ahead(actuals);
+        let readings = [Reading { actual: counts, followed, at: now }; SPAN];
+        Self { unwrapped, counts, readings, oldest: 0, counts_per_tick: 0.0, followed_per_tick: 0.0 }
     }
 
-    /// The next reading. Between frames that were lost the velocity is their mean.
-    pub(crate) fn follow(&mut self, scale: &Scale, bits: i32, now: u64) -> Result<(), UnitError> {
-        self.counts = low_bits(self.unwrapped.follow(scale.reading(bits))?);
-        let (before, then) = core::mem::replace(&mut self.readings[self.oldest], (self.counts, now));
+    /// The next reading. Between frames that were lost a velocity is their mean.
+    pub(crate) fn follow(&mut self, scale: &Scale, actuals: &Actuals, now: u64) -> Result<(), UnitError> {
+        self.counts = self.unwrapped.follow(reading(scale.counter(), actuals))?;
+        let followed = self.counts + scale.ahead(actuals);
+        let reading = Reading { actual: self.counts, followed, at: now };
+        let before = core::mem::replace(&mut self.readings[self.oldest], reading);
         self.oldest = (self.oldest + 1) % SPAN;
-        if now > then {
-            self.counts_per_tick = (self.counts - before) as f64 / (now - then) as f64;
+        if now > before.at {
+            let ticks = (now - before.at) as f64;
+            self.counts_per_tick = (reading.actual - before.actual) as f64 / ticks;
+            self.followed_per_tick = (reading.followed - before.followed) as f64 / ticks;
         }
         Ok(())
     }
 
     /// Counts since the counter's zero, wraps included.
-    pub(crate) const fn counts(&self) -> i64 {
+    pub(crate) const fn counts(&self) -> i128 {
         self.counts
+    }
+
+    /// Velocity of what the drive's loops follow (counts per base tick); `None` where they follow no position, or one that the
+    /// axis does not leave by a count.
+    pub(crate) fn followed_per_tick(&self) -> Option<f64> {
+        let follows = self.readings.iter().any(|reading| reading.actual != reading.followed);
+        follows.then_some(self.followed_per_tick)
     }
 
     /// Velocity (counts per base tick).
     pub(crate) const fn counts_per_tick(&self) -> f64 {
         self.counts_per_tick
     }
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "2⁶³ counts are four thousand million turns of a 32-bit counter")]
-const fn low_bits(position: i128) -> i64 {
-    position as i64
 }

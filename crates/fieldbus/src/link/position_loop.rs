@@ -99,7 +99,8 @@ impl PositionLoop {
         self.error
     }
 
-    /// What was put out at `tick`, between two cycles the cubic by positions and velocities; before the first of them that.
+    /// What was put out at `tick`, between two cycles the cubic by positions and velocities; before the first of them on the line
+    /// that leads to it, as an axis moves that begins to be followed.
     fn at(&self, tick: u64, seconds_per_tick: f64) -> Option<f64> {
         let ago = |cycles: usize| self.kept[(self.newest + KEPT - cycles) % KEPT];
         let mut later: Option<PutOut> = None;
@@ -110,7 +111,7 @@ impl PositionLoop {
             }
             later = Some(earlier);
         }
-        later.map(|first| first.x)
+        later.map(|first| first.x - first.v * ((first.tick - tick) as f64 * seconds_per_tick))
     }
 }
 
@@ -154,12 +155,15 @@ mod tests {
     }
 
     #[test]
-    fn before_the_first_set_point_the_axis_is_where_that_is() {
+    fn before_the_first_set_point_the_axis_is_on_the_line_to_it() {
         let mut position_loop = PositionLoop::OPEN;
         position_loop.receive(0.3, 40, TICK);
         assert_eq!(position_loop.error().to_bits(), 0.0_f64.to_bits(), "nothing is followed");
         position_loop.put_out(100, &Setpoint { v: 0.1, ..Setpoint::at_rest(0.5) });
         position_loop.receive(0.25, 40, TICK);
+        // 60 ticks before, at 0.1 m/s.
+        assert!((position_loop.error() - (0.25 - 0.1 * 60.0 * TICK)).abs() < 1e-15, "{}", position_loop.error());
+        position_loop.receive(0.25, 100, TICK);
         assert_eq!(position_loop.error().to_bits(), 0.25_f64.to_bits());
         position_loop.open();
         position_loop.receive(0.3, 200, TICK);

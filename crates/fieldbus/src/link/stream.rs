@@ -109,13 +109,13 @@ impl Stream {
         }
     }
 
-    /// Puts out the position that the drive follows.
-    pub(crate) fn switch_off(&mut self, position: f64, now: u64) {
+    /// Puts out what the axis does by itself.
+    pub(crate) fn switch_off(&mut self, own: Command, now: u64) {
         if self.state != Interpolation::Off {
             *self = Self::OFF;
         }
-        self.course = Course::Rest(position);
-        self.output = Command { setpoint: Setpoint::at_rest(position), torque: 0.0 };
+        self.course = Course::Rest(own.setpoint.x);
+        self.output = own;
         self.at = now;
     }
 
@@ -141,6 +141,9 @@ impl Stream {
             }
             if self.course.reads() {
                 self.trouble = self.trouble.or(Some(Interpolation::Underflow));
+                self.course = Course::stop(expected, &p.recovery, now);
+            } else if self.state == Interpolation::Off && (expected.setpoint.v != 0.0 || expected.torque != 0.0) {
+                // The axis moves, or is pushed, when the drive begins to follow.
                 self.course = Course::stop(expected, &p.recovery, now);
             }
         }

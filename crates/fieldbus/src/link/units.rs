@@ -1,6 +1,7 @@
 //! Axis units against the drive's.
 use crate::FieldbusError;
 use servobench_base::{ParamError, finite, positive};
+use servobench_cia402::Actuals;
 use servobench_cia402::counter::Counter;
 
 /// How the drive counts.
@@ -14,7 +15,7 @@ pub struct Units {
     pub velocity_factor: f64,
     /// Rated torque or force (6076h; N·m or N), of which 6071h counts thousandths.
     pub rated_effort: f64,
-    /// Counter of the positions (607Ah, 6064h), up to 32 bits.
+    /// Counter of the positions (607Ah, 6064h; above 32 bits the drive has objects of its own for the upper halves).
     pub counter: Counter,
 }
 
@@ -46,10 +47,6 @@ impl Units {
         let (counts, count) = (drive_units / self.axis_units, self.axis_units / drive_units);
         finite("units.drive_units/axis_units", counts)?;
         finite("units.axis_units/drive_units", count)?;
-        let bits = self.counter.range().trailing_zeros();
-        if bits > 32 {
-            return Err(FieldbusError::WideCounter { bits });
-        }
         let sign = 1.0_f64.copysign(self.axis_units);
         Ok(Scale {
             counter: self.counter,
@@ -68,13 +65,13 @@ impl Scale {
         self.counter
     }
 
-    /// Nearest count; `None` beyond 2⁵³ counts, where they are no whole numbers any more.
+    /// Nearest count; `None` beyond 2⁵³ counts, where not every count is a number of 64 bits any more.
     pub(crate) fn counts(&self, x: f64) -> Option<i64> {
         whole(self.counts * x, 9_007_199_254_740_992.0)
     }
 
-    /// Position at a count.
-    pub(crate) const fn position(&self, counts: i64) -> f64 {
+    /// Position at a count, beyond 2⁵³ counts the nearest that a number of 64 bits can say.
+    pub(crate) const fn position(&self, counts: i128) -> f64 {
         self.count * counts as f64
     }
 
@@ -83,31 +80,23 @@ impl Scale {
         self.count.abs()
     }
 
-    /// What the counter shows at so many counts, in the 32 bits of its object.
-    pub(crate) fn target(&self, counts: i64) -> i32 {
-        let shown = self.counter.wrap(counts.into());
-        #[expect(clippy::cast_possible_truncation, reason = "32 bits of an object, as an unsigned counter uses them")]
-        let bits = shown as i32;
-        bits
-    }
-
-    /// The reading in the 32 bits of its object.
-    pub(crate) fn reading(&self, bits: i32) -> i128 {
-        if self.counter.lowest() < 0 { bits.into() } else { bits.cast_unsigned().into() }
-    }
-
-    /// Counts from one reading to another, by the shorter way.
-    pub(crate) fn between(&self, from: i32, to: i32) -> i64 {
+    /// Counts from the actual position to the one that the drive follows, by the shorter way.
+    pub(crate) fn ahead(&self, actuals: &Actuals) -> i128 {
         let range = self.counter.range();
-        let way = (self.reading(to) - self.reading(from)).rem_euclid(range);
-        #[expect(clippy::cast_possible_truncation, reason = "at most half of 32 bits")]
-        let shorter = if way > range / 2 { way - range } else { way } as i64;
-        shorter
+        let way = (followed(self.counter, actuals) - reading(self.counter, actuals)).rem_euclid(range);
+        if way > range / 2 { way - range } else { way }
     }
 
     /// Velocity in the drive's unit; `None` beyond 32 bits.
     pub(crate) fn drive_velocity(&self, v: f64) -> Option<i32> {
         whole(self.velocity * v, i32::MAX.into()).and_then(|v| i32::try_from(v).ok())
+    }
+
+    /// The nearest velocity that the drive's unit can express.
+    pub(crate) fn nearest_velocity(&self, v: f64) -> i32 {
+        #[expect(clippy::cast_possible_truncation, reason = "saturates, which is meant")]
+        let nearest = libm::floor(self.velocity * v + 0.5) as i32;
+        nearest
     }
 
     /// A magnitude of velocity, or of acceleration in velocity units per second: the nearest, at least 1 where it is not zero,
@@ -149,6 +138,16 @@ impl Scale {
     pub(crate) fn effort(&self, thousandths: i16) -> f64 {
         self.thousandth * f64::from(thousandths)
     }
+}
+
+/// The actual position as the counter shows it.
+pub(crate) fn reading(counter: Counter, actuals: &Actuals) -> i128 {
+    counter.reading_of([actuals.position, actuals.position_high])
+}
+
+/// What the loops of the drive follow, as the counter shows it.
+fn followed(counter: Counter, actuals: &Actuals) -> i128 {
+    counter.reading_of([actuals.position_demand, actuals.position_demand_high])
 }
 
 /// The nearest whole number, a half upwards as in `cia402::units`; `None` beyond `highest` or for NaN.
@@ -193,14 +192,22 @@ mod tests {
             let is_half = ((exact - exact.floor()) - 0.5).abs() < 1e-6 + exact.abs() * 4.0 * f64::EPSILON;
             prop_assert!(i128::from(counts) == expected || is_half, "{counts} for {expected}");
             let back = scaling.metres_or_radians(counts.into()).unwrap();
-            prop_assert!((scale.position(counts) - back).abs() <= 4.0 * f64::EPSILON * back.abs());
+            prop_assert!((scale.position(counts.into()) - back).abs() <= 4.0 * f64::EPSILON * back.abs());
         }
 
+        /// Oracle: the difference itself, which is shorter than half the range.
         #[test]
-        fn readings_are_told_back(bits in 8_u32..=32, signed: bool, counts in -1_000_000_000_000..1_000_000_000_000_i64) {
+        fn the_way_to_what_is_followed_is_found_in_counters_of_every_width(
+            bits in 8_u32..=64, signed: bool, at: i64, ahead: i64,
+        ) {
             let counter = if signed { Counter::signed(bits) } else { Counter::unsigned(bits) }.unwrap();
             let scale = Units { counter, ..units(1e6, 1.0) }.scale().unwrap();
-            prop_assert_eq!(scale.reading(scale.target(counts)), counter.wrap(counts.into()));
+            let ahead = i128::from(ahead) % (counter.range() / 2);
+            let ([position, position_high], [position_demand, position_demand_high]) =
+                (counter.words(at.into()), counter.words(i128::from(at) + ahead));
+            let actuals =
+                Actuals { position, position_high, position_demand, position_demand_high, ..Actuals::default() };
+            prop_assert_eq!(scale.ahead(&actuals), ahead);
         }
     }
 

@@ -6,4 +6,6 @@ mod power;
 mod random;
 mod rig;
 mod settings;
+mod taking_over;
 mod troubles;
+mod wide_counters;

@@ -61,6 +61,10 @@ pub(crate) struct Drive {
     pub(crate) deaf: bool,
     /// Whether the axis has not come to rest when it is braked.
     pub(crate) rolls: bool,
+    /// Counts by which the axis moves in a cycle in which nothing holds it.
+    pub(crate) coasts: i128,
+    /// Torque that its loops need while it follows positions.
+    pub(crate) holding_torque: i16,
     /// Counts since the start, wraps included.
     pub(crate) counts: i128,
     /// Cycles since the start of homing, which takes `HOMING` and moves by 37 counts in each.
@@ -77,7 +81,20 @@ impl Drive {
     pub(crate) fn new(counter: Counter) -> Self {
         let (power, memory) = (PowerParams::default(), PowerMemory::default());
         let (homing, asked, actuals) = (0, false, Actuals::default());
-        Self { power, memory, counter, fault: false, deaf: false, rolls: false, counts: 0, homing, asked, actuals }
+        Self {
+            power,
+            memory,
+            counter,
+            fault: false,
+            deaf: false,
+            rolls: false,
+            coasts: 0,
+            holding_torque: 0,
+            counts: 0,
+            homing,
+            asked,
+            actuals,
+        }
     }
 
     pub(crate) fn step(&mut self, commands: &Commands) -> Actuals {
@@ -92,13 +109,18 @@ impl Drive {
         let outputs = step_power(&self.power, &mut self.memory, commands.controlword, inputs);
         let before = self.counts;
         let (mut bit_10, mut bit_12, mut torque) = (true, false, 0);
+        if outputs.drive != DriveFunction::Follow {
+            self.counts += self.coasts;
+        }
         if outputs.drive == DriveFunction::Follow {
             match Mode::from_code(commands.mode) {
                 Some(Mode::CyclicSynchronousPosition) => {
                     // The nearest position that the counter shows so.
                     let range = self.counter.range();
-                    let way = (i128::from(commands.target_position) - self.counts).rem_euclid(range);
+                    let shown = [commands.target_position, commands.target_position_high];
+                    let way = (self.counter.reading_of(shown) - self.counts).rem_euclid(range);
                     self.counts += if way >= range / 2 { way - range } else { way };
+                    torque = self.holding_torque;
                 }
                 Some(Mode::CyclicSynchronousVelocity) => self.counts += i128::from(commands.target_velocity / 1000),
                 Some(Mode::CyclicSynchronousTorque) => torque = commands.target_torque,
@@ -107,14 +129,17 @@ impl Drive {
             }
         }
         let mode = if self.deaf { self.actuals.mode } else { commands.mode };
+        let [position, position_high] = self.counter.words(self.counts);
         self.actuals = Actuals {
             statusword: outputs
                 .statusword
                 .with(StatusBit::ModeSpecific12, bit_12)
                 .with(StatusBit::TargetReached, bit_10),
             mode,
-            position: low_bits(self.counter.wrap(self.counts)),
-            position_demand: low_bits(self.counter.wrap(self.counts)),
+            position,
+            position_high,
+            position_demand: position,
+            position_demand_high: position_high,
             velocity: i32::try_from((self.counts - before) * 1000).unwrap_or(i32::MAX),
             torque,
             error_code: if self.fault { 0x7121 } else { self.actuals.error_code },
@@ -140,11 +165,6 @@ impl Drive {
         }
         (!asked || self.homing >= HOMING, self.homing >= HOMING)
     }
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "an unsigned counter uses all 32 bits of its object")]
-fn low_bits(reading: i128) -> i32 {
-    reading as i32
 }
 
 /// All of it.

@@ -1,6 +1,5 @@
 //! Settings that are refused.
 use crate::rig::{BUS, MOTION, settings};
-use servobench_cia402::counter::Counter;
 use servobench_fieldbus::link::{Control, Params, Settings, Units};
 use servobench_motion::Limits;
 
@@ -19,11 +18,6 @@ fn every_refusal_names_field_value_bound_and_way_out() {
     assert_eq!(
         message(Settings { round_trip: 100, ..s }),
         "`drive_timeout` must be longer than the round trip of 1600 ticks, got 1600 ticks"
-    );
-    let counter = Counter::signed(64).unwrap();
-    assert_eq!(
-        message(Settings { units: Units { counter, ..s.units }, ..s }),
-        "a position counter of 64 bits does not fit the 32 bits of 607Ah and 6064h: take one of 8 to 32 bits"
     );
     assert_eq!(
         message(Settings { velocity_limit: 3e3, ..s }),

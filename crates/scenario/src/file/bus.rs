@@ -101,8 +101,9 @@ table! {
 table! {
     /// Counter of the positions on the bus: it wraps.
     pub(crate) struct Counter {
-        /// Its width; default: 32.
-        bits: u32 = 8..=32,
+        /// Its width; default: 32. The objects of CiA 402 (607Ah, 6064h, 6062h) have 32 bits: of a wider counter they hold the
+        /// lower half, and objects of the manufacturer the upper one.
+        bits: u32 = 8..=64,
         /// Whether it counts from −2^(bits−1); default: true.
         signed: bool = (),
     }

@@ -119,7 +119,7 @@ fn keys_belong_to_modes() {
         ),
         (&bus("mode = \"cst\"\n"), &["4:8: \"cst\" is not a value of `mode`; did you mean `csp`?"]),
         (&bus("delay = 16\n"), &["4:9: `delay` must be a whole number from 0 to 15, got 16"]),
-        (&bus("counter = { bits = 33 }\n"), &["4:20: `bits` must be a whole number from 8 to 32, got 33"]),
+        (&bus("counter = { bits = 65 }\n"), &["4:20: `bits` must be a whole number from 8 to 64, got 65"]),
     ]);
 }
 

@@ -164,9 +164,13 @@ fn switches(axis: &Axis) {
 
 fn bus(bus: &Bus, scenario: &Scenario) {
     assert!(scenario.actuator.drive().is_some());
-    assert!(bus.cycle >= 1 && bus.motion_every >= 1 && (8..=32).contains(&bus.counter.range().ilog2()), "{bus:?}");
-    assert_eq!(bus.position_gain.is_some(), bus.mode == BusMode::CyclicVelocity);
-    optional("position_gain", bus.position_gain);
+    assert!(bus.cycle >= 1 && bus.motion_every >= 1 && (8..=64).contains(&bus.counter.range().ilog2()), "{bus:?}");
+    assert_eq!(bus.position_loop.is_some(), bus.mode == BusMode::CyclicVelocity);
+    optional("position_gain", bus.position_loop.map(|gains| gains.gain));
+    optional("position_integral_time", bus.position_loop.and_then(|gains| gains.integral_time));
+    let derivative = bus.position_loop.and_then(|gains| gains.derivative);
+    optional("position_derivative_time", derivative.map(|derivative| derivative.time));
+    assert!(derivative.is_none_or(|derivative| derivative.filter >= 0.0));
     positive("drive_timeout", bus.drive_timeout);
     assert!(bus.units.drive >= 1);
     positive("units.axis", bus.units.axis);

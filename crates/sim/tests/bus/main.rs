@@ -4,4 +4,5 @@ mod counters;
 mod faults;
 mod modes;
 mod put_out;
+mod taking_over;
 mod task;

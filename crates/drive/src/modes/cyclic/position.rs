@@ -63,17 +63,18 @@ pub struct State {
 }
 
 impl State {
-    /// Goes on as before until the first target.
+    /// Goes on as before until the first target. The offsets begin with those of the frame before: a master that tells the velocity
+    /// of an axis that moves when it is enabled has it at once, not a cycle later.
     #[must_use]
-    pub const fn begin(now: &Moment) -> Self {
+    pub const fn begin(p: &Params, now: &Moment) -> Self {
         let start = Setpoint { x: now.demanded.x, v: now.demanded.v, ..Setpoint::at_rest(0.0) };
         Self {
             points: [Sample { x: 0.0, v: 0.0, a: 0.0, torque: 0.0 }; 4],
             has_begun: false,
             start,
             progress: Progress { steps: 0 },
-            velocity_offset: Linear::resting(0.0),
-            effort_offset: Linear::resting(0.0),
+            velocity_offset: Linear::resting(now.targets.velocity_offset.clamp(-p.velocity, p.velocity)),
+            effort_offset: Linear::resting(now.targets.effort_offset),
             is_limited: false,
         }
     }

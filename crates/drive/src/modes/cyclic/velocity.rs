@@ -30,7 +30,7 @@ impl State {
     pub const fn begin(now: &Moment) -> Self {
         Self {
             velocity: Linear::resting(now.demanded.v),
-            effort_offset: Linear::resting(0.0),
+            effort_offset: Linear::resting(now.targets.effort_offset),
             progress: Progress { steps: 0 },
             is_limited: false,
         }
