@@ -313,7 +313,8 @@ impl State {
 
     fn switches(&self, params: &Params) -> Switches {
         let closed = |bit: u32| (self.actuals.digital_inputs >> bit & 1 == 1) != params.settings.reverse_switches;
-        Switches { negative_limit: closed(0), positive_limit: closed(1), home: closed(2) }
+        let (negative, positive) = if params.scale.is_reversed() { (1, 0) } else { (0, 1) };
+        Switches { negative_limit: closed(negative), positive_limit: closed(positive), home: closed(2) }
     }
 
     /// By how much what the drive's loops follow is ahead of the actual position (counts).

@@ -20,6 +20,15 @@ pub enum FmuError {
         /// Name of the scenario.
         scenario: String,
     },
+    /// The drive's coordinate is not that of its mechanics.
+    #[error(
+        "the motor of `{scenario}` is mounted the other way round (`bus.units`), so that its torque alone has the wrong sign for the \
+         mechanics: export `--part axis`"
+    )]
+    Reversed {
+        /// Name of the scenario.
+        scenario: String,
+    },
     /// Other FMUs belong to the loop.
     #[error(
         "`{scenario}` has `[[fmu]]` beside the axis, which cannot be inside an FMU: leave them out, and connect them outside"

@@ -94,10 +94,12 @@ impl Bench {
         let disturbances = Disturbances::new(&scenario.disturbances, base_rate, ticks)?;
 
         let (mechanics, bodies) = plant::mechanics(scenario, engine)?;
-        let motor_before = mechanics.bodies()[0].position;
-        let mut power = plant::power_stage(&scenario.actuator, mechanics.bodies()[0].velocity, base_rate.period())?;
+        let direction = bus.map_or(1.0, |bus| 1.0_f64.copysign(bus.units.axis));
+        let motor = mechanics.bodies()[0];
+        let motor_before = direction * motor.position;
+        let mut power = plant::power_stage(&scenario.actuator, direction * motor.velocity, base_rate.period())?;
         let is_replaced = coupled::replaces_the_drive(scenario);
-        let control = match &scenario.actuator {
+        let mut control = match &scenario.actuator {
             Actuator::Prescribed | Actuator::Off => None,
             _ if is_replaced => None,
             Actuator::Pmsm { encoder, drive, .. } | Actuator::IdealSource { encoder, drive, .. } => {
@@ -126,7 +128,7 @@ impl Bench {
         if record_every > 1 {
             recorder.note_event(thinned_event(rate, duration));
         }
-        let source = match (bus, &control) {
+        let source = match (bus, &mut control) {
             (None, _) => {
                 for made in program.moves(equipment.axis.unit()) {
                     recorder.note_move(made);
@@ -136,6 +138,8 @@ impl Bench {
             (Some(_), None) => return Err(BuildError::NoDriveOnTheBus),
             (Some(bus), Some(control)) => {
                 let (network, delays) = Network::new(scenario, bus, program, &control.params, &mut recorder)?;
+                // What pulls the axis pulls a motor that is mounted the other way round in the other direction.
+                control.params.feedforward.bias *= direction;
                 Source::Network(Box::new(network), delays.sum() as f64 * base_rate.period())
             }
         };
@@ -148,11 +152,12 @@ impl Bench {
                 control,
                 power,
                 motor_before,
-                shaft: Shaft { effort: 0.0, position: motor_before },
+                shaft: Shaft { effort: 0.0, position: motor.position },
             },
             mechanics,
             prescribed: matches!(scenario.actuator, Actuator::Prescribed),
             transmission: scenario.axis.transmission,
+            direction,
             disturbances,
             switches: plant::switches(scenario)?,
         };

@@ -20,6 +20,9 @@ pub(crate) struct ClosedLoop {
     pub(crate) prescribed: bool,
     /// Axis coordinate per motor coordinate.
     pub(crate) transmission: f64,
+    /// −1 for a motor that is mounted the other way round: motor, encoders and drive then have coordinates against those of the
+    /// mechanics; otherwise 1.
+    pub(crate) direction: f64,
     pub(crate) disturbances: Disturbances,
     /// Limit and home switches, index pulse.
     pub(crate) switches: Switches,
@@ -86,8 +89,9 @@ impl ClosedLoop {
             self.state.begun = Some(k);
         }
         now.binds = PerLimit::default();
-        let motor = self.sample(external, now);
-        self.account(motor.position, now);
+        let shaft = self.sample(external, now);
+        self.account(shaft.position, now);
+        let motor = self.as_mounted(shaft);
         let mut command = self.control(k, external, motor, now, recorder);
         if let Some(Controller::Voltage(voltage)) = external.controller {
             now.voltage_reference = voltage;
@@ -100,7 +104,7 @@ impl ClosedLoop {
             Some(Controller::Effort(effort)) => effort,
             Some(Controller::Voltage(_)) | None => self.state.power.advance(command, motor, self.base_rate.period()),
         };
-        self.state.shaft = Shaft { effort: now.effort, position: motor.position };
+        self.state.shaft = Shaft { effort: self.direction * now.effort, position: shaft.position };
         now.voltage = self.state.power.voltage();
         now.binds.voltage |= self.state.power.shortens_voltage();
         now.motor_disturbance = self.disturbances.effort_at(DisturbedBody::Motor, k) + external.motor_effort;
@@ -120,6 +124,11 @@ impl ClosedLoop {
         own
     }
 
+    /// A body of the mechanics as a motor, or an encoder, sees it that is mounted on it.
+    fn as_mounted(&self, BodyState { position, velocity }: BodyState) -> BodyState {
+        BodyState { position: self.direction * position, velocity: self.direction * velocity }
+    }
+
     /// Brings the powers of the tick that has ended, with the motor at `position` now, to `now`. At tick 0 they are zero.
     fn account(&self, position: f64, now: &mut Instant) {
         let Shaft { effort, position: before } = self.state.shaft;
@@ -128,7 +137,7 @@ impl ClosedLoop {
     }
 
     /// set-point(k) and control(k): the firmware sees its sensors and what it is to do. `motor` is in the motor's own
-    /// coordinate.
+    /// coordinate, as it is mounted.
     fn control(
         &mut self,
         k: u64,
@@ -140,6 +149,7 @@ impl ClosedLoop {
         // Until the program begins it stays at its beginning.
         let since = self.base_rate.time(Tick(k - self.state.begun.unwrap_or(k)));
         let upcoming = self.state.upcoming.take();
+        let (direction, load) = (self.direction, self.as_mounted(now.load));
         let Some(control) = &mut self.state.control else {
             if let Source::Program(program) = &mut self.state.source {
                 now.setpoint = external.setpoint.or(upcoming).unwrap_or_else(|| program.at(since));
@@ -154,7 +164,7 @@ impl ClosedLoop {
             motor_velocity: reading.velocity,
             feedback: match control.load_encoder {
                 None => Feedback::Motor,
-                Some(encoder) => Feedback::Load(encoder.read(now.load.position, now.load.velocity).position),
+                Some(encoder) => Feedback::Load(encoder.read(load.position, load.velocity).position),
             },
             current: self.state.power.measured_current(motor),
         };
@@ -168,7 +178,10 @@ impl ClosedLoop {
                 command
             }
             Source::Network(network, _) => {
-                let switches = self.switches.read(now.load.position, self.state.motor_before, motor.position);
+                let mut switches = self.switches.read(now.load.position, self.state.motor_before, motor.position);
+                if direction < 0.0 {
+                    core::mem::swap(&mut switches.negative, &mut switches.positive);
+                }
                 self.state.motor_before = motor.position;
                 let measure = || Measurement {
                     position: sensors.closing_position(),
@@ -193,7 +206,7 @@ impl ClosedLoop {
             }
         };
         let held = state.held();
-        now.velocity_reference = held.velocity_reference;
+        now.velocity_reference = direction * held.velocity_reference;
         now.effort_reference = held.effort.effort;
         now.current_reference = held.current_reference;
         now.voltage_reference = held.current.computed;
@@ -222,7 +235,11 @@ impl ClosedLoop {
         if external.measured.is_some() {
             return Ok(());
         }
-        let actuation = if self.prescribed { Actuation::Motion(now.setpoint) } else { Actuation::Effort(now.effort) };
+        let actuation = if self.prescribed {
+            Actuation::Motion(now.setpoint)
+        } else {
+            Actuation::Effort(self.direction * now.effort)
+        };
         self.mechanics.advance(&Input {
             actuation,
             motor_disturbance: now.motor_disturbance,

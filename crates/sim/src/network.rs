@@ -65,6 +65,8 @@ pub(crate) struct Network {
     /// Why the motion task gave up.
     failure: Option<String>,
     bus_position: f64,
+    /// −1 where the drive counts against the axis, otherwise 1.
+    direction: f64,
     /// Length of an increment of the encoder that closes the position loop (its own coordinate).
     increment: f64,
     /// The same per axis coordinate, for the index pulse of the motor.
@@ -261,16 +263,22 @@ impl Network {
         self.signals.of_link(request.t, state, recorder);
     }
 
-    /// The set-point that the loops follow, so long after the drive's last step.
+    /// The set-point that the loops follow, so long after the drive's last step, with the motor at `position`.
     pub(crate) fn setpoint(&self, position: f64) -> Setpoint {
         let since = f64::from(self.drive_turn.since(self.drive_every)) * self.tick;
         match self.demand {
-            Demand::Position { setpoint, .. } => setpoint.after(since),
+            Demand::Position { setpoint, .. } => self.along(setpoint.after(since)),
             Demand::Velocity { setpoint, .. } => {
-                Setpoint { x: position, v: setpoint.v + since * setpoint.a, ..setpoint }
+                self.along(Setpoint { x: self.direction * position, v: setpoint.v + since * setpoint.a, ..setpoint })
             }
             Demand::Off | Demand::Effort(_) => Setpoint::at_rest(position),
         }
+    }
+
+    /// A set-point of the drive along the axis.
+    fn along(&self, Setpoint { x, v, a, j, s }: Setpoint) -> Setpoint {
+        let d = self.direction;
+        Setpoint { x: d * x, v: d * v, a: d * a, j: d * j, s: d * s }
     }
 
     /// Where load and motor are to be: where the motion task wanted them, as much later as the way to the loops takes; what
@@ -295,10 +303,10 @@ impl Network {
         }
     }
 
-    /// Where the axis has its zero once it is homed, in the coordinate of its encoder.
+    /// Where the axis has its zero once it is homed, in the coordinate of the machine.
     fn origin(&self) -> f64 {
         let (params, state) = &self.drive;
-        params.units.metres_or_radians(state.origin())
+        self.direction * params.units.metres_or_radians(state.origin())
     }
 
     /// The states of link, drive and axis.

@@ -62,7 +62,7 @@ impl Program {
         let cycle = by_velocity.map(|bus| CommandCycle {
             period: f64::from(bus.cycle.saturating_mul(bus.motion_every)) * tick,
             first: 0.0,
-            unit: bus.units.axis / f64::from(bus.units.drive),
+            unit: bus.units.axis.abs() / f64::from(bus.units.drive),
         });
         let mut program = Self::plan(&scenario.program, cycle)?;
         if let Some(interpolation) = &scenario.interpolation {

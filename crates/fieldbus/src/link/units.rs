@@ -9,7 +9,8 @@ use servobench_cia402::counter::Counter;
 pub struct Units {
     /// So many position units of the drive …
     pub drive_units: f64,
-    /// … are so much of the axis (m or rad); negative for a motor that is mounted the other way round.
+    /// … are so much of the axis (m or rad); negative for a motor that is mounted the other way round. Such a drive has the switch
+    /// of the axis' negative end at its input for the positive one.
     pub axis_units: f64,
     /// Velocity units of the drive in one of its position units per second (6096h).
     pub velocity_factor: f64,
@@ -23,7 +24,9 @@ pub struct Units {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Scale {
     counter: Counter,
-    /// Counts per axis unit.
+    /// Whether the drive counts against the axis.
+    is_reversed: bool,
+    /// Counts per axis unit, a magnitude as all that follow.
     counts: f64,
     /// Axis units per count.
     count: f64,
@@ -44,18 +47,19 @@ impl Units {
         }
         let factor = positive("units.velocity_factor", self.velocity_factor)?;
         let rated = positive("units.rated_effort", self.rated_effort)?;
-        let (counts, count) = (drive_units / self.axis_units, self.axis_units / drive_units);
+        let axis_units = self.axis_units.abs();
+        let (counts, count) = (drive_units / axis_units, axis_units / drive_units);
         finite("units.drive_units/axis_units", counts)?;
         finite("units.axis_units/drive_units", count)?;
-        let sign = 1.0_f64.copysign(self.axis_units);
         Ok(Scale {
             counter: self.counter,
+            is_reversed: self.axis_units < 0.0,
             counts,
             count,
             velocity: counts * factor,
             velocity_unit: count / factor,
-            thousandths: sign * 1000.0 / rated,
-            thousandth: sign * rated / 1000.0,
+            thousandths: 1000.0 / rated,
+            thousandth: rated / 1000.0,
         })
     }
 }
@@ -67,17 +71,32 @@ impl Scale {
 
     /// Nearest count; `None` beyond 2⁵³ counts, where not every count is a number of 64 bits any more.
     pub(crate) fn counts(&self, x: f64) -> Option<i64> {
-        whole(self.counts * x, 9_007_199_254_740_992.0)
+        Some(self.turned(whole(self.counts * x, 9_007_199_254_740_992.0)?))
+    }
+
+    /// Whether the drive counts against the axis.
+    pub(crate) const fn is_reversed(&self) -> bool {
+        self.is_reversed
+    }
+
+    /// What is counted along the axis as the drive counts it. Rounded is before, so that a reversed motor does the same mirrored.
+    const fn turned(&self, counted: i64) -> i64 {
+        if self.is_reversed { -counted } else { counted }
+    }
+
+    /// The same of a number.
+    const fn along(&self, value: f64) -> f64 {
+        if self.is_reversed { -value } else { value }
     }
 
     /// Position at a count, beyond 2⁵³ counts the nearest that a number of 64 bits can say.
     pub(crate) const fn position(&self, counts: i128) -> f64 {
-        self.count * counts as f64
+        self.along(self.count * counts as f64)
     }
 
     /// Size of a count (m or rad).
     pub(crate) const fn resolution(&self) -> f64 {
-        self.count.abs()
+        self.count
     }
 
     /// Counts from the actual position to the one that the drive follows, by the shorter way.
@@ -89,13 +108,13 @@ impl Scale {
 
     /// Velocity in the drive's unit; `None` beyond 32 bits.
     pub(crate) fn drive_velocity(&self, v: f64) -> Option<i32> {
-        whole(self.velocity * v, i32::MAX.into()).and_then(|v| i32::try_from(v).ok())
+        whole(self.velocity * v, i32::MAX.into()).and_then(|v| i32::try_from(self.turned(v)).ok())
     }
 
     /// The nearest velocity that the drive's unit can express.
     pub(crate) fn nearest_velocity(&self, v: f64) -> i32 {
         #[expect(clippy::cast_possible_truncation, reason = "saturates, which is meant")]
-        let nearest = libm::floor(self.velocity * v + 0.5) as i32;
+        let nearest = self.along(libm::floor(self.velocity * v + 0.5)) as i32;
         nearest
     }
 
@@ -114,12 +133,12 @@ impl Scale {
     }
 
     pub(crate) fn velocity(&self, v: i32) -> f64 {
-        self.velocity_unit * f64::from(v)
+        self.along(self.velocity_unit * f64::from(v))
     }
 
     /// Velocity at a difference of counts per second.
     pub(crate) const fn velocity_of(&self, counts_per_second: f64) -> f64 {
-        self.count * counts_per_second
+        self.along(self.count * counts_per_second)
     }
 
     pub(crate) fn thousandths(&self, effort: f64) -> Option<i16> {
@@ -127,16 +146,16 @@ impl Scale {
     }
 
     /// The thousandths for `effort` and for what was left when the last one was rounded, `rest` (thousandths), which is then
-    /// what is left of this one: their mean is the effort, however coarse they are.
+    /// what is left of this one: their mean is the effort, however coarse they are. What is left counts along the axis.
     pub(crate) fn thousandths_with(&self, effort: f64, rest: &mut f64) -> Option<i16> {
         let exact = self.thousandths * effort + *rest;
-        let torque = whole(exact, i16::MAX.into()).and_then(|torque| i16::try_from(torque).ok())?;
-        *rest = exact - f64::from(torque);
-        Some(torque)
+        let torque = whole(exact, i16::MAX.into())?;
+        *rest = exact - torque as f64;
+        i16::try_from(self.turned(torque)).ok()
     }
 
     pub(crate) fn effort(&self, thousandths: i16) -> f64 {
-        self.thousandth * f64::from(thousandths)
+        self.along(self.thousandth * f64::from(thousandths))
     }
 }
 

@@ -6,7 +6,7 @@ use crate::table::table;
 use servobench_config::Choice;
 use servobench_config::Kind::{Axis as InAxis, Plain};
 use servobench_config::quantities::{POSITION, POSITION_GAIN, TIME};
-use servobench_config::{not_negative, positive};
+use servobench_config::{any, not_negative, positive};
 use servobench_drive::EffortFeedforward;
 use servobench_fieldbus::bus::BusFaultName;
 use servobench_fieldbus::link::Sequencing;
@@ -114,8 +114,10 @@ table! {
     pub(crate) struct DriveUnits requires ["drive", "axis"] {
         /// Units of the drive.
         drive: u32 = 1..=u32::MAX,
-        /// What they are of the axis.
-        axis: f64 = positive(InAxis(&POSITION), "5 mm"),
+        /// What they are of the axis. Negative for a motor that is mounted the other way round: it turns against the axis, and its
+        /// drive counts so; the input for a switch of its positive end has the switch of the axis' negative end, and the other
+        /// way round.
+        axis: f64 = any(InAxis(&POSITION), "5 mm"),
     }
 }
 

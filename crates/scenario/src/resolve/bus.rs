@@ -240,7 +240,13 @@ fn counter(given: &file::Bus, report: &mut Report) -> Option<Counter> {
 /// The units as given, or the increments of the encoder that closes the position loop.
 fn units(file: &File, given: &file::Bus, actuator: Option<&Actuator>, report: &mut Report) -> Option<DriveUnits> {
     if let Some(units) = given.units.optional().ok()? {
-        return Some(DriveUnits { drive: *units.drive.given()?, axis: *units.axis.given()? });
+        let axis = units.axis.at()?;
+        if axis.value == 0.0 {
+            let help = "give how far the axis goes, such as \"5 mm\"; negative for a motor mounted the other way round";
+            report.error(axis.span, "`axis` must not be zero", help);
+            return None;
+        }
+        return Some(DriveUnits { drive: *units.drive.given()?, axis: axis.value });
     }
     let (axis, drive) = (file.axis.given()?, actuator?.drive()?);
     let gear = axis.gear_ratio.optional().ok()?.copied().unwrap_or(1.0);

@@ -82,7 +82,7 @@ impl BusMode {
 pub struct DriveUnits {
     /// Units of the drive, at least one.
     pub drive: u32,
-    /// Axis coordinate (m or rad), above zero.
+    /// Axis coordinate (m or rad); negative for a motor that is mounted the other way round.
     pub axis: f64,
 }
 

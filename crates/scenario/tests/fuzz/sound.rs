@@ -173,7 +173,7 @@ fn bus(bus: &Bus, scenario: &Scenario) {
     assert!(derivative.is_none_or(|derivative| derivative.filter >= 0.0));
     positive("drive_timeout", bus.drive_timeout);
     assert!(bus.units.drive >= 1);
-    positive("units.axis", bus.units.axis);
+    positive("units.axis", bus.units.axis.abs());
     let mut cycles =
         bus.faults.iter().map(|fault| &fault.cycles).chain(bus.task_faults.iter().map(|fault| &fault.cycles));
     assert!(cycles.all(|cycles| !cycles.is_empty()), "{bus:?}");

@@ -79,7 +79,9 @@ impl Network {
 
         let rated_effort = rated_effort(scenario);
         let counted = counted(scenario, loops)?;
-        let units = units(&counted, scenario.axis.motion, bus.units, rated_effort)?;
+        // The drive has its own direction; what is reversed is known to the master.
+        let of_drive = scenario::DriveUnits { axis: bus.units.axis.abs(), ..bus.units };
+        let units = units(&counted, scenario.axis.motion, of_drive, rated_effort)?;
         let device = device_params(bus, loops, units.conversions, bus.cycle / drive_every.ticks(), &dynamics);
         let device = device::Params { counter: bus.counter, ..device };
         let (device, rated_effort) = with_objects(&device, bus, &units, rated_effort)?;
@@ -158,6 +160,7 @@ impl Network {
             asked: Setpoint::default(),
             failure: None,
             bus_position: 0.0,
+            direction: 1.0_f64.copysign(bus.units.axis),
             increment,
             index_increment: index_increment(&counted, increment, loops),
             index: None,

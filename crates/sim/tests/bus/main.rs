@@ -4,5 +4,6 @@ mod counters;
 mod faults;
 mod modes;
 mod put_out;
+mod reversed;
 mod taking_over;
 mod task;
