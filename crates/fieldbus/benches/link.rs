@@ -5,7 +5,7 @@ use divan::{Bencher, black_box};
 use servobench_base::{Rate, Tick};
 use servobench_cia402::counter::Counter;
 use servobench_cia402::{Actuals, Commands, PowerState, Statusword};
-use servobench_fieldbus::link::{self, Control, Input, Mailbox, Params, Sequencing, Settings, Units};
+use servobench_fieldbus::link::{self, Control, Input, Mailbox, Params, PositionGains, Sequencing, Settings, Units};
 use servobench_fieldbus::{AxisCommand, FieldbusError, Task, bus};
 use servobench_motion::Limits;
 use servobench_motion::interpolate::{Mode, Sample};
@@ -96,7 +96,8 @@ impl Axis {
 }
 
 const CSP: Control = Control::Position { velocity_offset: true, torque_offset: true };
-const CSV: Control = Control::Velocity { gain: 20.0, feedforward: 1.0, limit: 4.0, torque_offset: true };
+const CSV: Control =
+    Control::Velocity { gains: PositionGains::proportional(20.0), feedforward: 1.0, limit: 4.0, torque_offset: true };
 
 fn ticks(bencher: Bencher<'_, '_>, mut axis: Axis) {
     let mut start = TICKS;

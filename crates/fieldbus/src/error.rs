@@ -39,6 +39,17 @@ pub enum FieldbusError {
         /// Largest one (base ticks).
         highest: u64,
     },
+    /// An integral that no gain makes stable.
+    #[error(
+        "the integral time of the master's position loop must be longer than {lowest} s, the age of the position and half a cycle, got \
+         {time} s: with a shorter one the loop is unstable at every gain"
+    )]
+    ShortIntegral {
+        /// Rejected integral time (s).
+        time: f64,
+        /// What it must be longer than (s).
+        lowest: f64,
+    },
     /// A velocity of the axis that the drive's unit cannot express.
     #[error(
         "`velocity_limit` is {counts:e} in the drive's velocity unit, at most {highest} fits 32 bits: choose a coarser \

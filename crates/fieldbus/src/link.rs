@@ -58,6 +58,7 @@ mod units;
 
 pub use mailbox::Mailbox;
 pub use params::{Control, Params, Settings};
+pub use position_loop::{Derivative, PositionGains};
 pub use sequencer::Sequencing;
 pub use units::Units;
 

@@ -2,7 +2,7 @@
 use servobench_cia402::counter::Counter;
 use servobench_drive::EffortFeedforward;
 use servobench_fieldbus::bus::{BusFault, BusFaultKind};
-use servobench_fieldbus::link::Sequencing;
+use servobench_fieldbus::link::{PositionGains, Sequencing};
 use servobench_fieldbus::task::{TaskFault, TaskFaultKind};
 use servobench_fieldbus::trajectory::PointTransfer;
 use servobench_motion::interpolate::Mode;
@@ -48,7 +48,7 @@ fn a_bus_that_says_its_cycle_alone() {
         margin: 0,
         sequencing: Sequencing::Strict,
         drive_timeout: 0.5,
-        position_gain: None,
+        position_loop: None,
         counter: Counter::signed(32).unwrap(),
         units: DriveUnits { drive: 1 << 20, axis: 0.01 },
         velocity_from_differences: false,
@@ -91,7 +91,7 @@ reverse_switches = true
         margin: 24,
         sequencing: Sequencing::Simplified,
         drive_timeout: 0.02,
-        position_gain: Some(80.0),
+        position_loop: Some(PositionGains::proportional(80.0)),
         counter: Counter::unsigned(16).unwrap(),
         units: DriveUnits { drive: 1000, axis: 0.005 },
         velocity_from_differences: true,

@@ -5,6 +5,7 @@
 use super::drive_profile;
 use super::effort::Ramp;
 use super::position::Position;
+use super::position_loop::Law;
 use super::stream::Post;
 use super::{Control, Params, Sequencing, State};
 use crate::{LinkFault, Task};
@@ -80,7 +81,7 @@ impl State {
         }
         self.limited = self.stream.is_limited();
         let interpolate::Command { setpoint, torque } = *self.stream.output();
-        let error = self.error_of_the_axis(p, &setpoint, now);
+        self.compare(p, &setpoint, now);
         let offset = |wanted: bool, value: f64| if wanted { value } else { 0.0 };
         let target = p.scale.counts(setpoint.x);
         let rest = &mut self.torque_rest;
@@ -95,10 +96,12 @@ impl State {
                 sent.set(p.scale.drive_velocity(v), |commands| &mut commands.velocity_offset);
                 sent.set(p.scale.thousandths_with(torque, rest), |commands| &mut commands.torque_offset);
             }
-            Control::Velocity { gain, feedforward, limit, torque_offset } => {
-                let v = gain * error + feedforward * setpoint.v;
-                self.limited |= v.abs() > limit;
-                sent.set(p.scale.drive_velocity(v.clamp(-limit, limit)), |commands| &mut commands.target_velocity);
+            Control::Velocity { gains, feedforward, limit, torque_offset } => {
+                let law = Law { gains, feedforward, limit };
+                let cycle = p.stream.bus_cycle as f64 * p.stream.timing.tick;
+                let (v, is_cut) = self.position_loop.velocity(&law, setpoint.v, cycle);
+                self.limited |= is_cut;
+                sent.set(p.scale.drive_velocity(v), |commands| &mut commands.target_velocity);
                 sent.set(p.scale.thousandths_with(offset(torque_offset, torque), rest), |commands| {
                     &mut commands.torque_offset
                 });
@@ -109,17 +112,14 @@ impl State {
         }
     }
 
-    /// What the axis was off by when it was measured last.
-    fn error_of_the_axis(&mut self, p: &Params, setpoint: &Setpoint, now: u64) -> f64 {
-        if matches!(p.settings.control, Control::Position { .. }) {
-            return 0.0;
-        }
+    /// Tells the position loop of the master what the axis was off by when it was measured last.
+    fn compare(&mut self, p: &Params, setpoint: &Setpoint, now: u64) {
+        let Control::Velocity { gains, .. } = &p.settings.control else { return };
         self.position_loop.put_out(now, setpoint);
         if self.received_at == now {
             let then = now.saturating_sub(p.reference_delay);
-            self.position_loop.receive(self.position(p), then, p.stream.timing.tick);
+            self.position_loop.receive(gains, self.position(p), then, now, p.stream.timing.tick);
         }
-        self.position_loop.error()
     }
 
     /// Asks for what the axis does anyway, as far as the mode that the task needs carries it: the position that its drive follows,

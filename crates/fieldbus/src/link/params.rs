@@ -4,9 +4,9 @@ use super::course::Recovery;
 use super::position_loop;
 use super::stream::StreamParams;
 use super::units::Scale;
-use super::{Sequencing, Units};
+use super::{PositionGains, Sequencing, Units};
 use crate::FieldbusError;
-use servobench_base::{Divider, Rate, finite, non_negative, positive};
+use servobench_base::{Divider, Rate, finite, positive};
 use servobench_motion::Limits;
 use servobench_motion::Order;
 use servobench_motion::interpolate::{Interval, Mode, Sample};
@@ -24,10 +24,10 @@ pub enum Control {
     },
     /// Velocities of a position loop in the master (csv): `v = gain·(x_set − x_actual) + feedforward·v_set`, within ±limit, of the
     /// position and the set-point of the time when it was measured; the [module documentation](super#the-position-loop-in-the-master)
-    /// says which that is.
+    /// says which that is. With an integral and a derivative of the difference where there are such.
     Velocity {
-        /// Position gain K_v (1/s).
-        gain: f64,
+        /// Position gain K_v, integral and derivative.
+        gains: PositionGains,
         /// Share of the velocity of the set-point that goes straight on, 0 to 1.
         feedforward: f64,
         /// Largest velocity that is commanded (m/s or rad/s).
@@ -106,12 +106,16 @@ impl Params {
             return Err(FieldbusError::ShortTimeout { timeout: settings.drive_timeout, round_trip });
         }
         let reference_delay = round_trip + u64::from(settings.answer_age);
-        if let Control::Velocity { gain, feedforward, limit, .. } = settings.control {
+        if let Control::Velocity { gains, feedforward, limit, .. } = settings.control {
             let highest = position_loop::LONGEST * bus_cycle;
             if reference_delay > highest {
                 return Err(FieldbusError::OldAnswer { delay: reference_delay, highest });
             }
-            non_negative("control.gain", gain)?;
+            gains.check()?;
+            let lowest = (reference_delay as f64 + bus_cycle as f64 / 2.0) * tick;
+            if let Some(time) = gains.integral_time.filter(|time| *time <= lowest) {
+                return Err(FieldbusError::ShortIntegral { time, lowest });
+            }
             finite("control.feedforward", feedforward)?;
             check_velocity(&scale, positive("control.limit", limit)?)?;
         }

@@ -3,7 +3,7 @@ use crate::rig::{BUS, HOMING, MOTION, RATE, Rig, follow, settings};
 use core::f64::consts::TAU;
 use servobench_cia402::counter::Counter;
 use servobench_cia402::{Actuals, StatusBit};
-use servobench_fieldbus::link::{Control, Settings, Units};
+use servobench_fieldbus::link::{Control, PositionGains, Settings, Units};
 use servobench_fieldbus::{AxisCommand, Fault, Homing, Interpolation, LinkFault, Power, Task};
 use servobench_motion::interpolate::Sample;
 
@@ -64,7 +64,12 @@ fn no_count_is_lost_through_ten_turns_of_a_counter() {
 #[test]
 fn the_position_loop_of_the_master_lags_by_velocity_over_gain() {
     for (feedforward, lag) in [(0.0, 0.1 / 20.0), (1.0, 0.0), (0.5, 0.05 / 20.0)] {
-        let control = Control::Velocity { gain: 20.0, feedforward, limit: 0.2, torque_offset: false };
+        let control = Control::Velocity {
+            gains: PositionGains::proportional(20.0),
+            feedforward,
+            limit: 0.2,
+            torque_offset: false,
+        };
         let mut rig = Rig::new(Settings { control, ..settings() });
         rig.run(5, |_| REST);
         rig.run(100, |cycle| follow(Sample { x: 0.002 * (cycle - 5) as f64, v: 0.1, a: 0.0, torque: 0.0 }));

@@ -4,7 +4,7 @@
 use crate::rig::{BUS, Drive, MOTION, RATE, follow, sample, settings};
 use servobench_base::{Setpoint, Tick};
 use servobench_cia402::{Actuals, Commands};
-use servobench_fieldbus::link::{self, Control, Input, Mailbox, Params, Settings, State, Units};
+use servobench_fieldbus::link::{self, Control, Input, Mailbox, Params, PositionGains, Settings, State, Units};
 use servobench_motion::{Limits, Order, Profile};
 use std::collections::VecDeque;
 
@@ -53,7 +53,12 @@ struct Loop {
 impl Loop {
     fn new(delay: u32, gain: f64, feedforward: f64, between: Between) -> Self {
         let settings = Settings {
-            control: Control::Velocity { gain, feedforward, limit: 2.0, torque_offset: false },
+            control: Control::Velocity {
+                gains: PositionGains::proportional(gain),
+                feedforward,
+                limit: 2.0,
+                torque_offset: false,
+            },
             round_trip: 2 * delay + 1,
             answer_age: u32::try_from(STEP).unwrap(),
             units: Units { drive_units: 1.0 / UNIT, velocity_factor: 1.0, ..settings().units },

@@ -2,7 +2,7 @@
 use crate::rig::{BUS, MOTION, RATE, Rig, follow, sample, settings};
 use servobench_base::{Setpoint, Tick};
 use servobench_fieldbus::bus::{self, BusFault, BusFaultKind};
-use servobench_fieldbus::link::{self, Control, Input, Sequencing, Settings};
+use servobench_fieldbus::link::{self, Control, Input, PositionGains, Sequencing, Settings};
 use servobench_fieldbus::{AxisCommand, Interpolation, Task};
 use servobench_motion::interpolate::{Mode, Sample};
 use servobench_motion::{Limits, Order, Profile};
@@ -53,7 +53,12 @@ impl Mad for Random {
     fn settings(&mut self) -> Settings {
         let mode = Mode::ALL[usize::try_from(self.below(7)).unwrap()];
         let position = Control::Position { velocity_offset: self.once_in(2), torque_offset: self.once_in(2) };
-        let velocity = Control::Velocity { gain: 20.0, feedforward: 1.0, limit: 3.0, torque_offset: self.once_in(2) };
+        let velocity = Control::Velocity {
+            gains: PositionGains::proportional(20.0),
+            feedforward: 1.0,
+            limit: 3.0,
+            torque_offset: self.once_in(2),
+        };
         Settings {
             interpolation: mode,
             margin: u32::try_from(self.below(2 * MOTION + 1)).unwrap(),

@@ -1,6 +1,6 @@
 //! What is put out while the drive does not follow is what the axis does: nothing jumps when the drive follows again.
 use crate::rig::{BUS, MOTION, Rig, follow, settings};
-use servobench_fieldbus::link::{Control, Settings};
+use servobench_fieldbus::link::{Control, PositionGains, Settings};
 use servobench_fieldbus::{AxisCommand, Interpolation, Power, Task};
 use servobench_motion::interpolate::Sample;
 
@@ -84,7 +84,7 @@ fn positions_alone_carry_the_velocity_too() {
 #[test]
 fn a_velocity_is_commanded_from_that_of_the_axis_on() {
     let csv = Control::Velocity {
-        gain: 20.0,
+        gains: PositionGains::proportional(20.0),
         feedforward: 1.0,
         limit: 1.0,
         torque_offset: false,

@@ -83,6 +83,13 @@ table! {
         drive_timeout: f64 = positive(Plain(&TIME), "0.5 s"),
         /// Proportional gain of the master's position loop, with "csv".
         position_gain: f64 = positive(Plain(&POSITION_GAIN), "100 1/s"),
+        /// Integral time of the master's position loop, with "csv": what is constant of its error goes to zero. It must be well above
+        /// the age of the position (docs/fieldbus.md). Default: none.
+        position_integral_time: f64 = positive(Plain(&TIME), "0.1 s"),
+        /// Derivative time of the master's position loop, with "csv"; default: none.
+        position_derivative_time: f64 = positive(Plain(&TIME), "2 ms"),
+        /// Time constant of the low-pass in front of the derivative; default: a tenth of `position_derivative_time`.
+        position_derivative_filter: f64 = not_negative(Plain(&TIME), "0.5 ms"),
         /// Counter of the positions on the bus: it wraps.
         counter: Counter = (),
         /// Units of the positions on the bus; default: increments of the encoder that closes the position loop.

@@ -10,6 +10,7 @@ use servobench_base::{Coordinate, Rate};
 use servobench_cia402::counter::Counter;
 use servobench_drive::EffortFeedforward;
 use servobench_drive::feedforward::Model;
+use servobench_fieldbus::link::{Derivative, PositionGains};
 use servobench_motion::interpolate::Mode as InterpolationMode;
 use std::f64::consts::TAU;
 
@@ -25,6 +26,8 @@ pub(super) struct Known<'a> {
 const DELAY: u32 = 1;
 /// How long the master waits for the drive, unless given (s).
 const DRIVE_TIMEOUT: f64 = 0.5;
+/// Time constant of the low-pass in front of the derivative, unless given, in derivative times.
+const DERIVATIVE_FILTER: f64 = 0.1;
 /// Width of the counter, unless given, and whether it has a sign: the position actual value (6064h) is an `INTEGER32`.
 const COUNTER: (u32, bool) = (32, true);
 
@@ -52,7 +55,7 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
     let cycle = given.cycle.at().and_then(|cycle| whole::ticks("cycle", *cycle, known.base_rate, report));
     let motion_every = motion_every(given, cycle, known, report);
     refuse_fast_cycle(given, cycle, known, report);
-    let position_gain = mode.and_then(|mode| position_gain(given, mode, report));
+    let position_loop = mode.and_then(|mode| position_loop(given, mode, report));
     let effort_offset = effort_offset(given, known.actuator, report);
     warn_of_what_is_added_twice(given, known.actuator, report);
     let margin = margin(given, cycle.zip(motion_every), known, report);
@@ -82,7 +85,7 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
         margin: margin?,
         sequencing: given.sequencing.optional().ok()?.copied().unwrap_or_default(),
         drive_timeout: given.drive_timeout.optional().ok()?.copied().unwrap_or(DRIVE_TIMEOUT),
-        position_gain: position_gain?,
+        position_loop: position_loop?,
         counter: counter?,
         units: units?,
         velocity_from_differences: flag(&given.velocity_from_differences)?,
@@ -169,14 +172,34 @@ fn refuse_fast_cycle(given: &file::Bus, cycle: Option<u32>, known: &Known<'_>, r
     }
 }
 
-/// `K_v` of the master, where it closes the position loop.
+/// The position loop of the master, where it closes it.
 #[expect(clippy::option_option, reason = "a wrong gain is not the same as none")]
-fn position_gain(given: &file::Bus, mode: BusMode, report: &mut Report) -> Option<Option<f64>> {
+fn position_loop(given: &file::Bus, mode: BusMode, report: &mut Report) -> Option<Option<PositionGains>> {
     if mode == BusMode::CyclicVelocity {
-        return need(&given.position_gain, "bus", "position_gain", given.span, report).map(Some);
+        let gain = need(&given.position_gain, "bus", "position_gain", given.span, report);
+        let integral_time = given.position_integral_time.optional().ok();
+        let derivative_time = given.position_derivative_time.optional().ok();
+        let filter = given.position_derivative_filter.optional().ok();
+        if let (Slot::Absent, Some(span)) = (&given.position_derivative_time, given.position_derivative_filter.span()) {
+            let help = "give `position_derivative_time` too, or leave it out";
+            report.error(span, "`position_derivative_filter` is for a derivative", help);
+        }
+        let derivative = derivative_time?.copied().map(|time| {
+            let filter = filter.flatten().copied().unwrap_or(DERIVATIVE_FILTER * time);
+            Derivative { time, filter }
+        });
+        return Some(Some(PositionGains { gain: gain?, integral_time: integral_time?.copied(), derivative }));
     }
-    if let Some(span) = given.position_gain.span() {
-        report.error(span, "`position_gain` is for the mode \"csv\"", "here the drive closes the position loop");
+    for (key, span) in [
+        ("position_gain", given.position_gain.span()),
+        ("position_integral_time", given.position_integral_time.span()),
+        ("position_derivative_time", given.position_derivative_time.span()),
+        ("position_derivative_filter", given.position_derivative_filter.span()),
+    ] {
+        if let Some(span) = span {
+            let message = format!("`{key}` is for the mode \"csv\"");
+            report.error(span, message, "here the drive closes the position loop");
+        }
     }
     Some(None)
 }

@@ -3,7 +3,7 @@ use servobench_cia402::counter::Counter;
 use servobench_cia402::units::Object;
 use servobench_drive::EffortFeedforward;
 use servobench_fieldbus::bus::BusFault;
-use servobench_fieldbus::link::Sequencing;
+use servobench_fieldbus::link::{PositionGains, Sequencing};
 use servobench_fieldbus::task::TaskFault;
 use servobench_fieldbus::trajectory::PointTransfer;
 use servobench_motion::interpolate::Mode as InterpolationMode;
@@ -33,8 +33,8 @@ pub struct Bus {
     pub sequencing: Sequencing,
     /// How long the master waits for the drive (s).
     pub drive_timeout: f64,
-    /// `K_v` of the master's position loop (1/s); `None` where the drive closes it.
-    pub position_gain: Option<f64>,
+    /// The master's position loop; `None` where the drive closes it.
+    pub position_loop: Option<PositionGains>,
     /// Counter of the positions on the bus.
     pub counter: Counter,
     /// Units of the positions on the bus.

@@ -93,6 +93,25 @@ fn keys_belong_to_modes() {
     check(&[
         (&bus("mode = \"csv\"\n"), &["1:1: missing `position_gain` in `bus`"]),
         (
+            &bus("mode = \"csv\"\nposition_gain = \"80 1/s\"\nposition_derivative_filter = \"1 ms\"\n"),
+            &[
+                "6:30: `position_derivative_filter` is for a derivative; give `position_derivative_time` too, or leave it out",
+            ],
+        ),
+        (
+            &bus("position_integral_time = \"0.1 s\"\nposition_derivative_time = \"2 ms\"\n"),
+            &[
+                "4:26: `position_integral_time` is for the mode \"csv\"; here the drive closes the position loop",
+                "5:28: `position_derivative_time` is for the mode \"csv\"; here the drive closes the position loop",
+            ],
+        ),
+        (
+            &bus("").replace("axis = \"1 um\"", "axis = \"0 um\""),
+            &[
+                "3:29: `axis` must not be zero; give how far the axis goes, such as \"5 mm\"; negative for a motor mounted the other way round",
+            ],
+        ),
+        (
             &bus("position_gain = \"80 1/s\"\n"),
             &["4:17: `position_gain` is for the mode \"csv\"; here the drive closes the position loop"],
         ),

@@ -305,9 +305,9 @@ fn master_model(bus: &Bus, loops: &drive::Params, scenario: &Scenario) -> feedfo
 
 fn control(bus: &Bus, dynamics: &Dynamics) -> link::Control {
     let torque_offset = bus.effort_offset != drive::EffortFeedforward::Off;
-    match bus.position_gain {
-        Some(gain) => link::Control::Velocity {
-            gain,
+    match bus.position_loop {
+        Some(gains) => link::Control::Velocity {
+            gains,
             feedforward: f64::from(u8::from(bus.velocity_offset)),
             limit: RESERVE * dynamics.velocity,
             torque_offset,

@@ -3,6 +3,7 @@ mod bench;
 mod counters;
 mod faults;
 mod modes;
+mod position_loop;
 mod put_out;
 mod reversed;
 mod taking_over;
