@@ -55,6 +55,7 @@ fn link_params() -> Option<Params> {
         motion_cycle: base_rate.divider(Rate::from_hertz(100.0).ok()?).ok()?,
         interpolation: Mode::Cubic,
         margin: 16,
+        run_ahead: 0,
         control: Control::Position { velocity_offset: true, torque_offset: false },
         sequencing: Sequencing::Strict,
         drive_timeout: 1600,

@@ -32,6 +32,7 @@ fn params(interpolation: Mode, control: Control) -> Result<Params, FieldbusError
         motion_cycle: divider(50),
         interpolation,
         margin: 16,
+        run_ahead: 0,
         control,
         sequencing: Sequencing::Strict,
         drive_timeout: 1_600,

@@ -23,6 +23,17 @@ pub enum FieldbusError {
         /// Largest one (base ticks).
         highest: u64,
     },
+    /// A prediction beyond the present, or further than is predicted.
+    #[error(
+        "`run_ahead` must be at most {highest} cycles of the motion task with this interpolation, got {ahead}: that leaves no delay to \
+         take out"
+    )]
+    RunAhead {
+        /// Rejected cycles.
+        ahead: u32,
+        /// Most of them.
+        highest: usize,
+    },
     /// A time-out that the answer of a sound drive cannot keep.
     #[error("`drive_timeout` must be longer than the round trip of {round_trip} ticks, got {timeout} ticks")]
     ShortTimeout {

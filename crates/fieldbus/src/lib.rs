@@ -24,6 +24,7 @@
 //!     motion_cycle: base_rate.divider(Rate::from_hertz(50.0)?)?,
 //!     interpolation: Mode::Quintic,
 //!     margin: 16,
+//!     run_ahead: 0,
 //!     control: Control::Position { velocity_offset: true, torque_offset: true },
 //!     sequencing: Sequencing::Strict,
 //!     drive_timeout: 1600,

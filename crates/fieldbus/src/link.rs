@@ -8,8 +8,8 @@
 //!
 //! Sample k is due at `tick(k) = tick(0) + k·cycle`. The interval between two samples is read as soon as all samples that its
 //! mode needs must be there, and `margin` later, whenever they came: what is put out at t is the motion of the samples at
-//! `t − delay`, with the constant [`Params::delay`] = (points/2)·cycle + margin. Following errors are to be measured against
-//! that.
+//! `t − delay`, with the constant [`Params::delay`] = (points/2 − ahead)·cycle + margin. Following errors are to be measured against
+//! that. [`Settings::run_ahead`] predicts samples from the start to make it shorter.
 //!
 //! A sample that is late is predicted, for two cycles at most; [`Interpolation`] says how that fares and
 //! [`Interpolation::meaning`] what is done.

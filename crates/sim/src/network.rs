@@ -232,7 +232,15 @@ impl Network {
             match step {
                 Ok(Step { command, setpoint }) => {
                     match setpoint {
-                        Some(setpoint) => self.reference.push(turn.due.0 as f64 * self.tick, setpoint),
+                        Some(setpoint) => {
+                            let t = turn.due.0 as f64 * self.tick;
+                            self.reference.push(t, setpoint);
+                            if let MotionTask::Moves(moves) = &self.task
+                                && let Some(passed) = moves.time()
+                            {
+                                self.reference.begin(t - passed);
+                            }
+                        }
                         None => self.reference.restart(),
                     }
                     self.asked = setpoint.unwrap_or(Setpoint::at_rest(state.feedback(params).demanded()));

@@ -13,6 +13,12 @@
 //! is over. Then the next one is made with a predicted sample in the place of the late one, twice at most; when the late
 //! sample comes, it takes its place and the prediction behind it is made anew.
 //!
+//! # Ahead of the samples
+//!
+//! With [`Timing::ahead`] so many samples are predicted from the start: the interval that is read ends as many samples later, and the
+//! delay is as many cycles shorter. Each sample that comes takes the place of the oldest prediction, those behind it are made anew, and one
+//! more is made when the next interval begins. Of the two steps that can be predicted as many fewer are left for what is late.
+//!
 //! A mode predicts by what it uses. Those that use the velocity go on along the parabola of the last sample, the others along
 //! the straight line through the last two.
 use core::array::from_fn;
@@ -33,6 +39,8 @@ pub(crate) struct Timing {
     pub(crate) cycle: u64,
     /// How late a sample may come without being predicted (base ticks).
     pub(crate) margin: u64,
+    /// Samples that are predicted when all come in time, [`PREDICTED`] and half of those that the mode uses at most.
+    pub(crate) ahead: usize,
     /// Length of a base tick (s).
     pub(crate) tick: f64,
 }
@@ -45,7 +53,7 @@ impl Timing {
 
     /// By how much the motion that is read lies behind the samples (base ticks).
     pub(crate) const fn delay(&self) -> u64 {
-        self.mode.delay_samples() as u64 * self.cycle + self.margin
+        (self.mode.delay_samples() - self.ahead) as u64 * self.cycle + self.margin
     }
 
     fn predict(&self, before: Sample, last: Sample) -> Sample {
@@ -142,11 +150,12 @@ impl Buffer {
 
     fn put(&mut self, timing: &Timing, sample: Sample, now: u64) -> Taken {
         self.newest += timing.cycle;
-        let points = timing.mode.points();
-        if self.received < points {
+        let needed = timing.mode.points() - timing.ahead;
+        if self.received < needed {
             self.shift_in(sample);
-            if self.received == points {
+            if self.received == needed {
                 self.begins = self.newest + timing.margin;
+                self.run_ahead(timing);
                 self.build(timing);
             }
             return Taken::Kept;
@@ -169,10 +178,37 @@ impl Buffer {
         let known = POINTS - self.predicted;
         self.window[known] = sample;
         self.predicted -= 1;
+        self.received = (self.received + 1).min(POINTS);
         for place in known + 1..POINTS {
             self.window[place] = timing.predict(self.window[place - 2], self.window[place - 1]);
         }
         self.build(timing);
+    }
+
+    /// Goes on to the interval that is read when all samples come in time.
+    fn run_ahead(&mut self, timing: &Timing) {
+        for _ in 0..timing.ahead {
+            let next = if self.waiting > 0 {
+                self.next_waiting()
+            } else {
+                let [before, last] = if self.received == 1 && self.predicted == 0 {
+                    self.last_two()
+                } else {
+                    let [.., before, last] = self.window;
+                    [before, last]
+                };
+                self.predicted += 1;
+                timing.predict(before, last)
+            };
+            self.shift(next);
+        }
+    }
+
+    fn next_waiting(&mut self) -> Sample {
+        let next = self.ahead[0];
+        self.ahead.rotate_left(1);
+        self.waiting -= 1;
+        next
     }
 
     /// Of all samples that are there, the newest become those that are read from `now` on with the nominal delay.
@@ -192,6 +228,7 @@ impl Buffer {
         self.ahead[..waiting].copy_from_slice(&all[end..]);
         self.waiting = waiting;
         self.begins = (self.newest + timing.margin - waiting as u64 * timing.cycle).min(now);
+        self.run_ahead(timing);
         self.build(timing);
     }
 
@@ -203,9 +240,7 @@ impl Buffer {
         let mut moved = false;
         while now - self.begins >= timing.cycle {
             if self.waiting > 0 {
-                let next = self.ahead[0];
-                self.ahead.rotate_left(1);
-                self.waiting -= 1;
+                let next = self.next_waiting();
                 self.shift_in(next);
             } else if self.predicted < PREDICTED {
                 let [.., before, last] = self.window;
@@ -235,9 +270,13 @@ impl Buffer {
         Some(Command { setpoint: end.setpoint.after((passed - timing.cycle) as f64 * timing.tick), ..end })
     }
 
-    fn shift_in(&mut self, sample: Sample) {
+    fn shift(&mut self, sample: Sample) {
         self.window.rotate_left(1);
         self.window[POINTS - 1] = sample;
+    }
+
+    fn shift_in(&mut self, sample: Sample) {
+        self.shift(sample);
         self.received = (self.received + 1).min(POINTS);
     }
 

@@ -51,6 +51,9 @@ pub struct Settings {
     /// How late a sample may come without being predicted (base ticks); adds to the delay. At most two cycles of the motion
     /// task.
     pub margin: u32,
+    /// Cycles of the motion task by which its motion is predicted, which makes the delay as much shorter: two and half of the samples
+    /// that the interpolation uses at most.
+    pub run_ahead: u32,
     /// What the drive is commanded.
     pub control: Control,
     /// How the drive is brought to power.
@@ -122,7 +125,12 @@ impl Params {
         let velocity_limit = positive("velocity_limit", settings.velocity_limit)?;
         check_velocity(&scale, velocity_limit)?;
         let limits = DirectionalLimits::from(Limits { snap: 1.0, ..settings.recovery });
-        let timing = Timing { mode: settings.interpolation, cycle, margin: settings.margin.into(), tick };
+        let highest = PREDICTED.min(settings.interpolation.delay_samples());
+        let ahead = settings.run_ahead as usize;
+        if ahead > highest {
+            return Err(FieldbusError::RunAhead { ahead: settings.run_ahead, highest });
+        }
+        let timing = Timing { mode: settings.interpolation, cycle, margin: settings.margin.into(), ahead, tick };
         // What the run will ask for, once: whatever is refused then is refused now.
         Interval::new(timing.mode, cycle as f64 * tick, &[Sample::default(); 6])?;
         let moving = servobench_base::Setpoint { v: velocity_limit, ..Default::default() };

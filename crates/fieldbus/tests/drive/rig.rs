@@ -29,6 +29,7 @@ fn settings() -> Settings {
         motion_cycle: hz(RATE).divider(hz(50)).unwrap(),
         interpolation: Mode::Quintic,
         margin: 0,
+        run_ahead: 0,
         control: Control::Position { velocity_offset: true, torque_offset: true },
         sequencing: Sequencing::Strict,
         drive_timeout: 8_000,

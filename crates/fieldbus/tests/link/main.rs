@@ -1,4 +1,5 @@
 //! The link with a motion task and a drive around it.
+mod ahead;
 mod delayed;
 mod modes;
 mod position_loop;

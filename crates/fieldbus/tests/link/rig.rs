@@ -30,6 +30,7 @@ pub(crate) fn settings() -> Settings {
         motion_cycle: hz(16_000).divider(hz(50)).unwrap(),
         interpolation: interpolate::Mode::Quintic,
         margin: 0,
+        run_ahead: 0,
         control: Control::Position { velocity_offset: true, torque_offset: true },
         sequencing: Sequencing::Strict,
         drive_timeout: 1_600,

@@ -62,6 +62,7 @@ impl Default for Chain {
                 motion_cycle: rate.divider(Rate::new(500).unwrap()).unwrap(),
                 interpolation: Mode::Quintic,
                 margin: 0,
+                run_ahead: 0,
                 control: Control::Position { velocity_offset: true, torque_offset: true },
                 sequencing: Sequencing::Strict,
                 drive_timeout: 8_000,

@@ -77,6 +77,9 @@ table! {
         /// How late a command of the motion task may come without being predicted, a whole number of base ticks and two
         /// of the task's cycles at most; it makes the way to the drive longer; default: none.
         margin: f64 = positive(Plain(&TIME), "1 ms"),
+        /// By how many cycles of the motion task the master predicts its motion, which makes the way to the drive as much shorter and
+        /// costs what the motion does meanwhile (docs/fieldbus.md); 2 with B-splines, otherwise 1 at most; default: 0.
+        run_ahead: u32 = 0..=2,
         /// How the master brings the drive to power; default: "strict".
         sequencing: Sequencing = OneOf,
         /// How long the master waits for the drive; default: 0.5 s.

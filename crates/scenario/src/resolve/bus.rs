@@ -59,6 +59,7 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
     let effort_offset = effort_offset(given, known.actuator, report);
     warn_of_what_is_added_twice(given, known.actuator, report);
     let margin = margin(given, cycle.zip(motion_every), known, report);
+    let run_ahead = run_ahead(given, report);
     let units = units(file, given, known.actuator, report);
     let counter = counter(given, report);
     let faults = bus_fault::faults(given, cycle.zip(motion_every), known, report);
@@ -83,6 +84,7 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
         velocity_offset: flag(&given.velocity_offset)?,
         effort_offset: effort_offset?,
         margin: margin?,
+        run_ahead: run_ahead?,
         sequencing: given.sequencing.optional().ok()?.copied().unwrap_or_default(),
         drive_timeout: given.drive_timeout.optional().ok()?.copied().unwrap_or(DRIVE_TIMEOUT),
         position_loop: position_loop?,
@@ -122,7 +124,7 @@ fn refuse_by_mode(given: &file::Bus, mode: BusMode, report: &mut Report) {
         refuse(&offsets, "is for the modes \"csp\" and \"csv\"", "the drive makes the way itself here", report);
     }
     if !mode.is_cyclic() {
-        let key = [("margin", given.margin.span())];
+        let key = [("margin", given.margin.span()), ("run_ahead", given.run_ahead.span())];
         refuse(&key, "is for the modes \"csp\" and \"csv\"", "elsewhere nothing is predicted", report);
     }
     if mode != BusMode::CyclicPosition {
@@ -159,6 +161,19 @@ fn margin(given: &file::Bus, cycles: Option<(u32, u32)>, known: &Known<'_>, repo
         return None;
     }
     Some(margin)
+}
+
+/// No further than to the present.
+fn run_ahead(given: &file::Bus, report: &mut Report) -> Option<u32> {
+    let interpolation = given.interpolation.optional().ok()?.copied().unwrap_or(InterpolationMode::Cubic);
+    let Some(at) = given.run_ahead.at() else { return given.run_ahead.optional().ok().map(|_| 0) };
+    let highest = interpolation.delay_samples();
+    if at.value as usize > highest {
+        let message = format!("with this interpolation the delay is {highest} cycle, and no more can be predicted");
+        report.error(at.span, message, format!("write {highest}, or another `interpolation`"));
+        return None;
+    }
+    Some(at.value)
 }
 
 /// A drive that looks less often than frames come would miss some.

@@ -29,6 +29,8 @@ pub struct Bus {
     pub effort_offset: EffortFeedforward,
     /// How late a command of the motion task may come without being predicted (base ticks).
     pub margin: u32,
+    /// By how many cycles of the motion task the master predicts its motion.
+    pub run_ahead: u32,
     /// How the master brings the drive to power.
     pub sequencing: Sequencing,
     /// How long the master waits for the drive (s).

@@ -93,6 +93,16 @@ fn keys_belong_to_modes() {
     check(&[
         (&bus("mode = \"csv\"\n"), &["1:1: missing `position_gain` in `bus`"]),
         (
+            &bus("motion_cycle = \"4 ms\"\nrun_ahead = 2\n"),
+            &[
+                "5:13: with this interpolation the delay is 1 cycle, and no more can be predicted; write 1, or another `interpolation`",
+            ],
+        ),
+        (
+            &bus("mode = \"pp\"\nrun_ahead = 1\n"),
+            &["5:13: `run_ahead` is for the modes \"csp\" and \"csv\"; elsewhere nothing is predicted"],
+        ),
+        (
             &bus("mode = \"csv\"\nposition_gain = \"80 1/s\"\nposition_derivative_filter = \"1 ms\"\n"),
             &[
                 "6:30: `position_derivative_filter` is for a derivative; give `position_derivative_time` too, or leave it out",

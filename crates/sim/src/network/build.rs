@@ -28,6 +28,9 @@ const BRIDGED: u32 = 2;
 /// How much faster than any move of the program an axis may become.
 const RESERVE: f64 = 2.0;
 
+/// How much more jerk than any move of the program a difference to a prediction is led to zero with.
+const RECOVERY_JERK: f64 = 5.0;
+
 /// How long a set-point is under way (base ticks).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Delays {
@@ -96,6 +99,7 @@ impl Network {
             motion_cycle,
             interpolation: bus.interpolation,
             margin: bus.margin,
+            run_ahead: bus.run_ahead,
             control: control(bus, &dynamics),
             sequencing: bus.sequencing,
             drive_timeout: base_rate.tick_at(bus.drive_timeout).0,
@@ -114,7 +118,8 @@ impl Network {
             recovery: Limits {
                 velocity: dynamics.velocity,
                 acceleration: dynamics.acceleration,
-                jerk: dynamics.jerk,
+                // What is predicted is put right in every cycle of the task: with the jerk of the moves alone it would never be.
+                jerk: if bus.run_ahead > 0 { RECOVERY_JERK * dynamics.jerk } else { dynamics.jerk },
                 snap: f64::INFINITY,
             },
             velocity_limit: RESERVE * dynamics.velocity,
@@ -140,6 +145,10 @@ impl Network {
             }
             None => MotionTask::Moves(Box::new(ProgramCursor::new(program, period))),
         };
+        let reference = match &task {
+            MotionTask::Moves(moves) => DelayedReference::of_program(period, delay, moves.program()),
+            MotionTask::DriveProfile(_) | MotionTask::Plc(_) => DelayedReference::new(period, delay),
+        };
         let network = Self {
             task,
             model,
@@ -156,7 +165,7 @@ impl Network {
             drive_turn: Countdown::default(),
             frame: None,
             demand: Demand::Off,
-            reference: DelayedReference::new(period, delay),
+            reference,
             asked: Setpoint::default(),
             failure: None,
             bus_position: 0.0,

@@ -34,6 +34,11 @@ impl ProgramCursor {
         Some((self.passed - 1) as f64 * self.period)
     }
 
+    /// The time of the program in the last cycle (s); `None` before the axis is powered.
+    pub(super) fn time(&self) -> Option<f64> {
+        self.passed.checked_sub(1).map(|passed| passed as f64 * self.period)
+    }
+
     /// Set-point at a time of the program (s), which does not go back.
     pub(super) fn at(&mut self, t: f64) -> Setpoint {
         self.program.at(t)

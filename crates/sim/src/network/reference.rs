@@ -3,6 +3,7 @@
 //! The link, the bus and the drive each hold a set-point for a time that is known beforehand. An axis that follows what it is
 //! sent without an error is where the motion task wanted it that much earlier; an error against the undelayed set-point would
 //! be velocity × delay, and one against what arrived would not show a frame that was lost.
+use crate::program::Program;
 use servobench_base::Setpoint;
 use servobench_motion::interpolate::{Interval, Mode, Sample};
 use std::collections::VecDeque;
@@ -11,6 +12,14 @@ use std::collections::VecDeque;
 const PREDICTED: f64 = 2.0;
 /// For the rounding of differences of times (s).
 const ROUNDING: f64 = 5e-10;
+
+/// What the motion task will ask for, where that is known beforehand.
+#[derive(Debug, Clone)]
+struct Known {
+    program: Program,
+    /// When it began (s).
+    begun: Option<f64>,
+}
 
 /// The set-points of the motion task and the way between them.
 #[derive(Debug, Clone)]
@@ -23,6 +32,8 @@ pub(super) struct DelayedReference {
     kept: VecDeque<(f64, Setpoint)>,
     /// Between the first two of them.
     interval: Option<Interval>,
+    /// For a delay below the period, with which the next set-point is followed before it is there.
+    known: Option<Box<Known>>,
 }
 
 impl DelayedReference {
@@ -31,7 +42,20 @@ impl DelayedReference {
         // One interval is read, those of the delay wait, and one is being filled.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few cycles")]
         let room = (delay / period) as usize + 4;
-        Self { period, delay, kept: VecDeque::with_capacity(room), interval: None }
+        Self { period, delay, kept: VecDeque::with_capacity(room), interval: None, known: None }
+    }
+
+    /// The same for a motion task that goes through `program`. Only a delay below the period needs to know it.
+    pub(super) fn of_program(period: f64, delay: f64, program: &Program) -> Self {
+        let known = (delay < period).then(|| Box::new(Known { program: program.clone(), begun: None }));
+        Self { known, ..Self::new(period, delay) }
+    }
+
+    /// The program has begun at `t` (s).
+    pub(super) fn begin(&mut self, t: f64) {
+        if let Some(known) = &mut self.known {
+            known.begun = Some(t);
+        }
     }
 
     /// Takes the set-point of the time `t` (s), later than the last one. A motion task that was away for longer than the link
@@ -51,7 +75,8 @@ impl DelayedReference {
     }
 
     /// What is followed at `t` (s), which does not go back; `None` before the first set-point has arrived, and when none has
-    /// come for so long that the link has stopped the axis. Set-points that are late are predicted as the link does it.
+    /// come for so long that the link has stopped the axis. Set-points that are late, or followed ahead of the motion task, are those of
+    /// its program, or predicted as the link does it where there is none.
     pub(super) fn at(&mut self, t: f64) -> Option<Setpoint> {
         let wanted = t - self.delay;
         while self.kept.len() > 2 && self.kept.get(1).is_some_and(|(end, _)| wanted - end >= -ROUNDING) {
@@ -64,6 +89,10 @@ impl DelayedReference {
         }
         let beyond = wanted - end;
         if beyond > ROUNDING {
+            if let Some(Known { program, begun: Some(begun) }) = self.known.as_deref_mut() {
+                let is_followed = beyond <= PREDICTED * self.period;
+                return is_followed.then(|| program.at((wanted - *begun).max(0.0)));
+            }
             let parabola = Setpoint { x: to.x, v: to.v, a: to.a, ..Setpoint::default() };
             return (beyond <= PREDICTED * self.period).then(|| parabola.after(beyond));
         }

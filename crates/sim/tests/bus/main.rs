@@ -1,4 +1,5 @@
 //! A drive over a fieldbus on which things go wrong, and counters that wrap, end to end.
+mod ahead;
 mod bench;
 mod counters;
 mod faults;
