@@ -115,13 +115,7 @@ impl Network {
                 counter: bus.counter,
             },
             velocity_from_differences: bus.velocity_from_differences,
-            recovery: Limits {
-                velocity: dynamics.velocity,
-                acceleration: dynamics.acceleration,
-                // What is predicted is put right in every cycle of the task: with the jerk of the moves alone it would never be.
-                jerk: if bus.run_ahead > 0 { RECOVERY_JERK * dynamics.jerk } else { dynamics.jerk },
-                snap: f64::INFINITY,
-            },
+            recovery: recovery(bus, &dynamics),
             velocity_limit: RESERVE * dynamics.velocity,
         };
         let link = link::Params::new(settings)?;
@@ -310,6 +304,13 @@ fn with_objects(
 fn master_model(bus: &Bus, loops: &drive::Params, scenario: &Scenario) -> feedforward::Params {
     let model = scenario.actuator.drive().map(|drive| drive.estimate.model(bus.effort_offset));
     feedforward::Params { model: model.unwrap_or(feedforward::Model::Off), ..loops.feedforward }
+}
+
+/// What differences to the set-points are led to zero with.
+fn recovery(bus: &Bus, dynamics: &Dynamics) -> Limits {
+    // What is predicted is put right in every cycle of the task: with the jerk of the moves alone it would never be.
+    let jerk = if bus.run_ahead > 0 { RECOVERY_JERK * dynamics.jerk } else { dynamics.jerk };
+    Limits { velocity: dynamics.velocity, acceleration: dynamics.acceleration, jerk, snap: f64::INFINITY }
 }
 
 fn control(bus: &Bus, dynamics: &Dynamics) -> link::Control {
