@@ -62,10 +62,9 @@ impl State {
         Edge::ALL.iter().map(stored).fold(on, |status, bit| status | bit)
     }
 
-    /// What the master reads (60BAh, 60BBh); 0 where nothing is stored.
-    #[expect(clippy::cast_possible_truncation, reason = "32 bits of an object, as an unsigned counter uses them")]
+    /// What the master reads (60BAh, 60BBh), of a wider counter the lower 32 bits; 0 where nothing is stored.
     pub(super) fn positions(&self, p: &Params) -> [i32; 2] {
-        self.stored.map(|position| position.map_or(0, |position| p.shown(position) as i32))
+        self.stored.map(|position| position.map_or(0, |position| p.counter.words(p.shown(position))[0]))
     }
 }
 

@@ -24,7 +24,7 @@ enum Phase {
     /// Asked for since this tick.
     Armed(u64),
     /// The axis was at so many counts.
-    Latched(i64),
+    Latched(i128),
 }
 
 impl Probe {
@@ -52,7 +52,7 @@ impl Probe {
                 let edge = trigger.edge();
                 if let (true, Some(position)) = (actuals.touch_probe_status & edge.stored() != 0, position) {
                     let latched = actuals.touch_probe_positions[edge as usize];
-                    self.phase = Phase::Latched(position.counts() + p.scale.between(actuals.position, latched));
+                    self.phase = Phase::Latched(position.counts() + p.scale.away(actuals.position, latched));
                 }
             }
             Phase::Off | Phase::Clearing(_) | Phase::Armed(_) | Phase::Latched(_) => {}

@@ -106,6 +106,13 @@ impl Scale {
         if way > range / 2 { way - range } else { way }
     }
 
+    /// Counts from the position in an object of 32 bits to that in another, by the shorter way.
+    pub(crate) fn away(&self, from: i32, to: i32) -> i128 {
+        let range = self.counter.range().min(1 << i32::BITS);
+        let way = (i128::from(to) - i128::from(from)).rem_euclid(range);
+        if way > range / 2 { way - range } else { way }
+    }
+
     /// Velocity in the drive's unit; `None` beyond 32 bits.
     pub(crate) fn drive_velocity(&self, v: f64) -> Option<i32> {
         whole(self.velocity * v, i32::MAX.into()).and_then(|v| i32::try_from(self.turned(v)).ok())

@@ -21,7 +21,7 @@ fn coasting(control: Control, off_target: f64, mut look: impl FnMut(&Rig)) -> Ve
     rig.run(5, |_| follow(rested(0.0)));
     assert_eq!(rig.feedback().power, Power::On);
     rig.drive.coasts = COASTS;
-    let unpowered = AxisCommand { power: false, reset: false, task: Task::Follow(rested(0.0)) };
+    let unpowered = AxisCommand { power: false, ..AxisCommand::of(Task::Follow(rested(0.0))) };
     rig.run(5, |_| unpowered);
     assert_eq!((rig.feedback().power, rig.feedback().interpolation), (Power::Off, Interpolation::Off));
     look(&rig);
@@ -118,7 +118,7 @@ fn efforts_begin_with_the_one_that_the_drive_makes() {
     rig.drive.holding_torque = 300;
     rig.run(10, |_| follow(rested(0.0)));
     assert_eq!(rig.feedback().power, Power::On);
-    let push = AxisCommand { power: true, reset: false, task: Task::Effort(3.0) };
+    let push = AxisCommand::of(Task::Effort(3.0));
     for _ in 0..4 * MOTION / BUS {
         if rig.tick.is_multiple_of(MOTION) {
             rig.write(rig.tick, push);

@@ -14,7 +14,7 @@ fn rig(counter: Counter) -> Rig {
 }
 
 const OFF: AxisCommand =
-    AxisCommand { power: false, reset: false, task: Task::Follow(Sample { x: 0.0, v: 0.0, a: 0.0, torque: 0.0 }) };
+    AxisCommand { power: false, ..AxisCommand::of(Task::Follow(Sample { x: 0.0, v: 0.0, a: 0.0, torque: 0.0 })) };
 
 /// Oracle: the counts of the drive. Without power the target is where the axis will be, count by count, through 2⁵³, the ends of the counter
 /// and 2⁶³ itself; the velocity by differences is that of whole counts.

@@ -160,7 +160,7 @@ fn a_block_has_its_inputs_and_no_others() {
         (&call("Profile4th", "position = \"1 mm\"\nsettling_time = \"50 ms\"\norder = 3"), &[]),
         (
             &call("Profile4th", "position = \"1 mm\"\nsettling_time = \"50 ms\"\nsnap = \"1e4 m/s4\"\norder = 2.5"),
-            &["6:9: `order` must be 2, 3 or 4; leave it out for 4"],
+            &["6:9: `order` must be a whole number from 2 to 4, got 2.5"],
         ),
         (
             &call("MC_MoveAbsolute", "position = \"1 mm\"\nvelocity = \"0 m/s\""),
