@@ -7,6 +7,7 @@ mod fmu_suite;
 mod getting_started;
 mod objects;
 mod output;
+mod overrides;
 mod plan;
 mod plan_families;
 mod plan_mistakes;

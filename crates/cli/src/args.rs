@@ -15,6 +15,7 @@ use servobench_fmi::Version;
 use servobench_fmu::Part;
 use servobench_plant::EngineName;
 use servobench_structured_text::{Dialect, Format};
+use servobench_scenario::Override;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -139,6 +140,8 @@ pub(crate) struct FmuInfoArgs {
 pub(crate) struct FmuExportArgs {
     /// The scenario.
     pub(crate) scenario: PathBuf,
+    #[command(flatten)]
+    pub(crate) with: OverrideArgs,
     /// Version of the Functional Mock-up Interface.
     #[arg(long, value_parser = choice::<Version>(), default_value = Version::default().name())]
     pub(crate) fmi: Version,
@@ -154,6 +157,8 @@ pub(crate) struct FmuExportArgs {
 pub(crate) struct RunArgs {
     /// Scenario files, or folders of them.
     pub(crate) scenarios: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) with: OverrideArgs,
     /// Folder for results.json and the recordings [default: servobench-out; of the demo servobench-out/demo].
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
@@ -180,11 +185,22 @@ pub(crate) struct RunArgs {
     pub(crate) verbose: bool,
 }
 
+/// Values that are not those of the files.
+#[derive(Debug, Args)]
+pub(crate) struct OverrideArgs {
+    /// Give a key of the scenario another value, as in setpoint.jerk=200m/s3 or 'program.0.move_to=100 mm' (lists count from 0); may
+    /// be given several times.
+    #[arg(long = "set", value_name = "KEY=VALUE", allow_hyphen_values = true)]
+    pub(crate) overrides: Vec<Override>,
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct CheckArgs {
     /// Scenario files, or folders of them.
     #[arg(required = true)]
     pub(crate) scenarios: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) with: OverrideArgs,
     /// Show the whole preview of every scenario, as of a single one.
     #[arg(long, short)]
     pub(crate) verbose: bool,
@@ -195,6 +211,8 @@ pub(crate) struct CompareArgs {
     /// Scenario files: axes of one kind, linear or rotary.
     #[arg(required = true, num_args = 2..)]
     pub(crate) scenarios: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) with: OverrideArgs,
     /// What must be equal in all runs; without it each keeps its own limits.
     #[arg(long, value_enum)]
     pub(crate) equal: Option<Equal>,
@@ -252,6 +270,8 @@ pub(crate) struct TimingArgs {
 pub(crate) struct ObjectsArgs {
     /// A scenario, for the values that its drive.objects writes; without it the values after power-on.
     pub(crate) scenario: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) with: OverrideArgs,
     /// How the dictionary is written.
     #[arg(long, value_enum, default_value_t = ObjectsFormat::Table)]
     pub(crate) format: ObjectsFormat,
@@ -282,6 +302,8 @@ pub(crate) struct WorkerArgs {
     pub(crate) name: String,
     #[arg(long, allow_hyphen_values = true)]
     pub(crate) path: Option<PathBuf>,
+    #[arg(long, allow_hyphen_values = true)]
+    pub(crate) set: Vec<Override>,
     #[arg(long, value_delimiter = ',')]
     pub(crate) durations: Vec<f64>,
 }

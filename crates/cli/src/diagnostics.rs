@@ -3,6 +3,9 @@ use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnost
 use servobench_scenario::{Diagnostic, Shown, Sources, shown};
 use std::io::IsTerminal;
 
+/// What is named in place of a file where a mistake is in an option.
+const COMMAND_LINE: &str = "command line";
+
 /// Columns that a diagnostic is laid out for.
 const WIDTH: usize = 80;
 
@@ -39,7 +42,9 @@ pub(crate) fn render(diagnostics: &[Diagnostic], sources: &Sources, severity: Se
 }
 
 fn report(diagnostic: &Diagnostic, sources: &Sources, severity: Severity) -> Report {
-    let (name, text) = (sources.name(diagnostic.source), sources.text(diagnostic.source));
+    let source = diagnostic.source;
+    let name = if source.is_override() { COMMAND_LINE } else { sources.name(source) };
+    let text = sources.text(source);
     let mut told = MietteDiagnostic::new(diagnostic.message.clone())
         .with_severity(severity)
         .with_label(LabeledSpan::new_with_span(None, diagnostic.span.clone()));

@@ -3,7 +3,7 @@ use crate::console::say;
 use crate::diagnostics::{mistakes, render};
 use crate::error::CliError;
 use miette::Severity;
-use servobench_scenario::{LoadError, Loaded};
+use servobench_scenario::{LoadError, Loaded, Override, parse_with};
 use servobench_suite::Source;
 use std::ffi::OsStr;
 use std::fmt;
@@ -45,10 +45,10 @@ fn search(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), CliError> {
 }
 
 /// Loads every file; the mistakes of all of them are reported together, and warnings go to standard error.
-pub(crate) fn load(paths: &[PathBuf]) -> Result<Vec<Source>, CliError> {
+pub(crate) fn load(paths: &[PathBuf], overrides: &[Override]) -> Result<Vec<Source>, CliError> {
     let mut mistakes = Vec::new();
     let mut sources = Vec::new();
-    for found in each(paths)? {
+    for found in each(paths, overrides)? {
         match found {
             Ok(source) => sources.push(source),
             Err(unusable) => mistakes.push(unusable),
@@ -84,9 +84,9 @@ impl fmt::Display for Unusable {
 }
 
 /// Every file by itself: one that cannot be used does not keep the others from being used.
-pub(crate) fn each(paths: &[PathBuf]) -> Result<Vec<Result<Source, Unusable>>, CliError> {
+pub(crate) fn each(paths: &[PathBuf], overrides: &[Override]) -> Result<Vec<Result<Source, Unusable>>, CliError> {
     let files = files(paths)?;
-    let each = files.into_iter().map(|path| match servobench_scenario::load(&path) {
+    let each = files.into_iter().map(|path| match servobench_scenario::load_with(&path, overrides) {
         Ok(loaded) => Ok(source(loaded)),
         Err(error) => Err(Unusable { path, error }),
     });
@@ -101,14 +101,14 @@ fn source(loaded: Loaded) -> Source {
 }
 
 /// Loads one file.
-pub(crate) fn read(path: &Path) -> Result<Loaded, LoadError> {
-    servobench_scenario::load(path).inspect(warn)
+pub(crate) fn read(path: &Path, overrides: &[Override]) -> Result<Loaded, LoadError> {
+    servobench_scenario::load_with(path, overrides).inspect(warn)
 }
 
 /// The embedded demo.
-pub(crate) fn demo() -> Result<Vec<Source>, LoadError> {
+pub(crate) fn demo(overrides: &[Override]) -> Result<Vec<Source>, LoadError> {
     let demo = servobench_scenario::embedded_demo().into_iter();
-    demo.map(|(name, text)| servobench_scenario::parse(name, text, None).map(source)).collect()
+    demo.map(|(name, text)| parse_with(name, text, None, overrides).map(source)).collect()
 }
 
 fn warn(loaded: &Loaded) {

@@ -29,8 +29,13 @@ pub(crate) fn describe(
         Part::Drive => "the drive of a servo axis",
         Part::Mechanics => "the mechanics of a servo axis",
     };
-    description.description =
-        if scenario.description.is_empty() { what.into() } else { format!("{what}: {}", scenario.description) };
+    let overrides: Vec<String> = scenario.overrides.iter().map(ToString::to_string).collect();
+    let with = if overrides.is_empty() { String::new() } else { format!(" with {}", overrides.join(", ")) };
+    description.description = if scenario.description.is_empty() {
+        format!("{what}{with}")
+    } else {
+        format!("{what}{with}: {}", scenario.description)
+    };
     description.generation_tool = format!("servobench {}", env!("CARGO_PKG_VERSION"));
     let step = scenario.base_rate.period();
     description.co_simulation = CoSimulation {

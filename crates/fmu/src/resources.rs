@@ -1,7 +1,7 @@
 //! What an FMU carries beside its library: part, scenario, and the models and tables that the scenario names.
 //!
 //! ```text
-//! resources/contents.txt        the part, and where the scenario is
+//! resources/contents.txt        the part, where the scenario is, and the overrides that it is read with, each on a line
 //!          /scenario.toml       with as many folders before it as its tables are above it
 //!          /models/…            the models that it names
 //! ```
@@ -9,7 +9,7 @@ use crate::error::FmuError;
 use crate::machine::Model;
 use crate::part::Part;
 use servobench_config::Choice as _;
-use servobench_scenario::{Loaded, load};
+use servobench_scenario::{Loaded, Override, load_with};
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
 use std::fs;
@@ -58,7 +58,9 @@ impl Resources {
         for table in &loaded.tables {
             files.push((within(&table.named), table.text.clone()));
         }
-        files.push((CONTENTS.into(), format!("{}\n{scenario}\n", part.name())));
+        let overrides = loaded.scenario.overrides.iter().map(ToString::to_string);
+        let contents: Vec<String> = [part.name().to_owned(), scenario].into_iter().chain(overrides).collect();
+        files.push((CONTENTS.into(), contents.join("\n") + "\n"));
         files.sort();
         files.dedup();
         Ok(Self { files })
@@ -84,7 +86,9 @@ impl Resources {
         let mut lines = contents.ok_or_else(|| format!("there is no `{CONTENTS}` in `{}`", folder.display()))?;
         let part = lines.next().and_then(Part::from_name).ok_or_else(|| format!("`{CONTENTS}` names no part"))?;
         let scenario = lines.next().ok_or_else(|| format!("`{CONTENTS}` names no scenario"))?;
-        let loaded = load(&folder.join(scenario)).map_err(|error| error.to_string())?;
+        let overrides: Result<Vec<Override>, _> = lines.map(str::parse).collect();
+        let overrides = overrides.map_err(|error| format!("`{CONTENTS}`: {error}"))?;
+        let loaded = load_with(&folder.join(scenario), &overrides).map_err(|error| error.to_string())?;
         Model::new(part, &loaded.scenario).map_err(|error| error.to_string())
     }
 
@@ -145,6 +149,7 @@ fn collect(folder: &Path, prefix: &str, depth: usize, files: &mut Vec<(String, S
 #[cfg(test)]
 mod tests {
     use super::*;
+    use servobench_scenario::load;
 
     #[test]
     fn a_path_leads_above_as_often_as_it_goes_up_without_having_gone_down() {
@@ -185,6 +190,15 @@ mod tests {
         let model = read.model(elsewhere.path()).unwrap();
         assert_eq!(model.scenario.program, loaded.scenario.program);
         assert_eq!(model.scenario.axis, loaded.scenario.axis);
+
+        // What is overridden is packed with it, and makes another FMU.
+        let overrides = ["axis.load.mass=7 kg".parse().unwrap()];
+        let overridden = load_with(&folder.join("pvt.toml"), &overrides).unwrap_or_else(|error| panic!("{error}"));
+        let other = Resources::of(Part::Axis, &overridden).unwrap();
+        assert_ne!(other.token(), resources.token());
+        let model = other.model(elsewhere.path()).unwrap();
+        assert_eq!(model.scenario.axis, overridden.scenario.axis);
+        assert_ne!(model.scenario.axis, loaded.scenario.axis);
 
         fs::write(elsewhere.path().join("points.csv"), "t").unwrap();
         assert_ne!(Resources::read(elsewhere.path()).unwrap().token(), resources.token());

@@ -16,6 +16,7 @@ impl Build {
             engine: "closed form".into(),
             axis_unit: "m".into(),
             bodies: vec!["motor".into(), "load".into()],
+            overrides: vec![],
         };
         let rate = Rate::new(hertz).unwrap();
         let recording = Recording::new(about, rate);

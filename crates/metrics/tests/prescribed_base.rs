@@ -107,6 +107,7 @@ fn recording(profile: &Profile, omega: f64) -> Recording {
             engine: "closed form".into(),
             axis_unit: "m".into(),
             bodies: vec!["motor".into(), "load".into()],
+            overrides: vec![],
         },
         rate,
         channels: vec![

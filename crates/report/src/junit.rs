@@ -41,7 +41,10 @@ fn well_formed(xml: &str) -> String {
 
 fn case(run: &RunResult, time: Option<Duration>) -> TestCase {
     let engine = if run.engine.is_empty() { String::new() } else { format!(" [{}]", run.engine) };
-    let mut case = TestCase::new(format!("{}{engine}", printable(&run.name).trim()), status(run));
+    // The same scenario under other numbers is another case.
+    let overrides = run.overrides.join(", ");
+    let with = if overrides.is_empty() { String::new() } else { format!(" with {}", printable(&overrides)) };
+    let mut case = TestCase::new(format!("{}{engine}{with}", printable(&run.name).trim()), status(run));
     case.set_classname(run.file.as_deref().unwrap_or("servobench"));
     case.add_property(("verdict", run.verdict.word()));
     if let Some(time) = time {

@@ -155,6 +155,7 @@ mod tests {
                 engine: "exact".into(),
                 axis_unit: "m".into(),
                 bodies: vec!["load".into()],
+                overrides: vec![],
             },
             rate,
             channels: vec![Channel { spec, values: (0..=1000).map(|k| f64::from(k) * 0.1e-6).collect() }],

@@ -31,6 +31,7 @@ pub(crate) fn run(name: &str, engine: &str, metrics: impl IntoIterator<Item = (S
         expected: vec![],
         warnings: vec![],
         parameters: [("drive.velocity.bandwidth".to_owned(), "30 Hz".to_owned())].into_iter().collect(),
+        overrides: vec![],
         metrics: metrics.into_iter().collect(),
         absent: [("current_peak".to_owned(), "`current.d` is not recorded; only a PMSM has a current".to_owned())]
             .into_iter()

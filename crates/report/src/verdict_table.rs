@@ -3,7 +3,7 @@ use crate::metric_table::metric_table;
 use crate::results::{Outcome, Results, RunResult};
 use crate::row_notes::row_notes;
 use crate::style::{Ink, Style};
-use crate::text::{printable, widest};
+use crate::text::{printable, widest, wrapped};
 use servobench_metrics::{Name, Quantity};
 
 /// Numbers that every row shows, with their headings.
@@ -35,7 +35,7 @@ const fn shown(outcome: Outcome) -> (&'static str, Ink) {
     }
 }
 
-/// Runs with their verdicts and main numbers: what passed, what failed with the reasons, then the count. Below a row
+/// Runs with their verdicts and main numbers: what passed, what failed with the reasons, then overrides and the count. Below a row
 /// stands too what is lifted, and a handful of warnings and events. A single run, and with `all_metrics` every run, shows
 /// all its metrics. Names are complete.
 ///
@@ -64,11 +64,25 @@ pub fn verdict_table(results: &Results, style: Style, all_metrics: bool) -> Stri
         }
     }
     line(&mut table, "");
+    for (k, part) in wrapped(&overridden(results), style.width.saturating_sub(2)).iter().enumerate() {
+        line(&mut table, &format!("{}{part}", if k == 0 { "" } else { "  " }));
+    }
     line(&mut table, &summary(results, style));
     table
 }
 
-/// One line for each run that did not pass, and the count.
+/// Which keys had another value than the files give them; empty where none had.
+fn overridden(results: &Results) -> String {
+    let mut all: Vec<&str> = Vec::new();
+    for one in results.scenarios.iter().flat_map(|run| &run.overrides) {
+        if !all.contains(&one.as_str()) {
+            all.push(one);
+        }
+    }
+    if all.is_empty() { String::new() } else { printable(&format!("overrides: {}", all.join(", "))) }
+}
+
+/// One line for each run that did not pass, the overrides and the count.
 #[must_use]
 pub fn brief(results: &Results) -> String {
     let runs = &results.scenarios;
@@ -82,6 +96,10 @@ pub fn brief(results: &Results) -> String {
         let more = if more > 0 { format!(" (and {more} more)") } else { String::new() };
         let name = told_apart(run, runs);
         line(&mut text, &printable(&format!("{:VERDICT$}{name}{engine}: {first}{more}", shown(run.verdict).0)));
+    }
+    let overridden = overridden(results);
+    if !overridden.is_empty() {
+        line(&mut text, &overridden);
     }
     line(&mut text, &summary(results, Style::default()));
     text

@@ -97,13 +97,12 @@ impl Diagnostic {
         Self { source: span.source, span: span.start..span.end, message, help }
     }
 
-    /// The diagnostic in one line: `axis.toml:12:9: message; help`.
+    /// The diagnostic in one line: `axis.toml:12:9: message; help`, of an override `--set run.duration=1: message; help`.
     #[must_use]
     pub fn line(&self, sources: &Sources) -> String {
-        let (line, column) = sources.line_and_column(self.source, self.span.start);
-        let name = sources.name(self.source);
+        let place = sources.place_in_words(self.source, self.span.start);
         let help = self.help.as_ref().map(|help| format!("; {help}")).unwrap_or_default();
-        format!("{name}:{line}:{column}: {}{help}", self.message)
+        format!("{place}: {}{help}", self.message)
     }
 }
 

@@ -227,12 +227,15 @@ pub(crate) fn written(node: &Node) -> String {
     }
 }
 
-/// The place of `part` of a text: exact when the file holds the text as it is, without escapes.
+/// The place of `part` of a text: exact when the file holds the text as it is, without escapes. On the command line it needs
+/// no quotes.
 fn within(span: Span, text: &str, part: &Range<usize>) -> Span {
-    if span.end - span.start == text.len() + 2 {
-        let start = span.start + 1;
+    let quotes = (span.end - span.start).checked_sub(text.len());
+    if let Some(quotes @ (0 | 2)) = quotes {
+        let quote = quotes / 2;
+        let start = span.start + quote;
         // An empty part would point at nothing.
-        let end = part.end.max(part.start + 1).min(text.len() + 1);
+        let end = part.end.max(part.start + 1).min(text.len() + quote);
         Span { start: start + part.start, end: start + end, ..span }
     } else {
         span

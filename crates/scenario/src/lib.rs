@@ -1,7 +1,7 @@
 //! The scenario file: schema, quantities with units, diagnostics with spans, look-up in `models/`.
 //!
 //! ```text
-//! TOML → tree with places → laid on models → tables (`file`: quantities in SI) → `Scenario`
+//! TOML → tree with places → laid on models → overrides → tables (`file`: quantities in SI) → `Scenario`
 //! ```
 //! The tables in `file` are the one description of the format: decoding, unknown keys, JSON Schema and the reference in
 //! `docs/scenario.md` follow from them.
@@ -20,6 +20,7 @@ mod models;
 mod name_table;
 mod nearest;
 mod object_table;
+mod overrides;
 mod parameter_key;
 mod parameters;
 mod place;
@@ -38,8 +39,9 @@ mod when;
 
 pub use argument::{ArgumentError, Derivative, axis_quantity, frequency, ratio, si_unit, time};
 pub use diagnostic::{Diagnostic, Invalid, LoadError, MOST_MISTAKES, NamedFile, Shown, shown};
-pub use load::{Loaded, load, parse};
+pub use load::{Loaded, load, load_with, parse, parse_with};
 pub use models::{embedded_demo, embedded_models};
+pub use overrides::{Override, OverrideError};
 pub use parameter_key::{parameter_key, switch_key};
 pub use parameters::{Difference, Parameter, differences};
 pub use points::{

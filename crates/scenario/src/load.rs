@@ -4,6 +4,7 @@ use crate::field::Field;
 use crate::file::{File, MotorKind};
 use crate::format;
 use crate::models::lay_on_models;
+use crate::overrides::{Override, Overriding};
 use crate::parameters::parameters;
 use crate::resolve;
 use crate::scenario::{AxisMechanics, Scenario};
@@ -37,9 +38,17 @@ pub struct Loaded {
 /// # Errors
 /// [`LoadError::Read`] when the file cannot be read, [`LoadError::Invalid`] with every mistake in it.
 pub fn load(path: &Path) -> Result<Loaded, LoadError> {
+    load_with(path, &[])
+}
+
+/// Loads as [`load`] does, with the values of `overrides` in place of those of the file.
+///
+/// # Errors
+/// As [`load`], and what is wrong with the overrides.
+pub fn load_with(path: &Path, overrides: &[Override]) -> Result<Loaded, LoadError> {
     let text = std::fs::read_to_string(path).map_err(|error| LoadError::Read { path: path.to_owned(), error })?;
     let folder = path.parent().unwrap_or_else(|| Path::new(""));
-    let mut loaded = parse(&path.display().to_string(), &text, Some(folder))?;
+    let mut loaded = parse_with(&path.display().to_string(), &text, Some(folder), overrides)?;
     loaded.scenario.path = Some(path.to_owned());
     Ok(loaded)
 }
@@ -50,6 +59,14 @@ pub fn load(path: &Path) -> Result<Loaded, LoadError> {
 /// # Errors
 /// [`LoadError::Invalid`] with every mistake in it.
 pub fn parse(name: &str, text: &str, folder: Option<&Path>) -> Result<Loaded, LoadError> {
+    parse_with(name, text, folder, &[])
+}
+
+/// Reads as [`parse`] does, with the values of `overrides` in place of those of the text.
+///
+/// # Errors
+/// As [`parse`], and what is wrong with the overrides.
+pub fn parse_with(name: &str, text: &str, folder: Option<&Path>, overrides: &[Override]) -> Result<Loaded, LoadError> {
     let mut sources = Sources::default();
     let place = folder.map_or_else(|| Place::Embedded("".into()), |folder| Place::Folder(folder.to_owned()));
     let id = sources.add(name.to_owned(), text.to_owned(), place);
@@ -64,7 +81,10 @@ pub fn parse(name: &str, text: &str, folder: Option<&Path>) -> Result<Loaded, Lo
         return Err(LoadError::Invalid(Box::new(Invalid { diagnostics, warnings, sources })));
     }
     format::warn_of_older(&parsed.table, &mut report);
+    let overriding = Overriding::new(overrides, &mut sources, &mut report);
+    overriding.choose_models(&mut parsed.table, &mut report);
     broken.extend(lay_on_models(&mut parsed.table, &mut sources, &mut report, &mut syntax));
+    overriding.set(&mut parsed.table, &mut report);
 
     (report.axis, report.motor) = motions(&parsed.table);
     let root = Node { value: Value::Table(parsed.table), span: Span::new(id, &(0..0)) };
@@ -81,6 +101,7 @@ pub fn parse(name: &str, text: &str, folder: Option<&Path>) -> Result<Loaded, Lo
             if let Value::Table(table) = &root.value {
                 scenario.parameters = parameters(table, &sources);
             }
+            scenario.overrides = overrides.to_vec();
             let mjcf = match &scenario.axis.mechanics {
                 AxisMechanics::Mjcf(mjcf) => {
                     Some(sources.add(mjcf.path.display().to_string(), mjcf.xml.clone(), Place::Embedded("".into())))
@@ -125,13 +146,13 @@ fn motions(root: &Table) -> (Option<Coordinate>, Option<Coordinate>) {
 }
 
 /// Whether a synchronous motor turns or is linear: its poles are counted in pairs around a shaft, or have a pitch along a
-/// line. What the scenario says displaces what the model says.
+/// line. What the command line says displaces what the scenario says, and that what the model says.
 fn motor_by_its_keys(motor: &Table) -> Option<Coordinate> {
     if named(motor, "kind") != Some(MotorKind::Pmsm) {
         return None;
     }
-    let source = |key| motor.get(key).map(|node| node.span.source);
-    match (source("pole_pairs"), source("pole_pitch")) {
+    let authority = |key| motor.get(key).map(|node| node.span.source.authority());
+    match (authority("pole_pairs"), authority("pole_pitch")) {
         (None, None) => None,
         (Some(_), None) => Some(Coordinate::Rotary),
         (None, Some(_)) => Some(Coordinate::Linear),

@@ -1,6 +1,6 @@
 //! What a scenario file says, models merged in: key by key and as it is written, so that two runs can be told apart.
 use crate::quantity;
-use crate::source::{SourceId, Sources};
+use crate::source::{Authority, Sources};
 use crate::tree::{Node, Table, Value};
 use std::collections::BTreeMap;
 
@@ -11,8 +11,10 @@ pub struct Parameter {
     pub key: String,
     /// The value as it is written: `60 Hz`.
     pub value: String,
-    /// Line of the scenario file, from 1; `None` for what a model says.
+    /// Line of the scenario file, from 1; `None` for what a model or an override says.
     pub line: Option<usize>,
+    /// Whether a model says it.
+    pub is_of_model: bool,
 }
 
 /// A key at which two scenarios say something else.
@@ -50,9 +52,11 @@ fn flatten(path: &str, node: &Node, sources: &Sources, all: &mut Vec<Parameter>)
             items.iter().enumerate().for_each(|(index, item)| flatten(&below(&index), item, sources, all));
         }
         value if !path.ends_with(PROVENANCE) => {
-            let is_own = node.span.source == SourceId::SCENARIO;
+            let authority = node.span.source.authority();
+            let is_own = authority == Authority::Scenario;
             let line = is_own.then(|| sources.line_and_column(node.span.source, node.span.start).0);
-            all.push(Parameter { key: path.to_owned(), value: written(value), line });
+            let is_of_model = authority == Authority::Model;
+            all.push(Parameter { key: path.to_owned(), value: written(value), line, is_of_model });
         }
         _ => {}
     }
@@ -84,7 +88,7 @@ pub fn differences(one: &[Parameter], other: &[Parameter]) -> Vec<Difference> {
     let of_another_model = |key: &str| {
         let table = key.split('.').next().unwrap_or(key);
         let model = format!("{table}.model");
-        let is_models = |all: &BTreeMap<String, Parameter>| all.get(key).is_none_or(|found| found.line.is_none());
+        let is_models = |all: &BTreeMap<String, Parameter>| all.get(key).is_none_or(|found| found.is_of_model);
         key != model && value(&ones, &model) != value(&others, &model) && is_models(&ones) && is_models(&others)
     };
     let added = other.iter().filter(|parameter| !ones.contains_key(&parameter.key));

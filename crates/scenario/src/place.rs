@@ -19,9 +19,8 @@ impl Loaded {
         let key = "axis.mjcf.file";
         let Some(source) = self.mjcf else { return self.mistake(key, message, help.to_owned()) };
         let named = self.place_of(key);
-        let (named_line, column) = self.sources.line_and_column(named.source, named.start);
-        let name = self.sources.name(named.source);
-        let help = format!("{name}:{named_line}:{column} names this file; {help}");
+        let place = self.sources.place_in_words(named.source, named.start);
+        let help = format!("{place} names this file; {help}");
         Diagnostic::new(line_of(&self.sources, source, line), message, help)
     }
 

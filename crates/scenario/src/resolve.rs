@@ -35,7 +35,7 @@ use crate::file::{File, MotorKind, Run};
 use crate::limit_table::LimitTable;
 use crate::scenario::{LONGEST_RUN, Record, Scenario};
 use crate::simple::MAX_RATE;
-use crate::source::{At, SourceId, Sources, Span};
+use crate::source::{At, Authority, Sources, Span};
 use servobench_base::Rate;
 use servobench_metrics::{Limit, Question};
 use servobench_plant::EngineName;
@@ -124,6 +124,7 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
         requirements: requirements?,
         limits,
         parameters: Vec::new(),
+        overrides: Vec::new(),
     })
 }
 
@@ -183,7 +184,7 @@ fn need<T: Clone>(slot: &Slot<T>, path: &str, key: &str, header: Span, report: &
 /// A task rate that must divide the base rate. What a model says is not in question: see [`say_rates_of_models`].
 fn task_rate(slot: &Slot<Rate>, base_rate: Option<Rate>, report: &mut Report) -> Option<Rate> {
     let rate = slot.at()?;
-    let is_of_model = rate.span.source != SourceId::SCENARIO;
+    let is_of_model = rate.span.source.authority() == Authority::Model;
     if is_of_model {
         report.rates_of_models.push(rate.value);
     }
@@ -237,12 +238,12 @@ enum Alternative {
     Contradiction,
 }
 
-/// Picks among keys that say the same thing. What the scenario says displaces what a model says; within one file only
-/// one may be there.
+/// Picks among keys that say the same thing. What the command line says displaces what the scenario says, and that what a
+/// model says; each may give one of them only.
 fn one_of(keys: &[(&str, Option<Span>)], report: &mut Report) -> Alternative {
     let there = || keys.iter().enumerate().filter_map(|(i, (key, span))| Some((i, *key, (*span)?)));
-    let Some(first_source) = there().map(|(.., span)| span.source).min() else { return Alternative::None };
-    let mut ours = there().filter(|(.., span)| span.source == first_source);
+    let Some(first) = there().map(|(.., span)| span.source.authority()).min() else { return Alternative::None };
+    let mut ours = there().filter(|(.., span)| span.source.authority() == first);
     match (ours.next(), ours.next()) {
         (Some((_, first, _)), Some((_, second, span))) => {
             report.error(span, format!("`{first}` and `{second}` say the same thing"), "give one of them");
@@ -253,11 +254,11 @@ fn one_of(keys: &[(&str, Option<Span>)], report: &mut Report) -> Alternative {
     }
 }
 
-/// Objects to keys that have no meaning here, as far as the scenario itself gives them: a model may know more than is
-/// used of it.
+/// Objects to keys that have no meaning here, as far as the scenario itself or the command line gives them: a model may know
+/// more than is used of it.
 fn refuse(keys: &[(&str, Option<Span>)], why: &str, help: &str, report: &mut Report) {
     for (key, span) in keys {
-        if let Some(span) = span.filter(|span| span.source == SourceId::SCENARIO) {
+        if let Some(span) = span.filter(|span| span.source.authority() != Authority::Model) {
             report.error(span, format!("`{key}` {why}"), help);
         }
     }

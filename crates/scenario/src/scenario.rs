@@ -23,6 +23,7 @@ pub use plc::Plc;
 pub use program::{Interpolation, MoveStep, Step};
 pub use requirements::Requirements;
 
+use crate::overrides::Override;
 use crate::parameters::Parameter;
 use servobench_base::Rate;
 use servobench_metrics::{Limit, Question};
@@ -76,8 +77,10 @@ pub struct Scenario {
     pub requirements: Requirements,
     /// What makes it pass or fail, in the order of the file.
     pub limits: Vec<Limit>,
-    /// What the file says, models merged in, key by key.
+    /// What the file says, models and overrides merged in, key by key.
     pub parameters: Vec<Parameter>,
+    /// Keys that have another value than the file gives them.
+    pub overrides: Vec<Override>,
 }
 
 /// What to record.

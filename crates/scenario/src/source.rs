@@ -1,14 +1,30 @@
-//! The files that a scenario was read from, and places in them.
+//! What a scenario was read from, files and overrides of the command line, and places in them.
 use std::ops::Range;
 use std::path::PathBuf;
 
-/// One of the files in [`Sources`].
+/// One of the texts in [`Sources`]. What is less displaces what is greater: overrides the scenario, the scenario its models.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct SourceId(usize);
+pub struct SourceId(Kind);
 
-/// The files that a scenario was read from: the scenario itself first, then the models it names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+enum Kind {
+    Override(usize),
+    /// Index of the file, the scenario first.
+    File(usize),
+}
+
+/// Who says something: what is less displaces what is greater.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Authority {
+    CommandLine,
+    Scenario,
+    Model,
+}
+
+/// What a scenario was read from: overrides of the command line, the scenario itself, then the models it names.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Sources {
+    overrides: Vec<Source>,
     files: Vec<Source>,
 }
 
@@ -47,7 +63,22 @@ pub(crate) struct At<T> {
 
 impl SourceId {
     /// The scenario itself.
-    pub(crate) const SCENARIO: Self = Self(0);
+    pub(crate) const SCENARIO: Self = Self(Kind::File(0));
+
+    /// Who speaks there.
+    pub(crate) const fn authority(self) -> Authority {
+        match self.0 {
+            Kind::Override(_) => Authority::CommandLine,
+            Kind::File(0) => Authority::Scenario,
+            Kind::File(_) => Authority::Model,
+        }
+    }
+
+    /// Whether it is an override of the command line and no file.
+    #[must_use]
+    pub const fn is_override(self) -> bool {
+        matches!(self.authority(), Authority::CommandLine)
+    }
 }
 
 impl Span {
@@ -63,27 +94,39 @@ impl Sources {
         SourceId::SCENARIO
     }
 
-    /// Ids of all files, the scenario first.
+    /// Ids of all: overrides, the scenario, its models.
     pub fn ids(&self) -> impl Iterator<Item = SourceId> {
-        (0..self.files.len()).map(SourceId)
+        let overrides = (0..self.overrides.len()).map(Kind::Override);
+        overrides.chain((0..self.files.len()).map(Kind::File)).map(SourceId)
     }
 
-    /// Name of a file as messages give it: its path, or `<embedded>/…`. Empty for an id of other sources.
+    /// Name of a file as messages give it: its path, or `<embedded>/…`; of an override the words of the command line. Empty
+    /// for an id of other sources.
     #[must_use]
     pub fn name(&self, id: SourceId) -> &str {
-        self.files.get(id.0).map_or("", |file| &file.name)
+        self.get(id).map_or("", |source| &source.name)
     }
 
-    /// Text of a file. Empty for an id of other sources.
+    /// Text of a file or an override. Empty for an id of other sources.
     #[must_use]
     pub fn text(&self, id: SourceId) -> &str {
-        self.files.get(id.0).map_or("", |file| &file.text)
+        self.get(id).map_or("", |source| &source.text)
+    }
+
+    /// A place as messages give it: `axis.toml:12:9`, or the override that it is in.
+    pub(crate) fn place_in_words(&self, id: SourceId, offset: usize) -> String {
+        let name = self.name(id);
+        if id.is_override() {
+            return name.to_owned();
+        }
+        let (line, column) = self.line_and_column(id, offset);
+        format!("{name}:{line}:{column}")
     }
 
     /// Where a model file belongs below `models/`, such as `motors/x.toml`; `None` for what is no model.
     #[must_use]
     pub fn model(&self, id: SourceId) -> Option<String> {
-        let file = self.files.get(id.0).filter(|_| id != SourceId::SCENARIO)?;
+        let file = self.get(id).filter(|_| id.authority() == Authority::Model)?;
         let (Place::Folder(folder) | Place::Embedded(folder)) = &file.place;
         let kind = folder.file_name()?.to_str()?;
         let name = file.name.rsplit(['/', '\\']).next()?;
@@ -93,7 +136,7 @@ impl Sources {
     /// Line and column of a byte offset, both from 1; columns count characters.
     #[must_use]
     pub fn line_and_column(&self, id: SourceId, offset: usize) -> (usize, usize) {
-        let Some(Source { text, line_starts, .. }) = self.files.get(id.0) else { return (1, 1) };
+        let Some(Source { text, line_starts, .. }) = self.get(id) else { return (1, 1) };
         let before = text.get(..offset).unwrap_or(text);
         let lines = line_starts.partition_point(|start| *start <= before.len());
         let line_start = lines.checked_sub(1).map_or(0, |last| line_starts[last]);
@@ -101,13 +144,33 @@ impl Sources {
     }
 
     pub(crate) fn add(&mut self, name: String, text: String, place: Place) -> SourceId {
-        let line_starts = text.match_indices('\n').map(|(at, _)| at + 1).collect();
-        self.files.push(Source { name, text, line_starts, place });
-        SourceId(self.files.len() - 1)
+        self.files.push(Source::new(name, text, place));
+        SourceId(Kind::File(self.files.len() - 1))
+    }
+
+    /// Adds the words of an override; files that it names are looked for where the scenario is.
+    pub(crate) fn add_override(&mut self, words: String) -> SourceId {
+        let place = self.place(SourceId::SCENARIO).cloned().unwrap_or_else(|| Place::Embedded(PathBuf::new()));
+        self.overrides.push(Source::new(words.clone(), words, place));
+        SourceId(Kind::Override(self.overrides.len() - 1))
     }
 
     pub(crate) fn place(&self, id: SourceId) -> Option<&Place> {
-        self.files.get(id.0).map(|file| &file.place)
+        self.get(id).map(|source| &source.place)
+    }
+
+    fn get(&self, id: SourceId) -> Option<&Source> {
+        match id.0 {
+            Kind::Override(index) => self.overrides.get(index),
+            Kind::File(index) => self.files.get(index),
+        }
+    }
+}
+
+impl Source {
+    fn new(name: String, text: String, place: Place) -> Self {
+        let line_starts = text.match_indices('\n').map(|(at, _)| at + 1).collect();
+        Self { name, text, line_starts, place }
     }
 }
 

@@ -55,8 +55,12 @@ impl Table {
         self.entries.iter().find(|entry| entry.key == key).map(|entry| &entry.node)
     }
 
+    pub(crate) fn entry_mut(&mut self, key: &str) -> Option<&mut Entry> {
+        self.entries.iter_mut().find(|entry| entry.key == key)
+    }
+
     pub(crate) fn get_mut(&mut self, key: &str) -> Option<&mut Node> {
-        self.entries.iter_mut().find(|entry| entry.key == key).map(|entry| &mut entry.node)
+        self.entry_mut(key).map(|entry| &mut entry.node)
     }
 
     /// Lays `over` on this table: its values win, tables merge key by key.
@@ -327,6 +331,19 @@ fn table(source: SourceId, from: &DeTable<'_>) -> Table {
         .collect();
     entries.sort_by_key(|entry| entry.key_span);
     Table { entries }
+}
+
+/// The value of the one key of `text`, `key = value`.
+///
+/// # Errors
+/// What the parser says, or that it is something else.
+pub(crate) fn parse_one(source: SourceId, text: &str) -> Result<Node, String> {
+    let root = DeTable::parse(text).map_err(|error| error.message().to_owned())?;
+    let mut entries = table(source, root.get_ref()).entries;
+    match (entries.pop(), entries.is_empty()) {
+        (Some(entry), true) => Ok(entry.node),
+        _ => Err("it is not a single value".to_owned()),
+    }
 }
 
 fn value(source: SourceId, from: &DeValue<'_>) -> Value {

@@ -122,6 +122,7 @@ impl Bench {
             engine: engine.name().to_string(),
             axis_unit: equipment.axis.unit().into(),
             bodies,
+            overrides: scenario.overrides.iter().map(ToString::to_string).collect(),
         };
         let rows = usize::try_from(rows).unwrap_or(usize::MAX);
         let mut recorder = selection.recorder(about, rate, rows);

@@ -54,6 +54,7 @@ mod tests {
             engine: "none".into(),
             axis_unit: "m".into(),
             bodies: vec!["motor".into()],
+            overrides: vec![],
         };
         let mut recorder = Recorder::new(about, Rate::new(1).unwrap(), Vec::new(), 0);
         let mut watch = JointWatch::default();

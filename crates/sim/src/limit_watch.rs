@@ -122,6 +122,7 @@ mod tests {
             engine: "none".into(),
             axis_unit: "m".into(),
             bodies: vec!["motor".into()],
+            overrides: vec![],
         };
         Recorder::new(about, Rate::new(1).unwrap(), Vec::new(), 0)
     }

@@ -56,6 +56,7 @@ mod tests {
                 engine: "e".into(),
                 axis_unit: "m".into(),
                 bodies: vec!["motor".into()],
+                overrides: vec![],
             },
             rate,
             channels: vec![

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! servobench worker --engine <name> [--recording <file>] --name <scenario> [--path <file>] [--durations <s>,<s>…]
+//!                   [--set <override>]…
 //! stdin:  text of the scenario
 //! stdout: JSON lines, {"progress": 0.25} …, and at last {"end": "done" or {"input": "<why>"} or {"diverged": …} or
 //!         {"gaveup": "<why>"} or {"failed": "<why>"}}

@@ -39,6 +39,7 @@ fn order(folder: &Path) -> Order {
     Order {
         name: "wild".into(),
         path: None,
+        overrides: vec![],
         engine: EngineName::Exact,
         durations: vec![],
         recording: Some(folder.join("wild.parquet")),
@@ -90,6 +91,25 @@ fn a_run_that_comes_to_its_end_is_done() {
     assert_eq!(served(&order, &WILD.replace("2 MHz", "20 Hz")), End::Done);
     let recording = Recording::read_parquet(order.recording.as_deref().unwrap()).unwrap();
     assert!((recording.moves[0].end - 1.5).abs() < 1e-12 && recording.about.scenario == "wild");
+}
+
+/// Oracle: the same run in this process.
+#[test]
+fn overrides_reach_the_worker() {
+    let folder = tempfile::tempdir().unwrap();
+    let overrides =
+        vec!["drive.velocity.bandwidth=20 Hz".parse().unwrap(), "program[0].move_to='5 mm'".parse().unwrap()];
+    let order = Order { overrides: overrides.clone(), ..order(folder.path()) };
+    assert_eq!(served(&order, WILD), End::Done);
+    let recording = Recording::read_parquet(order.recording.as_deref().unwrap()).unwrap();
+    assert_eq!(recording.about.overrides, ["drive.velocity.bandwidth=20 Hz", "program[0].move_to='5 mm'"]);
+    let loaded = servobench_scenario::parse_with("wild.toml", WILD, None, &overrides);
+    let scenario = loaded.unwrap_or_else(|error| panic!("{error}")).scenario;
+    let job = &jobs(vec![Source { scenario, text: WILD.into() }], &[])[0];
+    let nowhere = WorkerCommand { program: "none".into(), folder: "none".into(), timeout: std::time::Duration::ZERO };
+    let run = execute(job, &ENGINES, &nowhere, &mut |_| {}).unwrap_or_else(|broken| panic!("{}", broken.error));
+    assert_eq!(recording, run.recording);
+    assert!((recording.moves[0].to - 5e-3).abs() < 1e-15, "{:?}", recording.moves[0]);
 }
 
 #[test]

@@ -17,8 +17,13 @@ fn main() {
 fn recording() -> Recording {
     let rate = Rate::new(16_000).expect("not zero");
     let spec = |k| ChannelSpec { name: format!("channel.{k}"), unit: "m".into(), writer: "bench".into(), rate };
-    let about =
-        About { scenario: "bench".into(), engine: "none".into(), axis_unit: "m".into(), bodies: vec!["motor".into()] };
+    let about = About {
+        scenario: "bench".into(),
+        engine: "none".into(),
+        axis_unit: "m".into(),
+        bodies: vec!["motor".into()],
+        overrides: vec![],
+    };
     let mut recorder = Recorder::new(about, rate, (0..CHANNELS).map(spec).collect(), INSTANTS as usize);
     let mut row = vec![0.0; CHANNELS as usize];
     for instant in 0..INSTANTS {

@@ -45,7 +45,13 @@ mod tests {
 
     fn recording() -> Recording {
         let rate = Rate::new(12_000).unwrap();
-        let about = About { scenario: "a".into(), engine: "exact".into(), axis_unit: "m".into(), bodies: vec![] };
+        let about = About {
+            scenario: "a".into(),
+            engine: "exact".into(),
+            axis_unit: "m".into(),
+            bodies: vec![],
+            overrides: vec![],
+        };
         let mut recording = Recording::new(about, rate);
         for (name, unit) in [("load.position", "m"), ("ratio", "")] {
             let spec = ChannelSpec { name: name.into(), unit: unit.into(), writer: "plant".into(), rate };

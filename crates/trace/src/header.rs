@@ -29,6 +29,9 @@ pub(crate) struct Header {
     engine: String,
     axis_unit: String,
     bodies: Vec<String>,
+    /// Left out where every key of the scenario has the value of its file.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    overrides: Vec<String>,
     /// Rate of the recorded instants (Hz).
     rate: Rate,
     /// Number of recorded instants.
@@ -53,12 +56,13 @@ impl Header {
     pub(crate) fn of(recording: &Recording) -> Self {
         let instants = recording.len();
         let Recording { about, rate, channels, moves, events, signals, calls, limit_reversals, log } = recording;
-        let About { scenario, engine, axis_unit, bodies } = about.clone();
+        let About { scenario, engine, axis_unit, bodies, overrides } = about.clone();
         Self {
             scenario,
             engine,
             axis_unit,
             bodies,
+            overrides,
             rate: *rate,
             instants,
             channels: channels.iter().map(|channel| channel.spec.clone()).collect(),
@@ -78,10 +82,10 @@ impl Header {
 
     /// The recording without its values.
     pub(crate) fn into_recording(self) -> Recording {
-        let Self { scenario, engine, axis_unit, bodies, .. } = self;
+        let Self { scenario, engine, axis_unit, bodies, overrides, .. } = self;
         let Self { rate, channels, moves, events, signals, calls, limit_reversals, log, .. } = self;
         let channels = channels.into_iter().map(|spec| Channel { spec, values: Vec::new() }).collect();
-        let about = About { scenario, engine, axis_unit, bodies };
+        let about = About { scenario, engine, axis_unit, bodies, overrides };
         Recording { about, rate, channels, moves, events, signals, calls, limit_reversals, log }
     }
 }

@@ -199,6 +199,7 @@ mod tests {
             engine: "none".into(),
             axis_unit: "m".into(),
             bodies: vec!["motor".into()],
+            overrides: vec![],
         };
         for rows in [0_u32, 1, 63, 64, 65, 200] {
             let mut recorder = Recorder::new(about(), rate, vec![spec("up"), spec("down")], 10);
@@ -217,7 +218,13 @@ mod tests {
     fn what_comes_after_a_mark_can_be_taken_back() {
         let rate = Rate::new(1_000).unwrap();
         let spec = |name: &str| ChannelSpec { name: name.into(), unit: "m".into(), writer: "test".into(), rate };
-        let about = || About { scenario: "s".into(), engine: "none".into(), axis_unit: "m".into(), bodies: vec![] };
+        let about = || About {
+            scenario: "s".into(),
+            engine: "none".into(),
+            axis_unit: "m".into(),
+            bodies: vec![],
+            overrides: vec![],
+        };
         let recorder = || Recorder::new(about(), rate, vec![spec("up"), spec("down")], 10);
         for kept in [0_u32, 1, 63, 64, 65, 150] {
             let (mut with, mut without) = (recorder(), recorder());
@@ -250,7 +257,13 @@ mod tests {
 
     #[test]
     fn a_signal_keeps_its_changes_only() {
-        let about = About { scenario: "s".into(), engine: "none".into(), axis_unit: "m".into(), bodies: vec![] };
+        let about = About {
+            scenario: "s".into(),
+            engine: "none".into(),
+            axis_unit: "m".into(),
+            bodies: vec![],
+            overrides: vec![],
+        };
         let mut recorder = Recorder::new(about, Rate::new(1_000).unwrap(), vec![], 0);
         let [state, done] = ["state", "Done"].map(|name| recorder.add_signal("axis", name));
         for (time, value) in [(0.0, "Disabled"), (0.1, "Disabled"), (0.2, "Standstill"), (0.3, "Disabled")] {

@@ -16,6 +16,22 @@ pub struct About {
     pub axis_unit: String,
     /// Names of the bodies, the motor first, the load last; one name when motor and load are one.
     pub bodies: Vec<String>,
+    /// Keys of the scenario that had another value than its file gives them, and the values: `setpoint.jerk=200 m/s3`.
+    pub overrides: Vec<String>,
+}
+
+impl About {
+    /// What was run, in words: `slide on exact with setpoint.jerk=200 m/s3`.
+    #[must_use]
+    pub fn title(&self) -> String {
+        format!("{} on {}{}", self.scenario, self.engine, self.overridden())
+    }
+
+    /// ` with setpoint.jerk=200 m/s3`; empty where every key has the value of the file.
+    #[must_use]
+    pub fn overridden(&self) -> String {
+        if self.overrides.is_empty() { String::new() } else { format!(" with {}", self.overrides.join(", ")) }
+    }
 }
 
 /// One move of the program, as planned.

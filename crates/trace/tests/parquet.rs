@@ -108,7 +108,8 @@ fn any_recording() -> impl Strategy<Value = Recording> {
     let all = (about, rate(), channels(), moves, events, signals, (calls, limit_reversals), log);
     all.prop_map(|(about, rate, channels, moves, events, signals, (calls, limit_reversals), log)| {
         let (scenario, engine, axis_unit, bodies) = about;
-        let about = About { scenario, engine, axis_unit, bodies };
+        let overrides = bodies.iter().rev().cloned().collect();
+        let about = About { scenario, engine, axis_unit, bodies, overrides };
         Recording { about, rate, channels, moves, events, signals, calls, limit_reversals, log }
     })
 }
@@ -141,6 +142,7 @@ fn small(instants: u32) -> Recording {
             engine: "exact".into(),
             axis_unit: "m".into(),
             bodies: vec!["motor".into(), "load".into()],
+            overrides: vec![],
         },
         rate,
         channels: vec![channel("motor.position", &f64::sin), channel("load.position", &f64::exp)],

@@ -38,7 +38,7 @@ impl<'a> Presentation<'a> {
     /// One run. Entities are `/position/load`, `/current/q`, `/axis/motor` and so on.
     #[must_use]
     pub fn of_run(recording: &'a Recording, options: &ViewOptions) -> Self {
-        let name = format!("{} on {}", recording.about.scenario, recording.about.engine);
+        let name = recording.about.title();
         Self::plan(name, vec![Run { label: None, recording }], options)
     }
 
@@ -66,7 +66,9 @@ impl<'a> Presentation<'a> {
         let labels = runs.iter().map(|(label, _)| *label).collect::<Vec<_>>().join(" against ");
         let mut engines: Vec<&str> = runs.iter().map(|(_, recording)| recording.about.engine.as_str()).collect();
         engines.dedup();
-        let name = format!("{labels} on {}", engines.join(" and "));
+        // A comparison gives all its runs the same.
+        let overridden = runs[0].1.about.overridden();
+        let name = format!("{labels} on {}{overridden}", engines.join(" and "));
         let runs = runs.iter().map(|(label, recording)| Run { label: Some(label), recording });
         Ok(Self::plan(name, runs.collect(), options))
     }

@@ -91,7 +91,13 @@ mod tests {
 
     #[test]
     fn a_lane_says_how_many_ticks_of_a_stretch_were_at_the_limit() {
-        let about = About { scenario: String::new(), engine: String::new(), axis_unit: "m".into(), bodies: vec![] };
+        let about = About {
+            scenario: String::new(),
+            engine: String::new(),
+            axis_unit: "m".into(),
+            bodies: vec![],
+            overrides: vec![],
+        };
         let recording = Recording::new(about, Rate::new(12_000).unwrap());
         // 3 600 rows, so four to a stretch.
         let share = |row: usize| match row {

@@ -34,7 +34,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     let (mut findings, mut missing, mut shown) = (Findings::default(), Vec::new(), String::new());
     let in_full = args.verbose || files.len() == 1;
     for file in &files {
-        match sources::read(file) {
+        match sources::read(file, &args.with.overrides) {
             Ok(loaded) => {
                 let asked = Asked::about(&loaded, &engines, &worker);
                 if let Some(preview) = &asked.preview {

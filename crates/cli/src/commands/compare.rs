@@ -10,7 +10,7 @@ use crate::progress::Progress;
 use crate::sources;
 use crate::workers;
 use servobench_config::Choice as _;
-use servobench_report::{Compared, Comparison, Outcome, Results, RunResult, elided, printable};
+use servobench_report::{Compared, Comparison, Outcome, Results, RunResult, elided, printable, wrapped};
 use servobench_scenario::{Difference, differences};
 use servobench_suite::{
     Job, Run, RunError, comparable, execute, jobs, limits_agree, map_in_parallel, only_setpoints_differ,
@@ -72,7 +72,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
 
 /// Every scenario once, all on the same engine.
 fn wanted_jobs(args: &CompareArgs) -> Result<Vec<Job>, CliError> {
-    let sources = sources::load(&args.scenarios)?;
+    let sources = sources::load(&args.scenarios, &args.with.overrides)?;
     if sources.len() < 2 {
         return Err(CliError::TooFewScenarios);
     }
@@ -122,6 +122,12 @@ fn heading(args: &CompareArgs, jobs: &[Job]) -> String {
     let engine = jobs.first().map_or("", |job| job.engine.name());
     let mut text = format!("{} on {engine}, {equal}", names.join(" and "));
     let Some((one, others)) = jobs.split_first() else { return text };
+    let overrides: Vec<String> = one.scenario.overrides.iter().map(|one| printable(&one.to_string())).collect();
+    if !overrides.is_empty() {
+        let words = format!("overrides of all runs: {}", overrides.join(", "));
+        text.push('\n');
+        text += &wrapped(&words, style().width.saturating_sub(2)).join("\n  ");
+    }
     for (other, name) in others.iter().zip(&names[1..]) {
         let all = differences(&one.scenario.parameters, &other.scenario.parameters);
         let all: Vec<_> = all.into_iter().filter(|difference| is_of_the_run(&difference.key)).collect();

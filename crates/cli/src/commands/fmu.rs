@@ -35,7 +35,7 @@ fn info(args: &FmuInfoArgs) -> Result<Exit, CliError> {
 }
 
 fn write(args: &FmuExportArgs) -> Result<Exit, CliError> {
-    let loaded = sources::read(&args.scenario)?;
+    let loaded = sources::read(&args.scenario, &args.with.overrides)?;
     let program = std::env::current_exe().map_err(CliError::OwnProgram)?;
     let library = library(&program).map_err(|error| CliError::Library(Box::new(error)))?;
     let (version, part) = (args.fmi, args.part);
@@ -43,8 +43,10 @@ fn write(args: &FmuExportArgs) -> Result<Exit, CliError> {
     let output = args.output.clone().unwrap_or_else(|| PathBuf::from(format!("{}.fmu", loaded.scenario.name)));
     spares(&args.scenario, Some(&output))?;
     write_file(&output, &bytes)?;
+    let overrides: Vec<String> = loaded.scenario.overrides.iter().map(ToString::to_string).collect();
+    let with = if overrides.is_empty() { String::new() } else { format!(" with {}", overrides.join(", ")) };
     say(&format!(
-        "{}: {} of {}, {:.1} MB\n",
+        "{}: {} of {}{with}, {:.1} MB\n",
         output.display(),
         part.name(),
         loaded.scenario.name,

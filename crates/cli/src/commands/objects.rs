@@ -8,6 +8,7 @@ use crate::sources;
 use servobench_cia402::PowerState;
 use servobench_cia402::objects::{Dictionary, Eds, FileInfo, Json};
 use servobench_report::{Style, object_table};
+use servobench_scenario::Override;
 use std::path::Path;
 
 /// Name of a data sheet that goes to standard output.
@@ -18,7 +19,7 @@ pub(crate) fn objects(args: &ObjectsArgs) -> Result<Exit, CliError> {
     if let Some(scenario) = &args.scenario {
         spares(scenario, args.output.as_deref())?;
     }
-    let configured = args.scenario.as_deref().map(as_written).transpose()?;
+    let configured = args.scenario.as_deref().map(|path| as_written(path, &args.with.overrides)).transpose()?;
     let values = configured.clone().unwrap_or_default();
     let text = match args.format {
         ObjectsFormat::Table => object_table(&values, if args.output.is_some() { Style::default() } else { style() }),
@@ -35,8 +36,8 @@ pub(crate) fn objects(args: &ObjectsArgs) -> Result<Exit, CliError> {
 }
 
 /// The values that the scenario at `path` writes into a drive after power-on; every refused one is reported.
-fn as_written(path: &Path) -> Result<Dictionary, CliError> {
-    let loaded = sources::read(path)?;
+fn as_written(path: &Path, overrides: &[Override]) -> Result<Dictionary, CliError> {
+    let loaded = sources::read(path, overrides)?;
     let Some(bus) = &loaded.scenario.bus else {
         return Err(CliError::NoBus { scenario: path.to_owned() });
     };

@@ -75,11 +75,15 @@ fn verdict_beside(path: &Path, recording: &Recording) -> Option<servobench_view:
     is_of(&run, recording).then(|| output::said_of(run.verdict, run.reasons, run.warnings))
 }
 
-/// Whether `run` is that of `recording`: the same scenario on the same engine for as long, to a row of the recording.
+/// Whether `run` is that of `recording`: the same scenario with the same overrides on the same engine for as long, to a row of the
+/// recording.
 fn is_of(run: &RunResult, recording: &Recording) -> bool {
     let end = recording.time_of(recording.len().saturating_sub(1));
     let about = &recording.about;
-    run.name == about.scenario && run.engine == about.engine && (run.duration - end).abs() <= recording.rate.period()
+    run.name == about.scenario
+        && run.engine == about.engine
+        && run.overrides == about.overrides
+        && (run.duration - end).abs() <= recording.rate.period()
 }
 
 /// When the file was written last.
@@ -113,7 +117,13 @@ mod tests {
 
     /// A run of 11 rows at 10 Hz, on the engine `exact`.
     fn recording(engine: &str) -> Recording {
-        let about = About { scenario: "slide".into(), engine: engine.into(), axis_unit: "m".into(), bodies: vec![] };
+        let about = About {
+            scenario: "slide".into(),
+            engine: engine.into(),
+            axis_unit: "m".into(),
+            bodies: vec![],
+            overrides: vec![],
+        };
         let rate = Rate::new(10).unwrap();
         let mut recording = Recording::new(about, rate);
         let spec = ChannelSpec { name: "load.position".into(), unit: "m".into(), writer: "mechanics".into(), rate };

@@ -17,6 +17,7 @@ pub(crate) fn worker(args: &WorkerArgs) -> Result<Exit, CliError> {
     let order = Order {
         name: args.name.clone(),
         path: args.path.clone(),
+        overrides: args.set.clone(),
         engine: args.engine,
         durations: args.durations.clone(),
         recording: args.recording.clone(),

@@ -22,6 +22,8 @@ pub struct RunIdentity {
     pub files: Vec<String>,
     /// What the scenario file says, by key.
     pub parameters: Vec<(String, String)>,
+    /// Keys that have another value than the file gives them, with that: `setpoint.jerk=200 m/s3`.
+    pub overrides: Vec<String>,
     /// Where the scenario file has which limit.
     pub limits: Vec<LimitPlace>,
 }
@@ -61,9 +63,12 @@ pub struct RunResult {
     /// What breaks no requirement and should be known.
     #[serde(default)]
     pub warnings: Vec<String>,
-    /// What the scenario file says, models merged in, by key.
+    /// What the scenario file says, models and overrides merged in, by key.
     #[serde(default)]
     pub(crate) parameters: IndexMap<String, String>,
+    /// Keys that have another value than the file gives them, with that; left out where none has.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub overrides: Vec<String>,
     /// Metrics by name; with those that have a limit but could not be measured.
     pub(crate) metrics: IndexMap<String, MetricResult>,
     /// Metrics that could not be measured, and why.
@@ -172,6 +177,7 @@ impl RunResult {
             expected: Vec::new(),
             warnings: Vec::new(),
             parameters: run.parameters.into_iter().collect(),
+            overrides: run.overrides,
             metrics: of_set(&metrics.run),
             absent: metrics.run.absences().map(|(name, why)| (name.to_string(), why.to_string())).collect(),
             moves: metrics.moves.iter().map(MoveResult::from).collect(),

@@ -120,6 +120,7 @@ impl Sheet<'_> {
     fn heading(&self, height: f64) -> Vec<String> {
         let Self { width, about, .. } = self;
         let title = if about.scenario.is_empty() { "Timing diagram" } else { &about.scenario };
+        let title = &format!("{title}{}", about.overridden());
         let engine = if about.engine.is_empty() { String::new() } else { format!("engine {}", about.engine) };
         let engine = fitted(&engine, width / 3.0, LETTERS).unwrap_or_default();
         let right = width - RIGHT;

@@ -10,6 +10,7 @@ pub(crate) fn empty() -> Recording {
             engine: "exact".into(),
             axis_unit: "m".into(),
             bodies: vec!["load".into()],
+            overrides: vec![],
         },
         rate: Rate::new(1000).unwrap(),
         channels: vec![],

@@ -77,6 +77,9 @@ fn start(command: &WorkerCommand, job: &Job, recording: Option<&Path>) -> io::Re
     if let Some(path) = &job.scenario.path {
         worker.arg("--path").arg(path);
     }
+    for one in &job.scenario.overrides {
+        worker.arg(format!("--set={one}"));
+    }
     if !job.durations().is_empty() {
         // The shortest decimal that reads back to the same bits.
         let durations: Vec<String> = job.durations().iter().map(f64::to_string).collect();

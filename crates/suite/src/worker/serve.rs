@@ -8,7 +8,7 @@ use crate::job::slow_to;
 use crate::panicked::caught;
 use servobench_metrics::EarlyEnd;
 use servobench_plant::{Engine, EngineName};
-use servobench_scenario::{LoadError, Scenario};
+use servobench_scenario::{LoadError, Override, Scenario};
 use servobench_sim::FmuOpener;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -20,6 +20,8 @@ pub struct Order {
     pub name: String,
     /// File that it came from: models are looked up from there.
     pub path: Option<PathBuf>,
+    /// Keys with another value than the text gives them.
+    pub overrides: Vec<Override>,
     /// The engine.
     pub engine: EngineName,
     /// Durations that the moves are slowed to (s); empty: as they are.
@@ -82,7 +84,7 @@ fn run(
 fn read(order: &Order, text: &str) -> Result<Scenario, LoadError> {
     let file = order.path.as_ref().map_or_else(|| format!("{}.toml", order.name), |path| path.display().to_string());
     let folder = order.path.as_deref().and_then(Path::parent);
-    let mut scenario = servobench_scenario::parse(&file, text, folder)?.scenario;
+    let mut scenario = servobench_scenario::parse_with(&file, text, folder, &order.overrides)?.scenario;
     scenario.name.clone_from(&order.name);
     scenario.path.clone_from(&order.path);
     slow_to(&mut scenario, &order.durations);

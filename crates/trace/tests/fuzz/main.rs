@@ -35,6 +35,7 @@ fn recording(instants: u32, channels: u32, path: &Path) -> (Recording, Vec<u8>) 
             engine: "exact".into(),
             axis_unit: "m".into(),
             bodies: vec!["motor".into(), "load".into()],
+            overrides: vec![],
         },
         rate,
         channels: (0..channels).map(channel).collect(),

@@ -86,7 +86,8 @@ pub(crate) fn run(case: Case) -> Recording {
     let specs =
         channels.map(|(name, unit, writer)| ChannelSpec { name: name.into(), unit, writer: writer.into(), rate });
     let bodies = vec!["motor".to_owned(), "load".to_owned()];
-    let about = About { scenario: case.name.into(), engine: "example".into(), axis_unit: u.into(), bodies };
+    let about =
+        About { scenario: case.name.into(), engine: "example".into(), axis_unit: u.into(), bodies, overrides: vec![] };
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive whole number")]
     let instants = (case.duration * f64::from(HERTZ)).round() as usize;
     let mut recorder = Recorder::new(about, rate, specs.to_vec(), instants);

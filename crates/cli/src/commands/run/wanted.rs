@@ -13,6 +13,8 @@ pub(super) struct Wanted {
     /// The jobs.
     pub(super) jobs: Vec<Job>,
     files: Vec<File>,
+    /// Values that are not those of the files.
+    overrides: Vec<String>,
 }
 
 /// What became of a file.
@@ -25,16 +27,17 @@ enum File {
 impl Wanted {
     /// The scenarios that are named, or the demo.
     pub(super) fn of(args: &RunArgs, engines: &Engines) -> Result<Self, CliError> {
+        let overrides = args.with.overrides.iter().map(ToString::to_string).collect();
         if args.scenarios.is_empty() {
-            let demo = sources::demo()?;
+            let demo = sources::demo(&args.with.overrides)?;
             // The demo names engines that this build may lack; an FMU it has none of.
             let mut there = engines.names();
             there.retain(|engine| demo.iter().any(|source| source.scenario.engines.contains(engine)));
             let jobs = jobs(demo, if args.engine.is_empty() { &there } else { &args.engine });
-            return Ok(Self { files: vec![File::Jobs(jobs.len())], jobs });
+            return Ok(Self { files: vec![File::Jobs(jobs.len())], jobs, overrides });
         }
         let (mut usable, mut files) = (Vec::new(), Vec::new());
-        for found in sources::each(&args.scenarios)? {
+        for found in sources::each(&args.scenarios, &args.with.overrides)? {
             match found {
                 Ok(source) => {
                     let engines = if args.engine.is_empty() { &source.scenario.engines } else { &args.engine };
@@ -44,7 +47,7 @@ impl Wanted {
                 Err(unusable) => files.push(File::Unusable(unusable)),
             }
         }
-        Ok(Self { jobs: jobs(usable, &args.engine), files })
+        Ok(Self { jobs: jobs(usable, &args.engine), files, overrides })
     }
 
     fn unusable(&self) -> impl Iterator<Item = &Unusable> {
@@ -81,16 +84,17 @@ impl Wanted {
         for file in &self.files {
             match file {
                 File::Jobs(count) => all.extend(ended.by_ref().take(*count)),
-                File::Unusable(unusable) => all.push((invalid(unusable), Duration::ZERO)),
+                File::Unusable(unusable) => all.push((invalid(unusable, &self.overrides), Duration::ZERO)),
             }
         }
         all
     }
 }
 
-fn invalid(unusable: &Unusable) -> RunResult {
+fn invalid(unusable: &Unusable, overrides: &[String]) -> RunResult {
     let path = &unusable.path;
     let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
     let file = Some(path.display().to_string());
-    RunResult::invalid(RunIdentity { name, file, ..RunIdentity::default() }, unusable.reasons())
+    let identity = RunIdentity { name, file, overrides: overrides.to_vec(), ..RunIdentity::default() };
+    RunResult::invalid(identity, unusable.reasons())
 }

@@ -1,0 +1,225 @@
+//! Keys that are given another value than the file has: `setpoint.jerk=200 m/s3` on the command line.
+//!
+//! ```text
+//! override = key "=" value
+//! key      = part { "." part }        part = name [ "[" index "]" ]      name = bare | "quoted" | 'quoted'
+//! value    = a number, true, false, [list], {table} or "string" of TOML; otherwise itself as a string
+//! ```
+//! An index counts from 0; `program.0` is `program[0]`, as results name it.
+mod path;
+mod value;
+
+use crate::diagnostic::Report;
+use crate::nearest::suggestion;
+use crate::source::{SourceId, Sources, Span};
+use crate::tree::{Entry, Node, Table, Value};
+use path::Part;
+use std::fmt;
+use std::str::FromStr;
+use thiserror::Error;
+
+/// What stands before an override on the command line, and so before its words in messages.
+const OPTION: &str = "--set ";
+/// Tables that can stand on a model.
+const MODELLED: [&str; 3] = ["axis", "motor", "drive"];
+
+/// A key of a scenario and the value that it has instead of that of the file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Override {
+    /// As it is given: `setpoint.jerk=200 m/s3`.
+    text: String,
+    /// The key, with the bytes of its parts in the words of the command line.
+    path: Vec<Part>,
+    /// Where the value begins in those.
+    value_at: usize,
+}
+
+/// Why a text is no override.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{0}")]
+pub struct OverrideError(String);
+
+impl FromStr for Override {
+    type Err = OverrideError;
+
+    fn from_str(text: &str) -> Result<Self, OverrideError> {
+        let text = text.trim();
+        if let Some(control) = text.chars().find(|c| c.is_control() && *c != '\t') {
+            return Err(OverrideError(format!("it must be on one line, without {control:?}")));
+        }
+        let words = format!("{OPTION}{text}");
+        let (path, value_at) = path::read(&words, OPTION.len()).map_err(OverrideError)?;
+        value::read(SourceId::SCENARIO, &words, value_at).map_err(OverrideError)?;
+        Ok(Self { text: text.to_owned(), path, value_at })
+    }
+}
+
+/// As it is given: `setpoint.jerk=200 m/s3`.
+impl fmt::Display for Override {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+impl Override {
+    fn words(&self) -> String {
+        format!("{OPTION}{}", self.text)
+    }
+
+    /// The key from its first part to the one with this index: `program[1].move_to`.
+    fn key(&self, last: usize) -> String {
+        path::written(&self.path[..=last])
+    }
+
+    /// Whether the model of a table depends on it.
+    fn chooses_a_model(&self) -> bool {
+        let mut names = self.path.iter().map(|part| part.name.as_str());
+        names.next().is_some_and(|table| MODELLED.contains(&table)) && names.next().is_none_or(|key| key == "model")
+    }
+}
+
+/// Overrides on their way into a scenario.
+pub(crate) struct Overriding<'a> {
+    all: Vec<(&'a Override, SourceId)>,
+}
+
+impl<'a> Overriding<'a> {
+    /// Reports keys that are set twice; of those the first counts.
+    pub(crate) fn new(overrides: &'a [Override], sources: &mut Sources, report: &mut Report) -> Self {
+        let mut all: Vec<(&Override, SourceId)> = Vec::new();
+        for one in overrides {
+            let source = sources.add_override(one.words());
+            let is_again = |(other, _): &&(&Override, SourceId)| {
+                one.path.iter().zip(&other.path).all(|(own, other)| own.name == other.name)
+            };
+            if let Some((other, _)) = all.iter().find(is_again) {
+                let last = one.path.len() - 1;
+                let message = format!("`{}` is set twice", one.key(last));
+                report.error(span(source, &one.path), message, format!("the other is `{}`", other.words()));
+            } else {
+                all.push((one, source));
+            }
+        }
+        Self { all }
+    }
+
+    /// Sets what decides on which model a table stands, before it is laid on that.
+    pub(crate) fn choose_models(&self, root: &mut Table, report: &mut Report) {
+        self.apply(root, report, Override::chooses_a_model);
+    }
+
+    /// Sets everything else, in what the models say too.
+    pub(crate) fn set(&self, root: &mut Table, report: &mut Report) {
+        self.apply(root, report, |one| !one.chooses_a_model());
+    }
+
+    fn apply(&self, root: &mut Table, report: &mut Report, is_wanted: impl Fn(&Override) -> bool) {
+        for (of, source) in self.all.iter().filter(|(one, _)| is_wanted(one)) {
+            // What is no value makes no override.
+            if let Ok(node) = value::read(*source, &of.words(), of.value_at) {
+                Setting { of, source: *source, report }.in_table(root, 0, node);
+            }
+        }
+    }
+}
+
+/// An override that is being carried out.
+struct Setting<'a> {
+    of: &'a Override,
+    source: SourceId,
+    report: &'a mut Report,
+}
+
+impl Setting<'_> {
+    /// Sets what the part with this index and those behind it name in `table`.
+    fn in_table(&mut self, table: &mut Table, index: usize, node: Node) {
+        let part = &self.of.path[index];
+        let key_span = Span::new(self.source, &part.place);
+        let is_last = index + 1 == self.of.path.len();
+        if part.is_index {
+            self.refuse(index, "is a table and no list");
+            return;
+        }
+        if let Some(entry) = table.entry_mut(&part.name) {
+            if is_last {
+                *entry = Entry { key: part.name.clone(), key_span, node };
+            } else {
+                self.in_node(&mut entry.node, index + 1, node);
+            }
+            return;
+        }
+        if self.of.path.get(index + 1).is_some_and(|next| next.is_index) {
+            let keys: Vec<&str> = table.entries.iter().map(|entry| entry.key.as_str()).collect();
+            let help = suggestion(&part.name, keys);
+            self.report.lacking(&part.name, key_span, format!("there is no list `{}`", self.of.key(index)), help);
+            return;
+        }
+        let mut entry = Entry { key: part.name.clone(), key_span, node };
+        if !is_last {
+            let mut inner = Table::default();
+            self.in_table(&mut inner, index + 1, entry.node);
+            entry.node = Node { value: Value::Table(inner), span: key_span };
+        }
+        table.entries.push(entry);
+    }
+
+    /// Sets what the part with this index and those behind it name in `into`.
+    fn in_node(&mut self, into: &mut Node, index: usize, node: Node) {
+        let part = &self.of.path[index];
+        match &mut into.value {
+            Value::Table(table) => self.in_table(table, index, node),
+            Value::Array(items) => {
+                let count = items.len();
+                let Ok(at) = part.name.parse::<usize>() else {
+                    let help = format!("say which: `{}[0].{}`", self.of.key(index - 1), part.name);
+                    self.refuse_with(index, "is a list", &help);
+                    return;
+                };
+                let Some(item) = items.get_mut(at) else {
+                    self.beyond(index, count);
+                    return;
+                };
+                if index + 1 == self.of.path.len() {
+                    *item = node;
+                } else {
+                    self.in_node(item, index + 1, node);
+                }
+            }
+            other => {
+                let is = format!("is {} and has no parts", other.kind());
+                self.refuse(index, &is);
+            }
+        }
+    }
+
+    /// Says that the list before this part has no such element.
+    fn beyond(&mut self, index: usize, count: usize) {
+        let part = &self.of.path[index];
+        let list = self.of.key(index - 1);
+        let help = match count {
+            0 => format!("`{list}` is empty"),
+            1 => format!("`{list}` has one element, `{list}[0]`"),
+            _ => format!("`{list}` has {count} elements, `{list}[0]` to `{list}[{}]`", count - 1),
+        };
+        let place = Span::new(self.source, &part.place);
+        self.report.lacking(&self.of.path[0].name, place, format!("there is no `{}`", self.of.key(index)), help);
+    }
+
+    /// Says that what stands before this part cannot have it.
+    fn refuse(&mut self, index: usize, is: &str) {
+        self.refuse_with(index, is, "");
+    }
+
+    fn refuse_with(&mut self, index: usize, is: &str, help: &str) {
+        let place = Span::new(self.source, &self.of.path[index].place);
+        // A key does not begin with an index.
+        self.report.error(place, format!("`{}` {is}", self.of.key(index.saturating_sub(1))), help);
+    }
+}
+
+/// From the first to the last part.
+fn span(source: SourceId, path: &[Part]) -> Span {
+    let start = path.first().map_or(0, |part| part.place.start);
+    let end = path.last().map_or(start, |part| part.place.end);
+    Span::new(source, &(start..end))
+}
