@@ -13,6 +13,7 @@ mod plan_families;
 mod plan_mistakes;
 mod plc;
 mod run;
+mod standard_input;
 mod timing;
 #[cfg(unix)]
 mod view;

@@ -6,7 +6,7 @@ pub(crate) use choice::choice;
 pub(crate) use mistakes::parse;
 
 use crate::commands::{PLAN_EXAMPLES, PlanArgs};
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use servobench_config::Choice as _;
 #[cfg(feature = "fmu")]
@@ -138,7 +138,7 @@ pub(crate) struct FmuInfoArgs {
 #[cfg(feature = "fmu")]
 #[derive(Debug, Args)]
 pub(crate) struct FmuExportArgs {
-    /// The scenario.
+    /// The scenario; - is standard input.
     pub(crate) scenario: PathBuf,
     #[command(flatten)]
     pub(crate) with: OverrideArgs,
@@ -148,19 +148,19 @@ pub(crate) struct FmuExportArgs {
     /// What is inside.
     #[arg(long, value_parser = choice::<Part>(), default_value = Part::default().name())]
     pub(crate) part: Part,
-    /// The file [default: the scenario's name with .fmu].
+    /// The file, or - for standard output [default: the scenario's name with .fmu].
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct RunArgs {
-    /// Scenario files, or folders of them.
+    /// Scenario files, or folders of them; - is standard input.
     pub(crate) scenarios: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) with: OverrideArgs,
     /// Folder for results.json and the recordings [default: servobench-out; of the demo servobench-out/demo].
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = file())]
     pub(crate) out: Option<PathBuf>,
     /// Engine to use instead of the scenarios' own; may be given several times.
     #[arg(long, value_name = "NAME", value_parser = engine())]
@@ -169,7 +169,7 @@ pub(crate) struct RunArgs {
     #[arg(long)]
     pub(crate) rrd: bool,
     /// Write a JUnit report.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = file())]
     pub(crate) junit: Option<PathBuf>,
     /// Scenarios to run at once [default: one for each core].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
@@ -196,7 +196,7 @@ pub(crate) struct OverrideArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct CheckArgs {
-    /// Scenario files, or folders of them.
+    /// Scenario files, or folders of them; - is standard input.
     #[arg(required = true)]
     pub(crate) scenarios: Vec<PathBuf>,
     #[command(flatten)]
@@ -208,7 +208,7 @@ pub(crate) struct CheckArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct CompareArgs {
-    /// Scenario files: axes of one kind, linear or rotary.
+    /// Scenario files: axes of one kind, linear or rotary; - is standard input.
     #[arg(required = true, num_args = 2..)]
     pub(crate) scenarios: Vec<PathBuf>,
     #[command(flatten)]
@@ -220,7 +220,7 @@ pub(crate) struct CompareArgs {
     #[arg(long, value_name = "NAME", value_parser = engine())]
     pub(crate) engine: Option<EngineName>,
     /// Folder for the comparison and its recording.
-    #[arg(long, value_name = "DIR", default_value = "servobench-out")]
+    #[arg(long, value_name = "DIR", value_parser = file(), default_value = "servobench-out")]
     pub(crate) out: PathBuf,
     /// End the process of an isolated engine that makes no progress for this long.
     #[arg(long, value_name = "TIME", value_parser = time, default_value = "5 min")]
@@ -246,7 +246,7 @@ pub(crate) struct ViewArgs {
 pub(crate) struct TimingArgs {
     /// A recording (.parquet).
     pub(crate) recording: PathBuf,
-    /// Write the SVG there [default: standard output].
+    /// Write the SVG there [default: -, standard output].
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
     /// Beginning, as "1.5 s" [default: that of the recording].
@@ -268,14 +268,14 @@ pub(crate) struct TimingArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct ObjectsArgs {
-    /// A scenario, for the values that its drive.objects writes; without it the values after power-on.
+    /// A scenario, for the values that its drive.objects writes; without it the values after power-on; - is standard input.
     pub(crate) scenario: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) with: OverrideArgs,
     /// How the dictionary is written.
     #[arg(long, value_enum, default_value_t = ObjectsFormat::Table)]
     pub(crate) format: ObjectsFormat,
-    /// Write to this file [default: standard output].
+    /// Write to this file [default: -, standard output].
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
 }
@@ -306,6 +306,15 @@ pub(crate) struct WorkerArgs {
     pub(crate) set: Vec<Override>,
     #[arg(long, value_delimiter = ',')]
     pub(crate) durations: Vec<f64>,
+}
+
+/// A file or a folder that is written beside what goes to standard output: `-` is none.
+pub(crate) fn file() -> impl TypedValueParser<Value = PathBuf> {
+    OsStringValueParser::new().try_map(|path| match path.to_str() {
+        Some("-") => Err("standard output (-) is for --output alone; ./- names a file or a folder"),
+        Some("") => Err("a name is needed"),
+        _ => Ok(PathBuf::from(path)),
+    })
 }
 
 /// An engine by the name that scenario files give it.

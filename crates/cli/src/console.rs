@@ -6,8 +6,13 @@ use std::io::{ErrorKind, IsTerminal, Write};
 /// Prints `text` on standard output. A reader that went away (`| head`) has what it wanted; what cannot be written for
 /// any other reason is an error.
 pub(crate) fn print(text: &str) -> Result<(), CliError> {
+    print_bytes(text.as_bytes())
+}
+
+/// The same with what is no text.
+pub(crate) fn print_bytes(bytes: &[u8]) -> Result<(), CliError> {
     let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(bytes).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(CliError::Print(error)),
         _ => Ok(()),
     }

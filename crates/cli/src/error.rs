@@ -4,7 +4,7 @@ use crate::commands::{Findings, PlanMistake};
 use crate::diagnostics::mistakes;
 use crate::exit::{Exit, of_run_error};
 use crate::output::{COMPARISON, RESULTS};
-use crate::sources::{Unusable, told};
+use crate::sources::{Unusable, named, told};
 use servobench_config::Choice as _;
 use servobench_report::ReportError;
 use servobench_scenario::{Diagnostic, LoadError, Sources};
@@ -36,8 +36,10 @@ pub(crate) enum CliError {
     Mistakes { diagnostics: Vec<Diagnostic>, sources: Box<Sources> },
     #[error("there is no scenario (`*.toml`) in `{}`", .folder.display())]
     NoScenario { folder: PathBuf },
+    #[error("`-` is there twice: standard input holds one scenario")]
+    StdinTwice,
     #[error("`{}` has no `[bus]`, over which objects are written: add one, or leave the scenario out for the values after \
-             power-on", .scenario.display())]
+             power-on", named(.scenario))]
     NoBus { scenario: PathBuf },
     #[error("cannot read `{}`: {error}", .path.display())]
     Read { path: PathBuf, error: io::Error },
@@ -54,6 +56,9 @@ pub(crate) enum CliError {
     Timing { recording: PathBuf, error: ReportError },
     #[error("-o: `{}` is what is read here and would be lost; name another file", .0.display())]
     WouldBeLost(PathBuf),
+    #[cfg(feature = "fmu")]
+    #[error("-o: an FMU is no text for a terminal; name a file, or pipe standard output into something")]
+    BytesForATerminal,
     #[error("the variable SOURCE_DATE_EPOCH is `{}`; it is a number of seconds since 1970, or unset", .0.display())]
     SourceDateEpoch(OsString),
     #[error("{}", lines(.0))]
@@ -147,6 +152,7 @@ impl CliError {
             | Self::Scenarios(_)
             | Self::Mistakes { .. }
             | Self::NoScenario { .. }
+            | Self::StdinTwice
             | Self::NoBus { .. }
             | Self::Read { .. }
             | Self::ReadResults { .. }
@@ -162,7 +168,7 @@ impl CliError {
             | Self::Plc(_)
             | Self::NothingToCompare => Exit::Input,
             #[cfg(feature = "fmu")]
-            Self::Fmu(_) | Self::Export(_) => Exit::Input,
+            Self::Fmu(_) | Self::Export(_) | Self::BytesForATerminal => Exit::Input,
             Self::Runs(failed) => {
                 failed.iter().fold(Exit::Run, |worst, failed| worst.worse(of_run_error(&failed.error)))
             }

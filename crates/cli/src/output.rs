@@ -2,6 +2,7 @@
 use crate::console::print;
 use crate::error::CliError;
 use crate::interrupt;
+use crate::sources::is_stdin;
 use jiff::Timestamp;
 use servobench_metrics::{Metrics, Verdict};
 use servobench_report::{LimitPlace, Outcome, Results, RunIdentity, RunResult, TimingOptions, timing_diagram};
@@ -36,10 +37,19 @@ pub(crate) fn write_file(path: &Path, text: impl AsRef<[u8]>) -> Result<(), CliE
     servobench_trace::write_whole(path, text).map_err(|error| CliError::Write { path: path.to_owned(), error })
 }
 
+/// What stands for standard output behind `-o`.
+const STDOUT: &str = "-";
+
+/// The file that `output` names; `None` is standard output.
+pub(crate) fn file_named(output: Option<&Path>) -> Option<&Path> {
+    output.filter(|path| path.as_os_str() != STDOUT)
+}
+
 /// Refuses to write over `input`, which the output is made of.
 pub(crate) fn spares(input: &Path, output: Option<&Path>) -> Result<(), CliError> {
     let place = |path: &Path| path.canonicalize().ok();
-    match output {
+    match file_named(output) {
+        Some(_) if is_stdin(input) => Ok(()),
         Some(output) if place(output).is_some() && place(output) == place(input) => {
             Err(CliError::WouldBeLost(output.to_owned()))
         }
@@ -47,9 +57,9 @@ pub(crate) fn spares(input: &Path, output: Option<&Path>) -> Result<(), CliError
     }
 }
 
-/// Writes the whole file or nothing; without a path to standard output.
+/// Writes the whole file or nothing; without a path, and with `-`, to standard output.
 pub(crate) fn print_or_write(path: Option<&Path>, text: &str) -> Result<(), CliError> {
-    path.map_or_else(|| print(text), |path| write_file(path, text))
+    file_named(path).map_or_else(|| print(text), |path| write_file(path, text))
 }
 
 /// When a file that says so was written: now, or at the time that the build asks for, by the convention of reproducible

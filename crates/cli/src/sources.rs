@@ -1,20 +1,39 @@
-//! Scenario files: from files, from folders, or the demo that is embedded.
+//! Scenario files: from files, from folders, from standard input, or the demo that is embedded.
 use crate::console::say;
 use crate::diagnostics::{mistakes, render};
 use crate::error::CliError;
 use miette::Severity;
-use servobench_scenario::{LoadError, Loaded, Override, parse_with};
+use servobench_scenario::{LoadError, Loaded, Override, load_with, parse_with};
 use servobench_suite::Source;
 use std::ffi::OsStr;
 use std::fmt;
+use std::io::{IsTerminal, Read};
 use std::path::{Path, PathBuf};
+
+/// What stands for standard input among the scenarios.
+const STDIN: &str = "-";
+/// What a scenario from there is called, and its text in messages.
+const NAME_OF_STDIN: &str = "stdin";
+
+/// Whether `path` is standard input and no file.
+pub(crate) fn is_stdin(path: &Path) -> bool {
+    path.as_os_str() == STDIN
+}
+
+/// The name of `path` in messages.
+pub(crate) fn named(path: &Path) -> String {
+    if is_stdin(path) { NAME_OF_STDIN.to_owned() } else { path.display().to_string() }
+}
 
 /// The scenario files that `paths` name; folders are searched for `.toml` files, sorted by path. Folders called
 /// `models` hold no scenarios.
 pub(crate) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
+    if paths.iter().filter(|path| is_stdin(path)).count() > 1 {
+        return Err(CliError::StdinTwice);
+    }
     let mut files = Vec::new();
     for path in paths {
-        if path.is_dir() {
+        if path.is_dir() && !is_stdin(path) {
             let before = files.len();
             search(path, &mut files)?;
             if files.len() == before {
@@ -86,7 +105,7 @@ impl fmt::Display for Unusable {
 /// Every file by itself: one that cannot be used does not keep the others from being used.
 pub(crate) fn each(paths: &[PathBuf], overrides: &[Override]) -> Result<Vec<Result<Source, Unusable>>, CliError> {
     let files = files(paths)?;
-    let each = files.into_iter().map(|path| match servobench_scenario::load_with(&path, overrides) {
+    let each = files.into_iter().map(|path| match loaded(&path, overrides) {
         Ok(loaded) => Ok(source(loaded)),
         Err(error) => Err(Unusable { path, error }),
     });
@@ -102,7 +121,26 @@ fn source(loaded: Loaded) -> Source {
 
 /// Loads one file.
 pub(crate) fn read(path: &Path, overrides: &[Override]) -> Result<Loaded, LoadError> {
-    servobench_scenario::load_with(path, overrides).inspect(warn)
+    loaded(path, overrides).inspect(warn)
+}
+
+/// A file, or what comes in on standard input: files that it names are looked for in the current folder.
+fn loaded(path: &Path, overrides: &[Override]) -> Result<Loaded, LoadError> {
+    if !is_stdin(path) {
+        return load_with(path, overrides);
+    }
+    let mut stdin = std::io::stdin();
+    if stdin.is_terminal() {
+        say(
+            "reading a scenario (TOML) from standard input: type or paste it, and end it with Ctrl-D on a line of its own\n",
+        );
+    }
+    let mut text = String::new();
+    let unreadable = |error| LoadError::Read { path: NAME_OF_STDIN.into(), error };
+    stdin.read_to_string(&mut text).map_err(unreadable)?;
+    let mut loaded = parse_with(NAME_OF_STDIN, &text, Some(Path::new("")), overrides)?;
+    loaded.scenario.path = Some(path.to_owned());
+    Ok(loaded)
 }
 
 /// The embedded demo.

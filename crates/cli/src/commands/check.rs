@@ -90,7 +90,7 @@ impl std::error::Error for Findings {}
 
 /// An engine that could not be asked about a scenario.
 #[derive(Debug, Error)]
-#[error("{}: {}", .file.display(), printable(&.error.to_string()))]
+#[error("{}: {}", sources::named(.file), printable(&.error.to_string()))]
 struct Unasked {
     file: PathBuf,
     error: RunError,

@@ -3,7 +3,7 @@ use crate::args::{ObjectsArgs, ObjectsFormat};
 use crate::console::style;
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::output::{print_or_write, spares, write_time};
+use crate::output::{file_named, print_or_write, spares, write_time};
 use crate::sources;
 use servobench_cia402::PowerState;
 use servobench_cia402::objects::{Dictionary, Eds, FileInfo, Json};
@@ -16,22 +16,23 @@ const DATA_SHEET: &str = "drive.eds";
 
 /// Shows the dictionary with the values after power-on, or with those that a scenario writes.
 pub(crate) fn objects(args: &ObjectsArgs) -> Result<Exit, CliError> {
+    let output = file_named(args.output.as_deref());
     if let Some(scenario) = &args.scenario {
-        spares(scenario, args.output.as_deref())?;
+        spares(scenario, output)?;
     }
     let configured = args.scenario.as_deref().map(|path| as_written(path, &args.with.overrides)).transpose()?;
     let values = configured.clone().unwrap_or_default();
     let text = match args.format {
-        ObjectsFormat::Table => object_table(&values, if args.output.is_some() { Style::default() } else { style() }),
+        ObjectsFormat::Table => object_table(&values, if output.is_some() { Style::default() } else { style() }),
         ObjectsFormat::Eds => {
             let made = write_time()?;
             let (date, time) = (made.strftime("%m-%d-%Y").to_string(), made.strftime("%I:%M%p").to_string());
-            let file = FileInfo { name: data_sheet_name(args.output.as_deref()), date: &date, time: &time };
+            let file = FileInfo { name: data_sheet_name(output), date: &date, time: &time };
             Eds { file, configured: configured.as_ref() }.to_string()
         }
         ObjectsFormat::Json => Json(&values).to_string(),
     };
-    print_or_write(args.output.as_deref(), &text)?;
+    print_or_write(output, &text)?;
     Ok(Exit::Passed)
 }
 

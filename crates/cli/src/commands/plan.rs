@@ -12,6 +12,7 @@ mod table;
 
 pub(crate) use mistake::PlanMistake;
 
+use crate::args::file;
 use crate::console::print;
 use crate::error::CliError;
 use crate::exit::Exit;
@@ -56,13 +57,13 @@ struct OutputArgs {
     json: bool,
     /// Write time, position, velocity, acceleration, jerk, snap (SI): a row for each sample of a sampled plan, 1001 rows
     /// at equal steps of another.
-    #[arg(long, value_name = "FILE", global = true)]
+    #[arg(long, value_name = "FILE", value_parser = file(), global = true)]
     csv: Option<PathBuf>,
     /// Time from row to row of the table, as "1 ms".
     #[arg(long, value_name = "TIME", value_parser = positive_time, requires = "csv", global = true)]
     csv_step: Option<f64>,
     /// Draw position and its derivatives with their limits, and where they bind.
-    #[arg(long, value_name = "FILE", global = true)]
+    #[arg(long, value_name = "FILE", value_parser = file(), global = true)]
     svg: Option<PathBuf>,
 }
 

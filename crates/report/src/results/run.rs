@@ -44,7 +44,7 @@ pub struct LimitPlace {
 pub struct RunResult {
     /// Name of the scenario.
     pub name: String,
-    /// File of the scenario, as it was given; `null` for an embedded one.
+    /// File of the scenario, as it was given, `-` for standard input; `null` for an embedded one.
     pub file: Option<String>,
     /// Engine that computed the mechanics; empty for a file that could not be read.
     pub engine: String,

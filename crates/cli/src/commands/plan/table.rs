@@ -2,7 +2,7 @@
 use super::filter::SampledFilterArgs;
 use super::mistake::PlanMistake;
 use super::quantity::{Axis, AxisQuantity, POSITION, frequency, positive_time, ratio};
-use crate::args::choice;
+use crate::args::{choice, file};
 use crate::console::say;
 use clap::Args;
 use servobench_motion::pvt::Knot;
@@ -41,7 +41,7 @@ pub(crate) struct PositionArgs {
     #[arg(long, value_name = "TIME", value_parser = positive_time)]
     command_cycle: Option<f64>,
     /// Write the velocity commands (SI).
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = file())]
     pub(super) commands: Option<PathBuf>,
 }
 

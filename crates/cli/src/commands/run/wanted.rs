@@ -93,7 +93,8 @@ impl Wanted {
 
 fn invalid(unusable: &Unusable, overrides: &[String]) -> RunResult {
     let path = &unusable.path;
-    let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+    let name = sources::named(path);
+    let name = Path::new(&name).file_stem().map_or_else(|| name.clone(), |stem| stem.to_string_lossy().into_owned());
     let file = Some(path.display().to_string());
     let identity = RunIdentity { name, file, overrides: overrides.to_vec(), ..RunIdentity::default() };
     RunResult::invalid(identity, unusable.reasons())
