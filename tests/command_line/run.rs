@@ -383,3 +383,48 @@ fn the_scenario_in_the_readme_passes() {
         servobench(&["run", room.path().join("readme.toml").to_str().unwrap(), "--out", room.path().to_str().unwrap()]);
     assert_eq!(code(&output), 0, "{}", said(&output));
 }
+
+/// A run that passed, one without limits, one that failed.
+#[test]
+fn keep_says_which_recordings_stay() {
+    let limit = |most: &str| format!("{SLIDE}[limits]\nfollowing_error_peak_load = \"{most}\"\n");
+    let files = [("passed.toml", limit("1 m")), ("failed.toml", limit("1 nm")), ("unjudged.toml", SLIDE.to_owned())];
+    let files = files.each_ref().map(|(name, text)| (*name, text.as_str()));
+    let work = folder(&files);
+    let out = work.path().join("out");
+    let run = |more: &[&str]| {
+        let arguments = ["run", work.path().to_str().unwrap(), "--out", out.to_str().unwrap()];
+        let output = servobench(&[&arguments[..], more].concat());
+        let results = json(&fs::read(out.join("results.json")).unwrap());
+        let mut left: Vec<_> =
+            fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        left.retain(|name| name != "results.json");
+        left.sort();
+        let mut named: Vec<String> = Vec::new();
+        for run in results["scenarios"].as_array().unwrap() {
+            let files: Vec<_> =
+                run["files"].as_array().unwrap().iter().map(|file| file.as_str().unwrap().to_owned()).collect();
+            assert_eq!(run["recording"].as_str(), files.first().map(String::as_str));
+            named.extend(files);
+        }
+        named.sort();
+        assert_eq!(named, left, "results.json names what is there");
+        (code(&output), said(&output), left)
+    };
+    let (code_of_all, said, all) = run(&[]);
+    assert_eq!(all, ["failed.exact.parquet", "passed.exact.parquet", "unjudged.exact.parquet"]);
+    assert!(code_of_all == 4 && said.contains("\nresults and recordings: "), "{said}");
+    let (code, said, left) = run(&["--keep", "failed", "--rrd"]);
+    assert_eq!((code, left), (4, vec!["failed.exact.parquet".to_owned(), "failed.exact.rrd".to_owned()]));
+    assert!(
+        said.contains("\nresults and 1 recording: ") && said.contains("; removed 3 files of the run before"),
+        "{said}"
+    );
+    let (code, said, left) = run(&["--keep", "none"]);
+    assert_eq!((code, left.len()), (4, 0));
+    assert!(said.contains("\nresults, no recordings: ") && !said.contains("look at them"), "{said}");
+    let view = servobench(&["view", out.to_str().unwrap()]);
+    assert!(crate::code(&view) == 2 && crate::said(&view).contains("`--keep all`"), "{}", crate::said(&view));
+    let both = servobench(&["run", work.path().to_str().unwrap(), "--keep", "none", "--rrd"]);
+    assert!(crate::code(&both) == 2 && crate::said(&both).contains("leave one of them out"), "{}", crate::said(&both));
+}

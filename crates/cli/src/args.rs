@@ -165,7 +165,10 @@ pub(crate) struct RunArgs {
     /// Engine to use instead of the scenarios' own; may be given several times.
     #[arg(long, value_name = "NAME", value_parser = engine())]
     pub(crate) engine: Vec<EngineName>,
-    /// Write each recording for the Rerun viewer too.
+    /// Recordings that stay, with their timing diagrams and .rrd.
+    #[arg(long, value_enum, value_name = "WHICH", default_value_t = Keep::All)]
+    pub(crate) keep: Keep,
+    /// Write each recording that stays for the Rerun viewer too.
     #[arg(long)]
     pub(crate) rrd: bool,
     /// Write a JUnit report.
@@ -183,6 +186,17 @@ pub(crate) struct RunArgs {
     /// Show all metrics of every run, as of a single one.
     #[arg(long, short, conflicts_with = "quiet")]
     pub(crate) verbose: bool,
+}
+
+/// Which recordings a run leaves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Keep {
+    /// Those of all runs.
+    All,
+    /// Those of runs that failed or ended with an error; an unjudged one has nothing that failed.
+    Failed,
+    /// No recording, only results.json.
+    None,
 }
 
 /// Values that are not those of the files.

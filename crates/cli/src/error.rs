@@ -48,8 +48,11 @@ pub(crate) enum CliError {
     #[error("there is no `{RESULTS}` and no `{COMPARISON}` in `{}`; name a recording, or a folder that `run` or `compare` \
              wrote", .folder.display())]
     NoResults { folder: PathBuf },
-    #[error("no run in `{}` left a recording", .folder.display())]
+    #[error("no run in `{}` left a recording: each was invalid, or run with `--keep failed` or `--keep none`; run it again \
+             with `--keep all`", .folder.display())]
     NoRecording { folder: PathBuf },
+    #[error("--rrd: with `--keep none` no recording is left for the viewer; leave one of them out")]
+    NothingForTheViewer,
     #[error(transparent)]
     ReadRecording(TraceError),
     #[error("`{}`: {}{error}", .recording.display(), options(.error))]
@@ -158,6 +161,7 @@ impl CliError {
             | Self::ReadResults { .. }
             | Self::NoResults { .. }
             | Self::NoRecording { .. }
+            | Self::NothingForTheViewer
             | Self::ReadRecording(_)
             | Self::Timing { .. }
             | Self::WouldBeLost(_)

@@ -1,4 +1,5 @@
 //! What a command leaves on the disk: recordings, results, diagrams, reports. Each file is there whole or not at all.
+use crate::args::Keep;
 use crate::console::print;
 use crate::error::CliError;
 use crate::interrupt;
@@ -205,6 +206,15 @@ fn limit_places(scenario: &Scenario) -> Vec<LimitPlace> {
 
 const fn of_move(step: &Step) -> bool {
     matches!(step, Step::Move(_))
+}
+
+/// Whether a run that came to `outcome` leaves its recording. One that is unjudged has nothing that failed.
+pub(crate) const fn is_kept(keep: Keep, outcome: Outcome) -> bool {
+    match keep {
+        Keep::All => true,
+        Keep::Failed => !outcome.is_good(),
+        Keep::None => false,
+    }
 }
 
 /// What a viewer says of a run that was judged.

@@ -1,7 +1,7 @@
 //! `servobench run`: scenarios in, verdicts out.
 mod wanted;
 
-use crate::args::RunArgs;
+use crate::args::{Keep, RunArgs};
 use crate::console::{print, program, say, style};
 use crate::engines;
 use crate::error::CliError;
@@ -10,7 +10,7 @@ use crate::interrupt;
 use crate::output::{self, RESULTS, Written};
 use crate::progress::Progress;
 use crate::workers;
-use servobench_report::{Outcome, Results, RunResult, brief, junit, verdict_table};
+use servobench_report::{Outcome, Results, RunIdentity, RunResult, brief, junit, verdict_table};
 use servobench_suite::{Broken, Engines, Job, Run, WorkerCommand, execute, map_in_parallel};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -26,6 +26,9 @@ type Timed = (RunResult, Duration);
 /// Runs the scenarios, judges them and writes what came of them.
 pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
     let engines = engines::installed();
+    if args.rrd && args.keep == Keep::None {
+        return Err(CliError::NothingForTheViewer);
+    }
     let wanted = Wanted::of(args, &engines)?;
     if wanted.jobs.is_empty() {
         return nothing_to_run(args, wanted);
@@ -90,7 +93,7 @@ fn carried_out(args: &RunArgs, jobs: &[Job], engines: &Engines, out: &Path) -> R
     let progress = Progress::new(jobs.len(), args.quiet);
     let ended = map_in_parallel(jobs, workers::at_a_time(args.jobs), Job::memory, |job| {
         let start = Instant::now();
-        let result = one(job, engines, &worker, args.rrd, out, &progress);
+        let result = one(job, engines, &worker, args, out, &progress);
         (result, start.elapsed())
     });
     let ended = jobs.iter().zip(ended).map(|(job, ended)| {
@@ -105,21 +108,26 @@ fn carried_out(args: &RunArgs, jobs: &[Job], engines: &Engines, out: &Path) -> R
     Ok(ended)
 }
 
-/// Runs one job and writes its recording. One that cannot be written takes the verdict away.
+/// Runs one job and writes its recording, if that is to stay. One that cannot be written takes the verdict away.
 fn one(
     job: &Job,
     engines: &Engines,
     worker: &WorkerCommand,
-    rrd: bool,
+    args: &RunArgs,
     folder: &Path,
     progress: &Progress,
 ) -> RunResult {
-    let write = |recording, shown: servobench_view::Verdict| {
-        output::write_recording(job, recording, folder, rrd.then_some(shown))
+    let write = |recording, outcome, shown: servobench_view::Verdict| {
+        if output::is_kept(args.keep, outcome) {
+            output::write_recording(job, recording, folder, args.rrd.then_some(shown))
+        } else {
+            Ok(Written::default())
+        }
     };
     let result = match execute(job, engines, worker, &mut progress.of_run(&job.id)) {
         Ok(Run { recording, metrics, verdict }) => {
-            match write(&recording, output::shown(&recording, &metrics, &verdict)) {
+            let judged = RunResult::judged(RunIdentity::default(), &recording, &metrics, &verdict).verdict;
+            match write(&recording, judged, output::shown(&recording, &metrics, &verdict)) {
                 Ok(written) => RunResult::judged(output::identity(job, written), &recording, &metrics, &verdict),
                 Err((error, written)) => {
                     let (run, until_then) = (output::identity(job, written), Some((&recording, &metrics)));
@@ -136,7 +144,7 @@ fn one(
             let written = until_then.as_ref().map(|(recording, _)| {
                 let outcome = servobench_view::Outcome::Failed;
                 let shown = servobench_view::Verdict { outcome, reasons: reasons.clone(), warnings: Vec::new() };
-                write(recording, shown).unwrap_or_else(|(unwritten, written)| {
+                write(recording, Outcome::Error, shown).unwrap_or_else(|(unwritten, written)| {
                     reasons.push(unwritten.to_string());
                     written
                 })
@@ -177,8 +185,14 @@ fn text_of(results: &Results, args: &RunArgs, out: &Path, removed: Result<usize,
         Err(why) => format!("; what the run before left stays: {why}"),
     };
     let out = out.display();
-    let mut parts =
-        vec![verdict_table(results, style(), args.verbose), format!("results and recordings: {out}{older}{removed}\n")];
-    parts.extend(args.rrd.then(|| format!("look at them: {} view {out}\n", program())));
+    let kept = results.scenarios.iter().filter(|run| run.recording.is_some()).count();
+    let what = match (args.keep, kept) {
+        (Keep::All, _) => "results and recordings".to_owned(),
+        (_, 0) => "results, no recordings".to_owned(),
+        (_, 1) => "results and 1 recording".to_owned(),
+        (_, kept) => format!("results and {kept} recordings"),
+    };
+    let mut parts = vec![verdict_table(results, style(), args.verbose), format!("{what}: {out}{older}{removed}\n")];
+    parts.extend((args.rrd && kept > 0).then(|| format!("look at them: {} view {out}\n", program())));
     parts.concat()
 }
