@@ -1,10 +1,12 @@
 //! The program as its users see it: output, files, exit codes. It belongs to the crate `cli`, whose binary it runs.
 mod check;
 mod compare;
+mod completions;
 mod fmu;
 mod fmu_standard;
 mod fmu_suite;
 mod getting_started;
+mod man;
 mod objects;
 mod output;
 mod overrides;

@@ -7,7 +7,8 @@ pub(crate) use mistakes::parse;
 
 use crate::commands::{PLAN_EXAMPLES, PlanArgs};
 use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser};
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, CommandFactory as _, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 use servobench_config::Choice as _;
 #[cfg(feature = "fmu")]
 use servobench_fmi::Version;
@@ -37,6 +38,13 @@ const AFTER_RUN: &str = "Columns: MOVE is the set-point's duration, SETTLING the
                          A run with signals (of function blocks, axis, link and drive) leaves a timing diagram beside \
                          its recording, RUN.timing.svg; servobench timing draws other stretches of it.";
 
+const AFTER_COMPLETIONS: &str = "For bash: servobench completions bash > ~/.local/share/bash-completion/completions/servobench. For fish: … fish > \
+                                 ~/.config/fish/completions/servobench.fish. For zsh: into _servobench in a folder of $fpath. A shell \
+                                 that is started afterwards reads it.";
+
+const AFTER_MAN: &str =
+    "Read a page without installing it: servobench man | man -l -. Pages in ~/.local/share/man/man1 are found by man.";
+
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Run scenarios and judge them; without a file, run the demo.
@@ -64,6 +72,12 @@ pub(crate) enum Command {
     #[cfg(feature = "fmu")]
     #[command(subcommand)]
     Fmu(FmuCommand),
+    /// Print what completes command lines of servobench in a shell.
+    #[command(after_help = AFTER_COMPLETIONS)]
+    Completions(CompletionsArgs),
+    /// Print the man page of the program, or write those of all commands.
+    #[command(after_help = AFTER_MAN)]
+    Man(ManArgs),
     /// Run an FMU in a process of its own (started by `run`, `check` and `compare`).
     #[cfg(feature = "fmu")]
     #[command(hide = true)]
@@ -116,6 +130,17 @@ pub(crate) struct PlcExportArgs {
     /// Write to this file [default: standard output].
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
+}
+
+/// The program as its users see it: without the commands that it starts itself.
+pub(crate) fn visible() -> clap::Command {
+    let whole = Cli::command();
+    clap::Command::new("servobench")
+        .version(env!("CARGO_PKG_VERSION"))
+        .about(whole.get_about().cloned().unwrap_or_default())
+        .after_help(AFTER_HELP)
+        .subcommand_required(true)
+        .subcommands(whole.get_subcommands().filter(|inner| !inner.is_hide_set()).cloned())
 }
 
 /// What to do with FMUs.
@@ -306,6 +331,20 @@ pub(crate) enum ObjectsFormat {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct CompletionsArgs {
+    /// The shell.
+    #[arg(value_enum)]
+    pub(crate) shell: Shell,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ManArgs {
+    /// Write the pages of the program and of each command into this folder.
+    #[arg(long, value_name = "DIR", value_parser = file())]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct WorkerArgs {
     #[arg(long, value_parser = engine())]
     pub(crate) engine: EngineName,
@@ -354,7 +393,6 @@ fn instant(text: &str) -> Result<f64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
     #[test]
     fn the_arguments_are_consistent() {

@@ -1,8 +1,10 @@
 //! The commands, one module each.
 mod check;
 mod compare;
+mod completions;
 #[cfg(feature = "fmu")]
 mod fmu;
+mod man;
 mod objects;
 mod plan;
 mod plc;
@@ -14,8 +16,10 @@ mod worker;
 
 pub(crate) use check::{Findings, check};
 pub(crate) use compare::compare;
+pub(crate) use completions::completions;
 #[cfg(feature = "fmu")]
 pub(crate) use fmu::{fmu, fmu_host};
+pub(crate) use man::man;
 pub(crate) use objects::objects;
 pub(crate) use plan::{EXAMPLES as PLAN_EXAMPLES, PlanArgs, PlanMistake, plan};
 pub(crate) use plc::plc;

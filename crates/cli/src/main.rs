@@ -41,6 +41,8 @@ fn dispatch(command: &Command) -> Exit {
         Command::Fmu(command) => commands::fmu(command),
         #[cfg(feature = "fmu")]
         Command::FmuHost => commands::fmu_host(),
+        Command::Completions(args) => commands::completions(args),
+        Command::Man(args) => commands::man(args),
         Command::Worker(args) => commands::worker(args),
     };
     interrupt::end_if_interrupted();

@@ -4,6 +4,8 @@
 //! servobench-<version>-<target>/bin/servobench              finds the library by $ORIGIN/../native/lib
 //!                              /native/lib/libmujoco.so.…
 //!                              /lib/libservobench_fmu.so    what goes into exported FMUs
+//!                              /share/man/man1              man pages; completions of bash, zsh and fish beside them, where
+//!                                                           shells look for those of a prefix such as /usr/local
 //!                              /models /scenarios /scenarios-fmu /docs README.md LICENSE-… NOTICE
 //!                              /licenses                    of everything that is in the binary
 //! ```
@@ -47,6 +49,7 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     for file in workspace.tracked(&TRACKED)? {
         copy(&workspace.root.join(&file), &root.join(&file))?;
     }
+    write_share(workspace, &root)?;
     let others = metadata.closure(cli.into_iter());
     let text = licence_texts(others.into_iter().filter(|package| !metadata.is_member(package)));
     let file = root.join("licenses/rust-crates.txt");
@@ -60,6 +63,31 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     let archive = folder.join(format!("{name}.tar.gz"));
     fs::rename(&fresh, &archive).map_err(Failure::file("write", &archive))?;
     println!("{}", archive.display());
+    Ok(())
+}
+
+/// Completions: shell and its file.
+const COMPLETIONS: [(&str, &str); 3] = [
+    ("bash", "share/bash-completion/completions/servobench"),
+    ("zsh", "share/zsh/site-functions/_servobench"),
+    ("fish", "share/fish/vendor_completions.d/servobench.fish"),
+];
+
+/// Man pages and completions, by the program in `root` itself.
+fn write_share(workspace: &Workspace, root: &Path) -> Result<(), Failure> {
+    let program = |arguments: &[&str]| {
+        let mut program = workspace.command(root.join("bin/servobench"), arguments);
+        // `cargo run` names folders of the workspace in this variable.
+        program.env_remove("LD_LIBRARY_PATH");
+        program
+    };
+    run_command(program(&["man", "--out"]).arg(root.join("share/man/man1")), 0)?;
+    for (shell, file) in COMPLETIONS {
+        let file = root.join(file);
+        let folder = file.parent().unwrap_or(root);
+        fs::create_dir_all(folder).map_err(Failure::file("create", folder))?;
+        fs::write(&file, output(&mut program(&["completions", shell]))?).map_err(Failure::file("write", &file))?;
+    }
     Ok(())
 }
 
