@@ -6,7 +6,7 @@ use crate::rerun::{
 };
 use crate::run::Run;
 use crate::style::{self, Rgb};
-use servobench_trace::{Call, CallFate, Signal};
+use servobench_trace::{Call, CallFate, Recording, Signal};
 
 /// Colours of the values of a signal, in the order in which they first appear.
 const COLOURS: [Rgb; 6] =
@@ -51,7 +51,8 @@ pub(crate) fn log(stream: &RecordingStream, run: &Run<'_>) -> RecordingStreamRes
         let columns = StateChange::update_fields().with_state(values).columns_of_unit_batches()?;
         let (texts, colours): (Vec<&str>, Vec<Color>) =
             coloured(signal).into_iter().map(|(text, [r, g, b])| (text, Color::from_rgb(r, g, b))).unzip();
-        let configuration = StateConfiguration::new().with_values(texts).with_colors(colours);
+        let labels: Vec<&str> = texts.iter().map(|text| label(text)).collect();
+        let configuration = StateConfiguration::new().with_values(texts).with_labels(labels).with_colors(colours);
         stream.send_columns(path.clone(), [times], columns)?;
         stream.log_static(path, &configuration)
     })?;
@@ -76,7 +77,7 @@ fn fate<'a>(run: &Run<'a>, call: &'a Call) -> Option<Lane<'a>> {
         text: why.as_str().into(),
         colour: if call.is_optional { style::REFERENCE } else { style::LIMIT },
     };
-    Some(Lane { path: run.path(&["blocks", &call.name, name]), spans: vec![span], otherwise: "no error" })
+    Some(Lane { path: block_path(run, &call.name, name), spans: vec![span], otherwise: "no error" })
 }
 
 /// The signals in which something happens: those of a block that is never in error would hide the others.
@@ -88,9 +89,34 @@ fn eventful<'a>(run: &Run<'a>) -> impl Iterator<Item = &'a Signal> {
 fn path(run: &Run<'_>, signal: &Signal) -> EntityPath {
     // The viewer sorts lanes by their paths: the axis, the blocks, what is below them.
     match signal.source.as_str() {
-        source @ ("axis" | "drive" | "link") => run.path(&[source, &signal.name]),
-        block => run.path(&["blocks", block, &signal.name]),
+        source if is_no_block(source) => run.path(&[source, &signal.name]),
+        block => block_path(run, block, &signal.name),
     }
+}
+
+fn is_no_block(source: &str) -> bool {
+    matches!(source, "axis" | "drive" | "link")
+}
+
+/// The lane `name` of a block. Its number in the program stands before its name, since the viewer sorts by paths, numbers in
+/// them by their value.
+fn block_path(run: &Run<'_>, block: &str, name: &str) -> EntityPath {
+    let Recording { calls, signals, .. } = run.recording;
+    let mut order: Vec<&str> = calls.iter().map(|call| call.name.as_str()).collect();
+    // A recording that was stored by an earlier version lists no calls.
+    for source in signals.iter().map(|signal| signal.source.as_str()).filter(|source| !is_no_block(source)) {
+        if !order.contains(&source) {
+            order.push(source);
+        }
+    }
+    let numbered = order.iter().position(|own| *own == block).map(|at| format!("{}.{block}", at + 1));
+    run.path(&["blocks", numbered.as_deref().unwrap_or(block), name])
+}
+
+/// What stands in a lane that has this value: in one that is FALSE nothing, so that what is TRUE is seen.
+fn label(value: &str) -> &str {
+    // Without a label the viewer shows the value.
+    if value == "FALSE" { " " } else { value }
 }
 
 /// The values of `signal` with their colours.

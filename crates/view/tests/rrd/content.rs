@@ -2,7 +2,9 @@
 use re_sdk::StoreKind;
 use re_sdk::external::re_log_encoding::DecoderApp;
 use re_sdk::log::{Chunk, LogMsg};
-use re_sdk_types::archetypes::{LineStrips3D, Points3D, Scalars, StateChange, TextDocument, TextLog, Transform3D};
+use re_sdk_types::archetypes::{
+    LineStrips3D, Points3D, Scalars, StateChange, StateConfiguration, TextDocument, TextLog, Transform3D,
+};
 use re_sdk_types::blueprint::archetypes::{ScalarAxis, ViewBlueprint, ViewContents};
 use re_sdk_types::blueprint::components::QueryExpression;
 use re_sdk_types::components::{LineStrip3D, Name, Range1D, Text, TextLogLevel, Translation3D};
@@ -35,6 +37,8 @@ pub(crate) struct Content {
     pub(crate) places: BTreeMap<String, Vec<(i64, [f32; 3])>>,
     /// First point and label of each tick of the rulers.
     pub(crate) ticks: Vec<(f32, String)>,
+    /// What stands in lanes, by value.
+    pub(crate) words: BTreeMap<String, Vec<(String, String)>>,
     /// What stands beside points.
     pub(crate) labels: BTreeMap<String, String>,
     /// The texts of documents.
@@ -72,6 +76,12 @@ impl Content {
         let labels: Vec<_> = texts(Points3D::descriptor_labels().component).map(|text| text.to_string()).collect();
         if let [label] = &labels[..] {
             self.labels.insert(entity.to_owned(), label.clone());
+        }
+        let values = texts(StateConfiguration::descriptor_values().component).map(|text| text.to_string());
+        let words = texts(StateConfiguration::descriptor_labels().component).map(|text| text.to_string());
+        let words: Vec<_> = values.zip(words).collect();
+        if !words.is_empty() {
+            self.words.insert(entity.to_owned(), words);
         }
         let strips = chunk.iter_component::<LineStrip3D>(LineStrips3D::descriptor_strips().component);
         let strips: Vec<LineStrip3D> = strips.flat_map(|strips| strips.as_slice().to_vec()).collect();

@@ -2,6 +2,7 @@
 use crate::axis::{Case, run};
 use crate::content::{assert_views_are_fed, read, written};
 use crate::{MAX_INSTANTS, example, options};
+use re_sdk::EntityPath;
 use servobench_base::Rate;
 use servobench_trace::{Channel, ChannelSpec, Recording, Signal};
 use servobench_view::{ViewOptions, write_comparison_rrd};
@@ -188,4 +189,33 @@ fn a_low_plot_has_an_axis_of_its_own() {
         let is_labelled = |tick: f64| labels(tick) >= 2.0 && tick / (high - low) * 125.0 >= 21.0;
         assert!([10.0, 100.0, 1000.0, 0.1, 1.0].into_iter().any(is_labelled), "{low} to {high}");
     }
+}
+
+/// The viewer sorts lanes by their entity paths: as paths are sorted, blocks stand in the order of the program, the tenth below the second.
+#[test]
+fn lanes_of_blocks_are_in_the_order_of_the_program() {
+    let names = ["power", "home", "go", "back", "again", "b", "a", "d", "c", "stop", "reset"];
+    let changes = vec![(0.0, "FALSE".to_owned()), (0.5, "TRUE".to_owned())];
+    let mut recording = example(3);
+    recording.signals.push(Signal {
+        source: "axis".into(),
+        name: "state".into(),
+        changes: vec![(0.0, "Standstill".into())],
+    });
+    for name in names {
+        recording.signals.push(Signal { source: name.into(), name: "Done".into(), changes: changes.clone() });
+    }
+    let content = written(&recording, &options());
+    let mut paths: Vec<EntityPath> = content.lanes.keys().map(|path| EntityPath::parse_forgiving(path)).collect();
+    paths.sort();
+    let blocks: Vec<String> =
+        paths.iter().map(ToString::to_string).filter(|path| path.starts_with("/blocks")).collect();
+    let expected: Vec<String> =
+        (1..).zip(names).map(|(number, name)| format!("/blocks/{number}.{name}/Done")).collect();
+    assert_eq!(blocks, expected);
+    // What is FALSE says nothing, what is TRUE says so.
+    let words = [(" ".to_owned(), "FALSE"), ("TRUE".to_owned(), "TRUE")].map(|(word, value)| (value.to_owned(), word));
+    assert_eq!(content.words["/blocks/1.power/Done"], words);
+    assert_eq!(content.words["/axis/state"], [("Standstill".to_owned(), "Standstill".to_owned())]);
+    assert_views_are_fed(&content);
 }
