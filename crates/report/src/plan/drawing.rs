@@ -6,7 +6,6 @@ use super::sheet::{Sheet, four_digits};
 use super::{NAMES, PlannedMove, derivatives};
 use crate::drawing::unit_at;
 use crate::text::wrapped;
-use servobench_motion::Profile;
 use servobench_motion::online::Sides;
 use servobench_planner::Span;
 
@@ -62,20 +61,11 @@ impl PlannedMove {
             title: &title,
             lines: wrapped(&below, CHARACTERS),
             duration,
-            boundaries: self.boundaries(&spans),
+            boundaries: if envelope.is_some() { Vec::new() } else { self.boundaries() },
             bindings: self.plan.bindings(),
             panels: &panels,
         }
         .to_svg()
-    }
-
-    /// Ends of the segments (s).
-    fn boundaries(&self, spans: &[Span]) -> Vec<f64> {
-        match self.profile().map(Profile::segments) {
-            _ if self.plan.held().is_some() || spans.len() > EXACT => Vec::new(),
-            Some(segments) => segments.map(|segment| segment.start + segment.length).collect(),
-            None => spans.iter().map(|span| span.start + span.length).collect(),
-        }
     }
 }
 
@@ -95,8 +85,11 @@ mod tests {
     use servobench_base::Setpoint;
     use servobench_motion::pvt::Knot;
     use servobench_motion::sampled::Execution;
+    use servobench_motion::shape::Shaper;
     use servobench_motion::{Limits, Order};
-    use servobench_planner::{Follow, Generator, Method, PointToPoint, Request, TableMove, Velocities};
+    use servobench_planner::{
+        Filter, Follow, Generator, Method, PointToPoint, Request, Shaping, TableMove, Velocities,
+    };
     use std::f64::consts::PI;
 
     /// The path of the line of panel `k`.
@@ -306,6 +299,37 @@ mod tests {
         for plan in [moves::executed(1e-3, Execution::ForwardEuler), moves::of(Generator::Table(asked))] {
             let svg = plan.svg();
             assert!(svg.len() < 200_000 && svg.contains("class=\"v\""), "{} bytes", svg.len());
+        }
+    }
+
+    /// A filter cuts the profile where its pieces begin, in the middle of a cruise too: a line stands where the snap changes, as a row
+    /// does in the table, and nowhere else.
+    #[test]
+    fn lines_of_segments_stand_where_the_highest_derivative_changes() {
+        let generator = |order| {
+            let asked =
+                PointToPoint { distance: 0.1, order, limits: moves::LAMBRECHTS, method: Method::Published, grid: None };
+            Generator::PointToPoint(asked)
+        };
+        for order in [Order::Second, Order::Third, Order::Fourth] {
+            for shaper in [Shaper::Zv, Shaper::Zvd, Shaper::Ei { tolerable: 0.05 }] {
+                let shaping = Shaping { shaper, frequency: 38.985, damping: 0.02 };
+                let filter = Filter { shaper: Some(shaping), ..Filter::default() };
+                let request = Request { filter, ..Request::new(generator(order)) };
+                let svg = PlannedMove::new(request, "m").unwrap().svg();
+                let mut lines: Vec<&str> =
+                    svg.split("class=\"b\" x1=\"").skip(1).map(|rest| rest.split('"').next().unwrap()).collect();
+                lines.truncate(lines.len() / (order.derivative() + 1));
+                let highest = path(&svg, order.derivative());
+                let (last, within) = lines.split_last().unwrap();
+                assert_eq!(*last, "728.00");
+                for x in within {
+                    assert!(
+                        highest.contains(&format!("H{x}V")),
+                        "{order:?}, {shaper:?}: nothing changes at {x}: {highest}"
+                    );
+                }
+            }
         }
     }
 }

@@ -69,10 +69,6 @@ impl PlannedMove {
         if self.plan.held().is_some() {
             return Vec::new();
         }
-        if let Some(profile) = self.profile() {
-            let row = |segment: Segment| Row::segment(segment.start, segment.length, n, segment.value);
-            return self.listed("start", joined(profile.segments().map(row)), "segments");
-        }
         if matches!(self.request.generator, Generator::Table(_)) {
             // Where velocity jumps, there is no acceleration to tell.
             let has_acceleration = n > 1;
@@ -83,8 +79,29 @@ impl PlannedMove {
             let rows = self.plan.spans().map(|span| row(span.start, span.state)).chain([end]);
             return self.listed("time", rows, "points");
         }
-        let row = |span: Span| Row::segment(span.start, span.length, n, derivatives(&span.state)[n]);
-        self.listed("start", joined(self.plan.spans().map(row)), "segments")
+        self.listed("start", self.segment_rows(), "segments")
+    }
+
+    /// The segments, each as long as the highest derivative stays what it is.
+    fn segment_rows(&self) -> Box<dyn Iterator<Item = Row> + '_> {
+        let n = self.plan.order();
+        if let Some(profile) = self.profile() {
+            let row = move |segment: Segment| Row::segment(segment.start, segment.length, n, segment.value);
+            return Box::new(joined(profile.segments().map(row)));
+        }
+        let row = move |span: Span| Row::segment(span.start, span.length, n, derivatives(&span.state)[n]);
+        Box::new(joined(self.plan.spans().map(row)))
+    }
+
+    /// Ends of the rows (s), those of a table where its points are; none of a plan whose set-points are held.
+    pub(super) fn boundaries(&self) -> Vec<f64> {
+        if self.plan.held().is_some() {
+            return Vec::new();
+        }
+        if matches!(self.request.generator, Generator::Table(_)) {
+            return self.plan.spans().map(|span| span.start + span.length).collect();
+        }
+        self.segment_rows().map(|row| row.start + row.length.unwrap_or_default()).collect()
     }
 
     /// Rows below their headings, of very many only the first and the last.
