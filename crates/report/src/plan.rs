@@ -65,9 +65,9 @@ impl PlannedMove {
         self.given[k].clone().or_else(related).unwrap_or_else(|| Unit::si(self.unit, k))
     }
 
-    /// Unit in which derivative `k` is drawn: lengths with the prefix that suits them, angles as they were given.
+    /// Unit in which derivative `k` is drawn: the same, as it is printed.
     fn drawn_unit(&self, k: usize) -> Unit {
-        if self.unit == "rad" { self.unit(k).pretty() } else { Unit::si(self.unit, k) }
+        self.unit(k).pretty()
     }
 
     /// Derivative `k` of position (SI) in words.

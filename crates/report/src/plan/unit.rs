@@ -12,8 +12,18 @@ pub(super) struct Unit {
     takes_prefix: bool,
 }
 
-/// Units of angles that are none of the SI, with what units of their derivatives begin with.
-const ANGLES: [(&str, &str, f64); 7] = [
+/// Units of lengths and angles that are none of the SI, with what units of their derivatives begin with. One of the SI takes
+/// the prefix that suits each derivative.
+const BASES: [(&str, &str, f64); 16] = [
+    ("nm", "nm", 1e-9),
+    ("um", "um", 1e-6),
+    ("\u{b5}m", "\u{b5}m", 1e-6),
+    ("\u{3bc}m", "\u{b5}m", 1e-6),
+    ("mm", "mm", 1e-3),
+    ("cm", "cm", 1e-2),
+    ("km", "km", 1e3),
+    ("mrad", "mrad", 1e-3),
+    ("urad", "urad", 1e-6),
     ("deg", "deg", PI / 180.0),
     ("°", "deg", PI / 180.0),
     ("arcmin", "arcmin", PI / 10_800.0),
@@ -46,9 +56,10 @@ impl Unit {
         })
     }
 
-    /// That of derivative `k` of the angle that this unit, of another derivative, begins with.
+    /// That of derivative `k` of the length or angle that this unit, of another derivative, begins with.
     pub(super) fn of_derivative(&self, k: usize) -> Option<Self> {
-        let (_, base, si) = ANGLES.iter().find(|(begin, ..)| self.symbol.starts_with(begin))?;
+        let begin = self.symbol.split('/').next().unwrap_or_default().trim();
+        let (_, base, si) = BASES.iter().find(|(symbol, ..)| *symbol == begin)?;
         Some(Self { symbol: format!("{base}{}", POWERS[k]), si: *si, takes_prefix: false })
     }
 
@@ -129,14 +140,19 @@ mod tests {
         }
     }
 
-    /// Whoever writes revolutions per minute reads revolutions.
+    /// Whoever writes revolutions per minute reads revolutions, and millimetres who writes those.
     #[test]
-    fn other_derivatives_of_an_angle_go_with_the_given_one() {
+    fn other_derivatives_go_with_the_given_one() {
         let of = |text, value, k| Unit::given(text, value).unwrap().of_derivative(k);
         let position = of("60 rpm", 2.0 * PI, 0).unwrap();
         assert_eq!((position.text(PI).as_str(), position.symbol()), ("0.5 rev", "rev"));
         assert_eq!(of("1 deg/s", PI / 180.0, 3).unwrap().symbol(), "deg/s³");
-        assert_eq!(of("1 mm", 1e-3, 1), None);
+        let jerk = of("1 mm", 1e-3, 3).unwrap();
+        assert_eq!((jerk.text(0.25).as_str(), jerk.scale().to_bits()), ("250 mm/s³", 1e-3_f64.to_bits()));
+        assert_eq!(of("5 um / s", 5e-6, 0).unwrap().text(1e-6), "1 um");
+        assert_eq!(of("1 cm/s2", 1e-2, 1).unwrap().symbol(), "cm/s");
+        assert_eq!(of("30 m/min", 0.5, 2), None, "the SI's own has its prefixes");
+        assert_eq!(of("1 rad/s", 1.0, 2), None);
         assert_eq!(Unit::given("1 deg/s2", 1.0).unwrap().pretty().symbol(), "deg/s²");
     }
 }
