@@ -8,6 +8,7 @@
 
 mod absence;
 mod compliance;
+mod display_unit;
 mod effort;
 mod measure;
 mod metric;
@@ -29,6 +30,7 @@ mod verdict;
 mod vibration;
 
 pub use absence::Absence;
+pub use display_unit::{DisplayUnit, DisplayUnits, digits};
 pub use measure::{Question, measure};
 pub use metric::{Metric, MetricSet, Metrics, MoveMetrics};
 pub use modal::{Mode, Signal, fit_mode};

@@ -10,14 +10,13 @@ mod rows;
 mod sheet;
 mod table;
 mod times;
-mod unit;
 mod words;
 
 use servobench_base::Setpoint;
+use servobench_metrics::{DisplayUnit, DisplayUnits};
 use servobench_motion::sampled::Shortest;
 use servobench_motion::{PlanError, Profile};
 use servobench_planner::{Plan, PlanDetails, Request};
-use unit::Unit;
 
 /// Names of position and its derivatives.
 const NAMES: [&str; 5] = ["position", "velocity", "acceleration", "jerk", "snap"];
@@ -29,9 +28,8 @@ const STEPS: u32 = 1000;
 pub struct PlannedMove {
     request: Request,
     plan: Plan,
-    unit: &'static str,
     /// Units of position and its derivatives as whoever asked wrote them.
-    given: [Option<Unit>; 5],
+    units: DisplayUnits,
 }
 
 impl PlannedMove {
@@ -41,38 +39,25 @@ impl PlannedMove {
     /// [`PlanError`] of the planner.
     pub fn new(request: Request, unit: &'static str) -> Result<Self, PlanError> {
         let plan = request.plan()?;
-        Ok(Self { request, plan, unit, given: [const { None }; 5] })
+        Ok(Self { request, plan, units: DisplayUnits::new(unit) })
     }
 
     /// The same with derivative `k` of position, 0 to 4, in the unit in which `text` was written, whose value is `value`
     /// (SI). A text of no unit, and a value of zero, which does not say how large the unit is, change nothing.
     #[must_use]
     pub fn as_given(mut self, k: usize, text: &str, value: f64) -> Self {
-        if let (Some(slot), Some(unit)) = (self.given.get_mut(k), Unit::given(text, value)) {
-            *slot = Some(unit);
-        }
+        self.units = self.units.as_given(k, text, value);
         self
     }
 
-    /// Unit in which derivative `k` of position is told: the given one, else one that goes with the nearest given one, else
-    /// that of the SI.
-    fn unit(&self, k: usize) -> Unit {
-        let related = || {
-            let given = || self.given.iter().enumerate().filter_map(|(i, unit)| Some((i.abs_diff(k), unit.as_ref()?)));
-            let nearest = given().min_by_key(|(distance, _)| *distance);
-            nearest.and_then(|(_, unit)| unit.of_derivative(k))
-        };
-        self.given[k].clone().or_else(related).unwrap_or_else(|| Unit::si(self.unit, k))
-    }
-
     /// Unit in which derivative `k` is drawn: the same, as it is printed.
-    fn drawn_unit(&self, k: usize) -> Unit {
-        self.unit(k).pretty()
+    fn drawn_unit(&self, k: usize) -> DisplayUnit {
+        self.units.unit(k).pretty()
     }
 
     /// Derivative `k` of position (SI) in words.
     fn show(&self, k: usize, value: f64) -> String {
-        self.unit(k).text(value)
+        self.units.unit(k).text(value)
     }
 
     /// From where to where (m or rad); zero where nothing but rounding is between.

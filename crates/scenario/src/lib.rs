@@ -10,6 +10,7 @@ mod argument;
 mod block;
 mod channel;
 mod diagnostic;
+mod display_units;
 mod field;
 mod file;
 mod format;

@@ -1,5 +1,6 @@
 //! From a file or a text to a scenario, or to everything that is wrong with it.
 use crate::diagnostic::{Diagnostic, Invalid, LoadError, NamedFile, Report};
+use crate::display_units::display_units;
 use crate::field::Field;
 use crate::file::{File, MotorKind};
 use crate::format;
@@ -100,6 +101,7 @@ pub fn parse_with(name: &str, text: &str, folder: Option<&Path>, overrides: &[Ov
             }
             if let Value::Table(table) = &root.value {
                 scenario.parameters = parameters(table, &sources);
+                scenario.units = display_units(&scenario.parameters, scenario.axis.motion);
             }
             scenario.overrides = overrides.to_vec();
             let mjcf = match &scenario.axis.mechanics {

@@ -37,7 +37,7 @@ use crate::scenario::{LONGEST_RUN, Record, Scenario};
 use crate::simple::MAX_RATE;
 use crate::source::{At, Authority, Sources, Span};
 use servobench_base::Rate;
-use servobench_metrics::{Limit, Question};
+use servobench_metrics::{DisplayUnits, Limit, Question};
 use servobench_plant::EngineName;
 use std::collections::BTreeSet;
 
@@ -124,6 +124,7 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
         requirements: requirements?,
         limits,
         parameters: Vec::new(),
+        units: DisplayUnits::new(report.axis?.unit()),
         overrides: Vec::new(),
     })
 }

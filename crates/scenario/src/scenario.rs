@@ -26,7 +26,7 @@ pub use requirements::Requirements;
 use crate::overrides::Override;
 use crate::parameters::Parameter;
 use servobench_base::Rate;
-use servobench_metrics::{Limit, Question};
+use servobench_metrics::{DisplayUnits, Limit, Question};
 use servobench_plant::EngineName;
 use servobench_signals::Signal;
 use std::path::PathBuf;
@@ -79,6 +79,8 @@ pub struct Scenario {
     pub limits: Vec<Limit>,
     /// What the file says, models and overrides merged in, key by key.
     pub parameters: Vec<Parameter>,
+    /// Units in which the file gives positions and their derivatives.
+    pub units: DisplayUnits,
     /// Keys that have another value than the file gives them.
     pub overrides: Vec<Override>,
 }

@@ -156,8 +156,7 @@ impl Axis {
         self.limits.finish(end, &mut self.recorder);
         self.joints.finish(end, self.closed_loop.mechanics.joint_limits(), &mut self.recorder);
         if let Source::Network(network, delay) = &mut self.closed_loop.state.source {
-            let unit = self.recorder.about().axis_unit.clone();
-            network.finish(end, &unit, *delay, &mut self.recorder);
+            network.finish(end, *delay, &mut self.recorder);
         }
         self.recorder.finish()
     }

@@ -131,7 +131,7 @@ impl Bench {
         }
         let source = match (bus, &mut control) {
             (None, _) => {
-                for made in program.moves(equipment.axis.unit()) {
+                for made in program.moves() {
                     recorder.note_move(made);
                 }
                 Source::Program(Box::new(program))

@@ -346,10 +346,10 @@ impl Network {
     }
 
     /// Notes what is known at the end only.
-    pub(crate) fn finish(&mut self, t: f64, unit: &str, delay: f64, recorder: &mut Recorder) {
+    pub(crate) fn finish(&mut self, t: f64, delay: f64, recorder: &mut Recorder) {
         match &mut self.task {
-            MotionTask::Moves(moves) => moves.moves(unit, delay).for_each(|made| recorder.note_move(made)),
-            MotionTask::DriveProfile(way) => way.moves().moves(unit, delay).for_each(|made| recorder.note_move(made)),
+            MotionTask::Moves(moves) => moves.moves(delay).for_each(|made| recorder.note_move(made)),
+            MotionTask::DriveProfile(way) => way.moves().moves(delay).for_each(|made| recorder.note_move(made)),
             MotionTask::Plc(plc) => plc.finish(t, delay, recorder),
         }
     }

@@ -4,6 +4,7 @@ mod fine;
 use crate::error::{BuildError, check_length};
 use fine::Fine;
 use servobench_base::Setpoint;
+use servobench_metrics::DisplayUnit;
 use servobench_motion::online::Effort;
 use servobench_motion::rockwell::Shape;
 use servobench_planner::{CommandCycle, Follow, Generator, Method, Plan, PlanDetails, Reader, Request};
@@ -30,6 +31,8 @@ pub struct Program {
     end: f64,
     /// Between the course and the drive.
     fine: Option<Fine>,
+    /// In which its positions are told.
+    unit: DisplayUnit,
 }
 
 /// Moves one after the other.
@@ -65,6 +68,7 @@ impl Program {
             unit: bus.units.axis.abs() / f64::from(bus.units.drive),
         });
         let mut program = Self::plan(&scenario.program, cycle)?;
+        program.unit = scenario.units.plain(0);
         if let Some(interpolation) = &scenario.interpolation {
             let fine = Fine::new(interpolation, scenario.base_rate)?;
             program.end += fine.delay();
@@ -106,7 +110,7 @@ impl Program {
         }
         let next_start = if moves.is_empty() { f64::INFINITY } else { f64::NEG_INFINITY };
         let now = Now { index: 0, start: 0.0, from: 0.0, next_start, reader: Reader::default() };
-        Ok(Self { course: Course { moves, now }, end, fine: None })
+        Ok(Self { course: Course { moves, now }, end, fine: None, unit: DisplayUnit::plain("m", 0) })
     }
 
     /// End of the last step (s).
@@ -147,10 +151,10 @@ impl Program {
         self.course.moves.iter().map(|planned| (planned.start, planned.from, &planned.plan))
     }
 
-    /// What a recording says of the moves; `unit` is the axis unit.
-    pub fn moves(&self, unit: &str) -> impl Iterator<Item = Move> {
+    /// What a recording says of the moves, in words in the unit of the scenario.
+    pub fn moves(&self) -> impl Iterator<Item = Move> {
         let delay = self.fine.as_ref().map_or(0.0, Fine::delay);
-        self.course.moves.iter().map(move |planned| planned.describe(unit, delay))
+        self.course.moves.iter().map(move |planned| planned.describe(&self.unit, delay))
     }
 }
 
@@ -193,7 +197,7 @@ impl Planned {
     }
 
     /// What a recording says of it, `delay` (s) later at its end than it is planned.
-    fn describe(&self, unit: &str, delay: f64) -> Move {
+    fn describe(&self, unit: &DisplayUnit, delay: f64) -> Move {
         let (plan, order) = (&self.plan, self.plan.order());
         let length = self.end - self.start;
         // The difference of start and end is rounded: it alone says nothing.
@@ -217,9 +221,9 @@ impl Planned {
         let (kind, aborted) = (self.kind, if is_aborted { ", aborted" } else { "" });
         Move {
             label: format!(
-                "move from {} {unit} to {} {unit}, order {order}{kind}{aborted}",
-                six_digits(from),
-                six_digits(to)
+                "move from {} to {}, order {order}{kind}{aborted}",
+                unit.text(without_rounding(from)),
+                unit.text(without_rounding(to))
             ),
             start: self.start,
             end: self.end + delay,
@@ -260,11 +264,9 @@ const fn kind(generator: &Generator) -> &'static str {
     }
 }
 
-/// A position (m or rad) to six significant digits and a picounit: a sum of targets shows its rounding otherwise.
-fn six_digits(position: f64) -> f64 {
-    let position = libm::round(position * 1e12) / 1e12;
-    // Adding zero takes the sign from a zero.
-    format!("{position:.5e}").parse::<f64>().unwrap_or(position) + 0.0
+/// A position (m or rad) to a picounit: a sum of targets shows its rounding otherwise.
+fn without_rounding(position: f64) -> f64 {
+    libm::round(position * 1e12) / 1e12
 }
 
 #[cfg(test)]
@@ -302,7 +304,7 @@ mod tests {
         assert_eq!(program.at(1.6), Setpoint::at_rest(1.0));
         assert!((program.at(1.95 + 0.675).x - 0.5).abs() < 1e-12);
         assert_eq!(program.at(9.0), Setpoint::at_rest(0.0));
-        let cruise = program.moves("m").next().unwrap().cruise;
+        let cruise = program.moves().next().unwrap().cruise;
         assert!((cruise.0 - 0.45).abs() < 1e-12 && (cruise.1 - 0.65).abs() < 1e-12, "{cruise:?}");
         assert!(program.durations().all(|duration| (duration - 1.35).abs() < 1e-12));
         assert_eq!(program.durations().count(), 2);
@@ -312,7 +314,7 @@ mod tests {
     fn a_label_shows_no_rounding() {
         let quarter = core::f64::consts::FRAC_PI_2;
         let steps = [0.1, 0.2, -0.3, quarter].map(by);
-        let labels: Vec<_> = Program::plan(&steps, None).unwrap().moves("m").map(|made| made.label).collect();
+        let labels: Vec<_> = Program::plan(&steps, None).unwrap().moves().map(|made| made.label).collect();
         let ends = [("0", "0.1"), ("0.1", "0.3"), ("0.3", "0"), ("0", "1.5708")];
         assert_eq!(labels, ends.map(|(from, to)| format!("move from {from} m to {to} m, order 4")));
     }

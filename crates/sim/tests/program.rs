@@ -38,7 +38,7 @@ fn run(rest: &str) -> (Vec<Setpoint>, Vec<(f64, f64)>) {
     let mut program = Program::new(&scenario).unwrap();
     let Tick(last) = scenario.base_rate.tick_at(program.end() + 0.1);
     let setpoints = (0..=last).map(|k| program.at(scenario.base_rate.time(Tick(k)))).collect();
-    let moves = program.moves("m").map(|made| (made.start, made.end)).collect();
+    let moves = program.moves().map(|made| (made.start, made.end)).collect();
     (setpoints, moves)
 }
 
@@ -126,7 +126,7 @@ fn moves_follow_each_other_in_motion() {
 #[test]
 fn peaks_stand_beside_the_limits_of_their_direction() {
     let text = "[[program]]\nmove_to = \"-1 m\"\nonline = \"fast\"\nnegative_velocity = \"0.7 m/s\"\n";
-    let made = Program::new(&scenario(text)).unwrap().moves("m").next().unwrap();
+    let made = Program::new(&scenario(text)).unwrap().moves().next().unwrap();
     assert_eq!(made.limits, [Some(0.7), Some(5.0), Some(50.0), Some(1000.0)]);
     assert!((made.peaks[0] - 0.7).abs() < 1e-9 && made.label.ends_with("order 4 online"), "{made:?}");
 }

@@ -111,6 +111,7 @@ fn has_same_axis_and_drive(one: &Scenario, other: &Scenario) -> bool {
         requirements: _,
         limits: _,
         parameters: _,
+        units: _,
         overrides: _,
     } = one;
     *base_rate == other.base_rate

@@ -34,7 +34,7 @@ impl PlannedMove {
         if rows > MOST_ROWS {
             return Err(ReportError::TooManyRows { rows, limit: MOST_ROWS, sample_time: step });
         }
-        let unit = self.unit;
+        let unit = self.units.base();
         writeln!(out, "time_s,position_{unit},velocity_{unit}_s,acceleration_{unit}_s2,jerk_{unit}_s3,snap_{unit}_s4")?;
         let mut reader = Reader::default();
         reader.look_up(&self.plan, 0.0);
@@ -56,7 +56,7 @@ impl PlannedMove {
     /// [`ReportError::Io`].
     pub fn write_commands(&self, mut out: impl Write) -> Result<bool, ReportError> {
         let PlanDetails::Commands { commands, .. } = self.plan.details() else { return Ok(false) };
-        let unit = self.unit;
+        let unit = self.units.base();
         writeln!(out, "time_s,velocity_{unit}_s,acceleration_{unit}_s2")?;
         let start = commands.first().map_or(0.0, |command| command.t);
         for Command { t, velocity, acceleration } in commands {

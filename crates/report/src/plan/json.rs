@@ -149,7 +149,7 @@ impl PlannedMove {
             family: self.family(),
             method: self.method(),
             order: n,
-            unit: self.unit,
+            unit: self.units.base(),
             distance: self.distance(),
             duration_s: self.plan.duration(),
             filter_s: Some(self.plan.filter_length()).filter(|length| *length > 0.0),

@@ -1,8 +1,8 @@
 //! One quantity of a plan over time.
 use super::curve::Curve;
 use super::envelope::Envelope;
-use super::unit::Unit;
 use crate::drawing::{Axis, about_four, escaped, unit_at, with_zero};
+use servobench_metrics::DisplayUnit;
 use servobench_motion::online::Sides;
 
 /// Height of a panel.
@@ -16,7 +16,7 @@ pub(super) struct Panel<'a> {
     /// `velocity`.
     pub(super) name: &'a str,
     /// In which its values are drawn.
-    pub(super) unit: Unit,
+    pub(super) unit: DisplayUnit,
     /// Its lowest and highest value, in that unit.
     pub(super) range: (f64, f64),
     /// Largest magnitudes allowed, in that unit; infinite where there is no limit. Drawn dashed.
@@ -156,7 +156,7 @@ mod tests {
     /// A velocity from `low` to `high`.
     fn panel((low, high): (f64, f64), limit: f64) -> Panel<'static> {
         let curve = Curve { spans: &[], end: Setpoint::default(), k: 1, is_highest: false, scale: 1.0 };
-        let (unit, limit) = (Unit::si("m", 1), Sides::both(limit));
+        let (unit, limit) = (DisplayUnit::si("m", 1), Sides::both(limit));
         Panel { name: "velocity", unit, range: (low, high), limit, line: Line::Exact(curve) }
     }
 

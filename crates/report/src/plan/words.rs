@@ -1,9 +1,8 @@
 //! What is said of a plan beside its numbers.
 use super::PlannedMove;
-use super::unit::digits;
 use servobench_base::Setpoint;
 use servobench_config::Choice as _;
-use servobench_metrics::Quantity;
+use servobench_metrics::{DisplayUnit, Quantity, digits};
 use servobench_motion::online::Target;
 use servobench_motion::rockwell::Shape;
 use servobench_motion::sampled::Execution;
@@ -177,7 +176,7 @@ impl PlannedMove {
 
     /// An error of position, far smaller than positions.
     fn show_error(&self, error: f64) -> String {
-        if self.unit == "m" { super::Unit::si("m", 0).text(error) } else { self.show(0, error) }
+        if self.units.base() == "m" { DisplayUnit::si("m", 0).text(error) } else { self.show(0, error) }
     }
 
     /// What filters the plan.

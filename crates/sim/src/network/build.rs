@@ -193,7 +193,7 @@ fn divider(key: &'static str, ticks: u32) -> Result<Divider, BuildError> {
 /// The most of every move, with a jerk where no move has one: the acceleration within 10 ms.
 fn dynamics(program: &Program) -> Dynamics {
     let most = |k: usize, otherwise: f64| {
-        let peaks = program.moves("").map(|made| made.peaks[k]).filter(|peak| peak.is_finite() && *peak > 0.0);
+        let peaks = program.moves().map(|made| made.peaks[k]).filter(|peak| peak.is_finite() && *peak > 0.0);
         let most = peaks.fold(0.0, f64::max);
         if most > 0.0 { most } else { otherwise }
     };

@@ -232,7 +232,7 @@ fn voltage_for(motor: &pmsm::Params, i_d: f64, torque: f64, speed: f64) -> f64 {
 fn key_at(scenario: &Scenario, t: f64) -> String {
     let Ok(program) = Program::new(scenario) else { return "setpoint".into() };
     let moves = scenario.program.iter().enumerate().filter(|(_, step)| matches!(step, Step::Move(_)));
-    let running = moves.zip(program.moves("")).filter(|(_, made)| (made.start..=made.end).contains(&t)).last();
+    let running = moves.zip(program.moves()).filter(|(_, made)| (made.start..=made.end).contains(&t)).last();
     running.map_or_else(|| "disturbance".into(), |((index, _), _)| format!("program.{index}"))
 }
 

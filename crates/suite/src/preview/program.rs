@@ -1,7 +1,7 @@
 //! The moves as they are planned, and limits that no run of them can keep.
 use super::{Doubt, Units};
 use crate::job::run_length;
-use servobench_metrics::{Limit, Name, Quantity, Scope};
+use servobench_metrics::{DisplayUnits, Limit, Name, Quantity, Scope};
 use servobench_scenario::{Scenario, Step};
 use servobench_sim::Program;
 use servobench_trace::Move;
@@ -26,18 +26,21 @@ pub struct PlannedProgram {
     pub by_blocks: bool,
     /// Unit of the axis.
     pub axis_unit: &'static str,
+    /// Units in which it is told.
+    pub units: DisplayUnits,
 }
 
 impl PlannedProgram {
     pub(super) fn new(scenario: &Scenario, planned: &Program) -> Self {
         let axis_unit = Units::of(scenario).axis;
         Self {
-            moves: planned.moves(axis_unit).collect(),
+            moves: planned.moves().collect(),
             position_error: planned.announced().into_iter().flatten().reduce(f64::max),
             end: planned.end(),
             run: run_length(scenario, planned),
             by_blocks: scenario.plc.is_some(),
             axis_unit,
+            units: scenario.units.clone(),
         }
     }
 
@@ -62,7 +65,8 @@ impl PlannedProgram {
         });
         for ((index, step), made) in steps.zip(&self.moves) {
             if made.from.to_bits() == made.to.to_bits() && length(made) <= 0.0 {
-                let message = format!("the move has no length: the axis is at {} {} already", made.to, self.axis_unit);
+                let message =
+                    format!("the move has no length: the axis is at {} already", self.units.plain(0).text(made.to));
                 doubts.push(Doubt::new(format!("program.{index}"), message, "leave it out, or move somewhere else"));
             }
             let key = |metric: &str| format!("program.{index}.limits.{metric}");

@@ -77,9 +77,8 @@ impl Preview {
             return;
         }
         let unit = self.program.axis_unit;
-        let peaks = self.program.peaks().into_iter().zip(["", "²", "³", "⁴"]).filter(|(peak, _)| peak.is_finite());
-        let peaks: Vec<_> =
-            peaks.map(|(peak, power)| Quantity::new(peak, &format!("{unit}/s{power}")).to_string()).collect();
+        let peaks = (1..).zip(self.program.peaks()).filter(|(_, peak)| peak.is_finite());
+        let peaks: Vec<_> = peaks.map(|(k, peak)| self.program.units.unit(k).pretty().short(peak)).collect();
         screen.line("peaks", &peaks);
         if let Some(error) = self.program.position_error {
             let words = format!("velocity commands: at most {} off their points or spline", Quantity::new(error, unit));

@@ -1,10 +1,10 @@
-//! Units in which a plan is told.
-use servobench_metrics::Quantity;
+//! Units in which positions and their derivatives are told: those in which somebody wrote them.
+use crate::quantity::Quantity;
 use std::f64::consts::PI;
 
 /// Unit of position or of one of its derivatives.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Unit {
+pub struct DisplayUnit {
     symbol: String,
     /// How much of the SI unit it is.
     si: f64,
@@ -36,15 +36,23 @@ const BASES: [(&str, &str, f64); 16] = [
 const LONG: f64 = 1e6;
 const POWERS: [&str; 5] = ["", "/s", "/s²", "/s³", "/s⁴"];
 
-impl Unit {
-    /// That of the SI for derivative `k` of a position in `m` or `rad`.
-    pub(super) fn si(base: &str, k: usize) -> Self {
-        Self { symbol: format!("{base}{}", POWERS[k]), si: 1.0, takes_prefix: true }
+impl DisplayUnit {
+    /// That of the SI, with the prefix that suits each number, for derivative `k`, 0 to 4, of a position in `m` or `rad`.
+    #[must_use]
+    pub fn si(base: &str, k: usize) -> Self {
+        Self { takes_prefix: true, ..Self::plain(base, k) }
+    }
+
+    /// That of the SI without a prefix.
+    #[must_use]
+    pub fn plain(base: &str, k: usize) -> Self {
+        Self { symbol: format!("{base}{}", POWERS.get(k).unwrap_or(&"")), si: 1.0, takes_prefix: false }
     }
 
     /// The unit in which `text` was written, whose value is `value` (SI); `None` when it begins with no number or ends
     /// without a unit, and for a value of zero.
-    pub(super) fn given(text: &str, value: f64) -> Option<Self> {
+    #[must_use]
+    pub fn given(text: &str, value: f64) -> Option<Self> {
         let text = text.trim();
         let ends = text.char_indices().map(|(i, c)| i + c.len_utf8());
         let (number, end) = ends.rev().find_map(|end| Some((text[..end].trim_end().parse::<f64>().ok()?, end)))?;
@@ -57,14 +65,16 @@ impl Unit {
     }
 
     /// That of derivative `k` of the length or angle that this unit, of another derivative, begins with.
-    pub(super) fn of_derivative(&self, k: usize) -> Option<Self> {
+    #[must_use]
+    pub fn of_derivative(&self, k: usize) -> Option<Self> {
         let begin = self.symbol.split('/').next().unwrap_or_default().trim();
         let (_, base, si) = BASES.iter().find(|(symbol, ..)| *symbol == begin)?;
-        Some(Self { symbol: format!("{base}{}", POWERS[k]), si: *si, takes_prefix: false })
+        Some(Self { symbol: format!("{base}{}", POWERS.get(k)?), si: *si, takes_prefix: false })
     }
 
     /// The same with raised digits for the powers.
-    pub(super) fn pretty(mut self) -> Self {
+    #[must_use]
+    pub fn pretty(mut self) -> Self {
         for (plain, raised) in [("s2", "s²"), ("s^2", "s²"), ("s3", "s³"), ("s^3", "s³"), ("s4", "s⁴"), ("s^4", "s⁴")]
         {
             if let Some(rest) = self.symbol.strip_suffix(plain) {
@@ -76,16 +86,20 @@ impl Unit {
     }
 
     /// How much of the SI unit it is.
-    pub(super) const fn scale(&self) -> f64 {
+    #[must_use]
+    pub const fn scale(&self) -> f64 {
         self.si
     }
 
-    pub(super) fn symbol(&self) -> &str {
+    /// Its symbol.
+    #[must_use]
+    pub fn symbol(&self) -> &str {
         &self.symbol
     }
 
     /// `value` (SI): to six digits, of the SI unit as an engineer reads it.
-    pub(super) fn text(&self, value: f64) -> String {
+    #[must_use]
+    pub fn text(&self, value: f64) -> String {
         if self.takes_prefix {
             return Quantity::new(value, &self.symbol).to_string();
         }
@@ -93,7 +107,8 @@ impl Unit {
     }
 
     /// `value` (SI) in few digits, for a drawing.
-    pub(super) fn short(&self, value: f64) -> String {
+    #[must_use]
+    pub fn short(&self, value: f64) -> String {
         if self.takes_prefix {
             return Quantity::new(value, &self.symbol).to_string();
         }
@@ -104,13 +119,68 @@ impl Unit {
     }
 
     /// Whether it takes the prefix that suits the number.
-    pub(super) const fn takes_prefix(&self) -> bool {
+    #[must_use]
+    pub const fn takes_prefix(&self) -> bool {
         self.takes_prefix
     }
 }
 
+/// Units of position and its derivatives, velocity to snap, as somebody wrote them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DisplayUnits {
+    base: &'static str,
+    given: [Option<DisplayUnit>; 5],
+}
+
+impl DisplayUnits {
+    /// Those of the SI, for positions in `m` or `rad`.
+    #[must_use]
+    pub const fn new(base: &'static str) -> Self {
+        Self { base, given: [const { None }; 5] }
+    }
+
+    /// The same with derivative `k` of position, 0 to 4, in the unit in which `text` was written, whose value is `value`
+    /// (SI). A text of no unit, and a value of zero, which does not say how large the unit is, change nothing.
+    #[must_use]
+    pub fn as_given(mut self, k: usize, text: &str, value: f64) -> Self {
+        if let (Some(slot), Some(unit)) = (self.given.get_mut(k), DisplayUnit::given(text, value)) {
+            *slot = Some(unit);
+        }
+        self
+    }
+
+    /// Unit in which derivative `k` of position is told: the given one, else one that goes with the nearest given one, else
+    /// that of the SI with the prefix that suits the number.
+    #[must_use]
+    pub fn unit(&self, k: usize) -> DisplayUnit {
+        self.known(k).unwrap_or_else(|| DisplayUnit::si(self.base, k))
+    }
+
+    /// The same, at last that of the SI without a prefix.
+    #[must_use]
+    pub fn plain(&self, k: usize) -> DisplayUnit {
+        self.known(k).unwrap_or_else(|| DisplayUnit::plain(self.base, k))
+    }
+
+    /// `m` or `rad`.
+    #[must_use]
+    pub const fn base(&self) -> &'static str {
+        self.base
+    }
+
+    fn known(&self, k: usize) -> Option<DisplayUnit> {
+        let related = || {
+            let given = || self.given.iter().enumerate().filter_map(|(i, unit)| Some((i.abs_diff(k), unit.as_ref()?)));
+            let nearest = given().min_by_key(|(distance, _)| *distance);
+            nearest.and_then(|(_, unit)| unit.of_derivative(k))
+        };
+        self.given.get(k).cloned().flatten().or_else(related)
+    }
+}
+
 /// The number to `count` significant digits, without zeros at its end.
-pub(super) fn digits(value: f64, count: usize) -> String {
+#[must_use]
+pub fn digits(value: f64, count: usize) -> String {
     let rounded: f64 = format!("{value:.*e}", count - 1).parse().unwrap_or(value);
     // A minus sign before zero reads as a mistake.
     let rounded = if rounded == 0.0 { 0.0 } else { rounded };
@@ -132,18 +202,18 @@ mod tests {
             ("1 m/s", 1.0, -0.0, "0 m/s"),
             ("4 m/s2", 4.0, 4e-9, "4e-9 m/s2"),
         ] {
-            assert_eq!(Unit::given(text, value).unwrap().text(shown), words, "{text}");
+            assert_eq!(DisplayUnit::given(text, value).unwrap().text(shown), words, "{text}");
         }
-        assert_eq!(Unit::given("1 rad/s4", 1.0).unwrap().short(1e7), "1e7 rad/s4");
+        assert_eq!(DisplayUnit::given("1 rad/s4", 1.0).unwrap().short(1e7), "1e7 rad/s4");
         for (text, value) in [("5", 5.0), ("fast", 1.0), ("0 mm", 0.0), ("1 m", f64::INFINITY)] {
-            assert_eq!(Unit::given(text, value), None, "{text}");
+            assert_eq!(DisplayUnit::given(text, value), None, "{text}");
         }
     }
 
     /// Whoever writes revolutions per minute reads revolutions, and millimetres who writes those.
     #[test]
     fn other_derivatives_go_with_the_given_one() {
-        let of = |text, value, k| Unit::given(text, value).unwrap().of_derivative(k);
+        let of = |text, value, k| DisplayUnit::given(text, value).unwrap().of_derivative(k);
         let position = of("60 rpm", 2.0 * PI, 0).unwrap();
         assert_eq!((position.text(PI).as_str(), position.symbol()), ("0.5 rev", "rev"));
         assert_eq!(of("1 deg/s", PI / 180.0, 3).unwrap().symbol(), "deg/s³");
@@ -153,6 +223,6 @@ mod tests {
         assert_eq!(of("1 cm/s2", 1e-2, 1).unwrap().symbol(), "cm/s");
         assert_eq!(of("30 m/min", 0.5, 2), None, "the SI's own has its prefixes");
         assert_eq!(of("1 rad/s", 1.0, 2), None);
-        assert_eq!(Unit::given("1 deg/s2", 1.0).unwrap().pretty().symbol(), "deg/s²");
+        assert_eq!(DisplayUnit::given("1 deg/s2", 1.0).unwrap().pretty().symbol(), "deg/s²");
     }
 }
