@@ -42,3 +42,24 @@ fn output_that_cannot_be_written_ends_with_3() {
         assert!(said(&output).contains("cannot write to standard output"), "{}", said(&output));
     }
 }
+
+/// The command that looks at a result is that which the shell finds: the name alone where that is enough.
+#[cfg(unix)]
+#[test]
+fn advice_names_the_program_as_short_as_a_shell_finds_it() {
+    let work = crate::folder(&[("slide.toml", crate::SLIDE), ("other.toml", &crate::SLIDE.replace("80 Hz", "50 Hz"))]);
+    let program = std::path::Path::new(env!("CARGO_BIN_EXE_servobench"));
+    let (out, folder) = (work.path().join("out"), program.parent().unwrap());
+    let (one, two) = (work.path().join("slide.toml"), work.path().join("other.toml"));
+    for arguments in
+        [&["run", one.to_str().unwrap(), "--rrd"][..], &["compare", one.to_str().unwrap(), two.to_str().unwrap()]]
+    {
+        for (path, expected) in
+            [(folder, ": servobench view "), (work.path(), &*format!(": {} view ", program.display()))]
+        {
+            let arguments = [arguments, &["--out", out.to_str().unwrap()]].concat();
+            let output = command(&arguments).env("PATH", path).output().unwrap();
+            assert!(said(&output).contains(expected), "{expected}: {}", said(&output));
+        }
+    }
+}

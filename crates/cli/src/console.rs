@@ -1,7 +1,9 @@
 //! What is said: results on standard output, everything else on standard error.
 use crate::error::CliError;
 use servobench_report::Style;
+use std::ffi::OsStr;
 use std::io::{ErrorKind, IsTerminal, Write};
+use std::path::{Path, PathBuf};
 
 /// Prints `text` on standard output. A reader that went away (`| head`) has what it wanted; what cannot be written for
 /// any other reason is an error.
@@ -23,9 +25,20 @@ pub(crate) fn say(text: &str) {
     std::io::stderr().lock().write_all(text.as_bytes()).ok();
 }
 
-/// This program as it was started, for commands to be pasted.
+/// This program for commands to be pasted: by its name where that is enough, otherwise as it was started.
 pub(crate) fn program() -> String {
-    std::env::args().next().unwrap_or_else(|| "servobench".into())
+    let started = std::env::args().next().unwrap_or_else(|| "servobench".into());
+    let path = Path::new(&started);
+    let search = std::env::var_os("PATH").unwrap_or_default();
+    path.file_name()
+        .filter(|name| found_by(name, &search).is_some_and(|found| path.canonicalize().is_ok_and(|own| own == found)))
+        .map_or_else(|| started.clone(), |name| name.to_string_lossy().into_owned())
+}
+
+/// What a shell starts that is told `name` alone, with this list of folders.
+fn found_by(name: &OsStr, search: &OsStr) -> Option<PathBuf> {
+    let found = std::env::split_paths(search).map(|folder| folder.join(name)).find(|path| path.is_file());
+    found.and_then(|path| path.canonicalize().ok())
 }
 
 /// How tables are shown on standard output.
