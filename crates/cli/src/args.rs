@@ -15,8 +15,8 @@ use servobench_fmi::Version;
 #[cfg(feature = "fmu")]
 use servobench_fmu::Part;
 use servobench_plant::EngineName;
-use servobench_structured_text::{Dialect, Format};
 use servobench_scenario::Override;
+use servobench_structured_text::{Dialect, Format};
 use std::path::PathBuf;
 use std::time::Duration;
 
