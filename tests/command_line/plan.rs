@@ -89,3 +89,39 @@ fn plan_refuses_a_table_of_absurd_length_and_draws_it_all_the_same() {
     assert_eq!(code(&plan(&["--svg", svg.to_str().unwrap()])), 0);
     assert!(svg.metadata().unwrap().len() < 100_000);
 }
+
+/// Seed: 100 mm at 200 mm/s and 100 000 mm/s², 25 % of the time: the ramp takes 2.28 ms of about 502 ms.
+#[test]
+fn a_ramp_is_drawn_alone() {
+    let work = tempfile::tempdir().unwrap();
+    let svg = work.path().join("ramp.svg");
+    let plan = |more: &[&str]| {
+        let line = ["plan", "rockwell", "--distance", "100 mm", "--velocity", "200 mm/s"];
+        let limits = ["--acceleration", "100000 mm/s2", "--jerk-percent-of-time", "25", "--svg", svg.to_str().unwrap()];
+        servobench(&[&line[..], &limits, more].concat())
+    };
+    let output = plan(&["--to", "4 ms"]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    let drawn = fs::read_to_string(&svg).unwrap();
+    assert!(drawn.contains("from 0 to 4 ms") && drawn.contains(">time (ms)<"), "{drawn}");
+    // Ends of segments at 0.286 ms, 2.0 ms and 2.286 ms, which are one line in the whole.
+    assert_eq!(drawn.matches("class=\"b\"").count() % 3, 0);
+    let output = plan(&["--from", "600 ms"]);
+    assert_eq!(code(&output), 2);
+    assert!(said(&output).contains("--from, --to: the move has no time from 0.6 s"), "{}", said(&output));
+    let output = servobench(&[
+        "plan",
+        "--order",
+        "2",
+        "--distance",
+        "1m",
+        "--velocity",
+        "1m/s",
+        "--acceleration",
+        "1m/s2",
+        "--from",
+        "1 s",
+    ]);
+    assert_eq!(code(&output), 2);
+    assert!(said(&output).contains("--svg"), "{}", said(&output));
+}

@@ -65,6 +65,18 @@ pub enum ReportError {
         /// End of the recording (s).
         end: f64,
     },
+    /// A drawing of no part of the move.
+    #[error(
+        "the move has no time from {from:?} s to {to:?} s: choose a stretch of at least 1 ns between 0 s and {end:?} s"
+    )]
+    NoTimeOfMove {
+        /// Beginning that was asked for (s).
+        from: f64,
+        /// End that was asked for (s).
+        to: f64,
+        /// End of the move (s).
+        end: f64,
+    },
     /// A drawing too narrow to read or too wide to print.
     #[error("a drawing of {width} pixels; it is from {least} to {most} pixels wide")]
     Width {

@@ -10,6 +10,7 @@ mod rows;
 mod sheet;
 mod table;
 mod times;
+mod window;
 mod words;
 
 use servobench_base::Setpoint;

@@ -65,6 +65,12 @@ struct OutputArgs {
     /// Draw position and its derivatives with their limits, and where they bind.
     #[arg(long, value_name = "FILE", value_parser = file(), global = true)]
     svg: Option<PathBuf>,
+    /// Beginning of what is drawn, as "500 ms" [default: that of the move].
+    #[arg(long, value_name = "TIME", value_parser = time, requires = "svg", global = true)]
+    from: Option<f64>,
+    /// End of what is drawn [default: that of the move].
+    #[arg(long, value_name = "TIME", value_parser = time, requires = "svg", global = true)]
+    to: Option<f64>,
 }
 
 /// What is written today for a profile that was chosen by `--profile`.
@@ -77,7 +83,7 @@ fn former_profile(name: &str) -> Result<Infallible, String> {
 
 /// Plans the move and prints, tabulates or draws it.
 pub(crate) fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
-    let OutputArgs { json, csv, csv_step, svg } = &args.output;
+    let OutputArgs { json, csv, csv_step, svg, from, to } = &args.output;
     let planned = planned(&args.profile, args.duration).map_err(CliError::Plan)?;
     if let Some(path) = csv {
         write_csv(&planned, *csv_step, path)?;
@@ -87,7 +93,8 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
             .map_err(|error| CliError::WritePlan { path: path.to_owned(), error })?;
     }
     if let Some(path) = svg {
-        write_file(path, planned.svg())?;
+        let drawing = planned.svg(*from, *to).map_err(|error| CliError::Plan(vec![PlanMistake::NotDrawn(error)]))?;
+        write_file(path, drawing)?;
     }
     print(&if *json { planned.json()? } else { planned.table() })?;
     Ok(Exit::Passed)

@@ -18,8 +18,10 @@ pub(super) struct Curve<'a> {
     pub(super) end: Setpoint,
     /// Which derivative, 0 for position.
     pub(super) k: usize,
-    /// Whether it begins and ends at zero, as the highest derivative does.
-    pub(super) is_highest: bool,
+    /// Whether it begins at zero, as the highest derivative does at the beginning of the move.
+    pub(super) from_zero: bool,
+    /// Whether it ends at zero, as the highest derivative does at the end of the move.
+    pub(super) to_zero: bool,
     /// How much of the SI its unit is.
     pub(super) scale: f64,
 }
@@ -56,12 +58,12 @@ impl Curve<'_> {
         let zero = value.at(0.0).clamp(value.to, value.from);
         let of = |setpoint: &Setpoint| value.at(derivatives(setpoint)[self.k] / self.scale);
         let start = time.at(first.start);
-        let mut pen = Pen::at(start, if self.is_highest { zero } else { of(&first.state) });
+        let mut pen = Pen::at(start, if self.from_zero { zero } else { of(&first.state) });
         for span in self.spans {
             pen.upright_to(of(&span.state));
             self.draw(&mut pen, span, time, value);
         }
-        pen.upright_to(if self.is_highest { zero } else { of(&self.end) });
+        pen.upright_to(if self.to_zero { zero } else { of(&self.end) });
         let area = format!("{}L{:.2},{zero:.2}H{start:.2}Z", pen.path, pen.x);
         Some((pen.path, area))
     }
@@ -110,7 +112,10 @@ mod tests {
         let [one, two] = states.map(|state| Span { start: 0.0, length: 1.0, state, is_held });
         let spans = [one, Span { start: 1.0, ..two }];
         let end = spans[1].after(1.0);
-        Curve { spans: &spans, end, k, is_highest, scale: 1.0 }.paths(&TIME, &VALUE).unwrap().0
+        Curve { spans: &spans, end, k, from_zero: is_highest, to_zero: is_highest, scale: 1.0 }
+            .paths(&TIME, &VALUE)
+            .unwrap()
+            .0
     }
 
     const ZERO: Setpoint = Setpoint { x: 0.0, v: 0.0, a: 0.0, j: 0.0, s: 0.0 };
@@ -143,7 +148,7 @@ mod tests {
 
     #[test]
     fn nothing_is_no_path() {
-        let curve = Curve { spans: &[], end: ZERO, k: 0, is_highest: false, scale: 1.0 };
+        let curve = Curve { spans: &[], end: ZERO, k: 0, from_zero: false, to_zero: false, scale: 1.0 };
         assert!(curve.paths(&TIME, &VALUE).is_none());
     }
 }

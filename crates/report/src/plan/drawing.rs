@@ -3,8 +3,10 @@ use super::curve::Curve;
 use super::envelope::Envelope;
 use super::panel::{Line, Panel};
 use super::sheet::{Sheet, four_digits};
+use super::window::Window;
 use super::{NAMES, PlannedMove, derivatives};
 use crate::drawing::unit_at;
+use crate::error::ReportError;
 use crate::text::wrapped;
 use servobench_motion::online::Sides;
 use servobench_planner::Span;
@@ -21,18 +23,25 @@ impl PlannedMove {
     ///
     /// Every polynomial is drawn as such, that of a sampled profile too, which is continuous between its samples; set-points
     /// that are held, in steps. Of very many polynomials the lowest and the highest value in each column of pixels are drawn.
-    #[must_use]
-    pub fn svg(&self) -> String {
-        let n = self.plan.order();
-        let spans: Vec<Span> = self.plan.spans().take(EXACT + 1).collect();
-        let (duration, end) = (self.plan.duration(), self.plan.end());
-        let envelope = (spans.len() > EXACT).then(|| Envelope::of(self.plan.spans(), duration));
-        let position = match &envelope {
-            Some(envelope) => envelope.range(0),
-            None => range_of_position(&spans, self.plan.start().x),
-        };
+    ///
+    /// `from` and `to` (s) say which part of it is drawn; `None` is its beginning, or its end.
+    ///
+    /// # Errors
+    /// [`ReportError`] where the move has no such time.
+    pub fn svg(&self, from: Option<f64>, to: Option<f64>) -> Result<String, ReportError> {
+        let (n, duration) = (self.plan.order(), self.plan.duration());
+        let window = Window::of(duration, from, to)?;
+        let seen = || self.plan.spans().filter_map(|span| window.part(span));
+        let spans: Vec<Span> = seen().take(EXACT + 1).collect();
+        let end = if window.to < duration { self.plan.at(window.to) } else { self.plan.end() };
+        let envelope = (spans.len() > EXACT).then(|| Envelope::of(seen(), &window));
+        let start = spans.first().map_or(self.plan.start(), |span| span.state);
         let peaks = self.plan.peaks().map(|peak| (peak.lowest, peak.highest));
-        let ranges = std::iter::once(position).chain(peaks);
+        let ranges = (0..NAMES.len()).map(|k| match &envelope {
+            _ if k > 0 && window.is_whole => peaks[k - 1],
+            Some(envelope) => envelope.range(k),
+            None => range_of(&spans, k, derivatives(&start)[k]),
+        });
         let limits = std::iter::once(Sides::both(f64::INFINITY)).chain(*self.plan.limits());
         let panels: Vec<Panel<'_>> = ranges
             .zip(limits)
@@ -41,9 +50,11 @@ impl PlannedMove {
             .map(|(k, ((low, high), limit))| {
                 let unit = self.drawn_unit(k);
                 let scale = unit.scale();
-                let line = match &envelope {
-                    Some(envelope) => Line::Seen(envelope, k),
-                    None => Line::Exact(Curve { spans: &spans, end, k, is_highest: k == n, scale }),
+                let line = if let Some(envelope) = &envelope {
+                    Line::Seen(envelope, k)
+                } else {
+                    let (from_zero, to_zero) = (k == n && window.from <= 0.0, k == n && window.to >= duration);
+                    Line::Exact(Curve { spans: &spans, end, k, from_zero, to_zero, scale })
                 };
                 let limit = Sides { below: limit.below / scale, above: limit.above / scale };
                 Panel { name: NAMES[k], unit, range: (low / scale, high / scale), limit, line }
@@ -54,25 +65,30 @@ impl PlannedMove {
         let shown = |time: f64| format!("{} {unit}", four_digits(time / scale));
         let what = self.what(&self.drawn_unit(0).short(self.distance()));
         let title = format!("{what} in {}, {}", shown(duration), self.kind());
+        let stretch = (!window.is_whole).then(|| {
+            let (unit, scale) = unit_at(window.to, "s", true);
+            format!("from {} to {} {unit}", four_digits(window.from / scale), four_digits(window.to / scale))
+        });
         let dwells: Vec<_> = self.dwells().map(|(name, _, value)| format!("{name} = {}", shown(value))).collect();
         let dwells = Some(dwells.join(", ")).filter(|dwells| !dwells.is_empty());
-        let below = dwells.into_iter().chain(self.notes()).collect::<Vec<_>>().join(" · ");
-        Sheet {
+        let below = stretch.into_iter().chain(dwells).chain(self.notes()).collect::<Vec<_>>().join(" · ");
+        let boundaries = if envelope.is_some() { Vec::new() } else { self.boundaries() };
+        let sheet = Sheet {
             title: &title,
             lines: wrapped(&below, CHARACTERS),
-            duration,
-            boundaries: if envelope.is_some() { Vec::new() } else { self.boundaries() },
-            bindings: self.plan.bindings(),
+            window,
+            boundaries: boundaries.into_iter().filter(|time| window.contains(*time)).collect(),
+            bindings: self.plan.bindings().into_iter().filter_map(|binding| window.part_of_binding(binding)).collect(),
             panels: &panels,
-        }
-        .to_svg()
+        };
+        Ok(sheet.to_svg())
     }
 }
 
-/// The lowest and the highest position, from `start` on.
-fn range_of_position(spans: &[Span], start: f64) -> (f64, f64) {
+/// The lowest and the highest value of derivative `k` of position, from `start` on.
+fn range_of(spans: &[Span], k: usize, start: f64) -> (f64, f64) {
     let looks = spans.iter().flat_map(|span| {
-        (0..=LOOKS).map(|look| derivatives(&span.after(span.length * f64::from(look) / f64::from(LOOKS)))[0])
+        (0..=LOOKS).map(move |look| derivatives(&span.after(span.length * f64::from(look) / f64::from(LOOKS)))[k])
     });
     looks.fold((start, start), |(low, high), x| (low.min(x), high.max(x)))
 }
@@ -150,7 +166,7 @@ mod tests {
     #[test]
     fn curves_are_those_of_the_profile() {
         let plan = moves::lambrechts(Order::Fourth);
-        let (profile, svg) = (&plan.plan, plan.svg());
+        let (profile, svg) = (&plan.plan, plan.svg(None, None).unwrap());
         let values: [fn(Setpoint) -> f64; 3] = [|at| at.x, |at| at.v, |at| at.a];
         for (k, (value, range)) in (0..).zip(values.into_iter().zip([(0.0, 1.0), (0.0, 1.0), (-5.0, 5.0)])) {
             for part in cubics(path(&svg, usize::from(k))) {
@@ -168,11 +184,53 @@ mod tests {
         }
     }
 
+    /// A part of the move: the same curve over another stretch of time, and nothing of the rest. Oracle: the profile itself.
+    #[test]
+    fn a_part_of_a_move_is_drawn_alone() {
+        let plan = moves::lambrechts(Order::Fourth);
+        let (from, to) = (0.173, 0.391);
+        let svg = plan.svg(Some(from), Some(to)).unwrap();
+        assert!(svg.contains("from 173 to 391 ms") && svg.contains(">391</text>"), "{svg}");
+        let at = |k: usize, t: f64| {
+            let set_point = plan.plan.at(t);
+            [set_point.x, set_point.v, set_point.a][k]
+        };
+        for k in 0..3 {
+            let parts = cubics(path(&svg, k));
+            let looks: Vec<f64> = (0..=1000).map(|i| from + (to - from) * f64::from(i) / 1000.0).collect();
+            let values = || looks.iter().map(|t| at(k, *t));
+            let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+            // The ends of the parts: the lowest is at one of them, the highest at another, and a linear scale is between.
+            let points: Vec<(f64, f64)> = parts.iter().flat_map(|part| [part[0], part[3]]).collect();
+            let y = |value: f64| {
+                let nearest = |wanted: f64| {
+                    points
+                        .iter()
+                        .map(|(x, y)| (at(k, from + (x - LEFT) / (WIDTH - RIGHT - LEFT) * (to - from)), *y))
+                        .min_by(|(one, _), (other, _)| (one - wanted).abs().total_cmp(&(other - wanted).abs()))
+                        .unwrap()
+                };
+                let ((one, y_one), (two, y_two)) = (nearest(low), nearest(high));
+                y_one + (value - one) / (two - one) * (y_two - y_one)
+            };
+            assert!((points[0].0 - LEFT).abs() < 0.01 && (points.last().unwrap().0 - (WIDTH - RIGHT)).abs() < 0.01);
+            for (x, drawn) in &points {
+                let t = from + (x - LEFT) / (WIDTH - RIGHT - LEFT) * (to - from);
+                assert!((y(at(k, t)) - drawn).abs() < 0.1, "panel {k} at {t} s: {drawn} instead of {}", y(at(k, t)));
+            }
+        }
+        // The snap of the whole move rises from zero; that of a part of it begins with what it is, -1000 m/s4 here.
+        let (whole, part) = (plan.svg(None, None).unwrap(), plan.svg(Some(0.12), None).unwrap());
+        let first = |svg: &str| numbers(path(svg, 4))[1];
+        assert!(first(&part) > first(&whole) + 40.0, "{} {}", first(&part), first(&whole));
+        assert!(plan.svg(Some(1.4), None).is_err());
+    }
+
     /// Corners would show as a tangent that differs left and right of a point. A hundredth of a pixel of the control points
     /// turns a tangent of ten pixels by a thousandth.
     #[test]
     fn curves_have_no_corners() {
-        let svg = moves::lambrechts(Order::Fourth).svg();
+        let svg = moves::lambrechts(Order::Fourth).svg(None, None).unwrap();
         for k in 0..3 {
             let parts = cubics(path(&svg, k));
             assert!(parts.len() >= 15, "{}", parts.len());
@@ -187,7 +245,7 @@ mod tests {
     /// Jerk is straight from switch to switch, snap goes level and upright and ends on both sides at zero.
     #[test]
     fn the_highest_derivatives_are_drawn_without_slant() {
-        let svg = moves::lambrechts(Order::Fourth).svg();
+        let svg = moves::lambrechts(Order::Fourth).svg(None, None).unwrap();
         let (jerk, snap) = (path(&svg, 3), path(&svg, 4));
         assert!(jerk.chars().all(|c| !c.is_ascii_alphabetic() || "MLH".contains(c)), "{jerk}");
         assert!(snap.chars().all(|c| !c.is_ascii_alphabetic() || "MHV".contains(c)), "{snap}");
@@ -199,7 +257,8 @@ mod tests {
     /// A move of 1.35 thousand million samples takes no more room than the continuous one, and looks the same.
     #[test]
     fn the_size_of_a_drawing_does_not_depend_on_the_number_of_samples() {
-        let (fine, continuous) = (moves::sampled(1e-9).svg(), moves::lambrechts(Order::Fourth).svg());
+        let (fine, continuous) =
+            (moves::sampled(1e-9).svg(None, None).unwrap(), moves::lambrechts(Order::Fourth).svg(None, None).unwrap());
         assert!(fine.len() < 40_000, "{} bytes", fine.len());
         for panel in 0..5 {
             let (one, two) = (numbers(path(&fine, panel)), numbers(path(&continuous, panel)));
@@ -215,7 +274,7 @@ mod tests {
     fn the_shortest_pulse_is_drawn_to_its_peak() {
         let limits = Limits { velocity: 1.0, acceleration: 1e-3, jerk: 1e6, snap: 1e16 };
         let peak = moves::published(Order::Fourth, 1.0, limits).plan.largest()[2];
-        let svg = moves::published(Order::Fourth, 1.0, Limits { jerk: peak, ..limits }).svg();
+        let svg = moves::published(Order::Fourth, 1.0, Limits { jerk: peak, ..limits }).svg(None, None).unwrap();
         let top = pixel(1.0, 3, (-peak, peak), 0.0, peak).1;
         let highest = cubics(path(&svg, 3)).into_iter().map(|part| part[3].1).fold(f64::INFINITY, f64::min);
         assert!((highest - top).abs() < 0.02, "{highest} {top}");
@@ -223,7 +282,7 @@ mod tests {
 
     #[test]
     fn the_ends_of_the_segments_and_of_the_move_are_marked() {
-        let svg = moves::lambrechts(Order::Fourth).svg();
+        let svg = moves::lambrechts(Order::Fourth).svg(None, None).unwrap();
         assert_eq!(svg.matches("class=\"b\"").count(), 5 * 15, "15 segments in five panels");
         assert_eq!(svg.matches("class=\"e\"").count(), 1);
         assert!(svg.contains(">1.35</text>"), "the end of the move");
@@ -234,7 +293,7 @@ mod tests {
     #[test]
     fn times_are_written_in_the_unit_of_the_axis() {
         let limits = Limits { velocity: 1.0, acceleration: 3.0, jerk: 100.0, snap: 1e4 };
-        let svg = moves::published(Order::Second, 1e-3, limits).svg();
+        let svg = moves::published(Order::Second, 1e-3, limits).svg(None, None).unwrap();
         // Two halves of √(1 mm/3 m/s²) = 18.257 ms each.
         assert!(svg.contains(">1.00 mm in 36.51 ms, order 2<") && svg.contains("t_a = 18.26 ms"), "{svg}");
         assert!(svg.contains(">36.51</text>") && svg.contains(">time (ms)</text>"));
@@ -243,7 +302,7 @@ mod tests {
     #[test]
     fn a_move_of_no_distance_is_still_a_drawing() {
         let limits = Limits { velocity: 1.0, acceleration: 1.0, jerk: 1.0, snap: 1.0 };
-        let svg = moves::published(Order::Third, 0.0, limits).svg();
+        let svg = moves::published(Order::Third, 0.0, limits).svg(None, None).unwrap();
         assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>") && !svg.contains("NaN"), "{svg}");
     }
 
@@ -251,7 +310,7 @@ mod tests {
     /// four times the jerk, and snap in eight.
     #[test]
     fn where_a_bound_binds_is_marked() {
-        let svg = moves::lambrechts(Order::Fourth).svg();
+        let svg = moves::lambrechts(Order::Fourth).svg(None, None).unwrap();
         let marks: Vec<usize> = svg
             .split("<path class=\"m\"")
             .skip(1)
@@ -266,14 +325,14 @@ mod tests {
     fn a_limit_that_is_touched_gets_a_dot() {
         let limits = |velocity| Limits { velocity, ..moves::LAMBRECHTS };
         let peak = moves::published(Order::Third, 0.01, limits(1.0)).plan.largest()[0];
-        let svg = moves::published(Order::Third, 0.01, limits(peak)).svg();
+        let svg = moves::published(Order::Third, 0.01, limits(peak)).svg(None, None).unwrap();
         assert!(svg.contains("<path class=\"d\"") && svg.contains("at its limit for an instant"), "{svg}");
     }
 
     /// The panels end with the order: no empty one.
     #[test]
     fn there_is_a_panel_for_each_derivative_that_is_limited() {
-        let svg = moves::lambrechts(Order::Third).svg();
+        let svg = moves::lambrechts(Order::Third).svg(None, None).unwrap();
         assert!(svg.contains(">jerk<") && !svg.contains(">snap<"));
     }
 
@@ -284,7 +343,7 @@ mod tests {
         let (order, method, distance) = (Order::Second, Method::Published, PI / 2.0);
         let asked = PointToPoint { distance, order, limits, method, grid: None };
         let plan = PlannedMove::new(Request::new(Generator::PointToPoint(asked)), "rad").unwrap();
-        let svg = plan.as_given(0, "90 deg", PI / 2.0).as_given(1, "60 rpm", 2.0 * PI).svg();
+        let svg = plan.as_given(0, "90 deg", PI / 2.0).as_given(1, "60 rpm", 2.0 * PI).svg(None, None).unwrap();
         for text in [">90 deg in 375.7 ms, order 2<", ">peak 90 deg<", ">limit 60 rpm<", ">rev/s²<"] {
             assert!(svg.contains(text), "{text} in {svg}");
         }
@@ -297,7 +356,7 @@ mod tests {
         let knots = (0..100_000).map(|k| Knot::new(f64::from(k), f64::from(k % 3))).collect();
         let asked = TableMove { knots, velocities: Velocities::Average, follow: Follow::Segments };
         for plan in [moves::executed(1e-3, Execution::ForwardEuler), moves::of(Generator::Table(asked))] {
-            let svg = plan.svg();
+            let svg = plan.svg(None, None).unwrap();
             assert!(svg.len() < 200_000 && svg.contains("class=\"v\""), "{} bytes", svg.len());
         }
     }
@@ -316,7 +375,7 @@ mod tests {
                 let shaping = Shaping { shaper, frequency: 38.985, damping: 0.02 };
                 let filter = Filter { shaper: Some(shaping), ..Filter::default() };
                 let request = Request { filter, ..Request::new(generator(order)) };
-                let svg = PlannedMove::new(request, "m").unwrap().svg();
+                let svg = PlannedMove::new(request, "m").unwrap().svg(None, None).unwrap();
                 let mut lines: Vec<&str> =
                     svg.split("class=\"b\" x1=\"").skip(1).map(|rest| rest.split('"').next().unwrap()).collect();
                 lines.truncate(lines.len() / (order.derivative() + 1));

@@ -1,5 +1,6 @@
 //! What is seen of a plan of very many polynomials: the lowest and the highest value in each column of pixels.
 use super::derivatives;
+use super::window::Window;
 use crate::drawing::Axis;
 use servobench_planner::Span;
 use std::fmt::Write;
@@ -9,22 +10,23 @@ pub(super) const COLUMNS: usize = 640;
 /// Looks into a polynomial beside its ends: an extreme between them is missed by less than a hundredth of its swing.
 const LOOKS: u32 = 4;
 
-/// Lowest and highest values of position and its derivatives (SI) in equal parts of the duration.
+/// Lowest and highest values of position and its derivatives (SI) in equal parts of what is drawn.
 #[derive(Debug, Clone)]
 pub(super) struct Envelope {
     columns: Vec<[(f64, f64); 5]>,
-    duration: f64,
+    window: Window,
 }
 
 impl Envelope {
-    /// That of `spans`, which fill `duration` (s).
-    pub(super) fn of(spans: impl Iterator<Item = Span>, duration: f64) -> Self {
+    /// That of `spans`, which fill `window`.
+    pub(super) fn of(spans: impl Iterator<Item = Span>, window: &Window) -> Self {
+        let (begin, length) = (window.from, window.to - window.from);
         let mut columns = vec![[(f64::INFINITY, f64::NEG_INFINITY); 5]; COLUMNS];
         for span in spans {
-            let (first, last) = (column(span.start, duration), column(span.start + span.length, duration));
+            let (first, last) = (column(span.start - begin, length), column(span.start + span.length - begin, length));
             for (i, column) in columns.iter_mut().enumerate().take(last + 1).skip(first) {
                 let within = |t: f64| (t - span.start).clamp(0.0, span.length);
-                let edge = |i: usize| duration * i as f64 / COLUMNS as f64;
+                let edge = |i: usize| begin + length * i as f64 / COLUMNS as f64;
                 let (from, to) = (within(edge(i)), within(edge(i + 1)));
                 for look in 0..=LOOKS {
                     let t = from + (to - from) * f64::from(look) / f64::from(LOOKS);
@@ -35,7 +37,7 @@ impl Envelope {
                 }
             }
         }
-        Self { columns, duration }
+        Self { columns, window: *window }
     }
 
     /// The lowest and the highest value of derivative `k` (SI).
@@ -46,7 +48,8 @@ impl Envelope {
 
     /// The outline of derivative `k` in a unit that is `scale` of the SI's.
     pub(super) fn path(&self, k: usize, scale: f64, time: &Axis, value: &Axis) -> String {
-        let x = |i: usize| time.at(self.duration * (i as f64 + 0.5) / COLUMNS as f64);
+        let Window { from, to, .. } = self.window;
+        let x = |i: usize| time.at(from + (to - from) * (i as f64 + 0.5) / COLUMNS as f64);
         let known = || self.columns.iter().map(|column| column[k]).enumerate().filter(|(_, (low, high))| low <= high);
         let mut path = String::new();
         let highs = known().map(|(i, (_, high))| (i, high));
@@ -80,7 +83,7 @@ mod tests {
             state: Setpoint { v: 1000.0, ..Setpoint::default() },
             is_held: false,
         };
-        let envelope = Envelope::of((0..1000).map(tooth), 1.0);
+        let envelope = Envelope::of((0..1000).map(tooth), &Window::of(1.0, None, None).unwrap());
         for column in &envelope.columns {
             let (low, high) = column[0];
             assert!(low >= 0.0 && high <= 1.0 + 1e-9 && high - low > 0.5, "{low} {high}");

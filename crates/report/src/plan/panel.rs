@@ -155,7 +155,7 @@ mod tests {
 
     /// A velocity from `low` to `high`.
     fn panel((low, high): (f64, f64), limit: f64) -> Panel<'static> {
-        let curve = Curve { spans: &[], end: Setpoint::default(), k: 1, is_highest: false, scale: 1.0 };
+        let curve = Curve { spans: &[], end: Setpoint::default(), k: 1, from_zero: false, to_zero: false, scale: 1.0 };
         let (unit, limit) = (DisplayUnit::si("m", 1), Sides::both(limit));
         Panel { name: "velocity", unit, range: (low, high), limit, line: Line::Exact(curve) }
     }

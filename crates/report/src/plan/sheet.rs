@@ -1,6 +1,7 @@
 //! Panels below each other, with what stands above, below and beside them.
 use super::marks::Marks;
 use super::panel::{HEIGHT, Panel};
+use super::window::Window;
 use crate::drawing::{Axis, COLOURS, STYLE as SHARED, escaped, ticks, unit_at};
 use servobench_metrics::round_above;
 use servobench_planner::Binding;
@@ -31,7 +32,8 @@ pub(super) struct Sheet<'a> {
     pub(super) title: &'a str,
     /// What a reader wants to know besides: segment times, what the planner tells.
     pub(super) lines: Vec<String>,
-    pub(super) duration: f64,
+    /// What is drawn of the move.
+    pub(super) window: Window,
     /// Ends of the segments (s), ascending.
     pub(super) boundaries: Vec<f64>,
     /// Where quantities are at their limits.
@@ -58,11 +60,12 @@ impl Sheet<'_> {
         svg.extend(self.lines.iter().enumerate().map(|(i, line)| {
             format!("<text class=\"s\" x=\"{LEFT}\" y=\"{}\">{}</text>", 55.0 + LINE * i as f64, escaped(line))
         }));
-        let has_end = self.duration > 0.0;
-        let high = if has_end { self.duration } else { 1.0 };
-        let time = Axis { low: 0.0, high, from: LEFT, to: WIDTH - RIGHT };
+        let Window { from: low, to: end, .. } = self.window;
+        let has_end = end > low;
+        let high = if has_end { end } else { 1.0 };
+        let time = Axis { low, high, from: LEFT, to: WIDTH - RIGHT };
         let (unit, scale) = unit_at(time.high, "s", true);
-        let ticks = ticks(0.0, time.high / scale, round_above(time.high / scale / 8.0));
+        let ticks = ticks(low / scale, high / scale, round_above((high - low) / scale / 8.0));
         let boundaries = self.seen_boundaries(&time);
         let mut marks_seen = (false, false);
         for (k, panel) in self.panels.iter().enumerate() {
@@ -91,11 +94,23 @@ impl Sheet<'_> {
         let free = free.filter(|(x, _)| !has_end || time.to - x >= LABEL);
         svg.extend(free.map(|(x, label)| centred("k", x, base, label)));
         if has_end {
-            svg.push(centred("e", time.to, base, &four_digits(self.duration / scale)));
+            svg.push(centred("e", time.to, base, &self.end_label(scale)));
         }
         svg.push(centred("k", f64::midpoint(time.from, time.to), base + 18.0, &format!("time ({unit})")));
         svg.push("</svg>\n".to_owned());
         svg.join("\n")
+    }
+
+    /// The number at the end of the time axis: in a window to a thousandth of its length.
+    fn end_label(&self, scale: f64) -> String {
+        let Window { from, to, is_whole } = self.window;
+        if is_whole {
+            return four_digits(to / scale);
+        }
+        let length = (to - from) / scale;
+        let exponent: i32 = format!("{length:e}").split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0);
+        let decimals = usize::try_from(2 - exponent).unwrap_or(0);
+        format!("{:.decimals$}", to / scale)
     }
 
     /// What the lines of limits and the marks on them mean, as far as there are some.

@@ -50,6 +50,8 @@ pub(crate) enum PlanMistake {
     Refused(PlanError),
     #[error("--csv would write {0}")]
     TooManyRows(ReportError),
+    #[error("--from, --to: {0}")]
+    NotDrawn(ReportError),
 }
 
 /// What a planner says of its request, with options for its fields.
