@@ -221,6 +221,12 @@ impl State {
         self.digital_outputs
     }
 
+    /// Free places of the trajectory buffer (2011h).
+    #[must_use]
+    pub const fn buffer_free(&self) -> usize {
+        self.buffer.free()
+    }
+
     /// State of the trajectory buffer (2012h).
     #[must_use]
     pub fn buffer_status(&self) -> u32 {

@@ -134,6 +134,14 @@ fn ten_thousand_points_are_streamed_with_jitter_and_none_is_missing() {
     let file = sine(10_000);
     let recording = streamed(&file, "[[bus.fault]]\nkind = \"jitter\"\nby = \"500 us\"\nseed = 3\n");
     assert_eq!(buffer(&recording), ["none"]);
+    // 32 places, all free before the first point and after the last.
+    let free = recording.signal("drive", "buffer_free").unwrap_or_else(|| panic!("no 2011h"));
+    let places: Vec<u16> =
+        free.changes.iter().map(|(_, value)| value.parse().unwrap_or_else(|e| panic!("{e}"))).collect();
+    assert!(places.first() == Some(&32) && places.last() == Some(&32) && places.iter().min() < Some(&8), "{places:?}");
+    // 2012h: the number of the next segment in the lower half, and nothing that went wrong.
+    let status = recording.signal("drive", "buffer_status").unwrap_or_else(|| panic!("no 2012h"));
+    assert!(status.changes.len() > 1000 && status.changes.iter().all(|(_, value)| value.ends_with('h')), "2012h");
     let omega = frequency(10_000);
     let setpoint = values(&recording, "setpoint.position");
     let begins = setpoint.iter().position(|x| *x > 0.0).unwrap_or_else(|| panic!("nothing moves"));

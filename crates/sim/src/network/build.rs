@@ -168,7 +168,7 @@ impl Network {
             index_increment: index_increment(&counted, increment, loops),
             index: None,
             tick,
-            signals: Signals::new(recorder),
+            signals: Signals::new(bus.mode == scenario::BusMode::InterpolatedPosition, recorder),
         };
         Ok((network, delays))
     }

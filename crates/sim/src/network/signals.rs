@@ -56,17 +56,23 @@ pub(super) struct Signals {
     mode: Watched<Option<Mode>>,
     drive_fault: Watched<Option<device::Fault>>,
     buffer: Watched<u32>,
+    /// The words in which a master reads the buffer, where it sends points: 2011h and 2012h.
+    words: Option<(Watched<usize>, Watched<u32>)>,
     interpolation: Watched<Interpolation>,
     link_fault: Watched<Option<Fault>>,
 }
 
 impl Signals {
-    pub(super) fn new(recorder: &mut Recorder) -> Self {
+    /// With the words of the trajectory buffer where the master `sends_points`.
+    pub(super) fn new(sends_points: bool, recorder: &mut Recorder) -> Self {
         Self {
             power: Watched::new("drive", "state", recorder),
             mode: Watched::new("drive", "mode", recorder),
             drive_fault: Watched::new("drive", "fault", recorder),
             buffer: Watched::new("drive", "buffer", recorder),
+            words: sends_points.then(|| {
+                (Watched::new("drive", "buffer_free", recorder), Watched::new("drive", "buffer_status", recorder))
+            }),
             interpolation: Watched::new("link", "interpolation", recorder),
             link_fault: Watched::new("link", "fault", recorder),
         }
@@ -79,6 +85,10 @@ impl Signals {
             fault.map_or("none".into(), |fault| format!("{:04X}h", fault.code()))
         });
         self.buffer.note(t, drive.buffer_status() >> 24 & ERRORS, recorder, latched);
+        if let Some((free, status)) = &mut self.words {
+            free.note(t, drive.buffer_free(), recorder, |points| points.to_string());
+            status.note(t, drive.buffer_status(), recorder, |status| format!("{status:08X}h"));
+        }
     }
 
     pub(super) fn of_link(&mut self, t: f64, link: &link::State, recorder: &mut Recorder) {
