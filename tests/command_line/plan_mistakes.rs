@@ -158,6 +158,22 @@ fn a_table_is_refused_at_the_place_of_its_mistake() {
             "--plateau must be above 0 (at least 1e-30) and at most 0.5, got 0.7".to_owned(),
         ),
         (
+            format!("position --points {} --plateau auto --velocity 1m/s", path("good.csv")),
+            "--plateau auto is chosen by limits: give --velocity and --acceleration".to_owned(),
+        ),
+        (
+            format!("position --points {} --plateau 0.2 --velocity 1m/s", path("good.csv")),
+            "--velocity and --acceleration choose the share of --plateau auto: choose that, or leave them out".to_owned(),
+        ),
+        (
+            format!("position --points {} --plateau auto --velocity 1m/s --acceleration 1um/s2", path("good.csv")),
+            "no share of plateaus keeps `acceleration` within 0.000001 (SI)".to_owned(),
+        ),
+        (
+            format!("position --points {} --plateau best", path("good.csv")),
+            "'best' for '--plateau <ALPHA>'".to_owned(),
+        ),
+        (
             format!("position --points {} --command-rate 100", path("good.csv")),
             "'100' for '--command-rate <RATE>': a frequency needs its unit; write \"100 Hz\"".to_owned(),
         ),

@@ -31,7 +31,7 @@ mod table;
 pub use analysis::{Binding, Peak, Span};
 pub use clocked::CommandCycle;
 pub use filter::{Averages, Filter, Shaping};
-pub use plan::{Plan, PlanDetails};
+pub use plan::{Plan, PlanDetails, Sending};
 pub use reader::Reader;
 pub use request::{Generator, Grid, Method, PointToPoint, Replanning, Request, Rockwell, Sampling};
 pub use start::Positioning;

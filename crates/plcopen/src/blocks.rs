@@ -84,7 +84,7 @@ pub use parameters::{
     ReadBoolOutputs, ReadBoolParameter, ReadBoolParameterInputs, ReadParameter, ReadParameterInputs,
     ReadParameterOutputs, WriteBoolParameter, WriteBoolParameterInputs, WriteParameter, WriteParameterInputs,
 };
-pub use position_profile::{Follow, PositionProfile, PositionProfileInputs, TimePosition, VelocityCommands};
+pub use position_profile::{Follow, PositionProfile, PositionProfileInputs, TimePosition};
 pub use power::{Power, PowerInputs, PowerOutputs};
 pub use profile::{Memory, Pair};
 pub use profile_4th::{Profile4th, Profile4thInputs, Profile4thOutputs};

@@ -273,7 +273,10 @@ impl Axis {
                 Ok(Activity::Effort(EffortRamp { id, command, target, step, present }))
             }
             Goal::Reference(reference) => Ok(Activity::Homing(HomingWait { id, command, reference, has_begun: false })),
-            Goal::Led(_) => Ok(Activity::Led(Led { id, command, offset: self.offset, is_fresh: true, cycles: 0 })),
+            Goal::Led(_) => {
+                let offset = self.offset;
+                Ok(Activity::Led(Led { id, command, offset, is_fresh: true, cycles: 0 }))
+            }
             _ => {
                 let is_aborting = command.buffer_mode == BufferMode::Aborting;
                 let origin = if is_aborting { self.last_target().unwrap_or(from.x) } else { from.x };

@@ -7,3 +7,4 @@ mod edges;
 mod positions;
 mod random;
 mod rates;
+mod velocity_commands;

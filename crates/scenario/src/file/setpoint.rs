@@ -1,5 +1,5 @@
 //! `[setpoint]`: what every move respects, and how set-points are generated, filtered and interpolated.
-use crate::list::Many;
+use crate::list::{Automatic, Many};
 use crate::simple::{OneOf, OneOfOrNone};
 use crate::table::table;
 use servobench_config::Kind::{Axis as InAxis, Plain};
@@ -110,8 +110,9 @@ table! {
         passes: u32 = 0..=1_000_000,
         /// How it is followed; default: "segments".
         follow: FollowKind = OneOf,
-        /// Share of a segment at either end in which the velocity of "plateaus" changes, up to 0.5; default: 0.25.
-        plateau_share: f64 = positive(Plain(&RATIO), "0.25"),
+        /// Share of a segment at either end in which the velocity of "plateaus" changes, up to 0.5; "auto" is the one that takes the
+        /// smallest part of the velocity and the acceleration that the move may have; default: 0.25.
+        plateau_share: Automatic = positive(Plain(&RATIO), "0.25"),
         /// Commands per second of "steps".
         command_rate: f64 = positive(Plain(&FREQUENCY), "100 Hz"),
     }

@@ -13,6 +13,8 @@ use servobench_plcopen::{
 pub(super) struct Context<'a> {
     pub(super) defaults: &'a Defaults<'a>,
     pub(super) is_modulo: bool,
+    /// Whether the drive is in profile velocity.
+    pub(super) is_told_velocities: bool,
     pub(super) sources: &'a Sources,
 }
 
@@ -217,7 +219,7 @@ impl Reading<'_, '_> {
             let pairs = profile::accelerations(table, sources, self.report);
             return Ok(Table { pairs: pairs.ok_or(Wrong)?, is_relative: false, follow: Follow::Spline });
         }
-        let follow = profile::follow(table, self.report);
+        let follow = profile::follow(table, self.context.is_told_velocities, self.report);
         let pairs = profile::positions(table, sources, self.report);
         let is_relative = table.value.relative.optional().map_err(|_| Wrong)?.copied().unwrap_or(false);
         Ok(Table { pairs: pairs.ok_or(Wrong)?, is_relative, follow: follow.ok_or(Wrong)? })

@@ -377,14 +377,17 @@ fn tables_of_profiles() {
         (
             &call("MC_PositionProfile", "table = { file = \"x.csv\", velocities = \"average\", follow = \"steps\" }"),
             &[
-                "3:40: MC_PositionProfile does not choose its velocities so; it goes along the cubic spline, or by \"plateaus\"",
-                "3:60: MC_PositionProfile does not follow its table so; it goes along the cubic spline, or by \"plateaus\"",
+                "3:40: MC_PositionProfile does not choose its velocities so; it goes along the cubic spline, or by \"plateaus\"; by \"steps\" \
+                 over a bus with `mode = \"pv\"`",
+                "3:60: MC_PositionProfile does not follow its table so; it goes along the cubic spline, or by \"plateaus\"; by \"steps\" over a \
+                 bus with `mode = \"pv\"`",
             ],
         ),
         (
             &call("MC_PositionProfile", "table = { file = \"x.csv\", passes = 1, plateau_share = 0.3 }"),
             &[
-                "3:36: `passes` is not for MC_PositionProfile; it goes along the cubic spline, or by \"plateaus\"",
+                "3:36: `passes` is not for MC_PositionProfile; it goes along the cubic spline, or by \"plateaus\"; by \"steps\" over a bus with \
+                 `mode = \"pv\"`",
                 "3:55: `plateau_share` is for \"plateaus\"",
             ],
         ),
@@ -453,7 +456,7 @@ fn calls_need_a_bus_and_a_duration_and_no_program() {
         &format!("{profile}{POWER}"),
         &halt,
     );
-    assert_eq!(errors, ["-7:8: function blocks make the set-points themselves; write \"csp\" or \"csv\""]);
+    assert_eq!(errors, ["-7:8: function blocks make the set-points themselves; write \"csp\", \"csv\" or \"pv\""]);
     let [errors, _] =
         said_of(AXIS, "", "[plc]\nhoming_required = true\n[axis.switches]\n[[program]]\nmove_to = \"1 mm\"\n");
     assert!(
@@ -462,6 +465,33 @@ fn calls_need_a_bus_and_a_duration_and_no_program() {
     );
     let modulo = AXIS.replace("lead = \"10 mm\"\n", "lead = \"10 mm\"\nmodulo = \"100 mm\"\n");
     assert_eq!(crate::mistakes(&modulo), ["8:10: `modulo` is for function blocks; give a `[[call]]`, or leave it out"]);
+}
+
+/// Steps along the spline, and where their ramps begin, are for a drive that is told velocities.
+#[test]
+fn velocities_are_told_to_a_drive_in_profile_velocity() {
+    let steps =
+        |keys: &str| call("MC_PositionProfile", &format!("table = {{ file = \"x.csv\", follow = \"steps\"{keys} }}"));
+    let pv = BUS.replace("cycle", "mode = \"pv\"\ncycle").replace("[plc]\n", "[plc]\nramp_start = \"actual\"\n");
+    let said_in_pv = |calls: &str| said_of(&lasting(), &format!("{pv}{POWER}"), calls);
+    for keys in ["", ", command_rate = \"100 Hz\"", ", relative = true"] {
+        assert_eq!(said_in_pv(&steps(keys)), [strings(&[]), strings(&[])], "{keys}");
+    }
+    assert_eq!(
+        said_in_pv(&steps(", plateau_share = \"auto\", velocities = \"average\""))[0],
+        [
+            "3:61: `plateau_share` is for \"plateaus\"",
+            "3:82: MC_PositionProfile does not choose its velocities so; it goes along the cubic spline, by \"plateaus\", or by \
+             \"steps\" along the spline",
+        ]
+    );
+    let bus = BUS.replace("[plc]\n", "[plc]\nramp_start = \"actual\"\n");
+    let [errors, _] = said_of(&lasting(), &format!("{bus}{POWER}"), &call("MC_Halt", ""));
+    assert_eq!(errors, ["-4:14: `ramp_start` is for the mode \"pv\"; elsewhere the drive is told positions"]);
+    let rate = "table = { file = \"x.csv\", command_rate = \"100 Hz\" }";
+    assert!(
+        said(&call("MC_PositionProfile", rate))[0][0].contains("`command_rate` is for a table that is followed by")
+    );
 }
 
 /// What will be refused when it is executed is doubtful, not wrong: a run may want to show just that.

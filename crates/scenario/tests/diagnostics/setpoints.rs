@@ -187,6 +187,21 @@ fn tables_of_points() {
                 "2:41: `passes` is for velocities that are \"smooth\"",
             ],
         ),
+        // The limits of `[setpoint]` choose the share, or those of the step.
+        ("averages = []\n", &table("file = \"points.csv\", follow = \"plateaus\", plateau_share = \"auto\""), &[]),
+        (
+            "averages = []\n",
+            &format!(
+                "{}velocity = \"1 m/s\"\n",
+                table("file = \"points.csv\", follow = \"plateaus\", plateau_share = \"auto\"")
+            ),
+            &[],
+        ),
+        (
+            "averages = []\n",
+            &table("file = \"points.csv\", follow = \"plateaus\", plateau_share = \"best\""),
+            &["3:69: `plateau_share` must be \"auto\" or a value like 0.25, got \"best\""],
+        ),
         (
             "",
             &format!("{}velocity = \"1 m/s\"\nend_velocity = \"1 m/s\"\n", table("file = \"points.csv\"")),

@@ -35,6 +35,10 @@ pub(crate) enum PlanMistake {
     NoMaximumJerk { why: &'static str },
     #[error("--maximum-jerk is not used: no jerk of this S-curve is a part of it; leave it out")]
     UnusedMaximumJerk,
+    #[error("--plateau auto is chosen by limits: give --velocity and --acceleration, as \"0.5 m/s\" and \"5 m/s2\"")]
+    NoLimits,
+    #[error("--velocity and --acceleration choose the share of --plateau auto: choose that, or leave them out")]
+    UnusedLimits,
     #[error("--passes are those of --velocities smooth: choose that, or leave them out")]
     PassesOfOthers,
     #[error("--shaper-tolerable is for --shaper ei: the others leave nothing at the frequency")]

@@ -1,10 +1,11 @@
 //! A move through a table of points.
 use super::filter::SampledFilterArgs;
 use super::mistake::PlanMistake;
-use super::quantity::{Axis, AxisQuantity, POSITION, frequency, positive_time, ratio};
+use super::quantity::{ACCELERATION, Axis, AxisQuantity, POSITION, VELOCITY, frequency, positive_time, ratio};
 use crate::args::{choice, file};
 use crate::console::say;
 use clap::Args;
+use servobench_motion::position_profile::PlateauShare;
 use servobench_motion::pvt::Knot;
 use servobench_planner::{CommandCycle, CommandRate, Filter, Follow, Generator, TableMove, Velocities, VelocitiesKind};
 use servobench_scenario::{Derivative, Points, axis_quantity, read_points};
@@ -37,6 +38,12 @@ pub(crate) struct PositionArgs {
     table: TableArgs,
     #[command(flatten)]
     sent: SentArgs,
+    /// Largest velocity, for --plateau auto.
+    #[arg(long, value_name = "VELOCITY", value_parser = VELOCITY)]
+    velocity: Option<AxisQuantity>,
+    /// Largest acceleration, for --plateau auto.
+    #[arg(long, value_name = "ACCELERATION", value_parser = ACCELERATION)]
+    acceleration: Option<AxisQuantity>,
     /// Commands at whole multiples of this cycle alone, as a bus sends them, "1 ms".
     #[arg(long, value_name = "TIME", value_parser = positive_time)]
     command_cycle: Option<f64>,
@@ -56,15 +63,28 @@ struct TableArgs {
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
 struct SentArgs {
-    /// Option 1: share of a segment at either end in which velocity changes, above 0 to 0.5.
-    #[arg(long, value_name = "ALPHA", value_parser = ratio)]
-    plateau: Option<f64>,
+    /// Option 1: share of a segment at either end in which velocity changes, above 0 to 0.5; "auto" for the one that takes the smallest
+    /// part of --velocity and --acceleration.
+    #[arg(long, value_name = "ALPHA", value_parser = plateau)]
+    plateau: Option<Plateau>,
     /// Option 2: velocity commands along the spline, as "100 Hz".
     #[arg(long, value_name = "RATE", value_parser = frequency)]
     command_rate: Option<f64>,
     /// Option 2 at the lowest rate that keeps this distance to the spline, as "10 um".
     #[arg(long, value_name = "DISTANCE", value_parser = POSITION)]
     allowed_error: Option<AxisQuantity>,
+}
+
+/// The share of `--plateau`.
+#[derive(Debug, Clone, Copy)]
+enum Plateau {
+    Auto,
+    Given(f64),
+}
+
+/// A share, as "0.25", or "auto".
+fn plateau(text: &str) -> Result<Plateau, String> {
+    if text.trim() == "auto" { Ok(Plateau::Auto) } else { ratio(text).map(Plateau::Given) }
 }
 
 impl PvtArgs {
@@ -98,8 +118,12 @@ impl PvtArgs {
 impl PositionArgs {
     pub(super) fn generator(&self, axis: &mut Axis) -> Result<Generator, PlanMistake> {
         let points = self.table.points(axis)?;
+        let has_limits = self.velocity.is_some() || self.acceleration.is_some();
+        if has_limits && !matches!(self.sent.plateau, Some(Plateau::Auto)) {
+            return Err(PlanMistake::UnusedLimits);
+        }
         let follow = match &self.sent {
-            SentArgs { plateau: Some(share), .. } => Follow::Plateaus { share: *share },
+            SentArgs { plateau: Some(share), .. } => Follow::Plateaus { share: self.share(*share, axis)? },
             SentArgs { command_rate: Some(rate), .. } => Follow::Steps { rate: CommandRate::Given(*rate) },
             SentArgs { allowed_error, .. } => {
                 // In a unit of its own: positions stay in theirs.
@@ -108,6 +132,17 @@ impl PositionArgs {
             }
         };
         Ok(Generator::Table(TableMove { knots: knots(&points), velocities: Velocities::Given, follow }))
+    }
+
+    fn share(&self, plateau: Plateau, axis: &mut Axis) -> Result<PlateauShare, PlanMistake> {
+        let limits = axis.optional(self.velocity.as_ref()).zip(axis.optional(self.acceleration.as_ref()));
+        match (plateau, limits) {
+            (Plateau::Given(share), _) => Ok(PlateauShare::Given(share)),
+            (Plateau::Auto, Some((velocity, acceleration))) => {
+                Ok(PlateauShare::SmallestPartOf { velocity, acceleration })
+            }
+            (Plateau::Auto, None) => Err(PlanMistake::NoLimits),
+        }
     }
 
     /// The cycle of a bus whose units are finer than what matters, at whose first instant the move begins.
