@@ -107,7 +107,7 @@ def main() -> None:
     """Compares every program."""
     ours, theirs = (traces(command, PROGRAMS) for command in (RUST, [str(build(HARNESS))]))
     print("Function blocks against those of pyplcopen: programs of its test suite")
-    print(f"{'program':<50} {'outputs':>7} {'edges':>5} {'differ':>6} {'cycles':>6}  follows the text")
+    print(f"{'program':<55} {'outputs':>7} {'edges':>5} {'differ':>6} {'cycles':>6}  follows the text")
     wrong: list[str] = []
     reasons: Counter[str] = Counter()
     equal = outputs = edges = busy = 0
@@ -119,7 +119,7 @@ def main() -> None:
         own = sum(map(len, one.outputs.values()))
         changes = sum(len(changed) for name, changed in one.edges.items() if name.split(".")[1] not in OWN_OUTPUTS)
         cycles = len({cycle for differ in found.values() for cycle in differ})
-        print(f"{program.name:<50} {own:>7} {changes:>5} {len(found) or '-':>6} {cycles or '-':>6}  {follows or '-'}")
+        print(f"{program.name:<55} {own:>7} {changes:>5} {len(found) or '-':>6} {cycles or '-':>6}  {follows or '-'}")
         outputs, edges, busy, equal = outputs + own, edges + changes, busy + bool(cycles_of_busy), equal + (not found)
     print(f"{len(PROGRAMS)} programs, {outputs} outputs with {edges} edges: {equal} programs without a difference")
     print(f"  {BUSY.follows:<10} in {busy:>2}: {BUSY.why}")

@@ -32,8 +32,8 @@ PROGRAMS = [
         at 5: home.execute=false
         """,
         differs="""
-        homing in motion: move.Busy 3-7, move.Active 3-7, move.CommandAborted 3-7, home.Done 2-4, home.Error 2-4, home.ErrorID 2-4
-        homing in motion: state.Standstill 2-7, state.DiscreteMotion 2-7
+        homing elsewhere: move.Busy 3-7, move.Active 3-7, move.CommandAborted 3-7, home.Done 2-4, home.Error 2-4, home.ErrorID 2-4
+        homing elsewhere: state.Standstill 2-7, state.DiscreteMotion 2-7
         """,
     ),
     Program(
@@ -97,7 +97,7 @@ PROGRAMS = [
         at 2: home.execute
         """,
         differs="""
-        homing in motion: move.Busy 3-7, move.Active 3-7, move.CommandAborted 3-7, home.Done 2-7, home.Error 2-7, home.ErrorID 2-7
+        homing elsewhere: move.Busy 3-7, move.Active 3-7, move.CommandAborted 3-7, home.Done 2-7, home.Error 2-7, home.ErrorID 2-7
         """,
     ),
     Program(

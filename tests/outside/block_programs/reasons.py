@@ -59,6 +59,21 @@ REASONS = {
         "with BlendingLow the axis passes the end of the first move without a stop, at the lower velocity (2.4.2), here that of both; "
         "in pyplcopen the second begins where the first has braked to 30 % of its own, before its end",
     ),
+    "behind an endless one": Reason(
+        "servobench",
+        "a buffered command behind one without an end takes over when that has reached its velocity (2.4.2); in pyplcopen it waits "
+        "for ever",
+    ),
+    "waits as aborted": Reason(
+        "servobench",
+        "a command in the buffer is Busy (2.4.1); MC_MoveContinuousAbsolute and MC_MoveContinuousRelative of pyplcopen say "
+        "CommandAborted as long as they wait, and go on saying it beside Busy",
+    ),
+    "stopping": Reason(
+        "servobench",
+        "while the axis is Stopping no other block moves it (3.3); pyplcopen takes a second MC_Stop, which aborts the first, and "
+        "MC_MoveSuperimposed, which moves the axis that MC_Stop holds",
+    ),
     "tables": Reason(
         "both",
         "the supplier defines the table (3.14 to 3.16). ProfileCompleted is here the end of the table and resets Busy as Done "
@@ -67,6 +82,13 @@ REASONS = {
     "standstill on top": Reason(
         "servobench",
         "MC_MoveSuperimposed at Standstill is a Discrete Motion (note of figure 2.1); pyplcopen changes the state a cycle after Busy",
+    ),
+    "on top of a velocity": Reason(
+        "servobench",
+        "a motion on top does not change whether the velocity below is reached (3.10); in pyplcopen it does",
+    ),
+    "nothing on top": Reason(
+        "both", "MC_HaltSuperimposed while Stopping, when nothing can be on top: refused here, Done in pyplcopen; the text is silent"
     ),
     "halted on top": Reason(
         "servobench",
@@ -98,9 +120,10 @@ REASONS = {
     "homing takes a cycle": Reason(
         "both", "the state Homing is passed (figure 2.1): here for one cycle, in pyplcopen within the call that is Done"
     ),
-    "homing in motion": Reason(
+    "homing elsewhere": Reason(
         "servobench",
-        "homing begins at Standstill (figure 2.1); pyplcopen aborts the motion and stands at once, from any velocity",
+        "homing begins at Standstill (figure 2.1); pyplcopen takes MC_HomeDirect and MC_HomeAbsolute in every state but ErrorStop, "
+        "where the axis stands at once, from any velocity",
     ),
     "recorded": Reason(
         "both",
