@@ -113,7 +113,7 @@ def main() -> None:
     equal = outputs = edges = busy = 0
     for program, one, other in zip(PROGRAMS, ours, theirs, strict=True):
         found, cycles_of_busy = compare(program, one, other)
-        wrong += [f"{program.name}: {what}" for what in check(program, found)]
+        wrong += [f"{program.name} ({program.test}): {what}" for what in check(program, found)]
         reasons.update(program.declared.keys())
         follows = ", ".join(sorted({REASONS[reason].follows for reason in program.declared}))
         own = sum(map(len, one.outputs.values()))
