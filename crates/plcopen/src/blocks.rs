@@ -10,11 +10,13 @@
 //! - Done, CommandAborted and Error stay until Execute is FALSE. When it was FALSE before they came, they last one cycle.
 //! - A falling edge does not end the command. A new rising edge starts a new one, and nothing more is said of the old one. Where
 //!   the new one is refused, Error is TRUE for that, and the old one goes on unreported: errors of blocks do not stop the axis.
-//! - InVelocity, InEndVelocity and InTorque go with Busy and Active, as long as the command has the axis.
+//! - InVelocity, InEndVelocity and InTorque go with Busy and Active, as long as the set-point is the commanded value: where
+//!   ContinuousUpdate changes that, they are FALSE from the same call on until it is reached.
 //!
 //! # Enable
 //!
-//! The outputs of a block with Enable follow it from cycle to cycle; Valid or Error says whether they mean anything.
+//! The outputs of a block with Enable follow it from cycle to cycle; Valid or Error says whether they mean anything. Busy is TRUE as
+//! long as Enable is: an error is over as soon as its cause is, without a new edge (section 2.2.3).
 //!
 //! # Another block
 //!
