@@ -65,7 +65,7 @@ fn read(line: &str, program: &mut Option<Program>, out: &mut impl Write) -> Resu
         }
         (["block", name, block], Some(program)) => {
             let block = BlockName::from_name(block).ok_or("there is no such block")?;
-            program.instances.push(Instance::new(name, block));
+            program.instances.push(Instance::new(name, block)?);
         }
         (["end"], program) => program.take().ok_or("no program has begun")?.run(out)?,
         ([cycle, name, key, value], Some(program)) => {
@@ -148,9 +148,9 @@ struct Instance {
 }
 
 impl Instance {
-    fn new(name: &str, block: BlockName) -> Self {
+    fn new(name: &str, block: BlockName) -> Result<Self, Failure> {
         let told = vec![0.0; block.outputs().len()];
-        Self { name: name.to_owned(), block, called: made(block), trigger: false, inputs: Inputs::default(), told }
+        Ok(Self { name: name.to_owned(), block, called: made(block)?, trigger: false, inputs: Inputs::default(), told })
     }
 
     fn set(&mut self, key: &str, value: &str) -> Result<(), Failure> {
@@ -211,14 +211,15 @@ impl<B: FunctionBlock> Called for B {
     }
 }
 
-/// Makes blocks by their names: those that need no memory for a table, and those that do.
+/// Makes blocks by their names: those that need no memory for a table, and those that do. Others are not blocks of the standard.
 macro_rules! made {
     ($($block:ident)+; $($with_table:ident: $memory:expr,)+) => {
-        fn made(block: BlockName) -> Box<dyn Called> {
-            match block {
+        fn made(block: BlockName) -> Result<Box<dyn Called>, Failure> {
+            Ok(match block {
                 $(BlockName::$block => Box::new(plc::$block::default()),)+
                 $(BlockName::$with_table => Box::new($memory),)+
-            }
+                other => return Err(format!("{other} is not compared").into()),
+            })
         }
     };
 }

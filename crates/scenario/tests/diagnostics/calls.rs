@@ -89,6 +89,7 @@ fn every_block_can_be_called() {
         ("MC_ReadActualPosition", ""),
         ("MC_ReadActualVelocity", ""),
         ("MC_ReadActualTorque", ""),
+        ("MAM", "position = \"1 mm\"\nshape = \"s-curve\"\njerk_time = \"2 ms\"\ndeceleration_jerk_of_time = \"25 %\""),
         ("Profile4th", "position = \"1 mm\"\nsnap = \"1e4 m/s4\"\nsettling_time = \"50 ms\"\nreversed = true"),
     ] {
         let started = format!("start = \"power.Status\"\nstop = {{ at = \"1 s\" }}\ntimeout = \"1 s\"\n{keys}");
@@ -492,6 +493,35 @@ fn velocities_are_told_to_a_drive_in_profile_velocity() {
     assert!(
         said(&call("MC_PositionProfile", rate))[0][0].contains("`command_rate` is for a table that is followed by")
     );
+}
+
+/// Each jerk of Rockwell's move is said in one way, and that of a trapezoid by the axis.
+#[test]
+fn the_jerks_of_rockwells_move() {
+    let s_curve = |keys: &str| call("MAM", &format!("position = \"1 mm\"\nshape = \"s-curve\"\n{keys}"));
+    check(&[
+        (&s_curve(""), &[]),
+        (
+            &s_curve(
+                "jerk_time = \"1 ms\"\njerk_of_time = 1\ndeceleration_jerk = \"1 m/s3\"\ndeceleration_jerk_time = \"1 ms\"",
+            ),
+            &[
+                "5:13: `jerk_of_time` and `jerk_time` say the same thing; give one of them",
+                "8:26: `deceleration_jerk` and `deceleration_jerk_time` say the same thing; give one of them",
+            ],
+        ),
+        (
+            &call("MAM", "position = \"1 mm\"\njerk_of_time = 1\n"),
+            &[
+                "4:16: `jerk_of_time` is for an S-curve; write `shape = \"s-curve\"`, or leave it out: a trapezoid takes the `jerk` \
+               of `[setpoint]`",
+            ],
+        ),
+        (
+            &call("MAM", "position = \"1 mm\"\nmove_type = \"relative\""),
+            &["4:13: \"relative\" is not a value of `move_type`; known here: `absolute`, `incremental`"],
+        ),
+    ]);
 }
 
 /// What will be refused when it is executed is doubtful, not wrong: a run may want to show just that.
