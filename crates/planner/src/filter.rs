@@ -78,7 +78,8 @@ impl Averages {
     /// What they make of `plan`.
     pub(crate) fn of(&self, plan: &Plan) -> Result<Polynomials, PlanError> {
         let sample_time = positive("sample_time", self.sample_time)?;
-        let start = plan.start();
+        // Before the move it rests: what acts from its first instant on is new to the averages, as snap is that is switched there.
+        let start = Setpoint::at_rest(plan.start().x);
         let mut filters = Vec::with_capacity(self.lengths.len());
         let mut total = 0;
         for length in &self.lengths {

@@ -217,6 +217,13 @@ fn is_power(signal: Signal) -> bool {
     signal.unit() == Unit::Watt
 }
 
+/// How many channels the axis of `scenario` has at most: with a body between motor and load, which its engine may find.
+#[must_use]
+pub fn most_channels(scenario: &Scenario) -> usize {
+    let equipment = equipment(scenario, true);
+    Signal::ALL.iter().filter(|signal| signal.presence().holds(&equipment)).count()
+}
+
 /// Which channels the axis of `scenario` has; `table` is a body between motor and load.
 fn equipment(scenario: &Scenario, table: bool) -> Equipment {
     let effort_unit = scenario.axis.motor_motion.effort_unit();

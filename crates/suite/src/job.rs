@@ -1,8 +1,7 @@
 //! One scenario on one engine.
 use servobench_plant::EngineName;
 use servobench_scenario::{Scenario, Step};
-use servobench_signals::Signal;
-use servobench_sim::Program;
+use servobench_sim::{Program, most_channels};
 use std::collections::HashMap;
 
 /// One scenario on one engine.
@@ -44,7 +43,7 @@ impl Job {
         let Some(duration) = duration.or_else(planned) else {
             return 0;
         };
-        let channels = if record.channels.is_empty() { Signal::ALL.len() } else { record.channels.len() };
+        let channels = if record.channels.is_empty() { most_channels(&self.scenario) } else { record.channels.len() };
         let bytes = |hertz: u32| (duration * f64::from(hertz) + 1.0) * channels as f64 * VALUE;
         // Every tick until it is measured, beside what is kept of it.
         let kept = if record.rate == *base_rate { 0.0 } else { bytes(record.rate.hertz()) };
@@ -139,6 +138,11 @@ mod tests {
         assert_eq!(job(&paused).memory(), 1501 * 2 * 8);
         let thinned = TEXT.replace("[record]", "[record]\nrate = \"100 Hz\"");
         assert_eq!(job(&thinned).memory(), (2001 + 201) * 2 * 8);
+        // Without a list it is that of every channel which such an axis has: none of a bus or of currents, one of which there are.
+        let all = job(&TEXT.replace("channels = [\"load.position\", \"motor.position\"]", ""));
+        let channels = all.memory() / (2001 * 8);
+        assert_eq!(channels as usize, most_channels(&all.scenario));
+        assert!((10..servobench_signals::Signal::ALL.len() as u64 / 2).contains(&channels), "{channels}");
     }
 
     #[test]

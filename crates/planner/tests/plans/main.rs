@@ -416,3 +416,22 @@ fn a_share_of_plateaus_is_chosen_by_limits() {
         "{refused}"
     );
 }
+
+/// Before a move the axis rests: the derivative that is switched at its first instant comes in sample by sample, as all others do.
+#[test]
+fn averages_begin_with_an_axis_at_rest() {
+    for order in [Order::Second, Order::Third, Order::Fourth] {
+        let limits = Limits { velocity: 1.0, acceleration: 5.0, jerk: 50.0, snap: 1000.0 };
+        let asked = PointToPoint { distance: 1.0, order, limits, method: Method::Published, grid: None };
+        let averages = Averages { lengths: vec![0.01], sample_time: 1e-3 };
+        let filter = Filter { shaper: None, averages: Some(averages) };
+        let filtered = Request { filter, ..Request::new(Generator::PointToPoint(asked)) }.plan().unwrap();
+        let top = |at: &Setpoint| [at.a, at.j, at.s][order.derivative() - 2];
+        let full = [5.0, 50.0, 1000.0][order.derivative() - 2];
+        for k in 0..12 {
+            let at = filtered.at(1e-3 * f64::from(k) + 1e-6);
+            let expected = full * f64::from((k + 1).min(10)) / 10.0;
+            assert!((top(&at) / expected - 1.0).abs() < 1e-12, "{order:?} {k}: {at:?}");
+        }
+    }
+}
