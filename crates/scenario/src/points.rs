@@ -7,9 +7,11 @@
 //! 20,15,1000
 //! ```
 //! The heading names the columns, in any order, with the unit of all their numbers. `velocity` may be left out, or a row of
-//! it left empty. Times increase. Spaces around numbers and empty lines do not matter; the decimal sign is a point.
+//! it left empty. Times increase. Spaces around numbers and empty lines do not matter; the decimal sign is a point. Columns
+//! `acceleration`, `jerk` and `snap`, as a planned move has them, are read and not used: the way from point to point is the
+//! cubic between positions and velocities, or a line.
 //!
-//! A profile is such a table of times and of velocities or accelerations alone.
+//! A profile is such a table, of which the times and the velocities, or the accelerations, are used.
 mod column;
 mod mistake;
 mod rows;
@@ -37,6 +39,8 @@ pub struct Points {
     pub velocities: Option<Vec<Option<f64>>>,
     /// Units as the heading writes them: of time, position, velocity.
     pub units: [Option<String>; 3],
+    /// Columns of which nothing is used.
+    pub unused: Vec<Column>,
 }
 
 /// A profile, in SI: two points at least, in the order of time.
@@ -78,7 +82,7 @@ fn read_profile(text: &str, layout: Layout) -> Result<Profile, PointsError> {
     let (mut times, mut values) = (Vec::new(), Vec::new());
     let heads = read_rows(text, layout, MOST_POINTS, |column, value| match column {
         Column::Time => times.extend(value),
-        Column::Position | Column::Velocity | Column::Acceleration => values.extend(value),
+        _ => values.extend(value),
     })?;
     Ok(Profile { motion: motion(&heads), times, values })
 }
@@ -89,7 +93,7 @@ fn read(text: &str, most: usize) -> Result<Points, PointsError> {
     let heads = read_rows(text, Layout::Positions, most, |column, value| match column {
         Column::Time => times.extend(value),
         Column::Position => positions.extend(value),
-        Column::Velocity | Column::Acceleration => velocities.push(value),
+        _ => velocities.push(value),
     })?;
     let has_velocity = heads.iter().any(|head| head.column == Column::Velocity);
     let unit = |column| heads.iter().find(|head| head.column == column).map(|head| head.unit.clone());
@@ -99,6 +103,7 @@ fn read(text: &str, most: usize) -> Result<Points, PointsError> {
         positions,
         velocities: has_velocity.then_some(velocities),
         units: [Column::Time, Column::Position, Column::Velocity].map(unit),
+        unused: heads.iter().map(|head| head.column).filter(|column| !Layout::Positions.uses(*column)).collect(),
     })
 }
 
@@ -158,6 +163,42 @@ mod tests {
         ] {
             let found: Result<Profile, PointsError> = read(text);
             assert_eq!(found.unwrap_err().to_string(), said, "{text}");
+        }
+    }
+
+    /// What a planned move is written as has all derivatives; they are checked as far as they tell a mistake.
+    #[test]
+    fn columns_that_are_not_used_may_be_there() {
+        let text = "time [s],position [m],velocity [m/s],acceleration [m/s2],jerk [m/s3],snap [m/s4]\n\
+                    0,0,0,1,2,3\n1,0.5,1,,,\n";
+        let points = read_points(text).unwrap();
+        assert_eq!((points.times, points.positions), (vec![0.0, 1.0], vec![0.0, 0.5]));
+        assert_eq!(points.velocities, Some(vec![Some(0.0), Some(1.0)]));
+        assert_eq!(points.unused, [Column::Acceleration, Column::Jerk, Column::Snap]);
+        assert_eq!(read_velocities(text).unwrap().values, [0.0, 1.0]);
+        assert_eq!(
+            read_accelerations(text).unwrap_err().to_string(),
+            "3:9: `acceleration` is ``: write a number; only `velocity` beside `position` may be left empty"
+        );
+        for (text, said) in [
+            (
+                "time [s],position [m],jerk [rad/s3]\n0,0,0\n1,1,0",
+                "1:23: `jerk` cannot be in `rad/s3`: positions are in `m`, a jerk is needed",
+            ),
+            (
+                "time [s],position [rad],velocity [m/s]\n0,0,0\n1,1,0",
+                "1:25: `velocity` cannot be in `m/s`: positions are in `rad`, an angular velocity is needed",
+            ),
+            (
+                "time [s],position [m],snap [m/s4]\n0,0,0\n1,1,x",
+                "3:5: `snap` is `x`: write a number like `12.5`, its unit stands in the heading",
+            ),
+            (
+                "time [s],position [m],crackle [m/s5]\n0,0,0\n1,1,0",
+                "1:23: unknown column `crackle`: the heading is like `time [ms],position [mm],velocity [mm/s]`",
+            ),
+        ] {
+            assert_eq!(read_points(text).unwrap_err().to_string(), said, "{text}");
         }
     }
 

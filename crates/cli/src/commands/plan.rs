@@ -55,8 +55,8 @@ struct OutputArgs {
     /// Print JSON.
     #[arg(long, global = true)]
     json: bool,
-    /// Write time, position, velocity, acceleration, jerk, snap (SI): a row for each sample of a sampled plan, 1001 rows
-    /// at equal steps of another.
+    /// Write time, position, velocity, acceleration, jerk, snap (SI), which --points reads: a row for each sample of a
+    /// sampled plan, 1001 rows at equal steps of another.
     #[arg(long, value_name = "FILE", value_parser = file(), global = true)]
     csv: Option<PathBuf>,
     /// Time from row to row of the table, as "1 ms".

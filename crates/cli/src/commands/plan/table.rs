@@ -80,12 +80,8 @@ impl PvtArgs {
             (VelocitiesKind::Average, None) => Velocities::Average,
             (VelocitiesKind::Continuous, None) => Velocities::Continuous,
         };
-        let has_inner = points.velocities.as_ref().is_some_and(|all| {
-            let inner = all.get(1..all.len().saturating_sub(1)).unwrap_or_default();
-            inner.iter().any(Option::is_some)
-        });
-        if has_inner && velocities != Velocities::Given {
-            say("of the velocities of the table only the first and the last are used\n");
+        if velocities != Velocities::Given {
+            say_velocities_are_unused(&points);
         }
         Ok(Generator::Table(TableMove { knots: knots(&points), velocities, follow: Follow::Segments }))
     }
@@ -98,6 +94,7 @@ impl PvtArgs {
 impl PositionArgs {
     pub(super) fn generator(&self, axis: &mut Axis) -> Result<Generator, PlanMistake> {
         let points = self.table.points(axis)?;
+        say_velocities_are_unused(&points);
         let follow = match &self.sent {
             SentArgs { plateau: Some(share), .. } => Follow::Plateaus { share: *share },
             SentArgs { command_rate: Some(rate), .. } => Follow::Steps { rate: CommandRate::Given(*rate) },
@@ -116,6 +113,16 @@ impl PositionArgs {
     }
 }
 
+fn say_velocities_are_unused(points: &Points) {
+    let has_inner = points.velocities.as_ref().is_some_and(|all| {
+        let inner = all.get(1..all.len().saturating_sub(1)).unwrap_or_default();
+        inner.iter().any(Option::is_some)
+    });
+    if has_inner {
+        say("of the velocities of the table only the first and the last are used\n");
+    }
+}
+
 fn knots(points: &Points) -> Vec<Knot> {
     let velocity = |i: usize| points.velocities.as_ref().and_then(|velocities| velocities[i]);
     let pairs = points.times.iter().zip(&points.positions).enumerate();
@@ -128,6 +135,13 @@ impl TableArgs {
         let file = || self.points.clone();
         let text = read(&self.points).map_err(|error| PlanMistake::Unreadable { file: file(), error })?;
         let points = read_points(&text).map_err(|error| PlanMistake::Points { file: file(), error })?;
+        if !points.unused.is_empty() {
+            let names: Vec<String> = points.unused.iter().map(ToString::to_string).collect();
+            say(&format!(
+                "not used of the table: {}; between its points only time, position and velocity count\n",
+                names.join(", ")
+            ));
+        }
         axis.motion = Some(points.motion);
         let [_, position, velocity] = &points.units;
         for (derivative, unit) in [(Derivative::Position, position), (Derivative::Velocity, velocity)] {
