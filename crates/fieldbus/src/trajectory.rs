@@ -5,6 +5,8 @@
 //! ([`interpolated`](servobench_cia402::interpolated)).
 mod points;
 mod stream;
+mod words;
 
 pub use points::{Help, PointEncoding, PointTransfer, Unsendable, points};
 pub use stream::Stream;
+pub use words::{SentPoint, followed};

@@ -9,7 +9,7 @@ use std::io::Write;
 /// More rows than this (about 1 GB) are a mistake in the sample time rather than a table.
 const MOST_ROWS: u64 = 10_000_000;
 /// What the unit of each derivative has behind that of position, as tables of points have it.
-const DERIVED: [&str; 5] = ["", "/s", "/s2", "/s3", "/s4"];
+pub(super) const DERIVED: [&str; 5] = ["", "/s", "/s2", "/s3", "/s4"];
 
 impl PlannedMove {
     /// Writes a row every `step` (s); without one, for each sample of a sampled plan, of another one at equal steps: time,

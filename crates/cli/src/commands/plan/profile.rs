@@ -5,6 +5,7 @@ use super::quantity::Axis;
 use super::rockwell::RockwellArgs;
 use super::table::{PositionArgs, PvtArgs};
 use clap::{ArgMatches, Args, Command, FromArgMatches, Subcommand};
+use servobench_motion::online::Sides;
 use servobench_planner::{Filter, Generator, Request};
 use std::path::Path;
 
@@ -83,10 +84,11 @@ impl Profile {
         let mut axis = Axis::default();
         let generator = self.generator(&mut axis);
         let filter = self.filter();
+        let table_limits = self.table_limits(&mut axis);
         match (generator, filter) {
             (Ok(generator), Ok(filter)) if axis.mistakes.is_empty() => {
                 let commands = if let Self::Named(NamedProfile::Position(args)) = self { args.cycle() } else { None };
-                Ok((Request { generator, duration, filter, commands }, axis))
+                Ok((Request { generator, duration, filter, commands, table_limits }, axis))
             }
             (generator, filter) => {
                 let others = generator.err().into_iter().chain(filter.err());
@@ -101,6 +103,15 @@ impl Profile {
             Self::Named(NamedProfile::Rockwell(args)) => args.generator(axis).map(Generator::Rockwell),
             Self::Named(NamedProfile::Pvt(args)) => args.generator(axis),
             Self::Named(NamedProfile::Position(args)) => args.generator(axis),
+        }
+    }
+
+    /// What velocity and acceleration of a table are held against.
+    fn table_limits(&self, axis: &mut Axis) -> [Sides; 2] {
+        match self {
+            Self::Named(NamedProfile::Pvt(args)) => args.limits(axis),
+            Self::Named(NamedProfile::Position(args)) => args.limits(axis),
+            Self::PointToPoint(_) | Self::Named(NamedProfile::Rockwell(_)) => [Sides::both(f64::INFINITY); 2],
         }
     }
 

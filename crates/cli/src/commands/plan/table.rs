@@ -1,10 +1,11 @@
 //! A move through a table of points.
 use super::filter::SampledFilterArgs;
 use super::mistake::PlanMistake;
-use super::quantity::{Axis, AxisQuantity, POSITION, frequency, positive_time, ratio};
+use super::quantity::{ACCELERATION, Axis, AxisQuantity, POSITION, VELOCITY, frequency, positive_time, ratio};
 use crate::args::{choice, file};
 use crate::console::say;
 use clap::Args;
+use servobench_motion::online::Sides;
 use servobench_motion::pvt::Knot;
 use servobench_planner::{CommandCycle, CommandRate, Filter, Follow, Generator, TableMove, Velocities, VelocitiesKind};
 use servobench_scenario::{Derivative, Points, axis_quantity, read_points};
@@ -50,6 +51,12 @@ struct TableArgs {
     /// Table of points: time, position and, if known, velocity, with their units in the heading.
     #[arg(long, value_name = "FILE")]
     points: PathBuf,
+    /// Velocity that the move is held against, as "1 m/s"; what exceeds it is told, and marked in a drawing.
+    #[arg(long, value_parser = VELOCITY.magnitude())]
+    velocity: Option<AxisQuantity>,
+    /// The same for the acceleration, as "5 m/s2".
+    #[arg(long, value_parser = ACCELERATION.magnitude())]
+    acceleration: Option<AxisQuantity>,
 }
 
 /// The ways to make velocity commands of positions: one of them.
@@ -129,7 +136,25 @@ fn knots(points: &Points) -> Vec<Knot> {
     pairs.map(|(i, (t, x))| Knot { t: *t, x: *x, v: velocity(i) }).collect()
 }
 
+impl PvtArgs {
+    pub(super) fn limits(&self, axis: &mut Axis) -> [Sides; 2] {
+        self.table.limits(axis)
+    }
+}
+
+impl PositionArgs {
+    pub(super) fn limits(&self, axis: &mut Axis) -> [Sides; 2] {
+        self.table.limits(axis)
+    }
+}
+
 impl TableArgs {
+    /// What velocity and acceleration are held against.
+    fn limits(&self, axis: &mut Axis) -> [Sides; 2] {
+        let mut limit = |given: Option<&AxisQuantity>| Sides::both(axis.optional(given).unwrap_or(f64::INFINITY));
+        [limit(self.velocity.as_ref()), limit(self.acceleration.as_ref())]
+    }
+
     /// The table, its units noted.
     fn points(&self, axis: &mut Axis) -> Result<Points, PlanMistake> {
         let file = || self.points.clone();
