@@ -47,6 +47,9 @@ const LONGEST: u8 = 255;
 const BISECTIONS: u32 = 60;
 
 impl PointTimes {
+    /// Time from point to point by default (s).
+    pub const SPACING: f64 = 0.01;
+
     /// Points every `spacing` (s), the last of a move to rest at a whole millisecond if the others are, as drives count them.
     #[must_use]
     pub fn every(spacing: f64) -> Self {

@@ -21,7 +21,7 @@ pub enum PointChoice {
     Every(f64),
     /// As rare as keeps the way through them so near to the move (m or rad).
     FewestWithin(f64),
-    /// Those of a table that is followed as it is, of another move every [`PointChoice::DEFAULT`].
+    /// Those of a table that is followed as it is, of another move every [`PointTimes::SPACING`].
     Own,
 }
 
@@ -46,11 +46,6 @@ pub(super) struct Sent {
     pub(super) deviation: Deviation,
 }
 
-impl PointChoice {
-    /// Time from point to point of a move that is no table (s).
-    pub const DEFAULT: f64 = 0.01;
-}
-
 impl PlannedMove {
     /// The same with its points.
     ///
@@ -59,7 +54,7 @@ impl PlannedMove {
     pub fn in_points(self, choice: PointChoice) -> Result<Self, PlanError> {
         let (spacing, through) = match (choice, self.own_points()) {
             (PointChoice::Own, Some(own)) => (None, self.plan.through(own)?),
-            (PointChoice::Own, None) => (Some(PointChoice::DEFAULT), self.every(PointChoice::DEFAULT)?),
+            (PointChoice::Own, None) => (Some(PointTimes::SPACING), self.every(PointTimes::SPACING)?),
             (PointChoice::Every(spacing), _) => (Some(spacing), self.every(spacing)?),
             (PointChoice::FewestWithin(allowed), _) => {
                 let (times, through) = self.plan.in_fewest_points(allowed)?;
