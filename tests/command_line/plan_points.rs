@@ -232,6 +232,22 @@ fn tables_are_held_against_limits() {
     assert_eq!(fs::read_to_string(&svg).unwrap().matches("<circle").count(), 2 * 51 + 1);
 }
 
+/// A table in counts is the one in millimetres: 10 000 counts on 5 mm.
+#[test]
+fn tables_in_counts() {
+    let counts = "time [ms],position [counts],velocity [0.1 counts/s]\n0,0,0\n20,4000,4000000\n40,8000,0\n";
+    let lengths = "time [ms],position [mm],velocity [mm/s]\n0,0,0\n20,2,200\n40,4,0\n";
+    let work = folder(&[("counts.csv", counts), ("lengths.csv", lengths)]);
+    let path = |file: &str| name(&work.path().join(file)).to_owned();
+    let [one, two] =
+        ["counts.csv", "lengths.csv"].map(|file| json_of(&format!("pvt --points {} --counts 10000/5mm", path(file))));
+    assert_eq!(one, two);
+    let output = servobench(&["plan", "pvt", "--points", &path("counts.csv")]);
+    assert_eq!(code(&output), 2);
+    assert!(said(&output).contains("1:11: `position` cannot be in `counts`"), "{}", said(&output));
+    assert!(plan(&format!("{ODD} --counts 1000/mm")).contains("--counts are not used"));
+}
+
 #[test]
 fn points_that_cannot_be_are_refused_before_a_file_is_written() {
     let work = folder(&[]);

@@ -13,6 +13,7 @@
 //!
 //! A profile is such a table, of which the times and the velocities, or the accelerations, are used.
 mod column;
+mod counts;
 mod mistake;
 mod rows;
 
@@ -21,6 +22,7 @@ use rows::{Head, read_rows};
 use servobench_base::Coordinate;
 
 pub use column::Column;
+pub use counts::Counts;
 pub use mistake::{PointsError, PointsMistake};
 
 /// Points at most: a table of more is taken for a mistake.
@@ -59,7 +61,15 @@ pub struct Profile {
 /// # Errors
 /// [`PointsError`], the first mistake.
 pub fn read_points(text: &str) -> Result<Points, PointsError> {
-    read(text, MOST_POINTS)
+    read(text, None, MOST_POINTS)
+}
+
+/// Reads a table of points that may be in counts of a drive: `position [counts]`, `velocity [counts/s]` or `velocity [0.1 counts/s]`.
+///
+/// # Errors
+/// [`PointsError`], the first mistake.
+pub fn read_points_in(counts: Option<Counts>, text: &str) -> Result<Points, PointsError> {
+    read(text, counts, MOST_POINTS)
 }
 
 /// Reads a profile of velocities.
@@ -80,7 +90,7 @@ pub fn read_accelerations(text: &str) -> Result<Profile, PointsError> {
 
 fn read_profile(text: &str, layout: Layout) -> Result<Profile, PointsError> {
     let (mut times, mut values) = (Vec::new(), Vec::new());
-    let heads = read_rows(text, layout, MOST_POINTS, |column, value| match column {
+    let heads = read_rows(text, layout, None, MOST_POINTS, |column, value| match column {
         Column::Time => times.extend(value),
         _ => values.extend(value),
     })?;
@@ -88,9 +98,9 @@ fn read_profile(text: &str, layout: Layout) -> Result<Profile, PointsError> {
 }
 
 /// Reads a table of `most` points at most.
-fn read(text: &str, most: usize) -> Result<Points, PointsError> {
+fn read(text: &str, counts: Option<Counts>, most: usize) -> Result<Points, PointsError> {
     let (mut times, mut positions, mut velocities) = (Vec::new(), Vec::new(), Vec::new());
-    let heads = read_rows(text, Layout::Positions, most, |column, value| match column {
+    let heads = read_rows(text, Layout::Positions, counts, most, |column, value| match column {
         Column::Time => times.extend(value),
         Column::Position => positions.extend(value),
         _ => velocities.push(value),
@@ -202,6 +212,43 @@ mod tests {
         }
     }
 
+    /// Oracle: by hand, 10 000 counts on 5 mm.
+    #[test]
+    fn counts_are_what_they_are_of_the_axis() {
+        let counts = |per, motion| Some(Counts { per, motion });
+        let linear = counts(2e6, Coordinate::Linear);
+        let text = "time [ms],position [counts],velocity [0.1 counts/s]\n0,0,0\n10,10000,-400000\n20,-1,";
+        let points = read_points_in(linear, text).unwrap();
+        assert_eq!((points.motion, points.positions), (Coordinate::Linear, vec![0.0, 0.005, -0.5e-6]));
+        assert_eq!(points.velocities, Some(vec![Some(0.0), Some(-0.02), None]));
+        let whole = read_points_in(linear, &text.replace("0.1 counts/s", "counts/s")).unwrap();
+        assert_eq!(whole.velocities.unwrap()[1], Some(-0.2));
+        let rotary = counts(-1000.0, Coordinate::Rotary);
+        let turned = read_points_in(rotary, "time [s],position [counts]\n0,0\n1,500").unwrap();
+        assert_eq!((turned.motion, turned.positions[1]), (Coordinate::Rotary, -0.5));
+        for (counts, text, said) in [
+            (
+                None,
+                "time [s],position [counts]\n",
+                "1:10: `position` cannot be in `counts`: it is not known what a count is of the axis: `servobench plan` is told by \
+                 --counts; elsewhere write a length or an angle",
+            ),
+            (
+                linear,
+                "time [s],position [counts],velocity [counts/ms]\n",
+                "1:28: `velocity` cannot be in `counts/ms`: write `counts/s`, or `0.1 counts/s` as drives take it",
+            ),
+            (linear, "time [counts],position [m]\n", "1:1: `time` cannot be in `counts`: write `ms`"),
+            (
+                linear,
+                "time [s],position [counts],velocity [rad/s]\n",
+                "1:28: `velocity` cannot be in `rad/s`: positions are in `counts`, a velocity is needed",
+            ),
+        ] {
+            assert_eq!(read_points_in(counts, text).unwrap_err().to_string(), said, "{text}");
+        }
+    }
+
     #[test]
     fn angles_make_a_rotary_axis() {
         let points = read_points("time [s],position [rev]\n0,0\n1,-2").unwrap();
@@ -286,8 +333,8 @@ mod tests {
     #[test]
     fn a_table_of_absurd_length_is_refused() {
         let text = "time [ms],position [mm]\n0,0\n1,0\n2,0\n3,0";
-        assert_eq!(read(text, 4).unwrap().times.len(), 4);
-        assert_eq!(read(text, 3).unwrap_err(), wrong(5, 1, PointsMistake::TooMany { most: 3 }));
+        assert_eq!(read(text, None, 4).unwrap().times.len(), 4);
+        assert_eq!(read(text, None, 3).unwrap_err(), wrong(5, 1, PointsMistake::TooMany { most: 3 }));
     }
 
     /// Columns count characters, not bytes, and a long cell does not fill the screen.

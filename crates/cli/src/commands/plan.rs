@@ -14,7 +14,7 @@ mod table;
 pub(crate) use mistake::PlanMistake;
 
 use crate::args::file;
-use crate::console::print;
+use crate::console::{print, say};
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::output::write_file;
@@ -115,8 +115,11 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
 
 /// The plan, told in the units in which it was asked for.
 fn planned(args: &PlanArgs) -> Result<PlannedMove, Vec<PlanMistake>> {
-    let (request, mut axis) = args.profile.request(args.duration)?;
+    let (request, mut axis) = args.profile.request(args.duration, args.points.counts())?;
     let points = args.points.asked(&mut axis);
+    if args.points.has_unused_counts(args.profile.is_table()) {
+        say("--counts are not used: they are those of a table, or of --words\n");
+    }
     if !axis.mistakes.is_empty() {
         return Err(axis.mistakes);
     }

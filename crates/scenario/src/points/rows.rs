@@ -1,5 +1,6 @@
 //! The rows of a table of points: its heading, and what stands in its cells.
 use super::column::{Column, Layout};
+use super::counts::{self, Counts};
 use super::mistake::{PointsError, PointsMistake};
 use crate::quantity::Scale;
 use crate::reading::{self, ReadError, names};
@@ -37,6 +38,7 @@ impl Cell<'_> {
 pub(super) fn read_rows(
     text: &str,
     layout: Layout,
+    counts: Option<Counts>,
     most: usize,
     mut take: impl FnMut(Column, Option<f64>),
 ) -> Result<Vec<Head>, PointsError> {
@@ -45,7 +47,7 @@ pub(super) fn read_rows(
     let Some((line, row)) = rows.next() else {
         return Err(wrong(1, 1, PointsMistake::NoHeading { like: layout.example() }));
     };
-    let heads = heading(line, row, layout)?;
+    let heads = heading(line, row, layout, counts)?;
     let (mut points, mut last) = (0, (line, f64::NEG_INFINITY));
     for (line, row) in rows {
         if points == most {
@@ -75,7 +77,7 @@ fn cells(row: &str) -> impl Iterator<Item = Cell<'_>> {
 }
 
 /// The columns in their order.
-fn heading(line: usize, row: &str, layout: Layout) -> Result<Vec<Head>, PointsError> {
+fn heading(line: usize, row: &str, layout: Layout, counts: Option<Counts>) -> Result<Vec<Head>, PointsError> {
     for (found, name) in [(';', ";"), ('\t', "tab")] {
         if let Some((before, _)) = row.split_once(found).filter(|_| !row.contains(',')) {
             return Err(wrong(
@@ -101,7 +103,8 @@ fn heading(line: usize, row: &str, layout: Layout) -> Result<Vec<Head>, PointsEr
         let Some(unit) = unit.filter(|unit| !unit.is_empty()) else {
             return Err(fail(PointsMistake::NoUnit { column, proposal: column.proposal() }));
         };
-        let (scale, which) = read_unit(column, unit)
+        let (scale, which) = counts::read_unit(column, unit, counts)
+            .unwrap_or_else(|| read_unit(column, unit))
             .map_err(|message| fail(PointsMistake::Unit { column, unit: unit.to_owned(), message }))?;
         heads.push(Head { column, unit: unit.to_owned(), scale, which, at: cell.at() });
     }

@@ -27,8 +27,9 @@ pub(crate) struct PointArgs {
     /// Object or serial parameter that takes the words.
     #[arg(long, value_parser = choice::<PointTransfer>(), requires = "words", global = true)]
     trajectory_buffer: Option<PointTransfer>,
-    /// Counts of the drive, as "1048576/rev" or "10000/5 mm"; below zero if it counts against the axis.
-    #[arg(long, value_name = "COUNTS", value_parser = COUNTS, allow_hyphen_values = true, requires = "words", global = true)]
+    /// Counts of the drive, as "1048576/rev" or "10000/5 mm", of --words and of a table in counts; below zero if it
+    /// counts against the axis.
+    #[arg(long, value_name = "COUNTS", value_parser = COUNTS, allow_hyphen_values = true, global = true)]
     counts: Option<Counts>,
 }
 
@@ -40,6 +41,16 @@ pub(super) struct AskedPoints {
 }
 
 impl PointArgs {
+    /// What the drive counts.
+    pub(super) fn counts(&self) -> Option<servobench_scenario::Counts> {
+        self.counts.as_ref().map(Counts::of_axis)
+    }
+
+    /// Whether counts are given that nothing uses; a table may.
+    pub(super) const fn has_unused_counts(&self, is_table: bool) -> bool {
+        self.counts.is_some() && self.words.is_none() && !is_table
+    }
+
     /// What is asked for, if anything is.
     pub(super) fn asked(&self, axis: &mut Axis) -> Option<AskedPoints> {
         let Self { pvt, point_time, allowed_deviation, words, trajectory_buffer, counts } = self;

@@ -66,6 +66,13 @@ pub(crate) struct Counts {
     axis: AxisQuantity,
 }
 
+impl Counts {
+    /// As a table has them.
+    pub(super) fn of_axis(&self) -> servobench_scenario::Counts {
+        servobench_scenario::Counts { per: self.drive / self.axis.value, motion: self.axis.motion }
+    }
+}
+
 /// Reads [`Counts`].
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CountsParser;

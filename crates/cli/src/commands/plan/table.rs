@@ -8,7 +8,7 @@ use clap::Args;
 use servobench_motion::online::Sides;
 use servobench_motion::pvt::Knot;
 use servobench_planner::{CommandCycle, CommandRate, Filter, Follow, Generator, TableMove, Velocities, VelocitiesKind};
-use servobench_scenario::{Derivative, Points, axis_quantity, read_points};
+use servobench_scenario::{Counts, Derivative, Points, axis_quantity, read_points_in};
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -48,7 +48,8 @@ pub(crate) struct PositionArgs {
 
 #[derive(Debug, Args)]
 struct TableArgs {
-    /// Table of points: time, position and, if known, velocity, with their units in the heading.
+    /// Table of points: time, position and, if known, velocity, with their units in the heading; `counts` are those of
+    /// --counts.
     #[arg(long, value_name = "FILE")]
     points: PathBuf,
     /// Velocity that the move is held against, as "1 m/s"; what exceeds it is told, and marked in a drawing.
@@ -75,8 +76,8 @@ struct SentArgs {
 }
 
 impl PvtArgs {
-    pub(super) fn generator(&self, axis: &mut Axis) -> Result<Generator, PlanMistake> {
-        let points = self.table.points(axis)?;
+    pub(super) fn generator(&self, counts: Option<Counts>, axis: &mut Axis) -> Result<Generator, PlanMistake> {
+        let points = self.table.points(counts, axis)?;
         let default = if points.velocities.is_some() { VelocitiesKind::Given } else { VelocitiesKind::Average };
         let velocities = match (self.velocities.unwrap_or(default), self.passes) {
             (VelocitiesKind::Smooth, passes) => {
@@ -99,8 +100,8 @@ impl PvtArgs {
 }
 
 impl PositionArgs {
-    pub(super) fn generator(&self, axis: &mut Axis) -> Result<Generator, PlanMistake> {
-        let points = self.table.points(axis)?;
+    pub(super) fn generator(&self, counts: Option<Counts>, axis: &mut Axis) -> Result<Generator, PlanMistake> {
+        let points = self.table.points(counts, axis)?;
         say_velocities_are_unused(&points);
         let follow = match &self.sent {
             SentArgs { plateau: Some(share), .. } => Follow::Plateaus { share: *share },
@@ -156,10 +157,10 @@ impl TableArgs {
     }
 
     /// The table, its units noted.
-    fn points(&self, axis: &mut Axis) -> Result<Points, PlanMistake> {
+    fn points(&self, counts: Option<Counts>, axis: &mut Axis) -> Result<Points, PlanMistake> {
         let file = || self.points.clone();
         let text = read(&self.points).map_err(|error| PlanMistake::Unreadable { file: file(), error })?;
-        let points = read_points(&text).map_err(|error| PlanMistake::Points { file: file(), error })?;
+        let points = read_points_in(counts, &text).map_err(|error| PlanMistake::Points { file: file(), error })?;
         if !points.unused.is_empty() {
             let names: Vec<String> = points.unused.iter().map(ToString::to_string).collect();
             say(&format!(
