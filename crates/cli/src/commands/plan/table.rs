@@ -48,7 +48,7 @@ pub(crate) struct PositionArgs {
 
 #[derive(Debug, Args)]
 struct TableArgs {
-    /// Table of points: time, position and, if known, velocity, with their units in the heading; `counts` are those of
+    /// Table of points: time, position and, if known, velocity, with their units in the heading; counts are those of
     /// --counts.
     #[arg(long, value_name = "FILE")]
     points: PathBuf,
