@@ -192,6 +192,10 @@ fn position_profiles_are_sent_as_commands() {
     let sent = rows(&commands);
     assert_eq!(sent.len(), 10);
     assert_eq!((sent[0][0].to_bits(), sent[9][1].to_bits()), (0.0_f64.to_bits(), 0.0_f64.to_bits()));
+    // The share that is chosen keeps the limits, and is told.
+    let auto = json_of(&format!("{line} --plateau auto --velocity 40m/s --acceleration 1e5m/s2"));
+    let share = number(&auto["plateau_share"]);
+    assert!(share > 0.0 && share <= 0.5 && number(&auto["peaks"]["acceleration"]) <= 1e5, "{auto}");
     let error = |rate: u64| number(&json_of(&format!("{line} --command-rate {rate}Hz"))["position_error"]);
     assert!(error(4000) < error(1000) / 10.0, "it falls with the square of the rate");
     // The lowest rate is one at which the error is kept, and at one command less it is not.

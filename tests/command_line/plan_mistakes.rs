@@ -61,24 +61,6 @@ fn every_mistake_names_its_flag_and_the_way_out() {
             &format!("--order 4 {LIMITS} --start-velocity 1m/s --sample-time 1ms"),
             "--sample-time is not used by a move from a state of motion: leave it out; --csv-step says how far the rows",
         ),
-        (ROCKWELL, "--maximum-jerk is missing: a trapezoid takes it, as \"1000 m/s3\""),
-        (
-            &format!("{ROCKWELL} --shape s-curve"),
-            "--jerk is missing: or --jerk-percent-of-time, or --jerk-percent-of-maximum",
-        ),
-        (&format!("{ROCKWELL} --shape trapezoid --jerk 5m/s3"), "--shape trapezoid takes all of --maximum-jerk"),
-        (
-            &format!("{ROCKWELL} --jerk-percent-of-time 125"),
-            "--jerk-percent-of-time must be above 0 % and at most 100 %, got 125",
-        ),
-        (
-            &format!("{ROCKWELL} --jerk-percent-of-time much"),
-            "invalid value 'much' for '--jerk-percent-of-time <PERCENT>': write a number of percent, as 25",
-        ),
-        (
-            &format!("{ROCKWELL} --jerk-percent-of-maximum 50%"),
-            "--maximum-jerk is missing: a percentage of it is asked for",
-        ),
         (
             &format!("--order 4 {LIMITS} --shaper zvd"),
             "--shaper-frequency <FREQUENCY>\n      Natural frequency of the vibration, as \"12 Hz\"",
@@ -107,6 +89,38 @@ fn every_mistake_names_its_flag_and_the_way_out() {
         (
             &format!("--order 4 {LIMITS} --sample-time 1ns --execution euler"),
             "--sample-time must be long enough for a move of at most 10 million samples",
+        ),
+    ] {
+        let said = refused(line);
+        assert!(said.contains(expected), "{line}\n{expected} in:\n{said}");
+    }
+}
+
+#[test]
+fn every_mistake_in_rockwells_operands_names_its_flag_and_the_way_out() {
+    for (line, expected) in [
+        (ROCKWELL, "--maximum-jerk is missing: a trapezoid takes it, as \"1000 m/s3\""),
+        (
+            &format!("{ROCKWELL} --shape s-curve"),
+            "--jerk is missing: or --jerk-percent-of-time, or another way to say it",
+        ),
+        (&format!("{ROCKWELL} --shape trapezoid --jerk 5m/s3"), "--shape trapezoid takes all of --maximum-jerk"),
+        (
+            &format!("{ROCKWELL} --jerk-percent-of-time 25 --master-speed 360"),
+            "--master-speed is not used: no jerk is given in master units; leave it out",
+        ),
+        (&format!("{ROCKWELL} --jerk-master-units 2"), "--master-speed <SPEED>"),
+        (
+            &format!("{ROCKWELL} --jerk-percent-of-time 125"),
+            "--jerk-percent-of-time must be above 0 % and at most 100 %, got 125",
+        ),
+        (
+            &format!("{ROCKWELL} --jerk-percent-of-time much"),
+            "invalid value 'much' for '--jerk-percent-of-time <PERCENT>': write a number of percent, as 25",
+        ),
+        (
+            &format!("{ROCKWELL} --jerk-percent-of-maximum 50%"),
+            "--maximum-jerk is missing: a percentage of it is asked for",
         ),
     ] {
         let said = refused(line);
@@ -156,6 +170,22 @@ fn a_table_is_refused_at_the_place_of_its_mistake() {
         (
             format!("position --points {} --plateau 0.7", path("good.csv")),
             "--plateau must be above 0 (at least 1e-30) and at most 0.5, got 0.7".to_owned(),
+        ),
+        (
+            format!("position --points {} --plateau auto --velocity 1m/s", path("good.csv")),
+            "--plateau auto is chosen by limits: give --velocity and --acceleration".to_owned(),
+        ),
+        (
+            format!("position --points {} --plateau 0.2 --velocity 1m/s", path("good.csv")),
+            "--velocity and --acceleration choose the share of --plateau auto: choose that, or leave them out".to_owned(),
+        ),
+        (
+            format!("position --points {} --plateau auto --velocity 1m/s --acceleration 1um/s2", path("good.csv")),
+            "no share of plateaus keeps `acceleration` within 0.000001 (SI)".to_owned(),
+        ),
+        (
+            format!("position --points {} --plateau best", path("good.csv")),
+            "'best' for '--plateau <ALPHA>'".to_owned(),
         ),
         (
             format!("position --points {} --command-rate 100", path("good.csv")),

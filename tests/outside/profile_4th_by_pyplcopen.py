@@ -11,12 +11,10 @@ The machine is the C++ of pyplcopen's source package, built here once for each v
 The program is `SERVOBENCH`, or the one in the folder of cargo's builds. Size: 1000 moves, scaled by `SERVOBENCH_SWEEP`.
 """
 
-import hashlib
 import itertools
 import json
 import os
 import re
-import shutil
 import subprocess
 import sys
 import tarfile
@@ -25,6 +23,7 @@ from pathlib import Path
 
 from lxml import etree
 
+from cpp import build, source
 from draws import Random, sweep_size
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -170,36 +169,6 @@ def tight(random: Random) -> str:
     return " ".join([str(order), *map(repr, [sample, 0.0, *limits]), "0", *map(repr, [start, *targets])])
 
 
-def source(package: str) -> Path:
-    """The source of a package, as pip fetched it."""
-    [found] = (Path(sys.prefix) / "sources").glob(f"{package}-*.tar.gz")
-    return found
-
-
-def build() -> Path:
-    """The machine, built once for each version of it and of its sources here."""
-    package = source("pyplcopen")
-    contents = package.read_bytes() + VM.read_bytes()
-    built = Path(sys.prefix) / f"structured-text-vm-{hashlib.sha256(contents).hexdigest()[:16]}"
-    if built.exists():
-        return built
-    compiler = next((path for path in map(shutil.which, ("c++", "g++", "clang++")) if path), None)
-    if compiler is None:
-        sys.exit("there is no C++ compiler (c++, g++, clang++) to build the machine of pyplcopen with: install one")
-    with tempfile.TemporaryDirectory(dir=sys.prefix) as folder:
-        with tarfile.open(package) as archive:
-            archive.extractall(folder, filter="data")
-        [unpacked] = Path(folder).glob("pyplcopen-*")
-        made = Path(folder) / "vm"
-        # Each operation is rounded by itself, whatever the processor offers.
-        options = ["-std=c++17", "-O1", "-ffp-contract=off", "-I", str(unpacked / "core"), str(VM), "-o", str(made)]
-        done = subprocess.run([compiler, *options], stderr=subprocess.PIPE, text=True)
-        if done.returncode != 0:
-            sys.exit(f"the machine of pyplcopen is not built: {done.stderr.strip().splitlines()[0]}")
-        made.rename(built)
-    return built
-
-
 def export(*options: str) -> str:
     """What `servobench plc export` writes."""
     program = os.environ.get("SERVOBENCH")
@@ -287,7 +256,7 @@ def main() -> None:
     random, size = Random(61131), sweep_size(1000)
     lines = [draw(random) for _ in range((size + 1) // 2)]
     with tempfile.TemporaryDirectory() as folder:
-        vm = build()
+        vm = build(VM)
         exported = export()
         programs = {name: Path(folder) / f"{name}.st" for name in ("generator", "absolute", "script")}
         programs["generator"].write_text(exported + GENERATOR)

@@ -61,6 +61,19 @@ pub enum PlanError {
         /// Number of points.
         points: usize,
     },
+    /// A table that no share of plateaus follows within the limits.
+    #[error(
+        "no share of plateaus keeps `{quantity}` within {limit} (SI), the best one takes {peak:.6}: give the table more time, or \
+         raise the limit"
+    )]
+    TableTooFast {
+        /// What is beyond its limit.
+        quantity: &'static str,
+        /// The most that the best share takes (SI).
+        peak: f64,
+        /// The limit (SI).
+        limit: f64,
+    },
     /// A slice of the caller that cannot hold a value for each point.
     #[error("`{name}` must hold a value for each of {points} points, got room for {length}: pass a longer slice")]
     ShortSlice {

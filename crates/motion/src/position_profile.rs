@@ -54,10 +54,12 @@ mod clocked;
 mod command;
 mod plateaus;
 mod rate;
+mod share;
 mod stepped;
 
 pub use clock::Clock;
 pub use clocked::{ClockedPlateaus, ClockedSpline, ClockedSteps};
-pub use command::Command;
+pub use command::{Command, VelocityRamp};
 pub use plateaus::{PlateauCommands, Plateaus};
+pub use share::PlateauShare;
 pub use stepped::{PointErrors, Spline, Stepped, SteppedCommands};

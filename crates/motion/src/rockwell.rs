@@ -11,8 +11,11 @@
 //! was asked for. It stays that when the distance is too short for this speed. A trapezoid takes all the jerk that the axis
 //! is configured for.
 //!
-//! Source: Rockwell Automation, *Logix5000 Controllers Motion Instructions*, MOTION-RM002, "Motion Axis Move"; the distances
-//! that K. T. Erickson, *Programmable Logic Controllers*, §3.2.3.1, prints for its examples are not those of its profiles.
+//! Jerk as a time t_j is J = A/t_j. The ramp to V lasts V/A + t_j then, of which t_j is half at most: for t_j > V/A it is V/A. A move that
+//! is driven by a master counts in master units what another one counts in seconds: t_j = way/speed of the master.
+//!
+//! Source: Rockwell Automation, *Logix5000 Controllers Motion Instructions*, MOTION-RM002, "Motion Axis Move" and "Time based planning";
+//! the distances that K. T. Erickson, *Programmable Logic Controllers*, §3.2.3.1, prints for its examples are not those of its profiles.
 use crate::limits::in_range;
 use crate::online::Stretch;
 use crate::root::increasing;
@@ -28,6 +31,16 @@ pub enum Jerk {
     PercentOfMaximum(f64),
     /// As the part of the ramp in which the acceleration changes (%, above 0 to 100).
     PercentOfTime(f64),
+    /// As the time in which the acceleration rises at the beginning of the ramp, and falls at its end (s). A time of more than half a ramp is
+    /// taken for half of it.
+    Time(f64),
+    /// The same in units of a master, which goes so many of them per second.
+    MasterUnits {
+        /// Way of the master while the acceleration rises, or falls (master units).
+        way: f64,
+        /// Speed of the master (master units per second).
+        speed: f64,
+    },
 }
 
 servobench_config::choices! {
@@ -162,6 +175,11 @@ impl Jerk {
             Self::PercentOfTime(percent) => {
                 let percent = part("jerk_percent_of_time", percent)?;
                 Ok(acceleration * acceleration / speed * (200.0 / percent - 1.0))
+            }
+            Self::Time(time) => Ok(acceleration / checked("jerk_time", time)?.min(speed / acceleration)),
+            Self::MasterUnits { way, speed: master } => {
+                let time = checked("jerk_master_units", way)? / checked("master_speed", master)?;
+                Self::Time(time).value(acceleration, speed, maximum)
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Position profiles for a drive on a bus: commands once per cycle, in whole units of the drive.
-use crate::plan::{Plan, PlanDetails};
+use crate::plan::{Plan, PlanDetails, Sending};
 use crate::polynomials::{Between, Polynomials};
-use crate::table::{CommandRate, Follow, MOST_COMMANDS, TableMove};
+use crate::table::{CommandRate, Follow, MOST_COMMANDS, TableMove, within};
 use servobench_base::{ParamError, Setpoint, non_negative};
 use servobench_motion::PlanError;
 use servobench_motion::position_profile::{Clock, ClockedPlateaus, ClockedSpline, Command, Spline};
@@ -61,11 +61,14 @@ impl TableMove {
                 let (mut knots, mut scratch) = (self.knots.clone(), vec![0.0; self.knots.len()]);
                 let (start, end) = self.ends();
                 let plateaus = ClockedPlateaus::solve(&mut knots, start, end, share, clock, &mut scratch)?;
-                let commands = rounded(plateaus.commands(), start, cycle.unit)?;
+                let sending = Sending::Plateaus { share: plateaus.share() };
+                let commands: Vec<_> = plateaus.commands().collect();
+                within(&commands, start, share)?;
+                let commands = rounded(commands.into_iter(), start, cycle.unit)?;
                 let obeyed = self.obeyed(&commands);
                 let missed = |knot: &Knot| (obeyed.at(knot.t).x - knot.x).abs();
                 let error = self.knots.iter().map(missed).fold(0.0, f64::max);
-                Ok(self.plan_of(obeyed, PlanDetails::Commands { commands, error, rate: None }))
+                Ok(self.plan_of(obeyed, PlanDetails::Commands { commands, error, sending }))
             }
             Follow::Steps { rate: CommandRate::Given(rate) } => self.stepped_in(rate, clock, cycle.unit),
             Follow::Steps { rate: CommandRate::LowestWithin(allowed) } => self.within(allowed, clock, cycle.unit),
@@ -87,7 +90,7 @@ impl TableMove {
         let spline = Spline::solve(&mut knots, start, end, &mut scratch)?;
         let obeyed = self.obeyed(&commands);
         let error = obeyed.largest_difference(spline.table());
-        Ok(self.plan_of(obeyed, PlanDetails::Commands { commands, error, rate: Some(most) }))
+        Ok(self.plan_of(obeyed, PlanDetails::Commands { commands, error, sending: Sending::Rate(most) }))
     }
 
     /// The plan of the fewest whole commands per second that keeps so near to the spline.

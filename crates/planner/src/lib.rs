@@ -32,7 +32,7 @@ mod table;
 pub use analysis::{Binding, Peak, Span};
 pub use clocked::CommandCycle;
 pub use filter::{Averages, Filter, Shaping};
-pub use plan::{Plan, PlanDetails};
+pub use plan::{Plan, PlanDetails, Sending};
 pub use points::{Deviation, PointMove, PointTimes};
 pub use reader::Reader;
 pub use request::{Generator, Grid, Method, PointToPoint, Replanning, Request, Rockwell, Sampling};

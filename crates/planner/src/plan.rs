@@ -64,9 +64,21 @@ pub enum PlanDetails {
         /// What the position differs at most (m or rad): with plateaus from the points at their times, otherwise from the spline's at
         /// any time.
         error: f64,
-        /// Commands per second, where they are sent at a rate.
-        rate: Option<f64>,
+        /// When.
+        sending: Sending,
     },
+}
+
+/// When velocity commands are sent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Sending {
+    /// At the beginning of the ramp from one plateau to the next.
+    Plateaus {
+        /// Share of a segment at either end in which velocity changes.
+        share: f64,
+    },
+    /// So many times per second.
+    Rate(f64),
 }
 
 /// Longest duration (s) that a move can be stretched to: its fourth power is still a normal number.
@@ -315,14 +327,14 @@ impl PlanDetails {
                     *jerk /= factor * factor * factor;
                 }
             }
-            Self::Commands { commands, rate, .. } => {
+            Self::Commands { commands, sending, .. } => {
                 let start = commands.first().map_or(0.0, |command| command.t);
                 for command in commands {
                     command.t = start + (command.t - start) * factor;
                     command.velocity /= factor;
                     command.acceleration /= factor * factor;
                 }
-                if let Some(rate) = rate {
+                if let Sending::Rate(rate) = sending {
                     *rate /= factor;
                 }
             }

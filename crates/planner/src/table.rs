@@ -1,8 +1,8 @@
 //! Moves through tables: as they are, or as a drive follows that is told velocities.
-use crate::plan::{Plan, PlanDetails};
+use crate::plan::{Plan, PlanDetails, Sending};
 use crate::polynomials::{Between, Polynomials};
 use servobench_base::{ParamError, Setpoint};
-use servobench_motion::position_profile::{Command, Plateaus, Spline};
+use servobench_motion::position_profile::{Command, PlateauShare, Plateaus, Spline};
 use servobench_motion::pvt::{Knot, Table, average, continuous, smooth};
 use servobench_motion::{Course, PlanError};
 
@@ -42,7 +42,7 @@ servobench_config::choices! {
         /// by profile velocities with a plateau in each segment; hits every position
         Plateaus {
             /// Share of a segment at either end in which velocity changes.
-            share: f64,
+            share: PlateauShare,
         } = "plateaus",
         /// by profile velocities along the cubic spline, sent at `command_rate`
         Steps {
@@ -99,11 +99,13 @@ impl TableMove {
             }
             Follow::Plateaus { share } => {
                 let plateaus = Plateaus::solve(&mut knots, start, end, share, &mut scratch)?;
-                let commands = plateaus.commands().collect();
+                let commands: Vec<_> = plateaus.commands().collect();
+                within(&commands, start, share)?;
+                let sending = Sending::Plateaus { share: plateaus.share() };
                 let mut cursor = plateaus.cursor();
                 let knots = plateaus.knots();
                 let polynomials = Polynomials::collect(knots[0].t, knots[knots.len() - 1].t, |t| cursor.piece(t));
-                Ok(Plan::of(polynomials, PlanDetails::Commands { commands, error: 0.0, rate: None }))
+                Ok(Plan::of(polynomials, PlanDetails::Commands { commands, error: 0.0, sending }))
             }
             Follow::Steps { rate: CommandRate::Given(rate) } => {
                 let bound = "low enough for at most 10 million commands";
@@ -141,8 +143,22 @@ impl TableMove {
         let (first, last) = (self.knots[0], self.knots[self.knots.len() - 1]);
         let state = Setpoint { v: start, ..Setpoint::at_rest(first.x) };
         let (parts, end) = obeyed(&commands, state, first.t, last.t);
-        let details = PlanDetails::Commands { commands, error: stepped.largest_error(), rate: Some(rate) };
+        let details = PlanDetails::Commands { commands, error: stepped.largest_error(), sending: Sending::Rate(rate) };
         Ok(Plan::of(Polynomials::new(parts, Between::Polynomial, last.t - first.t, end), details))
+    }
+}
+
+/// Looks whether `commands`, sent to a drive at velocity `start`, are within the limits of a share that is looked for.
+pub(crate) fn within(commands: &[Command], start: f64, share: PlateauShare) -> Result<(), PlanError> {
+    let PlateauShare::SmallestPartOf { velocity, acceleration } = share else { return Ok(()) };
+    let most = |of: fn(&Command) -> f64, first: f64| commands.iter().map(of).fold(first, f64::max);
+    let peaks = [
+        ("velocity", most(|command| command.velocity.abs(), start.abs()), velocity),
+        ("acceleration", most(|command| command.acceleration, 0.0), acceleration),
+    ];
+    match peaks.into_iter().find(|(_, peak, limit)| *peak > limit * (1.0 + ROUNDING)) {
+        Some((quantity, peak, limit)) => Err(PlanError::TableTooFast { quantity, peak, limit }),
+        None => Ok(()),
     }
 }
 

@@ -2,7 +2,7 @@
 use servobench_motion::position_profile::{Command, Spline};
 use servobench_motion::pvt::Knot;
 use servobench_planner::{
-    CommandCycle, CommandRate, Follow, Generator, Plan, PlanDetails, Request, TableMove, Velocities,
+    CommandCycle, CommandRate, Follow, Generator, Plan, PlanDetails, Request, Sending, TableMove, Velocities,
 };
 
 /// No time is a whole number of a cycle of the tests; the table does not begin at 0.
@@ -19,8 +19,9 @@ fn request(follow: Follow, cycle: CommandCycle) -> Request {
 }
 
 fn told(plan: &Plan) -> (&[Command], f64, Option<f64>) {
-    let PlanDetails::Commands { commands, error, rate } = plan.details() else { panic!("{:?}", plan.details()) };
-    (commands, *error, *rate)
+    let PlanDetails::Commands { commands, error, sending } = plan.details() else { panic!("{:?}", plan.details()) };
+    let rate = if let Sending::Rate(rate) = sending { Some(*rate) } else { None };
+    (commands, *error, rate)
 }
 
 const CYCLES: [CommandCycle; 4] = [
@@ -34,7 +35,7 @@ const CYCLES: [CommandCycle; 4] = [
 #[test]
 fn what_is_announced_is_what_the_commands_lead_to() {
     for cycle in CYCLES {
-        let plateaus = [0.25, 0.5, 0.1, 0.4321].map(|share| Follow::Plateaus { share });
+        let plateaus = [0.25, 0.5, 0.1, 0.4321].map(|share| Follow::Plateaus { share: share.into() });
         let steps = [300.0, 77.7, 1e4].map(|rate| Follow::Steps { rate: CommandRate::Given(rate) });
         for follow in plateaus.into_iter().chain(steps) {
             for slower in [1.0, 1.37] {
@@ -91,7 +92,7 @@ fn the_lowest_rate_within_an_error_is_that_of_the_cycle_or_refused() {
 #[test]
 fn what_cannot_be_sent_is_refused() {
     let unit = |unit| CommandCycle { unit, ..CYCLES[0] };
-    let said = |cycle| request(Follow::Plateaus { share: 0.1 }, cycle).plan().unwrap_err().to_string();
+    let said = |cycle| request(Follow::Plateaus { share: 0.1.into() }, cycle).plan().unwrap_err().to_string();
     assert!(said(unit(1e-10)).starts_with("`acceleration` must be at most 2³² − 1 units"), "{}", said(unit(1e-10)));
     assert!(
         said(unit(1e-11)).starts_with("`velocity` must be at most 2³¹ − 1 velocity units"),

@@ -91,7 +91,7 @@ impl Asked {
                     _ => Velocities::Continuous,
                 };
                 let follow = match self.variant >> 2 & 3 {
-                    0 => Follow::Plateaus { share: time },
+                    0 => Follow::Plateaus { share: time.into() },
                     1 => Follow::Steps { rate: CommandRate::Given(time) },
                     2 => Follow::Steps { rate: CommandRate::LowestWithin(time) },
                     _ => Follow::Segments,

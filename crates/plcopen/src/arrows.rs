@@ -2,7 +2,7 @@
 //! tests test and from which `docs/plcopen.md` is written.
 //!
 //! The standard has no numbers but for its six notes; arrows 1 to 6 are these. Arrows 14 and 15 are ours: the generator of order 4
-//! moves from rest to rest, and a table of positions may end with a velocity.
+//! and Rockwell's axis move go from rest to rest, and a table of positions may end with a velocity.
 //!
 //! `MC_PositionProfile` leads to a last position and says Done there, so that it is a Discrete Motion; of the profiles of velocity
 //! and acceleration the standard says (sections 3.15 and 3.16) that the axis stays in Continuous Motion.
@@ -137,7 +137,12 @@ pub const ARROWS: [Arrow; 15] = [
             Cause::Block(BlockName::AccelerationProfile),
         ],
     },
-    Arrow { number: 14, from: &[Standstill], to: DiscreteMotion, causes: &[Cause::Block(BlockName::Profile4th)] },
+    Arrow {
+        number: 14,
+        from: &[Standstill],
+        to: DiscreteMotion,
+        causes: &[Cause::Block(BlockName::Profile4th), Cause::Block(BlockName::AxisMove)],
+    },
     Arrow { number: 15, from: &[DiscreteMotion], to: ContinuousMotion, causes: &[Cause::DoneMoving] },
 ];
 

@@ -18,6 +18,7 @@ mod run;
 mod shared_limits;
 mod superimposed;
 mod supervision;
+mod velocity_commands;
 
 use crate::blocks::BlockName;
 use crate::command::Reference;
@@ -34,6 +35,7 @@ use servobench_motion::Limits;
 use servobench_motion::interpolate::Sample;
 use superimposed::Superimposed;
 use supervision::Reset;
+use velocity_commands::VelocityCommands;
 
 pub(crate) use bounds::Override;
 pub(crate) use inputs_outputs::Probed;
@@ -70,6 +72,7 @@ pub struct Axis {
     /// Direction of the last motion, 1 or −1.
     last_direction: f64,
     factors: Override,
+    velocity_commands: VelocityCommands,
     queue: Queue,
     ledger: Ledger,
     error: Option<AxisError>,
@@ -106,6 +109,7 @@ impl Axis {
             is_beginning: false,
             last_direction: 1.0,
             factors: Override::NONE,
+            velocity_commands: VelocityCommands::default(),
             queue: Queue::EMPTY,
             ledger: Ledger::new(),
             error: None,
@@ -138,10 +142,15 @@ impl Axis {
             }
             Activity::Effort(effort) => Task::Effort(effort.present),
             Activity::Rest | Activity::Moving(_) | Activity::Homing(_) | Activity::Leaving(_) | Activity::Led(_) => {
-                let Setpoint { x, v, a, .. } = self.setpoint;
-                Task::Follow(Sample { x, v, a, torque: 0.0 })
+                if let Some(start) = self.params.velocity_ramps {
+                    Task::Drive(self.velocity_command(start))
+                } else {
+                    let Setpoint { x, v, a, .. } = self.setpoint;
+                    Task::Follow(Sample { x, v, a, torque: 0.0 })
+                }
             }
         };
+        self.end_velocity_command();
         AxisCommand {
             power: self.power.enable,
             reset: self.reset.signal(),
@@ -167,6 +176,12 @@ impl Axis {
     #[must_use]
     pub fn commanded(&self) -> Setpoint {
         Setpoint { x: self.setpoint.x + self.offset, ..self.setpoint }
+    }
+
+    /// The set-point of this cycle in the coordinate of the drive, as it is sent.
+    #[must_use]
+    pub const fn sent(&self) -> Setpoint {
+        self.setpoint
     }
 
     /// What the axis says of itself, the position as the program sees it.

@@ -10,11 +10,13 @@
 //! - Done, CommandAborted and Error stay until Execute is FALSE. When it was FALSE before they came, they last one cycle.
 //! - A falling edge does not end the command. A new rising edge starts a new one, and nothing more is said of the old one. Where
 //!   the new one is refused, Error is TRUE for that, and the old one goes on unreported: errors of blocks do not stop the axis.
-//! - InVelocity, InEndVelocity and InTorque go with Busy and Active, as long as the command has the axis.
+//! - InVelocity, InEndVelocity and InTorque go with Busy and Active, as long as the set-point is the commanded value: where
+//!   ContinuousUpdate changes that, they are FALSE from the same call on until it is reached.
 //!
 //! # Enable
 //!
-//! The outputs of a block with Enable follow it from cycle to cycle; Valid or Error says whether they mean anything.
+//! The outputs of a block with Enable follow it from cycle to cycle; Valid or Error says whether they mean anything. Busy is TRUE as
+//! long as Enable is: an error is over as soon as its cause is, without a new edge (section 2.2.3).
 //!
 //! # Another block
 //!
@@ -23,6 +25,7 @@
 //! call it, scenario files have its keys, recordings its outputs, and the references in `docs/` list it from there on
 //! (`SERVOBENCH_WRITE_DOCS=1 cargo test -p servobench-plcopen -p servobench-scenario` writes them). One that commands the axis also
 //! needs its place in the state diagram, `ARROWS`.
+mod axis_move;
 mod digital;
 mod execution;
 mod halt_superimposed;
@@ -61,7 +64,9 @@ use servobench_config::quantities::{ACCELERATION, EFFORT, EFFORT_RATE, JERK, POS
 use servobench_config::{Choice as _, any, not_negative, positive};
 use servobench_fieldbus::ProbeTrigger;
 use servobench_motion::pvt::Knot;
+use servobench_motion::rockwell::ShapeKind;
 
+pub use axis_move::{AxisMove, AxisMoveInputs, AxisMoveOutputs, MoveType};
 pub use digital::{
     ReadDigitalInput, ReadDigitalInputInputs, ReadDigitalOutput, ReadDigitalOutputInputs, WriteDigitalOutput,
     WriteDigitalOutputInputs,
@@ -84,7 +89,7 @@ pub use parameters::{
     ReadBoolOutputs, ReadBoolParameter, ReadBoolParameterInputs, ReadParameter, ReadParameterInputs,
     ReadParameterOutputs, WriteBoolParameter, WriteBoolParameterInputs, WriteParameter, WriteParameterInputs,
 };
-pub use position_profile::{Follow, PositionProfile, PositionProfileInputs, TimePosition, VelocityCommands};
+pub use position_profile::{Follow, PositionProfile, PositionProfileInputs, TimePosition};
 pub use power::{Power, PowerInputs, PowerOutputs};
 pub use profile::{Memory, Pair};
 pub use profile_4th::{Profile4th, Profile4thInputs, Profile4thOutputs};
@@ -175,6 +180,24 @@ list_inputs! {
         "Beginning of the window in which a trigger counts" + "; everywhere unless given";
     LastPosition "last_position" stays InputType::Quantity(any(Axis(&POSITION), "110 mm")),
         "End of the window in which a trigger counts" + "; everywhere unless given";
+    MoveType "move_type" stays InputType::Choice(&const { names::<MoveType, { MoveType::ALL.len() }>() }),
+        "Whether `position` of MAM is where to or how far" + "; where to unless given";
+    Shape "shape" stays InputType::Choice(&const { names::<ShapeKind, { ShapeKind::ALL.len() }>() }),
+        "Shape of the velocity of MAM" + "; \"trapezoid\" unless given";
+    JerkOfTime "jerk_of_time" stays InputType::Quantity(positive(Plain(&RATIO), "25 %")),
+        "Jerk as the part of the ramp in which the acceleration changes" + "; of an S-curve all of it unless one is given";
+    JerkOfMaximum "jerk_of_maximum" stays InputType::Quantity(positive(Plain(&RATIO), "60 %")),
+        "Jerk as a part of that of the axis";
+    JerkTime "jerk_time" stays InputType::Quantity(positive(Plain(&TIME), "2 ms")),
+        "Jerk as the time in which the acceleration rises, and falls";
+    DecelerationJerk "deceleration_jerk" stays InputType::Quantity(positive(Axis(&JERK), "80 m/s3")),
+        "Jerk of the deceleration" + "; as that of the acceleration unless one is given";
+    DecelerationJerkOfTime "deceleration_jerk_of_time" stays InputType::Quantity(positive(Plain(&RATIO), "50 %")),
+        "The same as the part of its ramp in which it changes";
+    DecelerationJerkOfMaximum "deceleration_jerk_of_maximum" stays InputType::Quantity(positive(Plain(&RATIO), "60 %")),
+        "The same as a part of that of the axis";
+    DecelerationJerkTime "deceleration_jerk_time" stays InputType::Quantity(positive(Plain(&TIME), "2 ms")),
+        "The same as the time in which it rises, and falls";
     Order "order" stays InputType::Whole(2, 4),
         "Which derivative of the position Profile4th switches: 2 the acceleration, 3 the jerk, 4 the snap" + "; 4 unless given";
 }
@@ -229,6 +252,12 @@ list_outputs! {
     Added "pref_add" Number "what the move adds to the position";
     Jerk "Jerk" Number "the jerk of the set-point";
     Snap "dJerk" Number "the snap of the set-point";
+    MoveEnabled "EN" Flag "the block is executed";
+    MoveBegun "DN" Flag "the move has begun";
+    MoveFailed "ER" Flag "something is wrong";
+    InProcess "IP" Flag "the move is under way";
+    MoveActive "AC" Flag "the move controls the axis";
+    ProcessComplete "PC" Flag "the axis is at its target";
 }
 
 /// Memory of a table: in a program as long as it has to be.
@@ -282,6 +311,7 @@ list_blocks! {
     ReadActualPosition: ReadActualPosition, "MC_ReadActualPosition", "tells the actual position";
     ReadActualVelocity: ReadActualVelocity, "MC_ReadActualVelocity", "tells the actual velocity";
     ReadActualTorque: ReadActualTorque, "MC_ReadActualTorque", "tells the actual torque or force";
+    AxisMove: AxisMove, "MAM" command, "Rockwell's axis move: from rest to rest by a trapezoid or an S-curve";
     Profile4th: Profile4th, "Profile4th" command, "the generator of fourth order as a block: moves to a position";
 }
 

@@ -1,9 +1,10 @@
 //! How a block is called by its name: what its inputs are, what counts where one is not given, and what its outputs are.
-use crate::blocks::{Follow, Input, Pair};
+use crate::blocks::{Follow, Input, MoveType, Pair};
 use crate::command::{BufferMode, Direction};
 use crate::parameter::{AxisBoolParameter, AxisParameter};
 use servobench_config::{Bound, Choice, Measure};
 use servobench_fieldbus::ProbeTrigger;
+use servobench_motion::rockwell::ShapeKind;
 
 /// What starts and ends a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -131,7 +132,7 @@ pub(crate) const fn limit_if_any(input: Input) -> BlockInput {
     BlockInput::new(input, Absent::LimitIfAny(input))
 }
 
-/// A number that the block can do without.
+/// What the block can do without; of several names the first one counts then.
 pub(crate) const fn optional(input: Input) -> BlockInput {
     BlockInput::new(input, Absent::Nothing)
 }
@@ -301,7 +302,7 @@ macro_rules! read_by_name {
     )+ };
 }
 
-read_by_name! { AxisParameter, AxisBoolParameter, ProbeTrigger }
+read_by_name! { AxisParameter, AxisBoolParameter, ProbeTrigger, MoveType, ShapeKind }
 
 /// A type that an output can have.
 pub(crate) trait Recorded {

@@ -54,5 +54,5 @@ pub use error::{AxisError, BlockError, ErrorId};
 pub use interface::{Absent, BlockInput, BlockInputs, InputType, OutputType, Table, Trigger, Value, Values};
 pub use ledger::{CommandId, Progress};
 pub use parameter::{AxisBoolParameter, AxisParameter};
-pub use params::AxisParams;
+pub use params::{AxisParams, RampStart};
 pub use state::AxisState;

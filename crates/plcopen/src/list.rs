@@ -78,7 +78,7 @@ macro_rules! list_outputs {
 /// meaning.
 macro_rules! list_blocks {
     ($( $variant:ident: $block:ty, $name:literal $($command:ident)?, $meaning:literal; )+) => {
-        /// A function block: of the standard, but for `Profile4th`.
+        /// A function block: of the standard, but for `Profile4th` and `MAM`.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         pub enum BlockName {
             $( #[doc = concat!("`", $name, "`: ", $meaning, ".")] $variant, )+

@@ -3,6 +3,16 @@ use crate::axis::MOST_BUFFERED;
 use servobench_base::{ParamError, limit, positive};
 use servobench_motion::Limits;
 
+servobench_config::choices! {
+    /// From which velocity the acceleration of a velocity command counts, so that the drive is at the next velocity a cycle later.
+    pub enum RampStart default SetPoint {
+        /// the velocity of the set-point before: what the drive has when it obeys
+        SetPoint = "set-point",
+        /// the velocity that the drive reports
+        Actual = "actual",
+    }
+}
+
 /// Parameters of an axis, in the axis unit (m or rad); constant while it runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisParams {
@@ -15,6 +25,8 @@ pub struct AxisParams {
     pub needs_homing: bool,
     /// After this much the position of a modulo axis begins anew (m or rad); `None` for an axis with ends.
     pub modulo: Option<f64>,
+    /// For an axis whose drive is told velocities rather than positions (profile velocity, pv): where their ramps begin.
+    pub velocity_ramps: Option<RampStart>,
     /// How many commands may wait behind the active one, at most [`MOST_BUFFERED`].
     pub buffered_commands: usize,
 }
@@ -23,7 +35,7 @@ impl AxisParams {
     /// An axis with ends, to be homed, which holds one buffered command.
     #[must_use]
     pub const fn new(cycle_time: f64, limits: Limits) -> Self {
-        Self { cycle_time, limits, needs_homing: true, modulo: None, buffered_commands: 1 }
+        Self { cycle_time, limits, needs_homing: true, modulo: None, velocity_ramps: None, buffered_commands: 1 }
     }
 
     /// # Errors

@@ -6,7 +6,7 @@ use crate::quantity;
 use crate::source::At;
 use crate::tree::{Node, Value};
 use serde_json::{Value as Json, json};
-use servobench_config::quantities::{RATIO, TIME};
+use servobench_config::quantities::RATIO;
 use servobench_config::{Bound, Kind, Measure};
 
 /// One value or a list of them.
@@ -95,29 +95,28 @@ impl Field for Share {
     }
 }
 
-/// A time, or what the tool computes.
+/// A value, or the one that the tool computes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum AutoTime {
+pub(crate) enum Automatic {
     Auto,
-    Time(f64),
+    Given(f64),
 }
 
-const DELAY: Measure = Measure { kind: Kind::Plain(&TIME), bound: Bound::NotNegative, example: "125 us" };
-
-impl Field for AutoTime {
-    fn decode(path: &str, node: &Node, (): &(), report: &mut Report) -> Option<Self> {
+impl Field<Measure> for Automatic {
+    fn decode(path: &str, node: &Node, spec: &Measure, report: &mut Report) -> Option<Self> {
         match node.value.as_text() {
             Some("auto") => Some(Self::Auto),
             Some(text) if !quantity::begins_with_a_number(text) => {
-                let message = format!("`{}` must be \"auto\" or a time, got {}", key(path), written(node));
+                let (key, example) = (key(path), spec.example);
+                let message = format!("`{key}` must be \"auto\" or a value like {example}, got {}", written(node));
                 report.error(node.span, message, "");
                 None
             }
-            _ => f64::decode(path, node, &DELAY, report).map(Self::Time),
+            _ => f64::decode(path, node, spec, report).map(Self::Given),
         }
     }
 
-    fn schema((): &()) -> Json {
-        json!({ "anyOf": [{ "const": "auto" }, f64::schema(&DELAY)] })
+    fn schema(spec: &Measure) -> Json {
+        json!({ "anyOf": [{ "const": "auto" }, f64::schema(spec)] })
     }
 }

@@ -33,7 +33,7 @@ use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file::{File, MotorKind, Run};
 use crate::limit_table::LimitTable;
-use crate::scenario::{LONGEST_RUN, Record, Scenario};
+use crate::scenario::{BusMode, LONGEST_RUN, Record, Scenario};
 use crate::simple::MAX_RATE;
 use crate::source::{At, Authority, Sources, Span};
 use servobench_base::Rate;
@@ -73,7 +73,9 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
         bus::refuse_by_program(file, bus, program.as_deref(), report);
     }
     let is_modulo = axis.is_some_and(|axis| axis.modulo.span().is_some());
-    let plc = plc::resolve(file, &plc::Known { duration, is_modulo, sources }, report);
+    let mode = file.bus.given().and_then(|bus| bus.mode.given());
+    let is_told_velocities = mode == Some(&BusMode::ProfileVelocity);
+    let plc = plc::resolve(file, &plc::Known { duration, is_modulo, is_told_velocities, sources }, report);
     let of_run = requirements::Known {
         duration,
         has_bus: file.bus.span().is_some(),

@@ -131,8 +131,9 @@ fn profiles_of_positions_velocities_and_accelerations() {
             "table = { file = \"x.csv\" }\ntime_scale = \"50 %\"\nvalue_scale = 3\nposition_offset = \"-10 mm\"",
             PositionProfileInputs { time_scale: 0.5, position_scale: 3.0, offset: -0.01, ..spline },
         ),
-        ("table = { file = \"x.csv\", follow = \"plateaus\" }", plateaus(0.25)),
-        ("table = { file = \"x.csv\", follow = \"plateaus\", plateau_share = 0.3 }", plateaus(0.3)),
+        ("table = { file = \"x.csv\", follow = \"plateaus\" }", plateaus(Some(0.25))),
+        ("table = { file = \"x.csv\", follow = \"plateaus\", plateau_share = 0.3 }", plateaus(Some(0.3))),
+        ("table = { file = \"x.csv\", follow = \"plateaus\", plateau_share = \"auto\" }", plateaus(None)),
     ] {
         let call = call("MC_PositionProfile", keys);
         assert_eq!(PositionProfileInputs::read(&call.inputs, false), expected);

@@ -53,7 +53,11 @@ fn said(block: &str, input: &str) -> String {
         "velocity" | "velocity_difference" | "velocity_offset" | "value" => "\"0.1 m/s\"",
         "end_velocity" => "\"0.05 m/s\"",
         "acceleration" | "deceleration" | "acceleration_offset" => "\"2 m/s2\"",
-        "jerk" => "\"100 m/s3\"",
+        "jerk" | "deceleration_jerk" => "\"100 m/s3\"",
+        "move_type" => "\"incremental\"",
+        "shape" => "\"s-curve\"",
+        // Other ways to say the same.
+        key if key.contains("jerk_of_") || key.contains("jerk_time") => return String::new(),
         "snap" => "\"10000 m/s4\"",
         "direction" => "\"positive\"",
         "buffer_mode" => "\"aborting\"",

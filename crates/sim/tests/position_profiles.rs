@@ -21,15 +21,15 @@ const POINTS: [(f64, f64); 9] = [
     (0.4543, 0.02),
 ];
 
-/// A way to follow the table, the cycle of the bus and that of the motion task (ms), and the pause before it (ms).
+/// A way to follow the table, the cycle of the bus (ms), and of how many of them that of the motion task is.
 struct Case {
     follow: String,
     cycle: f64,
     every: u32,
-    pause: f64,
 }
 
-fn run(case: &Case, unit: &str) -> (scenario::Loaded, Recording) {
+/// The moves of a file, or the calls of blocks, as the table named in them is followed.
+fn run(case: &Case, unit: &str, program: impl Fn(&str) -> String) -> (scenario::Loaded, Recording) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/plc");
     let mut table = "time [s],position [m]\n".to_owned();
     for (t, x) in POINTS {
@@ -37,11 +37,13 @@ fn run(case: &Case, unit: &str) -> (scenario::Loaded, Recording) {
     }
     let mut file = tempfile::Builder::new().suffix(".csv").tempfile().unwrap_or_else(|error| panic!("{error}"));
     std::io::Write::write_all(&mut file, table.as_bytes()).unwrap_or_else(|error| panic!("{error}"));
-    let Case { follow, cycle, every, pause } = case;
+    let Case { follow, cycle, every } = case;
+    let program = program(&format!("table = {{ file = \"{}\", {follow} }}", file.path().display()));
     let text = format!(
         "
 [run]
 base_rate = \"16 kHz\"
+duration = \"0.7 s\"
 [axis]
 model = \"ball-screw\"
 [motor]
@@ -57,15 +59,9 @@ motion_cycle = \"{} ms\"
 delay = 1
 mode = \"pv\"
 {unit}
-[[program]]
-wait = \"{pause} ms\"
-[[program]]
-table = {{ file = \"{}\", {follow} }}
-[[program]]
-wait = \"30 ms\"
+{program}
 ",
         cycle * f64::from(*every),
-        file.path().display()
     );
     let loaded = scenario::parse("test", &text, Some(&folder)).unwrap_or_else(|error| panic!("{error}"));
     let bench = Bench::new(&loaded.scenario, &Exact).unwrap_or_else(|error| panic!("{error}"));
@@ -117,8 +113,12 @@ fn positions_are_met_as_announced_at_any_share_and_rate() {
             // In increments of the encoder, 9.5 nm, 32 bits hold up to 41 m/s².
             let units = ["units = { drive = 1, axis = \"1 um\" }", "units = { drive = 7, axis = \"1 um\" }", ""];
             for unit in &units[..if follow.ends_with("0.01") || follow.ends_with("0.1") { 2 } else { 3 }] {
-                let case = Case { follow: follow.clone(), cycle, every, pause };
-                let (loaded, recording) = run(&case, unit);
+                let case = Case { follow: follow.clone(), cycle, every };
+                let moves = |table: &str| {
+                    let wait = |time: f64| format!("[[program]]\nwait = \"{time} ms\"\n");
+                    format!("{}[[program]]\n{table}\n{}", wait(pause), wait(30.0))
+                };
+                let (loaded, recording) = run(&case, unit, moves);
                 let announced = Program::new(&loaded.scenario).unwrap_or_else(|error| panic!("{error}")).announced();
                 let announced = announced.iter().flatten().copied().fold(0.0, f64::max);
                 let [at_points, at_all] = missed(&recording, pause, spline.table().knots(), &spline);
@@ -135,4 +135,41 @@ fn positions_are_met_as_announced_at_any_share_and_rate() {
         }
     }
     println!("plateaus: {worst:.2e} m at worst");
+}
+
+/// MC_PositionProfile tells the drive velocities in its cycles: the same table is met as exactly. By steps along the spline, as the spline
+/// followed at that rate announces. Oracle: the drive's velocity summed up.
+#[test]
+fn a_block_meets_the_positions_with_its_velocities() {
+    let calls = |table: &str| {
+        format!(
+            "[setpoint]\norder = 2\nvelocity = \"2 m/s\"\nacceleration = \"40 m/s2\"\n[plc]\nhoming_required = false\n[[call]]\nblock = \
+             \"MC_Power\"\nname = \"power\"\n[[call]]\nblock = \"MC_PositionProfile\"\nstart = \"power.Status\"\n{table}\n"
+        )
+    };
+    let mut knots = POINTS.map(|(t, x)| Knot::new(t, x));
+    let mut scratch = [0.0; POINTS.len()];
+    let spline = Spline::solve(&mut knots, 0.0, 0.0, &mut scratch).unwrap_or_else(|error| panic!("{error}"));
+    for (cycle, every) in [(1.0, 1), (1.0, 4), (0.5, 1), (2.0, 1)] {
+        let period = 1e-3 * cycle * f64::from(every);
+        for (follow, rate) in [
+            ("follow = \"plateaus\", plateau_share = \"auto\"", None),
+            ("follow = \"plateaus\", plateau_share = 0.4321", None),
+            ("follow = \"steps\"", Some(1.0 / period)),
+            ("follow = \"steps\", command_rate = \"100 Hz\"", Some(100.0)),
+        ] {
+            let case = Case { follow: follow.to_owned(), cycle, every };
+            let (_, recording) = run(&case, "units = { drive = 1, axis = \"1 um\" }", calls);
+            let [at_points, at_all] = missed(&recording, 0.0, spline.table().knots(), &spline);
+            let what = format!("{follow}, {cycle} ms × {every}");
+            println!("{what}: {at_points:.3e} m at the points, {at_all:.3e} m off the spline");
+            match rate {
+                None => assert!(at_points < 2e-7, "{what}: {at_points} m at the points"),
+                Some(rate) => {
+                    let announced = spline.stepped(rate).map_or(f64::NAN, |stepped| stepped.largest_error());
+                    assert!(at_all < 1.2 * announced + 2e-7, "{what}: {at_all} m, {announced} m announced");
+                }
+            }
+        }
+    }
 }

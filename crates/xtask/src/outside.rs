@@ -51,7 +51,7 @@ const GROUPS: [Group; 3] = [
         environment: "python-pyplcopen",
         requirements: &["pyplcopen.txt"],
         sources: Some("pyplcopen-source.txt"),
-        clients: &["profile_4th_by_pyplcopen.py"],
+        clients: &["blocks_by_pyplcopen.py", "profile_4th_by_pyplcopen.py"],
     },
 ];
 

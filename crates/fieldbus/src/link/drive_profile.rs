@@ -4,7 +4,7 @@
 //! profile position mode): bit 4 rises with the target, bit 12 answers, both fall, and the next one can come.
 use super::frame::set_target;
 use super::{Params, State};
-use crate::{ProfileCommand, ProfileFeedback, TrajectoryPoint};
+use crate::{LinkFault, ProfileCommand, ProfileFeedback, TrajectoryPoint};
 use servobench_cia402::{Actuals, Mode, StatusBit};
 
 /// What a link remembers of it.
@@ -69,15 +69,19 @@ impl State {
             ProfileCommand::Position { number, position, velocity, acceleration } => {
                 let acknowledges = self.actuals.statusword.has(StatusBit::ModeSpecific12);
                 self.drive_profile.hand_over(number, acknowledges);
-                if let Some(counts) = p.scale.counts(position) {
-                    set_target(&mut self.commands, p.scale.counter(), counts.into());
+                match p.scale.counts(position) {
+                    Some(counts) => set_target(&mut self.commands, p.scale.counter(), counts.into()),
+                    None => self.fault = self.fault.or(Some(LinkFault::Command)),
                 }
                 self.commands.profile_velocity = rate(velocity);
                 self.set_acceleration(rate(acceleration));
             }
             ProfileCommand::Velocity { velocity, acceleration } => {
                 self.drive_profile.starts = false;
-                self.commands.target_velocity = p.scale.drive_velocity(velocity).unwrap_or(0);
+                match p.scale.drive_velocity(velocity) {
+                    Some(velocity) => self.commands.target_velocity = velocity,
+                    None => self.fault = self.fault.or(Some(LinkFault::Command)),
+                }
                 self.set_acceleration(rate(acceleration));
             }
             ProfileCommand::Points { point, follow } => {

@@ -2,7 +2,7 @@
 use crate::rig::{BUS, MOTION, Rig, follow, settings};
 use servobench_cia402::{PowerState, Statusword};
 use servobench_fieldbus::link::{Sequencing, Settings};
-use servobench_fieldbus::{AxisCommand, Fault, Interpolation, LinkFault, Power, Switches};
+use servobench_fieldbus::{AxisCommand, Fault, Interpolation, LinkFault, Power, ProfileCommand, Switches, Task};
 use servobench_motion::interpolate::Sample;
 
 /// At `x`, moving at `v`.
@@ -299,6 +299,13 @@ fn a_sample_that_is_no_number_is_refused_and_stops_the_axis() {
         let mut rig = Rig::powered(settings());
         rig.run(1, |_| at(sample, 0.0));
         assert_eq!(rig.fault(), Some(Fault::Link(LinkFault::Command)));
+        assert_eq!(rig.drive.counts, 0);
+    }
+    for velocity in [f64::NAN, f64::INFINITY, 1e30] {
+        let mut rig = Rig::powered(settings());
+        let told = Task::Drive(ProfileCommand::Velocity { velocity, acceleration: 1.0 });
+        rig.run(1, |_| AxisCommand::of(told));
+        assert_eq!(rig.fault(), Some(Fault::Link(LinkFault::Command)), "{velocity}");
         assert_eq!(rig.drive.counts, 0);
     }
     for v in [f64::NAN, -8.001] {

@@ -43,6 +43,16 @@ impl Clock {
         self.period
     }
 
+    /// The instant that is nearest to `t` (s), by its number.
+    pub(super) fn nearest(&self, t: f64) -> f64 {
+        libm::round(self.place(t))
+    }
+
+    /// The same clock, its instants counted from instant `k` on.
+    pub(super) fn from(self, k: f64) -> Self {
+        Self { first: self.time(k), ..self }
+    }
+
     /// Instant `k` (s).
     pub(super) fn time(&self, k: f64) -> f64 {
         self.first + k * self.period

@@ -1,12 +1,11 @@
 //! Both options for a drive that gets commands at the instants of a clock.
-use super::Command;
-use super::Spline;
 use super::clock::{Clock, before, behind, thin};
-use super::plateaus::checked_share;
-use crate::PlanError;
+use super::share::{Demand, PlateauShare};
+use super::{Command, Spline, VelocityRamp};
 use crate::limits::in_range;
 use crate::pvt::{Cursor, Knot, Table, checked, scratch_for};
-use servobench_base::positive;
+use crate::{Piece, PlanError};
+use servobench_base::{Setpoint, positive};
 
 /// Option 1 at instants: a plateau of velocity in each segment, and ramps between them that begin and end at instants.
 ///
@@ -36,8 +35,8 @@ pub struct ClockedPlateaus<'a> {
 impl<'a> ClockedPlateaus<'a> {
     /// Solves for the velocities of the plateaus of `knots`, and writes into `knots` the points that are kept.
     ///
-    /// `start` and `end` are the velocities V_s and V_e (m/s or rad/s), `alpha` the share of a segment at either end in which velocity
-    /// changes, above 0 and up to 1/2. `scratch` holds a value for each point.
+    /// `start` and `end` are the velocities V_s and V_e (m/s or rad/s), `share` says which share α of a segment it is at either
+    /// end in which velocity changes. `scratch` holds a value for each point.
     ///
     /// # Errors
     /// As [`Plateaus::solve`](super::Plateaus::solve), and [`PlanError`] for a table of less than two periods.
@@ -45,12 +44,10 @@ impl<'a> ClockedPlateaus<'a> {
         knots: &'a mut [Knot],
         start: f64,
         end: f64,
-        alpha: f64,
+        share: impl Into<PlateauShare>,
         clock: Clock,
         scratch: &mut [f64],
     ) -> Result<Self, PlanError> {
-        let alpha = checked_share(alpha)?;
-        let scratch = scratch_for(scratch, knots.len())?;
         let (clock, cycles) = clock.align(knots, start, end)?;
         let mut last = 0.0;
         let count = thin(knots, |knot| {
@@ -62,14 +59,31 @@ impl<'a> ClockedPlateaus<'a> {
             is_kept
         });
         let knots = &mut knots[..count];
-        let (mut above, mut known, mut ramp) = (0.0, start, Ramp::at(knots, 0, alpha, clock));
+        let alpha = share.into().found(|alpha| {
+            let profile = ClockedPlateaus::solve_at(knots, start, end, alpha, clock, scratch)?;
+            Ok(Demand::of(profile.commands(), start))
+        })?;
+        Self::solve_at(knots, start, end, alpha, clock, scratch)
+    }
+
+    /// With `alpha`, through `knots` that are all kept, of which the first and the last are at instants.
+    fn solve_at(
+        knots: &'a mut [Knot],
+        start: f64,
+        end: f64,
+        alpha: f64,
+        clock: Clock,
+        scratch: &mut [f64],
+    ) -> Result<Self, PlanError> {
+        let (count, scratch) = (knots.len(), scratch_for(scratch, knots.len())?);
+        let (mut above, mut known, mut corner) = (0.0, start, Corner::at(knots, 0, alpha, clock));
         for i in 1..count {
-            let next = Ramp::at(knots, i, alpha, clock);
+            let next = Corner::at(knots, i, alpha, clock);
             let (length, way) = (clock.place(knots[i].t) - clock.place(knots[i - 1].t), knots[i].x - knots[i - 1].x);
-            let (left, right) = (ramp.after(), next.before());
+            let (left, right) = (corner.after(), next.before());
             let pivot = length - left - right - left * above;
             (above, known) = (right / pivot, (way / clock.period() - left * known) / pivot);
-            (scratch[i], knots[i].v, ramp) = (above, Some(known), next);
+            (scratch[i], knots[i].v, corner) = (above, Some(known), next);
         }
         let mut behind = end;
         for i in (1..count).rev() {
@@ -80,33 +94,87 @@ impl<'a> ClockedPlateaus<'a> {
         Ok(Self { knots, alpha, end, clock })
     }
 
+    /// The profile of `knots` in which an earlier [`solve`](Self::solve) with this `end`, `alpha` and `clock` has left its points, for
+    /// who cannot keep what it gave; nothing is looked at again.
+    #[must_use]
+    pub fn solved(knots: &'a [Knot], end: f64, alpha: f64, clock: Clock) -> Self {
+        let first = knots.first().map_or(0.0, |knot| clock.nearest(knot.t));
+        Self { knots, alpha, end, clock: clock.from(first) }
+    }
+
     /// The points that are met, the ends at instants, each with the velocity of the plateau before it.
     #[must_use]
     pub const fn knots(&self) -> &'a [Knot] {
         self.knots
     }
 
+    /// The share α of a segment at either end in which velocity changes.
+    #[must_use]
+    pub const fn share(&self) -> f64 {
+        self.alpha
+    }
+
+    /// The ramps in the order of time: one at each point.
+    #[must_use]
+    pub fn ramps(self) -> impl ExactSizeIterator<Item = VelocityRamp> + 'a {
+        (0..self.knots.len()).map(move |i| self.ramp(i))
+    }
+
     /// The commands: one at the beginning of each ramp.
     #[must_use]
     pub fn commands(self) -> impl ExactSizeIterator<Item = Command> + 'a {
-        let velocity = move |i: usize| self.knots.get(i).map_or(self.end, |knot| knot.v.unwrap_or(0.0));
-        (0..self.knots.len()).map(move |i| {
-            let Ramp { begin, end, .. } = Ramp::at(self.knots, i, self.alpha, self.clock);
-            let (v, length) = (velocity(i + 1), (end - begin) * self.clock.period());
-            Command { t: self.clock.time(begin), velocity: v, acceleration: (v - velocity(i)).abs() / length }
-        })
+        self.ramps().map(|ramp| ramp.command())
+    }
+
+    /// The ramp that was begun last at `t` (s), found in log N steps; the first one before it.
+    #[must_use]
+    pub fn ramp_at(&self, t: f64) -> VelocityRamp {
+        self.ramp(self.begun(t))
+    }
+
+    /// The polynomial that holds at `t` (s): of a ramp, of the plateau behind it, or of the velocity V_e at the end.
+    #[must_use]
+    pub fn piece(&self, t: f64) -> Piece {
+        let i = self.begun(t);
+        let ramp = self.ramp(i);
+        let (VelocityRamp { begin, from, to, .. }, end) = (ramp, ramp.end());
+        let knot = self.knots[i];
+        // A position that is known: that of the point, which lies within the ramp.
+        let slope = ramp.slope();
+        let place = Setpoint { x: knot.x, v: from + slope * (knot.t - begin), a: slope, ..Setpoint::default() };
+        if t < end {
+            return Piece::between(place.after(begin - knot.t), begin, end);
+        }
+        let plateau = Setpoint { v: to, a: 0.0, ..place.after(end - knot.t) };
+        let until = if i + 1 < self.knots.len() { self.ramp(i + 1).begin } else { f64::INFINITY };
+        Piece::between(plateau, end, until)
+    }
+
+    /// The ramp at point `i`.
+    fn ramp(&self, i: usize) -> VelocityRamp {
+        let Corner { begin, end, .. } = Corner::at(self.knots, i, self.alpha, self.clock);
+        let velocity = |i: usize| self.knots.get(i).map_or(self.end, |knot| knot.v.unwrap_or(0.0));
+        let (begin, length) = (self.clock.time(begin), (end - begin) * self.clock.period());
+        VelocityRamp { begin, length, from: velocity(i), to: velocity(i + 1) }
+    }
+
+    /// The number of the ramp that was begun last at `t` (s).
+    fn begun(&self, t: f64) -> usize {
+        // A ramp begins before its point, and after the one before.
+        let behind = self.knots.partition_point(|knot| knot.t <= t).min(self.knots.len() - 1);
+        if t >= self.ramp(behind).begin { behind } else { behind.saturating_sub(1) }
     }
 }
 
-/// A ramp from one plateau to the next, and the point in it (periods).
+/// Where the ramp from one plateau to the next begins and ends, and the point in it (periods).
 #[derive(Debug, Clone, Copy)]
-struct Ramp {
+struct Corner {
     begin: f64,
     point: f64,
     end: f64,
 }
 
-impl Ramp {
+impl Corner {
     fn at(knots: &[Knot], i: usize, alpha: f64, clock: Clock) -> Self {
         let place = |i: usize| clock.place(knots[i].t);
         let point = place(i);
@@ -169,10 +237,38 @@ impl<'a> ClockedSpline<'a> {
         Ok(Self { table, clock, cycles, step: (1.0 / (rate * clock.period())).max(1.0) })
     }
 
+    /// The steps along the spline of `knots` in which an earlier [`solve`](Self::solve) with this `rate` and `clock` has left its points,
+    /// for who cannot keep what it gave; nothing is looked at again.
+    #[must_use]
+    pub fn solved(knots: &'a [Knot], rate: f64, clock: Clock) -> Self {
+        let [first, last] = [knots.first(), knots.last()].map(|knot| knot.map_or(0.0, |knot| clock.nearest(knot.t)));
+        let step = (1.0 / (rate * clock.period())).max(1.0);
+        Self { table: Table::solved(knots), clock: clock.from(first), cycles: last - first, step }
+    }
+
+    /// The spline itself.
+    #[must_use]
+    pub const fn table(&self) -> Table<'a> {
+        self.table
+    }
+
     /// The commands, from that of the first point on.
     #[must_use]
     pub fn commands(self) -> ClockedSteps<'a> {
         ClockedSteps { way: self, next: 0.0, velocity: self.table.segment(0).v, cursor: self.table.cursor() }
+    }
+
+    /// The step that was begun last at `t` (s), found in log N steps; the first one before it, and the last one behind the end.
+    #[must_use]
+    pub fn ramp_at(&self, t: f64) -> VelocityRamp {
+        let Self { table, clock, cycles, step } = *self;
+        let place = before(clock.place(t)).clamp(0.0, cycles - 1.0);
+        // The last command that is sent not behind this instant.
+        let last = libm::ceil((place + 1.0) / step) - 1.0;
+        let k = if before(last * step) > place { last - 1.0 } else { last };
+        let [begin, end] = [k, k + 1.0].map(|k| clock.time(before(k * step).min(cycles)));
+        let [from, to] = [begin, end].map(|t| table.at(t).v);
+        VelocityRamp { begin, length: end - begin, from, to }
     }
 }
 

@@ -10,3 +10,36 @@ pub struct Command {
     /// Magnitude of acceleration and deceleration alike (m/s² or rad/s²); zero if the velocity stays what it is.
     pub acceleration: f64,
 }
+
+/// A straight line of velocity: what a drive makes of a [`Command`] that it gets at `begin` and has obeyed after `length`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VelocityRamp {
+    /// When it begins (s).
+    pub begin: f64,
+    /// How long it takes (s), above zero.
+    pub length: f64,
+    /// Velocity at its beginning (m/s or rad/s).
+    pub from: f64,
+    /// Velocity at its end (m/s or rad/s).
+    pub to: f64,
+}
+
+impl VelocityRamp {
+    /// When it ends (s).
+    #[must_use]
+    pub fn end(&self) -> f64 {
+        self.begin + self.length
+    }
+
+    /// Acceleration with its sign (m/s² or rad/s²).
+    #[must_use]
+    pub fn slope(&self) -> f64 {
+        (self.to - self.from) / self.length
+    }
+
+    /// The command for it, sent at its beginning.
+    #[must_use]
+    pub fn command(&self) -> Command {
+        Command { t: self.begin, velocity: self.to, acceleration: self.slope().abs() }
+    }
+}

@@ -1,9 +1,10 @@
 //! Option 1: velocity piecewise linear, with a plateau in each segment.
 use super::Command;
+use super::share::{Demand, PlateauShare};
 use crate::limits::RANGE;
 use crate::pvt::{Cursor, Knot, Knotted, checked, scratch_for, set_ends};
 use crate::{Piece, PlanError};
-use servobench_base::{ParamError, Setpoint};
+use servobench_base::Setpoint;
 
 /// A position profile with plateaus of velocity; the velocities W of the points are stored in them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,8 +17,8 @@ impl<'a> Plateaus<'a> {
     /// Solves for the velocities of `knots`, of which the first one is the position at the start, and writes them
     /// there.
     ///
-    /// `start` and `end` are the velocities V_s and V_e (m/s or rad/s), `alpha` the share of a segment at either end in
-    /// which velocity changes, above 0 and up to 1/2 (without a plateau). `scratch` holds a value for each point.
+    /// `start` and `end` are the velocities V_s and V_e (m/s or rad/s), `share` says which share α of a segment it is at either end in which
+    /// velocity changes. `scratch` holds a value for each point.
     ///
     /// # Errors
     /// [`PlanError`] for fewer than two points, names the first one that is not finite or not later than the one
@@ -26,10 +27,23 @@ impl<'a> Plateaus<'a> {
         knots: &'a mut [Knot],
         start: f64,
         end: f64,
+        share: impl Into<PlateauShare>,
+        scratch: &mut [f64],
+    ) -> Result<Self, PlanError> {
+        let alpha = share.into().found(|alpha| {
+            let profile = Plateaus::solve_at(knots, start, end, alpha, scratch)?;
+            Ok(Demand::of(profile.commands(), start))
+        })?;
+        Self::solve_at(knots, start, end, alpha, scratch)
+    }
+
+    fn solve_at(
+        knots: &'a mut [Knot],
+        start: f64,
+        end: f64,
         alpha: f64,
         scratch: &mut [f64],
     ) -> Result<Self, PlanError> {
-        let alpha = checked_share(alpha)?;
         let scratch = scratch_for(scratch, knots.len())?;
         set_ends(knots, start, end)?;
         let last = knots.len() - 1;
@@ -74,6 +88,12 @@ impl<'a> Plateaus<'a> {
         Cursor::new(self)
     }
 
+    /// The share α of a segment at either end in which velocity changes.
+    #[must_use]
+    pub const fn share(&self) -> f64 {
+        self.alpha
+    }
+
     /// The N + 1 commands: one at the start, one at the end of each plateau.
     #[must_use]
     pub fn commands(self) -> PlateauCommands<'a> {
@@ -105,14 +125,6 @@ impl<'a> Plateaus<'a> {
         let (left, right) = (from.map_or(0.0, |_| ramp(k - 1)), to.map_or(0.0, |_| ramp(k)));
         Some(Command { t: point.t - left, velocity, acceleration: (velocity - before).abs() / (left + right) })
     }
-}
-
-/// `alpha` if it is a share of a segment that leaves room for the other end.
-pub(super) fn checked_share(alpha: f64) -> Result<f64, PlanError> {
-    if (RANGE.0..=0.5).contains(&alpha) {
-        return Ok(alpha);
-    }
-    Err(ParamError { name: "alpha", value: alpha, bound: "above 0 (at least 1e-30) and at most 0.5" }.into())
 }
 
 /// The share dT_i/(dT_i + dT_(i+1)) of the segment before a point in the time of the two beside it.

@@ -25,6 +25,11 @@ fn the_printed_examples() {
         (s_curve(Jerk::PercentOfTime(25.0)), mild, 16e-3 / 7.0, 3.5e5),
         (s_curve(Jerk::Value(5e4)), mild, 4e-3, 5e4),
         (s_curve(Jerk::PercentOfMaximum(0.005)), mild, 4e-3, 5e4),
+        // 25 % of 16/7 ms, half at either end: 2/7 ms. Of a second no more than half of the ramp counts, which is 100 %.
+        (s_curve(Jerk::Time(2e-3 / 7.0)), mild, 16e-3 / 7.0, 3.5e5),
+        (s_curve(Jerk::Time(1.0)), mild, 4e-3, 5e4),
+        // A master at 360 degrees per second.
+        (s_curve(Jerk::MasterUnits { way: 0.72 / 7.0, speed: 360.0 }), mild, 16e-3 / 7.0, 3.5e5),
     ] {
         let way = printed(shape).plan(&maximum).unwrap();
         let mut cruise = way.segments().filter(|segment| segment.length > 0.1);

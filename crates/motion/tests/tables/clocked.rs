@@ -1,6 +1,8 @@
 //! Position profiles for a drive that gets its commands at the instants of a clock.
 use crate::random::Random;
-use servobench_motion::position_profile::{Clock, ClockedPlateaus, ClockedSpline, Command, Plateaus, Spline};
+use servobench_motion::position_profile::{
+    Clock, ClockedPlateaus, ClockedSpline, Command, PlateauShare, Plateaus, Spline,
+};
 use servobench_motion::pvt::Knot;
 
 /// Where a drive is at `t` that obeys the commands from `x` at velocity `v` and time `start` on.
@@ -153,4 +155,123 @@ fn what_has_no_instants_is_refused() {
         assert!(ClockedSpline::solve(&mut knots, 0.0, 0.0, rate, clock, &mut [0.0; 2]).is_err(), "{rate}");
     }
     assert!(ClockedPlateaus::solve(&mut knots, f64::NAN, 0.0, 0.2, clock, &mut [0.0; 2]).is_err());
+}
+
+/// The position of a drive that obeys is what the piece of any time says, and the ramp of any time is the command that was sent last.
+/// Oracle: the drive that obeys, and the list of commands.
+#[test]
+fn a_piece_and_a_ramp_are_found_at_any_time() {
+    let mut random = Random::seeded(417);
+    for case in 0..300 {
+        let period = 1e-4 * (1.0 + 99.0 * random.unit());
+        let original = table(&mut random, 3.0 * period);
+        let alpha = [0.25, 0.5, 0.01, 0.5 * random.unit().max(1e-9)][case % 4];
+        let [start, end] = [random.unit() - 0.5, random.unit() - 0.5];
+        let clock = Clock::new(random.unit(), period).unwrap();
+        let (mut knots, mut scratch) = (original.clone(), vec![0.0; original.len()]);
+        let solved = ClockedPlateaus::solve(&mut knots, start, end, alpha, clock, &mut scratch).unwrap();
+        let (plateaus, count) = (solved, solved.knots().len());
+        let commands: Vec<Command> = plateaus.commands().collect();
+        let [first, last] = [plateaus.knots()[0], plateaus.knots()[count - 1]];
+        for _ in 0..100 {
+            let t = first.t + (last.t - first.t) * random.unit();
+            let piece = plateaus.piece(t);
+            let x = place(&commands, [first.t, first.x, start], t);
+            assert!(piece.holds(t) && (piece.at(t).x - x).abs() < 1e-11, "case {case} at {t}: {x} {:?}", piece.at(t));
+            let sent = commands.iter().rev().find(|command| command.t <= t).unwrap_or(&commands[0]);
+            assert_eq!(plateaus.ramp_at(t).command(), *sent, "case {case} at {t}");
+        }
+        let beyond = plateaus.piece(last.t + 1.0);
+        assert!((beyond.at(last.t + 1.0).v - end).abs() < 1e-12 && beyond.ends().is_infinite());
+        let ramps: Vec<_> = plateaus.ramps().collect();
+        let again = ClockedPlateaus::solved(&knots[..count], end, alpha, clock);
+        let near = |one: f64, other: f64| (one - other).abs() < 1e-9 * (1.0 + one.abs());
+        for (one, other) in ramps.iter().zip(again.ramps()) {
+            assert!(near(one.begin, other.begin) && near(one.length, other.length), "case {case}: {one:?} {other:?}");
+            assert_eq!([one.from, one.to].map(f64::to_bits), [other.from, other.to].map(f64::to_bits));
+        }
+    }
+}
+
+/// Oracle: the list of commands, whose velocities are the spline's.
+#[test]
+fn the_step_of_any_time_is_the_one_sent_last() {
+    let mut random = Random::seeded(3017);
+    for case in 0..300 {
+        let period = 1e-4 * (1.0 + 99.0 * random.unit());
+        let original = table(&mut random, 3.0 * period);
+        let rate = [300.0, 100.0, 1e6, 1.0 / period, 0.999_999_9 / period, 1.0 / (3.0 * period)][case % 6];
+        let clock = Clock::new(random.unit(), period).unwrap();
+        let (mut knots, mut scratch) = (original.clone(), vec![0.0; original.len()]);
+        let steps = ClockedSpline::solve(&mut knots, 0.1, -0.2, rate, clock, &mut scratch).unwrap();
+        let commands: Vec<Command> = steps.commands().collect();
+        let kept = steps.table().knots();
+        let again = ClockedSpline::solved(kept, rate, clock);
+        let (first, last) = (kept[0].t, kept[kept.len() - 1].t);
+        let mut instant = first;
+        while instant < last - 0.5 * period {
+            // At an instant, and anywhere before the next one.
+            for t in [instant, instant + 0.99 * random.unit() * period] {
+                let sent = commands.iter().rev().find(|sent| sent.t <= t + 1e-6 * period).unwrap();
+                for ramp in [steps.ramp_at(t), again.ramp_at(t)] {
+                    assert!(
+                        (ramp.begin - sent.t).abs() < 1e-9 * period.max(1.0),
+                        "case {case} at {t}: {ramp:?} {sent:?}"
+                    );
+                    assert!((ramp.to - sent.velocity).abs() < 1e-9, "case {case} at {t}: {ramp:?} {sent:?}");
+                    assert!(
+                        (ramp.command().acceleration - sent.acceleration).abs() < 1e-6,
+                        "case {case}: {ramp:?} {sent:?}"
+                    );
+                }
+            }
+            instant += period;
+        }
+    }
+}
+
+/// Of a single segment from rest to rest, V = p/(T·(1 − α)) and a = V/(α·T): both are the same part of 0.2 m/s and 1 m/s² at α = 0.2.
+#[test]
+fn the_share_of_one_segment_is_the_one_that_takes_the_smallest_part_of_the_limits() {
+    let (mut knots, mut scratch) = (vec![Knot::new(0.0, 0.0), Knot::new(1.0, 0.1)], [0.0; 2]);
+    let mut share = |velocity, acceleration| {
+        let share = PlateauShare::SmallestPartOf { velocity, acceleration };
+        Plateaus::solve(&mut knots, 0.0, 0.0, share, &mut scratch).map(|profile| profile.share())
+    };
+    assert!((share(0.2, 1.0).unwrap() - 0.2).abs() < 1e-6);
+    // The acceleration alone is smallest without a plateau.
+    assert!((share(1e3, 1.0).unwrap() - 0.5).abs() < 1e-6);
+    for [velocity, acceleration] in [[0.0, 1.0], [1.0, f64::NAN], [f64::INFINITY, 1.0], [1.0, -1.0]] {
+        assert!(share(velocity, acceleration).is_err(), "{velocity} {acceleration}");
+    }
+}
+
+/// Oracle: 2000 shares, none of which takes a smaller part of the limits than the one that is chosen.
+#[test]
+fn no_share_takes_a_smaller_part_of_the_limits() {
+    let mut random = Random::seeded(2718);
+    for case in 0..100 {
+        let knots = table(&mut random, 0.05);
+        let [start, end] = [random.unit() - 0.5, random.unit() - 0.5];
+        let [velocity, acceleration] = [4.0 * (1.0 + random.unit()), 400.0 * (0.1 + random.unit())];
+        let clock = Clock::new(0.0, 2e-3).unwrap();
+        let mut scratch = vec![0.0; knots.len()];
+        for is_clocked in [false, true] {
+            let mut part = |share: PlateauShare| {
+                let (mut own, scratch) = (knots.clone(), &mut scratch);
+                let commands: Vec<Command> = if is_clocked {
+                    ClockedPlateaus::solve(&mut own, start, end, share, clock, scratch).unwrap().commands().collect()
+                } else {
+                    Plateaus::solve(&mut own, start, end, share, scratch).unwrap().commands().collect()
+                };
+                let parts = commands.iter().map(|c| (c.velocity.abs() / velocity).max(c.acceleration / acceleration));
+                parts.fold(start.abs() / velocity, f64::max)
+            };
+            let chosen = part(PlateauShare::SmallestPartOf { velocity, acceleration });
+            let least = (1..=2000).map(|k| part((0.5 * f64::from(k) / 2000.0).into())).fold(f64::MAX, f64::min);
+            // Ramps of whole periods jump with the share: the best one may lie between two of the grid.
+            let most = if is_clocked { 1.05 } else { 1.0 + 1e-3 };
+            assert!(chosen <= most * least, "case {case}, {is_clocked}: {chosen} {least}");
+        }
+    }
 }

@@ -3,6 +3,7 @@ mod peaks;
 
 use servobench_base::Setpoint;
 use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target, Transition};
+use servobench_motion::position_profile::PlateauShare;
 use servobench_motion::pvt::{Knot, Table, average, continuous};
 use servobench_motion::rockwell::{Jerk, MaximumJerk, Move, Shape};
 use servobench_motion::sampled::Execution;
@@ -10,7 +11,7 @@ use servobench_motion::shape::Shaper;
 use servobench_motion::{Limits, Order, PlanError, Profile};
 use servobench_planner::{
     Averages, Binding, CommandRate, Filter, Follow, Generator, Grid, Method, Peak, Plan, PlanDetails, PointToPoint,
-    Reader, Replanning, Request, Rockwell, Sampling, Shaping, TableMove, Velocities,
+    Reader, Replanning, Request, Rockwell, Sampling, Sending, Shaping, TableMove, Velocities,
 };
 use std::f64::consts::TAU;
 
@@ -89,7 +90,7 @@ fn all() -> Vec<Plan> {
         plan(Generator::Rockwell(rockwell)),
         plan(Generator::Table(table(Follow::Segments, Velocities::Continuous))),
         plan(Generator::Table(table(Follow::Segments, Velocities::Given))),
-        plan(Generator::Table(table(Follow::Plateaus { share: 0.25 }, Velocities::Given))),
+        plan(Generator::Table(table(Follow::Plateaus { share: 0.25.into() }, Velocities::Given))),
         plan(Generator::Table(table(Follow::Steps { rate: CommandRate::Given(500.0) }, Velocities::Given))),
         shaped(None).plan().unwrap(),
         shaped(Some(2.0)).plan().unwrap(),
@@ -205,7 +206,7 @@ fn commands_lead_as_near_to_the_spline_as_announced() {
 /// Every position is hit where velocities have plateaus. Rounding of 0.05 m, added up over the segments.
 #[test]
 fn plateaus_hit_every_position() {
-    let table = table(Follow::Plateaus { share: 0.3 }, Velocities::Given);
+    let table = table(Follow::Plateaus { share: 0.3.into() }, Velocities::Given);
     let plan = plan(Generator::Table(table.clone()));
     for knot in table.knots {
         assert!((plan.at(knot.t - 0.5).x - knot.x).abs() < 1e-15, "{knot:?}");
@@ -269,12 +270,12 @@ fn what_would_fill_the_memory_is_refused() {
 #[test]
 fn the_lowest_rate_within_an_error_is_found() {
     let steps = |follow| {
-        let PlanDetails::Commands { error, rate, .. } =
+        let PlanDetails::Commands { error, sending: Sending::Rate(rate), .. } =
             plan(Generator::Table(table(follow, Velocities::Given))).details().clone()
         else {
             panic!("commands");
         };
-        (error, rate.unwrap())
+        (error, rate)
     };
     let (error, rate) = steps(Follow::Steps { rate: CommandRate::LowestWithin(1e-5) });
     assert!(
@@ -365,7 +366,7 @@ fn a_table_says_what_jumps() {
 /// each. Half the pace takes a quarter of the acceleration and an eighth of the jerk.
 #[test]
 fn what_is_told_of_a_slowed_move_is_slowed() {
-    for follow in [Follow::Plateaus { share: 0.3 }, Follow::Steps { rate: CommandRate::Given(50.0) }] {
+    for follow in [Follow::Plateaus { share: 0.3.into() }, Follow::Steps { rate: CommandRate::Given(50.0) }] {
         let request = Request::new(Generator::Table(table(follow, Velocities::Given)));
         let fast = request.plan().unwrap();
         let slow = Request { duration: Some(2.0 * fast.duration()), ..request }.plan().unwrap();
@@ -392,4 +393,26 @@ fn what_is_told_of_a_slowed_move_is_slowed() {
     let slow = Request { duration: Some(2.0 * rockwell.duration()), ..Request::new(generator) }.plan().unwrap();
     let PlanDetails::Rockwell { acceleration: slowed, .. } = slow.details() else { panic!("{:?}", slow.details()) };
     assert!((8.0 * slowed / acceleration - 1.0).abs() < 1e-12, "{slowed} {acceleration}");
+}
+
+/// The share that limits choose is told, keeps them, and is refused where none does. Oracle: of one segment V = p/(T·(1 − α)) and
+/// a = V/(α·T), the same part of both limits.
+#[test]
+fn a_share_of_plateaus_is_chosen_by_limits() {
+    let knots = vec![Knot::new(1.0, 0.0), Knot::new(2.0, 0.1)];
+    let asked = |velocity, acceleration| {
+        let follow = Follow::Plateaus { share: PlateauShare::SmallestPartOf { velocity, acceleration } };
+        Generator::Table(TableMove { knots: knots.clone(), velocities: Velocities::Given, follow })
+    };
+    let found = plan(asked(0.2, 1.0));
+    let PlanDetails::Commands { sending: Sending::Plateaus { share }, .. } = found.details() else {
+        panic!("{:?}", found.details())
+    };
+    assert!((share - 0.2).abs() < 1e-6, "{share}");
+    let refused = Request::new(asked(0.2, 0.39)).plan().unwrap_err().to_string();
+    let said = "no share of plateaus keeps `acceleration` within 0.39 (SI), the best one takes 0.400000";
+    assert!(
+        refused.starts_with(said) && refused.ends_with("give the table more time, or raise the limit"),
+        "{refused}"
+    );
 }

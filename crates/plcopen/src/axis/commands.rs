@@ -116,6 +116,7 @@ impl Axis {
 
     /// Changes the inputs of a command that runs or waits.
     pub(crate) fn update(&mut self, id: CommandId, command: Command) -> Result<(), BlockError> {
+        let was_in_target = self.ledger.progress(id) == Progress::InTarget;
         command.check(&self.params)?;
         self.check_beside(&command)?;
         if let Some(waiting) = self.queue.get_mut(id) {
@@ -149,7 +150,13 @@ impl Axis {
             }
             _ => return Err(BlockError::Ended { block: command.block }),
         }
-        self.ledger.set(id, Progress::Active);
+        // What changes neither velocity nor effort leaves the axis where it was to be.
+        let is_there = match &self.activity {
+            Activity::Moving(moving) => moving.run.is_over(),
+            Activity::Effort(effort) => (effort.target - effort.present).abs() <= 0.0,
+            _ => false,
+        };
+        self.ledger.set(id, if was_in_target && is_there { Progress::InTarget } else { Progress::Active });
         Ok(())
     }
 
@@ -273,7 +280,10 @@ impl Axis {
                 Ok(Activity::Effort(EffortRamp { id, command, target, step, present }))
             }
             Goal::Reference(reference) => Ok(Activity::Homing(HomingWait { id, command, reference, has_begun: false })),
-            Goal::Led(_) => Ok(Activity::Led(Led { id, command, offset: self.offset, is_fresh: true, cycles: 0 })),
+            Goal::Led(_) => {
+                let offset = self.offset;
+                Ok(Activity::Led(Led { id, command, offset, is_fresh: true, cycles: 0 }))
+            }
             _ => {
                 let is_aborting = command.buffer_mode == BufferMode::Aborting;
                 let origin = if is_aborting { self.last_target().unwrap_or(from.x) } else { from.x };

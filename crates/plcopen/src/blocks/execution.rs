@@ -106,7 +106,8 @@ impl Execution {
         if is_done { self.complete() } else { report }
     }
 
-    fn report(&mut self, axis: &Axis) -> Report {
+    /// What there is to say of the command.
+    pub(super) fn report(&mut self, axis: &Axis) -> Report {
         let id = match self.phase {
             Phase::Idle => return Report::Idle,
             Phase::Waiting => return Report::Active,

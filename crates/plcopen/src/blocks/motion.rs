@@ -58,7 +58,8 @@ impl<I: MotionInputs> FunctionBlock for MotionBlock<I> {
                 let changed = self.execution.running().map(|id| axis.update(id, inputs.command()));
                 match changed {
                     Some(Err(error)) => self.execution.fail(error),
-                    _ => report,
+                    // A velocity that was reached may not be the one that is commanded now (section 2.4.1).
+                    _ => self.execution.report(axis),
                 }
             }
             _ => report,

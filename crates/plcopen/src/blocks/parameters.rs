@@ -88,9 +88,9 @@ outputs! {
     pub struct ReadBoolOutputs {
         /// Valid.
         valid: bool = Valid,
-        /// Busy: as Valid.
+        /// Busy: it goes on reading, also after an error.
         busy: bool = Busy,
-        /// Error: the block cannot fail.
+        /// Error: there is no such input or output.
         error: bool = Error,
         /// ErrorID.
         error_id: ErrorId = ErrorId,
@@ -104,7 +104,7 @@ impl ReadBoolOutputs {
     pub(super) fn of_bit(enable: bool, bits: u32, mask: Result<u32, BlockError>) -> Self {
         match mask {
             Ok(mask) => Self::of(enable, || bits & mask != 0),
-            Err(error) if enable => Self { error: true, error_id: error.id(), ..Self::default() },
+            Err(error) if enable => Self { busy: true, error: true, error_id: error.id(), ..Self::default() },
             Err(_) => Self::default(),
         }
     }

@@ -2,8 +2,9 @@
 //!
 //! The standard leaves open how the axis goes from position to position. Here are the two ways of N. D. Baikov and A. N. Godunov,
 //! *An Approach to Implementing Functional Blocks of the PLCopen Specification*, sections 4 and 5: plateaus of velocity, and the
-//! cubic spline. Both begin with the velocity that the axis has. The axis follows the profile itself, set-point by set-point;
-//! and the [commands](PositionProfile::commands) are what the paper sends to a drive in the profile velocity mode instead.
+//! cubic spline. Both begin with the velocity that the axis has. An axis that is told positions follows the profile itself, set-point by
+//! set-point. One that is told velocities ([`AxisParams::velocity_ramps`]) gets what the paper sends to a drive in the profile velocity
+//! mode: a command for each ramp between two plateaus, or one for each step along the spline, in its cycles.
 use super::outputs::{FunctionBlock, MotionOutputs};
 use super::profile::{
     Beyond, Call, Course, Leading, Memory, Names, Pair, Scales, TIME_SCALE, VALUE_SCALE, check_room, pairs,
@@ -13,8 +14,11 @@ use crate::blocks::{BlockName, Input};
 use crate::command::{BufferMode, Ending};
 use crate::error::BlockError;
 use crate::interface::{BlockInput, BlockInputs, FromValues as _, Table, Trigger, Values, buffer_mode, or, required};
+use crate::params::AxisParams;
 use servobench_base::Setpoint;
-use servobench_motion::position_profile::{Command, PlateauCommands, Plateaus, Spline, SteppedCommands};
+use servobench_motion::position_profile::{
+    Clock, ClockedPlateaus, ClockedSpline, PlateauShare, Plateaus, Spline, VelocityRamp,
+};
 use servobench_motion::pvt::Knot;
 use servobench_motion::{Limits, Piece, PlanError};
 
@@ -30,10 +34,13 @@ pub struct TimePosition<'a> {
 /// How the axis goes from position to position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Follow {
-    /// At a constant velocity in each segment, but for this share of its time at either end, above 0 up to 1/2.
-    Plateaus(f64),
+    /// At a constant velocity in each segment, but for this share of its time at either end, above 0 up to 1/2; `None` for the share that
+    /// takes the smallest part of the velocity and the acceleration of the axis.
+    Plateaus(Option<f64>),
     /// Along the cubic spline, whose acceleration is continuous.
     Spline,
+    /// Along the cubic spline on an axis that is told velocities, of which so many are sent per second (1/s).
+    Steps(f64),
 }
 
 /// Along a table of positions, which it keeps in the memory `K` and `S`.
@@ -123,27 +130,13 @@ impl<K: Memory<Knot>, S: Memory<f64>> PositionProfile<K, S> {
             origin: 0.0,
             says_where: false,
             end_velocity: 0.0,
+            clock: None,
+            share: PlateauShare::Given(0.5),
+            alpha: 0.5,
             is_solved: false,
             piece: Piece::at_rest(0.0),
         };
         Self { leading: Leading::default(), way }
-    }
-
-    /// The commands of the profile velocity mode for the profile that was begun last, in its time; `rate` of them per second
-    /// (1/s) for the spline. The drive meets the positions of plateaus, and those of the spline but for the error that
-    /// [`Stepped`](servobench_motion::position_profile::Stepped) announces, when it gets each of them at its time; for a drive on a bus
-    /// there are [`ClockedPlateaus`](servobench_motion::position_profile::ClockedPlateaus) and
-    /// [`ClockedSpline`](servobench_motion::position_profile::ClockedSpline). None before a profile has begun.
-    ///
-    /// # Errors
-    /// [`PlanError`] where [`Spline::stepped`] refuses the rate.
-    pub fn commands(&self, rate: f64) -> Result<VelocityCommands<'_>, PlanError> {
-        let way = &self.way;
-        Ok(VelocityCommands(match (way.is_solved, way.follow) {
-            (false, _) => Source::None,
-            (true, Follow::Plateaus(share)) => Source::Plateaus(Plateaus::solved(way.points(), share).commands()),
-            (true, Follow::Spline) => Source::Spline(Spline::solved(way.points()).stepped(rate)?.commands()),
-        }))
     }
 }
 
@@ -157,8 +150,14 @@ impl PositionProfileInputs<'_> {
             return refuse(NAMES.table, 0.0, "a table that takes some time");
         }
         match self.follow {
-            Follow::Plateaus(share) if !(1e-15..=0.5).contains(&share) => {
+            Follow::Plateaus(Some(share)) if !(1e-15..=0.5).contains(&share) => {
                 return refuse("Follow", share, "a share above 0 and at most 0.5");
+            }
+            Follow::Steps(rate) if axis.params().velocity_ramps.is_none() => {
+                return refuse("Follow", rate, "the spline itself on an axis that is told positions");
+            }
+            Follow::Steps(rate) if !(1e-15..=1e15).contains(&rate) => {
+                return refuse("Follow", rate, "a positive number of velocities per second, from 1e-15 to 1e15");
             }
             _ => {}
         }
@@ -185,7 +184,8 @@ impl<K: Memory<Knot>, S: Memory<f64>> FunctionBlock for PositionProfile<K, S> {
         let PositionProfileInputs { execute, buffer_mode, .. } = *inputs;
         let call = Call { block: Self::NAME, execute, ending, buffer_mode };
         let check = |way: &Way<K, S>, axis: &Axis| inputs.check(way, axis);
-        self.leading.step(axis, call, &mut self.way, check, |way| way.load(inputs)).into()
+        let params = *axis.params();
+        self.leading.step(axis, call, &mut self.way, check, |way| way.load(inputs, &params)).into()
     }
 
     fn error(&self) -> Option<&BlockError> {
@@ -215,13 +215,18 @@ struct Way<K, S> {
     /// Whether the table says where the profile begins.
     says_where: bool,
     end_velocity: f64,
+    /// The cycles of an axis that is told velocities.
+    clock: Option<Clock>,
+    /// Of plateaus: the share that is asked for, and the one that was found.
+    share: PlateauShare,
+    alpha: f64,
     is_solved: bool,
     piece: Piece,
 }
 
 impl<K: Memory<Knot>, S: Memory<f64>> Way<K, S> {
-    /// Takes the table over, behind a first point that is where the profile will begin.
-    fn load(&mut self, inputs: &PositionProfileInputs<'_>) {
+    /// Takes the table over, behind a first point that is where the profile will begin on an axis with `params`.
+    fn load(&mut self, inputs: &PositionProfileInputs<'_>, params: &AxisParams) {
         let (scales, pairs) = (inputs.scales(), inputs.time_position.pairs);
         let knots = self.knots.as_mut();
         let (mut t, mut count) = (0.0, 1);
@@ -240,18 +245,36 @@ impl<K: Memory<Knot>, S: Memory<f64>> Way<K, S> {
         (self.count, self.is_solved) = (count, false);
         (self.follow, self.end_velocity) = (inputs.follow, inputs.end_velocity);
         self.is_absolute = inputs.time_position.is_absolute;
+        self.clock = params.velocity_ramps.and_then(|_| Clock::new(0.0, params.cycle_time).ok());
+        let Limits { velocity, acceleration, .. } = params.limits;
+        self.share = match inputs.follow {
+            Follow::Plateaus(Some(share)) => PlateauShare::Given(share),
+            _ => PlateauShare::SmallestPartOf { velocity, acceleration },
+        };
     }
 
     fn points(&self) -> &[Knot] {
         &self.knots.as_ref()[..self.count]
     }
 
+    /// Solves for the velocities of the points; on an axis that is told velocities, of those that its cycles can tell apart.
     fn solve(&mut self, start: f64) -> Result<(), PlanError> {
-        let (knots, end) = (&mut self.knots.as_mut()[..self.count], self.end_velocity);
-        match self.follow {
-            Follow::Plateaus(share) => Plateaus::solve(knots, start, end, share, self.scratch.as_mut()).map(|_| ()),
-            Follow::Spline => Spline::solve(knots, start, end, self.scratch.as_mut()).map(|_| ()),
+        let Self { knots, scratch, count, follow, end_velocity: end, clock, share, alpha, .. } = self;
+        let (knots, scratch, end) = (&mut knots.as_mut()[..*count], scratch.as_mut(), *end);
+        match (*follow, *clock) {
+            (Follow::Plateaus(_), None) => *alpha = Plateaus::solve(knots, start, end, *share, scratch)?.share(),
+            (Follow::Plateaus(_), Some(clock)) => {
+                let solved = ClockedPlateaus::solve(knots, start, end, *share, clock, scratch)?;
+                (*alpha, *count) = (solved.share(), solved.knots().len());
+            }
+            (Follow::Steps(rate), Some(clock)) => {
+                *count = ClockedSpline::solve(knots, start, end, rate, clock, scratch)?.table().knots().len();
+            }
+            (Follow::Spline | Follow::Steps(_), _) => {
+                Spline::solve(knots, start, end, scratch)?;
+            }
         }
+        Ok(())
     }
 }
 
@@ -286,6 +309,16 @@ impl<K: Memory<Knot>, S: Memory<f64>> Course for Way<K, S> {
         Setpoint { a: 0.0, j: 0.0, ..self.piece.at(t) }
     }
 
+    fn ramp(&self, t: f64) -> Option<VelocityRamp> {
+        let clock = self.clock.filter(|_| self.is_solved)?;
+        let between = t - 0.5 * clock.period();
+        match self.follow {
+            Follow::Plateaus(_) => Some(self.plateaus(clock).ramp_at(between)),
+            Follow::Steps(rate) => Some(ClockedSpline::solved(self.points(), rate, clock).ramp_at(between)),
+            Follow::Spline => None,
+        }
+    }
+
     fn duration(&self) -> f64 {
         self.points()[self.count - 1].t
     }
@@ -311,31 +344,15 @@ impl<K: Memory<Knot>, S: Memory<f64>> Course for Way<K, S> {
 impl<K: Memory<Knot>, S: Memory<f64>> Way<K, S> {
     fn look_up(&self, t: f64) -> Piece {
         match self.follow {
-            Follow::Plateaus(share) => Plateaus::solved(self.points(), share).piece(t),
-            Follow::Spline => Spline::solved(self.points()).table().piece(t),
+            Follow::Plateaus(_) => match self.clock {
+                Some(clock) => self.plateaus(clock).piece(t),
+                None => Plateaus::solved(self.points(), self.alpha).piece(t),
+            },
+            Follow::Spline | Follow::Steps(_) => Spline::solved(self.points()).table().piece(t),
         }
     }
-}
 
-/// Commands of the profile velocity mode, in the order of time.
-#[derive(Debug, Clone)]
-pub struct VelocityCommands<'a>(Source<'a>);
-
-#[derive(Debug, Clone)]
-enum Source<'a> {
-    None,
-    Plateaus(PlateauCommands<'a>),
-    Spline(SteppedCommands<'a>),
-}
-
-impl Iterator for VelocityCommands<'_> {
-    type Item = Command;
-
-    fn next(&mut self) -> Option<Command> {
-        match &mut self.0 {
-            Source::None => None,
-            Source::Plateaus(commands) => commands.next(),
-            Source::Spline(commands) => commands.next(),
-        }
+    fn plateaus(&self, clock: Clock) -> ClockedPlateaus<'_> {
+        ClockedPlateaus::solved(self.points(), self.end_velocity, self.alpha, clock)
     }
 }

@@ -24,6 +24,7 @@ use crate::interface::{BlockInput, Table, Values, or};
 use crate::ledger::{CommandId, Progress};
 use crate::state::AxisState;
 use servobench_base::Setpoint;
+use servobench_motion::position_profile::VelocityRamp;
 use servobench_motion::{Limits, PlanError};
 
 /// A row of a table: `DeltaTime` and `Position`, `Velocity` or `Acceleration`.
@@ -134,6 +135,12 @@ pub(super) trait Course {
 
     /// The set-point `t` seconds after the beginning; asked in the order of time.
     fn at(&mut self, t: f64) -> Setpoint;
+
+    /// The line of velocity that leads to the set-point of `t`, for a drive that is told velocities; `None` for one that lasts a cycle.
+    fn ramp(&self, t: f64) -> Option<VelocityRamp> {
+        let _ = t;
+        None
+    }
 
     /// Duration (s).
     fn duration(&self) -> f64;
@@ -264,6 +271,9 @@ impl Leading {
             let (t, end) = (cycles as f64 * cycle_time, course.duration());
             let is_over = t >= end - ROUNDING * cycle_time;
             axis.lead(id, course.at(if is_over { t.max(end) } else { t }));
+            if axis.params().velocity_ramps.is_some() {
+                axis.lead_along(id, course.ramp(t));
+            }
             if is_over {
                 axis.conclude(id);
                 self.id = None;

@@ -38,7 +38,7 @@ outputs! {
     pub struct SetOverrideOutputs {
         /// Enabled: the factors act.
         enabled: bool = Enabled,
-        /// Busy.
+        /// Busy: it goes on, also after an error.
         busy: bool = Busy,
         /// Error.
         error: bool = Error,
@@ -81,7 +81,7 @@ impl FunctionBlock for SetOverride {
         self.error = Self::set(axis, inputs).err();
         let error_id = self.error.as_ref().map_or(ErrorId::None, BlockError::id);
         let error = error_id != ErrorId::None;
-        SetOverrideOutputs { enabled: !error, busy: !error, error, error_id }
+        SetOverrideOutputs { enabled: !error, busy: true, error, error_id }
     }
 
     fn error(&self) -> Option<&BlockError> {

@@ -16,8 +16,9 @@ use servobench_base::{Ending, Setpoint};
 use thiserror::Error;
 
 /// The outputs that say that a block came to what it is for; of a block that has several, the first of these.
-const AIMS: [Output; 8] = [
+const AIMS: [Output; 9] = [
     Output::Done,
+    Output::ProcessComplete,
     Output::InVelocity,
     Output::InEndVelocity,
     Output::InTorque,
@@ -26,6 +27,11 @@ const AIMS: [Output; 8] = [
     Output::Enabled,
     Output::Valid,
 ];
+
+/// The outputs that say that a block controls the axis, that something is wrong with it, and that its command has ended.
+const ACTIVE: [Output; 2] = [Output::Active, Output::MoveActive];
+const WRONG: [Output; 2] = [Output::Error, Output::MoveFailed];
+const ENDED: [Output; 2] = [Output::Done, Output::ProcessComplete];
 
 /// What became of a call.
 #[derive(Debug, Clone, PartialEq)]
@@ -189,7 +195,9 @@ impl RunningCall {
                     }
                 }
             }
-            Output::Done | Output::CommandAborted | Output::Error => self.has_ended |= value > 0.0,
+            output if output == Output::CommandAborted || ENDED.contains(&output) || WRONG.contains(&output) => {
+                self.has_ended |= value > 0.0;
+            }
             _ => {}
         }
     }
@@ -203,7 +211,7 @@ impl RunningCall {
     pub(super) fn follow_motion(&mut self, t: f64, commanded: Setpoint, motions: &mut Vec<Motion>) {
         // An effort leaves the motion to the load.
         let moves = self.block.is_command() && self.block != BlockName::TorqueControl;
-        let is_active = self.is(Output::Active);
+        let is_active = ACTIVE.into_iter().any(|output| self.is(output));
         match (&mut self.motion, is_active) {
             (Some(motion), true) => motion.follow(commanded),
             (None, true) if moves => self.motion = Some(MotionTracker::begin(t, commanded)),
@@ -215,7 +223,7 @@ impl RunningCall {
     pub(super) fn end_motion(&mut self, t: f64, commanded: Setpoint, motions: &mut Vec<Motion>) {
         if let Some(motion) = self.motion.take() {
             // A motion that ends as commanded ends in Done, and at rest: any other one is broken off, or goes on.
-            let is_aborted = self.is(Output::CommandAborted) || self.is(Output::Error);
+            let is_aborted = self.is(Output::CommandAborted) || WRONG.into_iter().any(|output| self.is(output));
             let ending = match (is_aborted, commanded.v == 0.0) {
                 (true, _) => Ending::Aborted,
                 (false, true) => Ending::AtRest,
@@ -234,7 +242,7 @@ impl RunningCall {
     /// `idle` ones, which are optional and were never executed.
     pub(super) fn may_be_left_out(&self, idle: &[bool]) -> bool {
         let waits_in_vain = match self.start {
-            Condition::After { output: Output::Error | Output::CommandAborted, .. } => true,
+            Condition::After { output, .. } if output == Output::CommandAborted || WRONG.contains(&output) => true,
             Condition::After { call, .. } => idle.get(call).is_some_and(|is_idle| *is_idle),
             Condition::AtOnce | Condition::At(_) | Condition::Above(_) | Condition::Below(_) => false,
         };

@@ -3,13 +3,13 @@ use crate::bench::{Bench, LIMITS};
 use servobench_fieldbus::Fault;
 use servobench_motion::pvt::Knot;
 use servobench_plcopen::{
-    AccelerationProfile, AccelerationProfileInputs, AxisState, BlockName, ErrorId, FunctionBlock, Halt, HaltInputs,
-    Home, HomeAbsolute, HomeAbsoluteInputs, HomeDirect, HomeDirectInputs, HomeInputs, MoveAbsolute, MoveAbsoluteInputs,
-    MoveAdditive, MoveAdditiveInputs, MoveContinuousAbsolute, MoveContinuousAbsoluteInputs, MoveContinuousRelative,
-    MoveContinuousRelativeInputs, MoveRelative, MoveRelativeInputs, MoveSuperimposed, MoveSuperimposedInputs,
-    MoveVelocity, MoveVelocityInputs, Output, Outputs, Pair, PositionProfile, PositionProfileInputs, Profile4th,
-    Profile4thInputs, Reset, ResetInputs, Stop, StopInputs, TimePosition, TorqueControl, TorqueControlInputs,
-    VelocityProfile, VelocityProfileInputs,
+    AccelerationProfile, AccelerationProfileInputs, AxisMove, AxisMoveInputs, AxisState, BlockName, ErrorId,
+    FunctionBlock, Halt, HaltInputs, Home, HomeAbsolute, HomeAbsoluteInputs, HomeDirect, HomeDirectInputs, HomeInputs,
+    MoveAbsolute, MoveAbsoluteInputs, MoveAdditive, MoveAdditiveInputs, MoveContinuousAbsolute,
+    MoveContinuousAbsoluteInputs, MoveContinuousRelative, MoveContinuousRelativeInputs, MoveRelative,
+    MoveRelativeInputs, MoveSuperimposed, MoveSuperimposedInputs, MoveVelocity, MoveVelocityInputs, Output, Outputs,
+    Pair, PositionProfile, PositionProfileInputs, Profile4th, Profile4thInputs, Reset, ResetInputs, Stop, StopInputs,
+    TimePosition, TorqueControl, TorqueControlInputs, VelocityProfile, VelocityProfileInputs,
 };
 
 /// An axis that a program has led to `state`; in motion where the state has one.
@@ -108,6 +108,7 @@ pub(crate) fn execute(bench: &mut Bench, block: BlockName) -> Result<(), ErrorId
         BlockName::Profile4th => {
             call::<Profile4th>(bench, &Profile4thInputs { enable: execute, ..Profile4thInputs::to(0.2, limits) })
         }
+        BlockName::AxisMove => call::<AxisMove>(bench, &AxisMoveInputs { execute, ..AxisMoveInputs::to(0.2, &limits) }),
         _ => unreachable!("{block} is no command"),
     }
 }
@@ -118,7 +119,8 @@ fn call<B: FunctionBlock + Default>(bench: &mut Bench, inputs: &B::Inputs<'_>) -
 
 fn call_of<B: FunctionBlock>(mut block: B, bench: &mut Bench, inputs: &B::Inputs<'_>) -> Result<(), ErrorId> {
     let outputs = bench.cycle(|axis| block.step(axis, inputs));
-    let place = B::Outputs::LIST.iter().position(|output| *output == Output::Error).unwrap();
+    let place =
+        B::Outputs::LIST.iter().position(|output| matches!(output, Output::Error | Output::MoveFailed)).unwrap();
     let mut values = Vec::new();
     outputs.each(|value| values.push(value));
     assert_eq!(values.len(), B::Outputs::LIST.len());

@@ -58,7 +58,7 @@ fn a_profile_waits_for_the_move_before_it() {
     let profile = PositionProfileInputs {
         execute: true,
         buffer_mode: BufferMode::Buffered,
-        follow: Follow::Plateaus(0.4),
+        follow: Follow::Plateaus(Some(0.4)),
         ..PositionProfileInputs::along(&pairs)
     };
     let mut began = None;

@@ -33,7 +33,7 @@ proptest! {
         positions in table(0.4),
         velocities in table(1.1),
         accelerations in table(5.5),
-        follow in prop_oneof![(0.05..0.5_f64).prop_map(Follow::Plateaus), Just(Follow::Spline)],
+        follow in prop_oneof![(0.05..0.5_f64).prop_map(|share| Follow::Plateaus(Some(share))), Just(Follow::Spline)],
         is_absolute: bool,
         end_velocity in -0.5..0.5_f64,
         calls in proptest::collection::vec((0..5_u8, any::<bool>(), 1..200_usize), 1..40),

@@ -390,7 +390,8 @@ fn call_profile(
     match name {
         BlockName::PositionProfile => {
             let time_position = TimePosition { pairs: &pairs, is_absolute: chance.once_in(4) };
-            let follow = if chance.once_in(2) { Follow::Spline } else { Follow::Plateaus(chance.between(0.05, 0.5)) };
+            let follow =
+                if chance.once_in(2) { Follow::Spline } else { Follow::Plateaus(Some(chance.between(0.05, 0.5))) };
             let end_velocity = if chance.once_in(2) { 0.0 } else { chance.between(-1.0, 1.0) };
             let inputs = PositionProfileInputs { execute, time_scale, ..PositionProfileInputs::along(&pairs) };
             let inputs = PositionProfileInputs { time_position, follow, end_velocity, buffer_mode, ..inputs };

@@ -1,5 +1,5 @@
 //! An axis with a drive that follows at once: what is commanded in one cycle is fed back in the next.
-use servobench_fieldbus::{AxisCommand, AxisFeedback, Homing, Power, Task};
+use servobench_fieldbus::{AxisCommand, AxisFeedback, Homing, Power, ProfileCommand, Task};
 use servobench_motion::Limits;
 use servobench_plcopen::{Axis, AxisParams, AxisState, FunctionBlock, Power as MovePower, PowerInputs};
 
@@ -71,9 +71,22 @@ impl Bench {
                 }
             }
             Task::Effort(effort) => self.feedback.effort = effort,
+            Task::Drive(ProfileCommand::Velocity { velocity, acceleration }) => self.obey(velocity, acceleration),
             Task::Drive(way) => panic!("no block leaves its way to the drive: {way:?}"),
         }
         answer
+    }
+
+    /// A drive in profile velocity goes to `velocity` in a straight line, for a cycle.
+    fn obey(&mut self, velocity: f64, acceleration: f64) {
+        let AxisFeedback { position, velocity: before, .. } = &mut self.feedback;
+        let way = velocity - *before;
+        let needed = if way == 0.0 { 0.0 } else { way.abs() / acceleration };
+        // A ramp that rounding makes longer than the cycle is over with it.
+        let time = if needed > CYCLE_TIME * (1.0 - 1e-9) { CYCLE_TIME } else { needed };
+        let reached = if needed > CYCLE_TIME * (1.0 + 1e-9) { *before + way * time / needed } else { velocity };
+        *position += time * f64::midpoint(*before, reached) + (CYCLE_TIME - time) * reached;
+        *before = reached;
     }
 
     /// Cycles without a call until `state`, at most 10 000.

@@ -1,10 +1,11 @@
 //! Commands that keep the axis until another one takes it.
 use crate::bench::{Bench, LIMITS};
 use crate::calls::{at, running, to};
+use servobench_base::Setpoint;
 use servobench_plcopen::{
     AxisState, BufferMode, FunctionBlock, MoveAbsolute, MoveAbsoluteInputs, MoveContinuousAbsolute,
     MoveContinuousAbsoluteInputs, MoveContinuousRelative, MoveContinuousRelativeInputs, MoveSuperimposed,
-    MoveSuperimposedInputs, MoveVelocity, MoveVelocityInputs,
+    MoveSuperimposedInputs, MoveVelocity, MoveVelocityInputs, TorqueControl, TorqueControlInputs,
 };
 
 /// At EndVelocity 0 the axis stands at the position, in Continuous Motion, until another command takes it.
@@ -152,4 +153,46 @@ fn a_continuous_relative_move_may_wait_and_change() {
     // At most a cycle behind the position that is passed, 0.25 m + 0.35 m.
     let passed_at = passed_at.unwrap();
     assert!((0.0..=0.1 * 1e-3 + 1e-12).contains(&(passed_at - 0.6)), "{passed_at}");
+}
+
+/// InVelocity is whether the set-point has the commanded velocity (section 2.4.1): a new one counts from the call that takes it.
+#[test]
+fn a_changed_velocity_is_not_reached_in_the_cycle_of_its_change() {
+    let (mut bench, mut run) = (Bench::standstill(), MoveVelocity::default());
+    let mut inputs = MoveVelocityInputs { continuous_update: true, ..running(0.3) };
+    let mut step = |inputs: &MoveVelocityInputs| {
+        let outputs = bench.cycle(|axis| run.step(axis, inputs));
+        let Setpoint { v, a, .. } = bench.axis.commanded();
+        let is_there = (v - inputs.velocity).abs() <= 0.0 && a == 0.0;
+        assert_eq!((outputs.in_velocity, outputs.active), (is_there, true), "{inputs:?}");
+        is_there
+    };
+    for velocity in [0.3, -0.2, 0.0, 0.4] {
+        inputs.velocity = velocity;
+        assert!(!step(&inputs), "{velocity}");
+        assert!((0..1000).any(|_| step(&inputs)), "{velocity}");
+        // Gentler on the way to a velocity that is reached already: nothing to do.
+        inputs.acceleration *= 0.9;
+        assert!(step(&inputs) && step(&inputs));
+    }
+}
+
+/// The same of InTorque.
+#[test]
+fn a_changed_torque_is_not_reached_in_the_cycle_of_its_change() {
+    let (mut bench, mut press) = (Bench::standstill(), TorqueControl::default());
+    let inputs = TorqueControlInputs {
+        execute: true,
+        continuous_update: true,
+        torque: 1.0,
+        torque_ramp: 125.0,
+        ..TorqueControlInputs::within(&LIMITS)
+    };
+    let mut cycles_until_there =
+        |inputs: &TorqueControlInputs| (0..100).position(|_| bench.cycle(|axis| press.step(axis, inputs)).in_torque);
+    assert_eq!(cycles_until_there(&inputs), Some(8), "an eighth of a newton metre in a cycle");
+    let more = TorqueControlInputs { torque: 1.5, ..inputs };
+    assert_eq!(cycles_until_there(&more), Some(4));
+    let faster = TorqueControlInputs { torque_ramp: 250.0, ..more };
+    assert_eq!(cycles_until_there(&faster), Some(0), "it is there already");
 }

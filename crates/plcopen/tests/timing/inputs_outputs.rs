@@ -17,7 +17,7 @@ fn bits_are_read_and_written_one_by_one() {
     let read = bench.cycle(|axis| [0, 1, 2, 31].map(|bit| input(axis, bit).value));
     assert_eq!(read, [true, false, true, false]);
     let wrong = bench.cycle(|axis| input(axis, 32));
-    assert_eq!((wrong.valid, wrong.error, wrong.error_id), (false, true, ErrorId::Input));
+    assert_eq!((wrong.valid, wrong.busy, wrong.error, wrong.error_id), (false, true, true, ErrorId::Input));
     let write = |axis: &mut Axis, output_number, value| {
         let inputs = WriteDigitalOutputInputs { execute: true, output_number, value };
         WriteDigitalOutput::default().step(axis, &inputs).done

@@ -63,3 +63,15 @@ fn factors_outside_their_range_are_refused() {
     let message = slow.error().unwrap().to_string();
     assert_eq!(message, "MC_SetOverride: `AccFactor` must be from 1e-6 to 1, got 0: correct the input");
 }
+
+/// A block with Enable goes on after an error: section 2.2.3.
+#[test]
+fn an_override_that_is_refused_acts_again_once_it_is_corrected() {
+    let (mut bench, mut slow) = (Bench::standstill(), SetOverride::default());
+    for acc_factor in [1.0, 0.0, 0.5] {
+        let inputs = SetOverrideInputs { enable: true, acc_factor, ..SetOverrideInputs::default() };
+        let outputs = bench.cycle(|axis| slow.step(axis, &inputs));
+        let is_wrong = acc_factor == 0.0;
+        assert!(outputs.busy && outputs.error == is_wrong && outputs.enabled != is_wrong, "{outputs:?}");
+    }
+}

@@ -140,7 +140,7 @@ mod tests {
     #[test]
     fn commands_have_a_table_of_their_own() {
         let knots = vec![Knot::new(1.0, 0.0), Knot::new(2.0, 1.0)];
-        let asked = TableMove { knots, velocities: Velocities::Given, follow: Follow::Plateaus { share: 0.5 } };
+        let asked = TableMove { knots, velocities: Velocities::Given, follow: Follow::Plateaus { share: 0.5.into() } };
         let mut bytes = Vec::new();
         assert!(moves::of(Generator::Table(asked)).write_commands(&mut bytes).unwrap());
         let text = String::from_utf8(bytes).unwrap();

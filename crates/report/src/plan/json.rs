@@ -7,7 +7,7 @@ use servobench_base::Setpoint;
 use servobench_config::Choice as _;
 use servobench_motion::Profile;
 use servobench_motion::sampled::Shortest;
-use servobench_planner::PlanDetails;
+use servobench_planner::{PlanDetails, Sending};
 
 /// Segments, bindings and commands at most, each; of more the number alone is told, and `--csv` has the values.
 const MOST: usize = 100_000;
@@ -50,6 +50,8 @@ struct Plan {
     /// What the position differs from the spline's at most.
     #[serde(skip_serializing_if = "Option::is_none")]
     position_error: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    plateau_share: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     command_rate_hz: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -157,9 +159,14 @@ impl PlannedMove {
         let names = || NAMES[1..=n].iter().map(|name| (*name).to_owned());
         let limits =
             self.plan.limits().map(|sides| [-sides.below, sides.above].map(|limit| limit.is_finite().then_some(limit)));
-        let (commands, error, rate) = match self.plan.details() {
-            PlanDetails::Commands { commands, error, rate } => (Some(commands), Some(*error), *rate),
+        let (commands, error, sending) = match self.plan.details() {
+            PlanDetails::Commands { commands, error, sending } => (Some(commands), Some(*error), Some(*sending)),
             _ => (None, None, None),
+        };
+        let (plateau_share, command_rate_hz) = match sending {
+            Some(Sending::Plateaus { share }) => (Some(share), None),
+            Some(Sending::Rate(rate)) => (None, Some(rate)),
+            None => (None, None),
         };
         let bindings = self.plan.bindings();
         let segments = self.segments();
@@ -189,7 +196,8 @@ impl PlannedMove {
                 _ => None,
             },
             position_error: error,
-            command_rate_hz: rate,
+            plateau_share,
+            command_rate_hz,
             command_count: commands.map(Vec::len),
             commands: commands.filter(|commands| commands.len() <= MOST).map(|commands| {
                 let start = commands.first().map_or(0.0, |command| command.t);

@@ -352,7 +352,7 @@ mod tests {
     #[test]
     fn a_position_profile_lists_its_commands() {
         let generator = |follow| Generator::Table(TableMove { knots: knots(5), velocities: Velocities::Given, follow });
-        insta::assert_snapshot!(table(&moves::of(generator(Follow::Plateaus { share: 0.25 }))), @r#"
+        insta::assert_snapshot!(table(&moves::of(generator(Follow::Plateaus { share: 0.25.into() }))), @r#"
         move of 2.00 mm through 5 points in 40 ms, position profile
         5 velocity commands, α = 0.25: every position is hit
 

@@ -7,7 +7,9 @@ use servobench_metrics::{DisplayUnit, Quantity, digits};
 use servobench_motion::online::Target;
 use servobench_motion::rockwell::Shape;
 use servobench_motion::sampled::Execution;
-use servobench_planner::{Filter, Follow, Generator, Grid, Method, PlanDetails, Sampling, TableMove, Velocities};
+use servobench_planner::{
+    Filter, Follow, Generator, Grid, Method, PlanDetails, Sampling, Sending, TableMove, Velocities,
+};
 
 /// An excess below this part of a limit is rounding.
 const EXCESS: f64 = 1e-9;
@@ -155,22 +157,22 @@ impl PlannedMove {
                 self.show(3, *deceleration)
             )],
             (Generator::Table(asked), PlanDetails::Table { .. }) => vec![velocities(asked)],
-            (Generator::Table(asked), PlanDetails::Commands { commands, error, rate }) => {
-                vec![match (asked.follow, rate) {
-                    (_, Some(rate)) => format!(
+            (Generator::Table(_), PlanDetails::Commands { commands, error, sending }) => {
+                vec![match sending {
+                    Sending::Rate(rate) => format!(
                         "{} velocity commands at {rate} Hz: at most {} off the cubic spline",
                         commands.len(),
                         self.show_error(*error)
                     ),
-                    (Follow::Plateaus { share: alpha }, None) if *error < HIT => {
-                        format!("{} velocity commands, α = {alpha}: every position is hit", commands.len())
+                    Sending::Plateaus { share: alpha } if *error < HIT => {
+                        format!("{} velocity commands, α = {}: every position is hit", commands.len(), rounded(*alpha))
                     }
-                    (Follow::Plateaus { share: alpha }, None) => format!(
-                        "{} velocity commands, α = {alpha}: at most {} off the positions",
+                    Sending::Plateaus { share: alpha } => format!(
+                        "{} velocity commands, α = {}: at most {} off the positions",
                         commands.len(),
+                        rounded(*alpha),
                         self.show_error(*error)
                     ),
-                    (_, None) => format!("{} velocity commands", commands.len()),
                 }]
             }
             _ => Vec::new(),
@@ -213,6 +215,11 @@ pub(super) fn exceeded(kept: &[Kept]) -> Option<String> {
         })
         .collect();
     (!beyond.is_empty()).then(|| format!("exceeds its limit of {}", beyond.join(" and of ")))
+}
+
+/// A share to six digits behind the point.
+fn rounded(share: f64) -> f64 {
+    (1e6 * share).round() / 1e6
 }
 
 /// Where the velocities at the points come from.

@@ -1,15 +1,15 @@
 //! `[drive]`: the firmware.
 use crate::field::{Either, EitherMeasure};
-use crate::list::{AutoTime, Share};
+use crate::list::{Automatic, Share};
 use crate::object_table::ObjectTable;
 use crate::simple::OneOf;
 use crate::table::table;
 use servobench_base::Rate;
 use servobench_config::Kind::{Axis as InAxis, Motor as InMotor, Plain};
 use servobench_config::quantities::{
-    BANDWIDTH, FORCE, INERTIAL, LEAD, POSITION_GAIN, RATIO, TORQUE, VISCOUS, VOLT_GAIN,
+    BANDWIDTH, FORCE, INERTIAL, LEAD, POSITION_GAIN, RATIO, TIME, TORQUE, VISCOUS, VOLT_GAIN,
 };
-use servobench_config::{choices, positive};
+use servobench_config::{choices, not_negative, positive};
 use servobench_drive::{self as drive, EffortFeedforward, current, feedforward, velocity};
 use servobench_plant::EncoderParameter;
 
@@ -134,7 +134,7 @@ table! {
         /// Whether estimated Coulomb friction and bias are added too; default: false.
         friction: bool = (),
         /// How long the reference waits for the feedforward path; default: "auto", as long as that path takes.
-        delay: AutoTime = (),
+        delay: Automatic = not_negative(Plain(&TIME), "125 us"),
     }
 }
 

@@ -1,18 +1,21 @@
 //! `[plc]` and `[[call]]`: the PLC program.
 use crate::block::{BlockInputs, Moment};
 use crate::list::Many;
+use crate::simple::OneOf;
 use crate::table::table;
 use crate::when::When;
 use servobench_config::Kind::{Axis as InAxis, Plain};
 use servobench_config::quantities::{POSITION, TIME};
 use servobench_config::{any, not_negative, positive};
-use servobench_plcopen::BlockName;
+use servobench_plcopen::{BlockName, RampStart};
 
 table! {
     /// What holds for all `[[call]]`s.
     pub(crate) struct Plc {
         /// Whether absolute moves of an axis that was not homed are refused; default: true.
         homing_required: bool = (),
+        /// From which velocity the acceleration of each velocity counts that a drive in the mode "pv" is sent; default: "set-point".
+        ramp_start: RampStart = OneOf,
     }
 }
 

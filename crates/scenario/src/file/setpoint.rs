@@ -1,5 +1,5 @@
 //! `[setpoint]`: what every move respects, and how set-points are generated, filtered and interpolated.
-use crate::list::Many;
+use crate::list::{Automatic, Many};
 use crate::simple::{OneOf, OneOfOrNone};
 use crate::table::table;
 use servobench_config::Kind::{Axis as InAxis, Plain};
@@ -58,12 +58,22 @@ table! {
         jerk_of_time: f64 = positive(Plain(&RATIO), "25 %"),
         /// Jerk as a part of `maximum_jerk`, above 0 to 100 %.
         jerk_of_maximum: f64 = positive(Plain(&RATIO), "60 %"),
-        /// Jerk of the deceleration; said as for the acceleration unless one of these three is given.
+        /// Jerk as the time in which the acceleration rises at the beginning of the ramp, and falls at its end; at most half of it counts.
+        jerk_time: f64 = positive(Plain(&TIME), "2 ms"),
+        /// The same as the way of a master in its units, which goes at `master_speed`.
+        jerk_master_units: f64 = positive(Plain(&RATIO), "1.5"),
+        /// Jerk of the deceleration; said as for the acceleration unless one of these five is given.
         deceleration_jerk: f64 = positive(InAxis(&JERK), "80 m/s3"),
         /// Jerk of the deceleration as the part of its ramp in which it changes.
         deceleration_jerk_of_time: f64 = positive(Plain(&RATIO), "50 %"),
         /// Jerk of the deceleration as a part of `maximum_deceleration_jerk`.
         deceleration_jerk_of_maximum: f64 = positive(Plain(&RATIO), "60 %"),
+        /// Jerk of the deceleration as the time in which it changes at either end.
+        deceleration_jerk_time: f64 = positive(Plain(&TIME), "2 ms"),
+        /// Jerk of the deceleration as the way of the master in that time.
+        deceleration_jerk_master_units: f64 = positive(Plain(&RATIO), "1.5"),
+        /// Speed of the master, in its units per second.
+        master_speed: f64 = positive(Plain(&RATIO), "360"),
         /// Largest jerk of accelerations that the axis is configured for: that of a trapezoid.
         maximum_jerk: f64 = positive(InAxis(&JERK), "500 m/s3"),
         /// Largest jerk of decelerations; default: as `maximum_jerk`.
@@ -110,8 +120,9 @@ table! {
         passes: u32 = 0..=1_000_000,
         /// How it is followed; default: "segments".
         follow: FollowKind = OneOf,
-        /// Share of a segment at either end in which the velocity of "plateaus" changes, up to 0.5; default: 0.25.
-        plateau_share: f64 = positive(Plain(&RATIO), "0.25"),
+        /// Share of a segment at either end in which the velocity of "plateaus" changes, up to 0.5; "auto" is the one that takes the
+        /// smallest part of the velocity and the acceleration that the move may have; default: 0.25.
+        plateau_share: Automatic = positive(Plain(&RATIO), "0.25"),
         /// Commands per second of "steps".
         command_rate: f64 = positive(Plain(&FREQUENCY), "100 Hz"),
     }

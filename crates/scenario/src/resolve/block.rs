@@ -3,8 +3,10 @@ use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::resolve::inputs::{Defaults, Inputs};
 use crate::resolve::keys::Reported;
-use crate::resolve::profile;
+use crate::resolve::{one_of, profile, refuse};
 use crate::source::{At, Sources};
+use servobench_config::Choice as _;
+use servobench_motion::rockwell::ShapeKind;
 use servobench_plcopen::{
     Absent, BlockInput, BlockName, Direction, Follow, Input, Pair, Table, Trigger, Value, program,
 };
@@ -13,6 +15,8 @@ use servobench_plcopen::{
 pub(super) struct Context<'a> {
     pub(super) defaults: &'a Defaults<'a>,
     pub(super) is_modulo: bool,
+    /// Whether the drive is in profile velocity.
+    pub(super) is_told_velocities: bool,
     pub(super) sources: &'a Sources,
 }
 
@@ -27,6 +31,7 @@ impl Context<'_> {
     ) -> Option<program::Inputs> {
         let mut reading = Reading { context: self, block, inputs, said, report };
         reading.warn_beyond_the_axis();
+        reading.check_jerks();
         // Every mistake is said, so all of them are read before one counts.
         let values: Vec<_> = block.inputs().iter().map(|own| (own.input, reading.value(own))).collect();
         let mut found = program::Inputs::default();
@@ -152,6 +157,38 @@ impl Reading<'_, '_> {
         }
     }
 
+    /// Of a block with a shape: each jerk is said in one way, and that of a trapezoid by the axis alone.
+    fn check_jerks(&mut self) {
+        const UP: [Input; 4] = [Input::Jerk, Input::JerkOfTime, Input::JerkOfMaximum, Input::JerkTime];
+        const DOWN: [Input; 4] = [
+            Input::DecelerationJerk,
+            Input::DecelerationJerkOfTime,
+            Input::DecelerationJerkOfMaximum,
+            Input::DecelerationJerkTime,
+        ];
+        if self.block.input(Input::Shape).is_none() {
+            return;
+        }
+        let spans = |inputs: [Input; 4]| inputs.map(|input| (input.key(), self.inputs.slot(input).span()));
+        let (up, down) = (spans(UP), spans(DOWN));
+        let is_trapezoid = match self.inputs.slot(Input::Shape) {
+            Slot::Given(At { value: Value::Choice(name), .. }) => *name == ShapeKind::Trapezoid.name(),
+            Slot::Absent => true,
+            _ => return,
+        };
+        if is_trapezoid {
+            let help = "write `shape = \"s-curve\"`, or leave it out: a trapezoid takes the `jerk` of `[setpoint]`";
+            refuse(&[up, down].concat(), "is for an S-curve", help, self.report);
+            if matches!(self.context.defaults.limit(Input::Jerk), Slot::Absent) {
+                let help = "a trapezoid takes the jerk that the axis is configured for";
+                self.said.missing(Input::Jerk.key(), self.inputs.header, help, self.report);
+            }
+        } else {
+            one_of(&up, self.report);
+            one_of(&down, self.report);
+        }
+    }
+
     /// Which way round: there are two on a modulo axis only.
     fn warn_without_modulo(&mut self) {
         if let (false, Some(span)) = (self.context.is_modulo, self.inputs.slot(Input::Direction).span()) {
@@ -217,7 +254,7 @@ impl Reading<'_, '_> {
             let pairs = profile::accelerations(table, sources, self.report);
             return Ok(Table { pairs: pairs.ok_or(Wrong)?, is_relative: false, follow: Follow::Spline });
         }
-        let follow = profile::follow(table, self.report);
+        let follow = profile::follow(table, self.context.is_told_velocities, self.report);
         let pairs = profile::positions(table, sources, self.report);
         let is_relative = table.value.relative.optional().map_err(|_| Wrong)?.copied().unwrap_or(false);
         Ok(Table { pairs: pairs.ok_or(Wrong)?, is_relative, follow: follow.ok_or(Wrong)? })

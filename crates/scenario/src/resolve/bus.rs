@@ -325,8 +325,10 @@ pub(super) fn refuse_by_program(file: &File, bus: &Bus, steps: Option<&[Step]>, 
     let mode_span = file.bus.given().and_then(|bus| bus.mode.span());
     if let (Some(span), Some(calls)) = (mode_span, file.call.given())
         && !calls.0.is_empty()
+        && bus.mode != BusMode::ProfileVelocity
     {
-        report.error(span, "function blocks make the set-points themselves", "write \"csp\" or \"csv\"");
+        let help = "write \"csp\", \"csv\" or \"pv\"";
+        report.error(span, "function blocks make the set-points themselves", help);
     }
     let (Some(program), Some(steps)) = (file.program.given(), steps) else { return };
     for (written, step) in program.0.iter().zip(steps) {

@@ -3,7 +3,7 @@ use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
 use crate::file::{FeedbackEncoder, File};
-use crate::list::{AutoTime, Share};
+use crate::list::{Automatic, Share};
 use crate::parameter_key::parameter_key;
 use crate::resolve::estimate::{self, Belief};
 use crate::resolve::motor::{Motor, resolution};
@@ -280,8 +280,8 @@ fn feedforward(drive: &file::Drive) -> Option<Feedforward> {
         effort: given.effort.optional().ok()?.copied().unwrap_or(EffortFeedforward::Off),
         friction: given.friction.optional().ok()?.copied().unwrap_or(false),
         delay: match given.delay.optional().ok()? {
-            Some(AutoTime::Time(delay)) => Some(*delay),
-            Some(AutoTime::Auto) | None => None,
+            Some(Automatic::Given(delay)) => Some(*delay),
+            Some(Automatic::Auto) | None => None,
         },
     })
 }

@@ -17,6 +17,8 @@ pub(super) struct Known<'a> {
     /// Length of the run (s), as far as the file says it.
     pub(super) duration: Option<f64>,
     pub(super) is_modulo: bool,
+    /// Whether the drive is in profile velocity.
+    pub(super) is_told_velocities: bool,
     pub(super) sources: &'a Sources,
 }
 
@@ -35,14 +37,23 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
     };
     check_surroundings(file, calls, report);
     let instances = instances(calls, report);
-    let homing_required = match file.plc.optional().ok()? {
-        Some(plc) => plc.homing_required.optional().ok()?.copied().unwrap_or(true),
-        None => true,
+    let (homing_required, ramp_start) = match file.plc.optional().ok()? {
+        Some(plc) => {
+            if !known.is_told_velocities {
+                let help = "elsewhere the drive is told positions";
+                refuse(&[("ramp_start", plc.ramp_start.span())], "is for the mode \"pv\"", help, report);
+            }
+            (plc.homing_required.optional().ok()?.copied(), plc.ramp_start.optional().ok()?.copied())
+        }
+        None => (None, None),
     };
+    let homing_required = homing_required.unwrap_or(true);
+    let velocity_ramps = known.is_told_velocities.then(|| ramp_start.unwrap_or_default());
     warn_of_refusals(calls, homing_required, report);
     let mut said = Reported::default();
     let defaults = Defaults::of(file.setpoint.given());
-    let reading = block::Context { defaults: &defaults, is_modulo: known.is_modulo, sources: known.sources };
+    let Known { is_modulo, is_told_velocities, sources, .. } = *known;
+    let reading = block::Context { defaults: &defaults, is_modulo, is_told_velocities, sources };
     let conditions = condition::Context { instances: &instances, duration: known.duration };
     let resolved: Vec<_> = calls
         .iter()
@@ -52,7 +63,7 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
     let starts: Vec<Option<Condition>> = resolved.iter().map(|(start, _)| *start).collect();
     condition::refuse_circles(&starts, &instances, report);
     let calls = resolved.into_iter().map(|(_, call)| call).collect::<Option<Vec<_>>>();
-    Some(Some(Plc { homing_required, limits: defaults.limits()?, calls: calls? }))
+    Some(Some(Plc { homing_required, velocity_ramps, limits: defaults.limits()?, calls: calls? }))
 }
 
 /// Objects to what does not go with calls, and says what they need.

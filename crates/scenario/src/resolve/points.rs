@@ -2,27 +2,35 @@
 use crate::diagnostic::{NamedFile, Report};
 use crate::field::Slot;
 use crate::file::TableOfPoints;
+use crate::list::Automatic;
 use crate::models::read_beside;
 use crate::points::{PointsError, read_points};
 use crate::resolve::refuse;
 use crate::source::{At, Sources};
 use servobench_base::Coordinate;
+use servobench_motion::position_profile::PlateauShare;
 use servobench_motion::pvt::Knot;
 use servobench_planner::{CommandRate, Follow, FollowKind, Positioning, TableMove, Velocities, VelocitiesKind};
 
-/// The move, and what its positions count from.
+/// The move, and what its positions count from; `limits` are velocity and acceleration, where [`chooses_by_limits`] says so.
 pub(super) fn resolve(
     table: &At<TableOfPoints>,
+    limits: Option<[f64; 2]>,
     sources: &Sources,
     report: &mut Report,
 ) -> Option<(TableMove, Positioning)> {
     let own = &table.value;
     let velocities = velocities(own, report);
-    let follow = follow(own, report);
+    let follow = follow(own, limits, report);
     let is_relative = own.relative.optional().ok()?.copied().unwrap_or(false);
     let knots = knots(own, sources, report);
     let positioning = if is_relative { Positioning::Relative } else { Positioning::Absolute };
     Some((TableMove { knots: knots?, velocities: velocities?, follow: follow? }, positioning))
+}
+
+/// Whether velocity and acceleration choose how the table is followed.
+pub(super) fn chooses_by_limits(table: &TableOfPoints) -> bool {
+    matches!(table.plateau_share.given(), Some(Automatic::Auto))
 }
 
 /// The points of the file.
@@ -91,7 +99,7 @@ fn velocities(own: &TableOfPoints, report: &mut Report) -> Option<Velocities> {
     })
 }
 
-fn follow(own: &TableOfPoints, report: &mut Report) -> Option<Follow> {
+fn follow(own: &TableOfPoints, limits: Option<[f64; 2]>, report: &mut Report) -> Option<Follow> {
     let kind = own.follow.optional().ok()?.copied().unwrap_or_default();
     let (share, rate) = (("plateau_share", own.plateau_share.span()), ("command_rate", own.command_rate.span()));
     if kind != FollowKind::Plateaus {
@@ -112,7 +120,14 @@ fn follow(own: &TableOfPoints, report: &mut Report) -> Option<Follow> {
     match kind {
         FollowKind::Segments => Some(Follow::Segments),
         FollowKind::Plateaus => {
-            let share = own.plateau_share.optional().ok()?.copied().unwrap_or(Follow::PLATEAU_SHARE);
+            let share = match own.plateau_share.optional().ok()? {
+                None => PlateauShare::Given(Follow::PLATEAU_SHARE),
+                Some(Automatic::Given(share)) => PlateauShare::Given(*share),
+                Some(Automatic::Auto) => {
+                    let [velocity, acceleration] = limits?;
+                    PlateauShare::SmallestPartOf { velocity, acceleration }
+                }
+            };
             Some(Follow::Plateaus { share })
         }
         FollowKind::Steps => {

@@ -1,6 +1,7 @@
 //! The tables of profile blocks: times from the start of the profile, and positions, velocities or accelerations.
 use crate::diagnostic::Report;
 use crate::file::TableOfPoints;
+use crate::list::Automatic;
 use crate::points::{PointsError, Profile, read_accelerations, read_points, read_velocities};
 use crate::resolve::points;
 use crate::resolve::refuse;
@@ -69,20 +70,45 @@ fn pairs(file: &At<String>, times: &[f64], values: &[f64], report: &mut Report) 
     Some(both.map(|((time, before), value)| Pair { delta_time: time - before, value: *value }).collect())
 }
 
-/// How the axis goes from position to position.
-pub(super) fn follow(table: &At<TableOfPoints>, report: &mut Report) -> Option<ProfileFollow> {
+/// How an axis goes from position to position that is told velocities, or positions.
+pub(super) fn follow(
+    table: &At<TableOfPoints>,
+    is_told_velocities: bool,
+    report: &mut Report,
+) -> Option<ProfileFollow> {
     let own = &table.value;
-    let way = "it goes along the cubic spline, or by \"plateaus\"";
+    let way = if is_told_velocities {
+        "it goes along the cubic spline, by \"plateaus\", or by \"steps\" along the spline"
+    } else {
+        "it goes along the cubic spline, or by \"plateaus\"; by \"steps\" over a bus with `mode = \"pv\"`"
+    };
     if let Some(at) = own.velocities.at().filter(|at| at.value != VelocitiesKind::Continuous) {
         report.error(at.span, "MC_PositionProfile does not choose its velocities so", way);
     }
-    let others = [("passes", own.passes.span()), ("command_rate", own.command_rate.span())];
-    refuse(&others, "is not for MC_PositionProfile", way, report);
-    match own.follow.optional().ok()?.copied() {
+    refuse(&[("passes", own.passes.span())], "is not for MC_PositionProfile", way, report);
+    let kind = own.follow.optional().ok()?.copied();
+    let steps = is_told_velocities && kind == Some(FollowKind::Steps);
+    if !steps {
+        refuse(
+            &[("command_rate", own.command_rate.span())],
+            "is for a table that is followed by \"steps\"",
+            way,
+            report,
+        );
+    }
+    match kind {
         Some(FollowKind::Plateaus) => {
             refuse(&[("velocities", own.velocities.span())], "is not for \"plateaus\"", "leave it out", report);
-            let share = own.plateau_share.optional().ok()?.copied().unwrap_or(Follow::PLATEAU_SHARE);
-            Some(ProfileFollow::Plateaus(share))
+            Some(ProfileFollow::Plateaus(match own.plateau_share.optional().ok()? {
+                None => Some(Follow::PLATEAU_SHARE),
+                Some(Automatic::Given(share)) => Some(*share),
+                Some(Automatic::Auto) => None,
+            }))
+        }
+        Some(FollowKind::Steps) if is_told_velocities => {
+            refuse(&[("plateau_share", own.plateau_share.span())], "is for \"plateaus\"", "", report);
+            // A velocity in each cycle, unless fewer are asked for.
+            Some(own.command_rate.optional().ok()?.map_or(ProfileFollow::Spline, |rate| ProfileFollow::Steps(*rate)))
         }
         rule => {
             if let (Some(FollowKind::Steps), Some(span)) = (rule, own.follow.span()) {

@@ -125,7 +125,7 @@ fn step(
     let keys = own.or(defaults);
     let context = Context { step, own: &own, keys: &keys, before, known };
     let moved = match does {
-        Does::Table => context.table(report),
+        Does::Table => context.table(said, report),
         Does::To(position, positioning) => {
             context.to(position, said, report).map(|generator| Moved { generator, positioning, hold: 0.0 })
         }
@@ -272,16 +272,31 @@ impl Context<'_> {
     }
 
     /// A move through a table.
-    fn table(&self, report: &mut Report) -> Option<Moved> {
-        let unused = self.own.named().filter(|(key, _)| !matches!(*key, "shaper" | "averages"));
+    fn table(&self, said: &mut Reported, report: &mut Report) -> Option<Moved> {
+        let table = self.step.table.at();
+        let by_limits = table.is_some_and(|table| points::chooses_by_limits(&table.value));
+        let is_used = |key: &str| matches!(key, "shaper" | "averages") || by_limits && LIMITS[..2].contains(&key);
+        let unused = self.own.named().filter(|(key, _)| !is_used(key));
         let of_motion = of_moves(self.step).filter(|(key, _)| !matches!(*key, "duration" | "limits"));
         no_keys(unused.chain(of_motion), "a table", report);
         if self.before == Before::Motion {
             report.error(self.step.span, "a table starts at rest", "let the move before end at rest");
             return None;
         }
-        let (table, positioning) = points::resolve(self.step.table.at()?, self.known.sources, report)?;
+        let limits = if by_limits { self.velocity_and_acceleration(said, report) } else { None };
+        let (table, positioning) = points::resolve(table?, limits, self.known.sources, report)?;
         Some(Moved { generator: Generator::Table(table), positioning, hold: 0.0 })
+    }
+
+    /// The limits by which a share of plateaus is chosen.
+    fn velocity_and_acceleration(&self, said: &mut Reported, report: &mut Report) -> Option<[f64; 2]> {
+        for (key, slot) in LIMITS.into_iter().zip(self.keys.limits).take(2) {
+            if matches!(slot, Slot::Absent) {
+                said.missing(key, self.step.span, "`plateau_share = \"auto\"` is chosen by it", report);
+            }
+        }
+        let [velocity, acceleration, ..] = self.keys.limits.map(Slot::given);
+        Some([*velocity?, *acceleration?])
     }
 
     /// Where it says that the move starts or ends in motion.

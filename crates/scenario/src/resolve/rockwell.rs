@@ -28,18 +28,27 @@ pub(super) fn resolve(
     let own = &keys.value;
     let kind = own.shape.given().copied();
     let deceleration = own.deceleration.optional().ok()?.or(operands.acceleration.given()).copied();
-    let of_time = [("jerk_of_time", &own.jerk_of_time), ("deceleration_jerk_of_time", &own.deceleration_jerk_of_time)];
-    let of_maximum = [
+    let up = [
+        ("jerk", operands.jerk_beside),
+        ("jerk_of_time", &own.jerk_of_time),
         ("jerk_of_maximum", &own.jerk_of_maximum),
-        ("deceleration_jerk_of_maximum", &own.deceleration_jerk_of_maximum),
+        ("jerk_time", &own.jerk_time),
+        ("jerk_master_units", &own.jerk_master_units),
     ];
-    let up = said_jerk([("jerk", operands.jerk_beside), of_time[0], of_maximum[0]], report);
-    let down = said_jerk([("deceleration_jerk", &own.deceleration_jerk), of_time[1], of_maximum[1]], report);
+    let down = [
+        ("deceleration_jerk", &own.deceleration_jerk),
+        ("deceleration_jerk_of_time", &own.deceleration_jerk_of_time),
+        ("deceleration_jerk_of_maximum", &own.deceleration_jerk_of_maximum),
+        ("deceleration_jerk_time", &own.deceleration_jerk_time),
+        ("deceleration_jerk_master_units", &own.deceleration_jerk_master_units),
+    ];
     if kind == Some(ShapeKind::Trapezoid) {
-        let parts = of_time.into_iter().chain(of_maximum).chain([("deceleration_jerk", &own.deceleration_jerk)]);
-        let parts: Vec<_> = parts.map(|(key, slot)| (key, slot.span())).collect();
+        let parts: Vec<_> = up[1..].iter().chain(&down).map(|(key, slot)| (*key, slot.span())).collect();
         refuse(&parts, "is for an S-curve", "a trapezoid takes `maximum_jerk`", report);
     }
+    let master_speed = master_speed(own, report);
+    let up = said_jerk(up, master_speed, report);
+    let down = said_jerk(down, master_speed, report);
     let maximum = own.maximum_jerk.optional().ok()?.copied();
     let maximum_down = own.maximum_deceleration_jerk.optional().ok()?.copied().or(maximum);
     let (up, down) = (up.ok()?, down.ok()?);
@@ -48,7 +57,8 @@ pub(super) fn resolve(
         ShapeKind::SCurve => {
             let Some(up) = up.or(operands.jerk.given().copied().map(Jerk::Value)) else {
                 let message = "an S-curve needs the jerk of its acceleration";
-                report.error(keys.span, message, "give `jerk`, `jerk_of_time` or `jerk_of_maximum`");
+                let help = "give `jerk`, `jerk_of_time`, `jerk_of_maximum`, `jerk_time` or `jerk_master_units`";
+                report.error(keys.span, message, help);
                 return None;
             };
             Shape::SCurve { acceleration: up, deceleration: down.unwrap_or(up) }
@@ -72,11 +82,35 @@ pub(super) fn resolve(
     Some(Rockwell { operands: Move { distance, speed, acceleration, deceleration, shape }, maximum })
 }
 
-/// The jerk as one of three keys says it: value, part of the time, part of the maximum.
+/// The speed of the master, which jerk in master units needs; it is not looked at without one.
+fn master_speed(own: &file::Rockwell, report: &mut Report) -> f64 {
+    let in_master_units = own.jerk_master_units.span().or(own.deceleration_jerk_master_units.span());
+    match (in_master_units, own.master_speed.span()) {
+        (Some(span), None) => {
+            report.error(
+                span,
+                "jerk in master units needs `master_speed`",
+                "how many of them the master goes per second",
+            );
+        }
+        (None, Some(span)) => {
+            let help = "give `jerk_master_units`, or leave it out";
+            report.error(span, "`master_speed` is for jerk in master units", help);
+        }
+        _ => {}
+    }
+    own.master_speed.given().copied().unwrap_or(f64::NAN)
+}
+
+/// The jerk as one of five keys says it: value, part of the time, part of the maximum, time, master units.
 ///
 /// # Errors
 /// When that has been objected to.
-fn said_jerk(keys: [(&'static str, &Slot<f64>); 3], report: &mut Report) -> Result<Option<Jerk>, ()> {
+fn said_jerk(
+    keys: [(&'static str, &Slot<f64>); 5],
+    master_speed: f64,
+    report: &mut Report,
+) -> Result<Option<Jerk>, ()> {
     let which = match one_of(&keys.map(|(key, slot)| (key, slot.span())), report) {
         Alternative::Use(which) => which,
         Alternative::None => return Ok(None),
@@ -86,6 +120,9 @@ fn said_jerk(keys: [(&'static str, &Slot<f64>); 3], report: &mut Report) -> Resu
     Ok(Some(match which {
         0 => Jerk::Value(value),
         1 => Jerk::PercentOfTime(100.0 * value),
-        _ => Jerk::PercentOfMaximum(100.0 * value),
+        2 => Jerk::PercentOfMaximum(100.0 * value),
+        3 => Jerk::Time(value),
+        _ if master_speed.is_nan() => return Err(()),
+        _ => Jerk::MasterUnits { way: value, speed: master_speed },
     }))
 }

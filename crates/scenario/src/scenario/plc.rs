@@ -1,4 +1,5 @@
 //! The PLC program: calls of function blocks (PLCopen Motion Control, part 1, version 2.0).
+use servobench_plcopen::RampStart;
 use servobench_plcopen::program::Call;
 
 /// The PLC program. Its cycle is that of the motion task, [`Bus::motion_every`](super::Bus::motion_every). Positions and velocities are
@@ -7,6 +8,8 @@ use servobench_plcopen::program::Call;
 pub struct Plc {
     /// Whether absolute moves of an axis that was not homed are refused.
     pub homing_required: bool,
+    /// Where the ramps of velocities begin that the drive is told, in the mode [`ProfileVelocity`](super::BusMode::ProfileVelocity).
+    pub velocity_ramps: Option<RampStart>,
     /// What no command may exceed, of `[setpoint]`: |velocity|, |acceleration|, |jerk|, |snap|; infinite where there is none.
     pub limits: [f64; 4],
     /// The calls, at least one, in the order in which every cycle executes them.

@@ -89,6 +89,7 @@ fn every_block_can_be_called() {
         ("MC_ReadActualPosition", ""),
         ("MC_ReadActualVelocity", ""),
         ("MC_ReadActualTorque", ""),
+        ("MAM", "position = \"1 mm\"\nshape = \"s-curve\"\njerk_time = \"2 ms\"\ndeceleration_jerk_of_time = \"25 %\""),
         ("Profile4th", "position = \"1 mm\"\nsnap = \"1e4 m/s4\"\nsettling_time = \"50 ms\"\nreversed = true"),
     ] {
         let started = format!("start = \"power.Status\"\nstop = {{ at = \"1 s\" }}\ntimeout = \"1 s\"\n{keys}");
@@ -369,14 +370,17 @@ fn tables_of_profiles() {
         (
             &call("MC_PositionProfile", "table = { file = \"x.csv\", velocities = \"average\", follow = \"steps\" }"),
             &[
-                "3:40: MC_PositionProfile does not choose its velocities so; it goes along the cubic spline, or by \"plateaus\"",
-                "3:60: MC_PositionProfile does not follow its table so; it goes along the cubic spline, or by \"plateaus\"",
+                "3:40: MC_PositionProfile does not choose its velocities so; it goes along the cubic spline, or by \"plateaus\"; by \"steps\" \
+                 over a bus with `mode = \"pv\"`",
+                "3:60: MC_PositionProfile does not follow its table so; it goes along the cubic spline, or by \"plateaus\"; by \"steps\" over a \
+                 bus with `mode = \"pv\"`",
             ],
         ),
         (
             &call("MC_PositionProfile", "table = { file = \"x.csv\", passes = 1, plateau_share = 0.3 }"),
             &[
-                "3:36: `passes` is not for MC_PositionProfile; it goes along the cubic spline, or by \"plateaus\"",
+                "3:36: `passes` is not for MC_PositionProfile; it goes along the cubic spline, or by \"plateaus\"; by \"steps\" over a bus with \
+                 `mode = \"pv\"`",
                 "3:55: `plateau_share` is for \"plateaus\"",
             ],
         ),
@@ -445,7 +449,7 @@ fn calls_need_a_bus_and_a_duration_and_no_program() {
         &format!("{profile}{POWER}"),
         &halt,
     );
-    assert_eq!(errors, ["-7:8: function blocks make the set-points themselves; write \"csp\" or \"csv\""]);
+    assert_eq!(errors, ["-7:8: function blocks make the set-points themselves; write \"csp\", \"csv\" or \"pv\""]);
     let [errors, _] =
         said_of(AXIS, "", "[plc]\nhoming_required = true\n[axis.switches]\n[[program]]\nmove_to = \"1 mm\"\n");
     assert!(
@@ -462,6 +466,62 @@ fn velocities_of_positions_are_not_used() {
                    at the last position";
     let calls = call("MC_PositionProfile", "table = { file = \"pvt.csv\" }");
     assert_eq!(said(&calls), [strings(&[]), strings(&[warning])]);
+}
+
+/// Steps along the spline, and where their ramps begin, are for a drive that is told velocities.
+#[test]
+fn velocities_are_told_to_a_drive_in_profile_velocity() {
+    let steps =
+        |keys: &str| call("MC_PositionProfile", &format!("table = {{ file = \"x.csv\", follow = \"steps\"{keys} }}"));
+    let pv = BUS.replace("cycle", "mode = \"pv\"\ncycle").replace("[plc]\n", "[plc]\nramp_start = \"actual\"\n");
+    let said_in_pv = |calls: &str| said_of(&lasting(), &format!("{pv}{POWER}"), calls);
+    for keys in ["", ", command_rate = \"100 Hz\"", ", relative = true"] {
+        assert_eq!(said_in_pv(&steps(keys)), [strings(&[]), strings(&[])], "{keys}");
+    }
+    assert_eq!(
+        said_in_pv(&steps(", plateau_share = \"auto\", velocities = \"average\""))[0],
+        [
+            "3:61: `plateau_share` is for \"plateaus\"",
+            "3:82: MC_PositionProfile does not choose its velocities so; it goes along the cubic spline, by \"plateaus\", or by \
+             \"steps\" along the spline",
+        ]
+    );
+    let bus = BUS.replace("[plc]\n", "[plc]\nramp_start = \"actual\"\n");
+    let [errors, _] = said_of(&lasting(), &format!("{bus}{POWER}"), &call("MC_Halt", ""));
+    assert_eq!(errors, ["-4:14: `ramp_start` is for the mode \"pv\"; elsewhere the drive is told positions"]);
+    let rate = "table = { file = \"x.csv\", command_rate = \"100 Hz\" }";
+    assert!(
+        said(&call("MC_PositionProfile", rate))[0][0].contains("`command_rate` is for a table that is followed by")
+    );
+}
+
+/// Each jerk of Rockwell's move is said in one way, and that of a trapezoid by the axis.
+#[test]
+fn the_jerks_of_rockwells_move() {
+    let s_curve = |keys: &str| call("MAM", &format!("position = \"1 mm\"\nshape = \"s-curve\"\n{keys}"));
+    check(&[
+        (&s_curve(""), &[]),
+        (
+            &s_curve(
+                "jerk_time = \"1 ms\"\njerk_of_time = 1\ndeceleration_jerk = \"1 m/s3\"\ndeceleration_jerk_time = \"1 ms\"",
+            ),
+            &[
+                "5:13: `jerk_of_time` and `jerk_time` say the same thing; give one of them",
+                "8:26: `deceleration_jerk` and `deceleration_jerk_time` say the same thing; give one of them",
+            ],
+        ),
+        (
+            &call("MAM", "position = \"1 mm\"\njerk_of_time = 1\n"),
+            &[
+                "4:16: `jerk_of_time` is for an S-curve; write `shape = \"s-curve\"`, or leave it out: a trapezoid takes the `jerk` \
+               of `[setpoint]`",
+            ],
+        ),
+        (
+            &call("MAM", "position = \"1 mm\"\nmove_type = \"relative\""),
+            &["4:13: \"relative\" is not a value of `move_type`; known here: `absolute`, `incremental`"],
+        ),
+    ]);
 }
 
 /// What will be refused when it is executed is doubtful, not wrong: a run may want to show just that.

@@ -64,7 +64,7 @@ fn wrong_types() {
         (
             "velocity = true",
             "velocity = true\ndelay = \"automatic\"",
-            "36:9: `delay` must be \"auto\" or a time, got \"automatic\"",
+            "36:9: `delay` must be \"auto\" or a value like 125 us, got \"automatic\"",
         ),
         ("engine = \"exact\"", "engine = []", "2:10: `engine` must not be empty"),
         (

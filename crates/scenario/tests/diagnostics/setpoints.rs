@@ -117,6 +117,24 @@ fn keys_that_a_way_does_not_have() {
             &rockwell("shape = \"s-curve\", jerk_of_time = 1, jerk_of_maximum = 1"),
             &["3:69: `jerk_of_time` and `jerk_of_maximum` say the same thing; give one of them"],
         ),
+        ("", &rockwell("shape = \"s-curve\", jerk_time = \"1 ms\", deceleration_jerk_of_time = \"25 %\""), &[]),
+        (
+            "",
+            &rockwell(
+                "shape = \"s-curve\", jerk_master_units = 2, deceleration_jerk_time = \"1 ms\", master_speed = 360",
+            ),
+            &[],
+        ),
+        (
+            "",
+            &rockwell("shape = \"s-curve\", jerk_master_units = 2"),
+            &["3:53: jerk in master units needs `master_speed`; how many of them the master goes per second"],
+        ),
+        (
+            "",
+            &rockwell("shape = \"s-curve\", jerk_of_time = 1, master_speed = 360"),
+            &["3:66: `master_speed` is for jerk in master units; give `jerk_master_units`, or leave it out"],
+        ),
         (
             "",
             &rockwell("shape = \"trapezoid\", maximum_jerk = \"500 m/s3\", jerk_of_time = 1"),
@@ -186,6 +204,21 @@ fn tables_of_points() {
              allowed error",
                 "2:41: `passes` is for velocities that are \"smooth\"",
             ],
+        ),
+        // The limits of `[setpoint]` choose the share, or those of the step.
+        ("averages = []\n", &table("file = \"points.csv\", follow = \"plateaus\", plateau_share = \"auto\""), &[]),
+        (
+            "averages = []\n",
+            &format!(
+                "{}velocity = \"1 m/s\"\n",
+                table("file = \"points.csv\", follow = \"plateaus\", plateau_share = \"auto\"")
+            ),
+            &[],
+        ),
+        (
+            "averages = []\n",
+            &table("file = \"points.csv\", follow = \"plateaus\", plateau_share = \"best\""),
+            &["3:69: `plateau_share` must be \"auto\" or a value like 0.25, got \"best\""],
         ),
         (
             "",

@@ -92,7 +92,6 @@ impl Network {
         let drive = (device, device::State::new(&device)?);
 
         let model = master_model(bus, loops, scenario);
-        let frame_delay = u64::from(bus.delay) * u64::from(bus.cycle);
         let settings = link::Settings {
             base_rate,
             bus_cycle: bus_every,
@@ -119,16 +118,7 @@ impl Network {
             velocity_limit: RESERVE * dynamics.velocity,
         };
         let link = link::Params::new(settings)?;
-        let steps = match device.interpolation {
-            Mode::CubicBSpline => 2,
-            _ => 1,
-        };
-        let delays = Delays {
-            link: link.delay(),
-            frame: frame_delay,
-            drive: u64::from(device.cycle.shift * drive_every.ticks()) + steps * u64::from(bus.cycle),
-        };
-        let delays = if bus.mode.is_cyclic() { delays } else { Delays { link: 0, drive: 0, ..delays } };
+        let delays = delays(scenario, bus, &link, &device, (motion_cycle, drive_every));
         let period = f64::from(motion_cycle.ticks()) * tick;
         let delay = delays.sum() as f64 * tick + wait(bus.mode, loops, drive_every);
         let task = match &scenario.plc {
@@ -172,6 +162,28 @@ impl Network {
         };
         Ok((network, delays))
     }
+}
+
+/// How long a set-point is under way, of a motion task with a cycle of its own to a drive that steps every so many ticks.
+fn delays(
+    scenario: &Scenario,
+    bus: &Bus,
+    link: &link::Params,
+    device: &device::Params,
+    (motion_cycle, drive_every): (Divider, Divider),
+) -> Delays {
+    let steps = match device.interpolation {
+        Mode::CubicBSpline => 2,
+        _ => 1,
+    };
+    let in_drive = u64::from(device.cycle.shift * drive_every.ticks()) + steps * u64::from(bus.cycle);
+    let (link, drive) = match (bus.mode.is_cyclic(), &scenario.plc) {
+        (true, _) => (link.delay(), in_drive),
+        // A drive that blocks tell a velocity is there a cycle of theirs later.
+        (false, Some(_)) => (motion_cycle.ticks().into(), 0),
+        (false, None) => (0, 0),
+    };
+    Delays { link, frame: u64::from(bus.delay) * u64::from(bus.cycle), drive }
 }
 
 /// How long a set-point of `mode` waits for the feedforward (s): in the drive's position loop, which a velocity goes past.

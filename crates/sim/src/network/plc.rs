@@ -58,6 +58,7 @@ impl Plc {
         let params = AxisParams {
             needs_homing: plc.homing_required,
             modulo: axis.modulo,
+            velocity_ramps: plc.velocity_ramps,
             buffered_commands: MOST_BUFFERED,
             ..AxisParams::new(cycle, limits(plc))
         };
@@ -87,14 +88,17 @@ impl Plc {
     ) -> Result<Step, String> {
         let mut notes = Notes { calls: &self.calls, recorder };
         let mut command = self.executor.cycle(t, feedback, &mut notes).map_err(|overdue| overdue.to_string())?;
-        let commanded = self.executor.axis().commanded();
-        let mut setpoint = None;
-        if let Task::Follow(asked) = &mut command.task {
-            // The axis counts from where the drive does; the program may have shifted its own zero.
-            let followed = Setpoint { x: asked.x, v: asked.v, a: asked.a, ..commanded };
-            *asked = sample(followed);
-            setpoint = Some(followed);
-        }
+        let axis = self.executor.axis();
+        // The axis counts from where the drive does; the program may have shifted its own zero.
+        let (commanded, sent) = (axis.commanded(), axis.sent());
+        let setpoint = match &mut command.task {
+            Task::Follow(asked) => {
+                *asked = sample(sent);
+                Some(sent)
+            }
+            Task::Drive(_) => Some(sent),
+            Task::Effort(_) | Task::Home { .. } => None,
+        };
         let x = origin + setpoint.map_or(feedback.demanded(), |followed| followed.x);
         self.followed = Setpoint { x, ..commanded };
         self.executor.follow_motions(t, self.followed);

@@ -56,7 +56,7 @@ fn step(block: BlockName, inputs: &Inputs) -> Option<Step> {
         }
         BlockName::PositionProfile => match inputs.table()?.follow {
             Follow::Plateaus(_) => Step::At("its ramps begin and end"),
-            Follow::Spline => Step::At("the spline begins and ends"),
+            Follow::Spline | Follow::Steps(_) => Step::At("the spline begins and ends"),
         },
         _ => return None,
     };

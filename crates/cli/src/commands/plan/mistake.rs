@@ -29,12 +29,18 @@ pub(crate) enum PlanMistake {
     SamplingOfTheShortest,
     #[error("--shape trapezoid takes all of --maximum-jerk: choose s-curve, or leave the other jerks out")]
     JerkOfTrapezoid,
-    #[error("--jerk is missing: or --jerk-percent-of-time, or --jerk-percent-of-maximum: an S-curve needs one")]
+    #[error("--jerk is missing: or --jerk-percent-of-time, or another way to say it: an S-curve needs one")]
     NoJerk,
     #[error("--maximum-jerk is missing: {why}, as \"1000 m/s3\"")]
     NoMaximumJerk { why: &'static str },
+    #[error("--master-speed is not used: no jerk is given in master units; leave it out")]
+    UnusedMasterSpeed,
     #[error("--maximum-jerk is not used: no jerk of this S-curve is a part of it; leave it out")]
     UnusedMaximumJerk,
+    #[error("--plateau auto is chosen by limits: give --velocity and --acceleration, as \"0.5 m/s\" and \"5 m/s2\"")]
+    NoLimits,
+    #[error("--velocity and --acceleration choose the share of --plateau auto: choose that, or leave them out")]
+    UnusedLimits,
     #[error("--passes are those of --velocities smooth: choose that, or leave them out")]
     PassesOfOthers,
     #[error("--shaper-tolerable is for --shaper ei: the others leave nothing at the frequency")]

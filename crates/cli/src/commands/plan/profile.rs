@@ -115,8 +115,9 @@ impl Profile {
     fn table_limits(&self, axis: &mut Axis) -> [Sides; 2] {
         match self {
             Self::Named(NamedProfile::Pvt(args)) => args.limits(axis),
-            Self::Named(NamedProfile::Position(args)) => args.limits(axis),
-            Self::PointToPoint(_) | Self::Named(NamedProfile::Rockwell(_)) => [Sides::both(f64::INFINITY); 2],
+            Self::PointToPoint(_) | Self::Named(NamedProfile::Rockwell(_) | NamedProfile::Position(_)) => {
+                [Sides::both(f64::INFINITY); 2]
+            }
         }
     }
 

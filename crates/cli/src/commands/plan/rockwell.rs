@@ -1,7 +1,7 @@
 //! A move by the operands of Rockwell's axis move.
 use super::filter::SampledFilterArgs;
 use super::mistake::PlanMistake;
-use super::quantity::{ACCELERATION, Axis, AxisQuantity, JERK, POSITION, VELOCITY, percent};
+use super::quantity::{ACCELERATION, Axis, AxisQuantity, JERK, POSITION, VELOCITY, percent, positive_time, ratio};
 use crate::args::choice;
 use clap::Args;
 use servobench_motion::rockwell::{Jerk, MaximumJerk, Move, Shape, ShapeKind};
@@ -25,33 +25,48 @@ pub(crate) struct RockwellArgs {
     #[arg(long, value_parser = choice::<ShapeKind>())]
     shape: Option<ShapeKind>,
     /// Jerk, as "1000 m/s3".
-    #[arg(long, value_parser = JERK)]
+    #[arg(long, value_parser = JERK, group = "up")]
     jerk: Option<AxisQuantity>,
     /// Part of the ramp in which the acceleration changes, 0 to 100.
     #[arg(
         long,
         value_name = "PERCENT",
         value_parser = percent,
-        conflicts_with_all = ["jerk", "jerk_percent_of_maximum"]
+        group = "up"
     )]
     jerk_percent_of_time: Option<f64>,
     /// Part of --maximum-jerk, 0 to 100.
-    #[arg(long, value_name = "PERCENT", value_parser = percent, conflicts_with = "jerk")]
+    #[arg(long, value_name = "PERCENT", value_parser = percent, group = "up")]
     jerk_percent_of_maximum: Option<f64>,
+    /// Time in which the acceleration rises at the beginning of the ramp, and falls at its end, as "2 ms".
+    #[arg(long, value_name = "TIME", value_parser = positive_time, group = "up")]
+    jerk_time: Option<f64>,
+    /// The same as a way of the master in its units.
+    #[arg(long, value_name = "UNITS", value_parser = ratio, group = "up", requires = "master_speed")]
+    jerk_master_units: Option<f64>,
     /// Jerk of the deceleration [default: as for the acceleration].
-    #[arg(long, value_name = "JERK", value_parser = JERK)]
+    #[arg(long, value_name = "JERK", value_parser = JERK, group = "down")]
     deceleration_jerk: Option<AxisQuantity>,
     /// The same as a part of the ramp.
     #[arg(
         long,
         value_name = "PERCENT",
         value_parser = percent,
-        conflicts_with_all = ["deceleration_jerk", "deceleration_jerk_percent_of_maximum"]
+        group = "down"
     )]
     deceleration_jerk_percent_of_time: Option<f64>,
     /// The same as a part of --maximum-jerk.
-    #[arg(long, value_name = "PERCENT", value_parser = percent, conflicts_with = "deceleration_jerk")]
+    #[arg(long, value_name = "PERCENT", value_parser = percent, group = "down")]
     deceleration_jerk_percent_of_maximum: Option<f64>,
+    /// The same as the time in which the deceleration rises, and falls.
+    #[arg(long, value_name = "TIME", value_parser = positive_time, group = "down")]
+    deceleration_jerk_time: Option<f64>,
+    /// The same as a way of the master in its units.
+    #[arg(long, value_name = "UNITS", value_parser = ratio, group = "down", requires = "master_speed")]
+    deceleration_jerk_master_units: Option<f64>,
+    /// Speed of the master, in its units per second.
+    #[arg(long, value_name = "SPEED", value_parser = ratio)]
+    master_speed: Option<f64>,
     /// Jerk that the axis is configured for, as "1000 m/s3"; a trapezoid takes all of it.
     #[arg(long, value_name = "JERK", value_parser = JERK)]
     maximum_jerk: Option<AxisQuantity>,
@@ -77,13 +92,26 @@ impl RockwellArgs {
 
     /// The shape with its jerks: an S-curve where one is given.
     fn shape(&self, axis: &mut Axis) -> Result<Shape, PlanMistake> {
-        let up = jerk(axis, self.jerk.as_ref(), self.jerk_percent_of_time, self.jerk_percent_of_maximum);
-        let down = jerk(
-            axis,
-            self.deceleration_jerk.as_ref(),
+        let of_master =
+            |way: Option<f64>| way.zip(self.master_speed).map(|(way, speed)| Jerk::MasterUnits { way, speed });
+        let parts = |of_time: Option<f64>, of_maximum: Option<f64>, time: Option<f64>| {
+            let of_time = of_time.map(Jerk::PercentOfTime).or(of_maximum.map(Jerk::PercentOfMaximum));
+            of_time.or(time.map(Jerk::Time))
+        };
+        let up = axis.optional(self.jerk.as_ref()).map(Jerk::Value);
+        let up = up.or(parts(self.jerk_percent_of_time, self.jerk_percent_of_maximum, self.jerk_time));
+        let up = up.or(of_master(self.jerk_master_units));
+        let down = axis.optional(self.deceleration_jerk.as_ref()).map(Jerk::Value);
+        let down = down.or(parts(
             self.deceleration_jerk_percent_of_time,
             self.deceleration_jerk_percent_of_maximum,
-        );
+            self.deceleration_jerk_time,
+        ));
+        let down = down.or(of_master(self.deceleration_jerk_master_units));
+        let in_master_units = self.jerk_master_units.is_some() || self.deceleration_jerk_master_units.is_some();
+        if self.master_speed.is_some() && !in_master_units {
+            return Err(PlanMistake::UnusedMasterSpeed);
+        }
         let has_jerk = up.is_some() || down.is_some();
         match self.shape.unwrap_or(if has_jerk { ShapeKind::SCurve } else { ShapeKind::Trapezoid }) {
             ShapeKind::Trapezoid if has_jerk => Err(PlanMistake::JerkOfTrapezoid),
@@ -112,10 +140,4 @@ impl RockwellArgs {
             (None, None) => Ok(f64::INFINITY),
         }
     }
-}
-
-/// The jerk of a ramp in the way that is given.
-fn jerk(axis: &mut Axis, value: Option<&AxisQuantity>, of_time: Option<f64>, of_maximum: Option<f64>) -> Option<Jerk> {
-    let value = axis.optional(value).map(Jerk::Value);
-    value.or(of_time.map(Jerk::PercentOfTime)).or(of_maximum.map(Jerk::PercentOfMaximum))
 }

@@ -6,6 +6,7 @@ use crate::args::{choice, file};
 use crate::console::say;
 use clap::Args;
 use servobench_motion::online::Sides;
+use servobench_motion::position_profile::PlateauShare;
 use servobench_motion::pvt::Knot;
 use servobench_planner::{CommandCycle, CommandRate, Filter, Follow, Generator, TableMove, Velocities, VelocitiesKind};
 use servobench_scenario::{Counts, Derivative, Points, axis_quantity, read_points_in};
@@ -27,6 +28,12 @@ pub(crate) struct PvtArgs {
     /// Passes of --velocities smooth [default: 2].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     passes: Option<u16>,
+    /// Velocity that the move is held against, as "1 m/s"; what exceeds it is told, and marked in a drawing.
+    #[arg(long, value_parser = VELOCITY.magnitude())]
+    velocity: Option<AxisQuantity>,
+    /// The same for the acceleration, as "5 m/s2".
+    #[arg(long, value_parser = ACCELERATION.magnitude())]
+    acceleration: Option<AxisQuantity>,
     #[command(flatten)]
     filter: SampledFilterArgs,
 }
@@ -38,6 +45,12 @@ pub(crate) struct PositionArgs {
     table: TableArgs,
     #[command(flatten)]
     sent: SentArgs,
+    /// Largest velocity, for --plateau auto.
+    #[arg(long, value_name = "VELOCITY", value_parser = VELOCITY)]
+    velocity: Option<AxisQuantity>,
+    /// Largest acceleration, for --plateau auto.
+    #[arg(long, value_name = "ACCELERATION", value_parser = ACCELERATION)]
+    acceleration: Option<AxisQuantity>,
     /// Commands at whole multiples of this cycle alone, as a bus sends them, "1 ms".
     #[arg(long, value_name = "TIME", value_parser = positive_time)]
     command_cycle: Option<f64>,
@@ -52,27 +65,34 @@ struct TableArgs {
     /// --counts.
     #[arg(long, value_name = "FILE")]
     points: PathBuf,
-    /// Velocity that the move is held against, as "1 m/s"; what exceeds it is told, and marked in a drawing.
-    #[arg(long, value_parser = VELOCITY.magnitude())]
-    velocity: Option<AxisQuantity>,
-    /// The same for the acceleration, as "5 m/s2".
-    #[arg(long, value_parser = ACCELERATION.magnitude())]
-    acceleration: Option<AxisQuantity>,
 }
 
 /// The ways to make velocity commands of positions: one of them.
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
 struct SentArgs {
-    /// Option 1: share of a segment at either end in which velocity changes, above 0 to 0.5.
-    #[arg(long, value_name = "ALPHA", value_parser = ratio)]
-    plateau: Option<f64>,
+    /// Option 1: share of a segment at either end in which velocity changes, above 0 to 0.5; "auto" for the one that takes the smallest
+    /// part of --velocity and --acceleration.
+    #[arg(long, value_name = "ALPHA", value_parser = plateau)]
+    plateau: Option<Plateau>,
     /// Option 2: velocity commands along the spline, as "100 Hz".
     #[arg(long, value_name = "RATE", value_parser = frequency)]
     command_rate: Option<f64>,
     /// Option 2 at the lowest rate that keeps this distance to the spline, as "10 um".
     #[arg(long, value_name = "DISTANCE", value_parser = POSITION)]
     allowed_error: Option<AxisQuantity>,
+}
+
+/// The share of `--plateau`.
+#[derive(Debug, Clone, Copy)]
+enum Plateau {
+    Auto,
+    Given(f64),
+}
+
+/// A share, as "0.25", or "auto".
+fn plateau(text: &str) -> Result<Plateau, String> {
+    if text.trim() == "auto" { Ok(Plateau::Auto) } else { ratio(text).map(Plateau::Given) }
 }
 
 impl PvtArgs {
@@ -103,8 +123,12 @@ impl PositionArgs {
     pub(super) fn generator(&self, counts: Option<Counts>, axis: &mut Axis) -> Result<Generator, PlanMistake> {
         let points = self.table.points(counts, axis)?;
         say_velocities_are_unused(&points);
+        let has_limits = self.velocity.is_some() || self.acceleration.is_some();
+        if has_limits && !matches!(self.sent.plateau, Some(Plateau::Auto)) {
+            return Err(PlanMistake::UnusedLimits);
+        }
         let follow = match &self.sent {
-            SentArgs { plateau: Some(share), .. } => Follow::Plateaus { share: *share },
+            SentArgs { plateau: Some(share), .. } => Follow::Plateaus { share: self.share(*share, axis)? },
             SentArgs { command_rate: Some(rate), .. } => Follow::Steps { rate: CommandRate::Given(*rate) },
             SentArgs { allowed_error, .. } => {
                 // In a unit of its own: positions stay in theirs.
@@ -113,6 +137,17 @@ impl PositionArgs {
             }
         };
         Ok(Generator::Table(TableMove { knots: knots(&points), velocities: Velocities::Given, follow }))
+    }
+
+    fn share(&self, plateau: Plateau, axis: &mut Axis) -> Result<PlateauShare, PlanMistake> {
+        let limits = axis.optional(self.velocity.as_ref()).zip(axis.optional(self.acceleration.as_ref()));
+        match (plateau, limits) {
+            (Plateau::Given(share), _) => Ok(PlateauShare::Given(share)),
+            (Plateau::Auto, Some((velocity, acceleration))) => {
+                Ok(PlateauShare::SmallestPartOf { velocity, acceleration })
+            }
+            (Plateau::Auto, None) => Err(PlanMistake::NoLimits),
+        }
     }
 
     /// The cycle of a bus whose units are finer than what matters, at whose first instant the move begins.
@@ -138,24 +173,14 @@ fn knots(points: &Points) -> Vec<Knot> {
 }
 
 impl PvtArgs {
+    /// What velocity and acceleration are held against.
     pub(super) fn limits(&self, axis: &mut Axis) -> [Sides; 2] {
-        self.table.limits(axis)
-    }
-}
-
-impl PositionArgs {
-    pub(super) fn limits(&self, axis: &mut Axis) -> [Sides; 2] {
-        self.table.limits(axis)
+        let mut limit = |given: Option<&AxisQuantity>| Sides::both(axis.optional(given).unwrap_or(f64::INFINITY));
+        [limit(self.velocity.as_ref()), limit(self.acceleration.as_ref())]
     }
 }
 
 impl TableArgs {
-    /// What velocity and acceleration are held against.
-    fn limits(&self, axis: &mut Axis) -> [Sides; 2] {
-        let mut limit = |given: Option<&AxisQuantity>| Sides::both(axis.optional(given).unwrap_or(f64::INFINITY));
-        [limit(self.velocity.as_ref()), limit(self.acceleration.as_ref())]
-    }
-
     /// The table, its units noted.
     fn points(&self, counts: Option<Counts>, axis: &mut Axis) -> Result<Points, PlanMistake> {
         let file = || self.points.clone();
