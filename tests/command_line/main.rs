@@ -13,6 +13,7 @@ mod overrides;
 mod plan;
 mod plan_families;
 mod plan_mistakes;
+mod plan_points;
 mod plc;
 mod run;
 mod standard_input;

@@ -19,6 +19,9 @@ pub struct Request {
     pub filter: Filter,
     /// How velocity commands get to the drive, of a table that is followed by them; at any time and exactly without.
     pub commands: Option<CommandCycle>,
+    /// What velocity and acceleration of a table are held against, which is followed whatever they are; every other generator has
+    /// limits of its own. Infinite where there is none.
+    pub table_limits: [Sides; 2],
 }
 
 /// A generator of set-points with its operands.
@@ -117,7 +120,8 @@ impl Request {
     /// As fast as the limits allow, and not filtered.
     #[must_use]
     pub const fn new(generator: Generator) -> Self {
-        Self { generator, duration: None, filter: Filter::NONE, commands: None }
+        let table_limits = [Sides::both(f64::INFINITY); 2];
+        Self { generator, duration: None, filter: Filter::NONE, commands: None, table_limits }
     }
 
     /// Plans it.
@@ -143,7 +147,13 @@ impl Request {
             Some(duration) => self.slowed(plan, duration, filter.length())?,
             None => plan,
         };
-        plan.filtered(&filter)
+        let plan = plan.filtered(&filter)?;
+        if !matches!(self.generator, Generator::Table(_)) {
+            return Ok(plan);
+        }
+        let [velocity, acceleration] = self.table_limits;
+        let none = Sides::both(f64::INFINITY);
+        Ok(plan.within([velocity, acceleration, none, none]))
     }
 }
 

@@ -117,7 +117,7 @@ impl Asked {
         let unit = if self.variant.is_multiple_of(2) { other } else { 0.0 };
         let cycle = CommandCycle { period: one, first: self.signed[5], unit };
         let commands = self.filter.is_multiple_of(3).then_some(cycle);
-        Request { generator: self.generator(), duration, filter: Filter { shaper, averages }, commands }
+        Request { duration, filter: Filter { shaper, averages }, commands, ..Request::new(self.generator()) }
     }
 }
 

@@ -29,7 +29,7 @@ pub use error::ReportError;
 pub use fmu_table::fmu_table;
 pub use junit::junit;
 pub use object_table::object_table;
-pub use plan::PlannedMove;
+pub use plan::{PlannedMove, PointChoice, Unsent};
 pub use results::{LimitPlace, Outcome, Results, RunIdentity, RunResult};
 pub use style::Style;
 pub use text::{elided, printable, wrapped};

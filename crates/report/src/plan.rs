@@ -6,6 +6,7 @@ mod envelope;
 mod json;
 mod marks;
 mod panel;
+mod points;
 mod rows;
 mod sheet;
 mod table;
@@ -13,6 +14,9 @@ mod times;
 mod window;
 mod words;
 
+pub use points::{PointChoice, Unsent};
+
+use points::Points;
 use servobench_base::Setpoint;
 use servobench_metrics::{DisplayUnit, DisplayUnits};
 use servobench_motion::sampled::Shortest;
@@ -31,6 +35,8 @@ pub struct PlannedMove {
     plan: Plan,
     /// Units of position and its derivatives as whoever asked wrote them.
     units: DisplayUnits,
+    /// The move as points, where that was asked for.
+    points: Option<Points>,
 }
 
 impl PlannedMove {
@@ -40,7 +46,7 @@ impl PlannedMove {
     /// [`PlanError`] of the planner.
     pub fn new(request: Request, unit: &'static str) -> Result<Self, PlanError> {
         let plan = request.plan()?;
-        Ok(Self { request, plan, units: DisplayUnits::new(unit) })
+        Ok(Self { request, plan, units: DisplayUnits::new(unit), points: None })
     }
 
     /// The same with derivative `k` of position, 0 to 4, in the unit in which `text` was written, whose value is `value`

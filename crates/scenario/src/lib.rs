@@ -46,7 +46,8 @@ pub use overrides::{Override, OverrideError};
 pub use parameter_key::{parameter_key, switch_key};
 pub use parameters::{Difference, Parameter, differences};
 pub use points::{
-    Column, MOST_POINTS, Points, PointsError, PointsMistake, Profile, read_accelerations, read_points, read_velocities,
+    Column, Counts, MOST_POINTS, Points, PointsError, PointsMistake, Profile, read_accelerations, read_points,
+    read_points_in, read_velocities,
 };
 pub use scenario::{
     Actuator, Axis, AxisMechanics, Bus, BusMode, Disturbance, DisturbedBody, Drive, DriveUnits, Feedback, Fmu, Initial,

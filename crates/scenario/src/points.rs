@@ -7,10 +7,13 @@
 //! 20,15,1000
 //! ```
 //! The heading names the columns, in any order, with the unit of all their numbers. `velocity` may be left out, or a row of
-//! it left empty. Times increase. Spaces around numbers and empty lines do not matter; the decimal sign is a point.
+//! it left empty. Times increase. Spaces around numbers and empty lines do not matter; the decimal sign is a point. Columns
+//! `acceleration`, `jerk` and `snap`, as a planned move has them, are read and not used: the way from point to point is the
+//! cubic between positions and velocities, or a line.
 //!
-//! A profile is such a table of times and of velocities or accelerations alone.
+//! A profile is such a table, of which the times and the velocities, or the accelerations, are used.
 mod column;
+mod counts;
 mod mistake;
 mod rows;
 
@@ -19,6 +22,7 @@ use rows::{Head, read_rows};
 use servobench_base::Coordinate;
 
 pub use column::Column;
+pub use counts::Counts;
 pub use mistake::{PointsError, PointsMistake};
 
 /// Points at most: a table of more is taken for a mistake.
@@ -37,6 +41,8 @@ pub struct Points {
     pub velocities: Option<Vec<Option<f64>>>,
     /// Units as the heading writes them: of time, position, velocity.
     pub units: [Option<String>; 3],
+    /// Columns of which nothing is used.
+    pub unused: Vec<Column>,
 }
 
 /// A profile, in SI: two points at least, in the order of time.
@@ -55,7 +61,15 @@ pub struct Profile {
 /// # Errors
 /// [`PointsError`], the first mistake.
 pub fn read_points(text: &str) -> Result<Points, PointsError> {
-    read(text, MOST_POINTS)
+    read(text, None, MOST_POINTS)
+}
+
+/// Reads a table of points that may be in counts of a drive: `position [counts]`, `velocity [counts/s]` or `velocity [0.1 counts/s]`.
+///
+/// # Errors
+/// [`PointsError`], the first mistake.
+pub fn read_points_in(counts: Option<Counts>, text: &str) -> Result<Points, PointsError> {
+    read(text, counts, MOST_POINTS)
 }
 
 /// Reads a profile of velocities.
@@ -76,20 +90,20 @@ pub fn read_accelerations(text: &str) -> Result<Profile, PointsError> {
 
 fn read_profile(text: &str, layout: Layout) -> Result<Profile, PointsError> {
     let (mut times, mut values) = (Vec::new(), Vec::new());
-    let heads = read_rows(text, layout, MOST_POINTS, |column, value| match column {
+    let heads = read_rows(text, layout, None, MOST_POINTS, |column, value| match column {
         Column::Time => times.extend(value),
-        Column::Position | Column::Velocity | Column::Acceleration => values.extend(value),
+        _ => values.extend(value),
     })?;
     Ok(Profile { motion: motion(&heads), times, values })
 }
 
 /// Reads a table of `most` points at most.
-fn read(text: &str, most: usize) -> Result<Points, PointsError> {
+fn read(text: &str, counts: Option<Counts>, most: usize) -> Result<Points, PointsError> {
     let (mut times, mut positions, mut velocities) = (Vec::new(), Vec::new(), Vec::new());
-    let heads = read_rows(text, Layout::Positions, most, |column, value| match column {
+    let heads = read_rows(text, Layout::Positions, counts, most, |column, value| match column {
         Column::Time => times.extend(value),
         Column::Position => positions.extend(value),
-        Column::Velocity | Column::Acceleration => velocities.push(value),
+        _ => velocities.push(value),
     })?;
     let has_velocity = heads.iter().any(|head| head.column == Column::Velocity);
     let unit = |column| heads.iter().find(|head| head.column == column).map(|head| head.unit.clone());
@@ -99,6 +113,7 @@ fn read(text: &str, most: usize) -> Result<Points, PointsError> {
         positions,
         velocities: has_velocity.then_some(velocities),
         units: [Column::Time, Column::Position, Column::Velocity].map(unit),
+        unused: heads.iter().map(|head| head.column).filter(|column| !Layout::Positions.uses(*column)).collect(),
     })
 }
 
@@ -158,6 +173,79 @@ mod tests {
         ] {
             let found: Result<Profile, PointsError> = read(text);
             assert_eq!(found.unwrap_err().to_string(), said, "{text}");
+        }
+    }
+
+    /// What a planned move is written as has all derivatives; they are checked as far as they tell a mistake.
+    #[test]
+    fn columns_that_are_not_used_may_be_there() {
+        let text = "time [s],position [m],velocity [m/s],acceleration [m/s2],jerk [m/s3],snap [m/s4]\n\
+                    0,0,0,1,2,3\n1,0.5,1,,,\n";
+        let points = read_points(text).unwrap();
+        assert_eq!((points.times, points.positions), (vec![0.0, 1.0], vec![0.0, 0.5]));
+        assert_eq!(points.velocities, Some(vec![Some(0.0), Some(1.0)]));
+        assert_eq!(points.unused, [Column::Acceleration, Column::Jerk, Column::Snap]);
+        assert_eq!(read_velocities(text).unwrap().values, [0.0, 1.0]);
+        assert_eq!(
+            read_accelerations(text).unwrap_err().to_string(),
+            "3:9: `acceleration` is ``: write a number; only `velocity` beside `position` may be left empty"
+        );
+        for (text, said) in [
+            (
+                "time [s],position [m],jerk [rad/s3]\n0,0,0\n1,1,0",
+                "1:23: `jerk` cannot be in `rad/s3`: positions are in `m`, a jerk is needed",
+            ),
+            (
+                "time [s],position [rad],velocity [m/s]\n0,0,0\n1,1,0",
+                "1:25: `velocity` cannot be in `m/s`: positions are in `rad`, an angular velocity is needed",
+            ),
+            (
+                "time [s],position [m],snap [m/s4]\n0,0,0\n1,1,x",
+                "3:5: `snap` is `x`: write a number like `12.5`, its unit stands in the heading",
+            ),
+            (
+                "time [s],position [m],crackle [m/s5]\n0,0,0\n1,1,0",
+                "1:23: unknown column `crackle`: the heading is like `time [ms],position [mm],velocity [mm/s]`",
+            ),
+        ] {
+            assert_eq!(read_points(text).unwrap_err().to_string(), said, "{text}");
+        }
+    }
+
+    /// Oracle: by hand, 10 000 counts on 5 mm.
+    #[test]
+    fn counts_are_what_they_are_of_the_axis() {
+        let counts = |per, motion| Some(Counts { per, motion });
+        let linear = counts(2e6, Coordinate::Linear);
+        let text = "time [ms],position [counts],velocity [0.1 counts/s]\n0,0,0\n10,10000,-400000\n20,-1,";
+        let points = read_points_in(linear, text).unwrap();
+        assert_eq!((points.motion, points.positions), (Coordinate::Linear, vec![0.0, 0.005, -0.5e-6]));
+        assert_eq!(points.velocities, Some(vec![Some(0.0), Some(-0.02), None]));
+        let whole = read_points_in(linear, &text.replace("0.1 counts/s", "counts/s")).unwrap();
+        assert_eq!(whole.velocities.unwrap()[1], Some(-0.2));
+        let rotary = counts(-1000.0, Coordinate::Rotary);
+        let turned = read_points_in(rotary, "time [s],position [counts]\n0,0\n1,500").unwrap();
+        assert_eq!((turned.motion, turned.positions[1]), (Coordinate::Rotary, -0.5));
+        for (counts, text, said) in [
+            (
+                None,
+                "time [s],position [counts]\n",
+                "1:10: `position` cannot be in `counts`: it is not known what a count is of the axis: `servobench plan` is told by \
+                 --counts; elsewhere write a length or an angle",
+            ),
+            (
+                linear,
+                "time [s],position [counts],velocity [counts/ms]\n",
+                "1:28: `velocity` cannot be in `counts/ms`: write `counts/s`, or `0.1 counts/s` as drives take it",
+            ),
+            (linear, "time [counts],position [m]\n", "1:1: `time` cannot be in `counts`: write `ms`"),
+            (
+                linear,
+                "time [s],position [counts],velocity [rad/s]\n",
+                "1:28: `velocity` cannot be in `rad/s`: positions are in `counts`, a velocity is needed",
+            ),
+        ] {
+            assert_eq!(read_points_in(counts, text).unwrap_err().to_string(), said, "{text}");
         }
     }
 
@@ -245,8 +333,8 @@ mod tests {
     #[test]
     fn a_table_of_absurd_length_is_refused() {
         let text = "time [ms],position [mm]\n0,0\n1,0\n2,0\n3,0";
-        assert_eq!(read(text, 4).unwrap().times.len(), 4);
-        assert_eq!(read(text, 3).unwrap_err(), wrong(5, 1, PointsMistake::TooMany { most: 3 }));
+        assert_eq!(read(text, None, 4).unwrap().times.len(), 4);
+        assert_eq!(read(text, None, 3).unwrap_err(), wrong(5, 1, PointsMistake::TooMany { most: 3 }));
     }
 
     /// Columns count characters, not bytes, and a long cell does not fill the screen.

@@ -149,6 +149,11 @@ impl Scale {
         Ok(scale)
     }
 
+    /// That of so many units per metre or radian, which are written in `10^tens` of them.
+    pub(crate) const fn per(units: f64, tens: i32) -> Self {
+        Self { numerator: 1.0, denominator: units, tens, dimension: Dimension::ONE }
+    }
+
     /// `number` in SI.
     ///
     /// # Errors

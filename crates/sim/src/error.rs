@@ -230,6 +230,7 @@ const fn key_of(unsendable: &Unsendable) -> &'static str {
     match unsendable {
         Unsendable::Point { help: Help::CoarserUnit | Help::MorePoints, .. } => " (`bus.units`)",
         Unsendable::SubMode { .. } => " (`bus.trajectory_buffer`, `drive.objects.60C0h`)",
+        Unsendable::Point { help: Help::OtherTimes, .. } => " (`bus.point_time` where they are those of a move)",
         Unsendable::Point { .. } => "",
     }
 }

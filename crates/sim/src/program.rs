@@ -4,11 +4,16 @@ mod fine;
 use crate::error::{BuildError, check_length};
 use fine::Fine;
 use servobench_base::Setpoint;
+use servobench_cia402::interpolated::SubMode;
+use servobench_cia402::units::Object;
 use servobench_metrics::DisplayUnit;
+use servobench_motion::PlanError;
 use servobench_motion::online::Effort;
 use servobench_motion::rockwell::Shape;
-use servobench_planner::{CommandCycle, Follow, Generator, Method, Plan, PlanDetails, Reader, Request};
-use servobench_scenario::{BusMode, Scenario, Step};
+use servobench_planner::{
+    CommandCycle, Follow, Generator, Method, Plan, PlanDetails, PointMove, PointTimes, Reader, Request,
+};
+use servobench_scenario::{Bus, BusMode, Scenario, Step};
 use servobench_trace::{Ending, Move};
 
 /// A planned move, and when it starts and ends: later than its plan where a velocity is held, earlier where it is aborted.
@@ -18,6 +23,8 @@ struct Planned {
     end: f64,
     from: f64,
     plan: Plan,
+    /// How far the way through its points leads from the move (m or rad), where it is sent as points.
+    deviation: Option<f64>,
     /// Whether the next move takes over from it.
     is_aborted: bool,
     /// What it is, in a word or two.
@@ -67,7 +74,7 @@ impl Program {
             first: 0.0,
             unit: bus.units.axis.abs() / f64::from(bus.units.drive),
         });
-        let mut program = Self::plan(&scenario.program, cycle)?;
+        let mut program = Self::plan(&scenario.program, cycle, scenario.bus.as_ref().and_then(point_times))?;
         program.unit = scenario.units.plain(0);
         if let Some(interpolation) = &scenario.interpolation {
             let fine = Fine::new(interpolation, scenario.base_rate)?;
@@ -78,8 +85,8 @@ impl Program {
         Ok(program)
     }
 
-    /// Plans every move; velocity commands are sent in `cycle`, whose times count from the start.
-    fn plan(steps: &[Step], cycle: Option<CommandCycle>) -> Result<Self, BuildError> {
+    /// Plans every move; velocity commands are sent in `cycle`, whose times count from the start, and moves that are no table as `points`.
+    fn plan(steps: &[Step], cycle: Option<CommandCycle>, points: Option<PointTimes>) -> Result<Self, BuildError> {
         let (mut moves, mut end, mut state) = (Vec::<Planned>::new(), 0.0, Setpoint::default());
         for (index, step) in steps.iter().enumerate() {
             match step {
@@ -91,7 +98,8 @@ impl Program {
                     let cycle = cycle.map(|cycle| CommandCycle { first: cycle.first - end % cycle.period, ..cycle });
                     let request = step.request.begun_in(&state, step.positioning);
                     let plan = request.and_then(|request| Request { commands: cycle, ..request }.plan());
-                    let plan = plan.map_err(|error| BuildError::Plan { index, error })?;
+                    let plan = plan.and_then(|plan| followed(plan, points));
+                    let (plan, deviation) = plan.map_err(|error| BuildError::Plan { index, error })?;
                     let (start, from, length) = (end, state.x, plan.duration() + step.hold);
                     end += length;
                     state = plan.at(length);
@@ -101,6 +109,7 @@ impl Program {
                         end,
                         from,
                         plan,
+                        deviation,
                         is_aborted: false,
                         kind: kind(&step.request.generator),
                     });
@@ -135,13 +144,13 @@ impl Program {
         self.course.moves.iter().map(|planned| planned.end - planned.start)
     }
 
-    /// What the position of each move will differ at most (m or rad), as [`PlanDetails::Commands`] announces it; `None` of one that is not sent
-    /// as velocity commands.
+    /// What the position of each move will differ at most (m or rad), as [`PlanDetails::Commands`] announces it, or the way through the
+    /// points of a move leads from it; `None` of one that is sent neither as velocity commands nor as points of its own.
     #[must_use]
     pub fn announced(&self) -> Vec<Option<f64>> {
         let error = |planned: &Planned| match planned.plan.details() {
             PlanDetails::Commands { error, .. } => Some(*error),
-            _ => None,
+            _ => planned.deviation,
         };
         self.course.moves.iter().map(error).collect()
     }
@@ -241,6 +250,33 @@ impl Planned {
     }
 }
 
+/// The interpolation sub-mode.
+const SUB_MODE: Object = Object { index: 0x60C0, subindex: 0 };
+
+/// When the points are that a move is sent as over `bus`, if it is.
+fn point_times(bus: &Bus) -> Option<PointTimes> {
+    if bus.mode != BusMode::InterpolatedPosition {
+        return None;
+    }
+    let times = PointTimes::every(bus.point_time);
+    // Drives with one time for all points follow them at that time to the last.
+    let sub_mode = bus.objects.iter().rev().find(|write| write.object == SUB_MODE);
+    let sub_mode = sub_mode.and_then(|write| SubMode::from_code(i16::try_from(write.value).ok()?).ok());
+    let has_one = sub_mode.is_some_and(SubMode::has_constant_time);
+    Some(PointTimes { unit: if has_one { bus.point_time } else { times.unit }, ..times })
+}
+
+/// What a drive follows of `plan`, sent as `points` unless it is a table, and how far that leads from it.
+fn followed(plan: Plan, points: Option<PointTimes>) -> Result<(Plan, Option<f64>), PlanError> {
+    match points {
+        Some(times) if !matches!(plan.details(), PlanDetails::Table { .. }) => {
+            let PointMove { way, deviation, .. } = plan.in_points(times)?;
+            Ok((way, Some(deviation.distance)))
+        }
+        _ => Ok((plan, None)),
+    }
+}
+
 /// What a label says of a move besides its order.
 const fn kind(generator: &Generator) -> &'static str {
     match generator {
@@ -296,7 +332,7 @@ mod tests {
     #[test]
     fn moves_follow_each_other_and_pauses_hold_the_target() {
         let steps = [Step::Wait(0.1), to(1.0), Step::Wait(0.5), by(-1.0)];
-        let mut program = Program::plan(&steps, None).unwrap();
+        let mut program = Program::plan(&steps, None, None).unwrap();
         // Lambrechts' move lasts 1.35 s each way.
         assert!((program.end() - (0.1 + 1.35 + 0.5 + 1.35)).abs() < 1e-12);
         assert_eq!(program.at(0.05), Setpoint::at_rest(0.0));
@@ -314,7 +350,7 @@ mod tests {
     fn a_label_shows_no_rounding() {
         let quarter = core::f64::consts::FRAC_PI_2;
         let steps = [0.1, 0.2, -0.3, quarter].map(by);
-        let labels: Vec<_> = Program::plan(&steps, None).unwrap().moves().map(|made| made.label).collect();
+        let labels: Vec<_> = Program::plan(&steps, None, None).unwrap().moves().map(|made| made.label).collect();
         let ends = [("0", "0.1"), ("0.1", "0.3"), ("0.3", "0"), ("0", "1.5708")];
         assert_eq!(labels, ends.map(|(from, to)| format!("move from {from} m to {to} m, order 4")));
     }
@@ -325,7 +361,7 @@ mod tests {
     fn what_is_kept_from_query_to_query_is_what_a_look_up_finds() {
         let steps = [to(0.3), to(0.3), to(-0.2), Step::Wait(0.05), to(1.0)];
         for skip in [1, 7, 5_000, 12_000] {
-            let mut program = Program::plan(&steps, None).unwrap();
+            let mut program = Program::plan(&steps, None, None).unwrap();
             for k in (0..60_000_u32).step_by(skip) {
                 let t = f64::from(k) / 16e3;
                 let made = program.course.moves.iter().take_while(|planned| planned.start <= t).last().unwrap();
@@ -339,7 +375,7 @@ mod tests {
 
     #[test]
     fn without_a_move_the_axis_is_to_stay() {
-        let mut program = Program::plan(&[Step::Wait(0.5)], None).unwrap();
+        let mut program = Program::plan(&[Step::Wait(0.5)], None, None).unwrap();
         assert!([0.0, 0.1, 7.0].iter().all(|t| program.at(*t) == Setpoint::at_rest(0.0)));
         assert!((program.end() - 0.5).abs() < 1e-15);
     }
@@ -354,7 +390,7 @@ mod tests {
             (vec![Step::Wait(0.5), Step::Wait(f64::INFINITY)], "inf"),
             (vec![Step::Wait(0.5), Step::Wait(f64::NAN)], "NaN"),
         ] {
-            let message = Program::plan(&steps, None).unwrap_err().to_string();
+            let message = Program::plan(&steps, None, None).unwrap_err().to_string();
             assert!(message.starts_with(&format!("program step 2 would end at {end}")), "{message}");
             assert!(message.contains("a run lasts 1000000 s at most"), "{message}");
         }

@@ -1,6 +1,7 @@
 //! Ways that the drive makes itself: profile velocity, interpolated position, profile position.
 use servobench_motion::position_profile::Spline;
 use servobench_motion::pvt::Knot;
+use servobench_motion::{Limits, Order, Profile};
 use servobench_plant::Exact;
 use servobench_scenario as scenario;
 use servobench_sim::{Bench, Outcome, Program};
@@ -202,6 +203,73 @@ fn moves_in_profile_position_are_the_drives_own() {
     }
     assert!((peak(&recording, "setpoint.velocity") - 0.5).abs() < 1e-9);
     assert!(peak(&recording, "following_error.motor") < 1e-3);
+}
+
+/// Moves in interpolated position are sent as points. Oracle: the profile itself, in closed form, beside what the drive follows: off by as much
+/// as was announced of the way through the points, and by half a count at each of them.
+#[test]
+fn moves_in_interpolated_position_are_sent_as_points() {
+    let limits = Limits { velocity: 0.5, acceleration: 4.0, jerk: 120.0, snap: 6000.0 };
+    let profile = Profile::plan(Order::Fourth, 0.1234, &limits).unwrap_or_else(|error| panic!("{error}"));
+    let steps = "[setpoint]\norder = 4\nvelocity = \"0.5 m/s\"\nacceleration = \"4 m/s2\"\njerk = \"120 m/s3\"\nsnap = \"6000 m/s4\"\n\
+                 [[program]]\nwait = \"0.1 s\"\n[[program]]\nmove_to = \"123.4 mm\"\n[[program]]\nwait = \"0.2 s\"\n";
+    let lines = sub_mode(-1).replace("= 10", "= 20");
+    for (object, objects, point_time, is_linear) in [
+        ("2010h", "", "10 ms", false),
+        ("2010h", "", "30 ms", false),
+        ("60C1h", "", "17 ms", false),
+        ("115h", "", "30 ms", false),
+        ("60C1h", &*lines, "20 ms", true),
+    ] {
+        let text = by_object(object, objects, steps, &format!("point_time = \"{point_time}\"\n"));
+        let loaded = scenario::parse("test", &text, None).unwrap_or_else(|error| panic!("{error}"));
+        let program = Program::new(&loaded.scenario).unwrap_or_else(|error| panic!("{error}"));
+        let announced = program.announced()[0].unwrap_or_else(|| panic!("nothing announced"));
+        let recording = run(&text);
+        let setpoint = values(&recording, "setpoint.position");
+        let begins = setpoint.iter().position(|x| *x > 0.0).unwrap_or_else(|| panic!("nothing moves"));
+        let tick = recording.rate.period();
+        // The drive begins at a step of its own, and lines from a first whole count.
+        let off = |shift: usize| {
+            let instants = setpoint[begins - shift..].iter().enumerate().map(|(k, x)| (k as f64 * tick, x));
+            let errors =
+                instants.take_while(|(t, _)| *t < profile.duration()).map(|(t, x)| (x - profile.at(t).x).abs());
+            errors.fold(0.0, f64::max)
+        };
+        let best = (0..640).map(off).fold(f64::INFINITY, f64::min);
+        println!("{object} {point_time}: {best:.3e} m off its plan, {announced:.3e} m announced");
+        if is_linear {
+            // The sagitta of a line over T at the largest acceleration.
+            assert!(best < 4.0 * 0.02 * 0.02 / 8.0 + 1e-6 && best > announced, "{best}");
+        } else {
+            // Half a count at the points, a little more between them, and a step of the drive at 0.5 m/s.
+            assert!((best - announced).abs() < 2e-6, "{object} {point_time}: {best} {announced}");
+        }
+        let end = setpoint[setpoint.len() - 1];
+        assert!((end - 0.1234).abs() < 1e-6, "{end}");
+        assert!(peak(&recording, "following_error.motor") < 1e-3);
+    }
+}
+
+/// What the words cannot hold is refused, with the key.
+#[test]
+fn times_that_no_point_has_are_refused() {
+    let steps =
+        "[setpoint]\norder = 2\nvelocity = \"0.5 m/s\"\nacceleration = \"4 m/s2\"\n[[program]]\nmove_to = \"0.2 m\"\n";
+    let refused = |objects: &str, time: &str| {
+        let text = by_object("60C1h", objects, steps, &format!("point_time = \"{time}\"\n"));
+        let loaded = scenario::parse("test", &text, None).unwrap_or_else(|error| panic!("{error}"));
+        Bench::new(&loaded.scenario, &Exact).err().map(|error| error.to_string()).unwrap_or_default()
+    };
+    for (objects, time, expected) in [
+        ("", "2.5 ms", "whole milliseconds up to 255; choose other times (`bus.point_time` where"),
+        ("", "256 ms", "whole milliseconds up to 255; choose other times (`bus.point_time` where"),
+        (&*sub_mode(-1), "20 ms", "that of 60C2h only; write the time between the points to 60C2h"),
+        ("", "1 ns", "long enough for at most 5 million points"),
+    ] {
+        let said = refused(objects, time);
+        assert!(said.contains(expected), "{time}: {said}");
+    }
 }
 
 /// A program of `steps` in interpolated position, its points by `object` in units of a micrometre, with `objects` of the drive.

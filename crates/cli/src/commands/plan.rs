@@ -4,6 +4,7 @@
 mod filter;
 mod mistake;
 mod point_to_point;
+mod points;
 mod profile;
 mod quantity;
 mod replanning;
@@ -13,12 +14,13 @@ mod table;
 pub(crate) use mistake::PlanMistake;
 
 use crate::args::file;
-use crate::console::print;
+use crate::console::{print, say};
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::output::write_file;
 use clap::Args;
 use filter::FILTER;
+use points::PointArgs;
 use profile::Profile;
 use quantity::{positive_time, time};
 use servobench_base::Coordinate;
@@ -43,6 +45,8 @@ pub(crate) struct PlanArgs {
     duration: Option<f64>,
     #[command(flatten)]
     output: OutputArgs,
+    #[command(flatten)]
+    points: PointArgs,
     /// What profiles were chosen by before they were commands.
     #[arg(long = "profile", value_name = "PROFILE", hide = true, value_parser = former_profile)]
     former_profile: Option<Infallible>,
@@ -55,8 +59,8 @@ struct OutputArgs {
     /// Print JSON.
     #[arg(long, global = true)]
     json: bool,
-    /// Write time, position, velocity, acceleration, jerk, snap (SI): a row for each sample of a sampled plan, 1001 rows
-    /// at equal steps of another.
+    /// Write time, position, velocity, acceleration, jerk, snap (SI), which --points reads: a row for each sample of a
+    /// sampled plan, 1001 rows at equal steps of another.
     #[arg(long, value_name = "FILE", value_parser = file(), global = true)]
     csv: Option<PathBuf>,
     /// Time from row to row of the table, as "1 ms".
@@ -84,13 +88,22 @@ fn former_profile(name: &str) -> Result<Infallible, String> {
 /// Plans the move and prints, tabulates or draws it.
 pub(crate) fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
     let OutputArgs { json, csv, csv_step, svg, from, to } = &args.output;
-    let planned = planned(&args.profile, args.duration).map_err(CliError::Plan)?;
+    let planned = planned(args).map_err(CliError::Plan)?;
     if let Some(path) = csv {
         write_csv(&planned, *csv_step, path)?;
     }
+    let failed = |path: &Path, error| CliError::WritePlan { path: path.to_owned(), error };
     if let Some(path) = args.profile.commands() {
         servobench_trace::stream_whole(path, |file| planned.write_commands(file).map(drop))
-            .map_err(|error| CliError::WritePlan { path: path.to_owned(), error })?;
+            .map_err(|error| failed(path, error))?;
+    }
+    if let Some(path) = &args.points.pvt {
+        servobench_trace::stream_whole(path, |file| planned.write_points(file).map(drop))
+            .map_err(|error| failed(path, error))?;
+    }
+    if let Some(path) = &args.points.words {
+        servobench_trace::stream_whole(path, |file| planned.write_words(file).map(drop))
+            .map_err(|error| failed(path, error))?;
     }
     if let Some(path) = svg {
         let drawing = planned.svg(*from, *to).map_err(|error| CliError::Plan(vec![PlanMistake::NotDrawn(error)]))?;
@@ -101,12 +114,23 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
 }
 
 /// The plan, told in the units in which it was asked for.
-fn planned(profile: &Profile, duration: Option<f64>) -> Result<PlannedMove, Vec<PlanMistake>> {
-    let (request, axis) = profile.request(duration)?;
+fn planned(args: &PlanArgs) -> Result<PlannedMove, Vec<PlanMistake>> {
+    let (request, mut axis) = args.profile.request(args.duration, args.points.counts())?;
+    let points = args.points.asked(&mut axis);
+    if args.points.has_unused_counts(args.profile.is_table()) {
+        say("--counts are not used: they are those of a table, or of --words\n");
+    }
+    if !axis.mistakes.is_empty() {
+        return Err(axis.mistakes);
+    }
     let unit = axis.motion.unwrap_or(Coordinate::Linear).unit();
     let planned = PlannedMove::new(request, unit).map_err(|error| vec![PlanMistake::Refused(error)])?;
     let units = axis.units.into_iter();
-    Ok(units.fold(planned, |planned, given| planned.as_given(given.derivative, &given.text, given.value)))
+    let planned = units.fold(planned, |planned, given| planned.as_given(given.derivative, &given.text, given.value));
+    match points {
+        Some(points) => points.of(planned).map_err(|mistake| vec![mistake]),
+        None => Ok(planned),
+    }
 }
 
 fn write_csv(planned: &PlannedMove, step: Option<f64>, path: &Path) -> Result<(), CliError> {

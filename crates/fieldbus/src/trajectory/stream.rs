@@ -8,10 +8,10 @@
 //! sub-mode 0 the drive is told to go first, since it forgets the points that came before; then they come by the clock of the
 //! master, one in each period (60C2h).
 use super::points::{PointEncoding, PointTransfer};
+use super::words::SentPoint;
 use crate::{ProfileCommand, ProfileFeedback, TrajectoryPoint};
 use alloc::vec::Vec;
-use servobench_cia402::InterpolationData;
-use servobench_cia402::interpolated::serial::{Message, Record};
+use servobench_cia402::interpolated::serial::Message;
 use servobench_cia402::interpolated::{CAPACITY, Point, SegmentCommand};
 
 /// Points that stay free in the buffer: those under way between a frame and the answer that knows of it.
@@ -179,18 +179,11 @@ impl Stream {
         let number = self.number;
         self.number = number.wrapping_add(1);
         self.sent += 1;
-        match self.encoding.transfer() {
-            PointTransfer::MoveSegment => {
-                let counter = number.to_le_bytes()[0] & 7;
-                SegmentCommand::Point { counter, point }.encode().map(TrajectoryPoint::MoveSegment)
-            }
-            PointTransfer::DataRecord => {
-                let time = point.milliseconds().filter(|_| self.encoding.constant_time().is_none());
-                let data = InterpolationData { position: point.position, time, velocity: point.velocity };
-                Some(TrajectoryPoint::DataRecord(data))
-            }
-            PointTransfer::Serial => {
-                self.message = Message::of(Record::Point(point));
+        match self.encoding.sent(point, number)? {
+            SentPoint::MoveSegment(bytes) => Some(TrajectoryPoint::MoveSegment(bytes)),
+            SentPoint::DataRecord(data) => Some(TrajectoryPoint::DataRecord(data)),
+            SentPoint::Serial(message) => {
+                self.message = Some(message);
                 None
             }
         }

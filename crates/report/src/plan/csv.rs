@@ -1,5 +1,5 @@
 //! A plan as a table of samples.
-use super::{PlannedMove, STEPS};
+use super::{NAMES, PlannedMove, STEPS};
 use crate::error::ReportError;
 use servobench_base::Setpoint;
 use servobench_motion::position_profile::Command;
@@ -8,10 +8,12 @@ use std::io::Write;
 
 /// More rows than this (about 1 GB) are a mistake in the sample time rather than a table.
 const MOST_ROWS: u64 = 10_000_000;
+/// What the unit of each derivative has behind that of position, as tables of points have it.
+pub(super) const DERIVED: [&str; 5] = ["", "/s", "/s2", "/s3", "/s4"];
 
 impl PlannedMove {
     /// Writes a row every `step` (s); without one, for each sample of a sampled plan, of another one at equal steps: time,
-    /// position and its derivatives, in SI.
+    /// position and its derivatives, in SI, with a heading that readers of points know.
     ///
     /// # Errors
     /// [`ReportError::TooManyRows`] before anything is written, [`ReportError::Io`].
@@ -34,8 +36,9 @@ impl PlannedMove {
         if rows > MOST_ROWS {
             return Err(ReportError::TooManyRows { rows, limit: MOST_ROWS, sample_time: step });
         }
-        let unit = self.units.base();
-        writeln!(out, "time_s,position_{unit},velocity_{unit}_s,acceleration_{unit}_s2,jerk_{unit}_s3,snap_{unit}_s4")?;
+        let columns = NAMES.iter().zip(DERIVED);
+        let columns = columns.map(|(name, per)| format!(",{name} [{}{per}]", self.units.base()));
+        writeln!(out, "time [s]{}", columns.collect::<String>())?;
         let mut reader = Reader::default();
         reader.look_up(&self.plan, 0.0);
         for k in 0..rows {
@@ -57,7 +60,7 @@ impl PlannedMove {
     pub fn write_commands(&self, mut out: impl Write) -> Result<bool, ReportError> {
         let PlanDetails::Commands { commands, .. } = self.plan.details() else { return Ok(false) };
         let unit = self.units.base();
-        writeln!(out, "time_s,velocity_{unit}_s,acceleration_{unit}_s2")?;
+        writeln!(out, "time [s],target velocity [{unit}/s],profile acceleration [{unit}/s2]")?;
         let start = commands.first().map_or(0.0, |command| command.t);
         for Command { t, velocity, acceleration } in commands {
             writeln!(out, "{},{velocity},{acceleration}", t - start)?;
@@ -81,7 +84,7 @@ mod tests {
         plan.write_csv(None, &mut bytes).unwrap();
         let text = String::from_utf8(bytes).unwrap();
         let (heading, rows) = text.split_once('\n').unwrap();
-        assert_eq!(heading, "time_s,position_m,velocity_m_s,acceleration_m_s2,jerk_m_s3,snap_m_s4");
+        assert_eq!(heading, "time [s],position [m],velocity [m/s],acceleration [m/s2],jerk [m/s3],snap [m/s4]");
         rows.lines().map(|row| row.split(',').map(|cell| cell.parse().unwrap()).collect()).collect()
     }
 
@@ -142,7 +145,7 @@ mod tests {
         assert!(moves::of(Generator::Table(asked)).write_commands(&mut bytes).unwrap());
         let text = String::from_utf8(bytes).unwrap();
         // A triangle: to 2 m/s within half a second and back.
-        assert_eq!(text, "time_s,velocity_m_s,acceleration_m_s2\n0,2,4\n0.5,0,4\n");
+        assert_eq!(text, "time [s],target velocity [m/s],profile acceleration [m/s2]\n0,2,4\n0.5,0,4\n");
         assert!(!moves::lambrechts(Order::Fourth).write_commands(io::sink()).unwrap());
     }
 

@@ -79,6 +79,7 @@ impl PlannedMove {
             window,
             boundaries: boundaries.into_iter().filter(|time| window.contains(*time)).collect(),
             bindings: self.plan.bindings().into_iter().filter_map(|binding| window.part_of_binding(binding)).collect(),
+            points: self.marked_points(),
             panels: &panels,
         };
         Ok(sheet.to_svg())

@@ -58,6 +58,8 @@ struct Plan {
     command_count: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     commands: Option<Vec<Command>>,
+    #[serde(flatten)]
+    points: Option<Points>,
     /// Where a derivative is at its limit.
     binding_count: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -65,6 +67,22 @@ struct Plan {
     segment_count: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     segments: Option<Vec<Segment>>,
+}
+
+/// The move as points.
+#[derive(Debug, Serialize)]
+struct Points {
+    point_count: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    point_time_s: Option<f64>,
+    /// What the way through them differs from the plan at most, and when.
+    point_deviation: f64,
+    point_deviation_at_s: f64,
+    /// The same of the way of a drive that is sent them in whole counts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sent_deviation: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sent_deviation_at_s: Option<f64>,
 }
 
 /// Beside the published profile.
@@ -189,6 +207,17 @@ impl PlannedMove {
                     acceleration: of.acceleration,
                 };
                 commands.iter().map(command).collect()
+            }),
+            points: self.points.as_ref().map(|points| {
+                let (deviation, sent) = (points.through.deviation, points.sent.as_ref().map(|sent| sent.deviation));
+                Points {
+                    point_count: points.through.knots.len(),
+                    point_time_s: points.spacing,
+                    point_deviation: deviation.distance,
+                    point_deviation_at_s: deviation.time,
+                    sent_deviation: sent.map(|sent| sent.distance),
+                    sent_deviation_at_s: sent.map(|sent| sent.time),
+                }
             }),
             binding_count: bindings.len(),
             bindings: (bindings.len() <= MOST).then(|| {

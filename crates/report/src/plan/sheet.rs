@@ -18,13 +18,17 @@ pub(super) const GAP: f64 = 22.0;
 const STYLE: &str = ".b{stroke:#aab3c0;stroke-width:1;stroke-dasharray:1.5 3}\
 .l{stroke:#c2303a;stroke-width:1.2;stroke-dasharray:6 4}.lt{font-size:11px;fill:#c2303a}.c{fill:none;\
 stroke-width:2;stroke-linejoin:round}.f{stroke:none;opacity:.09}.v{stroke-width:1.2;stroke-linejoin:round}\
-.m{fill:none;stroke:#c2303a;stroke-width:4}.d{fill:none;stroke:#c2303a;stroke-width:7;stroke-linecap:round}";
+.m{fill:none;stroke:#c2303a;stroke-width:4}.d{fill:none;stroke:#c2303a;stroke-width:7;stroke-linecap:round}.p{fill:#fff;stroke-width:1.4}";
 /// Labels of the time axis keep this far from that of the end.
 const LABEL: f64 = 34.0;
 /// Marks closer than this are one.
 const APART: f64 = 1.5;
 /// More ends of segments than this would hide the curves.
 const MOST_BOUNDARIES: usize = 80;
+/// More points than this could not be told apart: they are 6 pixels from each other on average.
+const MOST_POINTS: usize = 107;
+/// Radius of a point.
+const POINT: f64 = 2.4;
 
 /// Panels below each other.
 pub(super) struct Sheet<'a> {
@@ -38,6 +42,8 @@ pub(super) struct Sheet<'a> {
     pub(super) boundaries: Vec<f64>,
     /// Where quantities are at their limits.
     pub(super) bindings: Vec<Binding>,
+    /// Points of the move: time, position, velocity if it is known (SI).
+    pub(super) points: Vec<(f64, f64, Option<f64>)>,
     /// Panels from top to bottom, position first.
     pub(super) panels: &'a [Panel<'a>],
 }
@@ -68,6 +74,7 @@ impl Sheet<'_> {
         let ticks = ticks(low / scale, high / scale, round_above((high - low) / scale / 8.0));
         let boundaries = self.seen_boundaries(&time);
         let mut marks_seen = (false, false);
+        let points = self.seen_points(&time);
         for (k, panel) in self.panels.iter().enumerate() {
             let top = first + k as f64 * (HEIGHT + GAP);
             let bottom = top + HEIGHT;
@@ -82,10 +89,15 @@ impl Sheet<'_> {
             let bindings = self.bindings.iter().filter(|binding| binding.derivative == k);
             let marks = Marks::of(bindings, panel.limit, &time, &value);
             marks.draw(&mut svg);
+            let scale = panel.unit.scale();
+            svg.extend(points.iter().filter_map(|(x, position, velocity)| {
+                let y = value.at([Some(*position), *velocity].get(k).copied().flatten()? / scale);
+                Some(format!("<circle class=\"p\" stroke=\"{colour}\" cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{POINT}\"/>"))
+            }));
             marks_seen = (marks_seen.0 || !marks.stretches.is_empty(), marks_seen.1 || !marks.dots.is_empty());
             panel.draw_legend(&mut svg, time.to + 12.0, top, colour);
         }
-        self.draw_key(&mut svg, first - 16.0, marks_seen);
+        self.draw_key(&mut svg, first - 16.0, marks_seen, !points.is_empty());
         let base = height - BOTTOM + 18.0;
         let centred = |class: &str, x: f64, y: f64, text: &str| {
             format!("<text class=\"{class}\" x=\"{x:.2}\" y=\"{y:.2}\" text-anchor=\"middle\">{text}</text>")
@@ -113,9 +125,16 @@ impl Sheet<'_> {
         format!("{:.decimals$}", to / scale)
     }
 
-    /// What the lines of limits and the marks on them mean, as far as there are some.
-    fn draw_key(&self, svg: &mut Vec<String>, y: f64, (has_stretches, has_dots): (bool, bool)) {
+    /// What points, the lines of limits and the marks on them mean, as far as there are some.
+    fn draw_key(&self, svg: &mut Vec<String>, y: f64, (has_stretches, has_dots): (bool, bool), has_points: bool) {
         let mut x = LEFT;
+        if has_points {
+            let symbol = format!("<circle class=\"p\" stroke=\"{}\" cx=\"4\" cy=\"0\" r=\"{POINT}\"/>", COLOURS[0]);
+            svg.push(format!(
+                "<g transform=\"translate({x:.0},{y:.0})\">{symbol}<text class=\"k\" x=\"12\" y=\"4\">point</text></g>"
+            ));
+            x += 60.0;
+        }
         let mut entry = |symbol: &str, text: &str, width: f64| {
             svg.push(format!(
                 "<g transform=\"translate({x:.0},{y:.0})\">{symbol}<text class=\"lt\" x=\"28\" y=\"4\">{text}</text></g>"
@@ -142,6 +161,16 @@ impl Sheet<'_> {
             }
         }
         if boundaries.len() > MOST_BOUNDARIES { Vec::new() } else { boundaries }
+    }
+}
+
+impl Sheet<'_> {
+    /// The points that are in sight, by their place (pixels), unless these are too many.
+    fn seen_points(&self, time: &Axis) -> Vec<(f64, f64, Option<f64>)> {
+        let all = self.points.iter().map(|(t, position, velocity)| (time.at(*t), *position, *velocity));
+        let seen: Vec<_> =
+            all.filter(|(x, ..)| (time.from - 1.0..=time.to + 1.0).contains(x)).take(MOST_POINTS + 1).collect();
+        if seen.len() > MOST_POINTS { Vec::new() } else { seen }
     }
 }
 

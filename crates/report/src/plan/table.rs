@@ -3,7 +3,7 @@ use super::times::Times;
 use super::{NAMES, PlannedMove};
 use crate::text::wrapped;
 use servobench_motion::Profile;
-use servobench_planner::Peak;
+use servobench_planner::{Peak, Plan};
 
 /// `125.663706 ms` fits.
 const TIME: usize = 13;
@@ -71,20 +71,24 @@ impl PlannedMove {
 
     /// The largest magnitudes of velocity … with their limits, by direction where the limits differ.
     pub(super) fn kept(&self) -> Vec<Kept> {
-        let order = self.plan.order();
-        let mut all = Vec::new();
-        let peaks = self.plan.peaks().into_iter().zip(self.plan.largest()).zip(self.plan.limits()).take(order);
-        for (i, ((Peak { lowest, highest }, largest), limit)) in peaks.enumerate() {
-            let derivative = i + 1;
-            if limit.above.to_bits() == limit.below.to_bits() {
-                all.push(Kept { derivative, side: "", peak: largest, limit: limit.above });
-            } else {
-                all.push(Kept { derivative, side: "+", peak: highest, limit: limit.above });
-                all.push(Kept { derivative, side: "-", peak: -lowest, limit: limit.below });
-            }
-        }
-        all
+        kept(&self.plan)
     }
+}
+
+/// The same of any plan.
+pub(super) fn kept(plan: &Plan) -> Vec<Kept> {
+    let mut all = Vec::new();
+    let peaks = plan.peaks().into_iter().zip(plan.largest()).zip(plan.limits()).take(plan.order());
+    for (i, ((Peak { lowest, highest }, largest), limit)) in peaks.enumerate() {
+        let derivative = i + 1;
+        if limit.above.to_bits() == limit.below.to_bits() {
+            all.push(Kept { derivative, side: "", peak: largest, limit: limit.above });
+        } else {
+            all.push(Kept { derivative, side: "+", peak: highest, limit: limit.above });
+            all.push(Kept { derivative, side: "-", peak: -lowest, limit: limit.below });
+        }
+    }
+    all
 }
 
 #[cfg(test)]

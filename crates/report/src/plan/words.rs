@@ -1,5 +1,6 @@
 //! What is said of a plan beside its numbers.
-use super::PlannedMove;
+use super::table::Kept;
+use super::{NAMES, PlannedMove};
 use servobench_base::Setpoint;
 use servobench_config::Choice as _;
 use servobench_metrics::{DisplayUnit, Quantity, digits};
@@ -119,10 +120,12 @@ impl PlannedMove {
             });
         }
         notes.extend(self.of_generator());
-        notes.extend(self.filters(time));
+        notes.extend(self.filters(&time));
         if self.request.duration.is_some() {
             notes.push("slowed to the duration that was asked for".to_owned());
         }
+        notes.extend(self.exceeded());
+        notes.extend(self.notes_of_points(time));
         notes
     }
 
@@ -176,13 +179,18 @@ impl PlannedMove {
         }
     }
 
+    /// The limits that a table goes beyond, which is followed all the same.
+    fn exceeded(&self) -> Option<String> {
+        matches!(self.request.generator, Generator::Table(_)).then(|| exceeded(&self.kept())).flatten()
+    }
+
     /// An error of position, far smaller than positions.
-    fn show_error(&self, error: f64) -> String {
+    pub(super) fn show_error(&self, error: f64) -> String {
         if self.units.base() == "m" { DisplayUnit::si("m", 0).text(error) } else { self.show(0, error) }
     }
 
     /// What filters the plan.
-    fn filters(&self, time: impl Fn(f64) -> String) -> Option<String> {
+    fn filters(&self, time: &impl Fn(f64) -> String) -> Option<String> {
         let Filter { shaper, averages } = &self.request.filter;
         let shaper = shaper
             .and_then(|shaping| shaping.impulses().ok())
@@ -196,6 +204,17 @@ impl PlannedMove {
         let length = time(self.plan.filter_length());
         (!filters.is_empty()).then(|| format!("{length} longer by {}", filters.join(" and ")))
     }
+}
+
+/// The limits that are exceeded, in words; rounding aside.
+pub(super) fn exceeded(kept: &[Kept]) -> Option<String> {
+    let beyond = kept.iter().filter(|kept| kept.limit.is_finite() && kept.peak > kept.limit * (1.0 + EXCESS));
+    let beyond: Vec<String> = beyond
+        .map(|Kept { derivative, peak, limit, .. }| {
+            format!("{} by {} %", NAMES[*derivative], digits(100.0 * (peak / limit - 1.0), 3))
+        })
+        .collect();
+    (!beyond.is_empty()).then(|| format!("exceeds its limit of {}", beyond.join(" and of ")))
 }
 
 /// A share to six digits behind the point.

@@ -67,6 +67,9 @@ table! {
         drive_interpolation: DriveInterpolation = OneOf,
         /// How points get into the buffer of the drive, with the mode "ip"; default: "2010h".
         trajectory_buffer: PointTransfer = OneOf,
+        /// Time from point to point of a move that is no table, with the mode "ip": whole milliseconds up to 255, or what 60C2h says;
+        /// default: 10 ms.
+        point_time: f64 = positive(Plain(&TIME), "10 ms"),
         /// Bus cycles from the sampling of a frame to its effect; default: 1.
         delay: u32 = 0..=15,
         /// Whether the velocity offset (60B1h) carries the velocity of the set-point; default: false.

@@ -1,6 +1,6 @@
 //! The columns of a table of points.
 use servobench_config::Physical;
-use servobench_config::quantities::{ACCELERATION, POSITION, TIME, VELOCITY};
+use servobench_config::quantities::{ACCELERATION, JERK, POSITION, SNAP, TIME, VELOCITY};
 use std::fmt;
 
 /// A column of a table of points.
@@ -14,6 +14,10 @@ pub enum Column {
     Velocity,
     /// Acceleration at the point.
     Acceleration,
+    /// Jerk at the point.
+    Jerk,
+    /// Snap at the point.
+    Snap,
 }
 
 /// Which columns a table has.
@@ -37,9 +41,9 @@ impl Layout {
         }
     }
 
-    /// The columns that it can have.
-    pub(super) fn columns(self) -> impl Iterator<Item = Column> {
-        self.needed().into_iter().chain((self == Self::Positions).then_some(Column::Velocity))
+    /// Whether a move is made of `column`; a table may have the others too.
+    pub(super) fn uses(self, column: Column) -> bool {
+        self.needed().contains(&column) || self == Self::Positions && column == Column::Velocity
     }
 
     /// A right heading.
@@ -61,12 +65,30 @@ impl Layout {
 }
 
 impl Column {
+    /// Every column, by its derivative of position behind the time.
+    pub(super) const ALL: [Self; 6] =
+        [Self::Time, Self::Position, Self::Velocity, Self::Acceleration, Self::Jerk, Self::Snap];
+
     pub(super) const fn name(self) -> &'static str {
         match self {
             Self::Time => "time",
             Self::Position => "position",
             Self::Velocity => "velocity",
             Self::Acceleration => "acceleration",
+            Self::Jerk => "jerk",
+            Self::Snap => "snap",
+        }
+    }
+
+    /// Several of its values.
+    pub(super) const fn plural(self) -> &'static str {
+        match self {
+            Self::Time => "times",
+            Self::Position => "positions",
+            Self::Velocity => "velocities",
+            Self::Acceleration => "accelerations",
+            Self::Jerk => "jerks",
+            Self::Snap => "snaps",
         }
     }
 
@@ -77,6 +99,8 @@ impl Column {
             Self::Position => vec![&POSITION.linear, &POSITION.rotary],
             Self::Velocity => vec![&VELOCITY.linear, &VELOCITY.rotary],
             Self::Acceleration => vec![&ACCELERATION.linear, &ACCELERATION.rotary],
+            Self::Jerk => vec![&JERK.linear, &JERK.rotary],
+            Self::Snap => vec![&SNAP.linear, &SNAP.rotary],
         }
     }
 
@@ -87,6 +111,8 @@ impl Column {
             Self::Position => "mm",
             Self::Velocity => "mm/s",
             Self::Acceleration => "mm/s2",
+            Self::Jerk => "mm/s3",
+            Self::Snap => "mm/s4",
         }
     }
 }

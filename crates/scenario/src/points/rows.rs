@@ -1,5 +1,6 @@
 //! The rows of a table of points: its heading, and what stands in its cells.
 use super::column::{Column, Layout};
+use super::counts::{self, Counts};
 use super::mistake::{PointsError, PointsMistake};
 use crate::quantity::Scale;
 use crate::reading::{self, ReadError, names};
@@ -32,10 +33,12 @@ impl Cell<'_> {
     }
 }
 
-/// Reads a table of `most` points at most, and gives what stands in its cells to `take`: nothing where one is empty.
+/// Reads a table of `most` points at most, and gives what stands in the cells of the columns that `layout` uses to `take`:
+/// nothing where one is empty.
 pub(super) fn read_rows(
     text: &str,
     layout: Layout,
+    counts: Option<Counts>,
     most: usize,
     mut take: impl FnMut(Column, Option<f64>),
 ) -> Result<Vec<Head>, PointsError> {
@@ -44,7 +47,7 @@ pub(super) fn read_rows(
     let Some((line, row)) = rows.next() else {
         return Err(wrong(1, 1, PointsMistake::NoHeading { like: layout.example() }));
     };
-    let heads = heading(line, row, layout)?;
+    let heads = heading(line, row, layout, counts)?;
     let (mut points, mut last) = (0, (line, f64::NEG_INFINITY));
     for (line, row) in rows {
         if points == most {
@@ -74,7 +77,7 @@ fn cells(row: &str) -> impl Iterator<Item = Cell<'_>> {
 }
 
 /// The columns in their order.
-fn heading(line: usize, row: &str, layout: Layout) -> Result<Vec<Head>, PointsError> {
+fn heading(line: usize, row: &str, layout: Layout, counts: Option<Counts>) -> Result<Vec<Head>, PointsError> {
     for (found, name) in [(';', ";"), ('\t', "tab")] {
         if let Some((before, _)) = row.split_once(found).filter(|_| !row.contains(',')) {
             return Err(wrong(
@@ -91,7 +94,7 @@ fn heading(line: usize, row: &str, layout: Layout) -> Result<Vec<Head>, PointsEr
             None => (cell.text, None),
         };
         let fail = |mistake| wrong(line, cell.at(), mistake);
-        let Some(column) = layout.columns().find(|column| column.name() == name) else {
+        let Some(column) = Column::ALL.into_iter().find(|column| column.name() == name) else {
             return Err(fail(PointsMistake::UnknownColumn { name: name.to_owned(), like: layout.example() }));
         };
         if heads.iter().any(|head| head.column == column) {
@@ -100,7 +103,8 @@ fn heading(line: usize, row: &str, layout: Layout) -> Result<Vec<Head>, PointsEr
         let Some(unit) = unit.filter(|unit| !unit.is_empty()) else {
             return Err(fail(PointsMistake::NoUnit { column, proposal: column.proposal() }));
         };
-        let (scale, which) = read_unit(column, unit)
+        let (scale, which) = counts::read_unit(column, unit, counts)
+            .unwrap_or_else(|| read_unit(column, unit))
             .map_err(|message| fail(PointsMistake::Unit { column, unit: unit.to_owned(), message }))?;
         heads.push(Head { column, unit: unit.to_owned(), scale, which, at: cell.at() });
     }
@@ -109,19 +113,19 @@ fn heading(line: usize, row: &str, layout: Layout) -> Result<Vec<Head>, PointsEr
             return Err(wrong(line, 1, PointsMistake::Missing { column, proposal: column.proposal() }));
         }
     }
-    agreeing(line, heads)
+    agreeing(line, heads, layout)
 }
 
-/// `heads`, unless positions and velocities are those of different axes.
-fn agreeing(line: usize, heads: Vec<Head>) -> Result<Vec<Head>, PointsError> {
-    let of = |column| heads.iter().find(|head| head.column == column);
-    if let (Some(position), Some(velocity)) = (of(Column::Position), of(Column::Velocity))
-        && position.which != velocity.which
+/// `heads`, unless positions and their derivatives are those of different axes.
+fn agreeing(line: usize, heads: Vec<Head>, layout: Layout) -> Result<Vec<Head>, PointsError> {
+    let [_, column] = layout.needed();
+    if let Some(values) = heads.iter().find(|head| head.column == column)
+        && let Some(other) = heads.iter().find(|head| head.column != Column::Time && head.which != values.which)
     {
-        let needed = Column::Velocity.candidates()[position.which].name;
-        let message = format!("positions are in `{}`, {needed} is needed", position.unit);
-        let mistake = PointsMistake::Unit { column: Column::Velocity, unit: velocity.unit.clone(), message };
-        return Err(wrong(line, velocity.at, mistake));
+        let needed = other.column.candidates()[values.which].name;
+        let message = format!("{} are in `{}`, {needed} is needed", column.plural(), values.unit);
+        let mistake = PointsMistake::Unit { column: other.column, unit: other.unit.clone(), message };
+        return Err(wrong(line, other.at, mistake));
     }
     Ok(heads)
 }
@@ -154,8 +158,11 @@ fn read_row(
     for (head, cell) in heads.iter().zip(cells(row)) {
         let column = head.column;
         read += 1;
+        let is_used = layout.uses(column);
         if cell.text.is_empty() && !layout.needed().contains(&column) {
-            take(column, None);
+            if is_used {
+                take(column, None);
+            }
             continue;
         }
         let value = number(&head.scale, cell.text).map_err(|reason| {
@@ -170,7 +177,9 @@ fn read_row(
             }
             time = value;
         }
-        take(column, Some(value));
+        if is_used {
+            take(column, Some(value));
+        }
     }
     if read < heads.len() || row.bytes().filter(|byte| *byte == b',').count() + 1 != heads.len() {
         width(line, row, heads.len())?;

@@ -12,6 +12,7 @@ use servobench_drive::EffortFeedforward;
 use servobench_drive::feedforward::Model;
 use servobench_fieldbus::link::{Derivative, PositionGains};
 use servobench_motion::interpolate::Mode as InterpolationMode;
+use servobench_planner::PointTimes;
 use std::f64::consts::TAU;
 
 /// The parts that are known by now.
@@ -80,6 +81,7 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
             DriveInterpolation::Cubic => InterpolationMode::Cubic,
         },
         point_transfer: given.trajectory_buffer.optional().ok()?.copied().unwrap_or_default(),
+        point_time: given.point_time.optional().ok()?.copied().unwrap_or(PointTimes::SPACING),
         delay: given.delay.optional().ok()?.copied().unwrap_or(DELAY),
         velocity_offset: flag(&given.velocity_offset)?,
         effort_offset: effort_offset?,
@@ -132,7 +134,7 @@ fn refuse_by_mode(given: &file::Bus, mode: BusMode, report: &mut Report) {
         refuse(&key, "is for the mode \"csp\"", "", report);
     }
     if mode != BusMode::InterpolatedPosition {
-        let key = [("trajectory_buffer", given.trajectory_buffer.span())];
+        let key = [("trajectory_buffer", given.trajectory_buffer.span()), ("point_time", given.point_time.span())];
         refuse(&key, "is for the mode \"ip\"", "only there the drive goes through the points of a buffer", report);
     }
 }

@@ -27,17 +27,28 @@ pub(super) fn refuse_step(mode: BusMode, step: &Step, span: Span, report: &mut R
             (goes, "pv", "`reach_velocity`, and tables that are followed by \"plateaus\" or \"steps\"")
         }
         BusMode::InterpolatedPosition => {
-            let goes = matches!(generator, Generator::Table(TableMove { follow: Follow::Segments, .. }));
-            (goes, "ip", "tables that are followed by \"segments\"")
+            let goes = match generator {
+                Generator::Table(TableMove { follow, .. }) => *follow == Follow::Segments,
+                Generator::PointToPoint(_) | Generator::Rockwell(_) => true,
+                Generator::Replanning(Replanning { target, .. }) => matches!(target, Target::Position { v: 0.0, .. }),
+            };
+            let does =
+                "`move_to` and `move_by` to rest that abort nothing, and tables that are followed by \"segments\"";
+            (goes && step.aborts_after.is_none(), "ip", does)
         }
     };
     if !is_carried {
         let message = format!("a drive in the mode \"{name}\" cannot do this step");
         report.error(span, message, format!("it does {carries}; \"csp\" does everything"));
-    } else if is_planned_otherwise(&step.request) {
+    } else if !is_sent_as_points(mode, generator) && is_planned_otherwise(&step.request) {
         let message = format!("a drive in the mode \"{name}\" plans the way itself");
         report.error(span, message, "leave out `method`, samples, shaper, averages and `duration`, or write \"csp\"");
     }
+}
+
+/// Whether the master plans the move and sends points of it.
+const fn is_sent_as_points(mode: BusMode, generator: &Generator) -> bool {
+    matches!(mode, BusMode::InterpolatedPosition) && !matches!(generator, Generator::Table(_))
 }
 
 /// Whether the step says how a master is to plan it.

@@ -17,8 +17,8 @@ pub(super) fn positions(table: &At<TableOfPoints>, sources: &Sources, report: &m
         Ok((points.motion, points))
     })?;
     if points.velocities.is_some() {
-        let help = "leave its column `velocity` out; `end_velocity` is that at the last position";
-        report.error(file.span, "MC_PositionProfile goes through positions and chooses the velocities itself", help);
+        let message = "MC_PositionProfile chooses the velocities itself: the column `velocity` is not used";
+        report.warning(file.span, message, "`end_velocity` is that at the last position");
     }
     pairs(file, &points.times, &points.positions, report)
 }

@@ -47,6 +47,8 @@ pub struct Bus {
     pub reverse_switches: bool,
     /// How the points of a table get into the buffer of the drive, with interpolated position.
     pub point_transfer: PointTransfer,
+    /// Time from point to point of a move that is no table (s), with interpolated position.
+    pub point_time: f64,
     /// What goes wrong on the bus, in the order of the file.
     pub faults: Vec<BusFault>,
     /// What goes wrong with the motion task, in the order of the file.

@@ -143,6 +143,10 @@ fn keys_belong_to_modes() {
             ],
         ),
         (
+            &bus("point_time = \"10 ms\"\n"),
+            &["4:14: `point_time` is for the mode \"ip\"; only there the drive goes through the points of a buffer"],
+        ),
+        (
             &bus("trajectory_buffer = \"60C2h\"\nmode = \"ip\"\n"),
             &["4:21: \"60C2h\" is not a value of `trajectory_buffer`; did you mean `60C1h`?"],
         ),
@@ -161,6 +165,7 @@ fn modes_carry_some_steps_only() {
     };
     let (positions, velocities) =
         ("`move_to` and `move_by`", "`reach_velocity`, and tables that are followed by \"plateaus\" or \"steps\"");
+    let points = "`move_to` and `move_by` to rest that abort nothing, and tables that are followed by \"segments\"";
     let turning = "reach_velocity = \"1 m/min\"\n[[program]]\nreach_velocity = \"0 m/min\"";
     let itself = "39:1: a drive in the mode \"pp\" plans the way itself; leave out `method`, samples, shaper, averages and \
                   `duration`, or write \"csp\"";
@@ -173,7 +178,14 @@ fn modes_carry_some_steps_only() {
         ("pp", "move_to = \"1 mm\"\nduration = \"1 s\"", vec![itself.into()]),
         ("pv", turning, vec![]),
         ("pv", "move_to = \"1 mm\"", vec![cannot("pv", velocities)]),
-        ("ip", "move_to = \"1 mm\"", vec![cannot("ip", "tables that are followed by \"segments\"")]),
+        ("ip", "move_to = \"1 mm\"", vec![]),
+        ("ip", "move_to = \"1 mm\"\nmethod = \"optimal\"\nduration = \"1 s\"", vec![]),
+        ("ip", turning, vec![cannot("ip", points), cannot("ip", points).replace("39:", "41:")]),
+        (
+            "ip",
+            "move_to = \"100 mm\"\nend_velocity = \"1 m/min\"\n[[program]]\nmove_to = \"1 mm\"\naborts_after = \"10 ms\"",
+            vec![cannot("ip", points), cannot("ip", points).replace("39:", "42:")],
+        ),
         ("ip", "wait = \"1 s\"", vec![]),
         ("csp", turning, vec![]),
     ] {

@@ -353,27 +353,19 @@ fn tables_of_profiles() {
     check(&[
         (
             &call("MC_VelocityProfile", "table = { file = \"x.csv\" }"),
-            &["3:18: HERE/x.csv:1:11: unknown column `position`: the heading is like `time [ms],velocity [mm/s]`"],
+            &["3:18: HERE/x.csv:1:1: the column `velocity` is missing: add `velocity [mm/s]`"],
         ),
         (
             &call("MC_AccelerationProfile", "table = { file = \"v.csv\" }"),
-            &["3:18: HERE/v.csv:1:11: unknown column `velocity`: the heading is like `time [ms],acceleration [mm/s2]`"],
+            &["3:18: HERE/v.csv:1:1: the column `acceleration` is missing: add `acceleration [mm/s2]`"],
         ),
         (
             &call("MC_PositionProfile", "table = { file = \"a.csv\" }"),
-            &["3:18: HERE/a.csv:1:11: unknown column `acceleration`: the heading is like \
-               `time [ms],position [mm],velocity [mm/s]`"],
+            &["3:18: HERE/a.csv:1:1: the column `position` is missing: add `position [mm]`"],
         ),
         (
             &call("MC_VelocityProfile", "table = { file = \"v.csv\", relative = true, follow = \"steps\" }"),
             &["3:38: `relative` is for a table of positions", "3:53: `follow` is for a table of positions"],
-        ),
-        (
-            &call("MC_PositionProfile", "table = { file = \"pvt.csv\" }"),
-            &[
-                "3:18: MC_PositionProfile goes through positions and chooses the velocities itself; leave its column `velocity` \
-               out; `end_velocity` is that at the last position",
-            ],
         ),
         (
             &call("MC_PositionProfile", "table = { file = \"x.csv\", velocities = \"average\", follow = \"steps\" }"),
@@ -466,6 +458,14 @@ fn calls_need_a_bus_and_a_duration_and_no_program() {
     );
     let modulo = AXIS.replace("lead = \"10 mm\"\n", "lead = \"10 mm\"\nmodulo = \"100 mm\"\n");
     assert_eq!(crate::mistakes(&modulo), ["8:10: `modulo` is for function blocks; give a `[[call]]`, or leave it out"]);
+}
+
+#[test]
+fn velocities_of_positions_are_not_used() {
+    let warning = "3:18: MC_PositionProfile chooses the velocities itself: the column `velocity` is not used; `end_velocity` is that \
+                   at the last position";
+    let calls = call("MC_PositionProfile", "table = { file = \"pvt.csv\" }");
+    assert_eq!(said(&calls), [strings(&[]), strings(&[warning])]);
 }
 
 /// Steps along the spline, and where their ramps begin, are for a drive that is told velocities.

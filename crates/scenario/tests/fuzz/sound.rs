@@ -85,7 +85,8 @@ fn step(step: &Step) {
     match step {
         Step::Wait(length) => not_negative("wait", *length),
         Step::Move(MoveStep { request, positioning: _, hold, aborts_after, metric_limits }) => {
-            let Request { generator, duration, filter, commands } = request;
+            let Request { generator, duration, filter, commands, table_limits } = request;
+            assert!(table_limits.iter().all(|sides| sides.below > 0.0 && sides.above > 0.0), "{table_limits:?}");
             let limits = generator.limits();
             let (limited, free) = limits.split_at(self::generator(generator));
             for limit in limited {

@@ -1,7 +1,7 @@
 //! The moves of a program as a drive makes them by itself, in profile position, profile velocity or interpolated position.
 //!
 //! What the drive is sent stands in the plans of the moves: their targets, the commands of a position profile, or the points of
-//! a table. Times count from the cycle in which the axis is powered.
+//! a table, which any other move has become in the program. Times count from the cycle in which the axis is powered.
 use super::Step;
 use super::program_cursor::ProgramCursor;
 use servobench_cia402::interpolated::serial::Message;

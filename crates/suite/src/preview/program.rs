@@ -2,7 +2,7 @@
 use super::{Doubt, Units};
 use crate::job::run_length;
 use servobench_metrics::{DisplayUnits, Limit, Name, Quantity, Scope};
-use servobench_scenario::{Scenario, Step};
+use servobench_scenario::{BusMode, Scenario, Step};
 use servobench_sim::Program;
 use servobench_trace::Move;
 
@@ -16,8 +16,10 @@ const ROUNDING: f64 = 1e-9;
 pub struct PlannedProgram {
     /// Moves, each with its peaks.
     pub moves: Vec<Move>,
-    /// What the position of any move that is sent as velocity commands will differ at most (axis unit); `None` without one.
+    /// What the position of any move that is sent as velocity commands or as points will differ at most (axis unit); `None` without one.
     pub position_error: Option<f64>,
+    /// Whether these are points.
+    pub by_points: bool,
     /// End of the last step (s).
     pub end: f64,
     /// Length of the run (s).
@@ -36,6 +38,7 @@ impl PlannedProgram {
         Self {
             moves: planned.moves().collect(),
             position_error: planned.announced().into_iter().flatten().reduce(f64::max),
+            by_points: scenario.bus.as_ref().is_some_and(|bus| bus.mode == BusMode::InterpolatedPosition),
             end: planned.end(),
             run: run_length(scenario, planned),
             by_blocks: scenario.plc.is_some(),

@@ -81,8 +81,12 @@ impl Preview {
         let peaks: Vec<_> = peaks.map(|(k, peak)| self.program.units.unit(k).pretty().short(peak)).collect();
         screen.line("peaks", &peaks);
         if let Some(error) = self.program.position_error {
-            let words = format!("velocity commands: at most {} off their points or spline", Quantity::new(error, unit));
-            screen.line("profiles", &[words]);
+            let error = Quantity::new(error, unit);
+            if self.program.by_points {
+                screen.line("points", &[format!("the way through them is at most {error} off the move")]);
+            } else {
+                screen.line("profiles", &[format!("velocity commands: at most {error} off their points or spline")]);
+            }
         }
     }
 

@@ -82,7 +82,10 @@ const PLAN: [(&str, May); 31] = [
             "metrics",
         ]),
     ),
-    ("report", May::On(&["base", "config", "cia402", "motion", "planner", "fmi", "signals", "trace", "metrics"])),
+    (
+        "report",
+        May::On(&["base", "config", "cia402", "fieldbus", "motion", "planner", "fmi", "signals", "trace", "metrics"]),
+    ),
     ("view", May::On(&["base", "signals", "trace", "metrics"])),
     ("cli", May::OnAll),
     ("tests", May::OnAll),

@@ -1,6 +1,6 @@
 //! What is wrong with a move that was asked for, as far as the parser of the command line cannot know it.
 use servobench_motion::PlanError;
-use servobench_report::ReportError;
+use servobench_report::{ReportError, Unsent};
 use servobench_scenario::{ArgumentError, PointsError};
 use std::fmt;
 use std::io;
@@ -54,6 +54,8 @@ pub(crate) enum PlanMistake {
     /// Of the planner.
     #[error("{}", ByOptions(.0))]
     Refused(PlanError),
+    #[error("--words: {0}")]
+    Unsent(Unsent),
     #[error("--csv would write {0}")]
     TooManyRows(ReportError),
     #[error("--from, --to: {0}")]

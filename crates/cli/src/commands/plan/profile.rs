@@ -5,7 +5,9 @@ use super::quantity::Axis;
 use super::rockwell::RockwellArgs;
 use super::table::{PositionArgs, PvtArgs};
 use clap::{ArgMatches, Args, Command, FromArgMatches, Subcommand};
+use servobench_motion::online::Sides;
 use servobench_planner::{Filter, Generator, Request};
+use servobench_scenario::Counts;
 use std::path::Path;
 
 /// What is planned.
@@ -78,15 +80,20 @@ impl FromArgMatches for Profile {
 }
 
 impl Profile {
-    /// The move that is asked for, in `duration` (s) if that is given, and its axis.
-    pub(super) fn request(&self, duration: Option<f64>) -> Result<(Request, Axis), Vec<PlanMistake>> {
+    /// The move that is asked for, in `duration` (s) if that is given, and its axis; of a table that may be in `counts`.
+    pub(super) fn request(
+        &self,
+        duration: Option<f64>,
+        counts: Option<Counts>,
+    ) -> Result<(Request, Axis), Vec<PlanMistake>> {
         let mut axis = Axis::default();
-        let generator = self.generator(&mut axis);
+        let generator = self.generator(counts, &mut axis);
         let filter = self.filter();
+        let table_limits = self.table_limits(&mut axis);
         match (generator, filter) {
             (Ok(generator), Ok(filter)) if axis.mistakes.is_empty() => {
                 let commands = if let Self::Named(NamedProfile::Position(args)) = self { args.cycle() } else { None };
-                Ok((Request { generator, duration, filter, commands }, axis))
+                Ok((Request { generator, duration, filter, commands, table_limits }, axis))
             }
             (generator, filter) => {
                 let others = generator.err().into_iter().chain(filter.err());
@@ -95,12 +102,22 @@ impl Profile {
         }
     }
 
-    fn generator(&self, axis: &mut Axis) -> Result<Generator, PlanMistake> {
+    fn generator(&self, counts: Option<Counts>, axis: &mut Axis) -> Result<Generator, PlanMistake> {
         match self {
             Self::PointToPoint(args) => args.generator(axis),
             Self::Named(NamedProfile::Rockwell(args)) => args.generator(axis).map(Generator::Rockwell),
-            Self::Named(NamedProfile::Pvt(args)) => args.generator(axis),
-            Self::Named(NamedProfile::Position(args)) => args.generator(axis),
+            Self::Named(NamedProfile::Pvt(args)) => args.generator(counts, axis),
+            Self::Named(NamedProfile::Position(args)) => args.generator(counts, axis),
+        }
+    }
+
+    /// What velocity and acceleration of a table are held against.
+    fn table_limits(&self, axis: &mut Axis) -> [Sides; 2] {
+        match self {
+            Self::Named(NamedProfile::Pvt(args)) => args.limits(axis),
+            Self::PointToPoint(_) | Self::Named(NamedProfile::Rockwell(_) | NamedProfile::Position(_)) => {
+                [Sides::both(f64::INFINITY); 2]
+            }
         }
     }
 
@@ -111,6 +128,11 @@ impl Profile {
             Self::Named(NamedProfile::Pvt(args)) => args.filter(),
             Self::Named(NamedProfile::Position(_)) => Ok(Filter::NONE),
         }
+    }
+
+    /// Whether it goes through a table.
+    pub(super) const fn is_table(&self) -> bool {
+        matches!(self, Self::Named(NamedProfile::Pvt(_) | NamedProfile::Position(_)))
     }
 
     /// Where velocity commands are written.

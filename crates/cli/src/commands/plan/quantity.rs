@@ -59,6 +59,52 @@ impl TypedValueParser for AxisParser {
     }
 }
 
+/// How many counts are how much of the axis.
+#[derive(Debug, Clone)]
+pub(crate) struct Counts {
+    drive: f64,
+    axis: AxisQuantity,
+}
+
+impl Counts {
+    /// As a table has them.
+    pub(super) fn of_axis(&self) -> servobench_scenario::Counts {
+        servobench_scenario::Counts { per: self.drive / self.axis.value, motion: self.axis.motion }
+    }
+}
+
+/// Reads [`Counts`].
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CountsParser;
+
+pub(super) const COUNTS: CountsParser = CountsParser;
+
+impl TypedValueParser for CountsParser {
+    type Value = Counts;
+
+    fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<Counts, clap::Error> {
+        let option = arg.and_then(Arg::get_long).unwrap_or_default().to_owned();
+        let read = move |text: &str| {
+            let like = "write counts and what they are of the axis, as \"1048576/rev\" or \"10000/5 mm\"";
+            let (drive, axis) = text.split_once('/').ok_or(like)?;
+            let drive: f64 = drive.trim().parse().map_err(|_| like)?;
+            if !drive.is_normal() {
+                return Err("the number of counts must be finite and not 0".to_owned());
+            }
+            let axis = axis.trim();
+            let is_number = axis.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '.' | '+' | '-'));
+            let text = if is_number { axis.to_owned() } else { format!("1 {axis}") };
+            let derivative = Derivative::Position;
+            let (value, motion) = axis_quantity(derivative, None, &text).map_err(|error| error.message)?;
+            if value == 0.0 {
+                return Err("counts of no way mean nothing: write what they are of the axis".to_owned());
+            }
+            Ok(Counts { drive, axis: AxisQuantity { option: option.clone(), text, derivative, value, motion } })
+        };
+        read.parse_ref(command, arg, value)
+    }
+}
+
 /// A time (s), as "1 ms".
 pub(super) fn time(text: &str) -> Result<f64, String> {
     servobench_scenario::time(text.trim()).map_err(|error| error.message)
@@ -125,6 +171,11 @@ impl Axis {
             self.mistakes.push(PlanMistake::OtherAxis { option: quantity.option.clone(), error });
         }
         quantity.value
+    }
+
+    /// Counts in a metre or radian.
+    pub(super) fn counts(&mut self, counts: &Counts) -> f64 {
+        counts.drive / self.value(&counts.axis)
     }
 
     /// Tells quantities of `derivative` in the unit of `text`, whose value is `value` (SI), unless they have one.

@@ -5,10 +5,11 @@ use super::quantity::{ACCELERATION, Axis, AxisQuantity, POSITION, VELOCITY, freq
 use crate::args::{choice, file};
 use crate::console::say;
 use clap::Args;
+use servobench_motion::online::Sides;
 use servobench_motion::position_profile::PlateauShare;
 use servobench_motion::pvt::Knot;
 use servobench_planner::{CommandCycle, CommandRate, Filter, Follow, Generator, TableMove, Velocities, VelocitiesKind};
-use servobench_scenario::{Derivative, Points, axis_quantity, read_points};
+use servobench_scenario::{Counts, Derivative, Points, axis_quantity, read_points_in};
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -27,6 +28,12 @@ pub(crate) struct PvtArgs {
     /// Passes of --velocities smooth [default: 2].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     passes: Option<u16>,
+    /// Velocity that the move is held against, as "1 m/s"; what exceeds it is told, and marked in a drawing.
+    #[arg(long, value_parser = VELOCITY.magnitude())]
+    velocity: Option<AxisQuantity>,
+    /// The same for the acceleration, as "5 m/s2".
+    #[arg(long, value_parser = ACCELERATION.magnitude())]
+    acceleration: Option<AxisQuantity>,
     #[command(flatten)]
     filter: SampledFilterArgs,
 }
@@ -54,7 +61,8 @@ pub(crate) struct PositionArgs {
 
 #[derive(Debug, Args)]
 struct TableArgs {
-    /// Table of points: time, position and, if known, velocity, with their units in the heading.
+    /// Table of points: time, position and, if known, velocity, with their units in the heading; counts are those of
+    /// --counts.
     #[arg(long, value_name = "FILE")]
     points: PathBuf,
 }
@@ -88,8 +96,8 @@ fn plateau(text: &str) -> Result<Plateau, String> {
 }
 
 impl PvtArgs {
-    pub(super) fn generator(&self, axis: &mut Axis) -> Result<Generator, PlanMistake> {
-        let points = self.table.points(axis)?;
+    pub(super) fn generator(&self, counts: Option<Counts>, axis: &mut Axis) -> Result<Generator, PlanMistake> {
+        let points = self.table.points(counts, axis)?;
         let default = if points.velocities.is_some() { VelocitiesKind::Given } else { VelocitiesKind::Average };
         let velocities = match (self.velocities.unwrap_or(default), self.passes) {
             (VelocitiesKind::Smooth, passes) => {
@@ -100,12 +108,8 @@ impl PvtArgs {
             (VelocitiesKind::Average, None) => Velocities::Average,
             (VelocitiesKind::Continuous, None) => Velocities::Continuous,
         };
-        let has_inner = points.velocities.as_ref().is_some_and(|all| {
-            let inner = all.get(1..all.len().saturating_sub(1)).unwrap_or_default();
-            inner.iter().any(Option::is_some)
-        });
-        if has_inner && velocities != Velocities::Given {
-            say("of the velocities of the table only the first and the last are used\n");
+        if velocities != Velocities::Given {
+            say_velocities_are_unused(&points);
         }
         Ok(Generator::Table(TableMove { knots: knots(&points), velocities, follow: Follow::Segments }))
     }
@@ -116,8 +120,9 @@ impl PvtArgs {
 }
 
 impl PositionArgs {
-    pub(super) fn generator(&self, axis: &mut Axis) -> Result<Generator, PlanMistake> {
-        let points = self.table.points(axis)?;
+    pub(super) fn generator(&self, counts: Option<Counts>, axis: &mut Axis) -> Result<Generator, PlanMistake> {
+        let points = self.table.points(counts, axis)?;
+        say_velocities_are_unused(&points);
         let has_limits = self.velocity.is_some() || self.acceleration.is_some();
         if has_limits && !matches!(self.sent.plateau, Some(Plateau::Auto)) {
             return Err(PlanMistake::UnusedLimits);
@@ -151,18 +156,43 @@ impl PositionArgs {
     }
 }
 
+fn say_velocities_are_unused(points: &Points) {
+    let has_inner = points.velocities.as_ref().is_some_and(|all| {
+        let inner = all.get(1..all.len().saturating_sub(1)).unwrap_or_default();
+        inner.iter().any(Option::is_some)
+    });
+    if has_inner {
+        say("of the velocities of the table only the first and the last are used\n");
+    }
+}
+
 fn knots(points: &Points) -> Vec<Knot> {
     let velocity = |i: usize| points.velocities.as_ref().and_then(|velocities| velocities[i]);
     let pairs = points.times.iter().zip(&points.positions).enumerate();
     pairs.map(|(i, (t, x))| Knot { t: *t, x: *x, v: velocity(i) }).collect()
 }
 
+impl PvtArgs {
+    /// What velocity and acceleration are held against.
+    pub(super) fn limits(&self, axis: &mut Axis) -> [Sides; 2] {
+        let mut limit = |given: Option<&AxisQuantity>| Sides::both(axis.optional(given).unwrap_or(f64::INFINITY));
+        [limit(self.velocity.as_ref()), limit(self.acceleration.as_ref())]
+    }
+}
+
 impl TableArgs {
     /// The table, its units noted.
-    fn points(&self, axis: &mut Axis) -> Result<Points, PlanMistake> {
+    fn points(&self, counts: Option<Counts>, axis: &mut Axis) -> Result<Points, PlanMistake> {
         let file = || self.points.clone();
         let text = read(&self.points).map_err(|error| PlanMistake::Unreadable { file: file(), error })?;
-        let points = read_points(&text).map_err(|error| PlanMistake::Points { file: file(), error })?;
+        let points = read_points_in(counts, &text).map_err(|error| PlanMistake::Points { file: file(), error })?;
+        if !points.unused.is_empty() {
+            let names: Vec<String> = points.unused.iter().map(ToString::to_string).collect();
+            say(&format!(
+                "not used of the table: {}; between its points only time, position and velocity count\n",
+                names.join(", ")
+            ));
+        }
         axis.motion = Some(points.motion);
         let [_, position, velocity] = &points.units;
         for (derivative, unit) in [(Derivative::Position, position), (Derivative::Velocity, velocity)] {

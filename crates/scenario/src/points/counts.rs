@@ -1,0 +1,45 @@
+//! Counts of a drive in the heading of a table.
+use super::Column;
+use crate::quantity::Scale;
+use servobench_base::Coordinate;
+
+/// What a drive counts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Counts {
+    /// Counts in a metre or radian; below zero where it counts against the axis.
+    pub per: f64,
+    /// Whether these are lengths or angles.
+    pub motion: Coordinate,
+}
+
+/// Velocities as the words of points have them.
+const TENTHS: &str = "0.1 counts/s";
+
+/// The scale of `unit`, which begins with counts, and which of the candidates of `column` it measures; `None` of any other unit.
+pub(super) fn read_unit(column: Column, unit: &str, counts: Option<Counts>) -> Option<Result<(Scale, usize), String>> {
+    if !unit.contains("counts") {
+        return None;
+    }
+    let expected = match column {
+        Column::Time => return Some(Err(format!("write `{}`", column.proposal()))),
+        Column::Position => "counts",
+        Column::Velocity => "counts/s",
+        Column::Acceleration => "counts/s2",
+        Column::Jerk => "counts/s3",
+        Column::Snap => "counts/s4",
+    };
+    let tens = if unit == expected {
+        0
+    } else if column == Column::Velocity && unit == TENTHS {
+        -1
+    } else {
+        let or = if column == Column::Velocity { format!(", or `{TENTHS}` as drives take it") } else { String::new() };
+        return Some(Err(format!("write `{expected}`{or}")));
+    };
+    let Some(Counts { per, motion }) = counts else {
+        let unknown = "it is not known what a count is of the axis: `servobench plan` is told by --counts; elsewhere write a length or \
+                       an angle";
+        return Some(Err(unknown.to_owned()));
+    };
+    Some(Ok((Scale::per(per, tens), usize::from(motion == Coordinate::Rotary))))
+}
