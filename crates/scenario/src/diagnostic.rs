@@ -1,4 +1,5 @@
 //! What is wrong with a scenario, where, and what to do about it.
+use crate::points::Counts;
 use crate::source::{SourceId, Sources, Span};
 use servobench_base::{Coordinate, Rate};
 use std::fmt;
@@ -128,6 +129,8 @@ pub(crate) struct Report {
     pub(crate) rates_of_models: Vec<Rate>,
     /// Tables of points that were read.
     pub(crate) tables: Vec<NamedFile>,
+    /// What a count of the bus is, once known.
+    pub(crate) counts: Option<Counts>,
     /// Coordinate of the axis, once known.
     pub(crate) axis: Option<Coordinate>,
     /// Coordinate of the motor, once known.

@@ -11,6 +11,9 @@
 //! `acceleration`, `jerk` and `snap`, as a planned move has them, are read and not used: the way from point to point is the
 //! cubic between positions and velocities, or a line.
 //!
+//! A column `step` in place of `position` has the distance from the point before, the first one from where the axis is: the points of a
+//! drive with their relative flag.
+//!
 //! A profile is such a table, of which the times and the velocities, or the accelerations, are used.
 mod column;
 mod counts;
@@ -28,6 +31,9 @@ pub use mistake::{PointsError, PointsMistake};
 /// Points at most: a table of more is taken for a mistake.
 pub const MOST_POINTS: usize = 5_000_000;
 
+/// A position that is larger is no more known well (SI), as of numbers in tables.
+const FARTHEST: f64 = 1e30;
+
 /// Points of a move, in SI: two at least, in the order of time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Points {
@@ -39,6 +45,8 @@ pub struct Points {
     pub positions: Vec<f64>,
     /// Velocities (m/s or rad/s), one for each time where there is such a column, and none where it is empty.
     pub velocities: Option<Vec<Option<f64>>>,
+    /// Whether the positions count from where the axis is: those of a table of steps, here added up.
+    pub is_relative: bool,
     /// Units as the heading writes them: of time, position, velocity.
     pub units: [Option<String>; 3],
     /// Columns of which nothing is used.
@@ -100,19 +108,30 @@ fn read_profile(text: &str, layout: Layout) -> Result<Profile, PointsError> {
 /// Reads a table of `most` points at most.
 fn read(text: &str, counts: Option<Counts>, most: usize) -> Result<Points, PointsError> {
     let (mut times, mut positions, mut velocities) = (Vec::new(), Vec::new(), Vec::new());
+    let mut way = 0.0;
     let heads = read_rows(text, Layout::Positions, counts, most, |column, value| match column {
         Column::Time => times.extend(value),
         Column::Position => positions.extend(value),
+        Column::Step => {
+            way += value.unwrap_or(0.0);
+            positions.push(way);
+        }
         _ => velocities.push(value),
     })?;
-    let has_velocity = heads.iter().any(|head| head.column == Column::Velocity);
+    if positions.iter().any(|position: &f64| position.abs() > FARTHEST) {
+        return Err(PointsError { line: 1, column: 1, mistake: PointsMistake::TooFar });
+    }
+    let has = |column| heads.iter().any(|head| head.column == column);
+    let (has_velocity, is_relative) = (has(Column::Velocity), has(Column::Step));
     let unit = |column| heads.iter().find(|head| head.column == column).map(|head| head.unit.clone());
+    let of_positions = if is_relative { Column::Step } else { Column::Position };
     Ok(Points {
         motion: motion(&heads),
         times,
         positions,
         velocities: has_velocity.then_some(velocities),
-        units: [Column::Time, Column::Position, Column::Velocity].map(unit),
+        is_relative,
+        units: [Column::Time, of_positions, Column::Velocity].map(unit),
         unused: heads.iter().map(|head| head.column).filter(|column| !Layout::Positions.uses(*column)).collect(),
     })
 }
@@ -137,6 +156,38 @@ mod tests {
         assert_eq!(points.positions, [0.0, 0.25, 1.0]);
         assert_eq!(points.velocities, Some(vec![Some(0.0), None, Some(-0.5)]));
         assert_eq!(points.units.map(Option::unwrap), ["ms", "mm", "m/min"]);
+    }
+
+    #[test]
+    fn steps_count_from_the_point_before() {
+        let points = read_points("time [ms],step [mm],velocity [mm/s]\n0,0,0\n10,5,750\n20,10,\n30,-5,0").unwrap();
+        let near = points.positions.iter().zip([0.0, 0.005, 0.015, 0.01]).all(|(x, exact)| (x - exact).abs() < 1e-16);
+        assert!(near && points.is_relative, "{points:?}");
+        assert_eq!(points.units.map(Option::unwrap), ["ms", "mm", "mm/s"]);
+        assert!(!read_points("time [ms],position [mm]\n0,0\n1,1").unwrap().is_relative);
+        let counts = Some(Counts { per: 2e6, motion: Coordinate::Linear });
+        let points = read_points_in(counts, "time [ms],step [counts]\n0,1000\n10,1000").unwrap();
+        assert_eq!(points.positions, [5e-4, 1e-3]);
+        for (text, said) in [
+            (
+                "time [ms],step [mm],position [mm]\n0,0,0\n1,1,1",
+                "1:21: `position` and `step` both say where the points are: delete one",
+            ),
+            (
+                "time [ms],step [mm/s]\n0,0\n1,1",
+                "1:11: `step` cannot be in `mm/s`: a length or an angle is needed, this is a velocity (m/s)",
+            ),
+            (
+                "time [ms],step [mm]\n0,\n1,1",
+                "2:3: `step` is ``: write a number; only `velocity` beside `position` may be left empty",
+            ),
+            (
+                "time [ms],step [m]\n0,9e29\n1,9e29",
+                "1:1: the steps add up to more than 1e30 (SI): check them, and the unit in the heading",
+            ),
+        ] {
+            assert_eq!(read_points(text).unwrap_err().to_string(), said, "{text}");
+        }
     }
 
     #[test]
@@ -231,7 +282,7 @@ mod tests {
                 None,
                 "time [s],position [counts]\n",
                 "1:10: `position` cannot be in `counts`: it is not known what a count is of the axis: `servobench plan` is told by \
-                 --counts; elsewhere write a length or an angle",
+                 --counts, a scenario by the `units` of its `[bus]`",
             ),
             (
                 linear,

@@ -60,6 +60,7 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
     let source = motor.and_then(|motor| motor::resolve(motor, report));
     let known = drive::Known { base_rate, axis: moved.as_ref(), motor: source.as_ref() };
     let actuator = drive::resolve(file, &known, report);
+    report.counts = bus::counts(file, actuator.as_ref(), report);
     let program = program::steps(file, base_rate, sources, report);
     let interpolation = filter::interpolation(file, base_rate, report);
     if let Some(actuator) = &actuator {

@@ -110,7 +110,8 @@ table! {
     /// A table of points, and how it is followed. It starts and ends at rest unless its first and last point have a velocity.
     pub(crate) struct TableOfPoints requires ["file"] {
         /// A CSV file, relative to this one, with the heading `time [ms],position [mm],velocity [mm/s]`: any units, velocity
-        /// left out where there is none. Columns `acceleration`, `jerk` and `snap` are not used.
+        /// left out where there is none; `step` in place of `position` counts from the point before; over a bus also in `counts`.
+        /// Columns `acceleration`, `jerk` and `snap` are not used.
         file: String = (),
         /// Whether the positions count from where the axis is when the move starts.
         relative: bool = (),

@@ -10,6 +10,8 @@ pub enum Column {
     Time,
     /// Absolute position.
     Position,
+    /// Distance from the point before, of the first point from where the axis is: the relative flag of a drive's points.
+    Step,
     /// Velocity at the point.
     Velocity,
     /// Acceleration at the point.
@@ -41,9 +43,14 @@ impl Layout {
         }
     }
 
+    /// Whether `column` is the one that the table is of.
+    pub(super) fn is_value(self, column: Column) -> bool {
+        self.needed()[1] == column || self == Self::Positions && column == Column::Step
+    }
+
     /// Whether a move is made of `column`; a table may have the others too.
     pub(super) fn uses(self, column: Column) -> bool {
-        self.needed().contains(&column) || self == Self::Positions && column == Column::Velocity
+        column == Column::Time || self.is_value(column) || self == Self::Positions && column == Column::Velocity
     }
 
     /// A right heading.
@@ -66,13 +73,14 @@ impl Layout {
 
 impl Column {
     /// Every column, by its derivative of position behind the time.
-    pub(super) const ALL: [Self; 6] =
-        [Self::Time, Self::Position, Self::Velocity, Self::Acceleration, Self::Jerk, Self::Snap];
+    pub(super) const ALL: [Self; 7] =
+        [Self::Time, Self::Position, Self::Step, Self::Velocity, Self::Acceleration, Self::Jerk, Self::Snap];
 
     pub(super) const fn name(self) -> &'static str {
         match self {
             Self::Time => "time",
             Self::Position => "position",
+            Self::Step => "step",
             Self::Velocity => "velocity",
             Self::Acceleration => "acceleration",
             Self::Jerk => "jerk",
@@ -85,6 +93,7 @@ impl Column {
         match self {
             Self::Time => "times",
             Self::Position => "positions",
+            Self::Step => "steps",
             Self::Velocity => "velocities",
             Self::Acceleration => "accelerations",
             Self::Jerk => "jerks",
@@ -96,7 +105,7 @@ impl Column {
     pub(super) fn candidates(self) -> Vec<&'static Physical> {
         match self {
             Self::Time => vec![&TIME],
-            Self::Position => vec![&POSITION.linear, &POSITION.rotary],
+            Self::Position | Self::Step => vec![&POSITION.linear, &POSITION.rotary],
             Self::Velocity => vec![&VELOCITY.linear, &VELOCITY.rotary],
             Self::Acceleration => vec![&ACCELERATION.linear, &ACCELERATION.rotary],
             Self::Jerk => vec![&JERK.linear, &JERK.rotary],
@@ -108,7 +117,7 @@ impl Column {
     pub(super) const fn proposal(self) -> &'static str {
         match self {
             Self::Time => "ms",
-            Self::Position => "mm",
+            Self::Position | Self::Step => "mm",
             Self::Velocity => "mm/s",
             Self::Acceleration => "mm/s2",
             Self::Jerk => "mm/s3",

@@ -22,7 +22,7 @@ pub(super) fn read_unit(column: Column, unit: &str, counts: Option<Counts>) -> O
     }
     let expected = match column {
         Column::Time => return Some(Err(format!("write `{}`", column.proposal()))),
-        Column::Position => "counts",
+        Column::Position | Column::Step => "counts",
         Column::Velocity => "counts/s",
         Column::Acceleration => "counts/s2",
         Column::Jerk => "counts/s3",
@@ -37,8 +37,8 @@ pub(super) fn read_unit(column: Column, unit: &str, counts: Option<Counts>) -> O
         return Some(Err(format!("write `{expected}`{or}")));
     };
     let Some(Counts { per, motion }) = counts else {
-        let unknown = "it is not known what a count is of the axis: `servobench plan` is told by --counts; elsewhere write a length or \
-                       an angle";
+        let unknown = "it is not known what a count is of the axis: `servobench plan` is told by --counts, a scenario by the `units` of its \
+                       `[bus]`";
         return Some(Err(unknown.to_owned()));
     };
     Some(Ok((Scale::per(per, tens), usize::from(motion == Coordinate::Rotary))))

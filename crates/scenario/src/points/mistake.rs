@@ -63,6 +63,12 @@ pub enum PointsMistake {
         /// Which.
         column: Column,
     },
+    /// Positions are said twice.
+    #[error("`position` and `step` both say where the points are: delete one")]
+    PositionAndStep,
+    /// Steps add up to a position that is no more known well.
+    #[error("the steps add up to more than 1e30 (SI): check them, and the unit in the heading")]
+    TooFar,
     /// A column that every table needs is not there.
     #[error("the column `{column}` is missing: add `{column} [{proposal}]`")]
     Missing {

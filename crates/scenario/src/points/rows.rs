@@ -100,6 +100,9 @@ fn heading(line: usize, row: &str, layout: Layout, counts: Option<Counts>) -> Re
         if heads.iter().any(|head| head.column == column) {
             return Err(fail(PointsMistake::Twice { column }));
         }
+        if layout.is_value(column) && heads.iter().any(|head| layout.is_value(head.column)) {
+            return Err(fail(PointsMistake::PositionAndStep));
+        }
         let Some(unit) = unit.filter(|unit| !unit.is_empty()) else {
             return Err(fail(PointsMistake::NoUnit { column, proposal: column.proposal() }));
         };
@@ -108,8 +111,11 @@ fn heading(line: usize, row: &str, layout: Layout, counts: Option<Counts>) -> Re
             .map_err(|message| fail(PointsMistake::Unit { column, unit: unit.to_owned(), message }))?;
         heads.push(Head { column, unit: unit.to_owned(), scale, which, at: cell.at() });
     }
-    for column in layout.needed() {
-        if heads.iter().all(|head| head.column != column) {
+    let [time, values] = layout.needed();
+    let has_time = heads.iter().any(|head| head.column == time);
+    let has_values = heads.iter().any(|head| layout.is_value(head.column));
+    for (column, is_there) in [(time, has_time), (values, has_values)] {
+        if !is_there {
             return Err(wrong(line, 1, PointsMistake::Missing { column, proposal: column.proposal() }));
         }
     }
@@ -118,12 +124,11 @@ fn heading(line: usize, row: &str, layout: Layout, counts: Option<Counts>) -> Re
 
 /// `heads`, unless positions and their derivatives are those of different axes.
 fn agreeing(line: usize, heads: Vec<Head>, layout: Layout) -> Result<Vec<Head>, PointsError> {
-    let [_, column] = layout.needed();
-    if let Some(values) = heads.iter().find(|head| head.column == column)
+    if let Some(values) = heads.iter().find(|head| layout.is_value(head.column))
         && let Some(other) = heads.iter().find(|head| head.column != Column::Time && head.which != values.which)
     {
         let needed = other.column.candidates()[values.which].name;
-        let message = format!("{} are in `{}`, {needed} is needed", column.plural(), values.unit);
+        let message = format!("{} are in `{}`, {needed} is needed", values.column.plural(), values.unit);
         let mistake = PointsMistake::Unit { column: other.column, unit: other.unit.clone(), message };
         return Err(wrong(line, other.at, mistake));
     }

@@ -7,6 +7,7 @@ use crate::resolve::{one_of, profile, refuse};
 use crate::source::{At, Sources};
 use servobench_config::Choice as _;
 use servobench_motion::rockwell::ShapeKind;
+use servobench_planner::Positioning;
 use servobench_plcopen::{
     Absent, BlockInput, BlockName, Direction, Follow, Input, Pair, Table, Trigger, Value, program,
 };
@@ -255,8 +256,7 @@ impl Reading<'_, '_> {
             return Ok(Table { pairs: pairs.ok_or(Wrong)?, is_relative: false, follow: Follow::Spline });
         }
         let follow = profile::follow(table, self.context.is_told_velocities, self.report);
-        let pairs = profile::positions(table, sources, self.report);
-        let is_relative = table.value.relative.optional().map_err(|_| Wrong)?.copied().unwrap_or(false);
-        Ok(Table { pairs: pairs.ok_or(Wrong)?, is_relative, follow: follow.ok_or(Wrong)? })
+        let (pairs, positioning) = profile::positions(table, sources, self.report).ok_or(Wrong)?;
+        Ok(Table { pairs, is_relative: positioning == Positioning::Relative, follow: follow.ok_or(Wrong)? })
     }
 }

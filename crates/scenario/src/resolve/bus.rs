@@ -3,6 +3,7 @@ use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
 use crate::file::{DriveInterpolation, File};
+use crate::points::Counts;
 use crate::resolve::{bus_fault, mode, need, refuse, whole};
 use crate::scenario::{Actuator, Bus, BusMode, Drive, DriveUnits, Feedback, ObjectWrite, Step};
 use crate::source::At;
@@ -275,6 +276,13 @@ fn counter(given: &file::Bus, report: &mut Report) -> Option<Counter> {
     new(bits.unwrap_or(COUNTER.0))
         .map_err(|error| report.error(given.counter.span().unwrap_or(given.span), error.to_string(), ""))
         .ok()
+}
+
+/// What a count of the bus is, for tables that are in counts; nothing is said of units that are wrong.
+pub(super) fn counts(file: &File, actuator: Option<&Actuator>, report: &Report) -> Option<Counts> {
+    let mut unheard = Report { axis: report.axis, motor: report.motor, ..Report::default() };
+    let DriveUnits { drive, axis } = units(file, file.bus.given()?, actuator, &mut unheard)?;
+    Some(Counts { per: f64::from(drive) / axis, motion: report.axis? })
 }
 
 /// The units as given, or the increments of the encoder that closes the position loop.

@@ -4,7 +4,7 @@ use crate::field::Slot;
 use crate::file::TableOfPoints;
 use crate::list::Automatic;
 use crate::models::read_beside;
-use crate::points::{PointsError, read_points};
+use crate::points::{Points, PointsError, read_points_in};
 use crate::resolve::refuse;
 use crate::source::{At, Sources};
 use servobench_base::Coordinate;
@@ -23,9 +23,10 @@ pub(super) fn resolve(
     let velocities = velocities(own, report);
     let follow = follow(own, limits, report);
     let is_relative = own.relative.optional().ok()?.copied().unwrap_or(false);
-    let knots = knots(own, sources, report);
+    let points = points(own, sources, report);
+    let is_relative = is_relative || points.as_ref().is_some_and(|points| points.is_relative);
     let positioning = if is_relative { Positioning::Relative } else { Positioning::Absolute };
-    Some((TableMove { knots: knots?, velocities: velocities?, follow: follow? }, positioning))
+    Some((TableMove { knots: knots(&points?), velocities: velocities?, follow: follow? }, positioning))
 }
 
 /// Whether velocity and acceleration choose how the table is followed.
@@ -33,16 +34,25 @@ pub(super) fn chooses_by_limits(table: &TableOfPoints) -> bool {
     matches!(table.plateau_share.given(), Some(Automatic::Auto))
 }
 
-/// The points of the file.
-fn knots(own: &TableOfPoints, sources: &Sources, report: &mut Report) -> Option<Vec<Knot>> {
-    let file = own.file.at()?;
+/// The points of the file, in lengths, angles or counts of the bus.
+pub(super) fn points(own: &TableOfPoints, sources: &Sources, report: &mut Report) -> Option<Points> {
+    let (file, counts) = (own.file.at()?, report.counts);
     let points = read(file, "positions", sources, report, |text| {
-        let points = read_points(text)?;
+        let points = read_points_in(counts, text)?;
         Ok((points.motion, points))
     })?;
+    if points.is_relative
+        && let Some(At { value: false, span }) = own.relative.at()
+    {
+        report.error(*span, "a table of steps counts from where the axis is", "leave `relative` out");
+    }
+    Some(points)
+}
+
+fn knots(points: &Points) -> Vec<Knot> {
     let velocity = |i: usize| points.velocities.as_ref().and_then(|all| all[i]);
     let both = points.times.iter().zip(&points.positions).enumerate();
-    Some(both.map(|(i, (t, x))| Knot { t: *t, x: *x, v: velocity(i) }).collect())
+    both.map(|(i, (t, x))| Knot { t: *t, x: *x, v: velocity(i) }).collect()
 }
 
 /// What `read` makes of the text of `file`, when it is for an axis of this kind; `values` are its values in words.

@@ -2,25 +2,28 @@
 use crate::diagnostic::Report;
 use crate::file::TableOfPoints;
 use crate::list::Automatic;
-use crate::points::{PointsError, Profile, read_accelerations, read_points, read_velocities};
+use crate::points::{PointsError, Profile, read_accelerations, read_velocities};
 use crate::resolve::points;
 use crate::resolve::refuse;
 use crate::source::{At, Sources};
-use servobench_planner::{Follow, FollowKind, VelocitiesKind};
+use servobench_planner::{Follow, FollowKind, Positioning, VelocitiesKind};
 use servobench_plcopen::{Follow as ProfileFollow, Pair};
 
-/// Positions.
-pub(super) fn positions(table: &At<TableOfPoints>, sources: &Sources, report: &mut Report) -> Option<Vec<Pair>> {
+/// Positions, and what they count from.
+pub(super) fn positions(
+    table: &At<TableOfPoints>,
+    sources: &Sources,
+    report: &mut Report,
+) -> Option<(Vec<Pair>, Positioning)> {
     let file = table.value.file.at()?;
-    let points = points::read(file, "positions", sources, report, |text| {
-        let points = read_points(text)?;
-        Ok((points.motion, points))
-    })?;
+    let points = points::points(&table.value, sources, report)?;
+    let is_relative = points.is_relative || table.value.relative.optional().ok()?.copied().unwrap_or(false);
     if points.velocities.is_some() {
         let message = "MC_PositionProfile chooses the velocities itself: the column `velocity` is not used";
         report.warning(file.span, message, "`end_velocity` is that at the last position");
     }
-    pairs(file, &points.times, &points.positions, report)
+    let positioning = if is_relative { Positioning::Relative } else { Positioning::Absolute };
+    Some((pairs(file, &points.times, &points.positions, report)?, positioning))
 }
 
 /// Velocities.

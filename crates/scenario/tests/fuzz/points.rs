@@ -3,11 +3,12 @@ use crate::WORDS;
 use servobench_fuzz::{Splice, check, fuzz};
 use servobench_scenario::{PointsError, read_accelerations, read_points, read_velocities};
 
-const TABLES: [&str; 4] = [
+const TABLES: [&str; 5] = [
     "time [ms],position [mm],velocity [mm/s]\n0,0,0\n10,5,\n20,15,750\n30,20,0\n",
     "position [deg],time [s]\r\n0,0\r\n-90,.5\r\n\r\n1e2,1.25\r\n",
     "time [us],velocity [rpm],position [rev]\n-1,0,+3.\n0,1e-3,4\n1e6,,5\n",
     "\u{feff}time [min],position [m]\n0,0\n1,2\n",
+    "time [ms],step [mm],velocity [mm/s],jerk [m/s3]\n0,9e32,0,1\n10,5,,\n20,-15,750,0\n",
 ];
 
 /// What is read is a table: finite, in the order of time, a velocity or none for each point; what is refused has a place in

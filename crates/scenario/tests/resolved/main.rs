@@ -3,6 +3,7 @@ mod files;
 mod loops;
 mod motors;
 mod moves;
+mod tables;
 
 use servobench_base::{Coordinate, Dq, Setpoint};
 use servobench_drive::current::{self, Gains, Tuning};
