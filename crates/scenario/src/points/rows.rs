@@ -164,7 +164,7 @@ fn read_row(
         let column = head.column;
         read += 1;
         let is_used = layout.uses(column);
-        if cell.text.is_empty() && !layout.needed().contains(&column) {
+        if cell.text.is_empty() && column != Column::Time && !layout.is_value(column) {
             if is_used {
                 take(column, None);
             }
