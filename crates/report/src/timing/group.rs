@@ -6,6 +6,9 @@ use servobench_trace::{Call, CallFate, Recording, Signal};
 /// Values of a signal in which nothing happens.
 const IDLE: [&str; 4] = ["FALSE", "0", "16#0000", "none"];
 
+/// Numbers with more values than this are drawn as a curve.
+const MOST_BARS: usize = 12;
+
 /// The signals of one source.
 #[derive(Debug)]
 pub(super) struct Group<'a> {
@@ -28,6 +31,8 @@ pub(super) enum Kind {
     Logic,
     /// A signal with other values.
     States,
+    /// A number that changes more often than bars with it could be read.
+    Number,
     /// Why a call did not come to its end, where the run may do without it.
     Excused,
     /// Why a call did not come to its end, where it should have.
@@ -76,8 +81,14 @@ impl<'a> Group<'a> {
 impl<'a> Row<'a> {
     fn of(signal: &'a Signal, window: Window) -> Self {
         let is_logic = signal.changes.iter().all(|(_, value)| value == "TRUE" || value == "FALSE");
-        let kind = if is_logic { Kind::Logic } else { Kind::States };
-        Self { name: &signal.name, stretches: stretches(signal, window), kind }
+        let stretches = stretches(signal, window);
+        let is_number = || stretches.len() > MOST_BARS && stretches.iter().all(|stretch| stretch.number().is_some());
+        let kind = match is_logic {
+            true => Kind::Logic,
+            false if is_number() => Kind::Number,
+            false => Kind::States,
+        };
+        Self { name: &signal.name, stretches, kind }
     }
 
     /// Why `call` was never executed or did not come to its end, all the time, or failed, from then on; `None` for any other.

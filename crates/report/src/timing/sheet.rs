@@ -36,7 +36,8 @@ const APART: f64 = 26.0;
 const STYLE: &str = ".c{fill:none;stroke-width:2.6;stroke-linejoin:round}.a{fill:none;stroke:#1c2330;stroke-width:1;\
 stroke-linejoin:round}.w{fill:none;stroke:#1f5fa8;stroke-width:1.5}.f{fill:#1f5fa8;opacity:.22}.x{fill:#c2303a;\
 fill-opacity:.3;stroke:#c2303a;stroke-width:1.5}.q{fill:#7d8794}.bs,.bo,.bx{fill:#e3ecf7;stroke:#1f5fa8;stroke-width:1}\
-.bo{fill:#ffffff;stroke:#7d8794}.bx{fill:#f8dcde;stroke:#c2303a}.bt{font-size:11px}.r{font-size:11px}.h{stroke:#9aa3b0;\
+.bo{fill:#ffffff;stroke:#7d8794}.bx{fill:#f8dcde;stroke:#c2303a}.bt{font-size:11px}.bn{font-size:10px;fill:#5b6472;paint-order:stroke;stroke:#ffffff;\
+stroke-width:3px}.r{font-size:11px}.h{stroke:#9aa3b0;\
 stroke-width:1}.gb,.ge,.gc{fill:none;stroke:#5b6472;stroke-width:.9}.gb{stroke-dasharray:1 3}.ge{stroke-dasharray:6 3}\
 .gc{stroke-dasharray:6 3 1 3}.o{fill:#1c2330}";
 

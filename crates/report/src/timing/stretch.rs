@@ -18,6 +18,13 @@ pub(super) struct Stretch<'a> {
     pub(super) is_change: bool,
 }
 
+impl Stretch<'_> {
+    /// Its value, where that is a number.
+    pub(super) fn number(&self) -> Option<f64> {
+        self.value.parse().ok().filter(|number: &f64| number.is_finite())
+    }
+}
+
 /// The stretches of `signal` in `window`, in the order of time.
 pub(super) fn stretches<'a>(signal: &'a Signal, window: Window) -> Vec<Stretch<'a>> {
     let changes: Vec<(f64, &'a str)> =

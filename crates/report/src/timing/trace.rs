@@ -1,7 +1,8 @@
-//! One row: a logic trace, or states as bars.
+//! One row: a logic trace, states as bars, or a number as a curve.
 use super::group::{Kind, Row};
-use super::stretch::{Seen, seen};
-use crate::drawing::{Axis, escaped, fitted};
+use super::stretch::{Seen, Stretch, seen};
+use crate::drawing::{Axis, escaped, fitted, text_width};
+use servobench_metrics::digits;
 use std::fmt::Write;
 
 /// Height of a row (pixels).
@@ -13,6 +14,8 @@ const BAR: (f64, f64) = (2.0, 18.0);
 /// Size of letters in a bar, and the room at each end of them.
 const LETTERS: f64 = 11.0;
 const MARGIN: f64 = 3.0;
+/// Size of the letters beside a curve.
+const SMALL: f64 = 10.0;
 
 /// Values that say that something is off.
 const OFF: [&str; 6] = ["FALSE", "0", "16#0000", "none", "Off", "Disabled"];
@@ -29,6 +32,7 @@ pub(super) fn draw(svg: &mut Vec<String>, row: &Row<'_>, time: &Axis, top: f64) 
     let seen = seen(&row.stretches, time);
     match row.kind {
         Kind::Logic => logic(svg, row.name, &seen, top),
+        Kind::Number => curve(svg, &row.stretches, time, top),
         Kind::States => bars(svg, &seen, |value| class(row.name, value), top),
         Kind::Excused => bars(svg, &seen, |_| "bo", top),
         Kind::Missed => bars(svg, &seen, |_| "bx", top),
@@ -68,6 +72,57 @@ fn logic(svg: &mut Vec<String>, name: &str, seen: &[Seen<'_>], top: f64) {
     };
     let seen = parts.into_iter().filter(|(_, path)| !path.is_empty());
     svg.extend(seen.map(|(class, path)| format!("<path class=\"{class}\" d=\"{path}\"/>")));
+}
+
+/// A number from change to change, from its lowest value at the bottom of the row to its highest; both are said beside it. Of the
+/// changes within half a pixel the lowest and the highest value are drawn.
+fn curve(svg: &mut Vec<String>, stretches: &[Stretch<'_>], time: &Axis, top: f64) {
+    let values = || stretches.iter().filter_map(|stretch| Some((*stretch, stretch.number()?)));
+    let (low, high) =
+        values().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (_, value)| (low.min(value), high.max(value)));
+    // Half of each, as their difference may be more than there is.
+    let range = 0.5 * high - 0.5 * low;
+    let part = |value: f64| if range > 0.0 { (0.5 * value - 0.5 * low) / range } else { 0.0 };
+    let level = |value: f64| top + LOW - (LOW - HIGH) * part(value);
+    let (mut path, mut end) = (String::new(), time.from);
+    for run in values().collect::<Vec<_>>().chunk_by(|one, next| half_pixel(time, one.0) == half_pixel(time, next.0)) {
+        let ((first, _), (last, value)) = (run[0], run[run.len() - 1]);
+        let (lowest, highest) =
+            run.iter().fold((value, value), |(low, high), (_, value)| (low.min(*value), high.max(*value)));
+        let x = time.at(first.from);
+        let begun =
+            if path.is_empty() { write!(path, "M{x:.2},{:.1}", level(run[0].1)) } else { write!(path, "H{x:.2}") };
+        let written = if run.len() > 1 {
+            write!(path, "V{:.1}V{:.1}V{:.1}", level(lowest), level(highest), level(value))
+        } else {
+            write!(path, "V{:.1}", level(value))
+        };
+        debug_assert!(begun.is_ok() && written.is_ok(), "a string takes everything");
+        end = time.at(last.to);
+    }
+    let label = format!("{} … {}", digits(low, 4), digits(high, 4));
+    let room = text_width(&label, SMALL) + 2.0 * MARGIN;
+    // Where the curve stays in the other half: at the end of the row, or at its beginning.
+    let is_free = |from: f64, to: f64, is_above: bool| {
+        let seen = stretches.iter().filter(|one| time.at(one.to) >= from && time.at(one.from) <= to);
+        seen.filter_map(Stretch::number).all(|value| if is_above { part(value) <= 0.5 } else { part(value) >= 0.5 })
+    };
+    let places = [(time.to - room, time.to), (time.from, time.from + room)];
+    let mut places = places.into_iter().flat_map(|(from, to)| [(from, to, true), (from, to, false)]);
+    let (from, _, is_above) =
+        places.find(|(from, to, above)| is_free(*from, *to, *above)).unwrap_or((time.to - room, time.to, true));
+    let (x, base) = (from + MARGIN, top + if is_above { 7.5 } else { 20.0 });
+    svg.push(format!(
+        "<path class=\"w\" d=\"{path}H{end:.2}\"/>\n<text class=\"bn\" x=\"{x:.2}\" y=\"{base:.1}\">{label}</text>"
+    ));
+}
+
+/// In which half of which pixel a stretch begins.
+fn half_pixel(time: &Axis, stretch: Stretch<'_>) -> u64 {
+    // Pixels of a drawing are some thousand.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+    let half = (2.0 * time.at(stretch.from)) as u64;
+    half
 }
 
 /// Class of the bar of `value` of the signal `name`.
@@ -112,5 +167,36 @@ fn bar(svg: &mut Vec<String>, stretch: &Seen<'_>, class: impl Fn(&str) -> &'stat
                 ));
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stretches(values: &[(f64, &'static str)]) -> Vec<Stretch<'static>> {
+        let ends = values.iter().skip(1).map(|(time, _)| *time).chain([1.0]);
+        values.iter().zip(ends).map(|((from, value), to)| Stretch { from: *from, to, value, is_change: true }).collect()
+    }
+
+    /// From 0 at the bottom of a row at 0 to 4 at its top; 3 is three quarters up.
+    #[test]
+    fn a_number_is_a_curve_between_its_lowest_and_its_highest_value() {
+        let time = Axis { low: 0.0, high: 1.0, from: 100.0, to: 200.0 };
+        let mut svg = Vec::new();
+        curve(&mut svg, &stretches(&[(0.0, "0"), (0.25, "4"), (0.5, "3")]), &time, 0.0);
+        assert!(svg[0].contains("d=\"M100.00,16.0V16.0H125.00V4.0H150.00V7.0H200.00\""), "{}", svg[0]);
+        assert!(svg[0].contains(">0 … 4</text>"), "{}", svg[0]);
+        // Three changes within half a pixel: the lowest, the highest and the last of them.
+        svg.clear();
+        curve(&mut svg, &stretches(&[(0.0, "0"), (0.5001, "-4"), (0.5002, "4"), (0.5003, "0")]), &time, 0.0);
+        assert!(svg[0].contains("H150.01V16.0V4.0V10.0H200.00"), "{}", svg[0]);
+        // Numbers at the ends of what there is.
+        svg.clear();
+        curve(&mut svg, &stretches(&[(0.0, "-1.7e308"), (0.5, "1.7e308")]), &time, 0.0);
+        assert!(!svg[0].contains("NaN") && !svg[0].contains("inf"), "{}", svg[0]);
+        svg.clear();
+        curve(&mut svg, &stretches(&[(0.0, "7"), (0.5, "7")]), &time, 0.0);
+        assert!(svg[0].contains("M100.00,16.0V16.0H150.00V16.0H200.00"), "{}", svg[0]);
     }
 }
