@@ -2,9 +2,9 @@
 use crate::bench::Bench;
 use servobench_fieldbus::{ProbeFeedback, ProbeTrigger};
 use servobench_plcopen::{
-    AbortTrigger, AbortTriggerInputs, Axis, ErrorId, FunctionBlock, ReadDigitalInput, ReadDigitalInputInputs,
-    ReadDigitalOutput, ReadDigitalOutputInputs, SetPosition, SetPositionInputs, TouchProbe, TouchProbeInputs,
-    TouchProbeOutputs, WriteDigitalOutput, WriteDigitalOutputInputs,
+    AbortTrigger, AbortTriggerInputs, Axis, AxisParams, ErrorId, FunctionBlock, ReadDigitalInput,
+    ReadDigitalInputInputs, ReadDigitalOutput, ReadDigitalOutputInputs, SetPosition, SetPositionInputs, TouchProbe,
+    TouchProbeInputs, TouchProbeOutputs, WriteDigitalOutput, WriteDigitalOutputInputs,
 };
 
 #[test]
@@ -112,6 +112,19 @@ fn what_comes_outside_the_window_is_asked_for_again() {
         probe.error().unwrap().to_string(),
         "MC_TouchProbe: `LastPosition` must be at FirstPosition or beyond it, got 0.2: correct the input"
     );
+}
+
+/// From 0.9 m over the zero to 0.1 m of an axis that comes round after 1 m; the drive counts on.
+#[test]
+fn a_window_goes_over_the_zero_of_a_modulo_axis() {
+    let params = AxisParams { modulo: Some(1.0), ..Bench::params() };
+    let inputs = TouchProbeInputs { first_position: Some(0.9), last_position: Some(0.1), ..MET };
+    for (position, counts) in [(0.5, false), (0.89, false), (0.95, true), (3.0, true), (-3.95, true), (7.11, false)] {
+        let (mut bench, mut probe) = (Bench::powered(params), TouchProbe::default());
+        assert!(bench.cycle(|axis| probe.step(axis, &inputs)).busy);
+        let outputs = answered(&mut bench, &mut probe, &inputs, Some(position));
+        assert_eq!((outputs.done, outputs.busy), (counts, !counts), "{position}");
+    }
 }
 
 #[test]
