@@ -22,7 +22,7 @@ use servobench_fieldbus::{
 use servobench_motion::Limits;
 use servobench_motion::pvt::Knot;
 use servobench_plcopen as plc;
-use servobench_plcopen::program::Inputs;
+use servobench_plcopen::program::{Inputs, Rows};
 use servobench_plcopen::{
     Axis, AxisParams, BlockInputs as _, BlockName, BufferMode, Direction, FunctionBlock, Input, InputType,
     Outputs as _, Pair, Value,
@@ -166,8 +166,10 @@ impl Instance {
             InputType::Direction => Value::Direction(Direction::from_name(value).ok_or("no direction")?),
             InputType::BufferMode => Value::BufferMode(BufferMode::from_name(value).ok_or("no buffer mode")?),
             InputType::Table => {
-                Value::Table(plc::Table { pairs: rows(value)?, is_relative: false, follow: plc::Follow::Spline })
+                let (is_relative, follow) = (false, plc::Follow::Spline);
+                Value::Table(Rows::Profile(plc::Table { pairs: rows(value)?, is_relative, follow }))
             }
+            InputType::Switches | InputType::Tracks => return Err("cams are not compared".into()),
             InputType::Choice(names) => {
                 Value::Choice(names.iter().find(|(name, _)| *name == value).ok_or("no such alternative")?.0)
             }

@@ -196,6 +196,11 @@ impl Axis {
         self.params.modulo.map_or(position, |period| modulo::within(position, period))
     }
 
+    /// Position that the program sees, less that of the drive.
+    pub(crate) const fn offset(&self) -> f64 {
+        self.offset
+    }
+
     /// Whether MC_Home has found the reference.
     #[must_use]
     pub const fn is_homed(&self) -> bool {

@@ -27,6 +27,7 @@
 //! needs its place in the state diagram, `ARROWS`.
 mod axis_move;
 mod digital;
+mod digital_cam_switch;
 mod execution;
 mod halt_superimposed;
 mod home;
@@ -70,6 +71,10 @@ pub use axis_move::{AxisMove, AxisMoveInputs, AxisMoveOutputs, MoveType};
 pub use digital::{
     ReadDigitalInput, ReadDigitalInputInputs, ReadDigitalOutput, ReadDigitalOutputInputs, WriteDigitalOutput,
     WriteDigitalOutputInputs,
+};
+pub use digital_cam_switch::{
+    CamDirection, CamEnd, CamState, CamSwitch, DigitalCamSwitch, DigitalCamSwitchInputs, DigitalCamSwitchOutputs,
+    TrackOptions, ValueSource,
 };
 pub use execution::Report;
 pub use halt_superimposed::{HaltSuperimposed, HaltSuperimposedInputs};
@@ -174,6 +179,13 @@ list_inputs! {
     InputNumber "input_number" stays InputType::Whole(0, 31),
         "Bit of the digital inputs of the drive (60FDh)" + ": 0 negative and 1 positive limit switch, 2 home switch";
     OutputNumber "output_number" stays InputType::Whole(0, 31), "Bit of the digital outputs of the drive (60FEh)";
+    Switches "switches" stays InputType::Switches, "Switches of MC_DigitalCamSwitch, each with a track and where it is TRUE";
+    TrackOptions "track_options" stays InputType::Tracks,
+        "Compensations and hysteresis of tracks of MC_DigitalCamSwitch" + "; a track without has none";
+    EnableMask "enable_mask" changes InputType::Whole(0, u32::MAX),
+        "Tracks of MC_DigitalCamSwitch that are enabled, track k by bit k" + "; all unless given";
+    ValueSource "value_source" stays InputType::Choice(&const { names::<ValueSource, { ValueSource::ALL.len() }>() }),
+        "Whose position and velocity switch the outputs" + "; those of the set-point unless given";
     TriggerInput "trigger_input" stays InputType::Choice(&const { names::<ProbeTrigger, { ProbeTrigger::ALL.len() }>() }),
         "What has the drive record the position of the axis";
     FirstPosition "first_position" stays InputType::Quantity(any(Axis(&POSITION), "90 mm")),
@@ -247,6 +259,7 @@ list_outputs! {
     AxisWarning "AxisWarning" Flag "the drive warns";
     Value "Value" Number "the value of the parameter";
     BoolValue "Value" Flag "the value of the parameter, input or output";
+    InOperation "InOperation" Flag "the tracks that are enabled are switched";
     RecordedPosition "RecordedPosition" Number "where the axis was when the trigger came";
     Acceleration "Acceleration" Number "the acceleration of the set-point";
     Added "pref_add" Number "what the move adds to the position";
@@ -301,6 +314,8 @@ list_blocks! {
     ReadDigitalInput: ReadDigitalInput, "MC_ReadDigitalInput", "tells a digital input of the drive";
     ReadDigitalOutput: ReadDigitalOutput, "MC_ReadDigitalOutput", "tells a digital output of the drive";
     WriteDigitalOutput: WriteDigitalOutput, "MC_WriteDigitalOutput", "sets a digital output of the drive";
+    DigitalCamSwitch: DigitalCamSwitch<Rows<CamState>>, "MC_DigitalCamSwitch",
+        "switches digital outputs of the drive by the position of the axis";
     TouchProbe: TouchProbe, "MC_TouchProbe", "records where the axis is when a trigger comes";
     AbortTrigger: AbortTrigger, "MC_AbortTrigger", "waits for the trigger no more";
     ReadParameter: ReadParameter, "MC_ReadParameter", "tells a parameter of the axis that is a number";

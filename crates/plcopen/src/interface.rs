@@ -1,5 +1,5 @@
 //! How a block is called by its name: what its inputs are, what counts where one is not given, and what its outputs are.
-use crate::blocks::{Follow, Input, MoveType, Pair};
+use crate::blocks::{CamSwitch, Follow, Input, MoveType, Pair, TrackOptions, ValueSource};
 use crate::command::{BufferMode, Direction};
 use crate::parameter::{AxisBoolParameter, AxisParameter};
 use servobench_config::{Bound, Choice, Measure};
@@ -41,6 +41,10 @@ pub enum InputType {
     BufferMode,
     /// The rows of a profile.
     Table,
+    /// The switches of MC_DigitalCamSwitch.
+    Switches,
+    /// The options of its tracks.
+    Tracks,
     /// One of these: their names and meanings.
     Choice(&'static [(&'static str, &'static str)]),
     /// A value of the parameter that [`Input::Parameter`] says.
@@ -147,7 +151,7 @@ pub(crate) const fn braking() -> BlockInput {
     BlockInput::new(Input::Deceleration, Absent::Limit(Input::Acceleration))
 }
 
-/// A value of an input; tables are kept as `T`.
+/// A value of an input; tables are kept as `T`, which is [`Tables`] where blocks read them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Value<T> {
     /// A number (SI).
@@ -158,7 +162,7 @@ pub enum Value<T> {
     Direction(Direction),
     /// What becomes of the motion under way.
     BufferMode(BufferMode),
-    /// The rows of a profile.
+    /// The rows of a profile, switches, or options of tracks.
     Table(T),
     /// The name of an alternative.
     Choice(&'static str),
@@ -173,6 +177,31 @@ pub struct Table<P> {
     pub is_relative: bool,
     /// How the axis goes from position to position.
     pub follow: Follow,
+}
+
+/// What keeps the tables of inputs, of which each has one.
+pub trait Tables {
+    /// The rows of a profile.
+    fn profile(&self) -> Option<Table<&[Pair]>> {
+        None
+    }
+
+    /// The switches of MC_DigitalCamSwitch.
+    fn switches(&self) -> &[CamSwitch] {
+        &[]
+    }
+
+    /// The options of its tracks.
+    fn tracks(&self) -> &[TrackOptions] {
+        &[]
+    }
+}
+
+/// Nothing but profiles.
+impl<P: AsRef<[Pair]>> Tables for Table<P> {
+    fn profile(&self) -> Option<Table<&[Pair]>> {
+        Some(Table { pairs: self.pairs.as_ref(), is_relative: self.is_relative, follow: self.follow })
+    }
 }
 
 /// Values of inputs by their names; what is not among them is as the block says.
@@ -203,10 +232,10 @@ impl<T> Values<T> {
         if let Some(Value::Number(number)) = self.get(input) { Some(*number) } else { None }
     }
 
-    /// The table, where there is one.
+    /// The table that `input` has, where there is one.
     #[must_use]
-    pub fn table(&self) -> Option<&T> {
-        if let Some(Value::Table(table)) = self.get(Input::Table) { Some(table) } else { None }
+    pub fn table(&self, input: Input) -> Option<&T> {
+        if let Some(Value::Table(table)) = self.get(input) { Some(table) } else { None }
     }
 }
 
@@ -220,7 +249,7 @@ pub trait BlockInputs<'i>: Sized {
     const ARE_FOLLOWED: bool = matches!(Self::TRIGGER, Trigger::Enable) && !Self::INPUTS.is_empty();
 
     /// What `values` say, with Execute or Enable as `trigger`. What must be given and is not is no number, which blocks refuse.
-    fn read<P: AsRef<[Pair]>>(values: &'i Values<Table<P>>, trigger: bool) -> Self;
+    fn read<T: Tables>(values: &'i Values<T>, trigger: bool) -> Self;
 }
 
 /// A type that an input can have.
@@ -238,11 +267,12 @@ impl FromValues for f64 {
     }
 }
 
-/// A number of a few: a bit.
+/// A whole number: a bit, or a mask of bits.
 impl FromValues for u32 {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole, and within its range")]
     fn read<T>(values: &Values<T>, own: &BlockInput) -> Self {
-        values.number(own.input).unwrap_or(0.0) as Self
+        let otherwise = if let Absent::Number(number) = own.absent { number } else { 0.0 };
+        values.number(own.input).unwrap_or(otherwise) as Self
     }
 }
 
@@ -302,7 +332,7 @@ macro_rules! read_by_name {
     )+ };
 }
 
-read_by_name! { AxisParameter, AxisBoolParameter, ProbeTrigger, MoveType, ShapeKind }
+read_by_name! { AxisParameter, AxisBoolParameter, ProbeTrigger, MoveType, ShapeKind, ValueSource }
 
 /// A type that an output can have.
 pub(crate) trait Recorded {
@@ -359,7 +389,7 @@ macro_rules! inputs {
             const TRIGGER: $crate::Trigger = $crate::interface::inputs!(@trigger $trigger);
             const INPUTS: &'static [$crate::BlockInput] = &[];
 
-            fn read<P: AsRef<[$crate::Pair]>>(_: &$crate::Values<$crate::Table<P>>, $trigger: bool) -> Self {
+            fn read<T: $crate::Tables>(_: &$crate::Values<T>, $trigger: bool) -> Self {
                 Self { $trigger }
             }
         }
@@ -382,7 +412,7 @@ macro_rules! inputs {
             const TRIGGER: $crate::Trigger = $crate::interface::inputs!(@trigger $trigger);
             const INPUTS: &'static [$crate::BlockInput] = &[$($spec,)+];
 
-            fn read<P: AsRef<[$crate::Pair]>>(values: &$crate::Values<$crate::Table<P>>, trigger: bool) -> Self {
+            fn read<T: $crate::Tables>(values: &$crate::Values<T>, trigger: bool) -> Self {
                 Self {
                     $trigger: trigger,
                     $( $field: $crate::interface::FromValues::read(values, const { &$spec }), )+

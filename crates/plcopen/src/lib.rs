@@ -51,7 +51,7 @@ pub use axis::{Axis, MOST_BUFFERED};
 pub use blocks::*;
 pub use command::{BufferMode, Command, Direction, Dynamics, Ending, Goal, Reference};
 pub use error::{AxisError, BlockError, ErrorId};
-pub use interface::{Absent, BlockInput, BlockInputs, InputType, OutputType, Table, Trigger, Value, Values};
+pub use interface::{Absent, BlockInput, BlockInputs, InputType, OutputType, Table, Tables, Trigger, Value, Values};
 pub use ledger::{CommandId, Progress};
 pub use parameter::{AxisBoolParameter, AxisParameter};
 pub use params::{AxisParams, RampStart};

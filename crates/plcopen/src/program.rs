@@ -15,14 +15,39 @@ pub use running::{Fate, Overdue};
 
 pub(crate) use instance::{Instance, New, called};
 
-use crate::blocks::{BlockName, Input, Pair};
-use crate::interface::{Table, Values};
+use crate::blocks::{BlockName, CamSwitch, Input, Pair, TrackOptions};
+use crate::interface::{Table, Tables, Values};
 use alloc::string::String;
 use alloc::vec::Vec;
 use servobench_motion::Limits;
 
+/// The table of an input: here as blocks take it, in a file as that has it.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Rows<P = Table<Vec<Pair>>, S = Vec<CamSwitch>, T = Vec<TrackOptions>> {
+    /// The rows of a profile.
+    Profile(P),
+    /// The switches of MC_DigitalCamSwitch.
+    Switches(S),
+    /// The options of its tracks.
+    Tracks(T),
+}
+
+impl Tables for Rows {
+    fn profile(&self) -> Option<Table<&[Pair]>> {
+        if let Self::Profile(table) = self { table.profile() } else { None }
+    }
+
+    fn switches(&self) -> &[CamSwitch] {
+        if let Self::Switches(switches) = self { switches } else { &[] }
+    }
+
+    fn tracks(&self) -> &[TrackOptions] {
+        if let Self::Tracks(tracks) = self { tracks } else { &[] }
+    }
+}
+
 /// The inputs of a call.
-pub type Inputs = Values<Table<Vec<Pair>>>;
+pub type Inputs = Values<Rows>;
 
 /// A call of a function block, with an instance of its own.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,8 @@
 //! The function blocks that a call can name, and the keys that their inputs are: what `servobench_plcopen` lists of them.
 use crate::diagnostic::Report;
 use crate::field::{Field, Slot, key, written};
-use crate::file::TableOfPoints;
+use crate::file::{CamSwitch, TableOfPoints, TrackOptions};
+use crate::list::Many;
 use crate::nearest::suggestion;
 use crate::simple::{Name, OneOf};
 use crate::source::At;
@@ -10,6 +11,7 @@ use crate::tree::Node;
 use serde_json::{Value as Json, json};
 use servobench_config::quantities::VELOCITY;
 use servobench_config::{Choice as _, Kind::Axis, Measure, positive};
+use servobench_plcopen::program::Rows;
 use servobench_plcopen::{AxisParameter, BlockName, BufferMode, Direction, Input, InputType, Output, Value};
 
 impl Field for BlockName {
@@ -68,7 +70,10 @@ impl Moment {
 }
 
 /// An input as a file has it.
-pub(crate) type Given = Value<Box<At<TableOfPoints>>>;
+pub(crate) type Given = Value<GivenRows>;
+
+/// The table of an input as a file has it.
+pub(crate) type GivenRows = Rows<Box<At<TableOfPoints>>, Vec<At<CamSwitch>>, Vec<At<TrackOptions>>>;
 
 /// The inputs of blocks, every one of them, by their places in the list.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,7 +93,11 @@ impl BlockInputs {
                 InputType::Flag => open.field(key, &()).map(|at| Value::Flag(at.value)),
                 InputType::Direction => open.field(key, &OneOf).map(|at| Value::Direction(at.value)),
                 InputType::BufferMode => open.field(key, &OneOf).map(|at| Value::BufferMode(at.value)),
-                InputType::Table => open.field(key, &()).map(|at| Value::Table(Box::new(at))),
+                InputType::Table => open.field(key, &()).map(|at| Value::Table(Rows::Profile(Box::new(at)))),
+                InputType::Switches => {
+                    open.field(key, &()).map(|at: At<Many<_>>| Value::Table(Rows::Switches(at.value.0)))
+                }
+                InputType::Tracks => open.field(key, &()).map(|at: At<Many<_>>| Value::Table(Rows::Tracks(at.value.0))),
                 InputType::Whole(lowest, highest) => {
                     open.field(key, &(lowest..=highest)).map(|at: At<u32>| Value::Number(at.value.into()))
                 }
@@ -115,6 +124,8 @@ impl BlockInputs {
                 InputType::Direction => Direction::schema(&OneOf),
                 InputType::BufferMode => BufferMode::schema(&OneOf),
                 InputType::Table => TableOfPoints::schema(&()),
+                InputType::Switches => Many::<CamSwitch>::schema(&()),
+                InputType::Tracks => Many::<TrackOptions>::schema(&()),
                 InputType::Whole(lowest, highest) => u32::schema(&(lowest..=highest)),
                 InputType::Choice(names) => Name::schema(&names),
                 InputType::ParameterValue => f64::schema(&parameter_value(&Slot::Absent)),

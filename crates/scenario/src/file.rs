@@ -18,7 +18,7 @@ pub(crate) use bus::{Bus, BusFault, DriveInterpolation, FaultName};
 pub(crate) use drive::{Current, Drive, Estimate, FeedbackEncoder, Velocity, VelocityKind};
 pub(crate) use fmu::{Coupling, Fmu};
 pub(crate) use motor::{Encoder, Motor, MotorKind};
-pub(crate) use plc::{Call, Condition, Plc, Update};
+pub(crate) use plc::{Call, CamSwitch, Condition, Plc, TrackOptions, Update};
 pub(crate) use program::{Disturbance, ProgramStep};
 pub(crate) use requirements::{Expect, RequirementTable};
 pub(crate) use setpoint::{Rockwell, Setpoint, Shaper, TableOfPoints};

@@ -5,6 +5,7 @@ mod bandwidth;
 mod block;
 mod bus;
 mod bus_fault;
+mod cams;
 mod condition;
 mod coupling;
 mod current;
@@ -73,10 +74,10 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
     if let Some(Some(bus)) = &bus {
         bus::refuse_by_program(file, bus, program.as_deref(), report);
     }
-    let is_modulo = axis.is_some_and(|axis| axis.modulo.span().is_some());
+    let modulo = axis.map_or(&Slot::Absent, |axis| &axis.modulo);
     let mode = file.bus.given().and_then(|bus| bus.mode.given());
     let is_told_velocities = mode == Some(&BusMode::ProfileVelocity);
-    let plc = plc::resolve(file, &plc::Known { duration, is_modulo, is_told_velocities, sources }, report);
+    let plc = plc::resolve(file, &plc::Known { duration, modulo, is_told_velocities, sources }, report);
     let of_run = requirements::Known {
         duration,
         has_bus: file.bus.span().is_some(),

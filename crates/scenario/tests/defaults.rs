@@ -80,6 +80,10 @@ block = "MC_Power"
 block = "MC_PositionProfile"
 start = { after = "MC_Power_0.Status" }
 table = { file = "scenarios/setpoints/points.csv", relative = true, follow = "plateaus" }
+[[call]]
+block = "MC_DigitalCamSwitch"
+switches = [{ track = 0, first = "10 mm", last = "20 mm" }]
+track_options = [{ track = 0 }]
 "#,
 ];
 

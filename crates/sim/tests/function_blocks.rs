@@ -71,7 +71,14 @@ fn said(block: &str, input: &str) -> String {
         "input_number" | "output_number" => "2",
         "trigger_input" => "\"index-pulse\"",
         "last_position" => "\"20 mm\"",
-        "order" => "3",
+        "switches" => {
+            "[{ track = 0, first = \"90 mm\", last = \"10 mm\" }, { track = 1, first = \"20 mm\", duration = \"5 ms\" }]"
+        }
+        "track_options" => {
+            "[{ track = 1, on_compensation = \"-1 ms\", off_compensation = \"1 ms\", hysteresis = \"1 mm\" }]"
+        }
+        "value_source" => "\"actual\"",
+        "enable_mask" | "order" => "3",
         "table" => return format!("table = {{ file = \"{block}.csv\" }}\n"),
         other => panic!("{block}.{other} is an input that nobody knows here"),
     };

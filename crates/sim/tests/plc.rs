@@ -38,6 +38,47 @@ fn last(recording: &Recording, name: &str) -> f64 {
     values.last().copied().unwrap_or_default()
 }
 
+/// Times at which a signal has become TRUE and FALSE, by turns (s).
+fn edges(recording: &Recording, source: &str) -> Vec<(f64, bool)> {
+    let signal = recording.signal(source, "Value").unwrap_or_else(|| panic!("no signal {source}.Value"));
+    let mut edges: Vec<_> = signal.changes.iter().map(|(t, value)| (*t, value == "TRUE")).collect();
+    edges.dedup_by_key(|edge| edge.1);
+    edges.retain(|edge| *edge != (0.0, false));
+    edges
+}
+
+/// The shaft turns at 0.72° per cycle: from edge to edge it takes the angle between them, and a cycle at most to see it.
+#[test]
+fn cams_switch_outputs_at_their_angles() {
+    let recording = run("digital-cam-switch.toml");
+    let [zero, forwards, pulse, ahead] = ["zero", "forwards", "pulse", "ahead"].map(|source| edges(&recording, source));
+    // The first turn: (before, its angle, after, its angle), those of track 3 moved by 5 ms.
+    for (from, first, to, second) in [
+        (forwards[0], 30.0, forwards[1], 60.0),
+        (forwards[1], 60.0, pulse[0], 90.0),
+        (pulse[0], 90.0, ahead[0], 180.0 - 3.6),
+        (ahead[0], 180.0, ahead[1], 200.0),
+        (ahead[1], 200.0, ahead[2], 220.0),
+        (ahead[2], 220.0, ahead[3], 225.0),
+        (ahead[3], 225.0 - 3.6, zero[2], 350.0),
+        (zero[2], 350.0, zero[3], 370.0),
+        (zero[3], 370.0, forwards[2], 390.0),
+        (forwards[0], 30.0, forwards[2], 390.0),
+    ] {
+        let (measured, expected) = (to.0 - from.0, (second - first) / 720.0);
+        assert!((measured - expected).abs() <= CYCLE + 1e-9, "{first}° to {second}°: {measured} s for {expected} s");
+    }
+    // By time to the cycle, wherever the shaft goes.
+    for pair in pulse.chunks_exact(2) {
+        assert!(pair[0].1 && (pair[1].0 - pair[0].0 - 20e-3).abs() < 1e-9, "{pair:?}");
+    }
+    // Back it passes 90° and track 3 once more, and not track 1; it does not come to the zero.
+    assert_eq!([zero.len(), forwards.len(), pulse.len(), ahead.len()], [4, 4, 6, 12]);
+    // 20° with 7.2° ahead of either edge, at 1440°/s.
+    let [on, off] = [ahead[10].0, ahead[11].0];
+    assert!((off - on - 20.0 / 1440.0).abs() <= CYCLE + 1e-9, "{on} {off}");
+}
+
 /// The timing diagrams of a second `MC_MoveAbsolute` after the first is done, and while it moves (Pietrusewicz, Waszczuk &
 /// Kubicki 2019, figure 3): both end at the same position.
 #[test]

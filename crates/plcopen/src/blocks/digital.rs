@@ -10,12 +10,16 @@ use crate::error::BlockError;
 use crate::interface::{inputs, required};
 
 /// Reads a digital input, as it is wired.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct ReadDigitalInput;
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ReadDigitalInput {
+    error: Option<BlockError>,
+}
 
 /// Reads a digital output: what it was last set to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct ReadDigitalOutput;
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ReadDigitalOutput {
+    error: Option<BlockError>,
+}
 
 /// Sets a digital output.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -55,6 +59,15 @@ fn mask(block: BlockName, input: &'static str, number: u32) -> Result<u32, Block
     1_u32.checked_shl(number).ok_or(BlockError::Input { block, input, value: number.into(), bound })
 }
 
+/// A bit as a block reads it while it is enabled; keeps the error of one that is none.
+fn read(enable: bool, bits: u32, mask: Result<u32, BlockError>, kept: &mut Option<BlockError>) -> ReadBoolOutputs {
+    *kept = mask.err().filter(|_| enable);
+    match (mask, &*kept) {
+        (_, Some(error)) => ReadBoolOutputs::failed(error),
+        (mask, None) => ReadBoolOutputs::of(enable, || mask.is_ok_and(|mask| bits & mask != 0)),
+    }
+}
+
 impl FunctionBlock for ReadDigitalInput {
     const NAME: BlockName = BlockName::ReadDigitalInput;
     type Inputs<'i> = ReadDigitalInputInputs;
@@ -62,7 +75,11 @@ impl FunctionBlock for ReadDigitalInput {
 
     fn step(&mut self, axis: &mut Axis, inputs: &ReadDigitalInputInputs) -> ReadBoolOutputs {
         let bits = axis.actual().digital_inputs;
-        ReadBoolOutputs::of_bit(inputs.enable, bits, mask(Self::NAME, "InputNumber", inputs.input_number))
+        read(inputs.enable, bits, mask(Self::NAME, "InputNumber", inputs.input_number), &mut self.error)
+    }
+
+    fn error(&self) -> Option<&BlockError> {
+        self.error.as_ref()
     }
 }
 
@@ -73,7 +90,11 @@ impl FunctionBlock for ReadDigitalOutput {
 
     fn step(&mut self, axis: &mut Axis, inputs: &ReadDigitalOutputInputs) -> ReadBoolOutputs {
         let bits = axis.digital_outputs();
-        ReadBoolOutputs::of_bit(inputs.enable, bits, mask(Self::NAME, "OutputNumber", inputs.output_number))
+        read(inputs.enable, bits, mask(Self::NAME, "OutputNumber", inputs.output_number), &mut self.error)
+    }
+
+    fn error(&self) -> Option<&BlockError> {
+        self.error.as_ref()
     }
 }
 

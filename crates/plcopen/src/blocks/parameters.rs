@@ -100,13 +100,9 @@ outputs! {
 }
 
 impl ReadBoolOutputs {
-    /// Those of a block that reads a bit, where it is one.
-    pub(super) fn of_bit(enable: bool, bits: u32, mask: Result<u32, BlockError>) -> Self {
-        match mask {
-            Ok(mask) => Self::of(enable, || bits & mask != 0),
-            Err(error) if enable => Self { busy: true, error: true, error_id: error.id(), ..Self::default() },
-            Err(_) => Self::default(),
-        }
+    /// Those of a block that cannot read.
+    pub(super) fn failed(error: &BlockError) -> Self {
+        Self { busy: true, error: true, error_id: error.id(), ..Self::default() }
     }
 
     /// Those of a block that is enabled or not.

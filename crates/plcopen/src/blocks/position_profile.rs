@@ -13,7 +13,7 @@ use crate::axis::Axis;
 use crate::blocks::{BlockName, Input};
 use crate::command::{BufferMode, Ending};
 use crate::error::BlockError;
-use crate::interface::{BlockInput, BlockInputs, FromValues as _, Table, Trigger, Values, buffer_mode, or, required};
+use crate::interface::{BlockInput, BlockInputs, FromValues as _, Tables, Trigger, Values, buffer_mode, or, required};
 use crate::params::AxisParams;
 use servobench_base::Setpoint;
 use servobench_motion::position_profile::{
@@ -98,9 +98,9 @@ impl<'i> BlockInputs<'i> for PositionProfileInputs<'i> {
     const INPUTS: &'static [BlockInput] =
         &[required(Input::Table), TIME_SCALE, VALUE_SCALE, OFFSET, END_VELOCITY, buffer_mode()];
 
-    fn read<P: AsRef<[Pair]>>(values: &'i Values<Table<P>>, execute: bool) -> Self {
+    fn read<T: Tables>(values: &'i Values<T>, execute: bool) -> Self {
         let pairs = pairs(values);
-        let of_table = values.table();
+        let of_table = values.table(Input::Table).and_then(Tables::profile);
         Self {
             execute,
             time_position: TimePosition { pairs, is_absolute: !of_table.is_some_and(|table| table.is_relative) },

@@ -20,7 +20,7 @@ use crate::axis::Axis;
 use crate::blocks::{BlockName, Input};
 use crate::command::{BufferMode, Command, Dynamics, Ending, Goal};
 use crate::error::BlockError;
-use crate::interface::{BlockInput, Table, Values, or};
+use crate::interface::{BlockInput, Tables, Values, or};
 use crate::ledger::{CommandId, Progress};
 use crate::state::AxisState;
 use servobench_base::Setpoint;
@@ -57,8 +57,8 @@ pub(super) fn check_room(
 }
 
 /// The rows of the table; none where there is no table.
-pub(super) fn pairs<P: AsRef<[Pair]>>(values: &Values<Table<P>>) -> &[Pair] {
-    values.table().map_or(&[], |table| table.pairs.as_ref())
+pub(super) fn pairs<T: Tables>(values: &Values<T>) -> &[Pair] {
+    values.table(Input::Table).and_then(Tables::profile).map_or(&[], |table| table.pairs)
 }
 
 pub(super) const TIME_SCALE: BlockInput = or(Input::TimeScale, 1.0);

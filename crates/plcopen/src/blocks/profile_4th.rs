@@ -20,12 +20,12 @@
 //! ready: here, when `pref` is another than that of the last start.
 use super::outputs::FunctionBlock;
 use crate::axis::Axis;
-use crate::blocks::{BlockName, Input, Pair};
+use crate::blocks::{BlockName, Input};
 use crate::command::{BufferMode, Command, Dynamics, Ending, Goal};
 use crate::error::{BlockError, ErrorId};
 use crate::generator::{self, Method, Mounting};
 use crate::interface::{
-    BlockInput, BlockInputs, FromValues as _, Table, Trigger, Values, flag, limit, or, outputs, required, required_for,
+    BlockInput, BlockInputs, FromValues as _, Tables, Trigger, Values, flag, limit, or, outputs, required, required_for,
 };
 use crate::ledger::{CommandId, Progress};
 use servobench_base::Setpoint;
@@ -107,7 +107,7 @@ impl BlockInputs<'_> for Profile4thInputs {
     /// A start takes them over.
     const ARE_FOLLOWED: bool = false;
 
-    fn read<P: AsRef<[Pair]>>(values: &Values<Table<P>>, enable: bool) -> Self {
+    fn read<T: Tables>(values: &Values<T>, enable: bool) -> Self {
         Self {
             enable,
             position: f64::read(values, &POSITION),

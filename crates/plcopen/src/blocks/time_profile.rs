@@ -12,7 +12,7 @@ use crate::blocks::{BlockName, Input};
 use crate::command::{BufferMode, Ending};
 use crate::error::BlockError;
 use crate::interface::{
-    BlockInput, BlockInputs, FromValues as _, Table, Trigger, Values, buffer_mode, command_outputs, or, required,
+    BlockInput, BlockInputs, FromValues as _, Tables, Trigger, Values, buffer_mode, command_outputs, or, required,
 };
 use servobench_base::Setpoint;
 use servobench_motion::Limits;
@@ -106,7 +106,7 @@ impl<'i> BlockInputs<'i> for VelocityProfileInputs<'i> {
     const INPUTS: &'static [BlockInput] =
         &[required(Input::Table), TIME_SCALE, VALUE_SCALE, VELOCITY_OFFSET, buffer_mode()];
 
-    fn read<P: AsRef<[Pair]>>(values: &'i Values<Table<P>>, execute: bool) -> Self {
+    fn read<T: Tables>(values: &'i Values<T>, execute: bool) -> Self {
         Self {
             execute,
             time_velocity: pairs(values),
@@ -123,7 +123,7 @@ impl<'i> BlockInputs<'i> for AccelerationProfileInputs<'i> {
     const INPUTS: &'static [BlockInput] =
         &[required(Input::Table), TIME_SCALE, VALUE_SCALE, ACCELERATION_OFFSET, buffer_mode()];
 
-    fn read<P: AsRef<[Pair]>>(values: &'i Values<Table<P>>, execute: bool) -> Self {
+    fn read<T: Tables>(values: &'i Values<T>, execute: bool) -> Self {
         Self {
             execute,
             time_acceleration: pairs(values),

@@ -66,13 +66,14 @@ outputs! {
 }
 
 impl TouchProbeInputs {
-    fn check(&self) -> Result<(), BlockError> {
+    /// Whether the window is one of an axis that comes round again or has ends.
+    fn check(&self, modulo: Option<f64>) -> Result<(), BlockError> {
         let window = [("FirstPosition", self.first_position), ("LastPosition", self.last_position)];
         for (input, value) in window.into_iter().filter_map(|(input, value)| Some((input, value?))) {
             crate::command::finite_input(BlockName::TouchProbe, input, value)?;
         }
         match (self.first_position, self.last_position) {
-            (Some(first), Some(last)) if first > last => Err(BlockError::Input {
+            (Some(first), Some(last)) if first > last && modulo.is_none() => Err(BlockError::Input {
                 block: BlockName::TouchProbe,
                 input: "LastPosition",
                 value: last,
@@ -83,8 +84,13 @@ impl TouchProbeInputs {
     }
 
     fn accepts(&self, position: f64) -> bool {
-        self.first_position.is_none_or(|first| position >= first)
-            && self.last_position.is_none_or(|last| position <= last)
+        let is_behind = self.first_position.is_none_or(|first| position >= first);
+        let is_before = self.last_position.is_none_or(|last| position <= last);
+        match (self.first_position, self.last_position) {
+            // Across the zero of a modulo axis.
+            (Some(first), Some(last)) if first > last => is_behind || is_before,
+            _ => is_behind && is_before,
+        }
     }
 }
 
@@ -97,7 +103,7 @@ impl FunctionBlock for TouchProbe {
         let Self { execution, number, latched, recorded } = self;
         let mut report = execution.step(axis, inputs.execute, |axis| {
             *number = None;
-            inputs.check()?;
+            inputs.check(axis.params().modulo)?;
             (*latched, *number) = (Some(*inputs), Some(axis.probe(inputs.trigger)));
             Ok(None)
         });

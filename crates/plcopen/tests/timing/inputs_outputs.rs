@@ -2,9 +2,9 @@
 use crate::bench::Bench;
 use servobench_fieldbus::{ProbeFeedback, ProbeTrigger};
 use servobench_plcopen::{
-    AbortTrigger, AbortTriggerInputs, Axis, ErrorId, FunctionBlock, ReadDigitalInput, ReadDigitalInputInputs,
-    ReadDigitalOutput, ReadDigitalOutputInputs, SetPosition, SetPositionInputs, TouchProbe, TouchProbeInputs,
-    TouchProbeOutputs, WriteDigitalOutput, WriteDigitalOutputInputs,
+    AbortTrigger, AbortTriggerInputs, Axis, AxisParams, ErrorId, FunctionBlock, ReadDigitalInput,
+    ReadDigitalInputInputs, ReadDigitalOutput, ReadDigitalOutputInputs, SetPosition, SetPositionInputs, TouchProbe,
+    TouchProbeInputs, TouchProbeOutputs, WriteDigitalOutput, WriteDigitalOutputInputs,
 };
 
 #[test]
@@ -12,7 +12,7 @@ fn bits_are_read_and_written_one_by_one() {
     let mut bench = Bench::standstill();
     bench.feedback.digital_inputs = 0b101;
     let input = |axis: &mut Axis, input_number| {
-        ReadDigitalInput.step(axis, &ReadDigitalInputInputs { enable: true, input_number })
+        ReadDigitalInput::default().step(axis, &ReadDigitalInputInputs { enable: true, input_number })
     };
     let read = bench.cycle(|axis| [0, 1, 2, 31].map(|bit| input(axis, bit).value));
     assert_eq!(read, [true, false, true, false]);
@@ -27,10 +27,32 @@ fn bits_are_read_and_written_one_by_one() {
     let read = bench.cycle(|axis| {
         assert!(write(axis, 3, false));
         [3, 31].map(|output_number| {
-            ReadDigitalOutput.step(axis, &ReadDigitalOutputInputs { enable: true, output_number }).value
+            ReadDigitalOutput::default().step(axis, &ReadDigitalOutputInputs { enable: true, output_number }).value
         })
     });
     assert_eq!((read, bench.command.unwrap().digital_outputs), ([false, true], 1 << 31));
+}
+
+/// The words of an error are there as long as the error is.
+#[test]
+fn a_number_that_is_no_bit_is_an_error_in_words() {
+    let (mut bench, mut input, mut output) =
+        (Bench::standstill(), ReadDigitalInput::default(), ReadDigitalOutput::default());
+    for (enable, number) in [(true, 32), (true, 31), (true, 33), (false, 33)] {
+        let both = bench.cycle(|axis| {
+            let read = input.step(axis, &ReadDigitalInputInputs { enable, input_number: number });
+            (read, output.step(axis, &ReadDigitalOutputInputs { enable, output_number: number }))
+        });
+        let said = [input.error(), output.error()].map(|error| error.map(ToString::to_string));
+        let expected =
+            [("MC_ReadDigitalInput", "InputNumber"), ("MC_ReadDigitalOutput", "OutputNumber")].map(|(block, input)| {
+                let words = format!("{block}: `{input}` must be a bit from 0 to 31, got {number}: correct the input");
+                (enable && number > 31).then_some(words)
+            });
+        assert_eq!(said, expected);
+        assert_eq!([both.0.error, both.1.error], said.map(|error| error.is_some()));
+        assert_eq!([both.0.busy, both.1.busy], [enable; 2]);
+    }
 }
 
 const MET: TouchProbeInputs =
@@ -90,6 +112,19 @@ fn what_comes_outside_the_window_is_asked_for_again() {
         probe.error().unwrap().to_string(),
         "MC_TouchProbe: `LastPosition` must be at FirstPosition or beyond it, got 0.2: correct the input"
     );
+}
+
+/// From 0.9 m over the zero to 0.1 m of an axis that comes round after 1 m; the drive counts on.
+#[test]
+fn a_window_goes_over_the_zero_of_a_modulo_axis() {
+    let params = AxisParams { modulo: Some(1.0), ..Bench::params() };
+    let inputs = TouchProbeInputs { first_position: Some(0.9), last_position: Some(0.1), ..MET };
+    for (position, counts) in [(0.5, false), (0.89, false), (0.95, true), (3.0, true), (-3.95, true), (7.11, false)] {
+        let (mut bench, mut probe) = (Bench::powered(params), TouchProbe::default());
+        assert!(bench.cycle(|axis| probe.step(axis, &inputs)).busy);
+        let outputs = answered(&mut bench, &mut probe, &inputs, Some(position));
+        assert_eq!((outputs.done, outputs.busy), (counts, !counts), "{position}");
+    }
 }
 
 #[test]

@@ -6,6 +6,7 @@ mod aborts;
 mod blending;
 mod calls;
 mod continuity;
+mod digital_cam_switch;
 mod endless;
 mod execute;
 mod figures;

@@ -7,7 +7,7 @@ use crate::when::When;
 use servobench_config::Kind::{Axis as InAxis, Plain};
 use servobench_config::quantities::{POSITION, TIME};
 use servobench_config::{any, not_negative, positive};
-use servobench_plcopen::{BlockName, RampStart};
+use servobench_plcopen::{BlockName, CamDirection, RampStart};
 
 table! {
     /// What holds for all `[[call]]`s.
@@ -37,10 +37,40 @@ table! {
         /// Whether the requirement `executed` does without it. A call that waits in vain on `Error` or `CommandAborted` of
         /// another one is optional anyway.
         optional: bool = (),
-        /// New inputs while `Execute` is TRUE, of a block with `continuous_update`, or while `Enable` is, of MC_Power and
-        /// MC_SetOverride.
+        /// New inputs while `Execute` is TRUE, of a block with `continuous_update`, or while `Enable` is, of MC_Power,
+        /// MC_SetOverride and MC_DigitalCamSwitch.
         updates: Many<Update> = (),
         ..inputs: BlockInputs = Moment::Start
+    }
+}
+
+table! {
+    /// A switch of MC_DigitalCamSwitch: TRUE from `first` to `last`, or for a `duration` from `first` on.
+    pub(crate) struct CamSwitch requires ["track", "first"] {
+        /// Track, which is the bit of the digital outputs of the drive (60FEh) that it switches; switches of one track are ORed.
+        track: u32 = 0..=31,
+        /// Where it becomes TRUE upwards; with `last` the lower end of the window, in which it is TRUE.
+        first: f64 = any(InAxis(&POSITION), "10 mm"),
+        /// The upper end of the window. Below `first` on a modulo axis, whose window goes over the zero then.
+        last: f64 = any(InAxis(&POSITION), "20 mm"),
+        /// How long it stays TRUE after the axis has passed `first`, wherever the axis goes then.
+        duration: f64 = positive(Plain(&TIME), "5 ms"),
+        /// In which direction of the axis it acts; default: "both".
+        direction: CamDirection = OneOf,
+    }
+}
+
+table! {
+    /// What holds for all switches of a track of MC_DigitalCamSwitch.
+    pub(crate) struct TrackOptions requires ["track"] {
+        /// Track.
+        track: u32 = 0..=31,
+        /// How much later the output is switched on than the axis passes the edge, earlier where it is negative; default: 0.
+        on_compensation: f64 = any(Plain(&TIME), "-2 ms"),
+        /// The same of switching off; default: 0.
+        off_compensation: f64 = any(Plain(&TIME), "-2 ms"),
+        /// How far the axis has to go from an edge at which the output has switched before it switches again; default: 0.
+        hysteresis: f64 = not_negative(InAxis(&POSITION), "0.1 mm"),
     }
 }
 

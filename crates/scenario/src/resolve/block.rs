@@ -1,10 +1,11 @@
 //! The inputs of a function block, by what `servobench_plcopen` lists of them.
+use crate::block::GivenRows;
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::resolve::inputs::{Defaults, Inputs};
 use crate::resolve::keys::Reported;
-use crate::resolve::{one_of, profile, refuse};
-use crate::source::{At, Sources};
+use crate::resolve::{cams, one_of, profile, refuse};
+use crate::source::{At, Sources, Span};
 use servobench_config::Choice as _;
 use servobench_motion::rockwell::ShapeKind;
 use servobench_planner::Positioning;
@@ -15,7 +16,8 @@ use servobench_plcopen::{
 /// What blocks need to know of the rest of the file.
 pub(super) struct Context<'a> {
     pub(super) defaults: &'a Defaults<'a>,
-    pub(super) is_modulo: bool,
+    /// After how much the axis comes round; absent on one with ends.
+    pub(super) modulo: &'a Slot<f64>,
     /// Whether the drive is in profile velocity.
     pub(super) is_told_velocities: bool,
     pub(super) sources: &'a Sources,
@@ -60,10 +62,10 @@ struct Reading<'a, 'r> {
 
 impl Reading<'_, '_> {
     /// The value of an input, or of the limit that counts instead; `None` where it is left to the block.
-    fn value(&mut self, own: &BlockInput) -> Result<Option<Value<Table<Vec<Pair>>>>, Wrong> {
+    fn value(&mut self, own: &BlockInput) -> Result<Option<Value<program::Rows>>, Wrong> {
         let input = own.input;
         if input == Input::Table {
-            return self.table(own).map(|table| Some(Value::Table(table)));
+            return self.table(own).map(|table| Some(Value::Table(program::Rows::Profile(table))));
         }
         match own.absent {
             Absent::Limit(limit) if self.is_left_to_the_order(input, limit) => return Ok(None),
@@ -83,8 +85,9 @@ impl Reading<'_, '_> {
             Slot::Given(At { value: Value::Direction(direction), .. }) => Ok(Some(Value::Direction(*direction))),
             Slot::Given(At { value: Value::BufferMode(mode), .. }) => Ok(Some(Value::BufferMode(*mode))),
             Slot::Given(At { value: Value::Choice(name), .. }) => Ok(Some(Value::Choice(name))),
+            Slot::Given(At { value: Value::Table(rows), span }) => self.cams(rows, *span).map(Some),
             Slot::Absent if !matches!(own.absent, Absent::Refused(_)) => Ok(None),
-            Slot::Absent | Slot::Wrong(_) | Slot::Given(At { value: Value::Table(_), .. }) => Err(Wrong),
+            Slot::Absent | Slot::Wrong(_) => Err(Wrong),
         }
     }
 
@@ -192,7 +195,7 @@ impl Reading<'_, '_> {
 
     /// Which way round: there are two on a modulo axis only.
     fn warn_without_modulo(&mut self) {
-        if let (false, Some(span)) = (self.context.is_modulo, self.inputs.slot(Input::Direction).span()) {
+        if let (Slot::Absent, Some(span)) = (self.context.modulo, self.inputs.slot(Input::Direction).span()) {
             let message = "`direction` is ignored: on an axis with ends one way leads to a position";
             let help = "give the period `modulo` in `[axis]`, or leave it out";
             self.said.once(span, |report| report.warning(span, message, help), self.report);
@@ -239,12 +242,30 @@ impl Reading<'_, '_> {
         }
     }
 
+    /// Switches and tracks of cams.
+    fn cams(&mut self, rows: &GivenRows, span: Span) -> Result<Value<program::Rows>, Wrong> {
+        let switches = self.inputs.slot(Input::Switches);
+        let mut reading = cams::Reading { modulo: self.context.modulo, said: self.said, report: self.report };
+        let rows = match (rows, switches) {
+            (program::Rows::Switches(list), _) => reading.switches(list, span).map(program::Rows::Switches),
+            (
+                program::Rows::Tracks(list),
+                Slot::Given(At { value: Value::Table(program::Rows::Switches(switches)), .. }),
+            ) => reading.tracks(list, switches).map(program::Rows::Tracks),
+            _ => None,
+        };
+        rows.map(Value::Table).ok_or(Wrong)
+    }
+
     /// The table of a profile: what is added to its values says what they are.
     fn table(&mut self, own: &BlockInput) -> Result<Table<Vec<Pair>>, Wrong> {
         if let Absent::Refused(why) = own.absent {
             self.require(own.input, why);
         }
-        let Slot::Given(At { value: Value::Table(table), .. }) = self.inputs.slot(own.input) else { return Err(Wrong) };
+        let Slot::Given(At { value: Value::Table(program::Rows::Profile(table)), .. }) = self.inputs.slot(own.input)
+        else {
+            return Err(Wrong);
+        };
         let sources = self.context.sources;
         let has = |input| self.block.input(input).is_some();
         if has(Input::VelocityOffset) {

@@ -16,7 +16,8 @@ use servobench_plcopen::{BlockName, BufferMode, Input, Trigger, Value};
 pub(super) struct Known<'a> {
     /// Length of the run (s), as far as the file says it.
     pub(super) duration: Option<f64>,
-    pub(super) is_modulo: bool,
+    /// After how much the axis comes round; absent on one with ends.
+    pub(super) modulo: &'a Slot<f64>,
     /// Whether the drive is in profile velocity.
     pub(super) is_told_velocities: bool,
     pub(super) sources: &'a Sources,
@@ -52,8 +53,8 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
     warn_of_refusals(calls, homing_required, report);
     let mut said = Reported::default();
     let defaults = Defaults::of(file.setpoint.given());
-    let Known { is_modulo, is_told_velocities, sources, .. } = *known;
-    let reading = block::Context { defaults: &defaults, is_modulo, is_told_velocities, sources };
+    let Known { modulo, is_told_velocities, sources, .. } = *known;
+    let reading = block::Context { defaults: &defaults, modulo, is_told_velocities, sources };
     let conditions = condition::Context { instances: &instances, duration: known.duration };
     let resolved: Vec<_> = calls
         .iter()

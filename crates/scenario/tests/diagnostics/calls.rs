@@ -89,6 +89,12 @@ fn every_block_can_be_called() {
         ("MC_ReadActualPosition", ""),
         ("MC_ReadActualVelocity", ""),
         ("MC_ReadActualTorque", ""),
+        (
+            "MC_DigitalCamSwitch",
+            "switches = [{ track = 0, first = \"1 mm\", last = \"2 mm\" }, { track = 0, first = \"3 mm\", duration = \"1 ms\", \
+             direction = \"negative\" }]\ntrack_options = [{ track = 0, on_compensation = \"-1 ms\", hysteresis = \"10 um\" }]\n\
+             enable_mask = 0x80000001\nvalue_source = \"actual\"",
+        ),
         ("MAM", "position = \"1 mm\"\nshape = \"s-curve\"\njerk_time = \"2 ms\"\ndeceleration_jerk_of_time = \"25 %\""),
         ("Profile4th", "position = \"1 mm\"\nsnap = \"1e4 m/s4\"\nsettling_time = \"50 ms\"\nreversed = true"),
     ] {
@@ -416,6 +422,111 @@ fn scales_of_tables() {
             ],
         ),
     ]);
+}
+
+#[test]
+fn switches_of_cams() {
+    let cam = |keys: &str| call("MC_DigitalCamSwitch", keys);
+    let one = |keys: &str| cam(&format!("switches = [{{ {keys} }}]"));
+    let with = |keys: &str| {
+        cam(&format!("switches = [{{ track = 3, first = \"1 mm\", last = \"2 mm\" }}]\ntrack_options = [{keys}]"))
+    };
+    check(&[
+        (&cam(""), &["1:1: missing `switches` in `call`; MC_DigitalCamSwitch needs it"]),
+        (
+            &cam("switches = []"),
+            &["3:12: `switches` must not be empty; write `switches = [{ track = 0, first = …, last = … }]`"],
+        ),
+        (&cam("switches = \"cams.csv\""), &["3:12: `switches` must be a list, got a string"]),
+        (
+            &one("track = 32, first = \"1 mm\", last = \"2 mm\""),
+            &["3:23: `track` must be a whole number from 0 to 31, got 32"],
+        ),
+        (
+            &one("track = 0, first = \"1 mm\""),
+            &["3:13: missing `last` in `call.switches`; the upper end of its window, or a `duration` from `first` on"],
+        ),
+        (&one("first = \"1 mm\", last = \"2 mm\""), &["3:13: missing `track` in `call.switches`"]),
+        (
+            &one("track = 0, first = \"1 mm\", last = \"2 mm\", duration = \"1 ms\""),
+            &["3:68: a switch ends at `last` or after a `duration`; give one of them"],
+        ),
+        (
+            &one("track = 0, first = \"1 deg\", last = \"2 s\""),
+            &[
+                "3:34: `first` must be a length, but \"1 deg\" is an angle (deg)",
+                "3:50: `last` must be a length, but \"2 s\" is a time (s)",
+            ],
+        ),
+        (
+            &one("track = 0, first = \"2 mm\", last = \"1 mm\""),
+            &[
+                "3:49: `last` must be at FirstOnPosition or above it, but on a modulo axis; `first` is the lower end of the window; \
+                 one over the zero needs `modulo` in `[axis]`",
+            ],
+        ),
+        (
+            &one("track = 0, first = \"1 mm\", duration = \"-1 ms\""),
+            &["3:53: `duration` must be above zero, got \"-1 ms\""],
+        ),
+        (
+            &one("track = 0, first = \"1 mm\", last = \"2 mm\", direction = \"up\", mode = \"time\""),
+            &[
+                "3:69: \"up\" is not a value of `direction`; known here: `both`, `positive`, `negative`",
+                "3:75: unknown key `mode` in `call.switches`; known here: `track`, `first`, `last`, `duration`, `direction`",
+            ],
+        ),
+        (&with("{ track = 4 }"), &["4:28: no switch is on track 4; leave its options out"]),
+        (&with("{ track = 3 }, { track = 3 }"), &["4:43: track 3 has two options; join them"]),
+        (
+            &with("{ track = 3, hysteresis = \"-1 mm\", on_compensation = \"1 mm\" }"),
+            &[
+                "4:44: `hysteresis` must be zero or more, got \"-1 mm\"",
+                "4:71: `on_compensation` must be a time, but \"1 mm\" is a length (mm)",
+            ],
+        ),
+        (
+            &with("{ track = 3 }]\nenable_mask = -1\nvalue_source = \"commanded\"\n#"),
+            &[
+                "5:15: `enable_mask` must be a whole number from 0 to 4294967295, got -1",
+                "6:16: \"commanded\" is not a value of `value_source`; known here: `set-point`, `actual`",
+            ],
+        ),
+    ]);
+    // What an update keeps is not said again.
+    let kept = "switches = [{ track = 0, first = \"2 mm\", last = \"1 mm\" }]\n\
+                updates = [{ when = { at = \"1 s\" }, enable_mask = 0 }]";
+    check(&[(
+        &cam(kept),
+        &[
+            "3:49: `last` must be at FirstOnPosition or above it, but on a modulo axis; `first` is the lower end of the window; \
+                 one over the zero needs `modulo` in `[axis]`",
+        ],
+    )]);
+}
+
+/// On an axis that comes round after 100 mm a window may go over the zero, and every position is within the period.
+#[test]
+fn switches_of_cams_on_a_modulo_axis() {
+    let modulo = lasting().replace("lead = \"10 mm\"\n", "lead = \"10 mm\"\nmodulo = \"100 mm\"\n");
+    for (keys, expected) in [
+        ("first = \"90 mm\", last = \"10 mm\" }]", None),
+        ("first = \"0 mm\", last = \"100 mm\" }]", None),
+        ("first = \"100 mm\", last = \"10 mm\" }]", Some("3:34: `first` must be within the modulo period, from 0 on")),
+        (
+            "first = \"0 mm\", last = \"101 mm\" }]",
+            Some("3:49: `last` must be within the modulo period, from 0 up to it"),
+        ),
+        ("first = \"-1 mm\", duration = \"1 s\" }]", Some("3:34: `first` must be within the modulo period, from 0 on")),
+        (
+            "first = \"0 mm\", last = \"1 mm\" }]\ntrack_options = [{ track = 0, hysteresis = \"50 mm\" }]",
+            Some("4:44: `hysteresis` must be less than half of the modulo period"),
+        ),
+    ] {
+        let calls = call("MC_DigitalCamSwitch", &format!("switches = [{{ track = 0, {keys}"));
+        let [errors, warnings] = said_of(&modulo, &format!("{BUS}{POWER}"), &calls);
+        assert_eq!((errors, warnings), (expected.into_iter().map(str::to_owned).collect(), Vec::new()), "{keys}");
+    }
 }
 
 #[test]

@@ -3,7 +3,7 @@ use servobench_base::{Rate, Setpoint};
 use servobench_motion::online::Target;
 use servobench_motion::shape::Shaper;
 use servobench_planner::{Averages, Generator, Request, Shaping};
-use servobench_plcopen::program::{Condition, Inputs};
+use servobench_plcopen::program::{Condition, Inputs, Rows};
 use servobench_plcopen::{Absent, BlockName, Input, InputType, Pair, Value};
 use servobench_scenario::*;
 
@@ -221,8 +221,10 @@ fn inputs(block: BlockName, inputs: &Inputs) {
                 finite(own.input.key(), *number);
                 assert!(measure.bound.holds(*number) && own.bound.holds(*number), "{own:?}: {number}");
             }
-            (Some(Value::Table(table)), InputType::Table) => pairs(&table.pairs),
-            (Some(Value::Flag(_)), InputType::Flag)
+            (Some(Value::Table(Rows::Profile(table))), InputType::Table) => pairs(&table.pairs),
+            (Some(Value::Table(Rows::Switches(switches))), InputType::Switches) => assert!(!switches.is_empty()),
+            (Some(Value::Table(Rows::Tracks(_))), InputType::Tracks)
+            | (Some(Value::Flag(_)), InputType::Flag)
             | (Some(Value::Direction(_)), InputType::Direction)
             | (Some(Value::BufferMode(_)), InputType::BufferMode) => {}
             (None, _) => assert!(!is_needed, "{block}: {own:?}"),

@@ -2,7 +2,9 @@
 use super::{Doubt, Units};
 use servobench_metrics::Quantity;
 use servobench_plcopen::program::{Call, Inputs};
-use servobench_plcopen::{AccelerationProfileInputs, BlockInputs as _, BlockName, Follow, Pair, VelocityProfileInputs};
+use servobench_plcopen::{
+    AccelerationProfileInputs, BlockInputs as _, BlockName, Follow, Pair, PositionProfileInputs, VelocityProfileInputs,
+};
 use servobench_scenario::{Plc, Scenario};
 
 /// A step of this part of the largest acceleration is rounding.
@@ -54,7 +56,7 @@ fn step(block: BlockName, inputs: &Inputs) -> Option<Step> {
         BlockName::AccelerationProfile => {
             Step::Of(step_of_accelerations(AccelerationProfileInputs::read(inputs, false).scaled()))
         }
-        BlockName::PositionProfile => match inputs.table()?.follow {
+        BlockName::PositionProfile => match PositionProfileInputs::read(inputs, false).follow {
             Follow::Plateaus(_) => Step::At("its ramps begin and end"),
             Follow::Spline | Follow::Steps(_) => Step::At("the spline begins and ends"),
         },

@@ -1,0 +1,477 @@
+//! `MC_DigitalCamSwitch`: digital outputs (60FEh) that the position of the axis switches, like the cams on a shaft.
+//!
+//! A switch is on one of 32 tracks, and track k is bit k of the outputs; several switches of a track are ORed. A switch is TRUE from
+//! FirstOnPosition to LastOnPosition, both included, or for a time from where the axis passes FirstOnPosition. What the standard
+//! (PLCopen part 1, version 2.0, section 3.25) leaves open is so:
+//!
+//! - **Direction** is that of the last motion: an axis that has stopped keeps it. Before the first motion there is none, and a switch for
+//!   one direction is FALSE.
+//! - **Compensation** moves an edge by velocity × time, against the motion where it is negative: the output switches when the position
+//!   at t − compensation passes the edge, at the velocity of this cycle. Where it makes a window less than nothing, the output stays
+//!   FALSE.
+//! - **Hysteresis** holds an output that has switched as long as the axis is that near to the edge, and the direction until the axis has
+//!   come that far back.
+//! - A window that is passed between two cycles is TRUE for one.
+//! - Positions that jump (MC_SetPosition, homing) pass nothing.
+use super::outputs::FunctionBlock;
+use super::profile::{Memory, check_room};
+use crate::axis::Axis;
+use crate::blocks::{BlockName, Input};
+use crate::command::finite_input;
+use crate::error::{BlockError, ErrorId};
+use crate::interface::{
+    BlockInput, BlockInputs, FromValues as _, Tables, Trigger, Values, optional, or, outputs, required,
+};
+use crate::state::AxisState;
+
+servobench_config::choices! {
+    /// In which direction of the axis a switch acts.
+    pub enum CamDirection default Both {
+        /// upwards and downwards
+        Both = "both",
+        /// upwards
+        Positive = "positive",
+        /// downwards
+        Negative = "negative",
+    }
+}
+
+servobench_config::choices! {
+    /// Whose position and velocity count (MC_SOURCE).
+    pub enum ValueSource default SetPoint {
+        /// those of the set-point
+        SetPoint = "set-point",
+        /// the actual ones
+        Actual = "actual",
+    }
+}
+
+/// Where a switch ends: CamSwitchMode, with LastOnPosition or Duration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CamEnd {
+    /// At LastOnPosition (m or rad), the upper end of the window; below FirstOnPosition where that goes over the zero.
+    Position(f64),
+    /// Duration after the axis has passed FirstOnPosition (s).
+    Duration(f64),
+}
+
+/// A switch (MC_CAMSWITCH_REF).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CamSwitch {
+    /// TrackNumber, from 0 to 31.
+    pub track: u32,
+    /// FirstOnPosition (m or rad): the lower end of the window.
+    pub first: f64,
+    /// CamSwitchMode, with LastOnPosition or Duration.
+    pub end: CamEnd,
+    /// AxisDirection.
+    pub direction: CamDirection,
+}
+
+/// What holds for all switches of a track (MC_TRACK_REF).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct TrackOptions {
+    /// Its number, from 0 to 31.
+    pub track: u32,
+    /// OnCompensation (s): how much later the output is switched on, earlier where it is negative.
+    pub on_compensation: f64,
+    /// OffCompensation (s): the same of switching off.
+    pub off_compensation: f64,
+    /// Hysteresis (m or rad).
+    pub hysteresis: f64,
+}
+
+/// What the block remembers of a switch.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct CamState {
+    is_on: bool,
+    /// The edge that the axis has not left by the hysteresis since it switched there.
+    held: Option<Edge>,
+    /// Direction of the last motion, 1 or −1; 0 before it.
+    direction: f64,
+    /// How far the axis has come back since.
+    back: f64,
+    /// Cycles since FirstOnPosition was passed.
+    cycles: Option<u64>,
+}
+
+/// Switches digital outputs by the position; `M` has the memory for the switches.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DigitalCamSwitch<M> {
+    memory: M,
+    /// Outputs that the block has.
+    outputs: u32,
+    before: Option<Place>,
+    error: Option<BlockError>,
+}
+
+/// Inputs of [`DigitalCamSwitch`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DigitalCamSwitchInputs<'a> {
+    /// Enable.
+    pub enable: bool,
+    /// Switches.
+    pub switches: &'a [CamSwitch],
+    /// TrackOptions, of a track at most once.
+    pub track_options: &'a [TrackOptions],
+    /// EnableMask: track k is enabled by bit k.
+    pub enable_mask: u32,
+    /// ValueSource.
+    pub value_source: ValueSource,
+}
+
+outputs! {
+    /// Outputs of [`DigitalCamSwitch`].
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub struct DigitalCamSwitchOutputs {
+        /// InOperation: the tracks that are enabled are switched.
+        in_operation: bool = InOperation,
+        /// Busy: it goes on, also after an error.
+        busy: bool = Busy,
+        /// Error.
+        error: bool = Error,
+        /// ErrorID.
+        error_id: ErrorId = ErrorId,
+    }
+}
+
+const BLOCK: BlockName = BlockName::DigitalCamSwitch;
+const TRACKS: u32 = u32::BITS;
+
+const SWITCHES: BlockInput = required(Input::Switches);
+const TRACK_OPTIONS: BlockInput = optional(Input::TrackOptions);
+const ENABLE_MASK: BlockInput = or(Input::EnableMask, u32::MAX as f64);
+const VALUE_SOURCE: BlockInput = optional(Input::ValueSource);
+
+impl<'i> BlockInputs<'i> for DigitalCamSwitchInputs<'i> {
+    const TRIGGER: Trigger = Trigger::Enable;
+    const INPUTS: &'static [BlockInput] = &[SWITCHES, TRACK_OPTIONS, ENABLE_MASK, VALUE_SOURCE];
+
+    fn read<T: Tables>(values: &'i Values<T>, enable: bool) -> Self {
+        Self {
+            enable,
+            switches: values.table(Input::Switches).map_or(&[], Tables::switches),
+            track_options: values.table(Input::TrackOptions).map_or(&[], Tables::tracks),
+            enable_mask: u32::read(values, &ENABLE_MASK),
+            value_source: ValueSource::read(values, &VALUE_SOURCE),
+        }
+    }
+}
+
+fn wrong(input: &'static str, value: f64, bound: &'static str) -> Result<(), BlockError> {
+    Err(BlockError::Input { block: BLOCK, input, value, bound })
+}
+
+fn check_track(track: u32) -> Result<(), BlockError> {
+    if track < TRACKS { Ok(()) } else { wrong("TrackNumber", track.into(), "a track from 0 to 31") }
+}
+
+impl CamSwitch {
+    /// Whether it can be on an axis that comes round after `modulo`, or has ends.
+    ///
+    /// # Errors
+    /// [`BlockError::Input`] with the first of its parts that is wrong, by its name in the standard.
+    pub fn check(&self, modulo: Option<f64>) -> Result<(), BlockError> {
+        check_track(self.track)?;
+        finite_input(BLOCK, "FirstOnPosition", self.first)?;
+        let last = if let CamEnd::Position(last) = self.end { last } else { self.first };
+        finite_input(BLOCK, "LastOnPosition", last)?;
+        if let Some(period) = modulo {
+            if !(0.0..period).contains(&self.first) {
+                return wrong("FirstOnPosition", self.first, "within the modulo period, from 0 on");
+            }
+            if !(0.0..=period).contains(&last) {
+                return wrong("LastOnPosition", last, "within the modulo period, from 0 up to it");
+            }
+        }
+        if let CamEnd::Duration(duration) = self.end
+            && !(1e-15..=1e15).contains(&duration)
+        {
+            return wrong("Duration", duration, "positive, from 1e-15 to 1e15");
+        }
+        if last < self.first && modulo.is_none() {
+            return wrong("LastOnPosition", last, "at FirstOnPosition or above it, but on a modulo axis");
+        }
+        Ok(())
+    }
+}
+
+impl TrackOptions {
+    /// Whether they can be on an axis that comes round after `modulo`, or has ends.
+    ///
+    /// # Errors
+    /// [`BlockError::Input`] with the first of its parts that is wrong, by its name in the standard.
+    pub fn check(&self, modulo: Option<f64>) -> Result<(), BlockError> {
+        check_track(self.track)?;
+        finite_input(BLOCK, "OnCompensation", self.on_compensation)?;
+        finite_input(BLOCK, "OffCompensation", self.off_compensation)?;
+        if !(0.0..=1e15).contains(&self.hysteresis) {
+            return wrong("Hysteresis", self.hysteresis, "0 or more, up to 1e15");
+        }
+        if modulo.is_some_and(|period| self.hysteresis >= 0.5 * period) {
+            return wrong("Hysteresis", self.hysteresis, "less than half of the modulo period");
+        }
+        Ok(())
+    }
+}
+
+impl<'a> DigitalCamSwitchInputs<'a> {
+    /// `switches` by the set-point, all tracks enabled and without options; not enabled.
+    #[must_use]
+    pub const fn of(switches: &'a [CamSwitch]) -> Self {
+        let value_source = ValueSource::SetPoint;
+        Self { enable: false, switches, track_options: &[], enable_mask: u32::MAX, value_source }
+    }
+
+    fn check(&self, modulo: Option<f64>, memory: &[CamState]) -> Result<(), BlockError> {
+        if self.switches.is_empty() {
+            return wrong("Switches", 0.0, "a table of one switch at least");
+        }
+        self.switches.iter().try_for_each(|switch| switch.check(modulo))?;
+        let mut tracks = 0;
+        for options in self.track_options {
+            options.check(modulo)?;
+            if tracks & 1 << options.track != 0 {
+                return wrong("TrackOptions", options.track.into(), "given once for a track");
+            }
+            tracks |= 1 << options.track;
+        }
+        check_room(BLOCK, "memory", memory, self.switches.len())
+    }
+
+    fn options(&self, track: u32) -> TrackOptions {
+        self.track_options.iter().find(|options| options.track == track).copied().unwrap_or_default()
+    }
+}
+
+/// Where the axis is in a cycle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Place {
+    x: f64,
+    v: f64,
+    /// Where its positions count from: what it is told by the program, and whether the drive is about to set it.
+    offset: f64,
+    is_homing: bool,
+}
+
+impl Place {
+    fn of(axis: &Axis, source: ValueSource) -> Self {
+        let (x, v) = match source {
+            ValueSource::SetPoint => (axis.commanded().x, axis.commanded().v),
+            ValueSource::Actual => (axis.actual().position, axis.actual().velocity),
+        };
+        Self { x, v, offset: axis.offset(), is_homing: axis.state() == AxisState::Homing }
+    }
+
+    /// Whether the way from `before` to here is one that the axis has gone.
+    fn continues(&self, before: &Self) -> bool {
+        let is_known = (self.x - before.x).is_finite() && self.v.is_finite() && before.v.is_finite();
+        is_known && self.offset.to_bits() == before.offset.to_bits() && !self.is_homing && !before.is_homing
+    }
+
+    /// What rounding may make of a distance to `edge`.
+    fn rounding(&self, edge: f64, modulo: Option<f64>) -> f64 {
+        1e-12 * (self.x.abs() + edge.abs() + modulo.unwrap_or(0.0))
+    }
+}
+
+/// `distance` on an axis that comes round: the shorter way.
+fn nearest(distance: f64, modulo: Option<f64>) -> f64 {
+    modulo.map_or(distance, |period| distance - period * libm::round(distance / period))
+}
+
+/// An end of a window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Edge {
+    /// FirstOnPosition.
+    First,
+    /// LastOnPosition.
+    Last,
+}
+
+/// A switch with the options of its track, and the direction of the axis.
+struct Cam<'a> {
+    switch: &'a CamSwitch,
+    options: TrackOptions,
+    modulo: Option<f64>,
+    /// 1 upwards, −1 downwards.
+    direction: f64,
+}
+
+impl Cam<'_> {
+    /// The edge at which it is switched on, which that of time is in either direction.
+    fn on_edge(&self) -> Edge {
+        if self.direction < 0.0 && matches!(self.switch.end, CamEnd::Position(_)) { Edge::Last } else { Edge::First }
+    }
+
+    /// Where `edge` is for an axis at `place`, moved by the compensation.
+    fn position(&self, edge: Edge, place: &Place) -> f64 {
+        let position = match (edge, self.switch.end) {
+            (Edge::Last, CamEnd::Position(last)) => last,
+            _ => self.switch.first,
+        };
+        let is_on = edge == self.on_edge();
+        position + place.v * if is_on { self.options.on_compensation } else { self.options.off_compensation }
+    }
+
+    /// How far the axis has gone beyond `edge` in its direction.
+    fn beyond(&self, edge: Edge, place: &Place) -> f64 {
+        self.direction * nearest(place.x - self.position(edge, place), self.modulo)
+    }
+
+    /// Whether the axis has passed `edge` on its way from `before`.
+    fn passes(&self, edge: Edge, before: &Place, place: &Place) -> bool {
+        let rounding = place.rounding(self.position(edge, place), self.modulo);
+        let (from, to) = (self.beyond(edge, before), self.beyond(edge, place));
+        // What is far from the edge on either side of it is the other side of the circle.
+        let is_near = self.modulo.is_none_or(|period| to - from < 0.5 * period);
+        from < -rounding && to >= -rounding && is_near
+    }
+
+    /// Whether the axis is in the window, or has passed it.
+    fn contains(&self, before: Option<&Place>, place: &Place) -> bool {
+        let CamEnd::Position(last) = self.switch.end else { return false };
+        let [on_edge, off_edge] =
+            if self.direction < 0.0 { [Edge::Last, Edge::First] } else { [Edge::First, Edge::Last] };
+        let TrackOptions { on_compensation, off_compensation, .. } = self.options;
+        let uncompensated = match self.modulo {
+            Some(period) if last < self.switch.first => last - self.switch.first + period,
+            _ => last - self.switch.first,
+        };
+        let length = uncompensated + self.direction * place.v * (off_compensation - on_compensation);
+        let rounding = place.rounding(self.position(on_edge, place), self.modulo);
+        if length < -rounding {
+            return false;
+        }
+        if before.is_some_and(|before| self.passes(on_edge, before, place)) {
+            return true;
+        }
+        let beyond = self.beyond(on_edge, place);
+        match self.modulo {
+            // The place on the circle, counted from the edge.
+            Some(period) => {
+                let beyond = if beyond < -rounding { beyond + period } else { beyond };
+                beyond <= length + rounding
+            }
+            None => beyond >= -rounding && self.beyond(off_edge, place) <= rounding,
+        }
+    }
+}
+
+impl CamState {
+    /// Follows the direction of an axis that has `moved`.
+    fn turn(&mut self, moved: f64, hysteresis: f64) {
+        if self.direction == 0.0 {
+            self.back += moved;
+            if self.back.abs() > hysteresis {
+                (self.direction, self.back) = (self.back.signum(), 0.0);
+            }
+        } else {
+            self.back = (self.back - self.direction * moved).max(0.0);
+            if self.back > hysteresis {
+                (self.direction, self.back) = (-self.direction, 0.0);
+            }
+        }
+    }
+
+    /// One cycle: whether the switch is TRUE.
+    fn step(&mut self, switch: &CamSwitch, options: TrackOptions, way: (Option<&Place>, &Place), axis: &Axis) -> bool {
+        let (before, place) = way;
+        let (modulo, cycle_time) = (axis.params().modulo, axis.params().cycle_time);
+        self.turn(before.map_or(0.0, |before| nearest(place.x - before.x, modulo)), options.hysteresis);
+        let direction = if self.direction < 0.0 { -1.0 } else { 1.0 };
+        let cam = Cam { switch, options, modulo, direction };
+        let is_near = |edge| cam.beyond(edge, place).abs() <= options.hysteresis;
+        let was_held = self.held.is_some();
+        self.held = self.held.filter(|edge| is_near(*edge));
+        let is_for_direction = match switch.direction {
+            CamDirection::Both => true,
+            CamDirection::Positive => self.direction > 0.0,
+            CamDirection::Negative => self.direction < 0.0,
+        };
+        if let CamEnd::Duration(duration) = switch.end {
+            self.cycles = self.cycles.map(|cycles| cycles.saturating_add(1));
+            let is_passed = before.is_some_and(|before| cam.passes(Edge::First, before, place));
+            if is_passed && is_for_direction && !was_held {
+                (self.cycles, self.held) = (Some(0), Some(Edge::First).filter(|edge| is_near(*edge)));
+            }
+            let length = duration + options.off_compensation - options.on_compensation;
+            // Of a whole number of cycles the last is not one more by rounding.
+            self.cycles = self.cycles.filter(|cycles| *cycles as f64 * cycle_time < length - 1e-9 * cycle_time);
+            self.is_on = self.cycles.is_some();
+        } else {
+            let is_known = place.x.is_finite() && place.v.is_finite();
+            let is_on = is_known && is_for_direction && cam.contains(before, place);
+            if self.held.is_none() && is_on != self.is_on {
+                self.is_on = is_on;
+                self.held = [Edge::First, Edge::Last].into_iter().find(|edge| is_near(*edge));
+            }
+        }
+        self.is_on
+    }
+}
+
+impl<M: Memory<CamState>> DigitalCamSwitch<M> {
+    /// With the memory for as many switches as `memory` holds.
+    #[must_use]
+    pub const fn new(memory: M) -> Self {
+        Self { memory, outputs: 0, before: None, error: None }
+    }
+
+    /// The outputs of all tracks.
+    fn switch(&mut self, axis: &Axis, inputs: &DigitalCamSwitchInputs<'_>) -> u32 {
+        let place = Place::of(axis, inputs.value_source);
+        if self.before.is_none() {
+            let v = axis.commanded().v;
+            let direction = if v == 0.0 { 0.0 } else { v.signum() };
+            self.memory.as_mut().fill(CamState { direction, ..CamState::default() });
+        }
+        let before = self.before.replace(place).filter(|before| place.continues(before));
+        let states = inputs.switches.iter().zip(self.memory.as_mut());
+        states.fold(0, |bits, (switch, state)| {
+            let is_on = state.step(switch, inputs.options(switch.track), (before.as_ref(), &place), axis);
+            bits | u32::from(is_on) << switch.track
+        })
+    }
+}
+
+impl<M: Memory<CamState>> FunctionBlock for DigitalCamSwitch<M> {
+    const NAME: BlockName = BLOCK;
+    type Inputs<'i> = DigitalCamSwitchInputs<'i>;
+    type Outputs = DigitalCamSwitchOutputs;
+
+    fn step(&mut self, axis: &mut Axis, inputs: &DigitalCamSwitchInputs<'_>) -> DigitalCamSwitchOutputs {
+        let checked = if inputs.enable { inputs.check(axis.params().modulo, self.memory.as_ref()) } else { Ok(()) };
+        self.error = checked.err();
+        let in_operation = inputs.enable && self.error.is_none();
+        let bits = if in_operation {
+            self.switch(axis, inputs) & inputs.enable_mask
+        } else {
+            self.before = None;
+            0
+        };
+        // Outputs of no track are left to others; one that was of a track is given back FALSE.
+        let outputs = if in_operation { inputs.switches.iter().fold(0, |all, one| all | 1 << one.track) } else { 0 };
+        axis.set_digital_output(self.outputs | outputs, false);
+        axis.set_digital_output(bits, true);
+        self.outputs = outputs;
+        DigitalCamSwitchOutputs {
+            in_operation,
+            busy: inputs.enable,
+            error: self.error.is_some(),
+            error_id: self.error.as_ref().map_or(ErrorId::None, BlockError::id),
+        }
+    }
+
+    fn error(&self) -> Option<&BlockError> {
+        self.error.as_ref()
+    }
+}
+
+#[cfg(feature = "program")]
+impl crate::program::New for DigitalCamSwitch<alloc::vec::Vec<CamState>> {
+    fn new_for(inputs: &crate::program::Inputs) -> Self {
+        let switches = inputs.table(Input::Switches).map_or(0, |switches| switches.switches().len());
+        Self::new(alloc::vec![CamState::default(); switches])
+    }
+}
