@@ -67,6 +67,7 @@ impl Reading<'_, '_> {
         if input == Input::Table {
             return self.table(own).map(|table| Some(Value::Table(program::Rows::Profile(table))));
         }
+        self.warn_beyond_the_order(input);
         match own.absent {
             Absent::Limit(limit) if self.is_left_to_the_order(input, limit) => return Ok(None),
             Absent::Refused(why) => self.require(input, why),
@@ -221,14 +222,27 @@ impl Reading<'_, '_> {
 
     /// Whether a limit that nobody gives is one that the order of the profile does not use.
     fn is_left_to_the_order(&self, input: Input, limit: Input) -> bool {
+        self.order_without(limit).is_some() && matches!(self.limit(input, limit), Slot::Absent)
+    }
+
+    /// The order of the profile, where it is too low for a limit of `limit`.
+    fn order_without(&self, limit: Input) -> Option<f64> {
         let derivative = match limit {
             Input::Jerk => 3.0,
             Input::Snap => 4.0,
-            _ => return false,
+            _ => return None,
         };
-        self.block.input(Input::Order).is_some()
-            && matches!(self.limit(input, limit), Slot::Absent)
-            && self.inputs.number(Input::Order).given().is_some_and(|order| *order < derivative)
+        self.block.input(Input::Order)?;
+        self.inputs.number(Input::Order).given().copied().filter(|order| *order < derivative)
+    }
+
+    /// A limit that the call gives and the order of its profile does not use.
+    fn warn_beyond_the_order(&mut self, input: Input) {
+        let Some((order, span)) = self.order_without(input).zip(self.inputs.slot(input).span()) else { return };
+        let key = input.key();
+        let message = format!("`{key}` is not used by a profile of order {order}");
+        let say = |report: &mut Report| report.warning(span, message, "leave it out, or give a higher `order`");
+        self.said.once(span, say, self.report);
     }
 
     /// The velocity at a target is one that the block may have.

@@ -606,6 +606,16 @@ fn velocities_are_told_to_a_drive_in_profile_velocity() {
     );
 }
 
+/// A limit that a call gives in vain.
+#[test]
+fn limits_beyond_the_order_are_told() {
+    let profile = |keys: &str| call("Profile4th", &format!("position = \"1 mm\"\nsettling_time = \"50 ms\"\n{keys}"));
+    let [errors, warnings] = said(&profile("order = 3\nsnap = \"1000 m/s4\"\njerk = \"50 m/s3\""));
+    let told = "6:8: `snap` is not used by a profile of order 3; leave it out, or give a higher `order`";
+    assert_eq!([errors, warnings], [strings(&[]), strings(&[told])]);
+    assert_eq!(said(&profile("order = 4\nsnap = \"1000 m/s4\"\njerk = \"50 m/s3\"")), [strings(&[]), strings(&[])]);
+}
+
 /// Each jerk of Rockwell's move is said in one way, and that of a trapezoid by the axis.
 #[test]
 fn the_jerks_of_rockwells_move() {
