@@ -127,6 +127,9 @@ pub(crate) struct PlcExportArgs {
     /// Initial value of the input T_set: from the end of a move until Ready, as "50 ms".
     #[arg(long, value_name = "TIME", value_parser = instant, default_value = "0 s")]
     pub(crate) settling_time: f64,
+    /// What the block with Execute is called, where the project has one of the standard's name.
+    #[arg(long, value_name = "NAME", default_value = servobench_structured_text::MOVE)]
+    pub(crate) move_block: String,
     /// Write to this file [default: standard output].
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,

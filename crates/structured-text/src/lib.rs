@@ -53,13 +53,15 @@ servobench_config::choices! {
 
 /// What is written.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Export {
+pub struct Export<'a> {
     /// Whose language.
     pub dialect: Dialect,
     /// Text or XML.
     pub format: Format,
     /// Initial values of inputs.
     pub times: Times,
+    /// What the block with Execute is called, [`MOVE`] unless a library of the project has one of that name.
+    pub move_block: &'a str,
 }
 
 /// Times that a call need not give.
@@ -72,7 +74,7 @@ pub struct Times {
 }
 
 /// Why nothing can be written.
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[derive(Debug, Clone, PartialEq, Error)]
 pub enum ExportError {
     /// A time that is none.
     #[error(transparent)]
@@ -89,6 +91,14 @@ pub enum ExportError {
         /// Largest (s).
         highest: f64,
     },
+    /// A name that a block cannot have.
+    #[error("`move_block` must be {bound}, got \"{name}\"")]
+    Name {
+        /// The name.
+        name: String,
+        /// What it must be, in words.
+        bound: &'static str,
+    },
     /// TIA Portal reads no PLCopen XML.
     #[error("the dialect `{}` has no PLCopen XML, which TIA Portal does not import: take the format `{}`", .dialect.name(), Format::St.name())]
     NoXml {
@@ -98,18 +108,22 @@ pub enum ExportError {
 }
 
 /// The function blocks of the text.
-const BLOCKS: [&str; 2] = ["Profile4th", "MC_MoveAbsolute"];
+const BLOCKS: [&str; 2] = ["Profile4th", MOVE];
+/// The block with Execute, as the standard calls it.
+pub const MOVE: &str = "MC_MoveAbsolute";
+/// Letters of a name at most: what the controllers of the dialects take.
+const LONGEST_NAME: usize = 80;
 /// Smallest and largest sample time that the block takes (s).
 const SAMPLE_TIMES: (f64, f64) = (1e-30, 1e30);
 /// Longest settling time that it takes (s).
 const LONGEST_SETTLING: f64 = 1e30;
 
-impl Export {
+impl Export<'_> {
     /// The file; `written` is the time that XML has to name, as an `xs:dateTime`.
     ///
     /// # Errors
     /// [`ExportError`] when a time is not positive (a settling time: not positive or zero) or out of the range that the block takes,
-    /// and for XML of a dialect that has none.
+    /// for a name that is no identifier of IEC 61131-3 or that of another function of the file, and for XML of a dialect that has none.
     pub fn text(&self, written: &str) -> Result<String, ExportError> {
         let source = self.source()?;
         let pous = pou::read(&source);
@@ -130,7 +144,35 @@ impl Export {
         let settling_time = non_negative("settling_time", self.times.settling)?;
         within("settling_time", settling_time, (0.0, LONGEST_SETTLING))?;
         let text = include_str!("profile_4th.st");
+        self.check_name(text)?;
+        let text = text.replace(&format!("FUNCTION_BLOCK {MOVE}"), &format!("FUNCTION_BLOCK {}", self.move_block));
         Ok(text.replace("{sample_time}", &literal(sample_time)).replace("{settling_time}", &literal(settling_time)))
+    }
+
+    /// Whether the block with Execute can have its name beside the others of `text`.
+    fn check_name(&self, text: &str) -> Result<(), ExportError> {
+        let name = self.move_block;
+        let refuse = |bound| Err(ExportError::Name { name: name.to_owned(), bound });
+        let is_letter = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
+        let begins = name.starts_with(|first: char| first.is_ascii_alphabetic() || first == '_');
+        if !begins || !name.chars().all(is_letter) || name.contains("__") || name.ends_with('_') {
+            return refuse("letters, digits and single `_` between them, a letter or `_` first");
+        }
+        if name.len() > LONGEST_NAME {
+            return refuse("at most 80 letters long");
+        }
+        let is_taken = |pou: &pou::Pou<'_>| pou.name != MOVE && pou.name.eq_ignore_ascii_case(name);
+        if pou::read(text).iter().any(is_taken) {
+            return refuse("another name than those of the other blocks and functions of the file");
+        }
+        Ok(())
+    }
+
+    /// Each function block with the memory of an instance in bytes: inputs, outputs and kept variables by their declarations, with
+    /// natural alignment.
+    #[must_use]
+    pub fn instances(&self) -> [(&str, usize); BLOCKS.len()] {
+        instances().map(|(name, bytes)| (if name == MOVE { self.move_block } else { name }, bytes))
     }
 
     /// What a reader of the file has to know.
@@ -141,19 +183,18 @@ impl Export {
                 "Not tried on a compiler of the vendor. The statements are those that pyplcopen 0.21 compiled and ran."
             }
         };
-        let memory = instances().map(|(name, bytes)| format!("    {name:<15} {bytes:>5} bytes"));
+        let memory = self.instances().map(|(name, bytes)| format!("    {name:<15} {bytes:>5} bytes"));
         include_str!("head.txt")
             .replace("{version}", env!("CARGO_PKG_VERSION"))
             .replace("{dialect}", self.dialect.name())
             .replace("{tried}", tried)
+            .replace("{move}", self.move_block)
             .replace("{memory}", &memory.join("\n"))
     }
 }
 
-/// Each function block with the memory of an instance in bytes: inputs, outputs and kept variables by their declarations, with natural
-/// alignment.
-#[must_use]
-pub fn instances() -> [(&'static str, usize); BLOCKS.len()] {
+/// The same with the names of the text.
+fn instances() -> [(&'static str, usize); BLOCKS.len()] {
     let pous = pou::read(include_str!("profile_4th.st"));
     BLOCKS.map(|name| (name, memory::instance(&pous, name)))
 }

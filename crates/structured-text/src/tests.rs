@@ -4,8 +4,8 @@ use crate::pou::{Pou, SectionKind};
 
 const WRITTEN: &str = "2026-01-02T03:04:05Z";
 
-fn export(dialect: Dialect, format: Format) -> Export {
-    Export { dialect, format, times: Times { sample: 1e-3, settling: 0.0 } }
+fn export(dialect: Dialect, format: Format) -> Export<'static> {
+    Export { dialect, format, times: Times { sample: 1e-3, settling: 0.0 }, move_block: MOVE }
 }
 
 fn text(dialect: Dialect, format: Format) -> String {
@@ -157,7 +157,7 @@ fn what_the_block_would_refuse_is_refused() {
     assert_eq!(xml, "the dialect `scl` has no PLCopen XML, which TIA Portal does not import: take the format `st`");
 }
 
-impl Export {
+impl Export<'_> {
     fn iec() -> Self {
         export(Dialect::Iec, Format::St)
     }
@@ -205,4 +205,31 @@ fn scl_has_the_same_statements() {
         let body = unit.split("END_FUNCTION").next().unwrap();
         assert_eq!(body.replace(['#', '"'], ""), pou.body);
     }
+}
+
+/// A project may have a block of the standard's name already.
+#[test]
+fn the_block_with_execute_can_have_another_name() {
+    for (dialect, format) in [
+        (Dialect::Iec, Format::St),
+        (Dialect::Codesys, Format::Xml),
+        (Dialect::Scl, Format::St),
+        (Dialect::Iec, Format::Xml),
+    ] {
+        let [own, other] = [MOVE, "MoveBySnap"]
+            .map(|move_block| Export { move_block, ..export(dialect, format) }.text(WRITTEN).unwrap());
+        // The title of the paper stays.
+        let renamed = own.replace(MOVE, "MoveBySnap").replace("MoveBySnap() 4th", "MC_MoveAbsolute() 4th");
+        let squeezed = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(squeezed(&other), squeezed(&renamed), "{dialect:?} {format:?}");
+        assert!(!other.replace("MC_MoveAbsolute() 4th", "").contains(MOVE));
+    }
+    let long = "a".repeat(81);
+    let refused =
+        |move_block| Export { move_block, ..export(Dialect::Iec, Format::St) }.text(WRITTEN).unwrap_err().to_string();
+    for name in ["", "4th", "a b", "a__b", "a_", "ä", "a;b"] {
+        assert!(refused(name).starts_with("`move_block` must be letters, digits and single `_`"), "{name}");
+    }
+    assert!(refused(&long).contains("at most 80 letters"));
+    assert!(refused("profile4th").contains("another name than those of the other blocks"));
 }

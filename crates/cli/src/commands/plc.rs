@@ -4,7 +4,7 @@ use crate::console::say;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::output::{print_or_write, write_time};
-use servobench_structured_text::{Export, Times, instances};
+use servobench_structured_text::{Export, Times};
 
 /// Export is all there is.
 pub(crate) fn plc(command: &PlcCommand) -> Result<Exit, CliError> {
@@ -18,10 +18,11 @@ fn export(args: &PlcExportArgs) -> Result<Exit, CliError> {
     let &PlcExportArgs { format, dialect, sample_time, settling_time, .. } = args;
     let written = write_time()?.strftime("%Y-%m-%dT%H:%M:%SZ").to_string();
     let times = Times { sample: sample_time, settling: settling_time };
-    let text = Export { dialect, format, times }.text(&written)?;
+    let export = Export { dialect, format, times, move_block: &args.move_block };
+    let text = export.text(&written)?;
     print_or_write(args.output.as_deref(), &text)?;
     if let Some(output) = &args.output {
-        let memory = instances().map(|(name, bytes)| format!("{bytes} bytes for an instance of {name}"));
+        let memory = export.instances().map(|(name, bytes)| format!("{bytes} bytes for an instance of {name}"));
         say(&format!("{}: {} lines, {}\n", output.display(), text.lines().count(), memory.join(", ")));
     }
     Ok(Exit::Passed)
