@@ -41,6 +41,8 @@ pub struct Commands {
     pub touch_probe_function: u16,
     /// Digital outputs (60FEh:1).
     pub digital_outputs: u32,
+    /// Largest torque in either direction (6072h); sent while the master limits it.
+    pub max_torque: Option<u16>,
 }
 
 /// A point in the interpolation data record (60C1h). What the sub-mode (60C0h) does not use is not mapped and not written.

@@ -1,4 +1,4 @@
-//! What the mode of operation asks of the loops.
+//! What the mode of operation asks of the loops, and how much effort they may make of it.
 use servobench_base::Setpoint;
 
 /// What the loops are to do at a tick. Positions and velocities are in the axis coordinate (m or rad), efforts in the
@@ -25,6 +25,45 @@ pub enum Demand {
     },
     /// The effort itself, within the drive's limits.
     Effort(f64),
+}
+
+/// The largest efforts that the loops may ask for beside the drive's own limits, magnitudes in the motor's coordinate (N·m or N);
+/// may be infinite.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EffortLimits {
+    /// In positive direction.
+    pub forward: f64,
+    /// In negative direction.
+    pub backward: f64,
+}
+
+impl EffortLimits {
+    /// No limits.
+    pub const NONE: Self = Self::both(f64::INFINITY);
+
+    /// The same limit in both directions.
+    #[must_use]
+    pub const fn both(limit: f64) -> Self {
+        Self { forward: limit, backward: limit }
+    }
+
+    /// These, and at most `limit` in either direction.
+    #[must_use]
+    pub const fn at_most(self, limit: f64) -> Self {
+        Self { forward: self.forward.min(limit), backward: self.backward.min(limit) }
+    }
+
+    /// The same limits of an axis that counts the other way round.
+    #[must_use]
+    pub const fn turned(self) -> Self {
+        Self { forward: self.backward, backward: self.forward }
+    }
+
+    /// The larger one.
+    #[must_use]
+    pub const fn largest(self) -> f64 {
+        self.forward.max(self.backward)
+    }
 }
 
 /// What is fed forward beside a set-point.
@@ -60,7 +99,7 @@ impl Demand {
 
     /// Cuts the efforts to the limits of both directions; whether there was anything to cut.
     #[inline]
-    pub(crate) fn keep_within(&mut self, [forward, backward]: [f64; 2]) -> bool {
+    pub(crate) fn keep_within(&mut self, EffortLimits { forward, backward }: EffortLimits) -> bool {
         let (Self::Position { effort_offset: effort, .. }
         | Self::Velocity { effort_offset: effort, .. }
         | Self::Effort(effort)) = self

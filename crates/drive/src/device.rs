@@ -53,10 +53,10 @@ pub use rotary::Rotary;
 pub use units::Units;
 pub use window::{Dwell, Window};
 
-use crate::Demand;
 use crate::modes::interpolated::{Buffer, DataRecord};
 use crate::modes::stop::Ramp;
 use crate::modes::{Actual, Answer, Moment, Targets};
+use crate::{Demand, EffortLimits};
 use running::Running;
 use servobench_base::{ParamError, Setpoint};
 use servobench_cia402::{
@@ -106,6 +106,8 @@ pub struct Measured {
 pub struct Outputs {
     /// For the loops, in the encoder's coordinate.
     pub demand: Demand,
+    /// What the loops may make of it at most.
+    pub effort_limits: EffortLimits,
     /// Transition of the power state machine that was taken.
     pub transition: Option<&'static Transition>,
     /// Fault that sent the drive into its fault reaction at this step.
@@ -136,6 +138,8 @@ pub struct State {
     last: Demand,
     /// Whether the last frame asked for more than the limits.
     is_cut: bool,
+    /// Efforts as the settings limit them, and the last frame.
+    effort_limits: EffortLimits,
     /// Where the axis has its zero (increments).
     origin: i64,
     /// What homing adds to every position from the next step on.
@@ -179,6 +183,7 @@ impl State {
             },
             last: Demand::Off,
             is_cut: false,
+            effort_limits: p.limits.effort,
             origin: 0,
             shift: None,
             fault: None,
@@ -273,7 +278,7 @@ pub fn step(p: &Params, x: &mut State, u: &Inputs) -> Outputs {
         answer.demand = Demand::Off;
         (x.running, x.stop) = (None, None);
     }
-    let is_limited = answer.demand.keep_within(p.limits.effort)
+    let is_limited = answer.demand.keep_within(x.effort_limits)
         || x.is_cut
         || x.guard.is_active()
         || u.measured.effort_is_cut
@@ -289,7 +294,7 @@ pub fn step(p: &Params, x: &mut State, u: &Inputs) -> Outputs {
     if let Some(shift) = x.shift.take() {
         x.move_zero(p, shift);
     }
-    Outputs { demand: answer.demand, transition: power.transition, fault }
+    Outputs { demand: answer.demand, effort_limits: x.effort_limits, transition: power.transition, fault }
 }
 
 impl State {

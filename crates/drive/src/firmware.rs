@@ -6,9 +6,9 @@
 //! time its computation takes). It knows the axis by its sensors and its own estimates, nothing else.
 //!
 //! Position and its reference are in the axis coordinate, velocity and effort in the motor's; `transmission` converts.
-use crate::Demand;
 use crate::feedforward::MotorReference;
 use crate::params::{Params, Stage};
+use crate::{Demand, EffortLimits};
 use crate::{current, delay, velocity};
 use servobench_base::{AlphaBeta, Countdown, Dq, ElectricalAngle, PowerCommand, Setpoint};
 use servobench_config::ParameterError;
@@ -158,14 +158,14 @@ impl State {
 }
 
 /// One base tick: runs the loops that are due and returns what goes to the power stage from now on. The demand is taken
-/// at the cycles of the position loop.
-pub fn step(p: &Params, x: &mut State, demand: &Demand, sensors: &Sensors) -> PowerCommand {
+/// at the cycles of the position loop, the limits at those of the velocity loop.
+pub fn step(p: &Params, x: &mut State, demand: &Demand, limits: EffortLimits, sensors: &Sensors) -> PowerCommand {
     if x.position_turn.is_due(p.position_every) {
         take(p, x, demand, sensors);
         x.velocity_command = x.held.velocity_reference;
     }
     if x.velocity_turn.is_due(p.velocity_every) {
-        velocity_loop(p, x, sensors);
+        velocity_loop(p, x, limits, sensors);
     }
     match &p.stage {
         Stage::Current { params, every } => {
@@ -250,7 +250,7 @@ fn position_loop(p: &Params, x: &mut State, setpoint: Setpoint, sensors: &Sensor
     x.held.feedforward = p.transmission * p.feedforward.effort(setpoint);
 }
 
-fn velocity_loop(p: &Params, x: &mut State, sensors: &Sensors) {
+fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sensors) {
     let h = p.period(p.velocity_every);
     let mut followed = x.held.velocity_reference;
     if x.closed == Closed::Position && p.feedforward.interpolate {
@@ -276,10 +276,11 @@ fn velocity_loop(p: &Params, x: &mut State, sensors: &Sensors) {
             Stage::Current { params, .. } => params.max_effort(),
             Stage::Direct { .. } => f64::INFINITY,
         },
+        limits,
     };
     x.held.effort = match x.closed {
         Closed::Position | Closed::Velocity => velocity::step(&p.velocity, &mut x.velocity, input, h),
-        Closed::Effort => velocity::limited(&p.velocity, input.available, input.feedforward),
+        Closed::Effort => velocity::limited(&p.velocity, input.available, limits, input.feedforward),
         Closed::None => velocity::Output::default(),
     };
 }
@@ -318,7 +319,9 @@ mod tests {
         let law = |x: f64| 243.45 * (160.18 * (8e-4 - x) - 0.02);
         for k in 0..32 {
             let position = |k: i32| 5e-4 + 1e-6 * f64::from(k);
-            let PowerCommand::Output(u) = step(&p, &mut x, &Demand::position(setpoint), &at(position(k))) else {
+            let PowerCommand::Output(u) =
+                step(&p, &mut x, &Demand::position(setpoint), EffortLimits::NONE, &at(position(k)))
+            else {
                 panic!("an ideal amplifier")
             };
             assert!((u - law(position(k / 16 * 16))).abs() < 1e-11, "tick {k}: {u}");
@@ -332,7 +335,7 @@ mod tests {
         for k in 0..=32 {
             let position = 0.02 * f64::from(k) / 16_000.0;
             let sensors = Sensors { motor_position: position, ..Sensors::default() };
-            if let PowerCommand::Output(u) = step(&p, &mut x, &REST, &sensors) {
+            if let PowerCommand::Output(u) = step(&p, &mut x, &REST, EffortLimits::NONE, &sensors) {
                 last = u;
             }
         }
@@ -344,7 +347,7 @@ mod tests {
         let (p, mut x) = (emps(), at_rest(&emps()));
         for k in 0..40 {
             let setpoint = Setpoint { x: 0.1 * f64::from(k) / 16_000.0, v: 0.1, ..Setpoint::default() };
-            step(&p, &mut x, &Demand::position(setpoint), &Sensors::default());
+            step(&p, &mut x, &Demand::position(setpoint), EffortLimits::NONE, &Sensors::default());
             assert!((x.references(&p).0.x - setpoint.x).abs() < 1e-18, "tick {k}");
         }
     }
@@ -373,7 +376,13 @@ mod tests {
             let mut x = at_rest(&p);
             for k in 0..64_u32 {
                 let setpoint = |k: u32| start.after(f64::from(k) / 16_000.0);
-                step(&p, &mut x, &Demand::position(setpoint(k)), &Sensors { motor_velocity, ..Sensors::default() });
+                step(
+                    &p,
+                    &mut x,
+                    &Demand::position(setpoint(k)),
+                    EffortLimits::NONE,
+                    &Sensors { motor_velocity, ..Sensors::default() },
+                );
                 let cycle = if interpolate { k / 2 * 2 } else { k / 16 * 16 };
                 let at = |age: f64| share * start.after(f64::from(cycle) / 16_000.0 - age).v;
                 let held = x.held();
@@ -402,6 +411,7 @@ mod tests {
                 &p,
                 &mut x,
                 &Demand::position(setpoint),
+                EffortLimits::NONE,
                 &Sensors { motor_position: 2e-3, feedback, ..Sensors::default() },
             );
             assert!((x.held().velocity_reference - 160.18 * error).abs() < 1e-15, "{feedback:?}: {:?}", x.held());
@@ -415,7 +425,7 @@ mod tests {
         let held_at = |velocity: f64| {
             let mut x = at_rest(&p);
             let sensors = Sensors { motor_velocity: Some(velocity), ..Sensors::default() };
-            step(&p, &mut x, &REST, &sensors);
+            step(&p, &mut x, &REST, EffortLimits::NONE, &sensors);
             *x.held()
         };
         for sign in [1.0, -1.0] {
@@ -436,7 +446,7 @@ mod tests {
         let sensors = Sensors { motor_position: 2e-3, motor_velocity: Some(0.02), ..Sensors::default() };
         let answer = |demand: Demand| {
             let mut x = at_rest(&p);
-            let command = step(&p, &mut x, &demand, &sensors);
+            let command = step(&p, &mut x, &demand, EffortLimits::NONE, &sensors);
             assert!((x.references(&p).0.x - 1e-3).abs() < 1e-18, "{demand:?}: {:?}", x.held);
             (command, x.held.velocity_reference, x.held.effort)
         };
@@ -458,12 +468,12 @@ mod tests {
         let (mut x, mut fresh) = (at_rest(&p), at_rest(&p));
         for (demand, position) in [(&demand, 0.0), (&Demand::Off, 9e-4)] {
             for _ in 0..40 {
-                step(&p, &mut x, demand, &sensors(position));
+                step(&p, &mut x, demand, EffortLimits::NONE, &sensors(position));
             }
         }
         assert_eq!((x.velocity, x.held.effort), (velocity::State::default(), velocity::Output::default()));
-        step(&p, &mut x, &demand, &sensors(9e-4));
-        step(&p, &mut fresh, &demand, &sensors(9e-4));
+        step(&p, &mut x, &demand, EffortLimits::NONE, &sensors(9e-4));
+        step(&p, &mut fresh, &demand, EffortLimits::NONE, &sensors(9e-4));
         assert_eq!(x.held.effort, fresh.held.effort);
     }
 }

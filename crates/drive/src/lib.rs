@@ -15,7 +15,7 @@ pub mod modes;
 mod params;
 pub mod velocity;
 
-pub use demand::{Demand, Offsets};
+pub use demand::{Demand, EffortLimits, Offsets};
 pub use estimate::{EffortFeedforward, Estimate};
 pub use firmware::{Feedback, Held, Sensors, State, step};
 pub use params::{Parameter, Params, Stage};

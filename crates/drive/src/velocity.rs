@@ -1,11 +1,13 @@
 //! Velocity control: P or PI with back-calculation anti-windup, effort (torque or force) out.
 //!
 //! ```text
-//! e = ω_ref − ω      v = τ_ff + k_p·e + τ_i      τ = sat(v, ±min(τ_max, τ_avail))
+//! e = ω_ref − ω      v = τ_ff + k_p·e + τ_i      τ = sat(v, ±min(τ_max, τ_avail)), and within the limits of the mode
 //! dτ_i/dt = k_p/T_i·e + (τ − v)/T_i              (forward Euler, step h)
 //! ```
-//! τ_avail is what the loop below can give; knowing it here keeps the integrator from winding up against it.
+//! τ_avail is what the loop below can give; knowing it here, and the limits of both directions that come from the bus, keeps the
+//! integrator from winding up against them.
 //! Source: Åström & Murray, *Feedback Systems*, 2nd ed., §11.4, tracking time T_t = T_i. The motor's coordinate.
+use crate::EffortLimits;
 use servobench_base::limit;
 use servobench_config::Kind::{Motor, Plain};
 use servobench_config::quantities::{EFFORT, TIME, VISCOUS};
@@ -52,12 +54,14 @@ pub struct Input {
     pub feedforward: f64,
     /// Largest effort that the loop below can give (N·m or N); may be infinite.
     pub available: f64,
+    /// What is asked for at most in either direction.
+    pub limits: EffortLimits,
 }
 
 /// Which limit cuts the effort.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cut {
-    /// The loop's own, [`Params::max_effort`].
+    /// The loop's own, [`Params::max_effort`], or that of the direction, [`Input::limits`].
     Effort,
     /// That of the loop below, [`Input::available`].
     Available,
@@ -88,7 +92,7 @@ impl Params {
 pub fn step(p: &Params, x: &mut State, u: Input, h: f64) -> Output {
     let e = u.reference - u.velocity;
     let v = u.feedforward + p.k_p * e + x.integral;
-    let output = limited(p, u.available, v);
+    let output = limited(p, u.available, u.limits, v);
     if let Some(integral_time) = p.integral_time {
         x.integral += h / integral_time * (p.k_p * e + (output.effort - v));
     }
@@ -97,10 +101,12 @@ pub fn step(p: &Params, x: &mut State, u: Input, h: f64) -> Output {
 
 /// `effort` within the limits.
 #[must_use]
-pub fn limited(p: &Params, available: f64, effort: f64) -> Output {
-    let (limit, cut) =
-        if p.max_effort <= available { (p.max_effort, Cut::Effort) } else { (available, Cut::Available) };
-    let given = effort.clamp(-limit, limit);
+pub fn limited(p: &Params, available: f64, limits: EffortLimits, effort: f64) -> Output {
+    let own = limits.at_most(p.max_effort);
+    let EffortLimits { forward, backward } = own.at_most(available);
+    let given = effort.clamp(-backward, forward);
+    let limit = if effort > 0.0 { own.forward } else { own.backward };
+    let cut = if limit <= available { Cut::Effort } else { Cut::Available };
     #[expect(clippy::float_cmp, reason = "a clamp that does not bind returns the very same bits")]
     Output { effort: given, cut: if given == effort { None } else { Some(cut) } }
 }
@@ -112,7 +118,8 @@ mod tests {
 
     const J: f64 = 2e-3;
     const OMEGA_N: f64 = 50.0;
-    const FREE: Input = Input { reference: 0.0, velocity: 0.0, feedforward: 0.0, available: f64::INFINITY };
+    const FREE: Input =
+        Input { reference: 0.0, velocity: 0.0, feedforward: 0.0, available: f64::INFINITY, limits: EffortLimits::NONE };
 
     /// Speed after 40 ms of a 1 rad/s step with both poles at −ω_n: k_p = 2·J·ω_n, T_i = 2/ω_n. The plant
     /// `J·dω/dt = τ` is exact under a zero-order hold.
@@ -145,14 +152,18 @@ mod tests {
             integral in -1e6..1e6_f64,
             feedforward in -1e6..1e6_f64,
             available in 0.1..10.0_f64,
+            forward in 0.1..10.0_f64,
+            backward in 0.1..10.0_f64,
         ) {
             let p = Params { k_p: 0.2, integral_time: Some(0.04), max_effort: 2.4 };
             let mut x = State { integral };
-            let output = step(&p, &mut x, Input { reference: e, feedforward, available, ..FREE }, 1e-3);
-            prop_assert!(output.effort.abs() <= available.min(2.4));
-            let binding = if available < 2.4 { Cut::Available } else { Cut::Effort };
+            let limits = EffortLimits { forward, backward };
+            let output = step(&p, &mut x, Input { reference: e, feedforward, available, limits, ..FREE }, 1e-3);
             let asked = feedforward + 0.2 * e + integral;
-            prop_assert_eq!(output.cut, (asked.abs() > available.min(2.4)).then_some(binding));
+            let own = if asked > 0.0 { forward.min(2.4) } else { backward.min(2.4) };
+            prop_assert!(output.effort.abs() <= available.min(own));
+            let binding = if available < own { Cut::Available } else { Cut::Effort };
+            prop_assert_eq!(output.cut, (asked.abs() > available.min(own)).then_some(binding));
         }
     }
 
@@ -161,10 +172,16 @@ mod tests {
     #[test]
     fn the_integrator_knows_the_limit_that_binds() {
         let p = Params { k_p: 3.0, integral_time: Some(0.04), max_effort: 2.4 };
-        for (available, limit) in [(1.5, 1.5), (f64::INFINITY, 2.4)] {
+        let backward_only = EffortLimits { forward: 0.9, backward: f64::INFINITY };
+        for (available, limits, limit) in [
+            (1.5, EffortLimits::NONE, 1.5),
+            (f64::INFINITY, EffortLimits::NONE, 2.4),
+            (1.5, backward_only, 0.9),
+            (1.5, backward_only.turned(), 1.5),
+        ] {
             let mut x = State::default();
             for _ in 0..10_000 {
-                step(&p, &mut x, Input { reference: 40.0, feedforward: 0.5, available, ..FREE }, 1e-3);
+                step(&p, &mut x, Input { reference: 40.0, feedforward: 0.5, available, limits, ..FREE }, 1e-3);
             }
             // v is of 120: rounded to 1.4e-14 at each of the 40 steps that the integrator remembers.
             assert!((x.integral - (limit - 0.5)).abs() < 1e-12, "{available}: {x:?}");

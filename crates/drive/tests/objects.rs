@@ -58,8 +58,8 @@ fn objects_mean_what_the_profile_says() {
     assert!(settings.position.width.is_infinite());
     assert_near(settings.velocity.width, 5e-4);
     // 2.4 N·m: 250 % forward by 6072h, below the 300 % of 60E0h; 50 % backward.
-    assert_near(settings.limits.effort[0], 6.0);
-    assert_near(settings.limits.effort[1], 1.2);
+    assert_near(settings.limits.effort.forward, 6.0);
+    assert_near(settings.limits.effort.backward, 1.2);
     let [lowest, highest] = settings.limits.position.unwrap();
     assert_near(lowest, -0.01);
     assert_near(highest, 0.3);
@@ -108,8 +108,8 @@ fn an_inverted_torque_has_its_limits_the_other_way_round() {
     write(&mut objects, 0x607E, 0, 0xE0_u8);
     write(&mut objects, 0x60E0, 0, 250_u16);
     let settings = Params::default().with_objects(&objects, micrometre()).unwrap();
-    assert_near(settings.limits.effort[0], 7.2);
-    assert_near(settings.limits.effort[1], 0.6);
+    assert_near(settings.limits.effort.forward, 7.2);
+    assert_near(settings.limits.effort.backward, 0.6);
     assert_near(settings.units.rated_effort(), 2.4);
     let mut stored = screw();
     write(&mut stored, 0x607E, 0, 0xE0_u8);

@@ -18,13 +18,16 @@ pub struct AxisCommand {
     pub digital_outputs: u32,
     /// What the drive's touch probe is asked for.
     pub touch_probe: Option<TouchProbe>,
+    /// Largest effort in either direction (6072h), a magnitude; `None` leaves it to the drive, which is also what a drive may
+    /// lower it to.
+    pub effort_limit: Option<f64>,
 }
 
 impl AxisCommand {
     /// A powered axis that does `task`, and nothing else.
     #[must_use]
     pub const fn of(task: Task) -> Self {
-        Self { power: true, reset: false, task, digital_outputs: 0, touch_probe: None }
+        Self { power: true, reset: false, task, digital_outputs: 0, touch_probe: None, effort_limit: None }
     }
 }
 

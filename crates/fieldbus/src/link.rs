@@ -169,6 +169,7 @@ pub fn step(params: &Params, state: &mut State, input: Input<'_>) -> Commands {
     state.ask_for_the_mode(params, now);
     state.put_out(params, post, now);
     state.commands.digital_outputs = state.command.digital_outputs;
+    state.commands.max_torque = state.command.effort_limit.map(|limit| params.scale.max_torque(limit));
     let received = (&state.actuals, state.position.as_ref());
     state.commands.touch_probe_function =
         state.probe.step(params, state.command.touch_probe, received, (state.received_at, now));

@@ -157,6 +157,7 @@ impl Axis {
             task,
             digital_outputs: self.digital_outputs,
             touch_probe: self.probe,
+            effort_limit: None,
         }
     }
 

@@ -6,7 +6,7 @@ use crate::program::Program;
 use crate::run::Reason;
 use servobench_base::{PowerCommand, Rate, Setpoint, Tick};
 use servobench_drive::velocity::Cut;
-use servobench_drive::{self as drive, Demand, Feedback, Sensors};
+use servobench_drive::{self as drive, Demand, EffortLimits, Feedback, Sensors};
 use servobench_plant::{Actuation, BodyState, Encoder, Input, Mechanics, MechanicsError, PowerStage, Switches};
 use servobench_scenario::DisturbedBody;
 use servobench_signals::Instant;
@@ -172,7 +172,7 @@ impl ClosedLoop {
         let command = match &mut self.state.source {
             Source::Program(program) => {
                 now.setpoint = external.setpoint.or(upcoming).unwrap_or_else(|| program.at(since));
-                let command = drive::step(params, state, &Demand::position(now.setpoint), &sensors);
+                let command = drive::step(params, state, &Demand::position(now.setpoint), EffortLimits::NONE, &sensors);
                 let (reference, motor_reference) = state.references(params);
                 (now.reference, now.motor_reference) = (reference.x, motor_reference.position);
                 command
@@ -194,8 +194,8 @@ impl ClosedLoop {
                 let t = self.base_rate.time(Tick(k));
                 let program = self.state.begun.map(|_| since);
                 let request = Request { t, program, setpoint: external.setpoint };
-                let demand = network.step(k, &request, switches.index, measure, recorder);
-                let command = drive::step(params, state, demand, &sensors);
+                let (demand, limits) = network.step(k, &request, switches.index, measure, recorder);
+                let command = drive::step(params, state, demand, limits, &sensors);
                 now.setpoint = network.setpoint(now.motor.position);
                 network.tell(now);
                 (now.reference, now.motor_reference) = match network.reference(t) {

@@ -25,7 +25,7 @@ use reference::DelayedReference;
 use servobench_base::{Countdown, Divider, Setpoint, Tick};
 use servobench_cia402::{Commands, Mode};
 use servobench_drive::modes::interpolated::serial::Port;
-use servobench_drive::{Demand, device, feedforward};
+use servobench_drive::{Demand, EffortLimits, device, feedforward};
 use servobench_fieldbus::bus::{self, BusFault};
 use servobench_fieldbus::link::{self, Mailbox};
 use servobench_fieldbus::task::{self, TaskFault};
@@ -59,6 +59,7 @@ pub(crate) struct Network {
     /// What has arrived at the drive since its last step.
     frame: Option<Commands>,
     demand: Demand,
+    effort_limits: EffortLimits,
     reference: DelayedReference,
     /// The set-point of the motion task's last cycle.
     asked: Setpoint,
@@ -163,7 +164,7 @@ pub(crate) struct Measurement {
 }
 
 impl Network {
-    /// Goes through base tick `k` and returns what the loops are to do. `pulse` is where an index pulse came in
+    /// Goes through base tick `k` and returns what the loops are to do, and with how much effort at most. `pulse` is where an index pulse came in
     /// this tick; the drive looks at its sensors when it steps.
     pub(crate) fn step(
         &mut self,
@@ -172,7 +173,7 @@ impl Network {
         pulse: Option<f64>,
         measure: impl FnOnce() -> Measurement,
         recorder: &mut Recorder,
-    ) -> &Demand {
+    ) -> (&Demand, EffortLimits) {
         if let Some(pulse) = pulse {
             self.index = Some(counts(pulse / self.index_increment));
         }
@@ -183,7 +184,7 @@ impl Network {
         if self.drive_turn.is_due(self.drive_every) {
             self.step_drive(request.t, &measure(), recorder);
         }
-        &self.demand
+        (&self.demand, self.effort_limits)
     }
 
     fn step_drive(&mut self, t: f64, measurement: &Measurement, recorder: &mut Recorder) {
@@ -201,7 +202,8 @@ impl Network {
             index: self.index.take(),
         };
         let inputs = device::Inputs { frame: frame.as_ref(), measured, fault: None, main_voltage: true };
-        self.demand = device::step(params, state, &inputs).demand;
+        let device::Outputs { demand, effort_limits, .. } = device::step(params, state, &inputs);
+        (self.demand, self.effort_limits) = (demand, effort_limits);
         self.signals.of_drive(t, state, recorder);
     }
 

@@ -256,6 +256,9 @@ impl Dictionary {
         self.set(signal::TRAJECTORY_BUFFER_STATUS, actuals.buffer_status);
         self.bits[p::TOUCH_PROBE_FUNCTION.place] = Value::from(commands.touch_probe_function).bits();
         self.bits[p::DIGITAL_OUTPUTS.place] = Value::from(commands.digital_outputs).bits();
+        if let Some(max_torque) = commands.max_torque {
+            self.bits[p::MAX_TORQUE.place] = Value::from(max_torque).bits();
+        }
         let [positive, negative] = actuals.touch_probe_positions;
         self.set(signal::TOUCH_PROBE_STATUS, actuals.touch_probe_status);
         self.set(signal::TOUCH_PROBE_POSITIVE_EDGE, positive);

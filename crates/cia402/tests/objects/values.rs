@@ -160,6 +160,7 @@ fn process_data_are_read_by_sdo_too() {
         velocity_offset: 4,
         torque_offset: -5,
         touch_probe_function: 0x0011,
+        max_torque: Some(1_234),
         digital_outputs: 0x8000_0001,
         ..Commands::default()
     };
@@ -187,6 +188,7 @@ fn process_data_are_read_by_sdo_too() {
         (0x607A, -1),
         (0x60FF, i32::MIN.into()),
         (0x6071, -3),
+        (0x6072, 1_234),
         (0x60B0, -2),
         (0x60B1, 4),
         (0x60B2, -5),

@@ -115,8 +115,8 @@ static BINDINGS: [Binding; 23] = [
     (value(0x609A, 0, Scale::Rate), |s| &mut s.homing.acceleration),
     (open(0x60C5, Scale::Rate), |s| &mut s.limits.acceleration),
     (open(0x60C6, Scale::Rate), |s| &mut s.limits.deceleration),
-    (open(0x60E0, Scale::Effort), |s| &mut s.limits.effort[0]),
-    (open(0x60E1, Scale::Effort), |s| &mut s.limits.effort[1]),
+    (open(0x60E0, Scale::Effort), |s| &mut s.limits.effort.forward),
+    (open(0x60E1, Scale::Effort), |s| &mut s.limits.effort.backward),
 ];
 
 impl Params {
@@ -139,8 +139,8 @@ impl Params {
             *setting = quantity.read(objects, &units, *setting)?;
         }
         settings.turn_limits(&units);
-        let max_effort = MAX_TORQUE.read(objects, &units, self.max_effort())?;
-        settings.limits.effort = settings.limits.effort.map(|effort| effort.min(max_effort));
+        let max_effort = MAX_TORQUE.read(objects, &units, self.limits.effort.largest())?;
+        settings.limits.effort = settings.limits.effort.at_most(max_effort);
         settings.limits.position = self.software_limits(objects, &units)?;
         settings.profile.ramp = match (objects.get(p::MOTION_PROFILE_TYPE), self.profile.ramp) {
             (JERK_LIMITED, Ramp::JerkLimited(jerk)) => Ramp::JerkLimited(PROFILE_JERK.read(objects, &units, jerk)?),
@@ -170,7 +170,7 @@ impl Params {
         for (quantity, setting) in &BINDINGS {
             quantity.write(objects, units, *setting(&mut settings))?;
         }
-        MAX_TORQUE.write(objects, units, self.max_effort())?;
+        MAX_TORQUE.write(objects, units, self.limits.effort.largest())?;
         objects.preset(RATED_TORQUE, nearest(RATED_TORQUE, self.rated_torque())?)?;
         let ramp = match self.profile.ramp {
             Ramp::Linear => LINEAR,
@@ -208,13 +208,8 @@ impl Params {
     /// Effort limits as the master counts efforts from as the loops do, or back.
     fn turn_limits(&mut self, units: &Units) {
         if units.turn_effort() {
-            self.limits.effort.reverse();
+            self.limits.effort = self.limits.effort.turned();
         }
-    }
-
-    const fn max_effort(&self) -> f64 {
-        let [forward, backward] = self.limits.effort;
-        forward.max(backward)
     }
 
     /// 6076h (mN·m or mN).

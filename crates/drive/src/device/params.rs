@@ -1,5 +1,6 @@
 //! What the drive is set to: the objects that do not come with every frame, in SI.
 use super::{Rotary, Units, Window, cycle};
+use crate::EffortLimits;
 use crate::modes::profile::Ramp;
 use crate::modes::{Moment, Steepness, cyclic, homing, interpolated, profile};
 use core::cmp::Ordering;
@@ -60,8 +61,8 @@ pub struct Limits {
     pub acceleration: f64,
     /// Deceleration of a profile (60C6h); may be infinite.
     pub deceleration: f64,
-    /// Effort in positive and negative direction (the lower of 6072h and 60E0h or 60E1h), magnitudes; may be infinite.
-    pub effort: [f64; 2],
+    /// Effort of the loops in any mode (the lower of 6072h and 60E0h or 60E1h).
+    pub effort: EffortLimits,
     /// Lowest and highest position (607Dh); `None` without software limits.
     pub position: Option<[f64; 2]>,
 }
@@ -103,7 +104,7 @@ impl Default for Params {
                 profile_velocity: f64::INFINITY,
                 acceleration: f64::INFINITY,
                 deceleration: f64::INFINITY,
-                effort: [f64::INFINITY; 2],
+                effort: EffortLimits::NONE,
                 position: None,
             },
             profile: Profile {
@@ -143,8 +144,14 @@ impl Params {
         self.units.check()?;
         self.check_rotary()?;
         self.cyclic_position().check()?;
-        let Limits { velocity, profile_velocity, acceleration, deceleration, effort: [forward, backward], position } =
-            self.limits;
+        let Limits {
+            velocity,
+            profile_velocity,
+            acceleration,
+            deceleration,
+            effort: EffortLimits { forward, backward },
+            position,
+        } = self.limits;
         limit("max_motor_speed", velocity)?;
         limit("max_profile_velocity", profile_velocity)?;
         limit("max_acceleration", acceleration)?;

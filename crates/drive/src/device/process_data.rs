@@ -1,7 +1,8 @@
 //! The bus interface of the drive: frames to targets, measurements to frames.
 //!
 //! What a frame asks for beyond the limits is cut, and the drive says so (bit 11): targets of csp and pp to the software limits
-//! (607Dh), profile velocities to the highest one (607Fh, 6080h), accelerations to theirs (60C5h, 60C6h). A profile velocity, acceleration or deceleration of zero, which moves nothing, stands for one that the
+//! (607Dh), profile velocities to the highest one (607Fh, 6080h), accelerations to theirs (60C5h, 60C6h). Efforts are limited by
+//! the loops, whatever the mode, to the lower of the settings (6072h, 60E0h, 60E1h) and of the frame (6072h). A profile velocity, acceleration or deceleration of zero, which moves nothing, stands for one that the
 //! frame does not carry: that of the settings.
 use super::{Fault, Params, State};
 use crate::Demand;
@@ -80,6 +81,9 @@ impl State {
         let acceleration = rate(frame.profile_acceleration, p.profile.acceleration);
         let deceleration = rate(frame.profile_deceleration, p.profile.deceleration);
         let (profile_limit, limits) = (p.profile_limit(), &p.limits);
+        // A master that does not limit the torque leaves it to the settings.
+        let max_effort = frame.max_torque.map_or(f64::INFINITY, |thousandths| p.units.effort_magnitude(thousandths));
+        self.effort_limits = limits.effort.at_most(max_effort);
         let is_too_steep = acceleration > limits.acceleration || deceleration > limits.deceleration;
         self.is_cut = match self.wanted {
             Some(Mode::CyclicSynchronousPosition) => kept.to_bits() != position.to_bits(),

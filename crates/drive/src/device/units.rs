@@ -134,6 +134,12 @@ impl Units {
         f64::from(thousandths) * self.effort
     }
 
+    /// A magnitude of effort (N·m or N).
+    #[must_use]
+    pub const fn effort_magnitude(&self, thousandths: u16) -> f64 {
+        thousandths as f64 * self.effort.abs()
+    }
+
     /// Effort in thousandths of the rated one, nearest, at the end of the object's range beyond it.
     #[inline]
     #[must_use]

@@ -1,8 +1,8 @@
 //! Cyclic synchronous position, velocity and torque.
 use crate::axis::{Axis, setpoint};
 use servobench_cia402::{ControlBit, Mode, StatusBit};
-use servobench_drive::Demand;
 use servobench_drive::device::{CycleParams, Fault, Limits, Params};
+use servobench_drive::{Demand, EffortLimits};
 use servobench_motion::interpolate;
 
 const MICROMETRE: f64 = 1e-6;
@@ -235,7 +235,7 @@ fn cyclic_velocities_are_ramps_between_the_frames() {
 
 #[test]
 fn cyclic_efforts_are_ramps_between_the_frames_within_the_limits_of_their_direction() {
-    let limits = Limits { effort: [0.5, 0.25], ..Params::default().limits };
+    let limits = Limits { effort: EffortLimits { forward: 0.5, backward: 0.25 }, ..Params::default().limits };
     let mut axis = Axis::enabled(&Params { limits, ..Params::default() }, Mode::CyclicSynchronousTorque);
     let mut efforts = |target, offset| {
         (axis.frame.target_torque, axis.frame.torque_offset) = (target, offset);
@@ -252,4 +252,32 @@ fn cyclic_efforts_are_ramps_between_the_frames_within_the_limits_of_their_direct
     assert_eq!(efforts(300, 100), (vec![0.0, 0.1, 0.2, 0.30000000000000004], false));
     assert_eq!(efforts(900, -100), (vec![0.4, 0.5, 0.5, 0.5], true));
     assert_eq!(efforts(-800, 0), (vec![0.5, 0.4, 0.0, -0.25], true));
+}
+
+/// Oracle: the lower of the object of the direction and of what the frame says, in thousandths of the rated effort.
+#[test]
+fn a_frame_limits_the_effort_in_every_mode_until_one_comes_that_does_not() {
+    let limits = Limits { effort: EffortLimits { forward: 0.5, backward: 0.25 }, ..Params::default().limits };
+    let params = Params { limits, ..Params::default() };
+    for mode in [
+        Mode::CyclicSynchronousPosition,
+        Mode::CyclicSynchronousVelocity,
+        Mode::CyclicSynchronousTorque,
+        Mode::ProfilePosition,
+        Mode::ProfileVelocity,
+        Mode::ProfileTorque,
+        Mode::InterpolatedPosition,
+        Mode::Homing,
+    ] {
+        let mut axis = Axis::enabled(&params, mode);
+        let mut limited = |max_torque| {
+            axis.frame.max_torque = max_torque;
+            axis.cycle().pop().map(|outputs| outputs.effort_limits)
+        };
+        for (max_torque, forward, backward) in
+            [(None, 0.5, 0.25), (Some(400), 0.4, 0.25), (Some(100), 0.1, 0.1), (Some(u16::MAX), 0.5, 0.25)]
+        {
+            assert_eq!(limited(max_torque), Some(EffortLimits { forward, backward }), "{mode:?} {max_torque:?}");
+        }
+    }
 }

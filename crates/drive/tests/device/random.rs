@@ -3,10 +3,10 @@ use crate::axis::Axis;
 use servobench_base::Setpoint;
 use servobench_cia402::interpolated::{Point, SegmentCommand, SubMode};
 use servobench_cia402::{Command, Commands, Controlword, Mode, PowerState};
-use servobench_drive::Demand;
 use servobench_drive::device::{Limits, Params, Window};
 use servobench_drive::modes::homing::Method;
 use servobench_drive::modes::profile::Ramp;
+use servobench_drive::{Demand, EffortLimits};
 use servobench_motion::interpolate;
 use servobench_testkit::Random;
 
@@ -20,7 +20,7 @@ fn params(random: &mut Random) -> Params {
         profile_velocity: VELOCITY,
         acceleration: ACCELERATION,
         deceleration: ACCELERATION,
-        effort: [2.0, 1.0],
+        effort: EffortLimits { forward: 2.0, backward: 1.0 },
         position: random.next().is_multiple_of(2).then_some([-0.2, 0.3]),
     };
     let mut params = Params { limits, ..Params::default() };

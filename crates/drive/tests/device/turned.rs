@@ -3,7 +3,7 @@ use servobench_base::{PowerCommand, Rate, Setpoint};
 use servobench_cia402::units::{AxisUnit, FactorGroup, Ratio};
 use servobench_cia402::{Command as Word, Commands, Controlword, Mode};
 use servobench_drive::device::{self, Inputs, Measured, Units};
-use servobench_drive::{self as drive, Demand, Sensors, Stage, delay, feedforward, velocity};
+use servobench_drive::{self as drive, Demand, EffortLimits, Sensors, Stage, delay, feedforward, velocity};
 use servobench_motion::interpolate;
 use std::f64::consts::TAU;
 
@@ -100,7 +100,7 @@ fn moved(polarity: u8, with_force: bool) -> Seen {
             seen.torque.push(actuals.torque);
             seen.peak = seen.peak.max(following_error.abs());
         }
-        force = match drive::step(&loops, &mut firmware, &demand, &sensors) {
+        force = match drive::step(&loops, &mut firmware, &demand, EffortLimits::NONE, &sensors) {
             PowerCommand::Output(force) => force,
             PowerCommand::Off => 0.0,
             PowerCommand::Voltage(_) => panic!("a direct stage"),

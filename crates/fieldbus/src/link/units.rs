@@ -161,6 +161,13 @@ impl Scale {
         i16::try_from(self.turned(torque)).ok()
     }
 
+    /// The thousandths for a limit: the nearest, at least 1, at most the largest there is.
+    pub(crate) fn max_torque(&self, limit: f64) -> u16 {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, which is meant")]
+        let nearest = libm::floor(self.thousandths * limit + 0.5) as u16;
+        nearest.max(1)
+    }
+
     pub(crate) fn effort(&self, thousandths: i16) -> f64 {
         self.along(self.thousandth * f64::from(thousandths))
     }

@@ -14,7 +14,7 @@ use servobench_cia402::interpolated::SubMode;
 use servobench_cia402::objects::Dictionary;
 use servobench_cia402::units::Object;
 use servobench_drive::modes::interpolated::serial::Port;
-use servobench_drive::{self as drive, Demand, device, feedforward};
+use servobench_drive::{self as drive, Demand, EffortLimits, device, feedforward};
 use servobench_fieldbus::bus;
 use servobench_fieldbus::link::{self, Mailbox};
 use servobench_fieldbus::task;
@@ -149,6 +149,7 @@ impl Network {
             drive_turn: Countdown::default(),
             frame: None,
             demand: Demand::Off,
+            effort_limits: EffortLimits::NONE,
             reference,
             asked: Setpoint::default(),
             failure: None,

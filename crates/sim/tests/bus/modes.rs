@@ -55,3 +55,20 @@ start = {{ after = "push.InTorque", delay = "50 ms" }}
     assert!(when(&recording, "halt", "Done", "TRUE") > reached);
     assert!(last(&recording, "motor.velocity").abs() < 1e-3);
 }
+
+/// Oracle: the objects themselves, in thousandths of 6.09 N·m: an axis that is told 5 m/s² with a torque that does not suffice
+/// lags, and catches up later.
+#[test]
+fn torque_limits_of_the_objects_bind_in_every_mode() {
+    for mode in ["", "mode = \"csv\"\nposition_gain = \"60 1/s\"\n", "mode = \"pp\"\n"] {
+        let objects = "[drive.objects]\n\"6065h\" = 4294967295\n\"6072h\" = 150\n\"60E1h\" = 100\n";
+        let bus = if mode.contains("pp") { "[bus]\ncycle = \"1 ms\"\n" } else { BUS };
+        let free = run(&format!("{SCREW}{bus}{mode}{MOVE}"));
+        let limited = run(&format!("{SCREW}{bus}{mode}{objects}{MOVE}"));
+        let (asked, given) = (values(&free, "effort.reference"), values(&limited, "effort.reference"));
+        let most = |efforts: &[f64]| efforts.iter().fold([0.0_f64; 2], |[f, b], e| [f.max(*e), b.max(-e)]);
+        println!("{mode:?}: {:?} of {:?} N·m", most(given), most(asked));
+        assert!(most(asked)[0] > 0.15 * 6.09 && most(asked)[1] > 0.1 * 6.09, "{mode}: there is something to cut");
+        assert!((most(given)[0] - 0.15 * 6.09).abs() < 1e-12 && (most(given)[1] - 0.1 * 6.09).abs() < 1e-12, "{mode}");
+    }
+}
