@@ -189,3 +189,21 @@ fn a_table_that_creeps_has_no_mode() {
         assert!(metrics.run.absence(name).is_some(), "{name}: {:?}", metrics.run.value(name));
     }
 }
+
+/// Oracle: e^(−2·ζ·acos(ζ)/√(1 − ζ²)) of the velocity, from m·δ̈ + d·δ̇ + k·δ = 0 until the stop would pull. The tick in which the
+/// load comes, and that in which it leaves, are partly in the stop: of 35 ticks in all.
+#[test]
+fn a_load_leaves_a_damped_stop_as_the_closed_form_says_on_every_engine() {
+    let slide = scenario_file("end-stop.toml");
+    let ratio = 2190.9 / (2.0 * (1e7_f64 * 12.0).sqrt());
+    let expected = (-2.0 * ratio * ratio.acos() / (1.0 - ratio * ratio).sqrt()).exp();
+    for engine in engines() {
+        let recording = run(&slide, engine);
+        let velocity = recording.channel("load.velocity").unwrap();
+        let (before, after) = (velocity[0], velocity[velocity.len() - 1]);
+        println!("{}: {} of {expected}", engine.name(), -after / before);
+        assert!((-after / before / expected - 1.0).abs() < 2e-3, "{}: {after} m/s", engine.name());
+        let pushes = recording.channel("effort.end_stop").unwrap();
+        assert!(pushes.iter().all(|push| *push <= 0.0) && pushes.iter().any(|push| *push < -1e3));
+    }
+}

@@ -57,7 +57,7 @@ requirements! {
 }
 
 /// Channels that requirements are judged by, of those that the axis has. They are recorded at every tick, whatever is kept.
-pub const JUDGED_BY: [Signal; 9] = [
+pub const JUDGED_BY: [Signal; 10] = [
     Signal::SetpointPosition,
     Signal::SetpointAcceleration,
     Signal::MotorPosition,
@@ -67,6 +67,7 @@ pub const JUDGED_BY: [Signal; 9] = [
     Signal::EffortMotor,
     Signal::DisturbanceMotor,
     Signal::DisturbanceLoad,
+    Signal::EffortEndStop,
 ];
 
 impl fmt::Display for Requirement {

@@ -5,6 +5,7 @@
 //! their own.
 
 mod chain;
+mod end_stops;
 mod engine;
 mod exact;
 mod fmu;
@@ -24,6 +25,7 @@ mod source;
 mod switches;
 
 pub use chain::{Body, Chain, ChainParameter, Link};
+pub use end_stops::{EndStopError, EndStopParameter, EndStops};
 pub use engine::{Capabilities, Engine, EngineName};
 pub use exact::{Exact, transition};
 pub use fmu::{FmuBody, FmuModel};

@@ -1,4 +1,4 @@
-//! Where the parameters of drive and switches stand in a scenario file.
+//! Where the parameters of drive, switches and end stops stand in a scenario file.
 use crate::schema::json_schema;
 use serde_json::Value;
 use servobench_config::Parameter;
@@ -40,7 +40,7 @@ static KEYS: LazyLock<Vec<(String, String)>> = LazyLock::new(|| {
     keys
 });
 
-/// Key from which a parameter of the drive's firmware follows, or the table where several keys decide on it.
+/// Key from which a parameter of the drive's firmware or of the end stops follows, or the table where several keys decide on it.
 #[must_use]
 pub fn parameter_key(parameter: &Parameter) -> &'static str {
     let otherwise = SAID_OTHERWISE.iter().find(|(known, _)| known.name == parameter.name).map(|(_, key)| *key);
@@ -65,7 +65,7 @@ mod tests {
     use super::*;
     use crate::reading::{names, read};
     use servobench_motion::LimitParameter;
-    use servobench_plant::{ChainParameter, EncoderParameter, FrictionParameter, pmsm};
+    use servobench_plant::{ChainParameter, EncoderParameter, EndStopParameter, FrictionParameter, pmsm};
 
     fn of_the_drive() -> impl Iterator<Item = &'static Parameter> {
         let all = [
@@ -83,6 +83,7 @@ mod tests {
     fn every_example_is_a_value_of_its_parameter() {
         let others = [
             ChainParameter::ALL,
+            EndStopParameter::ALL,
             FrictionParameter::ALL,
             pmsm::Parameter::ALL,
             EncoderParameter::ALL,
@@ -125,6 +126,9 @@ mod tests {
         }
         for point in SwitchPoint::ALL {
             at(switch_key(point));
+        }
+        for (parameter, key) in EndStopParameter::ALL.iter().zip(["negative", "positive", "stiffness", "damping"]) {
+            assert_eq!(parameter_key(parameter), format!("axis.end_stops.{key}"));
         }
         assert_eq!(parameter_key(current::Parameter::DC_LINK), "drive.dc_link", "not that of the estimate");
         assert_eq!(parameter_key(current::Parameter::RESISTANCE), "drive.estimate.motor.resistance");

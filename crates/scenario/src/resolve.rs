@@ -11,6 +11,7 @@ mod coupling;
 mod current;
 mod disturbance;
 mod drive;
+mod end_stops;
 mod estimate;
 mod filter;
 mod fmu;
@@ -90,6 +91,9 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
     let fmus = fmu::others(file, coupling.as_ref(), fmu::Known { actuator: actuator.as_ref(), ..files }, report);
     let disturbances = disturbance::disturbances(file, &timing, fixed, report);
     let initial = disturbance::initial(file, fixed, report);
+    if let Some(axis) = &moved {
+        end_stops::refuse(file, axis, &initial, fixed, report);
+    }
     let record = record(file, base_rate, report);
     let limits = file.limits.given().map_or_else(Vec::new, |given| limits(given, has_window(file), report));
     say_rates_of_models(file, base_rate, report);

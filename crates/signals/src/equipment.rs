@@ -12,6 +12,8 @@ pub struct Equipment {
     pub table: bool,
     /// Whether something disturbs the motor, and the load.
     pub disturbed: [bool; 2],
+    /// Whether the load meets stops at the ends of its travel.
+    pub end_stops: bool,
     /// Whether there is a fieldbus between the motion task and the drive.
     pub bus: bool,
     /// What the firmware commands; `None` without firmware.
@@ -66,6 +68,8 @@ pub enum Presence {
     MotorDisturbed,
     /// Where something disturbs the load.
     LoadDisturbed,
+    /// With stops at the ends of the travel.
+    WithEndStops,
 }
 
 impl Presence {
@@ -83,6 +87,7 @@ impl Presence {
             Self::WithOutput => matches!(equipment.amplifier, Some(Amplifier::Ideal { .. })),
             Self::MotorDisturbed => equipment.disturbed[0],
             Self::LoadDisturbed => equipment.disturbed[1],
+            Self::WithEndStops => equipment.end_stops,
         }
     }
 }

@@ -52,6 +52,8 @@ pub struct Instant {
     pub motor_disturbance: f64,
     /// External effort on the load over the coming tick.
     pub load_disturbance: f64,
+    /// Effort of the end stops on the load over the coming tick.
+    pub end_stop: f64,
     /// Which limits bind at this tick.
     pub binds: PerLimit<bool>,
     /// In which share of the ticks since the last row they did.

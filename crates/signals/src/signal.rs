@@ -159,6 +159,8 @@ signals! {
         "external torque or force on the motor, in its own coordinate; where there is one";
     DisturbanceLoad "disturbance.load" LoadEffort Disturbance LoadDisturbed |now| now.load_disturbance;
         "external torque or force on the load; where there is one";
+    EffortEndStop "effort.end_stop" LoadEffort Mechanics WithEndStops |now| now.end_stop;
+        "torque or force of the end stops on the load; where it has some";
 }
 
 impl Signal {

@@ -160,6 +160,7 @@ impl Bench {
             transmission: scenario.axis.transmission,
             direction,
             disturbances,
+            end_stops: plant::end_stops(scenario)?,
             switches: plant::switches(scenario)?,
         };
         let machine = Machine::new([Axis::new(closed_loop, wanted, recorder, record_every)], base_rate);
@@ -245,6 +246,7 @@ fn equipment(scenario: &Scenario, table: bool) -> Equipment {
         disturbed: [scenario::DisturbedBody::Motor, scenario::DisturbedBody::Load]
             .map(|body| is_disturbed(scenario, body)),
         table,
+        end_stops: scenario.axis.end_stops.is_some(),
         bus: scenario.bus.is_some(),
         amplifier: if is_replaced { None } else { amplifier },
         motor: match amplifier {

@@ -7,7 +7,9 @@ use crate::run::Reason;
 use servobench_base::{PowerCommand, Rate, Setpoint, Tick};
 use servobench_drive::velocity::Cut;
 use servobench_drive::{self as drive, Demand, EffortLimits, Feedback, Sensors};
-use servobench_plant::{Actuation, BodyState, Encoder, Input, Mechanics, MechanicsError, PowerStage, Switches};
+use servobench_plant::{
+    Actuation, BodyState, Encoder, EndStops, Input, Mechanics, MechanicsError, PowerStage, Switches,
+};
 use servobench_scenario::DisturbedBody;
 use servobench_signals::Instant;
 use servobench_signals::PerLimit;
@@ -24,6 +26,8 @@ pub(crate) struct ClosedLoop {
     /// mechanics; otherwise 1.
     pub(crate) direction: f64,
     pub(crate) disturbances: Disturbances,
+    /// What the load meets at the ends of its travel.
+    pub(crate) end_stops: Option<EndStops>,
     /// Limit and home switches, index pulse.
     pub(crate) switches: Switches,
     pub(crate) state: State,
@@ -76,12 +80,12 @@ impl ClosedLoop {
     /// Everything of tick `k` but the mechanics' way to the next one:
     ///
     /// ```text
-    /// sample → set-point → control → power stage → disturbances
+    /// sample → set-point → control → power stage → disturbances, end stops
     /// ```
     ///
     /// Within control a slower loop's output reaches the faster loop in the same tick; the voltage of the current loop goes
     /// out one period of that loop later. The power stage takes the motor's position and velocity at k, and its mean torque
-    /// over the tick drives the mechanics; a disturbance is held over the tick.
+    /// over the tick drives the mechanics; disturbances and the push of an end stop are held over the tick.
     ///
     /// `now` is that of the tick before; what nobody writes in this loop stays as it was.
     pub(crate) fn tick(&mut self, k: u64, external: &External, recorder: &mut Recorder, now: &mut Instant) {
@@ -109,6 +113,7 @@ impl ClosedLoop {
         now.binds.voltage |= self.state.power.shortens_voltage();
         now.motor_disturbance = self.disturbances.effort_at(DisturbedBody::Motor, k) + external.motor_effort;
         now.load_disturbance = self.disturbances.effort_at(DisturbedBody::Load, k) + external.load_effort;
+        now.end_stop = self.end_stops.map_or(0.0, |stops| stops.effort(now.load, self.base_rate.period()));
         now.following_error = [now.motor_reference - now.motor.position, now.reference - now.load.position];
     }
 
@@ -243,7 +248,7 @@ impl ClosedLoop {
         self.mechanics.advance(&Input {
             actuation,
             motor_disturbance: now.motor_disturbance,
-            load_disturbance: now.load_disturbance,
+            load_disturbance: now.load_disturbance + now.end_stop,
         })?;
         Ok(())
     }

@@ -7,7 +7,7 @@ use servobench_fieldbus::FieldbusError;
 use servobench_fieldbus::trajectory::{Help, Unsendable};
 use servobench_fmi::FmuMistake;
 use servobench_motion::PlanError;
-use servobench_plant::{EngineName, MechanicsError, SwitchPoint};
+use servobench_plant::{EndStopError, EngineName, MechanicsError, SwitchPoint};
 use servobench_scenario::LONGEST_RUN;
 use servobench_signals::Signal;
 use std::fmt::Display;
@@ -25,6 +25,9 @@ pub enum BuildError {
     /// A switch is nowhere.
     #[error(transparent)]
     Switches(#[from] ParamError<SwitchPoint>),
+    /// The end stops are none, or none for these ticks.
+    #[error(transparent)]
+    EndStops(#[from] EndStopError),
     /// The value of a key of the scenario does not fit others; its name is the key.
     #[error(transparent)]
     Key(ParamError),

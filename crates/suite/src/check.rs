@@ -98,6 +98,7 @@ fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
         BuildError::Object { key, error } => return vec![Objection::new(key, error.to_string())],
         BuildError::Drive(error) => parameter_key(error.name).to_owned(),
         BuildError::Switches(error) => switch_key(error.name).to_owned(),
+        BuildError::EndStops(error) => parameter_key(error.parameter()).to_owned(),
         BuildError::Key(error) => error.name.to_owned(),
         BuildError::Mechanics(_) | BuildError::Parameter(_) => model_key(scenario).to_owned(),
         BuildError::Plan { index, .. }

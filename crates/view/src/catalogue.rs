@@ -165,6 +165,14 @@ pub(crate) const PLOTS: &[Plot] = &[
         ..PLAIN
     },
     Plot {
+        title: "End stops on the load",
+        path: "end_stops",
+        held: true,
+        needs_a_value: true,
+        curves: &[curve(&[Signal::EffortEndStop.name()], "load", style::DISTURBANCE, MIDDLE)],
+        ..PLAIN
+    },
+    Plot {
         title: "Disturbance on the motor",
         path: "motor_disturbance",
         held: true,

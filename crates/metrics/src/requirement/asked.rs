@@ -40,15 +40,17 @@ pub(super) fn sign_changes(values: impl Iterator<Item = f64>) -> usize {
     signs.filter(|next| std::mem::replace(&mut sign, *next) != *next).count()
 }
 
-/// What disturbs motor and load in `rows`, and the factor that makes each an effort of the motor.
+/// What disturbs motor and load in `rows`, end stops among it, and the factor that makes each an effort of the motor.
 fn disturbances<'a>(
     recording: &'a Recording,
     rows: &Range<usize>,
     transmission: f64,
 ) -> impl Iterator<Item = (&'a [f64], f64)> {
     let rows = rows.clone();
-    let both = [(Signal::DisturbanceMotor, 1.0), (Signal::DisturbanceLoad, transmission.abs())];
-    both.into_iter().filter_map(move |(name, scale)| Some((recording.channel(name)?.get(rows.clone())?, scale)))
+    let on_load = [Signal::DisturbanceLoad, Signal::EffortEndStop].map(|signal| (signal, transmission.abs()));
+    std::iter::once((Signal::DisturbanceMotor, 1.0))
+        .chain(on_load)
+        .filter_map(move |(name, scale)| Some((recording.channel(name)?.get(rows.clone())?, scale)))
 }
 
 /// The largest effort of the motor in `rows`, as the drive asks for it or as it is.

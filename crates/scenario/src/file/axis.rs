@@ -7,7 +7,7 @@ use servobench_base::Coordinate;
 use servobench_config::Kind::{Axis as InAxis, Plain};
 use servobench_config::quantities::{INERTIA, LEAD, MASS, POSITION, RATIO};
 use servobench_config::{any, positive};
-use servobench_plant::{ChainParameter, FrictionParameter};
+use servobench_plant::{ChainParameter, EndStopParameter, FrictionParameter};
 
 table! {
     /// The mechanics: up to three bodies in a row, `motor_side` – `table` – `load`, or a user's own MJCF file.
@@ -36,6 +36,8 @@ table! {
         modulo: f64 = positive(InAxis(&POSITION), "360 deg"),
         /// Switches along the axis, which a drive on a fieldbus sees.
         switches: Switches = (),
+        /// Stops that push the load back at the ends of its travel; default: none, it goes on.
+        end_stops: EndStops = (),
     }
 }
 
@@ -50,6 +52,19 @@ table! {
         home: HomeSwitch = (),
         /// Where in each revolution of the motor the index pulse comes; default: 0. A linear motor has none.
         index: f64 = any(Plain(&POSITION.rotary), "90 deg"),
+    }
+}
+
+table! {
+    /// Stops at the ends of the travel of the load: springs with dampers that push it back and do not hold it.
+    pub(crate) struct EndStops requires ["stiffness"] {
+        /// default: none there.
+        negative: f64 = EndStopParameter::NEGATIVE,
+        /// default: none there.
+        positive: f64 = EndStopParameter::POSITIVE,
+        stiffness: f64 = EndStopParameter::STIFFNESS,
+        /// default: none, the load bounces.
+        damping: f64 = EndStopParameter::DAMPING,
     }
 }
 

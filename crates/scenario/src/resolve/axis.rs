@@ -5,7 +5,7 @@ use crate::file;
 use crate::file::MotorKind;
 use crate::models::read_beside;
 use crate::resolve::fmu::Mechanics;
-use crate::resolve::{friction, need};
+use crate::resolve::{end_stops, friction, need};
 use crate::scenario::{Axis, AxisMechanics};
 use crate::source::{Sources, Span};
 use servobench_base::Coordinate;
@@ -43,12 +43,22 @@ pub(super) fn resolve(
     };
     let switches = switches(axis, motor_motion, report);
     let modulo = axis.modulo.optional().ok().map(Option::<&f64>::copied);
+    let end_stops = end_stops::resolve(axis, report);
     let (motion, transmission) = (motion?, transmission?);
     let fmu = match fmu {
         Some(fmu) => Some(fmu.model([motor_motion, motion], transmission)?),
         None => None,
     };
-    Some(Axis { motion, motor_motion, transmission, mechanics: mechanics?, fmu, switches: switches?, modulo: modulo? })
+    Some(Axis {
+        motion,
+        motor_motion,
+        transmission,
+        mechanics: mechanics?,
+        fmu,
+        switches: switches?,
+        end_stops: end_stops.ok()?,
+        modulo: modulo?,
+    })
 }
 
 /// Coordinate of the motor: what its own keys say, or otherwise what the axis needs. A linear axis without a lead has a

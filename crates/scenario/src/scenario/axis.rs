@@ -1,6 +1,6 @@
 //! The mechanics: bodies and what couples them.
 use servobench_base::Coordinate;
-use servobench_plant::{Chain, FmuModel, MjcfModel, Switches};
+use servobench_plant::{Chain, EndStops, FmuModel, MjcfModel, Switches};
 
 /// The mechanics of the axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,6 +17,8 @@ pub struct Axis {
     pub fmu: Option<FmuModel>,
     /// What the drive sees of its position besides encoders, wired normally open.
     pub switches: Switches,
+    /// What the load meets at the ends of its travel.
+    pub end_stops: Option<EndStops>,
     /// Period of a modulo axis; `None` for one with ends.
     pub modulo: Option<f64>,
 }

@@ -53,6 +53,13 @@ fn what_cannot_move_by_itself_cannot_be_disturbed() {
     assert_eq!(pushed(rigid, "load"), [format!("11:6: {load}")]);
     assert_eq!(pushed(elastic, "load"), [""; 0]);
 
+    let stopped = |load: &str| {
+        mistakes(&prescribed(&format!("{load}\n[axis.end_stops]\npositive = \"1 mm\"\nstiffness = \"1 N/um\"")))
+    };
+    let through = "the load is rigid with a motor that follows the set-point exactly, through any end stop";
+    assert_eq!(stopped(rigid), [format!("9:1: {through}; {help}")]);
+    assert_eq!(stopped(elastic), [""; 0]);
+
     let starts = |load: &str| {
         mistakes(&prescribed(&format!("{load}\n[initial]\nload_position = \"1 mm\"\nload_velocity = \"1 mm/s\"")))
     };
@@ -101,4 +108,47 @@ fn a_sine_that_the_ticks_cannot_show_is_refused() {
     assert_eq!(of("16 kHz"), [format!("47:13: a sine of 16000 Hz {said}")]);
     assert_eq!(of("8 kHz"), [format!("47:13: a sine of 8000 Hz {said}")]);
     assert_eq!(of("7.9 kHz"), [""; 0]);
+}
+
+#[test]
+fn end_stops_are_around_where_the_load_begins() {
+    let with = |keys: &str, rest: &str| {
+        let stops = format!("[axis.end_stops]\n{keys}\n{rest}[motor]\nkind = \"pmsm\"");
+        after("[motor]\nkind = \"pmsm\"", &stops)
+    };
+    let stiff = "stiffness = \"10 N/um\"";
+    assert_eq!(
+        with(&format!("negative = \"-1 mm\"\npositive = \"1 mm\"\n{stiff}\ndamping = \"3 kN s/m\""), ""),
+        [""; 0]
+    );
+    for (keys, rest, expected) in [
+        ("positive = \"1 mm\"", "", "15:1: missing `stiffness` in `axis.end_stops`"),
+        (stiff, "", "15:1: there is no end stop; give `negative`, `positive` or both"),
+        (
+            &format!("{stiff}\nnegative = \"-1 mm\"\npositive = \"-1 mm\""),
+            "[initial]\nload_position = \"-1 mm\"\n",
+            "18:12: the positive end is not above the negative one; swap them",
+        ),
+        (
+            &format!("{stiff}\nnegative = \"1 mm\""),
+            "",
+            "17:12: the load begins in the end stop; it begins at 0, or at `load_position` of `[initial]`",
+        ),
+        (
+            &format!("{stiff}\npositive = \"1 mm\""),
+            "[initial]\nload_position = \"2 mm\"\n",
+            "19:17: the load begins in the end stop; it begins at 0, or at `load_position` of `[initial]`",
+        ),
+        ("positive = \"1 mm\"\nstiffness = \"-1 N/um\"", "", "17:13: `stiffness` must be above zero, got \"-1 N/um\""),
+    ] {
+        assert_eq!(with(keys, rest), [expected]);
+    }
+    let turning = after(
+        "lead = \"10 mm\"\n",
+        &format!("lead = \"10 mm\"\nmodulo = \"100 mm\"\nend_stops = {{ positive = \"1 mm\", {stiff} }}\n"),
+    );
+    assert_eq!(
+        turning[0],
+        "8:10: an axis that turns on and on has no end stops; leave out `modulo` or `[axis.end_stops]`"
+    );
 }

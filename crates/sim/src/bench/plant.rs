@@ -2,7 +2,7 @@
 use crate::coupled::replaces_the_drive;
 use crate::error::BuildError;
 use servobench_plant::{
-    self as plant, BodyState, Chain, Engine, Mechanics, MechanicsSetup, ModelKind, PowerStage, Switches,
+    self as plant, BodyState, Chain, EndStops, Engine, Mechanics, MechanicsSetup, ModelKind, PowerStage, Switches,
 };
 use servobench_scenario::{Actuator, AxisMechanics, Scenario};
 
@@ -62,6 +62,20 @@ fn max_effort(scenario: &Scenario) -> f64 {
 pub(crate) fn checked(chain: &Chain) -> Result<Chain, BuildError> {
     chain.check()?;
     Ok(chain.clone())
+}
+
+/// The stops at the ends of the travel, whose load is known where it is described here.
+pub(super) fn end_stops(scenario: &Scenario) -> Result<Option<EndStops>, BuildError> {
+    if let Some(stops) = &scenario.axis.end_stops {
+        let inertia = match &scenario.axis.mechanics {
+            AxisMechanics::Bodies(chain) => {
+                chain.bodies().last().map(|load| load.inertia / (load.transmission * load.transmission))
+            }
+            AxisMechanics::Mjcf(_) | AxisMechanics::InTheFmu => None,
+        };
+        stops.check(scenario.base_rate.period(), inertia)?;
+    }
+    Ok(scenario.axis.end_stops)
 }
 
 pub(super) fn switches(scenario: &Scenario) -> Result<Switches, BuildError> {
