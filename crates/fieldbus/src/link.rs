@@ -64,7 +64,7 @@ pub use units::Units;
 
 use crate::{AxisCommand, AxisFeedback, Fault, Interpolation, LinkFault, Power, Switches, Task};
 use drive_profile::DriveProfile;
-use effort::Ramp;
+use effort::{Limit, Ramp};
 use homing::Procedure;
 use position::Position;
 use position_loop::PositionLoop;
@@ -106,6 +106,7 @@ pub struct State {
     fault: Option<LinkFault>,
     stream: Stream,
     ramp: Ramp,
+    effort_limit: Limit,
     homing: Procedure,
     drive_profile: DriveProfile,
     probe: Probe,
@@ -136,6 +137,7 @@ impl Default for State {
             fault: None,
             stream: Stream::OFF,
             ramp: Ramp::off(0.0),
+            effort_limit: Limit::default(),
             homing: Procedure::Idle,
             drive_profile: DriveProfile::default(),
             probe: Probe::default(),
@@ -169,7 +171,10 @@ pub fn step(params: &Params, state: &mut State, input: Input<'_>) -> Commands {
     state.ask_for_the_mode(params, now);
     state.put_out(params, post, now);
     state.commands.digital_outputs = state.command.digital_outputs;
-    state.commands.max_torque = state.command.effort_limit.map(|limit| params.scale.max_torque(limit));
+    // The drive is at a target a cycle after it came, or two; a position loop here compares what was put out some time ago.
+    let delay = params.delay() + params.reference_delay + 2 * params.stream.bus_cycle;
+    let effort_limit = state.effort_limit.step(state.command.effort_limit, delay, now);
+    state.commands.max_torque = effort_limit.map(|limit| params.scale.max_torque(limit));
     let received = (&state.actuals, state.position.as_ref());
     state.commands.touch_probe_function =
         state.probe.step(params, state.command.touch_probe, received, (state.received_at, now));

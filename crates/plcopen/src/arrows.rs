@@ -4,6 +4,8 @@
 //! The standard has no numbers but for its six notes; arrows 1 to 6 are these. Arrows 14 and 15 are ours: the generator of order 4
 //! and Rockwell's axis move go from rest to rest, and a table of positions may end with a velocity.
 //!
+//! Arrow 16 is that of part 5: a step of homing leaves the axis in Homing, until a block ends it.
+//!
 //! `MC_PositionProfile` leads to a last position and says Done there, so that it is a Discrete Motion; of the profiles of velocity
 //! and acceleration the standard says (sections 3.15 and 3.16) that the axis stays in Continuous Motion.
 use crate::blocks::BlockName;
@@ -66,7 +68,7 @@ pub struct Arrow {
 }
 
 /// Every arrow, in the order of its number.
-pub const ARROWS: [Arrow; 15] = [
+pub const ARROWS: [Arrow; 16] = [
     Arrow {
         number: 1,
         from: &[Disabled, Standstill, Homing, DiscreteMotion, ContinuousMotion, Stopping],
@@ -91,6 +93,7 @@ pub const ARROWS: [Arrow; 15] = [
             Cause::Block(BlockName::Home),
             Cause::Block(BlockName::HomeDirect),
             Cause::Block(BlockName::HomeAbsolute),
+            Cause::Block(BlockName::StepBlock),
         ],
     },
     Arrow { number: 8, from: &[Homing, DiscreteMotion], to: Standstill, causes: &[Cause::Done] },
@@ -144,6 +147,17 @@ pub const ARROWS: [Arrow; 15] = [
         causes: &[Cause::Block(BlockName::Profile4th), Cause::Block(BlockName::AxisMove)],
     },
     Arrow { number: 15, from: &[DiscreteMotion], to: ContinuousMotion, causes: &[Cause::DoneMoving] },
+    Arrow {
+        number: 16,
+        from: &[Homing],
+        to: Homing,
+        causes: &[
+            Cause::Block(BlockName::StepBlock),
+            Cause::Block(BlockName::HomeDirect),
+            Cause::Block(BlockName::HomeAbsolute),
+            Cause::Block(BlockName::FinishHoming),
+        ],
+    },
 ];
 
 impl BlockName {

@@ -12,6 +12,7 @@ mod brake_pre_trajectory;
 mod commands;
 mod inputs_outputs;
 mod modulo;
+mod obstacle;
 mod parameters;
 mod queue;
 mod run;
@@ -27,6 +28,7 @@ use crate::ledger::{CommandId, Ledger, Progress};
 use crate::params::AxisParams;
 use crate::state::AxisState;
 use activity::{Activity, HomingWait};
+use obstacle::HomingSteps;
 use parameters::Supervision;
 use queue::Queue;
 use servobench_base::{ParamError, Setpoint};
@@ -55,6 +57,7 @@ pub struct Axis {
     /// Position that the program sees, less that of the drive.
     offset: f64,
     is_homed: bool,
+    homing_steps: HomingSteps,
     power: PowerRequest,
     reset: Reset,
     /// The MC_Stop that holds the axis as long as its Execute is TRUE.
@@ -98,6 +101,7 @@ impl Axis {
             feedback: AxisFeedback::default(),
             offset: 0.0,
             is_homed: false,
+            homing_steps: HomingSteps::default(),
             power: PowerRequest::default(),
             reset: Reset::default(),
             stop_holder: None,
@@ -141,7 +145,12 @@ impl Axis {
                 Task::Home { position: *position }
             }
             Activity::Effort(effort) => Task::Effort(effort.present),
-            Activity::Rest | Activity::Moving(_) | Activity::Homing(_) | Activity::Leaving(_) | Activity::Led(_) => {
+            Activity::Rest
+            | Activity::Moving(_)
+            | Activity::Homing(_)
+            | Activity::Search(_)
+            | Activity::Leaving(_)
+            | Activity::Led(_) => {
                 if let Some(start) = self.params.velocity_ramps {
                     Task::Drive(self.velocity_command(start))
                 } else {
@@ -157,7 +166,7 @@ impl Axis {
             task,
             digital_outputs: self.digital_outputs,
             touch_probe: self.probe,
-            effort_limit: None,
+            effort_limit: self.effort_limit(),
         }
     }
 
@@ -202,7 +211,7 @@ impl Axis {
         self.offset
     }
 
-    /// Whether MC_Home has found the reference.
+    /// Whether the position counts from a reference.
     #[must_use]
     pub const fn is_homed(&self) -> bool {
         self.is_homed

@@ -29,6 +29,7 @@ mod axis_move;
 mod digital;
 mod digital_cam_switch;
 mod execution;
+mod finish_homing;
 mod halt_superimposed;
 mod home;
 mod motion;
@@ -51,6 +52,7 @@ mod read_motion_state;
 mod reset;
 mod set_override;
 mod set_position;
+mod step_block;
 mod stop;
 mod time_profile;
 mod torque_control;
@@ -77,6 +79,7 @@ pub use digital_cam_switch::{
     TrackOptions, ValueSource,
 };
 pub use execution::Report;
+pub use finish_homing::{FinishHoming, FinishHomingInputs};
 pub use halt_superimposed::{HaltSuperimposed, HaltSuperimposedInputs};
 pub use home::{Home, HomeAbsolute, HomeAbsoluteInputs, HomeDirect, HomeDirectInputs, HomeInputs};
 pub use motion::{MotionBlock, MotionInputs};
@@ -107,6 +110,7 @@ pub use read_motion_state::{ReadMotionState, ReadMotionStateOutputs};
 pub use reset::{Reset, ResetInputs};
 pub use set_override::{SetOverride, SetOverrideInputs, SetOverrideOutputs};
 pub use set_position::{SetPosition, SetPositionInputs};
+pub use step_block::{StepBlock, StepBlockInputs};
 pub use stop::{Halt, HaltInputs, Stop, StopInputs, StopOutputs};
 pub use time_profile::{
     AccelerationProfile, AccelerationProfileInputs, ProfileOutputs, VelocityProfile, VelocityProfileInputs,
@@ -116,7 +120,7 @@ pub use touch_probe::{AbortTrigger, AbortTriggerInputs, TouchProbe, TouchProbeIn
 
 list_inputs! {
     Position "position" changes InputType::Quantity(any(Axis(&POSITION), "250 mm")),
-        "Target position" + ", of MC_Home, MC_HomeDirect and MC_SetPosition the position that the axis is given";
+        "Target position" + ", of MC_Home, MC_HomeDirect, MC_StepBlock and MC_SetPosition the position that the axis is given";
     Distance "distance" changes InputType::Quantity(any(Axis(&POSITION), "-250 mm")), "Distance";
     Velocity "velocity" changes InputType::Quantity(any(Axis(&VELOCITY), "30 m/min")),
         "Velocity; of MC_MoveVelocity it may be negative";
@@ -140,6 +144,18 @@ list_inputs! {
     Torque "torque" changes InputType::Quantity(any(Motor(&EFFORT), "2 Nm")), "Torque, of a linear motor the force";
     TorqueRamp "torque_ramp" changes InputType::Quantity(positive(Motor(&EFFORT_RATE), "10 Nm/s")),
         "Largest change of the torque" + "; at once unless given";
+    TorqueLimit "torque_limit" stays InputType::Quantity(positive(Motor(&EFFORT), "1 Nm")),
+        "Largest torque of MC_StepBlock (6072h), at which it is held by an obstacle";
+    TorqueTolerance "torque_tolerance" stays InputType::Quantity(positive(Motor(&EFFORT), "0.05 Nm")),
+        "By how much the torque may be below that at an obstacle" + "; by 5 % of it unless given";
+    DetectionVelocityLimit "detection_velocity_limit" stays InputType::Quantity(positive(Axis(&VELOCITY), "1 mm/s")),
+        "Velocity below which the axis is held by an obstacle";
+    DetectionVelocityTime "detection_velocity_time" stays InputType::Quantity(not_negative(Plain(&TIME), "50 ms")),
+        "For how long it is to be that slow";
+    TimeLimit "time_limit" stays InputType::Quantity(positive(Plain(&TIME), "20 s")),
+        "Longest time of MC_StepBlock" + "; without an end unless given";
+    DistanceLimit "distance_limit" stays InputType::Quantity(positive(Axis(&POSITION), "600 mm")),
+        "Longest way of MC_StepBlock" + "; without an end unless given";
     VelocityFactor "velocity_factor" changes InputType::Quantity(not_negative(Plain(&RATIO), "50 %")),
         "Factor of all velocities" + "; 1 unless given";
     AccelerationFactor "acceleration_factor" changes InputType::Quantity(positive(Plain(&RATIO), "50 %")),
@@ -284,6 +300,8 @@ list_blocks! {
     Home: Home, "MC_Home" command, "homes by the method of the drive (6098h)";
     HomeDirect: HomeDirect, "MC_HomeDirect" command, "gives the axis its reference where it stands";
     HomeAbsolute: HomeAbsolute, "MC_HomeAbsolute" command, "takes the reference of an absolute encoder";
+    StepBlock: StepBlock, "MC_StepBlock" command, "runs against an obstacle with limited torque and takes it as the reference";
+    FinishHoming: FinishHoming, "MC_FinishHoming" command, "ends steps of homing, by a distance away from the reference";
     Stop: Stop, "MC_Stop" command, "brakes to rest and lets no other motion begin while `Execute` is TRUE";
     Halt: Halt, "MC_Halt" command, "brakes to rest; another motion may take over";
     Reset: Reset, "MC_Reset", "leaves ErrorStop";

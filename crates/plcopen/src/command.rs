@@ -156,6 +156,10 @@ pub enum Goal {
     Rest,
     /// To a reference: the position counts from it.
     Reference(Reference),
+    /// Against an obstacle, with limited effort: the position counts from it.
+    Obstacle(Obstacle),
+    /// By a distance away from the reference that was found, which ends homing.
+    Away(f64),
     /// To an effort, kept from then on.
     Effort {
         /// Effort (N·m or N).
@@ -178,6 +182,63 @@ pub enum Reference {
     Here(f64),
     /// From the zero of the drive's encoder.
     Encoder,
+}
+
+/// How an obstacle is looked for, and what counts as one: the axis gives the effort, within its tolerance, and is slower than the
+/// velocity for so long.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Obstacle {
+    /// Which way: positive or negative.
+    pub direction: Direction,
+    /// The position that the axis has at it (m or rad).
+    pub position: f64,
+    /// Velocity below which the axis is held (m/s or rad/s).
+    pub velocity: f64,
+    /// For how long (s).
+    pub time: f64,
+    /// Largest effort of the search (N·m or N).
+    pub effort: f64,
+    /// By how much the effort may be below it where the axis is held (N·m or N).
+    pub effort_tolerance: f64,
+    /// Longest time of the search (s); may be infinite.
+    pub time_limit: f64,
+    /// Longest way of the search (m or rad); may be infinite.
+    pub distance_limit: f64,
+}
+
+impl Obstacle {
+    /// 1 upwards, −1 downwards.
+    pub(crate) fn sign(&self) -> f64 {
+        if self.direction == Direction::Negative { -1.0 } else { 1.0 }
+    }
+
+    /// # Errors
+    /// [`BlockError`] names the first input that cannot be.
+    fn check(&self, block: BlockName) -> Result<(), BlockError> {
+        finite_input(block, "SetPosition", self.position)?;
+        if !matches!(self.direction, Direction::Positive | Direction::Negative) {
+            let value = self.direction.standard_name();
+            let bound = "mcPositiveDirection or mcNegativeDirection";
+            return Err(BlockError::Direction { block, value, bound });
+        }
+        for (input, value) in [
+            ("DetectionVelocityLimit", self.velocity),
+            ("TorqueLimit", self.effort),
+            ("TorqueTolerance", self.effort_tolerance),
+        ] {
+            check_input(block, input, value, f64::INFINITY)?;
+        }
+        for (input, value) in [
+            ("DetectionVelocityTime", self.time),
+            ("TimeLimit", self.time_limit),
+            ("DistanceLimit", self.distance_limit),
+        ] {
+            if value.is_nan() || value < 0.0 {
+                return Err(BlockError::Input { block, input, value, bound: "zero or positive" });
+            }
+        }
+        Ok(())
+    }
 }
 
 /// What a course that a block gives leads to.
@@ -224,7 +285,8 @@ impl Command {
                 finite_input(block, "Distance", distance)?;
                 self.check_end_velocity(end_velocity)?;
             }
-            Goal::Additive(distance) => finite_input(block, "Distance", distance)?,
+            Goal::Additive(distance) | Goal::Away(distance) => finite_input(block, "Distance", distance)?,
+            Goal::Obstacle(obstacle) => obstacle.check(block)?,
             Goal::Velocity { velocity, direction } => {
                 finite_input(block, "Velocity", velocity)?;
                 if velocity.abs() > params.limits.velocity {
@@ -247,11 +309,11 @@ impl Command {
                 if let Reference::Search(position) | Reference::Here(position) = reference {
                     finite_input(block, "Position", position)?;
                 }
-                if !matches!(self.buffer_mode, BufferMode::Aborting | BufferMode::Buffered) {
-                    return Err(self.wrong_buffer_mode("mcAborting or mcBuffered, as homing begins at Standstill"));
-                }
             }
             Goal::Rest | Goal::Led(_) => {}
+        }
+        if self.begins_at_standstill() && !matches!(self.buffer_mode, BufferMode::Aborting | BufferMode::Buffered) {
+            return Err(self.wrong_buffer_mode("mcAborting or mcBuffered, as homing begins at Standstill"));
         }
         Ok(())
     }
@@ -281,15 +343,27 @@ impl Command {
             Goal::Absolute { end_velocity: None, .. }
             | Goal::Relative { end_velocity: None, .. }
             | Goal::Additive(_)
+            | Goal::Away(_)
             | Goal::Rest
             | Goal::Reference(_)
+            | Goal::Obstacle(_)
             | Goal::Led(_) => false,
         }
     }
 
     /// Whether it waits for the axis to be at Standstill, rather than for the command before it.
     pub(crate) const fn begins_at_standstill(&self) -> bool {
-        matches!(self.goal, Goal::Reference(_))
+        matches!(self.goal, Goal::Reference(_) | Goal::Obstacle(_) | Goal::Away(_))
+    }
+
+    /// Whether it leaves the axis in Homing, where another step or the end of homing is to follow.
+    pub(crate) const fn is_homing_step(&self) -> bool {
+        matches!(self.goal, Goal::Obstacle(_))
+    }
+
+    /// Whether the position counts from a reference after it.
+    pub(crate) const fn ends_homing(&self) -> bool {
+        matches!(self.goal, Goal::Reference(_) | Goal::Away(_))
     }
 
     pub(crate) const fn wrong_buffer_mode(&self, bound: &'static str) -> BlockError {

@@ -61,11 +61,13 @@ pub enum ErrorId {
     SoftwareLimitPassed = 0x4008,
     /// The following error was too large.
     PositionLag = 0x4009,
+    /// MC_StepBlock met nothing within its limits.
+    NoObstacle = 0x400A,
 }
 
 impl ErrorId {
     /// Every number but that of no error.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 23] = [
         Self::Input,
         Self::AboveLimit,
         Self::SumAboveLimit,
@@ -88,6 +90,7 @@ impl ErrorId {
         Self::PlanLost,
         Self::SoftwareLimitPassed,
         Self::PositionLag,
+        Self::NoObstacle,
     ];
 
     /// The number on the output.
@@ -123,6 +126,7 @@ impl ErrorId {
             Self::PlanLost => "a waiting move that had been accepted could not be planned when it became active",
             Self::SoftwareLimitPassed => "the axis was about to pass a software limit",
             Self::PositionLag => "the following error was larger than MaxPositionLag",
+            Self::NoObstacle => "MC_StepBlock met no obstacle within TimeLimit and DistanceLimit",
         }
     }
 }
@@ -367,6 +371,17 @@ pub enum AxisError {
         /// Largest magnitude (SI).
         limit: f64,
     },
+    /// A search met no obstacle within its limits.
+    #[error(
+        "MC_StepBlock: no obstacle within `{input}`, {limit}: see that there is one and that the axis reaches `TorqueLimit` at it, \
+         or raise `{input}`"
+    )]
+    NoObstacle {
+        /// The input that ended it.
+        input: &'static str,
+        /// Its value (SI).
+        limit: f64,
+    },
 }
 
 impl AxisError {
@@ -383,6 +398,7 @@ impl AxisError {
             Self::PlanLost { .. } => ErrorId::PlanLost,
             Self::SoftwareLimit { .. } => ErrorId::SoftwareLimitPassed,
             Self::PositionLag { .. } => ErrorId::PositionLag,
+            Self::NoObstacle { .. } => ErrorId::NoObstacle,
         }
     }
 }

@@ -9,7 +9,7 @@ pub enum AxisState {
     Disabled,
     /// Powered, at rest, without a command.
     Standstill,
-    /// The drive looks for its reference.
+    /// The drive looks for its reference, or steps of homing do.
     Homing,
     /// On the way to a position, through a table of positions, or to rest by MC_Halt.
     DiscreteMotion,
@@ -53,7 +53,9 @@ impl AxisState {
         match self {
             Self::Disabled => "power the axis with MC_Power and wait for its Status",
             Self::Standstill | Self::DiscreteMotion | Self::ContinuousMotion => "call it in a state that allows it",
-            Self::Homing => "wait for Done of MC_Home, or leave it with MC_Stop",
+            Self::Homing => {
+                "wait for Done of MC_Home, end steps of homing with MC_FinishHoming, or leave it with MC_Stop"
+            }
             Self::Stopping => "wait for Done of MC_Stop and let its Execute fall",
             Self::ErrorStop => "remove the cause that MC_ReadAxisError names and call MC_Reset",
         }

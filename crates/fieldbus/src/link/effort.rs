@@ -1,9 +1,29 @@
-//! Efforts from one cycle of the motion task to the next: linear, as the source has it for the torque in every mode.
+//! Limits of the effort, and efforts from one cycle of the motion task to the next: linear, as the source has it for the torque in every mode.
 //!
 //! It begins with the actual effort. Held when the next one is late, and led to zero within a cycle when it stays away for as long as set-points would be
 //! predicted.
 use super::buffer::{PREDICTED, Timing};
 use crate::Interpolation;
+
+/// The largest effort that the drive is told. One that is lifted or raised acts until the set-points from before are behind: an axis
+/// that is held by its limit would push with all it has.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Limit {
+    /// The limit that acts (N·m or N), and when it was asked for last (base ticks).
+    held: Option<(f64, u64)>,
+}
+
+impl Limit {
+    /// What the drive is told `now`, with set-points that are `delay` ticks on their way; `asked` by the motion task.
+    pub(crate) fn step(&mut self, asked: Option<f64>, delay: u64, now: u64) -> Option<f64> {
+        let is_lower = |limit: f64| asked.is_none_or(|asked| asked > limit);
+        match self.held {
+            Some((limit, since)) if is_lower(limit) && now - since <= delay => {}
+            _ => self.held = asked.map(|limit| (limit, now)),
+        }
+        self.held.map(|(limit, _)| limit)
+    }
+}
 
 /// From one effort to another (N·m or N).
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,5 +1,6 @@
 //! What the axis is doing, and how it goes on from cycle to cycle.
 use super::Axis;
+use super::obstacle::{HomingSteps, Search};
 use super::queue::Queue;
 use super::run::Run;
 use crate::arrows::{Cause, arrow};
@@ -13,7 +14,6 @@ use servobench_motion::online::Target;
 
 /// What the axis is doing.
 #[derive(Debug, Clone, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "there is no heap, and an axis has one")]
 pub(super) enum Activity {
     /// Nothing.
     Rest,
@@ -23,6 +23,8 @@ pub(super) enum Activity {
     Effort(EffortRamp),
     /// The drive looks for its reference.
     Homing(HomingWait),
+    /// Looks for an obstacle.
+    Search(Search),
     /// Waits for the drive to end a reference run that another command has taken the axis from.
     Leaving(Leaving),
     /// A block gives the set-points.
@@ -92,6 +94,7 @@ impl Activity {
             Self::Moving(Moving { id, command, .. })
             | Self::Effort(EffortRamp { id, command, .. })
             | Self::Homing(HomingWait { id, command, .. })
+            | Self::Search(Search { id, command, .. })
             | Self::Leaving(Leaving { id, command })
             | Self::Led(Led { id, command, .. }) => Some((*id, command)),
         }
@@ -164,6 +167,7 @@ impl Axis {
                     Homing::Attained | Homing::Failed => {}
                 }
             }
+            Activity::Search(_) => self.advance_search(),
             Activity::Leaving(Leaving { id, command }) => {
                 let (id, command) = (*id, *command);
                 self.base = Setpoint { v: self.feedback.velocity, ..Setpoint::at_rest(self.feedback.demanded()) };
@@ -185,6 +189,7 @@ impl Axis {
     /// From now on the position counts from a reference: what the program sees is that of the drive and `offset`.
     fn found_reference(&mut self, id: CommandId, offset: f64) {
         (self.is_homed, self.offset) = (true, offset);
+        self.homing_steps = HomingSteps::default();
         self.ledger.set(id, Progress::Done);
         self.rest();
     }
@@ -207,6 +212,11 @@ impl Axis {
                 if self.stop_holder.is_none() {
                     self.follow(Cause::StopReleased);
                 }
+            }
+            AxisState::Homing => {
+                self.is_homed = core::mem::take(&mut self.homing_steps).has_reference;
+                self.ledger.set(id, Progress::Done);
+                self.rest();
             }
             _ => {
                 self.ledger.set(id, Progress::Done);
@@ -266,7 +276,10 @@ impl Axis {
 
     /// From now on the axis does this, at `from`.
     pub(super) fn activate(&mut self, activity: Activity, from: Setpoint) {
-        self.is_homed &= !matches!(activity, Activity::Homing(_));
+        self.is_homed &= !matches!(activity, Activity::Homing(_) | Activity::Search(_));
+        if matches!(activity, Activity::Search(_)) {
+            self.homing_steps = HomingSteps::default();
+        }
         (self.activity, self.base) = (activity, from);
     }
 

@@ -5,6 +5,7 @@ use super::blending::blended;
 use super::bounds::{Bounds, Override};
 use super::brake_pre_trajectory::{planned, settled};
 use super::modulo;
+use super::obstacle::Search;
 use super::queue::Queue;
 use super::run::Run;
 use crate::arrows::{Cause, arrow};
@@ -95,14 +96,20 @@ impl Axis {
     /// The state of the axis out of which `command` leads: the present one, or Standstill where it waits for that.
     fn state_before(&self, command: &Command) -> Result<AxisState, BlockError> {
         if command.buffer_mode == BufferMode::Aborting {
-            return Ok(self.state);
+            return match self.activity {
+                Activity::Homing(_) | Activity::Leaving(_) if self.state == AxisState::Homing => {
+                    Err(BlockError::State { block: command.block, state: self.state })
+                }
+                _ => Ok(self.state),
+            };
         }
         let before = self.queue.last().or(self.activity.command().map(|(_, command)| command));
         if command.begins_at_standstill() && before.is_some_and(|before| !before.ends_at_standstill()) {
             return Err(command.wrong_buffer_mode("behind a command that ends at Standstill"));
         }
         Ok(match self.state {
-            AxisState::Homing => AxisState::Standstill,
+            _ if before.is_some_and(Command::is_homing_step) => AxisState::Homing,
+            AxisState::Homing if before.is_some() => AxisState::Standstill,
             AxisState::DiscreteMotion if command.begins_at_standstill() => AxisState::Standstill,
             state => state,
         })
@@ -110,8 +117,8 @@ impl Axis {
 
     /// Whether a position of the program will mean something when a command with this mode begins.
     pub(crate) fn has_reference(&self, buffer_mode: BufferMode) -> bool {
-        let is_homing = |command: &Command| matches!(command.goal, Goal::Reference(_));
-        !self.params.needs_homing || self.is_homed || buffer_mode != BufferMode::Aborting && self.below().any(is_homing)
+        let is_homed_before = || buffer_mode != BufferMode::Aborting && self.below().any(Command::ends_homing);
+        !self.params.needs_homing || self.is_homed || is_homed_before()
     }
 
     /// Changes the inputs of a command that runs or waits.
@@ -136,6 +143,7 @@ impl Axis {
                     (Goal::Relative { distance, end_velocity }, _) => {
                         Target::Position { x: origin + distance, v: end_velocity.unwrap_or(0.0) }
                     }
+                    (Goal::Away(distance), _) => Target::Position { x: origin + distance, v: 0.0 },
                     _ => self.target(&command, &from, origin)?,
                 };
                 self.check_target(command.block, &from, &target)?;
@@ -202,6 +210,9 @@ impl Axis {
             Activity::Effort(_) | Activity::Homing(_) | Activity::Leaving(_) if self.is_beginning => {
                 Start { from: self.base, lead: 0.0 }
             }
+            Activity::Search(search) if search.is_held() => {
+                Start { from: Setpoint::at_rest(self.feedback.position), lead: 0.0 }
+            }
             Activity::Led(led) => {
                 let from = settled(&self.setpoint, &Bounds::of_axis(&self.params.limits));
                 Start { from, lead: if led.is_fresh { 0.0 } else { cycle_time } }
@@ -242,6 +253,7 @@ impl Axis {
             }
             Activity::Effort(EffortRamp { id: own, .. })
             | Activity::Homing(HomingWait { id: own, .. })
+            | Activity::Search(Search { id: own, .. })
             | Activity::Leaving(Leaving { id: own, .. }) => *own = id,
             Activity::Rest => {}
         }
@@ -280,6 +292,12 @@ impl Axis {
                 Ok(Activity::Effort(EffortRamp { id, command, target, step, present }))
             }
             Goal::Reference(reference) => Ok(Activity::Homing(HomingWait { id, command, reference, has_begun: false })),
+            Goal::Obstacle(obstacle) => {
+                if let Some(input) = self.forbidden(obstacle.sign()) {
+                    return Err(BlockError::NotPermitted { block, input });
+                }
+                Ok(Activity::Search(Search::new(id, command, obstacle, self.feedback.position)))
+            }
             Goal::Led(_) => {
                 let offset = self.offset;
                 Ok(Activity::Led(Led { id, command, offset, is_fresh: true, cycles: 0 }))
@@ -346,9 +364,12 @@ impl Axis {
             Goal::Relative { distance, end_velocity } => {
                 Target::Position { x: from.x + distance, v: end_velocity.unwrap_or(0.0) }
             }
+            Goal::Away(distance) => Target::Position { x: from.x + distance, v: 0.0 },
             Goal::Additive(distance) => Target::Position { x: additive_origin + distance, v: 0.0 },
             Goal::Velocity { velocity, direction } => Target::Velocity(self.directed(velocity, direction)),
-            Goal::Rest | Goal::Reference(_) | Goal::Effort { .. } | Goal::Led(_) => Target::Velocity(0.0),
+            Goal::Rest | Goal::Reference(_) | Goal::Obstacle(_) | Goal::Effort { .. } | Goal::Led(_) => {
+                Target::Velocity(0.0)
+            }
         })
     }
 
@@ -404,6 +425,7 @@ impl Axis {
         };
         if let Target::Position { x, v: 0.0 } = target
             && !command.is_endless()
+            && !command.ends_homing()
         {
             let direction = if x < from.x { -1.0 } else { 1.0 };
             let wanted = self.exit_speed(x, direction, bounds.velocity, behind, 0)?;

@@ -4,12 +4,13 @@ use servobench_fieldbus::Fault;
 use servobench_motion::pvt::Knot;
 use servobench_plcopen::{
     AccelerationProfile, AccelerationProfileInputs, AxisMove, AxisMoveInputs, AxisState, BlockName, ErrorId,
-    FunctionBlock, Halt, HaltInputs, Home, HomeAbsolute, HomeAbsoluteInputs, HomeDirect, HomeDirectInputs, HomeInputs,
-    MoveAbsolute, MoveAbsoluteInputs, MoveAdditive, MoveAdditiveInputs, MoveContinuousAbsolute,
-    MoveContinuousAbsoluteInputs, MoveContinuousRelative, MoveContinuousRelativeInputs, MoveRelative,
-    MoveRelativeInputs, MoveSuperimposed, MoveSuperimposedInputs, MoveVelocity, MoveVelocityInputs, Output, Outputs,
-    Pair, PositionProfile, PositionProfileInputs, Profile4th, Profile4thInputs, Reset, ResetInputs, Stop, StopInputs,
-    TimePosition, TorqueControl, TorqueControlInputs, VelocityProfile, VelocityProfileInputs,
+    FinishHoming, FinishHomingInputs, FunctionBlock, Halt, HaltInputs, Home, HomeAbsolute, HomeAbsoluteInputs,
+    HomeDirect, HomeDirectInputs, HomeInputs, MoveAbsolute, MoveAbsoluteInputs, MoveAdditive, MoveAdditiveInputs,
+    MoveContinuousAbsolute, MoveContinuousAbsoluteInputs, MoveContinuousRelative, MoveContinuousRelativeInputs,
+    MoveRelative, MoveRelativeInputs, MoveSuperimposed, MoveSuperimposedInputs, MoveVelocity, MoveVelocityInputs,
+    Output, Outputs, Pair, PositionProfile, PositionProfileInputs, Profile4th, Profile4thInputs, Reset, ResetInputs,
+    StepBlock, StepBlockInputs, Stop, StopInputs, TimePosition, TorqueControl, TorqueControlInputs, VelocityProfile,
+    VelocityProfileInputs,
 };
 
 /// An axis that a program has led to `state`; in motion where the state has one.
@@ -85,6 +86,13 @@ pub(crate) fn execute(bench: &mut Bench, block: BlockName) -> Result<(), ErrorId
         BlockName::HomeAbsolute => {
             call::<HomeAbsolute>(bench, &HomeAbsoluteInputs { execute, ..HomeAbsoluteInputs::default() })
         }
+        BlockName::StepBlock => {
+            call::<StepBlock>(bench, &StepBlockInputs { execute, ..StepBlockInputs::pushing(0.2, &limits) })
+        }
+        BlockName::FinishHoming => call::<FinishHoming>(
+            bench,
+            &FinishHomingInputs { execute, distance: -0.1, ..FinishHomingInputs::within(&limits) },
+        ),
         BlockName::TorqueControl => call::<TorqueControl>(
             bench,
             &TorqueControlInputs { execute, torque: 0.2, ..TorqueControlInputs::within(&limits) },

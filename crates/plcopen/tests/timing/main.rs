@@ -11,6 +11,7 @@ mod endless;
 mod execute;
 mod figures;
 mod homing;
+mod homing_steps;
 mod inputs;
 mod inputs_outputs;
 mod modulo;

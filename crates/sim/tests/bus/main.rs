@@ -3,6 +3,7 @@ mod ahead;
 mod bench;
 mod counters;
 mod faults;
+mod homing_steps;
 mod modes;
 mod position_loop;
 mod put_out;
