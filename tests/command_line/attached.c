@@ -26,7 +26,8 @@ typedef struct {
     const Callbacks *callbacks;
 } Attached;
 enum { OK, WARNING, DISCARD, ERROR, FATAL };
-enum { NONE = 1, CRASH, HANG, HOARD, PRINT, LOG, EXIT, NAN_OUTPUT, FAIL, FAIL_FOR_GOOD, REFUSE, END };
+enum { NONE = 1, CRASH, HANG, HOARD, PRINT, LOG, EXIT, NAN_OUTPUT, FAIL, FAIL_FOR_GOOD, REFUSE, END,
+       ABORT, OVERFLOW };
 enum { BLOCK = 1 << 16, BLOCKS = 1 << 14 }; /* a gibibyte */
 
 const char *fmi2GetTypesPlatform(void) { return "default"; }
@@ -115,10 +116,20 @@ static void flood(Attached *a) {
     }
 }
 
+/* Until there is no stack left. */
+static int overflow(int depth) {
+    volatile char frame[4096];
+    frame[0] = (char)depth;
+    return overflow(depth + 1) + frame[0];
+}
+
 int fmi2DoStep(void *c, double time, double h, int keeps) {
     enum { PARTS = 16 };
     Attached *a = c;
+    /* What a drill asks for, whatever the parameter says. */
+    const char *asked = getenv("ATTACHED_MISCHIEF");
     (void)keeps;
+    if (time >= 0.1 && asked) a->mischief = atoi(asked);
     if (time >= 0.1) {
         switch (a->mischief) {
         case CRASH:
@@ -132,6 +143,11 @@ int fmi2DoStep(void *c, double time, double h, int keeps) {
         case PRINT:
         case LOG:
             flood(a);
+            break;
+        case ABORT:
+            abort();
+        case OVERFLOW:
+            overflow(0);
             break;
         case EXIT:
             fputs("attached: the licence has expired\n", stderr);

@@ -1,4 +1,5 @@
 //! The program as its users see it: output, files, exit codes. It belongs to the crate `cli`, whose binary it runs.
+mod attached;
 mod check;
 mod compare;
 mod completions;
@@ -6,6 +7,8 @@ mod fmu;
 mod fmu_standard;
 mod fmu_suite;
 mod getting_started;
+#[cfg(unix)]
+mod interrupted;
 mod man;
 mod objects;
 mod output;

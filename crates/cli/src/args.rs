@@ -190,6 +190,11 @@ pub(crate) struct RunArgs {
     /// Folder for results.json and the recordings [default: servobench-out; of the demo servobench-out/demo].
     #[arg(long, value_name = "DIR", value_parser = file())]
     pub(crate) out: Option<PathBuf>,
+    /// Run what is left of the suite in this folder, which was ended before its time; scenarios and options are those that it was
+    /// begun with.
+    #[arg(long, value_name = "DIR", value_parser = file(),
+          conflicts_with_all = ["scenarios", "overrides", "out", "engine", "keep", "rrd", "junit", "worker_timeout"])]
+    pub(crate) resume: Option<PathBuf>,
     /// Engine to use instead of the scenarios' own; may be given several times.
     #[arg(long, value_name = "NAME", value_parser = engine())]
     pub(crate) engine: Vec<EngineName>,
@@ -214,6 +219,18 @@ pub(crate) struct RunArgs {
     /// Show all metrics of every run, as of a single one.
     #[arg(long, short, conflicts_with = "quiet")]
     pub(crate) verbose: bool,
+}
+
+/// The arguments of this process, for a command that is to be given again; none when one of them is no text.
+pub(crate) fn command_line() -> Vec<String> {
+    let words = std::env::args_os().skip(1).map(|word| word.into_string().ok());
+    words.collect::<Option<_>>().unwrap_or_default()
+}
+
+/// The command that `words` give, as [`command_line`] has them.
+pub(crate) fn of(words: &[String]) -> Option<Command> {
+    let program = std::iter::once("servobench");
+    Cli::try_parse_from(program.chain(words.iter().map(String::as_str))).ok().map(|cli| cli.command)
 }
 
 /// Which recordings a run leaves.

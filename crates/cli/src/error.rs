@@ -3,10 +3,10 @@
 use crate::commands::{Findings, PlanMistake};
 use crate::diagnostics::mistakes;
 use crate::exit::{Exit, of_run_error};
-use crate::output::{COMPARISON, RESULTS};
 use crate::sources::{Unusable, named, told};
 use servobench_config::Choice as _;
 use servobench_report::ReportError;
+use servobench_results::{COMPARISON, FolderError, JournalError, RESULTS, ResultsError};
 use servobench_scenario::{Diagnostic, LoadError, Sources};
 use servobench_structured_text::ExportError;
 use servobench_suite::{CompareError, Job, RunError};
@@ -44,13 +44,21 @@ pub(crate) enum CliError {
     #[error("cannot read `{}`: {error}", .path.display())]
     Read { path: PathBuf, error: io::Error },
     #[error("cannot read `{}`: {error}", .path.display())]
-    ReadResults { path: PathBuf, error: ReportError },
+    ReadResults { path: PathBuf, error: ResultsError },
     #[error("there is no `{RESULTS}` and no `{COMPARISON}` in `{}`; name a recording, or a folder that `run` or `compare` \
              wrote", .folder.display())]
     NoResults { folder: PathBuf },
+    #[error("`{}` is the recording of another run than the results beside it: run the scenarios again, or name the recording \
+             itself", .0.display())]
+    OtherRecording(PathBuf),
     #[error("no run in `{}` left a recording: each was invalid, or run with `--keep failed` or `--keep none`; run it again \
              with `--keep all`", .folder.display())]
     NoRecording { folder: PathBuf },
+    #[error("there is no suite in `{}` that could go on: `run` writes one there with `--out`", .0.display())]
+    NothingToResume(PathBuf),
+    #[error("the suite in `{}` cannot go on: its scenarios, a file that they name, or the program are not those it was begun \
+             with; run it again", .0.display())]
+    OtherSuite(PathBuf),
     #[error("--rrd: with `--keep none` no recording is left for the viewer; leave one of them out")]
     NothingForTheViewer,
     #[error(transparent)]
@@ -75,7 +83,7 @@ pub(crate) enum CliError {
     #[error(transparent)]
     Plc(#[from] ExportError),
     #[cfg(feature = "fmu")]
-    #[error("{}", servobench_report::printable(&.0.to_string()))]
+    #[error("{}", servobench_results::printable(&.0.to_string()))]
     Fmu(servobench_fmi::FmuError),
     #[cfg(feature = "fmu")]
     #[error(transparent)]
@@ -88,6 +96,12 @@ pub(crate) enum CliError {
     Check(Findings),
 
     // What could not be carried out.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+    #[error(transparent)]
+    Journal(#[from] JournalError),
+    #[error(transparent)]
+    Results(#[from] ResultsError),
     #[error("cannot make the folder `{}`: {error}", .folder.display())]
     MakeFolder { folder: PathBuf, error: io::Error },
     #[error("cannot write `{}`: {error}", .path.display())]
@@ -161,6 +175,9 @@ impl CliError {
             | Self::ReadResults { .. }
             | Self::NoResults { .. }
             | Self::NoRecording { .. }
+            | Self::OtherRecording(_)
+            | Self::NothingToResume(_)
+            | Self::OtherSuite(_)
             | Self::NothingForTheViewer
             | Self::ReadRecording(_)
             | Self::Timing { .. }
@@ -177,7 +194,10 @@ impl CliError {
                 failed.iter().fold(Exit::Run, |worst, failed| worst.worse(of_run_error(&failed.error)))
             }
             Self::Check(findings) => findings.exit(),
-            Self::MakeFolder { .. }
+            Self::Folder(_)
+            | Self::Journal(_)
+            | Self::Results(_)
+            | Self::MakeFolder { .. }
             | Self::Write { .. }
             | Self::WritePlan { .. }
             | Self::Print(_)

@@ -6,13 +6,13 @@
 //! | 2 | invalid input: usage, scenario, model |
 //! | 3 | error: a run could not be carried out (engine missing, native failure), or what it gave could not be written |
 //! | 4 | failed: a limit is missed, a requirement broken, an expected fault missing |
-//! | 130, 143 | interrupted (SIGINT, SIGTERM), as a shell says it |
+//! | 130, 143 | interrupted (SIGINT, SIGTERM), as a shell says it, whatever came of the runs until then |
 //!
 //! Of several: 2 before 3 before 4.
 //!
 //! 1 is never ours: it is what a native library ends a process with. A reader that goes away (`| head`) changes nothing:
 //! the verdict keeps its code.
-use servobench_report::Outcome;
+use servobench_results::Outcome;
 use servobench_suite::RunError;
 use std::process::ExitCode;
 
@@ -27,6 +27,8 @@ pub(crate) enum Exit {
     Run,
     /// A run failed.
     Failed,
+    /// It was told to stop.
+    Interrupted,
 }
 
 impl Exit {
@@ -37,6 +39,7 @@ impl Exit {
             Self::Input => 2,
             Self::Run => 3,
             Self::Failed => 4,
+            Self::Interrupted => 130,
         }
     }
 
@@ -47,6 +50,7 @@ impl Exit {
             Self::Failed => 1,
             Self::Run => 2,
             Self::Input => 3,
+            Self::Interrupted => 4,
         };
         if rank(other) > rank(self) { other } else { self }
     }

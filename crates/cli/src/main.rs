@@ -1,6 +1,7 @@
 //! The `servobench` command: arguments, printing, exit codes. It computes nothing.
 
 mod args;
+mod build_id;
 mod commands;
 mod console;
 mod diagnostics;
@@ -22,6 +23,10 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let cli = args::parse();
+    if let Err(error) = interrupt::refuse_large_files() {
+        console::say(&format!("servobench: {error}\n"));
+        return error.exit().into();
+    }
     // A panic is a defect of ours; it must not end the program with a code that means something else.
     catch_unwind(|| dispatch(&cli.command)).unwrap_or(Exit::Run).into()
 }
@@ -45,7 +50,7 @@ fn dispatch(command: &Command) -> Exit {
         Command::Man(args) => commands::man(args),
         Command::Worker(args) => commands::worker(args),
     };
-    interrupt::end_if_interrupted();
+    interrupt::end_if_ending();
     done.unwrap_or_else(|error| {
         console::say(&format!("servobench: {error}\n"));
         error.exit()

@@ -1,24 +1,20 @@
 //! What a command leaves on the disk: recordings, results, diagrams, reports. Each file is there whole or not at all.
 use crate::args::Keep;
+use crate::build_id;
 use crate::console::print;
 use crate::error::CliError;
-use crate::interrupt;
 use crate::sources::is_stdin;
 use jiff::Timestamp;
 use servobench_metrics::{Metrics, Verdict};
-use servobench_report::{LimitPlace, Outcome, Results, RunIdentity, RunResult, TimingOptions, timing_diagram};
+use servobench_report::{TimingOptions, timing_diagram};
+use servobench_results::{COMPARISON, Digest, Digester, LimitPlace, Outcome, Results, RunIdentity, RunResult};
 use servobench_scenario::{Parameter, Scenario, Step};
 use servobench_suite::{Job, channel_limits};
-use servobench_trace::Recording;
+use servobench_trace::{Recording, seal_of};
 use servobench_view::ViewOptions;
 use std::collections::HashSet;
 use std::ffi::OsStr;
 use std::path::Path;
-
-/// What `run` leaves beside its recordings.
-pub(crate) const RESULTS: &str = "results.json";
-/// What `compare` leaves beside its recording.
-pub(crate) const COMPARISON: &str = "comparison.json";
 
 /// Makes the folder for everything.
 pub(crate) fn make_folder(folder: &Path) -> Result<(), CliError> {
@@ -36,6 +32,11 @@ pub(crate) fn write_file_anywhere(path: &Path, text: impl AsRef<[u8]>) -> Result
 /// Writes the whole file or nothing.
 pub(crate) fn write_file(path: &Path, text: impl AsRef<[u8]>) -> Result<(), CliError> {
     servobench_trace::write_whole(path, text).map_err(|error| CliError::Write { path: path.to_owned(), error })
+}
+
+/// The same, and makes sure that it is on the disk before it takes the place of what was there.
+pub(crate) fn write_durably(path: &Path, text: impl AsRef<[u8]>) -> Result<(), CliError> {
+    servobench_trace::write_durably(path, text).map_err(|error| CliError::Write { path: path.to_owned(), error })
 }
 
 /// What stands for standard output behind `-o`.
@@ -77,6 +78,8 @@ pub(crate) fn write_time() -> Result<Timestamp, CliError> {
 pub(crate) struct Written {
     /// Name of the recording.
     pub(crate) recording: Option<String>,
+    /// Its seal.
+    pub(crate) recording_seal: Option<String>,
     /// Names of all files, that of the recording among them.
     pub(crate) files: Vec<String>,
 }
@@ -105,55 +108,30 @@ fn write_each(
     written: &mut Written,
 ) -> Result<(), CliError> {
     let name = format!("{}.parquet", job.id);
-    recording.write_parquet(folder.join(&name)).map_err(CliError::WriteRecording)?;
+    let path = folder.join(&name);
+    recording.write_parquet(&path).map_err(CliError::WriteRecording)?;
+    written.recording_seal = seal_of(&path).map_err(|error| CliError::Write { path, error })?;
     written.recording = Some(name.clone());
-    written.note(folder, name);
+    written.note(name);
     if !recording.signals.is_empty() {
         let name = format!("{}.timing.svg", job.id);
         let diagram = timing_diagram(recording, &TimingOptions::default())?;
         write_file(&folder.join(&name), &diagram)?;
-        written.note(folder, name);
+        written.note(name);
     }
     if let Some(verdict) = shown {
         let name = format!("{}.rrd", job.id);
         let options = ViewOptions { verdicts: vec![verdict], ..view_options(&job.scenario) };
         servobench_view::write_rrd(recording, folder.join(&name), &options)?;
-        written.note(folder, name);
+        written.note(name);
     }
     Ok(())
 }
 
 impl Written {
-    fn note(&mut self, folder: &Path, name: String) {
-        interrupt::written(&folder.join(&name));
+    fn note(&mut self, name: String) {
         self.files.push(name);
     }
-}
-
-/// Removes what the run before left in `folder`: exactly the files that its `list` names, and the list; returns how many
-/// recordings, diagrams and drawings that were. What the list of another command beside it names stays.
-///
-/// # Errors
-/// When nobody can tell, in words: the list is none of ours. Everything stays.
-pub(crate) fn remove_former(folder: &Path, list: &str) -> Result<usize, String> {
-    let read = |list: &str| std::fs::read_to_string(folder.join(list));
-    let Ok(text) = read(list) else { return Ok(0) };
-    let former = Results::from_json(&text).map_err(|error| format!("`{}`: {error}", folder.join(list).display()))?;
-    let other = if list == RESULTS { COMPARISON } else { RESULTS };
-    let other = read(other).ok().and_then(|text| Results::from_json(&text).ok());
-    let kept: HashSet<&str> = other.iter().flat_map(Results::files).collect();
-    let names: HashSet<&str> = former.files().filter(|name| is_left_by_a_run(name) && !kept.contains(name)).collect();
-    let removed = names.into_iter().filter(|name| std::fs::remove_file(folder.join(name)).is_ok()).count();
-    // It names nothing any more; what takes its place is written at the end.
-    std::fs::remove_file(folder.join(list)).ok();
-    Ok(removed)
-}
-
-/// Whether `name` is that of a file beside the list, of a kind that a run leaves: a list may come from anywhere.
-fn is_left_by_a_run(name: &str) -> bool {
-    let path = Path::new(name);
-    let is_beside = path.file_name() == Some(OsStr::new(name)) && !name.contains(['/', '\\']);
-    is_beside && path.extension().is_some_and(|kind| kind == "parquet" || kind == "rrd" || kind == "svg")
 }
 
 /// How many recordings in `folder` neither `results` nor the comparison beside them name. A folder that cannot be read
@@ -177,12 +155,24 @@ pub(crate) fn identity(job: &Job, written: Written) -> RunIdentity {
         name: scenario.name.clone(),
         file: scenario.path.as_ref().map(|path| path.display().to_string()),
         engine: job.engine.to_string(),
+        inputs: inputs_of(job),
         recording: written.recording,
+        recording_seal: written.recording_seal,
         files: written.files,
         parameters: scenario.parameters.iter().map(|one| (one.key.clone(), one.value.clone())).collect(),
         overrides: scenario.overrides.iter().map(ToString::to_string).collect(),
         limits: limit_places(scenario),
     }
+}
+
+/// Digest of all that the run of `job` is made of.
+pub(crate) fn inputs_of(job: &Job) -> Digest {
+    let scenario = &job.scenario;
+    let start = Digester::default().with(build_id::program()).with(job.engine.to_string()).with(&scenario.name);
+    let start = scenario.overrides.iter().fold(start.with(&job.text), |digester, one| digester.with(one.to_string()));
+    // Models are in the parameters, as they are written.
+    let all = scenario.parameters.iter().fold(start, |digester, one| digester.with(&one.key).with(&one.value));
+    all.finish()
 }
 
 /// Where the scenario file has which limit: `limits.settling_time`, `program.1.limits.overshoot.max`.
@@ -247,16 +237,6 @@ pub(crate) fn view_options(scenario: &Scenario) -> ViewOptions {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn only_files_beside_the_list_are_ever_removed() {
-        for name in ["a.exact.parquet", "a.exact.rrd", "a.exact.timing.svg", "-a.parquet", "a b.parquet"] {
-            assert!(is_left_by_a_run(name), "{name}");
-        }
-        for name in ["../a.parquet", "/a.parquet", "b/a.parquet", "..", "", ".", "a.toml", "results.json", "a\\b.rrd"] {
-            assert!(!is_left_by_a_run(name), "{name}");
-        }
-    }
 
     #[test]
     fn limits_are_placed_by_the_move_that_has_them() {

@@ -9,11 +9,26 @@ use std::ffi::OsStr;
 use std::fmt;
 use std::io::{IsTerminal, Read};
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 /// What stands for standard input among the scenarios.
 const STDIN: &str = "-";
 /// What a scenario from there is called, and its text in messages.
 const NAME_OF_STDIN: &str = "stdin";
+
+/// What came in on standard input, or is taken to have: it can be read once.
+static TEXT_OF_STDIN: OnceLock<String> = OnceLock::new();
+
+/// What came in on standard input, if it was read.
+pub(crate) fn stdin() -> Option<String> {
+    TEXT_OF_STDIN.get().cloned()
+}
+
+/// From now on `text` is what comes in on standard input.
+pub(crate) fn give_stdin(text: String) {
+    // What was read already stays.
+    TEXT_OF_STDIN.set(text).ok();
+}
 
 /// Whether `path` is standard input and no file.
 pub(crate) fn is_stdin(path: &Path) -> bool {
@@ -129,6 +144,18 @@ fn loaded(path: &Path, overrides: &[Override]) -> Result<Loaded, LoadError> {
     if !is_stdin(path) {
         return load_with(path, overrides);
     }
+    let text = if let Some(text) = TEXT_OF_STDIN.get() {
+        text.clone()
+    } else {
+        let text = read_stdin().map_err(|error| LoadError::Read { path: NAME_OF_STDIN.into(), error })?;
+        TEXT_OF_STDIN.get_or_init(|| text).clone()
+    };
+    let mut loaded = parse_with(NAME_OF_STDIN, &text, Some(Path::new("")), overrides)?;
+    loaded.scenario.path = Some(path.to_owned());
+    Ok(loaded)
+}
+
+fn read_stdin() -> std::io::Result<String> {
     let mut stdin = std::io::stdin();
     if stdin.is_terminal() {
         say(
@@ -136,11 +163,8 @@ fn loaded(path: &Path, overrides: &[Override]) -> Result<Loaded, LoadError> {
         );
     }
     let mut text = String::new();
-    let unreadable = |error| LoadError::Read { path: NAME_OF_STDIN.into(), error };
-    stdin.read_to_string(&mut text).map_err(unreadable)?;
-    let mut loaded = parse_with(NAME_OF_STDIN, &text, Some(Path::new("")), overrides)?;
-    loaded.scenario.path = Some(path.to_owned());
-    Ok(loaded)
+    stdin.read_to_string(&mut text)?;
+    Ok(text)
 }
 
 /// The embedded demo.

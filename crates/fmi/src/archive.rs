@@ -16,7 +16,7 @@ use crate::error::{ArchiveProblem, FmuError};
 use folder::{Own, writing};
 use name::Names;
 
-pub use folder::remove_unpacked;
+pub use folder::{remove_abandoned, remove_unpacked};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};

@@ -18,7 +18,7 @@ mod request;
 mod setup;
 mod slave;
 
-pub use archive::{Archive, Limits, Unpacked, remove_unpacked};
+pub use archive::{Archive, Limits, Unpacked, remove_abandoned, remove_unpacked};
 pub use description::{
     Alias, BaseUnit, Causality, CoSimulation, DataType, DefaultExperiment, DependencyKind, Dimension, DisplayUnit,
     Enumeration, Exponents, Initial, IntervalVariability, Item, LogCategory, ModelDescription, ModelStructure, Ticks,

@@ -1,7 +1,7 @@
 //! Limits of the machine that bound during a run, in words.
 use crate::failures::lifted;
-use crate::results::RunResult;
 use servobench_metrics::Quantity;
+use servobench_results::RunResult;
 use servobench_trace::Event;
 
 /// One line for each limit that bound, unless a reason of the verdict or what is lifted says it: `voltage limit bound for 636 ms`.
@@ -49,8 +49,8 @@ impl Bound<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples;
     use servobench_metrics::Standing;
+    use servobench_results::samples;
 
     #[test]
     fn times_are_summed_for_each_limit() {

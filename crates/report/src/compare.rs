@@ -8,10 +8,11 @@ mod words;
 
 use crate::bound_limits::bound_limits;
 use crate::failures::lifted;
-use crate::results::{Outcome, RunResult};
-use crate::text::{printable, wrapped};
+use crate::text::wrapped;
 use relation::Relation;
 use servobench_metrics::Name;
+use servobench_results::printable;
+use servobench_results::{Outcome, RunResult};
 use servobench_trace::Move;
 
 /// A run under the name that it has in the comparison.
@@ -122,7 +123,7 @@ fn force_or_torque(unit: &str) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::{broken, jerk, short};
+    use servobench_results::samples::{broken, jerk, short};
 
     #[test]
     fn what_failed_is_said_of_the_run_that_failed() {
@@ -155,8 +156,9 @@ mod tests {
 
     #[test]
     fn rounding_is_no_improvement() {
-        let [one, two] = [3.33e-16, 2.22e-16]
-            .map(|error| crate::samples::of_numbers("one", [1.3, 0.0, error, 1e-6, 39.0, 1.4e-15, 170.0, 60.0]));
+        let [one, two] = [3.33e-16, 2.22e-16].map(|error| {
+            servobench_results::samples::of_numbers("one", [1.3, 0.0, error, 1e-6, 39.0, 1.4e-15, 170.0, 60.0])
+        });
         let runs = vec![
             Compared { label: "one", result: &one, moves: &[] },
             Compared { label: "two", result: &two, moves: &[] },

@@ -1,7 +1,7 @@
 //! What made a run fail, part by part: which limit is missed by how much, what requirement is broken, which fault is missing.
-use crate::results::{MetricResult, RunResult};
 use indexmap::IndexMap;
 use servobench_metrics::{Name, Quantity, Standing};
+use servobench_results::{MetricResult, RunResult};
 
 /// A limit that is missed.
 #[derive(Debug, Clone, PartialEq)]
@@ -113,7 +113,7 @@ fn percent(share: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples;
+    use servobench_results::samples;
 
     #[test]
     fn how_far_beyond_a_limit() {

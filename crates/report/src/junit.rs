@@ -2,16 +2,17 @@
 use crate::error::ReportError;
 use crate::failures::{lifted, missed_limits, other_failures};
 use crate::metric_table::metric_table;
-use crate::results::{Outcome, Results, RunResult};
 use crate::said::last_words;
 use crate::style::Style;
-use crate::text::printable;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
+use servobench_results::printable;
+use servobench_results::{Outcome, Results, RunResult, Unfinished};
 use std::time::Duration;
 
 /// One test case for each scenario and engine, with the `times` (wall clock) that the runs took: results hold none; without
 /// any the times are left out.
 ///
+/// A run that did not end is an error, so that a suite that was ended before its time is never taken for one that passed.
 /// What failed is a failure: its message says which limit is missed by how much or which requirement is broken, its text
 /// says all of that with file and line, and the case has the attributes `file` and `line` of the first limit. What is invalid
 /// or could not be carried out is an error. The verdict is a property; metrics, lifted requirements and warnings are the
@@ -23,6 +24,7 @@ pub fn junit(results: &Results, times: &[Duration]) -> Result<String, ReportErro
     let mut suite = TestSuite::new("servobench");
     let cases = results.scenarios.iter().enumerate().map(|(k, run)| case(run, times.get(k).copied()));
     suite.add_test_cases(cases);
+    suite.add_test_cases(results.unfinished.iter().map(unfinished));
     let mut report = Report::new("servobench");
     if !times.is_empty() {
         let sum = times.iter().sum();
@@ -65,6 +67,15 @@ fn case(run: &RunResult, time: Option<Duration>) -> TestCase {
     if !said.is_empty() {
         case.set_system_err(said.join("\n"));
     }
+    case
+}
+
+/// A run that has no result.
+fn unfinished(run: &Unfinished) -> TestCase {
+    let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
+    status.set_type("unfinished").set_message("the suite was ended before this run");
+    let mut case = TestCase::new(format!("{} [{}]", printable(&run.name).trim(), run.engine), status);
+    case.set_classname(run.file.as_deref().unwrap_or("servobench"));
     case
 }
 
@@ -113,7 +124,7 @@ fn failures(run: &RunResult) -> (&'static str, Vec<String>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples;
+    use servobench_results::samples;
 
     fn read(times: &[Duration]) -> Report {
         Report::deserialize_from_str(&junit(&samples::results(), times).unwrap()).unwrap()
@@ -124,7 +135,8 @@ mod tests {
         let TestCaseStatus::NonSuccess { kind, ty, message, description, .. } = &case.status else {
             panic!("{case:?}")
         };
-        let [ty, message, description] = [ty, message, description].map(|of| of.as_ref().unwrap().as_str());
+        let [ty, message, description] =
+            [ty, message, description].map(|of| of.as_ref().map_or("", quick_junit::XmlString::as_str));
         (*kind, ty, message, description)
     }
 
@@ -169,6 +181,17 @@ mod tests {
         assert!(message.starts_with("arrives: the load ended 200 mm short of 200 mm"), "{message}");
         let out = cases[2].system_out.as_ref().unwrap().as_str();
         assert!(out.starts_with("lifted: bounded\n"), "{out}");
+    }
+
+    #[test]
+    fn a_run_that_did_not_end_is_an_error() {
+        let mut results = samples::results();
+        results.unfinished =
+            vec![Unfinished { name: "last".into(), file: Some("last.toml".into()), engine: "mujoco".into() }];
+        let report = Report::deserialize_from_str(&junit(&results, &[]).unwrap()).unwrap();
+        assert_eq!((report.tests, report.errors), (8, 3));
+        let (kind, ty, message, _) = told(&report.test_suites[0].test_cases[7]);
+        assert_eq!((kind, ty, message), (NonSuccessKind::Error, "unfinished", "the suite was ended before this run"));
     }
 
     #[test]

@@ -1,7 +1,7 @@
-//! What a person or a machine reads of a run: tables, comparison in words, `results.json`, JUnit, the drawing of a plan,
+//! What a person or a machine reads of a run: tables, comparison in words, JUnit, the drawing of a plan,
 //! the timing diagram of a run, the object dictionary of a drive, what is inside an FMU.
 //!
-//! What is said of runs is made from [`Results`], which hold nothing that differs between two runs of the same scenario:
+//! What is said of runs is made from [`Results`](servobench_results::Results), which hold nothing that differs between two runs of the same scenario:
 //! no wall-clock time, no host. So every text here is the same to the byte, too.
 
 mod bound_limits;
@@ -14,11 +14,8 @@ mod junit;
 mod metric_table;
 mod object_table;
 mod plan;
-mod results;
 mod row_notes;
 mod said;
-#[cfg(test)]
-mod samples;
 mod style;
 mod text;
 mod timing;
@@ -30,8 +27,7 @@ pub use fmu_table::fmu_table;
 pub use junit::junit;
 pub use object_table::object_table;
 pub use plan::{PlannedMove, PointChoice, Unsent};
-pub use results::{LimitPlace, Outcome, Results, RunIdentity, RunResult};
 pub use style::Style;
-pub use text::{elided, printable, wrapped};
+pub use text::{elided, wrapped};
 pub use timing::{TimingOptions, timing_diagram};
 pub use verdict_table::{brief, verdict_table};

@@ -1,8 +1,8 @@
 //! All metrics of one run, one to a line.
-use crate::results::{MetricResult, RunResult};
 use crate::style::{Ink, Style};
 use crate::text::{widest, wrapped};
 use servobench_metrics::Quantity;
+use servobench_results::{MetricResult, RunResult};
 
 const VALUE: usize = 11;
 const USED: usize = 6;
@@ -86,8 +86,8 @@ fn limit(metric: &MetricResult, value: f64, digits: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::MoveResult;
-    use crate::samples;
+    use servobench_results::MoveResult;
+    use servobench_results::samples;
 
     #[test]
     fn all_metrics_of_a_run() {

@@ -1,10 +1,11 @@
 //! What stands below the row of a run: what failed, what is lifted, and a handful of warnings and events.
 use crate::bound_limits::bound_limits;
 use crate::failures::{lifted, missed_limits, other_failures};
-use crate::results::{Outcome, RunResult};
 use crate::said::{last_words, warnings};
 use crate::style::{Ink, Style};
-use crate::text::{printable, widest, wrapped};
+use crate::text::{widest, wrapped};
+use servobench_results::printable;
+use servobench_results::{Outcome, RunResult};
 use servobench_trace::Event;
 
 /// Warnings and events that are shown of a run, and reasons of one that was not carried out; the others are counted.
@@ -120,7 +121,7 @@ impl Notes {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples;
+    use servobench_results::samples;
 
     #[test]
     fn of_many_events_a_handful_is_shown() {

@@ -1,7 +1,7 @@
 //! What FMUs said, below the row of their run: all at the end of a run that broke off, how much of it warns of any other.
-use crate::results::RunResult;
 use crate::text::{elided, wrapped};
 use servobench_base::Severity;
+use servobench_results::RunResult;
 use servobench_trace::LogEntry;
 
 /// Lines of one source that are shown of a run that broke off: the last ones.
@@ -116,13 +116,13 @@ impl Line<'_> {
 
 /// What a terminal may get of somebody else's line.
 fn printable(text: &str) -> String {
-    elided(&crate::text::printable(text), LONGEST)
+    elided(&servobench_results::printable(text), LONGEST)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples;
+    use servobench_results::samples;
 
     fn entry(severity: Severity, start: f64, end: f64, times: u64, text: &str) -> LogEntry {
         LogEntry { source: "FMU load".into(), severity, start, end, times, text: text.into() }

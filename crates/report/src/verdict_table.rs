@@ -1,10 +1,11 @@
 //! The table at the end of a run: what failed last, directly above the count, with the reasons below its row.
 use crate::metric_table::metric_table;
-use crate::results::{Outcome, Results, RunResult};
 use crate::row_notes::row_notes;
 use crate::style::{Ink, Style};
-use crate::text::{printable, widest, wrapped};
+use crate::text::{widest, wrapped};
 use servobench_metrics::{Name, Quantity};
+use servobench_results::printable;
+use servobench_results::{Outcome, Results, RunResult};
 
 /// Numbers that every row shows, with their headings.
 const COLUMNS: [(&str, Name); 4] = [
@@ -180,8 +181,12 @@ impl Columns {
 fn summary(results: &Results, style: Style) -> String {
     let runs = results.scenarios.len();
     let parts = ORDER.into_iter().map(|outcome| (outcome, results.count_of(outcome))).filter(|(_, count)| *count > 0);
-    let parts: Vec<_> =
+    let mut parts: Vec<_> =
         parts.map(|(outcome, count)| style.paint(shown(outcome).1, &format!("{count} {}", outcome.word()))).collect();
+    let unfinished = results.unfinished.len();
+    if unfinished > 0 {
+        parts.push(style.paint(shown(Outcome::Error).1, &format!("{unfinished} more did not end")));
+    }
     format!("{runs} run{}: {}", if runs == 1 { "" } else { "s" }, parts.join(", "))
 }
 
@@ -193,7 +198,7 @@ fn line(table: &mut String, text: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples;
+    use servobench_results::samples;
 
     #[test]
     fn at_eighty_columns() {

@@ -5,8 +5,10 @@
 //! Thrift's compact protocol: field 2 − 1, type binary (`0x18`), and the length 16 (`0x10`).
 //! Source: Apache Thrift, *Thrift Compact protocol encoding*; Apache Parquet, *File Format* (footer length and `PAR1`
 //! in the last eight bytes).
+use std::fs::File;
 use std::hash::Hasher;
 use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::Path;
 use twox_hash::XxHash64;
 
 /// Key of the seal.
@@ -25,6 +27,25 @@ pub(crate) fn apply(file: &mut (impl Read + Write + Seek)) -> io::Result<bool> {
     file.seek(SeekFrom::Start(start))?;
     file.write_all(digits.as_bytes())?;
     Ok(true)
+}
+
+/// The seal in the file at `path`, as 16 hexadecimal digits: it names the bytes of a recording as a hash of them does. Whether they are
+/// still those that were sealed is looked at when the recording is read. `None` when there is none.
+///
+/// # Errors
+/// Those of the operating system.
+pub fn seal_of(path: impl AsRef<Path>) -> io::Result<Option<String>> {
+    let found = find(&mut File::open(path)?)?;
+    Ok(found.and_then(|(_, digits)| String::from_utf8(digits).ok()))
+}
+
+/// The same, if the bytes of the file are still those that were sealed.
+///
+/// # Errors
+/// Those of the operating system.
+pub fn verified_seal_of(path: impl AsRef<Path>) -> io::Result<Option<String>> {
+    let whole = holds(&mut File::open(&path)?)? == Some(true);
+    if whole { seal_of(path) } else { Ok(None) }
 }
 
 /// Whether the bytes of the file are those that were sealed; `None` when it has no seal.

@@ -15,6 +15,22 @@ pub fn write_whole(path: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> io::Resul
     stream_whole(path, |file| file.write_all(bytes.as_ref()))
 }
 
+/// The same, and makes sure that the bytes are on the disk before they take the place of what was there, and that their name is
+/// before it returns: the end of the machine leaves the one or the other.
+///
+/// # Errors
+/// As [`write_whole`].
+pub fn write_durably(path: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> io::Result<()> {
+    let path = path.as_ref();
+    let mut unfinished = Unfinished::create(path)?;
+    unfinished.file.write_all(bytes.as_ref())?;
+    unfinished.file.sync_all()?;
+    unfinished.finish()?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
+    // A folder that cannot be opened or made sure of holds the file all the same.
+    File::open(folder).and_then(|folder| folder.sync_all()).or(Ok(()))
+}
+
 /// Writes what `write` gives out, whole or not at all, as [`write_whole`] does it: for files larger than memory.
 ///
 /// # Errors

@@ -1,15 +1,16 @@
 //! Which command the arguments ask for.
 use crate::failure::Failure;
 use crate::workspace::Workspace;
-use crate::{bench, checks, demo, dist, test, wheel};
+use crate::{bench, checks, demo, dist, drill, test, wheel};
 
 /// Every command: arguments and what it does.
-const COMMANDS: [(&str, &str); 8] = [
+const COMMANDS: [(&str, &str); 9] = [
     ("setup", "fetch the MuJoCo library, once"),
     ("demo", "set up, build, run the demo and compare its two moves"),
     ("test [--without-mujoco]", "set up, then run every check and test that CI runs"),
     ("outside", "run the outside clients alone: what others wrote against ours"),
     ("bench [--json]", "measure a tick of the closed loop on every engine"),
+    ("drill faults", "end and starve 200 suites at random, and compare what --resume makes of them"),
     ("checks", "check dependency arrows, licences and text"),
     ("viewer", "fetch the Rerun viewer that `servobench view` opens, once"),
     ("dist", "pack binary, library, models and scenarios into one archive"),
@@ -33,6 +34,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), Failure> {
         ["outside"] => test::run_outside(&Workspace::find()?),
         ["bench"] => bench::run(&Workspace::find()?, false),
         ["bench", "--json"] => bench::run(&Workspace::find()?, true),
+        ["drill", "faults"] => drill::faults(&Workspace::find()?),
         ["checks"] => checks::run(&Workspace::find()?),
         ["viewer"] => {
             let viewer = wheel::RERUN.ensure(&Workspace::find()?)?;

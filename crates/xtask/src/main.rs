@@ -6,6 +6,7 @@ mod checks;
 mod command;
 mod demo;
 mod dist;
+mod drill;
 mod failure;
 mod outside;
 mod python;

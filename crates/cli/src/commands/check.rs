@@ -11,7 +11,8 @@ use crate::workers;
 use miette::Severity;
 use servobench_config::Choice as _;
 use servobench_plant::EngineName;
-use servobench_report::{Style, elided, printable};
+use servobench_report::{Style, elided};
+use servobench_results::printable;
 use servobench_scenario::{Diagnostic, Loaded};
 use servobench_sim::ConnectionDelay;
 use servobench_suite::{

@@ -5,12 +5,13 @@ use crate::engines;
 use crate::error::{CliError, FailedRun};
 use crate::exit::{Exit, of_outcome};
 use crate::interrupt;
-use crate::output::{self, COMPARISON, Written};
+use crate::output::{self, Written};
 use crate::progress::Progress;
 use crate::sources;
 use crate::workers;
 use servobench_config::Choice as _;
-use servobench_report::{Compared, Comparison, Outcome, Results, RunResult, elided, printable, wrapped};
+use servobench_report::{Compared, Comparison, elided, wrapped};
+use servobench_results::{COMPARISON, Folder, Outcome, Results, RunResult, printable};
 use servobench_scenario::{Difference, differences};
 use servobench_suite::{
     Job, Run, RunError, comparable, execute, jobs, limits_agree, map_in_parallel, only_setpoints_differ,
@@ -36,15 +37,15 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
         Some(Equal::Duration) => to_equal_duration(&mut jobs)?,
     }
     let labels = labels(&jobs.iter().map(|job| job.scenario.name.as_str()).collect::<Vec<_>>());
-    output::make_folder(&args.out)?;
+    let folder = Folder::open(&args.out)?;
     interrupt::watch(&args.out)?;
     let runs = carried_out(args, &jobs)?;
 
-    if let Err(why) = output::remove_former(&args.out, COMPARISON) {
+    if let Some(why) = folder.remove_former(COMPARISON).stays {
         say(&format!("what the comparison before left stays: {why}\n"));
     }
     let recording = write_recording(args, &jobs, &labels, &runs)?;
-    let written = Written { recording: Some(recording.clone()), files: vec![recording.clone()] };
+    let written = Written { recording: Some(recording.clone()), files: vec![recording.clone()], ..Written::default() };
     let results: Vec<RunResult> = jobs
         .iter()
         .zip(&runs)

@@ -1,18 +1,25 @@
 //! `servobench run`: scenarios in, verdicts out.
+mod ledger;
+mod resume;
 mod wanted;
 
-use crate::args::{Keep, RunArgs};
+use crate::args::{self, Keep, RunArgs};
 use crate::console::{print, program, say, style};
 use crate::engines;
 use crate::error::CliError;
 use crate::exit::{Exit, of_outcome, of_run_error};
 use crate::interrupt;
-use crate::output::{self, RESULTS, Written};
+use crate::output::{self, Written};
 use crate::progress::Progress;
+use crate::sources;
 use crate::workers;
-use servobench_report::{Outcome, Results, RunIdentity, RunResult, brief, junit, verdict_table};
+use ledger::{Closed, Ledger};
+use resume::{Begun, Found};
+use servobench_report::{brief, junit, verdict_table};
+use servobench_results::{Folder, Former, Outcome, RESULTS, Results, RunIdentity, RunResult, Suite};
 use servobench_suite::{Broken, Engines, Job, Run, WorkerCommand, execute, map_in_parallel};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 use wanted::Wanted;
 
@@ -23,8 +30,22 @@ const OUT_OF_THE_DEMO: &str = "servobench-out/demo";
 /// What a run came to, and how long that took by the clock.
 type Timed = (RunResult, Duration);
 
-/// Runs the scenarios, judges them and writes what came of them.
+/// Runs the scenarios, judges them and writes what came of them; or what is left of a suite that was ended before its time.
 pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
+    match &args.resume {
+        None => begun(args),
+        Some(folder) => match resume::suite_in(folder, args)? {
+            Found::Begun(suite) => resumed(*suite),
+            Found::Complete(results) => {
+                print(&text_of(&results, args, folder, &Former::default()))?;
+                Ok(exit_of(&results))
+            }
+        },
+    }
+}
+
+/// A suite from its beginning.
+fn begun(args: &RunArgs) -> Result<Exit, CliError> {
     let engines = engines::installed();
     if args.rrd && args.keep == Keep::None {
         return Err(CliError::NothingForTheViewer);
@@ -43,42 +64,77 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
             say(&wanted.demo(&out));
         }
     }
-    output::make_folder(&out)?;
-    interrupt::watch(&out)?;
-    let removed = output::remove_former(&out, RESULTS);
-    let ended = carried_out(args, &wanted.jobs, &engines, &out)?;
-    let (runs, times): (Vec<_>, Vec<_>) = wanted.in_order(ended).into_iter().unzip();
-    let results = Results::new(runs);
+    let folder = Folder::open(&out)?;
+    let former = folder.remove_former(RESULTS);
+    let here = std::env::current_dir().map_err(|error| CliError::Read { path: ".".into(), error })?;
+    let suite = Suite::new(wanted.digest(args), args::command_line(), here, sources::stdin(), wanted.stems());
+    let ledger = Ledger::begin(folder, args.junit.clone(), wanted.planned(), &suite)?;
+    carried_out(args, &wanted, &engines, ledger, &former)
+}
 
-    let mut exit = results.scenarios.iter().fold(Exit::Passed, |worst, run| worst.worse(of_outcome(run.verdict)));
-    let mut troubles = Vec::new();
-    let mut keep = |done: Result<(), CliError>| {
-        if let Err(error) = done {
-            exit = exit.worse(error.exit());
-            troubles.push(error);
-        }
-    };
-    keep(write_results(&results, &out));
-    if let Some(path) = &args.junit {
-        keep(write_junit(&results, &times, path));
+/// The rest of a suite: the same runs, of which those that ended are not run again.
+fn resumed(begun: Begun) -> Result<Exit, CliError> {
+    let Begun { folder, journal, suite, finished, args } = begun;
+    let engines = engines::installed();
+    let wanted = Wanted::of(&args, &engines)?;
+    if wanted.digest(&args) != suite.suite {
+        return Err(CliError::OtherSuite(folder.path().to_owned()));
     }
+    if !args.quiet {
+        say(&format!("{} of {} runs had ended; running the others\n", finished.len(), wanted.planned().len()));
+    }
+    let ledger = Ledger::resume(folder, args.junit.clone(), wanted.planned(), (journal, &suite), finished);
+    carried_out(&args, &wanted, &engines, ledger, &Former::default())
+}
+
+/// Runs what has not ended yet, and says what came of all.
+fn carried_out(
+    args: &RunArgs,
+    wanted: &Wanted,
+    engines: &Engines,
+    ledger: Ledger,
+    former: &Former,
+) -> Result<Exit, CliError> {
+    let ledger = Arc::new(ledger);
+    let for_signals = Arc::clone(&ledger);
+    interrupt::watch_suite(ledger.folder().path(), move || {
+        if let Some(Closed { results, troubles }) = for_signals.close() {
+            say(&brief(&results));
+            say_all(&troubles);
+        }
+    })?;
+    wanted.note_unusable(&ledger);
+    run_all(args, wanted, engines, &ledger)?;
+    interrupt::end_if_ending();
+    let Some(Closed { results, troubles }) = ledger.close() else { return Ok(Exit::Interrupted) };
+    let exit = troubles.iter().fold(exit_of(&results), |worst, trouble| worst.worse(trouble.exit()));
     // What could not be written does not keep the verdicts from being said.
-    print(&text_of(&results, args, &out, removed))?;
+    print(&text_of(&results, args, ledger.folder().path(), former))?;
+    say_all(&troubles);
+    Ok(if interrupt::is_stopping() { Exit::Interrupted } else { exit })
+}
+
+/// What a suite ends with.
+fn exit_of(results: &Results) -> Exit {
+    results.scenarios.iter().fold(Exit::Passed, |worst, run| worst.worse(of_outcome(run.verdict)))
+}
+
+fn say_all(troubles: &[CliError]) {
     for trouble in troubles {
         say(&format!("servobench: {trouble}\n"));
     }
-    Ok(exit)
 }
 
 /// Every file is wrong: the mistakes are what is said, and nothing of earlier runs is touched.
 fn nothing_to_run(args: &RunArgs, wanted: Wanted) -> Result<Exit, CliError> {
-    let ended: Vec<Timed> = wanted.in_order(Vec::new());
-    let (runs, times): (Vec<_>, Vec<_>) = ended.into_iter().unzip();
+    let runs = wanted.invalid();
+    let times = vec![Duration::ZERO; runs.len()];
     let results = Results::new(runs);
-    if let Some(path) = &args.junit
-        && let Err(error) = write_junit(&results, &times, path)
-    {
-        say(&format!("servobench: {error}\n"));
+    if let Some(path) = &args.junit {
+        let text = junit(&results, &times).map_err(CliError::from);
+        if let Err(error) = text.and_then(|text| output::write_file_anywhere(path, text)) {
+            say(&format!("servobench: {error}\n"));
+        }
     }
     if !args.quiet {
         return Err(CliError::Scenarios(wanted.into_unusable()));
@@ -87,25 +143,34 @@ fn nothing_to_run(args: &RunArgs, wanted: Wanted) -> Result<Exit, CliError> {
     Ok(Exit::Input)
 }
 
-/// Runs all jobs.
-fn carried_out(args: &RunArgs, jobs: &[Job], engines: &Engines, out: &Path) -> Result<Vec<Timed>, CliError> {
-    let worker = workers::command(out, args.worker_timeout)?;
-    let progress = Progress::new(jobs.len(), args.quiet);
-    let ended = map_in_parallel(jobs, workers::at_a_time(args.jobs), Job::memory, |job| {
-        let start = Instant::now();
-        let result = one(job, engines, &worker, args, out, &progress);
-        (result, start.elapsed())
-    });
-    let ended = jobs.iter().zip(ended).map(|(job, ended)| {
-        ended.unwrap_or_else(|panic| {
+/// Runs all jobs that have not ended. Once the suite is to stop, none begins.
+fn run_all(args: &RunArgs, wanted: &Wanted, engines: &Engines, ledger: &Ledger) -> Result<(), CliError> {
+    let folder = ledger.folder().path();
+    let worker = workers::command(folder, args.worker_timeout)?;
+    let pending: Vec<(usize, &Job)> = wanted.places().filter(|(index, _)| !ledger.has(*index)).collect();
+    let progress = Progress::new(pending.len(), args.quiet);
+    let ended = map_in_parallel(
+        &pending,
+        workers::at_a_time(args.jobs),
+        |(_, job)| job.memory(),
+        |(index, job)| {
+            if interrupt::is_stopping() {
+                return;
+            }
+            let start = Instant::now();
+            let result = one(job, engines, &worker, args, folder, &progress);
+            ledger.note(*index, result, start.elapsed());
+        },
+    );
+    for ((index, job), ended) in pending.iter().zip(ended) {
+        if let Err(panic) = ended {
             progress.ended(&job.id, Outcome::Error.word());
             let run = output::identity(job, Written::default());
-            (RunResult::error(run, None, vec![panic.to_string()]), Duration::ZERO)
-        })
-    });
-    let ended = ended.collect();
+            ledger.note(*index, RunResult::error(run, None, vec![panic.to_string()]), Duration::ZERO);
+        }
+    }
     progress.finish();
-    Ok(ended)
+    Ok(())
 }
 
 /// Runs one job and writes its recording, if that is to stay. One that cannot be written takes the verdict away.
@@ -157,19 +222,7 @@ fn one(
     result
 }
 
-fn write_results(results: &Results, out: &Path) -> Result<(), CliError> {
-    let text = results.to_json()?;
-    output::write_file(&out.join(RESULTS), &text)?;
-    interrupt::told();
-    Ok(())
-}
-
-fn write_junit(results: &Results, times: &[Duration], path: &Path) -> Result<(), CliError> {
-    let text = junit(results, times)?;
-    output::write_file_anywhere(path, &text)
-}
-
-fn text_of(results: &Results, args: &RunArgs, out: &Path, removed: Result<usize, String>) -> String {
+fn text_of(results: &Results, args: &RunArgs, out: &Path, former: &Former) -> String {
     if args.quiet {
         return brief(results);
     }
@@ -178,11 +231,11 @@ fn text_of(results: &Results, args: &RunArgs, out: &Path, removed: Result<usize,
         1 => ", with a recording that they do not name".into(),
         count => format!(", with {count} recordings that they do not name"),
     };
-    let removed = match removed {
-        Ok(0) => String::new(),
-        Ok(1) => "; removed 1 file of the run before".into(),
-        Ok(count) => format!("; removed {count} files of the run before"),
-        Err(why) => format!("; what the run before left stays: {why}"),
+    let removed = match former {
+        Former { stays: Some(why), .. } => format!("; what the run before left stays: {why}"),
+        Former { removed: 0, .. } => String::new(),
+        Former { removed: 1, .. } => "; removed 1 file of the run before".into(),
+        Former { removed, .. } => format!("; removed {removed} files of the run before"),
     };
     let out = out.display();
     let kept = results.scenarios.iter().filter(|run| run.recording.is_some()).count();
@@ -193,6 +246,10 @@ fn text_of(results: &Results, args: &RunArgs, out: &Path, removed: Result<usize,
         (_, kept) => format!("results and {kept} recordings"),
     };
     let mut parts = vec![verdict_table(results, style(), args.verbose), format!("{what}: {out}{older}{removed}\n")];
+    if !results.unfinished.is_empty() {
+        let (count, of) = (results.unfinished.len(), results.unfinished.len() + results.scenarios.len());
+        parts.push(format!("{count} of {of} runs did not end; run them: {} run --resume {out}\n", program()));
+    }
     parts.extend((args.rrd && kept > 0).then(|| format!("look at them: {} view {out}\n", program())));
     parts.concat()
 }

@@ -2,9 +2,9 @@
 use crate::args::ViewArgs;
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::output::{self, COMPARISON, RESULTS};
-use servobench_report::{Results, RunResult};
-use servobench_trace::Recording;
+use crate::output;
+use servobench_results::{COMPARISON, RESULTS, Results, RunResult};
+use servobench_trace::{Recording, seal_of};
 use servobench_view::{ViewOptions, write_rrd};
 use std::ffi::OsStr;
 use std::io;
@@ -29,6 +29,9 @@ fn recordings(path: &Path) -> Result<Vec<PathBuf>, CliError> {
     let results = latest_results(path)?;
     let text = std::fs::read_to_string(&results).map_err(|error| CliError::Read { path: results.clone(), error })?;
     let results = Results::from_json(&text).map_err(|error| CliError::ReadResults { path: results, error })?;
+    if let Some(other) = results.scenarios.iter().find(|run| !is_own(run, path)) {
+        return Err(CliError::OtherRecording(path.join(other.recording.as_deref().unwrap_or_default())));
+    }
     let mut names: Vec<String> = results.scenarios.into_iter().filter_map(|run| run.recording).collect();
     // All runs of a comparison lie in one recording.
     names.dedup();
@@ -36,6 +39,13 @@ fn recordings(path: &Path) -> Result<Vec<PathBuf>, CliError> {
         return Err(CliError::NoRecording { folder: path.to_owned() });
     }
     names.iter().map(|name| as_rrd(&path.join(name))).collect()
+}
+
+/// Whether the recording in `folder` is that of `run`, as far as its seal tells.
+fn is_own(run: &RunResult, folder: &Path) -> bool {
+    let Some((name, seal)) = run.recording.as_ref().zip(run.recording_seal.as_ref()) else { return true };
+    // One that cannot be read is told by whoever reads it.
+    seal_of(folder.join(name)).map_or(true, |found| found.as_ref() == Some(seal))
 }
 
 /// What `run` or `compare` wrote into `folder`, whichever came last.
@@ -55,7 +65,7 @@ fn as_rrd(path: &Path) -> Result<PathBuf, CliError> {
     let rrd = path.with_extension("rrd");
     if !modified(&rrd).is_ok_and(|made| made >= written) {
         let recording = Recording::read_parquet(path).map_err(CliError::ReadRecording)?;
-        let verdicts = verdict_beside(path, &recording).into_iter().collect();
+        let verdicts = verdict_beside(path).into_iter().collect();
         let options = ViewOptions { verdicts, ..ViewOptions::default() };
         write_rrd(&recording, &rrd, &options)?;
     }
@@ -63,27 +73,12 @@ fn as_rrd(path: &Path) -> Result<PathBuf, CliError> {
 }
 
 /// What the results beside the recording at `path` say of its run; `None` where there are none, or they are of another run.
-fn verdict_beside(path: &Path, recording: &Recording) -> Option<servobench_view::Verdict> {
-    let results = path.with_file_name(RESULTS);
-    // A run writes its results last: a younger recording is of another one.
-    if modified(&results).ok()? < modified(path).ok()? {
-        return None;
-    }
-    let results = Results::from_json(&std::fs::read_to_string(results).ok()?).ok()?;
-    let name = path.file_name()?.to_str()?;
-    let run = results.scenarios.into_iter().find(|run| run.recording.as_deref() == Some(name))?;
-    is_of(&run, recording).then(|| output::said_of(run.verdict, run.reasons, run.warnings))
-}
-
-/// Whether `run` is that of `recording`: the same scenario with the same overrides on the same engine for as long, to a row of the
-/// recording.
-fn is_of(run: &RunResult, recording: &Recording) -> bool {
-    let end = recording.time_of(recording.len().saturating_sub(1));
-    let about = &recording.about;
-    run.name == about.scenario
-        && run.engine == about.engine
-        && run.overrides == about.overrides
-        && (run.duration - end).abs() <= recording.rate.period()
+fn verdict_beside(path: &Path) -> Option<servobench_view::Verdict> {
+    let results = Results::from_json(&std::fs::read_to_string(path.with_file_name(RESULTS)).ok()?).ok()?;
+    let (name, seal) = (path.file_name()?.to_str()?, seal_of(path).ok()??);
+    let is_of = |run: &RunResult| run.recording.as_deref() == Some(name) && run.recording_seal.as_ref() == Some(&seal);
+    let run = results.scenarios.into_iter().find(is_of)?;
+    Some(output::said_of(run.verdict, run.reasons, run.warnings))
 }
 
 /// When the file was written last.
@@ -111,15 +106,15 @@ mod tests {
     use super::*;
     use servobench_base::Rate;
     use servobench_metrics::Metrics;
-    use servobench_report::RunIdentity;
+    use servobench_results::RunIdentity;
     use servobench_trace::{About, Channel, ChannelSpec};
     use servobench_view::Outcome;
 
-    /// A run of 11 rows at 10 Hz, on the engine `exact`.
-    fn recording(engine: &str) -> Recording {
+    /// A run of so many rows at 10 Hz.
+    fn recording(rows: usize) -> Recording {
         let about = About {
             scenario: "slide".into(),
-            engine: engine.into(),
+            engine: "exact".into(),
             axis_unit: "m".into(),
             bodies: vec![],
             overrides: vec![],
@@ -127,7 +122,7 @@ mod tests {
         let rate = Rate::new(10).unwrap();
         let mut recording = Recording::new(about, rate);
         let spec = ChannelSpec { name: "load.position".into(), unit: "m".into(), writer: "mechanics".into(), rate };
-        recording.channels.push(Channel { spec, values: vec![0.0; 11] });
+        recording.channels.push(Channel { spec, values: vec![0.0; rows] });
         recording
     }
 
@@ -135,29 +130,29 @@ mod tests {
     fn a_stored_recording_has_the_verdict_of_the_results_beside_it_that_are_of_its_run() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("slide.exact.parquet");
-        let own = recording("exact");
+        let own = recording(11);
         own.write_parquet(&path).unwrap();
-        assert_eq!(verdict_beside(&path, &own), None, "no results");
+        assert_eq!(verdict_beside(&path), None, "no results");
         let identity = RunIdentity {
             name: "slide".into(),
             engine: "exact".into(),
             recording: Some("slide.exact.parquet".into()),
+            recording_seal: seal_of(&path).unwrap(),
             ..RunIdentity::default()
         };
         let run = RunResult::error(identity, Some((&own, &Metrics::default())), vec!["it broke".into()]);
         let results = Results::new(vec![run]).to_json().unwrap();
         std::fs::write(folder.path().join(RESULTS), results).unwrap();
-        let verdict = verdict_beside(&path, &own).unwrap();
+        let verdict = verdict_beside(&path).unwrap();
         assert_eq!((verdict.outcome, verdict.reasons), (Outcome::Failed, vec!["it broke".to_owned()]));
-        assert_eq!(verdict_beside(&path, &recording("rapier")), None, "another engine");
-        let mut longer = recording("exact");
-        longer.channels[0].values.extend([0.0; 2]);
-        assert_eq!(verdict_beside(&path, &longer), None, "another duration");
+        assert_eq!(recordings(folder.path()).unwrap().len(), 1);
         let other = folder.path().join("other.parquet");
         own.write_parquet(&other).unwrap();
-        assert_eq!(verdict_beside(&other, &own), None, "the results do not name it");
-        let later = SystemTime::now() + std::time::Duration::from_secs(10);
-        std::fs::File::options().write(true).open(&path).unwrap().set_modified(later).unwrap();
-        assert_eq!(verdict_beside(&path, &own), None, "the recording is of a later run");
+        assert_eq!(verdict_beside(&other), None, "the results do not name it");
+        // However old it is: the time of a file says nothing of the run that it is of.
+        recording(12).write_parquet(&path).unwrap();
+        assert_eq!(verdict_beside(&path), None, "another run");
+        let refusal = recordings(folder.path()).unwrap_err().to_string();
+        assert!(refusal.contains("slide.exact.parquet` is the recording of another run"), "{refusal}");
     }
 }

@@ -1,4 +1,8 @@
-//! Folders that FMUs are unpacked to: they go with who uses them, also where a signal ends the program before that.
+//! Folders that FMUs are unpacked to: they go with who uses them, also where a signal ends the program before that. What a program
+//! left that was killed goes when the next one looks.
+//!
+//! A folder is locked (flock(2)) as long as the process is there that uses it, however that ends.
+use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard};
@@ -18,6 +22,7 @@ pub(super) struct Own {
     path: PathBuf,
     /// Until it is dropped.
     folder: Option<TempDir>,
+    _lock: File,
 }
 
 impl Own {
@@ -25,10 +30,19 @@ impl Own {
     pub(super) fn new(parent: &Path) -> io::Result<Self> {
         let _writing = writing();
         let prefix = format!("{PREFIX}{}-", std::process::id());
-        let folder = tempfile::Builder::new().prefix(&prefix).tempdir_in(parent)?;
-        let path = folder.path().to_owned();
-        there().push(path.clone());
-        Ok(Self { path, folder: Some(folder) })
+        loop {
+            let folder = tempfile::Builder::new().prefix(&prefix).tempdir_in(parent)?;
+            let path = folder.path().to_owned();
+            // Another program may take it for one that nobody uses any more before it is locked. A file system without locks has
+            // none for that program either.
+            if let Ok(lock) = File::open(&path)
+                && !matches!(lock.try_lock(), Err(TryLockError::WouldBlock))
+                && path.is_dir()
+            {
+                there().push(path.clone());
+                return Ok(Self { path, folder: Some(folder), _lock: lock });
+            }
+        }
     }
 
     pub(super) fn path(&self) -> &Path {
@@ -54,6 +68,22 @@ pub(super) fn writing() -> RwLockReadGuard<'static, ()> {
     WRITING.read().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// Removes what programs have unpacked that were ended before they could remove it themselves.
+pub fn remove_abandoned() {
+    for entry in fs::read_dir(std::env::temp_dir()).into_iter().flatten().flatten() {
+        let is_one = entry.file_name().to_string_lossy().starts_with(PREFIX);
+        // A link is none of ours.
+        if is_one
+            && entry.file_type().is_ok_and(|kind| kind.is_dir())
+            && let Ok(lock) = File::open(entry.path())
+            && lock.try_lock().is_ok()
+        {
+            // Those of other users stay.
+            fs::remove_dir_all(entry.path()).ok();
+        }
+    }
+}
+
 /// Removes all that this process has unpacked, and all that these processes have, which have ended without having done so. For a program
 /// that ends: nothing is unpacked after that, and who tries waits for ever.
 pub fn remove_unpacked(ended: &[u32]) {
@@ -61,13 +91,30 @@ pub fn remove_unpacked(ended: &[u32]) {
     std::mem::forget(stopped);
     for folder in there().iter() {
         // What cannot be removed is only in the way.
-        std::fs::remove_dir_all(folder).ok();
+        fs::remove_dir_all(folder).ok();
     }
     let prefixes: Vec<String> = ended.iter().map(|process| format!("{PREFIX}{process}-")).collect();
-    for entry in std::fs::read_dir(std::env::temp_dir()).into_iter().flatten().flatten() {
+    for entry in fs::read_dir(std::env::temp_dir()).into_iter().flatten().flatten() {
         let name = entry.file_name().to_string_lossy().into_owned();
         if prefixes.iter().any(|prefix| name.starts_with(prefix)) {
-            std::fs::remove_dir_all(entry.path()).ok();
+            fs::remove_dir_all(entry.path()).ok();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A folder in use is locked; one whose program has ended is not, whatever its number says.
+    #[test]
+    fn what_is_in_use_is_locked() {
+        let parent = tempfile::tempdir().unwrap();
+        let own = Own::new(parent.path()).unwrap();
+        let other = File::open(own.path()).unwrap();
+        assert!(matches!(other.try_lock(), Err(TryLockError::WouldBlock)));
+        let path = own.path().to_owned();
+        drop(own);
+        assert!(!path.exists());
     }
 }

@@ -136,7 +136,7 @@ fn beside(kind: Kind, one: Value<'_>, two: Value<'_>) -> String {
 mod tests {
     use super::*;
     use crate::compare::Compared;
-    use crate::samples::{jerk, lambrechts_move, of_numbers, snap};
+    use servobench_results::samples::{jerk, lambrechts_move, of_numbers, snap};
 
     #[test]
     fn table_of_two() {

@@ -270,8 +270,8 @@ fn against(best: f64, (value, unit): Value<'_>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::RunResult;
-    use crate::samples::{jerk, lambrechts_move, of_numbers, snap};
+    use servobench_results::RunResult;
+    use servobench_results::samples::{jerk, lambrechts_move, of_numbers, snap};
     use servobench_trace::Move;
 
     fn words(one: &RunResult, two: &RunResult) -> String {

@@ -12,7 +12,7 @@ enum May {
 
 /// The floor plan, lower floors first; `engine-*` is every engine that has no line of its own. Dev-dependencies are free: the oracle
 /// of a test may come from anywhere.
-const PLAN: [(&str, May); 31] = [
+const PLAN: [(&str, May); 32] = [
     ("base", May::On(&[])),
     ("config", May::On(&["base"])),
     ("cia402", May::On(&["base"])),
@@ -82,9 +82,13 @@ const PLAN: [(&str, May); 31] = [
             "metrics",
         ]),
     ),
+    ("results", May::On(&["base", "trace", "metrics"])),
     (
         "report",
-        May::On(&["base", "config", "cia402", "fieldbus", "motion", "planner", "fmi", "signals", "trace", "metrics"]),
+        May::On(&[
+            "base", "config", "cia402", "fieldbus", "motion", "planner", "fmi", "signals", "trace", "metrics",
+            "results",
+        ]),
     ),
     ("view", May::On(&["base", "signals", "trace", "metrics"])),
     ("cli", May::OnAll),

@@ -26,7 +26,7 @@ const APART: &[([&str; 2], &str)] = &[
     (["drive::MotorEstimate", "plant::Params"], "the firmware knows the motor by its own estimates only (law 2)"),
     (["engine-fmu::Status", "base::StepEnd"], "numbers in memory that two processes share"),
     (
-        ["metrics::MoveMetrics", "report::MoveResult"],
+        ["metrics::MoveMetrics", "results::MoveResult"],
         "`results.json` has each metric with its limit and the line of it",
     ),
     (["motion::Limits", "plcopen::Bounds"], "limits of an axis; of one command, with its deceleration"),

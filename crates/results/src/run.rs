@@ -1,7 +1,8 @@
 //! What came of one run.
-use super::Outcome;
-use super::entry::{ExpectedResult, MetricResult, MoveResult, of_set};
-use crate::text::printable_lines;
+use crate::digest::Digest;
+use crate::entry::{ExpectedResult, MetricResult, MoveResult, of_set};
+use crate::printable::printable_lines;
+use crate::results::Outcome;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use servobench_metrics::{Metrics, Name, RequirementResult, Standing, Verdict};
@@ -16,8 +17,12 @@ pub struct RunIdentity {
     pub file: Option<String>,
     /// Engine.
     pub engine: String,
+    /// What it was made of; see [`RunResult::inputs`].
+    pub inputs: Digest,
     /// File of the recording.
     pub recording: Option<String>,
+    /// The seal in the recording.
+    pub recording_seal: Option<String>,
     /// Every file that it left beside the results, that of the recording among them.
     pub files: Vec<String>,
     /// What the scenario file says, by key.
@@ -48,6 +53,10 @@ pub struct RunResult {
     pub file: Option<String>,
     /// Engine that computed the mechanics; empty for a file that could not be read.
     pub engine: String,
+    /// Digest of everything that the run was made of: scenario, overrides, engine, every file that it names, and the program.
+    /// Equal digests are equal runs.
+    #[serde(default)]
+    pub inputs: Digest,
     /// What came of it.
     pub verdict: Outcome,
     /// Simulated time, from tick 0 to the last recorded instant (s).
@@ -56,32 +65,35 @@ pub struct RunResult {
     pub reasons: Vec<String>,
     /// How the run stands to each requirement.
     #[serde(default)]
-    pub(crate) requirements: IndexMap<String, RequirementResult>,
+    pub requirements: IndexMap<String, RequirementResult>,
     /// The faults that were expected.
     #[serde(default)]
-    pub(crate) expected: Vec<ExpectedResult>,
+    pub expected: Vec<ExpectedResult>,
     /// What breaks no requirement and should be known.
     #[serde(default)]
     pub warnings: Vec<String>,
     /// What the scenario file says, models and overrides merged in, by key.
     #[serde(default)]
-    pub(crate) parameters: IndexMap<String, String>,
+    pub parameters: IndexMap<String, String>,
     /// Keys that have another value than the file gives them, with that; left out where none has.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub overrides: Vec<String>,
     /// Metrics by name; with those that have a limit but could not be measured.
-    pub(crate) metrics: IndexMap<String, MetricResult>,
+    pub metrics: IndexMap<String, MetricResult>,
     /// Metrics that could not be measured, and why.
-    pub(crate) absent: IndexMap<String, String>,
+    pub absent: IndexMap<String, String>,
     /// The moves.
-    pub(crate) moves: Vec<MoveResult>,
+    pub moves: Vec<MoveResult>,
     /// What happened: limits that bound, warnings.
-    pub(crate) events: Vec<Event>,
+    pub events: Vec<Event>,
     /// What FMUs said; left out where they said nothing.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(crate) log: Vec<LogEntry>,
+    pub log: Vec<LogEntry>,
     /// File of the recording, beside the results; `null` when none was written.
     pub recording: Option<String>,
+    /// The seal in the recording: another recording of that name is not of this run. `null` when none was written.
+    #[serde(default)]
+    pub recording_seal: Option<String>,
     /// Every file that the run left beside the results, by name.
     #[serde(default)]
     pub files: Vec<String>,
@@ -151,13 +163,13 @@ impl RunResult {
     }
 
     /// Every metric by name, those of the run before those of its moves.
-    pub(crate) fn all_metrics(&self) -> impl Iterator<Item = (&str, &MetricResult)> {
+    pub fn all_metrics(&self) -> impl Iterator<Item = (&str, &MetricResult)> {
         let all = self.metrics.iter().chain(self.moves.iter().flat_map(|made| made.metrics.iter()));
         all.map(|(name, metric)| (name.as_str(), metric))
     }
 
     /// Requirements with this standing, and the reasons.
-    pub(crate) fn requirements_that_are(&self, standing: Standing) -> impl Iterator<Item = (&str, &[String])> {
+    pub fn requirements_that_are(&self, standing: Standing) -> impl Iterator<Item = (&str, &[String])> {
         let all = self.requirements.iter().filter(move |(_, requirement)| requirement.standing == standing);
         all.map(|(name, requirement)| (name.as_str(), requirement.reasons.as_slice()))
     }
@@ -169,6 +181,7 @@ impl RunResult {
             name: run.name,
             file: run.file,
             engine: run.engine,
+            inputs: run.inputs,
             verdict: Outcome::Error,
             // N + 1 instants from tick 0 to tick N.
             duration: recording.map_or(0.0, |recording| recording.time_of(recording.len().saturating_sub(1))),
@@ -184,12 +197,14 @@ impl RunResult {
             events: events.to_vec(),
             log: log.to_vec(),
             recording: run.recording,
+            recording_seal: run.recording_seal,
             files: run.files,
         }
     }
 
     /// Value (SI) and unit of a metric, when it was measured.
-    pub(crate) fn metric(&self, name: Name) -> Option<(f64, &str)> {
+    #[must_use]
+    pub fn metric(&self, name: Name) -> Option<(f64, &str)> {
         let metric = self.metrics.get(name.as_str())?;
         Some((metric.value?, metric.unit.as_str()))
     }

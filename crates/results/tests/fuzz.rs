@@ -1,7 +1,7 @@
 //! Fuzz target: whatever is in a `results.json`, it is refused, or it is written again as it was read. `docs/testing.md`
 //! says how to run more of it.
 use servobench_fuzz::{Splice, check, fuzz};
-use servobench_report::Results;
+use servobench_results::Results;
 
 const FILES: [&str; 2] = [
     r#"{"schema":"servobench-results/1","generator":"servobench 0.1.0","scenarios":[]}"#,

@@ -1,5 +1,8 @@
 //! Results for the tests: the move of Lambrechts under two limits, a run that missed limits, one that broke off.
-use crate::results::{ExpectedResult, MetricResult, Outcome, Results, RunResult};
+use crate::digest::Digest;
+use crate::entry::{ExpectedResult, MetricResult};
+use crate::results::{Outcome, Results};
+use crate::run::RunResult;
 use indexmap::IndexMap;
 use servobench_base::Severity;
 use servobench_metrics::{Name, RequirementResult, Standing};
@@ -19,11 +22,13 @@ fn limited(name: Name, value: Option<f64>, unit: &str, limit: f64) -> (String, M
 }
 
 /// A run that passed, with these metrics.
-pub(crate) fn run(name: &str, engine: &str, metrics: impl IntoIterator<Item = (String, MetricResult)>) -> RunResult {
+#[must_use]
+pub fn run(name: &str, engine: &str, metrics: impl IntoIterator<Item = (String, MetricResult)>) -> RunResult {
     RunResult {
         name: name.into(),
         file: Some(format!("scenarios/{name}.toml")),
         engine: engine.into(),
+        inputs: Digest::of(name.as_bytes()),
         verdict: Outcome::Unjudged,
         duration: 2.0,
         reasons: vec![],
@@ -40,20 +45,21 @@ pub(crate) fn run(name: &str, engine: &str, metrics: impl IntoIterator<Item = (S
         events: vec![],
         log: vec![],
         recording: Some(format!("{name}.{engine}.parquet")),
+        recording_seal: Some("ef46db3751d8e999".into()),
         files: vec![format!("{name}.{engine}.parquet")],
     }
 }
 
 /// Requirements with their standings and reasons.
-pub(crate) fn requirements<const N: usize>(
-    all: [(&str, Standing, Vec<String>); N],
-) -> IndexMap<String, RequirementResult> {
+#[must_use]
+pub fn requirements<const N: usize>(all: [(&str, Standing, Vec<String>); N]) -> IndexMap<String, RequirementResult> {
     let all = all.into_iter();
     all.map(|(name, standing, reasons)| (name.to_owned(), RequirementResult { standing, reasons })).collect()
 }
 
 /// A run with these numbers: move, settling (s), error, peak-to-peak (m), frequency (Hz), damping, force (N).
-pub(crate) fn of_numbers(name: &str, numbers: [f64; 8]) -> RunResult {
+#[must_use]
+pub fn of_numbers(name: &str, numbers: [f64; 8]) -> RunResult {
     let [time, settling, error, vibration, frequency, damping, peak, rms] = numbers;
     run(
         name,
@@ -74,7 +80,8 @@ pub(crate) fn of_numbers(name: &str, numbers: [f64; 8]) -> RunResult {
 }
 
 /// The set-point of Lambrechts: 1 m at 1 m/s, 5 m/s², 50 m/s³, and at order 4 1000 m/s⁴, all of which it reaches.
-pub(crate) fn lambrechts_move(order: usize) -> Move {
+#[must_use]
+pub fn lambrechts_move(order: usize) -> Move {
     let limits = [1.0, 5.0, 50.0, 1000.0];
     let mut made = Move {
         label: format!("move from 0 m to 1 m, order {order}"),
@@ -93,17 +100,20 @@ pub(crate) fn lambrechts_move(order: usize) -> Move {
 }
 
 /// The jerk-limited move.
-pub(crate) fn jerk() -> RunResult {
+#[must_use]
+pub fn jerk() -> RunResult {
     of_numbers("lambrechts-jerk", [1.3, 0.004, 3.1e-6, 3.4e-6, 38.985, 0.0021, 170.0, 61.2])
 }
 
 /// The snap-limited move.
-pub(crate) fn snap() -> RunResult {
+#[must_use]
+pub fn snap() -> RunResult {
     of_numbers("lambrechts-snap", [1.35, 0.0, 0.73e-6, 0.21e-6, 38.985, 0.0021, 169.0, 60.0])
 }
 
 /// A run that missed three limits, one of them because it could not be measured.
-pub(crate) fn missed() -> RunResult {
+#[must_use]
+pub fn missed() -> RunResult {
     let mut run = run(
         "feed-axis-reversal-at-low-speed-with-stick-slip",
         "mujoco",
@@ -129,7 +139,8 @@ pub(crate) fn missed() -> RunResult {
 }
 
 /// A run that keeps its limit, with a drive that was at its limit for half a second.
-pub(crate) fn kept() -> RunResult {
+#[must_use]
+pub fn kept() -> RunResult {
     let mut run = run("kept", "exact", [limited(Name::MoveTime, Some(1.0), "s", 2.0)]);
     run.verdict = Outcome::Passed;
     run.requirements = requirements([
@@ -150,7 +161,8 @@ pub(crate) fn kept() -> RunResult {
 }
 
 /// A run that keeps its limit, breaks two requirements, and misses a fault that it expects.
-pub(crate) fn short() -> RunResult {
+#[must_use]
+pub fn short() -> RunResult {
     let mut run = run("pick", "exact", [limited(Name::MoveTime, Some(0.65), "s", 2.0)]);
     run.verdict = Outcome::Failed;
     let short = "the load ended 200 mm short of 200 mm (window ±5 µm); effort limit bound for 1.99 s";
@@ -174,7 +186,8 @@ pub(crate) fn short() -> RunResult {
 }
 
 /// A scenario that cannot be built.
-pub(crate) fn wrong() -> RunResult {
+#[must_use]
+pub fn wrong() -> RunResult {
     let mut run = broken();
     run.verdict = Outcome::Invalid;
     run.log.clear();
@@ -184,7 +197,8 @@ pub(crate) fn wrong() -> RunResult {
 }
 
 /// A run that broke off.
-pub(crate) fn broken() -> RunResult {
+#[must_use]
+pub fn broken() -> RunResult {
     let mut run = run("two-mass", "rapier", []);
     run.verdict = Outcome::Error;
     run.reasons = vec![
@@ -214,6 +228,7 @@ pub(crate) fn broken() -> RunResult {
 }
 
 /// All of them.
-pub(crate) fn results() -> Results {
+#[must_use]
+pub fn results() -> Results {
     Results::new(vec![jerk(), missed(), kept(), snap(), broken(), wrong(), short()])
 }

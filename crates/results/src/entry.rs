@@ -5,63 +5,66 @@ use servobench_metrics::{Expectation, Expected, Limit, Metric, MetricSet, MoveMe
 
 /// A metric.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct MetricResult {
+pub struct MetricResult {
     /// Value (SI); `null` when it could not be measured.
-    pub(crate) value: Option<f64>,
+    pub value: Option<f64>,
     /// Unit symbol; empty for a pure number.
-    pub(crate) unit: String,
+    pub unit: String,
     /// Largest allowed value; `null` without one.
-    pub(crate) limit: Option<f64>,
+    pub limit: Option<f64>,
     /// Smallest allowed value; left out without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) limit_min: Option<f64>,
+    pub limit_min: Option<f64>,
     /// Whether the limit is kept; `null` without a limit.
-    pub(crate) pass: Option<bool>,
+    pub pass: Option<bool>,
     /// Line of the scenario file, from 1, that has the limit; left out where nobody knows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) line: Option<usize>,
+    pub line: Option<usize>,
 }
 
 /// A move.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct MoveResult {
+pub struct MoveResult {
     /// What it is, in words.
-    pub(crate) label: String,
+    pub label: String,
     /// Start of the profile (s).
-    pub(crate) start: f64,
+    pub start: f64,
     /// End of the profile (s).
-    pub(crate) end: f64,
+    pub end: f64,
     /// Its metrics by name.
-    pub(crate) metrics: IndexMap<String, MetricResult>,
+    pub metrics: IndexMap<String, MetricResult>,
 }
 
 /// A fault that was expected.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct ExpectedResult {
+pub struct ExpectedResult {
     /// State or error code.
-    pub(crate) fault: String,
+    pub fault: String,
     /// Whose.
-    pub(crate) who: String,
+    pub who: String,
     /// From when on it may come (s).
-    pub(crate) from: f64,
+    pub from: f64,
     /// Until when it must have come (s); `null`: by the end of the run.
-    pub(crate) to: Option<f64>,
+    pub to: Option<f64>,
     /// When it came (s); `null`: it did not.
-    pub(crate) met_at: Option<f64>,
+    pub met_at: Option<f64>,
 }
 
 impl MetricResult {
     /// Whether it has a limit that is missed.
-    pub(crate) fn is_missed(&self) -> bool {
+    #[must_use]
+    pub fn is_missed(&self) -> bool {
         self.pass == Some(false)
     }
 
     /// Significant digits that show how `value` stands to the limits.
-    pub(crate) fn digits(&self, value: f64) -> usize {
+    #[must_use]
+    pub fn digits(&self, value: f64) -> usize {
         let bounds = [self.limit_min, self.limit].into_iter().flatten();
         bounds.map(|bound| Quantity::digits_apart(value.abs(), bound.abs())).max().unwrap_or(3)
     }
 
+    /// One that has this limit and could not be measured.
     pub(crate) fn missing(limit: &Limit) -> Self {
         Self { value: None, unit: String::new(), limit: limit.max, limit_min: limit.min, pass: Some(false), line: None }
     }
@@ -76,7 +79,8 @@ impl From<&Expected> for ExpectedResult {
 
 impl ExpectedResult {
     /// What was expected, in words.
-    pub(crate) fn words(&self) -> String {
+    #[must_use]
+    pub fn words(&self) -> String {
         let Self { fault, who, from, to, .. } = self.clone();
         Expectation { fault, who, from, to: to.unwrap_or(f64::INFINITY) }.to_string()
     }
@@ -101,6 +105,7 @@ impl From<&MoveMetrics> for MoveResult {
     }
 }
 
+/// By name.
 pub(crate) fn of_set(set: &MetricSet) -> IndexMap<String, MetricResult> {
     set.iter().map(|(name, metric)| (name.to_string(), metric.into())).collect()
 }

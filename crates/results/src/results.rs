@@ -1,19 +1,13 @@
 //! `results.json`: what a run gave, for machines. The schema is in `docs/results.schema.json`.
-mod entry;
-mod run;
-
-pub(crate) use entry::MetricResult;
-#[cfg(test)]
-pub(crate) use entry::{ExpectedResult, MoveResult};
-pub use run::{LimitPlace, RunIdentity, RunResult};
-
-use crate::error::ReportError;
+use crate::digest::Digest;
+use crate::error::ResultsError;
+use crate::run::RunResult;
 use serde::{Deserialize, Serialize};
 
 /// Name of the schema, before its version.
 const SCHEMA: &str = "servobench-results/";
 /// Version of the schema.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// The results of several runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -22,8 +16,40 @@ pub struct Results {
     pub schema: String,
     /// Program and version that wrote them.
     pub generator: String,
-    /// The runs in the order in which they were asked for.
+    /// Whether every run came to its end.
+    #[serde(default)]
+    pub status: Status,
+    /// Digest of the runs that were asked for, in their order: equal suites of one program have equal digests, and equal
+    /// results.
+    #[serde(default)]
+    pub suite: Digest,
+    /// The runs that ended, in the order in which they were asked for.
     pub scenarios: Vec<RunResult>,
+    /// The runs that did not end, in that order; left out where all did.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unfinished: Vec<Unfinished>,
+}
+
+/// Whether every run came to its end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Status {
+    /// Every run that was asked for is among the results.
+    #[default]
+    Complete,
+    /// The suite is under way, or was ended before its time.
+    Incomplete,
+}
+
+/// A run that was asked for and has no result.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Unfinished {
+    /// Name of the scenario.
+    pub name: String,
+    /// File of the scenario, as it was given, `-` for standard input; `null` for an embedded one.
+    pub file: Option<String>,
+    /// Engine.
+    pub engine: String,
 }
 
 /// What came of a run.
@@ -63,43 +89,56 @@ impl Outcome {
     }
 
     /// Whether the run came to its end, so that its metrics mean what they say.
-    pub(crate) const fn is_whole(self) -> bool {
+    #[must_use]
+    pub const fn is_whole(self) -> bool {
         !matches!(self, Self::Invalid | Self::Error)
     }
 }
 
 impl Results {
-    /// The results of these runs.
+    /// The results of these runs, all of which have ended.
     #[must_use]
     pub fn new(scenarios: Vec<RunResult>) -> Self {
+        Self::of_suite(Digest::default(), scenarios, Vec::new())
+    }
+
+    /// The results of a suite, of which some runs may not have ended.
+    #[must_use]
+    pub fn of_suite(suite: Digest, scenarios: Vec<RunResult>, unfinished: Vec<Unfinished>) -> Self {
         let generator = concat!("servobench ", env!("CARGO_PKG_VERSION")).to_owned();
-        Self { schema: format!("{SCHEMA}{VERSION}"), generator, scenarios }
+        let status = if unfinished.is_empty() { Status::Complete } else { Status::Incomplete };
+        Self { schema: format!("{SCHEMA}{VERSION}"), generator, status, suite, scenarios, unfinished }
     }
 
     /// As JSON, numbers in the shortest form that reads back to the same bits.
     ///
     /// # Errors
-    /// [`ReportError::Json`].
-    pub fn to_json(&self) -> Result<String, ReportError> {
+    /// [`ResultsError::Json`].
+    pub fn to_json(&self) -> Result<String, ResultsError> {
         Ok(serde_json::to_string_pretty(self)? + "\n")
     }
 
-    /// Reads what [`Results::to_json`] wrote, and results of version 1: those say nothing of requirements and parameters,
-    /// and list no file but the recording.
+    /// Reads what [`Results::to_json`] wrote, and results of older versions: those of version 2 say nothing of what the runs
+    /// were made of, those of version 1 neither of requirements and parameters nor of files but the recording.
     ///
     /// # Errors
-    /// [`ReportError::Json`], [`ReportError::Newer`], [`ReportError::Schema`].
-    pub fn from_json(text: &str) -> Result<Self, ReportError> {
+    /// [`ResultsError::Json`], [`ResultsError::Newer`], [`ResultsError::Schema`].
+    pub fn from_json(text: &str) -> Result<Self, ResultsError> {
         #[derive(Deserialize)]
         struct Head {
             schema: String,
+            status: Option<Status>,
         }
-        let Head { schema } = serde_json::from_str(text)?;
+        let Head { schema, status } = serde_json::from_str(text)?;
         let version = schema.strip_prefix(SCHEMA).and_then(|version| version.parse::<u32>().ok());
         match version {
+            // What does not say that it is complete is not.
+            Some(VERSION) if status.is_none() => {
+                return Err(ResultsError::Json(serde::de::Error::missing_field("status")));
+            }
             Some(1..=VERSION) => {}
-            Some(version) if version > VERSION => return Err(ReportError::Newer { found: schema, known: VERSION }),
-            _ => return Err(ReportError::Schema { found: schema }),
+            Some(version) if version > VERSION => return Err(ResultsError::Newer { found: schema, known: VERSION }),
+            _ => return Err(ResultsError::Schema { found: schema }),
         }
         let mut results: Self = serde_json::from_str(text)?;
         results.schema = format!("{SCHEMA}{VERSION}");
@@ -117,7 +156,8 @@ impl Results {
     }
 
     /// Number of runs with this outcome.
-    pub(crate) fn count_of(&self, outcome: Outcome) -> usize {
+    #[must_use]
+    pub fn count_of(&self, outcome: Outcome) -> usize {
         self.scenarios.iter().filter(|run| run.verdict == outcome).count()
     }
 }
@@ -125,6 +165,7 @@ impl Results {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::{LimitPlace, RunIdentity};
     use crate::samples;
     use serde_json::{Value, json};
     use servobench_base::{Rate, Severity};
@@ -213,7 +254,7 @@ mod tests {
     fn the_schema_refuses_what_is_wrong() {
         let right = value(&samples::results());
         let wrong: [Spoiled; 9] = [
-            ("another version", |v| v["schema"] = json!("servobench-results/1")),
+            ("another version", |v| v["schema"] = json!("servobench-results/2")),
             ("no verdict", |v| drop(v["scenarios"][0].as_object_mut().unwrap().remove("verdict"))),
             ("a verdict of its own", |v| v["scenarios"][0]["verdict"] = json!("maybe")),
             ("passed with a reason", |v| v["scenarios"][0]["reasons"] = json!(["why"])),
@@ -337,23 +378,23 @@ mod tests {
         let read = Results::from_json(&old.to_string()).unwrap();
         assert_eq!(read.scenarios[0].files, ["lambrechts-jerk.exact.parquet"]);
         assert_eq!(read.count_of(Outcome::Invalid), 1);
-        assert_eq!(read.schema, "servobench-results/2");
+        assert_eq!(read.schema, "servobench-results/3");
     }
 
     #[test]
     fn another_schema_is_refused_by_name() {
         let refusal = |schema: &str| {
-            let text = samples::results().to_json().unwrap().replace("servobench-results/2", schema);
+            let text = samples::results().to_json().unwrap().replace("servobench-results/3", schema);
             Results::from_json(&text).unwrap_err().to_string()
         };
         assert_eq!(
-            refusal("servobench-results/3"),
-            "the results have schema `servobench-results/3`, newer than this build, which reads versions 1 to 2; use the \
+            refusal("servobench-results/4"),
+            "the results have schema `servobench-results/4`, newer than this build, which reads versions 1 to 3; use the \
              servobench that wrote them, or run the scenarios again"
         );
         for other in ["servobench-results/0", "servobench-results/x", "sarif"] {
             assert_eq!(refusal(other), format!("the file has schema `{other}`, which is none of servobench's results"));
         }
-        assert!(matches!(Results::from_json("{}"), Err(ReportError::Json(_))));
+        assert!(matches!(Results::from_json("{}"), Err(ResultsError::Json(_))));
     }
 }

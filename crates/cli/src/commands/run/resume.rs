@@ -1,0 +1,89 @@
+//! `servobench run --resume`: the rest of a suite that was ended before its time.
+use crate::args::{self, Command, RunArgs};
+use crate::error::CliError;
+use crate::sources;
+use servobench_results::{Finished, Folder, Journal, JournalError, Outcome, RESULTS, Results, Status, Suite};
+use servobench_trace::verified_seal_of;
+use std::io::ErrorKind;
+use std::path::Path;
+
+/// A suite that can go on.
+pub(super) struct Begun {
+    pub(super) folder: Folder,
+    pub(super) journal: Journal,
+    pub(super) suite: Suite,
+    /// The runs whose results and files are there.
+    pub(super) finished: Vec<Finished>,
+    /// What it was started with; how much runs at a time and what is printed are what is asked for now.
+    pub(super) args: RunArgs,
+}
+
+/// What is in a folder that is to be resumed.
+pub(super) enum Found {
+    Begun(Box<Begun>),
+    /// Nothing is left to run.
+    Complete(Results),
+}
+
+/// The suite in `folder`, as far as it came. From now on relative paths are those of the command that began it.
+pub(super) fn suite_in(folder: &Path, now: &RunArgs) -> Result<Found, CliError> {
+    if !folder.is_dir() {
+        return Err(CliError::NothingToResume(folder.to_owned()));
+    }
+    let absolute = std::path::absolute(folder).map_err(|error| CliError::Read { path: folder.to_owned(), error })?;
+    let there = Folder::open(&absolute)?;
+    let (journal, suite, finished) = match Journal::resume(there.journal()) {
+        Ok(found) => found,
+        Err(JournalError::Io { source, .. }) if source.kind() == ErrorKind::NotFound => {
+            return complete(folder).map(Found::Complete);
+        }
+        Err(error) => return Err(error.into()),
+    };
+    let args = arguments(&suite, now, absolute)?;
+    std::env::set_current_dir(&suite.folder).map_err(|error| CliError::Read { path: suite.folder.clone(), error })?;
+    if let Some(text) = &suite.standard_input {
+        sources::give_stdin(text.clone());
+    }
+    let finished = finished.into_iter().filter(|one| is_settled(one) && is_there(there.path(), one)).collect();
+    Ok(Found::Begun(Box::new(Begun { folder: there, journal, suite, finished, args })))
+}
+
+/// Results of a suite that has ended.
+fn complete(folder: &Path) -> Result<Results, CliError> {
+    let path = folder.join(RESULTS);
+    let text = std::fs::read_to_string(&path).map_err(|_| CliError::NothingToResume(folder.to_owned()))?;
+    let results = Results::from_json(&text).map_err(|error| CliError::ReadResults { path, error })?;
+    if results.status == Status::Complete { Ok(results) } else { Err(CliError::NothingToResume(folder.to_owned())) }
+}
+
+fn arguments(suite: &Suite, now: &RunArgs, out: std::path::PathBuf) -> Result<RunArgs, CliError> {
+    let Some(Command::Run(began)) = args::of(&suite.command) else {
+        return Err(CliError::NothingToResume(out));
+    };
+    Ok(RunArgs {
+        out: Some(out),
+        jobs: now.jobs.or(began.jobs),
+        quiet: now.quiet,
+        verbose: now.verbose,
+        junit: began.junit,
+        resume: None,
+        ..began
+    })
+}
+
+/// Whether the run has a verdict. One that could not be carried out is tried again: its process may have been ended from outside, or
+/// the disk may have been full.
+fn is_settled(finished: &Finished) -> bool {
+    finished.result.verdict != Outcome::Error
+}
+
+/// Whether every file that the run left is there, and its recording the one that was measured.
+fn is_there(folder: &Path, finished: &Finished) -> bool {
+    let run = &finished.result;
+    let is_whole = |name: &String| folder.join(name).is_file();
+    let is_own =
+        run.recording.as_ref().zip(run.recording_seal.as_ref()).is_none_or(|(name, seal)| {
+            verified_seal_of(folder.join(name)).is_ok_and(|found| found.as_ref() == Some(seal))
+        });
+    run.files.iter().all(is_whole) && is_own
+}

@@ -1,0 +1,27 @@
+//! Why results cannot be read.
+use thiserror::Error;
+
+/// Why results cannot be read, or written.
+#[derive(Debug, Error)]
+pub enum ResultsError {
+    /// They are no JSON of this schema.
+    #[error("the results are not as docs/results.schema.json says: {0}")]
+    Json(#[from] serde_json::Error),
+    /// They are of a later version.
+    #[error(
+        "the results have schema `{found}`, newer than this build, which reads versions 1 to {known}; use the servobench that wrote \
+         them, or run the scenarios again"
+    )]
+    Newer {
+        /// Schema of the file.
+        found: String,
+        /// Newest version that this build reads.
+        known: u32,
+    },
+    /// They are something else.
+    #[error("the file has schema `{found}`, which is none of servobench's results")]
+    Schema {
+        /// Schema of the file.
+        found: String,
+    },
+}

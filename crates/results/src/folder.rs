@@ -1,0 +1,236 @@
+//! The folder that a suite writes into: one suite at a time, nothing left of those before.
+use crate::journal;
+use crate::results::Results;
+use std::collections::HashSet;
+use std::ffi::OsStr;
+use std::fs::{self, File, TryLockError};
+use std::io;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// What `run` leaves beside its recordings.
+pub const RESULTS: &str = "results.json";
+/// What `run` leaves when it was ended before its time, beside `results.json`.
+pub const JOURNAL: &str = "results.journal";
+/// What `compare` leaves beside its recording.
+pub const COMPARISON: &str = "comparison.json";
+
+/// Ends of the names of files that a run may leave.
+const KINDS: [&str; 3] = [".parquet", ".timing.svg", ".rrd"];
+
+/// A folder that this process alone writes into, until it is dropped or the process ends, however that ends.
+#[derive(Debug)]
+pub struct Folder {
+    path: PathBuf,
+    /// Holds the lock (flock(2)), which the system gives back with the last descriptor.
+    _lock: File,
+}
+
+/// Why a folder cannot be written into.
+#[derive(Debug, Error)]
+pub enum FolderError {
+    /// It cannot be made.
+    #[error("cannot make the folder `{}`: {source}", path.display())]
+    Make {
+        /// The folder.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// Another process writes into it.
+    #[error(
+        "another servobench writes into `{}` now: wait until it has ended, or name another folder with `--out`",
+        .0.display()
+    )]
+    InUse(PathBuf),
+    /// It cannot be locked.
+    #[error(
+        "cannot lock the folder `{}`: {source}; name one on a file system with locks (flock) with `--out`", path.display()
+    )]
+    Lock {
+        /// The folder.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+}
+
+/// What was left in a folder by those before, and is removed.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Former {
+    /// Recordings, diagrams and drawings that were removed.
+    pub removed: usize,
+    /// Runs that had ended, of a suite that was ended before its time.
+    pub of_unfinished: Option<usize>,
+    /// Why what the list names stays, in words: it is none of ours.
+    pub stays: Option<String>,
+}
+
+impl Folder {
+    /// Makes the folder if there is none, and keeps others from writing into it.
+    ///
+    /// # Errors
+    /// [`FolderError`]
+    pub fn open(path: &Path) -> Result<Self, FolderError> {
+        fs::create_dir_all(path).map_err(|source| FolderError::Make { path: path.to_owned(), source })?;
+        let cannot_lock = |source| FolderError::Lock { path: path.to_owned(), source };
+        let folder = File::open(path).map_err(cannot_lock)?;
+        match folder.try_lock() {
+            Ok(()) => Ok(Self { path: path.to_owned(), _lock: folder }),
+            Err(TryLockError::WouldBlock) => Err(FolderError::InUse(path.to_owned())),
+            Err(TryLockError::Error(error)) => Err(cannot_lock(error)),
+        }
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Where the journal is.
+    #[must_use]
+    pub fn journal(&self) -> PathBuf {
+        self.path.join(JOURNAL)
+    }
+
+    /// Removes what those before left here: exactly the files that `list` names and the list, with [`RESULTS`] also what a journal
+    /// names and what was half written when its suite was ended. What the list of another command beside it names stays.
+    #[must_use]
+    pub fn remove_former(&self, list: &str) -> Former {
+        let mut former = Former::default();
+        let mut names = HashSet::new();
+        if let Ok(text) = fs::read_to_string(self.path.join(list)) {
+            match Results::from_json(&text) {
+                Ok(results) => names.extend(results.files().filter(|name| is_left_by_a_run(name)).map(str::to_owned)),
+                Err(error) => {
+                    former.stays = Some(format!("`{}`: {error}", self.path.join(list).display()));
+                    return former;
+                }
+            }
+        }
+        if list == RESULTS
+            && let Ok(file) = File::open(self.journal())
+            && let Ok((suite, finished)) = journal::read(file, &self.journal())
+        {
+            former.of_unfinished = Some(finished.len());
+            names.extend(left_by(&suite.stems));
+            names.extend(
+                finished.iter().flat_map(|one| one.result.files.iter()).filter(|name| is_left_by_a_run(name)).cloned(),
+            );
+        }
+        let other = if list == RESULTS { COMPARISON } else { RESULTS };
+        let other = fs::read_to_string(self.path.join(other)).ok().and_then(|text| Results::from_json(&text).ok());
+        let kept: HashSet<&str> = other.iter().flat_map(Results::files).collect();
+        let names = names.iter().filter(|name| !kept.contains(name.as_str()));
+        former.removed = names.filter(|name| fs::remove_file(self.path.join(name)).is_ok()).count();
+        // They name nothing any more; what takes their place is written by the suite that begins.
+        fs::remove_file(self.path.join(list)).ok();
+        if list == RESULTS {
+            fs::remove_file(self.journal()).ok();
+        }
+        former
+    }
+
+    /// Removes what runs with these `stems` left that `results` do not name: they were ended after they wrote it and before that
+    /// was noted.
+    pub fn remove_unnamed(&self, stems: &[String], results: &Results) {
+        let named: HashSet<&str> = results.files().collect();
+        for name in left_by(stems).filter(|name| !named.contains(name.as_str())) {
+            // Most were never there.
+            fs::remove_file(self.path.join(name)).ok();
+        }
+    }
+}
+
+/// Every file that runs with these stems may have left.
+fn left_by(stems: &[String]) -> impl Iterator<Item = String> {
+    let names = stems.iter().flat_map(|stem| KINDS.iter().map(move |kind| format!("{stem}{kind}")));
+    names.filter(|name| is_left_by_a_run(name))
+}
+
+/// Whether `name` is that of a file beside the list, of a kind that a run leaves: a list may come from anywhere.
+fn is_left_by_a_run(name: &str) -> bool {
+    let path = Path::new(name);
+    let is_beside = path.file_name() == Some(OsStr::new(name)) && !name.contains(['/', '\\']);
+    is_beside && path.extension().is_some_and(|kind| kind == "parquet" || kind == "rrd" || kind == "svg")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::digest::Digest;
+    use crate::journal::{Finished, Journal, Suite};
+    use crate::samples;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        let mut names: Vec<_> = entries.collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn one_at_a_time_writes_into_a_folder() {
+        let there = tempfile::tempdir().unwrap();
+        let path = there.path().join("out");
+        let first = Folder::open(&path).unwrap();
+        let refusal = Folder::open(&path).unwrap_err().to_string();
+        assert!(refusal.starts_with("another servobench writes into `") && refusal.contains("--out"), "{refusal}");
+        // By another path it is the same folder.
+        std::os::unix::fs::symlink(&path, there.path().join("link")).unwrap();
+        assert!(matches!(Folder::open(&there.path().join("link")), Err(FolderError::InUse(_))));
+        drop(first);
+        Folder::open(&path).unwrap();
+    }
+
+    #[test]
+    fn exactly_what_is_listed_is_removed() {
+        let there = tempfile::tempdir().unwrap();
+        let folder = Folder::open(there.path()).unwrap();
+        let mut run = samples::jerk();
+        run.files = ["a.parquet", "a.timing.svg", "../a.parquet", "notes.txt"].map(String::from).to_vec();
+        fs::write(there.path().join(RESULTS), Results::new(vec![run]).to_json().unwrap()).unwrap();
+        for name in ["a.parquet", "a.timing.svg", "notes.txt", "b.parquet"] {
+            fs::write(there.path().join(name), "").unwrap();
+        }
+        assert_eq!(folder.remove_former(RESULTS), Former { removed: 2, ..Former::default() });
+        assert_eq!(names(there.path()), ["b.parquet", "notes.txt"]);
+    }
+
+    /// Of a suite that was killed: what its journal names, and what was written just before it could.
+    #[test]
+    fn what_a_killed_suite_left_is_removed() {
+        let there = tempfile::tempdir().unwrap();
+        let folder = Folder::open(there.path()).unwrap();
+        let stems = vec!["a.exact".to_owned(), "../b".to_owned()];
+        let suite = Suite::new(Digest::default(), vec![], there.path().to_owned(), None, stems);
+        let mut journal = Journal::create(folder.journal(), &suite).unwrap();
+        journal.append(&Finished { index: 0, seconds: 0.0, result: samples::jerk() }).unwrap();
+        for name in ["a.exact.parquet", "a.exact.rrd", "other.parquet"] {
+            fs::write(there.path().join(name), "").unwrap();
+        }
+        let former = folder.remove_former(RESULTS);
+        assert_eq!((former.removed, former.of_unfinished, former.stays), (2, Some(1), None));
+        assert_eq!(names(there.path()), ["other.parquet"]);
+    }
+
+    #[test]
+    fn what_is_none_of_ours_stays() {
+        let there = tempfile::tempdir().unwrap();
+        let folder = Folder::open(there.path()).unwrap();
+        fs::write(there.path().join(RESULTS), "{}").unwrap();
+        assert!(folder.remove_former(RESULTS).stays.is_some_and(|why| why.contains(RESULTS)));
+        assert_eq!(names(there.path()), [RESULTS]);
+    }
+
+    #[test]
+    fn only_files_beside_the_list_are_ever_removed() {
+        for name in ["a.exact.parquet", "a.exact.rrd", "a.exact.timing.svg", "-a.parquet", "a b.parquet"] {
+            assert!(is_left_by_a_run(name), "{name}");
+        }
+        for name in ["../a.parquet", "/a.parquet", "b/a.parquet", "..", "", ".", "a.toml", "results.json", "a\\b.rrd"] {
+            assert!(!is_left_by_a_run(name), "{name}");
+        }
+    }
+}

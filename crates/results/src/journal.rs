@@ -1,0 +1,338 @@
+//! The journal: what came of each run, written down when the run has ended.
+//!
+//! ```text
+//! <digest> {"suite":{…}}
+//! <digest> {"finished":{"index":0,"seconds":0.25,"result":{…}}}
+//! …
+//! ```
+//! A line holds one record as JSON, after the XXH64 (seed 0) of that JSON as 16 hexadecimal digits. A line is appended by one
+//! call of the system, so that the end of the process, however it comes, loses no record that was written and damages none.
+//! The end of the machine may: what reaches the disk is made sure of when the journal is begun, with a record at most once in
+//! [`PERIOD`], and when the suite ends.
+//!
+//! Reading keeps what is whole: a line that is torn, or damaged, is a run that has not ended.
+use crate::digest::Digest;
+use crate::run::RunResult;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+use thiserror::Error;
+use twox_hash::XxHash64;
+
+/// How long a record may wait until it is made sure that it is on the disk, as long as others follow it.
+const PERIOD: Duration = Duration::from_secs(1);
+/// Bytes of the longest line that is read.
+const LONGEST: u64 = 1 << 28;
+/// Version of the format.
+const VERSION: u32 = 1;
+
+/// What a suite is: the first record.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Suite {
+    /// Version of the journal's format.
+    pub version: u32,
+    /// What [`crate::Results::suite`] will be.
+    pub suite: Digest,
+    /// The command line without the program's name.
+    pub command: Vec<String>,
+    /// Folder that relative paths of the command line start from.
+    pub folder: PathBuf,
+    /// Text that came in on standard input, if a scenario did.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub standard_input: Option<String>,
+    /// Stems of the files that the runs may leave in the folder of the journal.
+    pub stems: Vec<String>,
+}
+
+impl Suite {
+    /// A suite of this version.
+    #[must_use]
+    pub const fn new(
+        suite: Digest,
+        command: Vec<String>,
+        folder: PathBuf,
+        standard_input: Option<String>,
+        stems: Vec<String>,
+    ) -> Self {
+        Self { version: VERSION, suite, command, folder, standard_input, stems }
+    }
+}
+
+/// A run that has ended.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Finished {
+    /// Place of the run in the suite, from 0.
+    pub index: usize,
+    /// How long it took by the clock (s).
+    pub seconds: f64,
+    /// What came of it.
+    pub result: RunResult,
+}
+
+/// A record to be written.
+#[derive(Serialize)]
+#[serde(rename_all = "lowercase")]
+enum Written<'a> {
+    Suite(&'a Suite),
+    Finished(&'a Finished),
+}
+
+/// A record that was read.
+#[derive(Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Record {
+    Suite(Suite),
+    Finished(Box<Finished>),
+}
+
+/// Why there is no journal, or none that goes on.
+#[derive(Debug, Error)]
+pub enum JournalError {
+    /// The operating system refused.
+    #[error("cannot {action} the journal `{}`: {source}", path.display())]
+    Io {
+        /// What was tried.
+        action: &'static str,
+        /// The journal.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// A record is no JSON.
+    #[error("a result cannot be written into the journal: {0}")]
+    Json(#[from] serde_json::Error),
+    /// Its first line is none of a journal.
+    #[error("`{}` is no journal of a suite: its first line is damaged", .0.display())]
+    NoSuite(PathBuf),
+    /// It is of a later version.
+    #[error("the journal `{}` has version {found}, newer than this build, which reads version {VERSION}", path.display())]
+    Newer {
+        /// The journal.
+        path: PathBuf,
+        /// Its version.
+        found: u32,
+    },
+}
+
+/// The journal of a suite that is under way.
+#[derive(Debug)]
+pub struct Journal {
+    file: File,
+    path: PathBuf,
+    /// When it was made sure of last.
+    synced: Instant,
+    /// The last line is not whole: the next one begins a line of its own.
+    is_torn: bool,
+}
+
+impl Journal {
+    /// Begins the journal of `suite` at `path`, in place of one that may be there.
+    ///
+    /// # Errors
+    /// [`JournalError::Io`]
+    pub fn create(path: PathBuf, suite: &Suite) -> Result<Self, JournalError> {
+        let file = File::options().create(true).truncate(true).write(true).open(&path);
+        let file = file.map_err(failed("begin", &path))?;
+        let mut journal = Self { file, path, synced: Instant::now(), is_torn: false };
+        journal.write(&Written::Suite(suite))?;
+        journal.sync()?;
+        Ok(journal)
+    }
+
+    /// Goes on with the journal at `path`: what suite it is of, and the runs that have ended, each at most once, the last record
+    /// of it.
+    ///
+    /// # Errors
+    /// [`JournalError`]
+    pub fn resume(path: PathBuf) -> Result<(Self, Suite, Vec<Finished>), JournalError> {
+        let mut file = File::options().read(true).write(true).open(&path).map_err(failed("read", &path))?;
+        let (suite, finished) = read(&file, &path)?;
+        let end = file.seek(SeekFrom::End(0)).map_err(failed("read", &path))?;
+        // An empty line is no record: it does not matter if the last line was whole.
+        Ok((Self { file, path, synced: Instant::now(), is_torn: end > 0 }, suite, finished))
+    }
+
+    /// Writes down that a run has ended.
+    ///
+    /// # Errors
+    /// [`JournalError::Io`], [`JournalError::Json`]: the record is then not there, all others are.
+    pub fn append(&mut self, finished: &Finished) -> Result<(), JournalError> {
+        self.write(&Written::Finished(finished))?;
+        if self.synced.elapsed() >= PERIOD { self.sync() } else { Ok(()) }
+    }
+
+    /// Makes sure that what was written is on the disk.
+    ///
+    /// # Errors
+    /// [`JournalError::Io`]
+    pub fn sync(&mut self) -> Result<(), JournalError> {
+        self.file.sync_data().map_err(failed("write", &self.path))?;
+        self.synced = Instant::now();
+        Ok(())
+    }
+
+    fn write(&mut self, record: &Written<'_>) -> Result<(), JournalError> {
+        let json = serde_json::to_string(record)?;
+        let start = if self.is_torn { "\n" } else { "" };
+        let line = format!("{start}{:016x} {json}\n", digest(&json));
+        self.is_torn = true;
+        self.file.write_all(line.as_bytes()).map_err(failed("write", &self.path))?;
+        self.is_torn = false;
+        Ok(())
+    }
+}
+
+/// What the journal `file` holds, `path` for messages: what suite it is of, and the runs that have ended, as [`Journal::resume`]
+/// has it.
+///
+/// # Errors
+/// [`JournalError`]
+pub fn read(file: impl Read, path: &Path) -> Result<(Suite, Vec<Finished>), JournalError> {
+    let mut lines = Lines { source: BufReader::new(file), path };
+    let Some(Line::Whole(Record::Suite(suite))) = lines.next()? else {
+        return Err(JournalError::NoSuite(path.to_owned()));
+    };
+    if suite.version > VERSION {
+        return Err(JournalError::Newer { path: path.to_owned(), found: suite.version });
+    }
+    let mut all = BTreeMap::new();
+    while let Some(line) = lines.next()? {
+        if let Line::Whole(Record::Finished(finished)) = line {
+            all.insert(finished.index, *finished);
+        }
+    }
+    Ok((suite, all.into_values().collect()))
+}
+
+enum Line {
+    Whole(Record),
+    Damaged,
+}
+
+struct Lines<'a, R> {
+    source: BufReader<R>,
+    path: &'a Path,
+}
+
+impl<R: Read> Lines<'_, R> {
+    /// The next line, if there is one.
+    fn next(&mut self) -> Result<Option<Line>, JournalError> {
+        let mut line = Vec::new();
+        let mut limited = (&mut self.source).take(LONGEST);
+        limited.read_until(b'\n', &mut line).map_err(failed("read", self.path))?;
+        Ok((!line.is_empty()).then(|| record(&line).map_or(Line::Damaged, Line::Whole)))
+    }
+}
+
+/// The record in `line`, if that is whole.
+fn record(line: &[u8]) -> Option<Record> {
+    let line = str::from_utf8(line).ok()?.strip_suffix('\n')?;
+    let (found, json) = line.split_at_checked(16)?;
+    let json = json.strip_prefix(' ')?;
+    (found == format!("{:016x}", digest(json))).then(|| serde_json::from_str(json).ok())?
+}
+
+fn digest(json: &str) -> u64 {
+    XxHash64::oneshot(0, json.as_bytes())
+}
+
+fn failed(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> JournalError {
+    move |source| JournalError::Io { action, path: path.to_owned(), source }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples;
+    use std::fs;
+
+    fn suite() -> Suite {
+        Suite::new(
+            Digest::of(b"suite"),
+            vec!["run".into(), "a b.toml".into()],
+            "/µ".into(),
+            None,
+            vec!["jerk.exact".into()],
+        )
+    }
+
+    fn finished() -> Vec<Finished> {
+        let runs = [samples::jerk(), samples::missed(), samples::broken()].into_iter().enumerate();
+        runs.map(|(index, result)| Finished { index, seconds: 0.25, result }).collect()
+    }
+
+    /// A journal of three runs, and its bytes.
+    fn written(path: &Path) -> Vec<u8> {
+        let mut journal = Journal::create(path.to_owned(), &suite()).unwrap();
+        finished().iter().for_each(|one| journal.append(one).unwrap());
+        fs::read(path).unwrap()
+    }
+
+    #[test]
+    fn it_reads_back_and_goes_on() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("results.journal");
+        written(&path);
+        let (mut journal, read_suite, before) = Journal::resume(path.clone()).unwrap();
+        assert_eq!((read_suite, before), (suite(), finished()));
+        // The last record of a run is the one that counts.
+        let again = Finished { index: 1, seconds: 3.0, result: samples::kept() };
+        journal.append(&again).unwrap();
+        let (_, _, after) = Journal::resume(path).unwrap();
+        assert_eq!(after, [finished().remove(0), again, finished().remove(2)]);
+    }
+
+    /// Whatever the byte after which a write stops, the records before it are there, and those written later follow.
+    #[test]
+    fn a_journal_that_is_cut_off_keeps_what_is_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("results.journal");
+        let whole = written(&path);
+        let ends: Vec<usize> = (1..=whole.len()).filter(|end| whole[end - 1] == b'\n').collect();
+        assert_eq!(ends.len(), 4);
+        for length in
+            (0..whole.len()).step_by(7).chain(ends.iter().flat_map(|end| end - 1..=(end + 1).min(whole.len())))
+        {
+            let records = ends.iter().filter(|end| **end <= length).count();
+            fs::write(&path, &whole[..length]).unwrap();
+            let Ok((mut journal, _, before)) = Journal::resume(path.clone()) else {
+                assert_eq!(records, 0, "{length}");
+                continue;
+            };
+            assert_eq!(before, finished()[..records - 1], "{length}");
+            journal.append(&finished()[2]).unwrap();
+            assert_eq!(Journal::resume(path.clone()).unwrap().2.last(), finished().last(), "{length}");
+        }
+    }
+
+    /// One bit anywhere costs the record that it is in, and no other.
+    #[test]
+    fn a_damaged_record_is_one_that_is_not_there() {
+        let whole = written(&tempfile::tempdir().unwrap().path().join("results.journal"));
+        let first = whole.iter().position(|byte| *byte == b'\n').unwrap();
+        for at in (0..whole.len()).step_by(5) {
+            let mut damaged = whole.clone();
+            damaged[at] ^= 4;
+            let records = read(&damaged[..], Path::new("x"));
+            if at <= first {
+                assert!(matches!(records, Err(JournalError::NoSuite(_))), "{at}");
+            } else {
+                let (_, records) = records.unwrap();
+                assert!(records.len() >= 1 && records.len() < 3, "{at}: {}", records.len());
+                assert!(records.iter().all(|record| finished().contains(record)), "{at}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_later_version_is_refused_by_its_number() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("results.journal");
+        Journal::create(path.clone(), &Suite { version: 2, ..suite() }).unwrap();
+        let refusal = Journal::resume(path).unwrap_err().to_string();
+        assert!(refusal.ends_with("has version 2, newer than this build, which reads version 1"), "{refusal}");
+    }
+}

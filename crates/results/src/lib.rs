@@ -1,0 +1,31 @@
+//! What a suite of runs leaves on disk, and what stays of it after a crash.
+//!
+//! | what | type |
+//! |---|---|
+//! | what came of one run | [`RunResult`] |
+//! | `results.json`, what came of all of them | [`Results`] |
+//! | `results.journal`, which grows while they run | [`Journal`] |
+//! | the folder that holds both, for one suite at a time | [`Folder`] |
+//!
+//! Nothing here knows how a run is made. No clock and no host are part of a result, so that equal suites give equal bytes;
+//! the journal alone holds how long a run took.
+
+mod digest;
+mod entry;
+mod error;
+mod folder;
+mod journal;
+mod printable;
+mod results;
+mod run;
+#[cfg(any(test, feature = "samples"))]
+pub mod samples;
+
+pub use digest::{Digest, Digester};
+pub use entry::{ExpectedResult, MetricResult, MoveResult};
+pub use error::ResultsError;
+pub use folder::{COMPARISON, Folder, FolderError, Former, JOURNAL, RESULTS};
+pub use journal::{Finished, Journal, JournalError, Suite, read as read_journal};
+pub use printable::{printable, printable_lines};
+pub use results::{Outcome, Results, Status, Unfinished};
+pub use run::{LimitPlace, RunIdentity, RunResult};
