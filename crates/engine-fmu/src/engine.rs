@@ -1,9 +1,9 @@
 //! The engine `fmu`, and FMUs beside an axis.
 use crate::mechanics::{FmuMechanics, NAME};
 use crate::open::open;
-use crate::supervisor::HostCommand;
 use servobench_base::{ParamError, finite, positive};
 use servobench_fmi::{FmuEntry, FmuMistake, FmuRequest, Slave};
+use servobench_isolation::Program as HostCommand;
 use servobench_plant::{Drive, Engine, EngineName, FmuModel, Mechanics, MechanicsError, MechanicsSetup, Model};
 use std::io;
 

@@ -1,13 +1,12 @@
 //! The FMU's side: a process that loads one and does what it is asked for.
-use crate::crash;
 use crate::doorbell::Listener;
 use crate::error::HostError;
 use crate::leave::leave;
 use crate::page::Page;
 use crate::protocol::{Command, Message, Status, log_to_line};
-use rustix::process::{Pid, Resource, Rlimit, Signal, getppid, getrlimit, set_parent_process_death_signal, setrlimit};
 use serde::de::DeserializeOwned;
 use servobench_fmi::{LogLine, Slave, SlaveError, StepEnd};
+use servobench_isolation::{ContainError, contain};
 use std::fs::File;
 use std::io;
 use std::os::fd::AsFd;
@@ -15,7 +14,7 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
-/// How often a host that has nothing to do looks for its parent. It ends with it anyway, unless the FMU has seen to that.
+/// How long a host that has nothing to do sleeps at a time. It ends with its keeper.
 const GLANCE: Duration = Duration::from_secs(1);
 /// Bytes of a text that are passed on.
 const LONGEST: usize = 8_000;
@@ -48,16 +47,18 @@ pub(crate) fn say_at_once(line: &LogLine) -> bool {
 /// It ends here, with exit code 0, when it is no longer needed: then destructors of the FMU's library, which somebody else has
 /// written, do not run.
 ///
-/// Standard input is the memory that both share, and is empty for the FMU. The process ends with its parent, leaves no core
-/// dump and gets no more memory than it may have.
+/// To be called before anything else: it makes two processes of this one, see [`contain`]. Standard input is the memory that both share,
+/// and is empty for the FMU.
 ///
 /// # Errors
 /// [`HostError`] if nobody has started this process as a host. Everything else is told to who has.
 pub fn serve<S: DeserializeOwned>(load: impl FnOnce(S) -> Result<Box<dyn Slave>, String>) -> Result<(), HostError> {
+    contain().map_err(|error| match error {
+        ContainError::NotStarted => HostError::NoPage,
+        ContainError::System { action, source } => HostError::System { action, source },
+    })?;
     let page = page()?;
-    limit(page)?;
-    let parent = page.header().told.parent.load(Relaxed);
-    let mut host = Host { page, parent, listener: Listener::default(), number: 0 };
+    let mut host = Host { page, listener: Listener::default(), number: 0 };
     if host.next() != Some(Command::Load) {
         return Ok(());
     }
@@ -90,23 +91,8 @@ fn page() -> Result<&'static Page, HostError> {
     Ok(PAGE.get_or_init(|| Box::leak(Box::new(page))))
 }
 
-/// Binds this process to its parent and to its memory.
-fn limit(page: &'static Page) -> Result<(), HostError> {
-    let cannot = |action| move |errno: rustix::io::Errno| HostError::System { action, source: errno.into() };
-    set_parent_process_death_signal(Some(Signal::KILL)).map_err(cannot("end with the parent"))?;
-    let memory = page.header().told.memory.load(Relaxed);
-    let most = getrlimit(Resource::Data).maximum.map_or(memory, |most| most.min(memory));
-    for (resource, bound) in [(Resource::Data, most), (Resource::Core, 0)] {
-        setrlimit(resource, Rlimit { current: Some(bound), maximum: Some(bound) }).map_err(cannot("bound memory"))?;
-    }
-    crash::note_in(page);
-    Ok(())
-}
-
 struct Host {
     page: &'static Page,
-    /// Process id of the parent.
-    parent: u32,
     listener: Listener,
     /// Number of the last order.
     number: u32,
@@ -117,8 +103,7 @@ impl Host {
     fn next(&mut self) -> Option<Command> {
         self.number = (self.number + 1) & (u32::MAX >> 1);
         let header = self.page.header();
-        let there = || getppid().map(Pid::as_raw_pid).is_some_and(|pid| pid.cast_unsigned() == self.parent);
-        let heard = self.listener.wait(&header.order, self.number, GLANCE, there);
+        let heard = self.listener.wait(&header.order, self.number, GLANCE, || true);
         heard.then(|| Command::of(header.asked.command.load(Relaxed))).flatten()
     }
 

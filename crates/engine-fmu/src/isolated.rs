@@ -1,16 +1,15 @@
 //! The simulation's side of an FMU in a process of its own.
 use crate::doorbell::Listener;
-use crate::ending::Ending;
 use crate::error::IsolationError;
-use crate::memory::in_words;
 use crate::page::{Answered, Asked, Page};
 use crate::protocol::{Command, Message, Status, log_of_lines};
-use crate::supervisor::{HostCommand, Supervisor};
 use serde::Serialize;
 use servobench_fmi::{Bounds, Capabilities, Feedthrough, LogLine, Severity, Slave, SlaveError, StepEnd, Unpacked};
+use servobench_isolation::{Contained, Ending, Limits, Program as HostCommand, Stopwatch, Stream, in_words};
 use std::borrow::Cow;
+use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// How often the process is looked after while it works. Its end is told at once; this is for one that wrote over the
 /// memory that it would be told through.
@@ -34,7 +33,8 @@ pub struct Wires {
 /// before it was looked for: it says neither when it was written nor how much it matters.
 #[derive(Debug)]
 pub struct Isolated {
-    supervisor: Supervisor,
+    process: Contained,
+    page: Arc<Page>,
     capabilities: Capabilities,
     call_timeout: Duration,
     listener: Listener,
@@ -51,7 +51,7 @@ pub struct Isolated {
     is_initialising: bool,
     has_ended: bool,
     /// What went wrong at its end, until somebody takes it.
-    warning: Option<SlaveError>,
+    warnings: Vec<String>,
     known: Option<Known>,
 }
 
@@ -89,12 +89,17 @@ impl Isolated {
     ) -> Result<Self, IsolationError> {
         let system = |action| move |source| IsolationError::System { action, source };
         let setup = serde_json::to_vec(setup).map_err(IsolationError::Setup)?;
-        let (page, file) = Page::new(wires.inputs, wires.outputs, &setup, bounds.memory)
-            .map_err(system("make memory that two processes share"))?;
-        let supervisor = Supervisor::new(command, page, file, bounds.memory)
+        let (page, file) =
+            Page::new(wires.inputs, wires.outputs, &setup).map_err(system("make memory that two processes share"))?;
+        let page = Arc::new(page);
+        let for_its_end = Arc::clone(&page);
+        let limits = Limits { memory: bounds.memory, is_foreign: true };
+        // Who waits for an answer is woken.
+        let process = Contained::start(command, file, None, limits, move || for_its_end.header().answer.give_up())
             .map_err(|source| IsolationError::Start { program: command.program.clone(), source })?;
         let mut isolated = Self {
-            supervisor,
+            process,
+            page,
             capabilities: Capabilities::default(),
             call_timeout: bounds.call_timeout,
             listener: Listener::default(),
@@ -105,7 +110,7 @@ impl Isolated {
             failed: None,
             is_initialising: known.as_ref().is_some_and(|known| known.waits),
             has_ended: false,
-            warning: None,
+            warnings: Vec::new(),
             known,
         };
         match isolated.ask(Command::Load)? {
@@ -123,7 +128,7 @@ impl Isolated {
     }
 
     fn page(&self) -> &Page {
-        &self.supervisor.shared.page
+        &self.page
     }
 
     fn asked(&self) -> &Asked {
@@ -142,32 +147,31 @@ impl Isolated {
         self.fresh = false;
         // The highest bit is for a doorbell that has given up.
         self.number = (self.number + 1) & (u32::MAX >> 1);
-        let shared = &self.supervisor.shared;
-        let header = shared.page.header();
+        let header = self.page.header();
         header.asked.command.store(command as u32, Relaxed);
         header.order.ring(self.number);
-        let (call_timeout, mut until) = (self.call_timeout, None);
+        let (process, call_timeout, mut watch) = (&self.process, self.call_timeout, None);
+        // The time in which the simulation itself does not run is not the FMU's.
         let heard = self.listener.wait(&header.answer, self.number, GLANCE, || {
-            let now = Instant::now();
-            shared.ending().is_none() && now < *until.get_or_insert_with(|| now + call_timeout)
+            process.ending().is_none() && watch.get_or_insert_with(Stopwatch::start).elapsed() < call_timeout
         });
-        if shared.ending().is_some() || !heard {
+        if process.ending().is_some() || !heard {
             return Err(self.lost(command));
         }
-        let status = Status::of(header.answered.status.load(Relaxed)).filter(|_| shared.page.intact());
+        let status = Status::of(header.answered.status.load(Relaxed)).filter(|_| self.page.intact());
         status.ok_or_else(|| self.overwritten())
     }
 
     /// It does not answer: why.
     fn lost(&mut self, command: Command) -> SlaveError {
-        let ended_by_itself = self.supervisor.shared.ending().is_some();
+        let ended_by_itself = self.process.ending().is_some();
         let (time, call_timeout) = (self.time, self.call_timeout.as_secs_f64());
         // What a step is by itself need not be said.
         let call = self.answered().call();
         let call: Cow<'static, str> =
             if command == Command::Step && call.ends_with("DoStep") { "".into() } else { call.into() };
         let intact = self.page().intact();
-        let error = match self.supervisor.end() {
+        let error = match self.process.end() {
             Some(ending) if !intact => {
                 let how = format!("{OVERWRITTEN}: {}", ending.how());
                 SlaveError::Crashed { call: "".into(), time, how }
@@ -187,7 +191,7 @@ impl Isolated {
 
     /// The answer is none.
     fn overwritten(&mut self) -> SlaveError {
-        self.supervisor.end();
+        self.process.end();
         self.fail(SlaveError::Crashed { call: "".into(), time: self.time, how: OVERWRITTEN.into() })
     }
 
@@ -257,7 +261,9 @@ impl Slave for Isolated {
         if self.failed.is_none() && !std::mem::replace(&mut self.has_ended, true) {
             // A sum of times, said without its roundings.
             self.time = (self.reached * 1e12).round() / 1e12;
-            self.warning = self.leave().err();
+            let late = self.leave().err();
+            self.warnings.extend(late.map(|error| error.to_string()));
+            self.warnings.extend(self.process.ending().and_then(Ending::left_in_words));
         }
     }
 
@@ -313,8 +319,9 @@ impl Slave for Isolated {
             let time = self.time;
             log.push(LogLine { time, severity: Severity::Warning, category: "isolation".into(), message });
         }
-        let mut output = self.supervisor.shared.output();
-        let written = [("standard output", output.stdout.take()), ("standard error", output.stderr.take())];
+        let mut output = self.process.output();
+        let stdout = output.stdout.as_mut().and_then(Stream::take);
+        let written = [("standard output", stdout), ("standard error", output.stderr.take())];
         for (category, (text, dropped)) in written.into_iter().filter_map(|(name, some)| Some((name, some?))) {
             let line = |severity, message| LogLine { time: self.time, severity, category: category.into(), message };
             if dropped > 0 {
@@ -325,11 +332,11 @@ impl Slave for Isolated {
         }
         drop(output);
         let time = self.time;
-        log.extend(self.warning.take().map(|error| LogLine {
+        log.extend(self.warnings.drain(..).map(|what| LogLine {
             time,
             severity: Severity::Warning,
             category: String::new(),
-            message: format!("its results are complete, but {error}"),
+            message: format!("its results are complete, but {what}"),
         }));
         log
     }
@@ -349,12 +356,8 @@ impl Isolated {
             // It answers and ends: whoever is slow to listen finds it gone.
             return if self.has_left() { Ok(()) } else { Err(error) };
         }
-        let leave = Instant::now() + LEAVE.min(self.call_timeout);
-        let shared = &self.supervisor.shared;
-        // Wakes when the process has ended.
-        let over = 1 << 31 | self.number;
-        let go_on = || shared.ending().is_none() && Instant::now() < leave;
-        Listener::default().wait(&shared.page.header().answer, over, GLANCE, go_on);
+        // What has not ended by then is ended later.
+        self.process.wait_for_end(LEAVE.min(self.call_timeout));
         Ok(())
     }
 }
@@ -365,14 +368,14 @@ impl Isolated {
         let header = self.page().header();
         header.answer.has_rung(self.number)
             && Status::of(header.answered.status.load(Relaxed)) == Some(Status::Done)
-            && self.supervisor.shared.ending().is_some_and(Ending::is_orderly)
+            && self.process.ending().is_some_and(Ending::is_orderly)
     }
 }
 
 impl Drop for Isolated {
     fn drop(&mut self) {
         // What cannot go on is ended; so is what does not end as it was asked to: its results are all there.
-        if !self.has_ended && self.supervisor.shared.ending().is_none() {
+        if !self.has_ended && self.process.ending().is_none() {
             self.leave().ok();
         }
     }

@@ -7,24 +7,23 @@
 //!
 //! ```text
 //! simulation: Isolated ── memory that both see, a doorbell for each direction ── serve: the FMU      (same program, another process)
-//!             supervisor   ── standard output and error, its end ─────────────┘
+//!             Contained    ── standard output and error, its end ─────────────┘
 //! ```
 //! | what the FMU does | what is said |
 //! |---|---|
 //! | crashes, aborts, calls `exit` | signal or exit code, and the last that it wrote on standard error |
 //! | does not come back | which call, after how long; it is ended |
-//! | asks for memory without end | how much it may have (the process is bounded, `RLIMIT_DATA`) |
+//! | asks for memory without end, private or shared | how much it may have |
 //! | prints without end | how much was dropped; the end is kept |
 //! | writes over the memory that is shared | that it did; numbers are only numbers there and lengths are cut |
+//! | leaves processes behind | which; they are ended |
 //!
-//! It ends with the simulation, however that ends, and what it has started ends with it, unless that has left its process
-//! group. Nothing is left in the file system: the memory is an anonymous file.
+//! It ends with the simulation, however that ends, and what it has started ends with it; what contains it, and what does not, is the
+//! crate `servobench-isolation`. Nothing is left in the file system: the memory is an anonymous file.
 //!
 //! Linux only: futexes, memfd and pidfd (5.3 or later).
 
-mod crash;
 mod doorbell;
-mod ending;
 mod engine;
 mod error;
 mod host;
@@ -34,15 +33,12 @@ mod leave;
 mod like;
 mod load;
 mod mechanics;
-mod memory;
 mod motion;
 mod open;
 mod order;
-mod output;
 mod page;
 mod ports;
 mod protocol;
-mod supervisor;
 
 pub use engine::Fmu;
 pub use error::{HostError, IsolationError};
@@ -52,4 +48,5 @@ pub use isolated::{Isolated, Wires};
 pub use load::{LoadError, Place, host, load};
 pub use mechanics::FmuMechanics;
 pub use ports::Ports;
-pub use supervisor::HostCommand;
+/// The program that an FMU runs in: one that calls [`serve`], most simply the same one again.
+pub use servobench_isolation::Program as HostCommand;

@@ -3,8 +3,8 @@ use crate::error::{HostError, IsolationError};
 use crate::host::{note_call, say_at_once, serve};
 use crate::isolated::{Isolated, Known, Wires};
 use crate::order::Order;
-use crate::supervisor::HostCommand;
 use servobench_fmi::{Bounds, Feedthrough, FmuError, Loaded, Setup, Slave, Unpacked, note_calls, send_log_lines_to};
+use servobench_isolation::Program as HostCommand;
 use thiserror::Error;
 
 /// Where an FMU runs.

@@ -2,11 +2,11 @@
 use crate::in_si::InSi;
 use crate::load::{Place, load};
 use crate::ports::{Ports, mechanical};
-use crate::supervisor::HostCommand;
 use servobench_fmi::{
     DataType, FmuEntry, FmuError, FmuFile, FmuMistake, FmuRequest, Isolation, ModelDescription, Setup, Slave, Unpacked,
     Value, Variable,
 };
+use servobench_isolation::Program as HostCommand;
 use std::io;
 
 /// The FMU, initialised and wired; its numbers are SI numbers. `host` is the program that runs one in a process of its own.

@@ -37,7 +37,7 @@ pub(crate) struct Header {
     pub(crate) order: Doorbell,
     /// Rings for an answer, with the number of the order.
     pub(crate) answer: Doorbell,
-    pub(crate) told: Told,
+    told: Told,
     pub(crate) asked: Asked,
     pub(crate) answered: Answered,
 }
@@ -50,10 +50,6 @@ pub(crate) struct Told {
     inputs: AtomicU32,
     outputs: AtomicU32,
     setup: AtomicU32,
-    /// Process id of the parent.
-    pub(crate) parent: AtomicU32,
-    /// How much memory of its own the host may have (B).
-    pub(crate) memory: AtomicU64,
 }
 
 /// What the parent asks for.
@@ -84,8 +80,6 @@ pub(crate) struct Answered {
     pub(crate) log_dropped: AtomicU32,
     /// How far a step has come (s, bits of an f64).
     pub(crate) reached: AtomicU64,
-    /// Bytes of memory that the host had when it crashed.
-    pub(crate) held: AtomicU64,
     /// Name of the function that is under way, zeros behind it.
     call: [AtomicU64; CALL / 8],
 }
@@ -154,7 +148,7 @@ unsafe impl Sync for Page {}
 
 impl Page {
     /// A page of the parent, and the file that the host finds it in.
-    pub(crate) fn new(inputs: usize, outputs: usize, setup: &[u8], memory: u64) -> io::Result<(Self, OwnedFd)> {
+    pub(crate) fn new(inputs: usize, outputs: usize, setup: &[u8]) -> io::Result<(Self, OwnedFd)> {
         let layout = Layout { inputs, outputs, setup: setup.len() };
         let as_u32 = |count: usize| u32::try_from(count).map_err(|_| io::Error::from(io::ErrorKind::FileTooLarge));
         let (inputs, outputs, setup_bytes) = (as_u32(inputs)?, as_u32(outputs)?, as_u32(setup.len())?);
@@ -166,8 +160,6 @@ impl Page {
         told.inputs.store(inputs, Relaxed);
         told.outputs.store(outputs, Relaxed);
         told.setup.store(setup_bytes, Relaxed);
-        told.parent.store(std::process::id(), Relaxed);
-        told.memory.store(memory, Relaxed);
         told.magic.store(MAGIC, Relaxed);
         write(page.bytes(MESSAGE + LOG, setup.len()), setup);
         Ok((page, file))
@@ -318,10 +310,10 @@ mod tests {
     /// Both sides see the same through mappings of their own.
     #[test]
     fn what_one_side_writes_the_other_reads() {
-        let (parent, file) = Page::new(2, 3, b"{\"some\":1}", 77).unwrap();
+        let (parent, file) = Page::new(2, 3, b"{\"some\":1}").unwrap();
         let host = Page::adopt(&file).unwrap().unwrap();
         assert_eq!(host.layout, Layout { inputs: 2, outputs: 3, setup: 10 });
-        assert_eq!((host.setup(), host.header().told.memory.load(Relaxed)), (b"{\"some\":1}".to_vec(), 77));
+        assert_eq!(host.setup(), b"{\"some\":1}".to_vec());
         assert_eq!((parent.inputs().len(), parent.outputs().len()), (6, 3));
         for (k, word) in parent.inputs().iter().chain(parent.outputs()).enumerate() {
             word.store(k as u64, Relaxed);
@@ -339,7 +331,7 @@ mod tests {
     /// An FMU can write over every byte.
     #[test]
     fn lengths_that_are_nonsense_are_cut() {
-        let (page, _file) = Page::new(1, 1, b"", 0).unwrap();
+        let (page, _file) = Page::new(1, 1, b"").unwrap();
         page.header().answered.message.store(u32::MAX, Relaxed);
         page.header().answered.log.store(u32::MAX, Relaxed);
         assert!(!page.add_log(b"x"));
@@ -348,7 +340,7 @@ mod tests {
 
     #[test]
     fn log_that_finds_no_room_leaves_what_is_there() {
-        let (page, _file) = Page::new(0, 0, b"", 0).unwrap();
+        let (page, _file) = Page::new(0, 0, b"").unwrap();
         assert!(page.add_log(&vec![b'a'; LOG - 1]) && !page.add_log(b"bc") && page.add_log(b"d"));
         assert_eq!(page.take_log().last(), Some(&b'd'));
     }
@@ -357,7 +349,7 @@ mod tests {
     #[test]
     fn log_can_be_taken_while_it_is_written() {
         const LINES: u32 = 20_000;
-        let (page, file) = Page::new(0, 0, b"", 0).unwrap();
+        let (page, file) = Page::new(0, 0, b"").unwrap();
         let host = Page::adopt(&file).unwrap().unwrap();
         let mut taken = Vec::new();
         std::thread::scope(|scope| {
@@ -378,7 +370,7 @@ mod tests {
 
     #[test]
     fn the_file_cannot_shrink_under_the_parent() {
-        let (_page, file) = Page::new(1, 1, b"", 0).unwrap();
+        let (_page, file) = Page::new(1, 1, b"").unwrap();
         assert_eq!(ftruncate(&file, 0), Err(rustix::io::Errno::PERM));
     }
 

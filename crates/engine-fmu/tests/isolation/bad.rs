@@ -57,6 +57,18 @@ pub(crate) enum Bad {
     HandleSignals,
     /// Forks a process that waits for better times, then crashes; says its id.
     ForkThenCrash,
+    /// Starts a process that leaves its session and its parent (a daemon), and goes on; says its id.
+    Daemon,
+    /// The same, then crashes.
+    DaemonThenCrash,
+    /// Sends SIGKILL to this process, to its parent and to the group of that.
+    Kill(i32),
+    /// Writes this much to memory that it shares with processes that it could start, in blocks.
+    ShareMemory(usize),
+    /// Writes this much to a file of memory that is not mapped, in blocks.
+    FillMemoryFile(usize),
+    /// Starts processes that write to memory of their own, this much each.
+    Spread { processes: usize, each: usize },
     /// Forks a process that goes on as if it were the host.
     ForkTwin,
     /// Writes over all memory that is shared with another process.
@@ -205,14 +217,29 @@ impl BadSlave {
                 null_write();
             }
             Bad::ForkThenCrash => {
-                // SAFETY: the child makes a system call only.
-                let child = unsafe { libc::fork() };
-                if child == 0 {
-                    // SAFETY: a system call.
-                    unsafe { libc::pause() };
-                }
-                eprintln!("child {child}");
+                eprintln!("child {}", fork(wait_for_better_times));
                 null_write();
+            }
+            Bad::Daemon => self.log.push(line(time, &format!("child {}", fork(become_a_daemon)))),
+            Bad::DaemonThenCrash => {
+                eprintln!("child {}", fork(become_a_daemon));
+                null_write();
+            }
+            // SAFETY: system calls.
+            Bad::Kill(process) => unsafe {
+                let killed = libc::kill(process, libc::SIGKILL) == 0;
+                libc::kill(libc::getppid(), libc::SIGKILL);
+                self.log.push(line(time, if killed { "killed" } else { "spared" }));
+            },
+            Bad::ShareMemory(bytes) => share_memory(bytes),
+            Bad::FillMemoryFile(bytes) => fill_memory_file(bytes),
+            Bad::Spread { processes, each } => {
+                for _ in 0..processes {
+                    fork(|| {
+                        hoard(each, each);
+                    });
+                }
+                hang();
             }
             // SAFETY: the child goes on like its parent and allocates nothing; the parent waits for its end.
             Bad::ForkTwin => unsafe {
@@ -247,11 +274,70 @@ impl Drop for BadSlave {
     }
 }
 
+/// Forks a process that does `work`, says its id as `/proc` has it, and waits for better times. The fork is of the only thread.
+fn fork(work: impl FnOnce()) -> String {
+    let (mut said, mut saying) = std::io::pipe().unwrap();
+    // SAFETY: there is one thread.
+    if unsafe { libc::fork() } == 0 {
+        work();
+        let own = std::fs::read_link("/proc/self").unwrap();
+        saying.write_all(own.to_str().unwrap().as_bytes()).unwrap();
+        drop(saying);
+        hang();
+    }
+    drop(saying);
+    let mut id = String::new();
+    said.read_to_string(&mut id).unwrap();
+    id
+}
+
+fn wait_for_better_times() {}
+
+/// Leaves session, group and parent, as a daemon does.
+fn become_a_daemon() {
+    // SAFETY: there is one thread.
+    unsafe {
+        if libc::fork() != 0 {
+            libc::_exit(0);
+        }
+        libc::setsid();
+        libc::signal(libc::SIGTERM, libc::SIG_IGN);
+        libc::signal(libc::SIGHUP, libc::SIG_IGN);
+    }
+}
+
+/// Bytes that are written at a time; after each the FMU computes for a moment, as one that fills its memory does.
+const BLOCK: usize = 16 << 20;
+
+fn share_memory(bytes: usize) {
+    for _ in 0..bytes / BLOCK {
+        // SAFETY: a new mapping, as long as it is said to be.
+        unsafe {
+            let (access, shared) = (libc::PROT_READ | libc::PROT_WRITE, libc::MAP_SHARED | libc::MAP_ANONYMOUS);
+            let memory = libc::mmap(std::ptr::null_mut(), BLOCK, access, shared, -1, 0);
+            assert_ne!(memory, libc::MAP_FAILED);
+            memory.cast::<u8>().write_bytes(1, BLOCK);
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+fn fill_memory_file(bytes: usize) {
+    // SAFETY: a new file, which belongs to this process alone.
+    let mut file =
+        unsafe { <std::fs::File as std::os::fd::FromRawFd>::from_raw_fd(libc::memfd_create(c"much".as_ptr(), 0)) };
+    let block = vec![1; BLOCK];
+    for _ in 0..bytes / BLOCK {
+        file.write_all(&block).unwrap();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
 fn line(time: f64, message: &str) -> LogLine {
     LogLine { time, severity: Severity::Warning, category: "logStatusWarning".into(), message: message.into() }
 }
 
-fn hang() {
+fn hang() -> ! {
     loop {
         std::thread::sleep(Duration::from_hours(1));
     }

@@ -8,16 +8,24 @@ fn state(pid: &str) -> Option<char> {
     stat.rsplit_once(") ")?.1.chars().next()
 }
 
-/// Ids of the processes that this thread group has started and not yet reaped.
+/// Ids of the processes that this one has started and not yet reaped.
 fn children() -> Vec<String> {
-    let tasks = std::fs::read_dir("/proc/self/task").unwrap();
-    let of_task = |task: std::fs::DirEntry| std::fs::read_to_string(task.path().join("children")).unwrap_or_default();
-    tasks.flat_map(|task| of_task(task.unwrap()).split_whitespace().map(String::from).collect::<Vec<_>>()).collect()
+    children_of(&std::process::id().to_string())
+}
+
+/// The same of another process: the fourth word of its children's `stat` (proc_pid_stat(5)).
+fn children_of(parent: &str) -> Vec<String> {
+    let ids = std::fs::read_dir("/proc").unwrap().filter_map(|entry| entry.unwrap().file_name().into_string().ok());
+    let is_child = |id: &String| {
+        let stat = std::fs::read_to_string(format!("/proc/{id}/stat")).unwrap_or_default();
+        stat.rsplit_once(") ").is_some_and(|(_, rest)| rest.split(' ').nth(1) == Some(parent))
+    };
+    ids.filter(is_child).collect()
 }
 
 /// Waits until `done`, which comes: how long it takes is not what is tested. Less than the minute after which the harness of a
 /// host complains of its length, and ends because nobody listens.
-fn until(done: impl Fn() -> bool) {
+fn until(mut done: impl FnMut() -> bool) {
     let call_timeout = std::time::Instant::now() + Duration::from_secs(30);
     while !done() {
         assert!(std::time::Instant::now() < call_timeout, "it does not come");
@@ -68,10 +76,48 @@ fn an_orderly_end_is_no_crash() {
 
 #[test]
 fn what_it_has_started_ends_with_it() {
-    let how = crash_of_step(&Bad::ForkThenCrash, Bounds::default());
-    let pid = how.split("child ").nth(1).and_then(|rest| rest.split_whitespace().next()).unwrap().to_owned();
-    // Whoever inherits it reaps it, or leaves it a zombie (Z), which is ended too.
-    until(|| matches!(state(&pid), None | Some('Z' | 'X')));
+    for bad in [Bad::ForkThenCrash, Bad::DaemonThenCrash] {
+        let how = crash_of_step(&bad, Bounds::default());
+        assert_eq!(state(&started(&how)), None, "{bad:?}: {how}");
+    }
+}
+
+/// The process that an FMU says it has started.
+fn started(says: &str) -> String {
+    says.split("child ").nth(1).and_then(|rest| rest.split_whitespace().next()).unwrap().to_owned()
+}
+
+/// One that has left group, session and parent is found all the same, and the run is told.
+#[test]
+fn what_it_leaves_behind_is_ended_and_named() {
+    let mut slave = start(&Bad::Daemon, Bounds::default()).unwrap();
+    slave.step(0.0, 0.1, &[[0.0; 3]]).unwrap();
+    let daemon = slave.take_log().iter().find(|line| line.message.starts_with("child ")).unwrap().message.clone();
+    assert!(state(&started(&daemon)).is_some());
+    slave.end();
+    let said = slave.take_log();
+    let warning = said.iter().find(|line| line.severity == Severity::Warning).unwrap();
+    let (before, after) = ("its results are complete, but it left a process (`", "`), which was ended");
+    assert!(warning.message.starts_with(before) && warning.message.ends_with(after), "{}", warning.message);
+    assert_eq!(state(&started(&daemon)), None);
+}
+
+/// The bench, its own keeper and other processes of the user are out of reach where the system gives it a namespace.
+#[test]
+fn it_reaches_no_other_process() {
+    // As the root may, or everybody else with a user namespace, which a test with its threads cannot have.
+    if !Command::new("unshare").args(["--pid", "--fork", "true"]).status().is_ok_and(|status| status.success()) {
+        eprintln!("skipped: it_reaches_no_other_process needs a PID namespace, which this system does not allow here");
+        return;
+    }
+    let mut other = Command::new("sleep").arg("60").spawn().unwrap();
+    let mut slave = start(&Bad::Kill(other.id().cast_signed()), Bounds::default()).unwrap();
+    slave.step(0.0, 0.1, &[[0.0; 3]]).unwrap();
+    slave.step(0.1, 0.1, &[[0.0; 3]]).unwrap();
+    assert!(slave.take_log().iter().any(|line| line.message == "spared"));
+    assert!(other.try_wait().unwrap().is_none());
+    other.kill().unwrap();
+    other.wait().unwrap();
 }
 
 /// A simulation that is killed takes its FMUs along.
@@ -86,10 +132,19 @@ fn it_ends_with_the_simulation() {
         .unwrap();
     let lines = std::io::BufRead::lines(std::io::BufReader::new(simulation.stdout.take().unwrap()));
     let pid = lines.map(Result::unwrap).find_map(|line| Some(line.split_once("host of ")?.1.to_owned())).unwrap();
-    assert!(state(&pid).is_some());
+    // The keeper, the first process of the namespace where there is one, and the host.
+    let mut family = vec![pid];
+    until(|| {
+        family.truncate(1);
+        while let Some(child) = children_of(family.last().unwrap()).pop() {
+            family.push(child);
+        }
+        family.len() > 1
+    });
     simulation.kill().unwrap();
     simulation.wait().unwrap();
-    until(|| matches!(state(&pid), None | Some('Z' | 'X')));
+    // Whoever inherits the keeper reaps it, or leaves it a zombie (Z), which is ended too.
+    until(|| family.iter().all(|pid| matches!(state(pid), None | Some('Z' | 'X'))));
 }
 
 /// Not a test: has an FMU that hangs, and says its id.

@@ -8,6 +8,7 @@ mod crashes;
 mod endings;
 mod floods;
 mod same;
+mod sharing;
 
 use bad::Bad;
 use servobench_engine_fmu::{HostCommand, HostError, Isolated, IsolationError, Wires, serve};
@@ -18,7 +19,9 @@ use std::time::Duration;
 #[test]
 #[ignore = "the process that the other tests start"]
 fn host() {
-    match serve(|bad: Bad| bad.load()) {
+    // The process that serves is forked from this thread: nobody else is there to say that it panicked.
+    let served = std::panic::catch_unwind(|| serve(|bad: Bad| bad.load()));
+    match served.unwrap_or_else(|_| std::process::exit(101)) {
         // Somebody runs all tests that are ignored.
         Ok(()) | Err(HostError::NoPage) => {}
         Err(error) => panic!("{error}"),

@@ -6,22 +6,31 @@ use std::process::ExitStatus;
 /// What libraries say when they get no memory: Rust's allocator, C++'s `new`, Python, and the system's own words (ENOMEM).
 const NO_MEMORY: [&str; 4] = ["memory allocation of ", "std::bad_alloc", "MemoryError", "Cannot allocate memory"];
 
-/// Ends with what the process held of its memory and what it left on standard error.
+/// How a contained process ended, with what it held of its memory and what it left.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Ending {
+pub struct Ending {
     /// How it ended, unless it was ended for its memory.
-    pub(crate) status: Option<ExitStatus>,
+    pub status: Option<ExitStatus>,
     /// How much memory of its own it held when it crashed or was ended (B); 0 if that is not known.
-    pub(crate) held: u64,
+    pub held: u64,
     /// How much it may have (B).
-    pub(crate) bound: u64,
+    pub bound: u64,
+    /// It was ended because it took more, private and shared memory together.
+    pub exceeded: bool,
     /// The last of what it wrote on standard error.
-    pub(crate) last_words: String,
+    pub last_words: String,
+    /// How many processes it had started and left behind; they were ended.
+    pub left: usize,
+    /// Names of the first of them.
+    pub names: Vec<String>,
+    /// Its process id; `None` if that is not known.
+    pub process: Option<u32>,
 }
 
 impl Ending {
     /// Whether it ended by itself with exit code 0.
-    pub(crate) fn is_orderly(&self) -> bool {
+    #[must_use]
+    pub fn is_orderly(&self) -> bool {
         self.status.is_some_and(|status| status.success())
     }
 
@@ -29,7 +38,8 @@ impl Ending {
     ///
     /// What grows by doubling asks for twice what it holds, and holds both while it copies: one that crashes with a third of
     /// what it may have may have been refused more.
-    pub(crate) fn of_memory(&self) -> bool {
+    #[must_use]
+    pub fn of_memory(&self) -> bool {
         self.refused() || self.held >= self.bound / 3
     }
 
@@ -39,8 +49,15 @@ impl Ending {
     }
 
     /// All that is to be said.
-    pub(crate) fn how(&self) -> String {
+    #[must_use]
+    pub fn how(&self) -> String {
         let bound = in_words(self.bound);
+        if self.exceeded {
+            let held = in_words(self.held);
+            return self.with_last_words(format!(
+                "it took {held} of memory, private and shared, of the {bound} that it may have"
+            ));
+        }
         let memory = match (self.refused(), self.of_memory()) {
             (true, _) => Some(format!("it asked for more memory than the {bound} that it may have")),
             (_, true) => Some(format!(
@@ -50,7 +67,23 @@ impl Ending {
             _ => None,
         };
         let parts = memory.into_iter().chain(self.status.map(status_in_words)).collect::<Vec<_>>().join(", then ");
-        if self.last_words.is_empty() { parts } else { format!("{parts}; its last words: {}", self.last_words) }
+        self.with_last_words(parts)
+    }
+
+    fn with_last_words(&self, how: String) -> String {
+        if self.last_words.is_empty() { how } else { format!("{how}; its last words: {}", self.last_words) }
+    }
+
+    /// What it had started and left behind, in words; `None` if there was nothing.
+    #[must_use]
+    pub fn left_in_words(&self) -> Option<String> {
+        let named: Vec<String> = self.names.iter().map(|name| format!("`{}`", name.escape_debug())).collect();
+        let named = if named.is_empty() { String::new() } else { format!(" ({})", named.join(", ")) };
+        match self.left {
+            0 => None,
+            1 => Some(format!("it left a process{named}, which was ended")),
+            left => Some(format!("it left {left} processes{named}, which were ended")),
+        }
     }
 }
 
@@ -91,8 +124,16 @@ mod tests {
     use super::*;
 
     fn ending(raw: i32, held: u64, last_words: &str) -> Ending {
-        let status = Some(ExitStatus::from_raw(raw));
-        Ending { status, held, bound: 3_000_000_000, last_words: last_words.into() }
+        Ending {
+            status: Some(ExitStatus::from_raw(raw)),
+            held,
+            bound: 3_000_000_000,
+            exceeded: false,
+            last_words: last_words.into(),
+            left: 0,
+            names: Vec::new(),
+            process: None,
+        }
     }
 
     /// A wait status: the signal, or the exit code times 256 (wait(2)).
@@ -115,7 +156,22 @@ mod tests {
         assert!(!ending(11, 999_999_999, "").of_memory());
         let how = ending(6, 0, "memory allocation of 8 bytes failed").how();
         assert!(how.starts_with(said) && how.contains("signal 6") && how.ends_with("8 bytes failed"), "{how}");
-        let ended = Ending { status: None, held: 3_000_000_000, bound: 3_000_000_000, last_words: String::new() };
+        let ended = Ending { status: None, ..ending(9, 3_000_000_000, "") };
         assert_eq!(ended.how(), said);
+        let shared = Ending { exceeded: true, ..ending(9, 3_100_000_000, "") };
+        assert_eq!(shared.how(), "it took 3.1 GB of memory, private and shared, of the 3.0 GB that it may have");
+    }
+
+    #[test]
+    fn what_it_left_is_named() {
+        let left = |names: &[&str], left| Ending {
+            left,
+            names: names.iter().map(ToString::to_string).collect(),
+            ..ending(0, 0, "")
+        };
+        assert_eq!(left(&[], 0).left_in_words(), None);
+        assert_eq!(left(&["sleep"], 1).left_in_words().unwrap(), "it left a process (`sleep`), which was ended");
+        let three = left(&["a", "\u{1b}[2J"], 3).left_in_words().unwrap();
+        assert_eq!(three, "it left 3 processes (`a`, `\\u{1b}[2J`), which were ended");
     }
 }

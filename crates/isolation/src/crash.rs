@@ -1,11 +1,11 @@
 #![expect(unsafe_code, reason = "what to do at a crash is told to the system through C")]
-//! What a host notes when it crashes.
+//! What a contained process notes when it crashes.
 //!
-//! The memory of a process is gone when its parent hears of its end, so the process notes how much it had. Only what is safe
+//! The memory of a process is gone when its keeper hears of its end, so the process notes how much it had. Only what is safe
 //! in a signal handler is done there (signal-safety(7)): system calls and atomics. Then all goes its usual way: the action
 //! that was there before is put back, and the instruction that failed fails again.
 use crate::memory;
-use crate::page::Page;
+use crate::note::Note;
 use std::ffi::c_int;
 use std::mem::MaybeUninit;
 use std::ptr;
@@ -16,20 +16,20 @@ use std::sync::atomic::Ordering::Relaxed;
 const SIGNALS: [c_int; 5] = [libc::SIGSEGV, libc::SIGABRT, libc::SIGBUS, libc::SIGILL, libc::SIGFPE];
 
 /// What there is to know in the handler.
-struct Note {
-    page: &'static Page,
+struct Known {
+    note: &'static Note,
     before: [libc::sigaction; SIGNALS.len()],
 }
 
 // SAFETY: the actions hold addresses of functions, which all threads may call; nothing changes them.
-unsafe impl Send for Note {}
+unsafe impl Send for Known {}
 // SAFETY: as above.
-unsafe impl Sync for Note {}
+unsafe impl Sync for Known {}
 
-static NOTE: OnceLock<Note> = OnceLock::new();
+static KNOWN: OnceLock<Known> = OnceLock::new();
 
-/// Notes in `page` how much memory this process holds when it crashes.
-pub(crate) fn note_in(page: &'static Page) {
+/// Notes in `note` how much memory this process holds when it crashes.
+pub(crate) fn note_in(note: &'static Note) {
     let before = SIGNALS.map(|signal| {
         let mut action = MaybeUninit::<libc::sigaction>::zeroed();
         // SAFETY: it asks only, and fills what it points to; all zeros are an action too: the default.
@@ -38,7 +38,7 @@ pub(crate) fn note_in(page: &'static Page) {
             action.assume_init()
         }
     });
-    if NOTE.set(Note { page, before }).is_ok() {
+    if KNOWN.set(Known { note, before }).is_ok() {
         let handler: extern "C" fn(c_int, *mut libc::siginfo_t, *mut libc::c_void) = crashed;
         for signal in SIGNALS {
             // SAFETY: all zeros are an action without flags and with an empty mask; the handler is for as long as the program.
@@ -54,16 +54,16 @@ pub(crate) fn note_in(page: &'static Page) {
 }
 
 extern "C" fn crashed(signal: c_int, info: *mut libc::siginfo_t, _: *mut libc::c_void) {
-    let Some(note) = NOTE.get() else { return };
+    let Some(known) = KNOWN.get() else { return };
     if let Some(held) = memory::held(c"/proc/self/statm") {
-        note.page.header().answered.held.store(held, Relaxed);
+        known.note.held.store(held, Relaxed);
     }
     // SAFETY: the kernel gives a valid `info`. Actions are set as they were; what was sent and not caused by an instruction
     // would not come again by itself, and is sent again with the default action.
     unsafe {
         let sent = (*info).si_code <= 0;
         match SIGNALS.iter().position(|known| *known == signal) {
-            Some(which) if !sent => libc::sigaction(signal, &raw const note.before[which], ptr::null_mut()),
+            Some(which) if !sent => libc::sigaction(signal, &raw const known.before[which], ptr::null_mut()),
             _ => {
                 libc::signal(signal, libc::SIG_DFL);
                 libc::raise(signal)

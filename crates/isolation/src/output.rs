@@ -1,4 +1,4 @@
-//! What an FMU writes on standard output and standard error.
+//! What a contained process writes on standard output and standard error.
 use rustix::io::ioctl_fionbio;
 use std::io::{self, Read};
 use std::os::fd::AsFd;
@@ -13,7 +13,7 @@ const CHUNKS: usize = 16;
 
 /// One stream of the process: it is always read, so that the writer never waits, and of a flood only the end is kept.
 #[derive(Debug)]
-pub(crate) struct Stream<S> {
+pub struct Stream<S> {
     /// `None` after its end.
     source: Option<S>,
     kept: Vec<u8>,
@@ -24,18 +24,22 @@ pub(crate) struct Stream<S> {
 
 impl<S: Read + AsFd> Stream<S> {
     /// Listens to `source`, which from now on does not wait.
-    pub(crate) fn new(source: S) -> io::Result<Self> {
+    ///
+    /// # Errors
+    /// Those of the system.
+    pub fn new(source: S) -> io::Result<Self> {
         ioctl_fionbio(&source, true)?;
         Ok(Self { source: Some(source), kept: Vec::new(), count: 0, chunk: vec![0; CHUNK] })
     }
 
     /// Where to listen, before its end.
-    pub(crate) fn source(&self) -> Option<&S> {
+    #[must_use]
+    pub fn source(&self) -> Option<&S> {
         self.source.as_ref()
     }
 
     /// Reads what is there.
-    pub(crate) fn drain(&mut self) {
+    pub fn drain(&mut self) {
         for _ in 0..CHUNKS {
             let Some(source) = &mut self.source else { return };
             match source.read(&mut self.chunk) {
@@ -56,7 +60,7 @@ impl<S: Read + AsFd> Stream<S> {
     }
 
     /// What has come since the last time, and how many bytes before that were dropped.
-    pub(crate) fn take(&mut self) -> Option<(String, u64)> {
+    pub fn take(&mut self) -> Option<(String, u64)> {
         let kept = &self.kept[self.kept.len().saturating_sub(KEPT)..];
         let dropped = self.count - kept.len() as u64;
         let text = String::from_utf8_lossy(kept).trim_end().to_owned();
@@ -67,7 +71,8 @@ impl<S: Read + AsFd> Stream<S> {
     }
 
     /// The last bytes, which stay.
-    pub(crate) fn last_words(&self) -> String {
+    #[must_use]
+    pub fn last_words(&self) -> String {
         let kept = &self.kept[self.kept.len().saturating_sub(KEPT)..];
         String::from_utf8_lossy(kept).trim().to_owned()
     }
