@@ -9,6 +9,8 @@ mod fmu_suite;
 mod getting_started;
 #[cfg(unix)]
 mod interrupted;
+#[cfg(target_os = "linux")]
+mod isolation;
 mod man;
 mod objects;
 mod output;

@@ -82,9 +82,9 @@ pub(crate) enum Command {
     #[cfg(feature = "fmu")]
     #[command(hide = true)]
     FmuHost,
-    /// Run one scenario in a process of its own (started by `run` and `compare`).
+    /// Run scenarios in a process of its own (started by `run`, `check` and `compare`).
     #[command(hide = true)]
-    Worker(WorkerArgs),
+    Worker,
 }
 
 /// What to do for a PLC.
@@ -193,7 +193,7 @@ pub(crate) struct RunArgs {
     /// Run what is left of the suite in this folder, which was ended before its time; scenarios and options are those that it was
     /// begun with.
     #[arg(long, value_name = "DIR", value_parser = file(),
-          conflicts_with_all = ["scenarios", "overrides", "out", "engine", "keep", "rrd", "junit", "worker_timeout"])]
+          conflicts_with_all = ["scenarios", "overrides", "out", "engine", "keep", "rrd", "junit", "worker_timeout", "time_limit", "memory_limit"])]
     pub(crate) resume: Option<PathBuf>,
     /// Engine to use instead of the scenarios' own; may be given several times.
     #[arg(long, value_name = "NAME", value_parser = engine())]
@@ -213,6 +213,11 @@ pub(crate) struct RunArgs {
     /// End the process of an isolated engine that makes no progress for this long.
     #[arg(long, value_name = "TIME", value_parser = time, default_value = "5 min")]
     pub(crate) worker_timeout: Duration,
+    /// End a run that takes longer by the clock; it is an error. run.time_limit of a scenario may be less.
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    pub(crate) time_limit: Option<Duration>,
+    #[command(flatten)]
+    pub(crate) memory: MemoryArgs,
     /// Print failures only, a line each, and the count.
     #[arg(long, short)]
     pub(crate) quiet: bool,
@@ -253,6 +258,15 @@ pub(crate) struct OverrideArgs {
     pub(crate) overrides: Vec<Override>,
 }
 
+/// Memory of runs.
+#[derive(Debug, Args)]
+pub(crate) struct MemoryArgs {
+    /// Memory of all recordings under way together, and of each process that is isolated, as "2 GB" [default: half of what machine and
+    /// control group have].
+    #[arg(long, value_name = "SIZE", value_parser = memory)]
+    pub(crate) memory_limit: Option<u64>,
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct CheckArgs {
     /// Scenario files, or folders of them; - is standard input.
@@ -263,6 +277,8 @@ pub(crate) struct CheckArgs {
     /// Show the whole preview of every scenario, as of a single one.
     #[arg(long, short)]
     pub(crate) verbose: bool,
+    #[command(flatten)]
+    pub(crate) memory: MemoryArgs,
 }
 
 #[derive(Debug, Args)]
@@ -284,6 +300,11 @@ pub(crate) struct CompareArgs {
     /// End the process of an isolated engine that makes no progress for this long.
     #[arg(long, value_name = "TIME", value_parser = time, default_value = "5 min")]
     pub(crate) worker_timeout: Duration,
+    /// End a run that takes longer by the clock; it is an error. run.time_limit of a scenario may be less.
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    pub(crate) time_limit: Option<Duration>,
+    #[command(flatten)]
+    pub(crate) memory: MemoryArgs,
 }
 
 /// What is equal in all runs of a comparison.
@@ -364,23 +385,6 @@ pub(crate) struct ManArgs {
     pub(crate) out: Option<PathBuf>,
 }
 
-#[derive(Debug, Args)]
-pub(crate) struct WorkerArgs {
-    #[arg(long, value_parser = engine())]
-    pub(crate) engine: EngineName,
-    /// Without it the scenario is only checked.
-    #[arg(long, allow_hyphen_values = true)]
-    pub(crate) recording: Option<PathBuf>,
-    #[arg(long, allow_hyphen_values = true)]
-    pub(crate) name: String,
-    #[arg(long, allow_hyphen_values = true)]
-    pub(crate) path: Option<PathBuf>,
-    #[arg(long, allow_hyphen_values = true)]
-    pub(crate) set: Vec<Override>,
-    #[arg(long, value_delimiter = ',')]
-    pub(crate) durations: Vec<f64>,
-}
-
 /// A file or a folder that is written beside what goes to standard output: `-` is none.
 pub(crate) fn file() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|path| match path.to_str() {
@@ -402,6 +406,22 @@ fn time(text: &str) -> Result<Duration, String> {
     match Duration::try_from_secs_f64(seconds) {
         Ok(time) if !time.is_zero() => Ok(time),
         _ => Err("it must be greater than 0 and at most 1.8e19 s".into()),
+    }
+}
+
+/// An amount of memory (B), as "2 GB".
+fn memory(text: &str) -> Result<u64, String> {
+    const UNITS: [(&str, f64); 6] =
+        [("GiB", 1_073_741_824.0), ("MiB", 1_048_576.0), ("kiB", 1_024.0), ("GB", 1e9), ("MB", 1e6), ("kB", 1e3)];
+    let text = text.trim();
+    let parts = UNITS.iter().find_map(|(unit, factor)| Some((text.strip_suffix(unit)?.trim(), *factor)));
+    let (number, factor) = parts.ok_or("it is a number with a unit: kB, MB, GB, kiB, MiB or GiB, as in \"2 GB\"")?;
+    let bytes = number.parse::<f64>().map_err(|_| format!("`{number}` is not a number"))? * factor;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the bounds")]
+    if (1e6..=1e18).contains(&bytes) {
+        Ok(bytes as u64)
+    } else {
+        Err("it must be at least 1 MB and at most 1e9 GB".into())
     }
 }
 
@@ -452,6 +472,18 @@ mod tests {
         assert_eq!(args.worker_timeout, Duration::from_secs(90));
         for wrong in ["90", "90 m", "0 s", "-1 s", "1e30 s"] {
             assert!(timeout(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn memory_has_units() {
+        let sizes =
+            [("2 GB", 2_000_000_000), ("1.5GiB", 1_610_612_736), ("300 MB", 300_000_000), ("4096 kiB", 1 << 22)];
+        for (text, bytes) in sizes {
+            assert_eq!(memory(text), Ok(bytes), "{text}");
+        }
+        for wrong in ["", "2", "GB", "2 TB", "-1 GB", "0 GB", "999 kB", "nan GB", "inf GB", "2 GB more"] {
+            assert!(memory(wrong).is_err(), "{wrong}");
         }
     }
 }

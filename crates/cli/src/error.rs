@@ -5,6 +5,7 @@ use crate::diagnostics::mistakes;
 use crate::exit::{Exit, of_run_error};
 use crate::sources::{Unusable, named, told};
 use servobench_config::Choice as _;
+use servobench_isolation::ContainError;
 use servobench_report::ReportError;
 use servobench_results::{COMPARISON, FolderError, JournalError, RESULTS, ResultsError};
 use servobench_scenario::{Diagnostic, LoadError, Sources};
@@ -124,8 +125,8 @@ pub(crate) enum CliError {
     OwnProgram(io::Error),
     #[error("cannot listen to signals: {0}")]
     Signals(io::Error),
-    #[error("cannot end with the process that started this one: {0}")]
-    EndWithParent(io::Error),
+    #[error(transparent)]
+    Contain(#[from] ContainError),
     #[error("{GET_VIEWER}")]
     NoViewer,
     #[error("cannot start {}: {error}; {GET_VIEWER}", .viewer.display())]
@@ -208,7 +209,7 @@ impl CliError {
             | Self::Schema(_)
             | Self::OwnProgram(_)
             | Self::Signals(_)
-            | Self::EndWithParent(_)
+            | Self::Contain(_)
             | Self::NoViewer
             | Self::StartViewer { .. }
             | Self::ViewerEnded(_) => Exit::Run,

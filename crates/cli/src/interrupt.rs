@@ -50,16 +50,16 @@ fn untold() -> MutexGuard<'static, Vec<PathBuf>> {
 }
 
 #[cfg(not(unix))]
-pub(crate) use elsewhere::{end_with_parent, refuse_large_files, watch, watch_suite};
+pub(crate) use elsewhere::{refuse_large_files, watch, watch_suite};
 #[cfg(unix)]
-pub(crate) use unix::{end_with_parent, refuse_large_files, watch, watch_suite};
+pub(crate) use unix::{refuse_large_files, watch, watch_suite};
 
 #[cfg(unix)]
 mod unix {
     use super::{ENDING, STOPPING, untold};
     use crate::console::say;
     use crate::error::CliError;
-    use rustix::process::{Pid, Signal, kill_process, set_parent_process_death_signal};
+    use servobench_isolation::end_all;
     use signal_hook::consts::{SIGINT, SIGTERM, SIGXFSZ};
     use signal_hook::iterator::Signals;
     use signal_hook::low_level::emulate_default_handler;
@@ -113,23 +113,13 @@ mod unix {
         Ok(())
     }
 
-    /// This process ends with the one that started it, whatever ended that.
-    pub(crate) fn end_with_parent() -> Result<(), CliError> {
-        set_parent_process_death_signal(Some(Signal::KILL)).map_err(|error| CliError::EndWithParent(error.into()))
-    }
-
     fn end(signal: i32, folder: &Path, close: impl FnOnce()) {
         ENDING.store(true, Ordering::SeqCst);
         say("servobench: interrupted; what was not finished is removed\n");
         // No thread can note another file until the end.
         let files = untold();
-        let mut ended = Vec::new();
+        let ended = end_all();
         for _ in 0..2 {
-            for child in children() {
-                // One that has ended already is as good.
-                kill_process(child, Signal::KILL).ok();
-                ended.push(child.as_raw_pid().unsigned_abs());
-            }
             std::thread::sleep(BREATH);
             remove_unfinished(folder);
         }
@@ -159,26 +149,14 @@ mod unix {
     #[cfg(not(feature = "fmu"))]
     fn remove_unpacked(_: &[u32]) {}
 
-    /// The processes that this one started and that have not ended, as Linux lists them; none where it does not.
-    fn children() -> Vec<Pid> {
-        let threads = std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten();
-        let lists = threads.filter_map(|thread| std::fs::read_to_string(thread.path().join("children")).ok());
-        let ids: Vec<i32> = lists.flat_map(|list| numbers(&list)).collect();
-        ids.into_iter().filter_map(Pid::from_raw).collect()
-    }
-
-    fn numbers(list: &str) -> Vec<i32> {
-        list.split_whitespace().filter_map(|id| id.parse().ok()).collect()
-    }
-
-    /// Removes files under way of this process and of its workers: their names have its id.
+    /// Removes files under way of this process: their names have its id.
     fn remove_unfinished(folder: &Path) {
         let id = std::process::id();
-        let (partial, worker) = (format!(".{id}-"), format!(".{id}.worker.parquet"));
+        let partial = format!(".{id}-");
         for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
             let name = entry.file_name().to_string_lossy().into_owned();
             let is_ours = name.starts_with('.') && name.contains(&partial) && name.ends_with(".partial");
-            if is_ours || name.contains(&worker) {
+            if is_ours {
                 std::fs::remove_file(entry.path()).ok();
             }
         }
@@ -199,10 +177,6 @@ mod elsewhere {
     }
 
     pub(crate) fn refuse_large_files() -> Result<(), CliError> {
-        Ok(())
-    }
-
-    pub(crate) fn end_with_parent() -> Result<(), CliError> {
         Ok(())
     }
 }

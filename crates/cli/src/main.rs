@@ -48,7 +48,7 @@ fn dispatch(command: &Command) -> Exit {
         Command::FmuHost => commands::fmu_host(),
         Command::Completions(args) => commands::completions(args),
         Command::Man(args) => commands::man(args),
-        Command::Worker(args) => commands::worker(args),
+        Command::Worker => commands::worker(),
     };
     interrupt::end_if_ending();
     done.unwrap_or_else(|error| {

@@ -1,6 +1,7 @@
 //! Progress of the runs: a bar on a terminal, plain lines otherwise; how many are done, which, since when and how long still.
 use crate::console::say;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use servobench_isolation::Stopwatch;
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -12,6 +13,7 @@ const STEPS: f64 = 1000.0;
 pub(crate) struct Progress {
     bar: ProgressBar,
     lines: bool,
+    quiet: bool,
     done: AtomicU64,
     runs: usize,
     start: Instant,
@@ -31,18 +33,33 @@ impl Progress {
             bar.set_style(style);
         }
         bar.set_prefix(format!("0/{runs}"));
-        Self { bar, lines: !quiet && !terminal, done: AtomicU64::new(0), runs, start: Instant::now() }
+        Self { bar, lines: !quiet && !terminal, quiet, done: AtomicU64::new(0), runs, start: Instant::now() }
     }
 
-    /// A listener for the run `id`: is told the share that is done, from 0 to 1.
-    pub(crate) fn of_run(&self, id: &str) -> impl FnMut(f64) {
+    /// A listener for the run `id`: is told the share that is done, from 0 to 1. A run that takes longer than `slow` is named, and again
+    /// each time that has doubled.
+    pub(crate) fn of_run(&self, id: &str, slow: Duration) -> impl FnMut(f64) {
         self.bar.set_message(id.to_owned());
-        let mut shown = 0.0;
+        let (mut shown, watch, mut slow) = (0.0, Stopwatch::start(), slow);
+        let id = id.to_owned();
         move |share: f64| {
             let step = (share * STEPS).floor();
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 1000")]
-            self.bar.inc((step - shown).max(0.0) as u64);
-            shown = step.max(shown);
+            if step > shown {
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 1000")]
+                self.bar.inc((step - shown) as u64);
+                shown = step;
+            }
+            // The last word is that of the run that has ended.
+            if watch.elapsed() >= slow && share < 1.0 {
+                self.say(&format!("slow: {id}: {:.0} % done after {}\n", share * 100.0, seconds(slow)));
+                slow *= 2;
+            }
+        }
+    }
+
+    fn say(&self, words: &str) {
+        if !self.quiet {
+            self.bar.suspend(|| say(words));
         }
     }
 

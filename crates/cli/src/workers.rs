@@ -1,18 +1,29 @@
 //! How much runs at a time, and where.
 use crate::error::CliError;
-use servobench_suite::{AtATime, WorkerCommand};
+use servobench_isolation::memory_of_machine;
+use servobench_suite::{AtATime, RunLimits, WorkerCommand, Workers};
 use std::num::NonZero;
 use std::path::Path;
 use std::thread::available_parallelism;
 use std::time::Duration;
 
-/// How worker processes are started: this program again. Their recordings pass through `folder`.
-pub(crate) fn command(folder: &Path, timeout: Duration) -> Result<WorkerCommand, CliError> {
+/// Memory of runs where nothing says how much there is (B).
+const UNKNOWN: u64 = 4_000_000_000;
+
+/// Worker processes: this program again. Their recordings pass through `folder`, in files without a name.
+pub(crate) fn of(folder: &Path, timeout: Duration, limits: RunLimits) -> Result<Workers, CliError> {
     let program = std::env::current_exe().map_err(CliError::OwnProgram)?;
-    Ok(WorkerCommand { program, folder: folder.to_owned(), timeout })
+    Ok(Workers::new(WorkerCommand { program, folder: folder.to_owned(), timeout, limits }))
 }
 
-/// `jobs` at a time, or one for each core.
-pub(crate) fn at_a_time(jobs: Option<u16>) -> AtATime {
-    AtATime::jobs(jobs.map_or_else(|| available_parallelism().map_or(1, NonZero::get), usize::from))
+/// What a run may take. Without a limit of its own it gets half of the memory that there is: beside a recording there is what is
+/// measured of it.
+pub(crate) fn limits(time: Option<Duration>, memory: Option<u64>) -> RunLimits {
+    RunLimits { time, memory: memory.unwrap_or_else(|| memory_of_machine().map_or(UNKNOWN, |memory| memory / 2)) }
+}
+
+/// `jobs` at a time, or one for each core; all of them share the memory that one alone may take.
+pub(crate) fn at_a_time(jobs: Option<u16>, limits: RunLimits) -> AtATime {
+    let jobs = jobs.map_or_else(|| available_parallelism().map_or(1, NonZero::get), usize::from);
+    AtATime { jobs, memory: limits.memory }
 }

@@ -28,7 +28,7 @@
 //!
 //! | element | what of it |
 //! |---|---|
-//! | `<body>` | nested at will, with one joint or rigid; `pos` and any of the rotations |
+//! | `<body>` | nested (100 elements deep), with one joint or rigid; `pos` and any of the rotations |
 //! | `<joint>` | `hinge`, `slide`: `pos`, `axis`, `damping`, `stiffness`, `springref`, `frictionloss`, `armature` |
 //! | `<inertial>` | `mass`, `diaginertia`, `fullinertia`, a frame |
 //! | `<geom>` | mass by `mass` or `density`, of `sphere`, `capsule`, `ellipsoid`, `cylinder`, `box`; no contacts: a file in which geoms could touch is refused |

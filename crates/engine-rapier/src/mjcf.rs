@@ -1,5 +1,6 @@
 //! A user's own MJCF file: what of MJCF is simulated, and what a file says.
 mod contact;
+mod depth;
 mod grammar;
 mod mass;
 mod mechanism;

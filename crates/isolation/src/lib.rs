@@ -54,6 +54,8 @@ mod sample;
 #[cfg(unix)]
 mod settings;
 mod stopwatch;
+#[cfg(unix)]
+mod streams;
 #[cfg(target_os = "linux")]
 mod supervisor;
 
@@ -72,5 +74,7 @@ pub use memory::own_memory;
 pub use output::Stream;
 pub use program::{Limits, Program};
 pub use stopwatch::Stopwatch;
+#[cfg(unix)]
+pub use streams::claim_standard_streams;
 #[cfg(target_os = "linux")]
 pub use supervisor::{Contained, Output, end_all};

@@ -23,8 +23,8 @@ choices! {
 pub struct Capabilities {
     /// What it simulates; everything else is refused.
     pub models: &'static [ModelKind],
-    /// Whether it can end the process that it runs in: it then runs in a worker process of its own.
-    pub may_end_process: bool,
+    /// Kinds of models with which it can end the process that it runs in, or not come back: they run in worker processes.
+    pub in_worker: &'static [ModelKind],
     /// How it goes from tick to tick; `None` where that is the model's own business.
     pub integrator: Option<Integrator>,
     /// Whether a joint of a user's MJCF file slides slowly under an effort below its dry friction.
@@ -43,14 +43,15 @@ impl EngineName {
         match self {
             Self::Exact => Capabilities {
                 models: &[ModelKind::Chain],
-                may_end_process: false,
+                in_worker: &[],
                 integrator: Some(Integrator::Exact),
                 creeps: false,
                 tick_time: Some([450.0, 450.0]),
             },
+            // Its loader reads a file of somebody else.
             Self::Rapier => Capabilities {
                 models: &[ModelKind::Chain, ModelKind::Mjcf],
-                may_end_process: false,
+                in_worker: &[ModelKind::Mjcf],
                 integrator: Some(Integrator::Leapfrog),
                 creeps: false,
                 tick_time: Some([2_000.0, 3_500.0]),
@@ -58,7 +59,7 @@ impl EngineName {
             // It answers errors by ending the process; the friction of its joints is a soft constraint.
             Self::Mujoco => Capabilities {
                 models: &[ModelKind::Chain, ModelKind::Mjcf],
-                may_end_process: true,
+                in_worker: &[ModelKind::Chain, ModelKind::Mjcf],
                 integrator: Some(Integrator::Rk4),
                 creeps: true,
                 tick_time: Some([3_700.0, 4_800.0]),
@@ -66,12 +67,18 @@ impl EngineName {
             // FMUs run in processes of their own, so the engine needs none.
             Self::Fmu => Capabilities {
                 models: &[ModelKind::Fmu],
-                may_end_process: false,
+                in_worker: &[],
                 integrator: None,
                 creeps: false,
                 tick_time: None,
             },
         }
+    }
+
+    /// Whether a model of this kind runs in a worker process.
+    #[must_use]
+    pub fn runs_in_worker(self, kind: ModelKind) -> bool {
+        self.capabilities().in_worker.contains(&kind)
     }
 
     /// Whether it simulates models of this kind.

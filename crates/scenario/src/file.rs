@@ -93,6 +93,9 @@ table! {
         base_rate: Rate = "16 kHz",
         /// Length of the run, 1e6 s at most; default: the program and half a second.
         duration: f64 = positive(Plain(&TIME), "2 s"),
+        /// How long the run may take by the clock; default: as long as it needs. One that takes longer is an error. What is simulated does
+        /// not depend on it.
+        time_limit: f64 = positive(Plain(&TIME), "5 min"),
     }
 }
 

@@ -113,6 +113,7 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
         engines,
         base_rate: base_rate?,
         duration,
+        time_limit: run.and_then(|run| run.time_limit.given().copied()),
         axis: moved?,
         actuator: actuator?,
         program: program?,

@@ -49,6 +49,8 @@ pub struct Scenario {
     pub base_rate: Rate,
     /// Length of the run (s); `None`: the program and half a second.
     pub duration: Option<f64>,
+    /// How long the run may take by the clock (s); `None`: as long as it needs.
+    pub time_limit: Option<f64>,
     /// The mechanics.
     pub axis: Axis,
     /// What moves it, and what commands that.

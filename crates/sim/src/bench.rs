@@ -22,8 +22,9 @@ use servobench_trace::{About, Event};
 
 /// How long a run goes on after its program, when the scenario does not say (s).
 const TAIL: f64 = 0.5;
-/// Memory granted to one recording (GB).
-const RECORDING_LIMIT: f64 = 4.0;
+/// Memory granted to the recording of every tick (GB). It is the same on every machine, since what is measured depends on it: a recording
+/// that needs more has `record.rate`.
+pub const RECORDING_LIMIT: f64 = 4.0;
 
 /// A closed loop at tick 0, and what is recorded of it.
 pub struct Bench {

@@ -11,7 +11,7 @@ pub(crate) use wiring::replaces_the_drive;
 
 use crate::axis::Axis;
 use crate::error::{BuildError, UnusableFmu};
-use crate::machine::{LOG_EVERY, Machine, PROGRESS_EVERY};
+use crate::machine::{LOG_EVERY, Machine};
 use crate::run::{Failure, Outcome, Reason};
 use block::{AttachedFmu, AxisBlock, Part, PartError};
 use servobench_base::Tick;
@@ -20,6 +20,7 @@ use servobench_fmi::{FmuEntry, FmuMistake, FmuRequest, Slave};
 use servobench_scenario::Scenario;
 use servobench_signals::{Equipment, Rates};
 use std::num::NonZeroU32;
+use std::ops::ControlFlow;
 use wiring::Wiring;
 
 /// Opens the FMUs of a scenario.
@@ -121,9 +122,9 @@ impl Coupled {
     }
 
     /// Runs to the end.
-    pub(crate) fn run(mut self, ticks: u64, progress: &mut dyn FnMut(f64)) -> Outcome {
+    pub(crate) fn run(mut self, ticks: u64, progress: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Outcome {
         self.note_logs();
-        let (last, mut told, mut failure) = (ticks - 1, 0, None);
+        let (last, mut failure) = (ticks - 1, None);
         let mut exchanges = 0_u64;
         while failure.is_none() && self.master.tick().0 < last {
             match self.master.advance() {
@@ -138,13 +139,14 @@ impl Coupled {
             exchanges += 1;
             if exchanges.is_multiple_of(LOG_EVERY) {
                 self.note_logs();
-            }
-            if self.master.tick().0 >= told {
-                told = self.master.tick().0 + PROGRESS_EVERY;
-                progress(self.master.tick().0 as f64 / ticks as f64);
+                // An exchange may take long: how long is up to the FMUs.
+                if failure.is_none() && progress(self.master.tick().0 as f64 / ticks as f64).is_break() {
+                    failure = Some(Failure { time: self.master.time(), reason: Reason::Stopped });
+                }
             }
         }
-        progress(1.0);
+        // It is over: there is nothing to break off.
+        let _: ControlFlow<()> = progress(1.0);
         self.finish(failure)
     }
 

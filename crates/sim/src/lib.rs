@@ -21,7 +21,7 @@ mod stability;
 mod stepper;
 mod thinning;
 
-pub use bench::{Bench, most_channels};
+pub use bench::{Bench, RECORDING_LIMIT, most_channels};
 pub use coupled::{ConnectionDelay, FmuOpener, NoFmus};
 pub use error::{BuildError, UnusableFmu};
 pub use external::{Controller, External};

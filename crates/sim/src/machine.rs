@@ -1,7 +1,8 @@
 //! Axes at one time, and the one tick that moves them.
 use crate::axis::Axis;
-use crate::run::{AxisFailure, Failure};
+use crate::run::{AxisFailure, Failure, Reason};
 use servobench_base::{Rate, Tick};
+use std::ops::ControlFlow;
 
 /// Ticks, or exchanges, after which log lines of FMUs are fetched. Each line has its own time; fetching costs system calls.
 pub(crate) const LOG_EVERY: u64 = 64;
@@ -56,22 +57,29 @@ impl<Axes: AsMut<[Axis]>> Machine<Axes> {
         Ok(())
     }
 
-    /// Runs `ticks` ticks, the last of which is observed only; `progress` is told the share that is done, from 0 to 1.
+    /// Runs `ticks` ticks, the last of which is observed only; `progress` is told the share that is done, from 0 to 1, and may break
+    /// the run off.
     ///
     /// # Errors
-    /// [`AxisFailure`] says which axis cannot go on, and why.
-    pub(crate) fn run(&mut self, ticks: u64, progress: &mut dyn FnMut(f64)) -> Result<(), AxisFailure> {
+    /// [`AxisFailure`] says which axis cannot go on, and why; the first one when the run was broken off.
+    pub(crate) fn run(
+        &mut self,
+        ticks: u64,
+        progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<(), AxisFailure> {
         let mut done = Ok(());
         while done.is_ok() && self.tick + 1 < ticks {
-            if self.tick.is_multiple_of(PROGRESS_EVERY) {
-                progress(self.tick as f64 / ticks as f64);
+            if self.tick.is_multiple_of(PROGRESS_EVERY) && progress(self.tick as f64 / ticks as f64).is_break() {
+                let failure = Failure { time: self.time(), reason: Reason::Stopped };
+                return Err(AxisFailure { axis: 0, failure });
             }
             done = self.tick();
         }
         if done.is_ok() {
             self.observe();
         }
-        progress(1.0);
+        // It is over: there is nothing to break off.
+        let _: ControlFlow<()> = progress(1.0);
         done
     }
 }
@@ -105,4 +113,4 @@ impl<Axes> Machine<Axes> {
 }
 
 /// How often a run reports its progress, in ticks.
-pub(crate) const PROGRESS_EVERY: u64 = 1 << 14;
+const PROGRESS_EVERY: u64 = 1 << 14;

@@ -5,6 +5,7 @@ use crate::machine::Machine;
 use crate::run::AxisFailure;
 use servobench_base::Rate;
 use servobench_trace::Recording;
+use std::ops::ControlFlow;
 
 /// Several axes at one time. All of them are sampled and controlled before the first one moves.
 pub struct MultiAxisBench {
@@ -72,7 +73,13 @@ impl MultiAxisBench {
     /// Runs to the end; `progress` is told the share that is done, from 0 to 1.
     #[must_use]
     pub fn run(mut self, progress: &mut dyn FnMut(f64)) -> MultiAxisOutcome {
-        let failure = self.machine.run(self.ticks, progress).err();
+        let failure = self
+            .machine
+            .run(self.ticks, &mut |share| {
+                progress(share);
+                ControlFlow::Continue(())
+            })
+            .err();
         let (present, end) = self.machine.ends(failure.as_ref().map(|axis| &axis.failure));
         let recordings = self.machine.axes.into_iter().map(|axis| axis.finish(present, end)).collect();
         MultiAxisOutcome { recordings, failure }

@@ -4,6 +4,7 @@ use crate::bench::{Bench, Loop};
 use crate::machine::Machine;
 use servobench_plant::MechanicsError;
 use servobench_trace::Recording;
+use std::ops::ControlFlow;
 
 /// What a run leaves behind.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,6 +38,9 @@ pub enum Reason {
     /// What the program waited for in vain.
     #[error("{0}")]
     Program(String),
+    /// Whoever follows its progress.
+    #[error("the run was told to stop")]
+    Stopped,
 }
 
 /// An axis of several that ended the run of all.
@@ -60,6 +64,16 @@ impl Bench {
     /// Runs to the end; `progress` is told the share that is done, from 0 to 1.
     #[must_use]
     pub fn run(self, progress: &mut dyn FnMut(f64)) -> Outcome {
+        self.run_while(&mut |share| {
+            progress(share);
+            ControlFlow::Continue(())
+        })
+    }
+
+    /// The same; a break of `progress`, which is told every few thousand ticks and every few exchanges with FMUs, is a failure:
+    /// [`Reason::Stopped`].
+    #[must_use]
+    pub fn run_while(self, progress: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Outcome {
         match self.closed_loop {
             Loop::Coupled(coupled) => coupled.run(self.ticks, progress),
             Loop::Alone(mut machine) => {

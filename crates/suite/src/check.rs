@@ -3,7 +3,7 @@ use crate::engines::Engines;
 use crate::error::{RunError, is_of_the_run};
 use crate::job::Job;
 use crate::panicked::caught;
-use crate::worker::{self, WorkerCommand, WorkerError};
+use crate::worker::{WorkerError, Workers};
 use serde::{Deserialize, Serialize};
 use servobench_fmi::{FmuEntry, FmuMistake};
 use servobench_plant::{Engine, EngineName, MechanicsError, Refusal, RefusedAt};
@@ -29,12 +29,12 @@ pub struct Objection {
 /// # Errors
 /// [`RunError`] when nobody can tell: the build lacks the engine, a library does not load, the worker cannot be
 /// spoken to.
-pub fn check(job: &Job, engines: &Engines, worker: &WorkerCommand) -> Result<Vec<Objection>, RunError> {
+pub fn check(job: &Job, engines: &Engines, workers: &Workers) -> Result<Vec<Objection>, RunError> {
     let engine = engines.get(job.engine)?;
-    if !job.engine.capabilities().may_end_process {
+    if !job.runs_in_worker() {
         return caught(|| objections(&job.scenario, engine, engines.fmu_opener))?;
     }
-    match worker::ask(worker, job) {
+    match workers.ask(job) {
         // What a library cannot bear in a user's own file is the file's fault, as far as anybody can tell.
         Err(error @ (WorkerError::Ended { .. } | WorkerError::Stalled { .. })) if has_mjcf(&job.scenario) => {
             Ok(vec![Objection::new(model_key(&job.scenario), error.to_string())])
@@ -50,7 +50,7 @@ pub fn check(job: &Job, engines: &Engines, worker: &WorkerCommand) -> Result<Vec
 pub fn delays(job: &Job, engines: &Engines) -> Result<Vec<ConnectionDelay>, RunError> {
     let engine = engines.get(job.engine)?;
     // What is exchanged when does not depend on the engine: one that needs a process of its own is not asked.
-    if job.scenario.fmus.is_empty() || job.engine.capabilities().may_end_process {
+    if job.scenario.fmus.is_empty() || job.runs_in_worker() {
         return Ok(Vec::new());
     }
     caught(|| Ok(Bench::with_fmus(&job.scenario, engine, engines.fmu_opener)?.delays().to_vec()))?

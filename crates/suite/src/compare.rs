@@ -113,6 +113,7 @@ fn has_same_axis_and_drive(one: &Scenario, other: &Scenario) -> bool {
         parameters: _,
         units: _,
         overrides: _,
+        time_limit: _,
     } = one;
     *base_rate == other.base_rate
         && *axis == other.axis

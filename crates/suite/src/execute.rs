@@ -3,12 +3,15 @@ use crate::engines::Engines;
 use crate::error::RunError;
 use crate::job::Job;
 use crate::requirements::rules;
-use crate::worker::{self, WorkerCommand};
+use crate::worker::{RunLimits, Workers};
+use servobench_isolation::Stopwatch;
 use servobench_metrics::{EarlyEnd, Limit, Metrics, Verdict, judge_requirements, measure};
 use servobench_plant::{Engine, MechanicsError};
 use servobench_scenario::{Scenario, Step};
 use servobench_sim::{Bench, Failure, FmuOpener, Reason, selected, thinned};
 use servobench_trace::Recording;
+use std::ops::ControlFlow;
+use std::time::Duration;
 
 /// A run that came to its end.
 #[derive(Debug)]
@@ -49,12 +52,13 @@ impl From<Failure> for Interruption {
                 Self::Early(EarlyEnd::Diverged { time: failure.time, reason: message })
             }
             Reason::Program(reason) => Self::Early(EarlyEnd::GaveUp(reason)),
-            Reason::Mechanics(_) | Reason::Coupling(_) => Self::Broken(failure.into()),
+            Reason::Mechanics(_) | Reason::Coupling(_) | Reason::Stopped => Self::Broken(failure.into()),
         }
     }
 }
 
-/// Runs `job` and judges it; `progress` is told the share that is done, from 0 to 1.
+/// Runs `job` and judges it; `progress` is told the share that is done, from 0 to 1, the same one again where nothing has changed for a
+/// while.
 ///
 /// A panic of the engine or of the measures goes through: [`map_in_parallel`](crate::map_in_parallel) keeps it from
 /// the other jobs.
@@ -64,11 +68,11 @@ impl From<Failure> for Interruption {
 pub fn execute(
     job: &Job,
     engines: &Engines,
-    worker: &WorkerCommand,
+    workers: &Workers,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Run, Box<Broken>> {
     let broken = |error, until_then| Box::new(Broken { error, until_then });
-    let (recording, interruption) = recorded(job, engines, worker, progress).map_err(|error| broken(error, None))?;
+    let (recording, interruption) = recorded(job, engines, workers, progress).map_err(|error| broken(error, None))?;
     let (ended, failure) = match interruption {
         None => (None, None),
         Some(Interruption::Early(ended)) => (Some(ended), None),
@@ -91,25 +95,73 @@ pub fn execute(
 fn recorded(
     job: &Job,
     engines: &Engines,
-    worker: &WorkerCommand,
+    workers: &Workers,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Recorded, RunError> {
     let engine = engines.get(job.engine)?;
-    if job.engine.capabilities().may_end_process {
-        Ok(worker::call(worker, job, progress)?)
-    } else {
-        run_here(&job.scenario, (engine, engines.fmu_opener), progress)
+    let (need, limit) = (job.memory(), workers.limits().memory);
+    if need > limit {
+        return Err(RunError::Memory { need, limit });
+    }
+    if job.runs_in_worker() {
+        return workers.run(job, progress);
+    }
+    let limit = TimeLimit::of(job, workers.limits());
+    let built_by = Loop { engine, fmu_opener: engines.fmu_opener };
+    let (recording, failure) = run_here(&job.scenario, built_by, limit.map(|limit| limit.time), progress)?;
+    let interruption = failure.map(|failure| match (limit, &failure.reason) {
+        (Some(limit), Reason::Stopped) => Interruption::Broken(limit.exceeded(failure.time)),
+        _ => failure.into(),
+    });
+    Ok((recording, interruption))
+}
+
+/// How long a run may take.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct TimeLimit<'a> {
+    pub(crate) time: Duration,
+    job: &'a Job,
+}
+
+impl<'a> TimeLimit<'a> {
+    /// What the scenario of `job` says, or `limits`, whichever is less.
+    pub(crate) fn of(job: &'a Job, limits: RunLimits) -> Option<Self> {
+        let own = job.scenario.time_limit.map(|limit| Duration::try_from_secs_f64(limit).unwrap_or(Duration::MAX));
+        own.into_iter().chain(limits.time).min().map(|time| Self { time, job })
+    }
+
+    /// How long the run would have been (s); not a number when it cannot be planned.
+    pub(crate) fn length(self) -> f64 {
+        Bench::length(&self.job.scenario).unwrap_or(f64::NAN)
+    }
+
+    /// The run came to `reached` (s).
+    pub(crate) fn exceeded(self, reached: f64) -> RunError {
+        RunError::TimeLimit { limit: self.time, reached, length: self.length() }
     }
 }
 
-/// Runs in this process.
+/// Who builds a closed loop.
+#[derive(Clone, Copy)]
+pub(crate) struct Loop<'a> {
+    pub(crate) engine: &'a dyn Engine,
+    pub(crate) fmu_opener: &'a dyn FmuOpener,
+}
+
+/// Runs in this process, for `time_limit` at most.
 pub(crate) fn run_here(
     scenario: &Scenario,
-    (engine, fmu_opener): (&dyn Engine, &dyn FmuOpener),
+    Loop { engine, fmu_opener }: Loop<'_>,
+    time_limit: Option<Duration>,
     progress: &mut dyn FnMut(f64),
-) -> Result<Recorded, RunError> {
-    let outcome = Bench::with_fmus(scenario, engine, fmu_opener)?.run(progress);
-    Ok((outcome.recording, outcome.failure.map(Interruption::from)))
+) -> Result<(Recording, Option<Failure>), RunError> {
+    let watch = Stopwatch::start();
+    let outcome = Bench::with_fmus(scenario, engine, fmu_opener)?.run_while(&mut |share| {
+        progress(share);
+        let is_late = time_limit.is_some_and(|limit| watch.elapsed() > limit);
+        if is_late { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    Ok((outcome.recording, outcome.failure))
 }
 
 fn limits_of_move(step: &Step) -> Option<&[Limit]> {

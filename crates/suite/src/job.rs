@@ -1,7 +1,7 @@
 //! One scenario on one engine.
-use servobench_plant::EngineName;
-use servobench_scenario::{Scenario, Step};
-use servobench_sim::{Program, most_channels};
+use servobench_plant::{EngineName, ModelKind};
+use servobench_scenario::{AxisMechanics, Scenario, Step};
+use servobench_sim::{Program, RECORDING_LIMIT, most_channels};
 use std::collections::HashMap;
 
 /// One scenario on one engine.
@@ -34,6 +34,17 @@ impl Job {
         &self.durations
     }
 
+    /// Whether it runs in a worker process: its engine can end the process that it runs in.
+    pub(crate) fn runs_in_worker(&self) -> bool {
+        let kind = match self.scenario.axis.mechanics {
+            _ if self.engine.simulates(ModelKind::Fmu) => ModelKind::Fmu,
+            AxisMechanics::Bodies(_) => ModelKind::Chain,
+            AxisMechanics::Mjcf(_) => ModelKind::Mjcf,
+            AxisMechanics::InTheFmu => ModelKind::Fmu,
+        };
+        self.engine.runs_in_worker(kind)
+    }
+
     /// Memory that the recording takes (bytes), at most; 0 when the moves cannot be planned and nothing will be recorded.
     #[must_use]
     pub fn memory(&self) -> u64 {
@@ -45,9 +56,15 @@ impl Job {
         };
         let channels = if record.channels.is_empty() { most_channels(&self.scenario) } else { record.channels.len() };
         let bytes = |hertz: u32| (duration * f64::from(hertz) + 1.0) * channels as f64 * VALUE;
-        // Every tick until it is measured, beside what is kept of it.
-        let kept = if record.rate == *base_rate { 0.0 } else { bytes(record.rate.hertz()) };
-        let bytes = bytes(base_rate.hertz()) + kept;
+        let (every, kept) = (bytes(base_rate.hertz()), bytes(record.rate.hertz()));
+        let bytes = if every > RECORDING_LIMIT * 1e9 {
+            kept
+        } else if record.rate == *base_rate {
+            every
+        } else {
+            // Every tick until it is measured, beside what is kept of it.
+            every + kept
+        };
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates: more than there is")]
         let bytes = bytes.ceil() as u64;
         bytes

@@ -26,4 +26,4 @@ pub use preview::{
     Cost, Delay, Demand, Doubt, EffortDemand, EngineSteps, Inertias, LoopBandwidth, LoopStability, Modes,
     PlannedProgram, Preview, VoltageDemand, preview,
 };
-pub use worker::{WorkerCommand, WorkerError};
+pub use worker::{RunLimits, WorkerCommand, WorkerError, Workers};

@@ -12,15 +12,6 @@ pub struct AtATime {
     pub memory: u64,
 }
 
-impl AtATime {
-    /// `jobs` jobs, and of memory as much as the largest single recording may take, so that the number of jobs does not
-    /// decide whether a suite fits in the machine.
-    #[must_use]
-    pub const fn jobs(jobs: usize) -> Self {
-        Self { jobs, memory: 4_000_000_000 }
-    }
-}
-
 /// What is under way and what is done.
 struct Desk<R> {
     next: usize,
@@ -44,18 +35,20 @@ where
     let desk = Mutex::new(Desk { next: 0, memory: 0, done: Vec::with_capacity(items.len()) });
     let returned = Condvar::new();
     thread::scope(|scope| {
-        for _ in 0..limit.jobs.clamp(1, items.len().max(1)) {
-            scope.spawn(|| {
-                while let Some((index, item, memory)) = taken(items, &desk, &returned, limit.memory, &memory_of) {
-                    let result = caught(|| work(item));
-                    let mut desk = locked(&desk);
-                    desk.done.push((index, result));
-                    desk.memory -= memory;
-                    drop(desk);
-                    returned.notify_all();
-                }
-            });
-        }
+        let working = || {
+            while let Some((index, item, memory)) = taken(items, &desk, &returned, limit.memory, &memory_of) {
+                let result = caught(|| work(item));
+                let mut desk = locked(&desk);
+                desk.done.push((index, result));
+                desk.memory -= memory;
+                drop(desk);
+                returned.notify_all();
+            }
+        };
+        let others = 1..limit.jobs.min(items.len());
+        // Where the system gives no further thread, those that there are do it all; this one is there in any case.
+        others.take_while(|_| thread::Builder::new().spawn_scoped(scope, working).is_ok()).for_each(drop);
+        working();
     });
     let mut done = desk.into_inner().unwrap_or_else(PoisonError::into_inner).done;
     done.sort_unstable_by_key(|(index, _)| *index);

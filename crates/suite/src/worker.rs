@@ -1,46 +1,39 @@
-//! A run in a process of its own: the worker is this same program, told one scenario and where its recording goes.
+//! Runs in processes of their own: the worker is this same program, which is told one scenario after the other.
 //!
 //! ```text
-//! servobench worker --engine <name> [--recording <file>] --name <scenario> [--path <file>] [--durations <s>,<s>…]
-//!                   [--set <override>]…
-//! stdin:  text of the scenario
-//! stdout: JSON lines, {"progress": 0.25} …, and at last {"end": "done" or {"input": "<why>"} or {"diverged": …} or
-//!         {"gaveup": "<why>"} or {"failed": "<why>"}}
-//! exit code: 0 done, 2 the input is wrong, 3 ended early (the recording is there as far as it came)
+//! servobench worker
+//! standard input:   a socket. In: orders, JSON lines. Out: JSON lines, {"progress": 0.25} …, {"holds": 9000000}, and at last of each
+//!                   order {"end": "done" or {"input": "<why>"} or {"diverged": …} or {"gaveup": "<why>"} or {"stopped": 1.5}
+//!                   or {"failed": "<why>"}}
+//! standard output:  the file that the recording of an order goes to; it has no name
 //! ```
-//! Without `--recording` nothing runs: the worker tells what keeps the scenario from being built,
-//! `{"objections": […]}`, and is done.
+//! What contains it is [`servobench_isolation`]: it ends with this program however that ends, and nothing of it stays.
 //!
 //! What the worker says of its end is what the run is reported with, so that a reason does not depend on where a run
 //! happened. An end without a word is that of a native library; it costs this run only, and what the library wrote on
-//! standard error is reported. A worker that says nothing for [`WorkerCommand::timeout`] is ended.
-mod call;
-mod listener;
+//! standard output and standard error is reported. A worker that says nothing for [`WorkerCommand::timeout`] is ended.
+//!
+//! A worker serves again when its order came to an orderly end: starting one costs more than a short run. One that has failed in any
+//! way, or has kept much memory, does not.
 mod message;
+mod order;
+#[cfg(unix)]
+mod process;
+mod recording;
+#[cfg(unix)]
 mod serve;
+mod workers;
 
-pub(crate) use call::{ask, call};
 pub use message::End;
-pub use serve::{Order, serve};
+pub use order::{Order, Task};
+#[cfg(unix)]
+pub use serve::{answer, serve};
+pub use workers::{RunLimits, WorkerCommand, Workers};
 
-use servobench_trace::TraceError;
 use std::io;
 use std::path::PathBuf;
-use std::process::ExitStatus;
 use std::time::Duration;
 use thiserror::Error;
-
-/// How to start a worker.
-#[derive(Debug, Clone)]
-pub struct WorkerCommand {
-    /// The program.
-    pub program: PathBuf,
-    /// Folder for the recordings on their way from the worker; each is removed when it was read.
-    pub folder: PathBuf,
-    /// How long a worker may say nothing. It speaks every few thousand ticks, but not while the engine reads the model
-    /// nor while it writes the recording.
-    pub timeout: Duration,
-}
 
 /// Why a worker gave no run, or half of one.
 #[derive(Debug, Error)]
@@ -62,12 +55,10 @@ pub enum WorkerError {
         source: io::Error,
     },
     /// The process ended without a word.
-    #[error("the engine's library ended its process ({status}){}", with_last_words(last_words))]
+    #[error("the engine's library ended its process: {how}")]
     Ended {
-        /// How it ended.
-        status: ExitStatus,
-        /// The end of what it wrote on standard error.
-        last_words: String,
+        /// How it ended, with the last of what it wrote.
+        how: String,
     },
     /// The worker said nothing for too long and was ended.
     #[error(
@@ -80,9 +71,5 @@ pub enum WorkerError {
     },
     /// The worker was done, but its recording cannot be read.
     #[error("the recording of the worker: {0}")]
-    Recording(#[from] TraceError),
-}
-
-fn with_last_words(last_words: &str) -> String {
-    if last_words.is_empty() { String::new() } else { format!("; its last words: {last_words}") }
+    Recording(io::Error),
 }

@@ -3,11 +3,10 @@ use servobench_plant::{
     Engine, EngineName, Exact, Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Refusal, RefusedAt,
 };
 use servobench_scenario::{Actuator, AxisMechanics, Scenario};
-use servobench_suite::{Engines, Job, Objection, RunError, Source, WorkerCommand, check, jobs};
-use std::time::Duration;
+use servobench_suite::{Engines, Job, Objection, RunError, Source, Workers, check, jobs};
 
 const TEXT: &str = r#"
-engine = "rapier"
+engine = "exact"
 [run]
 base_rate = "1 kHz"
 [axis]
@@ -40,7 +39,7 @@ struct Refuses {
 
 impl Engine for Refuses {
     fn name(&self) -> EngineName {
-        EngineName::Rapier
+        EngineName::Exact
     }
 
     fn build(&self, _: &MechanicsSetup) -> Result<Box<dyn Mechanics>, MechanicsError> {
@@ -52,7 +51,7 @@ impl Engine for Refuses {
             refusal(RefusedAt::Name("tendon's".into()), "no such joint"),
             refusal(RefusedAt::File, "no mass"),
         ];
-        Err(MechanicsError::Refused { engine: EngineName::Rapier, path: "arm.xml".into(), refusals, help: "change it" })
+        Err(MechanicsError::Refused { engine: EngineName::Exact, path: "arm.xml".into(), refusals, help: "change it" })
     }
 }
 
@@ -75,13 +74,9 @@ fn job() -> Job {
     jobs(vec![Source { scenario, text: TEXT.into() }], &[]).remove(0)
 }
 
-fn nowhere() -> WorkerCommand {
-    WorkerCommand { program: "none".into(), folder: "none".into(), timeout: Duration::ZERO }
-}
-
 #[test]
 fn each_objection_has_its_place() {
-    let found = check(&job(), &REFUSING, &nowhere()).unwrap();
+    let found = check(&job(), &REFUSING, &Workers::none()).unwrap();
     let places: Vec<(&str, Option<u32>)> = found.iter().map(|one| (one.key.as_str(), one.line)).collect();
     let file = "axis.mjcf.file";
     assert_eq!(
@@ -92,7 +87,7 @@ fn each_objection_has_its_place() {
     let refused = |line, message: &str| Objection {
         key: file.into(),
         line,
-        message: format!("engine `rapier`: {message}"),
+        message: format!("engine `exact`: {message}"),
         help: "change it".into(),
     };
     assert_eq!((&found[1], &found[4]), (&refused(Some(3), "no mesh"), &refused(None, "no mass")));
@@ -107,7 +102,7 @@ fn parameters_of_drive_and_switches_are_shown_at_their_keys() {
         let Actuator::IdealSource { drive, .. } = &mut scenario.actuator else { panic!("an ideal source") };
         &mut drive.params
     }
-    let text = TEXT.replace("\"rapier\"", "\"exact\"").replace("duration = \"1 ms\"", "");
+    let text = TEXT.replace("duration = \"1 ms\"", "");
     let cases: [(&str, &str, Spoil); 5] = [
         ("drive.velocity.gain", "`gain of the velocity loop` must be", |it| drive(it).velocity.k_p = f64::NAN),
         ("drive.position.gain", "got -1", |it| drive(it).position_gain = -1.0),
@@ -119,15 +114,15 @@ fn parameters_of_drive_and_switches_are_shown_at_their_keys() {
         let mut scenario = servobench_scenario::parse("test", &text, None).unwrap_or_else(|e| panic!("{e}")).scenario;
         spoil(&mut scenario);
         let job = jobs(vec![Source { scenario, text: text.clone() }], &[]).remove(0);
-        let found = check(&job, &EXACT, &nowhere()).unwrap();
+        let found = check(&job, &EXACT, &Workers::none()).unwrap();
         assert!(found.iter().any(|one| one.key == key && one.message.contains(words)), "{key}: {found:?}");
     }
 }
 
 #[test]
 fn who_cannot_be_asked_is_no_objection() {
-    let missing = check(&job(), &Engines::NONE, &nowhere());
+    let missing = check(&job(), &Engines::NONE, &Workers::none());
     assert!(matches!(missing, Err(RunError::EngineMissing(_))), "{missing:?}");
-    let panicked = check(&job(), &PANICKING, &nowhere());
+    let panicked = check(&job(), &PANICKING, &Workers::none());
     assert!(matches!(panicked, Err(RunError::Panicked(_))), "{panicked:?}");
 }

@@ -1,8 +1,7 @@
 //! What is kept of a recording has no influence on what is measured.
 use servobench_metrics::Name;
 use servobench_plant::EngineName;
-use servobench_suite::{Engines, Run, Source, WorkerCommand, execute, jobs};
-use std::time::Duration;
+use servobench_suite::{Engines, Run, Source, Workers, execute, jobs};
 
 /// A load on a spring behind a base that moves 10 mm exactly: √(k/m)/2π = 84.2 Hz with k = 10 kg·(2π·84.2 Hz)².
 const RINGS: &str = r#"
@@ -32,8 +31,7 @@ fn run(text: &str) -> Run {
     let engines = Engines { installed: &[&servobench_plant::Exact], ..Engines::NONE };
     let scenario = servobench_scenario::parse("rings", text, None).unwrap_or_else(|error| panic!("{error}")).scenario;
     let job = jobs(vec![Source { scenario, text: text.into() }], &[EngineName::Exact]).remove(0);
-    let worker = WorkerCommand { program: "none".into(), folder: "none".into(), timeout: Duration::from_secs(1) };
-    execute(&job, &engines, &worker, &mut |_| {}).unwrap()
+    execute(&job, &engines, &Workers::none(), &mut |_| {}).unwrap()
 }
 
 /// Kept at 100 Hz, 84.2 Hz would be seen as 15.8 Hz.

@@ -2,7 +2,7 @@
 use servobench_metrics::Standing;
 use servobench_plant::{EngineName, Exact};
 use servobench_scenario::load;
-use servobench_suite::{Engines, Source, WorkerCommand, execute, jobs};
+use servobench_suite::{Engines, Source, Workers, execute, jobs};
 use std::path::{Path, PathBuf};
 
 const ENGINES: Engines = Engines { installed: &[&Exact], ..Engines::NONE };
@@ -25,8 +25,8 @@ fn broken_of(path: &Path, channels: &[&str]) -> (Vec<&'static str>, Vec<String>)
     let text = std::fs::read_to_string(path).unwrap();
     let source = Source { scenario: loaded.scenario, text };
     let job = jobs(vec![source], &[EngineName::Exact]).remove(0);
-    let nowhere = WorkerCommand { program: "none".into(), folder: "none".into(), timeout: std::time::Duration::ZERO };
-    let run = execute(&job, &ENGINES, &nowhere, &mut |_| {}).unwrap_or_else(|broken| panic!("{}", broken.error));
+    let run =
+        execute(&job, &ENGINES, &Workers::none(), &mut |_| {}).unwrap_or_else(|broken| panic!("{}", broken.error));
     let names = run
         .verdict
         .requirements

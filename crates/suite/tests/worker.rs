@@ -1,10 +1,10 @@
 //! The worker's side, called as a process would call it: what it says is what the same run here says of itself.
+#![cfg(unix)]
 use servobench_metrics::Quantity;
-use servobench_plant::{EngineName, Exact};
-use servobench_suite::worker::{End, Order, serve};
-use servobench_suite::{Engines, Source, WorkerCommand, execute, jobs};
-use servobench_trace::Recording;
-use std::path::Path;
+use servobench_plant::Exact;
+use servobench_suite::worker::{End, Order, Task, answer};
+use servobench_suite::{Engines, Source, Workers, execute, jobs};
+use std::time::Duration;
 
 const ENGINES: Engines = Engines { installed: &[&Exact], ..Engines::NONE };
 
@@ -35,23 +35,29 @@ jerk = "1 m/s3"
 move_to = "10 mm"
 "#;
 
-fn order(folder: &Path) -> Order {
+fn order(text: &str) -> Order {
     Order {
         name: "wild".into(),
         path: None,
+        text: text.into(),
         overrides: vec![],
-        engine: EngineName::Exact,
+        engine: "exact".into(),
         durations: vec![],
-        recording: Some(folder.join("wild.parquet")),
+        task: Task::Run { time_limit: None },
     }
 }
 
 /// How it ended, which is what it said last.
-fn served(order: &Order, text: &str) -> End {
+fn served(order: &Order) -> End {
+    answered(order).0
+}
+
+/// The same, and all that it said.
+fn answered(order: &Order) -> (End, Vec<serde_json::Value>) {
     let mut out = Vec::new();
-    let end = serve(order, text, &ENGINES, &mut out);
-    let said = String::from_utf8(out).unwrap();
-    let last: serde_json::Value = serde_json::from_str(said.lines().last().unwrap()).unwrap();
+    let end = answer(order, &mut tempfile::tempfile().unwrap(), &ENGINES, &mut out);
+    let said: Vec<serde_json::Value> =
+        String::from_utf8(out).unwrap().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     let expected = match &end {
         End::Done => serde_json::json!({ "end": "done" }),
         End::Input(why) => serde_json::json!({ "end": { "input": why } }),
@@ -59,81 +65,51 @@ fn served(order: &Order, text: &str) -> End {
             serde_json::json!({ "end": { "diverged": { "time": time, "reason": reason } } })
         }
         End::GaveUp(why) => serde_json::json!({ "end": { "gaveup": why } }),
+        End::Stopped(time) => serde_json::json!({ "end": { "stopped": time } }),
         End::Failed(why) => serde_json::json!({ "end": { "failed": why } }),
     };
-    assert_eq!(last, expected);
-    end
+    assert_eq!(said.last().unwrap(), &expected);
+    (end, said)
 }
 
 #[test]
-fn a_reason_and_a_recording_do_not_depend_on_where_the_run_happened() {
-    let folder = tempfile::tempdir().unwrap();
+fn a_reason_does_not_depend_on_where_the_run_happened() {
     let scenario =
         servobench_scenario::parse("wild.toml", WILD, None).unwrap_or_else(|error| panic!("{error}")).scenario;
     let job = &jobs(vec![Source { scenario, text: WILD.into() }], &[])[0];
-    let nowhere = WorkerCommand { program: "none".into(), folder: "none".into(), timeout: std::time::Duration::ZERO };
-    let run = execute(job, &ENGINES, &nowhere, &mut |_| {}).unwrap_or_else(|broken| panic!("{}", broken.error));
+    let run = execute(job, &ENGINES, &Workers::none(), &mut |_| {}).unwrap_or_else(|broken| panic!("{}", broken.error));
     let reasons: Vec<String> = run.verdict.reasons().collect();
-
-    let order = order(folder.path());
-    let End::Diverged { time, reason } = served(&order, WILD) else { panic!("it diverges") };
+    let End::Diverged { time, reason } = served(&order(WILD)) else { panic!("it diverges") };
     let told = format!("bounded: the run diverged at {}: {reason}", Quantity::new(time, "s"));
     assert!(reasons.contains(&told), "{told}: {reasons:?}");
-    let own = folder.path().join("here.parquet");
-    run.recording.write_parquet(&own).unwrap();
-    assert!(std::fs::read(own).unwrap() == std::fs::read(order.recording.unwrap()).unwrap(), "up to where it came");
 }
 
 #[test]
-fn a_run_that_comes_to_its_end_is_done() {
-    let folder = tempfile::tempdir().unwrap();
-    let order = Order { durations: vec![1.5], ..order(folder.path()) };
-    assert_eq!(served(&order, &WILD.replace("2 MHz", "20 Hz")), End::Done);
-    let recording = Recording::read_parquet(order.recording.as_deref().unwrap()).unwrap();
-    assert!((recording.moves[0].end - 1.5).abs() < 1e-12 && recording.about.scenario == "wild");
-}
-
-/// Oracle: the same run in this process.
-#[test]
-fn overrides_reach_the_worker() {
-    let folder = tempfile::tempdir().unwrap();
-    let overrides =
-        vec!["drive.velocity.bandwidth=20 Hz".parse().unwrap(), "program[0].move_to='5 mm'".parse().unwrap()];
-    let order = Order { overrides: overrides.clone(), ..order(folder.path()) };
-    assert_eq!(served(&order, WILD), End::Done);
-    let recording = Recording::read_parquet(order.recording.as_deref().unwrap()).unwrap();
-    assert_eq!(recording.about.overrides, ["drive.velocity.bandwidth=20 Hz", "program[0].move_to='5 mm'"]);
-    let loaded = servobench_scenario::parse_with("wild.toml", WILD, None, &overrides);
-    let scenario = loaded.unwrap_or_else(|error| panic!("{error}")).scenario;
-    let job = &jobs(vec![Source { scenario, text: WILD.into() }], &[])[0];
-    let nowhere = WorkerCommand { program: "none".into(), folder: "none".into(), timeout: std::time::Duration::ZERO };
-    let run = execute(job, &ENGINES, &nowhere, &mut |_| {}).unwrap_or_else(|broken| panic!("{}", broken.error));
-    assert_eq!(recording, run.recording);
-    assert!((recording.moves[0].to - 5e-3).abs() < 1e-15, "{:?}", recording.moves[0]);
+fn a_run_that_reaches_its_limit_of_time_says_how_far_it_came() {
+    let endless = WILD.replace("2 MHz", "20 Hz").replace("2 s", "1e6 s") + "[record]\nrate = \"1 Hz\"\n";
+    let task = Task::Run { time_limit: Some(Duration::from_millis(100)) };
+    let End::Stopped(time) = served(&Order { task, ..order(&endless) }) else { panic!("it is stopped") };
+    assert!(time < 1e6, "{time}");
 }
 
 #[test]
 fn wrong_input_is_told_apart_from_a_failure() {
-    let folder = tempfile::tempdir().unwrap();
-    let end = served(&order(folder.path()), &WILD.replace("20 kg", "-20 kg"));
+    let end = served(&order(&WILD.replace("20 kg", "-20 kg")));
     assert!(matches!(&end, End::Input(why) if why.contains("wild.toml:8:8")), "{end:?}");
     // A move cannot be made in a hundredth of the time that its limits take.
-    let end = served(&Order { durations: vec![0.002], ..order(folder.path()) }, WILD);
+    let end = served(&Order { durations: vec![0.002], ..order(WILD) });
     assert!(matches!(&end, End::Input(why) if why.contains("`duration`")), "{end:?}");
-    let end = served(&Order { engine: EngineName::Rapier, ..order(folder.path()) }, WILD);
+    let end = served(&Order { engine: "rapier".into(), ..order(WILD) });
     assert!(matches!(&end, End::Failed(why) if why.contains("--features rapier")), "{end:?}");
 }
 
 /// The move cannot be made in 2 ms; nothing runs to find that out.
 #[test]
-fn without_a_recording_the_scenario_is_only_checked() {
-    let order = Order { durations: vec![0.002], recording: None, ..order("none".as_ref()) };
-    let mut out = Vec::new();
-    assert_eq!(serve(&order, WILD, &ENGINES, &mut out), End::Done);
-    let lines: Vec<serde_json::Value> =
-        String::from_utf8(out).unwrap().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
-    let [said, end] = &lines[..] else { panic!("{lines:?}") };
-    assert_eq!(end, &serde_json::json!({ "end": "done" }));
+fn what_is_only_checked_does_not_run() {
+    let (end, said) = answered(&Order { durations: vec![0.002], task: Task::Check, ..order(WILD) });
+    assert_eq!(end, End::Done);
+    let [said, holds, _] = &said[..] else { panic!("{said:?}") };
+    assert!(holds["holds"].as_u64().is_some());
     let [objection] = &said["objections"].as_array().unwrap()[..] else { panic!("{said}") };
     assert_eq!(objection["key"], "program.0");
     assert!(objection["message"].as_str().unwrap().contains("`duration` must be at least"), "{objection}");

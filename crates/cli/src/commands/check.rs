@@ -16,7 +16,7 @@ use servobench_results::printable;
 use servobench_scenario::{Diagnostic, Loaded};
 use servobench_sim::ConnectionDelay;
 use servobench_suite::{
-    Doubt, Engines, Job, Preview, RunError, Source, WorkerCommand, check as objections, delays, jobs, preview,
+    Doubt, Engines, Job, Preview, RunError, Source, Workers, check as objections, delays, jobs, preview,
 };
 use std::fmt;
 use std::path::PathBuf;
@@ -29,7 +29,8 @@ const WORKER_TIMEOUT: Duration = Duration::from_mins(1);
 /// Reports every mistake of every file in one go: what is wrong in the file, and in a file without such what the engines
 /// that it names object to.
 pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
-    let (engines, worker) = (engines::installed(), workers::command(&std::env::temp_dir(), WORKER_TIMEOUT)?);
+    let limits = workers::limits(None, args.memory.memory_limit);
+    let (engines, workers) = (engines::installed(), workers::of(&std::env::temp_dir(), WORKER_TIMEOUT, limits)?);
     interrupt::watch(&std::env::temp_dir())?;
     let files = sources::files(&args.scenarios)?;
     let (mut findings, mut missing, mut shown) = (Findings::default(), Vec::new(), String::new());
@@ -37,7 +38,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     for file in &files {
         match sources::read(file, &args.with.overrides) {
             Ok(loaded) => {
-                let asked = Asked::about(&loaded, &engines, &worker);
+                let asked = Asked::about(&loaded, &engines, &workers);
                 if let Some(preview) = &asked.preview {
                     if !asked.doubts.is_empty() {
                         say(&render(&asked.doubts, &loaded.sources, Severity::Warning));
@@ -114,12 +115,12 @@ struct Asked {
 }
 
 impl Asked {
-    fn about(loaded: &Loaded, engines: &Engines, worker: &WorkerCommand) -> Self {
+    fn about(loaded: &Loaded, engines: &Engines, workers: &Workers) -> Self {
         let mut asked = Self::default();
         let text = loaded.sources.text(loaded.sources.scenario()).to_owned();
         let jobs = jobs(vec![Source { scenario: loaded.scenario.clone(), text }], &[]);
         for job in &jobs {
-            let found = match objections(job, engines, worker) {
+            let found = match objections(job, engines, workers) {
                 Ok(found) => found,
                 Err(RunError::EngineMissing(missing)) => {
                     asked.missing.push(missing.name);

@@ -83,10 +83,12 @@ fn wanted_jobs(args: &CompareArgs) -> Result<Vec<Job>, CliError> {
 
 /// Runs all of them; without one of them there is no comparison.
 fn carried_out(args: &CompareArgs, jobs: &[Job]) -> Result<Vec<Run>, CliError> {
-    let (engines, worker) = (engines::installed(), workers::command(&args.out, args.worker_timeout)?);
+    let limits = workers::limits(args.time_limit, args.memory.memory_limit);
+    let (engines, workers) = (engines::installed(), workers::of(&args.out, args.worker_timeout, limits)?);
     let progress = Progress::new(jobs.len(), false);
-    let ended = map_in_parallel(jobs, workers::at_a_time(None), Job::memory, |job| {
-        let ended = execute(job, &engines, &worker, &mut progress.of_run(&job.id)).map_err(|broken| broken.error);
+    let ended = map_in_parallel(jobs, workers::at_a_time(None, limits), Job::memory, |job| {
+        let ended = execute(job, &engines, &workers, &mut progress.of_run(&job.id, workers.slow(job)))
+            .map_err(|broken| broken.error);
         progress.ended(&job.id, if ended.is_ok() { "done" } else { Outcome::Error.word() });
         ended
     });

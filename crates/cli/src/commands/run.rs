@@ -17,7 +17,7 @@ use ledger::{Closed, Ledger};
 use resume::{Begun, Found};
 use servobench_report::{brief, junit, verdict_table};
 use servobench_results::{Folder, Former, Outcome, RESULTS, Results, RunIdentity, RunResult, Suite};
-use servobench_suite::{Broken, Engines, Job, Run, WorkerCommand, execute, map_in_parallel};
+use servobench_suite::{Broken, Engines, Job, Run, Workers, execute, map_in_parallel};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -146,19 +146,20 @@ fn nothing_to_run(args: &RunArgs, wanted: Wanted) -> Result<Exit, CliError> {
 /// Runs all jobs that have not ended. Once the suite is to stop, none begins.
 fn run_all(args: &RunArgs, wanted: &Wanted, engines: &Engines, ledger: &Ledger) -> Result<(), CliError> {
     let folder = ledger.folder().path();
-    let worker = workers::command(folder, args.worker_timeout)?;
+    let limits = workers::limits(args.time_limit, args.memory.memory_limit);
+    let workers = workers::of(folder, args.worker_timeout, limits)?;
     let pending: Vec<(usize, &Job)> = wanted.places().filter(|(index, _)| !ledger.has(*index)).collect();
     let progress = Progress::new(pending.len(), args.quiet);
     let ended = map_in_parallel(
         &pending,
-        workers::at_a_time(args.jobs),
+        workers::at_a_time(args.jobs, limits),
         |(_, job)| job.memory(),
         |(index, job)| {
             if interrupt::is_stopping() {
                 return;
             }
             let start = Instant::now();
-            let result = one(job, engines, &worker, args, folder, &progress);
+            let result = one(job, engines, &workers, args, folder, &progress);
             ledger.note(*index, result, start.elapsed());
         },
     );
@@ -177,7 +178,7 @@ fn run_all(args: &RunArgs, wanted: &Wanted, engines: &Engines, ledger: &Ledger) 
 fn one(
     job: &Job,
     engines: &Engines,
-    worker: &WorkerCommand,
+    workers: &Workers,
     args: &RunArgs,
     folder: &Path,
     progress: &Progress,
@@ -189,7 +190,7 @@ fn one(
             Ok(Written::default())
         }
     };
-    let result = match execute(job, engines, worker, &mut progress.of_run(&job.id)) {
+    let result = match execute(job, engines, workers, &mut progress.of_run(&job.id, workers.slow(job))) {
         Ok(Run { recording, metrics, verdict }) => {
             let judged = RunResult::judged(RunIdentity::default(), &recording, &metrics, &verdict).verdict;
             match write(&recording, judged, output::shown(&recording, &metrics, &verdict)) {

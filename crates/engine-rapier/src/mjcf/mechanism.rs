@@ -1,5 +1,6 @@
 //! What an MJCF file of the subset says, resolved: links with their joints, tendons, motors.
 use super::contact::possible_contacts;
+use super::depth;
 use super::mass::mass_properties;
 use super::refusal::{MjcfRefusal, list};
 use super::scan::{line, scan};
@@ -97,6 +98,7 @@ impl Mechanism {
     /// Reads a file's text.
     pub(crate) fn read(xml: &str) -> Result<Self, Vec<MjcfRefusal>> {
         let unreadable = |error: &dyn std::fmt::Display| vec![MjcfRefusal::Unreadable { message: error.to_string() }];
+        depth::check(xml).map_err(|refusal| vec![refusal])?;
         let document = Document::parse(xml).map_err(|error| unreadable(&error))?;
         let refusals = scan(&document);
         if !refusals.is_empty() {

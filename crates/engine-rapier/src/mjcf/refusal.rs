@@ -50,6 +50,18 @@ pub(crate) enum MjcfRefusal {
         /// What it may be.
         supported: String,
     },
+    /// Elements within elements without end.
+    #[error(
+        "line {line}: `<{element}>` is nested more than {depth} elements deep; put bodies beside each other, or leave out those without a joint"
+    )]
+    TooDeep {
+        /// Line in the file, from 1.
+        line: u32,
+        /// The element.
+        element: String,
+        /// How deep elements may be nested.
+        depth: usize,
+    },
     /// An attribute without which the engine would have to guess.
     #[error("line {line}: `<{element}>` needs the attribute `{attribute}`")]
     Missing {
@@ -136,6 +148,7 @@ impl From<&MjcfRefusal> for Refusal {
             MjcfRefusal::Element { line, .. }
             | MjcfRefusal::Attribute { line, .. }
             | MjcfRefusal::Value { line, .. }
+            | MjcfRefusal::TooDeep { line, .. }
             | MjcfRefusal::Missing { line, .. } => RefusedAt::Line(*line),
             MjcfRefusal::Unknown { name, .. } | MjcfRefusal::Actuator { actuator: name, .. } => {
                 RefusedAt::Name(name.clone())

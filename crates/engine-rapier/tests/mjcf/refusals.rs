@@ -192,6 +192,31 @@ fn every_mistake_is_found_in_one_go_with_its_line() {
     assert!(all[2].starts_with("line 4: attribute `range`"), "{all:?}");
 }
 
+/// What reads the file calls itself for each of them: 700 bodies have ended the program. The thread of a test has 2 MiB of stack, as those
+/// of a suite have.
+#[test]
+fn elements_within_elements_without_end_are_refused_at_their_line() {
+    let nested = |element: &str, count: usize| {
+        let (open, close) = (format!("\n<{element}>").repeat(count), format!("</{element}>").repeat(count));
+        format!("{open}{close}")
+    };
+    for count in [101, 700, 20_000] {
+        let deep = format!("<mujoco><worldbody>{}</worldbody></mujoco>", nested("body", count));
+        let said = refusal(&deep);
+        assert!(said.starts_with("line 100: `<body>` is nested more than 100 elements deep"), "{said}");
+        let said = refusal(&format!(
+            "<mujoco>{}</mujoco>",
+            nested("default class='a'", count).replace("</default class='a'>", "</default>")
+        ));
+        assert!(said.starts_with("line 101: `<default>` is nested more than 100"), "{said}");
+    }
+    // Bodies beside each other are not deep, and as many within each other as there may be are simulated.
+    let massive = "<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>";
+    let rigid = format!("<body>{massive}").repeat(95) + &"</body>".repeat(95);
+    try_build(file(&inside(&rigid), "m"), H, vec![]).unwrap();
+    try_build(file(&inside(&format!("<body>{massive}</body>").repeat(500)), "m"), H, vec![]).unwrap();
+}
+
 #[test]
 fn what_is_no_mjcf_is_refused() {
     for (xml, said) in [("<mujoco>", "axis.xml: "), ("<robot/>", "the root element is <robot>")] {

@@ -2,7 +2,7 @@
 use crate::check::Objection;
 use serde::{Deserialize, Serialize};
 
-/// One line of a worker's standard output.
+/// One line of what a worker says.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Message {
@@ -10,11 +10,13 @@ pub(super) enum Message {
     Progress(f64),
     /// What keeps the scenario from being built.
     Objections(Vec<Objection>),
-    /// The last word.
+    /// Memory that the worker has for itself after the order (B).
+    Holds(u64),
+    /// The last word on an order.
     End(End),
 }
 
-/// How a worker ends.
+/// How an order ends.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum End {
@@ -31,6 +33,8 @@ pub enum End {
     },
     /// The program gave up: why. The recording is there as far as it came.
     GaveUp(String),
+    /// The run reached its limit of time at this simulated time (s). The recording is there as far as it came.
+    Stopped(f64),
     /// The run broke off: why. The recording is there as far as it came.
     Failed(String),
 }
@@ -41,9 +45,9 @@ impl Message {
         Ok(serde_json::to_string(self)? + "\n")
     }
 
-    /// What `line` says; nothing when a native library has written it.
-    pub(super) fn of(line: &str) -> Option<Self> {
-        serde_json::from_str(line.trim()).ok()
+    /// What `line` says; nothing when it is none of ours.
+    pub(super) fn of(line: &[u8]) -> Option<Self> {
+        serde_json::from_slice(line).ok()
     }
 }
 
@@ -61,6 +65,7 @@ mod tests {
                 Message::Objections(vec![objection]),
                 "{\"objections\":[{\"key\":\"axis\",\"line\":2,\"message\":\"no\",\"help\":\"\"}]}\n",
             ),
+            (Message::Holds(5), "{\"holds\":5}\n"),
             (Message::End(End::Done), "{\"end\":\"done\"}\n"),
             (Message::End(End::Input("no".into())), "{\"end\":{\"input\":\"no\"}}\n"),
             (
@@ -68,14 +73,15 @@ mod tests {
                 "{\"end\":{\"diverged\":{\"time\":0.25,\"reason\":\"not finite\"}}}\n",
             ),
             (Message::End(End::GaveUp("no".into())), "{\"end\":{\"gaveup\":\"no\"}}\n"),
+            (Message::End(End::Stopped(0.5)), "{\"end\":{\"stopped\":0.5}}\n"),
             (
                 Message::End(End::Failed(why)),
                 "{\"end\":{\"failed\":\"engine `mujoco`: \\\"half\\n a µm\\\" too far\"}}\n",
             ),
         ] {
             assert_eq!(message.line().unwrap(), line);
-            assert_eq!(Message::of(line), Some(message));
+            assert_eq!(Message::of(line.as_bytes()), Some(message));
         }
-        assert_eq!(Message::of("WARNING: a library speaks"), None);
+        assert_eq!(Message::of(b"WARNING: a library speaks"), None);
     }
 }

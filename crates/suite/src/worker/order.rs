@@ -1,0 +1,89 @@
+//! What a worker is told.
+use crate::job::{Job, slow_to};
+use serde::{Deserialize, Serialize};
+use servobench_config::Choice as _;
+use servobench_scenario::{LoadError, Override, Scenario};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// What a worker is to do with a scenario.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Task {
+    /// Say what keeps it from being built.
+    Check,
+    /// Run it and leave its recording.
+    Run {
+        /// How long that may take, by the clock.
+        time_limit: Option<Duration>,
+    },
+}
+
+/// A scenario, as the caller has it, and what is to be done with it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Order {
+    /// Name of the scenario.
+    pub name: String,
+    /// File that it came from, byte by byte: models are looked up from there.
+    pub path: Option<Vec<u8>>,
+    /// Its text.
+    pub text: String,
+    /// Keys with another value than the text gives them.
+    pub overrides: Vec<String>,
+    /// The engine, by its name.
+    pub engine: String,
+    /// Durations that the moves are slowed to (s); empty: as they are.
+    pub durations: Vec<f64>,
+    /// What is to be done.
+    pub task: Task,
+}
+
+impl Order {
+    /// That `task` is done with `job`.
+    pub(crate) fn new(job: &Job, task: Task) -> Self {
+        let Scenario { name, path, overrides, .. } = &job.scenario;
+        Self {
+            name: name.clone(),
+            path: path.as_deref().map(bytes),
+            text: job.text.clone(),
+            overrides: overrides.iter().map(ToString::to_string).collect(),
+            engine: job.engine.name().to_owned(),
+            durations: job.durations().to_vec(),
+            task,
+        }
+    }
+
+    /// The scenario as the caller has it.
+    pub(super) fn scenario(&self) -> Result<Scenario, LoadError> {
+        let path = self.path.as_deref().map(path);
+        let file = path.as_ref().map_or_else(|| format!("{}.toml", self.name), |path| path.display().to_string());
+        let folder = path.as_deref().and_then(Path::parent);
+        // The caller has read them.
+        let overrides: Vec<Override> = self.overrides.iter().filter_map(|one| one.parse().ok()).collect();
+        let mut scenario = servobench_scenario::parse_with(&file, &self.text, folder, &overrides)?.scenario;
+        scenario.name.clone_from(&self.name);
+        scenario.path = path;
+        slow_to(&mut scenario, &self.durations);
+        Ok(scenario)
+    }
+}
+
+#[cfg(unix)]
+fn bytes(path: &Path) -> Vec<u8> {
+    std::os::unix::ffi::OsStrExt::as_bytes(path.as_os_str()).to_vec()
+}
+
+#[cfg(unix)]
+fn path(bytes: &[u8]) -> PathBuf {
+    PathBuf::from(<std::ffi::OsStr as std::os::unix::ffi::OsStrExt>::from_bytes(bytes))
+}
+
+#[cfg(not(unix))]
+fn bytes(path: &Path) -> Vec<u8> {
+    path.to_string_lossy().into_owned().into_bytes()
+}
+
+#[cfg(not(unix))]
+fn path(bytes: &[u8]) -> PathBuf {
+    PathBuf::from(String::from_utf8_lossy(bytes).into_owned())
+}

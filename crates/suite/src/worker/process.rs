@@ -1,0 +1,181 @@
+//! A worker process, from the side of who gives orders.
+use super::WorkerError;
+use super::message::{End, Message};
+use super::order::Order;
+use super::recording;
+use super::workers::{Broken, WorkerCommand};
+use servobench_isolation::{Contained, Limits, Program, Stopwatch};
+use servobench_trace::Recording;
+use std::fs::File;
+use std::io::{self, ErrorKind, Read, Write};
+use std::os::unix::net::UnixStream;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// How often a worker is looked after while it is silent, or does not listen.
+const GLANCE: Duration = Duration::from_millis(50);
+/// What a worker may take longer than its limit of time before it is ended: it ends its run itself, unless it is stuck, and then has
+/// its recording to write.
+const GRACE: Duration = Duration::from_secs(2);
+/// Memory above which a worker does not serve again (B): a library that keeps what it has had grows from run to run.
+const MUCH: u64 = 500_000_000;
+/// Bytes that are read at a time.
+const CHUNK: usize = 1 << 14;
+
+/// A worker process; it is ended when this is dropped.
+#[derive(Debug)]
+pub(super) struct Worker {
+    process: Contained,
+    socket: UnixStream,
+    /// What has come and is no line yet.
+    heard: Vec<u8>,
+    /// Where it leaves recordings.
+    recording: File,
+    program: PathBuf,
+    timeout: Duration,
+    /// Memory that it has for itself (B).
+    holds: u64,
+    orders: u32,
+}
+
+impl Worker {
+    pub(super) fn start(command: &WorkerCommand) -> Result<Self, WorkerError> {
+        let cannot = |action| {
+            let program = command.program.clone();
+            move |source| WorkerError::Process { action, program, source }
+        };
+        let (socket, theirs) = UnixStream::pair().map_err(cannot("make a socket to"))?;
+        socket.set_read_timeout(Some(GLANCE)).map_err(cannot("wait for"))?;
+        socket.set_write_timeout(Some(GLANCE)).map_err(cannot("wait for"))?;
+        let recording = tempfile::tempfile_in(&command.folder).map_err(cannot("make a file for"))?;
+        let for_recording = recording.try_clone().map_err(cannot("make a file for"))?;
+        let program = Program { program: command.program.clone(), args: vec!["worker".into()], env: Vec::new() };
+        let limits = Limits { memory: command.limits.memory, is_foreign: false };
+        let process = Contained::start(&program, theirs.into(), Some(for_recording.into()), limits, || ())
+            .map_err(cannot("start"))?;
+        let (program, timeout) = (command.program.clone(), command.timeout);
+        Ok(Self { process, socket, heard: Vec::new(), recording, program, timeout, holds: 0, orders: 0 })
+    }
+
+    /// Whether it has had an order before the last one.
+    pub(super) const fn is_used(&self) -> bool {
+        self.orders > 1
+    }
+
+    /// Whether it is as good as a new one.
+    pub(super) fn may_serve_again(&self) -> bool {
+        self.process.ending().is_none() && self.heard.is_empty() && self.holds < MUCH
+    }
+
+    /// Gives an order and listens to its end; `on_message` gets all but the last word, and nothing from time to time.
+    pub(super) fn carry_out(
+        &mut self,
+        order: &Order,
+        time_limit: Option<Duration>,
+        on_message: &mut dyn FnMut(Option<Message>),
+    ) -> Result<End, Broken> {
+        self.orders += 1;
+        let mut silence = Stopwatch::start();
+        let (run, last) = (Stopwatch::start(), time_limit.map(|limit| limit + GRACE));
+        self.send(order, silence)?;
+        loop {
+            match self.line() {
+                Ok(Some(line)) => {
+                    silence = Stopwatch::start();
+                    match Message::of(&line) {
+                        Some(Message::End(end)) => return Ok(end),
+                        Some(Message::Holds(bytes)) => self.holds = bytes,
+                        Some(message) => on_message(Some(message)),
+                        None => {}
+                    }
+                }
+                Ok(None) => return Err(self.ended().into()),
+                Err(error) if is_of_time(&error) => {
+                    // What it has started may hold the socket open.
+                    if self.process.ending().is_some() {
+                        return Err(self.ended().into());
+                    }
+                    if silence.elapsed() > self.timeout {
+                        return Err(self.stalled().into());
+                    }
+                    on_message(None);
+                }
+                Err(source) => return Err(self.mute(source).into()),
+            }
+            if last.is_some_and(|last| run.elapsed() > last) {
+                self.process.end();
+                return Err(Broken::Late);
+            }
+        }
+    }
+
+    /// The recording that it has left, which goes.
+    pub(super) fn take_recording(&mut self) -> io::Result<Recording> {
+        let recording = recording::read(&mut self.recording);
+        self.recording.set_len(0)?;
+        recording
+    }
+
+    fn send(&mut self, order: &Order, silence: Stopwatch) -> Result<(), WorkerError> {
+        let line = serde_json::to_vec(order).map_err(|error| self.mute(error.into()))?;
+        let line = [line, b"\n".to_vec()].concat();
+        let mut rest = &line[..];
+        while !rest.is_empty() {
+            match self.socket.write(rest) {
+                Ok(count) => rest = &rest[count..],
+                // One that ends before it has read everything may have said why.
+                Err(error) if error.kind() == ErrorKind::BrokenPipe && self.orders == 1 => return Ok(()),
+                Err(error) if is_of_time(&error) && silence.elapsed() > self.timeout => return Err(self.stalled()),
+                Err(error) if is_of_time(&error) => {}
+                Err(error) => return Err(self.mute(error)),
+            }
+        }
+        Ok(())
+    }
+
+    /// The next line, which it is waited a [`GLANCE`] for; `None` when there will be none.
+    fn line(&mut self) -> io::Result<Option<Vec<u8>>> {
+        loop {
+            if let Some(end) = self.heard.iter().position(|byte| *byte == b'\n') {
+                let rest = self.heard.split_off(end + 1);
+                return Ok(Some(std::mem::replace(&mut self.heard, rest)));
+            }
+            let mut chunk = [0; CHUNK];
+            match self.socket.read(&mut chunk) {
+                Ok(0) => return Ok(None),
+                Ok(count) => self.heard.extend_from_slice(&chunk[..count]),
+                // It ended without having read everything that it was told.
+                Err(error) if error.kind() == ErrorKind::ConnectionReset => return Ok(None),
+                Err(error) => return Err(error),
+            }
+        }
+    }
+
+    /// It does not listen to orders any more.
+    fn mute(&self, source: io::Error) -> WorkerError {
+        WorkerError::Process { action: "speak to", program: self.program.clone(), source }
+    }
+
+    fn stalled(&mut self) -> WorkerError {
+        self.process.end();
+        WorkerError::Stalled { timeout: self.timeout }
+    }
+
+    /// It has ended, or ends: how. One that only listens no longer is ended.
+    fn ended(&mut self) -> WorkerError {
+        let waiting = Stopwatch::start();
+        while self.process.ending().is_none() && waiting.elapsed() < self.timeout {
+            self.process.wait_for_end(GLANCE);
+        }
+        if self.process.ending().is_none() {
+            return self.stalled();
+        }
+        let how = self.process.ending().map_or_else(String::new, servobench_isolation::Ending::how);
+        WorkerError::Ended { how }
+    }
+}
+
+/// Whether nothing has happened but that time has passed.
+fn is_of_time(error: &io::Error) -> bool {
+    matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted)
+}

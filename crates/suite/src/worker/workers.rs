@@ -1,0 +1,196 @@
+//! The workers of a suite: started when they are needed, and used again.
+use super::WorkerError;
+use super::message::{End, Message};
+use super::order::{Order, Task};
+#[cfg(unix)]
+use super::process::Worker;
+use crate::check::Objection;
+use crate::error::RunError;
+use crate::execute::{Interruption, Recorded, TimeLimit};
+use crate::job::Job;
+use servobench_metrics::EarlyEnd;
+use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
+
+/// When a run is slow.
+const SLOW: Duration = Duration::from_mins(1);
+
+/// How to start a worker, and what runs may take, wherever they are.
+#[derive(Debug, Clone)]
+pub struct WorkerCommand {
+    /// The program.
+    pub program: PathBuf,
+    /// Folder for the recordings on their way from the worker; they have no names there.
+    pub folder: PathBuf,
+    /// How long a worker may say nothing. It speaks every few thousand ticks, but not while the engine reads the model
+    /// nor while it writes the recording.
+    pub timeout: Duration,
+    /// What a run may take.
+    pub limits: RunLimits,
+}
+
+/// What a run may take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RunLimits {
+    /// Time by the clock; a scenario may say less.
+    pub time: Option<Duration>,
+    /// Memory (B): of a recording, and of a worker.
+    pub memory: u64,
+}
+
+/// Worker processes.
+#[derive(Debug)]
+pub struct Workers {
+    command: WorkerCommand,
+    /// Those that have nothing to do.
+    #[cfg(unix)]
+    idle: Mutex<Vec<Worker>>,
+}
+
+impl Workers {
+    /// None yet.
+    #[must_use]
+    pub const fn new(command: WorkerCommand) -> Self {
+        Self {
+            command,
+            #[cfg(unix)]
+            idle: Mutex::new(Vec::new()),
+        }
+    }
+
+    /// None, and no limits: an engine that needs a worker cannot be asked.
+    #[must_use]
+    pub const fn none() -> Self {
+        let limits = RunLimits { time: None, memory: u64::MAX };
+        Self::new(WorkerCommand { program: PathBuf::new(), folder: PathBuf::new(), timeout: Duration::ZERO, limits })
+    }
+
+    /// What a run may take.
+    pub(crate) const fn limits(&self) -> RunLimits {
+        self.command.limits
+    }
+
+    /// When a run of `job` is slow, by the clock: after a minute, or at half of its limit of time.
+    #[must_use]
+    pub fn slow(&self, job: &Job) -> Duration {
+        let limit = TimeLimit::of(job, self.limits());
+        limit.map_or(SLOW, |limit| SLOW.min(limit.time / 2))
+    }
+
+    /// Runs `job` in a worker process.
+    pub(crate) fn run(&self, job: &Job, progress: &mut dyn FnMut(f64)) -> Result<Recorded, RunError> {
+        let limit = TimeLimit::of(job, self.limits());
+        let order = Order::new(job, Task::Run { time_limit: limit.map(|limit| limit.time) });
+        let mut done = 0.0;
+        let mut recording = None;
+        let end = self.converse(&order, limit.map(|limit| limit.time), &mut recording, &mut |message| {
+            if let Some(Message::Progress(share)) = message {
+                done = share;
+            }
+            progress(done);
+        });
+        let exceeded = |reached| limit.map(|limit| RunError::from(limit.exceeded(reached)));
+        let end = match end {
+            Ok(end) => end,
+            Err(Broken::Late) => {
+                let reached = limit.map_or(0.0, |limit| done * limit.length());
+                return Err(exceeded(reached).unwrap_or(WorkerError::Stalled { timeout: self.command.timeout }.into()));
+            }
+            Err(Broken::Worker(error)) => return Err(error.into()),
+        };
+        let interruption = match end {
+            End::Done => None,
+            End::Diverged { time, reason } => Some(Interruption::Early(EarlyEnd::Diverged { time, reason })),
+            End::GaveUp(why) => Some(Interruption::Early(EarlyEnd::GaveUp(why))),
+            End::Input(why) => return Err(WorkerError::Input(why).into()),
+            End::Stopped(reached) => exceeded(reached).map(Interruption::Broken),
+            End::Failed(why) => Some(Interruption::Broken(WorkerError::Failed(why).into())),
+        };
+        match (recording, interruption) {
+            (Some(Ok(recording)), interruption) => Ok((recording, interruption)),
+            // There is no recording of one that failed before it began.
+            (_, Some(Interruption::Broken(error))) => Err(error),
+            (Some(Err(error)), _) => Err(WorkerError::Recording(error).into()),
+            (None, _) => Err(WorkerError::Recording(std::io::ErrorKind::UnexpectedEof.into()).into()),
+        }
+    }
+
+    /// Asks a worker process what keeps `job` from being built.
+    pub(crate) fn ask(&self, job: &Job) -> Result<Vec<Objection>, WorkerError> {
+        let mut all = Vec::new();
+        let end = self.converse(&Order::new(job, Task::Check), None, &mut None, &mut |message| {
+            if let Some(Message::Objections(objections)) = message {
+                all.extend(objections);
+            }
+        });
+        match end {
+            Ok(End::Input(why)) => Err(WorkerError::Input(why)),
+            Ok(End::Failed(why)) => Err(WorkerError::Failed(why)),
+            Ok(_) => Ok(all),
+            Err(Broken::Worker(error)) => Err(error),
+            Err(Broken::Late) => Err(WorkerError::Stalled { timeout: self.command.timeout }),
+        }
+    }
+
+    /// Has `order` carried out; `on_message` gets what is said but the last word, and from time to time nothing. A recording that is
+    /// there, or why it cannot be read, goes to `recording`.
+    #[cfg(unix)]
+    fn converse(
+        &self,
+        order: &Order,
+        time_limit: Option<Duration>,
+        recording: &mut Option<std::io::Result<servobench_trace::Recording>>,
+        on_message: &mut dyn FnMut(Option<Message>),
+    ) -> Result<End, Broken> {
+        let mut worker = self.worker()?;
+        let end = match worker.carry_out(order, time_limit, on_message) {
+            // It has ended while it had nothing to do.
+            Err(Broken::Worker(WorkerError::Process { action: "speak to", .. })) if worker.is_used() => {
+                worker = Worker::start(&self.command)?;
+                worker.carry_out(order, time_limit, on_message)
+            }
+            end => end,
+        }?;
+        if matches!(order.task, Task::Run { .. }) && !matches!(end, End::Input(_)) {
+            *recording = Some(worker.take_recording());
+        }
+        if !matches!(end, End::Failed(_) | End::Stopped(_)) && worker.may_serve_again() {
+            self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(worker);
+        }
+        Ok(end)
+    }
+
+    #[cfg(unix)]
+    fn worker(&self) -> Result<Worker, WorkerError> {
+        let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        idle.map_or_else(|| Worker::start(&self.command), Ok)
+    }
+
+    #[cfg(not(unix))]
+    fn converse(
+        &self,
+        _: &Order,
+        _: Option<Duration>,
+        _: &mut Option<std::io::Result<servobench_trace::Recording>>,
+        _: &mut dyn FnMut(Option<Message>),
+    ) -> Result<End, Broken> {
+        let (program, source) = (self.command.program.clone(), std::io::ErrorKind::Unsupported.into());
+        Err(WorkerError::Process { action: "start", program, source }.into())
+    }
+}
+
+/// Why an order came to no end.
+#[derive(Debug)]
+pub(super) enum Broken {
+    /// By the worker.
+    Worker(WorkerError),
+    /// It took longer than its limit and was ended.
+    Late,
+}
+
+impl From<WorkerError> for Broken {
+    fn from(error: WorkerError) -> Self {
+        Self::Worker(error)
+    }
+}
