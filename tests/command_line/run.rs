@@ -2,7 +2,6 @@
 use crate::{SLIDE, code, command, folder, json, repository, said, servobench};
 use std::fs;
 #[cfg(unix)]
-
 #[test]
 fn a_run_that_keeps_its_limits_ends_with_0_and_writes_results_and_recording() {
     let work = folder(&[("slide.toml", &format!("{SLIDE}\n[limits]\nfollowing_error_peak_load = \"1 mm\"\n"))]);

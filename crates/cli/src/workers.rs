@@ -1,6 +1,8 @@
 //! How much runs at a time, and where.
+use crate::console::say;
 use crate::error::CliError;
 use servobench_isolation::memory_of_machine;
+use servobench_results::printable;
 use servobench_suite::{AtATime, RunLimits, WorkerCommand, Workers};
 use std::num::NonZero;
 use std::path::Path;
@@ -14,6 +16,13 @@ const UNKNOWN: u64 = 4_000_000_000;
 pub(crate) fn of(folder: &Path, timeout: Duration, limits: RunLimits) -> Result<Workers, CliError> {
     let program = std::env::current_exe().map_err(CliError::OwnProgram)?;
     Ok(Workers::new(WorkerCommand { program, folder: folder.to_owned(), timeout, limits }))
+}
+
+/// Ends the workers, and says what they have left behind.
+pub(crate) fn dismiss(workers: &Workers) {
+    for left in workers.dismiss() {
+        say(&format!("servobench: warning: the process of an engine: {}\n", printable(&left)));
+    }
 }
 
 /// What a run may take. Without a limit of its own it gets half of the memory that there is: beside a recording there is what is

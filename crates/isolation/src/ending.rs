@@ -71,6 +71,7 @@ impl Ending {
     }
 
     fn with_last_words(&self, how: String) -> String {
+        let how = how + &self.left_in_words().map_or_else(String::new, |left| format!("; {left}"));
         if self.last_words.is_empty() { how } else { format!("{how}; its last words: {}", self.last_words) }
     }
 
@@ -171,6 +172,7 @@ mod tests {
         };
         assert_eq!(left(&[], 0).left_in_words(), None);
         assert_eq!(left(&["sleep"], 1).left_in_words().unwrap(), "it left a process (`sleep`), which was ended");
+        assert_eq!(left(&["sleep"], 1).how(), "exit code 0; it left a process (`sleep`), which was ended");
         let three = left(&["a", "\u{1b}[2J"], 3).left_in_words().unwrap();
         assert_eq!(three, "it left 3 processes (`a`, `\\u{1b}[2J`), which were ended");
     }

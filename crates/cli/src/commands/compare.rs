@@ -93,6 +93,7 @@ fn carried_out(args: &CompareArgs, jobs: &[Job]) -> Result<Vec<Run>, CliError> {
         ended
     });
     progress.finish();
+    workers::dismiss(&workers);
     let (mut runs, mut failed) = (Vec::new(), Vec::new());
     for (job, ended) in jobs.iter().zip(ended) {
         match ended.map_err(RunError::from).flatten() {

@@ -171,6 +171,7 @@ fn run_all(args: &RunArgs, wanted: &Wanted, engines: &Engines, ledger: &Ledger) 
         }
     }
     progress.finish();
+    workers::dismiss(&workers);
     Ok(())
 }
 

@@ -216,31 +216,8 @@ impl BadSlave {
                 }
                 null_write();
             }
-            Bad::ForkThenCrash => {
-                eprintln!("child {}", fork(wait_for_better_times));
-                null_write();
-            }
-            Bad::Daemon => self.log.push(line(time, &format!("child {}", fork(become_a_daemon)))),
-            Bad::DaemonThenCrash => {
-                eprintln!("child {}", fork(become_a_daemon));
-                null_write();
-            }
-            // SAFETY: system calls.
-            Bad::Kill(process) => unsafe {
-                let killed = libc::kill(process, libc::SIGKILL) == 0;
-                libc::kill(libc::getppid(), libc::SIGKILL);
-                self.log.push(line(time, if killed { "killed" } else { "spared" }));
-            },
-            Bad::ShareMemory(bytes) => share_memory(bytes),
-            Bad::FillMemoryFile(bytes) => fill_memory_file(bytes),
-            Bad::Spread { processes, each } => {
-                for _ in 0..processes {
-                    fork(|| {
-                        hoard(each, each);
-                    });
-                }
-                hang();
-            }
+            Bad::ForkThenCrash | Bad::Daemon | Bad::DaemonThenCrash | Bad::Kill(_) => self.meddle(time),
+            Bad::ShareMemory(_) | Bad::FillMemoryFile(_) | Bad::Spread { .. } => self.share(),
             // SAFETY: the child goes on like its parent and allocates nothing; the parent waits for its end.
             Bad::ForkTwin => unsafe {
                 let twin = libc::fork();
@@ -263,6 +240,47 @@ impl BadSlave {
             _ => {}
         }
         Ok(StepEnd::Done)
+    }
+}
+
+impl BadSlave {
+    /// What concerns other processes.
+    fn meddle(&mut self, time: f64) {
+        match self.bad {
+            Bad::ForkThenCrash => {
+                eprintln!("child {}", fork(wait_for_better_times));
+                null_write();
+            }
+            Bad::Daemon => self.log.push(line(time, &format!("child {}", fork(become_a_daemon)))),
+            Bad::DaemonThenCrash => {
+                eprintln!("child {}", fork(become_a_daemon));
+                null_write();
+            }
+            // SAFETY: system calls.
+            Bad::Kill(process) => unsafe {
+                let killed = libc::kill(process, libc::SIGKILL) == 0;
+                libc::kill(libc::getppid(), libc::SIGKILL);
+                self.log.push(line(time, if killed { "killed" } else { "spared" }));
+            },
+            _ => {}
+        }
+    }
+
+    /// What concerns memory that is not its own alone.
+    fn share(&self) {
+        match self.bad {
+            Bad::ShareMemory(bytes) => share_memory(bytes),
+            Bad::FillMemoryFile(bytes) => fill_memory_file(bytes),
+            Bad::Spread { processes, each } => {
+                for _ in 0..processes {
+                    fork(|| {
+                        hoard(each, each);
+                    });
+                }
+                hang();
+            }
+            _ => {}
+        }
     }
 }
 

@@ -8,6 +8,7 @@ use servobench_isolation::{Contained, Limits, Program, Stopwatch};
 use servobench_trace::Recording;
 use std::fs::File;
 use std::io::{self, ErrorKind, Read, Write};
+use std::net::Shutdown;
 use std::os::unix::net::UnixStream;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -107,6 +108,18 @@ impl Worker {
                 return Err(Broken::Late);
             }
         }
+    }
+
+    /// Tells it that there are no more orders.
+    pub(super) fn dismiss(&self) {
+        // One that has ended is as good.
+        self.socket.shutdown(Shutdown::Both).ok();
+    }
+
+    /// Waits for the end of one that was dismissed: what it had left behind, in words.
+    pub(super) fn left_behind(&self) -> Option<String> {
+        self.process.wait_for_end(GRACE);
+        self.process.ending().and_then(servobench_isolation::Ending::left_in_words)
     }
 
     /// The recording that it has left, which goes.

@@ -71,6 +71,21 @@ impl Workers {
         self.command.limits
     }
 
+    /// Ends the workers, which have nothing to do any more: what they had started and left behind, in words. It was ended too.
+    #[must_use]
+    pub fn dismiss(&self) -> Vec<String> {
+        #[cfg(not(unix))]
+        return Vec::new();
+        #[cfg(unix)]
+        {
+            let idle = std::mem::take(&mut *self.idle.lock().unwrap_or_else(PoisonError::into_inner));
+            for worker in &idle {
+                worker.dismiss();
+            }
+            idle.iter().filter_map(Worker::left_behind).collect()
+        }
+    }
+
     /// When a run of `job` is slow, by the clock: after a minute, or at half of its limit of time.
     #[must_use]
     pub fn slow(&self, job: &Job) -> Duration {
@@ -90,7 +105,7 @@ impl Workers {
             }
             progress(done);
         });
-        let exceeded = |reached| limit.map(|limit| RunError::from(limit.exceeded(reached)));
+        let exceeded = |reached| limit.map(|limit| limit.exceeded(reached));
         let end = match end {
             Ok(end) => end,
             Err(Broken::Late) => {

@@ -60,11 +60,20 @@ fn nothing_is_left_of_a_worker() {
     let sleeping = || {
         let all =
             fs::read_dir("/proc").unwrap().filter_map(|entry| fs::read(entry.unwrap().path().join("cmdline")).ok());
-        all.filter(|line| line.as_slice() == b"sleep\x003600\x00").count()
+        all.filter(|line| line.as_slice() == b"sleep\x003601\x00").count()
     };
     let before = sleeping();
     let how = end_of("daemon", GENEROUS);
+    assert!(how.contains("; it left a process (`s") && how.contains("`), which was ended; its last words: "), "{how}");
     assert!(how.contains("a library speaks on standard output"), "{how}");
+    assert_eq!(sleeping(), before);
+    // The run that it was left by came to its end.
+    let (_folder, workers) = workers_that("quiet-daemon", GENEROUS);
+    run_in(&workers, &slide(&[EngineName::Mujoco])[0]);
+    while sleeping() == before {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    assert_eq!(workers.dismiss(), ["it left a process (`sleep`), which was ended"]);
     assert_eq!(sleeping(), before);
 }
 
