@@ -22,7 +22,6 @@ const APART: &[([&str; 2], &str)] = &[
         "planning at order 4 begins at any position to jerk; snap is what it chooses",
     ),
     (["cia402::Direction", "plcopen::Direction"], "two standards: an axis of PLCopen also has its current direction"),
-    (["cli::WorkerArgs", "suite::Order"], "arguments of a process: paths are strings of the operating system"),
     (["drive::MotorEstimate", "plant::Params"], "the firmware knows the motor by its own estimates only (law 2)"),
     (["engine-fmu::Status", "base::StepEnd"], "numbers in memory that two processes share"),
     (
