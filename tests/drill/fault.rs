@@ -256,6 +256,11 @@ impl Fault {
         }
     }
 
+    /// Whether the report for the continuous integration cannot be written to the end: `--resume` writes it to the same device.
+    pub(crate) fn keeps_junit_away(&self) -> bool {
+        matches!(self, Self::FullDevice)
+    }
+
     /// When the rest was run.
     pub(crate) fn clean(&self, suite: &Suite, name: &str) {
         if matches!(self, Self::FullDisk(_)) {
