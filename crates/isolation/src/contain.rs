@@ -44,6 +44,7 @@ pub fn contain() -> Result<(), ContainError> {
 fn in_group(control: OwnedFd, limits: Limits, note: &'static Note) -> Result<(), ContainError> {
     let keeper = getpid();
     if let Some(child) = fork()? {
+        be_deaf();
         keep(&control, &Kept::Child(child), limits, note);
     }
     drop(control);
@@ -56,6 +57,7 @@ fn in_namespace(control: OwnedFd, limits: Limits, note: &'static Note) -> Result
     let cannot = |action| move |source| ContainError::System { action, source };
     let (status, for_status) = io::pipe().map_err(cannot("make a pipe"))?;
     if let Some(first) = fork()? {
+        be_deaf();
         drop(for_status);
         keep(&control, &Kept::Namespace { first, status: status.into() }, limits, note);
     }
@@ -130,6 +132,15 @@ fn fork() -> Result<Option<Pid>, ContainError> {
     match unsafe { libc::fork() } {
         -1 => Err(ContainError::System { action: "start a process", source: io::Error::last_os_error() }),
         child => Ok(Pid::from_raw(child)),
+    }
+}
+
+/// From now on requests to end are not for the keeper: whoever asks all processes of a name or a service to end asks the simulation too, and
+/// with that the keeper ends.
+fn be_deaf() {
+    for signal in [libc::SIGHUP, libc::SIGINT, libc::SIGQUIT, libc::SIGTERM] {
+        // SAFETY: to ignore a signal runs nothing.
+        unsafe { libc::signal(signal, libc::SIG_IGN) };
     }
 }
 

@@ -12,7 +12,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Part of the time that is spent on looking for further processes, and for files of memory.
-const SHARE: u32 = 100;
+const SHARE: u32 = 200;
 /// Least time between two such looks.
 const PAUSE: Duration = Duration::from_millis(100);
 /// Bytes of a block of `st_blocks` (stat(2)).

@@ -173,7 +173,7 @@ fn its_group_is_its_own() {
     }
 }
 
-/// Its keeper is ended by somebody: it does not go on without.
+/// Its keeper is ended by somebody: it does not go on without. To be asked to end is not enough.
 #[test]
 fn it_ends_with_its_keeper() {
     for limits in both() {
@@ -183,7 +183,11 @@ fn it_ends_with_its_keeper() {
         while let Some((_, above)) = stat(keeper).filter(|(_, above)| *above != std::process::id()) {
             keeper = above;
         }
-        assert!(Command::new("kill").args(["-KILL", &keeper.to_string()]).status().unwrap().success());
+        let send = |signal: &str| Command::new("kill").args([signal, &keeper.to_string()]).status().unwrap();
+        assert!(send("-TERM").success() && send("-INT").success() && send("-HUP").success());
+        process.wait_for_end(Duration::from_millis(300));
+        assert!(process.ending().is_none() && family.iter().all(|id| stat(*id).is_some()));
+        assert!(send("-KILL").success());
         process.wait_for_end(LONG);
         assert!(process.ending().unwrap().how().starts_with("signal 9"), "{:?}", process.ending());
         wait_for_end_of(&family);
