@@ -7,6 +7,8 @@ mod fmu;
 mod fmu_standard;
 mod fmu_suite;
 mod getting_started;
+#[cfg(target_os = "linux")]
+mod hostile;
 #[cfg(unix)]
 mod interrupted;
 #[cfg(target_os = "linux")]
@@ -14,6 +16,8 @@ mod isolation;
 mod man;
 mod objects;
 mod output;
+#[cfg(unix)]
+mod outputs;
 mod overrides;
 mod plan;
 mod plan_families;

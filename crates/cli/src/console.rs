@@ -1,17 +1,26 @@
 //! What is said: results on standard output, everything else on standard error.
+//!
+//! It is the one gate for texts: whatever comes here may quote what somebody else wrote, and leaves it as
+//! [`servobench_report::shown`] has it.
 use crate::error::CliError;
-use servobench_report::Style;
+use servobench_report::{Style, shown};
+use servobench_results::printable_json;
 use std::ffi::OsStr;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
-/// Prints `text` on standard output. A reader that went away (`| head`) has what it wanted; what cannot be written for
+/// Prints `text` on standard output, fit for a terminal. A reader that went away (`| head`) has what it wanted; what cannot be written for
 /// any other reason is an error.
 pub(crate) fn print(text: &str) -> Result<(), CliError> {
-    print_bytes(text.as_bytes())
+    print_bytes(shown(text, has_colour(&std::io::stdout())).as_bytes())
 }
 
-/// The same with what is no text.
+/// The same with JSON, which keeps its meaning.
+pub(crate) fn print_json(json: &str) -> Result<(), CliError> {
+    print_bytes(printable_json(json).as_bytes())
+}
+
+/// The same with what is no text, and with texts for programs that quote nobody.
 pub(crate) fn print_bytes(bytes: &[u8]) -> Result<(), CliError> {
     let mut out = std::io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
@@ -20,9 +29,25 @@ pub(crate) fn print_bytes(bytes: &[u8]) -> Result<(), CliError> {
     }
 }
 
-/// Says `text` on standard error. When that is closed or full, there is nobody to tell.
+/// Says `text` on standard error, fit for a terminal. When that is closed or full, there is nobody to tell.
 pub(crate) fn say(text: &str) {
-    std::io::stderr().lock().write_all(text.as_bytes()).ok();
+    let mut stderr = std::io::stderr().lock();
+    let colour = has_colour(&stderr);
+    stderr.write_all(shown(text, colour).as_bytes()).ok();
+}
+
+fn has_colour(stream: &impl IsTerminal) -> bool {
+    stream.is_terminal() && std::env::var_os("NO_COLOR").is_none()
+}
+
+/// From now on what panics is said here too: its message may quote a scenario.
+pub(crate) fn say_panics() {
+    let default = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        let text = panic.to_string();
+        // As always where there is nothing to take out: with the thread, and the stack where that is asked for.
+        if shown(&text, false) == text { default(panic) } else { say(&format!("{text}\n")) }
+    }));
 }
 
 /// This program for commands to be pasted: by its name where that is enough, otherwise as it was started.
@@ -43,6 +68,5 @@ fn found_by(name: &OsStr, search: &OsStr) -> Option<PathBuf> {
 
 /// How tables are shown on standard output.
 pub(crate) fn style() -> Style {
-    let colour = std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
-    Style { colour, ..Style::default() }
+    Style { colour: has_colour(&std::io::stdout()), ..Style::default() }
 }

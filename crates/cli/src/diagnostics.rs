@@ -1,7 +1,11 @@
 //! Mistakes of a scenario file, shown at their place.
-use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic, NamedSource, Report, Severity};
+use miette::{
+    GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic, NamedSource, Report, Severity,
+    ThemeCharacters, ThemeStyles,
+};
+use servobench_report::painted;
+use servobench_results::{printable, printable_lines};
 use servobench_scenario::{Diagnostic, Shown, Sources, shown};
-use std::io::IsTerminal;
 
 /// What is named in place of a file where a mistake is in an option.
 const COMMAND_LINE: &str = "command line";
@@ -12,44 +16,51 @@ const WIDTH: usize = 80;
 /// Everything that is wrong with a scenario, with its name and the number of mistakes.
 pub(crate) fn mistakes(mistakes: &[Diagnostic], sources: &Sources) -> String {
     let plural = if mistakes.len() == 1 { "mistake" } else { "mistakes" };
-    let name = sources.name(sources.scenario());
+    let name = printable(sources.name(sources.scenario()));
     format!("{name}: {} {plural}\n{}", mistakes.len(), render(mistakes, sources, Severity::Error))
 }
 
 /// The diagnostics as a person reads them, one after the other; of many in one file the first, and how many more there are.
 pub(crate) fn render(diagnostics: &[Diagnostic], sources: &Sources, severity: Severity) -> String {
-    let theme = if std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none() {
-        GraphicalTheme::unicode()
-    } else {
-        GraphicalTheme::unicode_nocolor()
-    };
-    let handler = GraphicalReportHandler::new_themed(theme).with_width(WIDTH).with_context_lines(1).with_links(false);
+    let plain = handler(ThemeStyles::none());
+    let coloured = handler(ThemeStyles::ansi());
     let Shown { diagnostics, more } = shown(diagnostics, sources);
     let more = more.iter().map(|(name, count)| format!("  and {count} more in {name}\n"));
     diagnostics
         .into_iter()
         .map(|diagnostic| {
-            let mut text = String::new();
             let report = report(diagnostic, sources, severity);
-            match handler.render_report(&mut text, report.as_ref()) {
-                Ok(()) => text,
+            let drawn = |handler: &GraphicalReportHandler| {
+                let mut text = String::new();
+                handler.render_report(&mut text, report.as_ref()).is_ok().then_some(text)
+            };
+            match drawn(&plain) {
+                // It quotes the file as it is: where that is not fit for a terminal there are no colours, since nobody could
+                // tell them from it.
+                Some(text) if printable_lines(&text) != text => text,
+                Some(text) => drawn(&coloured).map_or(text, |coloured| painted(&coloured)),
                 // A span that cannot be drawn is still named by its line.
-                Err(_) => diagnostic.line(sources),
+                None => diagnostic.line(sources),
             }
         })
         .chain(more)
         .collect()
 }
 
+fn handler(styles: ThemeStyles) -> GraphicalReportHandler {
+    let theme = GraphicalTheme { characters: ThemeCharacters::unicode(), styles };
+    GraphicalReportHandler::new_themed(theme).with_width(WIDTH).with_context_lines(1).with_links(false)
+}
+
 fn report(diagnostic: &Diagnostic, sources: &Sources, severity: Severity) -> Report {
     let source = diagnostic.source;
     let name = if source.is_override() { COMMAND_LINE } else { sources.name(source) };
     let text = sources.text(source);
-    let mut told = MietteDiagnostic::new(diagnostic.message.clone())
+    let mut told = MietteDiagnostic::new(printable(&diagnostic.message))
         .with_severity(severity)
         .with_label(LabeledSpan::new_with_span(None, diagnostic.span.clone()));
     if let Some(help) = &diagnostic.help {
-        told = told.with_help(help.clone());
+        told = told.with_help(printable(help));
     }
-    Report::new(told).with_source_code(NamedSource::new(name, text.to_owned()))
+    Report::new(told).with_source_code(NamedSource::new(printable(name), text.to_owned()))
 }

@@ -3,10 +3,13 @@
 use crate::commands::{Findings, PlanMistake};
 use crate::diagnostics::mistakes;
 use crate::exit::{Exit, of_run_error};
+use crate::outputs::Refused;
 use crate::sources::{Unusable, named, told};
 use servobench_config::Choice as _;
 use servobench_isolation::ContainError;
 use servobench_report::ReportError;
+#[cfg(feature = "fmu")]
+use servobench_results::printable;
 use servobench_results::{COMPARISON, FolderError, JournalError, RESULTS, ResultsError};
 use servobench_scenario::{Diagnostic, LoadError, Sources};
 use servobench_structured_text::ExportError;
@@ -66,8 +69,8 @@ pub(crate) enum CliError {
     ReadRecording(TraceError),
     #[error("`{}`: {}{error}", .recording.display(), options(.error))]
     Timing { recording: PathBuf, error: ReportError },
-    #[error("-o: `{}` is what is read here and would be lost; name another file", .0.display())]
-    WouldBeLost(PathBuf),
+    #[error(transparent)]
+    Output(#[from] Refused),
     #[cfg(feature = "fmu")]
     #[error("-o: an FMU is no text for a terminal; name a file, or pipe standard output into something")]
     BytesForATerminal,
@@ -84,7 +87,7 @@ pub(crate) enum CliError {
     #[error(transparent)]
     Plc(#[from] ExportError),
     #[cfg(feature = "fmu")]
-    #[error("{}", servobench_results::printable(&.0.to_string()))]
+    #[error("{}", printable(&.0.to_string()))]
     Fmu(servobench_fmi::FmuError),
     #[cfg(feature = "fmu")]
     #[error(transparent)]
@@ -107,8 +110,6 @@ pub(crate) enum CliError {
     MakeFolder { folder: PathBuf, error: io::Error },
     #[error("cannot write `{}`: {error}", .path.display())]
     Write { path: PathBuf, error: io::Error },
-    #[error("cannot write `{}`: {error}", .path.display())]
-    WritePlan { path: PathBuf, error: ReportError },
     #[error("cannot write to standard output: {0}")]
     Print(io::Error),
     #[error("standard input: {0}")]
@@ -182,7 +183,7 @@ impl CliError {
             | Self::NothingForTheViewer
             | Self::ReadRecording(_)
             | Self::Timing { .. }
-            | Self::WouldBeLost(_)
+            | Self::Output(_)
             | Self::SourceDateEpoch(_)
             | Self::Plan(_)
             | Self::TooFewScenarios
@@ -200,7 +201,6 @@ impl CliError {
             | Self::Results(_)
             | Self::MakeFolder { .. }
             | Self::Write { .. }
-            | Self::WritePlan { .. }
             | Self::Print(_)
             | Self::Listen(_)
             | Self::WriteRecording(_)

@@ -12,6 +12,7 @@ mod exit;
 mod fmu_opener;
 mod interrupt;
 mod output;
+mod outputs;
 mod progress;
 mod sources;
 mod workers;
@@ -22,6 +23,7 @@ use std::panic::catch_unwind;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    console::say_panics();
     let cli = args::parse();
     if let Err(error) = interrupt::refuse_large_files() {
         console::say(&format!("servobench: {error}\n"));

@@ -1,13 +1,14 @@
-//! What a command leaves on the disk: recordings, results, diagrams, reports. Each file is there whole or not at all.
+//! What a run leaves in its folder: recording, timing diagram, drawing for the viewer. Each file is there whole or not at all.
 use crate::args::Keep;
 use crate::build_id;
-use crate::console::print;
 use crate::error::CliError;
-use crate::sources::is_stdin;
+use crate::outputs::OutputFolder;
 use jiff::Timestamp;
 use servobench_metrics::{Metrics, Verdict};
 use servobench_report::{TimingOptions, timing_diagram};
-use servobench_results::{COMPARISON, Digest, Digester, LimitPlace, Outcome, Results, RunIdentity, RunResult};
+use servobench_results::{
+    COMPARISON, Digest, Digester, LimitPlace, Outcome, Results, RunIdentity, RunResult, printable_lines,
+};
 use servobench_scenario::{Parameter, Scenario, Step};
 use servobench_suite::{Job, channel_limits};
 use servobench_trace::{Recording, seal_of};
@@ -16,54 +17,6 @@ use std::collections::HashSet;
 use std::ffi::OsStr;
 use std::path::Path;
 
-/// Makes the folder for everything.
-pub(crate) fn make_folder(folder: &Path) -> Result<(), CliError> {
-    std::fs::create_dir_all(folder).map_err(|error| CliError::MakeFolder { folder: folder.to_owned(), error })
-}
-
-/// Writes the whole file or nothing, in a folder that is made when there is none.
-pub(crate) fn write_file_anywhere(path: &Path, text: impl AsRef<[u8]>) -> Result<(), CliError> {
-    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        make_folder(folder)?;
-    }
-    write_file(path, text)
-}
-
-/// Writes the whole file or nothing.
-pub(crate) fn write_file(path: &Path, text: impl AsRef<[u8]>) -> Result<(), CliError> {
-    servobench_trace::write_whole(path, text).map_err(|error| CliError::Write { path: path.to_owned(), error })
-}
-
-/// The same, and makes sure that it is on the disk before it takes the place of what was there.
-pub(crate) fn write_durably(path: &Path, text: impl AsRef<[u8]>) -> Result<(), CliError> {
-    servobench_trace::write_durably(path, text).map_err(|error| CliError::Write { path: path.to_owned(), error })
-}
-
-/// What stands for standard output behind `-o`.
-const STDOUT: &str = "-";
-
-/// The file that `output` names; `None` is standard output.
-pub(crate) fn file_named(output: Option<&Path>) -> Option<&Path> {
-    output.filter(|path| path.as_os_str() != STDOUT)
-}
-
-/// Refuses to write over `input`, which the output is made of.
-pub(crate) fn spares(input: &Path, output: Option<&Path>) -> Result<(), CliError> {
-    let place = |path: &Path| path.canonicalize().ok();
-    match file_named(output) {
-        Some(_) if is_stdin(input) => Ok(()),
-        Some(output) if place(output).is_some() && place(output) == place(input) => {
-            Err(CliError::WouldBeLost(output.to_owned()))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Writes the whole file or nothing; without a path, and with `-`, to standard output.
-pub(crate) fn print_or_write(path: Option<&Path>, text: &str) -> Result<(), CliError> {
-    file_named(path).map_or_else(|| print(text), |path| write_file(path, text))
-}
-
 /// When a file that says so was written: now, or at the time that the build asks for, by the convention of reproducible
 /// builds (<https://reproducible-builds.org/specs/source-date-epoch/>).
 pub(crate) fn write_time() -> Result<Timestamp, CliError> {
@@ -71,6 +24,16 @@ pub(crate) fn write_time() -> Result<Timestamp, CliError> {
     let seconds = told.to_str().and_then(|text| text.parse().ok());
     let time = seconds.and_then(|seconds| Timestamp::from_second(seconds).ok());
     time.ok_or(CliError::SourceDateEpoch(told))
+}
+
+/// Ends of the names of the files of a run.
+const RECORDING: &str = ".parquet";
+const DIAGRAM: &str = ".timing.svg";
+const FOR_THE_VIEWER: &str = ".rrd";
+
+/// Names of all files that the run of `job` may leave.
+pub(crate) fn names_of(job: &Job) -> impl Iterator<Item = String> {
+    [RECORDING, DIAGRAM, FOR_THE_VIEWER].into_iter().map(|end| format!("{}{end}", job.id))
 }
 
 /// What a run left in its folder.
@@ -92,7 +55,7 @@ pub(crate) struct Written {
 pub(crate) fn write_recording(
     job: &Job,
     recording: &Recording,
-    folder: &Path,
+    folder: &OutputFolder,
     shown: Option<servobench_view::Verdict>,
 ) -> Result<Written, (Box<CliError>, Written)> {
     let mut written = Written::default();
@@ -103,26 +66,26 @@ pub(crate) fn write_recording(
 fn write_each(
     job: &Job,
     recording: &Recording,
-    folder: &Path,
+    folder: &OutputFolder,
     shown: Option<servobench_view::Verdict>,
     written: &mut Written,
 ) -> Result<(), CliError> {
-    let name = format!("{}.parquet", job.id);
-    let path = folder.join(&name);
+    let name = format!("{}{RECORDING}", job.id);
+    let path = folder.place(&name)?;
     recording.write_parquet(&path).map_err(CliError::WriteRecording)?;
     written.recording_seal = seal_of(&path).map_err(|error| CliError::Write { path, error })?;
     written.recording = Some(name.clone());
     written.note(name);
     if !recording.signals.is_empty() {
-        let name = format!("{}.timing.svg", job.id);
+        let name = format!("{}{DIAGRAM}", job.id);
         let diagram = timing_diagram(recording, &TimingOptions::default())?;
-        write_file(&folder.join(&name), &diagram)?;
+        folder.file(&name)?.write(&diagram)?;
         written.note(name);
     }
     if let Some(verdict) = shown {
-        let name = format!("{}.rrd", job.id);
+        let name = format!("{}{FOR_THE_VIEWER}", job.id);
         let options = ViewOptions { verdicts: vec![verdict], ..view_options(&job.scenario) };
-        servobench_view::write_rrd(recording, folder.join(&name), &options)?;
+        servobench_view::write_rrd(recording, folder.place(&name)?, &options)?;
         written.note(name);
     }
     Ok(())
@@ -214,13 +177,15 @@ pub(crate) fn shown(recording: &Recording, metrics: &Metrics, verdict: &Verdict)
 }
 
 /// The words of a result for a viewer.
-pub(crate) const fn said_of(outcome: Outcome, reasons: Vec<String>, warnings: Vec<String>) -> servobench_view::Verdict {
+pub(crate) fn said_of(outcome: Outcome, reasons: Vec<String>, warnings: Vec<String>) -> servobench_view::Verdict {
     let outcome = match outcome {
         Outcome::Passed => servobench_view::Outcome::Passed,
         Outcome::Unjudged => servobench_view::Outcome::Unjudged,
         Outcome::Failed | Outcome::Invalid | Outcome::Error => servobench_view::Outcome::Failed,
     };
-    servobench_view::Verdict { outcome, reasons, warnings }
+    // A viewer shows them as they are.
+    let printable = |all: Vec<String>| all.iter().map(|one| printable_lines(one)).collect();
+    servobench_view::Verdict { outcome, reasons: printable(reasons), warnings: printable(warnings) }
 }
 
 /// What a viewer is told beside the recording: limits and the settling window.

@@ -2,6 +2,7 @@
 use crate::console::say;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use servobench_isolation::Stopwatch;
+use servobench_results::printable;
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -39,7 +40,8 @@ impl Progress {
     /// A listener for the run `id`: is told the share that is done, from 0 to 1. A run that takes longer than `slow` is named, and again
     /// each time that has doubled.
     pub(crate) fn of_run(&self, id: &str, slow: Duration) -> impl FnMut(f64) {
-        self.bar.set_message(id.to_owned());
+        // The bar goes to the terminal by itself.
+        self.bar.set_message(printable(id));
         let (mut shown, watch, mut slow) = (0.0, Stopwatch::start(), slow);
         let id = id.to_owned();
         move |share: f64| {

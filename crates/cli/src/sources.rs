@@ -2,6 +2,7 @@
 use crate::console::say;
 use crate::diagnostics::{mistakes, render};
 use crate::error::CliError;
+use crate::outputs::{reads, reads_stdin};
 use miette::Severity;
 use servobench_scenario::{LoadError, Loaded, Override, load_with, parse_with};
 use servobench_suite::Source;
@@ -142,7 +143,8 @@ pub(crate) fn read(path: &Path, overrides: &[Override]) -> Result<Loaded, LoadEr
 /// A file, or what comes in on standard input: files that it names are looked for in the current folder.
 fn loaded(path: &Path, overrides: &[Override]) -> Result<Loaded, LoadError> {
     if !is_stdin(path) {
-        return load_with(path, overrides);
+        reads(path, format_args!("the scenario {}", path.display()));
+        return load_with(path, overrides).inspect(|loaded| note_files(loaded, path));
     }
     let text = if let Some(text) = TEXT_OF_STDIN.get() {
         text.clone()
@@ -152,10 +154,24 @@ fn loaded(path: &Path, overrides: &[Override]) -> Result<Loaded, LoadError> {
     };
     let mut loaded = parse_with(NAME_OF_STDIN, &text, Some(Path::new("")), overrides)?;
     loaded.scenario.path = Some(path.to_owned());
+    note_files(&loaded, path);
     Ok(loaded)
 }
 
+/// Notes the files that the scenario at `path` names: nothing is written over them.
+fn note_files(loaded: &Loaded, path: &Path) {
+    let Loaded { scenario, sources, tables, .. } = loaded;
+    let what = format!("a file of the scenario {}", named(path));
+    // Embedded models and overrides have names that are no paths.
+    let models = sources.ids().filter(|id| !id.is_override()).map(|id| Path::new(sources.name(id)));
+    let fmus = scenario.fmus.iter().map(|fmu| &fmu.file).chain(scenario.axis.fmu.iter().map(|fmu| &fmu.file));
+    models.chain(fmus.map(|file| file.path.as_path())).for_each(|file| reads(file, &what));
+    let folder = if is_stdin(path) { Path::new("") } else { path.parent().unwrap_or(Path::new("")) };
+    tables.iter().for_each(|table| reads(&folder.join(&table.named), &what));
+}
+
 fn read_stdin() -> std::io::Result<String> {
+    reads_stdin();
     let mut stdin = std::io::stdin();
     if stdin.is_terminal() {
         say(

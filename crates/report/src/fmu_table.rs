@@ -8,6 +8,7 @@ mod variables;
 use crate::style::{Ink, Style};
 use crate::text::wrapped;
 use servobench_fmi::{Enumeration, ModelDescription};
+use servobench_results::printable;
 
 /// Of a list, so many at most are shown; the others are counted.
 const MOST: usize = 40;
@@ -91,13 +92,7 @@ fn fitted(text: &str, width: usize) -> Vec<String> {
 
 /// `text` without what steers a terminal or turns the direction of writing.
 fn plain(text: &str) -> String {
-    let shown = |c: char| match c {
-        '\n' | '\r' | '\t' => ' ',
-        '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => '\u{fffd}',
-        c if c.is_control() => '\u{fffd}',
-        c => c,
-    };
-    text.trim().chars().map(shown).collect()
+    printable(text.trim())
 }
 
 #[cfg(test)]

@@ -5,8 +5,7 @@ use crate::metric_table::metric_table;
 use crate::said::last_words;
 use crate::style::Style;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
-use servobench_results::printable;
-use servobench_results::{Outcome, Results, RunResult, Unfinished};
+use servobench_results::{Outcome, Results, RunResult, Unfinished, printable, printable_lines};
 use std::time::Duration;
 
 /// One test case for each scenario and engine, with the `times` (wall clock) that the runs took: results hold none; without
@@ -32,13 +31,7 @@ pub fn junit(results: &Results, times: &[Duration]) -> Result<String, ReportErro
         report.set_time(sum);
     }
     report.add_test_suite(suite);
-    Ok(well_formed(&report.to_string()?))
-}
-
-/// `xml` without what is no character of XML 1.0 (§2.2), wherever it comes from: a single one makes a file that nobody reads.
-fn well_formed(xml: &str) -> String {
-    let is_allowed = |c: char| matches!(c, '\t' | '\n' | '\r' | '\u{20}'..='\u{fffd}' | '\u{10000}'..);
-    xml.chars().map(|c| if is_allowed(c) { c } else { char::REPLACEMENT_CHARACTER }).collect()
+    Ok(printable_lines(&report.to_string()?))
 }
 
 fn case(run: &RunResult, time: Option<Duration>) -> TestCase {
@@ -47,13 +40,13 @@ fn case(run: &RunResult, time: Option<Duration>) -> TestCase {
     let overrides = run.overrides.join(", ");
     let with = if overrides.is_empty() { String::new() } else { format!(" with {}", printable(&overrides)) };
     let mut case = TestCase::new(format!("{}{engine}{with}", printable(&run.name).trim()), status(run));
-    case.set_classname(run.file.as_deref().unwrap_or("servobench"));
+    case.set_classname(class_name(run.file.as_deref()));
     case.add_property(("verdict", run.verdict.word()));
     if let Some(time) = time {
         case.set_time(time);
     }
     if let Some(file) = &run.file {
-        case.extra.insert("file".into(), file.as_str().into());
+        case.extra.insert("file".into(), printable(file).into());
         let line = missed_limits(run).iter().find_map(|limit| limit.line);
         if let Some(line) = line {
             case.extra.insert("line".into(), line.to_string().into());
@@ -70,12 +63,17 @@ fn case(run: &RunResult, time: Option<Duration>) -> TestCase {
     case
 }
 
+/// The file of a scenario.
+fn class_name(file: Option<&str>) -> String {
+    file.map_or_else(|| "servobench".to_owned(), printable)
+}
+
 /// A run that has no result.
 fn unfinished(run: &Unfinished) -> TestCase {
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
     status.set_type("unfinished").set_message("the suite was ended before this run");
     let mut case = TestCase::new(format!("{} [{}]", printable(&run.name).trim(), run.engine), status);
-    case.set_classname(run.file.as_deref().unwrap_or("servobench"));
+    case.set_classname(class_name(run.file.as_deref()));
     case
 }
 

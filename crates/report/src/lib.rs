@@ -27,7 +27,7 @@ pub use fmu_table::fmu_table;
 pub use junit::junit;
 pub use object_table::object_table;
 pub use plan::{PlannedMove, PointChoice, Unsent};
-pub use style::Style;
+pub use style::{Style, painted, shown};
 pub use text::{elided, wrapped};
 pub use timing::{TimingOptions, timing_diagram};
 pub use verdict_table::{brief, verdict_table};

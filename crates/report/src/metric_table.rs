@@ -2,7 +2,7 @@
 use crate::style::{Ink, Style};
 use crate::text::{widest, wrapped};
 use servobench_metrics::Quantity;
-use servobench_results::{MetricResult, RunResult};
+use servobench_results::{MetricResult, RunResult, printable};
 
 const VALUE: usize = 11;
 const USED: usize = 6;
@@ -20,7 +20,7 @@ pub(crate) fn metric_table(run: &RunResult, style: Style) -> String {
         let is_limited = |metric: &MetricResult| metric.pass.is_some();
         let limited: Vec<_> = made.metrics.iter().filter(|(_, metric)| is_limited(metric)).collect();
         if !limited.is_empty() {
-            let heading = format!("limits of move {} ({}):", k + 1, made.label);
+            let heading = format!("limits of move {} ({}):", k + 1, printable(&made.label));
             table += &style.paint(Ink::Heading, &heading);
             table.push('\n');
         }
@@ -29,7 +29,7 @@ pub(crate) fn metric_table(run: &RunResult, style: Style) -> String {
         }
     }
     for (why, names) in by_reason(run) {
-        let text = format!("not measured: {} ({why})", names.join(", "));
+        let text = format!("not measured: {} ({})", names.join(", "), printable(why));
         for (k, part) in wrapped(&text, style.width.saturating_sub(2)).iter().enumerate() {
             let text = format!("{}{}", if k == 0 { "" } else { "  " }, style.paint(Ink::Faint, part));
             table.push_str(&text);

@@ -162,7 +162,7 @@ mod tests {
     #[test]
     fn a_terminal_gets_no_commands() {
         let said = last_words(&run(vec![entry(Severity::Info, 0.0, 0.0, 1, "\x1b[2J\u{7}a\tb")]), 80);
-        assert_eq!(said[1], "  0.0000 s  [2J a b");
+        assert_eq!(said[1], "  0.0000 s  \u{fffd}[2J\u{fffd}a b");
         let long = last_words(&run(vec![entry(Severity::Info, 0.0, 0.0, 1, &"x".repeat(2_000))]), 80);
         assert_eq!(long[1].chars().count(), 12 + LONGEST);
     }

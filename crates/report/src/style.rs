@@ -1,11 +1,12 @@
-//! How text is shown: its width, and whether it may have colours.
+//! How text is shown: its width, whether it may have colours, and the gate through which it goes to a terminal or a log.
+use servobench_results::printable;
 
 /// How text is shown. Whether a terminal takes colours is the caller's to know.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Style {
     /// Columns of the terminal.
     pub width: usize,
-    /// Whether ANSI colours may be used.
+    /// Whether colours may be used.
     pub colour: bool,
 }
 
@@ -27,7 +28,7 @@ pub(crate) enum Ink {
 }
 
 impl Style {
-    /// `text` in colour, when there are colours.
+    /// `text` in colour, when there are colours: between marks, which [`shown`] turns into what a terminal knows.
     pub(crate) fn paint(self, ink: Ink, text: &str) -> String {
         let code = match ink {
             Ink::Heading => "1",
@@ -36,6 +37,149 @@ impl Style {
             Ink::Warning => "33",
             Ink::Faint => "2",
         };
-        if self.colour && !text.trim().is_empty() { format!("\x1b[{code}m{text}\x1b[0m") } else { text.to_owned() }
+        match (mark(code), mark(PLAIN)) {
+            (Some(start), Some(end)) if self.colour && !text.trim().is_empty() => {
+                format!("{start}{}{end}", printable(text))
+            }
+            _ => text.to_owned(),
+        }
+    }
+}
+
+/// Ends all colours.
+const PLAIN: &str = "0";
+/// Every colour and style that anything here is painted in, as a terminal knows it (ECMA-48, SGR).
+const CODES: [&str; 20] = [
+    PLAIN, "1", "2", "3", "4", "31", "32", "33", "34", "35", "36", "1;31", "31;1", "32;1", "33;1", "34;1", "35;1",
+    "36;1", "36;4;1", "36;1;4",
+];
+/// The mark of the first of them. It and those that follow are no characters of Unicode but left to each program for itself, and
+/// [`printable`] lets none of them through: the marks in a text are those that were painted. Should a text of somebody else come
+/// here past it, the worst that it can be is coloured.
+const FIRST: char = '\u{fdd0}';
+
+/// The mark that stands for `code`.
+fn mark(code: &str) -> Option<char> {
+    let index = (0..).zip(CODES).find_map(|(index, one)| (one == code).then_some(index))?;
+    char::from_u32(u32::from(FIRST) + index)
+}
+
+/// What the mark stands for.
+fn code(mark: char) -> Option<&'static str> {
+    let index = u32::from(mark).checked_sub(u32::from(FIRST))?;
+    CODES.get(usize::try_from(index).ok()?).copied()
+}
+
+/// What a terminal or a log gets of `text`, which may hold anything: each line as [`printable`] has it, and what was painted in its
+/// colours if there are some. Nothing else steers the terminal.
+#[must_use]
+pub fn shown(text: &str, colour: bool) -> String {
+    let mut out = String::with_capacity(text.len());
+    for (k, line) in text.split('\n').enumerate() {
+        if k > 0 {
+            out.push('\n');
+        }
+        shown_line(&mut out, line, colour);
+    }
+    out
+}
+
+/// One line: its marks are taken out, since what is between them is one text, and put in again where they were.
+fn shown_line(out: &mut String, line: &str, colour: bool) {
+    let marks: Vec<(usize, &str)> = line
+        .chars()
+        .filter_map(|c| Some((c, code(c))))
+        .scan(0, |before, (_, code)| {
+            let at = *before;
+            *before += usize::from(code.is_none());
+            Some((at, code))
+        })
+        .filter_map(|(at, code)| Some((at, code?)))
+        .collect();
+    let bare: String = line.chars().filter(|c| code(*c).is_none()).collect();
+    let clean = printable(&bare);
+    // What begins a command was parted: it is no longer as it was painted.
+    if !colour || marks.is_empty() || clean.chars().count() != bare.chars().count() {
+        out.push_str(&clean);
+        return;
+    }
+    let mut marks = marks.into_iter().peekable();
+    let mut paint = |out: &mut String, at: usize| {
+        while let Some((_, code)) = marks.next_if(|(place, _)| *place == at) {
+            out.push_str("\x1b[");
+            out.push_str(code);
+            out.push('m');
+        }
+    };
+    let mut count = 0;
+    for c in clean.chars() {
+        paint(out, count);
+        out.push(c);
+        count += 1;
+    }
+    paint(out, count);
+}
+
+/// A text that another renderer of ours painted for a terminal, with marks in place of its escape sequences. It is for texts whose
+/// only escape sequences are those of the renderer; what it does not know stays as it is, and [`shown`] takes it out.
+#[must_use]
+pub fn painted(text: &str) -> String {
+    let mut parts = text.split("\x1b[");
+    let mut marked = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let known = part.split_once('m').and_then(|(code, rest)| Some((mark(code)?, rest)));
+        match known {
+            Some((mark, rest)) => {
+                marked.push(mark);
+                marked.push_str(rest);
+            }
+            None => {
+                marked.push_str("\x1b[");
+                marked.push_str(part);
+            }
+        }
+    }
+    marked
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const COLOURED: Style = Style { width: 80, colour: true };
+
+    #[test]
+    fn what_is_painted_is_in_colour_and_nothing_else() {
+        let text = format!("a {} b\n{}", COLOURED.paint(Ink::Bad, "FAILED"), COLOURED.paint(Ink::Good, "x"));
+        assert_eq!(shown(&text, true), "a \x1b[1;31mFAILED\x1b[0m b\n\x1b[32mx\x1b[0m");
+        assert_eq!(shown(&text, false), "a FAILED b\nx");
+        assert_eq!(shown("\x1b[31mred\x1b[0m\n::error::x", true), "\u{fffd}[31mred\u{fffd}[0m\n: :error::x");
+    }
+
+    /// Somebody else's marks are as good as his escape sequences.
+    #[test]
+    fn a_foreign_text_paints_nothing() {
+        let foreign = "\u{fdd1}a\u{fdef}\x1b[2J";
+        assert_eq!(shown(&COLOURED.paint(Ink::Good, foreign), true), "\x1b[32m\u{fffd}a\u{fffd}\u{fffd}[2J\x1b[0m");
+        assert_eq!(shown(&printable(foreign), true), "\u{fffd}a\u{fffd}\u{fffd}[2J");
+    }
+
+    /// Colours before it do not hide a command from whoever takes them out.
+    #[test]
+    fn a_painted_command_is_none() {
+        let text = COLOURED.paint(Ink::Warning, "  ::error::x");
+        for colour in [true, false] {
+            let bare = shown(&text, colour).replace("\x1b[33m", "").replace("\x1b[0m", "");
+            assert_eq!(bare, "  : :error::x");
+        }
+        let apart = format!("{}:error::x", COLOURED.paint(Ink::Warning, ":"));
+        assert_eq!(shown(&apart, true), ": :error::x");
+    }
+
+    #[test]
+    fn the_colours_of_another_renderer_become_marks() {
+        let text = "\x1b[1m\x1b[31merror:\x1b[0m no \x1b[99mx";
+        assert_eq!(shown(&painted(text), true), "\x1b[1m\x1b[31merror:\x1b[0m no \u{fffd}[99mx");
+        assert_eq!(shown(&painted(text), false), "error: no \u{fffd}[99mx");
     }
 }

@@ -134,7 +134,9 @@ impl Journal {
     /// # Errors
     /// [`JournalError::Io`]
     pub fn create(path: PathBuf, suite: &Suite) -> Result<Self, JournalError> {
-        let file = File::options().create(true).truncate(true).write(true).open(&path);
+        // What is there may be a link that somebody planted: it goes, and nothing is written to where it leads.
+        std::fs::remove_file(&path).or_else(not_found).map_err(failed("begin", &path))?;
+        let file = File::options().create_new(true).write(true).open(&path);
         let file = file.map_err(failed("begin", &path))?;
         let mut journal = Self { file, path, synced: Instant::now(), is_torn: false };
         journal.write(&Written::Suite(suite))?;
@@ -239,6 +241,11 @@ fn digest(json: &str) -> u64 {
     XxHash64::oneshot(0, json.as_bytes())
 }
 
+/// What is not there need not be removed.
+fn not_found(error: io::Error) -> io::Result<()> {
+    if error.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(error) }
+}
+
 fn failed(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> JournalError {
     move |source| JournalError::Io { action, path: path.to_owned(), source }
 }
@@ -283,6 +290,18 @@ mod tests {
         journal.append(&again).unwrap();
         let (_, _, after) = Journal::resume(path).unwrap();
         assert_eq!(after, [finished().remove(0), again, finished().remove(2)]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_in_its_place_is_replaced_and_not_followed() {
+        let folder = tempfile::tempdir().unwrap();
+        let (link, victim) = (folder.path().join("results.journal"), folder.path().join("victim"));
+        fs::write(&victim, "victim").unwrap();
+        std::os::unix::fs::symlink(&victim, &link).unwrap();
+        written(&link);
+        assert!(!link.is_symlink());
+        assert_eq!(fs::read(victim).unwrap(), b"victim");
     }
 
     /// Whatever the byte after which a write stops, the records before it are there, and those written later follow.

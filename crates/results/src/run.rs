@@ -1,7 +1,6 @@
 //! What came of one run.
 use crate::digest::Digest;
 use crate::entry::{ExpectedResult, MetricResult, MoveResult, of_set};
-use crate::printable::printable_lines;
 use crate::results::Outcome;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
@@ -99,14 +98,6 @@ pub struct RunResult {
     pub files: Vec<String>,
 }
 
-/// Reasons may quote what somebody else's code has said: they are cleaned here, before anything shows them.
-fn shown(mut reasons: Vec<String>) -> Vec<String> {
-    for reason in &mut reasons {
-        *reason = printable_lines(reason);
-    }
-    reasons
-}
-
 impl RunResult {
     /// A run that was judged.
     #[must_use]
@@ -142,7 +133,7 @@ impl RunResult {
     /// A scenario that cannot be read or built, and why.
     #[must_use]
     pub fn invalid(run: RunIdentity, reasons: Vec<String>) -> Self {
-        Self { verdict: Outcome::Invalid, reasons: shown(reasons), ..Self::of(run, None, &Metrics::default()) }
+        Self { verdict: Outcome::Invalid, reasons, ..Self::of(run, None, &Metrics::default()) }
     }
 
     /// A run that could not be carried out and why, with what was recorded and measured until then.
@@ -151,7 +142,7 @@ impl RunResult {
         let nothing = Metrics::default();
         let (recording, metrics) =
             until_then.map_or((None, &nothing), |(recording, metrics)| (Some(recording), metrics));
-        Self { reasons: shown(reasons), ..Self::of(run, recording, metrics) }
+        Self { reasons, ..Self::of(run, recording, metrics) }
     }
 
     /// Metrics of the run, or of a move.

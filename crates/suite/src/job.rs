@@ -116,9 +116,24 @@ pub fn jobs(sources: Vec<Source>, engines: &[EngineName]) -> Vec<Job> {
     jobs
 }
 
-/// `name` with everything but letters, digits, `-`, `_` and `.` made a `-`.
-fn file_name(name: &str) -> String {
-    name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect()
+/// Bytes of a name of a file that comes from a scenario, at most. File systems take 255; engine, number and kind follow it, and while
+/// the file is written the id of the process.
+const LONGEST: usize = 150;
+
+/// `name` as one part of a path, whatever it is: everything but letters, digits, `-`, `_` and `.` is made a `-`. It is not empty, not
+/// hidden (`.x`), leads nowhere (`..`), and is not too long for a file. Names that differ may come out
+/// the same: who needs them apart numbers them.
+#[must_use]
+pub fn file_name(name: &str) -> String {
+    // Letters by their category that nobody sees: fillers of Hangul.
+    let is_seen = |c: char| !matches!(c, '\u{115f}' | '\u{1160}' | '\u{3164}' | '\u{ffa0}');
+    let is_kept = |c: char| c.is_alphanumeric() && is_seen(c) || "-_.".contains(c);
+    let mut safe: String = name.chars().map(|c| if is_kept(c) { c } else { '-' }).collect();
+    if safe.is_empty() || safe.starts_with('.') {
+        safe.replace_range(..safe.len().min(1), "_");
+    }
+    safe.truncate(safe.floor_char_boundary(LONGEST));
+    safe
 }
 
 #[cfg(test)]
@@ -169,5 +184,39 @@ mod tests {
         let jobs = jobs(vec![source.clone(), source], &[EngineName::Exact, EngineName::Rapier]);
         let ids: Vec<_> = jobs.iter().map(|job| job.id.as_str()).collect();
         assert_eq!(ids, ["a-b-c.exact", "a-b-c.rapier", "a-b-c.exact.2", "a-b-c.rapier.2"]);
+    }
+
+    /// Names that become equal stay two files, whatever made them equal.
+    #[test]
+    fn names_that_become_equal_are_numbered() {
+        let long = "µ".repeat(4000);
+        let names = ["a/b", "a b", "a\nb", &long, &(long.clone() + "x"), "", "-"].map(str::to_owned);
+        let scenario = job(TEXT).scenario;
+        let source = |name| Source { scenario: Scenario { name, ..scenario.clone() }, text: String::new() };
+        let jobs = jobs(names.map(source).to_vec(), &[EngineName::Exact]);
+        let mut ids: Vec<_> = jobs.iter().map(|job| job.id.as_str()).collect();
+        assert_eq!(ids[..3], ["a-b.exact", "a-b.exact.2", "a-b.exact.3"]);
+        ids.sort_unstable();
+        ids.dedup();
+        assert_eq!(ids.len(), 7);
+    }
+
+    #[test]
+    fn a_name_of_a_file_is_one_part_of_a_path() {
+        for (name, safe) in [
+            ("feed-axis_2.µ", "feed-axis_2.µ"),
+            ("../../outside/x", "_.-..-outside-x"),
+            ("..", "_."),
+            (".", "_"),
+            ("", "_"),
+            ("/etc/passwd", "-etc-passwd"),
+            ("-rf", "-rf"),
+            ("a\\b\0c\u{202e}d\u{3164}", "a-b-c-d-"),
+            ("\u{1b}]0;x\u{7}", "--0-x-"),
+        ] {
+            assert_eq!(file_name(name), safe);
+        }
+        let long = file_name(&"µ€".repeat(1000));
+        assert!((LONGEST - 2..=LONGEST).contains(&long.len()), "{}", long.len());
     }
 }

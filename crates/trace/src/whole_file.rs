@@ -89,10 +89,19 @@ impl Drop for Unfinished {
     }
 }
 
+/// Bytes of the target's name in that of its file on the way: with what is added it has to fit into the 255 of most file systems.
+const LONGEST: usize = 200;
+
 /// A name beside `target` that no other writer uses: unique within the process by the number, across them by its id.
 fn partial_path(target: &Path, number: u64) -> PathBuf {
     let mut name = OsString::from(".");
-    name.push(target.file_name().unwrap_or_default());
+    let whole = target.file_name().unwrap_or_default();
+    if whole.len() > LONGEST {
+        let whole = whole.to_string_lossy();
+        name.push(&whole[..whole.floor_char_boundary(LONGEST)]);
+    } else {
+        name.push(whole);
+    }
     name.push(format!(".{}-{number}.partial", process::id()));
     target.with_file_name(name)
 }
@@ -144,6 +153,35 @@ mod tests {
         fs::create_dir_all(taken.join("by a folder")).unwrap();
         assert!(write_whole(&taken, "text").is_err());
         assert_eq!(names(folder.path()), ["taken"]);
+    }
+
+    /// A name may be as long as the file system takes it.
+    #[test]
+    fn the_longest_name_is_written() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["x".repeat(255), "µ".repeat(127)] {
+            write_whole(folder.path().join(&name), "text").unwrap();
+            assert_eq!(fs::read(folder.path().join(&name)).unwrap(), b"text");
+        }
+        assert!(write_whole(folder.path().join("x".repeat(256)), "text").is_err());
+        assert_eq!(names(folder.path()).len(), 2);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_is_replaced_and_not_followed() {
+        let folder = tempfile::tempdir().unwrap();
+        let (link, victim) = (folder.path().join("results.json"), folder.path().join("victim"));
+        fs::write(&victim, "victim").unwrap();
+        for write in
+            [|path: &Path| write_whole(path, "new").unwrap(), |path: &Path| write_durably(path, "new").unwrap()]
+        {
+            std::os::unix::fs::symlink(&victim, &link).unwrap();
+            write(&link);
+            assert!(!link.is_symlink());
+            assert_eq!((fs::read(&link).unwrap(), fs::read(&victim).unwrap()), (b"new".to_vec(), b"victim".to_vec()));
+            fs::remove_file(&link).unwrap();
+        }
     }
 
     /// What killed processes of the same id left does not matter.

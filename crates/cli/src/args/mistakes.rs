@@ -1,12 +1,12 @@
 //! Every mistake of a command line in one go. The parser stops at its first one; it is asked again with that one let through, until it
 //! finds nothing more or what it cannot go on from.
 use super::Cli;
-use crate::console::say;
+use crate::console::{print, say};
 use clap::builder::{StyledStr, ValueParser};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Command, CommandFactory, Error, Parser};
-use servobench_report::wrapped;
+use servobench_report::{painted, shown, wrapped};
 use std::error::Error as _;
 use std::ffi::OsString;
 
@@ -21,8 +21,23 @@ pub(crate) fn parse() -> Cli {
         for other in others {
             say(&other);
         }
-        last.exit()
+        let text = rendered(&last);
+        if last.use_stderr() {
+            say(&text);
+        } else {
+            // What cannot be printed is no other mistake.
+            print(&text).ok();
+        }
+        std::process::exit(last.exit_code())
     })
+}
+
+/// What the parser says, in its colours. It quotes words of the command line as they are: where one of them is not fit for a terminal,
+/// there are no colours, since nobody could tell them from it.
+fn rendered(error: &Error) -> String {
+    let text = error.render();
+    let plain = text.to_string();
+    if shown(&plain, false) == plain { painted(&text.ansi().to_string()) } else { plain }
 }
 
 /// What is wrong with `words`: a line or a few each, and the last mistake as the parser puts it, with what is to be typed.

@@ -137,9 +137,7 @@ impl Asked {
                     Err(error) => asked.failed.push(error),
                 }
             }
-            for mut objection in found {
-                // It may quote what an FMU or an engine has said.
-                objection.message = printable(&objection.message);
+            for objection in found {
                 let mistake = match objection.line {
                     Some(line) => loaded.mistake_in_mjcf(line, objection.message, &objection.help),
                     None => loaded.mistake(&objection.key, objection.message, objection.help),
@@ -177,7 +175,7 @@ impl Asked {
 /// A preview: a screen, or a line of it.
 fn previewed(preview: &Preview, in_full: bool) -> String {
     let Style { width, .. } = Style::default();
-    let name = &preview.name;
+    let name = &printable(&preview.name);
     if in_full {
         format!("{}\n{}", elided(name, width), preview.screen())
     } else {
@@ -208,7 +206,7 @@ fn listed(scenario: &str, delays: &[ConnectionDelay]) -> String {
         }
     };
     let heading = ": connections and how late they are";
-    let name = elided(scenario, width - heading.len());
+    let name = elided(&printable(scenario), width - heading.len());
     format!("{name}{heading}\n{}", delays.iter().map(line).collect::<String>())
 }
 

@@ -6,6 +6,7 @@ use crate::error::{CliError, FailedRun};
 use crate::exit::{Exit, of_outcome};
 use crate::interrupt;
 use crate::output::{self, Written};
+use crate::outputs::{OutputFolder, Outputs};
 use crate::progress::Progress;
 use crate::sources;
 use crate::workers;
@@ -14,7 +15,7 @@ use servobench_report::{Compared, Comparison, elided, wrapped};
 use servobench_results::{COMPARISON, Folder, Outcome, Results, RunResult, printable};
 use servobench_scenario::{Difference, differences};
 use servobench_suite::{
-    Job, Run, RunError, comparable, execute, jobs, limits_agree, map_in_parallel, only_setpoints_differ,
+    Job, Run, RunError, comparable, execute, file_name, jobs, limits_agree, map_in_parallel, only_setpoints_differ,
     to_equal_duration,
 };
 use servobench_trace::Recording;
@@ -36,15 +37,17 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
         Some(Equal::Limits) => limits_agree(&jobs)?,
         Some(Equal::Duration) => to_equal_duration(&mut jobs)?,
     }
-    let labels = labels(&jobs.iter().map(|job| job.scenario.name.as_str()).collect::<Vec<_>>());
-    let folder = Folder::open(&args.out)?;
+    let names: Vec<String> = jobs.iter().map(|job| printable(&job.scenario.name)).collect();
+    let labels = labels(&names.iter().map(String::as_str).collect::<Vec<_>>());
+    let (out, name) = outputs(args, &labels)?;
+    let folder = Folder::open(out.path())?;
     interrupt::watch(&args.out)?;
     let runs = carried_out(args, &jobs)?;
 
     if let Some(why) = folder.remove_former(COMPARISON).stays {
         say(&format!("what the comparison before left stays: {why}\n"));
     }
-    let recording = write_recording(args, &jobs, &labels, &runs)?;
+    let recording = write_recording(&out, name, &jobs, &labels, &runs)?;
     let written = Written { recording: Some(recording.clone()), files: vec![recording.clone()], ..Written::default() };
     let results: Vec<RunResult> = jobs
         .iter()
@@ -62,13 +65,20 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
     let has_something = comparison.has_something_to_compare();
     let text = text_of(args, &jobs, &comparison, &recording);
     let json = Results::new(results).to_json()?;
-    output::write_file(&args.out.join(COMPARISON), &json)?;
+    out.file(COMPARISON)?.write(&json)?;
     interrupt::told();
     if !has_something {
         return Err(CliError::NothingToCompare);
     }
     print(&text)?;
     Ok(exit)
+}
+
+/// The folder, and the name of the recording in it.
+fn outputs(args: &CompareArgs, labels: &[String]) -> Result<(OutputFolder, String), CliError> {
+    let name = format!("{}.rrd", file_name(&labels.join("-against-")));
+    let out = Outputs::default().folder("--out", &args.out, [name.clone(), COMPARISON.to_owned()])?;
+    Ok((out, name))
 }
 
 /// Every scenario once, all on the same engine.
@@ -169,18 +179,22 @@ fn listed(of: &str, all: &[Difference]) -> String {
 }
 
 /// Writes the one recording in which the runs lie over each other, and returns its name.
-fn write_recording(args: &CompareArgs, jobs: &[Job], labels: &[String], runs: &[Run]) -> Result<String, CliError> {
+fn write_recording(
+    out: &OutputFolder,
+    name: String,
+    jobs: &[Job],
+    labels: &[String],
+    runs: &[Run],
+) -> Result<String, CliError> {
     let labelled: Vec<(&str, &Recording)> =
         labels.iter().map(String::as_str).zip(runs.iter().map(|run| &run.recording)).collect();
     let options = jobs.iter().map(|job| output::view_options(&job.scenario));
     let options = options.reduce(|one, other| agreed(one, &other)).unwrap_or_default();
     let verdicts = runs.iter().map(|run| output::shown(&run.recording, &run.metrics, &run.verdict)).collect();
     let options = ViewOptions { verdicts, ..options };
-    let name = labels.join("-against-");
-    let name: String = name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect();
-    let name = format!("{name}.rrd");
-    servobench_view::write_comparison_rrd(&labelled, args.out.join(&name), &options)?;
-    interrupt::written(&args.out.join(&name));
+    let place = out.place(&name)?;
+    servobench_view::write_comparison_rrd(&labelled, &place, &options)?;
+    interrupt::written(&place);
     Ok(name)
 }
 

@@ -1,14 +1,15 @@
 //! `servobench fmu`: what is in an FMU, and an axis as an FMU.
 use crate::args::{FmuCommand, FmuExportArgs, FmuInfoArgs};
-use crate::console::{print, print_bytes, say, style};
+use crate::console::{print, say, style};
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::output::{file_named, spares, write_file};
+use crate::outputs::Outputs;
 use crate::sources;
 use servobench_config::Choice as _;
 use servobench_fmi::{Archive, Limits};
 use servobench_fmu::{export, library};
 use servobench_report::fmu_table;
+use servobench_suite::file_name;
 use std::io::IsTerminal;
 use std::path::PathBuf;
 
@@ -38,24 +39,20 @@ fn info(args: &FmuInfoArgs) -> Result<Exit, CliError> {
 fn write(args: &FmuExportArgs) -> Result<Exit, CliError> {
     let loaded = sources::read(&args.scenario, &args.with.overrides)?;
     let program = std::env::current_exe().map_err(CliError::OwnProgram)?;
+    let default = PathBuf::from(format!("{}.fmu", file_name(&loaded.scenario.name)));
+    let output = Outputs::default().or_standard("-o", Some(args.output.as_ref().unwrap_or(&default)))?;
+    if output.is_standard_output() && std::io::stdout().is_terminal() {
+        return Err(CliError::BytesForATerminal);
+    }
     let library = library(&program).map_err(|error| CliError::Library(Box::new(error)))?;
     let (version, part) = (args.fmi, args.part);
     let bytes = export(&loaded, version, part, &library).map_err(|error| CliError::Export(Box::new(error)))?;
-    let default = PathBuf::from(format!("{}.fmu", loaded.scenario.name));
-    let output = file_named(Some(args.output.as_ref().unwrap_or(&default)));
-    if let Some(output) = output {
-        spares(&args.scenario, Some(output))?;
-        write_file(output, &bytes)?;
-    } else if std::io::stdout().is_terminal() {
-        return Err(CliError::BytesForATerminal);
-    } else {
-        print_bytes(&bytes)?;
-    }
+    output.write(&bytes)?;
     let overrides: Vec<String> = loaded.scenario.overrides.iter().map(ToString::to_string).collect();
     let with = if overrides.is_empty() { String::new() } else { format!(" with {}", overrides.join(", ")) };
     say(&format!(
         "{}: {} of {}{with}, {:.1} MB\n",
-        output.map_or_else(|| "standard output".to_owned(), |output| output.display().to_string()),
+        output.shown(),
         part.name(),
         loaded.scenario.name,
         bytes.len() as f64 * 1e-6

@@ -3,10 +3,9 @@ use crate::args::{ManArgs, visible};
 use crate::console::{print_bytes, say};
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::output::{make_folder, write_file};
+use crate::outputs::{Outputs, make_folder};
 use clap::Command;
 use clap_mangen::Man;
-use std::path::Path;
 
 /// Prints the page of the program, or writes that and those of all commands into a folder.
 pub(crate) fn man(args: &ManArgs) -> Result<Exit, CliError> {
@@ -16,21 +15,25 @@ pub(crate) fn man(args: &ManArgs) -> Result<Exit, CliError> {
         print_bytes(&page(&program)?)?;
         return Ok(Exit::Passed);
     };
+    let (mut names, mut pages) = (Vec::new(), Vec::new());
+    render(&program, &mut names, &mut pages)?;
+    let output = Outputs::default().folder("--out", folder, names.clone())?;
     make_folder(folder)?;
-    let count = write(&program, folder)?;
+    for (name, page) in names.iter().zip(pages) {
+        output.file(name)?.write(page)?;
+    }
+    let count = names.len();
     say(&format!("{count} pages: {}\n", folder.display()));
     Ok(Exit::Passed)
 }
 
-/// Writes the pages of `command` and of those below it; returns how many.
-fn write(command: &Command, folder: &Path) -> Result<usize, CliError> {
+/// The pages of `command` and of those below it, and what their files are called.
+fn render(command: &Command, names: &mut Vec<String>, pages: &mut Vec<Vec<u8>>) -> Result<(), CliError> {
     let name = command.get_display_name().unwrap_or_else(|| command.get_name());
-    write_file(&folder.join(format!("{name}.1")), page(command)?)?;
-    let mut count = 1;
-    for inner in command.get_subcommands().filter(|inner| !inner.is_hide_set()) {
-        count += write(inner, folder)?;
-    }
-    Ok(count)
+    names.push(format!("{name}.1"));
+    pages.push(page(command)?);
+    let inner = command.get_subcommands().filter(|inner| !inner.is_hide_set());
+    inner.map(|inner| render(inner, names, pages)).collect()
 }
 
 fn page(command: &Command) -> Result<Vec<u8>, CliError> {

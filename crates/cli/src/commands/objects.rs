@@ -3,11 +3,13 @@ use crate::args::{ObjectsArgs, ObjectsFormat};
 use crate::console::style;
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::output::{file_named, print_or_write, spares, write_time};
+use crate::output::write_time;
+use crate::outputs::Outputs;
 use crate::sources;
 use servobench_cia402::PowerState;
 use servobench_cia402::objects::{Dictionary, Eds, FileInfo, Json};
 use servobench_report::{Style, object_table};
+use servobench_results::printable_json;
 use servobench_scenario::Override;
 use std::path::Path;
 
@@ -16,23 +18,20 @@ const DATA_SHEET: &str = "drive.eds";
 
 /// Shows the dictionary with the values after power-on, or with those that a scenario writes.
 pub(crate) fn objects(args: &ObjectsArgs) -> Result<Exit, CliError> {
-    let output = file_named(args.output.as_deref());
-    if let Some(scenario) = &args.scenario {
-        spares(scenario, output)?;
-    }
     let configured = args.scenario.as_deref().map(|path| as_written(path, &args.with.overrides)).transpose()?;
+    let output = Outputs::default().or_standard("-o", args.output.as_deref())?;
     let values = configured.clone().unwrap_or_default();
-    let text = match args.format {
-        ObjectsFormat::Table => object_table(&values, if output.is_some() { Style::default() } else { style() }),
+    match args.format {
+        ObjectsFormat::Table => output
+            .write_text(&object_table(&values, if output.is_standard_output() { style() } else { Style::default() }))?,
         ObjectsFormat::Eds => {
             let made = write_time()?;
             let (date, time) = (made.strftime("%m-%d-%Y").to_string(), made.strftime("%I:%M%p").to_string());
-            let file = FileInfo { name: data_sheet_name(output), date: &date, time: &time };
-            Eds { file, configured: configured.as_ref() }.to_string()
+            let file = FileInfo { name: data_sheet_name(output.path()), date: &date, time: &time };
+            output.write(Eds { file, configured: configured.as_ref() }.to_string())?;
         }
-        ObjectsFormat::Json => Json(&values).to_string(),
-    };
-    print_or_write(output, &text)?;
+        ObjectsFormat::Json => output.write(printable_json(&Json(&values).to_string()))?,
+    }
     Ok(Exit::Passed)
 }
 

@@ -14,10 +14,10 @@ mod table;
 pub(crate) use mistake::PlanMistake;
 
 use crate::args::file;
-use crate::console::{print, say};
+use crate::console::{print, print_json, say};
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::output::write_file;
+use crate::outputs::{Output, Outputs, reads};
 use clap::Args;
 use filter::FILTER;
 use points::PointArgs;
@@ -26,7 +26,8 @@ use quantity::{positive_time, time};
 use servobench_base::Coordinate;
 use servobench_report::{PlannedMove, ReportError};
 use std::convert::Infallible;
-use std::path::{Path, PathBuf};
+use std::io::Write;
+use std::path::PathBuf;
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
@@ -88,28 +89,37 @@ fn former_profile(name: &str) -> Result<Infallible, String> {
 /// Plans the move and prints, tabulates or draws it.
 pub(crate) fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
     let OutputArgs { json, csv, csv_step, svg, from, to } = &args.output;
+    if let Some(table) = args.profile.table() {
+        reads(table, "the table of --points");
+    }
+    let mut outputs = Outputs::default();
+    let csv = outputs.optional("--csv", csv.as_deref())?;
+    let commands = outputs.optional("--commands", args.profile.commands())?;
+    let points = outputs.optional("--pvt", args.points.pvt.as_deref())?;
+    let words = outputs.optional("--words", args.points.words.as_deref())?;
+    let svg = outputs.optional("--svg", svg.as_deref())?;
     let planned = planned(args).map_err(CliError::Plan)?;
-    if let Some(path) = csv {
-        write_csv(&planned, *csv_step, path)?;
+    if let Some(output) = csv {
+        write_table(&output, |out| planned.write_csv(*csv_step, out))?;
     }
-    let failed = |path: &Path, error| CliError::WritePlan { path: path.to_owned(), error };
-    if let Some(path) = args.profile.commands() {
-        servobench_trace::stream_whole(path, |file| planned.write_commands(file).map(drop))
-            .map_err(|error| failed(path, error))?;
+    if let Some(output) = commands {
+        write_table(&output, |out| planned.write_commands(out).map(drop))?;
     }
-    if let Some(path) = &args.points.pvt {
-        servobench_trace::stream_whole(path, |file| planned.write_points(file).map(drop))
-            .map_err(|error| failed(path, error))?;
+    if let Some(output) = points {
+        write_table(&output, |out| planned.write_points(out).map(drop))?;
     }
-    if let Some(path) = &args.points.words {
-        servobench_trace::stream_whole(path, |file| planned.write_words(file).map(drop))
-            .map_err(|error| failed(path, error))?;
+    if let Some(output) = words {
+        write_table(&output, |out| planned.write_words(out).map(drop))?;
     }
-    if let Some(path) = svg {
+    if let Some(output) = svg {
         let drawing = planned.svg(*from, *to).map_err(|error| CliError::Plan(vec![PlanMistake::NotDrawn(error)]))?;
-        write_file(path, drawing)?;
+        output.write(drawing)?;
     }
-    print(&if *json { planned.json()? } else { planned.table() })?;
+    if *json {
+        print_json(&planned.json()?)?
+    } else {
+        print(&planned.table())?
+    }
     Ok(Exit::Passed)
 }
 
@@ -133,9 +143,12 @@ fn planned(args: &PlanArgs) -> Result<PlannedMove, Vec<PlanMistake>> {
     }
 }
 
-fn write_csv(planned: &PlannedMove, step: Option<f64>, path: &Path) -> Result<(), CliError> {
-    servobench_trace::stream_whole(path, |file| planned.write_csv(step, file)).map_err(|error| match error {
-        error @ ReportError::TooManyRows { .. } => CliError::Plan(vec![PlanMistake::TooManyRows(error)]),
-        error => CliError::WritePlan { path: path.to_owned(), error },
+fn write_table(output: &Output, write: impl FnOnce(&mut dyn Write) -> Result<(), ReportError>) -> Result<(), CliError> {
+    output.stream(|out| {
+        write(out).map_err(|error| match error {
+            error @ ReportError::TooManyRows { .. } => CliError::Plan(vec![PlanMistake::TooManyRows(error)]),
+            ReportError::Io(error) => output.failed(error),
+            error => error.into(),
+        })
     })
 }

@@ -3,7 +3,8 @@ use crate::args::{PlcCommand, PlcExportArgs};
 use crate::console::say;
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::output::{print_or_write, write_time};
+use crate::output::write_time;
+use crate::outputs::Outputs;
 use servobench_structured_text::{Export, Times};
 
 /// Export is all there is.
@@ -16,14 +17,15 @@ pub(crate) fn plc(command: &PlcCommand) -> Result<Exit, CliError> {
 /// Writes the file; how much memory its blocks take is in its head, and said where the file is written beside it.
 fn export(args: &PlcExportArgs) -> Result<Exit, CliError> {
     let &PlcExportArgs { format, dialect, sample_time, settling_time, .. } = args;
+    let output = Outputs::default().or_standard("-o", args.output.as_deref())?;
     let written = write_time()?.strftime("%Y-%m-%dT%H:%M:%SZ").to_string();
     let times = Times { sample: sample_time, settling: settling_time };
     let export = Export { dialect, format, times, move_block: &args.move_block };
     let text = export.text(&written)?;
-    print_or_write(args.output.as_deref(), &text)?;
-    if let Some(output) = &args.output {
+    output.write_text(&text)?;
+    if args.output.is_some() {
         let memory = export.instances().map(|(name, bytes)| format!("{bytes} bytes for an instance of {name}"));
-        say(&format!("{}: {} lines, {}\n", output.display(), text.lines().count(), memory.join(", ")));
+        say(&format!("{}: {} lines, {}\n", output.shown(), text.lines().count(), memory.join(", ")));
     }
     Ok(Exit::Passed)
 }

@@ -10,13 +10,14 @@ use crate::error::CliError;
 use crate::exit::{Exit, of_outcome, of_run_error};
 use crate::interrupt;
 use crate::output::{self, Written};
+use crate::outputs::{Output, OutputFolder, Outputs};
 use crate::progress::Progress;
 use crate::sources;
 use crate::workers;
 use ledger::{Closed, Ledger};
 use resume::{Begun, Found};
 use servobench_report::{brief, junit, verdict_table};
-use servobench_results::{Folder, Former, Outcome, RESULTS, Results, RunIdentity, RunResult, Suite};
+use servobench_results::{Folder, Former, JOURNAL, Outcome, RESULTS, Results, RunIdentity, RunResult, Suite};
 use servobench_suite::{Broken, Engines, Job, Run, Workers, execute, map_in_parallel};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -26,6 +27,25 @@ use wanted::Wanted;
 /// Where results go unless somebody says so; those of the demo go below it, so that they take nobody else's place.
 const OUT: &str = "servobench-out";
 const OUT_OF_THE_DEMO: &str = "servobench-out/demo";
+
+/// The option that names the JUnit report.
+const JUNIT: &str = "--junit";
+
+/// Where the suite writes: nothing that it reads, and nothing twice.
+struct Files {
+    out: OutputFolder,
+    junit: Option<Output>,
+}
+
+impl Files {
+    fn named(args: &RunArgs, out: &Path, wanted: &Wanted) -> Result<Self, CliError> {
+        let mut outputs = Outputs::default();
+        let names = wanted.jobs.iter().flat_map(output::names_of).chain([RESULTS, JOURNAL].map(str::to_owned));
+        let out = outputs.folder("--out", out, names)?;
+        let junit = args.junit.as_deref().map(|path| outputs.anywhere(JUNIT, path)).transpose()?;
+        Ok(Self { out, junit })
+    }
+}
 
 /// What a run came to, and how long that took by the clock.
 type Timed = (RunResult, Duration);
@@ -58,6 +78,7 @@ fn begun(args: &RunArgs) -> Result<Exit, CliError> {
         let default = if args.scenarios.is_empty() { OUT_OF_THE_DEMO } else { OUT };
         PathBuf::from(default)
     });
+    let files = Files::named(args, &out, &wanted)?;
     if !args.quiet {
         say(&wanted.shown());
         if args.scenarios.is_empty() {
@@ -68,7 +89,7 @@ fn begun(args: &RunArgs) -> Result<Exit, CliError> {
     let former = folder.remove_former(RESULTS);
     let here = std::env::current_dir().map_err(|error| CliError::Read { path: ".".into(), error })?;
     let suite = Suite::new(wanted.digest(args), args::command_line(), here, sources::stdin(), wanted.stems());
-    let ledger = Ledger::begin(folder, args.junit.clone(), wanted.planned(), &suite)?;
+    let ledger = Ledger::begin(folder, files, wanted.planned(), &suite)?;
     carried_out(args, &wanted, &engines, ledger, &former)
 }
 
@@ -80,10 +101,11 @@ fn resumed(begun: Begun) -> Result<Exit, CliError> {
     if wanted.digest(&args) != suite.suite {
         return Err(CliError::OtherSuite(folder.path().to_owned()));
     }
+    let files = Files::named(&args, folder.path(), &wanted)?;
     if !args.quiet {
         say(&format!("{} of {} runs had ended; running the others\n", finished.len(), wanted.planned().len()));
     }
-    let ledger = Ledger::resume(folder, args.junit.clone(), wanted.planned(), (journal, &suite), finished);
+    let ledger = Ledger::resume(folder, files, wanted.planned(), (journal, &suite), finished);
     carried_out(&args, &wanted, &engines, ledger, &Former::default())
 }
 
@@ -131,8 +153,9 @@ fn nothing_to_run(args: &RunArgs, wanted: Wanted) -> Result<Exit, CliError> {
     let times = vec![Duration::ZERO; runs.len()];
     let results = Results::new(runs);
     if let Some(path) = &args.junit {
+        let output = Outputs::default().anywhere(JUNIT, path)?;
         let text = junit(&results, &times).map_err(CliError::from);
-        if let Err(error) = text.and_then(|text| output::write_file_anywhere(path, text)) {
+        if let Err(error) = text.and_then(|text| output.write(text)) {
             say(&format!("servobench: {error}\n"));
         }
     }
@@ -159,7 +182,7 @@ fn run_all(args: &RunArgs, wanted: &Wanted, engines: &Engines, ledger: &Ledger) 
                 return;
             }
             let start = Instant::now();
-            let result = one(job, engines, &workers, args, folder, &progress);
+            let result = one(job, engines, &workers, args, ledger.out(), &progress);
             ledger.note(*index, result, start.elapsed());
         },
     );
@@ -181,12 +204,12 @@ fn one(
     engines: &Engines,
     workers: &Workers,
     args: &RunArgs,
-    folder: &Path,
+    out: &OutputFolder,
     progress: &Progress,
 ) -> RunResult {
     let write = |recording, outcome, shown: servobench_view::Verdict| {
         if output::is_kept(args.keep, outcome) {
-            output::write_recording(job, recording, folder, args.rrd.then_some(shown))
+            output::write_recording(job, recording, out, args.rrd.then_some(shown))
         } else {
             Ok(Written::default())
         }

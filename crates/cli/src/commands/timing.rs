@@ -2,13 +2,14 @@
 use crate::args::TimingArgs;
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::output::{print_or_write, spares};
+use crate::outputs::{Outputs, reads};
 use servobench_report::{TimingOptions, timing_diagram};
 use servobench_trace::Recording;
 
 /// Draws the diagram.
 pub(crate) fn timing(args: &TimingArgs) -> Result<Exit, CliError> {
-    spares(&args.recording, args.output.as_deref())?;
+    reads(&args.recording, "the recording");
+    let output = Outputs::default().or_standard("-o", args.output.as_deref())?;
     let recording = Recording::read_parquet(&args.recording).map_err(CliError::ReadRecording)?;
     let default = TimingOptions::default();
     let options = TimingOptions {
@@ -20,6 +21,6 @@ pub(crate) fn timing(args: &TimingArgs) -> Result<Exit, CliError> {
     };
     let diagram = timing_diagram(&recording, &options)
         .map_err(|error| CliError::Timing { recording: args.recording.clone(), error })?;
-    print_or_write(args.output.as_deref(), &diagram)?;
+    output.write_text(&diagram)?;
     Ok(Exit::Passed)
 }

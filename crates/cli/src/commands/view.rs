@@ -3,6 +3,7 @@ use crate::args::ViewArgs;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::output;
+use crate::outputs::{Outputs, is_name, reads};
 use servobench_results::{COMPARISON, RESULTS, Results, RunResult};
 use servobench_trace::{Recording, seal_of};
 use servobench_view::{ViewOptions, write_rrd};
@@ -29,6 +30,9 @@ fn recordings(path: &Path) -> Result<Vec<PathBuf>, CliError> {
     let results = latest_results(path)?;
     let text = std::fs::read_to_string(&results).map_err(|error| CliError::Read { path: results.clone(), error })?;
     let results = Results::from_json(&text).map_err(|error| CliError::ReadResults { path: results, error })?;
+    for name in results.scenarios.iter().filter_map(|run| run.recording.as_deref()) {
+        is_name(name)?;
+    }
     if let Some(other) = results.scenarios.iter().find(|run| !is_own(run, path)) {
         return Err(CliError::OtherRecording(path.join(other.recording.as_deref().unwrap_or_default())));
     }
@@ -64,6 +68,8 @@ fn as_rrd(path: &Path) -> Result<PathBuf, CliError> {
     }
     let rrd = path.with_extension("rrd");
     if !modified(&rrd).is_ok_and(|made| made >= written) {
+        reads(path, "the recording");
+        Outputs::default().file("the recording for the viewer", &rrd)?;
         let recording = Recording::read_parquet(path).map_err(CliError::ReadRecording)?;
         let verdicts = verdict_beside(path).into_iter().collect();
         let options = ViewOptions { verdicts, ..ViewOptions::default() };

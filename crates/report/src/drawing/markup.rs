@@ -1,4 +1,5 @@
 //! Text and style of an SVG.
+use servobench_results::printable;
 
 /// One colour for position and each of its derivatives, distinguishable without colour vision by their panels anyway.
 pub(crate) const COLOURS: [&str; 5] = ["#1f5fa8", "#0f7f72", "#9a5b00", "#8a2f78", "#4a4fb0"];
@@ -9,17 +10,15 @@ pub(crate) const STYLE: &str = "text{font-family:'DejaVu Sans','Segoe UI',Helvet
 .k{font-size:11px;fill:#5b6472}.e{font-size:11px;font-weight:600}.g{stroke:#e4e8ee;stroke-width:1}\
 .z{stroke:#9aa3b0;stroke-width:1}";
 
-/// `text` fit for XML: what XML has no way to write is a question mark in a diamond.
+/// `text` fit for XML, and for whoever reads the file in a terminal.
 pub(crate) fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
-    for c in text.chars() {
+    for c in printable(text).chars() {
         match c {
             '&' => escaped.push_str("&amp;"),
             '<' => escaped.push_str("&lt;"),
             '>' => escaped.push_str("&gt;"),
             '"' => escaped.push_str("&quot;"),
-            '\t' | '\n' | '\r' => escaped.push(' '),
-            '\0'..'\u{20}' | '\u{fffe}' | '\u{ffff}' => escaped.push('\u{fffd}'),
             _ => escaped.push(c),
         }
     }

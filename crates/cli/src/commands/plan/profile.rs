@@ -135,6 +135,15 @@ impl Profile {
         matches!(self, Self::Named(NamedProfile::Pvt(_) | NamedProfile::Position(_)))
     }
 
+    /// The table that it goes through.
+    pub(super) fn table(&self) -> Option<&Path> {
+        match self {
+            Self::PointToPoint(_) | Self::Named(NamedProfile::Rockwell(_)) => None,
+            Self::Named(NamedProfile::Pvt(args)) => Some(args.file()),
+            Self::Named(NamedProfile::Position(args)) => Some(args.file()),
+        }
+    }
+
     /// Where velocity commands are written.
     pub(super) fn commands(&self) -> Option<&Path> {
         if let Self::Named(NamedProfile::Position(args)) = self { args.commands.as_deref() } else { None }

@@ -117,6 +117,11 @@ impl PvtArgs {
     pub(super) fn filter(&self) -> Result<Filter, PlanMistake> {
         self.filter.filter()
     }
+
+    /// Where the table is.
+    pub(super) fn file(&self) -> &Path {
+        &self.table.points
+    }
 }
 
 impl PositionArgs {
@@ -137,6 +142,11 @@ impl PositionArgs {
             }
         };
         Ok(Generator::Table(TableMove { knots: knots(&points), velocities: Velocities::Given, follow }))
+    }
+
+    /// Where the table is.
+    pub(super) fn file(&self) -> &Path {
+        &self.table.points
     }
 
     fn share(&self, plateau: Plateau, axis: &mut Axis) -> Result<PlateauShare, PlanMistake> {

@@ -1,19 +1,18 @@
 //! What came of each run, kept where nothing that has ended is lost: in the journal while the suite runs, in `results.json` and
 //! JUnit at its end, whichever end that is.
-use super::Timed;
+use super::{Files, Timed};
 use crate::error::CliError;
 use crate::interrupt;
-use crate::output;
+use crate::outputs::OutputFolder;
 use servobench_report::junit;
 use servobench_results::{Digest, Finished, Folder, Journal, Outcome, RESULTS, Results, RunResult, Suite, Unfinished};
-use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 /// The results of a suite as they come. One thread after the other notes its runs; the last word is that of whoever closes it.
 pub(super) struct Ledger {
     folder: Folder,
-    junit: Option<PathBuf>,
+    files: Files,
     suite: Digest,
     /// Stems of the files that the runs leave.
     stems: Vec<String>,
@@ -43,26 +42,26 @@ impl Ledger {
     /// Begins the journal of `suite`, and says in `results.json` that it is under way.
     pub(super) fn begin(
         folder: Folder,
-        junit: Option<PathBuf>,
+        files: Files,
         planned: Vec<Unfinished>,
         suite: &Suite,
     ) -> Result<Self, CliError> {
         let journal = Journal::create(folder.journal(), suite)?;
-        let ledger = Self::new(folder, junit, planned, suite, journal);
+        let ledger = Self::new(folder, files, planned, suite, journal);
         let results = Results::of_suite(ledger.suite.clone(), Vec::new(), ledger.planned.clone());
-        output::write_file(&ledger.folder.path().join(RESULTS), results.to_json()?)?;
+        ledger.files.out.file(RESULTS)?.write(results.to_json()?)?;
         Ok(ledger)
     }
 
     /// Goes on with the journal of a suite in which the runs `finished` have ended.
     pub(super) fn resume(
         folder: Folder,
-        junit: Option<PathBuf>,
+        files: Files,
         planned: Vec<Unfinished>,
         (journal, suite): (Journal, &Suite),
         finished: Vec<Finished>,
     ) -> Self {
-        let ledger = Self::new(folder, junit, planned, suite, journal);
+        let ledger = Self::new(folder, files, planned, suite, journal);
         let mut state = ledger.state();
         for Finished { index, seconds, result } in finished {
             if let Some(place) = state.ended.get_mut(index) {
@@ -73,16 +72,21 @@ impl Ledger {
         ledger
     }
 
-    fn new(folder: Folder, junit: Option<PathBuf>, planned: Vec<Unfinished>, suite: &Suite, journal: Journal) -> Self {
+    fn new(folder: Folder, files: Files, planned: Vec<Unfinished>, suite: &Suite, journal: Journal) -> Self {
         let ended = planned.iter().map(|_| None).collect();
         let state = State { journal: Some(journal), ended, troubles: Vec::new(), is_closed: false };
         let (suite, stems) = (suite.suite.clone(), suite.stems.clone());
-        Self { folder, junit, suite, stems, planned, state: Mutex::new(state) }
+        Self { folder, files, suite, stems, planned, state: Mutex::new(state) }
     }
 
     /// The folder of the results.
     pub(super) const fn folder(&self) -> &Folder {
         &self.folder
+    }
+
+    /// The same for what runs leave there.
+    pub(super) const fn out(&self) -> &OutputFolder {
+        &self.files.out
     }
 
     /// Whether the run at `index` has ended.
@@ -137,12 +141,12 @@ impl Ledger {
             troubles.push(error.into());
         }
         let text = results.to_json().map_err(CliError::from);
-        let written = text.and_then(|text| output::write_durably(&self.folder.path().join(RESULTS), text));
+        let written = text.and_then(|text| self.files.out.file(RESULTS)?.write_durably(text));
         let is_safe = written.is_ok();
         troubles.extend(written.err());
-        if let Some(path) = &self.junit {
+        if let Some(output) = &self.files.junit {
             let text = junit(&results, &times).map_err(CliError::from);
-            troubles.extend(text.and_then(|text| output::write_file_anywhere(path, text)).err());
+            troubles.extend(text.and_then(|text| output.write(text)).err());
         }
         state.journal = None;
         if is_safe && results.unfinished.is_empty() && results.count_of(Outcome::Error) == 0 {

@@ -1,0 +1,190 @@
+//! What a command writes, and that nothing of it is what it reads.
+//!
+//! Every command names all its outputs here before anything runs and gets an [`Output`] for each, by which alone it writes. Refused are
+//! an output that is an input, whatever it is called (a link, a detour), one that another option names too, and a folder.
+mod place;
+mod target;
+
+pub(crate) use target::Output;
+
+use crate::error::CliError;
+use place::{FileId, Kind, Place};
+use std::collections::HashMap;
+use std::ffi::OsStr;
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use thiserror::Error;
+
+/// What stands for standard output behind `-o`.
+const STDOUT: &str = "-";
+
+/// The files that this process reads, and what each of them is in words.
+static INPUTS: Mutex<Option<HashMap<FileId, String>>> = Mutex::new(None);
+
+/// Notes that the file at `path` is read, which is `what`: `the scenario a.toml`, `the table of --points`. What is no regular file
+/// holds nothing that could be lost.
+pub(crate) fn reads(path: &Path, what: impl Display) {
+    if std::fs::metadata(path).is_ok_and(|found| found.is_file()) {
+        note(FileId::of(path), what);
+    }
+}
+
+/// Notes that standard input is read.
+pub(crate) fn reads_stdin() {
+    note(FileId::of_stdin(), "what comes in on standard input");
+}
+
+fn note(file: Option<FileId>, what: impl Display) {
+    if let Some(file) = file {
+        inputs().get_or_insert_default().entry(file).or_insert_with(|| what.to_string());
+    }
+}
+
+/// What the file is that is read, if it is.
+fn input(file: &FileId) -> Option<String> {
+    inputs().as_ref().and_then(|inputs| inputs.get(file)).cloned()
+}
+
+fn inputs() -> MutexGuard<'static, Option<HashMap<FileId, String>>> {
+    // Nothing is left half done with it.
+    INPUTS.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Makes the folder for everything.
+pub(crate) fn make_folder(folder: &Path) -> Result<(), CliError> {
+    std::fs::create_dir_all(folder).map_err(|error| CliError::MakeFolder { folder: folder.to_owned(), error })
+}
+
+/// Why something is not written.
+#[derive(Debug, Error)]
+pub(crate) enum Refused {
+    #[error("{option}: `{}` is {input} and would be lost; name another file", .path.display())]
+    Input { option: String, path: PathBuf, input: String },
+    #[error("{option}: `{}` is written by {other} too; name another file", .path.display())]
+    Twice { option: String, other: String, path: PathBuf },
+    #[error("{option}: `{}` is a folder; name a file in it", .path.display())]
+    Folder { option: String, path: PathBuf },
+    #[error("{option}: `{}` is no folder; name one, or a name that is free", .path.display())]
+    NoFolder { option: String, path: PathBuf },
+    #[error("`{name}` is no name of a file beside the results")]
+    Name { name: String },
+}
+
+/// The outputs of a command.
+#[derive(Debug, Default)]
+pub(crate) struct Outputs {
+    claimed: HashMap<Place, String>,
+}
+
+impl Outputs {
+    /// The file at `path`, which `option` names.
+    pub(crate) fn file(&mut self, option: &str, path: &Path) -> Result<Output, Refused> {
+        let kind = Kind::of(path);
+        if kind == Kind::Folder {
+            return Err(Refused::Folder { option: option.to_owned(), path: path.to_owned() });
+        }
+        spares(option, path)?;
+        // A device has room for all.
+        if kind != Kind::Device {
+            self.claim(option, path, Place::of(path))?;
+        }
+        Ok(Output::at(path, kind))
+    }
+
+    /// The same, where that was asked for.
+    pub(crate) fn optional(&mut self, option: &str, path: Option<&Path>) -> Result<Option<Output>, Refused> {
+        path.map(|path| self.file(option, path)).transpose()
+    }
+
+    /// The same, in a folder that is made when there is none.
+    pub(crate) fn anywhere(&mut self, option: &str, path: &Path) -> Result<Output, Refused> {
+        self.file(option, path).map(Output::anywhere)
+    }
+
+    /// The file at `path`; standard output without one and for `-`.
+    pub(crate) fn or_standard(&mut self, option: &str, path: Option<&Path>) -> Result<Output, Refused> {
+        match path {
+            Some(path) if path.as_os_str() != STDOUT => self.file(option, path),
+            _ => Ok(Output::STANDARD_OUTPUT),
+        }
+    }
+
+    /// The folder at `path`, which `option` names, for files that are called `names` in it.
+    pub(crate) fn folder(
+        &mut self,
+        option: &str,
+        path: &Path,
+        names: impl IntoIterator<Item = String>,
+    ) -> Result<OutputFolder, Refused> {
+        let no_folder = || Refused::NoFolder { option: option.to_owned(), path: path.to_owned() };
+        let there = match std::fs::metadata(path) {
+            Ok(found) if !found.is_dir() => return Err(no_folder()),
+            Ok(_) => FileId::of(path),
+            // It is made; a link that leads nowhere cannot be.
+            Err(_) => None,
+        };
+        let mut claimed = std::collections::HashSet::new();
+        for name in names {
+            is_name(&name)?;
+            self.claim(option, &path.join(&name), Place::within(there.as_ref(), path, &name))?;
+            claimed.insert(name);
+        }
+        // Only what is there already can be an input.
+        for entry in std::fs::read_dir(path).into_iter().flatten().flatten() {
+            if entry.file_name().to_str().is_some_and(|name| claimed.contains(name)) {
+                let taken = entry.path();
+                if taken.is_dir() {
+                    return Err(Refused::Folder { option: option.to_owned(), path: taken });
+                }
+                spares(option, &taken)?;
+            }
+        }
+        Ok(OutputFolder { path: path.to_owned() })
+    }
+
+    fn claim(&mut self, option: &str, path: &Path, place: Place) -> Result<(), Refused> {
+        match self.claimed.insert(place, option.to_owned()) {
+            Some(other) => Err(Refused::Twice { option: option.to_owned(), other, path: path.to_owned() }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Refuses to write over what is read.
+fn spares(option: &str, path: &Path) -> Result<(), Refused> {
+    match FileId::of(path).and_then(|file| input(&file)) {
+        Some(input) => Err(Refused::Input { option: option.to_owned(), path: path.to_owned(), input }),
+        None => Ok(()),
+    }
+}
+
+/// Whether `name`, which may come from anywhere, is that of a file beside those that name it.
+pub(crate) fn is_name(name: &str) -> Result<(), Refused> {
+    let is_one = Path::new(name).file_name() == Some(OsStr::new(name)) && !name.contains(['/', '\\', '\0']);
+    if is_one { Ok(()) } else { Err(Refused::Name { name: name.to_owned() }) }
+}
+
+/// A folder that a command writes into.
+#[derive(Debug, Clone)]
+pub(crate) struct OutputFolder {
+    path: PathBuf,
+}
+
+impl OutputFolder {
+    /// Where it is.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Where the file `name` in it is, of those that it is for. What writes there replaces a link and does not follow it.
+    pub(crate) fn place(&self, name: &str) -> Result<PathBuf, Refused> {
+        is_name(name)?;
+        Ok(self.path.join(name))
+    }
+
+    /// The file `name` in it, of those that it is for.
+    pub(crate) fn file(&self, name: &str) -> Result<Output, Refused> {
+        Ok(Output::at(&self.place(name)?, Kind::File))
+    }
+}

@@ -1,0 +1,225 @@
+//! Where a path leads: what is there is known by device and inode, so that neither links nor `./x` hide it; what is not there yet
+//! by its folder and its name.
+#[cfg(unix)]
+use std::fs::File;
+use std::fs::Metadata;
+use std::path::{Component, Path, PathBuf};
+
+/// Links that are followed at most, as Linux has it.
+const MOST_LINKS: usize = 40;
+
+/// A file that exists, whatever it is called.
+#[cfg(unix)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) struct FileId {
+    device: u64,
+    inode: u64,
+}
+
+/// A file that exists, whatever it is called: hard links are not seen through here.
+#[cfg(not(unix))]
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(super) struct FileId(PathBuf);
+
+/// A name in a folder, both as they are found now.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(super) struct Place {
+    /// The nearest folder that is there; `None` where not even the root can be asked.
+    folder: Option<FileId>,
+    /// What is below it.
+    name: PathBuf,
+}
+
+/// What a path is, for who wants to write there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// A regular file, or nothing yet: it is replaced as a whole.
+    File,
+    Folder,
+    /// A device: what is written goes there at once, and several may write there.
+    Device,
+    /// A pipe, a socket, or a descriptor of this process by its name below `/dev` or `/proc`.
+    Pipe,
+    /// Standard output by such a name.
+    StandardOutput,
+    /// Standard error by such a name.
+    StandardError,
+}
+
+#[cfg(unix)]
+impl FileId {
+    /// The file at `path`, links followed.
+    pub(super) fn of(path: &Path) -> Option<Self> {
+        std::fs::metadata(path).ok().map(|found| Self::in_metadata(&found))
+    }
+
+    fn in_metadata(found: &Metadata) -> Self {
+        use std::os::unix::fs::MetadataExt;
+        Self { device: found.dev(), inode: found.ino() }
+    }
+
+    /// What standard input comes from, if that is a regular file.
+    pub(super) fn of_stdin() -> Option<Self> {
+        use std::os::fd::AsFd;
+        let found = File::from(std::io::stdin().as_fd().try_clone_to_owned().ok()?).metadata().ok()?;
+        found.is_file().then(|| Self::in_metadata(&found))
+    }
+}
+
+#[cfg(not(unix))]
+impl FileId {
+    pub(super) fn of(path: &Path) -> Option<Self> {
+        path.canonicalize().ok().map(Self)
+    }
+
+    pub(super) fn of_stdin() -> Option<Self> {
+        None
+    }
+}
+
+impl Place {
+    /// Where `path` leads.
+    pub(super) fn of(path: &Path) -> Self {
+        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let Some((folder, name)) = path.parent().zip(path.file_name()) else {
+            return Self { folder: FileId::of(&path), name: PathBuf::new() };
+        };
+        let (mut folder, mut missing) = (folder, Vec::new());
+        loop {
+            if let Some(found) = FileId::of(folder) {
+                return Self { folder: Some(found), name: below(&missing).join(name) };
+            }
+            let Some(above) = folder.parent() else { return Self { folder: None, name: path.clone() } };
+            missing.extend(folder.components().next_back());
+            folder = above;
+        }
+    }
+
+    /// The file `name` in `folder`, of which that is the identity.
+    pub(super) fn within(folder: Option<&FileId>, folder_path: &Path, name: &str) -> Self {
+        match folder {
+            Some(folder) => Self { folder: Some(folder.clone()), name: name.into() },
+            None => Self::of(&folder_path.join(name)),
+        }
+    }
+}
+
+/// The folders `missing`, the innermost first, that somebody has still to make.
+fn below(missing: &[Component<'_>]) -> PathBuf {
+    let mut path = PathBuf::new();
+    for part in missing.iter().rev() {
+        match part {
+            Component::ParentDir => {
+                path.pop();
+            }
+            part => path.push(part),
+        }
+    }
+    path
+}
+
+impl Kind {
+    /// What is at `path`, links followed.
+    pub(super) fn of(path: &Path) -> Self {
+        if let Some(number) = descriptor(path) {
+            return match number {
+                1 => Self::StandardOutput,
+                2 => Self::StandardError,
+                _ => Self::Pipe,
+            };
+        }
+        match std::fs::metadata(path) {
+            Ok(found) if found.is_dir() => Self::Folder,
+            Ok(found) => Self::in_metadata(&found),
+            Err(_) => Self::File,
+        }
+    }
+
+    #[cfg(unix)]
+    fn in_metadata(found: &Metadata) -> Self {
+        use std::os::unix::fs::FileTypeExt;
+        let kind = found.file_type();
+        if kind.is_char_device() || kind.is_block_device() {
+            Self::Device
+        } else if kind.is_fifo() || kind.is_socket() {
+            Self::Pipe
+        } else {
+            Self::File
+        }
+    }
+
+    #[cfg(not(unix))]
+    fn in_metadata(_: &Metadata) -> Self {
+        Self::File
+    }
+}
+
+/// The descriptor of this process that `path` is a name of: `/dev/stdout` and `/dev/fd/1` lead to `/proc/self/fd/1`, which is a link to
+/// whatever is open there. To replace one of these links would help nobody.
+fn descriptor(path: &Path) -> Option<u32> {
+    let mut path = std::path::absolute(path).ok()?;
+    for _ in 0..MOST_LINKS {
+        let (folder, name) = (path.parent()?.canonicalize().ok()?, path.file_name()?);
+        if is_own_descriptors(&folder) {
+            return name.to_str()?.parse().ok();
+        }
+        path = folder.join(std::fs::read_link(folder.join(name)).ok()?);
+    }
+    None
+}
+
+/// Whether the real path `folder` is `/proc/ID/fd` of this process.
+fn is_own_descriptors(folder: &Path) -> bool {
+    let names = ["/proc/self/fd", "/proc/thread-self/fd"];
+    names.iter().any(|name| Path::new(name).canonicalize().is_ok_and(|real| real == folder))
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use std::fs;
+    use std::os::unix::fs::symlink;
+
+    #[test]
+    fn neither_links_nor_detours_hide_a_file() {
+        let there = tempfile::tempdir().unwrap();
+        let path = |name: &str| there.path().join(name);
+        fs::write(path("a"), "a").unwrap();
+        fs::write(path("b"), "a").unwrap();
+        fs::create_dir(path("folder")).unwrap();
+        symlink(path("a"), path("link")).unwrap();
+        fs::hard_link(path("a"), path("hard")).unwrap();
+        for name in ["link", "hard", "./a", "folder/../a"] {
+            assert_eq!(FileId::of(&path(name)), FileId::of(&path("a")), "{name}");
+        }
+        assert_ne!(FileId::of(&path("b")), FileId::of(&path("a")));
+        // What is not there yet.
+        assert_eq!(Place::of(&path("new")), Place::of(&path("folder/../new")));
+        assert_eq!(Place::of(&path("x/y/../new")), Place::of(&path("x/new")));
+        symlink(path("folder"), path("to-folder")).unwrap();
+        assert_eq!(Place::of(&path("to-folder/new")), Place::of(&path("folder/new")));
+        assert_ne!(Place::of(&path("folder/new")), Place::of(&path("new")));
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn devices_and_descriptors_are_told_from_files() {
+        let there = tempfile::tempdir().unwrap();
+        for (path, kind) in [
+            ("/dev/null", Kind::Device),
+            ("/dev/stdout", Kind::StandardOutput),
+            ("/proc/self/fd/1", Kind::StandardOutput),
+            ("/dev/stderr", Kind::StandardError),
+            ("/dev/fd/2", Kind::StandardError),
+            ("/dev/stdin", Kind::Pipe),
+            ("/tmp", Kind::Folder),
+            ("/proc/version", Kind::File),
+            ("/no/such/folder/x", Kind::File),
+        ] {
+            assert_eq!(Kind::of(Path::new(path)), kind, "{path}");
+        }
+        let link = there.path().join("out.csv");
+        symlink("/dev/stdout", &link).unwrap();
+        assert_eq!(Kind::of(&link), Kind::StandardOutput);
+    }
+}

@@ -1,0 +1,168 @@
+//! A file that a command may write: nothing that it reads, and nothing that it writes already.
+use crate::console;
+use crate::error::CliError;
+use crate::outputs::place::Kind;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// Where a command writes something. A file gets its name when it is whole; standard output, a pipe or a device gets what is written
+/// as it comes.
+#[derive(Debug, Clone)]
+pub(crate) struct Output {
+    to: To,
+}
+
+#[derive(Debug, Clone)]
+enum To {
+    File(PathBuf),
+    /// The same in a folder that may have to be made.
+    FileAnywhere(PathBuf),
+    /// By this name.
+    Stream(PathBuf, Kind),
+    /// Because nobody named a file, or by `-`.
+    StandardOutput,
+}
+
+impl Output {
+    pub(super) const STANDARD_OUTPUT: Self = Self { to: To::StandardOutput };
+
+    pub(super) fn at(path: &Path, kind: Kind) -> Self {
+        let path = path.to_owned();
+        let to = match kind {
+            Kind::File | Kind::Folder => To::File(path),
+            Kind::Device | Kind::Pipe | Kind::StandardOutput | Kind::StandardError => To::Stream(path, kind),
+        };
+        Self { to }
+    }
+
+    /// The same, in a folder that is made when there is none.
+    pub(super) fn anywhere(self) -> Self {
+        match self.to {
+            To::File(path) => Self { to: To::FileAnywhere(path) },
+            to => Self { to },
+        }
+    }
+
+    /// Whether it is standard output that nobody gave another name.
+    pub(crate) const fn is_standard_output(&self) -> bool {
+        matches!(self.to, To::StandardOutput)
+    }
+
+    /// The path that the user named; `None` for standard output.
+    pub(crate) fn path(&self) -> Option<&Path> {
+        match &self.to {
+            To::File(path) | To::FileAnywhere(path) | To::Stream(path, _) => Some(path),
+            To::StandardOutput => None,
+        }
+    }
+
+    /// What it is called in messages.
+    pub(crate) fn shown(&self) -> String {
+        self.path().map_or_else(|| "standard output".to_owned(), |path| path.display().to_string())
+    }
+
+    /// Writes what people or programs read as text: the whole file or nothing.
+    pub(crate) fn write_text(&self, text: &str) -> Result<(), CliError> {
+        if self.is_standard_output() { console::print(text) } else { self.write(text) }
+    }
+
+    /// Writes the whole file or nothing.
+    pub(crate) fn write(&self, bytes: impl AsRef<[u8]>) -> Result<(), CliError> {
+        match &self.to {
+            To::StandardOutput => console::print_bytes(bytes.as_ref()),
+            To::File(_) | To::FileAnywhere(_) | To::Stream(..) => {
+                self.stream(|out| out.write_all(bytes.as_ref()).map_err(|error| self.failed(error)))
+            }
+        }
+    }
+
+    /// The same, and makes sure that it is on the disk before it takes the place of what was there.
+    pub(crate) fn write_durably(&self, bytes: impl AsRef<[u8]>) -> Result<(), CliError> {
+        match &self.to {
+            To::File(path) | To::FileAnywhere(path) => {
+                servobench_trace::write_durably(path, bytes).map_err(|error| self.failed(error))
+            }
+            To::Stream(..) | To::StandardOutput => self.write(bytes),
+        }
+    }
+
+    /// Writes what `write` gives out, the whole file or nothing: for what is larger than memory.
+    pub(crate) fn stream(&self, write: impl FnOnce(&mut dyn Write) -> Result<(), CliError>) -> Result<(), CliError> {
+        match &self.to {
+            To::File(path) => self.whole(path, write),
+            To::FileAnywhere(path) => {
+                if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+                    super::make_folder(folder)?;
+                }
+                self.whole(path, write)
+            }
+            To::Stream(path, kind) => {
+                let mut out = BufWriter::new(Read(opened(path, *kind).map_err(|error| self.failed(error))?));
+                write(&mut out)?;
+                out.flush().map_err(|error| self.failed(error))
+            }
+            To::StandardOutput => {
+                let mut bytes = Vec::new();
+                write(&mut bytes)?;
+                console::print_bytes(&bytes)
+            }
+        }
+    }
+
+    fn whole(&self, path: &Path, write: impl FnOnce(&mut dyn Write) -> Result<(), CliError>) -> Result<(), CliError> {
+        // What the system says of the file and what `write` says have one way out.
+        let mut said = None;
+        let done = servobench_trace::stream_whole(path, |file| {
+            write(file).map_err(|error| {
+                said = Some(error);
+                io::Error::other("not written")
+            })
+        });
+        match (done, said) {
+            (_, Some(error)) => Err(error),
+            (done, None) => done.map_err(|error| self.failed(error)),
+        }
+    }
+
+    /// That it cannot be written.
+    pub(crate) fn failed(&self, error: io::Error) -> CliError {
+        match self.path() {
+            Some(path) => CliError::Write { path: path.to_owned(), error },
+            None => CliError::Print(error),
+        }
+    }
+}
+
+/// What somebody reads as it comes, who has what he wanted when he goes away.
+struct Read(File);
+
+impl Write for Read {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self.0.write(bytes) {
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(bytes.len()),
+            done => done,
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
+}
+
+/// What leads to a device, a pipe or a descriptor. A descriptor of ours is used itself, so that what is printed there otherwise
+/// follows it; what another process has opened as a file is written behind what it holds.
+fn opened(path: &Path, kind: Kind) -> io::Result<File> {
+    #[cfg(unix)]
+    {
+        use std::os::fd::AsFd;
+        match kind {
+            Kind::StandardOutput => return Ok(std::io::stdout().as_fd().try_clone_to_owned()?.into()),
+            Kind::StandardError => return Ok(std::io::stderr().as_fd().try_clone_to_owned()?.into()),
+            Kind::File | Kind::Folder | Kind::Device | Kind::Pipe => {}
+        }
+    }
+    #[cfg(not(unix))]
+    let _ = kind;
+    File::options().append(true).open(path)
+}
