@@ -61,7 +61,7 @@ fn exported(part: &str, version: &str) -> TempDir {
 fn recorded(work: &TempDir, name: &str, engine: &str, text: &str) -> Recording {
     std::fs::write(work.path().join(format!("{name}.toml")), text).unwrap();
     let out = path(work, name);
-    let output = servobench(&["run", &path(work, &format!("{name}.toml")), "--out", &out]);
+    let output = servobench(&["run", &path(work, &format!("{name}.toml")), "--out", &out, "--allow-unisolated-fmus"]);
     assert_eq!(code(&output), 0, "{}", said(&output));
     Recording::read_parquet(Path::new(&out).join(format!("{name}.{engine}.parquet"))).unwrap()
 }

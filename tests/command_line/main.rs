@@ -6,6 +6,7 @@ mod completions;
 mod fmu;
 mod fmu_standard;
 mod fmu_suite;
+mod fmu_trust;
 mod getting_started;
 #[cfg(target_os = "linux")]
 mod hostile;

@@ -224,6 +224,16 @@ pub(crate) struct RunArgs {
     /// Show all metrics of every run, as of a single one.
     #[arg(long, short, conflicts_with = "quiet")]
     pub(crate) verbose: bool,
+    #[command(flatten)]
+    pub(crate) fmus: FmuTrustArgs,
+}
+
+/// Which code of FMUs may run where.
+#[derive(Debug, Clone, Copy, Args)]
+pub(crate) struct FmuTrustArgs {
+    /// Let FMUs whose scenario says isolation = "none" run inside of servobench, with all that it may do and nothing that contains them.
+    #[arg(long)]
+    pub(crate) allow_unisolated_fmus: bool,
 }
 
 /// The arguments of this process, for a command that is to be given again; none when one of them is no text.
@@ -279,6 +289,11 @@ pub(crate) struct CheckArgs {
     pub(crate) verbose: bool,
     #[command(flatten)]
     pub(crate) memory: MemoryArgs,
+    /// Load and initialise the FMUs, which runs their code; without it only their descriptions are read.
+    #[arg(long)]
+    pub(crate) load_fmus: bool,
+    #[command(flatten)]
+    pub(crate) fmus: FmuTrustArgs,
 }
 
 #[derive(Debug, Args)]
@@ -305,6 +320,8 @@ pub(crate) struct CompareArgs {
     pub(crate) time_limit: Option<Duration>,
     #[command(flatten)]
     pub(crate) memory: MemoryArgs,
+    #[command(flatten)]
+    pub(crate) fmus: FmuTrustArgs,
 }
 
 /// What is equal in all runs of a comparison.

@@ -1,25 +1,51 @@
 //! The engines that this build has: the only place that knows of engine features.
+use crate::fmu_trust::FmuTrust;
 use servobench_plant::Engine;
 use servobench_sim::FmuOpener;
 use servobench_suite::Engines;
 
-const INSTALLED: &[&dyn Engine] = &[
-    #[cfg(feature = "exact")]
-    &servobench_plant::Exact,
-    #[cfg(feature = "rapier")]
-    &servobench_engine_rapier::Rapier,
-    #[cfg(feature = "mujoco")]
-    &servobench_engine_mujoco::Mujoco,
-    #[cfg(feature = "fmu")]
-    &crate::fmu_opener::ENGINE,
-];
+/// The engines of this build, with this one for FMUs.
+macro_rules! with_fmus_of {
+    ($fmu:expr) => {
+        &[
+            #[cfg(feature = "exact")]
+            &servobench_plant::Exact,
+            #[cfg(feature = "rapier")]
+            &servobench_engine_rapier::Rapier,
+            #[cfg(feature = "mujoco")]
+            &servobench_engine_mujoco::Mujoco,
+            #[cfg(feature = "fmu")]
+            $fmu,
+        ]
+    };
+}
+
+const DESCRIBED: &[&dyn Engine] = with_fmus_of!(&crate::fmu_opener::DESCRIBED);
+const ISOLATED: &[&dyn Engine] = with_fmus_of!(&crate::fmu_opener::ISOLATED);
+const ANYWHERE: &[&dyn Engine] = with_fmus_of!(&crate::fmu_opener::ANYWHERE);
 
 #[cfg(feature = "fmu")]
-const FMU_OPENER: &dyn FmuOpener = &crate::fmu_opener::ByEngine;
-#[cfg(not(feature = "fmu"))]
-const FMU_OPENER: &dyn FmuOpener = &servobench_sim::NoFmus;
+const fn fmu_opener(trust: FmuTrust) -> &'static dyn FmuOpener {
+    use crate::fmu_opener::{ANYWHERE, ByEngine, DESCRIBED, ISOLATED};
+    match trust {
+        FmuTrust::Describe => &ByEngine(DESCRIBED),
+        FmuTrust::Isolated => &ByEngine(ISOLATED),
+        FmuTrust::AsTheScenarioSays => &ByEngine(ANYWHERE),
+    }
+}
 
-/// Every engine of this build.
-pub(crate) const fn installed() -> Engines {
-    Engines { installed: INSTALLED, fmu_opener: FMU_OPENER }
+#[cfg(not(feature = "fmu"))]
+const fn fmu_opener(_: FmuTrust) -> &'static dyn FmuOpener {
+    &servobench_sim::NoFmus
+}
+
+/// Every engine of this build. Of FMUs runs the code that the command line lets run.
+pub(crate) fn installed() -> Engines {
+    let trust = FmuTrust::settled();
+    let installed = match trust {
+        FmuTrust::Describe => DESCRIBED,
+        FmuTrust::Isolated => ISOLATED,
+        FmuTrust::AsTheScenarioSays => ANYWHERE,
+    };
+    Engines { installed, fmu_opener: fmu_opener(trust) }
 }

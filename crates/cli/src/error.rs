@@ -63,6 +63,8 @@ pub(crate) enum CliError {
     #[error("the suite in `{}` cannot go on: its scenarios, a file that they name, or the program are not those it was begun \
              with; run it again", .0.display())]
     OtherSuite(PathBuf),
+    #[error("--resume: this suite was begun with `--allow-unisolated-fmus`; give it again if you trust its FMUs")]
+    TrustAgain,
     #[error("--rrd: with `--keep none` no recording is left for the viewer; leave one of them out")]
     NothingForTheViewer,
     #[error(transparent)]
@@ -180,6 +182,7 @@ impl CliError {
             | Self::OtherRecording(_)
             | Self::NothingToResume(_)
             | Self::OtherSuite(_)
+            | Self::TrustAgain
             | Self::NothingForTheViewer
             | Self::ReadRecording(_)
             | Self::Timing { .. }

@@ -1,5 +1,5 @@
 //! FMUs of scenarios: who opens them, and the program that they run in.
-use servobench_engine_fmu::{Fmu, HostCommand};
+use servobench_engine_fmu::{Code, Fmu, HostCommand};
 use servobench_fmi::{FmuMistake, FmuRequest, Slave};
 use servobench_sim::FmuOpener;
 use std::io;
@@ -7,19 +7,22 @@ use std::io;
 /// The command with which this program hosts an FMU.
 pub(crate) const HOST: &str = "fmu-host";
 
-/// The engine `fmu`, and whoever opens FMUs beside an axis.
-pub(crate) const ENGINE: Fmu = Fmu { host };
+/// The engine `fmu`, and whoever opens FMUs beside an axis: without running any code of theirs, in processes of their own, and where
+/// the scenario says.
+pub(crate) const DESCRIBED: Fmu = Fmu { host, code: Code::None };
+pub(crate) const ISOLATED: Fmu = Fmu { host, code: Code::Isolated };
+pub(crate) const ANYWHERE: Fmu = Fmu { host, code: Code::Anywhere };
 
 /// This program again.
 fn host() -> io::Result<HostCommand> {
     Ok(HostCommand { program: std::env::current_exe()?, args: vec![HOST.into()], env: Vec::new() })
 }
 
-/// Opens FMUs by the engine `fmu`.
-pub(crate) struct ByEngine;
+/// Opens FMUs by this engine `fmu`.
+pub(crate) struct ByEngine(pub(crate) Fmu);
 
 impl FmuOpener for ByEngine {
     fn open(&self, request: &FmuRequest<'_>) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
-        ENGINE.open(request)
+        self.0.open(request)
     }
 }

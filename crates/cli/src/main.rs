@@ -10,6 +10,7 @@ mod error;
 mod exit;
 #[cfg(feature = "fmu")]
 mod fmu_opener;
+mod fmu_trust;
 mod interrupt;
 mod output;
 mod outputs;
@@ -19,6 +20,7 @@ mod workers;
 
 use args::Command;
 use exit::Exit;
+use fmu_trust::FmuTrust;
 use std::panic::catch_unwind;
 use std::process::ExitCode;
 
@@ -34,6 +36,7 @@ fn main() -> ExitCode {
 }
 
 fn dispatch(command: &Command) -> Exit {
+    FmuTrust::of(command).settle();
     let done = match command {
         Command::Run(args) => commands::run(args),
         Command::Check(args) => commands::check(args),

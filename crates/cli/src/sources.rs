@@ -2,6 +2,7 @@
 use crate::console::say;
 use crate::diagnostics::{mistakes, render};
 use crate::error::CliError;
+use crate::fmu_trust::trusted;
 use crate::outputs::{reads, reads_stdin};
 use miette::Severity;
 use servobench_scenario::{LoadError, Loaded, Override, load_with, parse_with};
@@ -121,7 +122,7 @@ impl fmt::Display for Unusable {
 /// Every file by itself: one that cannot be used does not keep the others from being used.
 pub(crate) fn each(paths: &[PathBuf], overrides: &[Override]) -> Result<Vec<Result<Source, Unusable>>, CliError> {
     let files = files(paths)?;
-    let each = files.into_iter().map(|path| match loaded(&path, overrides) {
+    let each = files.into_iter().map(|path| match loaded(&path, overrides).and_then(trusted) {
         Ok(loaded) => Ok(source(loaded)),
         Err(error) => Err(Unusable { path, error }),
     });
@@ -167,7 +168,9 @@ fn note_files(loaded: &Loaded, path: &Path) {
     let fmus = scenario.fmus.iter().map(|fmu| &fmu.file).chain(scenario.axis.fmu.iter().map(|fmu| &fmu.file));
     models.chain(fmus.map(|file| file.path.as_path())).for_each(|file| reads(file, &what));
     let folder = if is_stdin(path) { Path::new("") } else { path.parent().unwrap_or(Path::new("")) };
-    tables.iter().for_each(|table| reads(&folder.join(&table.named), &what));
+    for table in tables {
+        reads(&folder.join(&table.named), &what);
+    }
 }
 
 fn read_stdin() -> std::io::Result<String> {

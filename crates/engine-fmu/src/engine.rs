@@ -12,6 +12,20 @@ use std::io;
 pub struct Fmu {
     /// The program that an FMU runs in if it is isolated.
     pub host: fn() -> io::Result<HostCommand>,
+    /// Which code of FMUs runs.
+    pub code: Code,
+}
+
+/// Which code of FMUs runs. It is whoever starts the program that says so, and nothing in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Code {
+    /// None: an FMU is what its description says, and takes no step.
+    #[default]
+    None,
+    /// In a process of its own.
+    Isolated,
+    /// Where the scenario says, in this process too.
+    Anywhere,
 }
 
 impl Fmu {
@@ -46,12 +60,12 @@ impl Fmu {
         FmuMechanics::new(slave, model, setup.step)
     }
 
-    /// The FMU, initialised and wired; its numbers are SI numbers.
+    /// The FMU, initialised and wired; its numbers are SI numbers. Where no code runs, all its outputs are zero.
     ///
     /// # Errors
     /// Everything that does not fit the file, or why it cannot be started.
     pub fn open(&self, request: &FmuRequest<'_>) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
-        open(request, self.host)
+        open(request, self.code, self.host)
     }
 }
 

@@ -23,6 +23,7 @@
 //!
 //! Linux only: futexes, memfd and pidfd (5.3 or later).
 
+mod described;
 mod doorbell;
 mod engine;
 mod error;
@@ -40,7 +41,7 @@ mod page;
 mod ports;
 mod protocol;
 
-pub use engine::Fmu;
+pub use engine::{Code, Fmu};
 pub use error::{HostError, IsolationError};
 pub use host::serve;
 pub use in_si::InSi;

@@ -1,4 +1,6 @@
 //! From what is said of an FMU to one that runs: everything that does not fit is found first.
+use crate::described::Described;
+use crate::engine::Code;
 use crate::in_si::InSi;
 use crate::load::{Place, load};
 use crate::ports::{Ports, mechanical};
@@ -9,9 +11,11 @@ use servobench_fmi::{
 use servobench_isolation::Program as HostCommand;
 use std::io;
 
-/// The FMU, initialised and wired; its numbers are SI numbers. `host` is the program that runs one in a process of its own.
+/// The FMU, initialised and wired; its numbers are SI numbers. `host` is the program that runs one in a process of its own. Where
+/// `code` lets none of its code run, it is only described.
 pub(crate) fn open(
     request: &FmuRequest<'_>,
+    code: Code,
     host: fn() -> io::Result<HostCommand>,
 ) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
     let of_file = |error: &dyn std::fmt::Display| vec![FmuMistake::of_file(&error)];
@@ -45,7 +49,13 @@ pub(crate) fn open(
     mistakes.extend(misfits(&mut setup, &fmu));
     mistakes.extend(step_mistake(request.step, it));
     mistakes.extend(event_mode_mistake(file, it));
+    mistakes.extend(isolation_mistake(file, code));
     let Some(ports) = ports.filter(|_| mistakes.is_empty()) else { return Err(mistakes) };
+    if code == Code::None {
+        fmu.library().map_err(|error| of_file(&error))?;
+        let described = Described::new(it, &setup);
+        return Ok(Box::new(InSi::new(Box::new(described), ports).with_warnings(fmu.remarks())));
+    }
     let place = place(file.isolation, host).map_err(|error| of_file(&error))?;
     let slave = load(&fmu, &setup, &place).map_err(|error| {
         let at = if error.is_of_the_run() { FmuEntry::Conduct } else { FmuEntry::File };
@@ -78,6 +88,15 @@ fn event_mode_mistake(file: &FmuFile, it: &ModelDescription) -> Option<FmuMistak
         at: FmuEntry::EventMode,
         message: "the FMU has no event mode that could be switched off".into(),
         help: "leave `event_mode` out".into(),
+    })
+}
+
+/// In this process it can do whatever the program can: that is not the scenario's to say.
+fn isolation_mistake(file: &FmuFile, code: Code) -> Option<FmuMistake> {
+    (file.isolation == Isolation::None && code == Code::Isolated).then(|| FmuMistake {
+        at: FmuEntry::Isolation,
+        message: "only the command line can let the code of an FMU run without isolation".into(),
+        help: "leave `isolation` out, or trust the FMU with `--allow-unisolated-fmus`".into(),
     })
 }
 

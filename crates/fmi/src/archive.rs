@@ -13,6 +13,7 @@ mod twice;
 
 use crate::description::{MOST_BYTES, ModelDescription};
 use crate::error::{ArchiveProblem, FmuError};
+use crate::library;
 use folder::{Own, writing};
 use name::Names;
 
@@ -264,6 +265,14 @@ impl Unpacked {
     #[must_use]
     pub fn description(&self) -> &ModelDescription {
         &self.description
+    }
+
+    /// Where its library for this platform is. Nothing of that is loaded.
+    ///
+    /// # Errors
+    /// [`FmuError::Library`] says what there is instead.
+    pub fn library(&self) -> Result<PathBuf, FmuError> {
+        library::path(self)
     }
 }
 

@@ -107,6 +107,8 @@ pub enum FmuEntry {
     Step,
     /// Whether its event mode is used.
     EventMode,
+    /// Where it runs.
+    Isolation,
     /// The start value of this variable.
     Start(String),
     /// This input.

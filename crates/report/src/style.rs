@@ -88,8 +88,8 @@ pub fn shown(text: &str, colour: bool) -> String {
 fn shown_line(out: &mut String, line: &str, colour: bool) {
     let marks: Vec<(usize, &str)> = line
         .chars()
-        .filter_map(|c| Some((c, code(c))))
-        .scan(0, |before, (_, code)| {
+        .map(code)
+        .scan(0, |before, code| {
             let at = *before;
             *before += usize::from(code.is_none());
             Some((at, code))
@@ -128,15 +128,12 @@ pub fn painted(text: &str) -> String {
     let mut marked = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         let known = part.split_once('m').and_then(|(code, rest)| Some((mark(code)?, rest)));
-        match known {
-            Some((mark, rest)) => {
-                marked.push(mark);
-                marked.push_str(rest);
-            }
-            None => {
-                marked.push_str("\x1b[");
-                marked.push_str(part);
-            }
+        if let Some((mark, rest)) = known {
+            marked.push(mark);
+            marked.push_str(rest);
+        } else {
+            marked.push_str("\x1b[");
+            marked.push_str(part);
         }
     }
     marked

@@ -5,6 +5,8 @@
 //! Unicode reserves and XML does not allow. Those that end a line: whoever writes one writes the next line of a log. And what begins a
 //! command to a runner of continuous integration, which reads it out of the log.
 
+use std::fmt::Write as _;
+
 /// `text` as one line: what is not shown is a question mark in a diamond, what ends a line or sets a tab is a blank.
 #[must_use]
 pub fn printable(text: &str) -> String {
@@ -27,7 +29,10 @@ pub fn printable_json(text: &str) -> String {
         if c == '\n' || c == visible(c) {
             shown.push(c);
         } else {
-            c.encode_utf16(&mut [0; 2]).iter().for_each(|unit| shown.push_str(&format!("\\u{unit:04x}")));
+            for unit in c.encode_utf16(&mut [0; 2]) {
+                // Writing to a string cannot fail.
+                write!(shown, "\\u{unit:04x}").ok();
+            }
         }
     }
     shown

@@ -39,8 +39,24 @@ pub fn check(job: &Job, engines: &Engines, workers: &Workers) -> Result<Vec<Obje
         Err(error @ (WorkerError::Ended { .. } | WorkerError::Stalled { .. })) if has_mjcf(&job.scenario) => {
             Ok(vec![Objection::new(model_key(&job.scenario), error.to_string())])
         }
-        answer => Ok(answer?),
+        answer => {
+            let found = answer?;
+            if found.is_empty() { beside(job, engines) } else { Ok(found) }
+        }
     }
+}
+
+/// What keeps the FMUs beside the axis of `job` from being used. A worker that checks reads their descriptions only; whether they are
+/// loaded is for this process to say, and `exact` is the engine that is asked about nothing else. A file of the user's it cannot simulate.
+fn beside(job: &Job, engines: &Engines) -> Result<Vec<Objection>, RunError> {
+    let has_bodies = matches!(job.scenario.axis.mechanics, AxisMechanics::Bodies(_));
+    let Ok(exact) = engines.get(EngineName::Exact) else { return Ok(Vec::new()) };
+    if job.scenario.fmus.is_empty() || !has_bodies {
+        return Ok(Vec::new());
+    }
+    let mut found = caught(|| objections(&job.scenario, exact, engines.fmu_opener))??;
+    found.retain(|objection| objection.key.starts_with("fmu."));
+    Ok(found)
 }
 
 /// How late what axis and FMUs exchange is, of a job without objections; nothing where no FMU is beside the axis.
@@ -146,6 +162,7 @@ impl Objection {
             FmuEntry::File | FmuEntry::Conduct => format!("{table}.file"),
             FmuEntry::Step => format!("{table}.step"),
             FmuEntry::EventMode => format!("{table}.event_mode"),
+            FmuEntry::Isolation => format!("{table}.isolation"),
             FmuEntry::Start(variable) => format!("{table}.parameters.{variable}"),
             FmuEntry::Input(variable) => format!("{table}.inputs.{variable}"),
             FmuEntry::Output(variable) => format!("{table}.outputs.{variable}"),

@@ -5,6 +5,7 @@ use crate::diagnostics::render;
 use crate::engines;
 use crate::error::CliError;
 use crate::exit::Exit;
+use crate::fmu_trust::{doubts, trusted};
 use crate::interrupt;
 use crate::sources;
 use crate::workers;
@@ -36,7 +37,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     let (mut findings, mut missing, mut shown) = (Findings::default(), Vec::new(), String::new());
     let in_full = args.verbose || files.len() == 1;
     for file in &files {
-        match sources::read(file, &args.with.overrides) {
+        match sources::read(file, &args.with.overrides).and_then(trusted) {
             Ok(loaded) => {
                 let asked = Asked::about(&loaded, &engines, &workers);
                 if let Some(preview) = &asked.preview {
@@ -161,13 +162,14 @@ impl Asked {
             Ok(preview) => self.preview = preview,
             Err(error) => self.failed.push(error.into()),
         }
-        let doubts = self.preview.iter().flat_map(|preview| &preview.doubts).cloned();
-        self.doubts = doubts
+        let found = self.preview.iter().flat_map(|preview| &preview.doubts).cloned();
+        self.doubts = found
             .map(|Doubt { key, line, message, help }| match line {
                 Some(line) => loaded.mistake_in_mjcf(line, message, &help),
                 None => loaded.mistake(&key, message, help),
             })
             .collect();
+        self.doubts.extend(doubts(loaded));
         self.doubts.sort_by_key(|doubt| (doubt.source, doubt.span.start));
     }
 }

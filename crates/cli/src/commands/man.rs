@@ -32,8 +32,8 @@ fn render(command: &Command, names: &mut Vec<String>, pages: &mut Vec<Vec<u8>>) 
     let name = command.get_display_name().unwrap_or_else(|| command.get_name());
     names.push(format!("{name}.1"));
     pages.push(page(command)?);
-    let inner = command.get_subcommands().filter(|inner| !inner.is_hide_set());
-    inner.map(|inner| render(inner, names, pages)).collect()
+    let mut inner = command.get_subcommands().filter(|inner| !inner.is_hide_set());
+    inner.try_for_each(|inner| render(inner, names, pages))
 }
 
 fn page(command: &Command) -> Result<Vec<u8>, CliError> {

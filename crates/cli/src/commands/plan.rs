@@ -116,9 +116,9 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
         output.write(drawing)?;
     }
     if *json {
-        print_json(&planned.json()?)?
+        print_json(&planned.json()?)?;
     } else {
-        print(&planned.table())?
+        print(&planned.table())?;
     }
     Ok(Exit::Passed)
 }

@@ -10,7 +10,7 @@ const MOST_LINKS: usize = 40;
 
 /// A file that exists, whatever it is called.
 #[cfg(unix)]
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) struct FileId {
     device: u64,
     inode: u64,

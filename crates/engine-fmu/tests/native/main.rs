@@ -2,7 +2,7 @@
 mod leaving;
 
 use servobench_base::Severity;
-use servobench_engine_fmu::{Fmu, FmuMechanics, HostCommand, HostError, host as serve};
+use servobench_engine_fmu::{Code, Fmu, FmuMechanics, HostCommand, HostError, host as serve};
 use servobench_fmi::{Bounds, FmuFile, Isolation, SiPort, Value};
 use servobench_plant::{
     Actuation, Drive, Engine, EngineName, FmuBody, FmuModel, Input, LogMessage, Mechanics, MechanicsError,
@@ -72,6 +72,7 @@ const ENGINE: Fmu = Fmu {
         let args = ["--exact", "host", "--ignored", "--nocapture"];
         Ok(HostCommand { program: std::env::current_exe()?, args: args.map(Into::into).to_vec(), env: Vec::new() })
     },
+    code: Code::Anywhere,
 };
 
 /// The FMU's file, which is there as long as this is.

@@ -9,7 +9,7 @@ mod masses;
 use files::Files;
 use masses::{Outcome, RATE, TwoMasses, settings, state};
 use servobench_coupling::{Acceleration, CouplingError, Iteration, Method, Order, Settings};
-use servobench_engine_fmu::{Fmu, HostCommand, HostError, host as serve};
+use servobench_engine_fmu::{Code, Fmu, HostCommand, HostError, host as serve};
 use servobench_fmi::{Bounds, Isolation};
 use std::time::Duration;
 
@@ -29,6 +29,7 @@ const ENGINE: Fmu = Fmu {
         let args = ["--exact", "host", "--ignored", "--nocapture"];
         Ok(HostCommand { program: std::env::current_exe()?, args: args.map(Into::into).to_vec(), env: Vec::new() })
     },
+    code: Code::Anywhere,
 };
 const ISOLATED: Isolation =
     Isolation::Process { bounds: Bounds { call_timeout: Duration::from_mins(1), memory: 300_000_000 } };

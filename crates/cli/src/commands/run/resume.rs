@@ -60,7 +60,12 @@ fn arguments(suite: &Suite, now: &RunArgs, out: std::path::PathBuf) -> Result<Ru
     let Some(Command::Run(began)) = args::of(&suite.command) else {
         return Err(CliError::NothingToResume(out));
     };
+    // Trust is what is given now: the journal is a file.
+    if began.fmus.allow_unisolated_fmus && !now.fmus.allow_unisolated_fmus {
+        return Err(CliError::TrustAgain);
+    }
     Ok(RunArgs {
+        fmus: now.fmus,
         out: Some(out),
         jobs: now.jobs.or(began.jobs),
         quiet: now.quiet,

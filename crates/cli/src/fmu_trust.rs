@@ -1,0 +1,93 @@
+//! Which code of FMUs may run: that is for the command line to say, and for no scenario.
+use crate::args::{CheckArgs, Command, FmuTrustArgs, WorkerArgs};
+#[cfg(feature = "fmu")]
+use servobench_fmi::Isolation;
+use servobench_scenario::{Diagnostic, Invalid, LoadError, Loaded};
+use std::sync::OnceLock;
+
+/// Which code of FMUs runs in this process and those that it starts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum FmuTrust {
+    /// None: their descriptions are read.
+    Describe,
+    /// In processes of their own.
+    Isolated,
+    /// Where their scenarios say, in this process too.
+    AsTheScenarioSays,
+}
+
+/// What the command line says; before it has said anything no code runs.
+static TRUST: OnceLock<FmuTrust> = OnceLock::new();
+
+/// The option that lets code run without isolation.
+#[cfg(feature = "fmu")]
+const ALLOW: &str = "--allow-unisolated-fmus";
+
+impl FmuTrust {
+    /// What `command` allows.
+    pub(crate) const fn of(command: &Command) -> Self {
+        match command {
+            Command::Run(args) => Self::running(args.fmus),
+            Command::Compare(args) => Self::running(args.fmus),
+            Command::Check(CheckArgs { load_fmus: true, fmus, .. }) => Self::running(*fmus),
+            // Whoever started it has asked the command line, and wants nothing to run where nothing is recorded.
+            Command::Worker(WorkerArgs { recording: Some(_), .. }) => Self::AsTheScenarioSays,
+            _ => Self::Describe,
+        }
+    }
+
+    const fn running(args: FmuTrustArgs) -> Self {
+        if args.allow_unisolated_fmus { Self::AsTheScenarioSays } else { Self::Isolated }
+    }
+
+    /// From now on this is what the command line says.
+    pub(crate) fn settle(self) {
+        // It says it once.
+        TRUST.set(self).ok();
+    }
+
+    /// What the command line says.
+    pub(crate) fn settled() -> Self {
+        TRUST.get().copied().unwrap_or(Self::Describe)
+    }
+}
+
+/// `loaded`, unless it wants code of an FMU to run where the command line does not let it.
+pub(crate) fn trusted(loaded: Loaded) -> Result<Loaded, LoadError> {
+    if FmuTrust::settled() != FmuTrust::Isolated {
+        return Ok(loaded);
+    }
+    let diagnostics = unisolated(&loaded, "needs");
+    if diagnostics.is_empty() {
+        return Ok(loaded);
+    }
+    let Loaded { warnings, sources, .. } = loaded;
+    Err(LoadError::Invalid(Box::new(Invalid { diagnostics, warnings, sources })))
+}
+
+/// What a check that runs no code has to say of `loaded`: a run of it needs a word of the command line.
+pub(crate) fn doubts(loaded: &Loaded) -> Vec<Diagnostic> {
+    if FmuTrust::settled() == FmuTrust::Describe { unisolated(loaded, "will need") } else { Vec::new() }
+}
+
+/// A build that opens no FMUs runs none.
+#[cfg(not(feature = "fmu"))]
+fn unisolated(_: &Loaded, _: &str) -> Vec<Diagnostic> {
+    Vec::new()
+}
+
+/// Each place where `loaded` wants an FMU to run without isolation.
+#[cfg(feature = "fmu")]
+fn unisolated(loaded: &Loaded, needs: &str) -> Vec<Diagnostic> {
+    let scenario = &loaded.scenario;
+    let mechanics = scenario.axis.fmu.iter().map(|fmu| ("axis.fmu".to_owned(), &fmu.file));
+    let beside = scenario.fmus.iter().enumerate().map(|(k, fmu)| (format!("fmu.{k}"), &fmu.file));
+    let all = mechanics.chain(beside).filter(|(_, file)| file.isolation == Isolation::None);
+    all.map(|(table, _)| {
+        let message =
+            format!("the code of an FMU without isolation can do what servobench can: a run {needs} `{ALLOW}`");
+        let help = format!("leave `isolation` out, or give `{ALLOW}` if you trust this FMU");
+        loaded.mistake(&format!("{table}.isolation"), message, help)
+    })
+    .collect()
+}
