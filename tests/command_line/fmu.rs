@@ -175,3 +175,21 @@ fn what_an_fmu_does_not_have_is_said_at_the_door() {
     assert_ne!(code(&output), 0, "{}", said(&output));
     assert!(said(&output).contains("drive.fmu"), "{}", said(&output));
 }
+
+/// Oracle: the FMUs themselves. What their descriptions say is what they are, as far as a check tells.
+#[test]
+fn a_check_says_the_same_whether_code_runs_or_not() {
+    let iterated = "[coupling]\nmethod = \"iterated\"\nstep = \"1 ms\"\n";
+    for version in ["2", "3"] {
+        for (part, keys, engine) in [("mechanics", MECHANICS, "engine = \"fmu\"\n"), ("drive", DRIVE, "")] {
+            let work = exported(part, version);
+            for coupling in ["", iterated] {
+                std::fs::write(work.path().join("it.toml"), format!("{engine}{AXIS}{keys}{coupling}")).unwrap();
+                let checked = |more: &[&str]| servobench(&[&["check", &path(&work, "it.toml")], more].concat());
+                let (described, loaded) = (checked(&[]), checked(&["--load-fmus"]));
+                assert_eq!((code(&described), said(&described)), (code(&loaded), said(&loaded)), "{part} {version}");
+                assert!(coupling != "" || code(&loaded) == 0, "{}", said(&loaded));
+            }
+        }
+    }
+}

@@ -1,10 +1,11 @@
 //! Whose code runs when: an FMU whose library leaves a trace as soon as it is loaded.
-use crate::fmu_standard::{DESCRIPTION, fmu};
+use crate::fmu_standard::{self, DESCRIPTION, fmu, mischief};
 use crate::{SLIDE, code, command, said};
 use std::fs::{self, File};
 use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Output};
+use std::time::{Duration, Instant};
 use tempfile::TempDir;
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
@@ -136,4 +137,27 @@ fn no_scenario_lets_an_fmu_run_without_isolation() {
         let (output, was_loaded) = traced(work.path(), &["run", scenario]);
         assert!(code(&output) == 2 && was_loaded, "{scenario}: {}", said(&output));
     }
+}
+
+/// The journal of a suite is a file as any other: it may come from anywhere.
+#[test]
+fn a_suite_that_goes_on_is_trusted_again() {
+    let work = fmu_standard::work(&[("hangs", mischief("m", "hang", "step", "isolation = \"none\""))]);
+    let run = |more: &[&str]| {
+        let mut command = command(more);
+        command.current_dir(work.path());
+        command
+    };
+    let mut child = run(&["run", "hangs.toml", "--out", "out", "--allow-unisolated-fmus"]).spawn().unwrap();
+    let journal = work.path().join("out/results.journal");
+    let late = Instant::now() + Duration::from_mins(1);
+    while !journal.is_file() {
+        assert!(Instant::now() < late, "there is no journal");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let output = run(&["run", "--resume", "out"]).output().unwrap();
+    assert_eq!(code(&output), 2, "{}", said(&output));
+    assert!(said(&output).contains("begun with `--allow-unisolated-fmus`; give it again"), "{}", said(&output));
 }

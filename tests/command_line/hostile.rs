@@ -380,3 +380,27 @@ fn a_forged_line_of_a_log_is_none() {
         assert!(!said(&output).lines().any(|line| line == "1 run: 1 passed"), "{}", said(&output));
     }
 }
+
+/// The gate lets our own colours through, and all of them.
+#[test]
+fn colours_of_our_own_are_shown() {
+    let limit = "\n[limits]\nfollowing_error_peak_load = \"1 nm\"\n";
+    let work = folder(&[
+        ("wrong.toml", with("nonsense = 1")),
+        ("fails.toml", SLIDE.to_owned() + limit),
+        ("doubtful.toml", with("format = 1")),
+    ]);
+    for (words, says) in [
+        (&["check", "wrong.toml"][..], "\u{1b}[31m"),
+        (&["check", "doubtful.toml"], "\u{1b}[33m"),
+        (&["run", "fails.toml"], "\u{1b}[1;31mFAILED"),
+        (&["run", "--jobs", "0"], "\u{1b}[31merror:"),
+        (&["--help"], "\u{1b}[1m"),
+    ] {
+        let Some(output) = on_a_terminal(work.path(), words) else { return };
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert!(text.contains(says) && !text.contains('\u{fffd}'), "{words:?}: {text:?}");
+        let plain = command(words).current_dir(work.path()).output().unwrap();
+        assert!(!said(&plain).contains('\u{1b}'), "{words:?}");
+    }
+}

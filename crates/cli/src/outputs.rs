@@ -9,7 +9,7 @@ pub(crate) use target::Output;
 
 use crate::error::CliError;
 use place::{FileId, Kind, Place};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::ffi::OsStr;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -117,17 +117,14 @@ impl Outputs {
         path: &Path,
         names: impl IntoIterator<Item = String>,
     ) -> Result<OutputFolder, Refused> {
-        let no_folder = || Refused::NoFolder { option: option.to_owned(), path: path.to_owned() };
-        let there = match std::fs::metadata(path) {
-            Ok(found) if !found.is_dir() => return Err(no_folder()),
-            Ok(_) => FileId::of(path),
-            // It is made; a link that leads nowhere cannot be.
-            Err(_) => None,
-        };
-        let mut claimed = std::collections::HashSet::new();
+        if std::fs::metadata(path).is_ok_and(|found| !found.is_dir()) {
+            return Err(Refused::NoFolder { option: option.to_owned(), path: path.to_owned() });
+        }
+        let folder = Place::of_folder(path);
+        let mut claimed = HashSet::new();
         for name in names {
             is_name(&name)?;
-            self.claim(option, &path.join(&name), Place::within(there.as_ref(), path, &name))?;
+            self.claim(option, &path.join(&name), folder.file(&name))?;
             claimed.insert(name);
         }
         // Only what is there already can be an input.

@@ -95,12 +95,14 @@ impl Place {
         }
     }
 
-    /// The file `name` in `folder`, of which that is the identity.
-    pub(super) fn within(folder: Option<&FileId>, folder_path: &Path, name: &str) -> Self {
-        match folder {
-            Some(folder) => Self { folder: Some(folder.clone()), name: name.into() },
-            None => Self::of(&folder_path.join(name)),
-        }
+    /// The folder at `path`, for the files in it.
+    pub(super) fn of_folder(path: &Path) -> Self {
+        FileId::of(path).map_or_else(|| Self::of(path), |folder| Self { folder: Some(folder), name: PathBuf::new() })
+    }
+
+    /// The file `name` in this folder.
+    pub(super) fn file(&self, name: &str) -> Self {
+        Self { folder: self.folder.clone(), name: self.name.join(name) }
     }
 }
 
@@ -199,6 +201,9 @@ mod tests {
         symlink(path("folder"), path("to-folder")).unwrap();
         assert_eq!(Place::of(&path("to-folder/new")), Place::of(&path("folder/new")));
         assert_ne!(Place::of(&path("folder/new")), Place::of(&path("new")));
+        for folder in ["folder", "to-folder", "x/y/..", "none"] {
+            assert_eq!(Place::of_folder(&path(folder)).file("new"), Place::of(&path(folder).join("new")), "{folder}");
+        }
     }
 
     #[cfg(target_os = "linux")]
