@@ -188,7 +188,7 @@ fn a_check_says_the_same_whether_code_runs_or_not() {
                 let checked = |more: &[&str]| servobench(&[&["check", &path(&work, "it.toml")], more].concat());
                 let (described, loaded) = (checked(&[]), checked(&["--load-fmus"]));
                 assert_eq!((code(&described), said(&described)), (code(&loaded), said(&loaded)), "{part} {version}");
-                assert!(coupling != "" || code(&loaded) == 0, "{}", said(&loaded));
+                assert!(!coupling.is_empty() || code(&loaded) == 0, "{}", said(&loaded));
             }
         }
     }

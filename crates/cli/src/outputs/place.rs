@@ -78,16 +78,15 @@ impl FileId {
 }
 
 impl Place {
-    /// Where `path` leads.
+    /// Where `path` leads. A name in a folder is that name, whatever it leads to in turn: what is written there takes its place.
     pub(super) fn of(path: &Path) -> Self {
         let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-        let Some((folder, name)) = path.parent().zip(path.file_name()) else {
-            return Self { folder: FileId::of(&path), name: PathBuf::new() };
-        };
-        let (mut folder, mut missing) = (folder, Vec::new());
+        let is_name = matches!(path.components().next_back(), Some(Component::Normal(_)));
+        let (mut folder, mut missing) = (path.as_path(), Vec::new());
         loop {
-            if let Some(found) = FileId::of(folder) {
-                return Self { folder: Some(found), name: below(&missing).join(name) };
+            let is_looked_up = !(is_name && missing.is_empty());
+            if let Some(found) = is_looked_up.then(|| FileId::of(folder)).flatten() {
+                return Self { folder: Some(found), name: below(&missing) };
             }
             let Some(above) = folder.parent() else { return Self { folder: None, name: path.clone() } };
             missing.extend(folder.components().next_back());
@@ -201,7 +200,8 @@ mod tests {
         symlink(path("folder"), path("to-folder")).unwrap();
         assert_eq!(Place::of(&path("to-folder/new")), Place::of(&path("folder/new")));
         assert_ne!(Place::of(&path("folder/new")), Place::of(&path("new")));
-        for folder in ["folder", "to-folder", "x/y/..", "none"] {
+        assert_eq!(Place::of(Path::new("/")), Place::of_folder(Path::new("/")));
+        for folder in ["folder", "to-folder", "folder/..", "x/y/..", "none", "none/"] {
             assert_eq!(Place::of_folder(&path(folder)).file("new"), Place::of(&path(folder).join("new")), "{folder}");
         }
     }
