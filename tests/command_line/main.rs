@@ -7,9 +7,9 @@ mod fmu;
 mod fmu_standard;
 mod fmu_suite;
 mod fmu_trust;
-mod getting_started;
 #[cfg(target_os = "linux")]
-mod hostile;
+mod foreign_text;
+mod getting_started;
 #[cfg(unix)]
 mod interrupted;
 #[cfg(target_os = "linux")]

@@ -113,6 +113,11 @@ fn no_other_command_writes_over_what_it_reads() {
     ] {
         refused(work.path(), arguments, &[says, "would be lost"]);
     }
+    // By a link, so that the library stays whatever comes of it: where cargo has it, or where it is distributed.
+    let program = Path::new(env!("CARGO_BIN_EXE_servobench")).parent().unwrap();
+    let places = ["../lib", "deps", ""].map(|folder| program.join(folder).join("libservobench_fmu.so"));
+    symlink(places.iter().find(|place| place.is_file()).unwrap(), work.path().join("library")).unwrap();
+    refused(work.path(), &["fmu", "export", "bus.toml", "-o", "library"], &["is the library that goes into FMUs"]);
     let output = within(work.path(), &["run", "bus.toml", "--out", "out", "--quiet"]);
     assert_eq!(code(&output), 0, "{}", said(&output));
     let recording = "out/bus.exact.parquet";

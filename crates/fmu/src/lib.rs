@@ -27,5 +27,5 @@ mod units;
 
 pub use error::FmuError;
 pub use export::export;
-pub use library::{LIBRARY, library};
+pub use library::{LIBRARY, library, library_path};
 pub use part::Part;

@@ -6,18 +6,25 @@ use std::path::{Path, PathBuf};
 /// Its file name, as cargo makes it of this crate.
 pub const LIBRARY: &str = "libservobench_fmu.so";
 
-/// The library for [`export`](crate::export) that belongs to the program at `program`: in `../lib` of its folder, as it is
+/// The library for [`export`](crate::export) that is at [`library_path`].
+///
+/// # Errors
+/// As there, and [`FmuError::Read`] that it cannot be read.
+pub fn library(program: &Path) -> Result<Vec<u8>, FmuError> {
+    let path = library_path(program)?;
+    fs::read(&path).map_err(|error| FmuError::Read { path, error })
+}
+
+/// Where the library for [`export`](crate::export) is that belongs to the program at `program`: in `../lib` of its folder, as it is
 /// distributed; in `deps`, where cargo leaves it with the program; or beside it, where it is built by itself.
 ///
 /// # Errors
-/// [`FmuError::NoLibrary`] says where it was looked for and how to make it, [`FmuError::Read`] that it cannot be read.
-pub fn library(program: &Path) -> Result<Vec<u8>, FmuError> {
+/// [`FmuError::NoLibrary`] says where it was looked for and how to make it.
+pub fn library_path(program: &Path) -> Result<PathBuf, FmuError> {
     let folder = program.parent().unwrap_or_else(|| Path::new(""));
     let places = ["../lib", "deps", ""].map(|within| folder.join(within).join(LIBRARY));
-    match places.iter().find(|place| place.is_file()) {
-        Some(place) => fs::read(place).map_err(|error| FmuError::Read { path: place.clone(), error }),
-        None => Err(FmuError::NoLibrary { looked: listed(&places) }),
-    }
+    let looked = listed(&places);
+    places.into_iter().find(|place| place.is_file()).ok_or(FmuError::NoLibrary { looked })
 }
 
 fn listed(places: &[PathBuf]) -> String {
