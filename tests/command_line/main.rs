@@ -11,6 +11,8 @@ mod fmu_trust;
 mod foreign_text;
 mod getting_started;
 #[cfg(unix)]
+mod hostile;
+#[cfg(unix)]
 mod interrupted;
 #[cfg(target_os = "linux")]
 mod isolation;

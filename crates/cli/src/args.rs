@@ -193,7 +193,7 @@ pub(crate) struct RunArgs {
     /// Run what is left of the suite in this folder, which was ended before its time; scenarios and options are those that it was
     /// begun with.
     #[arg(long, value_name = "DIR", value_parser = file(),
-          conflicts_with_all = ["scenarios", "overrides", "out", "engine", "keep", "rrd", "junit", "worker_timeout", "time_limit", "memory_limit"])]
+          conflicts_with_all = ["scenarios", "overrides", "root", "out", "engine", "keep", "rrd", "junit", "worker_timeout", "time_limit", "memory_limit"])]
     pub(crate) resume: Option<PathBuf>,
     /// Engine to use instead of the scenarios' own; may be given several times.
     #[arg(long, value_name = "NAME", value_parser = engine())]
@@ -259,13 +259,16 @@ pub(crate) enum Keep {
     None,
 }
 
-/// Values that are not those of the files.
+/// How scenario files are read.
 #[derive(Debug, Args)]
 pub(crate) struct OverrideArgs {
     /// Give a key of the scenario another value, as in setpoint.jerk=200m/s3 or 'program.0.move_to=100 mm' (lists count from 0); may
     /// be given several times.
     #[arg(long = "set", value_name = "KEY=VALUE", allow_hyphen_values = true)]
     pub(crate) overrides: Vec<Override>,
+    /// Folder that the scenario and every file it names must be in [default: the nearest folder above it with a .git, or else its own].
+    #[arg(long, value_name = "DIR", value_parser = file())]
+    pub(crate) root: Option<PathBuf>,
 }
 
 /// Memory of runs.

@@ -6,6 +6,7 @@ use miette::{
 use servobench_report::painted;
 use servobench_results::{printable, printable_lines};
 use servobench_scenario::{Diagnostic, Shown, Sources, shown};
+use std::ops::Range;
 
 /// What is named in place of a file where a mistake is in an option.
 const COMMAND_LINE: &str = "command line";
@@ -52,15 +53,29 @@ fn handler(styles: ThemeStyles) -> GraphicalReportHandler {
     GraphicalReportHandler::new_themed(theme).with_width(WIDTH).with_context_lines(1).with_links(false)
 }
 
+/// Bytes of the lines that an excerpt shows: nobody reads more of a line.
+const WIDEST: usize = 2000;
+
+/// Whether the lines of `span`, and the one on either side, are wider than an excerpt can show.
+fn is_too_wide(text: &str, span: &Range<usize>) -> bool {
+    let before = text.get(..span.start).unwrap_or_default().rsplit('\n').take(2).map(str::len).sum::<usize>();
+    let behind = text.get(span.end..).unwrap_or_default().split('\n').take(2).map(str::len).sum::<usize>();
+    before + behind + span.len() > WIDEST
+}
+
 fn report(diagnostic: &Diagnostic, sources: &Sources, severity: Severity) -> Report {
     let source = diagnostic.source;
     let name = if source.is_override() { COMMAND_LINE } else { sources.name(source) };
-    let text = sources.text(source);
-    let mut told = MietteDiagnostic::new(printable(&diagnostic.message))
-        .with_severity(severity)
-        .with_label(LabeledSpan::new_with_span(None, diagnostic.span.clone()));
+    let is_shown = sources.may_be_shown(source) && !is_too_wide(sources.text(source), &diagnostic.span);
+    // A file that a scenario names may be any file: none of its lines is shown.
+    let message = if is_shown { diagnostic.message.clone() } else { diagnostic.placed_message(sources) };
+    let mut told = MietteDiagnostic::new(printable(&message)).with_severity(severity);
     if let Some(help) = &diagnostic.help {
         told = told.with_help(printable(help));
     }
-    Report::new(told).with_source_code(NamedSource::new(printable(name), text.to_owned()))
+    if !is_shown {
+        return Report::new(told);
+    }
+    let told = told.with_label(LabeledSpan::new_with_span(None, diagnostic.span.clone()));
+    Report::new(told).with_source_code(NamedSource::new(printable(name), sources.text(source).to_owned()))
 }

@@ -7,7 +7,7 @@ use jiff::Timestamp;
 use servobench_metrics::{Metrics, Verdict};
 use servobench_report::{TimingOptions, timing_diagram};
 use servobench_results::{
-    COMPARISON, Digest, Digester, LimitPlace, Outcome, Results, RunIdentity, RunResult, printable_lines,
+    COMPARISON, Digest, Digester, LimitPlace, Outcome, Results, RunIdentity, RunResult, printable_lines, read_results,
 };
 use servobench_scenario::{Parameter, Scenario, Step};
 use servobench_suite::{Job, channel_limits};
@@ -100,7 +100,7 @@ impl Written {
 /// How many recordings in `folder` neither `results` nor the comparison beside them name. A folder that cannot be read
 /// is said to hold none.
 pub(crate) fn older_recordings(folder: &Path, results: &Results) -> usize {
-    let comparison = std::fs::read_to_string(folder.join(COMPARISON)).ok();
+    let comparison = read_results(&folder.join(COMPARISON)).ok();
     let comparison = comparison.and_then(|text| Results::from_json(&text).ok());
     let stem = |path: &Path| path.file_stem().map(OsStr::to_owned);
     let runs = results.scenarios.iter().chain(comparison.iter().flat_map(|comparison| &comparison.scenarios));
@@ -119,6 +119,7 @@ pub(crate) fn identity(job: &Job, written: Written) -> RunIdentity {
         file: scenario.path.as_ref().map(|path| path.display().to_string()),
         engine: job.engine.to_string(),
         inputs: inputs_of(job),
+        made_of: scenario.made_of.clone(),
         recording: written.recording,
         recording_seal: written.recording_seal,
         files: written.files,
@@ -133,9 +134,10 @@ pub(crate) fn inputs_of(job: &Job) -> Digest {
     let scenario = &job.scenario;
     let start = Digester::default().with(build_id::program()).with(job.engine.to_string()).with(&scenario.name);
     let start = scenario.overrides.iter().fold(start.with(&job.text), |digester, one| digester.with(one.to_string()));
-    // Models are in the parameters, as they are written.
-    let all = scenario.parameters.iter().fold(start, |digester, one| digester.with(&one.key).with(&one.value));
-    all.finish()
+    let parameters = scenario.parameters.iter().fold(start, |digester, one| digester.with(&one.key).with(&one.value));
+    // What files hold, in the order in which the scenario names them; where they are makes no difference.
+    let files = scenario.made_of.iter().fold(parameters, |digester, file| digester.with(&file.sha256));
+    files.finish()
 }
 
 /// Where the scenario file has which limit: `limits.settling_time`, `program.1.limits.overshoot.max`.

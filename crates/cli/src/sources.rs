@@ -1,15 +1,18 @@
 //! Scenario files: from files, from folders, from standard input, or the demo that is embedded.
+use crate::args::OverrideArgs;
 use crate::console::say;
 use crate::diagnostics::{mistakes, render};
 use crate::error::CliError;
 use crate::fmu_trust::trusted;
 use crate::outputs::{reads, reads_stdin};
 use miette::Severity;
-use servobench_scenario::{LoadError, Loaded, Override, load_with, parse_with};
+use servobench_files::FileId;
+use servobench_scenario::{LoadError, Loaded, MOST_OF_A_SCENARIO, load_within, parse_within, root_of};
 use servobench_suite::Source;
+use std::collections::HashSet;
 use std::ffi::OsStr;
 use std::fmt;
-use std::io::{IsTerminal, Read};
+use std::io::{ErrorKind, IsTerminal, Read};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
@@ -43,8 +46,8 @@ pub(crate) fn named(path: &Path) -> String {
 }
 
 /// The scenario files that `paths` name; folders are searched for `.toml` files, sorted by path. Folders called
-/// `models` hold no scenarios.
-pub(crate) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
+/// `models` hold no scenarios. Links are followed within the root of the named folder, and each folder is searched once.
+pub(crate) fn files(paths: &[PathBuf], root: Option<&Path>) -> Result<Vec<PathBuf>, CliError> {
     if paths.iter().filter(|path| is_stdin(path)).count() > 1 {
         return Err(CliError::StdinTwice);
     }
@@ -52,7 +55,9 @@ pub(crate) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
     for path in paths {
         if path.is_dir() && !is_stdin(path) {
             let before = files.len();
-            search(path, &mut files)?;
+            let wrong = |error| CliError::Read { path: root.unwrap_or(path).to_owned(), error };
+            let mut searched = Searched { root: root_of(path, root).map_err(wrong)?, folders: HashSet::new() };
+            searched.search(path, &mut files)?;
             if files.len() == before {
                 return Err(CliError::NoScenario { folder: path.clone() });
             }
@@ -63,28 +68,48 @@ pub(crate) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
     Ok(files)
 }
 
-fn search(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), CliError> {
-    let wrong = |error| CliError::Read { path: folder.to_owned(), error };
-    let mut entries = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(wrong)? {
-        entries.push(entry.map_err(wrong)?.path());
-    }
-    entries.sort();
-    for entry in entries {
-        if entry.is_dir() && entry.file_name() != Some(OsStr::new("models")) {
-            search(&entry, files)?;
-        } else if entry.extension() == Some(OsStr::new("toml")) {
-            files.push(entry);
+/// Folders that were searched: a link may lead back to one of them.
+struct Searched {
+    /// Nothing outside is searched.
+    root: PathBuf,
+    folders: HashSet<FileId>,
+}
+
+impl Searched {
+    fn search(&mut self, folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), CliError> {
+        let wrong = |error| CliError::Read { path: folder.to_owned(), error };
+        // Where the system does not tell folders apart it has no such links.
+        if FileId::of(folder).is_ok_and(|id| !self.folders.insert(id)) {
+            return Ok(());
         }
+        let mut entries = Vec::new();
+        for entry in std::fs::read_dir(folder).map_err(wrong)? {
+            entries.push(entry.map_err(wrong)?.path());
+        }
+        entries.sort();
+        for entry in entries {
+            if entry.is_dir() && entry.file_name() != Some(OsStr::new("models")) {
+                if entry.canonicalize().is_ok_and(|real| real.starts_with(&self.root)) {
+                    self.search(&entry, files)?;
+                } else {
+                    let (entry, root) = (entry.display(), self.root.display());
+                    say(&format!(
+                        "`{entry}` is not searched: it leads out of `{root}`; `--root DIR` allows a folder that holds both\n"
+                    ));
+                }
+            } else if entry.extension() == Some(OsStr::new("toml")) {
+                files.push(entry);
+            }
+        }
+        Ok(())
     }
-    Ok(())
 }
 
 /// Loads every file; the mistakes of all of them are reported together, and warnings go to standard error.
-pub(crate) fn load(paths: &[PathBuf], overrides: &[Override]) -> Result<Vec<Source>, CliError> {
+pub(crate) fn load(paths: &[PathBuf], with: &OverrideArgs) -> Result<Vec<Source>, CliError> {
     let mut mistakes = Vec::new();
     let mut sources = Vec::new();
-    for found in each(paths, overrides)? {
+    for found in each(paths, with)? {
         match found {
             Ok(source) => sources.push(source),
             Err(unusable) => mistakes.push(unusable),
@@ -120,9 +145,9 @@ impl fmt::Display for Unusable {
 }
 
 /// Every file by itself: one that cannot be used does not keep the others from being used.
-pub(crate) fn each(paths: &[PathBuf], overrides: &[Override]) -> Result<Vec<Result<Source, Unusable>>, CliError> {
-    let files = files(paths)?;
-    let each = files.into_iter().map(|path| match loaded(&path, overrides).and_then(trusted) {
+pub(crate) fn each(paths: &[PathBuf], with: &OverrideArgs) -> Result<Vec<Result<Source, Unusable>>, CliError> {
+    let files = files(paths, with.root.as_deref())?;
+    let each = files.into_iter().map(|path| match loaded(&path, with).and_then(trusted) {
         Ok(loaded) => Ok(source(loaded)),
         Err(error) => Err(Unusable { path, error }),
     });
@@ -137,15 +162,16 @@ fn source(loaded: Loaded) -> Source {
 }
 
 /// Loads one file.
-pub(crate) fn read(path: &Path, overrides: &[Override]) -> Result<Loaded, LoadError> {
-    loaded(path, overrides).inspect(warn)
+pub(crate) fn read(path: &Path, with: &OverrideArgs) -> Result<Loaded, LoadError> {
+    loaded(path, with).inspect(warn)
 }
 
 /// A file, or what comes in on standard input: files that it names are looked for in the current folder.
-fn loaded(path: &Path, overrides: &[Override]) -> Result<Loaded, LoadError> {
+fn loaded(path: &Path, with: &OverrideArgs) -> Result<Loaded, LoadError> {
+    let OverrideArgs { overrides, root } = with;
     if !is_stdin(path) {
         reads(path, format_args!("the scenario {}", path.display()));
-        return load_with(path, overrides).inspect(|loaded| note_files(loaded, path));
+        return load_within(path, overrides, root.as_deref()).inspect(|loaded| note_files(loaded, path));
     }
     let text = if let Some(text) = TEXT_OF_STDIN.get() {
         text.clone()
@@ -153,7 +179,7 @@ fn loaded(path: &Path, overrides: &[Override]) -> Result<Loaded, LoadError> {
         let text = read_stdin().map_err(|error| LoadError::Read { path: NAME_OF_STDIN.into(), error })?;
         TEXT_OF_STDIN.get_or_init(|| text).clone()
     };
-    let mut loaded = parse_with(NAME_OF_STDIN, &text, Some(Path::new("")), overrides)?;
+    let mut loaded = parse_within(NAME_OF_STDIN, &text, Some(Path::new("")), overrides, root.as_deref())?;
     loaded.scenario.path = Some(path.to_owned());
     note_files(&loaded, path);
     Ok(loaded)
@@ -175,21 +201,28 @@ fn note_files(loaded: &Loaded, path: &Path) {
 
 fn read_stdin() -> std::io::Result<String> {
     reads_stdin();
-    let mut stdin = std::io::stdin();
+    let stdin = std::io::stdin();
     if stdin.is_terminal() {
         say(
             "reading a scenario (TOML) from standard input: type or paste it, and end it with Ctrl-D on a line of its own\n",
         );
     }
     let mut text = String::new();
-    stdin.read_to_string(&mut text)?;
+    stdin.take(MOST_OF_A_SCENARIO + 1).read_to_string(&mut text)?;
+    if text.len() as u64 > MOST_OF_A_SCENARIO {
+        let most = MOST_OF_A_SCENARIO >> 20;
+        return Err(std::io::Error::new(
+            ErrorKind::FileTooLarge,
+            format!("it has more than {most} MB, the most that is read"),
+        ));
+    }
     Ok(text)
 }
 
 /// The embedded demo.
-pub(crate) fn demo(overrides: &[Override]) -> Result<Vec<Source>, LoadError> {
+pub(crate) fn demo(with: &OverrideArgs) -> Result<Vec<Source>, LoadError> {
     let demo = servobench_scenario::embedded_demo().into_iter();
-    demo.map(|(name, text)| parse_with(name, text, None, overrides).map(source)).collect()
+    demo.map(|(name, text)| parse_within(name, text, None, &with.overrides, None).map(source)).collect()
 }
 
 fn warn(loaded: &Loaded) {

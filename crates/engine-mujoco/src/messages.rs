@@ -1,5 +1,6 @@
 //! What `MuJoCo` says goes to us, not to a file `MUJOCO_LOG.TXT` in the working folder.
 use mujoco_rs::prelude::{MjLogMessage, MjtLogLevel, log_config, set_log_config, set_log_handler};
+use servobench_files::with_short_quotes;
 use std::cell::RefCell;
 use std::io::Write as _;
 use std::sync::Once;
@@ -32,10 +33,10 @@ fn receive(message: &MjLogMessage) {
     match message.level() {
         MjtLogLevel::mjLOG_ERROR => {
             // MuJoCo ends the process when this returns. When the line cannot be written, nothing is left to do.
-            drop(writeln!(std::io::stderr(), "mujoco: {}", message.subject()));
+            drop(writeln!(std::io::stderr(), "mujoco: {}", with_short_quotes(message.subject())));
         }
         MjtLogLevel::mjLOG_WARNING => {
-            WARNING.set(Some(message.subject().trim().to_owned()));
+            WARNING.set(Some(with_short_quotes(message.subject().trim())));
         }
         MjtLogLevel::mjLOG_INFO | MjtLogLevel::mjLOG_DEBUG => {}
     }

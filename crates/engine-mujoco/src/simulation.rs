@@ -3,6 +3,7 @@ use crate::{NAME, messages};
 use mujoco_rs::prelude::{MjData, MjModel, MjSpec, MjtDisableBit, MjtWarning};
 use mujoco_rs::wrappers::mj_auxiliary::MjVfs;
 use servobench_base::finite;
+use servobench_files::with_short_quotes;
 use servobench_plant::{Actuation, BodyState, Input, MechanicsError};
 use std::path::Path;
 use std::sync::Arc;
@@ -13,7 +14,7 @@ pub(crate) type Data = MjData<Arc<MjModel>>;
 /// Compiles MJCF text. `path` is where the text came from: what it includes is looked up beside it.
 pub(crate) fn compile(xml: &str, path: &Path) -> Result<MjModel, MechanicsError> {
     messages::install();
-    let model_error = |message: String| MechanicsError::Model { engine: NAME, message };
+    let model_error = |message: String| MechanicsError::Model { engine: NAME, message: of_a_file(&message, path) };
     if path.as_os_str().as_encoded_bytes().contains(&0) {
         return Err(model_error("the path has a NUL character".into()));
     }
@@ -22,6 +23,13 @@ pub(crate) fn compile(xml: &str, path: &Path) -> Result<MjModel, MechanicsError>
     MjSpec::from_xml_vfs(path, &files)
         .and_then(|mut spec| spec.compile_with_vfs(&files))
         .map_err(|e| model_error(e.to_string()))
+}
+
+/// What `MuJoCo` says of the file at `path`, with no more than a few characters of what is in it. The path itself stays.
+fn of_a_file(message: &str, path: &Path) -> String {
+    let path = path.display().to_string();
+    let parts: Vec<String> = message.split(path.as_str()).map(with_short_quotes).collect();
+    parts.join(&path)
 }
 
 /// Starts a simulation of `model` with steps of `step` seconds and the flags `disable` switched off beside its own.

@@ -20,7 +20,7 @@ use name::Names;
 pub use folder::{remove_abandoned, remove_unpacked};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom};
-use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
+use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use zip::{CompressionMethod, ZipArchive};
@@ -174,19 +174,14 @@ impl Archive {
     }
 }
 
-/// Opens a file that is one, and says how long it is. What else there may be under a name could keep its reader waiting for ever, as a
-/// FIFO does that nobody writes to; the name may be something else by now, so that what was opened is looked at.
+/// Bytes of an archive: the form for larger ones (zip64) is refused anyway.
+const LARGEST: u64 = u32::MAX as u64;
+
+/// Opens a file that is one, and says how long it is.
 fn open_file(path: &Path) -> io::Result<(File, u64)> {
-    let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK).open(path)?;
-    let about = file.metadata()?;
-    let kind = about.file_type();
-    let what = match () {
-        () if kind.is_file() => return Ok((file, about.len())),
-        () if kind.is_dir() => "a folder",
-        () if kind.is_fifo() => "a FIFO",
-        () => "a device or a socket",
-    };
-    Err(io::Error::new(io::ErrorKind::InvalidInput, format!("it is {what}, and no file")))
+    let file = servobench_files::open(path, LARGEST)?;
+    let bytes = file.metadata()?.len();
+    Ok((file, bytes))
 }
 
 /// What is said of names that are there more than once with the same bytes.
@@ -234,7 +229,11 @@ impl Unpacked {
     pub fn in_folder(path: impl Into<PathBuf>, folder: impl Into<PathBuf>) -> Result<Self, FmuError> {
         let (path, folder) = (path.into(), folder.into());
         let file = folder.join(DESCRIPTION);
-        let text = fs::read_to_string(&file).map_err(|source| FmuError::File { path: file, what: "read", source })?;
+        let text = servobench_files::read_text(&file, MOST_BYTES as u64).map_err(|source| FmuError::File {
+            path: file,
+            what: "read",
+            source,
+        })?;
         let description = ModelDescription::read(&text, &format!("{}/{DESCRIPTION}", path.display()))?;
         let (folder, description) = (Arc::new(Folder::Foreign(folder)), Arc::new(description));
         Ok(Self { path, folder, description, remarks: Vec::new() })

@@ -35,6 +35,7 @@ use crate::error::{DescriptionProblem, FmuError};
 use declared::Declared;
 use element::Element;
 use roxmltree::{Document, ParsingOptions};
+use servobench_files::quoted;
 use std::collections::HashMap;
 use units::Units;
 use variables::Variables;
@@ -211,7 +212,7 @@ fn place(text: &str, byte: usize) -> (u32, u32) {
 fn version(root: Element) -> Result<Version, FmuError> {
     let text = root.required("fmiVersion")?;
     let unsupported = |what: &str| {
-        let what = format!("{what} (`fmiVersion=\"{}\"`)", text.escape_debug());
+        let what = format!("{what} (`fmiVersion=\"{}\"`)", quoted(text));
         let help = "export the model for FMI 2.0 or 3.0, co-simulation";
         root.error_at("fmiVersion", DescriptionProblem::Unsupported { what, help })
     };

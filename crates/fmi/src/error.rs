@@ -1,5 +1,6 @@
 //! Why a file cannot be used as an FMU.
 use crate::slave::SlaveError;
+use servobench_files::{named, quoted, with_short_quotes};
 use std::io;
 use std::path::PathBuf;
 use thiserror::Error;
@@ -125,7 +126,7 @@ fn listed(platforms: &[String]) -> String {
 #[non_exhaustive]
 pub enum ArchiveProblem {
     /// It cannot be read.
-    #[error("it is no readable zip archive ({0}); an FMU is one, with `modelDescription.xml` in it")]
+    #[error("it is no readable zip archive ({}); an FMU is one, with `modelDescription.xml` in it", with_short_quotes(.0))]
     Zip(String),
     /// A file in it cannot be read.
     #[error("`{entry}` in it cannot be read ({why})")]
@@ -184,7 +185,7 @@ pub enum ArchiveProblem {
 #[non_exhaustive]
 pub enum DescriptionProblem {
     /// It is no XML.
-    #[error("no well-formed XML: {0}")]
+    #[error("no well-formed XML: {}", with_short_quotes(.0))]
     Xml(String),
     /// More than a limit allows.
     #[error("{what} is more than {most}, which no model description needs")]
@@ -195,7 +196,7 @@ pub enum DescriptionProblem {
         most: usize,
     },
     /// Another element than the one that has to be here.
-    #[error("the element is `<{found}>`, expected {expected}")]
+    #[error("the element is `<{}>`, expected {expected}", named(.found))]
     Element {
         /// Its name.
         found: String,
@@ -203,7 +204,7 @@ pub enum DescriptionProblem {
         expected: String,
     },
     /// An element that has to be here is not.
-    #[error("`<{parent}>` has no element {expected}")]
+    #[error("`<{}>` has no element {expected}", named(.parent))]
     NoElement {
         /// The element that lacks it.
         parent: String,
@@ -211,7 +212,7 @@ pub enum DescriptionProblem {
         expected: &'static str,
     },
     /// An attribute that has to be here is not.
-    #[error("`<{element}>` has no attribute `{attribute}`")]
+    #[error("`<{}>` has no attribute `{attribute}`", named(.element))]
     NoAttribute {
         /// The element that lacks it.
         element: String,
@@ -219,7 +220,7 @@ pub enum DescriptionProblem {
         attribute: &'static str,
     },
     /// An attribute has another value than it may have.
-    #[error("`{attribute}=\"{value}\"` of `<{element}>`: expected {expected}")]
+    #[error("`{attribute}=\"{}\"` of `<{}>`: expected {expected}", quoted(.value), named(.element))]
     Attribute {
         /// The element.
         element: String,
@@ -231,7 +232,7 @@ pub enum DescriptionProblem {
         expected: String,
     },
     /// Two things have the same name or reference.
-    #[error("`{attribute}=\"{value}\"` of `<{element}>` stands for `{first}` already")]
+    #[error("`{attribute}=\"{}\"` of `<{}>` stands for `{}` already", named(.value), named(.element), named(.first))]
     Twice {
         /// The element.
         element: String,
@@ -243,7 +244,7 @@ pub enum DescriptionProblem {
         first: String,
     },
     /// Causality, variability and initial of a variable do not go together.
-    #[error("variable `{variable}`: {found} {} allowed; the standard has {allowed}", if found.contains(',') { "are not" } else { "is not" })]
+    #[error("variable `{}`: {found} {} allowed; the standard has {allowed}", named(.variable), if found.contains(',') { "are not" } else { "is not" })]
     Combination {
         /// Its name.
         variable: String,

@@ -9,7 +9,7 @@ use crate::error::FmuError;
 use crate::machine::Model;
 use crate::part::Part;
 use servobench_config::Choice as _;
-use servobench_scenario::{Loaded, Override, load_with};
+use servobench_scenario::{Loaded, Override, load_within};
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
 use std::fs;
@@ -56,7 +56,7 @@ impl Resources {
             }
         }
         for table in &loaded.tables {
-            files.push((within(&table.named), table.text.clone()));
+            files.push((within(&table.named), table.text.to_string()));
         }
         let overrides = loaded.scenario.overrides.iter().map(ToString::to_string);
         let contents: Vec<String> = [part.name().to_owned(), scenario].into_iter().chain(overrides).collect();
@@ -88,7 +88,8 @@ impl Resources {
         let scenario = lines.next().ok_or_else(|| format!("`{CONTENTS}` names no scenario"))?;
         let overrides: Result<Vec<Override>, _> = lines.map(str::parse).collect();
         let overrides = overrides.map_err(|error| format!("`{CONTENTS}`: {error}"))?;
-        let loaded = load_with(&folder.join(scenario), &overrides).map_err(|error| error.to_string())?;
+        let loaded =
+            load_within(&folder.join(scenario), &overrides, Some(folder)).map_err(|error| error.to_string())?;
         Model::new(part, &loaded.scenario).map_err(|error| error.to_string())
     }
 
@@ -149,7 +150,6 @@ fn collect(folder: &Path, prefix: &str, depth: usize, files: &mut Vec<(String, S
 #[cfg(test)]
 mod tests {
     use super::*;
-    use servobench_scenario::load;
 
     #[test]
     fn a_path_leads_above_as_often_as_it_goes_up_without_having_gone_down() {
@@ -173,7 +173,8 @@ mod tests {
         fs::create_dir_all(&folder).unwrap();
         fs::write(folder.join("pvt.toml"), text).unwrap();
         fs::copy(all.join("points.csv"), room.path().join("a/points.csv")).unwrap();
-        let loaded = load(&folder.join("pvt.toml")).unwrap_or_else(|error| panic!("{error}"));
+        let load = |overrides: &[Override]| load_within(&folder.join("pvt.toml"), overrides, Some(room.path()));
+        let loaded = load(&[]).unwrap_or_else(|error| panic!("{error}"));
         let resources = Resources::of(Part::Axis, &loaded).unwrap();
         let names: Vec<&str> = resources.files.iter().map(|(path, _)| path.as_str()).collect();
         assert!(names.contains(&"above/scenario.toml") && names.contains(&"points.csv"), "{names:?}");
@@ -193,7 +194,7 @@ mod tests {
 
         // What is overridden is packed with it, and makes another FMU.
         let overrides = ["axis.load.mass=7 kg".parse().unwrap()];
-        let overridden = load_with(&folder.join("pvt.toml"), &overrides).unwrap_or_else(|error| panic!("{error}"));
+        let overridden = load(&overrides).unwrap_or_else(|error| panic!("{error}"));
         let other = Resources::of(Part::Axis, &overridden).unwrap();
         assert_ne!(other.token(), resources.token());
         let model = other.model(elsewhere.path()).unwrap();

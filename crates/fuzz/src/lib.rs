@@ -28,5 +28,6 @@ mod target;
 pub use bolero::check;
 pub use bolero::generator::{ValueGenerator, produce};
 pub use number::Number;
+pub use seeded::seeded;
 pub use splice::{Splice, SplicedText};
 pub use target::{Target, fuzz};

@@ -2,6 +2,8 @@
 //!
 //! Bolero's own engine for `cargo test` takes its seeds from the operating system: a failure in one run would be gone in
 //! the next.
+use bolero::generator::ValueGenerator;
+use bolero::generator::bolero_generator::driver::ByteSliceDriver;
 use bolero::{Engine, Test};
 use bolero_engine::driver::Options;
 use bolero_engine::input::Bytes;
@@ -35,6 +37,14 @@ where
         }
         panic::forward_panic(forward);
     }
+}
+
+/// What `generator` makes as its input number `number`, for those who hold something else than a test against it: a program.
+///
+/// Where the bytes of the number do not suffice for an input there is none.
+pub fn seeded<G: ValueGenerator>(generator: &G, number: u64) -> Option<G::Output> {
+    let bytes = bytes(number);
+    generator.generate(&mut ByteSliceDriver::new(&bytes, &Options::default()))
 }
 
 /// What a generator makes its input number `number` of: 16 to 512 bytes.

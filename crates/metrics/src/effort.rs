@@ -3,9 +3,8 @@ use crate::absence::Absence;
 use crate::metric::MetricSet;
 use crate::name::Name;
 use crate::power;
-use crate::span::{channel, largest, root_mean, unit};
+use crate::span::{Checked, channel, largest, root_mean, unit};
 use servobench_signals::Signal;
-use servobench_trace::Recording;
 use std::ops::Range;
 
 /// Peak value of a phase current; what |i_dq| is in the amplitude-invariant frame.
@@ -16,7 +15,7 @@ const EFFORT: Signal = Signal::EffortMotor;
 const EFFORT_REFERENCE: Signal = Signal::EffortReference;
 
 /// Notes current, voltage and torque over `rows`.
-pub(crate) fn note(set: &mut MetricSet, recording: &Recording, rows: &Range<usize>) {
+pub(crate) fn note(set: &mut MetricSet, recording: &Checked<'_>, rows: &Range<usize>) {
     let peak = |squares: &Vec<f64>| largest(squares.iter().copied(), PART).map(f64::sqrt);
     let current = vector_squared(recording, Signal::CurrentD, Signal::CurrentQ, rows);
     // A phase of amplitude |i_dq| has the effective value |i_dq|/√2.
@@ -44,13 +43,13 @@ pub(crate) fn note(set: &mut MetricSet, recording: &Recording, rows: &Range<usiz
 
 const PART: &str = "of motor and inverter";
 
-fn vector_squared(recording: &Recording, d: Signal, q: Signal, rows: &Range<usize>) -> Result<Vec<f64>, Absence> {
+fn vector_squared(recording: &Checked<'_>, d: Signal, q: Signal, rows: &Range<usize>) -> Result<Vec<f64>, Absence> {
     let (d, q) = (channel(recording, d)?, channel(recording, q)?);
     Ok(d[rows.clone()].iter().zip(&q[rows.clone()]).map(|(d, q)| d * d + q * q).collect())
 }
 
 /// Σ share·period: the channel holds which share of the control ticks since the last row was saturated.
-fn saturation_time(recording: &Recording, share: Signal, rows: &Range<usize>) -> Result<f64, Absence> {
+fn saturation_time(recording: &Checked<'_>, share: Signal, rows: &Range<usize>) -> Result<f64, Absence> {
     let shares = &channel(recording, share)?[rows.clone()];
     if shares.is_empty() {
         return Err(Absence::NothingRecorded { part: PART });
@@ -75,7 +74,7 @@ mod tests {
             .channel(Signal::EffortMotor, "N m", |t| -2.0 * (2.0 * PI * 3.0 * t).sin())
             .finish();
         let mut set = MetricSet::default();
-        note(&mut set, &recording, &(0..10_000));
+        note(&mut set, &Checked::of(&recording), &(0..10_000));
         set
     }
 

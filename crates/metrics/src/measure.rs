@@ -1,7 +1,7 @@
 //! A recording to its metrics.
 use crate::absence::Absence;
 use crate::metric::{MetricSet, Metrics, MoveMetrics};
-use crate::span::{Phase, phases};
+use crate::span::{Checked, Phase, phases};
 use crate::vibration::Residual;
 use crate::{compliance, effort, rounding, settling, tracking};
 use servobench_trace::Recording;
@@ -22,31 +22,32 @@ pub struct Question {
 #[must_use]
 pub fn measure(recording: &Recording, question: &Question) -> Metrics {
     let phases = phases(recording);
+    let checked = Checked::of(recording);
     let mut run = MetricSet::default();
     let mut moves = Vec::with_capacity(phases.len());
     let mut residual = Residual::absent(&Absence::NoMove);
     for phase in &phases {
-        residual = Residual::after(recording, phase, question.mode);
+        residual = Residual::after(&checked, phase, question.mode);
         let made = phase.made;
-        let metrics = move_metrics(recording, phase, question, &residual);
+        let metrics = move_metrics(&checked, phase, question, &residual);
         moves.push(MoveMetrics { label: made.label.clone(), start: made.start, end: made.end, metrics });
     }
     if let Some(from) = question.from {
-        residual = Residual::from_time(recording, from, question.mode);
+        residual = Residual::from_time(&checked, from, question.mode);
     }
     let all = 0..recording.len();
-    settling::note_worst(&mut run, recording, &moves);
-    tracking::note(&mut run, recording, all.clone(), &phases);
-    residual.note(&mut run, recording);
+    settling::note_worst(&mut run, &checked, &moves);
+    tracking::note(&mut run, &checked, all.clone(), &phases);
+    residual.note(&mut run, &checked);
     compliance::note(&mut run, &phases);
-    effort::note(&mut run, recording, &all);
+    effort::note(&mut run, &checked, &all);
     let mut metrics = Metrics { run, moves };
     rounding::clear(&mut metrics, recording);
     metrics
 }
 
 /// One move: its profile and what follows until the next. Torque, current and voltage are those of the profile.
-fn move_metrics(recording: &Recording, phase: &Phase<'_>, question: &Question, residual: &Residual) -> MetricSet {
+fn move_metrics(recording: &Checked<'_>, phase: &Phase<'_>, question: &Question, residual: &Residual) -> MetricSet {
     let mut metrics = MetricSet::default();
     let this = std::slice::from_ref(phase);
     settling::note(&mut metrics, recording, phase, question.window, residual.mode());

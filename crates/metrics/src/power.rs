@@ -4,15 +4,14 @@
 use crate::absence::Absence;
 use crate::metric::MetricSet;
 use crate::name::Name;
-use crate::span::{channel, largest};
+use crate::span::{Checked, channel, largest};
 use servobench_signals::Signal;
-use servobench_trace::Recording;
 use std::ops::Range;
 
 const PART: &str = "of the motor's power";
 
 /// Notes power and energy over `rows`.
-pub(crate) fn note(set: &mut MetricSet, recording: &Recording, rows: &Range<usize>) {
+pub(crate) fn note(set: &mut MetricSet, recording: &Checked<'_>, rows: &Range<usize>) {
     for (name, power) in
         [(Name::ElectricalPowerPeak, Signal::PowerElectrical), (Name::ShaftPowerPeak, Signal::PowerShaft)]
     {
@@ -24,7 +23,7 @@ pub(crate) fn note(set: &mut MetricSet, recording: &Recording, rows: &Range<usiz
     }
 }
 
-fn energy(recording: &Recording, power: Signal, rows: &Range<usize>) -> Result<f64, Absence> {
+fn energy(recording: &Checked<'_>, power: Signal, rows: &Range<usize>) -> Result<f64, Absence> {
     let powers = &channel(recording, power)?[rows.clone()];
     if powers.is_empty() {
         return Err(Absence::NothingRecorded { part: PART });
@@ -47,7 +46,7 @@ mod tests {
             .channel(Signal::PowerShaft, "W", power)
             .finish();
         let mut set = MetricSet::default();
-        note(&mut set, &recording, &(0..12_000));
+        note(&mut set, &Checked::of(&recording), &(0..12_000));
         for (name, value, unit) in [
             (Name::ElectricalEnergy, 80.0 * 0.25 - 30.0 * 0.75, "J"),
             (Name::CopperLoss, 3.0, "J"),
@@ -58,7 +57,7 @@ mod tests {
             // The sum of 12 000 numbers.
             assert!((metric.value - value).abs() < 1e-10 && metric.unit == unit, "{name}: {metric:?}");
         }
-        note(&mut set, &recording, &(0..3_000));
+        note(&mut set, &Checked::of(&recording), &(0..3_000));
         assert!((set.value(Name::ElectricalEnergy).unwrap() - 20.0).abs() < 1e-10);
     }
 
@@ -66,7 +65,7 @@ mod tests {
     fn an_axis_without_currents_has_no_electrical_power() {
         let recording = Build::new(1_000, 10).channel(Signal::PowerShaft, "W", |_| 1.0).finish();
         let mut set = MetricSet::default();
-        note(&mut set, &recording, &(0..10));
+        note(&mut set, &Checked::of(&recording), &(0..10));
         let why = set.absence(Name::ElectricalEnergy).unwrap().to_string();
         assert_eq!(why, "`power.electrical` is not recorded; only a PMSM has electrical power");
     }

@@ -3,9 +3,8 @@ use crate::absence::Absence;
 use crate::metric::{MetricSet, MoveMetrics};
 use crate::modal::{Mode, rest_beside};
 use crate::name::Name;
-use crate::span::{Phase, channel, largest};
+use crate::span::{Checked, Phase, channel, largest};
 use servobench_signals::Signal;
-use servobench_trace::Recording;
 
 const LOAD: Signal = Signal::LoadPosition;
 /// The load must be seen inside the window for one part in so many of the time after the profile, or it has not settled:
@@ -18,7 +17,7 @@ const REST: usize = 10;
 /// `mode` is that with which the load rings afterwards, where it does.
 pub(crate) fn note(
     set: &mut MetricSet,
-    recording: &Recording,
+    recording: &Checked<'_>,
     phase: &Phase<'_>,
     window: Option<f64>,
     mode: Option<&Mode>,
@@ -40,7 +39,7 @@ pub(crate) fn note(
 }
 
 /// Notes the worst of `moves`. A move that is followed at once by the next has no time to settle and does not count.
-pub(crate) fn note_worst(set: &mut MetricSet, recording: &Recording, moves: &[MoveMetrics]) {
+pub(crate) fn note_worst(set: &mut MetricSet, recording: &Checked<'_>, moves: &[MoveMetrics]) {
     let unit = recording.about.axis_unit.as_str();
     for (name, unit) in [
         (Name::MoveTime, "s"),
@@ -72,7 +71,12 @@ fn worst(moves: &[MoveMetrics], name: Name) -> Result<f64, Absence> {
 }
 
 /// Last exit from the window minus end of the profile; 0 when the load is inside before the profile ends and stays.
-fn settling_time(recording: &Recording, load: &[f64], phase: &Phase<'_>, window: Option<f64>) -> Result<f64, Absence> {
+fn settling_time(
+    recording: &Checked<'_>,
+    load: &[f64],
+    phase: &Phase<'_>,
+    window: Option<f64>,
+) -> Result<f64, Absence> {
     let window = window.ok_or(Absence::NoWindow)?;
     if phase.after.is_empty() {
         return Err(Absence::NothingRecorded { part: "between the profile and the next move" });
@@ -135,12 +139,13 @@ mod tests {
     use crate::span::phases;
     use crate::synthetic::{Build, planned};
     use core::f64::consts::PI;
+    use servobench_trace::Recording;
 
     const WINDOW: f64 = 10e-6;
 
     fn of_first(recording: &Recording, window: Option<f64>) -> MetricSet {
         let mut set = MetricSet::default();
-        note(&mut set, recording, &phases(recording)[0], window, None);
+        note(&mut set, &Checked::of(recording), &phases(recording)[0], window, None);
         set
     }
 
@@ -189,7 +194,7 @@ mod tests {
         let recording = after_a_move(|t| ring(t) - 1e-6);
         let mode = Mode { amplitude: 100e-6, frequency: f, damping: zeta, share: 1.0 };
         let mut set = MetricSet::default();
-        note(&mut set, &recording, &phases(&recording)[0], None, Some(&mode));
+        note(&mut set, &Checked::of(&recording), &phases(&recording)[0], None, Some(&mode));
         let rest = set.value(Name::SteadyStateError).unwrap();
         // Positions about 1 m are rounded to 1e-16.
         assert!((rest - 1e-6).abs() < 1e-14, "{rest}");
@@ -256,13 +261,13 @@ mod tests {
             .iter()
             .map(|phase| {
                 let mut metrics = MetricSet::default();
-                note(&mut metrics, &recording, phase, Some(WINDOW), None);
+                note(&mut metrics, &Checked::of(&recording), phase, Some(WINDOW), None);
                 let made = phase.made;
                 MoveMetrics { label: made.label.clone(), start: made.start, end: made.end, metrics }
             })
             .collect();
         let mut run = MetricSet::default();
-        note_worst(&mut run, &recording, &moves);
+        note_worst(&mut run, &Checked::of(&recording), &moves);
         assert_eq!(run.value(Name::MoveTime), Some(1.0));
         assert_eq!(run.value(Name::SettlingTime), moves[1].metrics.value(Name::SettlingTime));
         assert!((run.value(Name::SettlingTime).unwrap() - 0.08 * (1e-3_f64 / 12e-6).ln()).abs() < 1e-5);

@@ -3,7 +3,8 @@ use crate::absence::Absence;
 use servobench_base::Tick;
 use servobench_signals::Signal;
 use servobench_trace::{Move, Recording};
-use std::ops::Range;
+use std::cell::OnceCell;
+use std::ops::{Deref, Range};
 
 /// A move and its rows.
 #[derive(Debug, Clone)]
@@ -37,13 +38,38 @@ pub(crate) fn phases(recording: &Recording) -> Vec<Phase<'_>> {
         .collect()
 }
 
+/// A recording whose channels are looked through once each for values that are not finite: a program may have as many moves as rows.
+#[derive(Debug)]
+pub(crate) struct Checked<'a> {
+    recording: &'a Recording,
+    /// First row of each channel that is not finite, once it is known.
+    gaps: Vec<OnceCell<Option<usize>>>,
+}
+
+impl<'a> Checked<'a> {
+    pub(crate) fn of(recording: &'a Recording) -> Self {
+        Self { recording, gaps: vec![OnceCell::new(); recording.channels.len()] }
+    }
+}
+
+impl Deref for Checked<'_> {
+    type Target = Recording;
+
+    fn deref(&self) -> &Recording {
+        self.recording
+    }
+}
+
 /// Values of a channel.
 ///
 /// # Errors
 /// [`Absence::NoChannel`], [`Absence::NotFinite`].
-pub(crate) fn channel(recording: &Recording, signal: Signal) -> Result<&[f64], Absence> {
-    let values = recording.channel(signal).ok_or(Absence::NoChannel { channel: signal })?;
-    match values.iter().position(|value| !value.is_finite()) {
+pub(crate) fn channel<'a>(checked: &'a Checked<'_>, signal: Signal) -> Result<&'a [f64], Absence> {
+    let recording = checked.recording;
+    let named = recording.channels.iter().zip(&checked.gaps).find(|(channel, _)| channel.spec.name == signal.name());
+    let (channel, gap) = named.ok_or(Absence::NoChannel { channel: signal })?;
+    let values = channel.values.as_slice();
+    match *gap.get_or_init(|| values.iter().position(|value| !value.is_finite())) {
         None => Ok(values),
         Some(row) => Err(Absence::NotFinite { channel: signal, time: recording.rate.time(Tick(row as u64)) }),
     }

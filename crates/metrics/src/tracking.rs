@@ -2,9 +2,9 @@
 use crate::absence::Absence;
 use crate::metric::MetricSet;
 use crate::name::Name;
-use crate::span::{Phase, channel, largest, root_mean, unit};
+use crate::span::{Checked, Phase, channel, largest, root_mean, unit};
 use servobench_signals::Signal;
-use servobench_trace::{Move, Recording};
+use servobench_trace::Move;
 use std::ops::Range;
 
 /// One side of the axis.
@@ -32,7 +32,7 @@ const SIDES: [Side; 2] = [
 
 /// Notes the errors: peaks over `rows`; RMS and cruise value during the profiles of `phases`, the RMS over `rows` when
 /// there is no move.
-pub(crate) fn note(set: &mut MetricSet, recording: &Recording, rows: Range<usize>, phases: &[Phase<'_>]) {
+pub(crate) fn note(set: &mut MetricSet, recording: &Checked<'_>, rows: Range<usize>, phases: &[Phase<'_>]) {
     for side in &SIDES {
         let (error, unit) = (channel(recording, side.channel), unit(recording, side.channel));
         let peak = |e: &[f64]| largest(e[rows.clone()].iter().map(|e| e.abs()), "");
@@ -52,7 +52,7 @@ pub(crate) fn note(set: &mut MetricSet, recording: &Recording, rows: Range<usize
 }
 
 /// Of the cruise values of the moves, the one with the largest magnitude.
-fn largest_cruise(recording: &Recording, error: &[f64], phases: &[Phase<'_>]) -> Result<f64, Absence> {
+fn largest_cruise(recording: &Checked<'_>, error: &[f64], phases: &[Phase<'_>]) -> Result<f64, Absence> {
     if phases.is_empty() {
         return Err(Absence::NoMove);
     }
@@ -68,7 +68,7 @@ fn largest_cruise(recording: &Recording, error: &[f64], phases: &[Phase<'_>]) ->
 
 /// Mean error over the second half of the part at constant velocity. The first half is left to the transient with
 /// which the axis enters it; the mean takes out what vibrates.
-fn cruise(recording: &Recording, error: &[f64], made: &Move) -> Result<f64, Absence> {
+fn cruise(recording: &Checked<'_>, error: &[f64], made: &Move) -> Result<f64, Absence> {
     let (start, length) = made.cruise;
     let rows = recording.index_at(start + length / 2.0)..recording.index_at(start + length);
     let values = error.get(rows).unwrap_or_default();
@@ -81,7 +81,7 @@ fn cruise(recording: &Recording, error: &[f64], made: &Move) -> Result<f64, Abse
 const MOTOR_VELOCITY: Signal = Signal::MotorVelocity;
 const VELOCITY_REFERENCE: Signal = Signal::VelocityReference;
 
-fn velocity_error_peak(recording: &Recording, rows: Range<usize>) -> Result<f64, Absence> {
+fn velocity_error_peak(recording: &Checked<'_>, rows: Range<usize>) -> Result<f64, Absence> {
     let reference = channel(recording, VELOCITY_REFERENCE)?;
     let actual = channel(recording, MOTOR_VELOCITY)?;
     if unit(recording, VELOCITY_REFERENCE) != unit(recording, MOTOR_VELOCITY) {
@@ -95,7 +95,7 @@ fn velocity_error_peak(recording: &Recording, rows: Range<usize>) -> Result<f64,
 }
 
 /// Tells the rows at whose instant `signal` was written from those at which it was held.
-fn written(recording: &Recording, signal: Signal) -> impl Fn(usize) -> bool + use<> {
+fn written(recording: &Checked<'_>, signal: Signal) -> impl Fn(usize) -> bool + use<> {
     let of = recording.channels.iter().find(|other| other.spec.name == signal.name());
     let row_rate = u64::from(recording.rate.hertz());
     let rate = of.map_or(row_rate, |channel| u64::from(channel.spec.rate.hertz()));
@@ -107,6 +107,7 @@ mod tests {
     use super::*;
     use crate::span::phases;
     use crate::synthetic::{Build, planned};
+    use servobench_trace::Recording;
 
     /// e(t) = v/k_p·(1 − exp(−k_p·t)) at constant velocity: the loop of the EMPS axis without friction.
     const K_P: f64 = 160.18;
@@ -133,11 +134,11 @@ mod tests {
     fn cruise_is_the_stationary_error_with_its_sign() {
         let recording = two_moves();
         let mut set = MetricSet::default();
-        note(&mut set, &recording, 0..4000, &phases(&recording));
+        note(&mut set, &Checked::of(&recording), 0..4000, &phases(&recording));
         let cruise = set.value(Name::FollowingErrorCruiseMotor).unwrap();
         assert!((cruise + 0.15 / K_P).abs() < 1e-15, "{cruise}");
         let mut first = MetricSet::default();
-        note(&mut first, &recording, 0..2000, &phases(&recording)[..1]);
+        note(&mut first, &Checked::of(&recording), 0..2000, &phases(&recording)[..1]);
         let cruise = first.value(Name::FollowingErrorCruiseMotor).unwrap();
         assert!((cruise - 0.12 / K_P).abs() < 1e-15, "{cruise}");
         let peak = set.value(Name::FollowingErrorPeakMotor).unwrap();
@@ -154,10 +155,10 @@ mod tests {
             .moves([planned(1.0, 2.0, 0.0, 1.0).made()])
             .finish();
         let mut set = MetricSet::default();
-        note(&mut set, &recording, 0..4000, &phases(&recording));
+        note(&mut set, &Checked::of(&recording), 0..4000, &phases(&recording));
         let rms = set.value(Name::FollowingErrorRmsLoad).unwrap();
         assert!((rms - 0.5_f64.sqrt()).abs() < 1e-12, "{rms}");
-        note(&mut set, &recording, 0..4000, &[]);
+        note(&mut set, &Checked::of(&recording), 0..4000, &[]);
         let rms = set.value(Name::FollowingErrorRmsLoad).unwrap();
         assert!((rms - 0.125_f64.sqrt()).abs() < 1e-12, "over the whole recording: {rms}");
     }
@@ -168,7 +169,7 @@ mod tests {
             .channel(Signal::FollowingErrorLoad, "m", |t| if t > 0.05 { f64::NAN } else { 0.0 })
             .finish();
         let mut set = MetricSet::default();
-        note(&mut set, &recording, 0..100, &[]);
+        note(&mut set, &Checked::of(&recording), 0..100, &[]);
         let why = |name| set.absence(name).unwrap().to_string();
         assert_eq!(why(Name::FollowingErrorPeakLoad), "`following_error.load` is not finite at 0.051 s");
         assert_eq!(why(Name::FollowingErrorCruiseMotor), "`following_error.motor` is not recorded");
@@ -182,7 +183,7 @@ mod tests {
             .channel(Signal::MotorVelocity, "m/s", |t| 0.75 * t)
             .finish();
         let mut set = MetricSet::default();
-        note(&mut set, &recording, 0..1000, &[]);
+        note(&mut set, &Checked::of(&recording), 0..1000, &[]);
         let peak = set.value(Name::VelocityErrorPeak).unwrap();
         assert!((peak - 0.25 * 0.999).abs() < 1e-15, "{peak}");
     }
@@ -197,7 +198,7 @@ mod tests {
             .finish();
         recording.channels[0].spec.rate = servobench_base::Rate::new(125).unwrap();
         let mut set = MetricSet::default();
-        note(&mut set, &recording, 0..1000, &[]);
+        note(&mut set, &Checked::of(&recording), 0..1000, &[]);
         let peak = set.value(Name::VelocityErrorPeak).unwrap();
         assert!((peak - 1e-3).abs() < 1e-12, "{peak}");
     }

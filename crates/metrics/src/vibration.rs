@@ -3,9 +3,8 @@ use crate::absence::Absence;
 use crate::metric::MetricSet;
 use crate::modal::{self, Mode, fit_mode};
 use crate::name::Name;
-use crate::span::{Phase, channel, root_mean};
+use crate::span::{Checked, Phase, channel, root_mean};
 use servobench_signals::Signal;
-use servobench_trace::Recording;
 use std::ops::Range;
 
 const LOAD: Signal = Signal::LoadPosition;
@@ -25,12 +24,12 @@ impl Residual {
     }
 
     /// From the end of the profile to the next move.
-    pub(crate) fn after(recording: &Recording, phase: &Phase<'_>, mode: Option<f64>) -> Self {
+    pub(crate) fn after(recording: &Checked<'_>, phase: &Phase<'_>, mode: Option<f64>) -> Self {
         Self::over(recording, &phase.after, phase.made.end, phase.made.to, mode)
     }
 
     /// From `time` (s) to the next move.
-    pub(crate) fn from_time(recording: &Recording, time: f64, mode: Option<f64>) -> Self {
+    pub(crate) fn from_time(recording: &Checked<'_>, time: f64, mode: Option<f64>) -> Self {
         let start = recording.index_at(time);
         let next = recording.moves.iter().map(|made| recording.index_at(made.start)).find(|row| *row > start);
         let rest = recording.channel(LOAD).and_then(|load| load.last()).copied().unwrap_or_default();
@@ -38,7 +37,7 @@ impl Residual {
     }
 
     /// Over `rows`, as deviation from `rest` (axis unit), with the amplitude referred to the instant `zero` (s).
-    fn over(recording: &Recording, rows: &Range<usize>, zero: f64, rest: f64, mode: Option<f64>) -> Self {
+    fn over(recording: &Checked<'_>, rows: &Range<usize>, zero: f64, rest: f64, mode: Option<f64>) -> Self {
         let load = match channel(recording, LOAD) {
             Ok(load) if !rows.is_empty() => &load[rows.clone()],
             Ok(_) => return Self::absent(&Absence::NothingRecorded { part: "after the profile" }),
@@ -72,7 +71,7 @@ impl Residual {
     }
 
     /// Notes the six metrics.
-    pub(crate) fn note(&self, set: &mut MetricSet, recording: &Recording) {
+    pub(crate) fn note(&self, set: &mut MetricSet, recording: &Checked<'_>) {
         let unit = recording.about.axis_unit.as_str();
         let of_mode = |value: fn(&Mode) -> f64| self.mode.as_ref().map(value).map_err(Clone::clone);
         set.note(Name::ResidualVibrationPp, unit, self.peak_to_peak.clone());

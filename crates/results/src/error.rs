@@ -1,11 +1,12 @@
 //! Why results cannot be read.
+use servobench_files::{named, with_short_quotes};
 use thiserror::Error;
 
 /// Why results cannot be read, or written.
 #[derive(Debug, Error)]
 pub enum ResultsError {
     /// They are no JSON of this schema.
-    #[error("the results are not as docs/results.schema.json says: {0}")]
+    #[error("the results are not as docs/results.schema.json says: {}", with_short_quotes(&.0.to_string()))]
     Json(#[from] serde_json::Error),
     /// They are of a later version.
     #[error(
@@ -19,7 +20,7 @@ pub enum ResultsError {
         known: u32,
     },
     /// They are something else.
-    #[error("the file has schema `{found}`, which is none of servobench's results")]
+    #[error("the file has schema `{}`, which is none of servobench's results", named(.found))]
     Schema {
         /// Schema of the file.
         found: String,

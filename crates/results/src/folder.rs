@@ -1,6 +1,6 @@
 //! The folder that a suite writes into: one suite at a time, nothing left of those before.
 use crate::journal;
-use crate::results::Results;
+use crate::results::{Results, read_results};
 use std::collections::HashSet;
 use std::ffi::OsStr;
 use std::fs::{self, File, TryLockError};
@@ -100,7 +100,7 @@ impl Folder {
     pub fn remove_former(&self, list: &str) -> Former {
         let mut former = Former::default();
         let mut names = HashSet::new();
-        if let Ok(text) = fs::read_to_string(self.path.join(list)) {
+        if let Ok(text) = read_results(&self.path.join(list)) {
             match Results::from_json(&text) {
                 Ok(results) => names.extend(results.files().filter(|name| is_left_by_a_run(name)).map(str::to_owned)),
                 Err(error) => {
@@ -110,7 +110,7 @@ impl Folder {
             }
         }
         if list == RESULTS
-            && let Ok(file) = File::open(self.journal())
+            && let Ok(file) = servobench_files::open(&self.journal(), u64::MAX)
             && let Ok((suite, finished)) = journal::read(file, &self.journal())
         {
             former.of_unfinished = Some(finished.len());
@@ -120,7 +120,7 @@ impl Folder {
             );
         }
         let other = if list == RESULTS { COMPARISON } else { RESULTS };
-        let other = fs::read_to_string(self.path.join(other)).ok().and_then(|text| Results::from_json(&text).ok());
+        let other = read_results(&self.path.join(other)).ok().and_then(|text| Results::from_json(&text).ok());
         let kept: HashSet<&str> = other.iter().flat_map(Results::files).collect();
         let names = names.iter().filter(|name| !kept.contains(name.as_str()));
         former.removed = names.filter(|name| fs::remove_file(self.path.join(name)).is_ok()).count();

@@ -25,7 +25,7 @@ use twox_hash::XxHash64;
 /// How long a record may wait until it is made sure that it is on the disk, as long as others follow it.
 const PERIOD: Duration = Duration::from_secs(1);
 /// Bytes of the longest line that is read.
-const LONGEST: u64 = 1 << 28;
+const LONGEST: u64 = 1 << 26;
 /// Version of the format.
 const VERSION: u32 = 1;
 
@@ -150,6 +150,8 @@ impl Journal {
     /// # Errors
     /// [`JournalError`]
     pub fn resume(path: PathBuf) -> Result<(Self, Suite, Vec<Finished>), JournalError> {
+        // A FIFO under its name would keep its reader waiting.
+        servobench_files::metadata(&path, u64::MAX).map_err(failed("read", &path))?;
         let mut file = File::options().read(true).write(true).open(&path).map_err(failed("read", &path))?;
         let (suite, finished) = read(&file, &path)?;
         let end = file.seek(SeekFrom::End(0)).map_err(failed("read", &path))?;

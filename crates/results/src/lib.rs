@@ -27,5 +27,5 @@ pub use error::ResultsError;
 pub use folder::{COMPARISON, Folder, FolderError, Former, JOURNAL, RESULTS};
 pub use journal::{Finished, Journal, JournalError, Suite, read as read_journal};
 pub use printable::{printable, printable_json, printable_lines};
-pub use results::{Outcome, Results, Status, Unfinished};
+pub use results::{Outcome, Results, Status, Unfinished, read_results};
 pub use run::{LimitPlace, RunIdentity, RunResult};

@@ -3,6 +3,8 @@ use crate::digest::Digest;
 use crate::error::ResultsError;
 use crate::run::RunResult;
 use serde::{Deserialize, Serialize};
+use std::io;
+use std::path::Path;
 
 /// Name of the schema, before its version.
 const SCHEMA: &str = "servobench-results/";
@@ -93,6 +95,17 @@ impl Outcome {
     pub const fn is_whole(self) -> bool {
         !matches!(self, Self::Invalid | Self::Error)
     }
+}
+
+/// Bytes of a file of results at most: those of 100 000 runs have 500 MB.
+const MOST_BYTES: u64 = 1 << 30;
+
+/// The text of a file of results.
+///
+/// # Errors
+/// Those of the operating system; it is no regular file, or larger than any results.
+pub fn read_results(path: &Path) -> io::Result<String> {
+    servobench_files::read_text(path, MOST_BYTES)
 }
 
 impl Results {

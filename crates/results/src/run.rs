@@ -4,6 +4,7 @@ use crate::entry::{ExpectedResult, MetricResult, MoveResult, of_set};
 use crate::results::Outcome;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
+use servobench_files::MadeOf;
 use servobench_metrics::{Metrics, Name, RequirementResult, Standing, Verdict};
 use servobench_trace::{Event, LogEntry, Recording};
 
@@ -24,6 +25,8 @@ pub struct RunIdentity {
     pub recording_seal: Option<String>,
     /// Every file that it left beside the results, that of the recording among them.
     pub files: Vec<String>,
+    /// Files that the scenario is made of.
+    pub made_of: Vec<MadeOf>,
     /// What the scenario file says, by key.
     pub parameters: Vec<(String, String)>,
     /// Keys that have another value than the file gives them, with that: `setpoint.jerk=200 m/s3`.
@@ -56,6 +59,10 @@ pub struct RunResult {
     /// Equal digests are equal runs.
     #[serde(default)]
     pub inputs: Digest,
+    /// Files that the scenario is made of, itself first: values that it does not give come from the models among them. Empty for one
+    /// that could not be read.
+    #[serde(default)]
+    pub made_of: Vec<MadeOf>,
     /// What came of it.
     pub verdict: Outcome,
     /// Simulated time, from tick 0 to the last recorded instant (s).
@@ -173,6 +180,7 @@ impl RunResult {
             file: run.file,
             engine: run.engine,
             inputs: run.inputs,
+            made_of: run.made_of,
             verdict: Outcome::Error,
             // N + 1 instants from tick 0 to tick N.
             duration: recording.map_or(0.0, |recording| recording.time_of(recording.len().saturating_sub(1))),

@@ -5,6 +5,7 @@ use crate::results::{Outcome, Results};
 use crate::run::RunResult;
 use indexmap::IndexMap;
 use servobench_base::Severity;
+use servobench_files::{FileRole, MadeOf};
 use servobench_metrics::{Name, RequirementResult, Standing};
 use servobench_trace::{Ending, Event, LogEntry, Move};
 
@@ -29,6 +30,7 @@ pub fn run(name: &str, engine: &str, metrics: impl IntoIterator<Item = (String, 
         file: Some(format!("scenarios/{name}.toml")),
         engine: engine.into(),
         inputs: Digest::of(name.as_bytes()),
+        made_of: vec![MadeOf::of_bytes(format!("{name}.toml"), FileRole::Scenario, name.as_bytes())],
         verdict: Outcome::Unjudged,
         duration: 2.0,
         reasons: vec![],

@@ -1,10 +1,13 @@
 //! What is wrong with a scenario, where, and what to do about it.
+use crate::access::FileAccess;
 use crate::points::Counts;
 use crate::source::{SourceId, Sources, Span};
 use servobench_base::{Coordinate, Rate};
+use std::collections::HashSet;
 use std::fmt;
 use std::ops::Range;
 use std::path::PathBuf;
+use std::sync::Arc;
 use thiserror::Error;
 
 /// One mistake or doubt, at its place.
@@ -94,16 +97,22 @@ impl fmt::Display for Invalid {
 
 impl Diagnostic {
     pub(crate) fn new(span: Span, message: String, help: String) -> Self {
-        let help = (!help.is_empty()).then_some(help);
+        let (message, help) = (bounded(message), (!help.is_empty()).then(|| bounded(help)));
         Self { source: span.source, span: span.start..span.end, message, help }
     }
 
     /// The diagnostic in one line: `axis.toml:12:9: message; help`, of an override `--set run.duration=1: message; help`.
     #[must_use]
     pub fn line(&self, sources: &Sources) -> String {
-        let place = sources.place_in_words(self.source, self.span.start);
         let help = self.help.as_ref().map(|help| format!("; {help}")).unwrap_or_default();
-        format!("{place}: {}{help}", self.message)
+        format!("{}{help}", self.placed_message(sources))
+    }
+
+    /// The message behind its place, without what to do about it.
+    #[must_use]
+    pub fn placed_message(&self, sources: &Sources) -> String {
+        let place = sources.place_in_words(self.source, self.span.start);
+        format!("{place}: {}", self.message)
     }
 }
 
@@ -113,7 +122,7 @@ pub struct NamedFile {
     /// The path as the scenario has it, relative to its folder.
     pub named: String,
     /// The text of the file.
-    pub text: String,
+    pub text: Arc<str>,
 }
 
 /// Collects what is found while a scenario is read, and knows what a unit's meaning depends on.
@@ -127,8 +136,14 @@ pub(crate) struct Report {
     pub(crate) without_model: Vec<&'static str>,
     /// Task rates that models give.
     pub(crate) rates_of_models: Vec<Rate>,
+    /// What the scenario may read, and what was.
+    pub(crate) files: FileAccess,
     /// Tables of points that were read.
     pub(crate) tables: Vec<NamedFile>,
+    /// Their names, and which texts these are.
+    pub(crate) known_tables: HashSet<(String, *const u8)>,
+    /// Points of all of them.
+    pub(crate) points: usize,
     /// What a count of the bus is, once known.
     pub(crate) counts: Option<Counts>,
     /// Coordinate of the axis, once known.
@@ -146,6 +161,13 @@ impl Report {
         self.warnings.push(Diagnostic::new(span, message.into(), help.into()));
     }
 
+    /// Notes a table that is read under this name.
+    pub(crate) fn note_table(&mut self, named: &str, text: &Arc<str>) {
+        if self.known_tables.insert((named.to_owned(), text.as_ptr())) {
+            self.tables.push(NamedFile { named: named.to_owned(), text: Arc::clone(text) });
+        }
+    }
+
     /// Notes that something is missing which the table `path` could hold.
     pub(crate) fn lacking(&mut self, path: &str, span: Span, message: impl Into<String>, help: impl Into<String>) {
         let table = path.split('.').next().unwrap_or(path);
@@ -153,6 +175,18 @@ impl Report {
             self.missing.push(Diagnostic::new(span, message.into(), help.into()));
         }
     }
+}
+
+/// Bytes of a message: a value may be as long as its file.
+const LONGEST: usize = 2000;
+
+/// A text with its middle left out when it is longer than anybody reads.
+fn bounded(text: String) -> String {
+    if text.len() <= LONGEST {
+        return text;
+    }
+    let (before, behind) = (text.floor_char_boundary(LONGEST / 2), text.ceil_char_boundary(text.len() - LONGEST / 2));
+    format!("{}…{}", &text[..before], &text[behind..])
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 //! The tables in `file` are the one description of the format: decoding, unknown keys, JSON Schema and the reference in
 //! `docs/scenario.md` follow from them.
 
+mod access;
 mod argument;
 mod block;
 mod channel;
@@ -13,10 +14,12 @@ mod diagnostic;
 mod display_units;
 mod field;
 mod file;
+mod foreign;
 mod format;
 mod limit_table;
 mod list;
 mod load;
+mod mjcf_files;
 mod models;
 mod name_table;
 mod nearest;
@@ -38,9 +41,10 @@ mod tree;
 mod unit;
 mod when;
 
+pub use access::{MOST_OF_A_SCENARIO, root_of};
 pub use argument::{ArgumentError, Derivative, axis_quantity, frequency, ratio, si_unit, time};
 pub use diagnostic::{Diagnostic, Invalid, LoadError, MOST_MISTAKES, NamedFile, Shown, shown};
-pub use load::{Loaded, load, load_with, parse, parse_with};
+pub use load::{Loaded, load, load_with, load_within, parse, parse_with, parse_within};
 pub use models::{embedded_demo, embedded_models};
 pub use overrides::{Override, OverrideError};
 pub use parameter_key::{parameter_key, switch_key};
@@ -51,8 +55,8 @@ pub use points::{
 };
 pub use scenario::{
     Actuator, Axis, AxisMechanics, Bus, BusMode, Disturbance, DisturbedBody, Drive, DriveUnits, Feedback, Fmu, Initial,
-    InputSource, Interpolation, LONGEST_RUN, LoopSignal, MoveStep, ObjectWrite, Plc, Record, Requirements, Scenario,
-    Step,
+    InputSource, Interpolation, LONGEST_RUN, LoopSignal, MOST_TICKS, MoveStep, ObjectWrite, Plc, Record, Requirements,
+    Scenario, Step,
 };
 pub use schema::json_schema;
 pub use source::{SourceId, Sources};

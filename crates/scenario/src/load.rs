@@ -1,9 +1,9 @@
 //! From a file or a text to a scenario, or to everything that is wrong with it.
+use crate::access::FileAccess;
 use crate::diagnostic::{Diagnostic, Invalid, LoadError, NamedFile, Report};
 use crate::display_units::display_units;
 use crate::field::Field;
 use crate::file::{File, MotorKind};
-use crate::format;
 use crate::models::lay_on_models;
 use crate::overrides::{Override, Overriding};
 use crate::parameters::parameters;
@@ -11,8 +11,10 @@ use crate::resolve;
 use crate::scenario::{AxisMechanics, Scenario};
 use crate::source::{Place, SourceId, Sources, Span};
 use crate::tree::{self, Node, Table, Value};
+use crate::{foreign, format};
 use servobench_base::Coordinate;
 use servobench_config::Choice;
+use servobench_files::FileRole;
 use std::ops::Range;
 use std::path::Path;
 
@@ -47,11 +49,30 @@ pub fn load(path: &Path) -> Result<Loaded, LoadError> {
 /// # Errors
 /// As [`load`], and what is wrong with the overrides.
 pub fn load_with(path: &Path, overrides: &[Override]) -> Result<Loaded, LoadError> {
-    let text = std::fs::read_to_string(path).map_err(|error| LoadError::Read { path: path.to_owned(), error })?;
+    load_within(path, overrides, None)
+}
+
+/// Loads as [`load_with`] does. The scenario and every file that it names must be below the folder `root`, links resolved; without it
+/// below the nearest folder from the scenario upwards that has a `.git`, or else below that of the scenario.
+///
+/// # Errors
+/// As [`load_with`].
+pub fn load_within(path: &Path, overrides: &[Override], root: Option<&Path>) -> Result<Loaded, LoadError> {
+    let unreadable = |error| LoadError::Read { path: path.to_owned(), error };
     let folder = path.parent().unwrap_or_else(|| Path::new(""));
-    let mut loaded = parse_with(&path.display().to_string(), &text, Some(folder), overrides)?;
+    let mut files = access(path, folder, root)?;
+    let text = files.text(path, FileRole::Scenario).map_err(|refused| unreadable(refused.into_error_of(path)))?;
+    let mut loaded = parse_from(&path.display().to_string(), &text, Some(folder), overrides, files)?;
     loaded.scenario.path = Some(path.to_owned());
     Ok(loaded)
+}
+
+/// What the scenario at `path`, in `folder`, may read.
+fn access(path: &Path, folder: &Path, root: Option<&Path>) -> Result<FileAccess, LoadError> {
+    FileAccess::of_folder(folder, root).map_err(|error| {
+        let path = root.unwrap_or(path).to_owned();
+        LoadError::Read { path, error }
+    })
 }
 
 /// Reads a scenario from `text`; `name` stands for the file in messages, and its stem names a scenario that has no name
@@ -68,6 +89,36 @@ pub fn parse(name: &str, text: &str, folder: Option<&Path>) -> Result<Loaded, Lo
 /// # Errors
 /// As [`parse`], and what is wrong with the overrides.
 pub fn parse_with(name: &str, text: &str, folder: Option<&Path>, overrides: &[Override]) -> Result<Loaded, LoadError> {
+    parse_within(name, text, folder, overrides, None)
+}
+
+/// Reads as [`parse_with`] does; files that it names are below `root`, as [`load_within`] has it.
+///
+/// # Errors
+/// As [`parse_with`], and [`LoadError::Read`] when there is no such folder.
+pub fn parse_within(
+    name: &str,
+    text: &str,
+    folder: Option<&Path>,
+    overrides: &[Override],
+    root: Option<&Path>,
+) -> Result<Loaded, LoadError> {
+    let mut files = match folder {
+        Some(folder) => access(Path::new(name), folder, root)?,
+        None => FileAccess::default(),
+    };
+    let own = Path::new(name).file_name().map_or_else(|| name.into(), std::ffi::OsStr::to_string_lossy);
+    files.note_scenario(&own, text);
+    parse_from(name, text, folder, overrides, files)
+}
+
+fn parse_from(
+    name: &str,
+    text: &str,
+    folder: Option<&Path>,
+    overrides: &[Override],
+    files: FileAccess,
+) -> Result<Loaded, LoadError> {
     let mut sources = Sources::default();
     let place = folder.map_or_else(|| Place::Embedded("".into()), |folder| Place::Folder(folder.to_owned()));
     let id = sources.add(name.to_owned(), text.to_owned(), place);
@@ -75,7 +126,7 @@ pub fn parse_with(name: &str, text: &str, folder: Option<&Path>, overrides: &[Ov
     let mut syntax = Report::default();
     let mut parsed = tree::parse(id, text, &mut syntax);
     let mut broken: Vec<(SourceId, Range<usize>)> = parsed.broken.drain(..).map(|line| (id, line)).collect();
-    let mut report = Report::default();
+    let mut report = Report { files, ..Report::default() };
     if let Some(diagnostic) = format::newer(&parsed.table) {
         // Whatever else is said of a file that this build does not know would mislead.
         let (diagnostics, warnings) = (vec![diagnostic], Vec::new());
@@ -92,8 +143,10 @@ pub fn parse_with(name: &str, text: &str, folder: Option<&Path>, overrides: &[Ov
     let scenario =
         File::decode("", &root, &(), &mut report).and_then(|file| resolve::scenario(&file, &sources, &mut report));
 
-    let diagnostics = all_errors(syntax, &mut report, &broken);
-    let warnings = in_order(report.warnings);
+    let mut diagnostics = all_errors(syntax, &mut report, &broken);
+    let mut warnings = in_order(std::mem::take(&mut report.warnings));
+    foreign::shorten(&mut diagnostics, &sources);
+    foreign::shorten(&mut warnings, &sources);
     match scenario {
         Some(mut scenario) if diagnostics.is_empty() => {
             if scenario.name.is_empty() {
@@ -104,6 +157,8 @@ pub fn parse_with(name: &str, text: &str, folder: Option<&Path>, overrides: &[Ov
                 scenario.units = display_units(&scenario.parameters, scenario.axis.motion);
             }
             scenario.overrides = overrides.to_vec();
+            scenario.root = report.files.root().map(Path::to_owned);
+            scenario.made_of = report.files.into_made_of();
             let mjcf = match &scenario.axis.mechanics {
                 AxisMechanics::Mjcf(mjcf) => {
                     Some(sources.add(mjcf.path.display().to_string(), mjcf.xml.clone(), Place::Embedded("".into())))

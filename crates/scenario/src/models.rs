@@ -1,24 +1,31 @@
 //! Motors, drives and axes by name: beside the scenario, above it, or embedded.
+use crate::access::{FileAccess, RELATIVE, Refused};
 use crate::diagnostic::Report;
 use crate::nearest::suggestion;
 use crate::source::{Place, Sources};
 use crate::tree::{self, Node, Table, Value};
 use include_dir::{Dir, include_dir};
+use servobench_files::FileRole;
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 static MODELS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../models");
 static DEMO: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../scenarios/demo");
 
 /// Tables that can name a model, and the folders of `models/` that hold them.
-const MODELLED: [(&str, &str); 3] = [("axis", "axes"), ("motor", "motors"), ("drive", "drives")];
+const MODELLED: [(&str, &str, FileRole); 3] = [
+    ("axis", "axes", FileRole::AxisModel),
+    ("motor", "motors", FileRole::MotorModel),
+    ("drive", "drives", FileRole::DriveModel),
+];
 
 /// How many folders above the scenario's own are searched for `models/`.
 const LEVELS: usize = 4;
 
 /// Before the names of embedded files in messages.
-const EMBEDDED: &str = "<embedded>";
+pub(crate) const EMBEDDED: &str = "<embedded>";
 
 /// The demo's scenarios as they are in `scenarios/demo`: file name and text, in the order of names.
 #[must_use]
@@ -46,6 +53,8 @@ struct Model {
     name: String,
     text: String,
     place: Place,
+    /// Whether it stands in the place of another one that is built in.
+    displaces: bool,
 }
 
 /// Lays each table of `root` that names a model on top of it. Syntax errors of model files go to `syntax`; returns the
@@ -57,11 +66,11 @@ pub(crate) fn lay_on_models(
     syntax: &mut Report,
 ) -> Vec<(crate::SourceId, Range<usize>)> {
     let mut broken = Vec::new();
-    for (key, folder) in MODELLED {
+    for (key, folder, role) in MODELLED {
         let Some(Node { value: Value::Table(table), .. }) = root.get_mut(key) else { continue };
         let Some(Node { value: Value::Text(name), span }) = table.get("model") else { continue };
         let (name, span) = (name.clone(), *span);
-        let model = match find(folder, &name, sources.place(span.source)) {
+        let model = match find((folder, role), &name, sources.place(span.source), &mut report.files) {
             Ok(model) => model,
             Err((message, help)) => {
                 report.error(span, message, help);
@@ -69,6 +78,11 @@ pub(crate) fn lay_on_models(
                 continue;
             }
         };
+        if model.displaces {
+            let message =
+                format!("`{}` stands in the place of the built-in model `{name}`, and differs from it", model.name);
+            report.warning(span, message, "give it another name if the built-in one is meant");
+        }
         let id = sources.add(model.name, model.text, model.place);
         let text = sources.text(id).to_owned();
         let parsed = tree::parse(id, &text, syntax);
@@ -84,7 +98,12 @@ pub(crate) fn lay_on_models(
 }
 
 /// Finds a model; otherwise says why not and what to do.
-fn find(folder: &str, name: &str, place: Option<&Place>) -> Result<Model, (String, String)> {
+fn find(
+    (folder, role): (&str, FileRole),
+    name: &str,
+    place: Option<&Place>,
+    files: &mut FileAccess,
+) -> Result<Model, (String, String)> {
     if name.is_empty() || !name.chars().all(|c| c.is_ascii_alphanumeric() || "-_.".contains(c)) || name.starts_with('.')
     {
         return Err((
@@ -94,24 +113,28 @@ fn find(folder: &str, name: &str, place: Option<&Place>) -> Result<Model, (Strin
     }
     let file_name = format!("{name}.toml");
     let folders: Vec<PathBuf> = match place {
-        Some(Place::Folder(base)) => upwards(base).map(|above| above.join("models").join(folder)).collect(),
+        Some(Place::Folder(base)) => {
+            let within = upwards(base).filter(|above| files.has_folder(above));
+            within.map(|above| above.join("models").join(folder)).collect()
+        }
         _ => Vec::new(),
     };
+    let built_in = Path::new(folder).join(&file_name);
+    let built_in_text = MODELS.get_file(&built_in).and_then(include_dir::File::contents_utf8);
     for folder in &folders {
         let path = folder.join(&file_name);
-        if !path.is_file() {
+        let refused = |Refused { message, help }| (message, if help == RELATIVE { "" } else { help }.to_owned());
+        if !files.has_file(&path, role).map_err(refused)? {
             continue;
         }
-        let name = path.display().to_string();
-        return match std::fs::read_to_string(&path) {
-            Ok(text) => Ok(Model { name, text, place: Place::Folder(folder.clone()) }),
-            Err(error) => Err((format!("cannot read `{name}`: {error}"), String::new())),
-        };
+        let text = files.text(&path, role).map_err(refused)?.to_string();
+        let displaces = built_in_text.is_some_and(|built_in| built_in != text);
+        return Ok(Model { name: path.display().to_string(), text, place: Place::Folder(folder.clone()), displaces });
     }
-    let path = Path::new(folder).join(&file_name);
-    if let Some(text) = MODELS.get_file(&path).and_then(include_dir::File::contents_utf8) {
-        let name = format!("{EMBEDDED}/models/{}", path.display());
-        return Ok(Model { name, text: text.to_owned(), place: Place::Embedded(folder.into()) });
+    if let Some(text) = built_in_text {
+        let name = format!("{EMBEDDED}/models/{}", built_in.display());
+        files.embedded(name.clone(), role, text);
+        return Ok(Model { name, text: text.to_owned(), place: Place::Embedded(folder.into()), displaces: false });
     }
     let known = known(folder, &folders);
     Err((
@@ -149,21 +172,30 @@ fn known(folder: &str, folders: &[PathBuf]) -> BTreeSet<String> {
 }
 
 /// Reads the text of `file`, which a file at `place` names; its path for messages and for what it includes in turn.
-pub(crate) fn read_beside(file: &str, place: &Place) -> Result<(PathBuf, String), String> {
+pub(crate) fn read_beside(
+    file: &str,
+    role: FileRole,
+    place: &Place,
+    files: &mut FileAccess,
+) -> Result<(PathBuf, Arc<str>), Refused> {
     match place {
         Place::Folder(folder) => {
             let path = folder.join(file);
-            match std::fs::read_to_string(&path) {
-                Ok(text) => Ok((path, text)),
-                Err(error) => Err(format!("cannot read `{}`: {error}", path.display())),
-            }
+            files.text(&path, role).map(|text| (path, text))
         }
         Place::Embedded(folder) => {
             let path = folder.join(file);
             let text = MODELS.get_file(&path).and_then(include_dir::File::contents_utf8);
             match text {
-                Some(text) => Ok((Path::new(EMBEDDED).join("models").join(path), text.to_owned())),
-                None => Err(format!("there is no embedded file `{}`", path.display())),
+                Some(text) => {
+                    let path = Path::new(EMBEDDED).join("models").join(path);
+                    let text = files.embedded(path.display().to_string(), role, text);
+                    Ok((path, text))
+                }
+                None => {
+                    let message = format!("there is no embedded file `{}`", path.display());
+                    Err(Refused { message, help: RELATIVE })
+                }
             }
         }
     }
@@ -184,7 +216,8 @@ mod tests {
     #[test]
     fn names_cannot_leave_the_folder() {
         for name in ["", "../motors/x", "a/b", ".hidden", "/etc/passwd", "C:x"] {
-            assert!(find("motors", name, None).is_err_and(|(message, _)| message.contains("no name of a model")));
+            let found = find(("motors", FileRole::MotorModel), name, None, &mut FileAccess::default());
+            assert!(found.is_err_and(|(message, _)| message.contains("no name of a model")));
         }
     }
 }

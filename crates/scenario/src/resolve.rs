@@ -135,6 +135,8 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
         parameters: Vec::new(),
         units: DisplayUnits::new(report.axis?.unit()),
         overrides: Vec::new(),
+        root: None,
+        made_of: Vec::new(),
     })
 }
 

@@ -26,6 +26,7 @@ pub use requirements::Requirements;
 use crate::overrides::Override;
 use crate::parameters::Parameter;
 use servobench_base::Rate;
+use servobench_files::MadeOf;
 use servobench_metrics::{DisplayUnits, Limit, Question};
 use servobench_plant::EngineName;
 use servobench_signals::Signal;
@@ -33,6 +34,9 @@ use std::path::PathBuf;
 
 /// Longest run (s), 11.6 days. At the highest base rate its ticks are fewer than 2⁵³: the time of every tick is exact.
 pub const LONGEST_RUN: f64 = 1e6;
+
+/// Most ticks of a run: 25 minutes of the engine `exact`, a week at 16 kHz.
+pub const MOST_TICKS: u64 = 10_000_000_000;
 
 /// One experiment: an axis, a program of moves, what to measure and the limits that make it pass or fail.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,6 +89,10 @@ pub struct Scenario {
     pub units: DisplayUnits,
     /// Keys that have another value than the file gives them.
     pub overrides: Vec<Override>,
+    /// The folder that all files it names are below, links resolved; `None` for a scenario without a folder.
+    pub root: Option<PathBuf>,
+    /// The files that it is made of, itself first, in the order in which they are read.
+    pub made_of: Vec<MadeOf>,
 }
 
 /// What to record.

@@ -1,4 +1,5 @@
 //! What a scenario was read from, files and overrides of the command line, and places in them.
+use crate::models::EMBEDDED;
 use std::ops::Range;
 use std::path::PathBuf;
 
@@ -35,6 +36,8 @@ struct Source {
     /// Where each line but the first begins.
     line_starts: Vec<usize>,
     place: Place,
+    /// Whether messages may show its lines.
+    is_shown: bool,
 }
 
 /// Where a file is, for the files that it names in turn.
@@ -113,6 +116,13 @@ impl Sources {
         self.get(id).map_or("", |source| &source.text)
     }
 
+    /// Whether messages may show lines of it: of the scenario, of overrides and of what is built in. What else a scenario names may be
+    /// any file.
+    #[must_use]
+    pub fn may_be_shown(&self, id: SourceId) -> bool {
+        self.get(id).is_some_and(|source| source.is_shown)
+    }
+
     /// A place as messages give it: `axis.toml:12:9`, or the override that it is in.
     pub(crate) fn place_in_words(&self, id: SourceId, offset: usize) -> String {
         let name = self.name(id);
@@ -144,14 +154,15 @@ impl Sources {
     }
 
     pub(crate) fn add(&mut self, name: String, text: String, place: Place) -> SourceId {
-        self.files.push(Source::new(name, text, place));
+        let is_shown = self.files.is_empty() || name.starts_with(EMBEDDED);
+        self.files.push(Source::new(name, text, place, is_shown));
         SourceId(Kind::File(self.files.len() - 1))
     }
 
     /// Adds the words of an override; files that it names are looked for where the scenario is.
     pub(crate) fn add_override(&mut self, words: String) -> SourceId {
         let place = self.place(SourceId::SCENARIO).cloned().unwrap_or_else(|| Place::Embedded(PathBuf::new()));
-        self.overrides.push(Source::new(words.clone(), words, place));
+        self.overrides.push(Source::new(words.clone(), words, place, true));
         SourceId(Kind::Override(self.overrides.len() - 1))
     }
 
@@ -168,9 +179,9 @@ impl Sources {
 }
 
 impl Source {
-    fn new(name: String, text: String, place: Place) -> Self {
+    fn new(name: String, text: String, place: Place, is_shown: bool) -> Self {
         let line_starts = text.match_indices('\n').map(|(at, _)| at + 1).collect();
-        Self { name, text, line_starts, place }
+        Self { name, text, line_starts, place, is_shown }
     }
 }
 

@@ -38,6 +38,7 @@ fn read(text: &str, all: &[&str]) -> Result<Loaded, LoadError> {
 fn meaning(loaded: Loaded) -> Scenario {
     let mut scenario = loaded.scenario;
     scenario.overrides.clear();
+    scenario.made_of.clear();
     for parameter in &mut scenario.parameters {
         parameter.line = None;
     }

@@ -8,7 +8,7 @@ use crate::axis::Axis;
 use crate::closed_loop::{ClosedLoop, Control, Shaft, Source, State};
 use crate::coupled::{self, ConnectionDelay, Coupled, FmuOpener, NoFmus};
 use crate::disturbance::Disturbances;
-use crate::error::{BuildError, check_length};
+use crate::error::{BuildError, check_length, check_ticks};
 use crate::machine::Machine;
 use crate::network::Network;
 use crate::program::Program;
@@ -92,6 +92,7 @@ impl Bench {
         check_expectations(scenario)?;
         check_length(None, duration)?;
         let ticks = base_rate.tick_at(duration).0 + 1;
+        check_ticks(ticks, base_rate)?;
         let disturbances = Disturbances::new(&scenario.disturbances, base_rate, ticks)?;
 
         let (mechanics, bodies) = plant::mechanics(scenario, engine)?;

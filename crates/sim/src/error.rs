@@ -1,5 +1,5 @@
 //! Why a run could not be built.
-use servobench_base::{ParamError, RateError};
+use servobench_base::{ParamError, Rate, RateError};
 use servobench_cia402::SdoError;
 use servobench_cia402::units::UnitError;
 use servobench_drive::device::ObjectsError;
@@ -8,7 +8,7 @@ use servobench_fieldbus::trajectory::{Help, Unsendable};
 use servobench_fmi::FmuMistake;
 use servobench_motion::PlanError;
 use servobench_plant::{EndStopError, EngineName, MechanicsError, SwitchPoint};
-use servobench_scenario::LONGEST_RUN;
+use servobench_scenario::{LONGEST_RUN, MOST_TICKS};
 use servobench_signals::Signal;
 use std::fmt::Display;
 use thiserror::Error;
@@ -144,6 +144,20 @@ pub enum BuildError {
         /// Longest run (s).
         limit: f64,
     },
+    /// The run has more ticks than anybody waits for.
+    #[error(
+        "the run has {ticks} ticks, at {rate} Hz, and may have {limit}: so many take half an hour on the fastest engine; shorten \
+         `run.duration` or the program to {} s, or lower `run.base_rate`",
+        limit / u64::from(*rate)
+    )]
+    TooManyTicks {
+        /// Its ticks.
+        ticks: u64,
+        /// The base rate (Hz).
+        rate: u32,
+        /// The most.
+        limit: u64,
+    },
     /// A disturbance that nothing would be seen of.
     #[error(
         "disturbance {} acts on no tick of the run, which ends at {end_of_run} s: it starts at {start} s and lasts \
@@ -198,6 +212,17 @@ fn names(signals: &[Signal]) -> String {
 /// [`BuildError::TooLong`] otherwise.
 pub(crate) fn check_length(step: Option<usize>, end: f64) -> Result<(), BuildError> {
     if end <= LONGEST_RUN { Ok(()) } else { Err(BuildError::TooLong { step, end, limit: LONGEST_RUN }) }
+}
+
+/// Whether a run has no more ticks than a run may have.
+///
+/// # Errors
+/// [`BuildError::TooManyTicks`] otherwise.
+pub(crate) fn check_ticks(ticks: u64, base_rate: Rate) -> Result<(), BuildError> {
+    if ticks <= MOST_TICKS {
+        return Ok(());
+    }
+    Err(BuildError::TooManyTicks { ticks, rate: base_rate.hertz(), limit: MOST_TICKS })
 }
 
 /// An FMU that cannot be had.

@@ -102,10 +102,21 @@ fn a_run_that_never_ends_is_refused() {
     }
 }
 
+/// 1e10 ticks at 16 kHz are a week.
+#[test]
+fn a_run_of_too_many_ticks_is_refused() {
+    let mut scenario = weak();
+    for (duration, is_refused) in [(624_999.0, false), (625_001.0, true)] {
+        scenario.duration = Some(duration);
+        let refusal = Bench::new(&scenario, &Exact).err();
+        assert_eq!(matches!(refusal, Some(BuildError::TooManyTicks { .. })), is_refused, "{refusal:?}");
+    }
+}
+
 #[test]
 fn a_recording_that_does_not_fit_is_refused() {
     let mut scenario = weak();
-    scenario.duration = Some(LONGEST_RUN);
+    scenario.duration = Some(0.5 * LONGEST_RUN);
     let refusal = Bench::new(&scenario, &Exact).err();
     assert!(matches!(refusal, Some(BuildError::TooMuchMemory { .. })), "{refusal:?}");
 }

@@ -93,6 +93,8 @@ fn has_same_axis_and_drive(one: &Scenario, other: &Scenario) -> bool {
         name: _,
         description: _,
         path: _,
+        root: _,
+        made_of: _,
         engines: _,
         base_rate,
         duration: _,

@@ -39,6 +39,8 @@ use servobench_sim::{BuildError, Program};
 pub struct Preview {
     /// Name of the scenario.
     pub name: String,
+    /// Tables of the file that stand on a model, and the file of that.
+    pub models: Vec<(&'static str, String)>,
     /// The moves.
     pub program: PlannedProgram,
     /// What they ask of motor and inverter.
@@ -82,6 +84,7 @@ pub fn preview(jobs: &[Job]) -> Result<Option<Preview>, BuildError> {
     doubts.extend(mjcf::doubts(scenario, &names));
     Ok(Some(Preview {
         name: scenario.name.clone(),
+        models: models(scenario),
         demand,
         inertias: chain.as_ref().and_then(Inertias::of),
         modes,
@@ -93,6 +96,12 @@ pub fn preview(jobs: &[Job]) -> Result<Option<Preview>, BuildError> {
         program,
         doubts,
     }))
+}
+
+/// Which tables of the file stand on a model, and where that is; folders may have any name.
+fn models(scenario: &Scenario) -> Vec<(&'static str, String)> {
+    let shown = |path: &str| path.replace(char::is_control, "\u{fffd}");
+    scenario.made_of.iter().filter_map(|file| Some((file.role.modelled()?, shown(&file.path)))).collect()
 }
 
 /// Units of axis and motor (SI).

@@ -39,6 +39,7 @@ fn order(text: &str) -> Order {
     Order {
         name: "wild".into(),
         path: None,
+        root: None,
         text: text.into(),
         overrides: vec![],
         engine: "exact".into(),

@@ -1,4 +1,5 @@
 //! What can go wrong between a recording and its file.
+use servobench_files::{quoted, with_short_quotes};
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -44,7 +45,7 @@ pub enum TraceError {
         expected: usize,
     },
     /// The file is no Parquet file.
-    #[error("`{}` is not a Parquet file: {reason}", .path.display())]
+    #[error("`{}` is not a Parquet file: {}", .path.display(), with_short_quotes(.reason))]
     NotParquet {
         /// The file.
         path: PathBuf,
@@ -61,9 +62,9 @@ pub enum TraceError {
     },
     /// Written by another version.
     #[error(
-        "`{}` has the recording format `{found}`, {} than the formats {former} and {known} that this build reads; run its \
+        "`{}` has the recording format `{}`, {} than the formats {former} and {known} that this build reads; run its \
          scenario again, or use the servobench that wrote it",
-        .path.display(), age(found, former)
+        .path.display(), quoted(.found), age(found, former)
     )]
     Format {
         /// The file.

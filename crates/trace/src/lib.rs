@@ -11,6 +11,7 @@ mod error;
 mod header;
 mod log;
 mod number;
+mod pages;
 mod read;
 mod recorder;
 mod recording;

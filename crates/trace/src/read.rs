@@ -3,15 +3,17 @@ use crate::error::TraceError;
 use crate::header::{FORMAT, FORMAT_KEY, FORMER_FORMAT, Header, RECORDING_KEY};
 use crate::recording::Recording;
 use crate::write::ROW_GROUP;
-use crate::{TIME, seal};
+use crate::{TIME, pages, seal};
 use parquet::basic::Type as PhysicalType;
 use parquet::column::reader::ColumnReader;
 use parquet::errors::ParquetError;
-use parquet::file::metadata::FileMetaData;
+use parquet::file::metadata::{FileMetaData, ParquetMetaData};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::SchemaDescriptor;
+use servobench_files::{named, with_short_quotes};
 use std::collections::HashSet;
 use std::fs::File;
+use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
@@ -27,7 +29,8 @@ impl Recording {
     pub fn read_parquet(path: impl AsRef<Path>) -> Result<Self, TraceError> {
         let path = path.as_ref();
         let io = |source| TraceError::Io { action: "read", path: path.into(), source };
-        let mut file = File::open(path).map_err(io)?;
+        // A recording has no bound but that of the disk: what is held of it in memory has.
+        let mut file = servobench_files::open(path, u64::MAX).map_err(io)?;
         let seal = seal::holds(&mut file).map_err(io)?;
         if seal == Some(false) {
             return Err(damaged(path, format!("its bytes do not match its `{}`", seal::KEY)));
@@ -45,14 +48,16 @@ fn damaged(path: &Path, reason: String) -> TraceError {
     TraceError::Damaged { path: path.into(), reason }
 }
 
-fn decode(file: File, path: &Path, is_sealed: bool) -> Result<Recording, TraceError> {
-    let reader = SerializedFileReader::new(file)
+fn decode(mut file: File, path: &Path, is_sealed: bool) -> Result<Recording, TraceError> {
+    let own = file.try_clone();
+    let io = |source| TraceError::Io { action: "read", path: path.into(), source };
+    let reader = SerializedFileReader::new(own.map_err(io)?)
         .map_err(|error| TraceError::NotParquet { path: path.into(), reason: error.to_string() })?;
     let metadata = reader.metadata().file_metadata();
     let header = header(metadata, path)?;
     let mut names = HashSet::from([TIME]);
     if let Some(name) = header.columns().find(|name| !names.insert(name)) {
-        return Err(damaged(path, format!("two columns in `{RECORDING_KEY}` are named `{name}`")));
+        return Err(damaged(path, format!("two columns in `{RECORDING_KEY}` are named `{}`", named(name))));
     }
     let schema = metadata.schema_descr();
     let indices = header.columns().map(|name| column(schema, name, path)).collect::<Result<Vec<_>, _>>()?;
@@ -60,10 +65,15 @@ fn decode(file: File, path: &Path, is_sealed: bool) -> Result<Recording, TraceEr
         return Err(missing_key(seal::KEY, path));
     }
     let instants = header.instants;
+    for (name, index) in header.columns().zip(&indices) {
+        let held = holds(&mut file, reader.metadata(), *index, instants as u64).map_err(io)?;
+        held.map_err(|why| damaged(path, format!("column `{}`: {why}", named(name))))?;
+    }
     let mut recording = header.into_recording();
     for (channel, index) in recording.channels.iter_mut().zip(indices) {
-        channel.values = values(&reader, index, instants)
-            .map_err(|error| damaged(path, format!("column `{}`: {error}", channel.spec.name)))?;
+        channel.values = values(&reader, index, instants).map_err(|error| {
+            damaged(path, format!("column `{}`: {}", named(&channel.spec.name), with_short_quotes(&error.to_string())))
+        })?;
     }
     Ok(recording)
 }
@@ -84,8 +94,9 @@ fn header(metadata: &FileMetaData, path: &Path) -> Result<Header, TraceError> {
             known: FORMAT,
         });
     }
-    serde_json::from_str(text(RECORDING_KEY)?)
-        .map_err(|error| damaged(path, format!("its `{RECORDING_KEY}` cannot be read: {error}")))
+    serde_json::from_str(text(RECORDING_KEY)?).map_err(|error| {
+        damaged(path, format!("its `{RECORDING_KEY}` cannot be read: {}", with_short_quotes(&error.to_string())))
+    })
 }
 
 fn missing_key(key: &str, path: &Path) -> TraceError {
@@ -103,8 +114,35 @@ fn column(schema: &SchemaDescriptor, name: &str, path: &Path) -> Result<usize, T
     };
     (0..schema.num_columns()).find(is_ours).ok_or_else(|| TraceError::Missing {
         path: path.into(),
-        missing: format!("the column `{name}` of type DOUBLE, without nulls"),
+        missing: format!("the column `{}` of type DOUBLE, without nulls", named(name)),
     })
+}
+
+/// Whether the pages of a column hold `instants` values, which is looked at before they are decoded.
+fn holds(
+    file: &mut File,
+    metadata: &ParquetMetaData,
+    column: usize,
+    instants: u64,
+) -> io::Result<Result<(), pages::Refusal>> {
+    let end = file.metadata()?.len();
+    let mut rows = 0_u64;
+    for group in metadata.row_groups() {
+        let chunk = group.column(column);
+        let place = u64::try_from(chunk.data_page_offset()).ok().zip(u64::try_from(chunk.compressed_size()).ok());
+        let place = place.and_then(|(start, length)| Some(start..start.checked_add(length)?));
+        let (Some(place), Ok(count)) = (place.filter(|place| place.end <= end), u64::try_from(group.num_rows())) else {
+            return Ok(Err("it is not where the file says".into()));
+        };
+        if chunk.dictionary_page_offset().is_some() {
+            return Ok(Err("it has a dictionary, which is not written here".into()));
+        }
+        if let Err(why) = pages::check(file, place, count)? {
+            return Ok(Err(why));
+        }
+        rows = rows.saturating_add(count);
+    }
+    Ok(if rows == instants { Ok(()) } else { Err(format!("it has {rows} values, {instants} were written")) })
 }
 
 /// All values of a column that has `instants` of them.

@@ -13,6 +13,7 @@ const COMMANDS: [(&str, &str); 9] = [
     ("drill faults", "end and starve 200 suites at random, and compare what --resume makes of them"),
     ("checks", "check dependency arrows, licences and text"),
     ("viewer", "fetch the Rerun viewer that `servobench view` opens, once"),
+    ("drill inputs", "hold the program against mutated files of every kind (SERVOBENCH_SWEEP: how many)"),
     ("dist", "pack binary, library, models and scenarios into one archive"),
 ];
 
@@ -41,6 +42,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), Failure> {
             println!("{}", viewer.display());
             Ok(())
         }
+        ["drill", "inputs"] => drill::inputs(&Workspace::find()?),
         ["dist"] => dist::run(&Workspace::find()?),
         other => Err(Failure::Usage { given: other.join(" "), commands: listing() }),
     }

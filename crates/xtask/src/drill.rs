@@ -1,27 +1,8 @@
-//! `cargo xtask drill`: the long forms of the drills whose short forms are among the tests.
-use crate::failure::Failure;
-use crate::wheel;
-use crate::workspace::{Workspace, run as run_command};
+//! Drills: the real program against what it must bear.
+mod faults;
+mod inputs;
+mod measured;
+mod mutants;
 
-/// Suites that something happens to, and pairs of suites in one folder.
-const SUITES: &str = "200";
-
-/// What happens to suites: faults, and two of them in one folder.
-///
-/// # Errors
-/// [`Failure::Fetch`] when the library of an engine cannot be had, [`Failure::Ended`] when something was lost.
-pub(crate) fn faults(workspace: &Workspace) -> Result<(), Failure> {
-    wheel::MUJOCO.ensure(workspace)?;
-    let mut drill = workspace.cargo(["test", "--release", "--workspace", "--test", "drill"]);
-    drill.args([
-        "--features",
-        "servobench-cli/mujoco,servobench-tests/mujoco",
-        "--",
-        "--nocapture",
-        "--test-threads=1",
-    ]);
-    if std::env::var_os("SERVOBENCH_SWEEP").is_none() {
-        drill.env("SERVOBENCH_SWEEP", SUITES);
-    }
-    run_command(&mut drill, 0)
-}
+pub(crate) use faults::run as faults;
+pub(crate) use inputs::run as inputs;

@@ -33,11 +33,11 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     let limits = workers::limits(None, args.memory.memory_limit);
     let (engines, workers) = (engines::installed(), workers::of(&std::env::temp_dir(), WORKER_TIMEOUT, limits)?);
     interrupt::watch(&std::env::temp_dir())?;
-    let files = sources::files(&args.scenarios)?;
+    let files = sources::files(&args.scenarios, args.with.root.as_deref())?;
     let (mut findings, mut missing, mut shown) = (Findings::default(), Vec::new(), String::new());
     let in_full = args.verbose || files.len() == 1;
     for file in &files {
-        match sources::read(file, &args.with.overrides).and_then(trusted) {
+        match sources::read(file, &args.with).and_then(trusted) {
             Ok(loaded) => {
                 let asked = Asked::about(&loaded, &engines, &workers);
                 if let Some(preview) = &asked.preview {

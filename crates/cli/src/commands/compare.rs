@@ -83,7 +83,7 @@ fn outputs(args: &CompareArgs, labels: &[String]) -> Result<(OutputFolder, Strin
 
 /// Every scenario once, all on the same engine.
 fn wanted_jobs(args: &CompareArgs) -> Result<Vec<Job>, CliError> {
-    let sources = sources::load(&args.scenarios, &args.with.overrides)?;
+    let sources = sources::load(&args.scenarios, &args.with)?;
     if sources.len() < 2 {
         return Err(CliError::TooFewScenarios);
     }

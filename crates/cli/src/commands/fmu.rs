@@ -38,7 +38,7 @@ fn info(args: &FmuInfoArgs) -> Result<Exit, CliError> {
 }
 
 fn write(args: &FmuExportArgs) -> Result<Exit, CliError> {
-    let loaded = sources::read(&args.scenario, &args.with.overrides)?;
+    let loaded = sources::read(&args.scenario, &args.with)?;
     let program = std::env::current_exe().map_err(CliError::OwnProgram)?;
     let no_library = |error| CliError::Library(Box::new(error));
     reads(&library_path(&program).map_err(no_library)?, "the library that goes into FMUs");

@@ -1,5 +1,5 @@
 //! `servobench objects`: the object dictionary of the drive.
-use crate::args::{ObjectsArgs, ObjectsFormat};
+use crate::args::{ObjectsArgs, ObjectsFormat, OverrideArgs};
 use crate::console::style;
 use crate::error::CliError;
 use crate::exit::Exit;
@@ -10,7 +10,6 @@ use servobench_cia402::PowerState;
 use servobench_cia402::objects::{Dictionary, Eds, FileInfo, Json};
 use servobench_report::{Style, object_table};
 use servobench_results::printable_json;
-use servobench_scenario::Override;
 use std::path::Path;
 
 /// Name of a data sheet that goes to standard output.
@@ -18,7 +17,7 @@ const DATA_SHEET: &str = "drive.eds";
 
 /// Shows the dictionary with the values after power-on, or with those that a scenario writes.
 pub(crate) fn objects(args: &ObjectsArgs) -> Result<Exit, CliError> {
-    let configured = args.scenario.as_deref().map(|path| as_written(path, &args.with.overrides)).transpose()?;
+    let configured = args.scenario.as_deref().map(|path| as_written(path, &args.with)).transpose()?;
     let output = Outputs::default().or_standard("-o", args.output.as_deref())?;
     let values = configured.clone().unwrap_or_default();
     match args.format {
@@ -36,8 +35,8 @@ pub(crate) fn objects(args: &ObjectsArgs) -> Result<Exit, CliError> {
 }
 
 /// The values that the scenario at `path` writes into a drive after power-on; every refused one is reported.
-fn as_written(path: &Path, overrides: &[Override]) -> Result<Dictionary, CliError> {
-    let loaded = sources::read(path, overrides)?;
+fn as_written(path: &Path, with: &OverrideArgs) -> Result<Dictionary, CliError> {
+    let loaded = sources::read(path, with)?;
     let Some(bus) = &loaded.scenario.bus else {
         return Err(CliError::NoBus { scenario: path.to_owned() });
     };

@@ -4,7 +4,7 @@ use crate::error::CliError;
 use crate::exit::Exit;
 use crate::output;
 use crate::outputs::{Outputs, is_name, reads};
-use servobench_results::{COMPARISON, RESULTS, Results, RunResult};
+use servobench_results::{COMPARISON, RESULTS, Results, RunResult, read_results};
 use servobench_trace::{Recording, seal_of};
 use servobench_view::{ViewOptions, write_rrd};
 use std::ffi::OsStr;
@@ -28,7 +28,7 @@ fn recordings(path: &Path) -> Result<Vec<PathBuf>, CliError> {
         return Ok(vec![as_rrd(path)?]);
     }
     let results = latest_results(path)?;
-    let text = std::fs::read_to_string(&results).map_err(|error| CliError::Read { path: results.clone(), error })?;
+    let text = read_results(&results).map_err(|error| CliError::Read { path: results.clone(), error })?;
     let results = Results::from_json(&text).map_err(|error| CliError::ReadResults { path: results, error })?;
     for name in results.scenarios.iter().filter_map(|run| run.recording.as_deref()) {
         is_name(name)?;
@@ -80,7 +80,7 @@ fn as_rrd(path: &Path) -> Result<PathBuf, CliError> {
 
 /// What the results beside the recording at `path` say of its run; `None` where there are none, or they are of another run.
 fn verdict_beside(path: &Path) -> Option<servobench_view::Verdict> {
-    let results = Results::from_json(&std::fs::read_to_string(path.with_file_name(RESULTS)).ok()?).ok()?;
+    let results = Results::from_json(&read_results(&path.with_file_name(RESULTS)).ok()?).ok()?;
     let (name, seal) = (path.file_name()?.to_str()?, seal_of(path).ok()??);
     let is_of = |run: &RunResult| run.recording.as_deref() == Some(name) && run.recording_seal.as_ref() == Some(&seal);
     let run = results.scenarios.into_iter().find(is_of)?;

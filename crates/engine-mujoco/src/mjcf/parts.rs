@@ -3,6 +3,7 @@ use crate::NAME;
 use crate::simulation::Data;
 use mujoco_rs::prelude::{MjModel, MjtBias, MjtDisableBit, MjtDyn, MjtGain, MjtJoint, MjtObjBase, MjtTrn};
 use servobench_base::Coordinate;
+use servobench_files::listed;
 use servobench_plant::{LoadCoordinate, MechanicsError, MjcfModel, PosedJoint, Refusal, RefusedAt};
 use std::iter::successors;
 
@@ -110,8 +111,7 @@ fn find(model: &MjModel, kind: MjtObjBase, what: &str, name: &str) -> Result<usi
     };
     (0..count).find(|&id| model.id_to_name(kind, id) == Some(name)).ok_or_else(|| {
         let names = (0..count).filter_map(|id| model.id_to_name(kind, id));
-        let list = names.map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
-        let list = if list.is_empty() { "none with a name".into() } else { list };
+        let list = listed(names, "none with a name");
         refusal(name, format!("there is no {what} `{name}`; there is {list}"))
     })
 }

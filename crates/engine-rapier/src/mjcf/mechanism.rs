@@ -2,7 +2,7 @@
 use super::contact::possible_contacts;
 use super::depth;
 use super::mass::mass_properties;
-use super::refusal::{MjcfRefusal, list};
+use super::refusal::{MjcfRefusal, names as names_listed};
 use super::scan::{line, scan};
 use mjcf_rs::Model;
 use mjcf_rs::body::{Joint as MjcfJoint, JointType};
@@ -12,6 +12,7 @@ use rapier3d_f64::math::Pose;
 use rapier3d_f64::prelude::{MassProperties, Vector};
 use roxmltree::{Document, Node};
 use servobench_base::Coordinate;
+use servobench_files::with_short_quotes;
 use servobench_plant::{LoadCoordinate, MjcfModel, PosedJoint, Refusal, RefusedAt};
 use std::path::Path;
 
@@ -97,7 +98,9 @@ pub(crate) struct Axis {
 impl Mechanism {
     /// Reads a file's text.
     pub(crate) fn read(xml: &str) -> Result<Self, Vec<MjcfRefusal>> {
-        let unreadable = |error: &dyn std::fmt::Display| vec![MjcfRefusal::Unreadable { message: error.to_string() }];
+        let unreadable = |error: &dyn std::fmt::Display| {
+            vec![MjcfRefusal::Unreadable { message: with_short_quotes(&error.to_string()) }]
+        };
         depth::check(xml).map_err(|refusal| vec![refusal])?;
         let document = Document::parse(xml).map_err(|error| unreadable(&error))?;
         let refusals = scan(&document);
@@ -162,7 +165,7 @@ impl Mechanism {
         let mut joint = |name: &str| {
             let found = self.joints().position(|(_, joint)| joint.name.as_deref() == Some(name));
             if found.is_none() {
-                refusals.push(MjcfRefusal::Unknown { what: "joint", name: name.into(), known: list(names()) });
+                refusals.push(MjcfRefusal::Unknown { what: "joint", name: name.into(), known: names_listed(names()) });
             }
             found
         };
@@ -170,12 +173,12 @@ impl Mechanism {
         let named = |motor: &&Motor| motor.name.as_deref() == Some(&file.actuator);
         let wrong = match self.motors.iter().find(named) {
             None => {
-                let known = list(self.motors.iter().filter_map(|motor| motor.name.as_deref()));
+                let known = names_listed(self.motors.iter().filter_map(|motor| motor.name.as_deref()));
                 refusals.push(MjcfRefusal::Unknown { what: "motor", name: file.actuator.clone(), known });
                 None
             }
             Some(motor) if motor.joint.as_deref() != Some(&file.motor_joint) => {
-                Some(format!("acts on joint {}", list(motor.joint.as_deref())))
+                Some(format!("acts on joint {}", names_listed(motor.joint.as_deref())))
             }
             Some(motor) if motor.gear == 0.0 => Some("has no gear".into()),
             Some(_) => None,
@@ -301,7 +304,7 @@ impl Tendon {
             {
                 terms.push((joint, coefficient));
             } else {
-                let known = list(joints.iter().copied().flatten());
+                let known = names_listed(joints.iter().copied().flatten());
                 refusals.push(MjcfRefusal::Unknown { what: "joint", name: name.into(), known });
             }
         }

@@ -1,4 +1,5 @@
 //! Why an MJCF file is refused.
+use servobench_files::{listed, quoted};
 use servobench_plant::{Refusal, RefusedAt};
 use thiserror::Error;
 
@@ -13,7 +14,7 @@ pub(crate) enum MjcfRefusal {
         message: String,
     },
     /// An element outside the subset.
-    #[error("line {line}: `<{element}>` in `<{parent}>` is not simulated; there can be {supported}")]
+    #[error("line {line}: `<{}>` in `<{parent}>` is not simulated; there can be {supported}", quoted(.element))]
     Element {
         /// Line in the file, from 1.
         line: u32,
@@ -25,7 +26,7 @@ pub(crate) enum MjcfRefusal {
         supported: String,
     },
     /// An attribute outside the subset.
-    #[error("line {line}: attribute `{attribute}` of `<{element}>` is not simulated; it can have {supported}")]
+    #[error("line {line}: attribute `{}` of `<{element}>` is not simulated; it can have {supported}", quoted(.attribute))]
     Attribute {
         /// Line in the file, from 1.
         line: u32,
@@ -37,7 +38,7 @@ pub(crate) enum MjcfRefusal {
         supported: String,
     },
     /// A value outside the subset.
-    #[error("line {line}: `{attribute}=\"{value}\"` of `<{element}>` is not simulated; it must be {supported}")]
+    #[error("line {line}: `{attribute}=\"{}\"` of `<{element}>` is not simulated; it must be {supported}", quoted(.value))]
     Value {
         /// Line in the file, from 1.
         line: u32,
@@ -73,7 +74,7 @@ pub(crate) enum MjcfRefusal {
         attribute: &'static str,
     },
     /// Several joints in one body.
-    #[error("body `{body}` has {joints} joints; one is simulated: give each further joint a body of its own")]
+    #[error("body {} has {joints} joints; one is simulated: give each further joint a body of its own", names([&**.body]))]
     SeveralJoints {
         /// Name of the body.
         body: String,
@@ -82,9 +83,11 @@ pub(crate) enum MjcfRefusal {
     },
     /// Two geoms that could touch.
     #[error(
-        "geoms of body `{first}` and body `{second}` could touch, and contacts are not simulated; \
+        "geoms of body {} and body {} could touch, and contacts are not simulated; \
          set contype=\"0\" conaffinity=\"0\" on one of them, exclude the pair, \
-         or switch contacts off by <option><flag contact=\"disable\"/></option>"
+         or switch contacts off by <option><flag contact=\"disable\"/></option>",
+        names([&**.first]),
+        names([&**.second])
     )]
     Contact {
         /// Name of one body.
@@ -93,7 +96,7 @@ pub(crate) enum MjcfRefusal {
         second: String,
     },
     /// A body whose mass or inertia no body can have.
-    #[error("body `{body}` has {what}; it must be {bound}")]
+    #[error("body {} has {what}; it must be {bound}", names([&**.body]))]
     Mass {
         /// Name of the body.
         body: String,
@@ -103,7 +106,7 @@ pub(crate) enum MjcfRefusal {
         bound: &'static str,
     },
     /// A joint that moves no inertia.
-    #[error("joint `{joint}` moves nothing that has {what}; give its body an <inertial> or a geom with mass")]
+    #[error("joint {} moves nothing that has {what}; give its body an <inertial> or a geom with mass", names([&**.joint]))]
     Massless {
         /// Name of the joint.
         joint: String,
@@ -111,7 +114,7 @@ pub(crate) enum MjcfRefusal {
         what: &'static str,
     },
     /// A name that nothing has.
-    #[error("there is no {what} `{name}`; there is {known}")]
+    #[error("there is no {what} {}; there is {known}", names([&**.name]))]
     Unknown {
         /// What it would be the name of: joint, motor, default class.
         what: &'static str,
@@ -166,7 +169,12 @@ impl From<&MjcfRefusal> for Refusal {
     }
 }
 
-/// The names in a list for a message.
+/// Names of a file in a list for a message.
+pub(crate) fn names<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    listed(names, "none")
+}
+
+/// Words of ours in a list for a message.
 pub(crate) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let names: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
     if names.is_empty() { "none".into() } else { names.join(", ") }

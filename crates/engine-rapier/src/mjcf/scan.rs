@@ -1,13 +1,15 @@
 //! Holds a file against the grammar: every element, attribute and value outside it is found in one go.
 use super::grammar::{Element, ROOT, Values};
-use super::refusal::{MjcfRefusal, list};
+use super::refusal::{MjcfRefusal, list, names};
 use roxmltree::{Document, Node};
+use servobench_files::quoted;
 
 /// All that is outside the grammar.
 pub(crate) fn scan(document: &Document) -> Vec<MjcfRefusal> {
     let root = document.root_element();
     if root.tag_name().name() != ROOT.name {
-        let message = format!("the root element is <{}>, that of an MJCF file is <mujoco>", root.tag_name().name());
+        let message =
+            format!("the root element is <{}>, that of an MJCF file is <mujoco>", quoted(root.tag_name().name()));
         return vec![MjcfRefusal::Unreadable { message }];
     }
     let mut refusals = vec![];
@@ -37,7 +39,7 @@ fn classes(root: Node, refusals: &mut Vec<MjcfRefusal>) {
     for node in root.descendants().filter(|node| !node.has_tag_name("default")) {
         for name in ["class", "childclass"].into_iter().filter_map(|attribute| node.attribute(attribute)) {
             if !known.contains(&name) {
-                let known = list(known.iter().copied());
+                let known = names(known.iter().copied());
                 refusals.push(MjcfRefusal::Unknown { what: "default class", name: name.into(), known });
             }
         }

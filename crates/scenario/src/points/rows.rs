@@ -4,6 +4,10 @@ use super::counts::{self, Counts};
 use super::mistake::{PointsError, PointsMistake};
 use crate::quantity::Scale;
 use crate::reading::{self, ReadError, names};
+use servobench_files::{MOST_QUOTED, quoted};
+
+/// Characters of a unit: `0.1 counts/s` has so many.
+const LONGEST_UNIT: usize = MOST_QUOTED;
 
 /// A column of the heading.
 #[derive(Debug)]
@@ -95,7 +99,7 @@ fn heading(line: usize, row: &str, layout: Layout, counts: Option<Counts>) -> Re
         };
         let fail = |mistake| wrong(line, cell.at(), mistake);
         let Some(column) = Column::ALL.into_iter().find(|column| column.name() == name) else {
-            return Err(fail(PointsMistake::UnknownColumn { name: name.to_owned(), like: layout.example() }));
+            return Err(fail(PointsMistake::UnknownColumn { name: quoted(name).to_string(), like: layout.example() }));
         };
         if heads.iter().any(|head| head.column == column) {
             return Err(fail(PointsMistake::Twice { column }));
@@ -106,9 +110,13 @@ fn heading(line: usize, row: &str, layout: Layout, counts: Option<Counts>) -> Re
         let Some(unit) = unit.filter(|unit| !unit.is_empty()) else {
             return Err(fail(PointsMistake::NoUnit { column, proposal: column.proposal() }));
         };
-        let (scale, which) = counts::read_unit(column, unit, counts)
-            .unwrap_or_else(|| read_unit(column, unit))
-            .map_err(|message| fail(PointsMistake::Unit { column, unit: unit.to_owned(), message }))?;
+        let refuse = |message: String| fail(PointsMistake::Unit { column, unit: quoted(unit).to_string(), message });
+        // What is wrong within a unit would be quoted with it.
+        if unit.chars().count() > LONGEST_UNIT {
+            return Err(refuse("no unit is that long".to_owned()));
+        }
+        let read = counts::read_unit(column, unit, counts).unwrap_or_else(|| read_unit(column, unit));
+        let (scale, which) = read.map_err(refuse)?;
         heads.push(Head { column, unit: unit.to_owned(), scale, which, at: cell.at() });
     }
     let [time, values] = layout.needed();
@@ -173,7 +181,7 @@ fn read_row(
         let value = number(&head.scale, cell.text).map_err(|reason| {
             // A row of another width is told as such: its values are in the wrong columns.
             width(line, row, heads.len()).err().unwrap_or_else(|| {
-                wrong(line, cell.at(), PointsMistake::Value { column, text: shown(cell.text), reason })
+                wrong(line, cell.at(), PointsMistake::Value { column, text: quoted(cell.text).to_string(), reason })
             })
         })?;
         if column == Column::Time {
@@ -209,10 +217,4 @@ fn number(scale: &Scale, text: &str) -> Result<f64, &'static str> {
         Err(_) if text.is_empty() => Err("write a number; only `velocity` beside `position` may be left empty"),
         Err(_) => Err("write a number like `12.5`, its unit stands in the heading"),
     }
-}
-
-/// As much of a cell as belongs into a message.
-fn shown(text: &str) -> String {
-    const MOST: usize = 40;
-    if text.chars().count() <= MOST { text.to_owned() } else { text.chars().take(MOST).chain(['…']).collect() }
 }

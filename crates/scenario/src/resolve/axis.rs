@@ -1,14 +1,17 @@
 //! `[axis]` to bodies: transmission, rigid couplings merged, the rotor added.
+use crate::access::Refused;
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
 use crate::file::MotorKind;
+use crate::mjcf_files;
 use crate::models::read_beside;
 use crate::resolve::fmu::Mechanics;
 use crate::resolve::{end_stops, friction, need};
 use crate::scenario::{Axis, AxisMechanics};
 use crate::source::{Sources, Span};
 use servobench_base::Coordinate;
+use servobench_files::FileRole;
 use servobench_plant::{Body, Chain, Friction, Link, MjcfModel, Switches};
 use std::f64::consts::TAU;
 
@@ -169,10 +172,15 @@ fn mjcf_file(mjcf: &file::Mjcf, transmission: f64, sources: &Sources, report: &m
         report.error(file.span, "a scenario without a folder cannot name files", "");
         return None;
     };
-    let (path, xml) = match read_beside(&file.value, place) {
-        Ok(found) => found,
-        Err(why) => {
-            report.error(file.span, why, "the path is relative to this file");
+    let read = read_beside(&file.value, FileRole::Mjcf, place, &mut report.files);
+    let looked_through = read.and_then(|(path, xml)| {
+        mjcf_files::look_through(&path, &xml, &mut report.files)?;
+        Ok((path, xml))
+    });
+    let (path, xml) = match looked_through {
+        Ok((path, xml)) => (path, xml.to_string()),
+        Err(Refused { message, help }) => {
+            report.error(file.span, message, help);
             return None;
         }
     };

@@ -3,6 +3,7 @@ mod mechanics;
 
 pub(super) use mechanics::{Mechanics, mechanics};
 
+use crate::access::Refused;
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file::{self, File};
@@ -13,6 +14,7 @@ use crate::scenario::{Actuator, Fmu, InputSource, LoopSignal};
 use crate::source::{At, Place, Sources, Span};
 use servobench_base::Rate;
 use servobench_coupling::Settings;
+use servobench_files::FileRole;
 use servobench_fmi::{Bounds, FmuFile, Isolation, IsolationKind};
 use servobench_signals::Signal;
 use std::path::{Path, PathBuf};
@@ -222,15 +224,10 @@ fn path(file: &Slot<String>, sources: &Sources, report: &mut Report) -> Option<P
         return None;
     };
     let path = folder.join(&file.value);
-    match std::fs::metadata(&path) {
-        Ok(found) if found.is_file() => Some(path),
-        Ok(_) => {
-            report.error(file.span, format!("`{}` is no file", path.display()), "an FMU is a zip archive");
-            None
-        }
-        Err(error) => {
-            let message = format!("cannot read `{}`: {error}", path.display());
-            report.error(file.span, message, "the path is relative to this file");
+    match report.files.look_through(&path, FileRole::Fmu) {
+        Ok(()) => Some(path),
+        Err(Refused { message, help }) => {
+            report.error(file.span, message, help);
             None
         }
     }

@@ -1,13 +1,15 @@
 //! A table of points, and how it is followed.
-use crate::diagnostic::{NamedFile, Report};
+use crate::access::Refused;
+use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file::TableOfPoints;
 use crate::list::Automatic;
 use crate::models::read_beside;
-use crate::points::{Points, PointsError, read_points_in};
+use crate::points::{MOST_POINTS, Points, PointsError, read_points_in};
 use crate::resolve::refuse;
 use crate::source::{At, Sources};
 use servobench_base::Coordinate;
+use servobench_files::FileRole;
 use servobench_motion::position_profile::PlateauShare;
 use servobench_motion::pvt::Knot;
 use servobench_planner::{CommandRate, Follow, FollowKind, Positioning, TableMove, Velocities, VelocitiesKind};
@@ -39,7 +41,7 @@ pub(super) fn points(own: &TableOfPoints, sources: &Sources, report: &mut Report
     let (file, counts) = (own.file.at()?, report.counts);
     let points = read(file, "positions", sources, report, |text| {
         let points = read_points_in(counts, text)?;
-        Ok((points.motion, points))
+        Ok((points.motion, points.times.len(), points))
     })?;
     if points.is_relative
         && let Some(At { value: false, span }) = own.relative.at()
@@ -61,27 +63,30 @@ pub(super) fn read<T>(
     values: &str,
     sources: &Sources,
     report: &mut Report,
-    read: impl FnOnce(&str) -> Result<(Coordinate, T), PointsError>,
+    read: impl FnOnce(&str) -> Result<(Coordinate, usize, T), PointsError>,
 ) -> Option<T> {
     let place = sources.place(file.span.source)?;
-    let (path, text) = match read_beside(&file.value, place) {
+    let (path, text) = match read_beside(&file.value, FileRole::Table, place, &mut report.files) {
         Ok(found) => found,
-        Err(why) => {
-            report.error(file.span, why, "the path is relative to this file");
+        Err(Refused { message, help }) => {
+            report.error(file.span, message, help);
             return None;
         }
     };
-    let found = NamedFile { named: file.value.clone(), text: text.clone() };
-    if !report.tables.contains(&found) {
-        report.tables.push(found);
-    }
-    let (motion, table) = match read(&text) {
+    report.note_table(&file.value, &text);
+    let (motion, points, table) = match read(&text) {
         Ok(read) => read,
         Err(error) => {
             report.error(file.span, format!("{}:{error}", path.display()), "");
             return None;
         }
     };
+    report.points = report.points.saturating_add(points);
+    if report.points > MOST_POINTS {
+        let message = format!("with this table the scenario has {} points, it may have {MOST_POINTS}", report.points);
+        report.error(file.span, message, "use fewer or shorter tables, or several scenarios");
+        return None;
+    }
     if let Some(axis) = report.axis.filter(|axis| *axis != motion) {
         let (is, needs) = match axis {
             Coordinate::Linear => ("angles", "lengths"),

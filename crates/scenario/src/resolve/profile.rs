@@ -56,7 +56,7 @@ fn values(
     let file = own.file.at()?;
     let profile = points::read(file, words, sources, report, |text| {
         let profile = read(text)?;
-        Ok((profile.motion, profile))
+        Ok((profile.motion, profile.times.len(), profile))
     })?;
     pairs(file, &profile.times, &profile.values, report)
 }

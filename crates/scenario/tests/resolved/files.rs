@@ -20,6 +20,8 @@ fn models_beside_the_scenario_come_before_embedded_ones() {
     let deep = folder.path().join("a/b");
     std::fs::create_dir_all(&deep).unwrap();
     std::fs::create_dir_all(folder.path().join("models/drives")).unwrap();
+    // A project: what is above it is none of the scenario's business.
+    std::fs::create_dir_all(folder.path().join(".git")).unwrap();
     let mine =
         std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/drives/servo-16khz.toml"))
             .unwrap()
@@ -27,9 +29,19 @@ fn models_beside_the_scenario_come_before_embedded_ones() {
     std::fs::write(folder.path().join("models/drives/servo-16khz.toml"), mine).unwrap();
     let loaded = parse("test.toml", SCREW, Some(&deep)).unwrap();
     assert!(same(motor(&loaded.scenario).1, 48.0));
+    assert!(
+        loaded.warnings.iter().any(|one| one.message.contains("the built-in model `servo-16khz`")),
+        "{:?}",
+        loaded.warnings
+    );
     let names: Vec<_> = loaded.sources.ids().map(|id| loaded.sources.name(id).to_owned()).collect();
     assert_eq!(names.len(), 3, "the scenario, the motor, the drive: {names:?}");
     assert_eq!(names[1], "<embedded>/models/motors/wittenstein-premo-1f.toml");
+    let paths: Vec<_> = loaded.scenario.made_of.iter().map(|file| file.path.as_str()).collect();
+    assert_eq!(paths, ["test.toml", names[1].as_str(), "models/drives/servo-16khz.toml"]);
+    std::fs::remove_dir(folder.path().join(".git")).unwrap();
+    let loaded = parse("test.toml", SCREW, Some(&deep)).unwrap();
+    assert!(same(motor(&loaded.scenario).1, 560.0), "without a project the folder above is outside");
 }
 
 const RING_DOWN: &str = r#"

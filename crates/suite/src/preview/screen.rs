@@ -36,6 +36,10 @@ impl Preview {
             self.delays.iter().map(|delay| format!("{} {}", delay.name, Quantity::new(delay.length, "s"))).collect();
         screen.line("delays", &delays);
         self.cost_line(&mut screen);
+        let models: Vec<_> = self.models.iter().map(|(table, file)| format!("{table} {file}")).collect();
+        if !models.is_empty() {
+            screen.line("models", &models);
+        }
         screen.text
     }
 

@@ -26,6 +26,8 @@ pub struct Order {
     pub name: String,
     /// File that it came from, byte by byte: models are looked up from there.
     pub path: Option<Vec<u8>>,
+    /// The folder that the files of the scenario are below, byte by byte.
+    pub root: Option<Vec<u8>>,
     /// Its text.
     pub text: String,
     /// Keys with another value than the text gives them.
@@ -41,10 +43,11 @@ pub struct Order {
 impl Order {
     /// That `task` is done with `job`.
     pub(crate) fn new(job: &Job, task: Task) -> Self {
-        let Scenario { name, path, overrides, .. } = &job.scenario;
+        let Scenario { name, path, root, overrides, .. } = &job.scenario;
         Self {
             name: name.clone(),
             path: path.as_deref().map(bytes),
+            root: root.as_deref().map(bytes),
             text: job.text.clone(),
             overrides: overrides.iter().map(ToString::to_string).collect(),
             engine: job.engine.name().to_owned(),
@@ -55,12 +58,12 @@ impl Order {
 
     /// The scenario as the caller has it.
     pub(super) fn scenario(&self) -> Result<Scenario, LoadError> {
-        let path = self.path.as_deref().map(path);
+        let (path, root) = (self.path.as_deref().map(path), self.root.as_deref().map(path));
         let file = path.as_ref().map_or_else(|| format!("{}.toml", self.name), |path| path.display().to_string());
         let folder = path.as_deref().and_then(Path::parent);
         // The caller has read them.
         let overrides: Vec<Override> = self.overrides.iter().filter_map(|one| one.parse().ok()).collect();
-        let mut scenario = servobench_scenario::parse_with(&file, &self.text, folder, &overrides)?.scenario;
+        let mut scenario = servobench_scenario::parse_within(&file, &self.text, folder, &overrides, root.as_deref())?.scenario;
         scenario.name.clone_from(&self.name);
         scenario.path = path;
         slow_to(&mut scenario, &self.durations);

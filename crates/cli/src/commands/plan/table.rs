@@ -10,8 +10,7 @@ use servobench_motion::position_profile::PlateauShare;
 use servobench_motion::pvt::Knot;
 use servobench_planner::{CommandCycle, CommandRate, Filter, Follow, Generator, TableMove, Velocities, VelocitiesKind};
 use servobench_scenario::{Counts, Derivative, Points, axis_quantity, read_points_in};
-use std::fs::File;
-use std::io::{self, Read};
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// Bytes of a table at most: far more than five million rows need.
@@ -218,10 +217,5 @@ impl TableArgs {
 }
 
 fn read(path: &Path) -> io::Result<String> {
-    let mut text = String::new();
-    File::open(path)?.take(LARGEST + 1).read_to_string(&mut text)?;
-    if text.len() as u64 > LARGEST {
-        return Err(io::Error::new(io::ErrorKind::FileTooLarge, "more than 512 MB; split it, or leave points out"));
-    }
-    Ok(text)
+    servobench_files::read_text(path, LARGEST)
 }

@@ -2,7 +2,9 @@
 use crate::args::{self, Command, RunArgs};
 use crate::error::CliError;
 use crate::sources;
-use servobench_results::{Finished, Folder, Journal, JournalError, Outcome, RESULTS, Results, Status, Suite};
+use servobench_results::{
+    Finished, Folder, Journal, JournalError, Outcome, RESULTS, Results, Status, Suite, read_results,
+};
 use servobench_trace::verified_seal_of;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -51,7 +53,7 @@ pub(super) fn suite_in(folder: &Path, now: &RunArgs) -> Result<Found, CliError> 
 /// Results of a suite that has ended.
 fn complete(folder: &Path) -> Result<Results, CliError> {
     let path = folder.join(RESULTS);
-    let text = std::fs::read_to_string(&path).map_err(|_| CliError::NothingToResume(folder.to_owned()))?;
+    let text = read_results(&path).map_err(|_| CliError::NothingToResume(folder.to_owned()))?;
     let results = Results::from_json(&text).map_err(|error| CliError::ReadResults { path, error })?;
     if results.status == Status::Complete { Ok(results) } else { Err(CliError::NothingToResume(folder.to_owned())) }
 }

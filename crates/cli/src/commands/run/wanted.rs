@@ -30,7 +30,7 @@ impl Wanted {
     pub(super) fn of(args: &RunArgs, engines: &Engines) -> Result<Self, CliError> {
         let overrides = args.with.overrides.iter().map(ToString::to_string).collect();
         if args.scenarios.is_empty() {
-            let demo = sources::demo(&args.with.overrides)?;
+            let demo = sources::demo(&args.with)?;
             // The demo names engines that this build may lack; an FMU it has none of.
             let mut there = engines.names();
             there.retain(|engine| demo.iter().any(|source| source.scenario.engines.contains(engine)));
@@ -38,7 +38,7 @@ impl Wanted {
             return Ok(Self { files: vec![File::Jobs(jobs.len())], jobs, overrides });
         }
         let (mut usable, mut files) = (Vec::new(), Vec::new());
-        for found in sources::each(&args.scenarios, &args.with.overrides)? {
+        for found in sources::each(&args.scenarios, &args.with)? {
             match found {
                 Ok(source) => {
                     let engines = if args.engine.is_empty() { &source.scenario.engines } else { &args.engine };

@@ -1,0 +1,12 @@
+//! Files by somebody else: opened without waiting, read up to a bound, quoted up to a few characters, named by their digest.
+//!
+//! What a scenario names, a recording, results and an archive are written by whoever sent them. Under their names may be a FIFO that
+//! nobody writes to, a device without end, a file larger than the memory, or one that is none of their reader's business.
+
+mod made_of;
+mod quoted;
+mod regular;
+
+pub use made_of::{FileRole, MadeOf, sha256};
+pub use quoted::{MOST_QUOTED, Quoted, listed, named, quoted, with_short_quotes};
+pub use regular::{FileId, metadata, open, read, read_text};

@@ -1,0 +1,172 @@
+//! Regular files, and nothing else under their names.
+use std::fs::{File, FileType, Metadata, OpenOptions};
+use std::io::{self, ErrorKind, Read};
+use std::path::Path;
+
+/// Which file it is, whatever it is called: links lead to the same one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct FileId {
+    device: u64,
+    inode: u64,
+}
+
+impl FileId {
+    /// That of the file or folder at `path`.
+    ///
+    /// # Errors
+    /// Those of the operating system; where it knows no such thing, [`ErrorKind::Unsupported`].
+    pub fn of(path: &Path) -> io::Result<Self> {
+        Self::from_metadata(&std::fs::metadata(path)?)
+    }
+
+    #[cfg(unix)]
+    fn from_metadata(about: &Metadata) -> io::Result<Self> {
+        use std::os::unix::fs::MetadataExt as _;
+        Ok(Self { device: about.dev(), inode: about.ino() })
+    }
+
+    #[cfg(not(unix))]
+    fn from_metadata(_: &Metadata) -> io::Result<Self> {
+        Err(ErrorKind::Unsupported.into())
+    }
+}
+
+/// Opens a regular file of `most` bytes at most for reading.
+///
+/// It never waits, as a FIFO makes its reader do. What was opened is looked at, since the name may stand for something else by then;
+/// before that the name is, so that no device is opened, which may do something.
+///
+/// # Errors
+/// Those of the operating system; [`ErrorKind::InvalidInput`] with what it is instead of a file; [`ErrorKind::FileTooLarge`].
+pub fn open(path: &Path, most: u64) -> io::Result<File> {
+    regular(&std::fs::metadata(path)?, most)?;
+    let mut options = OpenOptions::new();
+    options.read(true);
+    #[cfg(unix)]
+    {
+        use rustix::fs::OFlags;
+        use std::os::unix::fs::OpenOptionsExt as _;
+        options.custom_flags((OFlags::NONBLOCK | OFlags::CLOEXEC).bits().cast_signed());
+    }
+    let file = options.open(path)?;
+    regular(&file.metadata()?, most)?;
+    Ok(file)
+}
+
+/// What is known of a regular file of `most` bytes at most.
+///
+/// # Errors
+/// As [`open`].
+pub fn metadata(path: &Path, most: u64) -> io::Result<Metadata> {
+    let about = std::fs::metadata(path)?;
+    regular(&about, most)?;
+    Ok(about)
+}
+
+/// Reads a regular file of `most` bytes at most.
+///
+/// # Errors
+/// As [`open`].
+pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let file = open(path, most)?;
+    let expected = usize::try_from(file.metadata()?.len()).unwrap_or(0);
+    let mut bytes = Vec::with_capacity(expected);
+    // A file may grow, and those of `/proc` say that they have none.
+    file.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most { Err(too_large(most)) } else { Ok(bytes) }
+}
+
+/// Reads a regular file of `most` bytes at most, which holds text.
+///
+/// # Errors
+/// As [`open`]; [`ErrorKind::InvalidData`] when it is not in UTF-8.
+pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
+    let not_text = |_| io::Error::new(ErrorKind::InvalidData, "it is no text in UTF-8");
+    String::from_utf8(read(path, most)?).map_err(not_text)
+}
+
+fn regular(about: &Metadata, most: u64) -> io::Result<()> {
+    if !about.is_file() {
+        return Err(io::Error::new(ErrorKind::InvalidInput, format!("it is {}, and no file", kind(about.file_type()))));
+    }
+    if about.len() > most { Err(too_large(most)) } else { Ok(()) }
+}
+
+fn too_large(most: u64) -> io::Error {
+    io::Error::new(ErrorKind::FileTooLarge, format!("it has more than {}, the most that is read here", size(most)))
+}
+
+/// So many bytes in words.
+fn size(bytes: u64) -> String {
+    match bytes {
+        0..1_024 => format!("{bytes} bytes"),
+        1_024..1_048_576 => format!("{} kB", bytes >> 10),
+        1_048_576..1_073_741_824 => format!("{} MB", bytes >> 20),
+        _ => format!("{} GB", bytes >> 30),
+    }
+}
+
+#[cfg(unix)]
+fn kind(kind: FileType) -> &'static str {
+    use std::os::unix::fs::FileTypeExt as _;
+    match () {
+        () if kind.is_dir() => "a folder",
+        () if kind.is_fifo() => "a FIFO",
+        () if kind.is_socket() => "a socket",
+        () => "a device",
+    }
+}
+
+#[cfg(not(unix))]
+fn kind(kind: FileType) -> &'static str {
+    if kind.is_dir() { "a folder" } else { "something else" }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use std::os::unix::net::UnixListener;
+    use std::process::Command;
+
+    fn refusal(path: &Path) -> String {
+        let refused = open(path, 10).unwrap_err();
+        assert_eq!(refused.to_string(), read(path, 10).unwrap_err().to_string());
+        refused.to_string()
+    }
+
+    /// A FIFO that nobody writes to would keep its reader waiting: the test would not end.
+    #[test]
+    fn what_is_no_file_is_refused_at_once() {
+        let room = tempfile::tempdir().unwrap();
+        let place = |name: &str| room.path().join(name);
+        assert!(Command::new("mkfifo").arg(place("fifo")).status().unwrap().success());
+        let _socket = UnixListener::bind(place("socket")).unwrap();
+        assert_eq!(refusal(&place("fifo")), "it is a FIFO, and no file");
+        assert_eq!(refusal(&place("socket")), "it is a socket, and no file");
+        assert_eq!(refusal(room.path()), "it is a folder, and no file");
+        assert_eq!(refusal(Path::new("/dev/zero")), "it is a device, and no file");
+        assert!(refusal(&place("nothing")).starts_with("No such file"));
+    }
+
+    #[test]
+    fn a_file_is_read_up_to_its_bound() {
+        let room = tempfile::tempdir().unwrap();
+        let path = room.path().join("file");
+        std::fs::write(&path, "0123456789").unwrap();
+        assert_eq!(read_text(&path, 10).unwrap(), "0123456789");
+        assert_eq!(read(&path, 9).unwrap_err().to_string(), "it has more than 9 bytes, the most that is read here");
+        // One that says that it has no bytes, and has.
+        let endless = read(Path::new("/proc/self/maps"), 9).unwrap_err();
+        assert_eq!(endless.kind(), ErrorKind::FileTooLarge);
+        std::fs::write(&path, [0xff]).unwrap();
+        assert_eq!(read_text(&path, 9).unwrap_err().to_string(), "it is no text in UTF-8");
+    }
+
+    #[test]
+    fn links_lead_to_the_same_file() {
+        let room = tempfile::tempdir().unwrap();
+        std::os::unix::fs::symlink(".", room.path().join("again")).unwrap();
+        assert_eq!(FileId::of(room.path()).unwrap(), FileId::of(&room.path().join("again")).unwrap());
+        assert_ne!(FileId::of(room.path()).unwrap(), FileId::of(Path::new("/")).unwrap());
+    }
+}

@@ -1,0 +1,306 @@
+//! What a scenario may read: regular files of bounded size within its root, each of which is noted with its digest.
+//!
+//! A scenario is somebody else's text as soon as it comes by a pull request. The files that it names are read on a machine with keys
+//! and tokens on it, so that it must not lead out of its own project: symbolic links are resolved before it is asked where a file
+//! is. The rule for the root: see [`root_of`]. Whoever reads a file for a scenario asks here and nowhere else.
+use servobench_files::{FileRole, MadeOf, metadata, open, read, sha256};
+use std::collections::{HashMap, HashSet};
+use std::io;
+use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
+
+/// What makes a folder the root of a project, as a folder or a file (of a worktree).
+const PROJECT: &str = ".git";
+
+/// Bytes of a scenario at most: one of 100 000 moves has five million.
+pub const MOST_OF_A_SCENARIO: u64 = 16 << 20;
+/// Bytes of a model: data sheets have some kilobytes.
+const MOST_OF_A_MODEL: u64 = 1 << 20;
+/// Bytes of a table: two million points. It is held as a whole, beside what is made of it.
+const MOST_OF_A_TABLE: u64 = 64 << 20;
+/// Bytes of the text of an MJCF file: a model of a humanoid has 100 kB.
+const MOST_OF_AN_MJCF: u64 = 16 << 20;
+/// Bytes of a mesh or a texture, which is only looked through here.
+const MOST_OF_AN_ASSET: u64 = 256 << 20;
+/// Bytes of an FMU: some carry a whole interpreter with them.
+const MOST_OF_AN_FMU: u64 = 1 << 30;
+/// Bytes of all files of a scenario, so that a thousand names do not add up to hours.
+const MOST_OF_ALL: u64 = 2 << 30;
+
+/// What a scenario may read, and what was read of that.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct FileAccess {
+    /// Where all files are, links resolved; without one only what is built in can be read.
+    root: Option<PathBuf>,
+    made_of: Vec<MadeOf>,
+    /// What was read or looked through, by its resolved path.
+    known: HashSet<(PathBuf, FileRole)>,
+    texts: HashMap<PathBuf, Arc<str>>,
+    total: u64,
+}
+
+/// Why a file is not read, and the way out.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Refused {
+    pub(crate) message: String,
+    pub(crate) help: &'static str,
+}
+
+impl Refused {
+    /// The error of reading the scenario at `path` itself, beside which its name stands already.
+    pub(crate) fn into_error_of(self, path: &Path) -> io::Error {
+        let Self { message, help } = self;
+        let name = path.display();
+        let own = [format!("cannot read `{name}`: "), format!("`{name}` ")];
+        let why = own.iter().find_map(|own| message.strip_prefix(own)).unwrap_or(&message);
+        io::Error::other(if help == RELATIVE { why.to_owned() } else { format!("it {why}; {help}") })
+    }
+}
+
+/// Said of a path that leads nowhere.
+pub(crate) const RELATIVE: &str = "the path is relative to this file";
+
+const WAY_OUT: &str = "files of a scenario stay within its project, the nearest folder above it with a `.git`, or else within its own folder; \
+                       a folder that holds both is allowed by `--root DIR`";
+
+/// The folder that all files of a scenario in `folder` are below, links resolved: `given`; without it the nearest folder from there
+/// upwards that has a `.git`; without one `folder` itself.
+///
+/// # Errors
+/// Those of the operating system, when there is no such folder.
+pub fn root_of(folder: &Path, given: Option<&Path>) -> io::Result<PathBuf> {
+    let resolved = |folder: &Path| if folder.as_os_str().is_empty() { Path::new(".") } else { folder }.canonicalize();
+    let root = match given {
+        Some(given) => resolved(given)?,
+        None => {
+            let own = resolved(folder)?;
+            let project = own.ancestors().find(|above| above.join(PROJECT).symlink_metadata().is_ok());
+            project.map_or_else(|| own.clone(), Path::to_owned)
+        }
+    };
+    if root.is_dir() { Ok(root) } else { Err(io::Error::new(io::ErrorKind::NotADirectory, "it is no folder")) }
+}
+
+impl FileAccess {
+    /// What a scenario in `folder` may read: what is below its root.
+    ///
+    /// # Errors
+    /// Those of the operating system, when there is no such folder.
+    pub(crate) fn of_folder(folder: &Path, given: Option<&Path>) -> io::Result<Self> {
+        Ok(Self { root: Some(root_of(folder, given)?), ..Self::default() })
+    }
+
+    /// The root, links resolved.
+    pub(crate) fn root(&self) -> Option<&Path> {
+        self.root.as_deref()
+    }
+
+    /// The files that were read, in the order in which they were.
+    pub(crate) fn into_made_of(self) -> Vec<MadeOf> {
+        self.made_of
+    }
+
+    /// Whether a folder is within the root.
+    pub(crate) fn has_folder(&self, folder: &Path) -> bool {
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        self.root.as_ref().zip(folder.canonicalize().ok()).is_some_and(|(root, real)| real.starts_with(root))
+    }
+
+    /// The text of the file at `path`. One that is named again is not read again.
+    pub(crate) fn text(&mut self, path: &Path, role: FileRole) -> Result<Arc<str>, Refused> {
+        let real = self.within(path)?;
+        let unreadable = |error: io::Error| unreadable(path, &error);
+        let text = match self.texts.get(&real) {
+            Some(text) => Arc::clone(text),
+            None => {
+                let bytes = read(&real, self.left(role)).map_err(unreadable)?;
+                let text = String::from_utf8(bytes)
+                    .map_err(|_| io::Error::other("it is no text in UTF-8"))
+                    .map_err(unreadable)?;
+                self.total += text.len() as u64;
+                let text: Arc<str> = text.into();
+                self.texts.insert(real.clone(), Arc::clone(&text));
+                text
+            }
+        };
+        if self.known.insert((real.clone(), role)) {
+            self.made_of.push(MadeOf::of_bytes(self.from_root(&real), role, text.as_bytes()));
+        }
+        Ok(text)
+    }
+
+    /// Looks through the file at `path`, which somebody else reads.
+    pub(crate) fn look_through(&mut self, path: &Path, role: FileRole) -> Result<(), Refused> {
+        let real = self.within(path)?;
+        if self.known.contains(&(real.clone(), role)) {
+            return Ok(());
+        }
+        let most = self.left(role);
+        let digest = open(&real, most).and_then(sha256);
+        let (sha256, size) = digest.map_err(|error| unreadable(path, &error))?;
+        self.total += size;
+        self.made_of.push(MadeOf { path: self.from_root(&real), role, size, sha256 });
+        self.known.insert((real, role));
+        Ok(())
+    }
+
+    /// Whether there is a regular file at `path`; it may be outside, which is an error then.
+    pub(crate) fn has_file(&self, path: &Path, role: FileRole) -> Result<bool, Refused> {
+        match path.symlink_metadata() {
+            Err(_) => Ok(false),
+            Ok(_) => {
+                let real = self.within(path)?;
+                metadata(&real, most_of(role)).map(|_| true).map_err(|error| unreadable(path, &error))
+            }
+        }
+    }
+
+    /// Notes what is built in.
+    pub(crate) fn embedded(&mut self, path: String, role: FileRole, text: &str) -> Arc<str> {
+        let place = PathBuf::from(&path);
+        if self.known.insert((place.clone(), role)) {
+            self.made_of.push(MadeOf::of_bytes(path, role, text.as_bytes()));
+        }
+        Arc::clone(self.texts.entry(place).or_insert_with(|| text.into()))
+    }
+
+    /// Notes the scenario itself, whose text came by another way.
+    pub(crate) fn note_scenario(&mut self, name: &str, text: &str) {
+        self.made_of.insert(0, MadeOf::of_bytes(name.to_owned(), FileRole::Scenario, text.as_bytes()));
+    }
+
+    /// The path with links resolved, when that is within the root. A file outside is refused whether it is there or not: what is
+    /// there is nobody's business either.
+    fn within(&self, path: &Path) -> Result<PathBuf, Refused> {
+        let Some(root) = &self.root else {
+            let message = format!("`{}` is not read: a scenario without a folder cannot name files", path.display());
+            return Err(Refused { message, help: "" });
+        };
+        let outside = || Refused {
+            message: format!("`{}` is outside of the root of this scenario, `{}`", path.display(), root.display()),
+            help: WAY_OUT,
+        };
+        match path.canonicalize() {
+            Ok(real) if real.starts_with(root) => Ok(real),
+            Ok(_) => Err(outside()),
+            Err(error) if lexical(path).is_some_and(|path| path.starts_with(root)) => Err(unreadable(path, &error)),
+            Err(_) => Err(outside()),
+        }
+    }
+
+    /// Bytes that may still be read of a file.
+    fn left(&self, role: FileRole) -> u64 {
+        most_of(role).min(MOST_OF_ALL.saturating_sub(self.total))
+    }
+
+    fn from_root(&self, real: &Path) -> String {
+        let path = self.root.as_ref().and_then(|root| real.strip_prefix(root).ok()).unwrap_or(real);
+        path.components().map(|part| part.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/")
+    }
+}
+
+fn unreadable(path: &Path, error: &io::Error) -> Refused {
+    Refused { message: format!("cannot read `{}`: {error}", path.display()), help: RELATIVE }
+}
+
+const fn most_of(role: FileRole) -> u64 {
+    match role {
+        FileRole::Scenario => MOST_OF_A_SCENARIO,
+        FileRole::AxisModel | FileRole::MotorModel | FileRole::DriveModel => MOST_OF_A_MODEL,
+        FileRole::Table => MOST_OF_A_TABLE,
+        FileRole::Mjcf => MOST_OF_AN_MJCF,
+        FileRole::MjcfAsset => MOST_OF_AN_ASSET,
+        FileRole::Fmu => MOST_OF_AN_FMU,
+    }
+}
+
+/// Where a path leads that stands for nothing: links resolved as far as there are such, the rest as it is written.
+fn lexical(path: &Path) -> Option<PathBuf> {
+    let mut real = std::env::current_dir().ok()?.canonicalize().ok()?;
+    for part in path.components() {
+        match part {
+            Component::ParentDir => drop(real.pop()),
+            Component::CurDir => {}
+            Component::RootDir | Component::Prefix(_) => real = PathBuf::from(part.as_os_str()),
+            Component::Normal(name) => {
+                real.push(name);
+                real = real.canonicalize().unwrap_or(real);
+            }
+        }
+    }
+    Some(real)
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use std::fs;
+    use std::os::unix::fs::symlink;
+
+    /// A project with a scenario in a folder, and something beside the project.
+    fn room() -> tempfile::TempDir {
+        let room = tempfile::tempdir().unwrap();
+        fs::create_dir_all(room.path().join("project/.git")).unwrap();
+        fs::create_dir_all(room.path().join("project/scenarios/data")).unwrap();
+        fs::write(room.path().join("project/table.csv"), "t").unwrap();
+        fs::write(room.path().join("secret"), "s").unwrap();
+        room
+    }
+
+    #[test]
+    fn the_root_is_what_is_given_the_project_or_the_own_folder() {
+        let room = room();
+        let real = room.path().canonicalize().unwrap();
+        let (project, own) = (real.join("project"), real.join("project/scenarios"));
+        let root = |folder: &Path, given| FileAccess::of_folder(folder, given).unwrap().root().unwrap().to_owned();
+        assert_eq!(root(&own.join("data"), None), project);
+        assert_eq!(root(&own, Some(&real)), real);
+        fs::remove_dir(project.join(".git")).unwrap();
+        assert_eq!(root(&own, None), own);
+        // A worktree has a file.
+        fs::write(project.join(".git"), "gitdir: elsewhere").unwrap();
+        assert_eq!(root(&own, None), project);
+        assert!(FileAccess::of_folder(&own, Some(&real.join("secret"))).is_err());
+    }
+
+    #[test]
+    fn nothing_leads_out_of_the_root() {
+        let room = room();
+        let own = room.path().join("project/scenarios");
+        let mut access = FileAccess::of_folder(&own, None).unwrap();
+        assert_eq!(&*access.text(&own.join("../table.csv"), FileRole::Table).unwrap(), "t");
+        symlink("../../secret", own.join("link")).unwrap();
+        symlink("../../", own.join("above")).unwrap();
+        symlink("data", own.join("inner")).unwrap();
+        fs::write(own.join("data/x"), "x").unwrap();
+        for path in
+            ["../../secret", "link", "above/secret", "/etc/passwd", "../../nothing", "/nothing", "above/nothing"]
+        {
+            let refused = access.text(&own.join(path), FileRole::Table).unwrap_err();
+            assert!(
+                refused.message.contains("is outside of the root") && refused.help.contains("--root"),
+                "{path}: {refused:?}"
+            );
+            assert_eq!(access.look_through(&own.join(path), FileRole::Fmu).unwrap_err(), refused);
+        }
+        assert_eq!(&*access.text(&own.join("inner/x"), FileRole::Table).unwrap(), "x");
+        let missing = access.text(&own.join("nothing"), FileRole::Table).unwrap_err();
+        assert!(missing.message.contains("No such file"), "{missing:?}");
+        let read: Vec<_> = access.into_made_of().into_iter().map(|file| (file.path, file.size)).collect();
+        assert_eq!(read, [("table.csv".to_owned(), 1), ("scenarios/data/x".to_owned(), 1)]);
+    }
+
+    #[test]
+    fn a_file_that_is_named_again_is_read_once() {
+        let room = room();
+        let path = room.path().join("project/table.csv");
+        let mut access = FileAccess::of_folder(room.path(), Some(room.path())).unwrap();
+        let first = access.text(&path, FileRole::Table).unwrap();
+        fs::write(&path, "another").unwrap();
+        assert!(Arc::ptr_eq(&first, &access.text(&path, FileRole::Table).unwrap()));
+        assert_eq!(access.total, 1);
+        access.look_through(&path, FileRole::Fmu).unwrap();
+        access.look_through(&path, FileRole::Fmu).unwrap();
+        assert_eq!((access.total, access.into_made_of().len()), (8, 2));
+    }
+}

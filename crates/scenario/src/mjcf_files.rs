@@ -1,0 +1,126 @@
+//! The files that an MJCF file names: what it includes, meshes, textures, height fields, other models.
+//!
+//! The library that compiles such a file opens them itself. Before it does, each is looked through here: it has to be a regular file
+//! within the root of the scenario. An element may name a file by any attribute that begins with `file` (`file`, `fileright`, `filename`
+//! of URDF), so that elements that are not known here are covered too. Where the library would look in several folders, what is there
+//! in each of them is looked at; what is nowhere is for the library to say.
+//!
+//! Source: MuJoCo documentation, *XML Reference*, `include`, `compiler/meshdir`, `texturedir`, `assetdir`, `strippath`.
+use crate::access::{FileAccess, Refused};
+use roxmltree::{Document, ParsingOptions};
+use servobench_files::{FileRole, quoted, with_short_quotes};
+use std::collections::{BTreeSet, HashSet};
+use std::path::{Path, PathBuf};
+
+/// Elements of a file at most: ten times those of the largest models that are published.
+const MOST_NODES: u32 = 1_000_000;
+/// Files that are named, and folders in which they may be.
+const MOST_NAMES: usize = 10_000;
+const MOST_FOLDERS: usize = 16;
+
+/// Attributes of `<compiler>` with a folder for files.
+const FOLDERS: [&str; 3] = ["meshdir", "texturedir", "assetdir"];
+
+/// Looks through every file that the MJCF text `xml` at `path` names, and those that these name.
+pub(crate) fn look_through(path: &Path, xml: &str, files: &mut FileAccess) -> Result<(), Refused> {
+    if files.root().is_none() {
+        return Ok(());
+    }
+    let mut named = Named::default();
+    let mut texts: Vec<(PathBuf, std::sync::Arc<str>)> = vec![(path.to_owned(), xml.into())];
+    let mut seen: HashSet<PathBuf> = HashSet::new();
+    let main = folder_of(path);
+    while let Some((path, xml)) = texts.pop() {
+        let models = named.add(&path, &xml)?;
+        // One that is included is in the folder of the main file, or of the file that includes it.
+        for model in models {
+            for place in [main.join(&model), folder_of(&path).join(&model)] {
+                if files.has_file(&place, FileRole::Mjcf)? && seen.insert(place.clone()) {
+                    let text = files.text(&place, FileRole::Mjcf)?;
+                    texts.push((place, text));
+                }
+            }
+        }
+    }
+    for asset in &named.assets {
+        let bare = Path::new(asset).file_name().map(PathBuf::from);
+        for name in [Some(PathBuf::from(asset)), bare].into_iter().flatten().collect::<BTreeSet<_>>() {
+            for place in named.places(&name) {
+                if files.has_file(&place, FileRole::MjcfAsset)? {
+                    files.look_through(&place, FileRole::MjcfAsset)?;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+fn folder_of(path: &Path) -> PathBuf {
+    path.parent().unwrap_or_else(|| Path::new("")).to_owned()
+}
+
+/// What files name, and where that may be.
+#[derive(Default)]
+struct Named {
+    assets: BTreeSet<String>,
+    /// Folders of the files.
+    own: BTreeSet<PathBuf>,
+    /// Folders that they give for meshes and the like.
+    given: BTreeSet<PathBuf>,
+}
+
+impl Named {
+    /// Adds what `xml` names; returns the files among it that are MJCF themselves.
+    fn add(&mut self, path: &Path, xml: &str) -> Result<BTreeSet<String>, Refused> {
+        let refuse = |message: String| Err(Refused { message, help: "" });
+        // A declaration of the document type is nothing that MJCF has, and could make a text of any length out of a short one.
+        let options = ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES };
+        let document = match Document::parse_with_options(xml, options) {
+            Ok(document) => document,
+            Err(error) => {
+                let why = with_short_quotes(&error.to_string());
+                return refuse(format!("`{}` is no well-formed XML: {why}", path.display()));
+            }
+        };
+        self.own.insert(folder_of(path));
+        let mut models = BTreeSet::new();
+        for node in document.descendants().filter(roxmltree::Node::is_element) {
+            let is_model = matches!(node.tag_name().name(), "include" | "model");
+            for attribute in node.attributes() {
+                let (key, value) = (attribute.name(), attribute.value());
+                if key.starts_with("file") && !value.is_empty() {
+                    if value.contains('\0') || value.len() > 4096 {
+                        return refuse(format!(
+                            "`{}` names a file `{}`, which no file is called",
+                            path.display(),
+                            quoted(value)
+                        ));
+                    }
+                    if is_model {
+                        models.insert(value.to_owned())
+                    } else {
+                        self.assets.insert(value.to_owned())
+                    };
+                } else if FOLDERS.contains(&key) {
+                    self.given.insert(PathBuf::from(value));
+                }
+            }
+        }
+        let folders = self.given.len() + self.own.len();
+        for (what, count, most) in
+            [("files", self.assets.len() + models.len(), MOST_NAMES), ("folders of files", folders, MOST_FOLDERS)]
+        {
+            if count > most {
+                return refuse(format!("`{}` names {count} {what}, it may name {most}", path.display()));
+            }
+        }
+        Ok(models)
+    }
+
+    /// Where a file of this name may be.
+    fn places(&self, name: &Path) -> impl Iterator<Item = PathBuf> {
+        let beside = self.own.iter().map(move |own| own.join(name));
+        let given = self.own.iter().flat_map(move |own| self.given.iter().map(move |given| own.join(given).join(name)));
+        beside.chain(given).collect::<BTreeSet<_>>().into_iter()
+    }
+}
