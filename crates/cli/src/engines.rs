@@ -41,7 +41,11 @@ const fn fmu_opener(_: FmuTrust) -> &'static dyn FmuOpener {
 
 /// Every engine of this build. Of FMUs runs the code that the command line lets run.
 pub(crate) fn installed() -> Engines {
-    let trust = FmuTrust::settled();
+    with(FmuTrust::settled())
+}
+
+/// Every engine of this build, of FMUs the code that `trust` lets run.
+pub(crate) const fn with(trust: FmuTrust) -> Engines {
     let installed = match trust {
         FmuTrust::Describe => DESCRIBED,
         FmuTrust::Isolated => ISOLATED,
