@@ -360,6 +360,8 @@ fn devices_pipes_and_descriptors_are_written_as_they_are() {
 #[cfg(target_os = "linux")]
 #[test]
 fn what_cannot_be_written_is_named() {
+    let is_whole = || fs::metadata("/dev/full").unwrap().file_type().is_char_device();
+    assert!(is_whole(), "something else has replaced /dev/full; `mknod -m 666 /dev/full c 1 7` makes it anew");
     let work = folder(&[("a.toml", SLIDE), ("bus.toml", &on_a_bus(""))]);
     let fails = |arguments: &[&str], name: &str| {
         let output = within(work.path(), arguments);
@@ -382,8 +384,8 @@ fn what_cannot_be_written_is_named() {
         ("no/such/x.csv", &[&PLAN[..], &["--csv", "no/such/x.csv"]].concat()),
     ] {
         fails(arguments, name);
+        assert!(is_whole(), "{arguments:?}");
     }
-    assert!(fs::metadata("/dev/full").unwrap().file_type().is_char_device());
 }
 
 /// A limit of the size of files is what a full disk is, for whoever has no disk to fill.
