@@ -102,6 +102,8 @@ pub(crate) enum CliError {
     Check(Findings),
 
     // What could not be carried out.
+    #[error("{0}; nothing was begun")]
+    Shortage(LoadError),
     #[error(transparent)]
     Folder(#[from] FolderError),
     #[error(transparent)]
@@ -199,7 +201,8 @@ impl CliError {
                 failed.iter().fold(Exit::Run, |worst, failed| worst.worse(of_run_error(&failed.error)))
             }
             Self::Check(findings) => findings.exit(),
-            Self::Folder(_)
+            Self::Shortage(_)
+            | Self::Folder(_)
             | Self::Journal(_)
             | Self::Results(_)
             | Self::MakeFolder { .. }

@@ -1,5 +1,5 @@
 //! Which code of FMUs may run: that is for the command line to say, and for no scenario.
-use crate::args::{CheckArgs, Command, FmuTrustArgs, WorkerArgs};
+use crate::args::{CheckArgs, Command, FmuTrustArgs};
 #[cfg(feature = "fmu")]
 use servobench_fmi::Isolation;
 use servobench_scenario::{Diagnostic, Invalid, LoadError, Loaded};
@@ -30,8 +30,6 @@ impl FmuTrust {
             Command::Run(args) => Self::running(args.fmus),
             Command::Compare(args) => Self::running(args.fmus),
             Command::Check(CheckArgs { load_fmus: true, fmus, .. }) => Self::running(*fmus),
-            // Whoever started it has asked the command line, and wants nothing to run where nothing is recorded.
-            Command::Worker(WorkerArgs { recording: Some(_), .. }) => Self::AsTheScenarioSays,
             _ => Self::Describe,
         }
     }

@@ -8,7 +8,8 @@ mod target;
 pub(crate) use target::Output;
 
 use crate::error::CliError;
-use place::{FileId, Kind, Place};
+use place::{Kind, Place};
+use servobench_files::FileId;
 use std::collections::{HashMap, HashSet};
 use std::ffi::OsStr;
 use std::fmt::Display;
@@ -26,13 +27,13 @@ static INPUTS: Mutex<Option<HashMap<FileId, String>>> = Mutex::new(None);
 /// holds nothing that could be lost.
 pub(crate) fn reads(path: &Path, what: impl Display) {
     if std::fs::metadata(path).is_ok_and(|found| found.is_file()) {
-        note(FileId::of(path), what);
+        note(FileId::of(path).ok(), what);
     }
 }
 
 /// Notes that standard input is read.
 pub(crate) fn reads_stdin() {
-    note(FileId::of_stdin(), "what comes in on standard input");
+    note(place::of_stdin(), "what comes in on standard input");
 }
 
 fn note(file: Option<FileId>, what: impl Display) {
@@ -150,7 +151,7 @@ impl Outputs {
 
 /// Refuses to write over what is read.
 fn spares(option: &str, path: &Path) -> Result<(), Refused> {
-    match FileId::of(path).and_then(|file| input(&file)) {
+    match FileId::of(path).ok().and_then(|file| input(&file)) {
         Some(input) => Err(Refused::Input { option: option.to_owned(), path: path.to_owned(), input }),
         None => Ok(()),
     }

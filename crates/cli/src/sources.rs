@@ -148,10 +148,12 @@ impl fmt::Display for Unusable {
 pub(crate) fn each(paths: &[PathBuf], with: &OverrideArgs) -> Result<Vec<Result<Source, Unusable>>, CliError> {
     let files = files(paths, with.root.as_deref())?;
     let each = files.into_iter().map(|path| match loaded(&path, with).and_then(trusted) {
-        Ok(loaded) => Ok(source(loaded)),
-        Err(error) => Err(Unusable { path, error }),
+        Ok(loaded) => Ok(Ok(source(loaded))),
+        // A suite whose scenarios cannot be read now is another one when they can.
+        Err(error) if error.is_shortage() => Err(CliError::Shortage(error)),
+        Err(error) => Ok(Err(Unusable { path, error })),
     });
-    Ok(each.collect())
+    each.collect()
 }
 
 /// What is run of a file; what is doubtful in it is said.
@@ -171,7 +173,8 @@ fn loaded(path: &Path, with: &OverrideArgs) -> Result<Loaded, LoadError> {
     let OverrideArgs { overrides, root } = with;
     if !is_stdin(path) {
         reads(path, format_args!("the scenario {}", path.display()));
-        return load_within(path, overrides, root.as_deref()).inspect(|loaded| note_files(loaded, path));
+        let loaded = load_within(path, overrides, root.as_deref());
+        return loaded.inspect(|loaded| note_files(loaded, path, root.as_deref()));
     }
     let text = if let Some(text) = TEXT_OF_STDIN.get() {
         text.clone()
@@ -181,21 +184,19 @@ fn loaded(path: &Path, with: &OverrideArgs) -> Result<Loaded, LoadError> {
     };
     let mut loaded = parse_within(NAME_OF_STDIN, &text, Some(Path::new("")), overrides, root.as_deref())?;
     loaded.scenario.path = Some(path.to_owned());
-    note_files(&loaded, path);
+    note_files(&loaded, path, root.as_deref());
     Ok(loaded)
 }
 
-/// Notes the files that the scenario at `path` names: nothing is written over them.
-fn note_files(loaded: &Loaded, path: &Path) {
-    let Loaded { scenario, sources, tables, .. } = loaded;
-    let what = format!("a file of the scenario {}", named(path));
-    // Embedded models and overrides have names that are no paths.
-    let models = sources.ids().filter(|id| !id.is_override()).map(|id| Path::new(sources.name(id)));
-    let fmus = scenario.fmus.iter().map(|fmu| &fmu.file).chain(scenario.axis.fmu.iter().map(|fmu| &fmu.file));
-    models.chain(fmus.map(|file| file.path.as_path())).for_each(|file| reads(file, &what));
+/// Notes the files that the scenario at `path` is made of: nothing is written over them.
+fn note_files(loaded: &Loaded, path: &Path, given: Option<&Path>) {
     let folder = if is_stdin(path) { Path::new("") } else { path.parent().unwrap_or(Path::new("")) };
-    for table in tables {
-        reads(&folder.join(&table.named), &what);
+    // Without a root nothing was read.
+    let Ok(root) = root_of(folder, given) else { return };
+    let what = format!("a file of the scenario {}", named(path));
+    // Those that are built in have names that are no paths.
+    for file in &loaded.scenario.made_of {
+        reads(&root.join(&file.path), &what);
     }
 }
 

@@ -20,7 +20,10 @@ pub(crate) fn open(
 ) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
     let of_file = |error: &dyn std::fmt::Display| vec![FmuMistake::of_file(&error)];
     let file = request.file;
-    let fmu = Unpacked::new(&file.path).map_err(|error| of_file(&error))?;
+    let fmu = Unpacked::new(&file.path).map_err(|error| {
+        let at = if error.is_shortage() { FmuEntry::Conduct } else { FmuEntry::File };
+        vec![FmuMistake { at, ..FmuMistake::of_file(&error) }]
+    })?;
     let it = fmu.description();
     let (ports, mut mistakes) = match Ports::new(&request.inputs, &request.outputs, it) {
         Ok(ports) => (Some(ports), Vec::new()),

@@ -6,7 +6,9 @@
 mod made_of;
 mod quoted;
 mod regular;
+mod shortage;
 
 pub use made_of::{FileRole, MadeOf, sha256};
 pub use quoted::{MOST_QUOTED, Quoted, listed, named, quoted, with_short_quotes};
 pub use regular::{FileId, metadata, open, read, read_text};
+pub use shortage::is_shortage;

@@ -69,6 +69,14 @@ pub enum FmuError {
     },
 }
 
+impl FmuError {
+    /// Whether the machine had too little of something, and the FMU may be right: descriptors, memory, room on a disk.
+    #[must_use]
+    pub fn is_shortage(&self) -> bool {
+        matches!(self, Self::File { source, .. } if servobench_files::is_shortage(source))
+    }
+}
+
 /// What is wrong with a library.
 #[derive(Debug, Error)]
 #[non_exhaustive]

@@ -3,7 +3,7 @@
 //! A scenario is somebody else's text as soon as it comes by a pull request. The files that it names are read on a machine with keys
 //! and tokens on it, so that it must not lead out of its own project: symbolic links are resolved before it is asked where a file
 //! is. The rule for the root: see [`root_of`]. Whoever reads a file for a scenario asks here and nowhere else.
-use servobench_files::{FileRole, MadeOf, metadata, open, read, sha256};
+use servobench_files::{FileRole, MadeOf, is_shortage, metadata, open, read, sha256};
 use std::collections::{HashMap, HashSet};
 use std::io;
 use std::path::{Component, Path, PathBuf};
@@ -37,6 +37,8 @@ pub(crate) struct FileAccess {
     known: HashSet<(PathBuf, FileRole)>,
     texts: HashMap<PathBuf, Arc<str>>,
     total: u64,
+    /// The file that could not be read for want of something that the machine has too little of, and the system's number of that.
+    shortage: Option<(PathBuf, i32)>,
 }
 
 /// Why a file is not read, and the way out.
@@ -100,6 +102,19 @@ impl FileAccess {
         self.made_of
     }
 
+    /// The file that the machine, and not the scenario, kept from being read.
+    pub(crate) fn shortage(&self) -> Option<(PathBuf, io::Error)> {
+        self.shortage.as_ref().map(|(path, code)| (path.clone(), io::Error::from_raw_os_error(*code)))
+    }
+
+    /// Why the file at `path` cannot be read.
+    fn noted(&mut self, path: &Path, error: &io::Error) -> Refused {
+        if is_shortage(error) {
+            self.shortage = error.raw_os_error().map(|code| (path.to_owned(), code));
+        }
+        unreadable(path, error)
+    }
+
     /// Whether a folder is within the root.
     pub(crate) fn has_folder(&self, folder: &Path) -> bool {
         let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
@@ -109,14 +124,12 @@ impl FileAccess {
     /// The text of the file at `path`. One that is named again is not read again.
     pub(crate) fn text(&mut self, path: &Path, role: FileRole) -> Result<Arc<str>, Refused> {
         let real = self.within(path)?;
-        let unreadable = |error: io::Error| unreadable(path, &error);
         let text = match self.texts.get(&real) {
             Some(text) => Arc::clone(text),
             None => {
-                let bytes = read(&real, self.left(role)).map_err(unreadable)?;
+                let bytes = read(&real, self.left(role)).map_err(|error| self.noted(path, &error))?;
                 let text = String::from_utf8(bytes)
-                    .map_err(|_| io::Error::other("it is no text in UTF-8"))
-                    .map_err(unreadable)?;
+                    .map_err(|_| unreadable(path, &io::Error::other("it is no text in UTF-8")))?;
                 self.total += text.len() as u64;
                 let text: Arc<str> = text.into();
                 self.texts.insert(real.clone(), Arc::clone(&text));
@@ -137,7 +150,7 @@ impl FileAccess {
         }
         let most = self.left(role);
         let digest = open(&real, most).and_then(sha256);
-        let (sha256, size) = digest.map_err(|error| unreadable(path, &error))?;
+        let (sha256, size) = digest.map_err(|error| self.noted(path, &error))?;
         self.total += size;
         self.made_of.push(MadeOf { path: self.from_root(&real), role, size, sha256 });
         self.known.insert((real, role));

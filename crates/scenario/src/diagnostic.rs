@@ -39,6 +39,14 @@ pub enum LoadError {
     Invalid(Box<Invalid>),
 }
 
+impl LoadError {
+    /// Whether the machine had too little of something, and the scenario may be right: descriptors, memory, room on a disk.
+    #[must_use]
+    pub fn is_shortage(&self) -> bool {
+        matches!(self, Self::Read { error, .. } if servobench_files::is_shortage(error))
+    }
+}
+
 /// Everything that is wrong with a scenario and the models it names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Invalid {

@@ -61,7 +61,11 @@ pub fn load_within(path: &Path, overrides: &[Override], root: Option<&Path>) -> 
     let unreadable = |error| LoadError::Read { path: path.to_owned(), error };
     let folder = path.parent().unwrap_or_else(|| Path::new(""));
     let mut files = access(path, folder, root)?;
-    let text = files.text(path, FileRole::Scenario).map_err(|refused| unreadable(refused.into_error_of(path)))?;
+    let text = files.text(path, FileRole::Scenario);
+    let text = text.map_err(|refused| match files.shortage() {
+        Some((_, error)) => unreadable(error),
+        None => unreadable(refused.into_error_of(path)),
+    })?;
     let mut loaded = parse_from(&path.display().to_string(), &text, Some(folder), overrides, files)?;
     loaded.scenario.path = Some(path.to_owned());
     Ok(loaded)
@@ -147,6 +151,12 @@ fn parse_from(
     let mut warnings = in_order(std::mem::take(&mut report.warnings));
     foreign::shorten(&mut diagnostics, &sources);
     foreign::shorten(&mut warnings, &sources);
+    // What the machine kept from being read is no mistake of the scenario.
+    if !diagnostics.is_empty()
+        && let Some((path, error)) = report.files.shortage()
+    {
+        return Err(LoadError::Read { path, error });
+    }
     match scenario {
         Some(mut scenario) if diagnostics.is_empty() => {
             if scenario.name.is_empty() {

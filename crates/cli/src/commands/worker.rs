@@ -2,6 +2,7 @@
 use crate::engines;
 use crate::error::CliError;
 use crate::exit::Exit;
+use crate::fmu_trust::FmuTrust;
 use crate::interrupt;
 use servobench_isolation::contain;
 use servobench_suite::worker::serve;
@@ -11,6 +12,8 @@ pub(crate) fn worker() -> Result<Exit, CliError> {
     contain()?;
     // What it has unpacked goes with it.
     interrupt::watch(&std::env::temp_dir())?;
-    serve(&engines::installed()).map_err(CliError::Listen)?;
+    // Whoever started it has asked the command line, and wants no code of FMUs to run where nothing is recorded.
+    let (running, checking) = (engines::with(FmuTrust::AsTheScenarioSays), engines::with(FmuTrust::Describe));
+    serve(&running, &checking).map_err(CliError::Listen)?;
     Ok(Exit::Passed)
 }

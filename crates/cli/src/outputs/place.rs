@@ -1,25 +1,11 @@
 //! Where a path leads: what is there is known by device and inode, so that neither links nor `./x` hide it; what is not there yet
 //! by its folder and its name.
-#[cfg(unix)]
-use std::fs::File;
+use servobench_files::FileId;
 use std::fs::Metadata;
 use std::path::{Component, Path, PathBuf};
 
 /// Links that are followed at most, as Linux has it.
 const MOST_LINKS: usize = 40;
-
-/// A file that exists, whatever it is called.
-#[cfg(unix)]
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub(super) struct FileId {
-    device: u64,
-    inode: u64,
-}
-
-/// A file that exists, whatever it is called: hard links are not seen through here.
-#[cfg(not(unix))]
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub(super) struct FileId(PathBuf);
 
 /// A name in a folder, both as they are found now.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -46,35 +32,10 @@ pub(super) enum Kind {
     StandardError,
 }
 
-#[cfg(unix)]
-impl FileId {
-    /// The file at `path`, links followed.
-    pub(super) fn of(path: &Path) -> Option<Self> {
-        std::fs::metadata(path).ok().map(|found| Self::in_metadata(&found))
-    }
-
-    fn in_metadata(found: &Metadata) -> Self {
-        use std::os::unix::fs::MetadataExt;
-        Self { device: found.dev(), inode: found.ino() }
-    }
-
-    /// What standard input comes from, if that is a regular file.
-    pub(super) fn of_stdin() -> Option<Self> {
-        use std::os::fd::AsFd;
-        let found = File::from(std::io::stdin().as_fd().try_clone_to_owned().ok()?).metadata().ok()?;
-        found.is_file().then(|| Self::in_metadata(&found))
-    }
-}
-
-#[cfg(not(unix))]
-impl FileId {
-    pub(super) fn of(path: &Path) -> Option<Self> {
-        path.canonicalize().ok().map(Self)
-    }
-
-    pub(super) fn of_stdin() -> Option<Self> {
-        None
-    }
+/// What standard input comes from, if that is a regular file.
+pub(super) fn of_stdin() -> Option<FileId> {
+    let stdin = Path::new("/dev/stdin");
+    std::fs::metadata(stdin).is_ok_and(|found| found.is_file()).then(|| FileId::of(stdin).ok()).flatten()
 }
 
 impl Place {
@@ -85,7 +46,7 @@ impl Place {
         let (mut folder, mut missing) = (path.as_path(), Vec::new());
         loop {
             let is_looked_up = !(is_name && missing.is_empty());
-            if let Some(found) = is_looked_up.then(|| FileId::of(folder)).flatten() {
+            if let Some(found) = is_looked_up.then(|| FileId::of(folder).ok()).flatten() {
                 return Self { folder: Some(found), name: below(&missing) };
             }
             let Some(above) = folder.parent() else { return Self { folder: None, name: path.clone() } };
@@ -96,12 +57,12 @@ impl Place {
 
     /// The folder at `path`, for the files in it.
     pub(super) fn of_folder(path: &Path) -> Self {
-        FileId::of(path).map_or_else(|| Self::of(path), |folder| Self { folder: Some(folder), name: PathBuf::new() })
+        FileId::of(path).map_or_else(|_| Self::of(path), |folder| Self { folder: Some(folder), name: PathBuf::new() })
     }
 
     /// The file `name` in this folder.
     pub(super) fn file(&self, name: &str) -> Self {
-        Self { folder: self.folder.clone(), name: self.name.join(name) }
+        Self { folder: self.folder, name: self.name.join(name) }
     }
 }
 
@@ -191,9 +152,9 @@ mod tests {
         symlink(path("a"), path("link")).unwrap();
         fs::hard_link(path("a"), path("hard")).unwrap();
         for name in ["link", "hard", "./a", "folder/../a"] {
-            assert_eq!(FileId::of(&path(name)), FileId::of(&path("a")), "{name}");
+            assert_eq!(FileId::of(&path(name)).unwrap(), FileId::of(&path("a")).unwrap(), "{name}");
         }
-        assert_ne!(FileId::of(&path("b")), FileId::of(&path("a")));
+        assert_ne!(FileId::of(&path("b")).unwrap(), FileId::of(&path("a")).unwrap());
         // What is not there yet.
         assert_eq!(Place::of(&path("new")), Place::of(&path("folder/../new")));
         assert_eq!(Place::of(&path("x/y/../new")), Place::of(&path("x/new")));

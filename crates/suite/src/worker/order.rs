@@ -63,7 +63,8 @@ impl Order {
         let folder = path.as_deref().and_then(Path::parent);
         // The caller has read them.
         let overrides: Vec<Override> = self.overrides.iter().filter_map(|one| one.parse().ok()).collect();
-        let mut scenario = servobench_scenario::parse_within(&file, &self.text, folder, &overrides, root.as_deref())?.scenario;
+        let mut scenario =
+            servobench_scenario::parse_within(&file, &self.text, folder, &overrides, root.as_deref())?.scenario;
         scenario.name.clone_from(&self.name);
         scenario.path = path;
         slow_to(&mut scenario, &self.durations);

@@ -18,12 +18,12 @@ use std::io::{self, BufRead, BufReader, Write};
 use std::os::unix::net::UnixStream;
 use std::time::Duration;
 
-/// Carries out orders until nobody gives any more. The standard streams of this process belong to that from now on: what libraries write
+/// Carries out orders until nobody gives any more, with `running` where a scenario is run and `checking` where it is only checked. The standard streams of this process belong to that from now on: what libraries write
 /// on standard output goes to standard error.
 ///
 /// # Errors
 /// Those of the system.
-pub fn serve(engines: &Engines) -> io::Result<()> {
+pub fn serve(running: &Engines, checking: &Engines) -> io::Result<()> {
     let (orders, recording) = claim_standard_streams()?;
     let (orders, mut recording) = (UnixStream::from(orders), File::from(recording));
     let mut out = orders.try_clone()?;
@@ -34,7 +34,9 @@ pub fn serve(engines: &Engines) -> io::Result<()> {
         if lines.read_line(&mut line)? == 0 {
             return Ok(());
         }
-        answer(&serde_json::from_str(&line)?, &mut recording, engines, &mut out);
+        let order: Order = serde_json::from_str(&line)?;
+        let engines = if matches!(order.task, Task::Check) { checking } else { running };
+        answer(&order, &mut recording, engines, &mut out);
     }
 }
 

@@ -13,7 +13,7 @@ use std::path::PathBuf;
 fn worker() {
     // Somebody runs all tests that are ignored.
     if contain().is_ok() {
-        let served = std::panic::catch_unwind(|| serve(&ENGINES).unwrap());
+        let served = std::panic::catch_unwind(|| serve(&ENGINES, &ENGINES).unwrap());
         std::process::exit(if served.is_ok() { 0 } else { 101 });
     }
 }
