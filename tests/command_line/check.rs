@@ -71,6 +71,7 @@ fn all_that_rapier_refuses_in_a_file_is_said_by_name_at_its_place_in_one_go() {
         .replace("<worldbody>", "<equality/>\n<worldbody>")
         .replace(r#"name="load" type="slide""#, r#"name="load" type="slide" range="0 1""#);
     let (code, said) = checked(&own_mjcf("[\"rapier\"]"), &arm);
+    let said = said.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
     assert_eq!(code, 2);
     for expected in [
         "2 mistakes",

@@ -266,3 +266,36 @@ fn what_a_scenario_is_made_of_is_said() {
     fs::write(elsewhere.path().join("points.csv"), "time [s],position [m]\n0,0\n0.1,0.01\n0.3,0.01\n").unwrap();
     assert_ne!(run(elsewhere.path(), "other")["inputs"], first["inputs"]);
 }
+
+/// Each would take minutes, gigabytes or the stack if it were read like any other.
+#[test]
+fn large_files_are_refused_before_they_cost_much() {
+    let million = 1_000_000;
+    let work = folder(&[
+        ("keys.toml", &(0..million).map(|k| format!("k{k} = 1\n")).collect::<String>()),
+        ("lines.toml", &"x y = 1\n".repeat(million)),
+        ("few.toml", &(0..20_000).map(|k| format!("unknown_key_{k} = {k}\n")).collect::<String>()),
+        ("long.toml", &format!("{SLIDE}[run]\nbase_rate = \"{}\"\n", "9".repeat(10 * million))),
+        ("deep.xml", &format!("<mujoco><worldbody>{}</worldbody></mujoco>", "<body>".repeat(million))),
+        ("wide.xml", &format!("<mujoco>{}</mujoco>", "<a b='c'/>".repeat(250_000))),
+        ("attributes.xml", &format!("<mujoco {}/>", (0..million).map(|k| format!("a{k}='' ")).collect::<String>())),
+    ]);
+    let path = |name: &str| work.path().join(name);
+    for name in ["keys.toml", "lines.toml", "few.toml", "long.toml"] {
+        refused(&path(name), &[name]);
+    }
+    for name in ["deep.xml", "wide.xml", "attributes.xml"] {
+        fs::write(path("mjcf.toml"), of_mjcf("rapier", name)).unwrap();
+        refused(&path("mjcf.toml"), &[name]);
+    }
+}
+
+/// Ten thousand moves, each with a limit of its own.
+#[test]
+fn a_long_program_is_checked_in_no_time() {
+    let step = "[[program]]\nmove_by = \"1 um\"\nlimits.move_time = \"1 s\"\n".repeat(10_000);
+    let text = SLIDE.replace("duration = \"0.4 s\"\n", "").replace("[[program]]\nmove_to = \"50 mm\"\n", &step);
+    let work = folder(&[("long.toml", &text)]);
+    let output = checked(&work.path().join("long.toml"));
+    assert!(code(&output) == 0 && said(&output).contains("10000 moves"), "{}", said(&output));
+}

@@ -7,8 +7,10 @@ mod made_of;
 mod quoted;
 mod regular;
 mod shortage;
+mod xml_bounds;
 
 pub use made_of::{FileRole, MadeOf, sha256};
 pub use quoted::{MOST_QUOTED, Quoted, listed, named, quoted, with_short_quotes};
 pub use regular::{FileId, metadata, open, read, read_text};
 pub use shortage::is_shortage;
+pub use xml_bounds::{XmlBounds, XmlExcess};

@@ -2,8 +2,10 @@
 use crate::digest::Digest;
 use crate::error::ResultsError;
 use crate::run::RunResult;
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
-use std::io;
+use servobench_files::with_short_quotes;
+use std::io::{self, BufReader};
 use std::path::Path;
 
 /// Name of the schema, before its version.
@@ -97,14 +99,25 @@ impl Outcome {
     }
 }
 
-/// Bytes of a file of results at most: those of 100 000 runs have 500 MB.
-const MOST_BYTES: u64 = 1 << 30;
+/// Bytes of a file of results at most: those of 100 000 runs with one move have 1.5 GB.
+const MOST_BYTES: u64 = 1 << 32;
+/// A file of more bytes is looked through before it is read.
+const LARGE: u64 = 16 << 20;
 
 /// The text of a file of results.
 ///
 /// # Errors
 /// Those of the operating system; it is no regular file, or larger than any results.
 pub fn read_results(path: &Path) -> io::Result<String> {
+    let file = servobench_files::open(path, MOST_BYTES)?;
+    if file.metadata()?.len() > LARGE {
+        // What is no JSON is not held in memory to find that out.
+        let refused = |error: serde_json::Error| {
+            let why = with_short_quotes(&error.to_string());
+            io::Error::new(io::ErrorKind::InvalidData, format!("it is no JSON: {why}"))
+        };
+        serde_json::from_reader::<_, IgnoredAny>(BufReader::new(file)).map_err(refused)?;
+    }
     servobench_files::read_text(path, MOST_BYTES)
 }
 

@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// What makes a folder the root of a project, as a folder or a file (of a worktree).
 const PROJECT: &str = ".git";
 
-/// Bytes of a scenario at most: one of 100 000 moves has five million.
+/// Bytes of a scenario at most: the longest that anybody writes have some hundred thousand, and may have long texts in them.
 pub const MOST_OF_A_SCENARIO: u64 = 16 << 20;
 /// Bytes of a model: data sheets have some kilobytes.
 const MOST_OF_A_MODEL: u64 = 1 << 20;

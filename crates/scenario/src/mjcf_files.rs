@@ -8,12 +8,14 @@
 //! Source: MuJoCo documentation, *XML Reference*, `include`, `compiler/meshdir`, `texturedir`, `assetdir`, `strippath`.
 use crate::access::{FileAccess, Refused};
 use roxmltree::{Document, ParsingOptions};
-use servobench_files::{FileRole, quoted, with_short_quotes};
+use servobench_files::{FileRole, XmlBounds, XmlExcess, quoted, with_short_quotes};
 use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
 
-/// Elements of a file at most: ten times those of the largest models that are published.
-const MOST_NODES: u32 = 1_000_000;
+/// Elements of a file at most: many times those of the largest models that are published.
+const MOST_NODES: u32 = 300_000;
+/// Elements within each other are bodies that hang on each other: the parser goes down the stack with them.
+const BOUNDS: XmlBounds = XmlBounds { bytes: 16 << 20, depth: 1000, attributes: 128, attributes_in_all: 1_000_000 };
 /// Files that are named, and folders in which they may be.
 const MOST_NAMES: usize = 10_000;
 const MOST_FOLDERS: usize = 16;
@@ -73,6 +75,12 @@ impl Named {
     /// Adds what `xml` names; returns the files among it that are MJCF themselves.
     fn add(&mut self, path: &Path, xml: &str) -> Result<BTreeSet<String>, Refused> {
         let refuse = |message: String| Err(Refused { message, help: "" });
+        if let Err(XmlExcess { what, most, .. }) = BOUNDS.hold(xml) {
+            return refuse(format!(
+                "`{}`: {what} is more than {most}, the most that is read of an MJCF file",
+                path.display()
+            ));
+        }
         // A declaration of the document type is nothing that MJCF has, and could make a text of any length out of a short one.
         let options = ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES };
         let document = match Document::parse_with_options(xml, options) {

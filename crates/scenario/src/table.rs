@@ -1,6 +1,6 @@
 //! Tables of a scenario file, each described once: from the description follow the struct, its decoding, the unknown
 //! keys, the JSON Schema and the reference in `docs/scenario.md`.
-use crate::diagnostic::Report;
+use crate::diagnostic::{MOST_MISTAKES, Report};
 use crate::field::{Field, Slot};
 
 use crate::nearest::suggestion;
@@ -124,7 +124,10 @@ impl<'a> OpenTable<'a> {
         for entry in &table.entries {
             if !keys.contains(&entry.key.as_str()) {
                 let message = format!("unknown key `{}`{}", entry.key, of(path));
-                report.error(entry.key_span, message, suggestion(&entry.key, keys.iter().copied()));
+                // Of so many nobody reads what each may have meant.
+                let is_shown = report.errors.len() < 10 * MOST_MISTAKES;
+                let help = if is_shown { suggestion(&entry.key, keys.iter().copied()) } else { String::new() };
+                report.error(entry.key_span, message, help);
             }
         }
         for key in required {

@@ -116,6 +116,14 @@ pub(crate) fn parse(source: SourceId, text: &str, report: &mut Report) -> Parsed
     if let Some(looks_like) = another_format(text) {
         return nothing_of(source, text, 0..0, looks_like, report);
     }
+    if let Some((at, _)) = text.bytes().enumerate().filter(|(_, byte)| MARKS.contains(byte)).nth(MOST_MARKS) {
+        let message = format!(
+            "the file has more than {MOST_MARKS} brackets, equals signs, commas, points, quotation marks and line ends"
+        );
+        let help = "split it, or put many moves into a table of points";
+        report.error(Span::new(source, &(at..at)), message, help);
+        return Parsed { table: Table::default(), broken: std::iter::once(0..text.len()).collect() };
+    }
     let (table, errors) = parse_to_the_end(source, text);
     if is_hardly_toml(text, &errors) {
         let first = errors.first().map_or(0..0, |error| error.span.clone());
@@ -150,6 +158,11 @@ pub(crate) fn parse(source: SourceId, text: &str, report: &mut Report) -> Parsed
     }
     Parsed { table, broken }
 }
+
+/// What a parsed file is made of stands between these. Each takes up to half a kilobyte, until the file is a scenario.
+const MARKS: &[u8] = b"[]{}=,.\"'\n";
+/// Marks of a file at most: 20 000 moves with a limit each have so many.
+const MOST_MARKS: usize = 300_000;
 
 /// What a text is that begins as no TOML does.
 fn another_format(text: &str) -> Option<&'static str> {
@@ -256,6 +269,8 @@ fn end_of_table(text: &str, from: usize) -> usize {
 
 /// The parser gives up at a key without a value; it is then shown the text without that line.
 const MAX_GIVEN_UP: usize = 64;
+/// Bytes that are parsed again for it, in all.
+const MOST_PARSED_AGAIN: usize = 1 << 20;
 
 fn parse_to_the_end(source: SourceId, text: &str) -> (Table, Vec<SyntaxError>) {
     let mut text = text.to_owned();
@@ -267,7 +282,8 @@ fn parse_to_the_end(source: SourceId, text: &str) -> (Table, Vec<SyntaxError>) {
         errors.sort_by_key(|error| error.span.start);
         let stop = errors.iter().find(|error| error.kind == Kind::KeyWithoutValue).cloned();
         let line = stop.as_ref().map(|stop| lines_around(&text, &stop.span));
-        if let (Some(stop), Some(line), true) = (stop, line, given_up.len() < MAX_GIVEN_UP) {
+        let may_go_on = given_up.len() < MAX_GIVEN_UP && given_up.len() * text.len() < MOST_PARSED_AGAIN;
+        if let (Some(stop), Some(line), true) = (stop, line, may_go_on) {
             // Spaces keep every other byte where it is.
             text.replace_range(line.clone(), &" ".repeat(line.len()));
             given_up.push(stop);

@@ -51,8 +51,11 @@ pub(crate) fn line(node: Node) -> u32 {
     node.document().text_pos_at(node.range().start).row
 }
 
+/// Refusals at most: nobody reads more, and to find the line of each takes as long as the file is.
+const MOST_REFUSALS: usize = 100;
+
 fn visit(node: Node, element: &'static Element, refusals: &mut Vec<MjcfRefusal>) {
-    if element.idle {
+    if element.idle || refusals.len() >= MOST_REFUSALS {
         return;
     }
     for attribute in node.attributes() {
@@ -80,6 +83,7 @@ fn visit(node: Node, element: &'static Element, refusals: &mut Vec<MjcfRefusal>)
         let name = child.tag_name().name();
         match element.children.iter().find(|known| known.name == name) {
             Some(known) => visit(child, known, refusals),
+            None if refusals.len() >= MOST_REFUSALS => return,
             None => refusals.push(MjcfRefusal::Element {
                 line: line(child),
                 element: name.into(),
