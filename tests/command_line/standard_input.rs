@@ -42,7 +42,7 @@ fn a_scenario_from_standard_input_runs_as_from_a_file() {
         // The name is part of what a run is made of, and of its recording.
         results.as_object_mut().unwrap().remove("suite");
         for run in results["scenarios"].as_array_mut().unwrap() {
-            for key in ["name", "file", "inputs", "recording", "recording_seal", "files"] {
+            for key in ["name", "file", "inputs", "made_of", "recording", "recording_seal", "files"] {
                 run.as_object_mut().unwrap().remove(key);
             }
         }
