@@ -139,10 +139,10 @@ impl Coupled {
             exchanges += 1;
             if exchanges.is_multiple_of(LOG_EVERY) {
                 self.note_logs();
-                // An exchange may take long: how long is up to the FMUs.
-                if failure.is_none() && progress(self.master.tick().0 as f64 / ticks as f64).is_break() {
-                    failure = Some(Failure { time: self.master.time(), reason: Reason::Stopped });
-                }
+            }
+            // An exchange may take long: how long is up to the FMUs.
+            if failure.is_none() && progress(self.master.tick().0 as f64 / ticks as f64).is_break() {
+                failure = Some(Failure { time: self.master.time(), reason: Reason::Stopped });
             }
         }
         // It is over: there is nothing to break off.

@@ -112,5 +112,5 @@ impl<Axes> Machine<Axes> {
     }
 }
 
-/// How often a run reports its progress, in ticks.
-const PROGRESS_EVERY: u64 = 1 << 14;
+/// How often a run reports its progress, in ticks. With an FMU as mechanics a tick may take milliseconds.
+const PROGRESS_EVERY: u64 = 1 << 10;

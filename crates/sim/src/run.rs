@@ -70,7 +70,7 @@ impl Bench {
         })
     }
 
-    /// The same; a break of `progress`, which is told every few thousand ticks and every few exchanges with FMUs, is a failure:
+    /// The same; a break of `progress`, which is told every thousand ticks or so and after every exchange with FMUs, is a failure:
     /// [`Reason::Stopped`].
     #[must_use]
     pub fn run_while(self, progress: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Outcome {

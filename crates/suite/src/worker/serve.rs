@@ -8,7 +8,7 @@ use crate::error::RunError;
 use crate::execute::{Interruption, Loop, run_here};
 use crate::panicked::caught;
 use servobench_config::Choice as _;
-use servobench_isolation::{claim_standard_streams, own_memory};
+use servobench_isolation::{Stopwatch, claim_standard_streams, own_memory};
 use servobench_metrics::EarlyEnd;
 use servobench_plant::EngineName;
 use servobench_scenario::Scenario;
@@ -18,7 +18,11 @@ use std::io::{self, BufRead, BufReader, Write};
 use std::os::unix::net::UnixStream;
 use std::time::Duration;
 
-/// Carries out orders until nobody gives any more, with `running` where a scenario is run and `checking` where it is only checked. The standard streams of this process belong to that from now on: what libraries write
+/// How often progress is told, at most.
+const BETWEEN: Duration = Duration::from_millis(50);
+
+/// Carries out orders until nobody gives any more: those to run something with the engines `running`, those to check with `checking`. The
+/// standard streams of this process belong to that from now on: what libraries write
 /// on standard output goes to standard error.
 ///
 /// # Errors
@@ -88,7 +92,13 @@ fn run(
     file: &mut File,
     say: &mut dyn FnMut(&Message),
 ) -> Result<End, RunError> {
-    let (recording, failure) = run_here(scenario, built_by, time_limit, &mut |share| say(&Message::Progress(share)))?;
+    let mut last: Option<Stopwatch> = None;
+    let (recording, failure) = run_here(scenario, built_by, time_limit, &mut |share| {
+        if last.is_none_or(|last| last.elapsed() >= BETWEEN) {
+            last = Some(Stopwatch::start());
+            say(&Message::Progress(share));
+        }
+    })?;
     if let Err(error) = recording::write(&recording, file) {
         return Ok(End::Failed(format!("cannot pass the recording on: {error}")));
     }

@@ -23,7 +23,7 @@ pub struct WorkerCommand {
     pub program: PathBuf,
     /// Folder for the recordings on their way from the worker; they have no names there.
     pub folder: PathBuf,
-    /// How long a worker may say nothing. It speaks every few thousand ticks, but not while the engine reads the model
+    /// How long a worker may say nothing. It speaks every thousand ticks or so, but not while the engine reads the model
     /// nor while it writes the recording.
     pub timeout: Duration,
     /// What a run may take.
