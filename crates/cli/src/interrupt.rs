@@ -98,11 +98,12 @@ mod unix {
         remove_abandoned();
         let mut signals = Signals::new([SIGINT, SIGTERM]).map_err(CliError::Signals)?;
         let folder = folder.to_owned();
-        std::thread::spawn(move || {
+        let thread = std::thread::Builder::new().name("signals".into()).spawn(move || {
             if let Some(signal) = signals.forever().find(|signal| is_last(*signal)) {
                 end(signal, &folder, close);
             }
         });
+        thread.map_err(CliError::Signals)?;
         Ok(())
     }
 
